@@ -1,0 +1,67 @@
+//! Meshes as authors give them: points, elements and named sets in the author's order and numbering.
+//!
+//! A [`Mesh`] is what generators make and files hold; the engine renumbers it for locality when a body is built from it.
+
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// The numbers an author knows things by: row numbers from 0, or the numbers that a file gives.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Ids {
+    /// Row `i` is called `i`.
+    #[default]
+    Rows,
+    /// Row `i` is called by the `i`-th number.
+    Named(Vec<u64>),
+}
+
+impl Ids {
+    /// The author's number of a row.
+    pub fn of(&self, row: usize) -> u64 {
+        match self {
+            Ids::Rows => row as u64,
+            Ids::Named(ids) => ids[row],
+        }
+    }
+}
+
+/// A volume mesh in the author's order.
+#[derive(Clone, Debug, Default)]
+pub struct Mesh {
+    /// Rest positions (m), one row a point.
+    pub points: Vec<DVec3>,
+    /// The author's number of each point.
+    pub point_ids: Ids,
+    /// Four-node tetrahedra: rows of `points`, VTK order (the fourth point lies on the side that the right-hand normal
+    /// of the first three points to).
+    pub tets: Vec<[u32; 4]>,
+    /// Eight-node hexahedra: rows of `points`, VTK order (bottom face counter-clockwise seen from above, then the top).
+    pub hexes: Vec<[u32; 8]>,
+    /// The author's number of each element: tetrahedra first, then hexahedra.
+    pub element_ids: Ids,
+    /// Named sets of points (rows of `points`, ascending, each once).
+    pub node_sets: BTreeMap<String, Vec<u32>>,
+    /// Named sets of surface faces: rows of `points`; a triangle repeats its last point.
+    pub face_sets: BTreeMap<String, Vec<[u32; 4]>>,
+    /// Named sets of elements (tetrahedra first, then hexahedra; ascending, each once).
+    pub element_sets: BTreeMap<String, Vec<u32>>,
+    /// Named vectors, one row an element (tetrahedra first, then hexahedra): fibre directions, for instance.
+    pub element_vectors: BTreeMap<String, Vec<DVec3>>,
+    /// What the author should know about how the mesh was read, one sentence each.
+    pub notes: Vec<String>,
+}
+
+impl Mesh {
+    /// How many elements there are, of both kinds.
+    pub fn element_count(&self) -> usize {
+        self.tets.len() + self.hexes.len()
+    }
+
+    /// The points of an element (tetrahedra first, then hexahedra).
+    pub fn element(&self, row: usize) -> &[u32] {
+        match self.tets.get(row) {
+            Some(tet) => tet,
+            None => &self.hexes[row - self.tets.len()],
+        }
+    }
+}

@@ -1,0 +1,1 @@
+//! What a run leaves behind: field series for ParaView, tables and the summary.

@@ -1,0 +1,3 @@
+//! Scene files: their words, how they are read, and what is said when they are wrong.
+
+pub mod schema;
