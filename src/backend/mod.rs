@@ -1,1 +1,3 @@
-//! Where kernels run.
+//! Where kernels run: on the host's cores, or on a GPU.
+
+pub mod cpu;

@@ -1,0 +1,74 @@
+//! The CPU backend: every core, vector registers as wide as the machine has them.
+
+mod element_kernel;
+mod law;
+
+pub use element_kernel::{BlockColumns, run_block};
+pub use law::BlockLaw;
+
+use bevy_ecs::prelude::*;
+
+/// Rows of a node column that make one task. A constant: tasks must not depend on the number of threads.
+pub const ROWS_A_TASK: usize = 2048;
+
+/// Elements below which one thread does a step faster than several.
+const WORTH_SHARING: usize = 2000;
+
+/// Threads and instruction set of a run.
+#[derive(Resource)]
+pub struct Cpu {
+    pool: Option<rayon::ThreadPool>,
+    threads: usize,
+    arch: pulp::Arch,
+}
+
+impl Cpu {
+    /// `threads` 0: one a core. Fewer than about two thousand elements run on one thread in any case.
+    pub fn new(threads: usize, elements: usize) -> Self {
+        let threads = match threads {
+            0 => std::thread::available_parallelism().map_or(1, |n| n.get()),
+            n => n,
+        };
+        let threads = if elements < WORTH_SHARING { 1 } else { threads };
+        let pool = match threads {
+            1 => None,
+            n => rayon::ThreadPoolBuilder::new().num_threads(n).build().ok(),
+        };
+        let threads = if pool.is_some() { threads } else { 1 };
+        Self { pool, threads, arch: pulp::Arch::new() }
+    }
+
+    /// How many threads work.
+    pub fn threads(&self) -> usize {
+        self.threads
+    }
+
+    /// The instruction set that was found, in a word.
+    pub fn instruction_set(&self) -> String {
+        let debug = format!("{:?}", self.arch);
+        match debug.split('(').next() {
+            Some("V4") => "AVX-512".into(),
+            Some("V3") => "AVX2".into(),
+            Some(other) => other.to_lowercase(),
+            None => debug,
+        }
+    }
+
+    pub(crate) fn arch(&self) -> pulp::Arch {
+        self.arch
+    }
+
+    /// Runs `task` on each item, on all threads. Items must be independent; their order of work does not matter then.
+    pub fn for_each<I: Send>(&self, items: impl Iterator<Item = I> + Send, task: impl Fn(I) + Sync + Send) {
+        match &self.pool {
+            None => items.for_each(task),
+            Some(pool) => {
+                let items: Vec<I> = items.collect();
+                pool.install(|| {
+                    use rayon::prelude::*;
+                    items.into_par_iter().for_each(&task);
+                });
+            }
+        }
+    }
+}

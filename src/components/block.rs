@@ -1,0 +1,52 @@
+//! Element blocks: one element type, one material, one body. Columns hold groups of [`LANES`](crate::math::LANES) elements:
+//! number `k` of element `e` stands at (e / LANES · numbers + k) · LANES + e mod LANES. The last group is filled up with
+//! elements of no volume. Elements stand patch by patch, neighbours together.
+
+use super::Reals;
+use super::column::columns;
+use crate::scene::schema::ElementKind;
+use bevy_ecs::prelude::*;
+
+/// What a block is.
+#[derive(Component, Clone, Debug)]
+pub struct Block {
+    /// The body.
+    pub body: Entity,
+    /// The material.
+    pub material: Entity,
+    /// The element type.
+    pub kind: ElementKind,
+    /// How many elements, without those that fill up the last group.
+    pub count: usize,
+    /// Where the block's part of the body's [`ElementForce`](super::ElementForce) begins.
+    pub force_offset: usize,
+    /// Fibre direction of all elements when it is the same (unit vector).
+    pub fibre_direction: Option<[f64; 3]>,
+}
+
+columns! {
+    /// Rows of the body's node columns, by corner.
+    Connectivity(Vec<u32>) = "connectivity";
+    /// What the element type knows of the rest shape: see [`Element`](crate::elements::Element).
+    RestShape(Reals) = "rest_shape";
+    /// Unit vector along the fibres at rest, where it differs from element to element.
+    FibreDirection(Reals) = "fibre_direction";
+    /// Viscous history q: six numbers a Prony term.
+    ViscousMemory(Reals) = "viscous_memory";
+    /// 1 until the element is removed, then 0. Exists when elements can be removed.
+    Alive(Vec<u32>) = "alive";
+    /// The step before which the element goes at the latest; `u32::MAX`: never. Exists with [`Alive`].
+    RemovalStep(Vec<u32>) = "removal_step";
+    /// Elastic and hourglass energy (J) that each element held when it was removed. Exists with [`Alive`].
+    RemovedEnergy(Reals) = "removed_energy";
+    /// One number: the lowest row of an element found with J < 0, by the kernel itself in every step; `u32::MAX`: none.
+    FirstInverted(Vec<u32>) = "first_inverted";
+}
+
+/// Elements of a patch: enough to be worth a task, few enough that their nodes and forces stay in a core's cache.
+pub const fn patch_groups(kind: ElementKind) -> usize {
+    match kind {
+        ElementKind::Tet4 => 1024 / crate::math::LANES,
+        ElementKind::Hex8 => 224 / crate::math::LANES,
+    }
+}

@@ -1,0 +1,184 @@
+//! Columns of numbers in the precision that a run has.
+
+use crate::math::Scalar;
+use bevy_ecs::component::Mutable;
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+/// The number type of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Precision {
+    /// 32 bits: fast, and the only one on the GPU.
+    #[default]
+    F32,
+    /// 64 bits: the reference, CPU only.
+    F64,
+}
+
+/// A column of real numbers in the run's precision. Vectors are three numbers side by side.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reals {
+    /// 32-bit numbers; the same bytes on host and device.
+    F32(Vec<f32>),
+    /// 64-bit numbers.
+    F64(Vec<f64>),
+}
+
+/// Runs the same expression on the slice of either precision.
+macro_rules! either {
+    ($reals:expr, $values:ident => $body:expr) => {
+        match $reals {
+            $crate::components::Reals::F32($values) => $body,
+            $crate::components::Reals::F64($values) => $body,
+        }
+    };
+}
+pub(crate) use either;
+
+impl Reals {
+    /// `length` zeros.
+    pub fn zeros(precision: Precision, length: usize) -> Self {
+        match precision {
+            Precision::F32 => Reals::F32(vec![0.0; length]),
+            Precision::F64 => Reals::F64(vec![0.0; length]),
+        }
+    }
+
+    /// Numbers rounded to a precision.
+    pub fn from_f64(precision: Precision, values: impl Iterator<Item = f64>) -> Self {
+        match precision {
+            Precision::F32 => Reals::F32(values.map(|v| v as f32).collect()),
+            Precision::F64 => Reals::F64(values.collect()),
+        }
+    }
+
+    /// How many numbers.
+    pub fn len(&self) -> usize {
+        either!(self, v => v.len())
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// One number, widened.
+    pub fn get(&self, index: usize) -> f64 {
+        either!(self, v => v[index].to_f64())
+    }
+
+    /// Writes one number, rounded.
+    pub fn set(&mut self, index: usize, value: f64) {
+        either!(self, v => v[index] = Scalar::from_f64(value));
+    }
+
+    /// Row `row` of a column of vectors.
+    pub fn vector(&self, row: usize) -> DVec3 {
+        either!(self, v => DVec3::new(v[3 * row].to_f64(), v[3 * row + 1].to_f64(), v[3 * row + 2].to_f64()))
+    }
+
+    /// Writes row `row` of a column of vectors, rounded.
+    pub fn set_vector(&mut self, row: usize, value: DVec3) {
+        either!(self, v => {
+            for (place, x) in v[3 * row..3 * row + 3].iter_mut().zip(value.to_array()) {
+                *place = Scalar::from_f64(x);
+            }
+        });
+    }
+
+    /// All rows of a column of vectors.
+    pub fn vectors(&self) -> impl Iterator<Item = DVec3> + '_ {
+        (0..self.len() / 3).map(|row| self.vector(row))
+    }
+
+    /// The numbers as `T`; `None` when the run has another precision.
+    pub fn slice<T: Scalar>(&self) -> &[T] {
+        either!(self, v => bytemuck::try_cast_slice(v).unwrap_or(&[]))
+    }
+
+    /// The numbers as `T`, to write; empty when the run has another precision.
+    pub fn slice_mut<T: Scalar>(&mut self) -> &mut [T] {
+        either!(self, v => bytemuck::try_cast_slice_mut(v).unwrap_or(&mut []))
+    }
+
+    /// The bytes.
+    pub fn bytes(&self) -> &[u8] {
+        either!(self, v => bytemuck::cast_slice(v))
+    }
+
+    /// The bytes, to write.
+    pub fn bytes_mut(&mut self) -> &mut [u8] {
+        either!(self, v => bytemuck::cast_slice_mut(v))
+    }
+}
+
+/// A component that is a column of plain numbers and can live on a device: the same bytes here and there.
+pub trait Column: Component<Mutability = Mutable> {
+    /// Its name in shaders and reports.
+    const NAME: &'static str;
+    /// The bytes.
+    fn bytes(&self) -> &[u8];
+    /// The bytes, to write.
+    fn bytes_mut(&mut self) -> &mut [u8];
+}
+
+/// Declares components that are columns.
+macro_rules! columns {
+    ($($(#[$doc:meta])* $name:ident($type:ty) = $word:literal;)*) => {
+        $(
+            $(#[$doc])*
+            #[derive(bevy_ecs::prelude::Component, Clone, Debug)]
+            pub struct $name(pub $type);
+
+            impl $crate::components::Column for $name {
+                const NAME: &'static str = $word;
+                fn bytes(&self) -> &[u8] {
+                    $crate::components::column::AsBytes::as_bytes(&self.0)
+                }
+                fn bytes_mut(&mut self) -> &mut [u8] {
+                    $crate::components::column::AsBytes::as_bytes_mut(&mut self.0)
+                }
+            }
+
+            impl std::ops::Deref for $name {
+                type Target = $type;
+                fn deref(&self) -> &$type {
+                    &self.0
+                }
+            }
+
+            impl std::ops::DerefMut for $name {
+                fn deref_mut(&mut self) -> &mut $type {
+                    &mut self.0
+                }
+            }
+        )*
+    };
+}
+pub(crate) use columns;
+
+/// What columns are made of.
+pub trait AsBytes {
+    /// The bytes.
+    fn as_bytes(&self) -> &[u8];
+    /// The bytes, to write.
+    fn as_bytes_mut(&mut self) -> &mut [u8];
+}
+
+impl AsBytes for Reals {
+    fn as_bytes(&self) -> &[u8] {
+        self.bytes()
+    }
+    fn as_bytes_mut(&mut self) -> &mut [u8] {
+        self.bytes_mut()
+    }
+}
+
+impl AsBytes for Vec<u32> {
+    fn as_bytes(&self) -> &[u8] {
+        bytemuck::cast_slice(self)
+    }
+    fn as_bytes_mut(&mut self) -> &mut [u8] {
+        bytemuck::cast_slice_mut(self)
+    }
+}

@@ -1,0 +1,44 @@
+//! The data: what a scene author names is an entity, what is numerous is a column of one of its components.
+//!
+//! | entity | components |
+//! |---|---|
+//! | body | node columns ([`nodes`]), [`Corners`], [`ElementForce`], [`Authoring`] |
+//! | element block: one element type, one material, one body | [`Block`], [`Connectivity`], [`RestShape`] and, where called for, [`FibreDirection`], [`ViscousMemory`], [`Alive`], [`RemovalStep`] |
+//! | material | [`Density`], [`NeoHookean`](crate::materials::NeoHookean), [`Fibres`](crate::materials::Fibres), [`Prony`], [`Damping`]: an effect exists when its component does |
+//! | constraint, load, removal | [`Fixed`], [`Prescribed`], [`Gravity`], [`NodalForce`], [`Pressure`], [`Traction`], [`RemovalCriterion`] with the rows they act on |
+//! | probe | [`Probe`] |
+
+mod block;
+mod clock;
+mod column;
+mod constraint;
+mod load;
+mod material;
+pub mod nodes;
+mod observation;
+
+pub use block::{
+    Alive, Block, Connectivity, FibreDirection, FirstInverted, RemovalStep, RemovedEnergy, RestShape, ViscousMemory,
+    patch_groups,
+};
+pub use clock::{Clock, Signal, Signals};
+pub(crate) use column::either;
+pub use column::{Column, Precision, Reals};
+pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
+pub use load::{FaceCorners, Gravity, NodalForce, Pressure, Traction};
+pub use material::{Damping, Density, Prony};
+pub use nodes::{
+    Authoring, ConstrainedAxes, Corners, DampingCoefficient, Displacement, DisplacementCompensation, DisplacementStep,
+    ElementForce, ExternalForce, FirstNonFinite, InternalForce, Mass, RestPosition, Work,
+};
+pub use observation::{Energies, Probe};
+
+use bevy_ecs::prelude::*;
+
+/// What the scene's author calls an entity.
+#[derive(Component, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Label(pub String);
+
+/// The body that a block, constraint, load or probe belongs to.
+#[derive(Component, Clone, Copy, Debug)]
+pub struct OfBody(pub Entity);

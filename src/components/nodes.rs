@@ -1,0 +1,84 @@
+//! What a body knows of its nodes: one row a node, in the engine's order (see [`Authoring`] for the author's).
+
+use super::Reals;
+use super::column::columns;
+use crate::mesh::Ids;
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+/// Positions at rest (m), always in f64.
+#[derive(Component, Clone, Debug)]
+pub struct RestPosition(pub Vec<DVec3>);
+
+columns! {
+    /// Displacement u (m), a vector a node.
+    Displacement(Reals) = "displacement";
+    /// Displacement of the last step, u_n − u_{n−1} (m), a vector a node: velocity in the middle of the step times Δt.
+    /// On constrained axes `boundary` writes the step to come here.
+    DisplacementStep(Reals) = "displacement_step";
+    /// What rounding has left out of the displacement (m), a vector a node; u minus this is the sum of all steps.
+    DisplacementCompensation(Reals) = "displacement_compensation";
+    /// Lumped mass (kg), a number a node; 0 parks the node.
+    Mass(Reals) = "mass";
+    /// Σ c m over a node's elements (kg/s): damping rate times mass. Exists when a material is damped.
+    DampingCoefficient(Reals) = "damping_coefficient";
+    /// Force of the deformed elements on the node, sign such that M ü = R − F (N), a vector a node.
+    InternalForce(Reals) = "internal_force";
+    /// Sum R of all loads (N), a vector a node. Exists when there are loads.
+    ExternalForce(Reals) = "external_force";
+    /// Bits 0, 1, 2: the node does not move freely along x, y, z.
+    ConstrainedAxes(Vec<u32>) = "constrained_axes";
+    /// Work done on or by a node since the start (J): by loads, against damping, by constraints, by internal forces; four
+    /// numbers a node. Exists when energies are asked for.
+    Work(Reals) = "work";
+    /// One number: the lowest row of a node whose displacement was found not finite, by the integrator itself in every
+    /// step; `u32::MAX`: none.
+    FirstNonFinite(Vec<u32>) = "first_non_finite";
+    /// Forces of all elements on their corners (N), all blocks of the body one after the other: in each group of
+    /// [`LANES`](crate::math::LANES) elements by corner, component, element.
+    ElementForce(Reals) = "element_force";
+}
+
+/// Which corners of elements meet in a node: the gather's map, in compressed rows. `corners[starts[i]..starts[i + 1]]` are
+/// places in [`ElementForce`] of the x component; y and z follow [`LANES`](crate::math::LANES) and twice that later.
+#[derive(Component, Clone, Debug)]
+pub struct Corners {
+    /// One more than nodes.
+    pub starts: Vec<u32>,
+    /// Four a tetrahedron, eight a hexahedron.
+    pub corners: Vec<u32>,
+}
+
+/// How the author numbers and orders what the engine has renumbered.
+#[derive(Component, Clone, Debug)]
+pub struct Authoring {
+    /// For each of the author's nodes, in the author's order, its row here.
+    pub node_rows: Vec<u32>,
+    /// The author's number of each of the author's nodes.
+    pub node_ids: Ids,
+    /// For each of the author's elements (tetrahedra first), its block's place in the body's list and its row there.
+    pub element_rows: Vec<(u32, u32)>,
+    /// The author's number of each of the author's elements.
+    pub element_ids: Ids,
+    /// Nodes of each tetrahedron, in the author's order and the author's rows.
+    pub tets: Vec<[u32; 4]>,
+    /// Nodes of each hexahedron, likewise.
+    pub hexes: Vec<[u32; 8]>,
+    /// The body's element blocks.
+    pub blocks: Vec<Entity>,
+}
+
+impl Authoring {
+    /// The author's number of the node in an engine row.
+    pub fn node_id(&self, row: usize) -> u64 {
+        let place = self.node_rows.iter().position(|&r| r as usize == row).unwrap_or(row);
+        self.node_ids.of(place)
+    }
+
+    /// The author's number of an element, from its block's place and its row there.
+    pub fn element_id(&self, block: usize, row: usize) -> u64 {
+        let wanted = (block as u32, row as u32);
+        let place = self.element_rows.iter().position(|&r| r == wanted).unwrap_or(row);
+        self.element_ids.of(place)
+    }
+}

@@ -1,0 +1,105 @@
+//! Finite elements: displacement gradients from nodal displacements, nodal forces from stress.
+//!
+//! An element is one Rust file with its WGSL twin of the same stem in `shaders/`.
+
+mod hex8;
+mod tet4;
+
+pub use hex8::Hex8;
+pub use tet4::Tet4;
+
+use crate::math::{Mat3, Real};
+use glam::DVec3;
+
+/// Nodes of the element type that has most.
+pub const MOST_NODES: usize = 8;
+/// Rest-shape numbers of the element type that has most.
+pub const MOST_ROWS: usize = 35;
+
+/// A kind of element with one integration point.
+///
+/// What an element knows of its shape at rest is a column of [`ROWS`](Element::ROWS) numbers, made once in `f64`; `shape`
+/// below gives them by row. Row [`VOLUME_ROW`](Element::VOLUME_ROW) is the rest volume (m³). All force-giving rows are
+/// proportional to rows that removal can zero: an element whose volume and hourglass rows are zero exerts nothing.
+pub trait Element: Copy + Send + Sync + 'static {
+    /// Its name in scenes, shaders and reports.
+    const NAME: &'static str;
+    /// How many nodes.
+    const NODES: usize;
+    /// How many numbers describe the rest shape.
+    const ROWS: usize;
+    /// Which of them is the volume.
+    const VOLUME_ROW: usize;
+    /// Which of them is the hourglass stiffness, if any.
+    const HOURGLASS_ROW: Option<usize>;
+
+    /// The rest shape from the nodes' rest positions (m); `young` is the small-strain Young's modulus (Pa) that hourglass
+    /// control is scaled by.
+    fn rest_shape(points: &[DVec3], young: f64) -> [f64; MOST_ROWS];
+
+    /// Displacement gradient ∇u from nodal displacements (m); rows: components, columns: coordinates.
+    fn gradient<R: Real>(u: &[[R; 3]; MOST_NODES], shape: impl Fn(usize) -> R) -> Mat3<R>;
+
+    /// Nodal forces (N) that the element exerts against its deformation, from the first Piola-Kirchhoff stress (Pa).
+    fn forces<R: Real>(
+        u: &[[R; 3]; MOST_NODES],
+        gradient: &Mat3<R>,
+        stress: &Mat3<R>,
+        shape: impl Fn(usize) -> R,
+    ) -> [[R; 3]; MOST_NODES];
+
+    /// Energy (J) in the hourglass control.
+    fn hourglass_energy<R: Real>(u: &[[R; 3]; MOST_NODES], gradient: &Mat3<R>, shape: impl Fn(usize) -> R) -> R;
+
+    /// Upper bound of the largest squared angular frequency (1/s²) of the free element with lumped mass.
+    ///
+    /// ω² ≤ (n/ρ)(λ tr G + 2μ' λ_max(G)), G = Σ g gᵀ, n nodes; λ, μ' and ρ as [`Stiffness`] has them; plus what the
+    /// hourglass control adds. Rigorous at rest; stretch raises the true value by about 1/σ_min(F)².
+    fn frequency_bound(shape: &[f64; MOST_ROWS], stiffness: &Stiffness) -> f64;
+}
+
+/// Three numbers of a rest shape, from a row on.
+#[inline(always)]
+fn vector<R: Real>(shape: &impl Fn(usize) -> R, row: usize) -> [R; 3] {
+    [shape(row), shape(row + 1), shape(row + 2)]
+}
+
+/// a − b.
+#[inline(always)]
+fn difference<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// What the stable step depends on.
+#[derive(Clone, Copy, Debug)]
+pub struct Stiffness {
+    /// First Lamé modulus (Pa).
+    pub lambda: f64,
+    /// Twice the shear modulus, plus 8η/3 of fibres (Pa).
+    pub deviatoric: f64,
+    /// Density (kg/m³).
+    pub density: f64,
+}
+
+/// tr G and the largest eigenvalue of G = Σ g gᵀ, rigorously from above (by Frobenius norm and trace).
+pub(crate) fn gradient_measure(gradients: impl Iterator<Item = DVec3>) -> (f64, f64) {
+    let mut g = glam::DMat3::ZERO;
+    for v in gradients {
+        g += glam::DMat3::from_cols(v * v.x, v * v.y, v * v.z);
+    }
+    let trace = g.x_axis.x + g.y_axis.y + g.z_axis.z;
+    (trace, largest_eigenvalue(&g))
+}
+
+/// Largest eigenvalue of a symmetric matrix, by the trigonometric formula (Smith 1961).
+pub fn largest_eigenvalue(g: &glam::DMat3) -> f64 {
+    let mean = (g.x_axis.x + g.y_axis.y + g.z_axis.z) / 3.0;
+    let deviator = *g - glam::DMat3::from_diagonal(DVec3::splat(mean));
+    let square = deviator.x_axis.length_squared() + deviator.y_axis.length_squared() + deviator.z_axis.length_squared();
+    let p = (square / 6.0).sqrt();
+    if p <= f64::MIN_POSITIVE {
+        return mean;
+    }
+    let r = ((deviator * (1.0 / p)).determinant() / 2.0).clamp(-1.0, 1.0);
+    mean + 2.0 * p * (r.acos() / 3.0).cos()
+}

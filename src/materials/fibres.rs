@@ -1,0 +1,55 @@
+//! One family of fibres: transverse isotropy.
+
+use super::Kinematics;
+use crate::math::{Real, Sym3};
+use bevy_ecs::component::Component;
+
+/// Ψ = η/2 (Ī₄ − 1)² with Ī₄ = J^(−2/3) a·C a (Comas et al. 2008, eq. 2; its WGSL twin is `shaders/fibres.wgsl`).
+///
+/// Other TLED codes leave out the factor 2 of its derivative and so mean Ψ = η/4 (Ī₄ − 1)²: their η is twice ours.
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
+pub struct Fibres<T: Send + Sync + 'static> {
+    /// Stiffness η (Pa).
+    pub eta: T,
+    /// 1: fibres only pull; 0: they push back as well, as in the paper.
+    pub tension_only: T,
+}
+
+impl<R: Real> Fibres<R> {
+    /// Ī₄ − 1 and I₄ for the unit direction `a`, exact to rounding for small strains.
+    #[inline(always)]
+    fn stretch(&self, k: &Kinematics<R>, a: [R; 3]) -> (R, R) {
+        let (one, two, three) = (self.eta.constant(1.0), self.eta.constant(2.0), self.eta.constant(3.0));
+        let i4_change = two * k.green_strain.quadratic(a);
+        // w = J^(−2/3) − 1 solves (1+w)³ J² = 1: one Newton step on the expanded form brings back the lost digits
+        let w = k.j_m23 - one;
+        let cube = w * (three + w * (three + w));
+        let square = k.volume_change * (two + k.volume_change);
+        let residual = cube + square + cube * square;
+        let w = w - residual * k.j_m23 * self.eta.constant(1.0 / 3.0);
+        let change = i4_change + w + w * i4_change;
+        (change, one + i4_change)
+    }
+
+    #[inline(always)]
+    fn pulling(&self, change: R) -> R {
+        change.max((self.eta.constant(1.0) - self.tension_only) * change)
+    }
+
+    /// Isochoric second Piola-Kirchhoff stress (Pa) of fibres along the unit vector `a`:
+    /// 2η(Ī₄ − 1) J^(−2/3) (a⊗a − I₄/3 C⁻¹).
+    #[inline(always)]
+    pub fn isochoric(&self, k: &Kinematics<R>, a: [R; 3]) -> Sym3<R> {
+        let (change, i4) = self.stretch(k, a);
+        let factor = self.eta.constant(2.0) * self.eta * self.pulling(change) * k.j_m23;
+        let spherical = self.eta.constant(-1.0 / 3.0) * i4 / (k.j * k.j);
+        Sym3::square_of(a).plus(&k.adjugate_c.scaled(spherical)).scaled(factor)
+    }
+
+    /// Strain energy per rest volume (J/m³).
+    #[inline(always)]
+    pub fn energy(&self, k: &Kinematics<R>, a: [R; 3]) -> R {
+        let pulling = self.pulling(self.stretch(k, a).0);
+        self.eta.constant(0.5) * self.eta * pulling * pulling
+    }
+}

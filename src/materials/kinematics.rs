@@ -1,0 +1,55 @@
+//! What every law starts from: strain measures of a displacement gradient.
+
+use crate::math::{Mat3, Real, Sym3, dot, dot_plus, minor};
+
+/// Below this volume ratio the laws use this value instead, so that no kernel ever makes a NaN. The element is reported
+/// as inverted when J ≤ 0 and the run stops; what lies between is far beyond any tissue.
+pub const J_FLOOR: f64 = 1e-3;
+
+/// Strain measures at a point, all computed from ∇u: F = I + ∇u would throw away the digits of a small ∇u.
+#[derive(Clone, Copy, Debug)]
+pub struct Kinematics<R> {
+    /// Green strain E = ½(∇u + ∇uᵀ + ∇uᵀ∇u).
+    pub green_strain: Sym3<R>,
+    /// det C · C⁻¹.
+    pub adjugate_c: Sym3<R>,
+    /// J − 1, exact to rounding for small ∇u, at least [`J_FLOOR`] − 1.
+    pub volume_change: R,
+    /// J, at least [`J_FLOOR`].
+    pub j: R,
+    /// J as it is, for detecting inversion.
+    pub true_j: R,
+    /// J^(−2/3).
+    pub j_m23: R,
+}
+
+impl<R: Real> Kinematics<R> {
+    /// Strain measures of a displacement gradient (rows: components of u, columns: coordinates).
+    #[inline(always)]
+    pub fn new(gradient: &Mat3<R>) -> Self {
+        let h = &gradient.0;
+        let (half, one) = (h[0][0].constant(0.5), h[0][0].constant(1.0));
+        let column = [[h[0][0], h[1][0], h[2][0]], [h[0][1], h[1][1], h[2][1]], [h[0][2], h[1][2], h[2][2]]];
+        let mut twice = [one; 6];
+        for (entry, (i, j)) in [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)].into_iter().enumerate() {
+            twice[entry] = dot_plus(column[i], column[j], h[i][j] + h[j][i]);
+        }
+        let green_strain = Sym3(twice).scaled(half);
+        let c = Sym3([one + twice[0], one + twice[1], one + twice[2], twice[3], twice[4], twice[5]]);
+
+        // J − 1 = first + second + third invariant of ∇u
+        let cofactor = [
+            minor(h[1][1], h[1][2], h[2][1], h[2][2]),
+            minor(h[1][2], h[1][0], h[2][2], h[2][0]),
+            minor(h[1][0], h[1][1], h[2][0], h[2][1]),
+        ];
+        let second =
+            cofactor[0] + minor(h[0][0], h[0][1], h[1][0], h[1][1]) + minor(h[0][0], h[0][2], h[2][0], h[2][2]);
+        let change = (h[0][0] + h[1][1] + h[2][2]) + second + dot(h[0], cofactor);
+        let volume_change = change.max(one.constant(J_FLOOR - 1.0));
+        let j = one + volume_change;
+        let j_m13 = j.inverse_cbrt();
+        let j_m23 = j_m13 * j_m13;
+        Self { green_strain, adjugate_c: c.adjugate(), volume_change, j, true_j: one + change, j_m23 }
+    }
+}

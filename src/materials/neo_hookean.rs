@@ -1,0 +1,44 @@
+//! The neo-Hookean law in isochoric and volumetric parts.
+
+use super::Kinematics;
+use crate::math::{Real, Sym3};
+use bevy_ecs::component::Component;
+
+/// Ψ_iso = μ/2 (Ī₁ − 3), Ψ_vol = κ/2 (J − 1)² (Comas et al. 2008, eq. 2; its WGSL twin is `shaders/neo_hookean.wgsl`).
+///
+/// At small strains its shear modulus is μ, its bulk modulus κ, its Young's modulus 9κμ/(3κ+μ). Finite at J → 0, so it
+/// cannot prevent inversion: see [`J_FLOOR`](super::J_FLOOR).
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
+pub struct NeoHookean<T: Send + Sync + 'static> {
+    /// Shear modulus μ (Pa).
+    pub shear: T,
+    /// Bulk modulus κ (Pa).
+    pub bulk: T,
+}
+
+impl<R: Real> NeoHookean<R> {
+    /// Isochoric second Piola-Kirchhoff stress (Pa): μJ^(−2/3)(I − tr C/3 C⁻¹), written as μJ^(−2/3) C⁻¹·2 dev E, which
+    /// keeps the digits of a small strain.
+    #[inline(always)]
+    pub fn isochoric(&self, k: &Kinematics<R>) -> Sym3<R> {
+        let e = &k.green_strain.0;
+        let mean = k.green_strain.trace() * self.shear.constant(1.0 / 3.0);
+        let deviator = Sym3([e[0] - mean, e[1] - mean, e[2] - mean, e[3], e[4], e[5]]);
+        let factor = self.shear.constant(2.0) * self.shear * k.j_m23 / (k.j * k.j);
+        k.adjugate_c.times_coaxial(&deviator).scaled(factor)
+    }
+
+    /// Volumetric second Piola-Kirchhoff stress (Pa): κJ(J − 1) C⁻¹.
+    #[inline(always)]
+    pub fn volumetric(&self, k: &Kinematics<R>) -> Sym3<R> {
+        k.adjugate_c.scaled(self.bulk * k.volume_change / k.j)
+    }
+
+    /// Strain energy per rest volume (J/m³).
+    #[inline(always)]
+    pub fn energy(&self, k: &Kinematics<R>) -> R {
+        let (half, three) = (self.shear.constant(0.5), self.shear.constant(3.0));
+        let trace_c = three + self.shear.constant(2.0) * k.green_strain.trace();
+        half * self.shear * (k.j_m23 * trace_c - three) + half * self.bulk * k.volume_change * k.volume_change
+    }
+}

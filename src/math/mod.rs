@@ -1,0 +1,10 @@
+//! Numbers and small tensors. Everything pointwise in sinew (elements, materials) is written once over [`Real`]:
+//! with `f64` it is the reference, with [`F32s`] and [`F64s`] it is what the CPU backend runs, a register at a time.
+
+mod real;
+mod simd;
+mod tensor;
+
+pub use real::{Real, Scalar};
+pub use simd::{F32s, F64s, LANES, SimdScalar};
+pub use tensor::{Mat3, Sym3, dot, dot_plus, minor};

@@ -1,0 +1,189 @@
+//! Vector registers as [`Real`] numbers, of the width that the machine turns out to have at run time.
+
+use super::real::{GUESS_F32, GUESS_F64, STEPS_F32, STEPS_F64, refine_inverse_cbrt};
+use super::{Real, Scalar};
+use pulp::Simd;
+use std::fmt::{Debug, Formatter, Result};
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// How many elements are stored side by side: the widest register's number of `f32` (AVX-512), half a GPU's subgroup.
+/// Narrower registers take a group in several parts.
+pub const LANES: usize = 16;
+
+/// A scalar with a vector register of its kind.
+pub trait SimdScalar: Scalar {
+    /// The register.
+    type Vector<S: Simd>: Real;
+    /// Numbers in a register; divides [`LANES`].
+    fn width<S: Simd>() -> usize;
+    /// Reads a register full from the start of a slice that is long enough.
+    fn load<S: Simd>(simd: S, from: &[Self]) -> Self::Vector<S>;
+    /// Writes a register to the start of a slice that is long enough.
+    fn store<S: Simd>(vector: Self::Vector<S>, to: &mut [Self]);
+    /// The same number in all places.
+    fn splat<S: Simd>(simd: S, value: Self) -> Self::Vector<S>;
+}
+
+macro_rules! vector {
+    ($name:ident, $scalar:ty, $raw:ident, $lanes:ident, $load:ident, $store:ident, $splat:ident, $add:ident, $sub:ident,
+     $mul:ident, $div:ident, $neg:ident, $max:ident, $mul_add:ident, $guess:ident, $steps:expr) => {
+        #[doc = concat!("A register of `", stringify!($scalar), "`.")]
+        #[derive(Clone, Copy)]
+        pub struct $name<S: Simd> {
+            simd: S,
+            value: S::$raw,
+        }
+
+        impl<S: Simd> Debug for $name<S> {
+            fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+                self.value.fmt(f)
+            }
+        }
+
+        impl<S: Simd> $name<S> {
+            #[inline(always)]
+            fn with(self, value: S::$raw) -> Self {
+                Self { simd: self.simd, value }
+            }
+        }
+
+        impl<S: Simd> Add for $name<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn add(self, other: Self) -> Self {
+                self.with(self.simd.$add(self.value, other.value))
+            }
+        }
+        impl<S: Simd> Sub for $name<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn sub(self, other: Self) -> Self {
+                self.with(self.simd.$sub(self.value, other.value))
+            }
+        }
+        impl<S: Simd> Mul for $name<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn mul(self, other: Self) -> Self {
+                self.with(self.simd.$mul(self.value, other.value))
+            }
+        }
+        impl<S: Simd> Div for $name<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn div(self, other: Self) -> Self {
+                self.with(self.simd.$div(self.value, other.value))
+            }
+        }
+        impl<S: Simd> Neg for $name<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                self.with(self.simd.$neg(self.value))
+            }
+        }
+        impl<S: Simd> AddAssign for $name<S> {
+            #[inline(always)]
+            fn add_assign(&mut self, other: Self) {
+                *self = *self + other;
+            }
+        }
+        impl<S: Simd> SubAssign for $name<S> {
+            #[inline(always)]
+            fn sub_assign(&mut self, other: Self) {
+                *self = *self - other;
+            }
+        }
+        impl<S: Simd> Real for $name<S> {
+            #[inline(always)]
+            fn constant(self, value: f64) -> Self {
+                self.with(self.simd.$splat(value as $scalar))
+            }
+            #[inline(always)]
+            fn mul_add(self, factor: Self, summand: Self) -> Self {
+                self.with(self.simd.$mul_add(self.value, factor.value, summand.value))
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                self.with(self.simd.$max(self.value, other.value))
+            }
+            #[inline(always)]
+            fn inverse_cbrt(self) -> Self {
+                let guess = self.with($guess(self.simd, self.value));
+                refine_inverse_cbrt(self, guess, $steps)
+            }
+        }
+        impl SimdScalar for $scalar {
+            type Vector<S: Simd> = $name<S>;
+            #[inline(always)]
+            fn width<S: Simd>() -> usize {
+                S::$lanes
+            }
+            #[inline(always)]
+            fn load<S: Simd>(simd: S, from: &[Self]) -> $name<S> {
+                $name { simd, value: S::$load(&from[..S::$lanes]).0[0] }
+            }
+            #[inline(always)]
+            fn store<S: Simd>(vector: $name<S>, to: &mut [Self]) {
+                S::$store(&mut to[..S::$lanes]).0[0] = vector.value;
+            }
+            #[inline(always)]
+            fn splat<S: Simd>(simd: S, value: Self) -> $name<S> {
+                $name { simd, value: simd.$splat(value) }
+            }
+        }
+    };
+}
+
+/// Guess − bits/3 in every place; bits/3 is the high word of bits · 0xAAAAAAAB, halved.
+#[inline(always)]
+fn guess_f32s<S: Simd>(simd: S, x: S::f32s) -> S::f32s {
+    let (_, high) = simd.widening_mul_u32s(simd.transmute_u32s_f32s(x), simd.splat_u32s(0xaaaa_aaab));
+    let third = simd.wrapping_dyn_shr_u32s(high, simd.splat_u32s(1));
+    simd.transmute_f32s_u32s(simd.sub_u32s(simd.splat_u32s(GUESS_F32), third))
+}
+
+#[inline(always)]
+fn guess_f64s<S: Simd>(_: S, mut x: S::f64s) -> S::f64s {
+    for bits in bytemuck::cast_slice_mut::<S::f64s, u64>(std::slice::from_mut(&mut x)) {
+        *bits = GUESS_F64.wrapping_sub(*bits / 3);
+    }
+    x
+}
+
+vector!(
+    F32s,
+    f32,
+    f32s,
+    F32_LANES,
+    as_simd_f32s,
+    as_mut_simd_f32s,
+    splat_f32s,
+    add_f32s,
+    sub_f32s,
+    mul_f32s,
+    div_f32s,
+    neg_f32s,
+    max_f32s,
+    mul_add_e_f32s,
+    guess_f32s,
+    STEPS_F32
+);
+vector!(
+    F64s,
+    f64,
+    f64s,
+    F64_LANES,
+    as_simd_f64s,
+    as_mut_simd_f64s,
+    splat_f64s,
+    add_f64s,
+    sub_f64s,
+    mul_f64s,
+    div_f64s,
+    neg_f64s,
+    max_f64s,
+    mul_add_e_f64s,
+    guess_f64s,
+    STEPS_F64
+);

@@ -1,0 +1,148 @@
+//! 3×3 tensors over any [`Real`].
+
+use super::Real;
+
+/// A 3×3 matrix, row by row.
+#[derive(Clone, Copy, Debug)]
+pub struct Mat3<R>(pub [[R; 3]; 3]);
+
+/// A symmetric 3×3 matrix: xx, yy, zz, xy, yz, xz.
+#[derive(Clone, Copy, Debug)]
+pub struct Sym3<R>(pub [R; 6]);
+
+/// a·b. (Small functions marked for inlining, here and below, not closures: only those melt into vector code.)
+#[inline(always)]
+pub fn dot<R: Real>(a: [R; 3], b: [R; 3]) -> R {
+    a[2].mul_add(b[2], a[1].mul_add(b[1], a[0] * b[0]))
+}
+
+/// a·b + c.
+#[inline(always)]
+pub fn dot_plus<R: Real>(a: [R; 3], b: [R; 3], c: R) -> R {
+    a[2].mul_add(b[2], a[1].mul_add(b[1], a[0].mul_add(b[0], c)))
+}
+
+/// a d − b c.
+#[inline(always)]
+pub fn minor<R: Real>(a: R, b: R, c: R, d: R) -> R {
+    a.mul_add(d, -(b * c))
+}
+
+impl<R: Real> Mat3<R> {
+    /// All zero, of the same kind as a number.
+    #[inline(always)]
+    pub fn zero(like: R) -> Self {
+        Mat3([[like.constant(0.0); 3]; 3])
+    }
+
+    /// The product with a column vector.
+    #[inline(always)]
+    pub fn times_vector(&self, v: [R; 3]) -> [R; 3] {
+        let m = &self.0;
+        [dot(m[0], v), dot(m[1], v), dot(m[2], v)]
+    }
+
+    /// (I + self)·s for a symmetric s: with self = ∇u this is F S.
+    #[inline(always)]
+    pub fn plus_identity_times(&self, s: &Sym3<R>) -> Self {
+        let (m, s) = (&self.0, s.rows());
+        let mut product = Mat3(s);
+        for i in 0..3 {
+            for j in 0..3 {
+                product.0[i][j] = dot_plus(m[i], s[j], s[i][j]);
+            }
+        }
+        product
+    }
+
+    /// All entries times a number.
+    #[inline(always)]
+    pub fn scaled(mut self, factor: R) -> Self {
+        for i in 0..3 {
+            for j in 0..3 {
+                self.0[i][j] = self.0[i][j] * factor;
+            }
+        }
+        self
+    }
+
+    /// Adds the product a bᵀ of two vectors.
+    #[inline(always)]
+    pub fn add_outer(&mut self, a: [R; 3], b: [R; 3]) {
+        for i in 0..3 {
+            for j in 0..3 {
+                self.0[i][j] = a[i].mul_add(b[j], self.0[i][j]);
+            }
+        }
+    }
+}
+
+impl<R: Real> Sym3<R> {
+    #[inline(always)]
+    fn rows(&self) -> [[R; 3]; 3] {
+        let [xx, yy, zz, xy, yz, xz] = self.0;
+        [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+    }
+
+    /// Entry by entry: self + other.
+    #[inline(always)]
+    pub fn plus(mut self, other: &Self) -> Self {
+        for i in 0..6 {
+            self.0[i] += other.0[i];
+        }
+        self
+    }
+
+    /// All entries times a number.
+    #[inline(always)]
+    pub fn scaled(mut self, factor: R) -> Self {
+        for i in 0..6 {
+            self.0[i] = self.0[i] * factor;
+        }
+        self
+    }
+
+    /// Sum of the diagonal.
+    #[inline(always)]
+    pub fn trace(&self) -> R {
+        self.0[0] + self.0[1] + self.0[2]
+    }
+
+    /// The adjugate: the inverse times the determinant.
+    #[inline(always)]
+    pub fn adjugate(&self) -> Self {
+        let [xx, yy, zz, xy, yz, xz] = self.0;
+        Sym3([
+            minor(yy, yz, yz, zz),
+            minor(xx, xz, xz, zz),
+            minor(xx, xy, xy, yy),
+            minor(xz, xy, zz, yz),
+            minor(xy, xx, yz, xz),
+            minor(xy, yy, xz, yz),
+        ])
+    }
+
+    /// The product with a symmetric matrix that has the same eigenvectors (so that the product is symmetric).
+    #[inline(always)]
+    pub fn times_coaxial(&self, other: &Self) -> Self {
+        let (a, b) = (self.rows(), other.rows());
+        Sym3([dot(a[0], b[0]), dot(a[1], b[1]), dot(a[2], b[2]), dot(a[0], b[1]), dot(a[1], b[2]), dot(a[0], b[2])])
+    }
+
+    /// v·self·v.
+    #[inline(always)]
+    pub fn quadratic(&self, v: [R; 3]) -> R {
+        let [xx, yy, zz, xy, yz, xz] = self.0;
+        let two = xx.constant(2.0);
+        xx * v[0] * v[0]
+            + yy * v[1] * v[1]
+            + zz * v[2] * v[2]
+            + two * (xy * v[0] * v[1] + yz * v[1] * v[2] + xz * v[0] * v[2])
+    }
+
+    /// v vᵀ.
+    #[inline(always)]
+    pub fn square_of(v: [R; 3]) -> Self {
+        Sym3([v[0] * v[0], v[1] * v[1], v[2] * v[2], v[0] * v[1], v[1] * v[2], v[0] * v[2]])
+    }
+}
