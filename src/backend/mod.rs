@@ -1,1 +1,4 @@
 //! Where kernels run.
+
+pub mod gpu;
+pub mod kernel;
