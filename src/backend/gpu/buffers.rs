@@ -40,14 +40,15 @@ pub struct Memory {
 }
 
 impl Gpu {
-    /// Makes a buffer of `bytes` zero bytes. The device gets at least 16 bytes (a buffer of none cannot be bound), so
-    /// that `arrayLength` of an empty column is not 0: dispatch 0 threads for it.
+    /// Makes a buffer of `bytes` zero bytes, rounded up to a multiple of 4. The device gets at least 16 bytes (a buffer
+    /// of none cannot be bound), so that `arrayLength` of an empty column is not 0: dispatch 0 threads for it.
     ///
     /// # Errors
     /// [`GpuError::OverLimit`] and [`GpuError::OutOfMemory`] name label, bytes and limit.
     pub fn create(&mut self, label: &str, bytes: u64, kind: BufferKind) -> Result<BufferId, GpuError> {
         self.check("an earlier call")?;
-        let size = bytes.max(16).next_multiple_of(4);
+        let bytes = bytes.checked_next_multiple_of(4).unwrap_or(bytes);
+        let size = bytes.max(16);
         let limits = &self.limits;
         let (binding, name) = match kind {
             BufferKind::Storage => (limits.max_storage_buffer_binding_size, "maxStorageBufferBindingSize"),
@@ -134,12 +135,8 @@ impl Gpu {
         self.check("an earlier call")?;
         let mut pieces = Vec::new();
         for (index, (id, offset, bytes)) in ranges.iter().enumerate() {
-            // rows of less than four bytes leave a tail that the padding covers
-            let bytes = bytes.next_multiple_of(4);
-            let slot = self.slot(*id)?;
-            if offset + bytes > slot.bytes.next_multiple_of(4) {
-                slot.admit("download", *offset, bytes)?;
-            }
+            let bytes = *bytes;
+            self.slot(*id)?.admit("download", *offset, bytes)?;
             let mut done = 0;
             while done < bytes {
                 let size = PIECE.min(bytes - done);
@@ -147,7 +144,7 @@ impl Gpu {
                 done += size;
             }
         }
-        let mut out: Vec<Vec<u8>> = ranges.iter().map(|r| Vec::with_capacity(r.2 as usize + 3)).collect();
+        let mut out: Vec<Vec<u8>> = ranges.iter().map(|r| Vec::with_capacity(r.2 as usize)).collect();
         let mut rest = pieces.as_slice();
         while !rest.is_empty() {
             let mut total = 0;
@@ -158,9 +155,6 @@ impl Gpu {
             let (batch, later) = rest.split_at(fits.count());
             self.download_batch(batch, &mut out)?;
             rest = later;
-        }
-        for (bytes, range) in out.iter_mut().zip(ranges) {
-            bytes.truncate(range.2 as usize);
         }
         Ok(out)
     }

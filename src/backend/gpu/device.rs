@@ -60,8 +60,8 @@ impl Gpu {
     /// [`NoGpu`] says why there is none: no driver, none that matches the choice, or the driver refused.
     pub fn open(choice: &Choice) -> Result<Self, NoGpu> {
         let (adapter, report) = choose(choice)?;
-        let (device, queue) = request(&adapter)
-            .map_err(|e| NoGpu::Refused { adapter: report.to_string(), reason: e.to_string() })?;
+        let (device, queue) =
+            request(&adapter).map_err(|e| NoGpu::Refused { adapter: report.to_string(), reason: e.to_string() })?;
         let inbox = Inbox::listen(&device);
         let records = StepRecords::new(&device);
         Ok(Self {
@@ -119,7 +119,9 @@ impl Gpu {
         match polled {
             Ok(_) => Ok(()),
             Err(PollError::Timeout) => Err(GpuError::TimedOut(PATIENCE.as_secs())),
-            Err(other) => Err(GpuError::Device { during: "waiting for the GPU".to_owned(), message: other.to_string() }),
+            Err(other) => {
+                Err(GpuError::Device { during: "waiting for the GPU".to_owned(), message: other.to_string() })
+            }
         }
     }
 

@@ -45,7 +45,11 @@ pub enum KernelError {
         "kernel `{label}` (`{entry}` in {paths}): buffers and variables do not match\n  \
          variables without a buffer: {}\n  buffers without a variable: {}\n  \
          `{entry}` uses: {}\n  declared: {}\n  the kernel gives: {}",
-        listed(without_buffer), listed(without_variable), listed(used), listed(declared), listed(given)
+        listed(without_buffer),
+        listed(without_variable),
+        listed(used),
+        listed(declared),
+        listed(given)
     )]
     Bindings {
         /// The kernel.
@@ -66,7 +70,9 @@ pub enum KernelError {
         given: Vec<String>,
     },
     /// A variable that is no buffer, or a `step` that is no uniform.
-    #[error("WGSL variable `{variable}`: {problem}; kernels use var<storage, read>, var<storage, read_write> and var<uniform>")]
+    #[error(
+        "WGSL variable `{variable}`: {problem}; kernels use var<storage, read>, var<storage, read_write> and var<uniform>"
+    )]
     Variable {
         /// The WGSL variable.
         variable: String,
