@@ -7,6 +7,8 @@
 mod compose;
 mod diagnose;
 mod reflect;
+#[cfg(test)]
+mod tests;
 
 use std::borrow::Cow;
 

@@ -25,10 +25,12 @@ mod error;
 mod pace;
 mod pipelines;
 mod run;
+mod testing;
 mod timing;
 
 pub use adapter::{AdapterReport, Choice};
 pub use buffers::{BufferKind, Memory};
 pub use device::{Gpu, GpuLimits};
 pub use error::{GpuError, NoGpu};
+pub use testing::gpu_or_reason;
 pub use timing::KernelTime;

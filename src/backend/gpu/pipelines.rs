@@ -142,6 +142,7 @@ impl Gpu {
             let resource = if binding.name == STEP_VARIABLE {
                 self.records.binding(binding.size)
             } else {
+                no_alias(self, kernel, composed, entry, binding)?;
                 self.buffer_binding(kernel, binding)?
             };
             let resource = BindingResource::Buffer(resource);
@@ -201,6 +202,21 @@ fn layout_entry(binding: &Binding) -> BindGroupLayoutEntry {
         ty: BindingType::Buffer { ty, has_dynamic_offset, min_binding_size },
         count: None,
     }
+}
+
+/// A buffer that a kernel writes must not be seen under a second name: WebGPU forbids it, and the order of reads and
+/// writes would be left to chance.
+fn no_alias(gpu: &Gpu, kernel: &Kernel, composed: &Composed, entry: &Entry, binding: &Binding) -> Result<(), GpuError> {
+    let buffer = |b: &Binding| kernel.bindings.iter().find(|(name, _)| *name == b.name).map(|(_, id)| *id);
+    let Some(id) = buffer(binding).filter(|_| binding.kind == BindingKind::ReadWrite) else { return Ok(()) };
+    let mut others = entry.uses.iter().map(|i| &composed.bindings[*i]).filter(|b| b.name != binding.name);
+    let Some(other) = others.find(|b| buffer(b) == Some(id)) else { return Ok(()) };
+    Err(GpuError::Unfit {
+        kernel: kernel.label.clone(),
+        buffer: gpu.slot(id)?.label.clone(),
+        variable: binding.name.clone(),
+        problem: format!("it is bound to `{}` too, and `{}` is written", other.name, binding.name),
+    })
 }
 
 /// Every variable in use has a buffer and every buffer a variable, once.
