@@ -1,3 +1,5 @@
-//! Where kernels run: on the host's cores, or on a GPU.
+//! Where kernels run.
 
+pub mod gpu;
+pub mod kernel;
 pub mod cpu;

@@ -1,0 +1,125 @@
+//! Which device to run on.
+
+use wgpu::{Adapter, Backends, DeviceType, Instance, InstanceDescriptor};
+
+use super::NoGpu;
+
+/// Which device is wanted.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Choice {
+    /// A discrete GPU, else an integrated one, else a software device.
+    #[default]
+    Best,
+    /// The same without software devices.
+    Hardware,
+    /// A software device (lavapipe, WARP): for tests.
+    Software,
+    /// A device whose name contains this, whatever its kind; case is ignored.
+    Named(String),
+}
+
+impl Choice {
+    /// Reads what a user writes: `best`, `hardware`, `software`, or a part of a device's name.
+    pub fn parse(text: &str) -> Self {
+        match text {
+            "best" | "" => Self::Best,
+            "hardware" => Self::Hardware,
+            "software" => Self::Software,
+            name => Self::Named(name.to_owned()),
+        }
+    }
+
+    fn takes(&self, report: &AdapterReport) -> bool {
+        match self {
+            Self::Best => true,
+            Self::Hardware => !report.software,
+            Self::Software => report.software,
+            Self::Named(name) => report.name.to_lowercase().contains(&name.to_lowercase()),
+        }
+    }
+}
+
+impl std::fmt::Display for Choice {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Best => write!(f, "`best`"),
+            Self::Hardware => write!(f, "`hardware` (no software device)"),
+            Self::Software => write!(f, "`software`"),
+            Self::Named(name) => write!(f, "the name `{name}`"),
+        }
+    }
+}
+
+/// What a device says of itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AdapterReport {
+    /// Name of the device.
+    pub name: String,
+    /// Driver and its version.
+    pub driver: String,
+    /// Interface: `Vulkan`, `Metal` or `Dx12`.
+    pub interface: String,
+    /// Whether the device is a program on the CPU: right for tests, no measure of speed.
+    pub software: bool,
+    /// `discrete`, `integrated`, `virtual`, `software` or `unknown`.
+    pub kind: &'static str,
+}
+
+impl std::fmt::Display for AdapterReport {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} ({}, {}, {})", self.name, self.kind, self.interface, self.driver)
+    }
+}
+
+impl AdapterReport {
+    fn of(adapter: &Adapter) -> Self {
+        let info = adapter.get_info();
+        let kind = match info.device_type {
+            DeviceType::DiscreteGpu => "discrete",
+            DeviceType::IntegratedGpu => "integrated",
+            DeviceType::VirtualGpu => "virtual",
+            DeviceType::Cpu => "software",
+            DeviceType::Other => "unknown",
+        };
+        Self {
+            name: info.name,
+            driver: format!("{} {}", info.driver, info.driver_info).trim().to_owned(),
+            interface: format!("{:?}", info.backend),
+            software: info.device_type == DeviceType::Cpu,
+            kind,
+        }
+    }
+
+    /// Low is preferred.
+    fn rank(&self) -> usize {
+        ["discrete", "virtual", "integrated", "unknown", "software"].iter().position(|k| *k == self.kind).unwrap_or(9)
+    }
+
+    /// Every device there is, the preferred first. Empty where there is no driver.
+    pub fn all() -> Vec<Self> {
+        candidates().into_iter().map(|(_, report)| report).collect()
+    }
+}
+
+fn candidates() -> Vec<(Adapter, AdapterReport)> {
+    let mut descriptor = InstanceDescriptor::new_without_display_handle();
+    descriptor.backends = Backends::VULKAN | Backends::METAL | Backends::DX12;
+    // validation layers cost time and write to the terminal; this layer checks what it passes on
+    descriptor.flags = wgpu::InstanceFlags::empty();
+    let adapters = pollster::block_on(Instance::new(descriptor).enumerate_adapters(Backends::all()));
+    let mut found: Vec<_> = adapters.into_iter().map(|a| (AdapterReport::of(&a), a)).map(|(r, a)| (a, r)).collect();
+    // stable: the driver's own order decides among equals
+    found.sort_by_key(|(_, report)| report.rank());
+    found
+}
+
+/// The best device that the choice takes.
+pub(super) fn choose(choice: &Choice) -> Result<(Adapter, AdapterReport), NoGpu> {
+    let found = candidates();
+    if found.is_empty() {
+        return Err(NoGpu::NoDriver);
+    }
+    let names = found.iter().map(|(_, report)| report.to_string()).collect();
+    let taken = found.into_iter().find(|(_, report)| choice.takes(report));
+    taken.ok_or_else(|| NoGpu::NoMatch { wanted: choice.to_string(), found: names })
+}

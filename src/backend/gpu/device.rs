@@ -1,0 +1,169 @@
+//! One open device.
+
+use std::collections::HashMap;
+use std::time::Duration;
+
+use wgpu::{Adapter, Device, DeviceDescriptor, Features, Limits, PollError, PollType, Queue, SubmissionIndex};
+
+use super::adapter::{AdapterReport, Choice, choose};
+use super::buffers::Slot;
+use super::error::{Event, Inbox};
+use super::pace::Pace;
+use super::pipelines::{Pipelines, Prepared};
+use super::run::StepRecords;
+use super::timing::Timing;
+use super::{GpuError, NoGpu};
+
+/// A submission that takes longer than this is taken for dead.
+const PATIENCE: Duration = Duration::from_secs(300);
+
+/// An open GPU with its buffers and kernels.
+pub struct Gpu {
+    pub(super) device: Device,
+    pub(super) queue: Queue,
+    pub(super) limits: Limits,
+    pub(super) buffers: Vec<Option<Slot>>,
+    pub(super) staging: Option<wgpu::Buffer>,
+    pub(super) pipelines: Pipelines,
+    pub(super) kernels: Vec<Prepared>,
+    pub(super) records: StepRecords,
+    pub(super) pace: Pace,
+    pub(super) timing: Option<Timing>,
+    pub(super) times: HashMap<String, super::KernelTime>,
+    inbox: Inbox,
+    report: AdapterReport,
+}
+
+/// What the device allows, as far as the engine cares.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct GpuLimits {
+    /// Bytes of one storage binding.
+    pub storage_binding: u64,
+    /// Bytes of one uniform binding.
+    pub uniform_binding: u64,
+    /// Bytes of one buffer.
+    pub buffer: u64,
+    /// Storage buffers of one kernel.
+    pub storage_buffers: u32,
+    /// Bytes of workgroup memory.
+    pub workgroup_memory: u32,
+    /// Invocations of a workgroup.
+    pub workgroup_size: u32,
+    /// Whether kernels can be timed.
+    pub time_stamps: bool,
+}
+
+impl Gpu {
+    /// Opens a device with all the limits it offers.
+    ///
+    /// # Errors
+    /// [`NoGpu`] says why there is none: no driver, none that matches the choice, or the driver refused.
+    pub fn open(choice: &Choice) -> Result<Self, NoGpu> {
+        let (adapter, report) = choose(choice)?;
+        let (device, queue) =
+            request(&adapter).map_err(|e| NoGpu::Refused { adapter: report.to_string(), reason: e.to_string() })?;
+        let inbox = Inbox::listen(&device);
+        let records = StepRecords::new(&device);
+        Ok(Self {
+            limits: device.limits(),
+            buffers: Vec::new(),
+            staging: None,
+            pipelines: Pipelines::default(),
+            kernels: Vec::new(),
+            records,
+            pace: Pace::default(),
+            timing: None,
+            times: HashMap::new(),
+            device,
+            queue,
+            inbox,
+            report,
+        })
+    }
+
+    /// The device's name, driver and kind.
+    pub fn report(&self) -> &AdapterReport {
+        &self.report
+    }
+
+    /// What the device allows.
+    pub fn limits(&self) -> GpuLimits {
+        let limits = &self.limits;
+        GpuLimits {
+            storage_binding: limits.max_storage_buffer_binding_size,
+            uniform_binding: limits.max_uniform_buffer_binding_size,
+            buffer: limits.max_buffer_size,
+            storage_buffers: limits.max_storage_buffers_per_shader_stage,
+            workgroup_memory: limits.max_compute_workgroup_storage_size,
+            workgroup_size: limits.max_compute_invocations_per_workgroup,
+            time_stamps: self.device.features().contains(Features::TIMESTAMP_QUERY),
+        }
+    }
+
+    /// Waits until everything submitted is done.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`], [`GpuError::TimedOut`], and whatever went wrong since the last call.
+    pub fn wait(&mut self) -> Result<(), GpuError> {
+        while let Some(index) = self.pace.oldest() {
+            self.wait_for(Some(index))?;
+            self.pace.retire();
+        }
+        self.wait_for(None)
+    }
+
+    /// Waits for one submission, or for all.
+    pub(super) fn wait_for(&mut self, submission_index: Option<SubmissionIndex>) -> Result<(), GpuError> {
+        let polled = self.device.poll(PollType::Wait { submission_index, timeout: Some(PATIENCE) });
+        self.check("waiting for the GPU")?;
+        match polled {
+            Ok(_) => Ok(()),
+            Err(PollError::Timeout) => Err(GpuError::TimedOut(PATIENCE.as_secs())),
+            Err(other) => {
+                Err(GpuError::Device { during: "waiting for the GPU".to_owned(), message: other.to_string() })
+            }
+        }
+    }
+
+    /// Err with what the device complained of since the last call.
+    pub(super) fn check(&self, during: &str) -> Result<(), GpuError> {
+        self.check_memory(during, 0)
+    }
+
+    /// The same where a buffer was asked for.
+    pub(super) fn check_memory(&self, label: &str, bytes: u64) -> Result<(), GpuError> {
+        match self.inbox.take() {
+            None => Ok(()),
+            Some(Event::Lost(text)) => Err(GpuError::Lost(text)),
+            Some(Event::OutOfMemory) => {
+                Err(GpuError::OutOfMemory { label: label.to_owned(), bytes, used: self.memory_total() })
+            }
+            Some(Event::Other(message)) => Err(GpuError::Device { during: label.to_owned(), message }),
+        }
+    }
+
+    /// Err when `wanted` is more than `limit`.
+    pub(super) fn within(
+        &self,
+        label: &str,
+        wanted: u64,
+        limit: u64,
+        unit: &'static str,
+        limit_name: &'static str,
+    ) -> Result<(), GpuError> {
+        if wanted <= limit {
+            return Ok(());
+        }
+        let adapter = self.report.name.clone();
+        Err(GpuError::OverLimit { label: label.to_owned(), wanted, unit, limit, limit_name, adapter })
+    }
+}
+
+fn request(adapter: &Adapter) -> Result<(Device, Queue), wgpu::RequestDeviceError> {
+    pollster::block_on(adapter.request_device(&DeviceDescriptor {
+        label: Some("sinew"),
+        required_features: adapter.features() & Features::TIMESTAMP_QUERY,
+        required_limits: adapter.limits(),
+        ..Default::default()
+    }))
+}

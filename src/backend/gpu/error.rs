@@ -1,0 +1,167 @@
+//! What can go wrong on a GPU, as values: nothing here panics or ends the process.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use crate::backend::kernel::KernelError;
+
+/// Why there is no GPU to run on.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NoGpu {
+    /// No driver showed a device.
+    #[error(
+        "no GPU found: no Vulkan, Metal or DX12 driver shows a device. Install your vendor's driver, or \
+         mesa-vulkan-drivers for a software device (Debian, Ubuntu); the CPU backend needs neither"
+    )]
+    NoDriver,
+    /// There are devices, and none is what was asked for.
+    #[error("no GPU matches {wanted}; there is {}", found.join(", "))]
+    NoMatch {
+        /// What was asked for.
+        wanted: String,
+        /// Every device there is.
+        found: Vec<String>,
+    },
+    /// The device was found and could not be opened.
+    #[error("the GPU {adapter} could not be opened: {reason}")]
+    Refused {
+        /// The device.
+        adapter: String,
+        /// What its driver says.
+        reason: String,
+    },
+}
+
+/// What went wrong on a GPU.
+#[derive(Clone, Debug, thiserror::Error)]
+pub enum GpuError {
+    /// The kernel itself is wrong.
+    #[error(transparent)]
+    Kernel(#[from] KernelError),
+    /// More than the device takes, found before it was asked.
+    #[error("`{label}`: {wanted} {unit} wanted, {adapter} allows {limit} ({limit_name})")]
+    OverLimit {
+        /// Buffer or kernel.
+        label: String,
+        /// Amount wanted.
+        wanted: u64,
+        /// What is counted: bytes, storage buffers, invocations ...
+        unit: &'static str,
+        /// Amount allowed.
+        limit: u64,
+        /// WebGPU's name of the limit.
+        limit_name: &'static str,
+        /// The device.
+        adapter: String,
+    },
+    /// The device's memory is full.
+    #[error("out of GPU memory: buffer `{label}` of {bytes} bytes, with {used} bytes in other buffers")]
+    OutOfMemory {
+        /// The buffer.
+        label: String,
+        /// Bytes wanted.
+        bytes: u64,
+        /// Bytes in buffers of this device before.
+        used: u64,
+    },
+    /// A range outside a buffer, or not on a 4-byte boundary.
+    #[error("buffer `{label}` has {size} bytes; cannot {action} {bytes} bytes at {offset}{}", aligned(*offset, *bytes))]
+    Range {
+        /// The buffer.
+        label: String,
+        /// Upload or download.
+        action: &'static str,
+        /// First byte.
+        offset: u64,
+        /// Bytes asked for.
+        bytes: u64,
+        /// Bytes of the buffer.
+        size: u64,
+    },
+    /// A buffer does not fit the variable it is bound to.
+    #[error("kernel `{kernel}`: buffer `{buffer}` cannot be bound to `{variable}`: {problem}")]
+    Unfit {
+        /// The kernel.
+        kernel: String,
+        /// The buffer.
+        buffer: String,
+        /// The WGSL variable.
+        variable: String,
+        /// What does not fit.
+        problem: String,
+    },
+    /// The step records do not fit the kernels or the count.
+    #[error("step records: {0}")]
+    Records(String),
+    /// An id of another device, or of something freed.
+    #[error("{0} is not one of this GPU's, or was freed")]
+    Unknown(String),
+    /// The device went away: unplugged, driver reset, a submission over the time-out.
+    #[error("the GPU was lost: {0}")]
+    Lost(String),
+    /// A submission did not end.
+    #[error("the GPU did not finish within {0} s")]
+    TimedOut(u64),
+    /// The device has no clock that kernels can be timed with.
+    #[error("{0} has no time stamps (timestamp-query): kernels cannot be timed on it")]
+    NoTimeStamps(String),
+    /// wgpu or the driver refused something that this layer did not foresee.
+    #[error("GPU error in {during}: {message}")]
+    Device {
+        /// What was being done.
+        during: String,
+        /// wgpu's text.
+        message: String,
+    },
+}
+
+fn aligned(offset: u64, bytes: u64) -> &'static str {
+    if offset.is_multiple_of(4) && bytes.is_multiple_of(4) { "" } else { " (offset and bytes must be multiples of 4)" }
+}
+
+/// Where wgpu's callbacks leave their errors until the next call picks them up.
+#[derive(Clone, Default)]
+pub(super) struct Inbox(Arc<Mutex<Vec<Event>>>);
+
+/// What a callback said.
+pub(super) enum Event {
+    OutOfMemory,
+    Other(String),
+    Lost(String),
+}
+
+impl Inbox {
+    /// Hears the device's errors from now on.
+    pub(super) fn listen(device: &wgpu::Device) -> Self {
+        let inbox = Self::default();
+        let errors = inbox.clone();
+        device.on_uncaptured_error(Arc::new(move |error| {
+            errors.put(match error {
+                wgpu::Error::OutOfMemory { .. } => Event::OutOfMemory,
+                other => Event::Other(other.to_string()),
+            });
+        }));
+        let lost = inbox.clone();
+        device.set_device_lost_callback(move |reason, text| {
+            // destroying the device oneself is no loss
+            if reason != wgpu::DeviceLostReason::Destroyed {
+                lost.put(Event::Lost(text));
+            }
+        });
+        inbox
+    }
+
+    fn put(&self, event: Event) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(event);
+    }
+
+    /// The first thing that went wrong since the last call, a lost device before all else; forgets the others, which
+    /// are its consequences.
+    pub(super) fn take(&self) -> Option<Event> {
+        let mut events = std::mem::take(&mut *self.0.lock().unwrap_or_else(PoisonError::into_inner));
+        if events.is_empty() {
+            return None;
+        }
+        let first = events.iter().position(|e| matches!(e, Event::Lost(_))).unwrap_or(0);
+        Some(events.swap_remove(first))
+    }
+}

@@ -1,0 +1,103 @@
+//! Kernels as data: what a system wants to run on a GPU, said without a word of any GPU interface.
+//!
+//! A [`Kernel`] is a list of WGSL [`Fragment`]s, an entry point, buffers by the name of the WGSL variable they belong
+//! to, and the number of invocations. [`compose`] concatenates the fragments, checks them and tells what they declare;
+//! it needs no GPU.
+
+mod compose;
+mod diagnose;
+mod reflect;
+#[cfg(test)]
+mod tests;
+
+use std::borrow::Cow;
+
+pub use compose::{Composed, Entry, compose};
+pub use diagnose::KernelError;
+pub use reflect::{Binding, BindingKind, Member};
+
+/// Name of the uniform variable that holds the step's record; the GPU layer binds it, a kernel must not.
+pub const STEP_VARIABLE: &str = "step";
+
+/// Storage buffers a kernel may use on every WebGPU device (`maxStorageBuffersPerShaderStage`).
+pub const WEBGPU_STORAGE_BUFFERS: usize = 8;
+
+/// A piece of WGSL: one file, or text generated under a file's name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fragment {
+    /// Path shown in errors, relative to the crate or the scene, for example `shaders/tet4.wgsl`.
+    pub path: String,
+    /// The WGSL text.
+    pub text: Cow<'static, str>,
+}
+
+impl Fragment {
+    /// A fragment from its path and text.
+    pub fn new(path: impl Into<String>, text: impl Into<Cow<'static, str>>) -> Self {
+        Self { path: path.into(), text: text.into() }
+    }
+}
+
+/// A file of the crate's `shaders/` folder as a [`Fragment`], built into the program: `shader!("row")`.
+#[macro_export]
+macro_rules! shader {
+    ($stem:literal) => {
+        $crate::backend::kernel::Fragment::new(
+            concat!("shaders/", $stem, ".wgsl"),
+            include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", $stem, ".wgsl")),
+        )
+    };
+}
+
+/// A buffer of the GPU layer; only valid for the `Gpu` that made it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct BufferId(pub(crate) u32);
+
+/// A kernel made ready by the GPU layer; only valid for the `Gpu` that made it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct KernelId(pub(crate) u32);
+
+/// One dispatch of a step, as data.
+#[derive(Clone, Debug)]
+pub struct Kernel {
+    /// Name in errors, reports and GPU debuggers, for example `element_forces of liver`.
+    pub label: String,
+    /// Name of the `@compute` function.
+    pub entry: &'static str,
+    /// The WGSL, in any order: WGSL declarations are order-free.
+    pub fragments: Vec<Fragment>,
+    /// (WGSL variable, buffer). Every variable the entry point uses needs one, [`STEP_VARIABLE`] excepted.
+    pub bindings: Vec<(&'static str, BufferId)>,
+    /// Invocations wanted; rounded up to whole workgroups, so that the kernel checks its bound. 0 dispatches nothing.
+    pub threads: u32,
+}
+
+impl Kernel {
+    /// A kernel without fragments, buffers or threads yet.
+    pub fn new(label: impl Into<String>, entry: &'static str) -> Self {
+        Self { label: label.into(), entry, fragments: Vec::new(), bindings: Vec::new(), threads: 0 }
+    }
+
+    /// Adds a piece of WGSL.
+    pub fn fragment(mut self, fragment: Fragment) -> Self {
+        self.fragments.push(fragment);
+        self
+    }
+
+    /// Gives a WGSL variable its buffer.
+    pub fn bind(mut self, variable: &'static str, buffer: BufferId) -> Self {
+        self.bindings.push((variable, buffer));
+        self
+    }
+
+    /// Sets the number of invocations.
+    pub fn threads(mut self, threads: u32) -> Self {
+        self.threads = threads;
+        self
+    }
+
+    /// The paths of the fragments, for messages: `shaders/tet4.wgsl + shaders/row.wgsl`.
+    pub fn paths(&self) -> String {
+        self.fragments.iter().map(|f| f.path.as_str()).collect::<Vec<_>>().join(" + ")
+    }
+}

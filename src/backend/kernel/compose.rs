@@ -1,0 +1,139 @@
+//! From fragments to one checked WGSL module.
+
+use naga::proc::Layouter;
+use naga::valid::{Capabilities, ValidationFlags, Validator};
+use naga::{Module, ResourceBinding, ShaderStage};
+
+use super::diagnose::Sources;
+use super::reflect::{binding, members};
+use super::{Binding, BindingKind, Fragment, KernelError, Member, STEP_VARIABLE};
+
+/// A compute entry point.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// Name of the function.
+    pub name: String,
+    /// Invocations of a workgroup in x, y and z.
+    pub workgroup_size: [u32; 3],
+    /// Buffer variables it uses, itself or through the functions it calls: indices into [`Composed::bindings`].
+    pub uses: Vec<usize>,
+}
+
+/// Fragments put together, found valid, and what they declare.
+#[derive(Clone, Debug)]
+pub struct Composed {
+    /// The WGSL text as a whole.
+    pub source: String,
+    /// Every buffer variable declared, used or not.
+    pub bindings: Vec<Binding>,
+    /// Every compute entry point.
+    pub entries: Vec<Entry>,
+    module: Module,
+    structs: Vec<Struct>,
+}
+
+#[derive(Clone, Debug)]
+struct Struct {
+    name: String,
+    /// bytes, with the padding at the end
+    size: u32,
+    members: Vec<Member>,
+}
+
+/// Concatenates fragments, checks them as WebGPU would, and gives every buffer variable a binding number of its own.
+///
+/// # Errors
+/// [`KernelError::Wgsl`] with the fragment's file, line and column; [`KernelError::Variable`] for textures and samplers
+/// and for a `step` that is no uniform.
+pub fn compose(fragments: &[Fragment]) -> Result<Composed, KernelError> {
+    let sources = Sources::new(fragments);
+    let mut module = naga::front::wgsl::parse_str(sources.text()).map_err(|e| sources.parse_error(&e))?;
+    number_bindings(&mut module);
+    let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
+    let info = validator.validate(&module).map_err(|e| sources.validation_error(&e))?;
+    let mut layouts = Layouter::default();
+    layouts.update(module.to_ctx()).map_err(|e| variable_error("the types", e.to_string()))?;
+
+    let mut bindings = Vec::new();
+    let mut handles = Vec::new();
+    for (handle, variable) in module.global_variables.iter() {
+        let Some(place) = variable.binding else { continue };
+        let name = variable.name.as_deref().unwrap_or_default();
+        let found = binding(&module, &layouts, variable, place.binding)
+            .ok_or_else(|| variable_error(name, "is not a buffer".to_owned()))?;
+        if name == STEP_VARIABLE && found.kind != BindingKind::Uniform {
+            return Err(variable_error(name, "holds the step's record and must be a var<uniform>".to_owned()));
+        }
+        bindings.push(found);
+        handles.push(handle);
+    }
+    let mut entries = Vec::new();
+    for (index, point) in module.entry_points.iter().enumerate().filter(|(_, p)| p.stage == ShaderStage::Compute) {
+        let used = info.get_entry_point(index);
+        let uses = (0..handles.len()).filter(|i| !used[handles[*i]].is_empty()).collect();
+        entries.push(Entry { name: point.name.clone(), workgroup_size: point.workgroup_size, uses });
+    }
+    let structs = module.types.iter().filter_map(|(handle, ty)| {
+        let members = members(&module, &layouts, &ty.inner)?;
+        Some(Struct { name: ty.name.clone()?, size: layouts[handle].size, members })
+    });
+    let structs = structs.collect();
+    Ok(Composed { source: sources.into_text(), bindings, entries, module, structs })
+}
+
+/// Fragments of different authors may use the same `@binding` number: buffers are bound by name, numbers are given here.
+fn number_bindings(module: &mut Module) {
+    let bound = module.global_variables.iter_mut().filter(|(_, variable)| variable.binding.is_some());
+    for (number, (_, variable)) in bound.enumerate() {
+        variable.binding = Some(ResourceBinding { group: 0, binding: number as u32 });
+    }
+}
+
+fn variable_error(variable: &str, problem: String) -> KernelError {
+    KernelError::Variable { variable: variable.to_owned(), problem }
+}
+
+impl Composed {
+    /// The members of a WGSL struct, in order.
+    ///
+    /// # Errors
+    /// [`KernelError::NoStruct`] lists the structs there are.
+    pub fn struct_layout(&self, name: &str) -> Result<Vec<Member>, KernelError> {
+        Ok(self.find_struct(name)?.members.clone())
+    }
+
+    /// Bytes of a WGSL struct, with the padding at its end: what `size_of` of its Rust twin must be.
+    ///
+    /// # Errors
+    /// [`KernelError::NoStruct`] lists the structs there are.
+    pub fn struct_size(&self, name: &str) -> Result<u32, KernelError> {
+        Ok(self.find_struct(name)?.size)
+    }
+
+    fn find_struct(&self, name: &str) -> Result<&Struct, KernelError> {
+        self.structs.iter().find(|s| s.name == name).ok_or_else(|| KernelError::NoStruct {
+            name: name.to_owned(),
+            found: self.structs.iter().map(|s| s.name.clone()).collect(),
+        })
+    }
+
+    /// A binding by the name of its variable.
+    pub fn binding(&self, name: &str) -> Option<&Binding> {
+        self.bindings.iter().find(|b| b.name == name)
+    }
+
+    /// An entry point by name.
+    pub fn entry(&self, name: &str) -> Option<&Entry> {
+        self.entries.iter().find(|e| e.name == name)
+    }
+
+    /// Storage buffers that an entry point uses; WebGPU promises [`super::WEBGPU_STORAGE_BUFFERS`].
+    pub fn storage_buffers(&self, entry: &Entry) -> usize {
+        entry.uses.iter().filter(|i| self.bindings[**i].kind != BindingKind::Uniform).count()
+    }
+
+    /// The checked module, for the GPU layer.
+    pub(crate) fn module(&self) -> &Module {
+        &self.module
+    }
+}
