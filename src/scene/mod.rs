@@ -1,3 +1,15 @@
 //! Scene files: their words, how they are read, and what is said when they are wrong.
 
+pub mod check;
+pub mod diagnostic;
+pub mod load;
 pub mod schema;
+pub mod set;
+pub mod source;
+pub mod suggest;
+pub mod syntax;
+pub mod validate;
+
+pub use diagnostic::{Diagnostic, Diagnostics, Severity};
+pub use load::SceneFile;
+pub use validate::validate;

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// A whole scene.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Scene {
     /// What the scene shows, in a few words.
@@ -47,7 +47,7 @@ pub struct Scene {
 }
 
 /// A body: a mesh, what it is made of, where it is and how it starts.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Body {
     /// Where the mesh comes from.
@@ -75,7 +75,7 @@ pub struct Body {
 }
 
 /// Elements of a body made of another material.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Region {
     /// Which elements.
@@ -95,7 +95,7 @@ pub enum ElementKind {
 }
 
 /// A mesh file, or a generator with its parameters.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub enum MeshSource {
     /// A Gmsh (.msh), legacy VTK (.vtk) or VTU (.vtu) file, its path relative to the scene file.
@@ -157,7 +157,7 @@ pub enum MeshSource {
 }
 
 /// A material: a density and the effects it has. An effect that is not named does not exist.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Material {
     /// Density at rest (kg/m³).
@@ -177,7 +177,7 @@ pub struct Material {
 }
 
 /// Moduli of the neo-Hookean law, as one of two pairs.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub enum NeoHookean {
     /// Young's modulus (Pa) and Poisson's ratio, both of small strains.
@@ -197,7 +197,7 @@ pub enum NeoHookean {
 }
 
 /// Fibres: Ψ = η/2 (Ī₄ − 1)², the η of Comas et al. 2008 (other codes mean 2η by the same letter).
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Fibres {
     /// Stiffness η (Pa).
@@ -210,7 +210,7 @@ pub struct Fibres {
 }
 
 /// A direction in the body at rest; its length does not matter.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub enum Direction {
     /// The same everywhere.
@@ -228,7 +228,7 @@ pub enum Direction {
 }
 
 /// Viscosity: relaxation of the isochoric stress in exponentials.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Prony {
     /// The terms: share α of the instantaneous stress that relaxes with time τ (s).
@@ -239,7 +239,7 @@ pub struct Prony {
 }
 
 /// One exponential of a [`Prony`] series.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct PronyTerm {
     /// Share of the instantaneous stress that relaxes, 0 ≤ α; all together below 1.
@@ -259,7 +259,7 @@ pub enum ViscousIntegrator {
 }
 
 /// What holds or moves nodes.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub enum Constraint {
     /// Nodes that do not move along the given axes.
@@ -313,7 +313,7 @@ pub enum Axis {
 }
 
 /// What pushes and pulls.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub enum Load {
     /// Gravity on one body, or on all.
@@ -382,7 +382,7 @@ pub enum Share {
 }
 
 /// A factor over time; what it multiplies is said where it is used.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub enum Curve {
     /// 1 from `start` until `end`, else 0 (s).
@@ -422,7 +422,7 @@ impl Default for Curve {
 
 /// Which nodes, faces or elements of a body at rest, by place, name or number. Faces count when all their nodes do,
 /// elements when their centroid does.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub enum Select {
     /// Everything.
@@ -475,7 +475,7 @@ pub enum Select {
 }
 
 /// Elements to be removed.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Removal {
     /// The body; may be left out when there is one only.
@@ -489,7 +489,7 @@ pub struct Removal {
 }
 
 /// When elements are removed.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub enum When {
     /// All at one time (s).
@@ -512,7 +512,7 @@ pub enum When {
 }
 
 /// One thing to observe: what, where, how often (s; every output of fields when left out).
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Probe {
     /// The body; may be left out when there is one only.
@@ -545,7 +545,7 @@ pub enum Quantity {
 }
 
 /// The time step and how it is taken.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
 pub struct Integration {
     /// The step (s); left out: the stable step times `safety`.
@@ -565,7 +565,7 @@ impl Default for Integration {
 }
 
 /// What is written, and how often.
-#[derive(Clone, Debug, Default, Deserialize, Serialize)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
 pub struct Output {
     /// Time between VTU files (s); a twentieth of the duration when left out.
@@ -575,7 +575,7 @@ pub struct Output {
 }
 
 /// How a scene is drawn.
-#[derive(Clone, Debug, Deserialize, Serialize)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
 pub struct Picture {
     /// The field that gives the colour.

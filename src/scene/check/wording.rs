@@ -1,0 +1,90 @@
+//! What is said about values that do not fit.
+
+use super::value::Value;
+use crate::scene::diagnostic::Diagnostic;
+use crate::scene::suggest::choice;
+use crate::scene::syntax::{Field, Kind};
+use std::cell::RefMut;
+
+impl<'a> Value<'a> {
+    /// The value as a sentence begins with it.
+    pub(super) fn called(&self) -> String {
+        match self.subject {
+            "the scene" => self.subject.to_string(),
+            name => format!("`{name}`"),
+        }
+    }
+
+    /// Notes a mistake about this value, unless the parser has already.
+    pub(super) fn note(&self, message: impl Into<String>, label: impl Into<String>) -> RefMut<'a, Diagnostic> {
+        if let Kind::Bad = self.node.kind {
+            return self.about.said_before.borrow_mut();
+        }
+        let mut at = self.node.span.clone();
+        if self.token().contains('\n') {
+            at = self.node.mark();
+        }
+        let mut diagnostic = Diagnostic::error(at, message);
+        diagnostic.label(label);
+        let mut found = self.about.found.borrow_mut();
+        found.push(diagnostic);
+        let last = found.len() - 1;
+        RefMut::map(found, |found| &mut found[last])
+    }
+
+    /// Notes that this value is of another kind than it must be.
+    pub(super) fn wrong(&self, expected: &str) -> RefMut<'a, Diagnostic> {
+        let called = self.called();
+        self.note(format!("{called} must be {expected}"), format!("found {}", self.node.describe()))
+    }
+
+    /// The number; none when it is not one or not finite, which is noted.
+    pub(super) fn number(&self) -> Option<f64> {
+        if !matches!(self.node.kind, Kind::Number) {
+            self.wrong("a number");
+            return None;
+        }
+        let token = self.token();
+        match ron::from_str::<f64>(token) {
+            Ok(number) if number.is_finite() => Some(number),
+            Ok(_) => {
+                self.note(format!("{} must be finite, found {token}", self.called()), "not a finite number");
+                None
+            }
+            Err(_) => {
+                self.note(format!("`{token}` is not a number"), "written like 0.05, 5e-2 or 3");
+                None
+            }
+        }
+    }
+
+    pub(super) fn not_whole(&self, least: i128, most: i128) {
+        let expected = format!("a whole number from {least} to {most}");
+        if !matches!(self.node.kind, Kind::Number) {
+            self.wrong(&expected);
+            return;
+        }
+        let token = self.token();
+        let label = match ron::from_str::<f64>(token) {
+            Ok(number) if number.fract() == 0.0 && number >= least as f64 && number <= most as f64 => {
+                format!("write {number}")
+            }
+            _ => String::new(),
+        };
+        self.note(format!("{} must be {expected}, found {token}", self.called()), label);
+    }
+
+    pub(super) fn unknown_field(&self, owner: &str, field: &Field, fields: &'static [&'static str]) {
+        let name = &field.name.text;
+        let mut diagnostic = Diagnostic::error(field.name.span.clone(), format!("unknown field `{name}`"));
+        diagnostic.label(format!("not a field of {owner}")).notes(choice(name, fields.iter().copied()));
+        self.about.found.borrow_mut().push(diagnostic);
+    }
+
+    pub(super) fn missing_field(&self, owner: &str, field: &str, fields: &'static [&'static str]) -> Diagnostic {
+        let mut diagnostic =
+            Diagnostic::error(self.node.mark(), format!("the field `{field}` is missing in {}", self.called()));
+        diagnostic.label(format!("{owner} needs `{field}`")).note(format!("fields: {}", fields.join(", ")));
+        diagnostic
+    }
+}

@@ -1,0 +1,213 @@
+//! What is wrong with a scene, where, and how it is shown.
+
+use super::source::Source;
+use super::syntax::{Fault, Node, Path, Span, Tree};
+use codespan_reporting::diagnostic::{Diagnostic as Shown, Label, Severity as Grade};
+use codespan_reporting::files::SimpleFiles;
+use codespan_reporting::term::{self, Config, StylesWriter, termcolor::Ansi};
+use std::fmt;
+use std::sync::Arc;
+
+/// Whether a scene can run in spite of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// It cannot run.
+    Error,
+    /// It can, but probably not as meant.
+    Warning,
+}
+
+/// One mistake.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// How bad it is.
+    pub severity: Severity,
+    /// What is wrong: one sentence without a full stop.
+    pub message: String,
+    /// Where it stands in the scene's text; none for what has no place there.
+    pub at: Option<Span>,
+    /// A word on the place.
+    pub label: String,
+    /// Other places that matter, each with a word.
+    pub also: Vec<(Span, String)>,
+    /// What is allowed, what to do.
+    pub notes: Vec<String>,
+}
+
+impl Diagnostic {
+    /// An error at a place.
+    pub fn error(at: impl Into<Option<Span>>, message: impl Into<String>) -> Self {
+        Self {
+            severity: Severity::Error,
+            message: message.into(),
+            at: at.into(),
+            label: String::new(),
+            also: Vec::new(),
+            notes: Vec::new(),
+        }
+    }
+
+    /// Adds a word on the place.
+    pub fn label(&mut self, label: impl Into<String>) -> &mut Self {
+        self.label = label.into();
+        self
+    }
+
+    /// Adds a note: what is allowed, what to do.
+    pub fn note(&mut self, note: impl Into<String>) -> &mut Self {
+        self.notes.push(note.into());
+        self
+    }
+
+    /// Adds notes.
+    pub fn notes(&mut self, notes: impl IntoIterator<Item = String>) -> &mut Self {
+        self.notes.extend(notes);
+        self
+    }
+
+    /// Adds a second place.
+    pub fn also(&mut self, at: Span, label: impl Into<String>) -> &mut Self {
+        self.also.push((at, label.into()));
+        self
+    }
+}
+
+impl From<Fault> for Diagnostic {
+    fn from(fault: Fault) -> Self {
+        let mut diagnostic = Self::error(fault.span, fault.message);
+        diagnostic.label = fault.label;
+        diagnostic.also.extend(fault.also);
+        diagnostic
+    }
+}
+
+/// All that is wrong with one scene.
+#[derive(Clone, Debug, Default)]
+pub struct Diagnostics {
+    source: Option<Arc<Source>>,
+    tree: Option<Arc<Tree>>,
+    list: Vec<Diagnostic>,
+}
+
+impl Diagnostics {
+    /// Nothing wrong yet with this text.
+    pub fn new(source: Arc<Source>, tree: Arc<Tree>) -> Self {
+        Self { source: Some(source), tree: Some(tree), list: Vec::new() }
+    }
+
+    /// One mistake that is not in a text: a file that cannot be read.
+    pub fn of(message: impl Into<String>) -> Self {
+        let mut diagnostics = Self::default();
+        diagnostics.push(Diagnostic::error(None, message));
+        diagnostics
+    }
+
+    /// Adds a mistake.
+    pub fn push(&mut self, diagnostic: Diagnostic) -> &mut Diagnostic {
+        self.list.push(diagnostic);
+        let last = self.list.len() - 1;
+        &mut self.list[last]
+    }
+
+    /// Adds an error about the value at a path such as `schedule[2]` or `bodies.cube.mesh`. When the file does not
+    /// have that value (a default), what should hold it is marked.
+    pub fn error_at(&mut self, path: impl Into<Path>, message: impl Into<String>) -> &mut Diagnostic {
+        let at = self.span(&path.into());
+        self.push(Diagnostic::error(at, message))
+    }
+
+    /// As [`Self::error_at`], for what does not keep the scene from running.
+    pub fn warn_at(&mut self, path: impl Into<Path>, message: impl Into<String>) -> &mut Diagnostic {
+        let diagnostic = self.error_at(path, message);
+        diagnostic.severity = Severity::Warning;
+        diagnostic
+    }
+
+    /// Adds an error without a place.
+    pub fn error(&mut self, message: impl Into<String>) -> &mut Diagnostic {
+        self.push(Diagnostic::error(None, message))
+    }
+
+    fn span(&self, path: &Path) -> Option<Span> {
+        let tree = self.tree.as_ref()?;
+        let span = path.span(&tree.root);
+        let text = self.source.as_ref()?.text();
+        // of a value that goes over several lines its beginning is marked
+        match path.find(&tree.root) {
+            Ok(node) if text[span.clone()].contains('\n') => Some(Node::mark(node)),
+            _ => Some(span),
+        }
+    }
+
+    /// Whether one of them keeps the scene from running.
+    pub fn has_errors(&self) -> bool {
+        self.list.iter().any(|diagnostic| diagnostic.severity == Severity::Error)
+    }
+
+    /// Whether nothing is wrong.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// The mistakes, in the order they were found.
+    pub fn list(&self) -> &[Diagnostic] {
+        &self.list
+    }
+
+    /// All of them as text for people, in the order of the file, errors and warnings mixed; `color` for terminals.
+    pub fn render(&self, color: bool) -> String {
+        let mut files = SimpleFiles::new();
+        if let Some(source) = &self.source {
+            files.add(source.name.clone(), source.file.as_str());
+            for set in &source.sets {
+                files.add("--set".to_string(), set.as_str());
+            }
+        }
+        let mut sorted: Vec<&Diagnostic> = self.list.iter().collect();
+        sorted.sort_by_key(|diagnostic| diagnostic.at.as_ref().map(|span| span.start));
+        let mut text = String::new();
+        for diagnostic in sorted {
+            let shown = self.shown(diagnostic);
+            let config = Config::default();
+            let written = if color {
+                let mut bytes = Vec::new();
+                let styles = term::Styles::default();
+                term::emit_to_write_style(&mut StylesWriter::new(Ansi::new(&mut bytes), &styles), &config, &files, &shown)
+                    .map(|()| text.push_str(&String::from_utf8_lossy(&bytes)))
+            } else {
+                term::emit_to_string(&mut text, &config, &files, &shown)
+            };
+            if written.is_err() {
+                // a place that cannot be shown must not swallow the message
+                text.push_str(&format!("{}\n", diagnostic.message));
+            }
+        }
+        // trailing blanks are of no use to anyone who compares or pastes
+        text.lines().map(|line| format!("{}\n", line.trim_end())).collect()
+    }
+
+    fn shown(&self, diagnostic: &Diagnostic) -> Shown<usize> {
+        let grade = match diagnostic.severity {
+            Severity::Error => Grade::Error,
+            Severity::Warning => Grade::Warning,
+        };
+        let mut labels = Vec::new();
+        if let (Some(source), Some(at)) = (&self.source, &diagnostic.at) {
+            let place = source.place(at);
+            labels.push(Label::primary(place.text, place.span).with_message(&diagnostic.label));
+            for (span, label) in &diagnostic.also {
+                let place = source.place(span);
+                labels.push(Label::secondary(place.text, place.span).with_message(label));
+            }
+        }
+        Shown::new(grade).with_message(&diagnostic.message).with_labels(labels).with_notes(diagnostic.notes.clone())
+    }
+}
+
+impl fmt::Display for Diagnostics {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.render(false))
+    }
+}
+
+impl std::error::Error for Diagnostics {}

@@ -1,0 +1,116 @@
+//! From a scene file to a [`Scene`].
+
+use super::check::check;
+use super::diagnostic::{Diagnostic, Diagnostics};
+use super::schema::Scene;
+use super::set;
+use super::source::Source;
+use super::syntax::{Span, Tree, parse};
+use ron::extensions::Extensions;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A scene with the text it was read from, so that later complaints can say where.
+#[derive(Clone, Debug)]
+pub struct SceneFile {
+    /// The scene.
+    pub scene: Scene,
+    /// The file; for a scene that was not read from one, its name.
+    pub path: PathBuf,
+    /// The folder that mesh files are relative to.
+    pub folder: PathBuf,
+    source: Arc<Source>,
+    tree: Arc<Tree>,
+}
+
+/// How scenes are read: an optional value may be written without `Some`.
+pub fn options() -> ron::Options {
+    ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME)
+}
+
+impl SceneFile {
+    /// Reads a scene file and puts in the values of `--set path=value`. Whether the values make sense is for
+    /// [`validate`](super::validate()) to say.
+    ///
+    /// # Errors
+    /// All mistakes in the words of the file, or that it cannot be read.
+    pub fn load(path: impl AsRef<Path>, sets: &[String]) -> Result<Self, Diagnostics> {
+        let path = path.as_ref();
+        let name = path.display().to_string();
+        let bytes = std::fs::read(path).map_err(|error| Diagnostics::of(format!("cannot read the scene {name}: {error}")))?;
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let at = error.utf8_error().valid_up_to();
+            Diagnostics::of(format!("the scene {name} is not a text in UTF-8 (byte {at}); is it the right file?"))
+        })?;
+        let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
+        let mut scene = Self::from_text(&name, &text, &folder, sets)?;
+        scene.path = path.to_path_buf();
+        Ok(scene)
+    }
+
+    /// As [`Self::load`], for a text that need not be a file; `folder` is what mesh files are relative to.
+    ///
+    /// # Errors
+    /// All mistakes in the words of the text.
+    pub fn from_text(name: &str, text: &str, folder: &Path, sets: &[String]) -> Result<Self, Diagnostics> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let mut source = Source::new(name, text, sets);
+        let mut tree = parse(source.text());
+        let mut mistakes: Vec<Diagnostic> = Vec::new();
+        if tree.faults.is_empty() {
+            for number in 0..sets.len() {
+                match set::apply(&mut source, &tree, number) {
+                    Ok(()) => tree = parse(source.text()),
+                    Err(mistake) => mistakes.push(mistake),
+                }
+            }
+        }
+        mistakes.extend(tree.faults.iter().cloned().map(Diagnostic::from));
+        mistakes.extend(check::<Scene>(&tree.root, source.text()));
+        let scene = match mistakes.is_empty() {
+            true => options().from_str::<Scene>(source.text()).map_err(|error| unforeseen(&error, source.text())),
+            false => Err(Vec::new()),
+        };
+        let (source, tree) = (Arc::new(source), Arc::new(tree));
+        match scene {
+            Ok(scene) => Ok(Self { scene, path: name.into(), folder: folder.to_path_buf(), source, tree }),
+            Err(more) => {
+                let mut diagnostics = Diagnostics::new(source, tree);
+                for mistake in mistakes.into_iter().chain(more) {
+                    diagnostics.push(mistake);
+                }
+                Err(diagnostics)
+            }
+        }
+    }
+
+    /// The text of the scene with the values of `--set` in it.
+    pub fn text(&self) -> &str {
+        self.source.text()
+    }
+
+    /// The syntax tree of [`Self::text`].
+    pub fn tree(&self) -> &Tree {
+        &self.tree
+    }
+
+    /// An empty list for complaints about this scene.
+    pub fn diagnostics(&self) -> Diagnostics {
+        Diagnostics::new(Arc::clone(&self.source), Arc::clone(&self.tree))
+    }
+}
+
+/// A mistake that ron finds and [`check`] does not.
+fn unforeseen(error: &ron::error::SpannedError, text: &str) -> Vec<Diagnostic> {
+    let start = offset(text, error.span.start.line, error.span.start.col);
+    let end = offset(text, error.span.end.line, error.span.end.col).max(start);
+    let at: Span = if text[start..end].contains('\n') { start..start } else { start..end };
+    vec![Diagnostic::error(at, format!("this cannot be read: {}", error.code))]
+}
+
+/// The byte of a line and column, both from 1, of characters.
+fn offset(text: &str, line: usize, column: usize) -> usize {
+    let start: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
+    let rest = &text[start.min(text.len())..];
+    start + rest.chars().take(column.saturating_sub(1)).map(char::len_utf8).sum::<usize>()
+}

@@ -1,0 +1,153 @@
+//! `--set path=value`: puts a value into the text of a scene, in the place of the one that stands there or as a new
+//! field.
+
+use super::check::wants_text;
+use super::diagnostic::Diagnostic;
+use super::schema::Scene;
+use super::source::{Origin, Source};
+use super::suggest::choice;
+use super::syntax::{Kind, Lost, Node, Path, Segment, Span, Tree, parse};
+
+/// Puts in the value of one `--set`.
+///
+/// # Errors
+/// Why it cannot be put in: a path that leads nowhere, a value that is not RON.
+pub fn apply(source: &mut Source, tree: &Tree, number: usize) -> Result<(), Diagnostic> {
+    let argument = source.sets[number].clone();
+    let fail = |message: String| Diagnostic::error(None, format!("--set {argument}: {message}"));
+    let (path, value) = argument.split_once('=').ok_or_else(|| {
+        let mut diagnostic = fail("a value is missing".to_string());
+        diagnostic.note("expected path=value, such as materials.tissue.density=1060");
+        diagnostic
+    })?;
+    let value_at = path.len() + 1 + (value.len() - value.trim_start().len());
+    let value = value.trim();
+    let way = Path::parse(path).map_err(&fail)?;
+    if way.0.is_empty() {
+        return Err(fail("a path is missing before the =".to_string()));
+    }
+    if value.is_empty() {
+        return Err(fail("a value is missing after the =".to_string()));
+    }
+    let slot = Slot::find(&way, &tree.root, path).map_err(|(message, notes)| {
+        let mut diagnostic = fail(message);
+        diagnostic.notes(notes);
+        diagnostic
+    })?;
+    let put = |source: &Source, parts: &[(&str, Origin)]| {
+        let mut source = source.clone();
+        let span = slot.put(&mut source, number, parts);
+        (source, span)
+    };
+    let plain = (value, Origin::Set(number, value_at));
+    let faults = parse(value).faults;
+    if faults.is_empty() {
+        let (with, span) = put(source, std::slice::from_ref(&plain));
+        if !wants_text::<Scene>(&with, &span) {
+            *source = with;
+            return Ok(());
+        }
+    } else {
+        let (with, span) = put(source, &[("x", plain.1.clone())]);
+        if value.contains('"') || !wants_text::<Scene>(&with, &span) {
+            let fault = &faults[0];
+            return Err(fail(format!("the value `{value}` cannot be read: {}", fault.message.replace("the file", "it"))));
+        }
+    }
+    // the shell has eaten the quotes, or the author never wrote them
+    let quote = || ("\"", Origin::Glue(number, value_at));
+    let escaped = value.replace('\\', "\\\\").replace('"', "\\\"");
+    *source = put(source, &[quote(), (&escaped, plain.1), quote()]).0;
+    Ok(())
+}
+
+/// Where a value goes.
+struct Slot<'a> {
+    /// What it replaces; empty where something new goes in.
+    span: Span,
+    /// Names that come before it, each with the place of the path it came from, and how the last of them is written.
+    new: Vec<(&'a str, usize)>,
+    in_map: bool,
+}
+
+impl<'a> Slot<'a> {
+    fn find(way: &'a Path, root: &Node, text: &str) -> Result<Self, (String, Vec<String>)> {
+        let Lost { node, reached } = match way.find(root) {
+            Ok(node) => return Ok(Self { span: node.span.clone(), new: Vec::new(), in_map: false }),
+            Err(lost) => lost,
+        };
+        let holder = if reached == 0 { "the scene".to_string() } else { format!("`{}`", Path(way.0[..reached].to_vec())) };
+        let inner = node.inner();
+        let rest = &way.0[reached..];
+        match (&rest[0], &inner.kind) {
+            (Segment::Index(index), Kind::List(items) | Kind::Tuple(items)) => {
+                let last = items.len().checked_sub(1).map_or("it is empty".to_string(), |last| format!("the last is [{last}]"));
+                Err((format!("there is no [{index}] in {holder}"), vec![format!("counted from 0, {last}")]))
+            }
+            (Segment::Name(name), Kind::Map(entries)) if rest.len() > 1 => {
+                let names: Vec<&str> = entries
+                    .iter()
+                    .filter_map(|entry| if let Kind::Text(key) = &entry.key.kind { Some(key.as_str()) } else { None })
+                    .collect();
+                Err((format!("there is no `{name}` in {holder}"), choice(name, names)))
+            }
+            (Segment::Name(_), Kind::Map(_) | Kind::Fields(_)) => Self::insert(rest, inner, text),
+            (Segment::Name(_), Kind::Tuple(items)) if items.is_empty() => Self::insert(rest, inner, text),
+            (Segment::Name(name), Kind::List(items)) => {
+                let notes = vec![format!("its items have numbers: {} to {}", "[0]", items.len().saturating_sub(1))];
+                Err((format!("there is no `{name}` in {holder}, which is a list"), notes))
+            }
+            (Segment::Index(_), Kind::Map(_) | Kind::Fields(_)) => {
+                Err((format!("{holder} has names inside, not numbers"), Vec::new()))
+            }
+            (segment, _) => {
+                let inside = Path(vec![segment.clone()]);
+                Err((format!("there is no `{inside}` in {holder}, which is {}", inner.describe()), Vec::new()))
+            }
+        }
+    }
+
+    fn insert(rest: &'a [Segment], holder: &Node, text: &str) -> Result<Self, (String, Vec<String>)> {
+        let mut new = Vec::new();
+        for segment in rest {
+            let Segment::Name(name) = segment else {
+                return Err(("a list that is not in the scene cannot be changed item by item".to_string(), Vec::new()));
+            };
+            // names lie in the path in this order; the place is for messages only
+            let from = new.last().map_or(0, |(before, at): &(&str, usize)| at + before.len());
+            let at = text[from..].find(name.as_str()).map_or(0, |found| from + found);
+            new.push((name.as_str(), at));
+        }
+        // right after the opening bracket: a comma can follow whatever comes next
+        let open = holder.name.as_ref().map_or(holder.span.start, |name| name.span.end);
+        Ok(Self { span: open..open, new, in_map: matches!(holder.kind, Kind::Map(_)) })
+    }
+
+    /// Puts the value in and tells where it now stands.
+    fn put(&self, source: &mut Source, number: usize, value: &[(&str, Origin)]) -> Span {
+        let mut parts: Vec<(&str, Origin)> = Vec::new();
+        let glue = |at: usize| Origin::Glue(number, at);
+        let mut span = self.span.clone();
+        if let Some((_, at)) = self.new.last() {
+            // blanks and comments may stand between a word and its bracket
+            let bracket = if self.in_map { '{' } else { '(' };
+            let open = span.start + source.text()[span.start..].find(bracket).unwrap_or(0) + 1;
+            span = open..open;
+            for (i, (name, at)) in self.new.iter().enumerate() {
+                let quoted = self.in_map && i == 0;
+                parts.extend([(if i > 0 { "(" } else { "" }, glue(*at)), (if quoted { "\"" } else { "" }, glue(*at))]);
+                parts.push((name, Origin::Set(number, *at)));
+                parts.push((if quoted { "\": " } else { ": " }, glue(*at)));
+            }
+            let before: usize = parts.iter().map(|(text, _)| text.len()).sum();
+            let length: usize = value.iter().map(|(text, _)| text.len()).sum();
+            parts.extend(value.iter().cloned());
+            parts.extend(self.new.iter().skip(1).map(|_| (")", glue(*at))));
+            parts.push((", ", glue(*at)));
+            source.replace(span, &parts);
+            return open + before..open + before + length;
+        }
+        source.replace(span.clone(), value);
+        span.start..span.start + value.iter().map(|(text, _)| text.len()).sum::<usize>()
+    }
+}
