@@ -1,0 +1,39 @@
+//! `nodes.csv`: where every node ended up, in the author's numbering.
+
+use super::{OutputError, replace};
+use glam::DVec3;
+use std::path::Path;
+
+/// One row of `nodes.csv`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Node {
+    /// The author's number.
+    pub id: u64,
+    /// Rest position (m).
+    pub position: DVec3,
+    /// Displacement (m).
+    pub displacement: DVec3,
+    /// Internal force (N): what the deformed elements resist with.
+    pub force: DVec3,
+    /// Lumped mass (kg).
+    pub mass: f64,
+}
+
+/// The columns: SI units throughout.
+const HEADER: [&str; 11] = ["id", "X", "Y", "Z", "ux", "uy", "uz", "fx", "fy", "fz", "mass"];
+
+/// Writes the table, one row a node, with as many digits as give each number back exactly.
+pub fn write(path: &Path, nodes: impl IntoIterator<Item = Node>) -> Result<(), OutputError> {
+    let refused = |error: csv::Error| match error.into_kind() {
+        csv::ErrorKind::Io(source) => OutputError::system("write", path)(source),
+        other => OutputError::Format { path: path.to_path_buf(), reason: format!("{other:?}") },
+    };
+    replace(path, |file| {
+        let mut table = csv::WriterBuilder::new().has_headers(false).from_writer(file);
+        table.write_record(HEADER).map_err(refused)?;
+        for Node { id, position: x, displacement: u, force: f, mass } in nodes {
+            table.serialize((id, x.x, x.y, x.z, u.x, u.y, u.z, f.x, f.y, f.z, mass)).map_err(refused)?;
+        }
+        table.flush().map_err(OutputError::system("write", path))
+    })
+}

@@ -1,0 +1,204 @@
+//! One frame as a VTU file (VTK XML, unstructured grid): appended raw data in zlib blocks, as ParaView writes it itself.
+
+use super::{OutputError, replace};
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use glam::DVec3;
+use rayon::prelude::*;
+use std::fs::File;
+use std::io::{BufWriter, Seek, SeekFrom, Write};
+use std::path::Path;
+
+/// The state of all bodies at one time, as slices of what the engine holds.
+pub struct Frame<'a> {
+    /// Time (s).
+    pub time: f64,
+    /// Rest positions (m), one row a point.
+    pub points: &'a [DVec3],
+    /// Tetrahedra: rows of `points`, VTK order.
+    pub tets: &'a [[u32; 4]],
+    /// Hexahedra: rows of `points`, VTK order.
+    pub hexes: &'a [[u32; 8]],
+    /// One row a point.
+    pub point_arrays: Vec<Array<'a>>,
+    /// One row a cell: tetrahedra first, then hexahedra.
+    pub cell_arrays: Vec<Array<'a>>,
+}
+
+/// A named array of a [`Frame`].
+pub struct Array<'a> {
+    /// What ParaView shows.
+    pub name: &'a str,
+    /// Values a row: 1, 3 (a vector) or 6 (a symmetric tensor: xx, yy, zz, xy, yz, xz).
+    pub components: usize,
+    /// The values, row by row.
+    pub values: Values<'a>,
+}
+
+/// Values of an [`Array`], as many as rows times components.
+#[derive(Clone, Copy)]
+#[allow(missing_docs)]
+pub enum Values<'a> {
+    F32(&'a [f32]),
+    F64(&'a [f64]),
+    U8(&'a [u8]),
+    U32(&'a [u32]),
+    I64(&'a [i64]),
+}
+
+impl<'a> Values<'a> {
+    /// The type's name in the file, the number of values, and their bytes.
+    fn parts(&self) -> (&'static str, usize, &'a [u8]) {
+        match *self {
+            Values::F32(v) => ("Float32", v.len(), bytemuck::cast_slice(v)),
+            Values::F64(v) => ("Float64", v.len(), bytemuck::cast_slice(v)),
+            Values::U8(v) => ("UInt8", v.len(), v),
+            Values::U32(v) => ("UInt32", v.len(), bytemuck::cast_slice(v)),
+            Values::I64(v) => ("Int64", v.len(), bytemuck::cast_slice(v)),
+        }
+    }
+}
+
+/// Bytes that are compressed as one piece; pieces are compressed side by side.
+const BLOCK: usize = 1 << 18;
+/// Room for `offset="..."` with every number that fits in 64 bits.
+const OFFSET_ROOM: usize = 29;
+const VTK_TETRA: u8 = 10;
+const VTK_HEXAHEDRON: u8 = 12;
+
+/// Writes a frame; the file appears when it is complete. Not more than one array is held as a copy.
+pub fn write(path: &Path, frame: &Frame<'_>) -> Result<(), OutputError> {
+    check(path, frame)?;
+    replace(path, |file| {
+        Writer { file, offsets: Vec::new(), data: 0 }.frame(frame).map_err(OutputError::system("write", path))
+    })
+}
+
+/// A file that ParaView would stumble over is not written.
+fn check(path: &Path, frame: &Frame<'_>) -> Result<(), OutputError> {
+    let cells = frame.tets.len() + frame.hexes.len();
+    let arrays = frame.point_arrays.iter().map(|array| (array, frame.points.len()));
+    for (array, rows) in arrays.chain(frame.cell_arrays.iter().map(|array| (array, cells))) {
+        let (_, found, _) = array.values.parts();
+        if found != rows * array.components {
+            let (array, components) = (array.name.to_string(), array.components);
+            return Err(OutputError::ArrayLength { path: path.to_path_buf(), array, found, rows, components });
+        }
+    }
+    let corners = frame.tets.as_flattened().iter().chain(frame.hexes.as_flattened());
+    match corners.max() {
+        Some(&point) if point as usize >= frame.points.len() => {
+            Err(OutputError::NoSuchPoint { path: path.to_path_buf(), point, points: frame.points.len() })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The head comes before the data that it gives the places of: it is written with gaps, which are filled at the end.
+struct Writer<'a> {
+    file: &'a mut BufWriter<File>,
+    /// Where in the file the place of each array belongs.
+    offsets: Vec<u64>,
+    /// Where in the file the data begins.
+    data: u64,
+}
+
+impl Writer<'_> {
+    fn frame(mut self, frame: &Frame<'_>) -> std::io::Result<()> {
+        self.head(frame)?;
+        let mut places = Vec::with_capacity(self.offsets.len());
+        let arrays = frame.point_arrays.iter().chain(&frame.cell_arrays).map(|array| array.values.parts().2);
+        for bytes in arrays.chain([bytemuck::cast_slice(frame.points)]) {
+            places.push(self.array(bytes)?);
+        }
+        let (long, corners) = (needs_long(frame), frame.tets.as_flattened().iter().chain(frame.hexes.as_flattened()));
+        let ends = (0..frame.tets.len()).map(|row| 4 * (row + 1));
+        let first = 4 * frame.tets.len();
+        let ends = ends.chain((0..frame.hexes.len()).map(|row| first + 8 * (row + 1)));
+        places.push(self.array(&integers(corners.map(|&corner| i64::from(corner)), long))?);
+        places.push(self.array(&integers(ends.map(|end| end as i64), long))?);
+        let mut types = vec![VTK_TETRA; frame.tets.len()];
+        types.resize(frame.tets.len() + frame.hexes.len(), VTK_HEXAHEDRON);
+        places.push(self.array(&types)?);
+        self.file.write_all(b"\n  </AppendedData>\n</VTKFile>\n")?;
+        for (at, place) in self.offsets.iter().zip(places) {
+            self.file.seek(SeekFrom::Start(*at))?;
+            write!(self.file, "offset=\"{place}\"")?;
+        }
+        Ok(())
+    }
+
+    fn head(&mut self, frame: &Frame<'_>) -> std::io::Result<()> {
+        let order = if cfg!(target_endian = "little") { "LittleEndian" } else { "BigEndian" };
+        let (points, cells) = (frame.points.len(), frame.tets.len() + frame.hexes.len());
+        let integer = if needs_long(frame) { "Int64" } else { "Int32" };
+        write!(
+            self.file,
+            "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"{order}\" \
+             header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n  <UnstructuredGrid>\n    <FieldData>\n      \
+             <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{:?}</DataArray>\n    \
+             </FieldData>\n    <Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">\n",
+            frame.time
+        )?;
+        for (part, arrays) in [("PointData", &frame.point_arrays), ("CellData", &frame.cell_arrays)] {
+            writeln!(self.file, "      <{part}>")?;
+            for array in arrays {
+                self.entry(array.values.parts().0, array.name, array.components)?;
+            }
+            writeln!(self.file, "      </{part}>")?;
+        }
+        writeln!(self.file, "      <Points>")?;
+        self.entry("Float64", "Points", 3)?;
+        writeln!(self.file, "      </Points>\n      <Cells>")?;
+        self.entry(integer, "connectivity", 1)?;
+        self.entry(integer, "offsets", 1)?;
+        self.entry("UInt8", "types", 1)?;
+        write!(
+            self.file,
+            "      </Cells>\n    </Piece>\n  </UnstructuredGrid>\n  <AppendedData encoding=\"raw\">\n   _"
+        )?;
+        self.data = self.file.stream_position()?;
+        Ok(())
+    }
+
+    fn entry(&mut self, kind: &str, name: &str, components: usize) -> std::io::Result<()> {
+        let name = name.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
+        write!(self.file, "        <DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" ")?;
+        write!(self.file, "format=\"appended\" ")?;
+        self.offsets.push(self.file.stream_position()?);
+        writeln!(self.file, "{:OFFSET_ROOM$}/>", "")
+    }
+
+    /// Writes one array and tells where it begins. Its head: number of blocks, bytes a block, bytes of the last block when
+    /// that is shorter, then the compressed size of each block.
+    fn array(&mut self, bytes: &[u8]) -> std::io::Result<u64> {
+        let place = self.file.stream_position()? - self.data;
+        let blocks = bytes.par_chunks(BLOCK).map(compress).collect::<std::io::Result<Vec<_>>>()?;
+        for word in [blocks.len(), BLOCK, bytes.len() % BLOCK].into_iter().chain(blocks.iter().map(Vec::len)) {
+            self.file.write_all(&(word as u64).to_ne_bytes())?;
+        }
+        for block in blocks {
+            self.file.write_all(&block)?;
+        }
+        Ok(place)
+    }
+}
+
+fn compress(block: &[u8]) -> std::io::Result<Vec<u8>> {
+    let mut encoder = ZlibEncoder::new(Vec::with_capacity(block.len() / 2), Compression::fast());
+    encoder.write_all(block)?;
+    encoder.finish()
+}
+
+/// Whether 32 bits are too few for a corner's number or the count of corners.
+fn needs_long(frame: &Frame<'_>) -> bool {
+    frame.points.len().max(4 * frame.tets.len() + 8 * frame.hexes.len()) > i32::MAX as usize
+}
+
+fn integers(values: impl Iterator<Item = i64>, long: bool) -> Vec<u8> {
+    if long {
+        values.flat_map(i64::to_ne_bytes).collect()
+    } else {
+        values.flat_map(|v| (v as i32).to_ne_bytes()).collect()
+    }
+}
