@@ -2,6 +2,17 @@
 //!
 //! A [`Mesh`] is what generators make and files hold; the engine renumbers it for locality when a body is built from it.
 
+mod error;
+pub mod generators;
+pub mod measure;
+mod placement;
+pub mod soundness;
+mod surface;
+
+pub use error::{MeshError, Place};
+pub use generators::ElementKind;
+pub use surface::SurfaceFace;
+
 use glam::DVec3;
 use std::collections::BTreeMap;
 
