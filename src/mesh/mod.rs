@@ -4,10 +4,14 @@
 
 mod error;
 pub mod generators;
+mod gmsh;
 pub mod measure;
 mod placement;
+mod read;
 pub mod soundness;
 mod surface;
+mod vtk;
+pub mod vtu;
 
 pub use error::{MeshError, Place};
 pub use generators::ElementKind;
