@@ -2,6 +2,21 @@
 //!
 //! A [`Mesh`] is what generators make and files hold; the engine renumbers it for locality when a body is built from it.
 
+mod error;
+pub mod generators;
+mod gmsh;
+pub mod measure;
+mod placement;
+mod read;
+pub mod soundness;
+mod surface;
+mod vtk;
+pub mod vtu;
+
+pub use error::{MeshError, Place};
+pub use generators::ElementKind;
+pub use surface::SurfaceFace;
+
 use glam::DVec3;
 use std::collections::BTreeMap;
 

@@ -1,0 +1,95 @@
+//! What can be wrong with a mesh, said so that its author can put it right.
+
+use super::soundness::Finding;
+use std::fmt;
+use std::path::PathBuf;
+
+/// Why a mesh was refused.
+#[derive(Debug, thiserror::Error)]
+pub enum MeshError {
+    /// The file could not be opened or read.
+    #[error("{}: cannot be read: {source}", file.display())]
+    Unreadable {
+        /// The file.
+        file: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The file breaks the rules of its format, or uses a part of it that is not supported.
+    #[error("{}{at}: {what}; {allowed}", file.display())]
+    Format {
+        /// The file.
+        file: PathBuf,
+        /// Where in the file.
+        at: Place,
+        /// What is wrong.
+        what: String,
+        /// What is allowed, or what to do.
+        allowed: String,
+    },
+    /// The mesh was read, but elements or points make it impossible to simulate.
+    #[error("{name}: the mesh cannot be simulated:{}", list(findings))]
+    Unsound {
+        /// The file, or the name of the body.
+        name: String,
+        /// All errors that were found.
+        findings: Vec<Finding>,
+    },
+    /// A parameter of a generator or of a placement is outside its range.
+    #[error("{name}: {parameter} is {value}; {allowed}")]
+    Parameter {
+        /// What the parameter belongs to: `Box`, `Lens`, `place` ...
+        name: &'static str,
+        /// The parameter.
+        parameter: &'static str,
+        /// Its value.
+        value: String,
+        /// What is allowed.
+        allowed: String,
+    },
+}
+
+/// A place in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// The file as a whole.
+    File,
+    /// A line, counted from 1.
+    Line(usize),
+    /// A byte, counted from 0: in binary parts.
+    Byte(usize),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Place::File => Ok(()),
+            Place::Line(line) => write!(f, ":{line}"),
+            Place::Byte(byte) => write!(f, ": byte {byte}"),
+        }
+    }
+}
+
+fn list(findings: &[Finding]) -> String {
+    findings.iter().map(|finding| format!("\n  {finding}")).collect()
+}
+
+/// A fault found while a file is read, before its name is added.
+#[derive(Debug)]
+pub(super) struct Fault {
+    pub at: Place,
+    pub what: String,
+    pub allowed: String,
+}
+
+impl Fault {
+    /// A fault of the file as a whole.
+    pub fn whole(what: impl Into<String>, allowed: impl Into<String>) -> Self {
+        Fault { at: Place::File, what: what.into(), allowed: allowed.into() }
+    }
+
+    /// The error that names the file.
+    pub fn in_file(self, file: &std::path::Path) -> MeshError {
+        MeshError::Format { file: file.to_path_buf(), at: self.at, what: self.what, allowed: self.allowed }
+    }
+}

@@ -1,0 +1,193 @@
+//! The grid of cells that every generator deforms.
+
+use super::super::surface::{HEX_FACES, TET_FACES};
+use super::super::{Mesh, MeshError};
+use super::ElementKind;
+use glam::DVec3;
+
+/// The most cells a generator makes: points and elements are counted in 32 bits.
+const MOST_CELLS: u64 = 1_000_000_000;
+
+/// Corners of a cell by bits (1: upper in x, 2: in y, 4: in z), in VTK order.
+const HEX: [u8; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
+
+/// Six tetrahedra along the diagonal from corner 0 to corner 7 (Kuhn): one a way along the edges.
+const KUHN: [[u8; 4]; 6] = [[0, 1, 3, 7], [0, 2, 6, 7], [0, 4, 5, 7], [0, 1, 7, 5], [0, 2, 7, 3], [0, 4, 7, 6]];
+
+/// A side of the grid.
+#[derive(Clone, Copy)]
+pub(super) struct Side {
+    axis: usize,
+    upper: bool,
+}
+
+/// All sides: lower and upper of x, y, z.
+pub(super) const SIDES: [Side; 6] = [
+    Side { axis: 0, upper: false },
+    Side { axis: 0, upper: true },
+    Side { axis: 1, upper: false },
+    Side { axis: 1, upper: true },
+    Side { axis: 2, upper: false },
+    Side { axis: 2, upper: true },
+];
+
+/// A grid of cells, each one hexahedron or six tetrahedra.
+pub(super) struct Grid {
+    cells: [u32; 3],
+    kind: ElementKind,
+    /// Axes along which the diagonals of the lower half are mirrored, so that they run from the middle outwards.
+    mirrored: [bool; 3],
+}
+
+impl Grid {
+    /// A grid of `cells`; refuses none and too many.
+    pub fn new(
+        name: &'static str,
+        parameter: &'static str,
+        cells: [u32; 3],
+        kind: ElementKind,
+    ) -> Result<Self, MeshError> {
+        let refuse = |allowed: String| {
+            Err(MeshError::Parameter {
+                name,
+                parameter,
+                value: format!("{}×{}×{}", cells[0], cells[1], cells[2]),
+                allowed,
+            })
+        };
+        if cells.contains(&0) {
+            return refuse("there must be at least 1 cell in each direction".into());
+        }
+        let most = match kind {
+            ElementKind::Tet4 => u64::from(u32::MAX) / 6,
+            ElementKind::Hex8 => MOST_CELLS,
+        };
+        let count = cells.iter().try_fold(1u64, |product, &n| product.checked_mul(u64::from(n)));
+        let points = cells.iter().try_fold(1u64, |product, &n| product.checked_mul(u64::from(n) + 1));
+        let fits = |value: Option<u64>, limit: u64| value.is_some_and(|value| value <= limit);
+        if !fits(count, most) || !fits(points, u64::from(u32::MAX)) {
+            return refuse(format!(
+                "at most {most} cells and {} points fit the 32-bit numbers of points and elements",
+                u32::MAX
+            ));
+        }
+        Ok(Grid { cells, kind, mirrored: [false; 3] })
+    }
+
+    /// Lets the diagonals of cells run outwards along these axes. On round shapes a cell in a corner of the grid has
+    /// nearly straight angles there; a diagonal through the corner halves them, any other would cut off a flat element.
+    /// Neighbours still agree: what they share depends only on indices they share.
+    pub fn outward(mut self, axes: [bool; 3]) -> Self {
+        self.mirrored = axes;
+        self
+    }
+
+    /// The mesh with points placed by their indices. Refuses a grid that does not fit into memory.
+    pub fn mesh(&self, place: impl Fn([u32; 3]) -> DVec3) -> Result<Mesh, MeshError> {
+        let [nx, ny, nz] = self.cells;
+        let mut mesh = Mesh::default();
+        let cells = nx as usize * ny as usize * nz as usize;
+        let points = (nx as usize + 1) * (ny as usize + 1) * (nz as usize + 1);
+        let reserved = mesh.points.try_reserve_exact(points).and_then(|()| match self.kind {
+            ElementKind::Tet4 => mesh.tets.try_reserve_exact(6 * cells),
+            ElementKind::Hex8 => mesh.hexes.try_reserve_exact(cells),
+        });
+        if reserved.is_err() {
+            let (name, parameter, value) = ("generator", "number of cells", cells.to_string());
+            return Err(MeshError::Parameter { name, parameter, value, allowed: "it must fit into memory".into() });
+        }
+        for k in 0..=nz {
+            for j in 0..=ny {
+                mesh.points.extend((0..=nx).map(|i| place([i, j, k])));
+            }
+        }
+        for k in 0..nz {
+            for j in 0..ny {
+                for i in 0..nx {
+                    self.cut([i, j, k], |corners| match *corners {
+                        [a, b, c, d] => mesh.tets.push([a, b, c, d]),
+                        [a, b, c, d, e, f, g, h] => mesh.hexes.push([a, b, c, d, e, f, g, h]),
+                        _ => debug_assert!(false, "a cell is cut into tetrahedra or hexahedra"),
+                    });
+                }
+            }
+        }
+        Ok(mesh)
+    }
+
+    /// The row of the point at a corner of a cell.
+    fn row(&self, cell: [u32; 3], corner: u8) -> u32 {
+        let [i, j, k] = [0, 1, 2].map(|axis| cell[axis] + u32::from(corner >> axis & 1));
+        i + (self.cells[0] + 1) * (j + (self.cells[1] + 1) * k)
+    }
+
+    /// Bits of the axes along which a cell's diagonal is mirrored.
+    fn mirror(&self, cell: [u32; 3]) -> u8 {
+        (0..3).map(|axis| u8::from(self.mirrored[axis] && 2 * cell[axis] + 1 < self.cells[axis]) << axis).sum()
+    }
+
+    /// The corners (by bits) of the elements of a cell.
+    fn elements(&self, cell: [u32; 3], mut see: impl FnMut(&[u8])) {
+        match self.kind {
+            ElementKind::Hex8 => see(&HEX),
+            ElementKind::Tet4 => {
+                let mirror = self.mirror(cell);
+                for tet in KUHN {
+                    let [a, b, c, d] = tet.map(|corner| corner ^ mirror);
+                    // an odd number of mirrors turns an element inside out
+                    see(&if mirror.count_ones() % 2 == 0 { [a, b, c, d] } else { [a, b, d, c] });
+                }
+            }
+        }
+    }
+
+    /// The elements of a cell as rows of points.
+    fn cut(&self, cell: [u32; 3], mut see: impl FnMut(&[u32])) {
+        self.elements(cell, |corners| {
+            let mut rows = [0; 8];
+            for (row, &corner) in rows.iter_mut().zip(corners) {
+                *row = self.row(cell, corner);
+            }
+            see(&rows[..corners.len()]);
+        });
+    }
+
+    /// Adds a set of faces and one of their nodes: faces of `sides` that `keep` keeps by their centre.
+    pub fn name_faces(&self, mesh: &mut Mesh, name: &str, sides: &[Side], keep: impl Fn(DVec3) -> bool) {
+        let mut faces: Vec<[u32; 4]> = sides.iter().flat_map(|&side| self.faces(side)).collect();
+        faces.retain(|&[a, b, c, d]| {
+            let at = |row: u32| mesh.points[row as usize];
+            keep(if c == d { (at(a) + at(b) + at(c)) / 3.0 } else { (at(a) + at(b) + at(c) + at(d)) / 4.0 })
+        });
+        let mut nodes: Vec<u32> = faces.iter().flatten().copied().collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        mesh.face_sets.insert(name.into(), faces);
+        mesh.node_sets.insert(name.into(), nodes);
+    }
+
+    /// The faces of a side, their normals outwards.
+    fn faces(&self, side: Side) -> Vec<[u32; 4]> {
+        let mut faces = Vec::new();
+        let first = if side.upper { self.cells[side.axis] - 1 } else { 0 };
+        let (u, v) = ((side.axis + 1) % 3, (side.axis + 2) % 3);
+        let on_side = |corner: u8| (corner >> side.axis & 1 == 1) == side.upper;
+        for j in 0..self.cells[v] {
+            for i in 0..self.cells[u] {
+                let mut cell = [first; 3];
+                (cell[u], cell[v]) = (i, j);
+                self.elements(cell, |corners| match *corners {
+                    [_, _, _, _] => faces.extend(TET_FACES.iter().filter_map(|face| {
+                        let [a, b, c] = face.map(|corner| corners[corner]);
+                        [a, b, c].into_iter().all(on_side).then(|| [a, b, c, c].map(|corner| self.row(cell, corner)))
+                    })),
+                    _ => faces.extend(HEX_FACES.iter().filter_map(|face| {
+                        let face = face.map(|corner| corners[corner]);
+                        face.into_iter().all(on_side).then(|| face.map(|corner| self.row(cell, corner)))
+                    })),
+                });
+            }
+        }
+        faces
+    }
+}

@@ -1,0 +1,145 @@
+//! Elements: rows in range, each point once, positive volume, not too thin.
+
+use super::{Defect, FLAT, LISTED, Soundness, counted};
+use crate::mesh::Mesh;
+use crate::mesh::measure::{
+    hex_determinants, hex_longest_edge, hex_smallest_altitude, hex_volume, tet_longest_edge, tet_smallest_altitude,
+    tet_volume,
+};
+
+/// An element whose smallest altitude is below this share of its longest edge is warned of.
+const SLIVER: f64 = 0.01;
+
+/// What elements measure, and the text for each kind of finding.
+#[derive(Default)]
+struct Findings {
+    out_of_range: Vec<(usize, String)>,
+    repeated: Vec<(usize, String)>,
+    flat: Vec<(usize, String)>,
+    inverted: Vec<(usize, String)>,
+    slivers: Vec<(usize, f64)>,
+}
+
+impl Mesh {
+    pub(super) fn check_elements(&self, found: &mut Soundness) {
+        let mut all = Findings::default();
+        for row in 0..self.element_count() {
+            if self.check_rows(row, &mut all) {
+                self.check_shape(row, &mut all);
+            }
+        }
+        let out_of_range = format!("; points have the rows 0 to {}", self.points.len().saturating_sub(1));
+        let text = ("element names a point that is not there", "elements name points that are not there");
+        self.report(found, Defect::OutOfRange, all.out_of_range, text, &out_of_range);
+        let text = ("element names a point twice", "elements name a point twice");
+        self.report(found, Defect::RepeatedNode, all.repeated, text, "; each of its points must be a different one");
+        let advice = "; remove it, or move its points apart";
+        self.report(found, Defect::Flat, all.flat, ("element without volume", "elements without volume"), advice);
+        let advice =
+            "; list their nodes in the other order, or set flip_inverted: true (a folded one needs its corners moved)";
+        self.report(found, Defect::Inverted, all.inverted, ("inverted element", "inverted elements"), advice);
+        self.check_repeated_elements(found);
+        self.warn_of_slivers(found, all.slivers);
+    }
+
+    fn report(
+        &self,
+        found: &mut Soundness,
+        defect: Defect,
+        rows: Vec<(usize, String)>,
+        (one, many): (&str, &str),
+        advice: &str,
+    ) {
+        if rows.is_empty() {
+            return;
+        }
+        let names = rows.iter().map(|(row, detail)| format!("{} ({detail})", self.element_name(*row)));
+        let text = counted(rows.len(), one, many, names) + advice;
+        found.error(defect, rows.iter().map(|&(row, _)| self.element_name(row)).collect(), text);
+    }
+
+    /// Whether an element's points are there, different and finite, so that its shape can be measured.
+    fn check_rows(&self, row: usize, all: &mut Findings) -> bool {
+        let nodes = self.element(row);
+        if let Some(node) = nodes.iter().find(|&&node| node as usize >= self.points.len()) {
+            all.out_of_range.push((row, format!("row {node}")));
+            return false;
+        }
+        let twice = (1..nodes.len()).find(|&i| nodes[..i].contains(&nodes[i]));
+        if let Some(i) = twice {
+            all.repeated.push((row, format!("point {}", self.point_name(nodes[i] as usize))));
+            return false;
+        }
+        nodes.iter().all(|&node| self.points[node as usize].is_finite())
+    }
+
+    fn check_shape(&self, row: usize, all: &mut Findings) {
+        let (edge, altitude, volume, folded) = if row < self.tets.len() {
+            let corners = self.tet_corners(row);
+            let volume = tet_volume(corners);
+            (tet_longest_edge(corners), tet_smallest_altitude(corners), volume, false)
+        } else {
+            let corners = self.hex_corners(row - self.tets.len());
+            let edge = hex_longest_edge(corners);
+            let determinants = hex_determinants(corners);
+            let folded = determinants.iter().any(|&determinant| determinant < -FLAT * edge.powi(3));
+            let volume = hex_volume(corners);
+            // a one-point element lives by its centre alone: where that has no volume, the element has none
+            let least = if determinants[8].abs() < volume.abs() { determinants[8] } else { volume };
+            (edge, hex_smallest_altitude(corners), least, folded)
+        };
+        if volume.abs() < FLAT * edge.powi(3) || edge == 0.0 {
+            all.flat.push((row, format!("volume {volume:.2e} m³, longest edge {edge:.2e} m")));
+        } else if volume < 0.0 {
+            all.inverted.push((row, format!("volume {volume:.2e} m³")));
+        } else if folded {
+            all.inverted.push((row, "folded at a corner".into()));
+        } else if altitude < SLIVER * edge {
+            all.slivers.push((row, altitude / edge));
+        }
+    }
+
+    /// Two elements with the same points: found by sorting.
+    fn check_repeated_elements(&self, found: &mut Soundness) {
+        let mut tets: Vec<([u32; 4], u32)> = self.tets.iter().copied().zip(0..).collect();
+        tets.iter_mut().for_each(|(nodes, _)| nodes.sort_unstable());
+        tets.sort_unstable();
+        let first = self.tets.len() as u32;
+        let mut hexes: Vec<([u32; 8], u32)> = self.hexes.iter().copied().zip(first..).collect();
+        hexes.iter_mut().for_each(|(nodes, _)| nodes.sort_unstable());
+        hexes.sort_unstable();
+        let tets = tets.windows(2).filter(|two| two[0].0 == two[1].0).map(|two| (two[0].1, two[1].1));
+        let hexes = hexes.windows(2).filter(|two| two[0].0 == two[1].0).map(|two| (two[0].1, two[1].1));
+        let mut pairs: Vec<(u32, u32)> = tets.chain(hexes).collect();
+        if pairs.is_empty() {
+            return;
+        }
+        pairs.sort_unstable();
+        let name = |row: u32| self.element_name(row as usize);
+        let names = pairs.iter().map(|&(a, b)| format!("{} and {}", name(a), name(b)));
+        let list = counted(
+            pairs.len(),
+            "pair of elements with the same points",
+            "pairs of elements with the same points",
+            names,
+        );
+        let ids = pairs.iter().map(|&(_, second)| name(second)).collect();
+        found.error(Defect::RepeatedElement, ids, format!("{list}; keep one of each"));
+    }
+
+    fn warn_of_slivers(&self, found: &mut Soundness, mut slivers: Vec<(usize, f64)>) {
+        if slivers.is_empty() {
+            return;
+        }
+        slivers.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+        let ids: Vec<u64> = slivers.iter().map(|&(row, _)| self.element_name(row)).collect();
+        let names = slivers.iter().map(|&(row, ratio)| format!("{} ({ratio:.1e})", self.element_name(row)));
+        let (one, many) = ("very thin element", "very thin elements");
+        let worst = if ids.len() > LISTED { "; the worst are listed" } else { "" };
+        let text = format!(
+            "{} (smallest altitude against longest edge){worst}; the thinnest sets the time step of the whole body",
+            counted(ids.len(), one, many, names)
+        );
+        found.warn(Defect::Sliver, ids, text);
+    }
+}
