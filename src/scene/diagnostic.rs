@@ -81,6 +81,9 @@ impl From<Fault> for Diagnostic {
     }
 }
 
+/// How many mistakes are shown in one go.
+const MOST_SHOWN: usize = 50;
+
 /// All that is wrong with one scene.
 #[derive(Clone, Debug, Default)]
 pub struct Diagnostics {
@@ -149,9 +152,39 @@ impl Diagnostics {
         self.list.is_empty()
     }
 
-    /// The mistakes, in the order they were found.
-    pub fn list(&self) -> &[Diagnostic] {
-        &self.list
+    /// The mistakes, in the order of the file.
+    pub fn list(&self) -> Vec<&Diagnostic> {
+        self.sorted()
+    }
+
+    /// One line for each, in the order of the file, as editors read them: `cube.ron:3:15: error: ...`.
+    pub fn lines(&self) -> Vec<String> {
+        self.sorted().into_iter().map(|diagnostic| self.line(diagnostic)).collect()
+    }
+
+    fn line(&self, diagnostic: &Diagnostic) -> String {
+        let grade = match diagnostic.severity {
+            Severity::Error => "error",
+            Severity::Warning => "warning",
+        };
+        let (Some(source), Some(at)) = (&self.source, &diagnostic.at) else {
+            return format!("{grade}: {}", diagnostic.message);
+        };
+        let place = source.place(at);
+        let (name, text) = match place.text.checked_sub(1) {
+            None => (source.name.as_str(), source.file.as_str()),
+            Some(set) => ("--set", source.sets[set].as_str()),
+        };
+        let before = &text[..place.span.start];
+        let line = before.matches('\n').count() + 1;
+        let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+        format!("{name}:{line}:{column}: {grade}: {}", diagnostic.message)
+    }
+
+    fn sorted(&self) -> Vec<&Diagnostic> {
+        let mut sorted: Vec<&Diagnostic> = self.list.iter().collect();
+        sorted.sort_by_key(|diagnostic| diagnostic.at.as_ref().map(|span| span.start));
+        sorted
     }
 
     /// All of them as text for people, in the order of the file, errors and warnings mixed; `color` for terminals.
@@ -163,17 +196,21 @@ impl Diagnostics {
                 files.add("--set".to_string(), set.as_str());
             }
         }
-        let mut sorted: Vec<&Diagnostic> = self.list.iter().collect();
-        sorted.sort_by_key(|diagnostic| diagnostic.at.as_ref().map(|span| span.start));
+        let sorted = self.sorted();
         let mut text = String::new();
-        for diagnostic in sorted {
+        for diagnostic in sorted.iter().take(MOST_SHOWN) {
             let shown = self.shown(diagnostic);
             let config = Config::default();
             let written = if color {
                 let mut bytes = Vec::new();
                 let styles = term::Styles::default();
-                term::emit_to_write_style(&mut StylesWriter::new(Ansi::new(&mut bytes), &styles), &config, &files, &shown)
-                    .map(|()| text.push_str(&String::from_utf8_lossy(&bytes)))
+                term::emit_to_write_style(
+                    &mut StylesWriter::new(Ansi::new(&mut bytes), &styles),
+                    &config,
+                    &files,
+                    &shown,
+                )
+                .map(|()| text.push_str(&String::from_utf8_lossy(&bytes)))
             } else {
                 term::emit_to_string(&mut text, &config, &files, &shown)
             };
@@ -181,6 +218,9 @@ impl Diagnostics {
                 // a place that cannot be shown must not swallow the message
                 text.push_str(&format!("{}\n", diagnostic.message));
             }
+        }
+        if sorted.len() > MOST_SHOWN {
+            text.push_str(&format!("and {} more\n", sorted.len() - MOST_SHOWN));
         }
         // trailing blanks are of no use to anyone who compares or pastes
         text.lines().map(|line| format!("{}\n", line.trim_end())).collect()

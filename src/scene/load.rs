@@ -37,7 +37,8 @@ impl SceneFile {
     pub fn load(path: impl AsRef<Path>, sets: &[String]) -> Result<Self, Diagnostics> {
         let path = path.as_ref();
         let name = path.display().to_string();
-        let bytes = std::fs::read(path).map_err(|error| Diagnostics::of(format!("cannot read the scene {name}: {error}")))?;
+        let bytes =
+            std::fs::read(path).map_err(|error| Diagnostics::of(format!("cannot read the scene {name}: {error}")))?;
         let text = String::from_utf8(bytes).map_err(|error| {
             let at = error.utf8_error().valid_up_to();
             Diagnostics::of(format!("the scene {name} is not a text in UTF-8 (byte {at}); is it the right file?"))
@@ -61,7 +62,7 @@ impl SceneFile {
             for number in 0..sets.len() {
                 match set::apply(&mut source, &tree, number) {
                     Ok(()) => tree = parse(source.text()),
-                    Err(mistake) => mistakes.push(mistake),
+                    Err(mistake) => mistakes.push(*mistake),
                 }
             }
         }

@@ -9,6 +9,7 @@ pub mod source;
 pub mod suggest;
 pub mod syntax;
 pub mod validate;
+pub mod words;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
 pub use load::SceneFile;

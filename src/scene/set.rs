@@ -12,9 +12,9 @@ use super::syntax::{Kind, Lost, Node, Path, Segment, Span, Tree, parse};
 ///
 /// # Errors
 /// Why it cannot be put in: a path that leads nowhere, a value that is not RON.
-pub fn apply(source: &mut Source, tree: &Tree, number: usize) -> Result<(), Diagnostic> {
+pub fn apply(source: &mut Source, tree: &Tree, number: usize) -> Result<(), Box<Diagnostic>> {
     let argument = source.sets[number].clone();
-    let fail = |message: String| Diagnostic::error(None, format!("--set {argument}: {message}"));
+    let fail = |message: String| Box::new(Diagnostic::error(None, format!("--set {argument}: {message}")));
     let (path, value) = argument.split_once('=').ok_or_else(|| {
         let mut diagnostic = fail("a value is missing".to_string());
         diagnostic.note("expected path=value, such as materials.tissue.density=1060");
@@ -51,7 +51,10 @@ pub fn apply(source: &mut Source, tree: &Tree, number: usize) -> Result<(), Diag
         let (with, span) = put(source, &[("x", plain.1.clone())]);
         if value.contains('"') || !wants_text::<Scene>(&with, &span) {
             let fault = &faults[0];
-            return Err(fail(format!("the value `{value}` cannot be read: {}", fault.message.replace("the file", "it"))));
+            return Err(fail(format!(
+                "the value `{value}` cannot be read: {}",
+                fault.message.replace("the file", "it")
+            )));
         }
     }
     // the shell has eaten the quotes, or the author never wrote them
@@ -76,12 +79,16 @@ impl<'a> Slot<'a> {
             Ok(node) => return Ok(Self { span: node.span.clone(), new: Vec::new(), in_map: false }),
             Err(lost) => lost,
         };
-        let holder = if reached == 0 { "the scene".to_string() } else { format!("`{}`", Path(way.0[..reached].to_vec())) };
+        let holder =
+            if reached == 0 { "the scene".to_string() } else { format!("`{}`", Path(way.0[..reached].to_vec())) };
         let inner = node.inner();
         let rest = &way.0[reached..];
         match (&rest[0], &inner.kind) {
             (Segment::Index(index), Kind::List(items) | Kind::Tuple(items)) => {
-                let last = items.len().checked_sub(1).map_or("it is empty".to_string(), |last| format!("the last is [{last}]"));
+                let last = items
+                    .len()
+                    .checked_sub(1)
+                    .map_or("it is empty".to_string(), |last| format!("the last is [{last}]"));
                 Err((format!("there is no [{index}] in {holder}"), vec![format!("counted from 0, {last}")]))
             }
             (Segment::Name(name), Kind::Map(entries)) if rest.len() > 1 => {

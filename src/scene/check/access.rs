@@ -67,7 +67,8 @@ impl<'de> MapAccess<'de> for Entries<'_> {
                 continue;
             }
             if !matches!(entry.key.kind, Kind::Text(_) | Kind::Bad) {
-                let label = if matches!(entry.key.kind, Kind::Word) { format!("write \"{name}\"") } else { String::new() };
+                let label =
+                    if matches!(entry.key.kind, Kind::Word) { format!("write \"{name}\"") } else { String::new() };
                 key.note(format!("the names in {} must be texts in quotes", self.parent.called()), label);
             }
             self.value = Some(Value { node: &entry.value, about: self.parent.about, subject: name });
@@ -158,7 +159,9 @@ impl<'de> VariantAccess<'de> for Variant<'_> {
     fn newtype_variant_seed<T: DeserializeSeed<'de>>(self, seed: T) -> Result<T::Value, Stop> {
         let Self { value, name } = self;
         match &value.node.kind {
-            Kind::Tuple(items) if items.len() == 1 => seed.deserialize(Value { node: &items[0], subject: name, ..value }),
+            Kind::Tuple(items) if items.len() == 1 => {
+                seed.deserialize(Value { node: &items[0], subject: name, ..value })
+            }
             _ => {
                 value.note(format!("`{name}` needs one value in brackets"), format!("write {name}(...)"));
                 seed.deserialize(StandIn)
@@ -170,11 +173,7 @@ impl<'de> VariantAccess<'de> for Variant<'_> {
         Value { subject: self.name, ..self.value }.tuple(self.name, length, visitor)
     }
 
-    fn struct_variant<V: Visitor<'de>>(
-        self,
-        fields: &'static [&'static str],
-        visitor: V,
-    ) -> Result<V::Value, Stop> {
+    fn struct_variant<V: Visitor<'de>>(self, fields: &'static [&'static str], visitor: V) -> Result<V::Value, Stop> {
         let Self { value, name } = self;
         if let Kind::Word = value.node.kind {
             let mut mistake = value.note(format!("`{name}` needs brackets"), format!("write {name}(...)"));

@@ -44,7 +44,7 @@ fn read<'a, T: DeserializeOwned>(root: &'a Node, text: &'a str) -> About<'a> {
         match T::deserialize(Value { node: root, about: &about, subject: "the scene" }) {
             Err(Stop::Missing { field, of: Some((node, diagnostic)) }) => {
                 about.supplied.entry(node).or_default().push(field);
-                missing.push(*diagnostic);
+                missing.extend(diagnostic.map(|diagnostic| *diagnostic));
             }
             Err(Stop::Missing { .. }) | Ok(_) => break,
             Err(Stop::Other(message)) => {
@@ -93,7 +93,11 @@ impl NodeId {
 
 /// Why a reading ended early.
 enum Stop {
-    Missing { field: &'static str, of: Option<(NodeId, Box<Diagnostic>)> },
+    /// A field that is missing, in which struct, and what is said of it.
+    Missing {
+        field: &'static str,
+        of: Option<(NodeId, Option<Box<Diagnostic>>)>,
+    },
     Other(String),
 }
 

@@ -149,7 +149,8 @@ impl<'de> Deserializer<'de> for Value<'_> {
         visitor: V,
     ) -> Result<V::Value, Stop> {
         if let Some(found) = self.node.name.as_ref().filter(|found| found.text != name) {
-            let mut diagnostic = Diagnostic::error(found.span.clone(), format!("`{}` does not belong here", found.text));
+            let mut diagnostic =
+                Diagnostic::error(found.span.clone(), format!("`{}` does not belong here", found.text));
             diagnostic.label(format!("{} is written without a word before the brackets", self.called()));
             self.about.found.borrow_mut().push(diagnostic);
             // its fields are those of something else
@@ -232,7 +233,7 @@ impl<'a> Value<'a> {
         let supplied = self.about.supplied.get(&NodeId::of(self.node)).map_or(&[][..], Vec::as_slice);
         visitor.visit_map(FieldsOf::new(self, found, fields, supplied)).map_err(|stop| match stop {
             Stop::Missing { field, of: None } => {
-                let diagnostic = Box::new(self.missing_field(owner, field, fields));
+                let diagnostic = self.missing_field(owner, field, fields).map(Box::new);
                 Stop::Missing { field, of: Some((NodeId::of(self.node), diagnostic)) }
             }
             stop => stop,

@@ -2,8 +2,9 @@
 
 use super::value::Value;
 use crate::scene::diagnostic::Diagnostic;
-use crate::scene::suggest::choice;
+use crate::scene::suggest::{choice, nearest};
 use crate::scene::syntax::{Field, Kind};
+use crate::scene::words::meaning;
 use std::cell::RefMut;
 
 impl<'a> Value<'a> {
@@ -59,32 +60,61 @@ impl<'a> Value<'a> {
     }
 
     pub(super) fn not_whole(&self, least: i128, most: i128) {
-        let expected = format!("a whole number from {least} to {most}");
+        let from = if least == 0 { ", 0 or above" } else { "" };
+        let expected = format!("a whole number{from}");
         if !matches!(self.node.kind, Kind::Number) {
             self.wrong(&expected);
             return;
         }
         let token = self.token();
-        let label = match ron::from_str::<f64>(token) {
-            Ok(number) if number.fract() == 0.0 && number >= least as f64 && number <= most as f64 => {
-                format!("write {number}")
+        let called = self.called();
+        match ron::from_str::<f64>(token) {
+            Ok(number) if number.fract() == 0.0 && number > most as f64 => {
+                self.note(format!("{called} must be at most {most}, found {token}"), "too large");
             }
-            _ => String::new(),
-        };
-        self.note(format!("{} must be {expected}, found {token}", self.called()), label);
+            Ok(number) if number.fract() == 0.0 && number >= least as f64 => {
+                self.note(format!("{called} must be {expected}, found {token}"), format!("write {number}"));
+            }
+            Ok(_) => {
+                self.note(format!("{called} must be {expected}, found {token}"), "");
+            }
+            Err(_) => {
+                self.note(format!("`{token}` is not a number"), format!("expected {expected}"));
+            }
+        }
     }
 
     pub(super) fn unknown_field(&self, owner: &str, field: &Field, fields: &'static [&'static str]) {
         let name = &field.name.text;
         let mut diagnostic = Diagnostic::error(field.name.span.clone(), format!("unknown field `{name}`"));
-        diagnostic.label(format!("not a field of {owner}")).notes(choice(name, fields.iter().copied()));
+        diagnostic.label(format!("not a field of {owner}"));
+        if fields.is_empty() {
+            diagnostic.note(format!("{owner} has no fields"));
+        } else {
+            diagnostic.notes(choice(name, fields.iter().copied()));
+        }
         self.about.found.borrow_mut().push(diagnostic);
     }
 
-    pub(super) fn missing_field(&self, owner: &str, field: &str, fields: &'static [&'static str]) -> Diagnostic {
+    /// What is said of a missing field: nothing when one of the unknown ones is probably it, misspelt.
+    pub(super) fn missing_field(
+        &self,
+        owner: &str,
+        field: &str,
+        fields: &'static [&'static str],
+    ) -> Option<Diagnostic> {
+        if let Kind::Fields(found) = &self.node.kind {
+            let unknown = found.iter().map(|field| field.name.text.as_str()).filter(|name| !fields.contains(name));
+            if unknown.into_iter().any(|name| nearest(name, fields.iter().copied()) == Some(field)) {
+                return None;
+            }
+        }
         let mut diagnostic =
             Diagnostic::error(self.node.mark(), format!("the field `{field}` is missing in {}", self.called()));
-        diagnostic.label(format!("{owner} needs `{field}`")).note(format!("fields: {}", fields.join(", ")));
-        diagnostic
+        diagnostic.label(format!("{owner} needs `{field}`"));
+        if let Some(meaning) = meaning(owner, field) {
+            diagnostic.note(format!("{field}: {meaning}"));
+        }
+        Some(diagnostic)
     }
 }

@@ -22,6 +22,10 @@ struct Stop;
 
 type Parsed<T> = Result<T, Stop>;
 
+fn begins_value(c: char) -> bool {
+    starts_word(c) || c.is_ascii_digit() || matches!(c, '"' | '\'' | '-' | '+' | '.' | '(' | '[' | '{')
+}
+
 impl Parser<'_> {
     fn fault(&mut self, span: Span, message: impl Into<String>, label: impl Into<String>) -> Stop {
         self.faults.push(Fault { span, message: message.into(), label: label.into(), also: None });
@@ -144,14 +148,15 @@ impl Parser<'_> {
         Ok(())
     }
 
-    /// `( ... )`: fields when the first thing is a word and a colon.
+    /// `( ... )`: fields when the first thing is a word and a colon, or something in the place of a colon.
     fn round(&mut self) -> Parsed<Kind> {
         let before = self.scan.at;
         self.scan.at += 1;
         self.blanks()?;
-        let word = self.scan.quoted_ahead().then_some(None).unwrap_or_else(|| self.scan.word());
+        let word = if self.scan.quoted_ahead() { None } else { self.scan.word() };
         self.blanks()?;
-        let named = word.is_some() && self.scan.peek() == Some(':');
+        let value_follows = |c: char| c.is_ascii_digit() || matches!(c, ':' | '=' | '"' | '-' | '[' | '{');
+        let named = word.is_some() && self.scan.peek().is_some_and(value_follows);
         self.scan.at = before;
         if !named {
             return Ok(Kind::Tuple(self.items(')')?));
@@ -202,7 +207,15 @@ impl Parser<'_> {
             self.scan.at = here.end;
         } else if !self.scan.eat(':') {
             let text = &self.scan.text[before.clone()];
-            return Err(self.fault(before.clone(), format!("the {what} {text} has no value"), "expected a colon after this"));
+            if self.scan.peek().is_some_and(begins_value) {
+                self.fault(before.end..before.end, "a colon is missing", "expected a colon here");
+                return self.value();
+            }
+            return Err(self.fault(
+                before.clone(),
+                format!("the {what} {text} has no value"),
+                "expected a colon after this",
+            ));
         }
         self.blanks()?;
         self.value()
@@ -241,7 +254,7 @@ impl Parser<'_> {
         match self.scan.peek() {
             None => Err(self.unclosed()),
             Some(c) if c == close || matches!(c, ')' | ']' | '}') => Ok(()),
-            Some(c) if starts_word(c) || c.is_ascii_digit() || matches!(c, '"' | '\'' | '-' | '+' | '.' | '(' | '[' | '{') => {
+            Some(c) if begins_value(c) => {
                 self.fault(end..end, "a comma is missing", "expected a comma here");
                 Ok(())
             }

@@ -35,7 +35,8 @@ impl Path {
         while !rest.is_empty() {
             rest = if let Some(inside) = rest.strip_prefix('[') {
                 let (number, after) = inside.split_once(']').ok_or(format!("`{text}`: a ] is missing"))?;
-                let number = number.trim().parse().map_err(|_| format!("`{text}`: [{number}] is not a number from 0"))?;
+                let number =
+                    number.trim().parse().map_err(|_| format!("`{text}`: [{number}] is not a number from 0"))?;
                 segments.push(Segment::Index(number));
                 after
             } else if let Some(inside) = rest.strip_prefix('"') {

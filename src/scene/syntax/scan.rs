@@ -120,7 +120,8 @@ impl<'a> Scan<'a> {
     pub(super) fn quoted_ahead(&self) -> bool {
         let rest = self.rest();
         let rest = rest.strip_prefix('b').unwrap_or(rest);
-        rest.starts_with(['"', '\'']) || rest.strip_prefix('r').is_some_and(|raw| raw.trim_start_matches('#').starts_with('"'))
+        rest.starts_with(['"', '\''])
+            || rest.strip_prefix('r').is_some_and(|raw| raw.trim_start_matches('#').starts_with('"'))
     }
 
     /// Skips what [`Self::quoted_ahead`] saw.

@@ -1,7 +1,88 @@
 //! Whether the values of a scene make sense, as far as that can be said without its meshes.
 
-use super::diagnostic::Diagnostics;
-use super::load::SceneFile;
+mod action;
+mod geometry;
+mod material;
+mod names;
+mod numbers;
+mod select;
+mod time;
 
-/// Adds all that is wrong with the values of a scene.
-pub fn validate(_file: &SceneFile, _diagnostics: &mut Diagnostics) {}
+use super::diagnostic::{Diagnostic, Diagnostics};
+use super::load::SceneFile;
+use super::syntax::{Path, Segment};
+use glam::DVec3;
+
+/// Adds all that is wrong with the values of a scene, each mistake with its place, the value found and what is allowed.
+pub fn validate(file: &SceneFile, diagnostics: &mut Diagnostics) {
+    let mut judge = Judge { out: diagnostics };
+    numbers::validate(file, &mut judge);
+    names::validate(&file.scene, &mut judge);
+    material::validate(&file.scene, &mut judge);
+    geometry::validate(file, &mut judge);
+    action::validate(&file.scene, &mut judge);
+    time::validate(&file.scene, &mut judge);
+}
+
+/// Notes mistakes of the common kinds.
+struct Judge<'a> {
+    out: &'a mut Diagnostics,
+}
+
+/// The way to a field of the scene.
+fn scene(field: &str) -> Path {
+    Path::default().name(field)
+}
+
+/// A number as an author would write it.
+fn show(number: f64) -> String {
+    let size = number.abs();
+    if size == 0.0 || (1e-4..1e7).contains(&size) { format!("{number}") } else { format!("{number:e}") }
+}
+
+/// The field a path leads to, as sentences begin with it.
+fn called(path: &Path) -> String {
+    let name = path.0.iter().rev().find_map(|segment| match segment {
+        Segment::Name(name) => Some(name.as_str()),
+        Segment::Index(_) => None,
+    });
+    format!("`{}`", name.unwrap_or("the scene"))
+}
+
+impl Judge<'_> {
+    /// Notes that a value must be something else.
+    fn must(&mut self, path: &Path, be: &str, found: impl std::fmt::Display) -> &mut Diagnostic {
+        self.out.error_at(path, format!("{} must be {be}, found {found}", called(path)))
+    }
+
+    fn above_zero(&mut self, path: &Path, value: f64, unit: &str) {
+        if value <= 0.0 {
+            self.must(path, "above 0", with_unit(value, unit));
+        }
+    }
+
+    fn not_negative(&mut self, path: &Path, value: f64, unit: &str) {
+        if value < 0.0 {
+            self.must(path, "0 or above", with_unit(value, unit));
+        }
+    }
+
+    fn all_above_zero(&mut self, path: &Path, value: DVec3, unit: &str) {
+        for (i, part) in value.to_array().into_iter().enumerate() {
+            self.above_zero(&path.index(i), part, unit);
+        }
+    }
+
+    /// A vector that has a direction: its length must be neither zero nor lost to underflow.
+    fn has_direction(&mut self, path: &Path, value: DVec3) {
+        if value.try_normalize().is_none() {
+            let message = format!("{} has no direction: its length is 0", called(path));
+            self.out.error_at(path, message).note("its length does not matter, but it must point somewhere: (0, 0, 1)");
+        }
+    }
+}
+
+fn with_unit(value: f64, unit: &str) -> String {
+    let value = show(value);
+    if unit.is_empty() { value } else { format!("{value} {unit}") }
+}

@@ -1,0 +1,74 @@
+//! Constraints, loads, removal and probes: what they select and what they do.
+
+use super::{Judge, scene, select, show};
+use crate::scene::schema::{Axis, Constraint, Load, Scene, When};
+use crate::scene::syntax::Path;
+use glam::DVec3;
+
+pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
+    for (i, constraint) in scene_.constraints.iter().enumerate() {
+        let path = scene("constraints").index(i);
+        let (Constraint::Fixed { on, axes, .. } | Constraint::Prescribed { on, axes, .. }) = constraint;
+        select::validate(judge, &path.name("on"), on);
+        validate_axes(judge, &path.name("axes"), axes);
+        if let Constraint::Prescribed { displacement, gradient, rotation, .. } = constraint
+            && [displacement, rotation].into_iter().chain(gradient).all(|part| *part == DVec3::ZERO)
+        {
+            judge
+                .out
+                .warn_at(&path, "this prescribes no motion: it holds the nodes as `Fixed` does")
+                .note("give `displacement`, `gradient` or `rotation`");
+        }
+    }
+    for (i, load) in scene_.loads.iter().enumerate() {
+        let path = scene("loads").index(i).name("on");
+        match load {
+            Load::Gravity { .. } => {}
+            Load::NodalForce { on, .. } | Load::Pressure { on, .. } | Load::Traction { on, .. } => {
+                select::validate(judge, &path, on);
+            }
+        }
+    }
+    for (i, removal) in scene_.removal.iter().enumerate() {
+        let path = scene("removal").index(i);
+        select::validate(judge, &path.name("on"), &removal.on);
+        criterion(judge, &path.name("when"), removal.when);
+    }
+    for (name, probe) in &scene_.probes {
+        select::validate(judge, &scene("probes").name(name).name("on"), &probe.on);
+    }
+}
+
+fn validate_axes(judge: &mut Judge, path: &Path, axes: &[Axis]) {
+    if axes.is_empty() {
+        judge
+            .out
+            .error_at(path, "the list of `axes` is empty: nothing would be held")
+            .note("leave `axes` out for all three, or name some of X, Y, Z");
+    }
+    for (i, axis) in axes.iter().enumerate() {
+        if axes[..i].contains(axis) {
+            judge.out.warn_at(path.index(i), format!("the axis {axis:?} stands here twice"));
+        }
+    }
+}
+
+/// What is wrong with a threshold; at rest every stretch and volume ratio is 1.
+fn criterion(judge: &mut Judge, path: &Path, when: When) {
+    let (word, value, senseless) = match when {
+        When::At(_) | When::During { .. } => return,
+        When::StretchAbove(value) => ("StretchAbove", value, value < 1.0),
+        When::VolumeRatioBelow(value) => ("VolumeRatioBelow", value, value > 1.0),
+        When::VolumeRatioAbove(value) => ("VolumeRatioAbove", value, value < 1.0),
+        When::EnergyDensityAbove(value) => ("EnergyDensityAbove", value, false),
+    };
+    if value < 0.0 || (value == 0.0 && word != "EnergyDensityAbove") {
+        let allowed = if word == "EnergyDensityAbove" { "0 or above" } else { "above 0" };
+        judge.out.error_at(path.index(0), format!("`{word}` must be {allowed}, found {}", show(value)));
+    } else if senseless {
+        judge
+            .out
+            .warn_at(path.index(0), format!("`{word}` of {} holds at rest: all elements go at once", show(value)))
+            .note("at rest the stretch and the volume ratio are 1");
+    }
+}

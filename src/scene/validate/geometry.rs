@@ -1,0 +1,130 @@
+//! Bodies and their meshes, and the picture.
+
+use super::{Judge, scene, select};
+use crate::scene::load::SceneFile;
+use crate::scene::schema::{MeshSource, Picture};
+use crate::scene::suggest::{choice, list};
+use crate::scene::syntax::Path;
+
+/// More cells than any machine holds: a slip of the finger, told before memory runs out.
+const MOST_CELLS: u128 = 1_000_000_000;
+
+/// What mesh files may end in.
+const MESH_FILES: [&str; 3] = ["msh", "vtk", "vtu"];
+
+pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
+    for (name, body) in &file.scene.bodies {
+        let path = scene("bodies").name(name);
+        mesh(file, judge, &path.name("mesh"), &body.mesh);
+        judge.above_zero(&path.name("scale"), body.scale, "");
+        for (i, region) in body.regions.iter().enumerate() {
+            select::validate(judge, &path.name("regions").index(i).name("on"), &region.on);
+        }
+    }
+    picture(judge, &file.scene.picture);
+}
+
+fn mesh(file: &SceneFile, judge: &mut Judge, path: &Path, mesh: &MeshSource) {
+    match mesh {
+        MeshSource::File { path: name, .. } => mesh_file(file, judge, &path.name("path"), name),
+        MeshSource::Box { size, cells, .. } => {
+            judge.all_above_zero(&path.name("size"), *size, "m");
+            let cells = [cells.0, cells.1, cells.2];
+            for (i, count) in cells.into_iter().enumerate() {
+                at_least_one(judge, &path.name("cells").index(i), count);
+            }
+            not_too_many(judge, &path.name("cells"), cells);
+        }
+        MeshSource::Cylinder { radius, height, across, along, .. } => {
+            judge.above_zero(&path.name("radius"), *radius, "m");
+            judge.above_zero(&path.name("height"), *height, "m");
+            at_least_one(judge, &path.name("across"), *across);
+            at_least_one(judge, &path.name("along"), *along);
+            not_too_many(judge, &path.name("across"), [*across, *across, *along]);
+        }
+        MeshSource::Ellipsoid { radii, across, .. } => {
+            judge.all_above_zero(&path.name("radii"), *radii, "m");
+            at_least_one(judge, &path.name("across"), *across);
+            not_too_many(judge, &path.name("across"), [*across; 3]);
+        }
+        MeshSource::Lens { diameter, thickness, across, through, .. } => {
+            judge.above_zero(&path.name("diameter"), *diameter, "m");
+            judge.above_zero(&path.name("thickness"), *thickness, "m");
+            if thickness > diameter && *diameter > 0.0 {
+                judge.must(&path.name("thickness"), "at most the diameter", super::with_unit(*thickness, "m")).note(
+                    format!("`diameter` is {}; a lens as thick as wide is a ball", super::with_unit(*diameter, "m")),
+                );
+            }
+            at_least_one(judge, &path.name("across"), *across);
+            at_least_one(judge, &path.name("through"), *through);
+            not_too_many(judge, &path.name("across"), [*across, *across, *through]);
+        }
+    }
+}
+
+fn at_least_one(judge: &mut Judge, path: &Path, count: u32) {
+    if count == 0 {
+        judge.must(path, "1 or more", count);
+    }
+}
+
+fn not_too_many(judge: &mut Judge, path: &Path, cells: [u32; 3]) {
+    let total: u128 = cells.into_iter().map(u128::from).product();
+    if total > MOST_CELLS {
+        judge
+            .out
+            .error_at(path, format!("the mesh would have {total} cells"))
+            .note(format!("at most {MOST_CELLS} are allowed"));
+    }
+}
+
+fn mesh_file(file: &SceneFile, judge: &mut Judge, path: &Path, name: &str) {
+    let full = file.folder.join(name);
+    let ending = full.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
+    if name.is_empty() {
+        judge.out.error_at(path, "the path of the mesh file is empty");
+    } else if full.is_dir() {
+        judge.out.error_at(path, format!("`{name}` is a folder, not a mesh file"));
+    } else if !full.is_file() {
+        // what lies in the folder the path points to
+        let folder = full.parent().unwrap_or(&file.folder);
+        let mut there: Vec<String> =
+            std::fs::read_dir(if folder.as_os_str().is_empty() { ".".as_ref() } else { folder })
+                .into_iter()
+                .flatten()
+                .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+                .filter(|name| {
+                    MESH_FILES.iter().any(|ending| name.to_ascii_lowercase().ends_with(&format!(".{ending}")))
+                })
+                .collect();
+        there.sort();
+        let wanted = full.file_name().and_then(|name| name.to_str()).unwrap_or(name);
+        let diagnostic = judge.out.error_at(path, format!("there is no file `{name}`"));
+        if there.is_empty() {
+            let folder = if folder.as_os_str().is_empty() { ".".into() } else { folder.display().to_string() };
+            diagnostic
+                .note(format!("no mesh files (.msh, .vtk, .vtu) in {folder}; paths are relative to the scene file"));
+        } else {
+            let mut notes = choice(wanted, there.iter().map(String::as_str));
+            if let Some(last) = notes.last_mut() {
+                *last = format!("there are: {}", list(&there.iter().map(String::as_str).collect::<Vec<_>>()));
+            }
+            diagnostic.notes(notes);
+        }
+    } else if !MESH_FILES.contains(&ending.as_str()) {
+        judge
+            .out
+            .error_at(path, format!("`{name}` is no mesh file that can be read"))
+            .note("allowed: Gmsh (.msh), legacy VTK (.vtk), VTU (.vtu)");
+    }
+}
+
+fn picture(judge: &mut Judge, picture: &Picture) {
+    let path = scene("picture");
+    for (i, pixels) in [picture.size.0, picture.size.1].into_iter().enumerate() {
+        if !(16..=8192).contains(&pixels) {
+            judge.must(&path.name("size").index(i), "from 16 to 8192 pixels", pixels);
+        }
+    }
+    judge.has_direction(&path.name("from"), picture.from);
+}

@@ -1,0 +1,112 @@
+//! Names: every body and material that is named must exist, and names must do as names of files and columns.
+
+use super::{Judge, scene};
+use crate::scene::schema::{Constraint, Load, Scene};
+use crate::scene::suggest::{choice, list};
+use crate::scene::syntax::Path;
+
+pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
+    if scene_.bodies.is_empty() {
+        judge
+            .out
+            .error_at(scene("bodies"), "the scene has no body")
+            .note("a body: \"cube\": (mesh: ..., material: ...)");
+    }
+    materials(scene_, judge);
+    bodies(scene_, judge);
+    for name in scene_.bodies.keys() {
+        file_name(judge, &scene("bodies").name(name), "body", name);
+    }
+    for name in scene_.probes.keys() {
+        file_name(judge, &scene("probes").name(name), "probe", name);
+    }
+    if scene_.schedule.as_ref().is_some_and(Vec::is_empty) {
+        judge
+            .out
+            .error_at(scene("schedule"), "the schedule is empty: nothing would happen")
+            .note("leave `schedule` out to have it derived from the scene");
+    }
+}
+
+/// The names of all materials that a body uses, each with the place that names it.
+fn used(scene_: &Scene) -> Vec<(Path, &String)> {
+    let mut used = Vec::new();
+    for (name, body) in &scene_.bodies {
+        let path = scene("bodies").name(name);
+        used.push((path.name("material"), &body.material));
+        for (i, region) in body.regions.iter().enumerate() {
+            used.push((path.name("regions").index(i).name("material"), &region.material));
+        }
+    }
+    used
+}
+
+fn materials(scene_: &Scene, judge: &mut Judge) {
+    let used = used(scene_);
+    for (path, name) in &used {
+        if !scene_.materials.contains_key(*name) {
+            let materials = scene_.materials.keys().map(String::as_str);
+            judge.out.error_at(path, format!("there is no material `{name}`")).notes(choice(name, materials));
+        }
+    }
+    for name in scene_.materials.keys() {
+        if !used.iter().any(|(_, used)| *used == name) {
+            judge.out.warn_at(scene("materials").name(name), format!("no body uses the material `{name}`"));
+        }
+    }
+}
+
+fn bodies(scene_: &Scene, judge: &mut Judge) {
+    for (i, constraint) in scene_.constraints.iter().enumerate() {
+        let (Constraint::Fixed { body, .. } | Constraint::Prescribed { body, .. }) = constraint;
+        body_named(scene_, judge, &scene("constraints").index(i), body.as_ref());
+    }
+    for (i, load) in scene_.loads.iter().enumerate() {
+        let path = scene("loads").index(i);
+        match load {
+            // gravity without a body is for all
+            Load::Gravity { body: None, .. } => {}
+            Load::Gravity { body, .. }
+            | Load::NodalForce { body, .. }
+            | Load::Pressure { body, .. }
+            | Load::Traction { body, .. } => body_named(scene_, judge, &path, body.as_ref()),
+        }
+    }
+    for (i, removal) in scene_.removal.iter().enumerate() {
+        body_named(scene_, judge, &scene("removal").index(i), removal.body.as_ref());
+    }
+    for (name, probe) in &scene_.probes {
+        body_named(scene_, judge, &scene("probes").name(name), probe.body.as_ref());
+    }
+}
+
+fn body_named(scene_: &Scene, judge: &mut Judge, owner: &Path, body: Option<&String>) {
+    let path = owner.name("body");
+    let bodies: Vec<&str> = scene_.bodies.keys().map(String::as_str).collect();
+    match body {
+        Some(name) if !scene_.bodies.contains_key(name) => {
+            judge.out.error_at(path, format!("there is no body `{name}`")).notes(choice(name, bodies));
+        }
+        None if bodies.len() > 1 => {
+            judge
+                .out
+                .error_at(path, format!("which body? The scene has {}", bodies.len()))
+                .label("needs `body`")
+                .note(format!("bodies: {}", list(&bodies)));
+        }
+        _ => {}
+    }
+}
+
+/// Names become names of files and of columns of tables.
+fn file_name(judge: &mut Judge, path: &Path, what: &str, name: &str) {
+    let notes = "letters, digits, _ and - do everywhere";
+    if name.is_empty() || name.starts_with('.') || name.contains(['/', '\\']) || name.contains(char::is_control) {
+        judge
+            .out
+            .error_at(path, format!("the {what} `{name}` needs another name: files are named after it"))
+            .note(notes);
+    } else if !name.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-') {
+        judge.out.warn_at(path, format!("the name of the {what} `{name}` is awkward in files and tables")).note(notes);
+    }
+}

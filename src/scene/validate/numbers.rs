@@ -1,0 +1,49 @@
+//! Numbers anywhere in the scene, also in the parameters of custom systems, whose meaning is not known here.
+
+use super::{Judge, called};
+use crate::scene::load::SceneFile;
+use crate::scene::syntax::{Kind, Node, Path};
+
+/// The engine computes in single precision, which ends at 3.4e38; products of numbers must stay below.
+const LARGEST: f64 = 1e30;
+
+pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
+    walk(&file.tree().root, &Path::default(), file.text(), judge);
+}
+
+fn walk(node: &Node, path: &Path, text: &str, judge: &mut Judge) {
+    match &node.kind {
+        Kind::Number => {
+            let token = &text[node.span.clone()];
+            match ron::from_str::<f64>(token) {
+                Ok(number) if !number.is_finite() => {
+                    judge.must(path, "finite", token);
+                }
+                Ok(number) if number.abs() > LARGEST => {
+                    judge
+                        .out
+                        .error_at(path, format!("{} is too large: {token}", called(path)))
+                        .note("numbers up to 1e30 are allowed: the engine computes in single precision");
+                }
+                _ => {}
+            }
+        }
+        Kind::List(items) | Kind::Tuple(items) => {
+            for (i, item) in items.iter().enumerate() {
+                walk(item, &path.index(i), text, judge);
+            }
+        }
+        Kind::Fields(fields) => {
+            for field in fields {
+                walk(&field.value, &path.name(&field.name.text), text, judge);
+            }
+        }
+        Kind::Map(entries) => {
+            for entry in entries {
+                let name = if let Kind::Text(name) = &entry.key.kind { name } else { &text[entry.key.span.clone()] };
+                walk(&entry.value, &path.name(name), text, judge);
+            }
+        }
+        _ => {}
+    }
+}

@@ -1,0 +1,56 @@
+//! Selections, as far as they make no sense for any mesh.
+
+use super::{Judge, called, show};
+use crate::scene::schema::Select;
+use crate::scene::syntax::Path;
+
+pub(super) fn validate(judge: &mut Judge, path: &Path, select: &Select) {
+    match select {
+        Select::All => {}
+        Select::Set(name) => {
+            if name.is_empty() {
+                judge.out.error_at(path, "the name of the set is empty");
+            }
+        }
+        Select::Plane { normal, tolerance, .. } => {
+            judge.has_direction(&path.name("normal"), *normal);
+            if let Some(tolerance) = tolerance {
+                judge.not_negative(&path.name("tolerance"), *tolerance, "m");
+            }
+        }
+        Select::Box { min, max } => {
+            for (i, (min, max)) in min.to_array().into_iter().zip(max.to_array()).enumerate() {
+                if min > max {
+                    let axis = ["x", "y", "z"][i];
+                    let message =
+                        format!("the box is empty: in {axis}, `min` is {} and `max` {}", show(min), show(max));
+                    judge.out.error_at(path.name("min").index(i), message);
+                }
+            }
+        }
+        Select::Sphere { radius, .. } => judge.above_zero(&path.name("radius"), *radius, "m"),
+        Select::Surface { normal, within } => {
+            if let Some(normal) = normal {
+                judge.has_direction(&path.name("normal"), *normal);
+            }
+            if *within <= 0.0 || *within > 180.0 {
+                judge.must(&path.name("within"), "above 0 and at most 180 degrees", show(*within));
+            }
+        }
+        Select::Nodes(numbers) | Select::Elements(numbers) => not_empty(judge, path, numbers.is_empty()),
+        Select::And(parts) | Select::Or(parts) => {
+            not_empty(judge, path, parts.is_empty());
+            for (i, part) in parts.iter().enumerate() {
+                validate(judge, &path.index(i), part);
+            }
+        }
+        // the path goes through the word `Not`
+        Select::Not(part) => validate(judge, path, part),
+    }
+}
+
+fn not_empty(judge: &mut Judge, path: &Path, empty: bool) {
+    if empty {
+        judge.out.error_at(path, format!("the list of {} is empty: it selects nothing", called(path)));
+    }
+}

@@ -1,0 +1,141 @@
+//! Durations, steps, intervals and curves.
+
+use super::{Judge, scene, show, with_unit};
+use crate::scene::schema::{Constraint, Curve, Load, Scene, When};
+use crate::scene::syntax::Path;
+
+/// More points than a curve needs; a table of a longer signal is thinned out before.
+const MOST_POINTS: usize = 1_000_000;
+
+pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
+    judge.above_zero(&scene("duration"), scene_.duration, "s");
+    let path = scene("integration");
+    if let Some(step) = scene_.integration.step {
+        every(judge, &path.name("step"), step, scene_.duration);
+    }
+    let safety = scene_.integration.safety;
+    if safety <= 0.0 || safety > 1.0 {
+        judge
+            .must(&path.name("safety"), "above 0 and at most 1", show(safety))
+            .note("it is the share of the stable step that is taken; 0.9 when left out");
+    }
+    let path = scene("output");
+    for (field, value) in
+        [("fields_every", scene_.output.fields_every), ("energies_every", scene_.output.energies_every)]
+    {
+        if let Some(value) = value {
+            every(judge, &path.name(field), value, scene_.duration);
+        }
+    }
+    for (name, probe) in &scene_.probes {
+        if let Some(value) = probe.every {
+            every(judge, &scene("probes").name(name).name("every"), value, scene_.duration);
+        }
+    }
+    actions(scene_, judge);
+}
+
+/// A time between two things that happen.
+fn every(judge: &mut Judge, path: &Path, value: f64, duration: f64) {
+    judge.above_zero(path, value, "s");
+    if value > duration && duration > 0.0 {
+        let message = format!("{} is longer than the scene: {}", super::called(path), with_unit(value, "s"));
+        judge.out.warn_at(path, message).note(format!("`duration` is {}", with_unit(duration, "s")));
+    }
+}
+
+fn actions(scene_: &Scene, judge: &mut Judge) {
+    for (i, constraint) in scene_.constraints.iter().enumerate() {
+        if let Constraint::Prescribed { curve, .. } = constraint {
+            validate_curve(judge, &scene("constraints").index(i).name("curve"), curve, scene_.duration);
+        }
+    }
+    for (i, load) in scene_.loads.iter().enumerate() {
+        let (Load::Gravity { curve, .. }
+        | Load::NodalForce { curve, .. }
+        | Load::Pressure { curve, .. }
+        | Load::Traction { curve, .. }) = load;
+        validate_curve(judge, &scene("loads").index(i).name("curve"), curve, scene_.duration);
+    }
+    for (i, removal) in scene_.removal.iter().enumerate() {
+        let path = scene("removal").index(i).name("when");
+        match removal.when {
+            When::At(time) => {
+                if time < 0.0 {
+                    judge
+                        .out
+                        .error_at(path.index(0), format!("`At` must be 0 or above, found {}", with_unit(time, "s")));
+                }
+                too_late(judge, &path.index(0), time, scene_.duration);
+            }
+            When::During { start, end } => {
+                judge.not_negative(&path.name("start"), start, "s");
+                interval(judge, &path, start, end);
+                too_late(judge, &path.name("start"), start, scene_.duration);
+            }
+            _ => {}
+        }
+    }
+}
+
+fn validate_curve(judge: &mut Judge, path: &Path, curve: &Curve, duration: f64) {
+    match curve {
+        Curve::Step { start, end } => {
+            if let Some(end) = end {
+                interval(judge, path, *start, *end);
+            }
+            too_late(judge, &path.name("start"), *start, duration);
+        }
+        Curve::Ramp { start, end } | Curve::Smooth { start, end } => {
+            interval(judge, path, *start, *end);
+            too_late(judge, &path.name("start"), *start, duration);
+        }
+        Curve::Table(points) => table(judge, path, points),
+    }
+}
+
+fn interval(judge: &mut Judge, path: &Path, start: f64, end: f64) {
+    if end <= start {
+        judge
+            .must(&path.name("end"), "after `start`", with_unit(end, "s"))
+            .note(format!("`start` is {}", with_unit(start, "s")));
+    }
+}
+
+fn too_late(judge: &mut Judge, path: &Path, start: f64, duration: f64) {
+    if start >= duration && duration > 0.0 {
+        judge
+            .out
+            .warn_at(path, format!("this begins at {}, when the scene is over", with_unit(start, "s")))
+            .note(format!("`duration` is {}", with_unit(duration, "s")));
+    }
+}
+
+fn table(judge: &mut Judge, path: &Path, points: &[(f64, f64)]) {
+    if points.is_empty() {
+        judge
+            .out
+            .error_at(path, "the table has no points")
+            .note("a point is (time, factor): Table([(0, 0), (0.1, 1)])");
+    }
+    if points.len() > MOST_POINTS {
+        judge
+            .out
+            .error_at(path, format!("the table has {} points", points.len()))
+            .note(format!("at most {MOST_POINTS} are allowed"));
+        return;
+    }
+    for (i, pair) in points.windows(2).enumerate() {
+        if pair[1].0 <= pair[0].0 {
+            judge
+                .out
+                .error_at(
+                    path.index(i + 1).index(0),
+                    format!("the times of a table must grow, found {}", with_unit(pair[1].0, "s")),
+                )
+                .note(format!("the point before is at {}", with_unit(pair[0].0, "s")));
+            // one unsorted column would be told point by point
+            break;
+        }
+    }
+}

@@ -1,0 +1,41 @@
+//! What the words of a scene mean, as their own documentation says: messages quote it.
+
+/// The source of the words; its comments are the one place where their meaning stands.
+const SCHEMA: &str = include_str!("schema.rs");
+
+/// The first sentence on a field of a struct or of a variant, with its unit: `duration` of `Scene` is
+/// "Simulated time (s)."
+pub fn meaning(owner: &str, field: &str) -> Option<String> {
+    let mut lines = SCHEMA
+        .lines()
+        .map(str::trim)
+        .skip_while(|line| !(line.starts_with(&format!("pub struct {owner} {{")) || *line == format!("{owner} {{")));
+    lines.next()?;
+    let mut doc = String::new();
+    for line in lines {
+        if let Some(text) = line.strip_prefix("///") {
+            let blank = if doc.is_empty() { "" } else { " " };
+            doc.push_str(&format!("{blank}{}", text.trim()));
+        } else if line.trim_start_matches("pub ").starts_with(&format!("{field}: ")) {
+            return Some(doc).filter(|doc| !doc.is_empty());
+        } else if line.starts_with('}') {
+            return None;
+        } else if !line.starts_with("#[") {
+            doc.clear();
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fields_of_structs_and_variants_have_a_meaning() {
+        assert_eq!(meaning("Scene", "duration").as_deref(), Some("Simulated time (s)."));
+        assert_eq!(meaning("Young", "poisson").as_deref(), Some("Poisson's ratio, below 1/2."));
+        assert_eq!(meaning("Young", "density"), None);
+        assert_eq!(meaning("Nobody", "density"), None);
+    }
+}
