@@ -1,5 +1,18 @@
-//! Where kernels run.
+//! Where kernels run: on the host's cores, or on a GPU.
 
+pub mod cpu;
 pub mod gpu;
 pub mod kernel;
-pub mod cpu;
+
+use bevy_ecs::prelude::*;
+use kernel::BufferId;
+
+/// What systems bind their kernels to. The GPU backend makes device buffers, `explain` only counts them.
+pub trait Buffers {
+    /// The buffer of an entity's column, by the column's name; made, and filled from the host, at the first call.
+    fn column(&mut self, entity: Entity, name: &'static str) -> BufferId;
+    /// A read-only storage buffer of constants.
+    fn constants(&mut self, label: String, bytes: &[u8]) -> BufferId;
+    /// A uniform buffer of parameters.
+    fn uniform(&mut self, label: String, bytes: &[u8]) -> BufferId;
+}

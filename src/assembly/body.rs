@@ -1,0 +1,250 @@
+//! Bodies: node columns and element blocks from a mesh.
+
+use super::locality::{element_order, node_rows};
+use super::{Assembly, PlacedMesh, select};
+use crate::components::*;
+use crate::elements::{Element, MOST_ROWS};
+use crate::evaluation::{lane_place, node_count, row_count, with_element};
+use crate::materials::NeoHookean;
+use crate::math::LANES;
+use crate::mesh::{ElementKind, Mesh};
+use crate::scene::diagnostic::Diagnostics;
+use crate::scene::schema::Direction;
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// A body's entity and what is known of it in the author's numbering.
+pub struct BodyParts {
+    /// The body.
+    pub entity: Entity,
+    /// Its mesh.
+    pub placed: PlacedMesh,
+    /// For each of the author's nodes its row.
+    pub node_rows: Vec<u32>,
+    /// For each of the author's elements its block's place in `blocks` and its row there.
+    pub element_rows: Vec<(u32, u32)>,
+    /// The blocks.
+    pub blocks: Vec<Entity>,
+}
+
+impl BodyParts {
+    /// Rows, ascending, of the author's nodes that are marked.
+    pub fn rows_of(&self, marked: &[bool]) -> Vec<u32> {
+        let mut rows: Vec<u32> =
+            marked.iter().zip(&self.node_rows).filter(|(marked, _)| **marked).map(|(_, &row)| row).collect();
+        rows.sort_unstable();
+        rows
+    }
+}
+
+/// Spawns a body and its blocks. Complaints go to `diagnostics`.
+pub(super) fn spawn(
+    assembly: &Assembly<'_>,
+    name: &str,
+    placed: PlacedMesh,
+    world: &mut World,
+    diagnostics: &mut Diagnostics,
+) -> Option<BodyParts> {
+    let materials = element_materials(assembly, name, &placed, diagnostics)?;
+    let mesh = &placed.mesh;
+    // one block for each element type and material that occur together
+    let mut members: BTreeMap<(usize, &str), Vec<u32>> = BTreeMap::new();
+    for (element, material) in materials.iter().enumerate() {
+        let kind = usize::from(element >= mesh.tets.len());
+        members.entry((kind, material)).or_default().push(element as u32);
+    }
+    let members: Vec<((usize, &str), Vec<u32>)> =
+        members.into_iter().map(|(key, elements)| (key, element_order(mesh, elements))).collect();
+    let ordered = members.iter().flat_map(|(_, elements)| elements.iter().map(|&e| mesh.element(e as usize)));
+    let node_rows = node_rows(mesh.points.len(), ordered);
+
+    let body = world.spawn(Label(name.to_string())).id();
+    let mut element_rows = vec![(0, 0); mesh.element_count()];
+    let mut blocks = Vec::new();
+    let mut force_length = 0;
+    for (place, ((kind, material), elements)) in members.iter().enumerate() {
+        for (row, &element) in elements.iter().enumerate() {
+            element_rows[element as usize] = (place as u32, row as u32);
+        }
+        let kind = [ElementKind::Tet4, ElementKind::Hex8][*kind];
+        let material = assembly.materials[*material];
+        let builder = BlockBuilder { assembly, mesh, node_rows: &node_rows, kind, material, elements };
+        blocks.push(builder.spawn(world, body, force_length, name, diagnostics));
+        force_length += elements.len().div_ceil(LANES) * LANES * 3 * node_count(kind);
+    }
+    let authoring = Authoring {
+        node_rows: node_rows.clone(),
+        node_ids: mesh.point_ids.clone(),
+        element_rows: element_rows.clone(),
+        element_ids: mesh.element_ids.clone(),
+        tets: mesh.tets.clone(),
+        hexes: mesh.hexes.clone(),
+        blocks: blocks.clone(),
+    };
+    super::columns::insert_node_columns(assembly, name, mesh, &node_rows, &authoring, force_length, world, body);
+    world.entity_mut(body).insert(authoring);
+    Some(BodyParts { entity: body, placed, node_rows, element_rows, blocks })
+}
+
+/// The name of each element's material.
+fn element_materials<'a>(
+    assembly: &'a Assembly<'_>,
+    name: &str,
+    placed: &PlacedMesh,
+    diagnostics: &mut Diagnostics,
+) -> Option<Vec<&'a str>> {
+    let body = &assembly.scene.scene.bodies[name];
+    let mut materials = vec![body.material.as_str(); placed.mesh.element_count()];
+    for (number, region) in body.regions.iter().enumerate() {
+        let path = format!("bodies.\"{name}\".regions[{number}].on");
+        match select::pick(placed, &region.on).and_then(|picked| picked.elements(placed)) {
+            Err(problem) => {
+                diagnostics.error_at(path.as_str(), problem.message).notes(problem.notes);
+            }
+            Ok(marked) => {
+                for (material, _) in materials.iter_mut().zip(&marked).filter(|(_, marked)| **marked) {
+                    *material = &region.material;
+                }
+            }
+        }
+    }
+    (!diagnostics.has_errors()).then_some(materials)
+}
+
+struct BlockBuilder<'a> {
+    assembly: &'a Assembly<'a>,
+    mesh: &'a Mesh,
+    node_rows: &'a [u32],
+    kind: ElementKind,
+    material: Entity,
+    elements: &'a [u32],
+}
+
+impl BlockBuilder<'_> {
+    fn spawn(
+        &self,
+        world: &mut World,
+        body: Entity,
+        force_offset: usize,
+        name: &str,
+        diagnostics: &mut Diagnostics,
+    ) -> Entity {
+        let young = world.get::<NeoHookean<f64>>(self.material).map_or(0.0, |m| young(m.shear, m.bulk));
+        let material_name = world.get::<Label>(self.material).map(|label| label.0.clone()).unwrap_or_default();
+        let fibres = self.assembly.scene.scene.materials[&material_name].fibres.as_ref();
+        let (uniform, varying) = match fibres {
+            None => (None, None),
+            Some(fibres) => self.fibre_directions(&fibres.direction, name, &material_name, diagnostics),
+        };
+        let block = Block {
+            body,
+            material: self.material,
+            kind: self.kind,
+            count: self.elements.len(),
+            force_offset,
+            fibre_direction: uniform,
+        };
+        let mut entity = world.spawn((
+            Label(format!("{name}/{material_name}/{:?}", self.kind)),
+            OfBody(body),
+            block,
+            Connectivity(self.connectivity()),
+            RestShape(self.rest_shapes(young)),
+            FirstInverted(vec![u32::MAX]),
+        ));
+        if let Some(directions) = varying {
+            entity.insert(FibreDirection(directions));
+        }
+        entity.id()
+    }
+
+    fn padded(&self) -> usize {
+        self.elements.len().div_ceil(LANES) * LANES
+    }
+
+    fn connectivity(&self) -> Vec<u32> {
+        let nodes = node_count(self.kind);
+        let mut connectivity = vec![0; self.padded() * nodes];
+        for row in 0..self.padded() {
+            // elements that fill up the last group have the last element's nodes and no volume
+            let element = self.mesh.element(self.elements[row.min(self.elements.len() - 1)] as usize);
+            for corner in 0..nodes {
+                connectivity[lane_place(row, nodes, corner)] = self.node_rows[element[corner] as usize];
+            }
+        }
+        connectivity
+    }
+
+    fn rest_shapes(&self, young: f64) -> Reals {
+        let numbers = row_count(self.kind);
+        let mut shapes = Reals::zeros(self.assembly.precision, self.padded() * numbers);
+        for (row, &element) in self.elements.iter().enumerate() {
+            let nodes = self.mesh.element(element as usize);
+            let mut points = [DVec3::ZERO; 8];
+            for (point, &node) in points.iter_mut().zip(nodes) {
+                *point = self.mesh.points[node as usize];
+            }
+            let shape: [f64; MOST_ROWS] = with_element!(self.kind, E => E::rest_shape(&points[..nodes.len()], young));
+            for k in 0..numbers {
+                shapes.set(lane_place(row, numbers, k), shape[k]);
+            }
+        }
+        shapes
+    }
+
+    /// One direction for the block, or one an element.
+    fn fibre_directions(
+        &self,
+        direction: &Direction,
+        body: &str,
+        material: &str,
+        diagnostics: &mut Diagnostics,
+    ) -> (Option<[f64; 3]>, Option<Reals>) {
+        let of_element: Box<dyn Fn(u32) -> DVec3> = match direction {
+            Direction::Along(x, y, z) => return (Some(DVec3::new(*x, *y, *z).normalize().to_array()), None),
+            Direction::Around { center, axis } => Box::new(|element| {
+                let nodes = self.mesh.element(element as usize);
+                let centroid = nodes.iter().map(|&n| self.mesh.points[n as usize]).sum::<DVec3>() / nodes.len() as f64;
+                axis.cross(centroid - *center)
+            }),
+            Direction::Field(name) => match self.mesh.element_vectors.get(name) {
+                Some(vectors) => Box::new(|element| vectors[element as usize]),
+                None => {
+                    let names: Vec<&str> = self.mesh.element_vectors.keys().map(String::as_str).collect();
+                    let path = format!("materials.\"{material}\".fibres.direction");
+                    diagnostics
+                        .error_at(path.as_str(), format!("the mesh of {body} has no vectors on elements named {name:?}"))
+                        .notes(crate::scene::choice(name, names));
+                    return (None, None);
+                }
+            },
+        };
+        let mut directions = Reals::zeros(self.assembly.precision, self.padded() * 3);
+        let mut without = Vec::new();
+        for (row, &element) in self.elements.iter().enumerate() {
+            let unit = of_element(element).normalize_or_zero();
+            if unit == DVec3::ZERO {
+                without.push(self.mesh.element_ids.of(element as usize));
+            }
+            for i in 0..3 {
+                directions.set(lane_place(row, 3, i), unit[i]);
+            }
+        }
+        if !without.is_empty() {
+            let path = format!("materials.\"{material}\".fibres.direction");
+            let message = format!(
+                "{} elements of {body} have no fibre direction (a vector of no length), the first is {}",
+                without.len(),
+                without[0]
+            );
+            diagnostics.error_at(path.as_str(), message);
+        }
+        (None, Some(directions))
+    }
+}
+
+/// Small-strain Young's modulus (Pa) from shear and bulk modulus.
+pub(super) fn young(shear: f64, bulk: f64) -> f64 {
+    9.0 * bulk * shear / (3.0 * bulk + shear)
+}

@@ -1,0 +1,77 @@
+//! Meshes of a scene's bodies: made or read, placed, and checked.
+
+use crate::mesh::{Mesh, SurfaceFace, generators};
+use crate::scene::SceneFile;
+use crate::scene::diagnostic::Diagnostics;
+use crate::scene::schema::{Body, MeshSource};
+use glam::DVec3;
+use std::path::Path;
+use std::sync::OnceLock;
+
+/// A mesh where the author wants it, with its surface when somebody asks for it.
+pub struct PlacedMesh {
+    /// The mesh, in the author's numbering.
+    pub mesh: Mesh,
+    surface: OnceLock<Vec<SurfaceFace>>,
+}
+
+impl PlacedMesh {
+    /// The faces that belong to one element only, outward normals by the right hand.
+    pub fn surface(&self) -> &[SurfaceFace] {
+        self.surface.get_or_init(|| self.mesh.surface())
+    }
+
+    /// Length of the bounding box's diagonal (m).
+    pub fn size(&self) -> f64 {
+        let low = self.mesh.points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+        let high = self.mesh.points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+        (high - low).length()
+    }
+}
+
+/// Makes or reads the mesh of a body and places it; files are relative to `folder`.
+///
+/// # Errors
+/// What is wrong with the file or the parameters.
+pub fn mesh_of(body: &Body, folder: &Path) -> Result<Mesh, crate::mesh::MeshError> {
+    let mut mesh = match &body.mesh {
+        MeshSource::File { path, flip_inverted } => Mesh::read(&folder.join(path), *flip_inverted)?,
+        MeshSource::Box { size, cells, elements } => generators::box_mesh(*size, *cells, *elements)?,
+        MeshSource::Cylinder { radius, height, across, along, elements } => {
+            generators::cylinder_mesh(*radius, *height, *across, *along, *elements)?
+        }
+        MeshSource::Ellipsoid { radii, across, elements } => generators::ellipsoid_mesh(*radii, *across, *elements)?,
+        MeshSource::Lens { diameter, thickness, across, through, elements } => {
+            generators::lens_mesh(*diameter, *thickness, *across, *through, *elements)?
+        }
+    };
+    mesh.place(body.scale, body.rotate, body.translate)?;
+    Ok(mesh)
+}
+
+/// The meshes of all bodies; complaints of all of them.
+pub(super) fn meshes(scene: &SceneFile, diagnostics: &mut Diagnostics) -> Vec<(String, PlacedMesh)> {
+    let mut meshes = Vec::new();
+    for (name, body) in &scene.scene.bodies {
+        let path = format!("bodies.\"{name}\".mesh");
+        match mesh_of(body, &scene.folder) {
+            Err(error) => {
+                diagnostics.error_at(path.as_str(), error.to_string());
+            }
+            Ok(mesh) => {
+                let soundness = mesh.soundness();
+                for finding in &soundness.errors {
+                    diagnostics.error_at(path.as_str(), format!("the mesh of {name}: {}", finding.message));
+                }
+                for finding in &soundness.warnings {
+                    diagnostics.warn_at(path.as_str(), format!("the mesh of {name}: {}", finding.message));
+                }
+                for note in &mesh.notes {
+                    diagnostics.warn_at(path.as_str(), format!("the mesh of {name}: {note}"));
+                }
+                meshes.push((name.clone(), PlacedMesh { mesh, surface: OnceLock::new() }));
+            }
+        }
+    }
+    meshes
+}

@@ -1,0 +1,136 @@
+//! From a scene to a world of entities: meshes are made or read, renumbered for locality and turned into bodies; names
+//! and places become rows.
+
+mod body;
+mod columns;
+mod constraints;
+mod loads;
+mod locality;
+mod meshes;
+mod observation;
+mod removal;
+mod select;
+mod time_step;
+
+pub use body::BodyParts;
+pub use meshes::{PlacedMesh, mesh_of};
+pub use select::Selection;
+pub use time_step::{StableStep, stable_step};
+
+use crate::components::*;
+use crate::materials::{Fibres, NeoHookean};
+use crate::scene::SceneFile;
+use crate::scene::diagnostic::Diagnostics;
+use crate::scene::schema;
+use bevy_ecs::prelude::*;
+use std::collections::BTreeMap;
+
+/// What is known of a scene while its world is being put together.
+pub struct Assembly<'a> {
+    /// The scene.
+    pub scene: &'a SceneFile,
+    /// The run's precision.
+    pub precision: Precision,
+    /// The bodies' meshes in the author's numbering, by name.
+    pub bodies: BTreeMap<String, BodyParts>,
+    /// The materials, by name.
+    pub materials: BTreeMap<String, Entity>,
+}
+
+/// Puts a scene's world together, without a time step yet. Complaints go to `diagnostics`; `None` when some of them are
+/// errors.
+pub fn assemble<'a>(
+    scene: &'a SceneFile,
+    precision: Precision,
+    world: &mut World,
+    diagnostics: &mut Diagnostics,
+) -> Option<Assembly<'a>> {
+    crate::scene::validate(scene, diagnostics);
+    let meshes = meshes::meshes(scene, diagnostics);
+    if diagnostics.has_errors() {
+        return None;
+    }
+    let materials = spawn_materials(&scene.scene, world);
+    world.insert_resource(Signals::default());
+    let mut assembly = Assembly { scene, precision, bodies: BTreeMap::new(), materials };
+    for (name, mesh) in meshes {
+        if let Some(parts) = body::spawn(&assembly, &name, mesh, world, diagnostics) {
+            assembly.bodies.insert(name, parts);
+        }
+    }
+    if diagnostics.has_errors() {
+        return None;
+    }
+    constraints::spawn(&assembly, world, diagnostics);
+    loads::spawn(&assembly, world, diagnostics);
+    (!diagnostics.has_errors()).then_some(assembly)
+}
+
+/// What depends on the time step: removal by time, probes, the laws' history.
+pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
+    removal::spawn(assembly, world, diagnostics);
+    observation::spawn(assembly, world, diagnostics);
+    columns::insert_laws(assembly.precision, world);
+    columns::start(assembly, world);
+}
+
+fn spawn_materials(scene: &schema::Scene, world: &mut World) -> BTreeMap<String, Entity> {
+    let mut spawned = BTreeMap::new();
+    for (name, material) in &scene.materials {
+        let mut entity = world.spawn((Label(name.clone()), Density(material.density)));
+        if let Some(moduli) = material.neo_hookean {
+            let (shear, bulk) = moduli.moduli();
+            entity.insert(NeoHookean { shear, bulk });
+        }
+        if let Some(fibres) = &material.fibres {
+            let tension_only = if fibres.tension_only { 1.0 } else { 0.0 };
+            entity.insert(Fibres { eta: fibres.eta, tension_only });
+        }
+        if let Some(prony) = &material.prony {
+            let terms = prony.terms.iter().map(|term| (term.alpha, term.tau)).collect();
+            entity.insert(Prony { terms, integrator: prony.integrator });
+        }
+        if let Some(rate) = material.damping {
+            entity.insert(Damping(rate));
+        }
+        spawned.insert(name.clone(), entity.id());
+    }
+    spawned
+}
+
+impl schema::NeoHookean {
+    /// Shear and bulk modulus (Pa).
+    pub fn moduli(&self) -> (f64, f64) {
+        match *self {
+            Self::Young { young, poisson } => (young / (2.0 * (1.0 + poisson)), young / (3.0 * (1.0 - 2.0 * poisson))),
+            Self::Moduli { shear, bulk } => (shear, bulk),
+        }
+    }
+}
+
+impl Assembly<'_> {
+    /// The body that an item names, or the only one. Validation has seen to it that there is one.
+    pub fn body(&self, name: &Option<String>) -> Option<&BodyParts> {
+        match name {
+            Some(name) => self.bodies.get(name),
+            None => self.bodies.values().next(),
+        }
+    }
+
+    /// What a selection picks on a body, or complaints at `path`; an empty pick is an error.
+    pub fn pick(
+        &self,
+        body: &BodyParts,
+        select: &schema::Select,
+        path: &str,
+        diagnostics: &mut Diagnostics,
+    ) -> Option<Selection> {
+        match select::pick(&body.placed, select) {
+            Ok(picked) => Some(picked),
+            Err(problem) => {
+                diagnostics.error_at(path, problem.message).notes(problem.notes);
+                None
+            }
+        }
+    }
+}

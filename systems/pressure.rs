@@ -1,0 +1,111 @@
+//! `pressure`: a pressure that follows the surface. `shaders/pressure.wgsl` is its twin.
+
+use super::registry::{Phase, System};
+use crate::components::*;
+use crate::math::Scalar;
+use bevy_ecs::prelude::*;
+
+/// Adds −p ∫ N_a n dA over the deformed faces, exact for triangles and for bilinear quadrilaterals.
+///
+/// Each loaded node goes through its own faces in a fixed order. A face of a removed element bears no load, and the
+/// surface that removal uncovers is not loaded.
+pub fn system() -> System {
+    System::built_in(
+        "pressure",
+        Phase::Loads,
+        "adds pressures that follow the surface to the external forces",
+        |world| super::registry::count::<Pressure>(world, "pressure"),
+        pressure,
+    )
+}
+
+fn pressure(
+    signals: Res<Signals>,
+    loads: Query<(&Pressure, &OfBody)>,
+    mut bodies: Query<(&RestPosition, &Displacement, &mut ExternalForce)>,
+) {
+    for (load, body) in &loads {
+        let Ok((rest, displacement, mut external)) = bodies.get_mut(body.0) else { continue };
+        let pressure = signals.values()[load.signal][0];
+        match &mut external.0 {
+            Reals::F32(external) => push(&load.faces, pressure, rest, displacement.slice(), external),
+            Reals::F64(external) => push(&load.faces, pressure, rest, displacement.slice(), external),
+        }
+    }
+}
+
+fn push<T: Scalar>(faces: &FaceCorners, pressure: f64, rest: &RestPosition, displacement: &[T], external: &mut [T]) {
+    let pressure = T::from_f64(pressure);
+    for (i, &row) in faces.rows.iter().enumerate() {
+        let mut sum = [T::default(); 3];
+        for &corner in &faces.corners[faces.starts[i] as usize..faces.starts[i + 1] as usize] {
+            let face = corner as usize / 4;
+            if faces.alive[face] == 0 {
+                continue;
+            }
+            let points = faces.faces[face].map(|node| {
+                let (node, x) = (node as usize, rest.0[node as usize].to_array());
+                [0, 1, 2].map(|i| T::from_f64(x[i]) + displacement[3 * node + i])
+            });
+            let area = face_area_at(&points, corner as usize % 4);
+            for i in 0..3 {
+                sum[i] += area[i];
+            }
+        }
+        for i in 0..3 {
+            external[3 * row as usize + i] -= pressure * sum[i];
+        }
+    }
+}
+
+/// ∫ N_a n dA over a face: the area vector that falls to corner `a`. A triangle repeats its last node.
+///
+/// For a bilinear quadrilateral the integral of N_a (x_ξ × x_η) is exact in closed form: with e and d the edges and
+/// diagonals, ¼ of the whole area vector plus what the corner's own corner area exceeds the mean by, a third of it.
+fn face_area_at<T: Scalar>(points: &[[T; 3]; 4], a: usize) -> [T; 3] {
+    let edge = |from: usize, to: usize| [0, 1, 2].map(|i| points[to][i] - points[from][i]);
+    let constant = |value: f64| T::from_f64(value);
+    if points[2] == points[3] {
+        return cross(edge(0, 1), edge(0, 2)).map(|x| x * constant(1.0 / 6.0));
+    }
+    let diagonals = cross(edge(0, 2), edge(1, 3));
+    let own = cross(edge(a, (a + 1) % 4), edge(a, (a + 3) % 4));
+    let opposite = cross(edge((a + 2) % 4, (a + 3) % 4), edge((a + 2) % 4, (a + 1) % 4));
+    [0, 1, 2].map(|i| diagonals[i] * constant(0.125) + (own[i] - opposite[i]) * constant(1.0 / 24.0))
+}
+
+fn cross<T: Scalar>(a: [T; 3], b: [T; 3]) -> [T; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 2×2 Gauss points integrate the bilinear quadrilateral exactly.
+    #[test]
+    fn corner_areas_of_a_warped_quadrilateral_are_the_exact_integrals() {
+        let points = [[0.0, 0.1, 0.0], [1.2, 0.0, 0.3], [1.0, 0.9, -0.2], [-0.1, 1.1, 0.25_f64]];
+        let signs = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0_f64]];
+        for a in 0..4 {
+            let mut exact = [0.0; 3];
+            for gauss in signs {
+                let [x, y] = gauss.map(|s| s / 3.0_f64.sqrt());
+                let (mut by_x, mut by_y) = ([0.0; 3], [0.0; 3]);
+                for b in 0..4 {
+                    for i in 0..3 {
+                        by_x[i] += points[b][i] * signs[b][0] * (1.0 + signs[b][1] * y) / 4.0;
+                        by_y[i] += points[b][i] * signs[b][1] * (1.0 + signs[b][0] * x) / 4.0;
+                    }
+                }
+                let weight = (1.0 + signs[a][0] * x) * (1.0 + signs[a][1] * y) / 4.0;
+                let normal = cross(by_x, by_y);
+                (0..3).for_each(|i| exact[i] += weight * normal[i]);
+            }
+            let found = face_area_at(&points, a);
+            for i in 0..3 {
+                assert!((found[i] - exact[i]).abs() < 1e-14, "corner {a}: {found:?} instead of {exact:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! What a system is, and the list of those that a scene may name.
+
+use crate::backend::Buffers;
+use crate::backend::kernel::Kernel;
+use crate::error::Error;
+use bevy_ecs::prelude::*;
+use bevy_ecs::system::IntoSystem;
+
+/// Where in the step a system has its place. A schedule may leave phases out but not turn them round.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Phase {
+    /// Says where constrained nodes go in this step.
+    Boundary,
+    /// Fills in the forces of elements.
+    ElementForces,
+    /// Sums them at the nodes, and clears the loads of the last step.
+    Gather,
+    /// Adds to the external forces.
+    Loads,
+    /// Moves the nodes; after it the clock shows the end of the step.
+    Integrate,
+    /// Takes elements away.
+    Removal,
+    /// Reads.
+    Observe,
+}
+
+/// A system on the host: what the CPU backend runs, and what custom systems are on both backends.
+pub type HostSystem = Box<dyn bevy_ecs::system::System<In = (), Out = Result<(), Error>>>;
+
+/// One system of the step.
+pub struct System {
+    /// Its name in scenes, reports and (with `.rs` and `.wgsl`) its files.
+    pub name: String,
+    /// Its place in the step.
+    pub phase: Phase,
+    /// What it does, in a few words.
+    pub does: String,
+    /// Why the world needs it; `None` when it does not. A schedule that a scene writes out must hold all that are needed.
+    pub because: fn(&mut World) -> Option<String>,
+    /// Makes the system that runs on the host.
+    pub host: Box<dyn Fn() -> HostSystem + Send + Sync>,
+    /// Describes the kernels that do the same on a GPU; `None` for systems that only run on the host.
+    pub kernels: Option<fn(&mut World, &mut dyn Buffers) -> Vec<Kernel>>,
+    /// Whether it fetches what it reads from the device by itself, and says when it next has to run.
+    pub(crate) observes: bool,
+    /// Steps between two runs (host systems only).
+    pub every: u64,
+}
+
+impl System {
+    /// A system of one's own, run on the host on both backends, once a step. `system` is any bevy system function: its
+    /// queries say which columns it reads (they are brought to the host before it runs) and which it writes (they go back
+    /// to the device after). It runs only when a scene's schedule names it.
+    ///
+    /// `system` is called through a function without captures, so that each simulation gets its own copy.
+    pub fn custom<M>(
+        name: impl Into<String>,
+        phase: Phase,
+        does: impl Into<String>,
+        system: impl IntoSystem<(), (), M> + Clone + Send + Sync + 'static,
+    ) -> Self {
+        Self {
+            name: name.into(),
+            phase,
+            does: does.into(),
+            because: |_| None,
+            host: Box::new(move || Box::new(IntoSystem::into_system(system.clone().map(Ok)))),
+            kernels: None,
+            observes: false,
+            every: 1,
+        }
+    }
+
+    /// Runs a custom system in every `steps`-th step only: on the GPU the columns travel that much less often.
+    pub fn every(mut self, steps: u64) -> Self {
+        self.every = steps.max(1);
+        self
+    }
+
+    /// A built-in system.
+    pub(crate) fn built_in<M>(
+        name: &str,
+        phase: Phase,
+        does: &str,
+        because: fn(&mut World) -> Option<String>,
+        system: impl IntoSystem<(), (), M> + Clone + Send + Sync + 'static,
+    ) -> Self {
+        Self { because, ..Self::custom(name, phase, does, system) }
+    }
+
+    /// With its kernels.
+    pub(crate) fn on_device(mut self, kernels: fn(&mut World, &mut dyn Buffers) -> Vec<Kernel>) -> Self {
+        self.kernels = Some(kernels);
+        self
+    }
+}
+
+/// The systems that a scene may name.
+pub struct Registry {
+    systems: Vec<System>,
+}
+
+impl Default for Registry {
+    fn default() -> Self {
+        Self { systems: super::standard() }
+    }
+}
+
+impl Registry {
+    /// Adds a system; one of the same name is replaced.
+    pub fn with(mut self, system: System) -> Self {
+        self.systems.retain(|s| s.name != system.name);
+        self.systems.push(system);
+        self
+    }
+
+    /// All systems: the built-in ones in the order of the step, then those added.
+    pub fn systems(&self) -> &[System] {
+        &self.systems
+    }
+
+    /// The system of a name.
+    pub fn get(&self, name: &str) -> Option<&System> {
+        self.systems.iter().find(|s| s.name == name)
+    }
+}
+
+/// "3 loads", "1 load", or nothing for none: how often a component occurs in a world.
+pub(crate) fn count<C: Component>(world: &mut World, word: &str) -> Option<String> {
+    match world.query::<&C>().iter(world).count() {
+        0 => None,
+        1 => Some(format!("1 {word}")),
+        n => Some(format!("{n} {word}s")),
+    }
+}
