@@ -35,6 +35,16 @@ fn a_thousand_steps_see_their_own_records_in_order() {
 }
 
 #[test]
+fn many_steps_share_a_submission_and_256_at_most() {
+    let Some(mut gpu) = gpu_or_reason() else { return };
+    let state = storage(&mut gpu, "state", &[0.0; 10]);
+    let kernel = gpu.prepare(&march(state, 10)).unwrap();
+    gpu.run(&[kernel], &march_records(5000), 8, 5000).unwrap();
+    gpu.wait().unwrap();
+    assert!((20..1000).contains(&gpu.submissions()), "{} submissions", gpu.submissions());
+}
+
+#[test]
 fn runs_repeat_to_the_bit_however_the_steps_are_cut() {
     let Some(mut gpu) = gpu_or_reason() else { return };
     let records = march_records(600);
