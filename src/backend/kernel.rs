@@ -13,7 +13,7 @@ mod tests;
 use std::borrow::Cow;
 
 pub use compose::{Composed, Entry, compose};
-pub use diagnose::KernelError;
+pub use diagnose::{KernelError, NameMismatch};
 pub use reflect::{Binding, BindingKind, Member};
 
 /// Name of the uniform variable that holds the step's record; the GPU layer binds it, a kernel must not.

@@ -1,6 +1,6 @@
 //! What can go wrong on a GPU, as values: nothing here panics or ends the process.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use crate::backend::kernel::KernelError;
 
@@ -120,7 +120,14 @@ fn aligned(offset: u64, bytes: u64) -> &'static str {
 
 /// Where wgpu's callbacks leave their errors until the next call picks them up.
 #[derive(Clone, Default)]
-pub(super) struct Inbox(Arc<Mutex<Vec<Event>>>);
+pub(super) struct Inbox(Arc<Mutex<Letters>>);
+
+#[derive(Default)]
+struct Letters {
+    errors: Vec<Event>,
+    /// stays: a lost device does not come back, and wgpu is silent about all that follows
+    lost: Option<String>,
+}
 
 /// What a callback said.
 pub(super) enum Event {
@@ -135,33 +142,25 @@ impl Inbox {
         let inbox = Self::default();
         let errors = inbox.clone();
         device.on_uncaptured_error(Arc::new(move |error| {
-            errors.put(match error {
+            errors.open().errors.push(match error {
                 wgpu::Error::OutOfMemory { .. } => Event::OutOfMemory,
                 other => Event::Other(other.to_string()),
             });
         }));
         let lost = inbox.clone();
-        device.set_device_lost_callback(move |reason, text| {
-            // destroying the device oneself is no loss
-            if reason != wgpu::DeviceLostReason::Destroyed {
-                lost.put(Event::Lost(text));
-            }
-        });
+        device.set_device_lost_callback(move |_, text| lost.open().lost = Some(text));
         inbox
     }
 
-    fn put(&self, event: Event) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).push(event);
+    fn open(&self) -> MutexGuard<'_, Letters> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The first thing that went wrong since the last call, a lost device before all else; forgets the others, which
-    /// are its consequences.
+    /// A lost device, or else the first thing that went wrong since the last call; forgets the others, which are its
+    /// consequences.
     pub(super) fn take(&self) -> Option<Event> {
-        let mut events = std::mem::take(&mut *self.0.lock().unwrap_or_else(PoisonError::into_inner));
-        if events.is_empty() {
-            return None;
-        }
-        let first = events.iter().position(|e| matches!(e, Event::Lost(_))).unwrap_or(0);
-        Some(events.swap_remove(first))
+        let mut letters = self.open();
+        let errors = std::mem::take(&mut letters.errors);
+        letters.lost.clone().map(Event::Lost).or_else(|| errors.into_iter().next())
     }
 }

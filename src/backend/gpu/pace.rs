@@ -22,6 +22,8 @@ pub(super) struct Pace {
     seconds_per_step: HashMap<Arc<[KernelId]>, f64>,
     flights: VecDeque<Flight>,
     last_end: Option<Instant>,
+    /// made so far
+    pub(super) submissions: u64,
 }
 
 struct Flight {
@@ -40,6 +42,7 @@ impl Pace {
 
     /// Notes a submission.
     pub(super) fn submitted(&mut self, index: SubmissionIndex, kernels: Arc<[KernelId]>, steps: u32) {
+        self.submissions += 1;
         self.flights.push_back(Flight { index, kernels, steps, submitted: Instant::now() });
     }
 

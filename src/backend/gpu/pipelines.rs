@@ -12,7 +12,7 @@ use wgpu::{
 
 use super::{BufferKind, Gpu, GpuError};
 use crate::backend::kernel::{
-    Binding, BindingKind, Composed, Entry, Kernel, KernelError, KernelId, STEP_VARIABLE, compose,
+    Binding, BindingKind, Composed, Entry, Kernel, KernelError, KernelId, NameMismatch, STEP_VARIABLE, compose,
 };
 
 /// Modules by text and pipelines by text and entry point: bodies of one kind share them.
@@ -238,7 +238,7 @@ fn match_names(kernel: &Kernel, composed: &Composed, entry: &Entry) -> Result<()
     if without_buffer.is_empty() && without_variable.is_empty() {
         return Ok(());
     }
-    Err(KernelError::Bindings {
+    Err(KernelError::from(Box::new(NameMismatch {
         label: kernel.label.clone(),
         entry: kernel.entry.to_owned(),
         paths: kernel.paths(),
@@ -247,5 +247,5 @@ fn match_names(kernel: &Kernel, composed: &Composed, entry: &Entry) -> Result<()
         used,
         declared: composed.bindings.iter().map(|b| b.name.clone()).collect(),
         given,
-    })
+    })))
 }

@@ -89,6 +89,11 @@ impl Gpu {
         self.run(kernels, &[], 0, 1)
     }
 
+    /// Submissions of steps so far: how far many steps share one.
+    pub fn submissions(&self) -> u64 {
+        self.pace.submissions
+    }
+
     fn admit_records(
         &self,
         kernels: &[KernelId],

@@ -18,7 +18,7 @@ const MOST_DISPATCHES: u32 = 2048;
 pub struct KernelTime {
     /// The kernels' label.
     pub label: String,
-    /// Time on the GPU [ns], all dispatches together.
+    /// Time on the GPU (ns), all dispatches together.
     pub nanoseconds: f64,
     /// Number of dispatches.
     pub dispatches: u64,

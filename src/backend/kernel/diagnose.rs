@@ -41,34 +41,8 @@ pub enum KernelError {
         found: Vec<String>,
     },
     /// Buffers and variables do not match by name.
-    #[error(
-        "kernel `{label}` (`{entry}` in {paths}): buffers and variables do not match\n  \
-         variables without a buffer: {}\n  buffers without a variable: {}\n  \
-         `{entry}` uses: {}\n  declared: {}\n  the kernel gives: {}",
-        listed(without_buffer),
-        listed(without_variable),
-        listed(used),
-        listed(declared),
-        listed(given)
-    )]
-    Bindings {
-        /// The kernel.
-        label: String,
-        /// The entry point.
-        entry: String,
-        /// The fragments.
-        paths: String,
-        /// Variables that the entry point uses and no buffer is given for.
-        without_buffer: Vec<String>,
-        /// Buffers given for variables that no fragment declares (or twice).
-        without_variable: Vec<String>,
-        /// Variables that the entry point uses.
-        used: Vec<String>,
-        /// Variables that the fragments declare.
-        declared: Vec<String>,
-        /// Variables that the kernel gives buffers for.
-        given: Vec<String>,
-    },
+    #[error(transparent)]
+    Bindings(#[from] Box<NameMismatch>),
     /// A variable that is no buffer, or a `step` that is no uniform.
     #[error(
         "WGSL variable `{variable}`: {problem}; kernels use var<storage, read>, var<storage, read_write> and var<uniform>"
@@ -87,6 +61,37 @@ pub enum KernelError {
         /// The structs there are.
         found: Vec<String>,
     },
+}
+
+/// Buffers and variables that do not match by name: all of both, so that a slip of the pen shows.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error(
+    "kernel `{label}` (`{entry}` in {paths}): buffers and variables do not match\n  \
+     variables without a buffer: {}\n  buffers without a variable: {}\n  \
+     `{entry}` uses: {}\n  declared: {}\n  the kernel gives: {}",
+    listed(without_buffer),
+    listed(without_variable),
+    listed(used),
+    listed(declared),
+    listed(given)
+)]
+pub struct NameMismatch {
+    /// The kernel.
+    pub label: String,
+    /// The entry point.
+    pub entry: String,
+    /// The fragments.
+    pub paths: String,
+    /// Variables that the entry point uses and no buffer is given for.
+    pub without_buffer: Vec<String>,
+    /// Buffers given for variables that no fragment declares (or twice).
+    pub without_variable: Vec<String>,
+    /// Variables that the entry point uses.
+    pub used: Vec<String>,
+    /// Variables that the fragments declare.
+    pub declared: Vec<String>,
+    /// Variables that the kernel gives buffers for.
+    pub given: Vec<String>,
 }
 
 /// `a, b, c`, or `none`.
@@ -154,6 +159,10 @@ impl Sources {
     fn error(&self, message: String, labels: Vec<(Span, String)>, notes: Vec<String>) -> KernelError {
         let mut places = Vec::new();
         for (span, text) in labels {
+            // a whole function underlined without a word hides the place
+            if text.is_empty() && !places.is_empty() {
+                continue;
+            }
             if let Some((file, range)) = span.to_range().and_then(|range| self.place(range)) {
                 let label = if places.is_empty() { Label::primary } else { Label::secondary };
                 places.push(label(file, range).with_message(text));
@@ -165,15 +174,16 @@ impl Sources {
         };
         let diagnostic = Diagnostic::error().with_message(&message).with_labels(places).with_notes(notes);
         let report = term::emit_into_string(&term::Config::default(), &self.files, &diagnostic);
-        let report = report.unwrap_or_else(|_| format!("{path}:{line}:{column}: {message}"));
+        let report = report.map_or_else(|_| format!("{path}:{line}:{column}: {message}"), |r| r.trim_end().to_owned());
         KernelError::Wgsl { path, line, column, message, report }
     }
 
     /// The fragment, and the bytes in it, that a range of the whole text begins in.
     fn place(&self, range: Range<usize>) -> Option<(usize, Range<usize>)> {
-        let file = self.ranges.iter().position(|r| range.start <= r.end)?;
+        // an error at the end of the text lies behind the last fragment's last byte: it is that fragment's
+        let file = self.ranges.iter().position(|r| range.start <= r.end).or(self.ranges.len().checked_sub(1))?;
         let whole = &self.ranges[file];
-        let start = range.start.max(whole.start) - whole.start;
+        let start = range.start.clamp(whole.start, whole.end) - whole.start;
         Some((file, start..(range.end.min(whole.end).saturating_sub(whole.start)).max(start)))
     }
 

@@ -127,3 +127,11 @@ fn textures_are_refused_by_name() {
     let error = error_of("mine.wgsl", "@group(0) @binding(0) var picture: texture_2d<f32>;");
     assert!(error.to_string().starts_with("WGSL variable `picture`: is not a buffer"), "{error}");
 }
+
+#[test]
+fn a_brace_never_closed_names_the_last_fragment() {
+    let KernelError::Wgsl { path, line, .. } = error_of("mine.wgsl", "fn f() {\n    let x = 1u;\n") else {
+        panic!("not a WGSL error");
+    };
+    assert_eq!((path.as_str(), line), ("mine.wgsl", 3));
+}
