@@ -1,0 +1,91 @@
+//! The 256 colours of an animation.
+
+use super::Image;
+use std::collections::HashMap;
+
+/// Colours that stand for all others, at most 255; the last index means "as before".
+pub struct Palette {
+    colours: Vec<[u8; 3]>,
+    /// The nearest colour of those already asked for.
+    nearest: HashMap<[u8; 3], u8>,
+}
+
+/// The index that leaves a pixel as it was.
+pub const UNCHANGED: u8 = 255;
+
+impl Palette {
+    /// Chooses colours for some pictures: the group of colours with the largest error is cut in two at its mean, along its
+    /// longest side, until there are 255 groups; each is represented by its mean.
+    pub fn new<'a>(images: impl IntoIterator<Item = &'a Image>) -> Palette {
+        let mut counts = HashMap::<[u8; 3], u64>::new();
+        for pixel in images.into_iter().flat_map(|image| &image.pixels) {
+            *counts.entry(*pixel).or_default() += 1;
+        }
+        let mut all: Vec<_> = counts.into_iter().collect();
+        // a map's order differs from run to run
+        all.sort_unstable();
+        let mut groups = vec![Group::new(all)];
+        while groups.len() < 255 {
+            let worst = (0..groups.len()).max_by(|&a, &b| groups[a].error.total_cmp(&groups[b].error)).unwrap_or(0);
+            if groups[worst].error <= 0.0 {
+                break;
+            }
+            let (first, second) = groups.swap_remove(worst).cut();
+            groups.extend([first, second]);
+        }
+        Palette { colours: groups.iter().map(Group::colour).collect(), nearest: HashMap::new() }
+    }
+
+    /// Red, green and blue of all 256 entries.
+    pub fn bytes(&self) -> Vec<u8> {
+        let mut bytes = self.colours.concat();
+        bytes.resize(256 * 3, 0);
+        bytes
+    }
+
+    /// The entry nearest to a colour.
+    pub fn index(&mut self, colour: [u8; 3]) -> u8 {
+        let colours = &self.colours;
+        *self.nearest.entry(colour).or_insert_with(|| {
+            let distance =
+                |entry: &[u8; 3]| (0..3).map(|c| (i32::from(entry[c]) - i32::from(colour[c])).pow(2)).sum::<i32>();
+            (0..colours.len()).min_by_key(|&row| distance(&colours[row])).unwrap_or(0) as u8
+        })
+    }
+}
+
+/// Some colours and how often each occurs.
+struct Group {
+    colours: Vec<([u8; 3], u64)>,
+    mean: [f64; 3],
+    /// Sum of squared distances from the mean, along the axis where it is largest.
+    error: f64,
+    axis: usize,
+}
+
+impl Group {
+    fn new(colours: Vec<([u8; 3], u64)>) -> Group {
+        // seldom colours count for more than their share: a small bright spot matters to the eye
+        let weight = |count: u64| (count as f64).sqrt();
+        let total: f64 = colours.iter().map(|(_, count)| weight(*count)).sum();
+        let (mut mean, mut errors) = ([0.0; 3], [0.0; 3]);
+        for axis in 0..3 {
+            mean[axis] =
+                colours.iter().map(|(c, count)| f64::from(c[axis]) * weight(*count)).sum::<f64>() / total.max(1.0);
+            errors[axis] =
+                colours.iter().map(|(c, count)| (f64::from(c[axis]) - mean[axis]).powi(2) * weight(*count)).sum();
+        }
+        let axis = (0..3).max_by(|&a, &b| f64::total_cmp(&errors[a], &errors[b])).unwrap_or(0);
+        Group { colours, mean, error: errors[axis], axis }
+    }
+
+    fn cut(self) -> (Group, Group) {
+        let (axis, mean) = (self.axis, self.mean[self.axis]);
+        let (below, above) = self.colours.into_iter().partition(|(colour, _)| f64::from(colour[axis]) <= mean);
+        (Group::new(below), Group::new(above))
+    }
+
+    fn colour(&self) -> [u8; 3] {
+        self.mean.map(|mean| mean.round() as u8)
+    }
+}

@@ -1,0 +1,248 @@
+//! Pictures of a series that the crate's own writers made. They stay in the target folder's `tmp/render`, to be looked at.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use glam::{DQuat, DVec3, Vec3};
+use sinew::output::{Array, Folder, Frame, Series, Values};
+use sinew::render::{Camera, Colouring, Options, Picture, RenderError, Scale, draw, paint};
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+
+/// A bar along x, half of it hexahedra and half tetrahedra, that is twisted and bent and loses some elements.
+struct Bar {
+    points: Vec<DVec3>,
+    tets: Vec<[u32; 4]>,
+    hexes: Vec<[u32; 8]>,
+}
+
+const CELLS: [u32; 3] = [24, 6, 8];
+const SIZE: DVec3 = DVec3::new(0.4, 0.1, 0.13);
+
+impl Bar {
+    fn new() -> Bar {
+        let [nx, ny, nz] = CELLS;
+        let row = |x: u32, y: u32, z: u32| (x * (ny + 1) + y) * (nz + 1) + z;
+        let mut bar = Bar { points: Vec::new(), tets: Vec::new(), hexes: Vec::new() };
+        for (x, y, z) in each([nx + 1, ny + 1, nz + 1]) {
+            let counts = DVec3::new(nx.into(), ny.into(), nz.into());
+            bar.points.push(DVec3::new(x.into(), y.into(), z.into()) / counts * SIZE);
+        }
+        for (x, y, z) in each(CELLS) {
+            let corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)];
+            let c = corners.map(|(dx, dy, dz)| row(x + dx, y + dy, z + dz));
+            if x < nx / 2 {
+                bar.hexes.push(c);
+            } else {
+                let six = [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]];
+                bar.tets.extend(six.map(|tet| tet.map(|corner| c[corner])));
+            }
+        }
+        bar
+    }
+
+    fn centroid(&self, corners: &[u32]) -> DVec3 {
+        corners.iter().map(|&corner| self.points[corner as usize]).sum::<DVec3>() / corners.len() as f64
+    }
+
+    fn cells(&self) -> impl Iterator<Item = DVec3> {
+        let tets = self.tets.iter().map(|tet| self.centroid(tet));
+        tets.chain(self.hexes.iter().map(|hex| self.centroid(hex)))
+    }
+
+    /// Displacement at a share of the whole course.
+    fn displacement(&self, share: f64) -> Vec<f32> {
+        let moved = |point: &DVec3| {
+            let along = point.x / SIZE.x;
+            let twisted = DQuat::from_rotation_x(1.6 * share * along) * (*point - SIZE / 2.0).with_x(0.0);
+            let angle = 1.1 * share * along;
+            let radius = SIZE.x / (1.1 * share).max(1e-9);
+            let axis = DVec3::new(radius * angle.sin(), 0.0, radius * (angle.cos() - 1.0));
+            let to = axis + DQuat::from_rotation_y(angle) * twisted + SIZE / 2.0 * DVec3::new(0.0, 1.0, 1.0);
+            (to - *point).as_vec3().to_array()
+        };
+        self.points.iter().flat_map(moved).collect()
+    }
+
+    /// Writes a whole run.
+    fn run(&self, folder: &Path, frames: usize) {
+        let mut series = Series::create(&Folder::create(folder).unwrap()).unwrap();
+        for frame in 0..frames {
+            let share = frame as f64 / (frames - 1) as f64;
+            let displacement = self.displacement(share);
+            let along = |cell: &DVec3| (cell.x / SIZE.x, (cell - SIZE / 2.0).with_x(0.0).length() / 0.08);
+            let von_mises: Vec<f32> =
+                self.cells().map(|cell| (12e3 * share * along(&cell).1 * (1.3 - along(&cell).0)) as f32).collect();
+            let pressure: Vec<f32> = self.cells().map(|cell| (4e3 * share * (cell.z / 0.065 - 1.0)) as f32).collect();
+            let near = |cell: &DVec3| cell.distance(DVec3::new(0.26, 0.0, 0.08)) < 0.055 * (2.0 * share - 1.0);
+            let alive: Vec<u8> = self.cells().map(|cell| u8::from(!near(&cell))).collect();
+            let stress: Vec<f32> = (0..alive.len() * 6).map(|row| row as f32).collect();
+            let array = |name, components, values| Array { name, components, values };
+            let frame = Frame {
+                time: 0.02 * share,
+                points: &self.points,
+                tets: &self.tets,
+                hexes: &self.hexes,
+                point_arrays: vec![array("displacement", 3, Values::F32(&displacement))],
+                cell_arrays: vec![
+                    array("von_mises", 1, Values::F32(&von_mises)),
+                    array("pressure", 1, Values::F32(&pressure)),
+                    array("stress", 6, Values::F32(&stress)),
+                    array("alive", 1, Values::U8(&alive)),
+                ],
+            };
+            series.write(&frame).unwrap();
+        }
+    }
+}
+
+fn each(counts: [u32; 3]) -> impl Iterator<Item = (u32, u32, u32)> {
+    (0..counts[0]).flat_map(move |x| (0..counts[1]).flat_map(move |y| (0..counts[2]).map(move |z| (x, y, z))))
+}
+
+/// A fresh folder with a run in it.
+fn example(name: &str, frames: usize) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("render").join(name);
+    Bar::new().run(&folder, frames);
+    folder
+}
+
+fn options(out: PathBuf) -> Options {
+    let (field, from) = ("von_mises".to_string(), Vec3::new(1.0, -2.0, 0.8));
+    Options { field, from, size: (960, 720), at: None, animate: false, out, range: None, edges: true }
+}
+
+/// Width and rows of RGB bytes.
+fn read_png(path: &Path) -> (usize, Vec<u8>) {
+    let mut reader = png::Decoder::new(std::io::BufReader::new(File::open(path).unwrap())).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    (info.width as usize, bytes)
+}
+
+#[test]
+fn a_series_becomes_a_picture() {
+    let folder = example("picture", 5);
+    let options = options(folder.join("last.png"));
+    let drawn = draw(&folder, &options).unwrap();
+    assert_eq!((drawn.frames, drawn.time), (1, 0.02));
+    assert!(drawn.range.0 == 0.0 && drawn.range.1 > 8e3 && drawn.range.1 < 16e3, "{:?}", drawn.range);
+    let (width, bytes) = read_png(&options.out);
+    assert_eq!((width, bytes.len()), (960, 960 * 720 * 3));
+    // the corner is background, and a good part of the stage is not
+    assert!(bytes[0] > 240 && bytes[1] > 240 && bytes[2] > 240);
+    let coloured = bytes.as_chunks::<3>().0.iter().filter(|[r, g, b]| r.max(g).max(b) - r.min(g).min(b) > 30).count();
+    assert!(coloured > 960 * 720 / 6, "{coloured}");
+    let first = fs::read(&options.out).unwrap();
+    draw(&folder, &options).unwrap();
+    assert!(first == fs::read(&options.out).unwrap(), "the same input, other bytes");
+}
+
+#[test]
+fn other_fields_sizes_and_directions_can_be_drawn() {
+    let folder = example("others", 3);
+    for (field, size, from, edges) in [
+        ("displacement", (1440, 1080), Vec3::new(1.0, -2.0, 0.8), true),
+        ("pressure", (960, 720), Vec3::new(-1.0, -1.5, 1.2), true),
+        ("displacement.z", (320, 240), Vec3::NEG_Y, false),
+        ("stress.xy", (640, 640), Vec3::Z, true),
+        ("alive", (160, 160), Vec3::X, true),
+    ] {
+        let out = folder.join(format!("{field}.png"));
+        draw(&folder, &Options { field: field.into(), size, from, edges, ..options(out.clone()) }).unwrap();
+        assert_eq!(read_png(&out).0, size.0 as usize);
+    }
+}
+
+#[test]
+fn an_animation_has_all_frames_and_loops() {
+    let folder = example("animation", 21);
+    let small = Options { animate: true, size: (480, 360), ..options(folder.join("all.gif")) };
+    assert_eq!(draw(&folder, &small).unwrap().frames, 21);
+    let count = |path: &Path| {
+        let mut decoder = gif::DecodeOptions::new();
+        decoder.set_color_output(gif::ColorOutput::RGBA);
+        let mut decoder = decoder.read_info(File::open(path).unwrap()).unwrap();
+        assert_eq!((decoder.width(), decoder.height()), (480, 360));
+        let (mut frames, mut hundredths) = (0, 0);
+        while let Some(frame) = decoder.read_next_frame().unwrap() {
+            frames += 1;
+            hundredths += u32::from(frame.delay);
+        }
+        assert!((200..=600).contains(&hundredths), "{hundredths}");
+        assert!(matches!(decoder.repeat(), gif::Repeat::Infinite));
+        frames
+    };
+    assert_eq!(count(&small.out), 21);
+    let half = Options { at: Some(0.0101), out: folder.join("half.gif"), ..small };
+    assert_eq!(draw(&folder, &half).unwrap().time, 0.01);
+    assert_eq!(count(&half.out), 11);
+}
+
+/// A square across the line of sight, one value all over.
+fn square(value: f32, scale: Scale) -> sinew::render::Image {
+    let vertices =
+        [Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 0.0, -1.0), Vec3::new(1.0, 0.0, 1.0), Vec3::new(-1.0, 0.0, 1.0)];
+    let picture = Picture {
+        vertices: &vertices,
+        faces: &[[0, 1, 2, 3]],
+        values: Colouring::Faces(&[value]),
+        scale,
+        quantity: "value",
+        unit: "",
+        caption: "",
+        edges: false,
+    };
+    let camera =
+        Camera::new(Vec3::NEG_Y, (vertices[0], vertices[2]), glam::Vec2::splat(100.0), glam::Vec2::splat(300.0));
+    paint(&picture, &camera, (400, 400))
+}
+
+#[test]
+fn a_known_value_has_its_colour_where_it_is_expected() {
+    let scale = Scale { range: (0.0, 1.0), centre: None };
+    let image = square(0.5, scale);
+    let [r, g, b] = image.at(200, 200);
+    // viridis has (33, 145, 140) in its middle; light makes it a little darker or brighter, no other hue
+    assert!(r < g / 2 && g.abs_diff(b) < 12 && g > 115 && g < 175, "{:?}", (r, g, b));
+    assert!(image.at(110, 110)[1] < 175 && image.at(290, 290)[1] < 175);
+    for (x, y) in [(95, 200), (305, 200), (200, 95), (200, 305)] {
+        assert!(image.at(x, y)[0] > 200, "the square reaches beyond its place at {x}, {y}");
+    }
+    assert_eq!(square(f32::NAN, scale).at(200, 200)[1] / 32, 0);
+}
+
+#[test]
+fn what_cannot_be_drawn_is_said() {
+    let folder = example("wrong", 2);
+    let good = options(folder.join("none.png"));
+    let text = |options: &Options| draw(&folder, options).unwrap_err().to_string();
+    let said = text(&Options { field: "strain".into(), ..good.clone() });
+    assert!(
+        said.starts_with("no field \"strain\" in ") && said.contains("; there are: displacement, displacement.x,"),
+        "{said}"
+    );
+    assert!(
+        said.ends_with("von_mises, pressure, stress.xx, stress.yy, stress.zz, stress.xy, stress.yz, stress.xz, alive")
+    );
+    assert!(text(&Options { field: "stress".into(), ..good.clone() }).starts_with("no field \"stress\""));
+    assert!(text(&Options { from: Vec3::ZERO, ..good.clone() }).contains("which is no direction"));
+    assert!(text(&Options { size: (960, 4), ..good.clone() }).contains("960 by 4 pixels; allowed are 160 to 16384"));
+    assert!(text(&Options { range: Some((1.0, 1.0)), ..good.clone() }).contains("span 1 to 1"));
+    assert!(matches!(draw(&folder.join("nowhere"), &good), Err(RenderError::NoSeries { .. })));
+    let frame = folder.join("fields_000001.vtu");
+    let whole = fs::read(&frame).unwrap();
+    // wherever a frame breaks off or is damaged, that is an error or another picture, never a panic
+    for cut in [0, 10, 900, 2000, whole.len() / 2, whole.len() - 60] {
+        fs::write(&frame, &whole[..cut]).unwrap();
+        assert!(
+            draw(&folder, &Options { size: (160, 160), ..good.clone() }).is_err() || cut > whole.len() - 100,
+            "{cut}"
+        );
+    }
+    for at in (0..whole.len()).step_by(whole.len() / 40) {
+        let mut damaged = whole.clone();
+        damaged[at] ^= 0x5a;
+        fs::write(&frame, &damaged).unwrap();
+        let _ = draw(&folder, &Options { size: (160, 160), ..good.clone() });
+    }
+    assert!(draw(&folder, &Options { out: folder.join("no/such/folder.png"), ..good }).is_err());
+}
