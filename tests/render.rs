@@ -3,7 +3,7 @@
 
 use glam::{DQuat, DVec3, Vec3};
 use sinew::output::{Array, Folder, Frame, Series, Values};
-use sinew::render::{Camera, Colouring, Options, Picture, RenderError, Scale, draw, paint};
+use sinew::render::{Colouring, Fit, Options, Picture, RenderError, Scale, draw, paint};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
@@ -191,8 +191,9 @@ fn square(value: f32, scale: Scale) -> sinew::render::Image {
         caption: "",
         edges: false,
     };
-    let camera =
-        Camera::new(Vec3::NEG_Y, (vertices[0], vertices[2]), glam::Vec2::splat(100.0), glam::Vec2::splat(300.0));
+    let mut fit = Fit::new(Vec3::NEG_Y, glam::Vec2::splat(100.0), glam::Vec2::splat(300.0));
+    vertices.iter().for_each(|vertex| fit.see(*vertex));
+    let camera = fit.camera().unwrap();
     paint(&picture, &camera, (400, 400))
 }
 

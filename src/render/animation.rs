@@ -10,7 +10,7 @@ use std::path::Path;
 /// second; less only when two seconds cannot be filled otherwise.
 pub fn delay(frames: usize) -> u16 {
     let frames = frames.max(1) as u16;
-    (400 / frames).clamp(4, 10).max(200 / frames).min(50)
+    (400 / frames).clamp(4, 10).max(200u16.div_ceil(frames)).min(50)
 }
 
 /// Hundredths of a second that the last picture stays before all begins anew.
@@ -96,7 +96,7 @@ mod tests {
     fn animations_last_two_to_six_seconds_where_the_number_of_pictures_allows() {
         for frames in 4..=150 {
             let hundredths = u32::from(delay(frames)) * frames as u32;
-            assert!((190..=600).contains(&hundredths), "{frames} pictures: {hundredths}");
+            assert!((200..=600).contains(&hundredths), "{frames} pictures: {hundredths}");
         }
         assert_eq!((delay(1), delay(40), delay(1000)), (50, 10, 4));
     }

@@ -7,7 +7,7 @@ use super::picture::{Colouring, Picture, paint, stage};
 use super::range::Seen;
 use super::series::Series;
 use super::surface::Faces;
-use super::{Camera, Image, RenderError, animation, encode};
+use super::{Fit, Image, RenderError, animation, encode};
 use glam::Vec3;
 use std::path::{Path, PathBuf};
 
@@ -62,18 +62,15 @@ pub fn draw_with_progress(
     let last = series.nearest(options.at);
     let frames = if options.animate { last + 1 } else { 1 };
     let total = series.frames.len() + frames;
-    let (mut mesh, mut seen) = (None, Seen::new());
-    for (row, (_, path)) in series.frames.iter().enumerate() {
-        let state = State::read(path, &field, &mut mesh)?;
-        state.look(&mut seen);
-        progress(row + 1, total);
-    }
-    if seen.is_empty() {
-        return Err(RenderError::Nothing { path: series.path });
-    }
     let size = (options.size.0 as usize, options.size.1 as usize);
     let (left_top, right_bottom) = stage(size);
-    let camera = Camera::new(options.from, seen.bounds, left_top, right_bottom);
+    let (mut mesh, mut seen, mut fit) = (None, Seen::default(), Fit::new(options.from, left_top, right_bottom));
+    for (row, (_, path)) in series.frames.iter().enumerate() {
+        let state = State::read(path, &field, &mut mesh)?;
+        state.look(&mut seen, &mut fit);
+        progress(row + 1, total);
+    }
+    let camera = fit.camera().ok_or_else(|| RenderError::Nothing { path: series.path.clone() })?;
     let scale = match options.range {
         Some(range) => Scale { range, centre: field.centre.filter(|centre| range.0 < *centre && *centre < range.1) },
         None => seen.scale(field.centre, field.centre.is_none()),
@@ -164,9 +161,9 @@ impl State {
     }
 
     /// Adds what this frame shows.
-    fn look(&self, seen: &mut Seen) {
+    fn look(&self, seen: &mut Seen, fit: &mut Fit) {
         for (row, face) in self.faces.iter().enumerate() {
-            face.iter().for_each(|point| seen.position(self.vertices[*point as usize]));
+            face.iter().for_each(|point| fit.see(self.vertices[*point as usize]));
             match self.per_face {
                 true => seen.value(self.values[row]),
                 false => face.iter().for_each(|point| seen.value(self.values[*point as usize])),

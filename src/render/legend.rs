@@ -78,7 +78,7 @@ fn ticks(low: f64, high: f64, letters: usize) -> Vec<(f64, String)> {
             .map(|count| (count as f64 * step, format!("{:.digits$}", count as f64 * step + 0.0)))
             .collect();
         let longest = texts.iter().map(|(_, text)| text.len()).max().unwrap_or(0);
-        if texts.len() <= 7 && (texts.len().max(2) - 1) * (longest + 2) <= letters {
+        if texts.len() <= 7 && (texts.len().max(2) - 1) * (longest + 1) <= letters {
             return texts;
         }
     }

@@ -20,9 +20,9 @@ impl Light {
 
     /// The light that a surface of the given colour (linear) and normal (of length 1) sends to the eye.
     pub fn on(&self, normal: Vec3, colour: Vec3) -> Vec3 {
-        let around = 0.30 + 0.10 * normal.y;
-        let diffuse = around + 0.66 * normal.dot(self.key).max(0.0) + 0.22 * normal.dot(self.fill).max(0.0);
-        colour * diffuse + Vec3::splat(0.10 * normal.dot(self.gloss).max(0.0).powi(40))
+        let around = 0.44 + 0.08 * normal.y;
+        let diffuse = around + 0.52 * normal.dot(self.key).max(0.0) + 0.18 * normal.dot(self.fill).max(0.0);
+        colour * diffuse + Vec3::splat(0.05 * normal.dot(self.gloss).max(0.0).powi(60))
     }
 }
 

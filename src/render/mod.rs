@@ -29,7 +29,7 @@ mod series;
 mod surface;
 mod text;
 
-pub use camera::Camera;
+pub use camera::{Camera, Fit};
 pub use colour::{Map, Scale};
 pub use draw::{Drawn, Options, draw, draw_with_progress};
 pub use error::RenderError;

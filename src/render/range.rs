@@ -1,33 +1,14 @@
 //! What the colours span: one range for a whole series.
 
 use super::colour::Scale;
-use glam::Vec3;
 
-/// What is seen in a series, gathered frame by frame.
+/// The values that are seen in a series, gathered frame by frame.
+#[derive(Default)]
 pub struct Seen {
-    /// Lower and upper corner of all positions (m).
-    pub bounds: (Vec3, Vec3),
     values: Vec<f32>,
 }
 
 impl Seen {
-    /// Nothing so far.
-    pub fn new() -> Seen {
-        Seen { bounds: (Vec3::MAX, Vec3::MIN), values: Vec::new() }
-    }
-
-    /// Whether no position was a finite number.
-    pub fn is_empty(&self) -> bool {
-        self.bounds.0.x > self.bounds.1.x
-    }
-
-    /// Adds a position that is drawn.
-    pub fn position(&mut self, position: Vec3) {
-        if position.is_finite() {
-            self.bounds = (self.bounds.0.min(position), self.bounds.1.max(position));
-        }
-    }
-
     /// Adds a value that is drawn.
     pub fn value(&mut self, value: f32) {
         if value.is_finite() {
@@ -74,7 +55,7 @@ mod tests {
     use super::*;
 
     fn scale(values: impl IntoIterator<Item = f32>, centre: Option<f32>, sizes: bool) -> Scale {
-        let mut seen = Seen::new();
+        let mut seen = Seen::default();
         values.into_iter().for_each(|value| seen.value(value));
         seen.scale(centre, sizes)
     }

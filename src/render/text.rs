@@ -33,7 +33,7 @@ impl Letters {
             300..500 => &iso_8859_1::FONT_8X13,
             _ => &iso_8859_1::FONT_10X20,
         };
-        Letters { font, zoom: (height as i32 / 720).max(1) }
+        Letters { font, zoom: ((height as i32 + 360) / 720).max(1) }
     }
 
     /// Width of a letter (pixels).
