@@ -16,6 +16,19 @@ pub fn delay(frames: usize) -> u16 {
 /// Hundredths of a second that the last picture stays before all begins anew.
 const REST: u16 = 80;
 
+/// The pictures whose colours stand for those of all.
+fn typical(frames: usize) -> Vec<usize> {
+    let last = frames.saturating_sub(1);
+    let mut rows = vec![0, last / 3, last * 2 / 3, last];
+    rows.dedup();
+    rows
+}
+
+/// How many pictures [`write_gif`] asks for.
+pub fn pictures(frames: usize) -> usize {
+    frames + typical(frames).len()
+}
+
 /// Writes an animation that loops for ever; the file appears when it is complete. `picture` draws a picture of the series;
 /// some are drawn twice, because the colours have to be chosen first.
 pub fn write_gif(
@@ -25,10 +38,8 @@ pub fn write_gif(
     mut picture: impl FnMut(usize) -> Result<Image, RenderError>,
 ) -> Result<(), RenderError> {
     let last = frames.saturating_sub(1);
-    let mut typical: Vec<usize> = vec![0, last / 3, last * 2 / 3, last];
-    typical.dedup();
     let mut samples = Vec::new();
-    for row in typical {
+    for row in typical(frames) {
         samples.push(picture(row)?);
     }
     let mut palette = Palette::new(&samples);

@@ -81,6 +81,11 @@ impl Camera {
         place.extend(inverse)
     }
 
+    /// Pixels of one unit at distance one.
+    pub fn focal(&self) -> f32 {
+        self.focal
+    }
+
     /// A direction as the eye sees it: to the right, up, towards the eye.
     pub fn turn(&self, direction: Vec3) -> Vec3 {
         self.axes * direction

@@ -5,14 +5,15 @@ use glam::Vec3;
 /// A range of colours of even perceptual steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Map {
-    /// Viridis: dark violet over green to yellow, for what has an order only.
+    /// Viridis, violet over green to yellow, for what has an order only; without its darkest tenth, on which neither
+    /// shadows nor mesh lines would be seen.
     Sequential,
     /// Moreland's cool to warm: blue over grey to red, for what lies on two sides of a middle.
     Diverging,
 }
 
-const VIRIDIS: [u32; 11] =
-    [0x440154, 0x482475, 0x414487, 0x355f8d, 0x2a788e, 0x21918c, 0x22a884, 0x44bf70, 0x7ad151, 0xbddf26, 0xfde725];
+const VIRIDIS: [u32; 10] =
+    [0x482475, 0x414487, 0x355f8d, 0x2a788e, 0x21918c, 0x22a884, 0x44bf70, 0x7ad151, 0xbddf26, 0xfde725];
 const COOL_WARM: [u32; 11] =
     [0x3b4cc0, 0x5977e3, 0x7b9ff9, 0x9ebeff, 0xc0d4f5, 0xdddcdc, 0xf2cbb7, 0xf7ac8e, 0xee8468, 0xd65244, 0xb40426];
 /// For values that are not numbers.
@@ -24,12 +25,12 @@ impl Map {
         if at.is_nan() {
             return unpack(NOT_FINITE);
         }
-        let anchors = match self {
+        let anchors: &[u32] = match self {
             Map::Sequential => &VIRIDIS,
             Map::Diverging => &COOL_WARM,
         };
-        let at = at.clamp(0.0, 1.0) * 10.0;
-        let below = (at as usize).min(9);
+        let at = at.clamp(0.0, 1.0) * (anchors.len() - 1) as f32;
+        let below = (at as usize).min(anchors.len() - 2);
         unpack(anchors[below]).lerp(unpack(anchors[below + 1]), at - below as f32)
     }
 }
@@ -117,8 +118,8 @@ mod tests {
     fn ends_and_middle_have_the_colours_of_the_table() {
         let scale = Scale { range: (2.0, 4.0), centre: None };
         let colour = |scale: &Scale, value| bytes(linear(scale.srgb(value)));
-        assert_eq!(colour(&scale, 2.0), [0x44, 0x01, 0x54]);
-        assert_eq!(colour(&scale, 3.0), [0x21, 0x91, 0x8c]);
+        assert_eq!(colour(&scale, 2.0), [0x48, 0x24, 0x75]);
+        assert_eq!(colour(&scale, 2.0 + 8.0 / 9.0), [0x21, 0x91, 0x8c]);
         assert_eq!(colour(&scale, 9.0), [0xfd, 0xe7, 0x25]);
         assert_eq!(colour(&scale, f32::NAN), [0xff, 0x00, 0xc8]);
         let scale = Scale { range: (-1.0, 3.0), centre: Some(0.0) };

@@ -61,7 +61,8 @@ pub fn draw_with_progress(
     let field = Field::find(&FrameFile::open(&series.frames[0].1)?, &options.field)?;
     let last = series.nearest(options.at);
     let frames = if options.animate { last + 1 } else { 1 };
-    let total = series.frames.len() + frames;
+    let pictures = if options.animate { animation::pictures(frames) } else { 1 };
+    let total = series.frames.len() + pictures;
     let size = (options.size.0 as usize, options.size.1 as usize);
     let (left_top, right_bottom) = stage(size);
     let (mut mesh, mut seen, mut fit) = (None, Seen::default(), Fit::new(options.from, left_top, right_bottom));
@@ -70,6 +71,7 @@ pub fn draw_with_progress(
         state.look(&mut seen, &mut fit);
         progress(row + 1, total);
     }
+    let mut done = series.frames.len();
     let camera = fit.camera().ok_or_else(|| RenderError::Nothing { path: series.path.clone() })?;
     let scale = match options.range {
         Some(range) => Scale { range, centre: field.centre.filter(|centre| range.0 < *centre && *centre < range.1) },
@@ -81,17 +83,15 @@ pub fn draw_with_progress(
         let (quantity, unit, caption) = (&*field.quantity, field.unit, &*series.caption(*time));
         let (vertices, faces, values) = (&*state.vertices, &*state.faces, state.colouring(&field));
         let picture = Picture { vertices, faces, values, scale, quantity, unit, caption, edges: options.edges };
-        Ok(paint(&picture, &camera, size))
+        let image = paint(&picture, &camera, size);
+        done += 1;
+        progress(done, total);
+        Ok(image)
     };
     if options.animate {
-        animation::write_gif(&options.out, frames, size, |row| {
-            let image = picture(row);
-            progress((series.frames.len() + row + 1).min(total), total);
-            image
-        })?;
+        animation::write_gif(&options.out, frames, size, picture)?;
     } else {
         encode::write_png(&options.out, &picture(last)?)?;
-        progress(total, total);
     }
     Ok(Drawn { out: options.out.clone(), frames, time: series.frames[last].0, range: scale.range })
 }
@@ -106,7 +106,8 @@ fn check(options: &Options) -> Result<(), RenderError> {
         }
         _ => (),
     }
-    match [options.size.0, options.size.1].iter().all(|side| (160..=16384).contains(side)) {
+    let (wide, high) = options.size;
+    match (320..=16384).contains(&wide) && (240..=16384).contains(&high) {
         true => Ok(()),
         false => Err(RenderError::Size { size: options.size }),
     }

@@ -36,7 +36,7 @@ pub enum RenderError {
         reason: String,
     },
     /// There is no field of that name.
-    #[error("no field \"{field}\" in {}; there are: {}", path.display(), known.join(", "))]
+    #[error("no field \"{field}\" in {}; there are: {}", path.display(), if known.is_empty() { "none".into() } else { known.join(", ") })]
     UnknownField {
         /// The name asked for.
         field: String,
@@ -60,7 +60,7 @@ pub enum RenderError {
         high: f32,
     },
     /// The picture is too small or too large.
-    #[error("a picture of {} by {} pixels; allowed are 160 to 16384 each way", size.0, size.1)]
+    #[error("a picture of {} by {} pixels; allowed are 320 by 240 to 16384 by 16384", size.0, size.1)]
     Size {
         /// Width and height (pixels).
         size: (u32, u32),

@@ -11,9 +11,9 @@ const INK: [u8; 3] = [44, 50, 58];
 const AXES: [(&str, Vec3, [u8; 3]); 3] =
     [("x", Vec3::X, [200, 62, 77]), ("y", Vec3::Y, [66, 145, 82]), ("z", Vec3::Z, [52, 104, 178])];
 
-/// Height of the legend at the bottom of a picture of the given height (pixels).
-pub fn height(height: usize) -> f32 {
-    let letters = Letters::new(height);
+/// Height of the legend at the bottom of a picture of the given width and height (pixels).
+pub fn height(size: (usize, usize)) -> f32 {
+    let letters = Letters::new(size);
     (letters.height() * 2 + bar_height(&letters) + 3 * gap(&letters)) as f32
 }
 
@@ -27,9 +27,12 @@ fn bar_height(letters: &Letters) -> i32 {
 
 /// Draws all of it into a finished picture.
 pub fn draw(image: &mut Image, picture: &Picture<'_>, camera: &Camera) {
-    let letters = Letters::new(image.height);
+    let letters = Letters::new((image.width, image.height));
     let (width, bottom, margin) = (image.width as i32, image.height as i32 - gap(&letters), letters.height());
-    bar(image, picture, &letters, (width * 27 / 100, width * 73 / 100), bottom);
+    // narrow pictures leave less for the bar, so that its last number does not run into the caption
+    let caption = picture.caption.chars().count() as i32 * letters.width();
+    let half = (width * 23 / 100).min(width / 2 - margin - caption - 3 * letters.width()).max(width / 10);
+    bar(image, picture, &letters, (width / 2 - half, width / 2 + half), bottom);
     letters.write(image, picture.caption, (width - margin, bottom - letters.height()), Anchor::Right, INK);
     axes(image, camera, &letters);
 }

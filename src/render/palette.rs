@@ -1,6 +1,7 @@
 //! The 256 colours of an animation.
 
 use super::Image;
+use std::cmp::Reverse;
 use std::collections::HashMap;
 
 /// Colours that stand for all others, at most 255; the last index means "as before".
@@ -10,12 +11,15 @@ pub struct Palette {
     nearest: HashMap<[u8; 3], u8>,
 }
 
+/// How many colours may be kept as they are.
+const MOST_KEPT: usize = 64;
 /// The index that leaves a pixel as it was.
 pub const UNCHANGED: u8 = 255;
 
 impl Palette {
-    /// Chooses colours for some pictures: the group of colours with the largest error is cut in two at its mean, along its
-    /// longest side, until there are 255 groups; each is represented by its mean.
+    /// Chooses colours for some pictures. Those that fill more than a thousandth of them (background, letters) stay as they
+    /// are. Of the others, the group of colours with the largest error is cut in two at its mean, along its longest side,
+    /// until there are 255 colours; each group is represented by its mean.
     pub fn new<'a>(images: impl IntoIterator<Item = &'a Image>) -> Palette {
         let mut counts = HashMap::<[u8; 3], u64>::new();
         for pixel in images.into_iter().flat_map(|image| &image.pixels) {
@@ -23,9 +27,12 @@ impl Palette {
         }
         let mut all: Vec<_> = counts.into_iter().collect();
         // a map's order differs from run to run
-        all.sort_unstable();
+        all.sort_unstable_by_key(|(colour, count)| (Reverse(*count), *colour));
+        let total: u64 = all.iter().map(|(_, count)| count).sum();
+        let frequent = all.iter().take(MOST_KEPT).take_while(|(_, count)| count * 1000 > total).count();
+        let mut colours: Vec<_> = all.drain(..frequent).map(|(colour, _)| colour).collect();
         let mut groups = vec![Group::new(all)];
-        while groups.len() < 255 {
+        while groups.len() + colours.len() < 255 {
             let worst = (0..groups.len()).max_by(|&a, &b| groups[a].error.total_cmp(&groups[b].error)).unwrap_or(0);
             if groups[worst].error <= 0.0 {
                 break;
@@ -33,7 +40,8 @@ impl Palette {
             let (first, second) = groups.swap_remove(worst).cut();
             groups.extend([first, second]);
         }
-        Palette { colours: groups.iter().map(Group::colour).collect(), nearest: HashMap::new() }
+        colours.extend(groups.iter().map(Group::colour));
+        Palette { colours, nearest: HashMap::new() }
     }
 
     /// Red, green and blue of all 256 entries.

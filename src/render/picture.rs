@@ -50,6 +50,8 @@ pub fn paint(picture: &Picture<'_>, camera: &Camera, (width, height): (usize, us
     let ramp = picture.scale.ramp();
     let lights = Light::new();
     let look = Look { ramp: &ramp, light: &lights, edge: 0.35 * FINE as f32 * thickness(height) };
+    // forty samples deep within two: no surface that we see well is that steep
+    let step = 1.0 + 40.0 / (camera.focal() * FINE as f32);
     let mut image = Image::new(width, height, [255; 3]);
     image.pixels.par_chunks_mut(width * ROWS).enumerate().for_each(|(number, pixels)| {
         // one pixel row more on either side, for the outline
@@ -60,7 +62,7 @@ pub fn paint(picture: &Picture<'_>, camera: &Camera, (width, height): (usize, us
         for (row, pixels) in pixels.chunks_mut(width).enumerate() {
             let behind = light::background((number * ROWS + row) as f32 / height as f32);
             for (column, pixel) in pixels.iter_mut().enumerate() {
-                *pixel = colour::bytes(mean(&strip, column * FINE, row * FINE + margin, behind));
+                *pixel = colour::bytes(mean(&strip, column * FINE, row * FINE + margin, behind, step));
             }
         }
     });
@@ -73,28 +75,27 @@ fn thickness(height: usize) -> f32 {
     (height as f32 / 720.0).max(1.0)
 }
 
-/// The mean of a pixel's samples; samples at the rim of the body are darker and make its outline.
-fn mean(strip: &Strip, column: usize, row: usize, behind: Vec3) -> Vec3 {
+/// The mean of a pixel's samples; samples at the rim of what is in front are darker and make its outline.
+fn mean(strip: &Strip, column: usize, row: usize, behind: Vec3, step: f32) -> Vec3 {
     let mut sum = Vec3::ZERO;
     for y in row..row + FINE {
         for x in column..column + FINE {
             let at = y * strip.width + x;
             sum += match strip.nearness[at] {
                 0.0 => behind,
-                _ => strip.light[at] * if rim(strip, x, y) { 0.45 } else { 1.0 },
+                _ => strip.light[at] * if rim(strip, x, y, step) { 0.45 } else { 1.0 },
             };
         }
     }
     sum / (FINE * FINE) as f32
 }
 
-/// Whether nothing is there two samples away.
-fn rim(strip: &Strip, x: usize, y: usize) -> bool {
-    let empty = |x: usize, y: usize| strip.nearness.get(y * strip.width + x).is_some_and(|&nearness| nearness == 0.0);
-    (x + 2 < strip.width && empty(x + 2, y))
-        || (x >= 2 && empty(x - 2, y))
-        || empty(x, y + 2)
-        || (y >= 2 && empty(x, y - 2))
+/// Whether two samples away there is nothing, or something farther by the factor `step`.
+fn rim(strip: &Strip, x: usize, y: usize, step: f32) -> bool {
+    let own = strip.nearness[y * strip.width + x];
+    let beyond = |x: usize, y: usize| strip.nearness.get(y * strip.width + x).is_some_and(|other| own > other * step);
+    let (right, left) = (x + 2 < strip.width && beyond(x + 2, y), x >= 2 && beyond(x - 2, y));
+    right || left || beyond(x, y + 2) || (y >= 2 && beyond(x, y - 2))
 }
 
 /// All faces in triangles, in samples. A quadrilateral is four triangles about its middle, so that none of its diagonals is
@@ -163,6 +164,6 @@ fn ink(corners: &[Vec3; 4], height: usize) -> f32 {
 
 /// The part of a picture that the body may fill, the rest is the legend's (left and top, right and bottom, in pixels).
 pub fn stage((width, height): (usize, usize)) -> (Vec2, Vec2) {
-    let (margin, below) = (height as f32 * 0.045, legend::height(height));
+    let (margin, below) = (height as f32 * 0.045, legend::height((width, height)));
     (Vec2::splat(margin), Vec2::new(width as f32 - margin, height as f32 - below - margin * 0.5))
 }

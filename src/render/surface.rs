@@ -1,5 +1,7 @@
 //! The outer faces of what is left of a mesh.
 
+use rayon::prelude::*;
+
 /// All faces of a mesh with the one or two cells at each.
 pub struct Faces {
     faces: Vec<Face>,
@@ -45,7 +47,7 @@ impl Faces {
             }
             key
         };
-        faces.sort_by_cached_key(|face| (key(face), face.cell));
+        faces.par_sort_unstable_by_key(|face| (key(face), face.cell));
         faces.dedup_by(|later, first| {
             let same = first.beyond == NONE && key(later) == key(first);
             if same {

@@ -26,14 +26,15 @@ pub enum Anchor {
 }
 
 impl Letters {
-    /// Letters for a picture of that height (pixels).
-    pub fn new(height: usize) -> Letters {
+    /// Letters for a picture of that width and height (pixels).
+    pub fn new((width, height): (usize, usize)) -> Letters {
+        let height = height.min(width * 3 / 4);
         let font = match height {
             0..300 => &iso_8859_1::FONT_6X10,
             300..500 => &iso_8859_1::FONT_8X13,
             _ => &iso_8859_1::FONT_10X20,
         };
-        Letters { font, zoom: ((height as i32 + 360) / 720).max(1) }
+        Letters { font, zoom: ((height as i32 + 360) / 900).max(1) }
     }
 
     /// Width of a letter (pixels).
