@@ -177,30 +177,31 @@ fn an_animation_has_all_frames_and_loops() {
     assert_eq!(count(&half.out), 11);
 }
 
-/// A square across the line of sight, one value all over.
-fn square(value: f32, scale: Scale) -> sinew::render::Image {
-    let vertices =
-        [Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 0.0, -1.0), Vec3::new(1.0, 0.0, 1.0), Vec3::new(-1.0, 0.0, 1.0)];
-    let picture = Picture {
-        vertices: &vertices,
-        faces: &[[0, 1, 2, 3]],
-        values: Colouring::Faces(&[value]),
-        scale,
-        quantity: "value",
-        unit: "",
-        caption: "",
-        edges: false,
-    };
-    let mut fit = Fit::new(Vec3::NEG_Y, glam::Vec2::splat(100.0), glam::Vec2::splat(300.0));
-    vertices.iter().for_each(|vertex| fit.see(*vertex));
-    let camera = fit.camera().unwrap();
-    paint(&picture, &camera, (400, 400))
+const LEFT_TOP: glam::Vec2 = glam::Vec2::splat(100.0);
+const RIGHT_BOTTOM: glam::Vec2 = glam::Vec2::splat(300.0);
+
+/// The corners of a square across the line of sight.
+fn square(y: f32) -> [Vec3; 4] {
+    [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)].map(|(x, z)| Vec3::new(x, y, z))
 }
+
+/// Squares seen from -y, each with one value all over.
+fn squares(places: &[f32], values: &[f32], scale: Scale, edges: bool) -> sinew::render::Image {
+    let vertices: Vec<Vec3> = places.iter().flat_map(|y| square(*y)).collect();
+    let faces: Vec<[u32; 4]> =
+        (0..places.len() as u32).map(|row| [0, 1, 2, 3].map(|corner| 4 * row + corner)).collect();
+    let (vertices, faces, values) = (&*vertices, &*faces, Colouring::Faces(values));
+    let picture = Picture { vertices, faces, values, scale, quantity: "value", unit: "", caption: "", edges };
+    let mut fit = Fit::new(Vec3::NEG_Y, LEFT_TOP, RIGHT_BOTTOM);
+    square(0.0).into_iter().for_each(|vertex| fit.see(vertex));
+    paint(&picture, &fit.camera().unwrap(), (400, 400))
+}
+
+const UNIT: Scale = Scale { range: (0.0, 1.0), centre: None };
 
 #[test]
 fn a_known_value_has_its_colour_where_it_is_expected() {
-    let scale = Scale { range: (0.0, 1.0), centre: None };
-    let image = square(0.5, scale);
+    let image = squares(&[0.0], &[0.5], UNIT, false);
     let [r, g, b] = image.at(200, 200);
     // the map has (33.5, 156.5, 136) in its middle; light makes that darker or brighter, of the same hue
     let shares = [f32::from(r) / 33.5, f32::from(g) / 156.5, f32::from(b) / 136.0];
@@ -209,7 +210,73 @@ fn a_known_value_has_its_colour_where_it_is_expected() {
     for (x, y) in [(95, 200), (305, 200), (200, 95), (200, 305)] {
         assert!(image.at(x, y)[0] > 200, "the square reaches beyond its place at {x}, {y}");
     }
-    assert_eq!(square(f32::NAN, scale).at(200, 200)[1] / 32, 0);
+    assert_eq!(squares(&[0.0], &[f32::NAN], UNIT, false).at(200, 200)[1] / 32, 0);
+}
+
+#[test]
+fn the_nearer_face_hides_the_farther() {
+    for (places, values) in [([0.0, 0.1], [1.0, 0.0]), ([0.1, 0.0], [0.0, 1.0])] {
+        let [r, g, b] = squares(&places, &values, UNIT, false).at(200, 200);
+        assert!(r > 150 && g > 150 && b < 90, "{:?} is not the yellow of the nearer one", (r, g, b));
+    }
+}
+
+#[test]
+fn element_edges_are_drawn_when_asked_for() {
+    let (with, without) = (squares(&[0.0], &[0.7], UNIT, true), squares(&[0.0], &[0.7], UNIT, false));
+    assert_eq!(with.at(200, 200), without.at(200, 200));
+    // the outline darkens these pixels in both, the edge darkens them once more
+    let differ = (102..298).filter(|&x| (100..104).any(|y| with.at(x, y)[1] + 5 < without.at(x, y)[1])).count();
+    assert!(differ > 190, "{differ}");
+}
+
+#[test]
+fn pictures_do_not_depend_on_the_number_of_threads() {
+    let folder = example("threads", 2);
+    let pictures = [1, 3].map(|threads| {
+        let options = options(folder.join(format!("{threads}.png")));
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| draw(&folder, &options)).unwrap();
+        fs::read(&options.out).unwrap()
+    });
+    assert!(pictures[0] == pictures[1]);
+}
+
+#[test]
+fn colours_mean_the_same_in_all_frames() {
+    let folder = example("same", 3);
+    let at = |time: f64| {
+        let options = Options { at: Some(time), ..options(folder.join(format!("{time}.png"))) };
+        let drawn = draw(&folder, &options).unwrap();
+        (drawn.time, drawn.range)
+    };
+    let (first, last) = (at(-1.0), at(9.0));
+    assert_eq!((first.0, last.0), (0.0, 0.02));
+    assert_eq!(first.1, last.1);
+}
+
+#[test]
+fn a_run_that_broke_can_still_be_drawn() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("render/broken");
+    let bar = Bar::new();
+    let mut series = Series::create(&Folder::create(&folder).unwrap()).unwrap();
+    for (time, bad) in [(0.0, 0), (1.0, 40), (2.0, usize::MAX)] {
+        let mut displacement = bar.displacement(0.5);
+        displacement.iter_mut().take(bad).for_each(|value| *value = f32::NAN);
+        displacement.iter_mut().skip(90).take(bad.min(30)).for_each(|value| *value = f32::INFINITY);
+        let point_arrays = vec![Array { name: "displacement", components: 3, values: Values::F32(&displacement) }];
+        let (points, tets, hexes) = (&bar.points, &bar.tets, &bar.hexes);
+        series.write(&Frame { time, points, tets, hexes, point_arrays, cell_arrays: vec![] }).unwrap();
+        let out = folder.join(format!("{time}.png"));
+        let drawn = draw(&folder, &Options { field: "displacement".into(), ..options(out) }).unwrap();
+        assert!(drawn.range.1 < 1.0, "{:?}", drawn.range);
+    }
+    let bodies = fs::read_to_string(folder.join("fields.pvd")).unwrap();
+    let only_broken: String =
+        bodies.lines().filter(|line| !line.contains("00.vtu") && !line.contains("01.vtu")).collect();
+    fs::write(folder.join("fields.pvd"), only_broken).unwrap();
+    let refused = draw(&folder, &Options { field: "displacement".into(), ..options(folder.join("no.png")) });
+    assert!(matches!(refused, Err(RenderError::Nothing { .. })), "{refused:?}");
 }
 
 #[test]

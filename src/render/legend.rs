@@ -81,7 +81,7 @@ fn ticks(low: f64, high: f64, letters: usize) -> Vec<(f64, String)> {
             .map(|count| (count as f64 * step, format!("{:.digits$}", count as f64 * step + 0.0)))
             .collect();
         let longest = texts.iter().map(|(_, text)| text.len()).max().unwrap_or(0);
-        if texts.len() <= 7 && (texts.len().max(2) - 1) * (longest + 1) <= letters {
+        if texts.len() <= 7 && step / (high - low) * letters as f64 >= longest as f64 + 1.0 {
             return texts;
         }
     }
