@@ -157,6 +157,9 @@ fn an_animation_has_all_frames_and_loops() {
     let folder = example("animation", 21);
     let small = Options { animate: true, size: (480, 360), ..options(folder.join("all.gif")) };
     assert_eq!(draw(&folder, &small).unwrap().frames, 21);
+    let first = fs::read(&small.out).unwrap();
+    draw(&folder, &small).unwrap();
+    assert!(first == fs::read(&small.out).unwrap(), "the same input, other bytes");
     let count = |path: &Path| {
         let mut decoder = gif::DecodeOptions::new();
         decoder.set_color_output(gif::ColorOutput::RGBA);
