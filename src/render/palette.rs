@@ -97,3 +97,26 @@ impl Group {
         self.mean.map(|mean| mean.round() as u8)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::*;
+
+    #[test]
+    fn large_areas_keep_their_colour_and_gradients_stay_near_theirs() {
+        let mut image = Image::new(200, 200, [250, 251, 253]);
+        for (at, pixel) in image.pixels.iter_mut().take(20_000).enumerate() {
+            *pixel = [(at % 200) as u8, (at / 100) as u8, 60];
+        }
+        let mut palette = Palette::new([&image]);
+        let bytes = palette.bytes();
+        assert_eq!(bytes.len(), 768);
+        for pixel in &image.pixels {
+            let index = usize::from(palette.index(*pixel));
+            assert!(index < usize::from(UNCHANGED));
+            let worst = (0..3).map(|c| bytes[3 * index + c].abs_diff(pixel[c])).max().unwrap();
+            assert!(worst <= if pixel[2] == 253 { 0 } else { 12 }, "{pixel:?}: off by {worst}");
+        }
+    }
+}
