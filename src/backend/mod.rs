@@ -4,6 +4,7 @@ pub mod cpu;
 pub mod device;
 pub mod gpu;
 pub mod kernel;
+pub mod step;
 
 use bevy_ecs::prelude::*;
 use kernel::BufferId;

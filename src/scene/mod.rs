@@ -14,3 +14,4 @@ pub mod words;
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
 pub use load::SceneFile;
 pub use validate::validate;
+pub use suggest::choice;
