@@ -101,7 +101,10 @@ impl<'a> Slot<'a> {
             (Segment::Name(_), Kind::Map(_) | Kind::Fields(_)) => Self::insert(rest, inner, text),
             (Segment::Name(_), Kind::Tuple(items)) if items.is_empty() => Self::insert(rest, inner, text),
             (Segment::Name(name), Kind::List(items)) => {
-                let notes = vec![format!("its items have numbers: {} to {}", "[0]", items.len().saturating_sub(1))];
+                let notes = vec![match items.len() {
+                    0 => "it is empty".to_string(),
+                    count => format!("its items are [0] to [{}]", count - 1),
+                }];
                 Err((format!("there is no `{name}` in {holder}, which is a list"), notes))
             }
             (Segment::Index(_), Kind::Map(_) | Kind::Fields(_)) => {
