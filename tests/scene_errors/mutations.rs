@@ -96,7 +96,9 @@ fn deep_nesting_is_refused_and_not_followed() {
 fn many_mistakes_are_told_in_bounded_time_and_space() {
     let bodies: String = (0..20_000).map(|i| format!("\"b{i}\": (mesh: 3),\n")).collect();
     let text = format!("(duration: 1, materials: {{}}, bodies: {{{bodies}}})");
+    let wrong_values = text.replace("(mesh: 3)", "(mesh: Box(size: (1, 1, 1), cells: (1, 1, 0)), material: \"m\")");
     let started = std::time::Instant::now();
+    assert!(complaints(&wrong_values, &[]).to_string().contains("more"));
     let told = complaints(&text, &[]);
     let shown = told.to_string();
     assert!(told.list().len() >= 20_000);

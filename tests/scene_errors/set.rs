@@ -116,3 +116,13 @@ fn texts_may_be_set_without_quotes() {
     assert_eq!(set(&["probes.tip.body=None"]).scene.probes["tip"].body, None);
     assert_eq!(set(&["probes.tip.body=Some(\"cube\")"]).scene.probes["tip"].body.as_deref(), Some("cube"));
 }
+
+#[test]
+fn comments_do_not_swallow_a_set() {
+    let text =
+        GOOD.replace("Box(", "Box /* ( */ ( // ( \n").replace("probes: {", "output: ( /* ( */ // (\n), probes: {");
+    let sets = ["bodies.cube.mesh.elements=Tet4".to_string(), "output.fields_every=0.25".to_string()];
+    let scene = SceneFile::from_text("cube.ron", &text.replace(", elements: Hex8", ""), Path::new(""), &sets).unwrap();
+    assert!(scene.text().contains("elements: Tet4"));
+    assert_eq!(scene.scene.output.fields_every, Some(0.25));
+}
