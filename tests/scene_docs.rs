@@ -30,11 +30,13 @@ fn words_of_the_schema() -> Vec<&'static str> {
 #[test]
 fn every_field_and_variant_is_in_the_reference() {
     let words = words_of_the_schema();
+    // a word that only an example shows is not explained
+    let tables: String = REFERENCE.split("```").step_by(2).collect();
     assert!(words.len() > 120, "the schema was read as {} words: {words:?}", words.len());
     for word in words {
-        let named = REFERENCE.match_indices(word).any(|(at, _)| {
+        let named = tables.match_indices(word).any(|(at, _)| {
             let part = |c: char| c.is_alphanumeric() || c == '_';
-            let (before, after) = (REFERENCE[..at].chars().next_back(), &REFERENCE[at + word.len()..]);
+            let (before, after) = (tables[..at].chars().next_back(), &tables[at + word.len()..]);
             // in code, not as a word of a sentence
             !before.is_some_and(part)
                 && !after.starts_with(part)
