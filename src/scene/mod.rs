@@ -3,6 +3,7 @@
 pub mod check;
 pub mod diagnostic;
 pub mod load;
+mod partial;
 pub mod schema;
 pub mod set;
 pub mod source;
