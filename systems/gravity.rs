@@ -17,11 +17,7 @@ pub fn system() -> System {
     )
 }
 
-fn gravity(
-    signals: Res<Signals>,
-    loads: Query<(&Gravity, &OfBody)>,
-    mut bodies: Query<(&Mass, &mut ExternalForce)>,
-) {
+fn gravity(signals: Res<Signals>, loads: Query<(&Gravity, &OfBody)>, mut bodies: Query<(&Mass, &mut ExternalForce)>) {
     for (load, body) in &loads {
         let Ok((mass, mut external)) = bodies.get_mut(body.0) else { continue };
         let acceleration = signals.values()[load.signal];
