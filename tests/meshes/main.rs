@@ -2,5 +2,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod generators;
+mod hostile;
+mod placement;
+mod readers;
+mod samples;
 mod shared;
 mod soundness;
