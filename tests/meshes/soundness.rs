@@ -80,7 +80,7 @@ fn wrong_rows_points_and_sets_are_each_named() {
     );
     let mut mesh = cube(ElementKind::Hex8);
     mesh.hexes[2][5] = mesh.hexes[2][4];
-    says(&mesh, Defect::RepeatedNode, &[2], "1 element names a point twice: 2 (point 11)");
+    says(&mesh, Defect::RepeatedNode, &[2], "1 element names a point twice: 2 (point 12)");
     let mut mesh = cube(ElementKind::Tet4);
     mesh.tets.push(mesh.tets[4]);
     says(&mesh, Defect::RepeatedElement, &[48], "1 pair of elements with the same points: 4 and 48; keep one of each");
