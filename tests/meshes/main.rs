@@ -6,5 +6,7 @@ mod hostile;
 mod placement;
 mod readers;
 mod samples;
+mod samples_vtk;
 mod shared;
+mod shipped;
 mod soundness;
