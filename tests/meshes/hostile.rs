@@ -3,6 +3,9 @@
 use crate::{readers, samples};
 use proptest::prelude::*;
 use sinew::mesh::vtu;
+use std::sync::LazyLock;
+
+static FILES: LazyLock<Vec<(String, Vec<u8>)>> = LazyLock::new(samples::all);
 
 proptest! {
     #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
@@ -14,8 +17,7 @@ proptest! {
         changes in prop::collection::vec((0.0f64..1.0, any::<u8>()), 0..4),
         digits in prop::collection::vec((0.0f64..1.0, b'0'..=b'9'), 0..3),
     ) {
-        let files = samples::all();
-        let (name, mut bytes) = files[file % files.len()].clone();
+        let (name, mut bytes) = FILES[file % FILES.len()].clone();
         bytes.truncate((bytes.len() as f64 * cut.min(1.0)) as usize);
         let length = bytes.len();
         for (place, byte) in changes.into_iter().chain(digits) {
@@ -36,9 +38,9 @@ proptest! {
 
 #[test]
 fn every_truncation_of_every_format_is_refused_or_read() {
-    for (name, bytes) in samples::all().into_iter().filter(|(name, _)| !name.contains("-8-")) {
+    for (name, bytes) in FILES.iter().filter(|(name, _)| !name.contains("-8-")) {
         for length in (0..bytes.len()).step_by(7) {
-            if let Err(error) = readers::read(&name, &bytes[..length]) {
+            if let Err(error) = readers::read(name, &bytes[..length]) {
                 assert!(error.to_string().contains("; "), "says what to do: {error}");
             }
         }
