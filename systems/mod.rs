@@ -25,7 +25,6 @@ mod pressure;
 mod registry;
 mod traction;
 
-pub use observe::Observer;
 pub use registry::{HostSystem, Phase, Registry, System};
 
 /// The built-in systems, in the order of a step.

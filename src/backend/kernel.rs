@@ -53,6 +53,11 @@ macro_rules! shader {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct BufferId(pub(crate) u32);
 
+impl BufferId {
+    /// No buffer: stands in where making one failed, until the failure is told.
+    pub(crate) const NONE: BufferId = BufferId(u32::MAX);
+}
+
 /// A kernel made ready by the GPU layer; only valid for the `Gpu` that made it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct KernelId(pub(crate) u32);

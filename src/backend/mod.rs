@@ -1,6 +1,7 @@
 //! Where kernels run: on the host's cores, or on a GPU.
 
 pub mod cpu;
+pub mod device;
 pub mod gpu;
 pub mod kernel;
 

@@ -69,12 +69,12 @@ fn names_in(path: &Path) -> Result<BTreeSet<String>, OutputError> {
     Ok(names)
 }
 
-/// Removes the files of the previous run, the mark last: a run that breaks meanwhile leaves a folder that is still known.
+/// Removes the files of the previous run. Names are taken from what is in the folder, so that no list can point elsewhere;
+/// the mark stays until it is written anew, so that a run that breaks meanwhile leaves a folder that is still known.
 fn clear(folder: &Path, names: &BTreeSet<String>) -> Result<(), OutputError> {
     let mark = fs::read_to_string(folder.join(MARK)).unwrap_or_default();
     let mark: Value = serde_json::from_str(&mark).unwrap_or_default();
-    let listed = mark["files"].as_array().into_iter().flatten().filter_map(Value::as_str);
-    let listed: BTreeSet<&str> = listed.filter(|name| is_plain(name)).collect();
+    let listed: BTreeSet<&str> = mark["files"].as_array().into_iter().flatten().filter_map(Value::as_str).collect();
     for name in names {
         let whole = name.strip_suffix(".partial").unwrap_or(name);
         let path = folder.join(name);

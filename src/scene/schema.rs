@@ -622,3 +622,10 @@ fn all_axes() -> Vec<Axis> {
 fn everything() -> Select {
     Select::All
 }
+
+impl Scene {
+    /// Time between outputs of fields (s).
+    pub fn fields_every(&self) -> f64 {
+        self.output.fields_every.unwrap_or(self.duration / 20.0)
+    }
+}

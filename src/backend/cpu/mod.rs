@@ -58,6 +58,17 @@ impl Cpu {
         self.arch
     }
 
+    /// Results of `task` for 0 to `count` − 1, in order.
+    pub fn map<R: Send>(&self, count: usize, task: impl Fn(usize) -> R + Sync + Send) -> Vec<R> {
+        match &self.pool {
+            None => (0..count).map(task).collect(),
+            Some(pool) => pool.install(|| {
+                use rayon::prelude::*;
+                (0..count).into_par_iter().map(task).collect()
+            }),
+        }
+    }
+
     /// Runs `task` on each item, on all threads. Items must be independent; their order of work does not matter then.
     pub fn for_each<I: Send>(&self, items: impl Iterator<Item = I> + Send, task: impl Fn(I) + Sync + Send) {
         match &self.pool {

@@ -1,0 +1,171 @@
+//! Node columns of a body, and what blocks need once the time step is known.
+
+use super::Assembly;
+use crate::backend::cpu::BlockLaw;
+use crate::components::*;
+use crate::elements::{Element, Stiffness};
+use crate::evaluation::{lane_place, node_count, row_count, with_element};
+use crate::materials::{Fibres, NeoHookean};
+use crate::math::LANES;
+use crate::mesh::Mesh;
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+/// Rest positions, masses, the gather's map and the columns of motion. Optional columns come with what calls for them.
+pub(super) fn insert_node_columns(
+    assembly: &Assembly<'_>,
+    name: &str,
+    mesh: &Mesh,
+    node_rows: &[u32],
+    authoring: &Authoring,
+    force_length: usize,
+    world: &mut World,
+    body: Entity,
+) {
+    let (count, precision) = (mesh.points.len(), assembly.precision);
+    let mut rest = vec![DVec3::ZERO; count];
+    for (&point, &row) in mesh.points.iter().zip(node_rows) {
+        rest[row as usize] = point;
+    }
+    let vectors = || Reals::zeros(precision, 3 * count);
+    let scene = &assembly.scene.scene;
+    let mut entity = world.entity_mut(body);
+    entity.insert((
+        RestPosition(rest),
+        Displacement(vectors()),
+        DisplacementStep(vectors()),
+        InternalForce(vectors()),
+        ElementForce(Reals::zeros(precision, force_length)),
+        ConstrainedAxes(vec![0; count]),
+        FirstNonFinite(vec![u32::MAX]),
+    ));
+    if scene.integration.compensated && precision == Precision::F32 {
+        entity.insert(DisplacementCompensation(vectors()));
+    }
+    if !scene.loads.is_empty() {
+        entity.insert(ExternalForce(vectors()));
+    }
+    if scene.output.energies_every.is_some() {
+        entity.insert(Work(Reals::zeros(precision, 4 * count)));
+    }
+    let used = std::iter::once(&scene.bodies[name].material).chain(scene.bodies[name].regions.iter().map(|r| &r.material));
+    let damped = used.into_iter().any(|material| scene.materials[material].damping.is_some());
+    let corners = corners(&authoring.blocks, count, world);
+    world.entity_mut(body).insert(corners);
+    let (mass, damping) = nodal_masses(&authoring.blocks, count, world);
+    let mut entity = world.entity_mut(body);
+    entity.insert(Mass(Reals::from_f64(precision, mass.into_iter())));
+    if damped {
+        entity.insert(DampingCoefficient(Reals::from_f64(precision, damping.into_iter())));
+    }
+}
+
+/// Blocks of a body with their connectivity.
+fn blocks<'a>(entities: &'a [Entity], world: &'a World) -> impl Iterator<Item = (&'a Block, &'a Connectivity, &'a RestShape)> {
+    entities.iter().filter_map(|&entity| {
+        Some((world.get::<Block>(entity)?, world.get::<Connectivity>(entity)?, world.get::<RestShape>(entity)?))
+    })
+}
+
+fn corners(entities: &[Entity], count: usize, world: &World) -> Corners {
+    let mut starts = vec![0_u32; count + 1];
+    let each = |visit: &mut dyn FnMut(u32, usize)| {
+        for (block, connectivity, _) in blocks(entities, world) {
+            let nodes = node_count(block.kind);
+            for row in 0..block.count {
+                for corner in 0..nodes {
+                    let place = block.force_offset + lane_place(row, 3 * nodes, 3 * corner);
+                    visit(connectivity[lane_place(row, nodes, corner)], place);
+                }
+            }
+        }
+    };
+    each(&mut |node, _| starts[node as usize + 1] += 1);
+    for node in 0..count {
+        starts[node + 1] += starts[node];
+    }
+    let mut next = starts.clone();
+    let mut corners = vec![0; starts[count] as usize];
+    each(&mut |node, place| {
+        corners[next[node as usize] as usize] = place as u32;
+        next[node as usize] += 1;
+    });
+    Corners { starts, corners }
+}
+
+/// Lumped mass (kg) and damping coefficient (kg/s) of every node, from the elements that still have volume.
+pub fn nodal_masses(entities: &[Entity], count: usize, world: &World) -> (Vec<f64>, Vec<f64>) {
+    let (mut mass, mut damping) = (vec![0.0; count], vec![0.0; count]);
+    for (block, connectivity, shape) in blocks(entities, world) {
+        let density = world.get::<Density>(block.material).map_or(0.0, |d| d.0);
+        let rate = world.get::<Damping>(block.material).map_or(0.0, |d| d.0);
+        let nodes = node_count(block.kind);
+        let volume_row = with_element!(block.kind, E => E::VOLUME_ROW);
+        for row in 0..block.count {
+            let share = density * shape.get(lane_place(row, row_count(block.kind), volume_row)) / nodes as f64;
+            for corner in 0..nodes {
+                let node = connectivity[lane_place(row, nodes, corner)] as usize;
+                mass[node] += share;
+                damping[node] += share * rate;
+            }
+        }
+    }
+    (mass, damping)
+}
+
+/// What the stable step depends on, of a material.
+pub fn stiffness(world: &World, material: Entity) -> Stiffness {
+    let moduli = world.get::<NeoHookean<f64>>(material);
+    let (shear, bulk) = moduli.map_or((0.0, 0.0), |m| (m.shear, m.bulk));
+    let eta = world.get::<Fibres<f64>>(material).map_or(0.0, |f| f.eta);
+    Stiffness {
+        // a negative λ only softens
+        lambda: (bulk - 2.0 / 3.0 * shear).max(0.0),
+        deviatoric: 2.0 * shear + 8.0 / 3.0 * eta,
+        density: world.get::<Density>(material).map_or(0.0, |d| d.0),
+    }
+}
+
+/// Gives every block its law, in f64 for looking at it and in the run's precision for its kernel, and its history.
+pub(super) fn insert_laws(precision: Precision, world: &mut World) {
+    let time_step = world.resource::<Clock>().time_step;
+    let entities: Vec<(Entity, Block)> =
+        world.query::<(Entity, &Block)>().iter(world).map(|(entity, block)| (entity, block.clone())).collect();
+    for (entity, block) in entities {
+        let Some(&neo_hookean) = world.get::<NeoHookean<f64>>(block.material) else { continue };
+        let fibres = world.get::<Fibres<f64>>(block.material).map(|&fibres| (fibres, block.fibre_direction));
+        let prony = world.get::<Prony>(block.material).map_or(Vec::new(), |prony| prony.coefficients(time_step));
+        let memory = 6 * prony.len() * block.count.div_ceil(LANES) * LANES;
+        let law = BlockLaw { neo_hookean, fibres, prony };
+        let mut entity = world.entity_mut(entity);
+        if precision == Precision::F32 {
+            entity.insert(law.rounded::<f32>());
+        }
+        entity.insert(law);
+        if memory > 0 {
+            entity.insert(ViscousMemory(Reals::zeros(precision, memory)));
+        }
+    }
+}
+
+/// First half step of all nodes, from the bodies' velocity and spin; none along constrained axes.
+pub(super) fn start(assembly: &Assembly<'_>, world: &mut World) {
+    let time_step = world.resource::<Clock>().time_step;
+    for (name, parts) in &assembly.bodies {
+        let body = &assembly.scene.scene.bodies[name];
+        if body.velocity == DVec3::ZERO && body.spin == DVec3::ZERO {
+            continue;
+        }
+        let mut query = world.query::<(&RestPosition, &Mass, &ConstrainedAxes, &mut DisplacementStep)>();
+        let Ok((rest, mass, axes, mut step)) = query.get_mut(world, parts.entity) else { continue };
+        let total: f64 = (0..rest.0.len()).map(|row| mass.get(row)).sum();
+        let center: DVec3 = (0..rest.0.len()).map(|row| rest.0[row] * mass.get(row)).sum::<DVec3>() / total;
+        for row in 0..rest.0.len() {
+            let velocity = body.velocity + body.spin.cross(rest.0[row] - center);
+            let free = DVec3::from_array([0, 1, 2].map(|axis| f64::from(1 - (axes[row] >> axis & 1))));
+            if mass.get(row) > 0.0 {
+                step.set_vector(row, velocity * free * time_step);
+            }
+        }
+    }
+}

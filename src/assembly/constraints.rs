@@ -1,0 +1,63 @@
+//! Constraints: selections become rows and bits.
+
+use super::Assembly;
+use crate::components::*;
+use crate::scene::diagnostic::Diagnostics;
+use crate::scene::schema::{Axis, Constraint};
+use bevy_ecs::prelude::*;
+use glam::DMat3;
+
+/// Spawns all constraints and marks the axes they take.
+pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
+    for (number, constraint) in assembly.scene.scene.constraints.iter().enumerate() {
+        let (Constraint::Fixed { body, on, axes } | Constraint::Prescribed { body, on, axes, .. }) = constraint;
+        let Some(body) = assembly.body(body) else { continue };
+        let path = format!("constraints[{number}].on");
+        let Some(picked) = assembly.pick(body, on, &path, diagnostics) else { continue };
+        let marks = match picked.nodes(&body.placed) {
+            Ok(marks) => marks,
+            Err(problem) => {
+                diagnostics.error_at(path.as_str(), problem.message).notes(problem.notes);
+                continue;
+            }
+        };
+        let rows = body.rows_of(&marks);
+        let axes = axes.iter().fold(0, |bits, &axis| bits | bit(axis));
+        let taken = world.get_mut::<ConstrainedAxes>(body.entity).map_or(0, |mut all| {
+            let taken = rows.iter().filter(|&&row| all[row as usize] & axes != 0).count();
+            rows.iter().for_each(|&row| all[row as usize] |= axes);
+            taken
+        });
+        match constraint {
+            Constraint::Fixed { .. } => {
+                world.spawn((Fixed { rows, axes }, OfBody(body.entity)));
+            }
+            Constraint::Prescribed { displacement, gradient, rotation, center, curve, .. } => {
+                if taken > 0 {
+                    diagnostics.warn_at(
+                        format!("constraints[{number}]").as_str(),
+                        format!("{taken} of its nodes are constrained along the same axes by an earlier one: this one moves them"),
+                    );
+                }
+                let signal = world.resource_mut::<Signals>().add(Signal::Motion {
+                    curve: curve.clone(),
+                    displacement: *displacement,
+                    gradient: DMat3::from_cols(gradient[0], gradient[1], gradient[2]).transpose(),
+                    rotation: *rotation * std::f64::consts::PI / 180.0,
+                });
+                let arms = world
+                    .get::<RestPosition>(body.entity)
+                    .map_or(Vec::new(), |rest| rows.iter().map(|&row| rest.0[row as usize] - *center).collect());
+                world.spawn((Prescribed { rows, axes, arms, signal }, OfBody(body.entity)));
+            }
+        }
+    }
+}
+
+fn bit(axis: Axis) -> u32 {
+    match axis {
+        Axis::X => 1,
+        Axis::Y => 2,
+        Axis::Z => 4,
+    }
+}

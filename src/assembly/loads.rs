@@ -1,0 +1,119 @@
+//! Loads: selections become rows, faces and shares of area.
+
+use super::{Assembly, BodyParts};
+use crate::components::*;
+use crate::scene::diagnostic::Diagnostics;
+use crate::scene::schema::{Load, Select, Share};
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+/// Spawns all loads.
+pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
+    for (number, load) in assembly.scene.scene.loads.iter().enumerate() {
+        let path = format!("loads[{number}].on");
+        match load {
+            Load::Gravity { body, acceleration, curve } => {
+                let signal = Signal::Load { curve: curve.clone(), amplitude: *acceleration };
+                let signal = world.resource_mut::<Signals>().add(signal);
+                let named = body.as_ref().and_then(|name| assembly.bodies.get(name));
+                let bodies: Vec<&BodyParts> = named.map_or(assembly.bodies.values().collect(), |body| vec![body]);
+                for body in bodies {
+                    world.spawn((Gravity { signal }, OfBody(body.entity)));
+                }
+            }
+            Load::NodalForce { body, on, force, share, curve } => {
+                let Some(body) = assembly.body(body) else { continue };
+                let Some(picked) = assembly.pick(body, on, &path, diagnostics) else { continue };
+                match picked.nodes(&body.placed) {
+                    Ok(marks) => {
+                        let rows = body.rows_of(&marks);
+                        let parts = if *share == Share::Total { rows.len() as f64 } else { 1.0 };
+                        let signal = Signal::Load { curve: curve.clone(), amplitude: *force / parts };
+                        let signal = world.resource_mut::<Signals>().add(signal);
+                        world.spawn((NodalForce { rows, signal }, OfBody(body.entity)));
+                    }
+                    Err(problem) => {
+                        diagnostics.error_at(path.as_str(), problem.message).notes(problem.notes);
+                    }
+                }
+            }
+            Load::Pressure { body, on, pressure, curve } => {
+                let Some((body, faces)) = loaded_faces(assembly, body, on, &path, diagnostics) else { continue };
+                let signal = Signal::Load { curve: curve.clone(), amplitude: DVec3::X * *pressure };
+                let signal = world.resource_mut::<Signals>().add(signal);
+                world.spawn((Pressure { faces, signal }, OfBody(body)));
+            }
+            Load::Traction { body, on, traction, curve } => {
+                let Some((body, faces)) = loaded_faces(assembly, body, on, &path, diagnostics) else { continue };
+                let signal = Signal::Load { curve: curve.clone(), amplitude: *traction };
+                let signal = world.resource_mut::<Signals>().add(signal);
+                world.spawn((Traction { faces, signal }, OfBody(body)));
+            }
+        }
+    }
+}
+
+fn loaded_faces(
+    assembly: &Assembly<'_>,
+    body: &Option<String>,
+    on: &Select,
+    path: &str,
+    diagnostics: &mut Diagnostics,
+) -> Option<(Entity, FaceCorners)> {
+    let body = assembly.body(body)?;
+    let picked = assembly.pick(body, on, path, diagnostics)?;
+    match picked.faces(&body.placed) {
+        Ok(places) => Some((body.entity, face_corners(body, &places))),
+        Err(problem) => {
+            diagnostics.error_at(path, problem.message).notes(problem.notes);
+            None
+        }
+    }
+}
+
+/// Chosen faces of the surface, by the nodes they load.
+fn face_corners(body: &BodyParts, places: &[usize]) -> FaceCorners {
+    let mut corners = FaceCorners::default();
+    let mut by_node: Vec<(u32, u32)> = Vec::new();
+    for (number, face) in places.iter().map(|&place| body.placed.surface()[place]).enumerate() {
+        let triangle = face.nodes[2] == face.nodes[3];
+        let points = face.nodes.map(|node| body.placed.mesh.points[node as usize]);
+        let nodes = face.nodes.map(|node| body.node_rows[node as usize]);
+        for (corner, &node) in nodes.iter().enumerate().take(if triangle { 3 } else { 4 }) {
+            by_node.push((node, 4 * number as u32 + corner as u32));
+        }
+        corners.faces.push(nodes);
+        corners.elements.push(body.element_rows[face.element as usize]);
+        corners.areas.push(corner_areas(&points, triangle));
+        corners.alive.push(1);
+    }
+    by_node.sort_unstable();
+    for (node, corner) in by_node {
+        if corners.rows.last() != Some(&node) {
+            corners.rows.push(node);
+            corners.starts.push(corners.corners.len() as u32);
+        }
+        corners.corners.push(corner);
+    }
+    corners.starts.push(corners.corners.len() as u32);
+    corners
+}
+
+/// ∫ N_a dA of each corner (m²): a third of a triangle; 2×2 Gauss points for a quadrilateral, exact when it is flat.
+fn corner_areas(points: &[DVec3; 4], triangle: bool) -> [f64; 4] {
+    if triangle {
+        let third = (points[1] - points[0]).cross(points[2] - points[0]).length() / 6.0;
+        return [third, third, third, 0.0];
+    }
+    let signs = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0_f64]];
+    let mut areas = [0.0; 4];
+    for gauss in signs {
+        let [x, y] = gauss.map(|sign| sign / 3.0_f64.sqrt());
+        let by = |weight: &dyn Fn([f64; 2]) -> f64| -> DVec3 { (0..4).map(|b| points[b] * weight(signs[b])).sum() };
+        let area = by(&|s| s[0] * (1.0 + s[1] * y) / 4.0).cross(by(&|s| s[1] * (1.0 + s[0] * x) / 4.0)).length();
+        for a in 0..4 {
+            areas[a] += area * (1.0 + signs[a][0] * x) * (1.0 + signs[a][1] * y) / 4.0;
+        }
+    }
+    areas
+}

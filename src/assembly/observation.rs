@@ -1,0 +1,42 @@
+//! Probes: selections become rows.
+
+use super::Assembly;
+use crate::components::*;
+use crate::scene::diagnostic::Diagnostics;
+use crate::scene::schema::Quantity;
+use bevy_ecs::prelude::*;
+
+/// Spawns all probes.
+pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
+    let time_step = world.resource::<Clock>().time_step;
+    let scene = &assembly.scene.scene;
+    for (name, probe) in &scene.probes {
+        let Some(body) = assembly.body(&probe.body) else { continue };
+        let path = format!("probes.\"{name}\".on");
+        let Some(picked) = assembly.pick(body, &probe.on, &path, diagnostics) else { continue };
+        let of_elements = matches!(probe.what, Quantity::Stress | Quantity::VolumeRatio);
+        let marks = if of_elements { picked.elements(&body.placed) } else { picked.nodes(&body.placed) };
+        let marks = match marks {
+            Ok(marks) => marks,
+            Err(problem) => {
+                diagnostics.error_at(path.as_str(), problem.message).notes(problem.notes);
+                continue;
+            }
+        };
+        let (mut nodes, mut elements) = (Vec::new(), Vec::new());
+        if of_elements {
+            let marked = marks.iter().zip(&body.element_rows).filter(|(marked, _)| **marked);
+            elements = marked.map(|(_, &row)| row).collect();
+        } else {
+            nodes = body.rows_of(&marks);
+        }
+        let every = probe.every.unwrap_or_else(|| scene.fields_every());
+        let every = steps_of(every, time_step);
+        world.spawn((Label(name.clone()), Probe { what: probe.what, nodes, elements, every }, OfBody(body.entity)));
+    }
+}
+
+/// Whole steps nearest to a time, at least one.
+pub fn steps_of(time: f64, time_step: f64) -> u64 {
+    ((time / time_step).round() as u64).max(1)
+}

@@ -1,0 +1,273 @@
+//! A run on the GPU: where the truth of each column lies, and what travels.
+
+use super::gpu::{BufferKind, Gpu};
+use super::kernel::{BindingKind, BufferId, Kernel, KernelId, compose};
+use super::Buffers;
+use crate::components::Column;
+use crate::error::Error;
+use bevy_ecs::component::ComponentId;
+use bevy_ecs::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Access to one kind of column without its type.
+#[derive(Clone, Copy)]
+pub struct ColumnAccess {
+    /// The column's name.
+    pub name: &'static str,
+    /// Its bytes on the host.
+    pub bytes: fn(&World, Entity) -> Option<&[u8]>,
+    /// Writes its bytes on the host.
+    pub write: fn(&mut World, Entity, &[u8]),
+    /// Its component.
+    pub id: fn(&World) -> Option<ComponentId>,
+}
+
+impl ColumnAccess {
+    /// Access to a kind of column.
+    pub fn of<C: Column>() -> Self {
+        Self {
+            name: C::NAME,
+            bytes: |world, entity| world.get::<C>(entity).map(|column| column.bytes()),
+            write: |world, entity, bytes| {
+                if let Some(mut column) = world.get_mut::<C>(entity) {
+                    column.bytes_mut().copy_from_slice(bytes);
+                }
+            },
+            id: |world| world.component_id::<C>(),
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Truth {
+    Host,
+    Device,
+    Both,
+}
+
+struct DeviceColumn {
+    buffer: BufferId,
+    truth: Truth,
+    access: ColumnAccess,
+}
+
+type Key = (Entity, &'static str);
+
+/// What travelled between host and device for systems that run on the host.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Traffic {
+    /// Bytes brought to the host.
+    pub down: u64,
+    /// Bytes sent to the device.
+    pub up: u64,
+    /// Seconds spent waiting for both.
+    pub seconds: f64,
+}
+
+/// The GPU, the device's columns and the step's kernels.
+#[derive(Resource)]
+pub struct Device {
+    gpu: Gpu,
+    columns: BTreeMap<Key, DeviceColumn>,
+    accesses: Vec<ColumnAccess>,
+    written: BTreeMap<KernelId, Vec<Key>>,
+    traffic: Traffic,
+}
+
+impl Device {
+    /// Takes a GPU for a run; `accesses` are the kinds of columns there are.
+    pub fn new(gpu: Gpu, accesses: Vec<ColumnAccess>) -> Self {
+        Self { gpu, columns: BTreeMap::new(), accesses, written: BTreeMap::new(), traffic: Traffic::default() }
+    }
+
+    /// The GPU.
+    pub fn gpu(&mut self) -> &mut Gpu {
+        &mut self.gpu
+    }
+
+    /// What has travelled so far.
+    pub fn traffic(&self) -> Traffic {
+        self.traffic
+    }
+
+    /// Makes a system's kernels ready. `describe` is the system's own description of them.
+    ///
+    /// # Errors
+    /// Kernels that do not compile, and buffers that the device does not hold.
+    pub fn prepare(
+        world: &mut World,
+        describe: fn(&mut World, &mut dyn Buffers) -> Vec<Kernel>,
+    ) -> Result<Vec<KernelId>, Error> {
+        let Some(mut device) = world.remove_resource::<Device>() else { return Ok(Vec::new()) };
+        let result = device.prepare_in(world, describe);
+        world.insert_resource(device);
+        result
+    }
+
+    fn prepare_in(
+        &mut self,
+        world: &mut World,
+        describe: fn(&mut World, &mut dyn Buffers) -> Vec<Kernel>,
+    ) -> Result<Vec<KernelId>, Error> {
+        let mut sizes = BTreeMap::new();
+        let entities: Vec<Entity> = world.query::<EntityRef>().iter(world).map(|entity| entity.id()).collect();
+        for &entity in &entities {
+            for access in &self.accesses {
+                if let Some(bytes) = (access.bytes)(world, entity) {
+                    sizes.insert((entity, access.name), (bytes.len(), *access));
+                }
+            }
+        }
+        let mut binder = Binder { device: self, sizes, fresh: Vec::new(), failure: None };
+        let kernels = describe(world, &mut binder);
+        let (fresh, failure) = (binder.fresh, binder.failure);
+        if let Some(failure) = failure {
+            return Err(failure);
+        }
+        for key in fresh {
+            self.upload(world, key)?;
+        }
+        kernels.iter().map(|kernel| self.prepare_kernel(kernel)).collect()
+    }
+
+    fn prepare_kernel(&mut self, kernel: &Kernel) -> Result<KernelId, Error> {
+        let id = self.gpu.prepare(kernel)?;
+        let composed = compose(&kernel.fragments).map_err(super::gpu::GpuError::from)?;
+        let writes = |name: &str| {
+            composed.binding(name).is_some_and(|binding| binding.kind == BindingKind::ReadWrite)
+        };
+        let buffers: BTreeSet<BufferId> =
+            kernel.bindings.iter().filter(|(name, _)| writes(name)).map(|(_, buffer)| *buffer).collect();
+        let keys = self.columns.iter().filter(|(_, column)| buffers.contains(&column.buffer)).map(|(key, _)| *key);
+        self.written.insert(id, keys.collect());
+        Ok(id)
+    }
+
+    /// Runs `count` steps of kernels in as few submissions as possible.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn run(&mut self, kernels: &[KernelId], records: &[u8], record_size: usize, count: u32) -> Result<(), Error> {
+        self.gpu.run(kernels, records, record_size, count)?;
+        for kernel in kernels {
+            for key in self.written.get(kernel).into_iter().flatten() {
+                if let Some(column) = self.columns.get_mut(key) {
+                    column.truth = Truth::Device;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn upload(&mut self, world: &World, key: Key) -> Result<(), Error> {
+        let Some(column) = self.columns.get_mut(&key) else { return Ok(()) };
+        let Some(bytes) = (column.access.bytes)(world, key.0) else { return Ok(()) };
+        self.gpu.upload(column.buffer, 0, bytes)?;
+        column.truth = Truth::Both;
+        self.traffic.up += bytes.len() as u64;
+        Ok(())
+    }
+
+    fn keys_of(&self, truth: Truth, wanted: impl Fn(&Key, &ColumnAccess) -> bool) -> Vec<Key> {
+        let right = self.columns.iter().filter(|(key, column)| column.truth == truth && wanted(key, &column.access));
+        right.map(|(key, _)| *key).collect()
+    }
+}
+
+/// Brings columns to the host where the device has newer ones. Nothing to do on the CPU backend.
+///
+/// # Errors
+/// What the GPU says.
+pub fn bring_to_host(world: &mut World, wanted: impl Fn(Entity, &'static str) -> bool) -> Result<(), Error> {
+    let Some(mut device) = world.remove_resource::<Device>() else { return Ok(()) };
+    let started = std::time::Instant::now();
+    let keys = device.keys_of(Truth::Device, |key, _| wanted(key.0, key.1));
+    let buffers: Vec<BufferId> = keys.iter().map(|key| device.columns[key].buffer).collect();
+    let result = if buffers.is_empty() { Ok(Vec::new()) } else { device.gpu.download(&buffers) };
+    let result = result.map(|downloads| {
+        for (key, bytes) in keys.iter().zip(downloads) {
+            if let Some(column) = device.columns.get_mut(key) {
+                (column.access.write)(world, key.0, &bytes);
+                column.truth = Truth::Both;
+                device.traffic.down += bytes.len() as u64;
+            }
+        }
+    });
+    device.traffic.seconds += started.elapsed().as_secs_f64();
+    world.insert_resource(device);
+    Ok(result?)
+}
+
+/// Columns of a component, by its id: what a custom system's access set is made of.
+pub fn column_of_component(world: &World, id: ComponentId) -> Option<&'static str> {
+    let device = world.get_resource::<Device>()?;
+    device.accesses.iter().find(|access| (access.id)(world) == Some(id)).map(|access| access.name)
+}
+
+/// Says that the host has written columns, and sends them to the device.
+///
+/// # Errors
+/// What the GPU says.
+pub fn send_to_device(world: &mut World, written: impl Fn(Entity, &'static str) -> bool) -> Result<(), Error> {
+    let Some(mut device) = world.remove_resource::<Device>() else { return Ok(()) };
+    let started = std::time::Instant::now();
+    for truth in [Truth::Both, Truth::Host] {
+        for key in device.keys_of(truth, |key, _| written(key.0, key.1)) {
+            if let Err(error) = device.upload(world, key) {
+                world.insert_resource(device);
+                return Err(error);
+            }
+        }
+    }
+    device.traffic.seconds += started.elapsed().as_secs_f64();
+    world.insert_resource(device);
+    Ok(())
+}
+
+/// Hands out buffers while kernels are described.
+struct Binder<'a> {
+    device: &'a mut Device,
+    sizes: BTreeMap<Key, (usize, ColumnAccess)>,
+    fresh: Vec<Key>,
+    failure: Option<Error>,
+}
+
+impl Binder<'_> {
+    fn create(&mut self, label: &str, bytes: &[u8], length: usize, kind: BufferKind) -> BufferId {
+        // a buffer of no bytes cannot be bound
+        let created = self.device.gpu.create(label, length.max(16) as u64, kind).and_then(|id| {
+            if !bytes.is_empty() {
+                self.device.gpu.upload(id, 0, bytes)?;
+            }
+            Ok(id)
+        });
+        created.unwrap_or_else(|error| {
+            self.failure.get_or_insert(error.into());
+            BufferId::NONE
+        })
+    }
+}
+
+impl Buffers for Binder<'_> {
+    fn column(&mut self, entity: Entity, name: &'static str) -> BufferId {
+        if let Some(column) = self.device.columns.get(&(entity, name)) {
+            return column.buffer;
+        }
+        let Some(&(length, access)) = self.sizes.get(&(entity, name)) else {
+            self.failure.get_or_insert(Error::Options(format!("a kernel asks for the column {name} of an entity without it")));
+            return BufferId::NONE;
+        };
+        let buffer = self.create(name, &[], length, BufferKind::Storage);
+        self.device.columns.insert((entity, name), DeviceColumn { buffer, truth: Truth::Host, access });
+        self.fresh.push((entity, name));
+        buffer
+    }
+
+    fn constants(&mut self, label: String, bytes: &[u8]) -> BufferId {
+        self.create(&label, bytes, bytes.len(), BufferKind::Storage)
+    }
+
+    fn uniform(&mut self, label: String, bytes: &[u8]) -> BufferId {
+        self.create(&label, bytes, bytes.len(), BufferKind::Uniform)
+    }
+}

@@ -1,0 +1,104 @@
+//! Energies and mass.
+
+use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK};
+use crate::backend::device::bring_to_host;
+use crate::components::*;
+use crate::error::Error;
+use crate::evaluation::{ElementState, Material};
+use bevy_ecs::prelude::*;
+
+/// The columns of `energy.csv`.
+pub(super) const HEADER: [&str; 9] = [
+    "time (s)",
+    "kinetic (J)",
+    "strain (J)",
+    "hourglass (J)",
+    "removed (J)",
+    "load work (J)",
+    "damping loss (J)",
+    "constraint work (J)",
+    "internal work (J)",
+];
+
+pub(super) fn row(time: f64, e: &Energies) -> [f64; 9] {
+    let booked = [e.load_work, e.damping_loss, e.constraint_work, e.internal_work].map(|work| work.unwrap_or(f64::NAN));
+    [time, e.kinetic, e.strain, e.hourglass, e.removed, booked[0], booked[1], booked[2], booked[3]]
+}
+
+/// Total mass of all bodies (kg), parked nodes and removed elements left out.
+///
+/// # Errors
+/// What the GPU says.
+pub fn mass(world: &mut World) -> Result<f64, Error> {
+    bring_to_host(world, |_, name| name == Mass::NAME)?;
+    Ok(world.query::<&Mass>().iter(world).map(|mass| (0..mass.len()).map(|row| mass.get(row)).sum::<f64>()).sum())
+}
+
+/// The energies of all bodies at the present step.
+///
+/// # Errors
+/// What the GPU says.
+pub fn energies(world: &mut World) -> Result<Energies, Error> {
+    let wanted = [
+        Displacement::NAME,
+        DisplacementStep::NAME,
+        Mass::NAME,
+        Work::NAME,
+        RestShape::NAME,
+        RemovedEnergy::NAME,
+    ];
+    bring_to_host(world, |_, name| wanted.contains(&name))?;
+    let time_step = world.resource::<Clock>().time_step;
+    let mut sum = Energies::default();
+    let mut bodies = world.query::<(Entity, &Mass, &DisplacementStep, &ConstrainedAxes, Option<&Work>)>();
+    for (_, mass, step, axes, work) in bodies.iter(world) {
+        let kinetic = |row: usize, along: &dyn Fn(usize) -> bool| {
+            let v = step.vector(row) / time_step;
+            let square: f64 = (0..3).filter(|&i| along(i)).map(|i| v[i] * v[i]).sum();
+            0.5 * mass.get(row) * square
+        };
+        let rows = 0..mass.len();
+        sum.kinetic += rows.clone().map(|row| kinetic(row, &|_| true)).sum::<f64>();
+        if let Some(work) = work {
+            let total = |i: usize| rows.clone().map(|row| work.get(4 * row + i)).sum::<f64>();
+            // constraints also give the kinetic energy of what they move
+            let moved = rows.clone().map(|row| kinetic(row, &|i| axes[row] >> i & 1 == 1)).sum::<f64>();
+            *sum.load_work.get_or_insert(0.0) += total(0);
+            *sum.damping_loss.get_or_insert(0.0) += total(1);
+            *sum.constraint_work.get_or_insert(0.0) += total(2) + moved;
+            *sum.internal_work.get_or_insert(0.0) += total(3);
+        }
+    }
+    let blocks: Vec<Entity> = world.query_filtered::<Entity, With<Block>>().iter(world).collect();
+    for entity in blocks {
+        let (strain, hourglass) = block_energies(world, entity);
+        sum.strain += strain;
+        sum.hourglass += hourglass;
+        if let Some(removed) = world.get::<RemovedEnergy>(entity) {
+            sum.removed += (0..removed.len()).map(|row| removed.get(row)).sum::<f64>();
+        }
+    }
+    Ok(sum)
+}
+
+/// Elastic and hourglass energy of a block (J), summed in a fixed order.
+fn block_energies(world: &World, entity: Entity) -> (f64, f64) {
+    let parts = (|| {
+        let block = world.get::<Block>(entity)?;
+        let displacement = world.get::<Displacement>(block.body)?;
+        let (connectivity, shape) = (world.get::<Connectivity>(entity)?, world.get::<RestShape>(entity)?);
+        let law = world.get::<BlockLaw<f64>>(entity)?;
+        let fibre_direction = world.get::<FibreDirection>(entity).map(|f| &f.0);
+        let material = Material { law, fibre_direction, memory: None };
+        let task = |task: usize| {
+            let rows = task * ROWS_A_TASK..block.count.min((task + 1) * ROWS_A_TASK);
+            rows.fold((0.0, 0.0), |(strain, hourglass), row| {
+                let state = ElementState::of(block.kind, row, connectivity, shape, displacement);
+                let energy = material.energy(row, &state.kinematics) * state.volume;
+                (strain + energy, hourglass + state.hourglass_energy(row, shape))
+            })
+        };
+        Some(world.resource::<Cpu>().map(block.count.div_ceil(ROWS_A_TASK), task))
+    })();
+    parts.unwrap_or_default().into_iter().fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1))
+}
