@@ -1,11 +1,25 @@
-// Takes elements away; twin of systems/element_removal.rs. watched and passes_a_limit are generated from the block's
-// criteria, energy_density from its material, remove_shape from its element type.
-@group(0) @binding(0) var<storage, read_write> rest_shape: array<f32>;
-@group(0) @binding(1) var<storage, read_write> alive: array<u32>;
-@group(0) @binding(2) var<storage, read> removal_step: array<u32>;
-@group(0) @binding(3) var<storage, read_write> removed_energy: array<f32>;
+// Takes away the elements whose time has come; twin of systems/element_removal.rs. energy_density is generated from the
+// block's material, extinguish from its element type. criterion.wgsl sets the time of elements that pass a limit.
+struct Removal {
+    share: f32, // density over nodes of an element (kg/m³)
+}
+@group(0) @binding(0) var<uniform> removal: Removal;
+@group(0) @binding(1) var<storage, read_write> rest_shape: array<f32>;
+@group(0) @binding(2) var<storage, read_write> alive: array<u32>;
+@group(0) @binding(3) var<storage, read> removal_step: array<u32>;
+@group(0) @binding(4) var<storage, read_write> removed_energy: array<f32>;
+@group(0) @binding(5) var<storage, read> displacement_step: array<f32>;
 
-const NEVER: u32 = 0xffffffffu;
+// ½ m v² of the element's share of its nodes (J), v in the middle of the last step.
+fn kinetic_energy(element: u32, volume: f32) -> f32 {
+    var squares = 0.0;
+    for (var corner = 0u; corner < NODES; corner++) {
+        let at = 3u * connectivity[place(element, NODES, corner)];
+        let v = step.rate * vec3<f32>(displacement_step[at], displacement_step[at + 1u], displacement_step[at + 2u]);
+        squares += dot(v, v);
+    }
+    return 0.5 * removal.share * volume * squares;
+}
 
 @compute @workgroup_size(64)
 fn element_removal(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
@@ -13,19 +27,14 @@ fn element_removal(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     if element >= block.count || alive[element] == 0u {
         return;
     }
-    // the step that comes next is number + 1
-    let due = removal_step[element] != NEVER && removal_step[element] <= max(step.number, step.number + 1u);
-    if !due && !watched(element) {
+    let due = removal_step[element];
+    if due == 0xffffffffu || due > max(step.number, step.number + 1u) {
         return;
     }
     let e = element_of(element);
     let gradient = displacement_gradient(e);
-    let k = kinematics(gradient);
-    let energy = energy_density(element, k);
-    if !due && !passes_a_limit(element, k, energy) {
-        return;
-    }
+    let elastic = energy_density(element, kinematics(gradient)) * e.volume;
+    removed_energy[element] = elastic + hourglass_energy(element, e, gradient) + kinetic_energy(element, e.volume);
     alive[element] = 0u;
-    removed_energy[element] = energy * e.volume + hourglass_energy(element, e, gradient);
-    remove_shape(element);
+    extinguish(element);
 }
