@@ -34,4 +34,4 @@ pub mod systems;
 
 pub use error::{Error, Instability};
 pub use scene::SceneFile;
-pub use simulation::{BackendChoice, Options, Simulation, Summary};
+pub use simulation::{BackendChoice, Options, Simulation, Summary, SystemTime};

@@ -17,6 +17,7 @@ pub fn system() -> System {
         "boundary",
         Phase::Boundary,
         "says where fixed and prescribed nodes go",
+        "`Fixed(...)` or `Prescribed(...)` under `constraints`",
         |world| {
             let fixed = super::registry::count::<Fixed>(world, "fixed set");
             let prescribed = super::registry::count::<Prescribed>(world, "prescribed set");

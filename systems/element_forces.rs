@@ -20,6 +20,7 @@ pub fn system() -> System {
         "element_forces",
         Phase::ElementForces,
         "strain, stress and nodal forces of every element",
+        "bodies",
         |world| super::registry::count::<Block>(world, "element block"),
         element_forces,
     )

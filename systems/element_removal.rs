@@ -25,6 +25,7 @@ pub fn system() -> System {
         "element_removal",
         Phase::Removal,
         "removes elements by time and by criterion",
+        "an entry under `removal`",
         |world| super::registry::count::<Alive>(world, "block may lose elements").map(|s| s.replace("elementss", "elements")),
         element_removal,
     )

@@ -16,6 +16,7 @@ pub fn system() -> System {
         "gather",
         Phase::Gather,
         "sums element forces at the nodes",
+        "bodies",
         |world| super::registry::count::<Corners>(world, "body with elements").map(|s| s.replace("bodys", "bodies")),
         gather,
     )

@@ -15,6 +15,7 @@ pub fn system() -> System {
         "gravity",
         Phase::Loads,
         "adds mass times acceleration to the external forces",
+        "`Gravity(...)` under `loads`",
         |world| super::registry::count::<Gravity>(world, "gravity load"),
         gravity,
     )

@@ -22,6 +22,7 @@ pub fn system() -> System {
         "integrate",
         Phase::Integrate,
         "moves the nodes by one step of central differences",
+        "bodies",
         |world| super::registry::count::<Displacement>(world, "body").map(|s| s.replace("bodys", "bodies")),
         integrate,
     )

@@ -15,6 +15,7 @@ pub fn system() -> System {
         "nodal_force",
         Phase::Loads,
         "adds forces on chosen nodes to the external forces",
+        "`NodalForce(...)` under `loads`",
         |world| super::registry::count::<NodalForce>(world, "nodal force"),
         nodal_force,
     )

@@ -12,6 +12,7 @@ pub fn system() -> System {
         name: "observe".into(),
         phase: Phase::Observe,
         does: "probes, energies, fields and guards, when they are due".into(),
+        called_for_by: "every scene",
         because: |_| Some("guards look for inverted elements and lost numbers".into()),
         host: Box::new(|| Box::new(IntoSystem::into_system(observe))),
         kernels: None,

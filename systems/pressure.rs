@@ -19,6 +19,7 @@ pub fn system() -> System {
         "pressure",
         Phase::Loads,
         "adds pressures that follow the surface to the external forces",
+        "`Pressure(...)` under `loads`",
         |world| super::registry::count::<Pressure>(world, "pressure"),
         pressure,
     )

@@ -36,6 +36,8 @@ pub struct System {
     pub phase: Phase,
     /// What it does, in a few words.
     pub does: String,
+    /// What in a scene calls for it.
+    pub called_for_by: &'static str,
     /// Why the world needs it; `None` when it does not. A schedule that a scene writes out must hold all that are needed.
     pub because: fn(&mut World) -> Option<String>,
     /// Makes the system that runs on the host.
@@ -64,6 +66,7 @@ impl System {
             name: name.into(),
             phase,
             does: does.into(),
+            called_for_by: "its name in the scene's `schedule`",
             because: |_| None,
             host: Box::new(move || Box::new(IntoSystem::into_system(system.clone().map(Ok)))),
             kernels: None,
@@ -83,10 +86,11 @@ impl System {
         name: &str,
         phase: Phase,
         does: &str,
+        called_for_by: &'static str,
         because: fn(&mut World) -> Option<String>,
         system: impl IntoSystem<(), (), M> + Clone + Send + Sync + 'static,
     ) -> Self {
-        Self { because, ..Self::custom(name, phase, does, system) }
+        Self { called_for_by, because, ..Self::custom(name, phase, does, system) }
     }
 
     /// With its kernels.

@@ -16,6 +16,7 @@ pub fn system() -> System {
         "traction",
         Phase::Loads,
         "adds dead loads on the surface to the external forces",
+        "`Traction(...)` under `loads`",
         |world| super::registry::count::<Traction>(world, "traction"),
         traction,
     )

@@ -61,10 +61,10 @@ pub(super) fn meshes(scene: &SceneFile, diagnostics: &mut Diagnostics) -> Vec<(S
             Ok(mesh) => {
                 let soundness = mesh.soundness();
                 for finding in &soundness.errors {
-                    diagnostics.error_at(path.as_str(), format!("the mesh of {name}: {}", finding.message));
+                    diagnostics.error_at(path.as_str(), format!("the mesh of {name}: {}", finding));
                 }
                 for finding in &soundness.warnings {
-                    diagnostics.warn_at(path.as_str(), format!("the mesh of {name}: {}", finding.message));
+                    diagnostics.warn_at(path.as_str(), format!("the mesh of {name}: {}", finding));
                 }
                 for note in &mesh.notes {
                     diagnostics.warn_at(path.as_str(), format!("the mesh of {name}: {note}"));

@@ -198,12 +198,6 @@ pub fn bring_to_host(world: &mut World, wanted: impl Fn(Entity, &'static str) ->
     Ok(result?)
 }
 
-/// Columns of a component, by its id: what a custom system's access set is made of.
-pub fn column_of_component(world: &World, id: ComponentId) -> Option<&'static str> {
-    let device = world.get_resource::<Device>()?;
-    device.accesses.iter().find(|access| (access.id)(world) == Some(id)).map(|access| access.name)
-}
-
 /// Says that the host has written columns, and sends them to the device.
 ///
 /// # Errors

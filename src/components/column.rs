@@ -33,7 +33,6 @@ macro_rules! either {
         }
     };
 }
-pub(crate) use either;
 
 impl Reals {
     /// `length` zeros.

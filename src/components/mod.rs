@@ -22,7 +22,6 @@ pub use block::{
     patch_groups,
 };
 pub use clock::{Clock, Signal, Signals};
-pub(crate) use column::either;
 pub use column::{Column, Precision, Reals};
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
 pub use load::{FaceCorners, Gravity, NodalForce, Pressure, Traction};

@@ -105,6 +105,11 @@ impl Diagnostics {
         diagnostics
     }
 
+    /// The text they are about; empty when there is none.
+    pub fn text(&self) -> &str {
+        self.source.as_ref().map_or("", |source| source.text())
+    }
+
     /// Adds a mistake.
     pub fn push(&mut self, diagnostic: Diagnostic) -> &mut Diagnostic {
         self.list.push(diagnostic);

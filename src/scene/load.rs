@@ -2,6 +2,7 @@
 
 use super::check::check;
 use super::diagnostic::{Diagnostic, Diagnostics};
+use super::partial::wrong_values;
 use super::schema::Scene;
 use super::set;
 use super::source::Source;
@@ -67,22 +68,23 @@ impl SceneFile {
             }
         }
         mistakes.extend(tree.faults.iter().cloned().map(Diagnostic::from));
-        mistakes.extend(check::<Scene>(&tree.root, source.text()));
-        let scene = match mistakes.is_empty() {
-            true => options().from_str::<Scene>(source.text()).map_err(|error| unforeseen(&error, source.text())),
-            false => Err(Vec::new()),
-        };
+        let (partial, wrong_words) = check::<Scene>(&tree.root, source.text());
+        mistakes.extend(wrong_words);
         let (source, tree) = (Arc::new(source), Arc::new(tree));
-        match scene {
-            Ok(scene) => Ok(Self { scene, path: name.into(), folder: folder.to_path_buf(), source, tree }),
-            Err(more) => {
-                let mut diagnostics = Diagnostics::new(source, tree);
-                for mistake in mistakes.into_iter().chain(more) {
-                    diagnostics.push(mistake);
-                }
-                Err(diagnostics)
+        let mut diagnostics = Diagnostics::new(Arc::clone(&source), Arc::clone(&tree));
+        let file = |scene| Self { scene, path: name.into(), folder: folder.to_path_buf(), source, tree };
+        if mistakes.is_empty() {
+            match options().from_str::<Scene>(diagnostics.text()) {
+                Ok(scene) => return Ok(file(scene)),
+                Err(error) => mistakes.push(unforeseen(&error, diagnostics.text())),
             }
+        } else if let Some(scene) = partial {
+            mistakes.extend(wrong_values(&file(scene), &mistakes));
         }
+        for mistake in mistakes {
+            diagnostics.push(mistake);
+        }
+        Err(diagnostics)
     }
 
     /// The text of the scene with the values of `--set` in it.
@@ -102,11 +104,11 @@ impl SceneFile {
 }
 
 /// A mistake that ron finds and [`check`] does not.
-fn unforeseen(error: &ron::error::SpannedError, text: &str) -> Vec<Diagnostic> {
+fn unforeseen(error: &ron::error::SpannedError, text: &str) -> Diagnostic {
     let start = offset(text, error.span.start.line, error.span.start.col);
     let end = offset(text, error.span.end.line, error.span.end.col).max(start);
     let at: Span = if text[start..end].contains('\n') { start..start } else { start..end };
-    vec![Diagnostic::error(at, format!("this cannot be read: {}", error.code))]
+    Diagnostic::error(at, format!("this cannot be read: {}", error.code))
 }
 
 /// The byte of a line and column, both from 1, of characters.

@@ -3,6 +3,7 @@
 pub mod check;
 pub mod diagnostic;
 pub mod load;
+mod partial;
 pub mod schema;
 pub mod set;
 pub mod source;
@@ -14,3 +15,4 @@ pub mod words;
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
 pub use load::SceneFile;
 pub use validate::validate;
+pub use suggest::choice;

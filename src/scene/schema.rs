@@ -1,5 +1,6 @@
 //! The words of a scene file: one Rust type for each, read by serde. SI units throughout (m, kg, s, Pa).
 
+pub use crate::mesh::ElementKind;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -82,16 +83,6 @@ pub struct Region {
     pub on: Select,
     /// The name of their material.
     pub material: String,
-}
-
-/// Kinds of elements that generators make.
-#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
-pub enum ElementKind {
-    /// Four-node tetrahedra.
-    #[default]
-    Tet4,
-    /// Eight-node hexahedra with one point and hourglass control.
-    Hex8,
 }
 
 /// A mesh file, or a generator with its parameters.

@@ -101,7 +101,10 @@ impl<'a> Slot<'a> {
             (Segment::Name(_), Kind::Map(_) | Kind::Fields(_)) => Self::insert(rest, inner, text),
             (Segment::Name(_), Kind::Tuple(items)) if items.is_empty() => Self::insert(rest, inner, text),
             (Segment::Name(name), Kind::List(items)) => {
-                let notes = vec![format!("its items have numbers: {} to {}", "[0]", items.len().saturating_sub(1))];
+                let notes = vec![match items.len() {
+                    0 => "it is empty".to_string(),
+                    count => format!("its items are [0] to [{}]", count - 1),
+                }];
                 Err((format!("there is no `{name}` in {holder}, which is a list"), notes))
             }
             (Segment::Index(_), Kind::Map(_) | Kind::Fields(_)) => {
@@ -125,8 +128,13 @@ impl<'a> Slot<'a> {
             let at = text[from..].find(name.as_str()).map_or(0, |found| from + found);
             new.push((name.as_str(), at));
         }
-        // right after the opening bracket: a comma can follow whatever comes next
-        let open = holder.name.as_ref().map_or(holder.span.start, |name| name.span.end);
+        // before the first that is there, where the comma after it is right; comments may stand anywhere else
+        let first = match &holder.kind {
+            Kind::Fields(fields) => fields.first().map(|field| field.name.span.start),
+            Kind::Map(entries) => entries.first().map(|entry| entry.key.span.start),
+            _ => None,
+        };
+        let open = first.unwrap_or(holder.span.end - 1);
         Ok(Self { span: open..open, new, in_map: matches!(holder.kind, Kind::Map(_)) })
     }
 
@@ -134,12 +142,8 @@ impl<'a> Slot<'a> {
     fn put(&self, source: &mut Source, number: usize, value: &[(&str, Origin)]) -> Span {
         let mut parts: Vec<(&str, Origin)> = Vec::new();
         let glue = |at: usize| Origin::Glue(number, at);
-        let mut span = self.span.clone();
+        let span = self.span.clone();
         if let Some((_, at)) = self.new.last() {
-            // blanks and comments may stand between a word and its bracket
-            let bracket = if self.in_map { '{' } else { '(' };
-            let open = span.start + source.text()[span.start..].find(bracket).unwrap_or(0) + 1;
-            span = open..open;
             for (i, (name, at)) in self.new.iter().enumerate() {
                 let quoted = self.in_map && i == 0;
                 parts.extend([(if i > 0 { "(" } else { "" }, glue(*at)), (if quoted { "\"" } else { "" }, glue(*at))]);
@@ -152,7 +156,8 @@ impl<'a> Slot<'a> {
             parts.extend(self.new.iter().skip(1).map(|_| (")", glue(*at))));
             parts.push((", ", glue(*at)));
             source.replace(span, &parts);
-            return open + before..open + before + length;
+            let start = self.span.start + before;
+            return start..start + length;
         }
         source.replace(span.clone(), value);
         span.start..span.start + value.iter().map(|(text, _)| text.len()).sum::<usize>()

@@ -3,7 +3,7 @@
 use super::{BlockLaw, Cpu};
 use crate::elements::{Element, MOST_NODES};
 use crate::materials::{Fibres, Kinematics, NeoHookean, PronyTerm};
-use crate::math::{LANES, Real, Scalar, SimdScalar, Sym3};
+use crate::math::{LANES, Real, SimdScalar, Sym3};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,8 +1,8 @@
 //! Compares a tree with the words that a Rust type allows, and tells all mistakes at once.
 //!
 //! serde stops at the first mistake. Here a value that is wrong is noted and a stand-in is handed on in its place, so
-//! that the rest is read too. A missing field is known only when a whole struct has been read; it is noted, and the
-//! tree is read once more with a stand-in for it.
+//! that the rest is read too. That a field must be there serde tells only by refusing a struct that lacks it: then the
+//! tree is read once more, with that known.
 
 mod access;
 mod stand_in;
@@ -14,47 +14,49 @@ use super::source::Source;
 use super::syntax::{Kind, Node, Span, parse};
 use serde::de::DeserializeOwned;
 use std::cell::RefCell;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use value::Value;
 
-/// How many missing fields are told in one go: each costs one more reading of the tree.
-const MOST_MISSING: usize = 100;
-
 /// All that keeps a tree from being a `T`.
-pub fn check<T: DeserializeOwned>(root: &Node, text: &str) -> Vec<Diagnostic> {
+///
+/// The `T` that comes with it holds what could be read, and stand-ins for the rest: good for finding more mistakes and
+/// nothing else.
+pub fn check<T: DeserializeOwned>(root: &Node, text: &str) -> (Option<T>, Vec<Diagnostic>) {
     let mut all = Vec::new();
     twice(root, text, &mut all);
-    all.extend(read::<T>(root, text).found.take());
-    all
+    let (value, about) = read::<T>(root, text);
+    all.extend(about.found.take());
+    (value, all)
 }
 
 /// Whether the value at `span` must be a text and is something else.
 pub fn wants_text<T: DeserializeOwned>(source: &Source, span: &Span) -> bool {
     let tree = parse(source.text());
-    read::<T>(&tree.root, source.text()).texts_wanted.take().contains(span)
+    read::<T>(&tree.root, source.text()).1.texts_wanted.take().contains(span)
 }
 
-/// Reads the tree as a `T`, as often as it takes to stand in for all missing fields.
-fn read<'a, T: DeserializeOwned>(root: &'a Node, text: &'a str) -> About<'a> {
-    let mut missing = Vec::new();
-    let mut about = About::new(text);
-    for _ in 0..MOST_MISSING {
+/// Reads the tree as a `T`, as often as it takes to learn which fields are required.
+fn read<'a, T: DeserializeOwned>(root: &'a Node, text: &'a str) -> (Option<T>, About<'a>) {
+    let mut about = About {
+        text,
+        texts_wanted: RefCell::default(),
+        said_before: RefCell::new(Diagnostic::error(None, "")),
+        found: RefCell::default(),
+        required: BTreeSet::new(),
+    };
+    loop {
         about.found.take();
         match T::deserialize(Value { node: root, about: &about, subject: "the scene" }) {
-            Err(Stop::Missing { field, of: Some((node, diagnostic)) }) => {
-                about.supplied.entry(node).or_default().push(field);
-                missing.extend(diagnostic.map(|diagnostic| *diagnostic));
-            }
-            Err(Stop::Missing { .. }) | Ok(_) => break,
-            Err(Stop::Other(message)) => {
-                about.found.borrow_mut().push(Diagnostic::error(root.mark(), message));
-                break;
+            Ok(value) => return (Some(value), about),
+            // a type tells of each of its fields once, so this ends
+            Err(Stop::Missing { of: Some(field), .. }) if about.required.insert(field.clone()) => {}
+            Err(stop) => {
+                about.found.borrow_mut().push(Diagnostic::error(root.mark(), stop.to_string()));
+                return (None, about);
             }
         }
     }
-    about.found.borrow_mut().extend(missing);
-    about
 }
 
 /// What all values of one reading share.
@@ -65,38 +67,25 @@ struct About<'a> {
     /// Takes what would be said about a value the parser has complained about.
     said_before: RefCell<Diagnostic>,
     found: RefCell<Vec<Diagnostic>>,
-    /// Missing fields that have been noted, by the struct they are missing in.
-    supplied: HashMap<NodeId, Vec<&'static str>>,
+    required: BTreeSet<Required>,
 }
 
-impl<'a> About<'a> {
-    fn new(text: &'a str) -> Self {
-        Self {
-            text,
-            texts_wanted: RefCell::default(),
-            said_before: RefCell::new(Diagnostic::error(None, "")),
-            found: RefCell::default(),
-            supplied: HashMap::new(),
-        }
-    }
-}
-
-/// Which node of a tree; the tree does not move while it is read.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-struct NodeId(usize);
-
-impl NodeId {
-    fn of(node: &Node) -> Self {
-        Self(std::ptr::from_ref(node).addr())
-    }
+/// A field that must be there.
+#[derive(Clone, PartialEq, Eq, PartialOrd, Ord)]
+struct Required {
+    /// The struct or variant.
+    owner: String,
+    /// All its fields; variants of two enums may share a name.
+    fields: &'static [&'static str],
+    field: &'static str,
 }
 
 /// Why a reading ended early.
 enum Stop {
-    /// A field that is missing, in which struct, and what is said of it.
+    /// A field is missing of which nobody knew yet that it must be there.
     Missing {
         field: &'static str,
-        of: Option<(NodeId, Option<Box<Diagnostic>>)>,
+        of: Option<Required>,
     },
     Other(String),
 }

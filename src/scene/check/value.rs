@@ -2,7 +2,7 @@
 
 use super::access::{Entries, FieldsOf, Items, Variant};
 use super::stand_in::StandIn;
-use super::{About, NodeId, Stop};
+use super::{About, Required, Stop};
 use crate::scene::diagnostic::Diagnostic;
 use crate::scene::suggest::choice;
 use crate::scene::syntax::{Kind, Node};
@@ -221,6 +221,16 @@ impl<'a> Value<'a> {
         let found = match &self.node.kind {
             Kind::Fields(found) => found.as_slice(),
             Kind::Tuple(items) if items.is_empty() => &[],
+            Kind::Tuple(_) => {
+                let word = self.node.name.as_ref().map_or("", |name| &name.text);
+                let first = fields.first().copied().unwrap_or_default();
+                self.note(
+                    format!("{} needs the names of its fields", self.called()),
+                    format!("write {word}({first}: ...)"),
+                )
+                .note(format!("fields: {}", fields.join(", ")));
+                return visitor.visit_map(FieldsOf::stand_ins(self, fields));
+            }
             _ => {
                 let named = fields.first().map_or(String::new(), |first| format!(", such as ({first}: ...)"));
                 self.wrong(&format!("fields in round brackets{named}")).note(format!("fields: {}", fields.join(", ")));
@@ -230,12 +240,14 @@ impl<'a> Value<'a> {
         for field in found.iter().filter(|field| !fields.contains(&field.name.text.as_str())) {
             self.unknown_field(owner, field, fields);
         }
-        let supplied = self.about.supplied.get(&NodeId::of(self.node)).map_or(&[][..], Vec::as_slice);
-        visitor.visit_map(FieldsOf::new(self, found, fields, supplied)).map_err(|stop| match stop {
-            Stop::Missing { field, of: None } => {
-                let diagnostic = self.missing_field(owner, field, fields).map(Box::new);
-                Stop::Missing { field, of: Some((NodeId::of(self.node), diagnostic)) }
-            }
+        let required = |field: &'static str| Required { owner: owner.to_string(), fields, field };
+        let absent = fields.iter().filter(|name| !found.iter().any(|field| field.name.text == **name));
+        let missing: Vec<_> = absent.copied().filter(|name| self.about.required.contains(&required(name))).collect();
+        for field in &missing {
+            self.missing_field(owner, field, fields);
+        }
+        visitor.visit_map(FieldsOf::new(self, found, fields, &missing)).map_err(|stop| match stop {
+            Stop::Missing { field, of: None } => Stop::Missing { field, of: Some(required(field)) },
             stop => stop,
         })
     }

@@ -96,17 +96,12 @@ impl<'a> Value<'a> {
         self.about.found.borrow_mut().push(diagnostic);
     }
 
-    /// What is said of a missing field: nothing when one of the unknown ones is probably it, misspelt.
-    pub(super) fn missing_field(
-        &self,
-        owner: &str,
-        field: &str,
-        fields: &'static [&'static str],
-    ) -> Option<Diagnostic> {
+    /// Notes a missing field, but not when one of the unknown ones is probably it, misspelt.
+    pub(super) fn missing_field(&self, owner: &str, field: &str, fields: &'static [&'static str]) {
         if let Kind::Fields(found) = &self.node.kind {
             let unknown = found.iter().map(|field| field.name.text.as_str()).filter(|name| !fields.contains(name));
             if unknown.into_iter().any(|name| nearest(name, fields.iter().copied()) == Some(field)) {
-                return None;
+                return;
             }
         }
         let mut diagnostic =
@@ -115,6 +110,6 @@ impl<'a> Value<'a> {
         if let Some(meaning) = meaning(owner, field) {
             diagnostic.note(format!("{field}: {meaning}"));
         }
-        Some(diagnostic)
+        self.about.found.borrow_mut().push(diagnostic);
     }
 }

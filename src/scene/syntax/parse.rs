@@ -5,7 +5,7 @@ use super::{DEEPEST, Entry, Fault, Field, Kind, Node, Span, Tree, Word};
 
 /// Reads a text. Never fails: what is wrong is in [`Tree::faults`], and the tree holds the rest.
 pub fn parse(text: &str) -> Tree {
-    let mut parser = Parser { scan: Scan { text, at: 0 }, faults: Vec::new(), open: Vec::new() };
+    let mut parser = Parser { scan: Scan { text, at: 0 }, faults: Vec::new(), long_text: None, open: Vec::new() };
     let root = parser.file().unwrap_or(Node { span: 0..text.len(), name: None, kind: Kind::Bad });
     Tree { root, faults: parser.faults }
 }
@@ -13,6 +13,8 @@ pub fn parse(text: &str) -> Tree {
 struct Parser<'a> {
     scan: Scan<'a>,
     faults: Vec<Fault>,
+    /// The first text that goes on over the end of a line: where it begins, and how many faults came before it.
+    long_text: Option<(Span, usize)>,
     /// The brackets that are open, innermost last.
     open: Vec<Span>,
 }
@@ -104,8 +106,18 @@ impl Parser<'_> {
     }
 
     fn quoted(&mut self) -> Parsed<Kind> {
-        let span = self.scan.quoted().map_err(|endless| self.endless(endless))?;
+        let span = self.scan.quoted().map_err(|endless| match self.long_text.take() {
+            // a missing quotation mark turns the rest of the file inside out; what was said of it is of no use
+            Some((span, faults)) if faults < self.faults.len() => {
+                self.faults.truncate(faults);
+                self.fault(span, "this text does not end on its line; a quotation mark may be missing", "begins here")
+            }
+            _ => self.endless(endless),
+        })?;
         let token = &self.scan.text[span.clone()];
+        if self.long_text.is_none() && token.contains('\n') {
+            self.long_text = Some((span.start..span.start + 1, self.faults.len()));
+        }
         if token.starts_with(['\'', 'b']) {
             return Ok(Kind::Char);
         }
@@ -171,6 +183,7 @@ impl Parser<'_> {
             let name = Word { text: self.scan.text[span.clone()].trim_start_matches("r#").to_string(), span };
             let value = self.after_colon(&name.span, "field")?;
             fields.push(Field { name, value });
+            self.stray_word()?;
             self.comma(')')?;
         }
         Ok(Kind::Fields(fields))
@@ -233,8 +246,12 @@ impl Parser<'_> {
                 Ok(false)
             }
             Some(c @ (')' | ']' | '}')) => {
-                let stop = self.fault(here, format!("`{c}` closes nothing"), format!("expected `{close}`"));
-                let also = self.open.last().map(|open| (open.clone(), format!("this bracket wants `{close}`")));
+                let stop = self.fault(
+                    here,
+                    format!("`{c}` does not match the bracket that is open"),
+                    format!("expected `{close}`"),
+                );
+                let also = self.open.last().map(|open| (open.clone(), "opened here".to_string()));
                 if let Some(fault) = self.faults.last_mut() {
                     fault.also = also;
                 }
@@ -242,6 +259,24 @@ impl Parser<'_> {
             }
             _ => Ok(true),
         }
+    }
+
+    /// A word between a value and the comma after it, such as a unit.
+    fn stray_word(&mut self) -> Parsed<()> {
+        self.blanks()?;
+        let before = self.scan.at;
+        if self.scan.quoted_ahead() {
+            return Ok(());
+        }
+        let Some(span) = self.scan.word() else { return Ok(()) };
+        self.blanks()?;
+        if matches!(self.scan.peek(), Some(',' | ')')) {
+            let message = format!("`{}` does not belong here", &self.scan.text[span.clone()]);
+            self.fault(span, message, "numbers are written without units: m, kg, s, Pa");
+        } else {
+            self.scan.at = before;
+        }
+        Ok(())
     }
 
     /// The comma after an item; one that is missing is a fault one can go on from.
@@ -260,7 +295,11 @@ impl Parser<'_> {
             }
             Some(c) => {
                 let here = self.scan.here();
-                Err(self.fault(here, format!("`{c}` does not belong here"), format!("expected a comma or `{close}`")))
+                let label = match (c, close) {
+                    (':', ')') => "names in quotes belong in curly brackets { }".to_string(),
+                    _ => format!("expected a comma or `{close}`"),
+                };
+                Err(self.fault(here, format!("`{c}` does not belong here"), label))
             }
         }
     }

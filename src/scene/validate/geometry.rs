@@ -101,7 +101,11 @@ fn mesh_file(file: &SceneFile, judge: &mut Judge, path: &Path, name: &str) {
         let wanted = full.file_name().and_then(|name| name.to_str()).unwrap_or(name);
         let diagnostic = judge.out.error_at(path, format!("there is no file `{name}`"));
         if there.is_empty() {
-            let folder = if folder.as_os_str().is_empty() { ".".into() } else { folder.display().to_string() };
+            let folder = if folder.as_os_str().is_empty() {
+                "this folder".to_string()
+            } else {
+                format!("the folder `{}`", folder.display())
+            };
             diagnostic
                 .note(format!("no mesh files (.msh, .vtk, .vtu) in {folder}; paths are relative to the scene file"));
         } else {

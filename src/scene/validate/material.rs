@@ -44,7 +44,7 @@ fn validate_material(judge: &mut Judge, path: &Path, name: &str, material: &Mate
         viscous(judge, &path.name("prony").name("terms"), prony);
     }
     if let Some(damping) = material.damping {
-        judge.not_negative(&path.name("damping"), damping, "1/s");
+        judge.not_negative(&path.name("damping"), damping, "s⁻¹");
     }
 }
 

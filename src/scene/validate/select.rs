@@ -1,6 +1,6 @@
 //! Selections, as far as they make no sense for any mesh.
 
-use super::{Judge, called, show};
+use super::{Judge, show};
 use crate::scene::schema::Select;
 use crate::scene::syntax::Path;
 
@@ -37,9 +37,11 @@ pub(super) fn validate(judge: &mut Judge, path: &Path, select: &Select) {
                 judge.must(&path.name("within"), "above 0 and at most 180 degrees", show(*within));
             }
         }
-        Select::Nodes(numbers) | Select::Elements(numbers) => not_empty(judge, path, numbers.is_empty()),
+        Select::Nodes(numbers) => not_empty(judge, path, "Nodes", numbers.is_empty()),
+        Select::Elements(numbers) => not_empty(judge, path, "Elements", numbers.is_empty()),
         Select::And(parts) | Select::Or(parts) => {
-            not_empty(judge, path, parts.is_empty());
+            let word = if let Select::And(_) = select { "And" } else { "Or" };
+            not_empty(judge, path, word, parts.is_empty());
             for (i, part) in parts.iter().enumerate() {
                 validate(judge, &path.index(i), part);
             }
@@ -49,8 +51,8 @@ pub(super) fn validate(judge: &mut Judge, path: &Path, select: &Select) {
     }
 }
 
-fn not_empty(judge: &mut Judge, path: &Path, empty: bool) {
+fn not_empty(judge: &mut Judge, path: &Path, word: &str, empty: bool) {
     if empty {
-        judge.out.error_at(path, format!("the list of {} is empty: it selects nothing", called(path)));
+        judge.out.error_at(path, format!("`{word}` has an empty list: it selects nothing"));
     }
 }

@@ -1,0 +1,185 @@
+//! Looking into a simulation from a program.
+
+use super::Simulation;
+use crate::components::*;
+use crate::error::Error;
+use crate::observation::Observer;
+use crate::output::{Folder, Node, nodes};
+use crate::scene::Diagnostics;
+use crate::scene::schema::Scene;
+use crate::{SceneFile, systems::Registry};
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+impl Simulation {
+    /// The world. On the GPU its columns may be older than the device's: the functions below bring what they return.
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The world, to change. On the GPU changes to columns do not reach the device; custom systems' do.
+    pub fn world_mut(&mut self) -> &mut World {
+        &mut self.world
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Steps taken.
+    pub fn step_count(&self) -> u64 {
+        self.world.resource::<Clock>().step
+    }
+
+    /// Steps that the scene lasts.
+    pub fn planned_steps(&self) -> u64 {
+        self.facts.steps
+    }
+
+    /// Time (s).
+    pub fn time(&self) -> f64 {
+        self.world.resource::<Clock>().time()
+    }
+
+    /// Δt (s).
+    pub fn time_step(&self) -> f64 {
+        self.world.resource::<Clock>().time_step
+    }
+
+    /// What is not wrong with the scene but should be known.
+    pub fn warnings(&self) -> &Diagnostics {
+        &self.facts.warnings
+    }
+
+    /// The body of a name.
+    ///
+    /// # Errors
+    /// That there is none, with the names there are.
+    pub fn body(&mut self, name: &str) -> Result<Entity, Error> {
+        let bodies: Vec<(Entity, String)> = self
+            .world
+            .query_filtered::<(Entity, &Label), With<Authoring>>()
+            .iter(&self.world)
+            .map(|(entity, label)| (entity, label.0.clone()))
+            .collect();
+        let found = bodies.iter().find(|(_, label)| label == name).map(|(entity, _)| *entity);
+        let names: Vec<&str> = bodies.iter().map(|(_, label)| label.as_str()).collect();
+        found.ok_or_else(|| Error::Options(format!("there is no body named {name:?}; there is {}", names.join(", "))))
+    }
+
+    /// Displacements of a body's nodes (m), in the author's order.
+    ///
+    /// # Errors
+    /// No such body; what the GPU says.
+    pub fn displacements(&mut self, body: &str) -> Result<Vec<DVec3>, Error> {
+        let body = self.body(body)?;
+        crate::backend::device::bring_to_host(&mut self.world, |entity, name| {
+            entity == body && name == Displacement::NAME
+        })?;
+        let (Some(authoring), Some(u)) = (self.world.get::<Authoring>(body), self.world.get::<Displacement>(body)) else {
+            return Ok(Vec::new());
+        };
+        Ok(authoring.node_rows.iter().map(|&row| u.vector(row as usize)).collect())
+    }
+
+    /// Rest positions of a body's nodes (m), in the author's order.
+    ///
+    /// # Errors
+    /// No such body.
+    pub fn rest_positions(&mut self, body: &str) -> Result<Vec<DVec3>, Error> {
+        let body = self.body(body)?;
+        let (Some(authoring), Some(rest)) = (self.world.get::<Authoring>(body), self.world.get::<RestPosition>(body)) else {
+            return Ok(Vec::new());
+        };
+        Ok(authoring.node_rows.iter().map(|&row| rest.0[row as usize]).collect())
+    }
+
+    /// All fields of a body at the present step, in the author's order.
+    ///
+    /// # Errors
+    /// No such body; what the GPU says.
+    pub fn fields(&mut self, body: &str) -> Result<crate::observation::BodyFields, Error> {
+        let body = self.body(body)?;
+        crate::observation::body_fields(&mut self.world, body)
+    }
+
+    /// Internal forces of a body's nodes at the present displacements (N), in the author's order.
+    ///
+    /// # Errors
+    /// No such body; what the GPU says.
+    pub fn internal_forces(&mut self, body: &str) -> Result<Vec<DVec3>, Error> {
+        let body = self.body(body)?;
+        crate::observation::internal_forces(&mut self.world, body)
+    }
+
+    /// Energies of all bodies at the present step.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn energies(&mut self) -> Result<Energies, Error> {
+        crate::observation::energies(&mut self.world)
+    }
+
+    /// What a probe sees at the present step.
+    ///
+    /// # Errors
+    /// No such probe; what the GPU says.
+    pub fn probe(&mut self, name: &str) -> Result<Vec<f64>, Error> {
+        let probes: Vec<(Entity, String)> = self
+            .world
+            .query_filtered::<(Entity, &Label), With<Probe>>()
+            .iter(&self.world)
+            .map(|(entity, label)| (entity, label.0.clone()))
+            .collect();
+        match probes.iter().find(|(_, label)| label == name) {
+            Some((probe, _)) => crate::observation::observe_probe(&mut self.world, *probe),
+            None => {
+                let names: Vec<&str> = probes.iter().map(|(_, label)| label.as_str()).collect();
+                Err(Error::Options(format!("there is no probe named {name:?}; there is {}", names.join(", "))))
+            }
+        }
+    }
+
+    /// Writes all that is observed from now on into a folder.
+    ///
+    /// # Errors
+    /// Files that cannot be created.
+    pub fn write_into(&mut self, folder: &mut Folder) -> Result<(), Error> {
+        self.world.resource_scope(|world, mut observer: Mut<Observer>| observer.write_into(folder, world))?;
+        Ok(())
+    }
+
+    /// Writes `nodes.csv` (of several bodies `nodes_NAME.csv` each): the present state in the author's numbering.
+    ///
+    /// # Errors
+    /// Files that cannot be written; what the GPU says.
+    pub fn write_nodes(&mut self, folder: &mut Folder) -> Result<(), Error> {
+        let names: Vec<String> = self.scene.bodies.keys().cloned().collect();
+        for name in &names {
+            let (rest, displacements) = (self.rest_positions(name)?, self.displacements(name)?);
+            let forces = self.internal_forces(name)?;
+            crate::observation::mass(&mut self.world)?;
+            let body = self.body(name)?;
+            let file = if names.len() == 1 { "nodes.csv".into() } else { format!("nodes_{name}.csv") };
+            let path = folder.claim(&file)?;
+            let (Some(authoring), Some(mass)) = (self.world.get::<Authoring>(body), self.world.get::<Mass>(body)) else {
+                continue;
+            };
+            let node = |(place, &row): (usize, &u32)| Node {
+                id: authoring.node_ids.of(place),
+                position: rest[place],
+                displacement: displacements[place],
+                force: forces[place],
+                mass: mass.get(row as usize),
+            };
+            nodes::write(&path, authoring.node_rows.iter().enumerate().map(node))?;
+        }
+        Ok(())
+    }
+
+    /// Everything that is wrong with a scene, as far as can be known without running it.
+    pub fn check(scene: &SceneFile, registry: &Registry) -> Diagnostics {
+        super::build::check(scene, registry)
+    }
+}

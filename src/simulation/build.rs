@@ -1,0 +1,247 @@
+//! From a scene to a simulation.
+
+use super::options::choose;
+use super::schedule::{Scheduled, resolve};
+use super::{Entry, Facts, Job, Options, Simulation};
+use crate::assembly::{Assembly, StableStep, assemble, assemble_in_time, stable_step};
+use crate::backend::cpu::Cpu;
+use crate::backend::device::{ColumnAccess, Device};
+use crate::components::*;
+use crate::error::Error;
+use crate::observation::Observer;
+use crate::scene::{Diagnostics, SceneFile};
+use crate::systems::{HostSystem, Phase, Registry};
+use bevy_ecs::component::ComponentId;
+use bevy_ecs::prelude::*;
+use bevy_ecs::system::SystemAccess;
+use std::time::{Duration, Instant};
+
+impl Simulation {
+    /// Makes a simulation of a scene with the built-in systems.
+    ///
+    /// # Errors
+    /// All that is wrong with the scene; no GPU where one is asked for.
+    pub fn new(scene: &SceneFile, options: &Options) -> Result<Self, Error> {
+        Self::with_systems(scene, options, &Registry::default())
+    }
+
+    /// Makes a simulation whose scene may also name one's own systems.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn with_systems(scene: &SceneFile, options: &Options, registry: &Registry) -> Result<Self, Error> {
+        let started = Instant::now();
+        let mut diagnostics = scene.diagnostics();
+        let mut world = World::new();
+        let assembly = assemble(scene, options.precision, &mut world, &mut diagnostics);
+        let Some(assembly) = assembly else { return Err(diagnostics.into()) };
+        let Some((clock, stable, steps)) = clock(scene, &mut world, &mut diagnostics) else {
+            return Err(diagnostics.into());
+        };
+        world.insert_resource(clock);
+        assemble_in_time(&assembly, &mut world, &mut diagnostics);
+        let schedule = resolve(scene.scene.schedule.as_deref(), registry, &mut world, &mut diagnostics);
+        if diagnostics.has_errors() {
+            return Err(diagnostics.into());
+        }
+        let (nodes, elements) = counts(&assembly);
+        world.insert_resource(Cpu::new(options.threads, elements));
+        let observer = observer(scene, &clock, steps, &mut world);
+        world.insert_resource(observer);
+        let mut hosts: Vec<HostSystem> = schedule.iter().map(|entry| (entry.system.host)()).collect();
+        let mut access = Vec::new();
+        for system in &mut hosts {
+            access.push(system.initialize(&mut world));
+        }
+        add_called_for_columns(&schedule, &access, &assembly, &mut world);
+
+        let chosen = choose(options)?;
+        let on_gpu = chosen.gpu.is_some();
+        let backend = match &chosen.gpu {
+            Some(gpu) => format!("GPU ({})", gpu.report().name),
+            None => {
+                let cpu = world.resource::<Cpu>();
+                format!("CPU ({} threads, {})", cpu.threads(), cpu.instruction_set()).replace("(1 threads", "(1 thread")
+            }
+        };
+        if let Some(gpu) = chosen.gpu {
+            world.insert_resource(Device::new(gpu, all_columns()));
+        }
+        let mut entries = Vec::new();
+        for ((scheduled, host), access) in schedule.iter().zip(hosts).zip(&access) {
+            let system = scheduled.system;
+            let job = match system.kernels {
+                Some(kernels) if on_gpu => Job::Kernels(Device::prepare(&mut world, kernels)?),
+                _ => {
+                    let (reads, writes) = columns_of(access, &world);
+                    Job::Host { system: host, every: system.every, observes: system.observes, reads, writes }
+                }
+            };
+            let (name, because) = (system.name.clone(), scheduled.because.clone());
+            entries.push(Entry { name, phase: system.phase, because, job, time: Duration::ZERO, runs: 0 });
+        }
+        let facts = Facts {
+            on_gpu,
+            backend,
+            why: chosen.why,
+            precision: options.precision,
+            stable,
+            steps,
+            nodes,
+            elements,
+            initial_mass: crate::observation::mass(&mut world)?,
+            setup: started.elapsed(),
+            warnings: diagnostics,
+        };
+        Ok(Self { world, entries, scene: scene.scene.clone(), facts, elapsed: Duration::ZERO })
+    }
+}
+
+/// Checks a scene as far as making its world goes: everything except choosing a backend. All that was found.
+pub(super) fn check(scene: &SceneFile, registry: &Registry) -> Diagnostics {
+    let mut diagnostics = scene.diagnostics();
+    let mut world = World::new();
+    if let Some(assembly) = assemble(scene, Precision::F32, &mut world, &mut diagnostics)
+        && let Some((clock, ..)) = clock(scene, &mut world, &mut diagnostics)
+    {
+        world.insert_resource(clock);
+        assemble_in_time(&assembly, &mut world, &mut diagnostics);
+        resolve(scene.scene.schedule.as_deref(), registry, &mut world, &mut diagnostics);
+    }
+    diagnostics
+}
+
+/// The clock with its step, the stable step, and how many steps the scene lasts.
+fn clock(scene: &SceneFile, world: &mut World, diagnostics: &mut Diagnostics) -> Option<(Clock, StableStep, u64)> {
+    let Some(stable) = stable_step(world) else {
+        diagnostics.error_at("bodies", "there are no elements to simulate");
+        return None;
+    };
+    let (integration, duration) = (&scene.scene.integration, scene.scene.duration);
+    let limit = stable.time_step;
+    if !(limit.is_finite() && limit > 0.0) {
+        let message = format!("no stable time step can be found: element {} of {} has a bound of {limit} s", stable.element, stable.body);
+        diagnostics.error_at("materials", message);
+        return None;
+    }
+    let (time_step, steps) = match integration.step {
+        // the scene ends with a whole step
+        None => {
+            let steps = (duration / (integration.safety * limit)).ceil().max(1.0);
+            (duration / steps, steps)
+        }
+        Some(step) => {
+            if step > limit {
+                let message = format!(
+                    "a step of {step} s is beyond the stable one of {limit:.4e} s (set by element {} of {})",
+                    stable.element, stable.body
+                );
+                if integration.beyond_stable_step {
+                    diagnostics.warn_at("integration.step", message);
+                } else {
+                    diagnostics
+                        .error_at("integration.step", message)
+                        .note("leave `step` out to have it found, or insist with beyond_stable_step: true (the bound is rigorous but not sharp)");
+                }
+            }
+            (step, (duration / step).round().max(1.0))
+        }
+    };
+    if steps > 1e15 {
+        diagnostics.error_at("duration", format!("{duration} s are {steps:.1e} steps of {time_step:.3e} s; at most 1e15 are allowed"));
+        return None;
+    }
+    Some((Clock { step: 0, time_step }, stable, steps as u64))
+}
+
+fn counts(assembly: &Assembly<'_>) -> (usize, usize) {
+    let sum = |of: &dyn Fn(&crate::mesh::Mesh) -> usize| assembly.bodies.values().map(|b| of(&b.placed.mesh)).sum();
+    (sum(&|mesh| mesh.points.len()), sum(&|mesh| mesh.element_count()))
+}
+
+fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> Observer {
+    let every = |time: f64| crate::assembly::steps_of(time, clock.time_step);
+    let mut observer = Observer {
+        fields_every: every(scene.scene.fields_every()),
+        energies_every: scene.scene.output.energies_every.map_or(0, every),
+        last_step: steps,
+        ..Observer::default()
+    };
+    observer.watch_probes(world);
+    observer
+}
+
+/// Columns that custom systems write although the scene does not call for them.
+fn add_called_for_columns(
+    schedule: &[Scheduled<'_>],
+    access: &[SystemAccess],
+    assembly: &Assembly<'_>,
+    world: &mut World,
+) {
+    let Some(external) = world.component_id::<ExternalForce>() else { return };
+    let custom = schedule.iter().zip(access).filter(|(entry, _)| entry.system.kernels.is_none() && !entry.system.observes);
+    if custom.into_iter().any(|(_, access)| writes(access, external)) {
+        for body in assembly.bodies.values() {
+            let length = world.get::<Displacement>(body.entity).map_or(0, |u| u.len());
+            if world.get::<ExternalForce>(body.entity).is_none() {
+                world.entity_mut(body.entity).insert(ExternalForce(Reals::zeros(assembly.precision, length)));
+            }
+        }
+    }
+}
+
+/// The columns that a system reads and writes, by its own access set.
+fn columns_of(access: &SystemAccess, world: &World) -> (Vec<&'static str>, Vec<&'static str>) {
+    let names = |touched: fn(&SystemAccess, ComponentId) -> bool| {
+        let columns = all_columns().into_iter();
+        columns.filter(|c| (c.id)(world).is_some_and(|id| touched(access, id))).map(|c| c.name).collect()
+    };
+    (names(reads), names(writes))
+}
+
+/// An exclusive system may touch everything.
+fn reads(access: &SystemAccess, id: ComponentId) -> bool {
+    match access {
+        SystemAccess::None => false,
+        SystemAccess::Shared(set) => set.combined_access().has_read(id),
+        SystemAccess::Exclusive => true,
+    }
+}
+
+fn writes(access: &SystemAccess, id: ComponentId) -> bool {
+    match access {
+        SystemAccess::None => false,
+        SystemAccess::Shared(set) => set.combined_access().has_write(id),
+        SystemAccess::Exclusive => true,
+    }
+}
+
+/// Every kind of column there is.
+fn all_columns() -> Vec<ColumnAccess> {
+    vec![
+        ColumnAccess::of::<Displacement>(),
+        ColumnAccess::of::<DisplacementStep>(),
+        ColumnAccess::of::<DisplacementCompensation>(),
+        ColumnAccess::of::<Mass>(),
+        ColumnAccess::of::<DampingCoefficient>(),
+        ColumnAccess::of::<InternalForce>(),
+        ColumnAccess::of::<ExternalForce>(),
+        ColumnAccess::of::<ConstrainedAxes>(),
+        ColumnAccess::of::<Work>(),
+        ColumnAccess::of::<ElementForce>(),
+        ColumnAccess::of::<FirstNonFinite>(),
+        ColumnAccess::of::<Connectivity>(),
+        ColumnAccess::of::<RestShape>(),
+        ColumnAccess::of::<FibreDirection>(),
+        ColumnAccess::of::<ViscousMemory>(),
+        ColumnAccess::of::<Alive>(),
+        ColumnAccess::of::<RemovalStep>(),
+        ColumnAccess::of::<RemovedEnergy>(),
+        ColumnAccess::of::<FirstInverted>(),
+    ]
+}
+
+/// Whether a phase comes after the clock has been moved on.
+pub(super) fn after_the_step(phase: Phase) -> bool {
+    phase > Phase::Integrate
+}

@@ -1,0 +1,59 @@
+//! A scene at work: the world, its schedule, its clock.
+
+mod access;
+mod build;
+mod explain;
+mod options;
+mod run;
+mod schedule;
+mod summary;
+
+pub use options::{BackendChoice, Options};
+pub use summary::{Summary, SystemTime};
+
+use crate::assembly::StableStep;
+use crate::backend::kernel::KernelId;
+use crate::scene::Diagnostics;
+use crate::scene::schema::Scene;
+use crate::systems::{HostSystem, Phase};
+use bevy_ecs::prelude::*;
+use std::time::Duration;
+
+/// A simulation: make it from a scene, step it, look at it.
+pub struct Simulation {
+    world: World,
+    entries: Vec<Entry>,
+    scene: Scene,
+    facts: Facts,
+    elapsed: Duration,
+}
+
+/// A system of the running schedule.
+struct Entry {
+    name: String,
+    phase: Phase,
+    because: String,
+    job: Job,
+    time: Duration,
+    runs: u64,
+}
+
+enum Job {
+    Host { system: HostSystem, every: u64, observes: bool, reads: Vec<&'static str>, writes: Vec<&'static str> },
+    Kernels(Vec<KernelId>),
+}
+
+/// What was decided when the simulation was made.
+struct Facts {
+    on_gpu: bool,
+    backend: String,
+    why: String,
+    precision: crate::components::Precision,
+    stable: StableStep,
+    steps: u64,
+    nodes: usize,
+    elements: usize,
+    initial_mass: f64,
+    setup: Duration,
+    warnings: Diagnostics,
+}

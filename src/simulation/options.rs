@@ -1,0 +1,65 @@
+//! How to run a scene: what is not the scene's business.
+
+use crate::backend::gpu::{Choice, Gpu, NoGpu};
+use crate::components::Precision;
+use crate::error::Error;
+
+/// Where to run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum BackendChoice {
+    /// A hardware GPU if there is one and the precision is f32, else the CPU.
+    #[default]
+    Auto,
+    /// The CPU.
+    Cpu,
+    /// The GPU, a software device if there is no other.
+    Gpu,
+}
+
+/// How to run a scene.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Where to run.
+    pub backend: BackendChoice,
+    /// The number type.
+    pub precision: Precision,
+    /// CPU threads; 0: one a core.
+    pub threads: usize,
+    /// Which GPU, when there are several.
+    pub gpu: Choice,
+}
+
+/// What was chosen, and why.
+pub(super) struct Chosen {
+    pub gpu: Option<Gpu>,
+    pub why: String,
+}
+
+/// Chooses the backend.
+pub(super) fn choose(options: &Options) -> Result<Chosen, Error> {
+    let cpu = |why: String| Ok(Chosen { gpu: None, why });
+    match (options.backend, options.precision) {
+        (BackendChoice::Cpu, _) => cpu("asked for".into()),
+        (BackendChoice::Gpu, Precision::F64) => {
+            Err(Error::Options("the GPU computes in f32 only: use --precision f32, or --backend cpu for f64".into()))
+        }
+        (BackendChoice::Gpu, Precision::F32) => {
+            let gpu = Gpu::open(&options.gpu)?;
+            let why = format!("asked for; {}", gpu.report());
+            Ok(Chosen { gpu: Some(gpu), why })
+        }
+        (BackendChoice::Auto, Precision::F64) => cpu("f64 runs on the CPU only".into()),
+        (BackendChoice::Auto, Precision::F32) => {
+            let wanted = if options.gpu == Choice::Best { Choice::Hardware } else { options.gpu.clone() };
+            match Gpu::open(&wanted) {
+                Ok(gpu) => {
+                    let why = format!("a hardware GPU is there: {}", gpu.report());
+                    Ok(Chosen { gpu: Some(gpu), why })
+                }
+                Err(NoGpu::NoDriver) => cpu("no driver shows a GPU".into()),
+                Err(NoGpu::NoMatch { found, .. }) => cpu(format!("there is no hardware GPU, only {}", found.join(", "))),
+                Err(refused) => cpu(refused.to_string()),
+            }
+        }
+    }
+}

@@ -1,0 +1,187 @@
+//! Steps.
+
+use super::build::after_the_step;
+use super::{Entry, Simulation, Job};
+use crate::backend::device::{Device, bring_to_host, send_to_device};
+use crate::backend::kernel::KernelId;
+use crate::components::*;
+use crate::error::Error;
+use crate::observation::Observer;
+use bevy_ecs::prelude::*;
+use std::time::Instant;
+
+impl Simulation {
+    /// Takes one step.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn step(&mut self) -> Result<(), Error> {
+        self.advance(1)
+    }
+
+    /// Takes steps until the clock shows at least `time` (s).
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn advance_to(&mut self, time: f64) -> Result<(), Error> {
+        let time_step = self.world.resource::<Clock>().time_step;
+        // a time that is a whole number of steps is met in spite of rounding
+        let target = (time / time_step - 1e-6).ceil().max(0.0) as u64;
+        self.advance(target.saturating_sub(self.step_count()))
+    }
+
+    /// Takes `count` steps. On the GPU they go in as few submissions as observations and custom systems allow.
+    ///
+    /// # Errors
+    /// That the simulation broke down (the world keeps the state in which this was noticed), that the GPU failed, or that
+    /// outputs could not be written.
+    pub fn advance(&mut self, count: u64) -> Result<(), Error> {
+        let started = Instant::now();
+        let target = self.step_count() + count;
+        let mut result = Ok(());
+        while result.is_ok() && self.step_count() < target {
+            result = if self.facts.on_gpu { self.device_steps(target) } else { self.host_step() };
+        }
+        self.elapsed += started.elapsed();
+        result
+    }
+
+    /// Observes the present state, whatever is due.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn observe(&mut self) -> Result<(), Error> {
+        self.world.resource_scope(|world, mut observer: Mut<Observer>| observer.observe(world))
+    }
+
+    fn evaluate_signals(&mut self, step: u64) {
+        let time_step = self.world.resource::<Clock>().time_step;
+        let now = step as f64 * time_step;
+        let next = (step + 1) as f64 * time_step;
+        self.world.resource_mut::<Signals>().evaluate(now, next);
+    }
+
+    fn host_step(&mut self) -> Result<(), Error> {
+        let step = self.step_count();
+        self.evaluate_signals(step);
+        let mut moved = false;
+        for entry in &mut self.entries {
+            if after_the_step(entry.phase) && !moved {
+                self.world.resource_mut::<Clock>().step = step + 1;
+                moved = true;
+            }
+            entry.run_on_host(step, &mut self.world)?;
+        }
+        self.world.resource_mut::<Clock>().step = step + 1;
+        Ok(())
+    }
+
+    /// As many steps as can be taken before a host system has to run, or one step around it.
+    fn device_steps(&mut self, target: u64) -> Result<(), Error> {
+        let step = self.step_count();
+        let custom_due = |step: u64| {
+            self.entries.iter().any(|entry| {
+                matches!(entry.job, Job::Host { every, observes: false, .. } if step.is_multiple_of(every))
+            })
+        };
+        if custom_due(step) {
+            return self.device_step_around_hosts(step);
+        }
+        let mut until = target.min(self.world.resource::<Observer>().next_due(step));
+        for entry in &self.entries {
+            if let Job::Host { every, observes: false, .. } = entry.job {
+                until = until.min((step / every + 1) * every);
+            }
+        }
+        let kernels: Vec<KernelId> = self.entries.iter().flat_map(Entry::kernels).copied().collect();
+        let count = (until - step).min(4096);
+        self.run_kernels(&kernels, step, count)?;
+        self.world.resource_mut::<Clock>().step = step + count;
+        self.observe_if_due(step + count)
+    }
+
+    fn observe_if_due(&mut self, step: u64) -> Result<(), Error> {
+        if self.world.resource::<Observer>().next_due(step - 1) != step {
+            return Ok(());
+        }
+        for entry in &mut self.entries {
+            if matches!(entry.job, Job::Host { observes: true, .. }) {
+                entry.run_on_host(step - 1, &mut self.world)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn device_step_around_hosts(&mut self, step: u64) -> Result<(), Error> {
+        let mut waiting: Vec<KernelId> = Vec::new();
+        let mut moved = false;
+        for place in 0..self.entries.len() {
+            let after = after_the_step(self.entries[place].phase);
+            if after && !moved {
+                // the kernels of this step still count from its beginning
+                self.run_kernels(&std::mem::take(&mut waiting), step, 1)?;
+                moved = true;
+            }
+            let entry = &self.entries[place];
+            match &entry.job {
+                Job::Kernels(kernels) if after => self.run_kernels(&kernels.clone(), step, 1)?,
+                Job::Kernels(kernels) => waiting.extend(kernels),
+                Job::Host { observes: true, .. } => {}
+                Job::Host { every, .. } if !step.is_multiple_of(*every) => {}
+                Job::Host { reads, writes, .. } => {
+                    let (reads, writes) = (reads.clone(), writes.clone());
+                    self.run_kernels(&std::mem::take(&mut waiting), step, 1)?;
+                    bring_to_host(&mut self.world, |_, name| reads.contains(&name) || writes.contains(&name))?;
+                    self.world.resource_mut::<Clock>().step = step + u64::from(after);
+                    self.evaluate_signals(step);
+                    self.entries[place].run_on_host(step, &mut self.world)?;
+                    send_to_device(&mut self.world, |_, name| writes.contains(&name))?;
+                    self.world.resource_mut::<Clock>().step = step;
+                }
+            }
+        }
+        self.run_kernels(&waiting, step, 1)?;
+        self.world.resource_mut::<Clock>().step = step + 1;
+        self.observe_if_due(step + 1)
+    }
+
+    fn run_kernels(&mut self, kernels: &[KernelId], first: u64, count: u64) -> Result<(), Error> {
+        if kernels.is_empty() {
+            return Ok(());
+        }
+        let mut records = Vec::new();
+        let mut clock = *self.world.resource::<Clock>();
+        for step in first..first + count {
+            clock.step = step;
+            self.evaluate_signals(step);
+            records.extend(crate::backend::step::record(&clock, self.world.resource::<Signals>()));
+        }
+        let size = records.len() / count as usize;
+        self.world.resource_mut::<Device>().run(kernels, &records, size, count as u32)
+    }
+}
+
+impl Entry {
+    fn kernels(&self) -> &[KernelId] {
+        match &self.job {
+            Job::Kernels(kernels) => kernels,
+            Job::Host { .. } => &[],
+        }
+    }
+
+    /// Runs a host system if this is one of its steps.
+    fn run_on_host(&mut self, step: u64, world: &mut World) -> Result<(), Error> {
+        let Job::Host { system, every, .. } = &mut self.job else { return Ok(()) };
+        if !step.is_multiple_of(*every) {
+            return Ok(());
+        }
+        let started = Instant::now();
+        let result = system.run((), world);
+        self.time += started.elapsed();
+        self.runs += 1;
+        match result {
+            Ok(result) => result,
+            Err(error) => Err(Error::Options(format!("the system `{}` cannot run: {error}", self.name))),
+        }
+    }
+}

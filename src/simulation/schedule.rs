@@ -1,0 +1,86 @@
+//! The order of systems: as the scene writes it, or derived from what the scene contains.
+
+use crate::scene::{Diagnostics, choice};
+use crate::systems::{Phase, Registry, System};
+use bevy_ecs::prelude::*;
+
+/// A system of the schedule, and why it is there.
+pub struct Scheduled<'a> {
+    /// The system.
+    pub system: &'a System,
+    /// Why.
+    pub because: String,
+}
+
+/// Resolves a scene's schedule; complaints go to `diagnostics`.
+pub fn resolve<'a>(
+    names: Option<&[String]>,
+    registry: &'a Registry,
+    world: &mut World,
+    diagnostics: &mut Diagnostics,
+) -> Vec<Scheduled<'a>> {
+    let Some(names) = names else {
+        let all = registry.systems().iter();
+        return all.filter_map(|system| Some(Scheduled { system, because: (system.because)(world)? })).collect();
+    };
+    let mut schedule: Vec<Scheduled<'a>> = Vec::new();
+    for (place, name) in names.iter().enumerate() {
+        let path = format!("schedule[{place}]");
+        let Some(system) = registry.get(name) else {
+            let known = registry.systems().iter().map(|system| system.name.as_str());
+            diagnostics
+                .error_at(path.as_str(), format!("there is no system named `{name}`"))
+                .notes(choice(name, known));
+            continue;
+        };
+        if schedule.iter().any(|earlier| earlier.system.name == *name) {
+            diagnostics.error_at(path.as_str(), format!("`{name}` is in the schedule already; a step runs it once"));
+            continue;
+        }
+        if let Some(earlier) = schedule.iter().find(|earlier| earlier.system.phase > system.phase) {
+            let (a, b) = (phase_word(earlier.system.phase), phase_word(system.phase));
+            diagnostics
+                .error_at(path.as_str(), format!("`{name}` must stand before `{}`", earlier.system.name))
+                .note(format!("`{name}` {b}, `{}` {a}; the order of phases is {}", earlier.system.name, phases()));
+        }
+        let because = (system.because)(world).unwrap_or_else(|| "the scene's schedule names it".into());
+        schedule.push(Scheduled { system, because });
+    }
+    for system in registry.systems() {
+        if let Some(because) = (system.because)(world)
+            && !names.contains(&system.name)
+        {
+            let message = format!("no scheduled system serves what `{}` is for: {because}", system.name);
+            diagnostics
+                .error_at("schedule", message)
+                .note(format!("add \"{}\" ({}), or leave `schedule` out to have it derived", system.name, system.does));
+        }
+    }
+    schedule
+}
+
+const PHASES: [Phase; 7] = [
+    Phase::Boundary,
+    Phase::ElementForces,
+    Phase::Gather,
+    Phase::Loads,
+    Phase::Integrate,
+    Phase::Removal,
+    Phase::Observe,
+];
+
+fn phase_word(phase: Phase) -> &'static str {
+    match phase {
+        Phase::Boundary => "says where constrained nodes go",
+        Phase::ElementForces => "fills in element forces",
+        Phase::Gather => "sums forces at the nodes",
+        Phase::Loads => "adds external forces",
+        Phase::Integrate => "moves the nodes",
+        Phase::Removal => "takes elements away",
+        Phase::Observe => "only reads",
+    }
+}
+
+fn phases() -> String {
+    PHASES.map(|phase| format!("{phase:?}")).join(", ")
+}

@@ -1,0 +1,150 @@
+//! What a run amounted to.
+
+use super::{Simulation, Job};
+use crate::backend::device::{Device, Traffic};
+use crate::components::*;
+use crate::error::Error;
+use crate::observation::Observer;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// What a run amounted to; `summary.json` is this.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// The scene's title.
+    pub title: String,
+    /// Where it ran.
+    pub backend: String,
+    /// Why there.
+    pub backend_because: String,
+    /// `f32` or `f64`.
+    pub precision: &'static str,
+    /// Nodes of all bodies.
+    pub nodes: usize,
+    /// Elements of all bodies at the start.
+    pub elements: usize,
+    /// The largest step that the element bound shows to be stable (s).
+    pub stable_step: f64,
+    /// The element that sets it: body and author's number.
+    pub stable_step_element: (String, u64),
+    /// Δt (s).
+    pub time_step: f64,
+    /// Steps taken.
+    pub steps: u64,
+    /// Steps that the scene lasts.
+    pub planned_steps: u64,
+    /// Simulated time (s).
+    pub simulated: f64,
+    /// Time from the scene to the first step (s).
+    pub setup_seconds: f64,
+    /// Time for all steps, observation included (s).
+    pub run_seconds: f64,
+    /// Run time over simulated time; below 1 is faster than life.
+    pub real_time_factor: f64,
+    /// Run time a step (s).
+    pub seconds_a_step: f64,
+    /// Run time an element and step (ns).
+    pub nanoseconds_an_element_and_step: f64,
+    /// The systems in their order.
+    pub systems: Vec<SystemTime>,
+    /// What travelled between host and device.
+    pub traffic: Option<Traffic>,
+    /// Energies at the end (J).
+    pub energies: Energies,
+    /// Mass at the start (kg).
+    pub mass: f64,
+    /// Mass taken out with removed elements (kg).
+    pub removed_mass: f64,
+    /// Elements removed.
+    pub removed_elements: usize,
+    /// What each probe saw last: time (s) and values.
+    pub probes: BTreeMap<String, (f64, Vec<f64>)>,
+    /// How it ended: `finished`, `interrupted`, or what went wrong.
+    pub ended: String,
+}
+
+/// A system's share of a run.
+#[derive(Clone, Debug, Serialize)]
+pub struct SystemTime {
+    /// The system.
+    pub name: String,
+    /// Why it is there.
+    pub because: String,
+    /// `host` or `device`.
+    pub on: &'static str,
+    /// Time on the host (s); kernels run beside it and are not timed here.
+    pub seconds: Option<f64>,
+    /// How often it ran on the host.
+    pub runs: Option<u64>,
+    /// Columns brought to the host for it in a GPU run.
+    pub brought: Vec<&'static str>,
+    /// Columns sent back to the device after it.
+    pub sent: Vec<&'static str>,
+}
+
+impl Simulation {
+    /// What the run amounted to so far. `ended` is how.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn summary(&mut self, ended: &str) -> Result<Summary, Error> {
+        let energies = self.energies()?;
+        let mass = crate::observation::mass(&mut self.world)?;
+        crate::backend::device::bring_to_host(&mut self.world, |_, name| name == Alive::NAME)?;
+        let removed: usize = self
+            .world
+            .query::<(&Block, &Alive)>()
+            .iter(&self.world)
+            .map(|(block, alive)| alive[..block.count].iter().filter(|&&alive| alive == 0).count())
+            .sum();
+        let (steps, run) = (self.step_count(), self.elapsed.as_secs_f64());
+        let a_step = run / steps.max(1) as f64;
+        let facts = &self.facts;
+        Ok(Summary {
+            title: self.scene.title.clone(),
+            backend: facts.backend.clone(),
+            backend_because: facts.why.clone(),
+            precision: match facts.precision {
+                Precision::F32 => "f32",
+                Precision::F64 => "f64",
+            },
+            nodes: facts.nodes,
+            elements: facts.elements,
+            stable_step: facts.stable.time_step,
+            stable_step_element: (facts.stable.body.clone(), facts.stable.element),
+            time_step: self.time_step(),
+            steps,
+            planned_steps: facts.steps,
+            simulated: self.time(),
+            setup_seconds: facts.setup.as_secs_f64(),
+            run_seconds: run,
+            real_time_factor: run / self.time().max(f64::MIN_POSITIVE),
+            seconds_a_step: a_step,
+            nanoseconds_an_element_and_step: a_step * 1e9 / facts.elements.max(1) as f64,
+            systems: self.entries.iter().map(|entry| system_time(entry, facts.on_gpu)).collect(),
+            traffic: self.world.get_resource::<Device>().map(Device::traffic),
+            energies,
+            mass: facts.initial_mass,
+            removed_mass: facts.initial_mass - mass,
+            removed_elements: removed,
+            probes: self.world.resource::<Observer>().latest.clone(),
+            ended: ended.into(),
+        })
+    }
+}
+
+fn system_time(entry: &super::Entry, on_gpu: bool) -> SystemTime {
+    let (name, because) = (entry.name.clone(), entry.because.clone());
+    match &entry.job {
+        Job::Kernels(_) => {
+            let none = Vec::new;
+            SystemTime { name, because, on: "device", seconds: None, runs: None, brought: none(), sent: none() }
+        }
+        Job::Host { reads, writes, .. } => {
+            let travelling = |columns: &Vec<&'static str>| if on_gpu { columns.clone() } else { Vec::new() };
+            let (brought, sent) = (travelling(reads), travelling(writes));
+            let seconds = Some(entry.time.as_secs_f64());
+            SystemTime { name, because, on: "host", seconds, runs: Some(entry.runs), brought, sent }
+        }
+    }
+}

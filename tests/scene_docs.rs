@@ -1,0 +1,94 @@
+//! The reference of the scene format knows every word of the schema, and its examples are sound.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use sinew::scene::{SceneFile, validate};
+use std::path::Path;
+
+const SCHEMA: &str = include_str!("../src/scene/schema.rs");
+const REFERENCE: &str = include_str!("../docs/scene.md");
+
+/// The names of all fields and variants: what has a comment with three slashes or stands in an enum, and is no function.
+fn words_of_the_schema() -> Vec<&'static str> {
+    let mut words = Vec::new();
+    let mut inside = false;
+    for line in SCHEMA.lines() {
+        if line.starts_with("pub struct") || line.starts_with("pub enum") {
+            inside = true;
+        } else if line == "}" {
+            inside = false;
+        } else if inside {
+            let text = line.trim().trim_start_matches("pub ");
+            let end = text.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(text.len());
+            if end > 0 {
+                words.push(&text[..end]);
+            }
+        }
+    }
+    words
+}
+
+#[test]
+fn every_field_and_variant_is_in_the_reference() {
+    let words = words_of_the_schema();
+    // a word that only an example shows is not explained
+    let tables: String = REFERENCE.split("```").step_by(2).collect();
+    assert!(words.len() > 120, "the schema was read as {} words: {words:?}", words.len());
+    for word in words {
+        let named = tables.match_indices(word).any(|(at, _)| {
+            let part = |c: char| c.is_alphanumeric() || c == '_';
+            let (before, after) = (tables[..at].chars().next_back(), &tables[at + word.len()..]);
+            // in code, not as a word of a sentence
+            !before.is_some_and(part)
+                && !after.starts_with(part)
+                && (before == Some('`') || after.starts_with([':', '(']))
+        });
+        assert!(named, "docs/scene.md does not name `{word}`");
+    }
+}
+
+/// The scene an example stands for: itself, or its fields with the required ones added that it does not give.
+fn whole(example: &str) -> String {
+    if example.starts_with('(') {
+        return example.to_string();
+    }
+    let mut text = format!("(\n{example}");
+    for (field, value) in [
+        ("duration", "0.5"),
+        ("materials", r#"{"tissue": (density: 1060, neo_hookean: Young(young: 3e3, poisson: 0.45))}"#),
+        ("bodies", r#"{"cube": (mesh: Box(size: (1, 1, 1), cells: (4, 4, 4)), material: "tissue")}"#),
+    ] {
+        if !example.lines().any(|line| line.starts_with(&format!("{field}:"))) {
+            text.push_str(&format!("{field}: {value},\n"));
+        }
+    }
+    text + ")\n"
+}
+
+#[test]
+fn every_example_in_the_reference_is_sound() {
+    let examples: Vec<&str> = REFERENCE.split("```ron\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert!(examples.len() >= 7);
+    for example in examples {
+        let text = whole(example);
+        let scene = SceneFile::from_text("example.ron", &text, Path::new(""), &[])
+            .unwrap_or_else(|wrong| panic!("{wrong}\nin\n{text}"));
+        let mut wrong = scene.diagnostics();
+        validate(&scene, &mut wrong);
+        assert!(!wrong.has_errors(), "{wrong}\nin\n{text}");
+    }
+}
+
+#[test]
+fn a_scene_written_and_read_again_is_the_same() {
+    for example in REFERENCE.split("```ron\n").skip(1).filter_map(|rest| rest.split("```").next()) {
+        let read = |text: &str| {
+            SceneFile::from_text("a.ron", text, Path::new(""), &[]).unwrap_or_else(|e| panic!("{e}")).scene
+        };
+        let scene = read(&whole(example));
+        let plain = ron::ser::to_string_pretty(&scene, ron::ser::PrettyConfig::default()).unwrap();
+        assert_eq!(read(&plain), scene, "{plain}");
+        let named = ron::ser::PrettyConfig::default().struct_names(true);
+        let named = ron::ser::to_string_pretty(&scene, named).unwrap();
+        assert_eq!(read(&named), scene, "{named}");
+    }
+}

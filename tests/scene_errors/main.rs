@@ -1,0 +1,9 @@
+//! What a scene author is told about mistakes: where, what, what is allowed.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod good;
+mod mutations;
+mod set;
+mod several;
+mod values;
+mod words;
