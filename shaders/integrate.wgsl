@@ -23,12 +23,12 @@ fn push(node: u32) -> vec3<f32> {
     if mass[node] > 0.0 {
         let per_mass = 1.0 / mass[node];
         let before = step_of(node);
-        let internal = vec3<f32>(internal_force[at], internal_force[at + 1u], internal_force[at + 2u]);
-        let external = external_force_of(node);
-        let pushed = damped(node, before, step.force_factor * ((external - internal) * per_mass), per_mass);
+        let inner = vec3<f32>(internal_force[at], internal_force[at + 1u], internal_force[at + 2u]);
+        let outer = external_force_of(node);
+        let pushed = damped(node, before, step.force_factor * ((outer - inner) * per_mass), per_mass);
         let constrained = (vec3<u32>(constrained_axes[node]) & vec3<u32>(1u, 2u, 4u)) != vec3<u32>(0u);
         after = select(pushed, before, constrained);
-        book_work(node, before, after, constrained, internal, external);
+        book_work(node, before, after, constrained, inner, outer);
     }
     displacement_step[at] = after.x;
     displacement_step[at + 1u] = after.y;

@@ -6,15 +6,15 @@ fn book_work(
     before: vec3<f32>,
     after: vec3<f32>,
     constrained: vec3<bool>,
-    internal: vec3<f32>,
-    external: vec3<f32>,
+    inner: vec3<f32>,
+    outer: vec3<f32>,
 ) {
     // the mean of the steps before and after makes the balance exact; constrained axes have only the step after
     let along = select(0.5 * (before + after), after, constrained);
     let lost = coefficient_of(node) * step.rate * along * along;
-    let held = select(vec3<f32>(0.0), (internal - external) * along + lost, constrained);
-    work[4u * node] += dot(external, along);
+    let held = select(vec3<f32>(0.0), (inner - outer) * along + lost, constrained);
+    work[4u * node] += dot(outer, along);
     work[4u * node + 1u] += lost.x + lost.y + lost.z;
     work[4u * node + 2u] += held.x + held.y + held.z;
-    work[4u * node + 3u] += dot(internal, along);
+    work[4u * node + 3u] += dot(inner, along);
 }

@@ -264,7 +264,7 @@ fn with_optional(kernel: Kernel, [external, damped, worked]: [bool; 3], compensa
         }
     } else {
         without += "fn book_work(node: u32, before: vec3<f32>, after: vec3<f32>, constrained: vec3<bool>, \
-                    internal: vec3<f32>, external: vec3<f32>) {}\n";
+                    inner: vec3<f32>, outer: vec3<f32>) {}\n";
     }
     if compensated {
         fragments.push(shader!("displacement_compensation"));

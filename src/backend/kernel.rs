@@ -57,8 +57,8 @@ macro_rules! shader {
 pub struct BufferId(pub(crate) u32);
 
 impl BufferId {
-    /// No buffer: stands in where making one failed, until the failure is told.
-    pub(crate) const NONE: BufferId = BufferId(u32::MAX);
+    /// No buffer: stands in where kernels are only described, and where making one failed until that is told.
+    pub const NONE: BufferId = BufferId(u32::MAX);
 }
 
 /// A kernel made ready by the GPU layer; only valid for the `Gpu` that made it.
