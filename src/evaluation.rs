@@ -154,9 +154,8 @@ impl Material<'_> {
 
     /// Elastic energy per rest volume (J/m³), as of an instantaneous deformation.
     pub fn energy(&self, row: usize, k: &Kinematics<f64>) -> f64 {
-        let fibres = self.law.fibres.as_ref().map_or(0.0, |(fibres, uniform)| {
-            fibres.energy(k, self.direction(row, *uniform))
-        });
+        let fibres =
+            self.law.fibres.as_ref().map_or(0.0, |(fibres, uniform)| fibres.energy(k, self.direction(row, *uniform)));
         self.law.neo_hookean.energy(k) + fibres
     }
 }

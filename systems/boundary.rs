@@ -40,8 +40,12 @@ fn boundary(
         let Ok((displacement, compensation, mut step)) = bodies.get_mut(body.0) else { continue };
         let rows = &signals.values()[prescribed.signal..prescribed.signal + 3];
         match &mut step.0 {
-            Reals::F32(step) => move_rows(prescribed, rows, displacement.slice(), compensation.map(|c| c.slice()), step),
-            Reals::F64(step) => move_rows(prescribed, rows, displacement.slice(), compensation.map(|c| c.slice()), step),
+            Reals::F32(step) => {
+                move_rows(prescribed, rows, displacement.slice(), compensation.map(|c| c.slice()), step)
+            }
+            Reals::F64(step) => {
+                move_rows(prescribed, rows, displacement.slice(), compensation.map(|c| c.slice()), step)
+            }
         }
     }
 }

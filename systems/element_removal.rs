@@ -26,7 +26,10 @@ pub fn system() -> System {
         Phase::Removal,
         "removes elements by time and by criterion",
         "an entry under `removal`",
-        |world| super::registry::count::<Alive>(world, "block may lose elements").map(|s| s.replace("elementss", "elements")),
+        |world| {
+            super::registry::count::<Alive>(world, "block may lose elements")
+                .map(|s| s.replace("elementss", "elements"))
+        },
         element_removal,
     )
     .on_device(kernels)
@@ -66,7 +69,8 @@ fn element_removal(
                 && (u64::from(by_time[row]) <= clock.step && by_time[row] != u32::MAX
                     || of_block.iter().any(|c| {
                         (c.rows.is_empty() || c.rows.binary_search(&(row as u32)).is_ok())
-                            && measure(c.measure, row, block.kind, connectivity, &shape, displacement, &material) > c.limit
+                            && measure(c.measure, row, block.kind, connectivity, &shape, displacement, &material)
+                                > c.limit
                     }))
         };
         let gone = rows_where(&cpu, block.count, goes);
@@ -87,7 +91,11 @@ fn element_removal(
         let Ok((authoring, .., mut mass, mut damping)) = bodies.get_mut(body) else { continue };
         weigh(authoring, &blocks, &densities, &mut mass, damping.as_deref_mut());
         let alive = |(block, row): (u32, u32)| {
-            authoring.blocks.get(block as usize).and_then(|&block| blocks.get(block).ok()).map_or(0, |b| b.7[row as usize])
+            authoring
+                .blocks
+                .get(block as usize)
+                .and_then(|&block| blocks.get(block).ok())
+                .map_or(0, |b| b.7[row as usize])
         };
         let of_body = |of: &OfBody| of.0 == body;
         for (mut load, _) in pressures.iter_mut().filter(|(_, of)| of_body(of)) {

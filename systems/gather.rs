@@ -23,10 +23,7 @@ pub fn system() -> System {
     .on_device(kernels)
 }
 
-fn gather(
-    cpu: Res<Cpu>,
-    mut bodies: Query<(&Corners, &ElementForce, &mut InternalForce, Option<&mut ExternalForce>)>,
-) {
+fn gather(cpu: Res<Cpu>, mut bodies: Query<(&Corners, &ElementForce, &mut InternalForce, Option<&mut ExternalForce>)>) {
     for (corners, element_force, mut internal, external) in &mut bodies {
         match &mut internal.0 {
             Reals::F32(internal) => sum_corners(&cpu, corners, element_force.slice(), internal),

@@ -22,11 +22,7 @@ pub fn system() -> System {
     .on_device(kernels)
 }
 
-fn gravity(
-    signals: Res<Signals>,
-    loads: Query<(&Gravity, &OfBody)>,
-    mut bodies: Query<(&Mass, &mut ExternalForce)>,
-) {
+fn gravity(signals: Res<Signals>, loads: Query<(&Gravity, &OfBody)>, mut bodies: Query<(&Mass, &mut ExternalForce)>) {
     for (load, body) in &loads {
         let Ok((mass, mut external)) = bodies.get_mut(body.0) else { continue };
         let acceleration = signals.values()[load.signal];

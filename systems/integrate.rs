@@ -119,7 +119,12 @@ fn move_nodes<T: Scalar>(
     let mut compensations = compensation.map(|c| c.chunks_mut(3 * ROWS_A_TASK));
     let mut works = work.map(|w| w.chunks_mut(4 * ROWS_A_TASK));
     let tasks = u.chunks_mut(3 * ROWS_A_TASK).zip(step.chunks_mut(3 * ROWS_A_TASK)).enumerate().map(|(task, rows)| {
-        (task * ROWS_A_TASK, rows, compensations.as_mut().and_then(Iterator::next), works.as_mut().and_then(Iterator::next))
+        (
+            task * ROWS_A_TASK,
+            rows,
+            compensations.as_mut().and_then(Iterator::next),
+            works.as_mut().and_then(Iterator::next),
+        )
     });
     cpu.for_each(tasks, |(first, (u, step), mut compensation, mut work)| {
         for row in 0..u.len() / 3 {

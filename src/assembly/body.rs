@@ -214,7 +214,10 @@ impl BlockBuilder<'_> {
                     let names: Vec<&str> = self.mesh.element_vectors.keys().map(String::as_str).collect();
                     let path = format!("materials.\"{material}\".fibres.direction");
                     diagnostics
-                        .error_at(path.as_str(), format!("the mesh of {body} has no vectors on elements named {name:?}"))
+                        .error_at(
+                            path.as_str(),
+                            format!("the mesh of {body} has no vectors on elements named {name:?}"),
+                        )
                         .notes(crate::scene::choice(name, names));
                     return (None, None);
                 }

@@ -48,7 +48,8 @@ pub(super) fn insert_node_columns(
     if scene.output.energies_every.is_some() {
         entity.insert(Work(Reals::zeros(precision, 4 * count)));
     }
-    let used = std::iter::once(&scene.bodies[name].material).chain(scene.bodies[name].regions.iter().map(|r| &r.material));
+    let used =
+        std::iter::once(&scene.bodies[name].material).chain(scene.bodies[name].regions.iter().map(|r| &r.material));
     let damped = used.into_iter().any(|material| scene.materials[material].damping.is_some());
     let corners = corners(&authoring.blocks, count, world);
     world.entity_mut(body).insert(corners);
@@ -61,7 +62,10 @@ pub(super) fn insert_node_columns(
 }
 
 /// Blocks of a body with their connectivity.
-fn blocks<'a>(entities: &'a [Entity], world: &'a World) -> impl Iterator<Item = (&'a Block, &'a Connectivity, &'a RestShape)> {
+fn blocks<'a>(
+    entities: &'a [Entity],
+    world: &'a World,
+) -> impl Iterator<Item = (&'a Block, &'a Connectivity, &'a RestShape)> {
     entities.iter().filter_map(|&entity| {
         Some((world.get::<Block>(entity)?, world.get::<Connectivity>(entity)?, world.get::<RestShape>(entity)?))
     })

@@ -14,8 +14,8 @@ mod time_step;
 
 pub use body::BodyParts;
 pub use meshes::{PlacedMesh, mesh_of};
-pub use select::Selection;
 pub use observation::steps_of;
+pub use select::Selection;
 pub use time_step::{StableStep, stable_step};
 
 use crate::components::*;

@@ -65,8 +65,13 @@ fn check(placed: &PlacedMesh, select: &Select) -> Result<(), Problem> {
 
 fn set_names(placed: &PlacedMesh) -> Vec<&str> {
     let mesh = &placed.mesh;
-    let mut names: Vec<&str> =
-        mesh.node_sets.keys().chain(mesh.face_sets.keys()).chain(mesh.element_sets.keys()).map(String::as_str).collect();
+    let mut names: Vec<&str> = mesh
+        .node_sets
+        .keys()
+        .chain(mesh.face_sets.keys())
+        .chain(mesh.element_sets.keys())
+        .map(String::as_str)
+        .collect();
     names.sort_unstable();
     names.dedup();
     names
@@ -112,11 +117,7 @@ fn some(marks: Vec<bool>, word: &str) -> Result<Vec<bool>, Problem> {
 }
 
 /// Combines the marks that a way of marking gives to the parts of And, Or and Not; `None` for all other selections.
-fn combine(
-    placed: &PlacedMesh,
-    select: &Select,
-    marks: fn(&PlacedMesh, &Select) -> Vec<bool>,
-) -> Option<Vec<bool>> {
+fn combine(placed: &PlacedMesh, select: &Select, marks: fn(&PlacedMesh, &Select) -> Vec<bool>) -> Option<Vec<bool>> {
     let merge = |all: &[Select], how: fn(bool, bool) -> bool| {
         all.iter().map(|one| marks(placed, one)).reduce(|mut a, b| {
             a.iter_mut().zip(b).for_each(|(a, b)| *a = how(*a, b));

@@ -1,8 +1,8 @@
 //! A run on the GPU: where the truth of each column lies, and what travels.
 
+use super::Buffers;
 use super::gpu::{BufferKind, Gpu};
 use super::kernel::{BindingKind, BufferId, Kernel, KernelId, compose};
-use super::Buffers;
 use crate::components::Column;
 use crate::error::Error;
 use bevy_ecs::component::ComponentId;
@@ -133,9 +133,7 @@ impl Device {
     fn prepare_kernel(&mut self, kernel: &Kernel) -> Result<KernelId, Error> {
         let id = self.gpu.prepare(kernel)?;
         let composed = compose(&kernel.fragments).map_err(super::gpu::GpuError::from)?;
-        let writes = |name: &str| {
-            composed.binding(name).is_some_and(|binding| binding.kind == BindingKind::ReadWrite)
-        };
+        let writes = |name: &str| composed.binding(name).is_some_and(|binding| binding.kind == BindingKind::ReadWrite);
         let buffers: BTreeSet<BufferId> =
             kernel.bindings.iter().filter(|(name, _)| writes(name)).map(|(_, buffer)| *buffer).collect();
         let keys = self.columns.iter().filter(|(_, column)| buffers.contains(&column.buffer)).map(|(key, _)| *key);
@@ -248,7 +246,8 @@ impl Buffers for Binder<'_> {
             return column.buffer;
         }
         let Some(&(length, access)) = self.sizes.get(&(entity, name)) else {
-            self.failure.get_or_insert(Error::Options(format!("a kernel asks for the column {name} of an entity without it")));
+            self.failure
+                .get_or_insert(Error::Options(format!("a kernel asks for the column {name} of an entity without it")));
             return BufferId::NONE;
         };
         let buffer = self.create(name, &[], length, BufferKind::Storage);

@@ -39,14 +39,8 @@ pub fn mass(world: &mut World) -> Result<f64, Error> {
 /// # Errors
 /// What the GPU says.
 pub fn energies(world: &mut World) -> Result<Energies, Error> {
-    let wanted = [
-        Displacement::NAME,
-        DisplacementStep::NAME,
-        Mass::NAME,
-        Work::NAME,
-        RestShape::NAME,
-        RemovedEnergy::NAME,
-    ];
+    let wanted =
+        [Displacement::NAME, DisplacementStep::NAME, Mass::NAME, Work::NAME, RestShape::NAME, RemovedEnergy::NAME];
     bring_to_host(world, |_, name| wanted.contains(&name))?;
     let time_step = world.resource::<Clock>().time_step;
     let mut sum = Energies::default();

@@ -123,9 +123,10 @@ pub(super) fn write(world: &mut World, series: &mut Series) -> Result<(), Error>
         all.iter().flat_map(|(_, fields)| of(fields)).flat_map(|v| v.as_vec3().to_array()).collect()
     };
     // tetrahedra of all bodies come before the hexahedra of all bodies
-    let elements: Vec<(&BodyFields, usize)> = (all.iter().flat_map(|(tets, fields)| (0..*tets).map(move |e| (fields, e))))
-        .chain(all.iter().flat_map(|(tets, fields)| (*tets..fields.alive.len()).map(move |e| (fields, e))))
-        .collect();
+    let elements: Vec<(&BodyFields, usize)> =
+        (all.iter().flat_map(|(tets, fields)| (0..*tets).map(move |e| (fields, e))))
+            .chain(all.iter().flat_map(|(tets, fields)| (*tets..fields.alive.len()).map(move |e| (fields, e))))
+            .collect();
     let of_elements = |of: &dyn Fn(&BodyFields, usize) -> f64| -> Vec<f32> {
         elements.iter().map(|(fields, element)| of(fields, *element) as f32).collect()
     };

@@ -13,7 +13,8 @@ pub(super) fn check(world: &mut World, good_until: f64) -> Result<(), Error> {
     for (body, authoring, node) in world.query::<(Entity, &Authoring, &FirstNonFinite)>().iter(world) {
         if node[0] != u32::MAX {
             let what = format!("the displacement of node {} is not finite", authoring.node_id(node[0] as usize));
-            found = Some((body, what, "a time step beyond the stable one, a load that is too sudden, or a wrong modulus"));
+            found =
+                Some((body, what, "a time step beyond the stable one, a load that is too sudden, or a wrong modulus"));
         }
     }
     // what turned inside out did so before it blew up

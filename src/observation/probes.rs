@@ -29,16 +29,15 @@ pub fn header(what: Quantity) -> Vec<&'static str> {
 /// # Errors
 /// What the GPU says.
 pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error> {
-    let (Some(body), Some(probe)) = (world.get::<OfBody>(probe).map(|of| of.0), world.get::<Probe>(probe).cloned()) else {
+    let (Some(body), Some(probe)) = (world.get::<OfBody>(probe).map(|of| of.0), world.get::<Probe>(probe).cloned())
+    else {
         return Ok(Vec::new());
     };
     let columns: &[&str] = match probe.what {
         Quantity::Displacement | Quantity::Position => &[Displacement::NAME],
         Quantity::Velocity => &[DisplacementStep::NAME],
         Quantity::Reaction => &[InternalForce::NAME, ExternalForce::NAME],
-        Quantity::Stress | Quantity::VolumeRatio => {
-            &[Displacement::NAME, RestShape::NAME, ViscousMemory::NAME]
-        }
+        Quantity::Stress | Quantity::VolumeRatio => &[Displacement::NAME, RestShape::NAME, ViscousMemory::NAME],
     };
     let of_body = |world: &World, entity: Entity| world.get::<OfBody>(entity).is_some_and(|of| of.0 == body);
     let entities: Vec<Entity> =

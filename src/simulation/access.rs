@@ -77,7 +77,8 @@ impl Simulation {
         crate::backend::device::bring_to_host(&mut self.world, |entity, name| {
             entity == body && name == Displacement::NAME
         })?;
-        let (Some(authoring), Some(u)) = (self.world.get::<Authoring>(body), self.world.get::<Displacement>(body)) else {
+        let (Some(authoring), Some(u)) = (self.world.get::<Authoring>(body), self.world.get::<Displacement>(body))
+        else {
             return Ok(Vec::new());
         };
         Ok(authoring.node_rows.iter().map(|&row| u.vector(row as usize)).collect())
@@ -89,7 +90,8 @@ impl Simulation {
     /// No such body.
     pub fn rest_positions(&mut self, body: &str) -> Result<Vec<DVec3>, Error> {
         let body = self.body(body)?;
-        let (Some(authoring), Some(rest)) = (self.world.get::<Authoring>(body), self.world.get::<RestPosition>(body)) else {
+        let (Some(authoring), Some(rest)) = (self.world.get::<Authoring>(body), self.world.get::<RestPosition>(body))
+        else {
             return Ok(Vec::new());
         };
         Ok(authoring.node_rows.iter().map(|&row| rest.0[row as usize]).collect())
@@ -163,7 +165,8 @@ impl Simulation {
             let body = self.body(name)?;
             let file = if names.len() == 1 { "nodes.csv".into() } else { format!("nodes_{name}.csv") };
             let path = folder.claim(&file)?;
-            let (Some(authoring), Some(mass)) = (self.world.get::<Authoring>(body), self.world.get::<Mass>(body)) else {
+            let (Some(authoring), Some(mass)) = (self.world.get::<Authoring>(body), self.world.get::<Mass>(body))
+            else {
                 continue;
             };
             let node = |(place, &row): (usize, &u32)| Node {

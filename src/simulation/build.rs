@@ -120,7 +120,10 @@ fn clock(scene: &SceneFile, world: &mut World, diagnostics: &mut Diagnostics) ->
     let (integration, duration) = (&scene.scene.integration, scene.scene.duration);
     let limit = stable.time_step;
     if !(limit.is_finite() && limit > 0.0) {
-        let message = format!("no stable time step can be found: element {} of {} has a bound of {limit} s", stable.element, stable.body);
+        let message = format!(
+            "no stable time step can be found: element {} of {} has a bound of {limit} s",
+            stable.element, stable.body
+        );
         diagnostics.error_at("materials", message);
         return None;
     }
@@ -148,7 +151,10 @@ fn clock(scene: &SceneFile, world: &mut World, diagnostics: &mut Diagnostics) ->
         }
     };
     if steps > 1e15 {
-        diagnostics.error_at("duration", format!("{duration} s are {steps:.1e} steps of {time_step:.3e} s; at most 1e15 are allowed"));
+        diagnostics.error_at(
+            "duration",
+            format!("{duration} s are {steps:.1e} steps of {time_step:.3e} s; at most 1e15 are allowed"),
+        );
         return None;
     }
     Some((Clock { step: 0, time_step }, stable, steps as u64))
@@ -161,12 +167,10 @@ fn counts(assembly: &Assembly<'_>) -> (usize, usize) {
 
 fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> Observer {
     let every = |time: f64| crate::assembly::steps_of(time, clock.time_step);
-    let mut observer = Observer {
-        fields_every: every(scene.scene.fields_every()),
-        energies_every: scene.scene.output.energies_every.map_or(0, every),
-        last_step: steps,
-        ..Observer::default()
-    };
+    let mut observer = Observer::default();
+    observer.fields_every = every(scene.scene.fields_every());
+    observer.energies_every = scene.scene.output.energies_every.map_or(0, every);
+    observer.last_step = steps;
     observer.watch_probes(world);
     observer
 }
@@ -179,7 +183,8 @@ fn add_called_for_columns(
     world: &mut World,
 ) {
     let Some(external) = world.component_id::<ExternalForce>() else { return };
-    let custom = schedule.iter().zip(access).filter(|(entry, _)| entry.system.kernels.is_none() && !entry.system.observes);
+    let custom =
+        schedule.iter().zip(access).filter(|(entry, _)| entry.system.kernels.is_none() && !entry.system.observes);
     if custom.into_iter().any(|(_, access)| writes(access, external)) {
         for body in assembly.bodies.values() {
             let length = world.get::<Displacement>(body.entity).map_or(0, |u| u.len());

@@ -57,7 +57,9 @@ pub(super) fn choose(options: &Options) -> Result<Chosen, Error> {
                     Ok(Chosen { gpu: Some(gpu), why })
                 }
                 Err(NoGpu::NoDriver) => cpu("no driver shows a GPU".into()),
-                Err(NoGpu::NoMatch { found, .. }) => cpu(format!("there is no hardware GPU, only {}", found.join(", "))),
+                Err(NoGpu::NoMatch { found, .. }) => {
+                    cpu(format!("there is no hardware GPU, only {}", found.join(", ")))
+                }
                 Err(refused) => cpu(refused.to_string()),
             }
         }

@@ -1,7 +1,7 @@
 //! Steps.
 
 use super::build::after_the_step;
-use super::{Entry, Simulation, Job};
+use super::{Entry, Job, Simulation};
 use crate::backend::device::{Device, bring_to_host, send_to_device};
 use crate::backend::kernel::KernelId;
 use crate::components::*;
@@ -80,9 +80,9 @@ impl Simulation {
     fn device_steps(&mut self, target: u64) -> Result<(), Error> {
         let step = self.step_count();
         let custom_due = |step: u64| {
-            self.entries.iter().any(|entry| {
-                matches!(entry.job, Job::Host { every, observes: false, .. } if step.is_multiple_of(every))
-            })
+            self.entries.iter().any(
+                |entry| matches!(entry.job, Job::Host { every, observes: false, .. } if step.is_multiple_of(every)),
+            )
         };
         if custom_due(step) {
             return self.device_step_around_hosts(step);

@@ -1,6 +1,6 @@
 //! What a run amounted to.
 
-use super::{Simulation, Job};
+use super::{Job, Simulation};
 use crate::backend::device::{Device, Traffic};
 use crate::components::*;
 use crate::error::Error;
