@@ -1,11 +1,11 @@
 //! `boundary`: where constrained nodes go in this step. `shaders/boundary.wgsl` is its twin.
 
 use super::registry::{Phase, System};
-use crate::components::*;
-use crate::math::Scalar;
 use crate::backend::Buffers;
 use crate::backend::kernel::{Fragment, Kernel, Uniform, uniform};
 use crate::backend::step::with_step;
+use crate::components::*;
+use crate::math::Scalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
 

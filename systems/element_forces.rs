@@ -2,15 +2,15 @@
 //! `shaders/element_forces.wgsl`, the element's file, and one file an effect of the material.
 
 use super::registry::{Phase, System};
+use crate::backend::Buffers;
+use crate::backend::block_kernel::BlockKernels;
 use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, run_block};
+use crate::backend::kernel::Kernel;
 use crate::components::*;
 use crate::elements::{Element, Hex8, Tet4};
 use crate::evaluation::node_count;
 use crate::math::{LANES, SimdScalar};
 use crate::scene::schema::ElementKind;
-use crate::backend::Buffers;
-use crate::backend::block_kernel::BlockKernels;
-use crate::backend::kernel::Kernel;
 use crate::shader;
 use bevy_ecs::prelude::*;
 

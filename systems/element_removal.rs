@@ -1,15 +1,15 @@
 //! `element_removal`: takes elements away. `shaders/element_removal.wgsl` and `shaders/node_mass.wgsl` are its twins.
 
 use super::registry::{Phase, System};
+use crate::backend::Buffers;
+use crate::backend::block_kernel::BlockKernels;
 use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK};
+use crate::backend::kernel::{Fragment, Kernel, Uniform, uniform};
+use crate::backend::step::with_step;
 use crate::components::*;
 use crate::elements::{Element, Hex8, Tet4};
 use crate::evaluation::{ElementState, Material, lane_place, node_count, row_count, with_element};
 use crate::scene::schema::ElementKind;
-use crate::backend::Buffers;
-use crate::backend::block_kernel::BlockKernels;
-use crate::backend::kernel::{Fragment, Kernel, Uniform, uniform};
-use crate::backend::step::with_step;
 use crate::shader;
 use bevy_ecs::prelude::*;
 
@@ -187,7 +187,6 @@ fn update_faces(faces: &mut FaceCorners, alive: impl Fn((u32, u32)) -> u32) {
         *mark = alive(element);
     }
 }
-
 
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]

@@ -1,11 +1,11 @@
 //! `gather`: sums element forces at the nodes. `shaders/gather.wgsl` is its twin.
 
 use super::registry::{Phase, System};
+use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, ROWS_A_TASK};
+use crate::backend::kernel::{Fragment, Kernel, Uniform, uniform};
 use crate::components::*;
 use crate::math::{LANES, Scalar};
-use crate::backend::Buffers;
-use crate::backend::kernel::{Fragment, Kernel, Uniform, uniform};
 use crate::shader;
 use bevy_ecs::prelude::*;
 

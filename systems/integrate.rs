@@ -1,12 +1,12 @@
 //! `integrate`: moves the nodes. `shaders/integrate.wgsl` is its twin.
 
 use super::registry::{Phase, System};
-use crate::backend::cpu::{Cpu, ROWS_A_TASK};
-use crate::components::*;
-use crate::math::Scalar;
 use crate::backend::Buffers;
+use crate::backend::cpu::{Cpu, ROWS_A_TASK};
 use crate::backend::kernel::{Fragment, Kernel, Uniform, WEBGPU_STORAGE_BUFFERS, uniform};
 use crate::backend::step::with_step;
+use crate::components::*;
+use crate::math::Scalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
 

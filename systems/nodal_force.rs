@@ -1,11 +1,11 @@
 //! `nodal_force`: forces on chosen nodes. `shaders/nodal_force.wgsl` is its twin.
 
 use super::registry::{Phase, System};
-use crate::components::*;
-use crate::math::Scalar;
 use crate::backend::Buffers;
 use crate::backend::kernel::{Kernel, Uniform, uniform};
 use crate::backend::step::with_step;
+use crate::components::*;
+use crate::math::Scalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
 

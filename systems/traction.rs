@@ -1,12 +1,12 @@
 //! `traction`: dead loads on the surface. `shaders/traction.wgsl` is its twin.
 
 use super::registry::{Phase, System};
-use crate::components::*;
-use crate::math::Scalar;
 use crate::backend::Buffers;
 use crate::backend::face_kernel::{FaceLoad, face_loads};
 use crate::backend::kernel::{Kernel, Uniform, uniform};
 use crate::backend::step::with_step;
+use crate::components::*;
+use crate::math::Scalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
 

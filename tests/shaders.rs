@@ -118,7 +118,16 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
     let plain = fragments(&Effects::default());
     let files: BTreeSet<&str> = plain.iter().filter_map(|p| p.strip_prefix("shaders/")).collect();
     let expected = [
-        "block", "element_forces", "gather", "hex8", "integrate", "kinematics", "neo_hookean", "row", "step", "tensor",
+        "block",
+        "element_forces",
+        "gather",
+        "hex8",
+        "integrate",
+        "kinematics",
+        "neo_hookean",
+        "row",
+        "step",
+        "tensor",
         "tet4",
     ];
     assert_eq!(files, expected.map(|stem| format!("{stem}.wgsl")).iter().map(String::as_str).collect());
@@ -127,8 +136,16 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
         (Effects { fibres: Some(AROUND), ..Effects::default() }, &["fibres", "fibres_field"], &["fibre_direction"]),
         (Effects { prony: 1, ..Effects::default() }, &["prony"], &["viscous_memory"]),
         (Effects { damping: true, ..Effects::default() }, &["damping_coefficient"], &["damping_coefficient"]),
-        (Effects { loads: true, ..Effects::default() }, &["gravity", "pressure", "external_force"], &["external_force"]),
-        (Effects { compensated: true, ..Effects::default() }, &["displacement_compensation"], &["displacement_compensation"]),
+        (
+            Effects { loads: true, ..Effects::default() },
+            &["gravity", "pressure", "external_force"],
+            &["external_force"],
+        ),
+        (
+            Effects { compensated: true, ..Effects::default() },
+            &["displacement_compensation"],
+            &["displacement_compensation"],
+        ),
         (Effects { energies: true, ..Effects::default() }, &["work"], &["work"]),
         (Effects { removal: true, ..Effects::default() }, &["element_removal", "criterion", "node_mass"], &["alive"]),
     ];

@@ -85,7 +85,14 @@ pub struct Kernel {
 impl Kernel {
     /// A kernel without fragments, buffers or threads yet.
     pub fn new(label: impl Into<String>, entry: &'static str) -> Self {
-        Self { label: label.into(), entry, fragments: Vec::new(), bindings: Vec::new(), layouts: Vec::new(), threads: 0 }
+        Self {
+            label: label.into(),
+            entry,
+            fragments: Vec::new(),
+            bindings: Vec::new(),
+            layouts: Vec::new(),
+            threads: 0,
+        }
     }
 
     /// Adds a piece of WGSL.
