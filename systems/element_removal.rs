@@ -58,7 +58,7 @@ fn element_removal(
     mut pressures: Query<(&mut Pressure, &OfBody), Without<Traction>>,
     mut tractions: Query<(&mut Traction, &OfBody), Without<Pressure>>,
 ) {
-    let look = clock.step % CRITERION_STEPS == 0;
+    let look = clock.step.is_multiple_of(CRITERION_STEPS);
     let mut touched: Vec<Entity> = Vec::new();
     for (entity, block, connectivity, mut shape, law, fibres, memory, mut alive, by_time, mut energies) in &mut blocks {
         let Ok((_, displacement, step, ..)) = bodies.get(block.body) else { continue };
