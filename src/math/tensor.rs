@@ -66,13 +66,11 @@ impl<R: Real> Mat3<R> {
         self
     }
 
-    /// Adds the product a bᵀ of two vectors.
+    /// Adds a multiple of a vector to row `i`.
     #[inline(always)]
-    pub fn add_outer(&mut self, a: [R; 3], b: [R; 3]) {
-        for i in 0..3 {
-            for j in 0..3 {
-                self.0[i][j] = a[i].mul_add(b[j], self.0[i][j]);
-            }
+    pub fn add_to_row(&mut self, i: usize, factor: R, vector: [R; 3]) {
+        for j in 0..3 {
+            self.0[i][j] = factor.mul_add(vector[j], self.0[i][j]);
         }
     }
 }

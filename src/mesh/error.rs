@@ -28,12 +28,14 @@ pub enum MeshError {
         allowed: String,
     },
     /// The mesh was read, but elements or points make it impossible to simulate.
-    #[error("{name}: the mesh cannot be simulated:{}", list(findings))]
+    #[error("{name}: the mesh cannot be simulated:{}{}", list(findings), list(notes))]
     Unsound {
         /// The file, or the name of the body.
         name: String,
         /// All errors that were found.
         findings: Vec<Finding>,
+        /// What is to be known about how it was read.
+        notes: Vec<String>,
     },
     /// A parameter of a generator or of a placement is outside its range.
     #[error("{name}: {parameter} is {value}; {allowed}")]
@@ -70,8 +72,8 @@ impl fmt::Display for Place {
     }
 }
 
-fn list(findings: &[Finding]) -> String {
-    findings.iter().map(|finding| format!("\n  {finding}")).collect()
+fn list(sentences: &[impl fmt::Display]) -> String {
+    sentences.iter().map(|sentence| format!("\n  {sentence}")).collect()
 }
 
 /// A fault found while a file is read, before its name is added.

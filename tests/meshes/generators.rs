@@ -37,7 +37,7 @@ fn round_shapes() -> [Shape; 3] {
 /// Area vector of a face: of a quadrilateral half the cross product of its diagonals.
 fn area_vector(mesh: &Mesh, [a, b, c, d]: [u32; 4]) -> DVec3 {
     let at = |row: u32| mesh.points[row as usize];
-    (at(c) - at(a)).cross(at(d) - at(b)) * if c == d { -0.5 } else { 0.5 } * if c == d { -1.0 } else { 1.0 }
+    0.5 * (at(c) - at(a)).cross(at(d) - at(b))
 }
 
 /// Volume inside a surface of triangles and bilinear quadrilaterals, by the divergence theorem.
@@ -120,11 +120,90 @@ fn round_shapes_are_closed_and_sound() {
 #[test]
 fn no_cell_of_a_round_shape_is_bad() {
     for (name, make, _) in round_shapes() {
-        for kind in KINDS {
-            for n in [1, 2, 4, 8, 11, 16, 32] {
-                let worst = worst_shape(&make(n.max(2), kind));
-                println!("{name} {n} {kind:?}: {worst:.4}");
-            }
+        for n in [2, 3, 4, 8, 11, 16, 32] {
+            let tets = worst_shape(&make(n, ElementKind::Tet4));
+            assert!(tets > 0.22, "{name} of {n} cells: thinnest tetrahedron {tets:.3}");
+            // at the grid's own edges two faces lie side by side on the round surface: their angle opens with 1/n
+            let hexes = worst_shape(&make(n, ElementKind::Hex8)) * f64::from(n);
+            assert!(hexes > 0.11, "{name} of {n} cells: smallest corner determinant {hexes:.3}/n");
         }
     }
+}
+
+#[test]
+fn surfaces_have_the_areas_of_their_shapes() {
+    let area = |mesh: &Mesh, set: &str| -> f64 {
+        mesh.face_sets[set].iter().map(|&face| area_vector(mesh, face).length()).sum()
+    };
+    for kind in KINDS {
+        let (side, top) = (area(&cylinder(32, kind), "side"), area(&cylinder(32, kind), "top"));
+        assert!((side / (2.0 * PI * 0.05 * 0.2) - 1.0).abs() < 1e-3 && (top / (PI * 0.05 * 0.05) - 1.0).abs() < 1e-3);
+        let sphere = ellipsoid_mesh(DVec3::splat(0.5), 32, kind).unwrap();
+        assert!((area(&sphere, "surface") / PI - 1.0).abs() < 5e-3);
+        // a cap of height h on a circle of radius a: π(a² + h²)
+        let (lens, cap) = (lens(32, kind), PI * (4.5e-3f64.powi(2) + 2e-3f64.powi(2)));
+        for half in ["front", "back"] {
+            assert!((area(&lens, half) / cap - 1.0).abs() < 5e-3, "{half}: {} of {cap} m²", area(&lens, half));
+        }
+        let rim = lens.points.iter().filter(|point| point.z == 0.0).map(|point| point.length()).fold(0.0, f64::max);
+        assert!((rim - 4.5e-3).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn surface_faces_come_in_the_order_of_their_elements() {
+    let mesh = box_mesh(DVec3::ONE, (3, 3, 3), ElementKind::Hex8).unwrap();
+    let surface = mesh.surface();
+    assert_eq!(surface.len(), 54);
+    assert!(surface.is_sorted_by_key(|face| face.element));
+    for face in &surface {
+        let centre: DVec3 = mesh.hexes[face.element as usize].iter().map(|&row| mesh.points[row as usize] / 8.0).sum();
+        assert!(area_vector(&mesh, face.nodes).dot(mesh.points[face.nodes[0] as usize] - centre) > 0.0, "outwards");
+    }
+}
+
+#[test]
+fn impossible_parameters_are_refused_with_what_is_allowed() {
+    let kind = ElementKind::Tet4;
+    let text = |result: Result<Mesh, MeshError>| result.unwrap_err().to_string();
+    for (found, expected) in [
+        (
+            text(box_mesh(DVec3::ONE, (4, 0, 4), kind)),
+            "Box: cells is 4×0×4; there must be at least 1 cell in each direction",
+        ),
+        (
+            text(box_mesh(DVec3::new(1.0, -1.0, 1.0), (1, 1, 1), kind)),
+            "Box: size.y is -1; it must be a finite length above 0 m",
+        ),
+        (
+            text(box_mesh(DVec3::ONE, (100_000, 100_000, 2), ElementKind::Hex8)),
+            "Box: cells is 100000×100000×2; at most 1000000000 cells and 4294967295 points fit the 32-bit numbers",
+        ),
+        (text(box_mesh(DVec3::ONE, (u32::MAX, u32::MAX, u32::MAX), kind)), "at most 715827882 cells"),
+        (text(cylinder_mesh(f64::NAN, 1.0, 4, 4, kind)), "Cylinder: radius is NaN;"),
+        (text(ellipsoid_mesh(DVec3::new(1.0, 1.0, f64::INFINITY), 4, kind)), "Ellipsoid: radii.z is inf;"),
+        (text(lens_mesh(1.0, 1.5, 4, 4, kind)), "Lens: thickness is 1.5 m; it must be at most the diameter, 1 m"),
+    ] {
+        assert!(found.contains(expected), "found    {found}\nexpected {expected}");
+    }
+}
+
+/// Run with `cargo test --release --test meshes -- --ignored --nocapture million`.
+#[test]
+#[ignore = "a measurement, meaningful in release builds only"]
+fn a_million_tetrahedra_are_made_and_skinned_fast() {
+    let start = std::time::Instant::now();
+    let mesh = box_mesh(DVec3::ONE, (55, 55, 55), ElementKind::Tet4).unwrap();
+    let made = start.elapsed();
+    let surface = mesh.surface();
+    let skinned = start.elapsed() - made;
+    let soundness = mesh.soundness();
+    println!(
+        "{} tetrahedra: made in {made:?}, surface of {} in {skinned:?}, sound {} in {:?}",
+        mesh.tets.len(),
+        surface.len(),
+        soundness.is_sound(),
+        start.elapsed() - made - skinned
+    );
+    assert!(made.as_secs_f64() < 0.3 && skinned.as_secs_f64() < 0.5);
 }

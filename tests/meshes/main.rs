@@ -2,5 +2,11 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod generators;
+mod hostile;
+mod placement;
+mod readers;
+mod samples;
+mod samples_vtk;
 mod shared;
+mod shipped;
 mod soundness;

@@ -3,19 +3,24 @@
 use sinew::mesh::Mesh;
 use std::path::Path;
 
-/// File, points, tetrahedra, hexahedra, and a part of the refusal where it is refused.
-const FILES: [(&str, Result<(usize, usize, usize), &str>); 11] = [
-    ("6_tetra_bad.msh", Err("inverted")),
-    ("Armadillo_Tetra_4406.vtu", Ok((1446, 4406, 0))),
-    ("cylinder.msh", Ok((0, 0, 0))),
-    ("cylinder_Hexa.msh", Ok((0, 0, 0))),
-    ("liver.msh", Ok((0, 0, 0))),
-    ("liver.vtk", Err("surface")),
-    ("liver2.msh", Ok((0, 0, 0))),
-    ("msh4_cube.msh", Ok((0, 0, 0))),
-    ("truss_tetra.msh", Ok((0, 0, 0))),
-    ("volumetricTongue.vtu", Ok((2238, 10980, 0))),
-    ("vox8_binary.vtk", Ok((27, 0, 8))),
+/// What a file gives, or a part of its refusal.
+type Expected = Result<Counts, &'static str>;
+
+/// Points, tetrahedra, hexahedra, faces of the surface, volume (its own unit cubed), warnings.
+type Counts = (usize, usize, usize, usize, f64, usize);
+
+const FILES: [(&str, Expected); 11] = [
+    ("6_tetra_bad.msh", Err("1 inverted element: 6 (volume -4.50e0 m³)")),
+    ("Armadillo_Tetra_4406.vtu", Ok((1446, 4406, 0, 2532, 231.2143, 1))),
+    ("cylinder.msh", Ok((510, 2430, 0, 360, 0.1836826, 0))),
+    ("cylinder_Hexa.msh", Ok((5740, 0, 4920, 1526, 2.005807e-4, 0))),
+    ("liver.msh", Ok((181, 596, 0, 276, 36.56085, 0))),
+    ("liver.vtk", Err("a surface mesh (POLYDATA) of 10000 triangles or polygons, no volume elements")),
+    ("liver2.msh", Ok((507, 1493, 0, 860, 1.125092, 0))),
+    ("msh4_cube.msh", Ok((14, 24, 0, 24, 1.0, 0))),
+    ("truss_tetra.msh", Ok((40, 54, 0, 76, 1e-5, 0))),
+    ("volumetricTongue.vtu", Ok((2238, 10980, 0, 1940, 2.448448, 0))),
+    ("vox8_binary.vtk", Ok((27, 0, 8, 24, 8.0, 0))),
 ];
 
 #[test]
@@ -26,31 +31,16 @@ fn meshes_of_other_projects_are_read_or_refused_with_a_reason() {
     };
     for (file, expected) in FILES {
         match (Mesh::read(Path::new(&folder).join(file), false), expected) {
-            (Ok(mesh), Ok(counts)) => {
-                let soundness = mesh.soundness();
-                let found = (mesh.points.len(), mesh.tets.len(), mesh.hexes.len());
-                println!("{file}: {found:?}, {:.6e} m³, surface {}", mesh.volume(), mesh.surface().len());
-                println!(
-                    "  node sets {:?}",
-                    mesh.node_sets.iter().map(|(name, rows)| (name, rows.len())).collect::<Vec<_>>()
-                );
-                println!(
-                    "  faces {:?}, elements {:?}, vectors {:?}",
-                    mesh.face_sets.keys(),
-                    mesh.element_sets.keys(),
-                    mesh.element_vectors.keys()
-                );
-                println!("  notes {:#?}", mesh.notes);
-                println!("  warnings {:#?}", soundness.warnings.iter().map(ToString::to_string).collect::<Vec<_>>());
+            (Ok(mesh), Ok((points, tets, hexes, faces, volume, warnings))) => {
+                let found = (mesh.points.len(), mesh.tets.len(), mesh.hexes.len(), mesh.surface().len());
+                assert_eq!(found, (points, tets, hexes, faces), "{file}");
+                assert!((mesh.volume() / volume - 1.0).abs() < 1e-6, "{file}: {:e} m³", mesh.volume());
+                assert_eq!(mesh.soundness().warnings.len(), warnings, "{file}: {:?}", mesh.soundness().warnings);
+                println!("{file}: {:?}", mesh.notes);
             }
-            (Err(error), Err(reason)) => {
-                println!("{error}");
-                assert!(error.to_string().contains(reason), "{error}");
-            }
-            (result, expected) => println!(
-                "{file}: {:?}, not {expected:?}",
-                result.map(|mesh| mesh.points.len()).map_err(|e| e.to_string())
-            ),
+            (Err(error), Err(reason)) => assert!(error.to_string().contains(reason), "{error}"),
+            (Ok(_), Err(reason)) => panic!("{file} was read; it should be refused: {reason}"),
+            (Err(error), Ok(_)) => panic!("{error}"),
         }
     }
 }

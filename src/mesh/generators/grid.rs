@@ -135,7 +135,7 @@ impl Grid {
                 for tet in KUHN {
                     let [a, b, c, d] = tet.map(|corner| corner ^ mirror);
                     // an odd number of mirrors turns an element inside out
-                    see(&if mirror.count_ones() % 2 == 0 { [a, b, c, d] } else { [a, b, d, c] });
+                    see(&if mirror.count_ones().is_multiple_of(2) { [a, b, c, d] } else { [a, b, d, c] });
                 }
             }
         }

@@ -80,7 +80,10 @@ impl Mesh {
     /// Refuses a mesh with errors; `name` says which mesh it is.
     pub fn require_sound(&self, name: &str) -> Result<(), MeshError> {
         let findings = self.soundness().errors;
-        if findings.is_empty() { Ok(()) } else { Err(MeshError::Unsound { name: name.into(), findings }) }
+        if findings.is_empty() {
+            return Ok(());
+        }
+        Err(MeshError::Unsound { name: name.into(), findings, notes: self.notes.clone() })
     }
 
     /// Checks that sets, vectors and numbers fit the points and elements.

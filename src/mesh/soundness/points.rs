@@ -49,7 +49,7 @@ impl Mesh {
         let high = (0..self.points.len()).filter(finite).map(inside).reduce(DVec3::max);
         let (Some(low), Some(high)) = (low, high) else { return };
         let near = SAME_PLACE * low.distance(high);
-        let along = DVec3::new(0.577_215_664_9, 0.693_147_180_6, 0.431_562_382_7);
+        let along = DVec3::new(0.577_215_664_9, 0.738_114_271_3, 0.349_562_382_7);
         let mut places: Vec<(f64, u32)> =
             (0..self.points.len()).filter(finite).map(|row| ((inside(row) - low).dot(along), row as u32)).collect();
         places.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));

@@ -38,8 +38,9 @@ pub fn base64(text: &[u8]) -> Result<Vec<u8>, Wrong> {
     let mut bytes = Vec::with_capacity(text.len() / 4 * 3);
     let mut rest = text.as_slice();
     while !rest.is_empty() {
-        let padding = rest.iter().position(|&byte| byte == b'=').unwrap_or(rest.len());
-        let end = padding.next_multiple_of(4).min(rest.len());
+        let padding = rest.iter().position(|&byte| byte == b'=');
+        // a piece ends with the group of four that its padding fills up; it is never empty
+        let end = padding.map_or(rest.len(), |at| (at + 1).next_multiple_of(4).min(rest.len()));
         let piece = STANDARD.decode(&rest[..end]).map_err(|error| format!("its base64 text is damaged ({error})"))?;
         bytes.extend(piece);
         rest = &rest[end..];

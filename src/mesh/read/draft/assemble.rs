@@ -71,8 +71,9 @@ impl Draft {
         });
         let lost: Vec<String> = lost.collect();
         let more = if lost.len() > 10 { format!(" and {} more", lost.len() - 10) } else { String::new() };
+        let names = if lost.len() == 1 { "element names" } else { "elements name" };
         let what = format!(
-            "{} elements name nodes that the file does not have: {}{more}",
+            "{} {names} nodes that the file does not have: {}{more}",
             lost.len(),
             lost[..lost.len().min(10)].join(", ")
         );
@@ -225,8 +226,14 @@ fn ascending(rows: &mut Vec<u32>) {
     rows.dedup();
 }
 
-/// "4 pyramids, 12 wedges".
+/// "1 pyramid, 12 wedges".
 fn listed(counts: &BTreeMap<String, usize>) -> String {
-    let counts: Vec<String> = counts.iter().map(|(name, count)| format!("{count} {name}")).collect();
-    counts.join(", ")
+    let one = |name: &str| match name.strip_suffix("hedra") {
+        Some(stem) => format!("{stem}hedron"),
+        None => name.trim_end_matches('s').to_string(),
+    };
+    let list = |(name, &count): (&String, &usize)| {
+        if count == 1 { format!("1 {}", one(name)) } else { format!("{count} {name}") }
+    };
+    counts.iter().map(list).collect::<Vec<_>>().join(", ")
 }
