@@ -1,6 +1,7 @@
 //! The words of the command line.
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use glam::Vec3;
 use sinew::backend::gpu::Choice;
 use sinew::components::Precision;
 use sinew::{BackendChoice, Options};
@@ -28,6 +29,15 @@ pub enum Command {
     /// Run a scene and write what it asks for into a folder
     #[command(after_help = STATUSES)]
     Run(RunArguments),
+    /// Look for mistakes in a scene, all in one go, without running it
+    #[command(after_help = STATUSES)]
+    Check(SceneArguments),
+    /// Show what a scene causes and why: systems, effects, kernels, buffers; and what would turn on what is off
+    #[command(after_help = STATUSES)]
+    Explain(ExplainArguments),
+    /// Draw a scene or the output of a run
+    #[command(after_help = STATUSES)]
+    Render(RenderArguments),
 }
 
 /// Which scene.
@@ -69,6 +79,47 @@ pub struct RunArguments {
     pub out: Option<PathBuf>,
 }
 
+#[derive(Args)]
+pub struct ExplainArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    #[command(flatten)]
+    pub how: HowArguments,
+    /// Print JSON instead of a page
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args)]
+pub struct RenderArguments {
+    /// An output folder, or a scene file; a scene is run first where its output is missing or older than it
+    #[arg(value_name = "SCENE|OUT")]
+    pub what: PathBuf,
+    /// What gives the colour: displacement, speed, von_mises, pressure, volume_ratio, or a component such as
+    /// displacement.z or stress.xy [default: the scene's]
+    #[arg(long, value_name = "NAME")]
+    pub field: Option<String>,
+    /// Where the eye stands, seen from the middle of the scene: three numbers [default: the scene's]
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
+    pub from: Option<Vec3>,
+    /// Width and height in pixels [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<(u32, u32)>,
+    /// The time of the picture in seconds; an animation ends there [default: the end]
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    pub at: Option<f64>,
+    /// Draw the animation only
+    #[arg(long, conflicts_with = "no_animation")]
+    pub animate: bool,
+    /// Draw the picture only
+    #[arg(long)]
+    pub no_animation: bool,
+    /// The file to write: .png for a picture, .gif for an animation [default: picture.png and animation.gif in the
+    /// output folder]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["animate", "no_animation"])]
+    pub to: Option<PathBuf>,
+}
+
 #[derive(Clone, Copy, ValueEnum, PartialEq, Eq)]
 pub enum BackendName {
     Auto,
@@ -104,4 +155,23 @@ impl HowArguments {
 /// Where the outputs of a scene go when nobody says where.
 pub fn default_folder(scene: &Path) -> PathBuf {
     Path::new("out").join(scene.file_stem().unwrap_or(scene.as_os_str()))
+}
+
+fn direction(text: &str) -> Result<Vec3, String> {
+    let numbers: Vec<f32> = text.split(',').filter_map(|number| number.trim().parse().ok()).collect();
+    match numbers[..] {
+        [x, y, z] if text.split(',').count() == 3 => Ok(Vec3::new(x, y, z)),
+        _ => Err("three numbers with commas between are wanted, such as 1,-2,0.8".into()),
+    }
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let halves = text.split_once(['x', 'X', '×']);
+    let numbers = halves.and_then(|(wide, high)| Some((wide.trim().parse().ok()?, high.trim().parse().ok()?)));
+    numbers.ok_or_else(|| "width and height with an x between are wanted, such as 960x720".into())
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    let time = text.parse().ok().filter(|time: &f64| time.is_finite());
+    time.ok_or_else(|| "a time in seconds is wanted, such as 0.25".into())
 }

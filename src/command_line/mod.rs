@@ -1,9 +1,12 @@
 //! The command `sinew`: its arguments, what each part of it does, and how it ends.
 
 mod arguments;
+mod check;
+mod explain;
 mod failure;
 mod interrupt;
 mod progress;
+mod render;
 mod report;
 mod run;
 mod terminal;
@@ -18,6 +21,9 @@ use std::process::ExitCode;
 pub fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::Run(arguments) => run::command(&arguments),
+        Command::Check(arguments) => check::command(&arguments),
+        Command::Explain(arguments) => explain::command(&arguments),
+        Command::Render(arguments) => render::command(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,
