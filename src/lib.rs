@@ -34,4 +34,5 @@ pub mod systems;
 
 pub use error::{Error, Instability};
 pub use scene::SceneFile;
+pub use simulation::explain;
 pub use simulation::{BackendChoice, Options, Simulation, Summary, SystemTime};
