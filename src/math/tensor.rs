@@ -35,13 +35,6 @@ impl<R: Real> Mat3<R> {
         Mat3([[like.constant(0.0); 3]; 3])
     }
 
-    /// The product with a column vector.
-    #[inline(always)]
-    pub fn times_vector(&self, v: [R; 3]) -> [R; 3] {
-        let m = &self.0;
-        [dot(m[0], v), dot(m[1], v), dot(m[2], v)]
-    }
-
     /// (I + self)·s for a symmetric s: with self = ∇u this is F S.
     #[inline(always)]
     pub fn plus_identity_times(&self, s: &Sym3<R>) -> Self {

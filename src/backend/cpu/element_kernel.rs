@@ -205,7 +205,7 @@ impl<E: Element, T: SimdScalar, const FIBRES: bool, const PRONY: bool> Patch<'_,
                 stress: T::splat(simd, term.stress),
                 memory: T::splat(simd, term.memory),
                 rate: T::splat(simd, term.rate),
-                target: T::splat(simd, term.target),
+                aim: T::splat(simd, term.aim),
             };
             let first = (group * 6 * terms + 6 * number) * LANES + at;
             let mut memory = isochoric;
