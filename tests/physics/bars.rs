@@ -16,7 +16,7 @@ use std::f64::consts::PI;
 fn frequency(simulation: &mut Simulation, axis: usize, every: u64, shape: impl Fn(f64) -> f64) -> f64 {
     let (mass, rest) = (masses(simulation, "b"), simulation.rest_positions("b").unwrap());
     let weights: Vec<f64> = mass.iter().zip(&rest).map(|(m, x)| m * shape(x.x)).collect();
-    let (mut zeros, mut last) = (Vec::new(), (0.0, 0.0));
+    let (mut zeros, mut last) = (Vec::new(), (0.0_f64, 0.0_f64));
     while simulation.step_count() < simulation.planned_steps() {
         simulation.advance(every).unwrap();
         let u = simulation.displacements("b").unwrap();
@@ -51,7 +51,8 @@ fn bar_held_sideways_sounds_at_8_4333_hertz() {
 /// A quarter of the bar, with planes of symmetry.
 #[test]
 fn slender_bar_sounds_at_4_3301_hertz() {
-    let planes = "Fixed(on: Plane(normal: (0, 1, 0), at: 0), axes: [Y]), Fixed(on: Plane(normal: (0, 0, 1), at: 0), axes: [Z])";
+    let planes =
+        "Fixed(on: Plane(normal: (0, 1, 0), at: 0), axes: [Y]), Fixed(on: Plane(normal: (0, 0, 1), at: 0), axes: [Z])";
     for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
         let mesh = format!("size: (0.1, 0.005, 0.005), cells: (20, 1, 1), elements: {elements}");
         let mut simulation = bar(run, &mesh, planes, "duration: 0.7");
@@ -119,7 +120,12 @@ fn impact_runs_through_the_bar_at_the_speed_of_sound() {
                 count += 1.0;
             }
             let rest = simulation.rest_positions("b").unwrap();
-            let tip = velocities(&mut simulation, "b").iter().zip(&rest).filter(|(_, x)| x.x > 0.0999).map(|(v, _)| v.x).fold((0.0, 0.0), |(s, n), v| (s + v, n + 1.0));
+            let tip = velocities(&mut simulation, "b")
+                .iter()
+                .zip(&rest)
+                .filter(|(_, x)| x.x > 0.0999)
+                .map(|(v, _)| v.x)
+                .fold((0.0, 0.0), |(s, n), v| (s + v, n + 1.0));
             let tip = tip.0 / tip.1;
             // a free end goes from −v to +v as the front arrives
             if found.is_none() && tip > 0.0 {

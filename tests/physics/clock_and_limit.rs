@@ -50,14 +50,23 @@ fn just_above_the_limit_a_free_cube_is_reported_and_no_result() {
         for factor in [1.01, 1.1, 2.0] {
             let step = format!("step: {:?}, beyond_stable_step: true", factor * limit(1));
             let mut simulation = run.start(&scene(1, &step));
-            assert!(simulation.warnings().list().iter().any(|w| w.message.contains("beyond the stable one")), "{}", run.name);
+            assert!(
+                simulation.warnings().list().iter().any(|w| w.message.contains("beyond the stable one")),
+                "{}",
+                run.name
+            );
             match simulation.advance(20_000) {
                 Err(Error::Unstable(report)) => {
                     println!("{}, {factor}: {report}", run.name);
                     assert_eq!(report.body, "b");
                     assert!(report.good_until < report.time, "{report:?}");
                 }
-                other => panic!("{}, {factor}: {other:?} after {} steps, {:?}", run.name, simulation.step_count(), simulation.energies()),
+                other => panic!(
+                    "{}, {factor}: {other:?} after {} steps, {:?}",
+                    run.name,
+                    simulation.step_count(),
+                    simulation.energies()
+                ),
             }
         }
     }

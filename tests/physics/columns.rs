@@ -3,9 +3,7 @@
 use glam::DVec3;
 use sinew::Simulation;
 use sinew::backend::device::bring_to_host;
-use sinew::components::{
-    Authoring, Column, DisplacementStep, ExternalForce, InternalForce, Mass, Reals,
-};
+use sinew::components::{Authoring, Column, DisplacementStep, ExternalForce, InternalForce, Mass, Reals};
 
 fn column<C: Column + std::ops::Deref<Target = Reals>>(simulation: &mut Simulation, body: &str) -> Vec<DVec3> {
     let entity = simulation.body(body).unwrap();

@@ -38,7 +38,8 @@ fn momenta(simulation: &mut Simulation) -> (DVec3, DVec3) {
 #[test]
 fn free_body_keeps_its_momentum_and_angular_momentum() {
     for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
-        for effects in ["", "fibres: (eta: 2000, direction: Along(1, 2, 3)), prony: (terms: [(alpha: 0.5, tau: 0.1)])"] {
+        for effects in ["", "fibres: (eta: 2000, direction: Along(1, 2, 3)), prony: (terms: [(alpha: 0.5, tau: 0.1)])"]
+        {
             let mut simulation = run.start(&format!(
                 "(duration: 2, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.08, 0.06), cells: (3, 3, 2), elements: {elements}), material: \"m\", velocity: (0.02, -0.01, 0.03), spin: (3, -5, 8))}},
                 materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), {effects})}}, integration: (safety: 0.5))"
@@ -47,9 +48,11 @@ fn free_body_keeps_its_momentum_and_angular_momentum() {
             let before = momenta(&mut simulation);
             simulation.advance(800).unwrap();
             let after = momenta(&mut simulation);
-            let stretch = simulation.fields("b").unwrap().stress.iter().fold(0.0_f64, |largest, s| largest.max(s[0].abs()));
+            let stretch =
+                simulation.fields("b").unwrap().stress.iter().fold(0.0_f64, |largest, s| largest.max(s[0].abs()));
             assert!(stretch > 1.0, "the body must be deformed for this to say something: {stretch} Pa");
-            let errors = [(after.0 - before.0).length() / before.0.length(), (after.1 - before.1).length() / before.1.length()];
+            let errors =
+                [(after.0 - before.0).length() / before.0.length(), (after.1 - before.1).length() / before.1.length()];
             println!("{}, {elements}: momentum {:.1e}, angular {:.1e}", run.name, errors[0], errors[1]);
             assert!(errors.iter().all(|&error| error < run.bound(1e-10, 1e-4)), "{}, {elements}: {errors:?}", run.name);
         }
@@ -72,12 +75,42 @@ fn imbalance(simulation: &mut Simulation, start: f64, viscous: bool) -> f64 {
 fn energy_balances() {
     let cases = [
         ("gravity", "Fixed(on: Plane(normal: (0, 0, 1), at: 0))", "Gravity(acceleration: (3, 0, -9.81))", ""),
-        ("pressure", "Fixed(on: Plane(normal: (0, 0, 1), at: 0))", "Pressure(on: Surface(normal: (1, 0, 0)), pressure: 300, curve: Ramp(end: 0.1))", ""),
-        ("traction", "Fixed(on: Plane(normal: (0, 0, 1), at: 0))", "Traction(on: Surface(normal: (0, 0, 1)), traction: (100, 0, 100))", ""),
-        ("nodal force", "Fixed(on: Plane(normal: (0, 0, 1), at: 0))", "NodalForce(on: Plane(normal: (0, 0, 1), at: 0.1), force: (0.3, 0, 0), share: Total)", ""),
-        ("prescribed motion", "Fixed(on: Plane(normal: (0, 0, 1), at: 0)), Prescribed(on: Plane(normal: (0, 0, 1), at: 0.1), displacement: (0.02, 0, 0.02), rotation: (0, 0, 30), center: (0.05, 0.05, 0.1), curve: Smooth(end: 0.2))", "", ""),
-        ("damping", "Fixed(on: Plane(normal: (0, 0, 1), at: 0))", "Gravity(acceleration: (3, 0, -9.81))", "damping: 20,"),
-        ("viscosity", "Fixed(on: Plane(normal: (0, 0, 1), at: 0))", "Gravity(acceleration: (3, 0, -9.81))", "prony: (terms: [(alpha: 0.5, tau: 0.1)]),"),
+        (
+            "pressure",
+            "Fixed(on: Plane(normal: (0, 0, 1), at: 0))",
+            "Pressure(on: Surface(normal: (1, 0, 0)), pressure: 300, curve: Ramp(end: 0.1))",
+            "",
+        ),
+        (
+            "traction",
+            "Fixed(on: Plane(normal: (0, 0, 1), at: 0))",
+            "Traction(on: Surface(normal: (0, 0, 1)), traction: (100, 0, 100))",
+            "",
+        ),
+        (
+            "nodal force",
+            "Fixed(on: Plane(normal: (0, 0, 1), at: 0))",
+            "NodalForce(on: Plane(normal: (0, 0, 1), at: 0.1), force: (0.3, 0, 0), share: Total)",
+            "",
+        ),
+        (
+            "prescribed motion",
+            "Fixed(on: Plane(normal: (0, 0, 1), at: 0)), Prescribed(on: Plane(normal: (0, 0, 1), at: 0.1), displacement: (0.02, 0, 0.02), rotation: (0, 0, 30), center: (0.05, 0.05, 0.1), curve: Smooth(end: 0.2))",
+            "",
+            "",
+        ),
+        (
+            "damping",
+            "Fixed(on: Plane(normal: (0, 0, 1), at: 0))",
+            "Gravity(acceleration: (3, 0, -9.81))",
+            "damping: 20,",
+        ),
+        (
+            "viscosity",
+            "Fixed(on: Plane(normal: (0, 0, 1), at: 0))",
+            "Gravity(acceleration: (3, 0, -9.81))",
+            "prony: (terms: [(alpha: 0.5, tau: 0.1)]),",
+        ),
         ("fibres", "", "", "fibres: (eta: 2000, direction: Along(1, 1, 0), tension_only: true),"),
     ];
     for (name, constraints, loads, effects) in cases {
@@ -98,7 +131,9 @@ fn energy_balances() {
             let steps = simulation.planned_steps();
             let mut worst: f64 = 0.0;
             for part in 1..=6 {
-                simulation.advance_to(simulation.planned_steps() as f64 * simulation.time_step() * part as f64 / 6.0).unwrap();
+                simulation
+                    .advance_to(simulation.planned_steps() as f64 * simulation.time_step() * part as f64 / 6.0)
+                    .unwrap();
                 worst = worst.max(imbalance(&mut simulation, start, name == "viscosity"));
             }
             assert_eq!(simulation.step_count(), steps);

@@ -83,15 +83,21 @@ fn volume(points: &[DVec3]) -> f64 {
         return (points[1] - points[0]).cross(points[2] - points[0]).dot(points[3] - points[0]) / 6.0;
     }
     let faces = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
-    let (inner, outer) = ((3.0 / 7.0 - 2.0 / 7.0 * 1.2_f64.sqrt()).sqrt(), (3.0 / 7.0 + 2.0 / 7.0 * 1.2_f64.sqrt()).sqrt());
-    let weight = |at: f64| if at.abs() < 0.5 { (18.0 + 30.0_f64.sqrt()) / 36.0 } else { (18.0 - 30.0_f64.sqrt()) / 36.0 };
+    let (inner, outer) =
+        ((3.0 / 7.0 - 2.0 / 7.0 * 1.2_f64.sqrt()).sqrt(), (3.0 / 7.0 + 2.0 / 7.0 * 1.2_f64.sqrt()).sqrt());
+    let weight =
+        |at: f64| if at.abs() < 0.5 { (18.0 + 30.0_f64.sqrt()) / 36.0 } else { (18.0 - 30.0_f64.sqrt()) / 36.0 };
     let gauss = [-outer, -inner, inner, outer];
     let mut volume = 0.0;
     for face in faces {
         let [a, b, c, d] = face.map(|corner: usize| points[corner]);
         for x in gauss {
             for y in gauss {
-                let at = (a * ((1.0 - x) * (1.0 - y)) + b * ((1.0 + x) * (1.0 - y)) + c * ((1.0 + x) * (1.0 + y)) + d * ((1.0 - x) * (1.0 + y))) / 4.0;
+                let at = (a * ((1.0 - x) * (1.0 - y))
+                    + b * ((1.0 + x) * (1.0 - y))
+                    + c * ((1.0 + x) * (1.0 + y))
+                    + d * ((1.0 - x) * (1.0 + y)))
+                    / 4.0;
                 let by_x = ((b - a) * (1.0 - y) + (c - d) * (1.0 + y)) / 4.0;
                 let by_y = ((d - a) * (1.0 - x) + (c - b) * (1.0 + x)) / 4.0;
                 volume += weight(x) * weight(y) * at.dot(by_x.cross(by_y)) / 3.0;
@@ -152,7 +158,11 @@ fn forces_are_the_gradient_of_the_energy<E: Element>(kind: ElementKind) {
                     energy(&u)
                 };
                 let expected = (moved(h) - moved(-h)) / (2.0 * h);
-                assert!((found[corner][i] - expected).abs() < 1e-6 * 1.5e4, "{} instead of {expected}", found[corner][i]);
+                assert!(
+                    (found[corner][i] - expected).abs() < 1e-6 * 1.5e4,
+                    "{} instead of {expected}",
+                    found[corner][i]
+                );
             }
         }
     }
@@ -200,7 +210,12 @@ fn patch_test_leaves_interior_nodes_without_force() {
     let meshes: [(&str, Grid); 3] = [
         ("Tet4", grid([3, 3, 3], |_| ElementKind::Tet4).distorted(|_| random.vector() * 0.2)),
         ("Hex8", grid([3, 3, 3], |_| ElementKind::Hex8).distorted(|_| Random(16).vector() * 0.2)),
-        ("both", grid([3, 3, 4], mixed).distorted(|x| if x.z == 2.0 { DVec3::ZERO } else { Random((x.x * 7.0 + x.y * 5.0 + x.z) as u64).vector() * 0.2 })),
+        (
+            "both",
+            grid([3, 3, 4], mixed).distorted(|x| {
+                if x.z == 2.0 { DVec3::ZERO } else { Random((x.x * 7.0 + x.y * 5.0 + x.z) as u64).vector() * 0.2 }
+            }),
+        ),
     ];
     let folder = tempfile::tempdir().unwrap();
     for (name, mesh) in &meshes {

@@ -88,7 +88,13 @@ impl Cantilever {
             let pressure = self.lambda * (h[0][0] + h[1][1] + h[2][2]);
             let entry = |a: usize, b: usize| self.shear * (h[a][b] + h[b][a]) + if a == b { pressure } else { 0.0 };
             let stress = Mat3([0, 1, 2].map(|a| [0, 1, 2].map(|b| entry(a, b))));
-            Hex8::forces(&local, &gradient, &stress, |k| self.shape[k], |corner, i, force| forces[nodes[corner]][i] += force);
+            Hex8::forces(
+                &local,
+                &gradient,
+                &stress,
+                |k| self.shape[k],
+                |corner, i, force| forces[nodes[corner]][i] += force,
+            );
         }
         (0..(n + 1) * (n + 1)).for_each(|clamped| forces[clamped] = [0.0; 3]);
         forces
@@ -105,7 +111,9 @@ impl Cantilever {
                 load[self.node(10 * self.through, j, k)][2] = weight(j) * weight(k);
             }
         }
-        let dot = |a: &[[f64; 3]], b: &[[f64; 3]]| a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| a * b).sum::<f64>();
+        let dot = |a: &[[f64; 3]], b: &[[f64; 3]]| {
+            a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| a * b).sum::<f64>()
+        };
         let (mut u, mut residual) = (vec![[0.0; 3]; count], load.clone());
         let mut direction = residual.clone();
         let mut square = dot(&residual, &residual);

@@ -36,7 +36,11 @@ fn exact_recursion_follows_relaxation_and_ramp_to_rounding() {
             let expected = alpha * (1.0 - phi * (-(n as f64) * h).exp());
             assert!((jump[n] - expected).abs() < 1e-13, "jump, step {n}: {} instead of {expected}", jump[n]);
             let expected = alpha * (time + tau * (-time / tau).exp_m1());
-            assert!((ramp[n] - expected).abs() < 1e-13 * (1.0 + time), "ramp, step {n}: {} instead of {expected}", ramp[n]);
+            assert!(
+                (ramp[n] - expected).abs() < 1e-13 * (1.0 + time),
+                "ramp, step {n}: {} instead of {expected}",
+                ramp[n]
+            );
         }
     }
 }
@@ -49,7 +53,7 @@ fn exact_recursion_in_f32_stalls_no_earlier_than_stated() {
         stress: term.stress as f32,
         memory: term.memory as f32,
         rate: term.rate as f32,
-        target: term.target as f32,
+        aim: term.aim as f32,
     };
     let found = relaxed(rounded, (0..40_000).map(|_| 1.0_f32));
     let exact = relaxed(term, (0..40_000).map(|_| 1.0_f64));
