@@ -9,7 +9,12 @@ fn main() {
         }
     };
     let precision = if a[2] == "f64" { sinew::components::Precision::F64 } else { sinew::components::Precision::F32 };
-    let o = sinew::Options { precision, threads: 1, backend: sinew::BackendChoice::Cpu, ..Default::default() };
+    let o = sinew::Options {
+        precision,
+        threads: 1,
+        backend: if std::env::var("B").is_ok() { sinew::BackendChoice::Gpu } else { sinew::BackendChoice::Cpu },
+        ..Default::default()
+    };
     let mut s = match sinew::Simulation::new(&scene, &o) {
         Ok(s) => s,
         Err(e) => {

@@ -83,7 +83,11 @@ impl ElementState {
     pub fn forces(&self, row: usize, shape: &Reals, stress: &Sym3<f64>) -> [[f64; 3]; MOST_NODES] {
         let number = |k: usize| shape.get(lane_place(row, row_count(self.kind), k));
         let stress = self.gradient.plus_identity_times(stress);
-        with_element!(self.kind, E => E::forces(&self.displacements, &self.gradient, &stress, number))
+        let mut forces = [[0.0; 3]; MOST_NODES];
+        with_element!(self.kind, E => {
+            E::forces(&self.displacements, &self.gradient, &stress, number, |corner, i, force| forces[corner][i] = force);
+        });
+        forces
     }
 
     /// Energy in hourglass control (J).

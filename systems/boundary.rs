@@ -1,8 +1,12 @@
 //! `boundary`: where constrained nodes go in this step. `shaders/boundary.wgsl` is its twin.
 
 use super::registry::{Phase, System};
+use crate::backend::Buffers;
+use crate::backend::kernel::{Fragment, Kernel, Uniform, uniform};
+use crate::backend::step::with_step;
 use crate::components::*;
 use crate::math::Scalar;
+use crate::shader;
 use bevy_ecs::prelude::*;
 
 /// Prescribed nodes: u(t + Δt) = A·(X − center) + b. The step that leads there is written to [`DisplacementStep`] on the
@@ -24,6 +28,7 @@ pub fn system() -> System {
         },
         boundary,
     )
+    .on_device(kernels)
 }
 
 fn boundary(
@@ -61,4 +66,44 @@ fn move_rows<T: Scalar>(
             step[place] = (target - displacement[place]) + lost;
         }
     }
+}
+
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+struct Motion {
+    count: u32,
+    axes: u32,
+    signal: u32,
+}
+uniform!(Motion { count, axes, signal });
+
+/// One kernel for each prescribed set.
+fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+    let sets: Vec<(Prescribed, Entity)> =
+        world.query::<(&Prescribed, &OfBody)>().iter(world).map(|(set, body)| (set.clone(), body.0)).collect();
+    let mut kernels = Vec::new();
+    for (set, body) in &sets {
+        let motion = Motion { count: set.rows.len() as u32, axes: set.axes, signal: set.signal as u32 };
+        let arms: Vec<[f32; 3]> = set.arms.iter().map(|arm| arm.as_vec3().to_array()).collect();
+        let kernel = Kernel::new("boundary", "boundary")
+            .fragment(shader!("boundary"))
+            .fragment(shader!("row"))
+            .bind_uniform::<Motion>("motion", buffers.uniform("boundary".into(), &motion.bytes()))
+            .bind("rows", buffers.constants("rows of boundary".into(), bytemuck::cast_slice(&set.rows)))
+            .bind("arms", buffers.constants("arms of boundary".into(), bytemuck::cast_slice(&arms)))
+            .bind(Displacement::NAME, buffers.column(*body, Displacement::NAME))
+            .bind(DisplacementStep::NAME, buffers.column(*body, DisplacementStep::NAME))
+            .threads(motion.count);
+        let kernel = if world.get::<DisplacementCompensation>(*body).is_some() {
+            let lost = buffers.column(*body, DisplacementCompensation::NAME);
+            kernel.fragment(shader!("lost")).bind(DisplacementCompensation::NAME, lost)
+        } else {
+            kernel.fragment(Fragment::new(
+                "generated: sums that are not compensated",
+                "fn lost_of(at: u32) -> f32 {\n    return 0.0;\n}\n",
+            ))
+        };
+        kernels.push(with_step(kernel, world));
+    }
+    kernels
 }

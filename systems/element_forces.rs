@@ -2,11 +2,16 @@
 //! `shaders/element_forces.wgsl`, the element's file, and one file an effect of the material.
 
 use super::registry::{Phase, System};
+use crate::backend::Buffers;
+use crate::backend::block_kernel::BlockKernels;
 use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, run_block};
+use crate::backend::kernel::Kernel;
 use crate::components::*;
 use crate::elements::{Element, Hex8, Tet4};
+use crate::evaluation::node_count;
 use crate::math::{LANES, SimdScalar};
 use crate::scene::schema::ElementKind;
+use crate::shader;
 use bevy_ecs::prelude::*;
 
 /// Displacements to element forces, block by block.
@@ -19,6 +24,7 @@ pub fn system() -> System {
         |world| super::registry::count::<Block>(world, "element block"),
         element_forces,
     )
+    .on_device(kernels)
 }
 
 type BlockQuery<'a> = (
@@ -96,4 +102,25 @@ fn first_inverted(block: &Block, connectivity: &[u32], shape: &RestShape, displa
     });
     // rounding may hide from f64 what the kernel saw
     worst.map_or(0, |row| row as u32)
+}
+
+/// One kernel for each block, of the fragments that its element type and its material call for.
+fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+    let mut kernels = Vec::new();
+    for block in BlockKernels::of_world(world, buffers) {
+        let nodes = node_count(block.block.kind);
+        let mut text = String::from("fn write_forces(element: u32, forces: array<vec3<f32>, NODES>) {\n");
+        for corner in 0..nodes {
+            text += &format!("    write_force(element, {corner}u, forces[{corner}]);\n");
+        }
+        let kernel = block
+            .kernel("element_forces")
+            .fragment(shader!("element_forces"))
+            .fragment(block.generated("corners", text + "}\n"))
+            .bind(RestShape::NAME, buffers.column(block.entity, RestShape::NAME))
+            .bind(ElementForce::NAME, buffers.column(block.block.body, ElementForce::NAME))
+            .bind(FirstInverted::NAME, buffers.column(block.entity, FirstInverted::NAME));
+        kernels.push(block.with_stress(kernel, buffers));
+    }
+    kernels
 }

@@ -1,11 +1,16 @@
 //! `element_removal`: takes elements away. `shaders/element_removal.wgsl` and `shaders/node_mass.wgsl` are its twins.
 
 use super::registry::{Phase, System};
+use crate::backend::Buffers;
+use crate::backend::block_kernel::BlockKernels;
 use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK};
+use crate::backend::kernel::{Fragment, Kernel, Uniform, uniform};
+use crate::backend::step::with_step;
 use crate::components::*;
 use crate::elements::{Element, Hex8, Tet4};
 use crate::evaluation::{ElementState, Material, lane_place, node_count, row_count, with_element};
 use crate::scene::schema::ElementKind;
+use crate::shader;
 use bevy_ecs::prelude::*;
 
 /// Criteria are looked at in every tenth step: a wave passes a tenth of an element's height in a step, and to look costs
@@ -27,6 +32,7 @@ pub fn system() -> System {
         },
         element_removal,
     )
+    .on_device(kernels)
 }
 
 type BlockQuery<'a> = (
@@ -52,7 +58,7 @@ fn element_removal(
     mut pressures: Query<(&mut Pressure, &OfBody), Without<Traction>>,
     mut tractions: Query<(&mut Traction, &OfBody), Without<Pressure>>,
 ) {
-    let look = clock.step % CRITERION_STEPS == 0;
+    let look = clock.step.is_multiple_of(CRITERION_STEPS);
     let mut touched: Vec<Entity> = Vec::new();
     for (entity, block, connectivity, mut shape, law, fibres, memory, mut alive, by_time, mut energies) in &mut blocks {
         let Ok((_, displacement, step, ..)) = bodies.get(block.body) else { continue };
@@ -180,4 +186,142 @@ fn update_faces(faces: &mut FaceCorners, alive: impl Fn((u32, u32)) -> u32) {
     for (mark, &element) in faces.alive.iter_mut().zip(&faces.elements) {
         *mark = alive(element);
     }
+}
+
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+struct Removal {
+    share: f32,
+}
+uniform!(Removal { share });
+
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+struct NodeMass {
+    count: u32,
+    first: u32,
+    share: f32,
+    rate: f32,
+}
+uniform!(NodeMass { count, first, share, rate });
+
+/// For each block that may lose elements: what finds those that pass a limit, and what takes away those that are due.
+/// Then for each of the body's blocks what its nodes weigh.
+fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+    let blocks = BlockKernels::of_world(world, buffers);
+    let criteria: Vec<RemovalCriterion> = world.query::<&RemovalCriterion>().iter(world).cloned().collect();
+    let mut kernels = Vec::new();
+    let mut weighed = Vec::new();
+    for block in blocks.iter().filter(|block| world.get::<Alive>(block.entity).is_some()) {
+        let of_block: Vec<&RemovalCriterion> = criteria.iter().filter(|c| c.block == block.entity).collect();
+        // a bit for each criterion
+        for some in of_block.chunks(32) {
+            kernels.push(with_step(criterion_kernel(block, some, buffers), world));
+        }
+        kernels.push(with_step(removal_kernel(block, world, buffers), world));
+        if !weighed.contains(&block.block.body) {
+            weighed.push(block.block.body);
+        }
+    }
+    for body in weighed {
+        for (place, block) in blocks.iter().filter(|block| block.block.body == body).enumerate() {
+            kernels.extend(mass_kernel(block, place == 0, world, buffers));
+        }
+    }
+    kernels
+}
+
+fn criterion_kernel(block: &BlockKernels, criteria: &[&RemovalCriterion], buffers: &mut dyn Buffers) -> Kernel {
+    let mut text = format!(
+        "const LIMITS: u32 = {}u;\nconst CRITERION_STEPS: u32 = {CRITERION_STEPS}u;\n\
+         fn passes_a_limit(element: u32, watching: u32, k: Kinematics) -> bool {{\n    return false",
+        criteria.len()
+    );
+    for (bit, criterion) in criteria.iter().enumerate() {
+        let measure = match criterion.measure {
+            Measure::Stretch => "largest_stretch(k.green_strain)",
+            Measure::VolumeRatio => "k.true_j",
+            Measure::NegativeVolumeRatio => "-k.true_j",
+            Measure::EnergyDensity => "energy_density(element, k)",
+        };
+        text += &format!("\n        || (((watching >> {bit}u) & 1u) == 1u && {measure} > limits[{bit}].x)");
+    }
+    text += ";\n}\n";
+    let limits: Vec<[f32; 4]> = criteria.iter().map(|criterion| [criterion.limit as f32, 0.0, 0.0, 0.0]).collect();
+    let mut bits = vec![0_u32; block.block.count];
+    for (bit, criterion) in criteria.iter().enumerate() {
+        if criterion.rows.is_empty() {
+            bits.iter_mut().for_each(|bits| *bits |= 1 << bit);
+        }
+        criterion.rows.iter().for_each(|&row| bits[row as usize] |= 1 << bit);
+    }
+    let limits = buffers.uniform("limits of criterion".into(), bytemuck::cast_slice(&limits));
+    let bits = buffers.constants("criteria".into(), bytemuck::cast_slice(&bits));
+    let kernel = block
+        .kernel("criterion")
+        .fragment(shader!("criterion"))
+        .fragment(block.generated("limits", text))
+        .bind("limits", limits)
+        .bind("criteria", bits);
+    let columns = [RestShape::NAME, Alive::NAME, RemovalStep::NAME];
+    block.with_energy(columns.iter().fold(kernel, |k, name| k.bind(name, buffers.column(block.entity, name))))
+}
+
+fn removal_kernel(block: &BlockKernels, world: &World, buffers: &mut dyn Buffers) -> Kernel {
+    let (kind, material) = (block.block.kind, block.block.material);
+    let (volume, hourglass) = with_element!(kind, E => (E::VOLUME_ROW, E::HOURGLASS_ROW));
+    let mut text = String::from("fn extinguish(element: u32) {\n");
+    for row in std::iter::once(volume).chain(hourglass) {
+        text += &format!("    rest_shape[place(element, ROWS, {row}u)] = 0.0;\n");
+    }
+    let density = world.get::<Density>(material).map_or(0.0, |density| density.0);
+    let removal = Removal { share: (density / node_count(kind) as f64) as f32 };
+    let kernel = block
+        .kernel("element_removal")
+        .fragment(shader!("element_removal"))
+        .fragment(block.generated("extinction", text + "}\n"))
+        .bind_uniform::<Removal>("removal", buffers.uniform("element_removal".into(), &removal.bytes()))
+        .bind(DisplacementStep::NAME, buffers.column(block.block.body, DisplacementStep::NAME));
+    let columns = [RestShape::NAME, Alive::NAME, RemovalStep::NAME, RemovedEnergy::NAME];
+    block.with_energy(columns.iter().fold(kernel, |k, name| k.bind(name, buffers.column(block.entity, name))))
+}
+
+fn mass_kernel(block: &BlockKernels, first: bool, world: &World, buffers: &mut dyn Buffers) -> Option<Kernel> {
+    let (body, kind) = (block.block.body, block.block.kind);
+    let count = world.get::<Mass>(body)?.len();
+    let (starts, volumes) = volumes_at_nodes(&block.block, world.get::<Connectivity>(block.entity)?, count);
+    let number = |value: Option<f64>| value.unwrap_or(0.0);
+    let density = number(world.get::<Density>(block.block.material).map(|density| density.0));
+    let rate = number(world.get::<Damping>(block.block.material).map(|damping| damping.0));
+    let share = (density / node_count(kind) as f64) as f32;
+    let part = NodeMass { count: count as u32, first: u32::from(first), share, rate: rate as f32 };
+    let kernel = Kernel::new("node_mass", "node_mass")
+        .fragment(shader!("node_mass"))
+        .fragment(shader!("row"))
+        .bind_uniform::<NodeMass>("part", buffers.uniform("node_mass".into(), &part.bytes()))
+        .bind("starts", buffers.constants("starts of node_mass".into(), bytemuck::cast_slice(&starts)))
+        .bind("volumes", buffers.constants("volumes of node_mass".into(), bytemuck::cast_slice(&volumes)))
+        .bind(RestShape::NAME, buffers.column(block.entity, RestShape::NAME))
+        .bind(Mass::NAME, buffers.column(body, Mass::NAME))
+        .threads(count as u32);
+    Some(if world.get::<DampingCoefficient>(body).is_some() {
+        let damping = buffers.column(body, DampingCoefficient::NAME);
+        kernel.fragment(shader!("node_damping")).bind(DampingCoefficient::NAME, damping)
+    } else {
+        kernel.fragment(Fragment::new("generated: no damping", "fn damp_node(node: u32, added: f32) {}\n"))
+    })
+}
+
+/// For each of a body's nodes the places, in the rest shapes of a block, of the volumes of the elements that meet there.
+fn volumes_at_nodes(block: &Block, connectivity: &[u32], count: usize) -> (Vec<u32>, Vec<u32>) {
+    let nodes = node_count(block.kind);
+    let volume = with_element!(block.kind, E => E::VOLUME_ROW);
+    let mut pairs: Vec<(u32, u32)> = Vec::with_capacity(block.count * nodes);
+    for row in 0..block.count {
+        let place = lane_place(row, row_count(block.kind), volume) as u32;
+        pairs.extend((0..nodes).map(|corner| (connectivity[lane_place(row, nodes, corner)], place)));
+    }
+    pairs.sort_unstable();
+    let start = |node: usize| pairs.partition_point(|&(of, _)| (of as usize) < node) as u32;
+    ((0..=count).map(start).collect(), pairs.iter().map(|&(_, place)| place).collect())
 }

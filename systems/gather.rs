@@ -1,9 +1,12 @@
 //! `gather`: sums element forces at the nodes. `shaders/gather.wgsl` is its twin.
 
 use super::registry::{Phase, System};
+use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, ROWS_A_TASK};
+use crate::backend::kernel::{Fragment, Kernel, Uniform, uniform};
 use crate::components::*;
 use crate::math::{LANES, Scalar};
+use crate::shader;
 use bevy_ecs::prelude::*;
 
 /// Each node sums its own corners in a fixed order: the same bits for any number of threads, and no atomics. Also clears
@@ -17,6 +20,7 @@ pub fn system() -> System {
         |world| super::registry::count::<Corners>(world, "body with elements").map(|s| s.replace("bodys", "bodies")),
         gather,
     )
+    .on_device(kernels)
 }
 
 fn gather(cpu: Res<Cpu>, mut bodies: Query<(&Corners, &ElementForce, &mut InternalForce, Option<&mut ExternalForce>)>) {
@@ -46,4 +50,41 @@ fn sum_corners<T: Scalar>(cpu: &Cpu, corners: &Corners, element_force: &[T], int
             force.copy_from_slice(&sum);
         }
     });
+}
+
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+struct Gather {
+    count: u32,
+}
+uniform!(Gather { count });
+
+/// One kernel for each body.
+fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+    let bodies: Vec<(Entity, Corners, bool)> = world
+        .query::<(Entity, &Corners, Option<&ExternalForce>)>()
+        .iter(world)
+        .map(|(body, corners, external)| (body, corners.clone(), external.is_some()))
+        .collect();
+    let mut kernels = Vec::new();
+    for (body, corners, loaded) in bodies {
+        let nodes = Gather { count: corners.starts.len().saturating_sub(1) as u32 };
+        let kernel = Kernel::new("gather", "gather")
+            .fragment(shader!("gather"))
+            .fragment(shader!("row"))
+            .fragment(Fragment::new("generated: lanes", format!("const LANES: u32 = {LANES}u;\n")))
+            .bind_uniform::<Gather>("nodes", buffers.uniform("gather".into(), &nodes.bytes()))
+            .bind("starts", buffers.constants("starts of corners".into(), bytemuck::cast_slice(&corners.starts)))
+            .bind("corners", buffers.constants("corners".into(), bytemuck::cast_slice(&corners.corners)))
+            .bind(ElementForce::NAME, buffers.column(body, ElementForce::NAME))
+            .bind(InternalForce::NAME, buffers.column(body, InternalForce::NAME))
+            .threads(nodes.count);
+        kernels.push(if loaded {
+            let external = buffers.column(body, ExternalForce::NAME);
+            kernel.fragment(shader!("loads")).bind(ExternalForce::NAME, external)
+        } else {
+            kernel.fragment(Fragment::new("generated: no loads", "fn clear_loads(node: u32) {}\n"))
+        });
+    }
+    kernels
 }

@@ -1,8 +1,12 @@
 //! `gravity`: mass times acceleration on every node. `shaders/gravity.wgsl` is its twin.
 
 use super::registry::{Phase, System};
+use crate::backend::Buffers;
+use crate::backend::kernel::{Kernel, Uniform, uniform};
+use crate::backend::step::with_step;
 use crate::components::*;
 use crate::math::Scalar;
+use crate::shader;
 use bevy_ecs::prelude::*;
 
 /// Adds m g to the external forces.
@@ -15,6 +19,7 @@ pub fn system() -> System {
         |world| super::registry::count::<Gravity>(world, "gravity load"),
         gravity,
     )
+    .on_device(kernels)
 }
 
 fn gravity(signals: Res<Signals>, loads: Query<(&Gravity, &OfBody)>, mut bodies: Query<(&Mass, &mut ExternalForce)>) {
@@ -35,4 +40,33 @@ fn pull<T: Scalar>(mass: &[T], acceleration: [f64; 4], external: &mut [T]) {
             force[i] += mass * acceleration[i];
         }
     }
+}
+
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+struct GravityLoad {
+    count: u32,
+    signal: u32,
+}
+uniform!(GravityLoad { count, signal });
+
+/// One kernel for each load.
+fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+    let loads: Vec<(usize, Entity)> =
+        world.query::<(&Gravity, &OfBody)>().iter(world).map(|(load, body)| (load.signal, body.0)).collect();
+    let mut kernels = Vec::new();
+    for (signal, body) in loads {
+        let count = world.get::<Mass>(body).map_or(0, |mass| mass.len()) as u32;
+        let load = GravityLoad { count, signal: signal as u32 };
+        let kernel = Kernel::new("gravity", "gravity")
+            .fragment(shader!("gravity"))
+            .fragment(shader!("loads"))
+            .fragment(shader!("row"))
+            .bind_uniform::<GravityLoad>("load", buffers.uniform("gravity".into(), &load.bytes()))
+            .bind(Mass::NAME, buffers.column(body, Mass::NAME))
+            .bind(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME))
+            .threads(count);
+        kernels.push(with_step(kernel, world));
+    }
+    kernels
 }

@@ -1,9 +1,13 @@
 //! `integrate`: moves the nodes. `shaders/integrate.wgsl` is its twin.
 
 use super::registry::{Phase, System};
+use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, ROWS_A_TASK};
+use crate::backend::kernel::{Fragment, Kernel, Uniform, WEBGPU_STORAGE_BUFFERS, uniform};
+use crate::backend::step::with_step;
 use crate::components::*;
 use crate::math::Scalar;
+use crate::shader;
 use bevy_ecs::prelude::*;
 
 /// Central differences in velocity form, damping centred: with a = cΔt/(2m),
@@ -22,6 +26,7 @@ pub fn system() -> System {
         |world| super::registry::count::<Displacement>(world, "body").map(|s| s.replace("bodys", "bodies")),
         integrate,
     )
+    .on_device(kernels)
 }
 
 /// What a step multiplies forces and damping with.
@@ -197,4 +202,80 @@ fn move_node<T: Scalar>(
             }
         }
     }
+}
+
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+struct Integrate {
+    count: u32,
+}
+uniform!(Integrate { count });
+
+/// One kernel for each body, of what the body has columns for; two where that is more than a kernel may have.
+fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+    let mut query = world.query::<(Entity, &Mass, Has<ExternalForce>, Has<DampingCoefficient>, Has<Work>)>();
+    let bodies: Vec<_> = query.iter(world).map(|(body, mass, e, d, w)| (body, mass.len() as u32, [e, d, w])).collect();
+    let mut kernels = Vec::new();
+    for (body, count, optional) in bodies {
+        let compensated = world.get::<DisplacementCompensation>(body).is_some();
+        let nodes = buffers.uniform("integrate".into(), &Integrate { count }.bytes());
+        let mut kernel = |entry: &'static str, columns: &[&'static str]| {
+            let kernel = Kernel::new(entry, entry)
+                .fragment(shader!("integrate"))
+                .fragment(shader!("row"))
+                .bind_uniform::<Integrate>("nodes", nodes)
+                .threads(count);
+            let kernel = columns.iter().fold(kernel, |kernel, name| kernel.bind(name, buffers.column(body, name)));
+            with_step(with_optional(kernel, optional, compensated), world)
+        };
+        let [external, damped, worked] = optional;
+        let mut push = vec![Mass::NAME, InternalForce::NAME, ConstrainedAxes::NAME, DisplacementStep::NAME];
+        push.extend(external.then_some(ExternalForce::NAME));
+        push.extend(damped.then_some(DampingCoefficient::NAME));
+        push.extend(worked.then_some(Work::NAME));
+        let mut displace = vec![Displacement::NAME, FirstNonFinite::NAME];
+        displace.extend(compensated.then_some(DisplacementCompensation::NAME));
+        if push.len() + displace.len() <= WEBGPU_STORAGE_BUFFERS {
+            push.extend(displace);
+            kernels.push(kernel("integrate", &push));
+        } else {
+            displace.push(DisplacementStep::NAME);
+            kernels.push(kernel("integrate_push", &push));
+            kernels.push(kernel("integrate_move", &displace));
+        }
+    }
+    kernels
+}
+
+/// Fragments of the columns a body has, and a line for each that it has not.
+fn with_optional(kernel: Kernel, [external, damped, worked]: [bool; 3], compensated: bool) -> Kernel {
+    let mut without = String::new();
+    let mut fragments = Vec::new();
+    if external {
+        fragments.push(shader!("external_force"));
+    } else {
+        without += "fn external_force_of(node: u32) -> vec3<f32> {\n    return vec3<f32>(0.0);\n}\n";
+    }
+    if damped {
+        fragments.push(shader!("damping_coefficient"));
+    } else {
+        without += "fn damped(node: u32, before: vec3<f32>, pushed: vec3<f32>, per_mass: f32) -> vec3<f32> {\n    \
+                    return before + pushed;\n}\n";
+    }
+    if worked {
+        fragments.push(shader!("work"));
+        if !damped {
+            without += "fn coefficient_of(node: u32) -> f32 {\n    return 0.0;\n}\n";
+        }
+    } else {
+        without += "fn book_work(node: u32, before: vec3<f32>, after: vec3<f32>, constrained: vec3<bool>, \
+                    inner: vec3<f32>, outer: vec3<f32>) {}\n";
+    }
+    if compensated {
+        fragments.push(shader!("displacement_compensation"));
+    } else {
+        without += "fn add(at: u32, u: vec3<f32>, d: vec3<f32>) -> vec3<f32> {\n    return u + d;\n}\n";
+    }
+    let kernel = fragments.into_iter().fold(kernel, Kernel::fragment);
+    if without.is_empty() { kernel } else { kernel.fragment(Fragment::new("generated: what the body lacks", without)) }
 }

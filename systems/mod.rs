@@ -25,7 +25,7 @@ mod pressure;
 mod registry;
 mod traction;
 
-pub use registry::{HostSystem, Phase, Registry, System};
+pub use registry::{DescribeKernels, HostSystem, Phase, Registry, System};
 
 /// The built-in systems, in the order of a step.
 pub fn standard() -> Vec<System> {

@@ -1,8 +1,13 @@
 //! `pressure`: a pressure that follows the surface. `shaders/pressure.wgsl` is its twin.
 
 use super::registry::{Phase, System};
+use crate::backend::Buffers;
+use crate::backend::face_kernel::{FaceLoad, face_loads};
+use crate::backend::kernel::{Kernel, Uniform, uniform};
+use crate::backend::step::with_step;
 use crate::components::*;
 use crate::math::Scalar;
+use crate::shader;
 use bevy_ecs::prelude::*;
 
 /// Adds −p ∫ N_a n dA over the deformed faces, exact for triangles and for bilinear quadrilaterals.
@@ -18,6 +23,7 @@ pub fn system() -> System {
         |world| super::registry::count::<Pressure>(world, "pressure"),
         pressure,
     )
+    .on_device(kernels)
 }
 
 fn pressure(
@@ -77,6 +83,46 @@ fn face_area_at<T: Scalar>(points: &[[T; 3]; 4], a: usize) -> [T; 3] {
 
 fn cross<T: Scalar>(a: [T; 3], b: [T; 3]) -> [T; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+struct PressureLoad {
+    count: u32,
+    signal: u32,
+}
+uniform!(PressureLoad { count, signal });
+
+/// One kernel for each load; where elements can go, one for each block behind its faces.
+fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+    let loads: Vec<(Pressure, Entity)> =
+        world.query::<(&Pressure, &OfBody)>().iter(world).map(|(load, body)| (load.clone(), body.0)).collect();
+    let mut kernels = Vec::new();
+    for (pressure, body) in loads {
+        for FaceLoad { faces, alive } in face_loads(&pressure.faces, body, world) {
+            let Some(rest) = world.get::<RestPosition>(body) else { continue };
+            let face = |(nodes, behind): (&[u32; 4], &(u32, u32))| [nodes[0], nodes[1], nodes[2], nodes[3], behind.1];
+            let nodes: Vec<[u32; 5]> = faces.faces.iter().zip(&faces.elements).map(face).collect();
+            let points: Vec<[f32; 3]> =
+                faces.faces.iter().flatten().map(|&node| rest.0[node as usize].as_vec3().to_array()).collect();
+            let load = PressureLoad { count: faces.rows.len() as u32, signal: pressure.signal as u32 };
+            let kernel = Kernel::new("pressure", "pressure")
+                .fragment(shader!("pressure"))
+                .fragment(shader!("loads"))
+                .fragment(shader!("row"))
+                .bind_uniform::<PressureLoad>("load", buffers.uniform("pressure".into(), &load.bytes()))
+                .bind("rows", buffers.constants("rows of pressure".into(), bytemuck::cast_slice(&faces.rows)))
+                .bind("starts", buffers.constants("starts of pressure".into(), bytemuck::cast_slice(&faces.starts)))
+                .bind("corners", buffers.constants("corners of pressure".into(), bytemuck::cast_slice(&faces.corners)))
+                .bind("faces", buffers.constants("faces of pressure".into(), bytemuck::cast_slice(&nodes)))
+                .bind("face_points", buffers.constants("points of pressure".into(), bytemuck::cast_slice(&points)))
+                .bind(Displacement::NAME, buffers.column(body, Displacement::NAME))
+                .bind(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME))
+                .threads(load.count);
+            kernels.push(with_step(FaceLoad::with_alive(alive, kernel, buffers), world));
+        }
+    }
+    kernels
 }
 
 #[cfg(test)]

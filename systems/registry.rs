@@ -28,6 +28,9 @@ pub enum Phase {
 /// A system on the host: what the CPU backend runs, and what custom systems are on both backends.
 pub type HostSystem = Box<dyn bevy_ecs::system::System<In = (), Out = Result<(), Error>>>;
 
+/// Describes the kernels of a system for a world, bound to buffers.
+pub type DescribeKernels = fn(&mut World, &mut dyn Buffers) -> Vec<Kernel>;
+
 /// One system of the step.
 pub struct System {
     /// Its name in scenes, reports and (with `.rs` and `.wgsl`) its files.
@@ -43,7 +46,7 @@ pub struct System {
     /// Makes the system that runs on the host.
     pub host: Box<dyn Fn() -> HostSystem + Send + Sync>,
     /// Describes the kernels that do the same on a GPU; `None` for systems that only run on the host.
-    pub kernels: Option<fn(&mut World, &mut dyn Buffers) -> Vec<Kernel>>,
+    pub kernels: Option<DescribeKernels>,
     /// Whether it fetches what it reads from the device by itself, and says when it next has to run.
     pub(crate) observes: bool,
     /// Steps between two runs (host systems only).
@@ -94,7 +97,7 @@ impl System {
     }
 
     /// With its kernels.
-    pub(crate) fn on_device(mut self, kernels: fn(&mut World, &mut dyn Buffers) -> Vec<Kernel>) -> Self {
+    pub(crate) fn on_device(mut self, kernels: DescribeKernels) -> Self {
         self.kernels = Some(kernels);
         self
     }

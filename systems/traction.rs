@@ -1,8 +1,13 @@
 //! `traction`: dead loads on the surface. `shaders/traction.wgsl` is its twin.
 
 use super::registry::{Phase, System};
+use crate::backend::Buffers;
+use crate::backend::face_kernel::{FaceLoad, face_loads};
+use crate::backend::kernel::{Kernel, Uniform, uniform};
+use crate::backend::step::with_step;
 use crate::components::*;
 use crate::math::Scalar;
+use crate::shader;
 use bevy_ecs::prelude::*;
 
 /// Adds the force per rest area, in a direction that does not follow the surface. A face of a removed element bears none.
@@ -15,6 +20,7 @@ pub fn system() -> System {
         |world| super::registry::count::<Traction>(world, "traction"),
         traction,
     )
+    .on_device(kernels)
 }
 
 fn traction(signals: Res<Signals>, loads: Query<(&Traction, &OfBody)>, mut bodies: Query<&mut ExternalForce>) {
@@ -42,4 +48,41 @@ fn pull<T: Scalar>(faces: &FaceCorners, traction: [f64; 4], external: &mut [T]) 
             external[3 * row as usize + i] += traction[i] * area;
         }
     }
+}
+
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+struct TractionLoad {
+    count: u32,
+    signal: u32,
+}
+uniform!(TractionLoad { count, signal });
+
+/// One kernel for each load; where elements can go, one for each block behind its faces.
+fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+    let loads: Vec<(Traction, Entity)> =
+        world.query::<(&Traction, &OfBody)>().iter(world).map(|(load, body)| (load.clone(), body.0)).collect();
+    let mut kernels = Vec::new();
+    for (traction, body) in loads {
+        for FaceLoad { faces, alive } in face_loads(&traction.faces, body, world) {
+            let place = |corner: &u32| (*corner as usize / 4, *corner as usize % 4);
+            let areas: Vec<f32> =
+                faces.corners.iter().map(place).map(|(face, corner)| faces.areas[face][corner] as f32).collect();
+            let behind: Vec<u32> = faces.corners.iter().map(place).map(|(face, _)| faces.elements[face].1).collect();
+            let load = TractionLoad { count: faces.rows.len() as u32, signal: traction.signal as u32 };
+            let kernel = Kernel::new("traction", "traction")
+                .fragment(shader!("traction"))
+                .fragment(shader!("loads"))
+                .fragment(shader!("row"))
+                .bind_uniform::<TractionLoad>("load", buffers.uniform("traction".into(), &load.bytes()))
+                .bind("rows", buffers.constants("rows of traction".into(), bytemuck::cast_slice(&faces.rows)))
+                .bind("starts", buffers.constants("starts of traction".into(), bytemuck::cast_slice(&faces.starts)))
+                .bind("areas", buffers.constants("areas of traction".into(), bytemuck::cast_slice(&areas)))
+                .bind("behind", buffers.constants("elements of traction".into(), bytemuck::cast_slice(&behind)))
+                .bind(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME))
+                .threads(load.count);
+            kernels.push(with_step(FaceLoad::with_alive(alive, kernel, buffers), world));
+        }
+    }
+    kernels
 }

@@ -3,9 +3,9 @@
 use super::Assembly;
 use crate::components::*;
 use crate::scene::diagnostic::Diagnostics;
-use crate::scene::schema::{Axis, Constraint};
+use crate::scene::schema::{Axis, Constraint, Curve};
 use bevy_ecs::prelude::*;
-use glam::DMat3;
+use glam::{DMat3, DVec3};
 
 /// Spawns all constraints and marks the axes they take.
 pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
@@ -38,6 +38,15 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
                         format!("constraints[{number}]").as_str(),
                         format!("{taken} of its nodes are constrained along the same axes by an earlier one: this one moves them"),
                     );
+                }
+                let moves = (*displacement, *rotation, *gradient) != (DVec3::ZERO, DVec3::ZERO, [DVec3::ZERO; 3]);
+                if moves && matches!(curve, Curve::Step { .. }) {
+                    diagnostics
+                        .warn_at(
+                            format!("constraints[{number}]").as_str(),
+                            "the prescribed motion happens all at once, in a single step: a shock for the elements beside it",
+                        )
+                        .note("let it take time: curve: Smooth(end: ...), Ramp(end: ...) or Table([...])");
                 }
                 let signal = world.resource_mut::<Signals>().add(Signal::Motion {
                     curve: curve.clone(),

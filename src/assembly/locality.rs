@@ -49,6 +49,8 @@ pub fn node_rows<'a>(node_count: usize, elements: impl Iterator<Item = &'a [u32]
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::expect_used)]
+
     use super::*;
     use crate::mesh::{ElementKind, generators::box_mesh};
 

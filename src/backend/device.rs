@@ -226,8 +226,7 @@ struct Binder<'a> {
 
 impl Binder<'_> {
     fn create(&mut self, label: &str, bytes: &[u8], length: usize, kind: BufferKind) -> BufferId {
-        // a buffer of no bytes cannot be bound
-        let created = self.device.gpu.create(label, length.max(16) as u64, kind).and_then(|id| {
+        let created = self.device.gpu.create(label, length as u64, kind).and_then(|id| {
             if !bytes.is_empty() {
                 self.device.gpu.upload(id, 0, bytes)?;
             }

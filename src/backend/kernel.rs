@@ -6,6 +6,7 @@
 
 mod compose;
 mod diagnose;
+pub mod layout;
 mod reflect;
 #[cfg(test)]
 mod tests;
@@ -14,6 +15,8 @@ use std::borrow::Cow;
 
 pub use compose::{Composed, Entry, compose};
 pub use diagnose::{KernelError, NameMismatch};
+pub(crate) use layout::uniform;
+pub use layout::{Layout, Uniform};
 pub use reflect::{Binding, BindingKind, Member};
 
 /// Name of the uniform variable that holds the step's record; the GPU layer binds it, a kernel must not.
@@ -54,8 +57,8 @@ macro_rules! shader {
 pub struct BufferId(pub(crate) u32);
 
 impl BufferId {
-    /// No buffer: stands in where making one failed, until the failure is told.
-    pub(crate) const NONE: BufferId = BufferId(u32::MAX);
+    /// No buffer: stands in where kernels are only described, and where making one failed until that is told.
+    pub const NONE: BufferId = BufferId(u32::MAX);
 }
 
 /// A kernel made ready by the GPU layer; only valid for the `Gpu` that made it.
@@ -73,6 +76,8 @@ pub struct Kernel {
     pub fragments: Vec<Fragment>,
     /// (WGSL variable, buffer). Every variable the entry point uses needs one, [`STEP_VARIABLE`] excepted.
     pub bindings: Vec<(&'static str, BufferId)>,
+    /// Structs of its uniforms as Rust sees them, by WGSL variable: what tests compare with the WGSL.
+    pub layouts: Vec<(&'static str, Layout)>,
     /// Invocations wanted; rounded up to whole workgroups, so that the kernel checks its bound. 0 dispatches nothing.
     pub threads: u32,
 }
@@ -80,7 +85,14 @@ pub struct Kernel {
 impl Kernel {
     /// A kernel without fragments, buffers or threads yet.
     pub fn new(label: impl Into<String>, entry: &'static str) -> Self {
-        Self { label: label.into(), entry, fragments: Vec::new(), bindings: Vec::new(), threads: 0 }
+        Self {
+            label: label.into(),
+            entry,
+            fragments: Vec::new(),
+            bindings: Vec::new(),
+            layouts: Vec::new(),
+            threads: 0,
+        }
     }
 
     /// Adds a piece of WGSL.
@@ -93,6 +105,12 @@ impl Kernel {
     pub fn bind(mut self, variable: &'static str, buffer: BufferId) -> Self {
         self.bindings.push((variable, buffer));
         self
+    }
+
+    /// Gives a `var<uniform>` the buffer that holds a struct, or several.
+    pub fn bind_uniform<U: Uniform>(mut self, variable: &'static str, buffer: BufferId) -> Self {
+        self.layouts.push((variable, U::LAYOUT));
+        self.bind(variable, buffer)
     }
 
     /// Sets the number of invocations.

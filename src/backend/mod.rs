@@ -1,7 +1,9 @@
 //! Where kernels run: on the host's cores, or on a GPU.
 
+pub(crate) mod block_kernel;
 pub mod cpu;
 pub mod device;
+pub(crate) mod face_kernel;
 pub mod gpu;
 pub mod kernel;
 pub mod step;

@@ -1,8 +1,73 @@
-//! The step's record, as kernels see it.
+//! The step's record, as kernels see it; `shaders/step.wgsl` is its twin.
 
+use super::kernel::{Fragment, Kernel, Uniform, uniform};
 use crate::components::{Clock, Signals};
+use bevy_ecs::prelude::*;
 
-/// One step's record for the device (see `shaders/step.wgsl`).
-pub fn record(_clock: &Clock, _signals: &Signals) -> Vec<u8> {
-    Vec::new()
+/// What is the same for all rows of a step. The record is this, then a slot of four numbers for every signal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Step {
+    /// Δt², in the first step half of it (s²).
+    pub force_factor: f32,
+    /// Δt/2 (s).
+    pub half_step: f32,
+    /// 1, in the first step 0.
+    pub divide: f32,
+    /// 1/Δt (1/s).
+    pub rate: f32,
+    /// Index of the step, from 0; stops at the largest number.
+    pub number: u32,
+    /// Always 0, which no compiler knows: a number combined with it keeps its rounding.
+    pub zero: u32,
+    /// Nothing: signals begin on 16 bytes.
+    pub pad0: u32,
+    /// Nothing.
+    pub pad1: u32,
+}
+
+uniform!(Step { force_factor, half_step, divide, rate, number, zero, pad0, pad1 });
+
+impl Step {
+    /// The step that begins at the clock's time.
+    pub fn of(clock: &Clock) -> Self {
+        let (dt, first) = (clock.time_step, clock.step == 0);
+        Self {
+            force_factor: (dt * dt * if first { 0.5 } else { 1.0 }) as f32,
+            half_step: (0.5 * dt) as f32,
+            divide: if first { 0.0 } else { 1.0 },
+            rate: (1.0 / dt) as f32,
+            number: u32::try_from(clock.step).unwrap_or(u32::MAX),
+            zero: 0,
+            pad0: 0,
+            pad1: 0,
+        }
+    }
+}
+
+/// Slots for signals in the record: WGSL has no arrays of none.
+fn slots(signals: &Signals) -> usize {
+    signals.values().len().max(1)
+}
+
+/// One step's record for the device; the signals must have been evaluated for the step.
+pub fn record(clock: &Clock, signals: &Signals) -> Vec<u8> {
+    let mut bytes = Step::of(clock).bytes();
+    for slot in signals.values() {
+        bytes.extend_from_slice(bytemuck::bytes_of(&slot.map(|value| value as f32)));
+    }
+    bytes.resize(record_size(signals), 0);
+    bytes
+}
+
+/// Bytes of a record.
+pub fn record_size(signals: &Signals) -> usize {
+    size_of::<Step>() + 16 * slots(signals)
+}
+
+/// Adds to a kernel the fragments that declare `step` for a world's signals.
+pub(crate) fn with_step(kernel: Kernel, world: &World) -> Kernel {
+    let slots = world.get_resource::<Signals>().map_or(1, slots);
+    let signals = Fragment::new("generated: signals of the scene", format!("const SIGNALS: u32 = {slots}u;\n"));
+    kernel.fragment(crate::shader!("step")).fragment(signals)
 }

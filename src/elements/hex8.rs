@@ -1,7 +1,7 @@
 //! The eight-node hexahedron with one integration point and hourglass control.
 
-use super::{Element, MOST_NODES, MOST_ROWS, Stiffness, difference, gradient_measure, vector};
-use crate::math::{Mat3, Real};
+use super::{Element, MOST_NODES, MOST_ROWS, Stiffness, gradient_measure, vector};
+use crate::math::{Mat3, Real, dot, dot_plus};
 use glam::{DMat3, DVec3};
 
 /// Trilinear hexahedron with the mean gradients b_a (Flanagan & Belytschko 1981) and total Lagrangian hourglass control.
@@ -67,34 +67,47 @@ fn natural_gradients(at: [f64; 3]) -> [DVec3; 8] {
     })
 }
 
+/// Σ_a Γ_ma u_a of the four modes, for one component of u: from differences along edges, so that a common displacement
+/// drops out before it can round.
 #[inline(always)]
-fn hourglass_displacement<R: Real>(
-    m: usize,
-    relative: &[[R; 3]; MOST_NODES],
-    gradient: &Mat3<R>,
-    shape: &impl Fn(usize) -> R,
-) -> [R; 3] {
-    let affine = gradient.times_vector(vector(shape, 23 + 3 * m));
-    let mut q = [-affine[0], -affine[1], -affine[2]];
-    for a in 1..8 {
-        for i in 0..3 {
-            if hourglass_sign(m, a) > 0.0 {
-                q[i] += relative[a][i];
-            } else {
-                q[i] -= relative[a][i];
-            }
-        }
-    }
-    q
+fn hourglass_sums<R: Real>(u: &[[R; 3]; MOST_NODES], i: usize) -> [R; 4] {
+    let (x0, x1, x2, x3) = (u[1][i] - u[0][i], u[2][i] - u[3][i], u[5][i] - u[4][i], u[6][i] - u[7][i]);
+    let below = (u[3][i] - u[0][i]) + (u[2][i] - u[1][i]);
+    let above = (u[7][i] - u[4][i]) + (u[6][i] - u[5][i]);
+    let (low, high) = (x1 - x0, x3 - x2);
+    [above - below, (x2 + x3) - (x0 + x1), low + high, high - low]
 }
 
+/// Σ_m Γ_ma q_m of the eight nodes.
 #[inline(always)]
-fn relative_to_first<R: Real>(u: &[[R; 3]; MOST_NODES]) -> [[R; 3]; MOST_NODES] {
-    let mut relative = *u;
-    for a in 0..8 {
-        relative[a] = difference(u[a], u[0]);
+fn hourglass_spread<R: Real>(q: [R; 4]) -> [R; 8] {
+    let (sum, difference) = (q[0] + q[1], q[0] - q[1]);
+    let (low, high) = (q[2] - q[3], q[2] + q[3]);
+    [
+        low + sum,
+        difference - low,
+        low - sum,
+        -(difference + low),
+        high - sum,
+        -(difference + high),
+        high + sum,
+        difference - high,
+    ]
+}
+
+/// q_m = Σ_a γ_ma u_a of the four modes, for one component of u.
+#[inline(always)]
+fn hourglass_displacements<R: Real>(
+    u: &[[R; 3]; MOST_NODES],
+    i: usize,
+    gradient: &Mat3<R>,
+    shape: &impl Fn(usize) -> R,
+) -> [R; 4] {
+    let mut q = hourglass_sums(u, i);
+    for m in 0..4 {
+        q[m] -= dot(gradient.0[i], vector(shape, 23 + 3 * m));
     }
-    relative
+    q
 }
 
 impl Element for Hex8 {
@@ -122,8 +135,10 @@ impl Element for Hex8 {
     #[inline(always)]
     fn gradient<R: Real>(u: &[[R; 3]; MOST_NODES], shape: impl Fn(usize) -> R) -> Mat3<R> {
         let mut h = Mat3::zero(u[0][0]);
-        for a in 1..8 {
-            h.add_outer(difference(u[a], u[0]), vector(&shape, 3 * (a - 1)));
+        for i in 0..3 {
+            for a in 1..8 {
+                h.add_to_row(i, u[a][i] - u[0][i], vector(&shape, 3 * (a - 1)));
+            }
         }
         h
     }
@@ -134,41 +149,32 @@ impl Element for Hex8 {
         gradient: &Mat3<R>,
         stress: &Mat3<R>,
         shape: impl Fn(usize) -> R,
-    ) -> [[R; 3]; MOST_NODES] {
-        let relative = relative_to_first(u);
+        mut store: impl FnMut(usize, usize, R),
+    ) {
         let mut folded = stress.scaled(shape(21));
         let stiffness = shape(22);
-        let mut forces = [[u[0][0].constant(0.0); 3]; MOST_NODES];
-        for m in 0..4 {
-            let q = hourglass_displacement(m, &relative, gradient, &shape);
-            let q = [q[0] * stiffness, q[1] * stiffness, q[2] * stiffness];
-            folded.add_outer([-q[0], -q[1], -q[2]], vector(&shape, 23 + 3 * m));
+        for i in 0..3 {
+            let mut q = hourglass_displacements(u, i, gradient, &shape);
+            for m in 0..4 {
+                q[m] = q[m] * stiffness;
+                folded.add_to_row(i, -q[m], vector(&shape, 23 + 3 * m));
+            }
+            let hourglass = hourglass_spread(q);
+            let mut sum = u[0][0].constant(0.0);
             for a in 1..8 {
-                for i in 0..3 {
-                    if hourglass_sign(m, a) > 0.0 {
-                        forces[a][i] += q[i];
-                    } else {
-                        forces[a][i] -= q[i];
-                    }
-                }
+                let force = dot_plus(folded.0[i], vector(&shape, 3 * (a - 1)), hourglass[a]);
+                sum += force;
+                store(a, i, force);
             }
+            store(0, i, -sum);
         }
-        for a in 1..8 {
-            let force = folded.times_vector(vector(&shape, 3 * (a - 1)));
-            for i in 0..3 {
-                forces[a][i] += force[i];
-                forces[0][i] -= forces[a][i];
-            }
-        }
-        forces
     }
 
     #[inline(always)]
     fn hourglass_energy<R: Real>(u: &[[R; 3]; MOST_NODES], gradient: &Mat3<R>, shape: impl Fn(usize) -> R) -> R {
-        let relative = relative_to_first(u);
         let mut sum = u[0][0].constant(0.0);
-        for m in 0..4 {
-            for q in hourglass_displacement(m, &relative, gradient, &shape) {
+        for i in 0..3 {
+            for q in hourglass_displacements(u, i, gradient, &shape) {
                 sum += q * q;
             }
         }

@@ -41,12 +41,15 @@ pub trait Element: Copy + Send + Sync + 'static {
     fn gradient<R: Real>(u: &[[R; 3]; MOST_NODES], shape: impl Fn(usize) -> R) -> Mat3<R>;
 
     /// Nodal forces (N) that the element exerts against its deformation, from the first Piola-Kirchhoff stress (Pa).
+    /// They go to `store` (corner, component, force) one component after the other: so few numbers are needed at a time
+    /// that they fit into registers.
     fn forces<R: Real>(
         u: &[[R; 3]; MOST_NODES],
         gradient: &Mat3<R>,
         stress: &Mat3<R>,
         shape: impl Fn(usize) -> R,
-    ) -> [[R; 3]; MOST_NODES];
+        store: impl FnMut(usize, usize, R),
+    );
 
     /// Energy (J) in the hourglass control.
     fn hourglass_energy<R: Real>(u: &[[R; 3]; MOST_NODES], gradient: &Mat3<R>, shape: impl Fn(usize) -> R) -> R;
@@ -62,12 +65,6 @@ pub trait Element: Copy + Send + Sync + 'static {
 #[inline(always)]
 fn vector<R: Real>(shape: &impl Fn(usize) -> R, row: usize) -> [R; 3] {
     [shape(row), shape(row + 1), shape(row + 2)]
-}
-
-/// a − b.
-#[inline(always)]
-fn difference<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 /// What the stable step depends on.

@@ -1,7 +1,7 @@
 //! The four-node tetrahedron.
 
-use super::{Element, MOST_NODES, MOST_ROWS, Stiffness, difference, gradient_measure, vector};
-use crate::math::{Mat3, Real};
+use super::{Element, MOST_NODES, MOST_ROWS, Stiffness, gradient_measure, vector};
+use crate::math::{Mat3, Real, dot};
 use glam::{DMat3, DVec3};
 
 /// Linear tetrahedron: one constant gradient. It locks near incompressibility (a bar under gravity at ν = 0.49 with
@@ -31,8 +31,10 @@ impl Element for Tet4 {
     #[inline(always)]
     fn gradient<R: Real>(u: &[[R; 3]; MOST_NODES], shape: impl Fn(usize) -> R) -> Mat3<R> {
         let mut h = Mat3::zero(u[0][0]);
-        for a in 0..3 {
-            h.add_outer(difference(u[a + 1], u[0]), vector(&shape, 3 * a));
+        for i in 0..3 {
+            for a in 0..3 {
+                h.add_to_row(i, u[a + 1][i] - u[0][i], vector(&shape, 3 * a));
+            }
         }
         h
     }
@@ -43,17 +45,18 @@ impl Element for Tet4 {
         _gradient: &Mat3<R>,
         stress: &Mat3<R>,
         shape: impl Fn(usize) -> R,
-    ) -> [[R; 3]; MOST_NODES] {
+        mut store: impl FnMut(usize, usize, R),
+    ) {
         let stress = stress.scaled(shape(9));
-        let mut forces = [[u[0][0].constant(0.0); 3]; MOST_NODES];
-        for a in 0..3 {
-            let force = stress.times_vector(vector(&shape, 3 * a));
-            forces[a + 1] = force;
-            for i in 0..3 {
-                forces[0][i] -= force[i];
+        for i in 0..3 {
+            let mut sum = u[0][0].constant(0.0);
+            for a in 0..3 {
+                let force = dot(stress.0[i], vector(&shape, 3 * a));
+                sum += force;
+                store(a + 1, i, force);
             }
+            store(0, i, -sum);
         }
-        forces
     }
 
     #[inline(always)]

@@ -8,6 +8,7 @@ use bevy_ecs::component::Component;
 ///
 /// Other TLED codes leave out the factor 2 of its derivative and so mean Ψ = η/4 (Ī₄ − 1)²: their η is twice ours.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Fibres<T: Send + Sync + 'static> {
     /// Stiffness η (Pa).
     pub eta: T,

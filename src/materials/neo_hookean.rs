@@ -9,6 +9,7 @@ use bevy_ecs::component::Component;
 /// At small strains its shear modulus is μ, its bulk modulus κ, its Young's modulus 9κμ/(3κ+μ). Finite at J → 0, so it
 /// cannot prevent inversion: see [`J_FLOOR`](super::J_FLOOR).
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct NeoHookean<T: Send + Sync + 'static> {
     /// Shear modulus μ (Pa).
     pub shear: T,

@@ -6,18 +6,19 @@ use crate::math::{Real, Sym3};
 ///
 /// The stress S_iso is reduced by Υ, and six numbers q a term carry the history (Comas et al. 2008, eqs. 1 to 4; the WGSL
 /// twin is `shaders/prony.wgsl`). Both integrators are the same linear recursion with other coefficients:
-/// Υ = `stress`·S + `memory`·q, then q ← q + `rate`·(`target`·S − q). The increment form keeps the digits of a small
+/// Υ = `stress`·S + `memory`·q, then q ← q + `rate`·(`aim`·S − q). The increment form keeps the digits of a small
 /// step, but f32 stalls when the increment falls under one ulp of q: the long-term stress is then off by up to 1e-4.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct PronyTerm<T> {
     /// Part of the present stress in Υ.
     pub stress: T,
     /// Part of the memory in Υ.
     pub memory: T,
-    /// How much of the way to its target the memory goes in a step.
+    /// How much of the way to its aim the memory goes in a step.
     pub rate: T,
-    /// The memory's target, in units of the present stress.
-    pub target: T,
+    /// What the memory goes to, in units of the present stress.
+    pub aim: T,
 }
 
 impl PronyTerm<f64> {
@@ -29,14 +30,14 @@ impl PronyTerm<f64> {
         let phi = rate / h;
         // 1 − φ by its series where the difference would lose digits
         let complement = if h < 1e-3 { h / 2.0 - h * h / 6.0 + h * h * h / 24.0 } else { 1.0 - phi };
-        Self { stress: alpha * complement, memory: -alpha, rate, target: -phi }
+        Self { stress: alpha * complement, memory: -alpha, rate, aim: -phi }
     }
 
     /// The paper's eq. 4, backward Euler on τΥ̇ + Υ = αS (first order, L-stable); q is Υ itself. Its error after a step
     /// strain is at most 0.184 αΔt/τ of the stress.
     pub fn backward_euler(alpha: f64, tau: f64, time_step: f64) -> Self {
         let rate = time_step / (time_step + tau);
-        Self { stress: rate * alpha, memory: tau / (time_step + tau), rate, target: alpha }
+        Self { stress: rate * alpha, memory: tau / (time_step + tau), rate, aim: alpha }
     }
 }
 
@@ -50,7 +51,7 @@ impl<R: Real> PronyTerm<R> {
     /// The memory after the step.
     #[inline(always)]
     pub fn carried_on(&self, isochoric: &Sym3<R>, memory: &Sym3<R>) -> Sym3<R> {
-        let change = isochoric.scaled(self.target).plus(&memory.scaled(self.rate.constant(-1.0))).scaled(self.rate);
+        let change = isochoric.scaled(self.aim).plus(&memory.scaled(self.rate.constant(-1.0))).scaled(self.rate);
         memory.plus(&change)
     }
 }

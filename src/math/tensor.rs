@@ -35,13 +35,6 @@ impl<R: Real> Mat3<R> {
         Mat3([[like.constant(0.0); 3]; 3])
     }
 
-    /// The product with a column vector.
-    #[inline(always)]
-    pub fn times_vector(&self, v: [R; 3]) -> [R; 3] {
-        let m = &self.0;
-        [dot(m[0], v), dot(m[1], v), dot(m[2], v)]
-    }
-
     /// (I + self)·s for a symmetric s: with self = ∇u this is F S.
     #[inline(always)]
     pub fn plus_identity_times(&self, s: &Sym3<R>) -> Self {
@@ -66,13 +59,11 @@ impl<R: Real> Mat3<R> {
         self
     }
 
-    /// Adds the product a bᵀ of two vectors.
+    /// Adds a multiple of a vector to row `i`.
     #[inline(always)]
-    pub fn add_outer(&mut self, a: [R; 3], b: [R; 3]) {
-        for i in 0..3 {
-            for j in 0..3 {
-                self.0[i][j] = a[i].mul_add(b[j], self.0[i][j]);
-            }
+    pub fn add_to_row(&mut self, i: usize, factor: R, vector: [R; 3]) {
+        for j in 0..3 {
+            self.0[i][j] = factor.mul_add(vector[j], self.0[i][j]);
         }
     }
 }

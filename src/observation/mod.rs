@@ -77,7 +77,7 @@ impl Observer {
 
     /// The next step, after `step`, at whose end something is due.
     pub fn next_due(&self, step: u64) -> u64 {
-        let next = |every: u64| if every == 0 { u64::MAX } else { (step / every + 1) * every };
+        let next = |every: u64| step.checked_div(every).map_or(u64::MAX, |whole| (whole + 1) * every);
         let mut due = next(GUARD_STEPS).min(next(self.fields_every)).min(next(self.energies_every));
         for (_, _, every) in &self.probes {
             due = due.min(next(*every));

@@ -152,19 +152,16 @@ impl<E: Element, T: SimdScalar, const FIBRES: bool, const PRONY: bool> Patch<'_,
             isochoric = self.relax(simd, group, at, isochoric);
         }
         let stress = gradient.plus_identity_times(&isochoric.plus(&neo_hookean.volumetric(&k)));
-        let forces = E::forces(
+        let out = &mut self.force[group * 3 * E::NODES * LANES..(group + 1) * 3 * E::NODES * LANES];
+        E::forces(
             &u,
             &gradient,
             &stress,
             #[inline(always)]
             |row: usize| T::load(simd, &rest_shape[row * LANES + at..]),
+            #[inline(always)]
+            |corner: usize, i: usize, force| T::store(force, &mut out[(3 * corner + i) * LANES + at..]),
         );
-        let out = &mut self.force[group * 3 * E::NODES * LANES..(group + 1) * 3 * E::NODES * LANES];
-        for corner in 0..E::NODES {
-            for i in 0..3 {
-                T::store(forces[corner][i], &mut out[(3 * corner + i) * LANES + at..]);
-            }
-        }
         -(k.true_j * T::load(simd, &rest_shape[E::VOLUME_ROW * LANES + at..]))
     }
 
@@ -208,7 +205,7 @@ impl<E: Element, T: SimdScalar, const FIBRES: bool, const PRONY: bool> Patch<'_,
                 stress: T::splat(simd, term.stress),
                 memory: T::splat(simd, term.memory),
                 rate: T::splat(simd, term.rate),
-                target: T::splat(simd, term.target),
+                aim: T::splat(simd, term.aim),
             };
             let first = (group * 6 * terms + 6 * number) * LANES + at;
             let mut memory = isochoric;

@@ -33,7 +33,7 @@ impl BlockLaw<f64> {
                     stress: round(t.stress),
                     memory: round(t.memory),
                     rate: round(t.rate),
-                    target: round(t.target),
+                    aim: round(t.aim),
                 })
                 .collect(),
         }

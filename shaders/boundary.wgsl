@@ -1,0 +1,28 @@
+// Where prescribed nodes go, u = A·(X − center) + b; twin of systems/boundary.rs. lost_of is in lost.wgsl, or generated
+// where sums are not compensated.
+struct Motion {
+    count: u32, // prescribed nodes
+    axes: u32, // bits 0, 1, 2: x, y, z
+    signal: u32, // first of three slots: rows of A, with b's component
+}
+@group(0) @binding(0) var<uniform> motion: Motion;
+@group(0) @binding(1) var<storage, read> rows: array<u32>;
+@group(0) @binding(2) var<storage, read> arms: array<f32>; // X − center (m)
+@group(0) @binding(3) var<storage, read> displacement: array<f32>;
+@group(0) @binding(4) var<storage, read_write> displacement_step: array<f32>;
+
+@compute @workgroup_size(64)
+fn boundary(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = row(id, groups);
+    if i >= motion.count {
+        return;
+    }
+    let arm = vec4<f32>(arms[3u * i], arms[3u * i + 1u], arms[3u * i + 2u], 1.0);
+    for (var axis = 0u; axis < 3u; axis++) {
+        if ((motion.axes >> axis) & 1u) == 1u {
+            let at = 3u * rows[i] + axis;
+            let goal = dot(step.signals[motion.signal + axis], arm);
+            displacement_step[at] = (goal - displacement[at]) + lost_of(at);
+        }
+    }
+}

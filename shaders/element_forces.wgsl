@@ -1,0 +1,28 @@
+// Forces of deformed elements on their corners; twin of systems/element_forces.rs.
+// The element's and the material's fragments say how; isochoric_stress, volumetric_stress and write_forces are generated.
+@group(0) @binding(0) var<storage, read> rest_shape: array<f32>;
+@group(0) @binding(1) var<storage, read_write> element_force: array<f32>;
+@group(0) @binding(2) var<storage, read_write> first_inverted: array<atomic<u32>>;
+
+fn write_force(element: u32, corner: u32, force: vec3<f32>) {
+    let at = block.force_offset + place(element, 3u * NODES, 3u * corner);
+    element_force[at] = force.x;
+    element_force[at + LANES] = force.y;
+    element_force[at + 2u * LANES] = force.z;
+}
+
+@compute @workgroup_size(64)
+fn element_forces(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let element = row(id, groups);
+    if element >= block.count {
+        return;
+    }
+    let e = element_of(element);
+    let gradient = displacement_gradient(e);
+    let k = kinematics(gradient);
+    if e.volume > 0.0 && k.true_j < 0.0 {
+        atomicMin(&first_inverted[0], element);
+    }
+    let stress = sym_plus(isochoric_stress(element, k), volumetric_stress(k));
+    write_forces(element, corner_forces(element, e, gradient, plus_identity_times(gradient, stress)));
+}

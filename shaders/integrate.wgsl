@@ -1,0 +1,75 @@
+// Central differences in velocity form; twin of systems/integrate.rs. What a body has no column for is a line generated in
+// place of a fragment: external_force_of, damped, coefficient_of, book_work, add.
+struct Integrate {
+    count: u32, // nodes
+}
+@group(0) @binding(0) var<uniform> nodes: Integrate;
+@group(0) @binding(1) var<storage, read> mass: array<f32>;
+@group(0) @binding(2) var<storage, read> internal_force: array<f32>;
+@group(0) @binding(3) var<storage, read> constrained_axes: array<u32>;
+@group(0) @binding(4) var<storage, read_write> displacement: array<f32>;
+@group(0) @binding(5) var<storage, read_write> displacement_step: array<f32>;
+@group(0) @binding(6) var<storage, read_write> first_non_finite: array<atomic<u32>>;
+
+fn step_of(node: u32) -> vec3<f32> {
+    let at = 3u * node;
+    return vec3<f32>(displacement_step[at], displacement_step[at + 1u], displacement_step[at + 2u]);
+}
+
+// The node's next step (m); constrained axes keep what boundary wrote, nodes without mass are parked.
+fn push(node: u32) -> vec3<f32> {
+    let at = 3u * node;
+    var after = vec3<f32>(0.0);
+    if mass[node] > 0.0 {
+        let per_mass = 1.0 / mass[node];
+        let before = step_of(node);
+        let inner = vec3<f32>(internal_force[at], internal_force[at + 1u], internal_force[at + 2u]);
+        let outer = external_force_of(node);
+        let pushed = damped(node, before, step.force_factor * ((outer - inner) * per_mass), per_mass);
+        let constrained = (vec3<u32>(constrained_axes[node]) & vec3<u32>(1u, 2u, 4u)) != vec3<u32>(0u);
+        after = select(pushed, before, constrained);
+        book_work(node, before, after, constrained, inner, outer);
+    }
+    displacement_step[at] = after.x;
+    displacement_step[at + 1u] = after.y;
+    displacement_step[at + 2u] = after.z;
+    return after;
+}
+
+fn move_on(node: u32, d: vec3<f32>) {
+    let at = 3u * node;
+    let u = add(at, vec3<f32>(displacement[at], displacement[at + 1u], displacement[at + 2u]), d);
+    displacement[at] = u.x;
+    displacement[at + 1u] = u.y;
+    displacement[at + 2u] = u.z;
+    // an exponent of all ones: infinite, or no number; comparisons of floats might be optimized away
+    let exponent = vec3<u32>(0x7f800000u);
+    if any((bitcast<vec3<u32>>(u) & exponent) == exponent) {
+        atomicMin(&first_non_finite[0], node);
+    }
+}
+
+@compute @workgroup_size(64)
+fn integrate(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let node = row(id, groups);
+    if node < nodes.count {
+        move_on(node, push(node));
+    }
+}
+
+// The same in two kernels, for bodies with more columns than a kernel may have buffers.
+@compute @workgroup_size(64)
+fn integrate_push(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let node = row(id, groups);
+    if node < nodes.count {
+        push(node);
+    }
+}
+
+@compute @workgroup_size(64)
+fn integrate_move(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let node = row(id, groups);
+    if node < nodes.count {
+        move_on(node, step_of(node));
+    }
+}

@@ -1,0 +1,35 @@
+// Strain measures of a displacement gradient; twin of src/materials/kinematics.rs. J_FLOOR is generated.
+struct Kinematics {
+    green_strain: Sym3,
+    adjugate_c: Sym3,
+    volume_change: f32,
+    j: f32,
+    true_j: f32,
+    j_m23: f32,
+}
+
+fn kinematics(h: mat3x3<f32>) -> Kinematics {
+    let c0 = vec3<f32>(h[0][0], h[1][0], h[2][0]);
+    let c1 = vec3<f32>(h[0][1], h[1][1], h[2][1]);
+    let c2 = vec3<f32>(h[0][2], h[1][2], h[2][2]);
+    let twice = Sym3(
+        2.0 * vec3<f32>(h[0][0], h[1][1], h[2][2]) + vec3<f32>(dot(c0, c0), dot(c1, c1), dot(c2, c2)),
+        vec3<f32>(h[0][1] + h[1][0], h[1][2] + h[2][1], h[0][2] + h[2][0])
+            + vec3<f32>(dot(c0, c1), dot(c1, c2), dot(c0, c2)),
+    );
+    // J − 1: first + second + third invariant of ∇u
+    let cofactor = cross(h[1], h[2]);
+    let second = cofactor.x + minor(h[0][0], h[0][1], h[1][0], h[1][1]) + minor(h[0][0], h[0][2], h[2][0], h[2][2]);
+    let change = (h[0][0] + h[1][1] + h[2][2]) + second + dot(h[0], cofactor);
+    let volume_change = max(change, J_FLOOR - 1.0);
+    let j = 1.0 + volume_change;
+    let j_m13 = inverse_cbrt(j);
+    return Kinematics(
+        sym_scaled(twice, 0.5),
+        sym_adjugate(Sym3(1.0 + twice.diagonal, twice.others)),
+        volume_change,
+        j,
+        1.0 + change,
+        j_m13 * j_m13,
+    );
+}

@@ -1,0 +1,14 @@
+// The column that loads add to.
+@group(0) @binding(0) var<storage, read_write> external_force: array<f32>;
+
+fn add_load(node: u32, force: vec3<f32>) {
+    external_force[3u * node] += force.x;
+    external_force[3u * node + 1u] += force.y;
+    external_force[3u * node + 2u] += force.z;
+}
+
+fn clear_loads(node: u32) {
+    external_force[3u * node] = 0.0;
+    external_force[3u * node + 1u] = 0.0;
+    external_force[3u * node + 2u] = 0.0;
+}

@@ -1,0 +1,58 @@
+//! Faces as the kernels of loads on the surface see them.
+
+use super::Buffers;
+use super::kernel::{BufferId, Fragment, Kernel};
+use crate::components::{Alive, Authoring, Column, FaceCorners};
+use crate::shader;
+use bevy_ecs::prelude::*;
+
+/// Faces that one kernel loads.
+pub(crate) struct FaceLoad {
+    /// The faces.
+    pub faces: FaceCorners,
+    /// The block behind them, when its elements can go.
+    pub alive: Option<Entity>,
+}
+
+/// A load's faces in one, or, where elements can go, block by block: a kernel looks at one block's `alive` only.
+pub(crate) fn face_loads(faces: &FaceCorners, body: Entity, world: &World) -> Vec<FaceLoad> {
+    let blocks = world.get::<Authoring>(body).map_or(&[][..], |authoring| &authoring.blocks);
+    if !blocks.iter().any(|&block| world.get::<Alive>(block).is_some()) {
+        return vec![FaceLoad { faces: faces.clone(), alive: None }];
+    }
+    let of_block = |(place, &block): (usize, &Entity)| {
+        let alive = world.get::<Alive>(block).map(|_| block);
+        FaceLoad { faces: faces_behind(faces, place as u32), alive }
+    };
+    blocks.iter().enumerate().map(of_block).filter(|load| !load.faces.rows.is_empty()).collect()
+}
+
+/// Only the faces of a block's elements; the lists of all faces stay as they are.
+fn faces_behind(faces: &FaceCorners, block: u32) -> FaceCorners {
+    let mut some = FaceCorners { rows: Vec::new(), starts: vec![0], corners: Vec::new(), ..faces.clone() };
+    for (i, &row) in faces.rows.iter().enumerate() {
+        let corners = &faces.corners[faces.starts[i] as usize..faces.starts[i + 1] as usize];
+        some.corners.extend(corners.iter().filter(|&&corner| faces.elements[corner as usize / 4].0 == block));
+        if some.corners.len() as u32 > some.starts[some.rows.len()] {
+            some.rows.push(row);
+            some.starts.push(some.corners.len() as u32);
+        }
+    }
+    some
+}
+
+impl FaceLoad {
+    /// Adds what tells a kernel which elements are there.
+    pub fn with_alive(alive: Option<Entity>, kernel: Kernel, buffers: &mut dyn Buffers) -> Kernel {
+        match alive {
+            Some(block) => {
+                let alive: BufferId = buffers.column(block, Alive::NAME);
+                kernel.fragment(shader!("alive")).bind(Alive::NAME, alive)
+            }
+            None => kernel.fragment(Fragment::new(
+                "generated: no element ever goes",
+                "fn bears(element: u32) -> bool {\n    return true;\n}\n",
+            )),
+        }
+    }
+}

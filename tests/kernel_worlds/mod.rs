@@ -1,0 +1,228 @@
+//! Worlds with every effect a kernel can be put together from, for tests with and without a GPU.
+#![allow(dead_code, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use bevy_ecs::prelude::*;
+use sinew::backend::Buffers;
+use sinew::backend::kernel::{BufferId, Kernel};
+use sinew::components::*;
+use sinew::systems::Registry;
+use sinew::{BackendChoice, Options, SceneFile, Simulation};
+
+/// What a scene calls for.
+#[derive(Clone, Debug, Default)]
+pub struct Effects {
+    /// A direction, as RON writes it.
+    pub fibres: Option<&'static str>,
+    pub tension_only: bool,
+    pub prony: usize,
+    pub backward_euler: bool,
+    pub damping: bool,
+    pub loads: bool,
+    pub moved: bool,
+    pub compensated: bool,
+    pub energies: bool,
+    pub removal: bool,
+}
+
+pub const ALONG: &str = "Along(1, 2, 3)";
+pub const AROUND: &str = "Around(center: (0.1, 0.2, -0.3), axis: (0.3, 0.2, 1))";
+
+impl Effects {
+    /// Everything at once.
+    pub fn all() -> Self {
+        Self {
+            fibres: Some(AROUND),
+            tension_only: true,
+            prony: 2,
+            backward_euler: false,
+            damping: true,
+            loads: true,
+            moved: true,
+            compensated: true,
+            energies: true,
+            removal: true,
+        }
+    }
+
+    /// Every combination of material effects, and of what a body can have.
+    pub fn combinations() -> Vec<Self> {
+        let mut all = Vec::new();
+        for fibres in [None, Some(ALONG), Some(AROUND)] {
+            for prony in [0, 1, 2] {
+                all.push(Self { fibres, prony, ..Self::default() });
+                all.push(Self { fibres, prony, removal: true, loads: true, ..Self::default() });
+            }
+        }
+        for bits in 0..32 {
+            let bit = |i: u32| bits >> i & 1 == 1;
+            let (damping, loads) = (bit(0), bit(1));
+            let (compensated, energies, removal) = (bit(2), bit(3), bit(4));
+            all.push(Self { damping, loads, compensated, energies, removal, moved: true, ..Self::default() });
+        }
+        all.push(Self::all());
+        all
+    }
+
+    /// Two distorted balls, one of tetrahedra and one of hexahedra, each with a region of a second, plain material.
+    pub fn scene(&self) -> String {
+        let fibres = self.fibres.map_or(String::new(), |direction| {
+            format!("fibres: (eta: 2000, direction: {direction}, tension_only: {}),", self.tension_only)
+        });
+        let terms = ["(alpha: 0.4, tau: 0.58),", "(alpha: 0.2, tau: 0.01),"][..self.prony].concat();
+        let integrator = if self.backward_euler { "BackwardEuler" } else { "Exact" };
+        let prony = match self.prony {
+            0 => String::new(),
+            _ => format!("prony: (terms: [{terms}], integrator: {integrator}),"),
+        };
+        let damping = if self.damping { "damping: 20," } else { "" };
+        let both = |text: &str| ["tets", "hexes"].map(|body| text.replace("BODY", body)).concat();
+        let loads = if self.loads {
+            both(
+                "Gravity(body: \"BODY\", acceleration: (1, -2, -9.81)),
+                 NodalForce(body: \"BODY\", on: Sphere(center: (0, 0, 0.05), radius: 0.03), force: (0.001, 0.002, -0.003)),
+                 Pressure(body: \"BODY\", on: All, pressure: 120),
+                 Traction(body: \"BODY\", on: Surface(normal: (0, 0, 1), within: 70), traction: (5, -7, 11)),",
+            )
+        } else {
+            String::new()
+        };
+        let moved = if self.moved {
+            both(
+                "Prescribed(body: \"BODY\", on: Sphere(center: (0, 0, -0.04), radius: 0.025), axes: [X, Z],
+                    displacement: (0.001, 0.002, 0.003), gradient: ((0.1, 0.2, 0), (0, 0.1, 0.1), (0.05, 0, -0.1)),
+                    rotation: (3, 4, 5), center: (0.01, 0, 0), curve: Ramp(start: 0, end: 0.1)),",
+            )
+        } else {
+            String::new()
+        };
+        let removal = if self.removal {
+            both(
+                "(body: \"BODY\", on: Sphere(center: (0.02, 0, 0), radius: 0.02), when: At(1e-9)),
+                 (body: \"BODY\", on: Sphere(center: (-0.02, 0, 0), radius: 0.02), when: StretchAbove(1.25)),
+                 (body: \"BODY\", on: All, when: VolumeRatioAbove(1.25)),
+                 (body: \"BODY\", on: All, when: VolumeRatioBelow(0.8)),
+                 (body: \"BODY\", on: All, when: EnergyDensityAbove(450)),",
+            )
+        } else {
+            String::new()
+        };
+        let energies = if self.energies { "output: (energies_every: 0.1)," } else { "" };
+        let body = |kind: &str| {
+            format!(
+                "(mesh: Ellipsoid(radii: (0.05, 0.04, 0.06), across: 6, elements: {kind}), material: \"tissue\",
+                  regions: [(on: Box(min: (0, -1, -1), max: (1, 1, 1)), material: \"plain\")])"
+            )
+        };
+        format!(
+            "(title: \"effects\", duration: 1,
+            bodies: {{ \"tets\": {}, \"hexes\": {} }},
+            materials: {{
+                \"tissue\": (density: 1000, neo_hookean: Moduli(shear: 1034, bulk: 10000), {fibres} {prony} {damping}),
+                \"plain\": (density: 1200, neo_hookean: Moduli(shear: 3000, bulk: 9000)),
+            }},
+            constraints: [{moved}],
+            loads: [{loads}],
+            removal: [{removal}],
+            integration: (compensated: {}),
+            {energies}
+            )",
+            body("Tet4"),
+            body("Hex8"),
+            self.compensated
+        )
+    }
+
+    /// A simulation of it.
+    pub fn simulation(&self, backend: BackendChoice) -> Simulation {
+        let text = self.scene();
+        let scene = match SceneFile::from_text("effects.ron", &text, std::path::Path::new("."), &[]) {
+            Ok(scene) => scene,
+            Err(problem) => panic!("{}", problem.render(false)),
+        };
+        let options = Options { backend, gpu: gpu_choice(), ..Options::default() };
+        Simulation::new(&scene, &options).unwrap_or_else(|error| panic!("{error}\n{text}"))
+    }
+}
+
+/// The device that tests run on.
+pub fn gpu_choice() -> sinew::backend::gpu::Choice {
+    sinew::backend::gpu::Choice::parse(&std::env::var("SINEW_GPU").unwrap_or_default())
+}
+
+/// Hands out no buffers, but remembers the bytes of uniforms.
+#[derive(Default)]
+pub struct Described {
+    pub uniforms: Vec<(String, usize)>,
+    pub columns: Vec<(Entity, &'static str)>,
+}
+
+impl Buffers for Described {
+    fn column(&mut self, entity: Entity, name: &'static str) -> BufferId {
+        if !self.columns.contains(&(entity, name)) {
+            self.columns.push((entity, name));
+        }
+        BufferId::NONE
+    }
+    fn constants(&mut self, _: String, _: &[u8]) -> BufferId {
+        BufferId::NONE
+    }
+    fn uniform(&mut self, label: String, bytes: &[u8]) -> BufferId {
+        self.uniforms.push((label, bytes.len()));
+        BufferId::NONE
+    }
+}
+
+/// The kernels of all systems that a world calls for, with their systems' names.
+pub fn all_kernels(world: &mut World) -> (Vec<(String, Kernel)>, Described) {
+    let mut described = Described::default();
+    let mut all = Vec::new();
+    for system in Registry::default().systems() {
+        if let (Some(_), Some(kernels)) = ((system.because)(world), system.kernels) {
+            all.extend(kernels(world, &mut described).into_iter().map(|kernel| (system.name.clone(), kernel)));
+        }
+    }
+    (all, described)
+}
+
+/// A small generator of numbers between −1 and 1, the same everywhere.
+pub struct Noise(pub u64);
+
+impl Noise {
+    pub fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    fn fill(&mut self, column: &mut Reals, amplitude: f64) {
+        (0..column.len()).for_each(|i| column.set(i, amplitude * self.next()));
+    }
+}
+
+/// Fills every column that changes with noise: displacements of a tenth of an element, plausible forces and histories.
+pub fn randomize(world: &mut World, seed: u64) {
+    let mut noise = Noise(seed);
+    // a common order of entities, whatever order the query has
+    let mut entities: Vec<Entity> = world.query::<EntityRef>().iter(world).map(|e| e.id()).collect();
+    entities.sort();
+    const SPACING: f64 = 0.1 / 6.0;
+    for entity in entities {
+        macro_rules! fill {
+            ($($column:ty: $amplitude:expr),*) => {$(
+                if let Some(mut column) = world.get_mut::<$column>(entity) {
+                    noise.fill(&mut column.0, $amplitude);
+                }
+            )*};
+        }
+        fill!(
+            Displacement: 0.1 * SPACING, DisplacementStep: 1e-5, DisplacementCompensation: 1e-11,
+            InternalForce: 0.01, ExternalForce: 0.01, ElementForce: 0.01, ViscousMemory: 200.0, Work: 1e-6
+        );
+        // parked nodes, and axes held without a load
+        if let Some(mut mass) = world.get_mut::<Mass>(entity) {
+            mass.set(3, 0.0);
+        }
+        if let Some(mut axes) = world.get_mut::<ConstrainedAxes>(entity) {
+            axes[5] |= 2;
+        }
+    }
+}

@@ -1,0 +1,193 @@
+//! Kernels compose, validate and fit what Rust knows of them, for every combination of effects; no GPU needed.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod kernel_worlds;
+
+use kernel_worlds::{AROUND, Effects, all_kernels};
+use sinew::BackendChoice;
+use sinew::backend::kernel::{BindingKind, Kernel, Layout, Uniform, WEBGPU_STORAGE_BUFFERS, compose};
+use sinew::components::Signals;
+use std::collections::BTreeSet;
+
+/// Fragments that belong to no system, element or material by name, and what calls for them.
+const SUPPORT: [(&str, &str); 17] = [
+    ("alive", "loads on faces of elements that can go"),
+    ("block", "columns of element blocks"),
+    ("criterion", "removal by criterion"),
+    ("damping_coefficient", "damping, in integrate"),
+    ("displacement_compensation", "compensated sums, in integrate"),
+    ("external_force", "loads, in integrate"),
+    ("fibres_field", "fibres of differing directions"),
+    ("fibres_uniform", "fibres of one direction"),
+    ("loads", "what loads add to"),
+    ("lost", "compensated sums, in boundary"),
+    ("node_damping", "damping, where elements can go"),
+    ("node_mass", "mass, where elements can go"),
+    ("row", "the row of an invocation"),
+    ("step", "what is the same for a whole step"),
+    ("tensor", "small tensors"),
+    ("work", "energies, in integrate"),
+    ("kinematics", "strain measures"),
+];
+
+fn kernels(effects: &Effects) -> Vec<(String, Kernel)> {
+    all_kernels(effects.simulation(BackendChoice::Cpu).world_mut()).0
+}
+
+fn members(layout: &Layout) -> Vec<(String, u32, u32)> {
+    layout.members.iter().map(|&(name, offset, size)| (name.to_owned(), offset as u32, size as u32)).collect()
+}
+
+#[test]
+fn every_combination_of_effects_composes_with_at_most_eight_storage_buffers() {
+    for effects in Effects::combinations() {
+        for (system, kernel) in kernels(&effects) {
+            let composed = compose(&kernel.fragments).unwrap_or_else(|e| panic!("{}: {e}", kernel.label));
+            let entry = composed.entry(kernel.entry).unwrap_or_else(|| panic!("{}: no {}", kernel.label, kernel.entry));
+            assert_eq!(entry.workgroup_size, [64, 1, 1], "{}", kernel.label);
+            let storage = composed.storage_buffers(entry);
+            assert!(storage <= WEBGPU_STORAGE_BUFFERS, "{} of {system}: {storage} of {effects:?}", kernel.label);
+        }
+    }
+}
+
+#[test]
+fn every_variable_in_use_has_a_buffer_and_every_buffer_is_in_use() {
+    for effects in Effects::combinations() {
+        for (_, kernel) in kernels(&effects) {
+            let composed = compose(&kernel.fragments).unwrap();
+            let entry = composed.entry(kernel.entry).unwrap();
+            let names = entry.uses.iter().map(|i| composed.bindings[*i].name.as_str());
+            let used: BTreeSet<_> = names.filter(|name| *name != "step").collect();
+            let given: BTreeSet<_> = kernel.bindings.iter().map(|(name, _)| *name).collect();
+            assert_eq!(used, given, "{} of {effects:?}", kernel.label);
+        }
+    }
+}
+
+#[test]
+fn structs_have_the_same_members_at_the_same_places_in_rust_and_wgsl() {
+    for effects in Effects::combinations() {
+        for (_, kernel) in kernels(&effects) {
+            let composed = compose(&kernel.fragments).unwrap();
+            for binding in composed.bindings.iter().filter(|b| b.kind == BindingKind::Uniform && b.name != "step") {
+                let layout = kernel.layouts.iter().find(|(name, _)| *name == binding.name).map(|(_, layout)| layout);
+                let Some(layout) = layout else {
+                    assert_eq!(binding.name, "limits", "{}: Rust says nothing of `{}`", kernel.label, binding.name);
+                    continue;
+                };
+                assert!(binding.type_name.contains(layout.name), "{} is not {}", binding.type_name, layout.name);
+                let wgsl = composed.struct_layout(layout.name).unwrap();
+                let wgsl: Vec<_> = wgsl.into_iter().map(|m| (m.name, m.offset, m.size)).collect();
+                assert_eq!(wgsl, members(layout), "{}", layout.name);
+                assert_eq!(composed.struct_size(layout.name).unwrap() as usize, layout.size, "{}", layout.name);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_steps_record_is_what_kernels_read() {
+    let mut simulation = Effects::all().simulation(BackendChoice::Cpu);
+    let world = simulation.world_mut();
+    let size = sinew::backend::step::record_size(world.resource::<Signals>());
+    let layout = sinew::backend::step::Step::LAYOUT;
+    let mut readers = 0;
+    for (_, kernel) in all_kernels(world).0 {
+        let composed = compose(&kernel.fragments).unwrap();
+        let Some(binding) = composed.binding("step") else { continue };
+        readers += 1;
+        assert_eq!(binding.size as usize, size, "{}", kernel.label);
+        let wgsl: Vec<_> =
+            composed.struct_layout("Step").unwrap().into_iter().map(|m| (m.name, m.offset, m.size)).collect();
+        let (signals, header) = wgsl.split_last().unwrap();
+        assert_eq!((signals.0.as_str(), signals.1 as usize), ("signals", layout.size));
+        assert_eq!(header, members(&layout));
+    }
+    assert!(readers > 8);
+}
+
+#[test]
+fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
+    let fragments = |effects: &Effects| -> BTreeSet<String> {
+        kernels(effects).iter().flat_map(|(_, k)| k.fragments.iter().map(|f| f.path.clone())).collect()
+    };
+    let buffers = |effects: &Effects| -> BTreeSet<&str> {
+        kernels(effects).iter().flat_map(|(_, k)| k.bindings.iter().map(|(name, _)| *name)).collect()
+    };
+    let plain = fragments(&Effects::default());
+    let files: BTreeSet<&str> = plain.iter().filter_map(|p| p.strip_prefix("shaders/")).collect();
+    let expected = [
+        "block",
+        "element_forces",
+        "gather",
+        "hex8",
+        "integrate",
+        "kinematics",
+        "neo_hookean",
+        "row",
+        "step",
+        "tensor",
+        "tet4",
+    ];
+    assert_eq!(files, expected.map(|stem| format!("{stem}.wgsl")).iter().map(String::as_str).collect());
+    let without = buffers(&Effects::default());
+    let cases: [(Effects, &[&str], &[&str]); 7] = [
+        (Effects { fibres: Some(AROUND), ..Effects::default() }, &["fibres", "fibres_field"], &["fibre_direction"]),
+        (Effects { prony: 1, ..Effects::default() }, &["prony"], &["viscous_memory"]),
+        (Effects { damping: true, ..Effects::default() }, &["damping_coefficient"], &["damping_coefficient"]),
+        (
+            Effects { loads: true, ..Effects::default() },
+            &["gravity", "pressure", "external_force"],
+            &["external_force"],
+        ),
+        (
+            Effects { compensated: true, ..Effects::default() },
+            &["displacement_compensation"],
+            &["displacement_compensation"],
+        ),
+        (Effects { energies: true, ..Effects::default() }, &["work"], &["work"]),
+        (Effects { removal: true, ..Effects::default() }, &["element_removal", "criterion", "node_mass"], &["alive"]),
+    ];
+    for (effects, stems, names) in cases {
+        let (some, bound) = (fragments(&effects), buffers(&effects));
+        for stem in stems {
+            let path = format!("shaders/{stem}.wgsl");
+            assert!(some.contains(&path) && !plain.contains(&path), "{path} of {effects:?}");
+        }
+        for name in names {
+            assert!(bound.contains(name) && !without.contains(name), "{name} of {effects:?}");
+        }
+    }
+}
+
+#[test]
+fn every_shader_is_named_after_a_system_an_element_or_a_material_or_listed() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    let stems = |folder: &str| -> BTreeSet<String> {
+        std::fs::read_dir(root.join(folder))
+            .unwrap()
+            .map(|entry| entry.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned())
+            .collect()
+    };
+    let shaders = stems("shaders");
+    let mut known: BTreeSet<String> = SUPPORT.iter().map(|(stem, _)| (*stem).to_owned()).collect();
+    for folder in ["systems", "src/elements", "src/materials"] {
+        known.extend(stems(folder).into_iter().filter(|stem| !["mod", "registry", "observe"].contains(&stem.as_str())));
+    }
+    assert_eq!(shaders, known);
+}
+
+#[test]
+fn all_fragments_of_the_folder_are_in_use() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
+    let mut used: BTreeSet<String> = BTreeSet::new();
+    for effects in Effects::combinations() {
+        for (_, kernel) in kernels(&effects) {
+            used.extend(kernel.fragments.iter().filter_map(|f| f.path.strip_prefix("shaders/").map(str::to_owned)));
+        }
+    }
+    let files: BTreeSet<String> =
+        std::fs::read_dir(root).unwrap().map(|f| f.unwrap().file_name().to_string_lossy().into_owned()).collect();
+    assert_eq!(files, used);
+}
