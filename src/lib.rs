@@ -39,4 +39,5 @@ pub use serde;
 
 pub use error::{Error, Instability};
 pub use scene::SceneFile;
+pub use simulation::explain;
 pub use simulation::{BackendChoice, Options, Simulation, Summary, SystemTime};

@@ -1,2 +1,7 @@
 //! The command `sinew`.
-fn main() {}
+
+mod command_line;
+
+fn main() -> std::process::ExitCode {
+    command_line::main()
+}

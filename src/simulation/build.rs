@@ -225,7 +225,7 @@ fn writes(access: &SystemAccess, id: ComponentId) -> bool {
 }
 
 /// Every kind of column there is.
-fn all_columns() -> Vec<ColumnAccess> {
+pub(super) fn all_columns() -> Vec<ColumnAccess> {
     vec![
         ColumnAccess::of::<Displacement>(),
         ColumnAccess::of::<DisplacementStep>(),

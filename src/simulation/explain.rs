@@ -1,1 +1,259 @@
-//! What a scene causes.
+//! What a scene causes, and why: systems, effects, kernels, columns and buffers, and what would turn on those that are
+//! not there.
+
+mod buffers;
+mod effects;
+mod kernels;
+mod page;
+
+use super::{Entry, Job, Simulation};
+use crate::components::Precision;
+use crate::error::Error;
+use crate::systems::{Registry, System};
+use buffers::{Sizes, host_columns};
+use serde::Serialize;
+
+/// What a scene causes on a backend. As text it is a page for people.
+#[derive(Clone, Debug, Serialize)]
+pub struct Explanation {
+    /// The scene's title.
+    pub title: String,
+    /// Where it runs.
+    pub backend: String,
+    /// Why there.
+    pub backend_because: String,
+    /// Whether that is a GPU.
+    pub on_gpu: bool,
+    /// `f32` or `f64`.
+    pub precision: &'static str,
+    /// Nodes of all bodies.
+    pub nodes: usize,
+    /// Elements of all bodies.
+    pub elements: usize,
+    /// The systems in the order of a step.
+    pub systems: Vec<SystemInUse>,
+    /// Systems that the scene does not call for.
+    pub systems_off: Vec<SystemOff>,
+    /// What blocks and bodies have or lack.
+    pub parts: Vec<Part>,
+    /// What runs on the GPU in a step, in order; empty on the CPU.
+    pub kernels: Vec<KernelInUse>,
+    /// Columns of numbers on the host.
+    pub columns: Vec<Buffer>,
+    /// Buffers on the device; empty on the CPU.
+    pub buffers: Vec<Buffer>,
+    /// Bytes of all columns on the host.
+    pub host_bytes: u64,
+    /// Bytes of all buffers on the device.
+    pub device_bytes: u64,
+    /// Bytes an element, of the device's buffers in a GPU run, else of the host's columns.
+    pub bytes_an_element: f64,
+}
+
+/// A system of the step.
+#[derive(Clone, Debug, Serialize)]
+pub struct SystemInUse {
+    /// Its name.
+    pub name: String,
+    /// Its place in the step.
+    pub phase: String,
+    /// What it does.
+    pub does: String,
+    /// Why it is there.
+    pub because: String,
+    /// `host` or `device`.
+    pub on: &'static str,
+    /// Steps between two runs.
+    pub every: u64,
+    /// What travels for it in each of its runs; for host systems between a GPU's.
+    pub travels: Option<Travels>,
+}
+
+/// Columns that go to the host before a system and back after it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Travels {
+    /// Columns brought to the host.
+    pub brought: Vec<&'static str>,
+    /// Bytes of those.
+    pub brought_bytes: u64,
+    /// Columns sent back.
+    pub sent: Vec<&'static str>,
+    /// Bytes of those.
+    pub sent_bytes: u64,
+}
+
+/// A system that the scene does not call for.
+#[derive(Clone, Debug, Serialize)]
+pub struct SystemOff {
+    /// Its name.
+    pub name: String,
+    /// What it would do.
+    pub does: String,
+    /// What in a scene turns it on.
+    pub turned_on_by: String,
+}
+
+/// An element block or a body.
+#[derive(Clone, Debug, Serialize)]
+pub struct Part {
+    /// `block cube/tissue/Hex8` or `body cube`.
+    pub name: String,
+    /// How large it is.
+    pub size: String,
+    /// What it has or lacks.
+    pub effects: Vec<Effect>,
+    /// The variant of the CPU's kernel that a block runs.
+    pub cpu_variant: Option<String>,
+}
+
+/// Something that a part has or lacks.
+#[derive(Clone, Debug, Serialize)]
+pub struct Effect {
+    /// What.
+    pub name: &'static str,
+    /// Its parameters when it is on; `None`: off.
+    pub on: Option<String>,
+    /// What in the scene turns it on.
+    pub turned_on_by: String,
+}
+
+/// A dispatch of a step.
+#[derive(Clone, Debug, Serialize)]
+pub struct KernelInUse {
+    /// The kernel.
+    pub label: String,
+    /// The system it belongs to.
+    pub system: String,
+    /// The WGSL function.
+    pub entry: &'static str,
+    /// Invocations.
+    pub threads: u32,
+    /// Invocations of a workgroup.
+    pub workgroup: u32,
+    /// The pieces it is put together from.
+    pub fragments: Vec<Piece>,
+    /// Lines of all pieces.
+    pub lines: usize,
+    /// What it binds.
+    pub bindings: Vec<Bound>,
+}
+
+/// A piece of WGSL.
+#[derive(Clone, Debug, Serialize)]
+pub struct Piece {
+    /// Its file, or what it was generated for.
+    pub path: String,
+    /// Lines.
+    pub lines: usize,
+}
+
+/// A WGSL variable with its buffer.
+#[derive(Clone, Debug, Serialize)]
+pub struct Bound {
+    /// The variable.
+    pub variable: String,
+    /// `uniform`, `read` or `read_write`.
+    pub access: &'static str,
+    /// The buffer.
+    pub buffer: String,
+    /// Its bytes.
+    pub bytes: u64,
+}
+
+/// A column or a device buffer.
+#[derive(Clone, Debug, Serialize)]
+pub struct Buffer {
+    /// What it belongs to.
+    pub of: String,
+    /// Its name.
+    pub name: String,
+    /// `column`, `constants` or `uniform`.
+    pub kind: &'static str,
+    /// Its bytes.
+    pub bytes: u64,
+}
+
+impl Simulation {
+    /// What the scene causes on the backend that it runs on. `registry` is the one that the simulation was made with.
+    ///
+    /// # Errors
+    /// Kernels that do not compile.
+    pub fn explain(&mut self, registry: &Registry) -> Result<Explanation, Error> {
+        self.explain_for(registry, self.facts.on_gpu)
+    }
+
+    /// What the scene would cause on a GPU. None is needed: buffers are only counted.
+    ///
+    /// # Errors
+    /// A simulation in f64, and kernels that do not compile.
+    pub fn explain_on_gpu(&mut self, registry: &Registry) -> Result<Explanation, Error> {
+        match self.facts.precision {
+            Precision::F32 => self.explain_for(registry, true),
+            Precision::F64 => Err(Error::Options("the GPU computes in f32 only".into())),
+        }
+    }
+
+    fn explain_for(&mut self, registry: &Registry, on_gpu: bool) -> Result<Explanation, Error> {
+        let sizes = Sizes::of(&mut self.world);
+        let in_use = |name: &str| self.entries.iter().any(|entry| entry.name == name);
+        let off = registry.systems().iter().filter(|system| !in_use(&system.name));
+        let systems_off = off.map(|system| SystemOff {
+            name: system.name.clone(),
+            does: system.does.clone(),
+            turned_on_by: system.called_for_by.into(),
+        });
+        let systems_off = systems_off.collect();
+        let known = |entry: &Entry| registry.get(&entry.name);
+        let systems = self.entries.iter().map(|entry| system_in_use(entry, known(entry), on_gpu, &sizes)).collect();
+        let scheduled: Vec<&System> = self.entries.iter().filter_map(known).collect();
+        let (kernels, buffers) =
+            if on_gpu { kernels::describe(&scheduled, &sizes, &mut self.world)? } else { Default::default() };
+        let columns = host_columns(&sizes, &mut self.world);
+        let total = |buffers: &[Buffer]| buffers.iter().map(|buffer| buffer.bytes).sum::<u64>();
+        let (host_bytes, device_bytes) = (total(&columns), total(&buffers));
+        let counted = if on_gpu { device_bytes } else { host_bytes };
+        Ok(Explanation {
+            title: self.scene.title.clone(),
+            backend: if on_gpu && !self.facts.on_gpu { "a GPU".into() } else { self.facts.backend.clone() },
+            backend_because: self.facts.why.clone(),
+            on_gpu,
+            precision: match self.facts.precision {
+                Precision::F32 => "f32",
+                Precision::F64 => "f64",
+            },
+            nodes: self.facts.nodes,
+            elements: self.facts.elements,
+            systems,
+            systems_off,
+            parts: effects::parts(&self.scene, self.facts.precision, on_gpu, &mut self.world),
+            kernels,
+            columns,
+            buffers,
+            host_bytes,
+            device_bytes,
+            bytes_an_element: counted as f64 / self.facts.elements.max(1) as f64,
+        })
+    }
+}
+
+fn system_in_use(entry: &Entry, system: Option<&System>, on_gpu: bool, sizes: &Sizes) -> SystemInUse {
+    let on_device = on_gpu && system.is_some_and(|system| system.kernels.is_some());
+    let travels = match &entry.job {
+        Job::Host { reads, writes, observes: false, .. } if on_gpu && !on_device => {
+            let mut brought = reads.clone();
+            brought.extend(writes.iter().filter(|name| !reads.contains(name)));
+            let (brought_bytes, sent_bytes) = (sizes.sum(&brought), sizes.sum(writes));
+            Some(Travels { brought, brought_bytes, sent: writes.clone(), sent_bytes })
+        }
+        _ => None,
+    };
+    SystemInUse {
+        name: entry.name.clone(),
+        phase: format!("{:?}", entry.phase),
+        does: system.map_or_else(String::new, |system| system.does.clone()),
+        because: entry.because.clone(),
+        on: if on_device { "device" } else { "host" },
+        every: system.map_or(1, |system| system.every),
+        travels,
+    }
+}

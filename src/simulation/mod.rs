@@ -2,7 +2,7 @@
 
 mod access;
 mod build;
-mod explain;
+pub mod explain;
 mod options;
 mod parameters;
 mod run;

@@ -1,0 +1,177 @@
+//! The words of the command line.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use glam::Vec3;
+use sinew::backend::gpu::Choice;
+use sinew::components::Precision;
+use sinew::{BackendChoice, Options};
+use std::path::{Path, PathBuf};
+
+const STATUSES: &str = "\
+Exit status:
+  0    done
+  1    the simulation broke down; what was written until then is kept
+  2    the scene or the options are wrong; nothing was run
+  3    outputs could not be written
+  4    there is no GPU, or it failed
+  130  interrupted; what was written until then is kept";
+
+/// Soft tissue, fast: total Lagrangian explicit finite elements on the CPU and the GPU.
+#[derive(Parser)]
+#[command(name = "sinew", version, after_help = STATUSES, max_term_width = 100)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Subcommand)]
+pub enum Command {
+    /// Run a scene and write what it asks for into a folder
+    #[command(after_help = STATUSES)]
+    Run(RunArguments),
+    /// Look for mistakes in a scene, all in one go, without running it
+    #[command(after_help = STATUSES)]
+    Check(SceneArguments),
+    /// Show what a scene causes and why: systems, effects, kernels, buffers; and what would turn on what is off
+    #[command(after_help = STATUSES)]
+    Explain(ExplainArguments),
+    /// Draw a scene or the output of a run
+    #[command(after_help = STATUSES)]
+    Render(RenderArguments),
+}
+
+/// Which scene.
+#[derive(Args)]
+pub struct SceneArguments {
+    /// The scene file (.ron)
+    pub scene: PathBuf,
+    /// Put a value into the scene in place of what stands there, or as something new:
+    /// --set materials.tissue.density=1060 --set 'bodies.cube.mesh.cells=(20, 20, 20)'
+    #[arg(long, value_name = "PATH=VALUE")]
+    pub set: Vec<String>,
+}
+
+/// How to run it.
+#[derive(Args)]
+pub struct HowArguments {
+    /// Where to run; auto takes a hardware GPU if there is one, else the CPU
+    #[arg(long, value_enum, default_value_t = BackendName::Auto)]
+    pub backend: BackendName,
+    /// Which GPU: best, hardware, software, or a part of its name
+    #[arg(long, value_name = "NAME", default_value = "best")]
+    pub gpu: String,
+    /// The number type; f64 is the reference and runs on the CPU only
+    #[arg(long, value_enum, default_value_t = PrecisionName::F32)]
+    pub precision: PrecisionName,
+    /// CPU threads; 0 is one a core. Results are the same for any number
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    pub threads: u16,
+}
+
+#[derive(Args)]
+pub struct RunArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    #[command(flatten)]
+    pub how: HowArguments,
+    /// The folder to write into; what an earlier run has left there is replaced [default: out/NAME-OF-THE-SCENE]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub struct ExplainArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    #[command(flatten)]
+    pub how: HowArguments,
+    /// Print JSON instead of a page
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args)]
+pub struct RenderArguments {
+    /// An output folder, or a scene file; a scene is run first where its output is missing or older than it
+    #[arg(value_name = "SCENE|OUT")]
+    pub what: PathBuf,
+    /// What gives the colour: displacement, speed, von_mises, pressure, volume_ratio, or a component such as
+    /// displacement.z or stress.xy [default: the scene's]
+    #[arg(long, value_name = "NAME")]
+    pub field: Option<String>,
+    /// Where the eye stands, seen from the middle of the scene: three numbers [default: the scene's]
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
+    pub from: Option<Vec3>,
+    /// Width and height in pixels [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<(u32, u32)>,
+    /// The time of the picture in seconds; an animation ends there [default: the end]
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    pub at: Option<f64>,
+    /// Draw the animation only
+    #[arg(long, conflicts_with = "no_animation")]
+    pub animate: bool,
+    /// Draw the picture only
+    #[arg(long)]
+    pub no_animation: bool,
+    /// The file to write: .png for a picture, .gif for an animation [default: picture.png and animation.gif in the
+    /// output folder]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["animate", "no_animation"])]
+    pub to: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, ValueEnum, PartialEq, Eq)]
+pub enum BackendName {
+    Auto,
+    Cpu,
+    Gpu,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum PrecisionName {
+    F32,
+    F64,
+}
+
+impl HowArguments {
+    /// What the library calls it.
+    pub fn options(&self) -> Options {
+        Options {
+            backend: match self.backend {
+                BackendName::Auto => BackendChoice::Auto,
+                BackendName::Cpu => BackendChoice::Cpu,
+                BackendName::Gpu => BackendChoice::Gpu,
+            },
+            precision: match self.precision {
+                PrecisionName::F32 => Precision::F32,
+                PrecisionName::F64 => Precision::F64,
+            },
+            threads: self.threads.into(),
+            gpu: Choice::parse(&self.gpu),
+        }
+    }
+}
+
+/// Where the outputs of a scene go when nobody says where.
+pub fn default_folder(scene: &Path) -> PathBuf {
+    Path::new("out").join(scene.file_stem().unwrap_or(scene.as_os_str()))
+}
+
+fn direction(text: &str) -> Result<Vec3, String> {
+    let numbers: Vec<f32> = text.split(',').filter_map(|number| number.trim().parse().ok()).collect();
+    match numbers[..] {
+        [x, y, z] if text.split(',').count() == 3 => Ok(Vec3::new(x, y, z)),
+        _ => Err("three numbers with commas between are wanted, such as 1,-2,0.8".into()),
+    }
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let halves = text.split_once(['x', 'X', '×']);
+    let numbers = halves.and_then(|(wide, high)| Some((wide.trim().parse().ok()?, high.trim().parse().ok()?)));
+    numbers.ok_or_else(|| "width and height with an x between are wanted, such as 960x720".into())
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    let time = text.parse().ok().filter(|time: &f64| time.is_finite());
+    time.ok_or_else(|| "a time in seconds is wanted, such as 0.25".into())
+}

@@ -1,0 +1,70 @@
+//! `sinew check`: whether a scene is sound.
+
+use super::Outcome;
+use super::arguments::SceneArguments;
+use super::failure::count_of;
+use super::progress;
+use super::terminal::{self, Paint};
+use super::wording::{count, counted, quantity};
+use sinew::assembly::steps_of;
+use sinew::components::Block;
+use sinew::systems::Registry;
+use sinew::{BackendChoice, Error, Options, SceneFile, Simulation};
+
+/// Shows all that is wrong, and a line of verdict.
+pub fn command(arguments: &SceneArguments) -> Outcome {
+    let scene = SceneFile::load(&arguments.scene, &arguments.set)?;
+    let reading = "reading meshes, looking for mistakes";
+    let diagnostics = progress::during(reading, || Simulation::check(&scene, &Registry::default()));
+    if diagnostics.has_errors() {
+        return Err(diagnostics.into());
+    }
+    terminal::aside(&diagnostics.render(Paint::of_stderr().is_on()));
+    let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
+    let mut simulation = progress::during("building the simulation", || Simulation::new(&scene, &options))?;
+    let warnings = if diagnostics.is_empty() { String::new() } else { format!(", with {}", count_of(&diagnostics)) };
+    terminal::say(&format!("sound{warnings}: {}", verdict(&mut simulation)?))
+}
+
+/// What a sound scene amounts to.
+fn verdict(simulation: &mut Simulation) -> Result<String, Error> {
+    let summary = simulation.summary("not run")?;
+    let world = simulation.world_mut();
+    let blocks = world.query::<&Block>().iter(world).count() as u64;
+    let (body, element) = &summary.stable_step_element;
+    let mut lines = format!(
+        "{}, {} in {}; {} of {} for {}\n",
+        counted(summary.nodes as u64, "node"),
+        counted(summary.elements as u64, "element"),
+        counted(blocks, "block"),
+        counted(summary.planned_steps, "step"),
+        quantity(summary.time_step, "s"),
+        quantity(simulation.scene().duration, "s"),
+    );
+    let stable = quantity(summary.stable_step, "s");
+    lines += &format!("stable step: {stable}, set by element {element} of {body}\n");
+    lines += &format!("a run writes: {}\n", outputs(simulation, summary.planned_steps).join(", "));
+    Ok(lines)
+}
+
+/// The files of a run, and how long those that grow become.
+fn outputs(simulation: &Simulation, steps: u64) -> Vec<String> {
+    // the start, each time that it is due, and the end
+    let rows = |every: f64| {
+        let every = steps_of(every, simulation.time_step());
+        1 + steps / every + u64::from(!steps.is_multiple_of(every))
+    };
+    let scene = simulation.scene();
+    let mut files = vec![format!("fields.pvd ({})", counted(rows(scene.fields_every()), "frame"))];
+    files.extend(scene.output.energies_every.map(|every| format!("energy.csv ({} rows)", count(rows(every)))));
+    for (name, probe) in &scene.probes {
+        let every = probe.every.unwrap_or_else(|| scene.fields_every());
+        files.push(format!("probe_{name}.csv ({} rows)", count(rows(every))));
+    }
+    match scene.bodies.len() {
+        1 => files.push("nodes.csv".into()),
+        _ => files.extend(scene.bodies.keys().map(|name| format!("nodes_{name}.csv"))),
+    }
+    files.extend(["summary.json".into(), "scene.ron".into()]);
+    files
+}

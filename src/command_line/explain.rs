@@ -1,0 +1,50 @@
+//! `sinew explain`: what a scene causes.
+
+use super::Outcome;
+use super::arguments::{BackendName, ExplainArguments};
+use super::failure::Failure;
+use super::progress;
+use super::terminal::{self, Paint};
+use sinew::explain::Explanation;
+use sinew::systems::Registry;
+use sinew::{BackendChoice, Error, Options, SceneFile, Simulation};
+
+/// Prints a page or JSON.
+pub fn command(arguments: &ExplainArguments) -> Outcome {
+    let scene = SceneFile::load(&arguments.scene.scene, &arguments.scene.set)?;
+    let work = || explanation(&scene, &arguments.how.options(), arguments.how.backend);
+    let explanation = progress::during("reading meshes, building the simulation", work)?;
+    if arguments.json {
+        let text = serde_json::to_string_pretty(&explanation).map_err(|error| Failure::Silent(error.into()))?;
+        return terminal::say(&format!("{text}\n"));
+    }
+    terminal::say(&with_headings(&explanation.to_string(), Paint::of_stdout()))
+}
+
+/// On the backend that a run would take; a GPU that is asked for need not be there.
+fn explanation(scene: &SceneFile, options: &Options, backend: BackendName) -> Result<Explanation, Error> {
+    let registry = Registry::default();
+    match Simulation::with_systems(scene, options, &registry) {
+        Err(Error::NoGpu(reason)) if backend == BackendName::Gpu => {
+            let on_cpu = Options { backend: BackendChoice::Cpu, ..options.clone() };
+            let mut simulation = Simulation::with_systems(scene, &on_cpu, &registry)?;
+            let mut explanation = simulation.explain_on_gpu(&registry)?;
+            explanation.backend_because = format!("asked for, though a run would fail here: {reason}");
+            Ok(explanation)
+        }
+        made => {
+            let mut simulation = made?;
+            terminal::aside(&simulation.warnings().render(Paint::of_stderr().is_on()));
+            simulation.explain(&registry)
+        }
+    }
+}
+
+/// Lines that are not set in are headings.
+fn with_headings(page: &str, paint: Paint) -> String {
+    let line = |line: &str| match line.starts_with(' ') || line.is_empty() {
+        true => format!("{line}\n"),
+        false => format!("{}\n", paint.bold(line)),
+    };
+    page.lines().map(line).collect()
+}

@@ -1,0 +1,38 @@
+//! The command `sinew`: its arguments, what each part of it does, and how it ends.
+
+mod arguments;
+mod check;
+mod explain;
+mod failure;
+mod interrupt;
+mod progress;
+mod render;
+mod report;
+mod run;
+mod terminal;
+mod wording;
+
+use arguments::{Arguments, Command};
+use clap::Parser;
+use failure::Failure;
+use std::process::ExitCode;
+
+/// Reads the arguments, does what they ask for, and tells what went wrong.
+pub fn main() -> ExitCode {
+    let done = match Arguments::parse().command {
+        Command::Run(arguments) => run::command(&arguments),
+        Command::Check(arguments) => check::command(&arguments),
+        Command::Explain(arguments) => explain::command(&arguments),
+        Command::Render(arguments) => render::command(&arguments),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            failure.tell();
+            ExitCode::from(failure.status())
+        }
+    }
+}
+
+/// How a part of the command ends.
+type Outcome = Result<(), Failure>;

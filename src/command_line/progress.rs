@@ -1,0 +1,71 @@
+//! How far a run is: a bar where somebody looks, else a line now and then.
+
+use super::{terminal, wording};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::time::{Duration, Instant};
+
+/// Time between two lines where there is no terminal.
+const QUIET: Duration = Duration::from_secs(10);
+
+/// Progress of a run over simulated time.
+pub struct Progress {
+    bar: Option<ProgressBar>,
+    started: Instant,
+    told: Instant,
+    duration: f64,
+}
+
+impl Progress {
+    /// Begins; `duration` is the simulated time (s), `steps` how many there are.
+    pub fn begin(steps: u64, duration: f64) -> Self {
+        let bar = terminal::is_watched().then(|| bar(steps, "{bar:30} {percent:>3} %  {msg}"));
+        Self { bar, started: Instant::now(), told: Instant::now(), duration }
+    }
+
+    /// Tells how far it is: steps done of all, and the simulated time (s).
+    pub fn tell(&mut self, done: u64, all: u64, time: f64) {
+        if self.bar.is_none() && self.told.elapsed() < QUIET {
+            return;
+        }
+        let elapsed = self.started.elapsed();
+        let left = elapsed.mul_f64((all.saturating_sub(done)) as f64 / done.max(1) as f64);
+        let speed = wording::speed(elapsed.as_secs_f64() / time.max(f64::MIN_POSITIVE));
+        let at = format!("t = {time:.4} of {} s, {speed}, {} left", self.duration, wording::duration(left));
+        match &self.bar {
+            Some(bar) => {
+                bar.set_message(at);
+                bar.set_position(done);
+            }
+            None => terminal::aside(&format!("{:3.0} %  {at}\n", 100.0 * done as f64 / all.max(1) as f64)),
+        }
+        self.told = Instant::now();
+    }
+
+    /// Takes the bar away.
+    pub fn end(self) {
+        if let Some(bar) = self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+/// Shows that something goes on whose end cannot be told, while `work` is done.
+pub fn during<T>(what: &str, work: impl FnOnce() -> T) -> T {
+    if !terminal::is_watched() {
+        return work();
+    }
+    let spinner = ProgressBar::new_spinner().with_message(what.to_string());
+    spinner.enable_steady_tick(Duration::from_millis(120));
+    let done = work();
+    spinner.finish_and_clear();
+    done
+}
+
+/// A bar over so many steps.
+pub fn bar(steps: u64, template: &str) -> ProgressBar {
+    let bar = ProgressBar::new(steps);
+    match ProgressStyle::with_template(template) {
+        Ok(style) => bar.with_style(style.progress_chars("━╸ ")),
+        Err(_) => bar,
+    }
+}

@@ -1,0 +1,157 @@
+//! What a run amounted to, for people.
+
+use super::run::PICTURES;
+use super::terminal::Paint;
+use super::wording::{bytes, counted, digits, quantity, speed};
+use sinew::{SceneFile, Summary};
+use std::fmt::Write;
+use std::path::Path;
+
+/// A page on a run.
+pub fn text(summary: &Summary, scene: &SceneFile, folder: &Path, paint: Paint) -> String {
+    let mut page = Page { text: String::new(), paint };
+    if !summary.title.is_empty() {
+        page.text = format!("{}\n", paint.bold(&summary.title));
+    }
+    page.row("backend", format!("{}, {}: {}", summary.backend, summary.precision, summary.backend_because));
+    let (nodes, elements) = (counted(summary.nodes as u64, "node"), counted(summary.elements as u64, "element"));
+    page.row("meshes", format!("{nodes}, {elements}"));
+    let (body, element) = &summary.stable_step_element;
+    let stable = quantity(summary.stable_step, "s");
+    page.row(
+        "time step",
+        format!("{}; stable up to {stable}, set by element {element} of {body}", quantity(summary.time_step, "s")),
+    );
+    speeds(summary, &mut page);
+    systems(summary, &mut page);
+    energies(summary, &mut page);
+    mass(summary, &mut page);
+    probes(summary, scene, &mut page);
+    outputs(folder, &mut page);
+    page.text
+}
+
+struct Page {
+    text: String,
+    paint: Paint,
+}
+
+impl Page {
+    /// A line with its heading; further lines have none.
+    fn row(&mut self, heading: &str, line: impl AsRef<str>) {
+        let heading = self.paint.bold(&format!("{heading:<10}"));
+        // writing to a String cannot fail
+        let _ = writeln!(self.text, "{heading}  {}", line.as_ref());
+    }
+
+    fn rows(&mut self, heading: &str, lines: impl IntoIterator<Item = String>) {
+        for (place, line) in lines.into_iter().enumerate() {
+            self.row(if place == 0 { heading } else { "" }, line);
+        }
+    }
+}
+
+fn speeds(summary: &Summary, page: &mut Page) {
+    let steps = match summary.steps == summary.planned_steps {
+        true => counted(summary.steps, "step"),
+        false => format!("{} of {}", counted(summary.steps, "step"), summary.planned_steps),
+    };
+    let (simulated, run) = (quantity(summary.simulated, "s"), quantity(summary.run_seconds, "s"));
+    page.row("run", format!("{steps}, {simulated} simulated in {run}: {}", speed(summary.real_time_factor)));
+    if summary.steps > 0 {
+        let each = quantity(summary.seconds_a_step, "s");
+        let element = quantity(summary.nanoseconds_an_element_and_step * 1e-9, "s");
+        page.row(
+            "",
+            format!("{each} a step, {element} an element and step; {} before", quantity(summary.setup_seconds, "s")),
+        );
+    }
+    if summary.ended != "finished" {
+        page.row("ended", &summary.ended);
+    }
+}
+
+fn systems(summary: &Summary, page: &mut Page) {
+    let width = summary.systems.iter().map(|system| system.name.len()).max().unwrap_or(0);
+    let lines = summary.systems.iter().map(|system| {
+        let time = match system.seconds {
+            Some(seconds) => {
+                let share = 100.0 * seconds / summary.run_seconds.max(f64::MIN_POSITIVE);
+                format!("{:>8}  {share:3.0} %", quantity(seconds, "s"))
+            }
+            None => "on the device  ".into(),
+        };
+        format!("{:width$}  {time}  {}", system.name, system.because)
+    });
+    page.rows("systems", lines);
+    if let Some(traffic) = &summary.traffic {
+        let (down, up) = (bytes(traffic.down), bytes(traffic.up));
+        let line = format!("{down} to the host, {up} to the device, {} waited", quantity(traffic.seconds, "s"));
+        page.row("traffic", line);
+    }
+}
+
+fn energies(summary: &Summary, page: &mut Page) {
+    let energies = &summary.energies;
+    let held = [("kinetic", energies.kinetic), ("strain", energies.strain), ("hourglass", energies.hourglass)];
+    let line = |list: &[(&str, f64)]| {
+        list.iter().map(|(name, value)| format!("{name} {}", quantity(*value, "J"))).collect::<Vec<_>>().join(", ")
+    };
+    page.row("energies", line(&held));
+    let booked = [
+        ("of loads", energies.load_work),
+        ("of constraints", energies.constraint_work),
+        ("against internal forces", energies.internal_work),
+        ("lost to damping", energies.damping_loss),
+    ];
+    let booked: Vec<(&str, f64)> = booked.iter().filter_map(|(name, value)| Some((*name, (*value)?))).collect();
+    if !booked.is_empty() {
+        page.row("work", line(&booked));
+    }
+}
+
+fn mass(summary: &Summary, page: &mut Page) {
+    let mut line = quantity(summary.mass * 1e3, "g");
+    if summary.removed_elements > 0 {
+        let _ = write!(
+            line,
+            ", of it {} removed with {}, and {} of energy",
+            quantity(summary.removed_mass * 1e3, "g"),
+            counted(summary.removed_elements as u64, "element"),
+            quantity(summary.energies.removed, "J")
+        );
+    }
+    page.row("mass", line);
+}
+
+fn probes(summary: &Summary, scene: &SceneFile, page: &mut Page) {
+    let lines = summary.probes.iter().map(|(name, (time, values))| {
+        let header = scene.scene.probes.get(name).map(|probe| sinew::observation::header(probe.what));
+        let columns = header.iter().flatten().skip(1);
+        let values: Vec<String> = values.iter().zip(columns).map(|(value, column)| named(column, *value)).collect();
+        format!("{name} at t = {} s: {}", digits(*time), values.join(", "))
+    });
+    page.rows("probes", lines.collect::<Vec<_>>());
+}
+
+/// A value under the name and unit of its column: `ux (m)` and 0.0012 are "ux 1.2 mm".
+fn named(column: &str, value: f64) -> String {
+    match column.strip_suffix(')').and_then(|column| column.split_once(" (")) {
+        Some((name, unit)) => format!("{name} {}", quantity(value, unit)),
+        None => format!("{column} {}", digits(value)),
+    }
+}
+
+fn outputs(folder: &Path, page: &mut Page) {
+    let names: Vec<String> = std::fs::read_dir(folder).map_or(Vec::new(), |entries| {
+        entries.filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned())).collect()
+    });
+    let frames = names.iter().filter(|name| name.starts_with("fields_") && name.ends_with(".vtu")).count();
+    let mut others: Vec<&str> = names.iter().map(String::as_str).collect();
+    others.retain(|name| (name.ends_with(".csv") || name.ends_with(".json")) && *name != "sinew.json");
+    others.retain(|name| !PICTURES.contains(name));
+    others.sort_unstable();
+    let fields = format!("fields.pvd ({})", counted(frames as u64, "frame"));
+    page.row("outputs", format!("{}: {fields}, {}", folder.display(), others.join(", ")));
+    page.row("see it", format!("sinew render {}", folder.display()));
+}

@@ -1,0 +1,109 @@
+//! Columns and buffers, counted.
+
+use super::Buffer;
+use crate::backend::Buffers;
+use crate::backend::kernel::BufferId;
+use crate::components::{Corners, Label, RestPosition};
+use crate::simulation::build::all_columns;
+use bevy_ecs::prelude::*;
+use std::collections::BTreeMap;
+
+/// Bytes of every column of every entity, and what the entities are called.
+pub struct Sizes {
+    bytes: BTreeMap<(Entity, &'static str), u64>,
+    names: BTreeMap<Entity, String>,
+}
+
+impl Sizes {
+    /// Of a world.
+    pub fn of(world: &mut World) -> Self {
+        let mut query = world.query::<(Entity, Option<&Label>)>();
+        let names: BTreeMap<Entity, String> = query
+            .iter(world)
+            .map(|(entity, label)| (entity, label.map_or_else(|| entity.to_string(), |label| label.0.clone())))
+            .collect();
+        let mut bytes = BTreeMap::new();
+        for column in all_columns() {
+            for &entity in names.keys() {
+                if let Some(found) = (column.bytes)(world, entity) {
+                    bytes.insert((entity, column.name), found.len() as u64);
+                }
+            }
+        }
+        Self { bytes, names }
+    }
+
+    /// Bytes of all columns of these names.
+    pub fn sum(&self, names: &[&'static str]) -> u64 {
+        self.bytes.iter().filter(|((_, name), _)| names.contains(name)).map(|(_, bytes)| bytes).sum()
+    }
+
+    fn name_of(&self, entity: Entity) -> String {
+        self.names.get(&entity).cloned().unwrap_or_default()
+    }
+}
+
+/// All columns on the host, by what they belong to.
+pub fn host_columns(sizes: &Sizes, world: &mut World) -> Vec<Buffer> {
+    let column = |entity: Entity, name: &str, bytes: u64| Buffer {
+        of: sizes.name_of(entity),
+        name: name.to_string(),
+        kind: "column",
+        bytes,
+    };
+    let mut columns: Vec<Buffer> =
+        sizes.bytes.iter().map(|((entity, name), bytes)| column(*entity, name, *bytes)).collect();
+    // these have no twin on the device, or another one
+    for (entity, rest, corners) in world.query::<(Entity, &RestPosition, &Corners)>().iter(world) {
+        columns.push(column(entity, "rest_position", size_of_val(rest.0.as_slice()) as u64));
+        let map = size_of_val(corners.starts.as_slice()) + size_of_val(corners.corners.as_slice());
+        columns.push(column(entity, "corners", map as u64));
+    }
+    columns.sort_by(|a, b| a.of.cmp(&b.of).then(b.bytes.cmp(&a.bytes)).then(a.name.cmp(&b.name)));
+    columns
+}
+
+/// Counts what kernels bind instead of making it.
+pub struct Counter<'a> {
+    sizes: &'a Sizes,
+    columns: BTreeMap<(Entity, &'static str), BufferId>,
+    /// All buffers; the place is the id.
+    pub buffers: Vec<Buffer>,
+}
+
+impl<'a> Counter<'a> {
+    /// Nothing counted yet.
+    pub fn new(sizes: &'a Sizes) -> Self {
+        Self { sizes, columns: BTreeMap::new(), buffers: Vec::new() }
+    }
+
+    /// The buffer of an id.
+    pub fn get(&self, id: BufferId) -> Option<&Buffer> {
+        self.buffers.get(id.0 as usize)
+    }
+
+    fn add(&mut self, of: String, name: String, kind: &'static str, bytes: u64) -> BufferId {
+        self.buffers.push(Buffer { of, name, kind, bytes });
+        BufferId(self.buffers.len() as u32 - 1)
+    }
+}
+
+impl Buffers for Counter<'_> {
+    fn column(&mut self, entity: Entity, name: &'static str) -> BufferId {
+        if let Some(&id) = self.columns.get(&(entity, name)) {
+            return id;
+        }
+        let bytes = self.sizes.bytes.get(&(entity, name)).copied().unwrap_or(0);
+        let id = self.add(self.sizes.name_of(entity), name.into(), "column", bytes);
+        self.columns.insert((entity, name), id);
+        id
+    }
+
+    fn constants(&mut self, label: String, bytes: &[u8]) -> BufferId {
+        self.add(String::new(), label, "constants", bytes.len() as u64)
+    }
+
+    fn uniform(&mut self, label: String, bytes: &[u8]) -> BufferId {
+        self.add(String::new(), label, "uniform", bytes.len() as u64)
+    }
+}

@@ -1,0 +1,129 @@
+//! What blocks and bodies have or lack, and what would give it to them.
+
+use super::{Effect, Part};
+use crate::components::*;
+use crate::materials::{Fibres, NeoHookean};
+use crate::math::LANES;
+use crate::scene::schema::Scene;
+use bevy_ecs::prelude::*;
+
+/// All blocks, then all bodies.
+pub fn parts(scene: &Scene, precision: Precision, on_gpu: bool, world: &mut World) -> Vec<Part> {
+    let mut blocks: Vec<Part> = Vec::new();
+    let mut query = world.query::<(EntityRef, &Block, &Label)>();
+    for (entity, block, label) in query.iter(world) {
+        let cpu_variant = (!on_gpu).then(|| cpu_variant(block, precision, world));
+        let (body, material) = (name(world, block.body), name(world, block.material));
+        let size = format!("{} {:?} elements of {material} in {body}", block.count, block.kind);
+        let effects = block_effects(&entity, block, &material, &body, world);
+        blocks.push(Part { name: format!("block {}", label.0), size, effects, cpu_variant });
+    }
+    let mut bodies: Vec<Part> = Vec::new();
+    let mut query = world.query::<(EntityRef, &Authoring, &Label)>();
+    for (entity, authoring, label) in query.iter(world) {
+        let size = format!("{} nodes", authoring.node_rows.len());
+        let effects = body_effects(&entity, precision, scene);
+        bodies.push(Part { name: format!("body {}", label.0), size, effects, cpu_variant: None });
+    }
+    blocks.sort_by(|a, b| a.name.cmp(&b.name));
+    bodies.sort_by(|a, b| a.name.cmp(&b.name));
+    blocks.extend(bodies);
+    blocks
+}
+
+fn name(world: &World, entity: Entity) -> String {
+    world.get::<Label>(entity).map_or_else(String::new, |label| label.0.clone())
+}
+
+fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &str, world: &World) -> Vec<Effect> {
+    let in_material = |word: &str| format!("`{word}` in the material {material}");
+    let neo_hookean = world.get::<NeoHookean<f64>>(block.material);
+    let fibres = world.get::<Fibres<f64>>(block.material);
+    let prony = world.get::<Prony>(block.material);
+    let damping = world.get::<Damping>(block.material);
+    let mut effects = vec![
+        Effect {
+            name: "neo_hookean",
+            on: neo_hookean.map(|law| format!("shear modulus {} Pa, bulk modulus {} Pa", law.shear, law.bulk)),
+            turned_on_by: in_material("neo_hookean"),
+        },
+        Effect {
+            name: "fibres",
+            on: fibres.map(|f| {
+                let course = if f.tension_only > 0.0 { "they only pull" } else { "they pull and push" };
+                format!("η = {} Pa, {course}", f.eta)
+            }),
+            turned_on_by: in_material("fibres"),
+        },
+        Effect {
+            name: "viscosity",
+            on: prony.map(|p| format!("{}, {:?} integrator", many(p.terms.len(), "Prony term"), p.integrator)),
+            turned_on_by: in_material("prony"),
+        },
+        Effect {
+            name: "damping",
+            on: damping.map(|damping| format!("{} 1/s, proportional to mass", damping.0)),
+            turned_on_by: in_material("damping"),
+        },
+        Effect {
+            name: "removal",
+            on: entity.contains::<Alive>().then(|| "elements of the body may be removed".into()),
+            turned_on_by: format!("an entry under `removal` on the body {body}"),
+        },
+    ];
+    if fibres.is_some() {
+        let varying = Effect {
+            name: "directions",
+            on: entity.contains::<FibreDirection>().then(|| "one an element".into()),
+            turned_on_by: "`direction: Around(...)` or `Field(...)` under `fibres`; now one for the whole block".into(),
+        };
+        effects.insert(2, varying);
+    }
+    effects
+}
+
+fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> Vec<Effect> {
+    let compensated = match precision {
+        Precision::F32 => "`compensated: true` under `integration`",
+        Precision::F64 => "`compensated: true` under `integration`, in f32 only",
+    };
+    let booking = scene.output.energies_every.map_or_else(String::new, |every| format!("a row in every {every} s"));
+    vec![
+        Effect {
+            name: "external forces",
+            on: entity.contains::<ExternalForce>().then(|| many(scene.loads.len(), "load")),
+            turned_on_by: "an entry under `loads`".into(),
+        },
+        Effect {
+            name: "damping",
+            on: entity.contains::<DampingCoefficient>().then(|| "a material of the body is damped".into()),
+            turned_on_by: "`damping` in a material of the body".into(),
+        },
+        Effect {
+            name: "compensated sum",
+            on: entity.contains::<DisplacementCompensation>().then(|| "keeps what rounding leaves out".into()),
+            turned_on_by: compensated.into(),
+        },
+        Effect {
+            name: "booking of work",
+            on: entity.contains::<Work>().then_some(booking),
+            turned_on_by: "`energies_every` under `output`".into(),
+        },
+    ]
+}
+
+/// Which of the compiled kernels a block runs on the CPU.
+fn cpu_variant(block: &Block, precision: Precision, world: &World) -> String {
+    let word = |is: bool| if is { "with" } else { "without" };
+    let fibres = word(world.get::<Fibres<f64>>(block.material).is_some());
+    let viscosity = word(world.get::<Prony>(block.material).is_some());
+    let lanes = match precision {
+        Precision::F32 => "f32",
+        Precision::F64 => "f64",
+    };
+    format!("{:?} in {lanes}, groups of {LANES}, {fibres} fibres, {viscosity} viscosity", block.kind)
+}
+
+fn many(count: usize, word: &str) -> String {
+    format!("{count} {word}{}", if count == 1 { "" } else { "s" })
+}

@@ -1,0 +1,69 @@
+//! Kernels as they are put together, without a GPU.
+
+use super::buffers::{Counter, Sizes};
+use super::{Bound, Buffer, KernelInUse, Piece};
+use crate::backend::gpu::GpuError;
+use crate::backend::kernel::{BindingKind, Kernel, compose};
+use crate::error::Error;
+use crate::systems::System;
+use bevy_ecs::prelude::*;
+
+/// The kernels of all systems, and the buffers that they bind.
+pub fn describe(
+    systems: &[&System],
+    sizes: &Sizes,
+    world: &mut World,
+) -> Result<(Vec<KernelInUse>, Vec<Buffer>), Error> {
+    let mut counter = Counter::new(sizes);
+    let mut described = Vec::new();
+    for system in systems {
+        let Some(kernels) = system.kernels else { continue };
+        for kernel in kernels(world, &mut counter) {
+            described.push(in_use(&system.name, &kernel, &counter)?);
+        }
+    }
+    Ok((described, counter.buffers))
+}
+
+fn in_use(system: &str, kernel: &Kernel, counter: &Counter<'_>) -> Result<KernelInUse, Error> {
+    let composed = compose(&kernel.fragments).map_err(GpuError::from)?;
+    let entry = composed.entry(kernel.entry);
+    let fragments: Vec<Piece> = kernel
+        .fragments
+        .iter()
+        .map(|fragment| Piece { path: fragment.path.clone(), lines: fragment.text.lines().count() })
+        .collect();
+    let bindings = kernel.bindings.iter().map(|(variable, id)| {
+        let buffer = counter.get(*id);
+        Bound {
+            variable: (*variable).to_string(),
+            access: match composed.binding(variable).map(|binding| binding.kind) {
+                Some(BindingKind::ReadWrite) => "read_write",
+                Some(BindingKind::Read) => "read",
+                Some(BindingKind::Uniform) | None => "uniform",
+            },
+            buffer: buffer.map_or_else(String::new, Buffer::full_name),
+            bytes: buffer.map_or(0, |buffer| buffer.bytes),
+        }
+    });
+    Ok(KernelInUse {
+        label: kernel.label.clone(),
+        system: system.to_string(),
+        entry: kernel.entry,
+        threads: kernel.threads,
+        workgroup: entry.map_or(1, |entry| entry.workgroup_size.iter().product()),
+        lines: fragments.iter().map(|piece| piece.lines).sum(),
+        bindings: bindings.collect(),
+        fragments,
+    })
+}
+
+impl Buffer {
+    /// What it is and what it belongs to.
+    fn full_name(&self) -> String {
+        match self.of.as_str() {
+            "" => self.name.clone(),
+            of => format!("{} of {of}", self.name),
+        }
+    }
+}

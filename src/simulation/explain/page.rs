@@ -1,0 +1,86 @@
+//! An explanation as a page for people.
+
+use super::{Buffer, Explanation, KernelInUse, Part, SystemInUse};
+use std::fmt::{Display, Formatter, Result};
+
+impl Display for Explanation {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        if !self.title.is_empty() {
+            writeln!(f, "{}", self.title)?;
+        }
+        writeln!(f, "{} nodes, {} elements", self.nodes, self.elements)?;
+        writeln!(f, "on {}, {}: {}", self.backend, self.precision, self.backend_because)?;
+        writeln!(f, "\nSystems, in the order of a step")?;
+        self.systems.iter().try_for_each(|system| write_system(system, self.on_gpu, f))?;
+        if !self.systems_off.is_empty() {
+            writeln!(f, "\nSystems that are off")?;
+        }
+        for system in &self.systems_off {
+            writeln!(f, "  {:<16}  turned on by {}", system.name, system.turned_on_by)?;
+        }
+        self.parts.iter().try_for_each(|part| write_part(part, f))?;
+        self.kernels.iter().try_for_each(|kernel| write_kernel(kernel, f))?;
+        if self.on_gpu {
+            write_buffers("Buffers on the device", &self.buffers, self.device_bytes, f)?;
+        }
+        write_buffers("Columns on the host", &self.columns, self.host_bytes, f)?;
+        let place = if self.on_gpu { "device" } else { "host" };
+        writeln!(f, "\n{:.0} bytes an element on the {place}", self.bytes_an_element)
+    }
+}
+
+fn write_system(system: &SystemInUse, on_gpu: bool, f: &mut Formatter<'_>) -> Result {
+    writeln!(f, "  {:<16}  {}", system.name, system.does)?;
+    let every = if system.every == 1 { String::new() } else { format!(", in every {}th step", system.every) };
+    let place = if on_gpu { format!(", on the {}", system.on) } else { String::new() };
+    writeln!(f, "  {:16}  because: {}{place}{every}", "", system.because)?;
+    let Some(travels) = &system.travels else { return Ok(()) };
+    let list = |names: &[&str], bytes: u64| match names {
+        [] => "nothing".to_string(),
+        names => format!("{} ({bytes} bytes)", names.join(", ")),
+    };
+    writeln!(f, "  {:16}  brings to the host in each run: {}", "", list(&travels.brought, travels.brought_bytes))?;
+    writeln!(f, "  {:16}  sends back in each run: {}", "", list(&travels.sent, travels.sent_bytes))
+}
+
+fn write_part(part: &Part, f: &mut Formatter<'_>) -> Result {
+    writeln!(f, "\n{}: {}", capital(&part.name), part.size)?;
+    for effect in &part.effects {
+        match &effect.on {
+            Some(parameters) => writeln!(f, "  {:<16}  on   {parameters}", effect.name)?,
+            None => writeln!(f, "  {:<16}  off  turned on by {}", effect.name, effect.turned_on_by)?,
+        }
+    }
+    match &part.cpu_variant {
+        Some(variant) => writeln!(f, "  {:<16}  {variant}", "compiled kernel"),
+        None => Ok(()),
+    }
+}
+
+fn write_kernel(kernel: &KernelInUse, f: &mut Formatter<'_>) -> Result {
+    let workgroups = kernel.threads.div_ceil(kernel.workgroup.max(1));
+    writeln!(f, "\nKernel {} (system {})", kernel.label, kernel.system)?;
+    let KernelInUse { entry, threads, workgroup, lines, .. } = kernel;
+    writeln!(f, "  fn {entry}: {threads} invocations in {workgroups} workgroups of {workgroup}; {lines} lines of")?;
+    for piece in &kernel.fragments {
+        writeln!(f, "    {:>4}  {}", piece.lines, piece.path)?;
+    }
+    for bound in &kernel.bindings {
+        writeln!(f, "  {:<10}  {:<26} <- {} ({} bytes)", bound.access, bound.variable, bound.buffer, bound.bytes)?;
+    }
+    Ok(())
+}
+
+fn write_buffers(heading: &str, buffers: &[Buffer], total: u64, f: &mut Formatter<'_>) -> Result {
+    writeln!(f, "\n{heading}: {total} bytes")?;
+    for buffer in buffers {
+        let of = if buffer.of.is_empty() { String::new() } else { format!(" of {}", buffer.of) };
+        writeln!(f, "  {:>12}  {}{of}", buffer.bytes, buffer.name)?;
+    }
+    Ok(())
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
