@@ -20,7 +20,10 @@ fn mesh(cells: usize) -> Grid {
 
 fn scene(effects: bool) -> String {
     let effects = if effects {
-        ["fibres: (eta: 2000, direction: Around(center: (0.5, -0.3, 0), axis: (0, 0, 1))), prony: (terms: [(alpha: 0.5, tau: 0.1)]), damping: 0.1,", "removal: [(when: StretchAbove(1.1)), (on: Sphere(center: (0.5, 0.5, 1), radius: 0.3), when: During(start: 0.01, end: 0.3))],"]
+        [
+            "fibres: (eta: 2000, direction: Around(center: (0.5, -0.3, 0), axis: (0, 0, 1))), prony: (terms: [(alpha: 0.5, tau: 0.1)]), damping: 0.1,",
+            "removal: [(when: StretchAbove(1.1)), (on: Sphere(center: (0.5, 0.5, 1), radius: 0.3), when: During(start: 0.01, end: 0.3))],",
+        ]
     } else {
         ["", ""]
     };
