@@ -3,37 +3,13 @@
 use super::kernel_worlds::{Effects, randomize};
 use bevy_ecs::prelude::*;
 use sinew::BackendChoice;
-use sinew::backend::device::{ColumnAccess, Device, bring_to_host};
+use sinew::backend::device::{Device, all_columns, bring_to_host};
 use sinew::backend::gpu::{Gpu, gpu_or_reason};
 use sinew::components::*;
 use sinew::systems::Registry;
 
 /// Half the distance from 1 to the next f32.
 pub const UNIT: f64 = 1.0 / (1 << 24) as f64;
-
-pub fn columns() -> Vec<ColumnAccess> {
-    vec![
-        ColumnAccess::of::<Displacement>(),
-        ColumnAccess::of::<DisplacementStep>(),
-        ColumnAccess::of::<DisplacementCompensation>(),
-        ColumnAccess::of::<Mass>(),
-        ColumnAccess::of::<DampingCoefficient>(),
-        ColumnAccess::of::<InternalForce>(),
-        ColumnAccess::of::<ExternalForce>(),
-        ColumnAccess::of::<ConstrainedAxes>(),
-        ColumnAccess::of::<Work>(),
-        ColumnAccess::of::<ElementForce>(),
-        ColumnAccess::of::<FirstNonFinite>(),
-        ColumnAccess::of::<Connectivity>(),
-        ColumnAccess::of::<RestShape>(),
-        ColumnAccess::of::<FibreDirection>(),
-        ColumnAccess::of::<ViscousMemory>(),
-        ColumnAccess::of::<Alive>(),
-        ColumnAccess::of::<RemovalStep>(),
-        ColumnAccess::of::<RemovedEnergy>(),
-        ColumnAccess::of::<FirstInverted>(),
-    ]
-}
 
 /// The same world before and after one system, on the host and on a GPU.
 pub struct Pair {
@@ -74,7 +50,7 @@ pub fn run(system: &str, effects: &Effects, step: u64, change: impl Fn(&mut Worl
 pub type Describe = fn(&mut World, &mut dyn sinew::backend::Buffers) -> Vec<sinew::backend::kernel::Kernel>;
 
 pub fn run_kernels(gpu: Gpu, world: &mut World, describe: Describe, times: u32) {
-    world.insert_resource(Device::new(gpu, columns()));
+    world.insert_resource(Device::new(gpu, all_columns()));
     let kernels = Device::prepare(world, describe).unwrap_or_else(|error| panic!("{error}"));
     assert!(!kernels.is_empty());
     let record = sinew::backend::step::record(world.resource::<Clock>(), world.resource::<Signals>());
