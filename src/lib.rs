@@ -32,6 +32,11 @@ mod simulation;
 #[path = "../systems/mod.rs"]
 pub mod systems;
 
+// custom systems are written with these, and must be so in the same versions
+pub use bevy_ecs;
+pub use glam;
+pub use serde;
+
 pub use error::{Error, Instability};
 pub use scene::SceneFile;
 pub use simulation::explain;

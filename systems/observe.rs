@@ -18,6 +18,8 @@ pub fn system() -> System {
         kernels: None,
         observes: true,
         every: 1,
+        custom: false,
+        parameters: None,
     }
 }
 

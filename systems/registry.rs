@@ -51,7 +51,14 @@ pub struct System {
     pub(crate) observes: bool,
     /// Steps between two runs (host systems only).
     pub every: u64,
+    /// Whether it is not one of the engine's own.
+    pub(crate) custom: bool,
+    /// Reads its parameters and inserts them as a resource.
+    pub(crate) parameters: Option<ReadParameters>,
 }
+
+/// Turns what a scene gives as a system's parameters into a resource; else says why it cannot.
+type ReadParameters = fn(ron::Value, &mut World) -> Result<(), String>;
 
 impl System {
     /// A system of one's own, run on the host on both backends, once a step. `system` is any bevy system function: its
@@ -75,10 +82,28 @@ impl System {
             kernels: None,
             observes: false,
             every: 1,
+            custom: true,
+            parameters: None,
         }
     }
 
-    /// Runs a custom system in every `steps`-th step only: on the GPU the columns travel that much less often.
+    /// A custom system that takes parameters from the scene: what stands under its name in `parameters` is read as a `P`,
+    /// which the system finds as `Res<P>`. What does not fit is an error when the scene is loaded.
+    ///
+    /// Numbers, texts, truth values, lists and structs can be read; a field that may be left out needs
+    /// `#[serde(default)]`. The name `every` is taken: it is the time between two runs (s).
+    pub fn with_parameters<P: Resource + serde::de::DeserializeOwned>(mut self) -> Self {
+        self.parameters = Some(|value, world| {
+            let parameters: P = value.into_rust().map_err(|error| error.to_string())?;
+            world.insert_resource(parameters);
+            Ok(())
+        });
+        self
+    }
+
+    /// Runs a custom system in every `steps`-th step only: on the GPU the columns travel that much less often. `every` in
+    /// the scene's parameters goes before it. Loads last for one step: a system that adds forces in every tenth step
+    /// pushes in every tenth step.
     pub fn every(mut self, steps: u64) -> Self {
         self.every = steps.max(1);
         self
@@ -93,7 +118,7 @@ impl System {
         because: fn(&mut World) -> Option<String>,
         system: impl IntoSystem<(), (), M> + Clone + Send + Sync + 'static,
     ) -> Self {
-        Self { called_for_by, because, ..Self::custom(name, phase, does, system) }
+        Self { called_for_by, because, custom: false, ..Self::custom(name, phase, does, system) }
     }
 
     /// With its kernels.

@@ -1,6 +1,7 @@
 //! From a scene to a simulation.
 
 use super::options::choose;
+use super::parameters::hand_out;
 use super::schedule::{Scheduled, resolve};
 use super::{Entry, Facts, Job, Options, Simulation};
 use crate::assembly::{Assembly, StableStep, assemble, assemble_in_time, stable_step};
@@ -40,7 +41,8 @@ impl Simulation {
         };
         world.insert_resource(clock);
         assemble_in_time(&assembly, &mut world, &mut diagnostics);
-        let schedule = resolve(scene.scene.schedule.as_deref(), registry, &mut world, &mut diagnostics);
+        let mut schedule = resolve(scene.scene.schedule.as_deref(), registry, &mut world, &mut diagnostics);
+        hand_out(&scene.scene, registry, &mut schedule, &mut world, &mut diagnostics);
         if diagnostics.has_errors() {
             return Err(diagnostics.into());
         }
@@ -74,7 +76,7 @@ impl Simulation {
                 Some(kernels) if on_gpu => Job::Kernels(Device::prepare(&mut world, kernels)?),
                 _ => {
                     let (reads, writes) = columns_of(access, &world);
-                    Job::Host { system: host, every: system.every, observes: system.observes, reads, writes }
+                    Job::Host { system: host, every: scheduled.every, observes: system.observes, reads, writes }
                 }
             };
             let (name, because) = (system.name.clone(), scheduled.because.clone());
@@ -106,7 +108,8 @@ pub(super) fn check(scene: &SceneFile, registry: &Registry) -> Diagnostics {
     {
         world.insert_resource(clock);
         assemble_in_time(&assembly, &mut world, &mut diagnostics);
-        resolve(scene.scene.schedule.as_deref(), registry, &mut world, &mut diagnostics);
+        let mut schedule = resolve(scene.scene.schedule.as_deref(), registry, &mut world, &mut diagnostics);
+        hand_out(&scene.scene, registry, &mut schedule, &mut world, &mut diagnostics);
     }
     diagnostics
 }

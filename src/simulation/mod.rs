@@ -4,9 +4,11 @@ mod access;
 mod build;
 pub mod explain;
 mod options;
+mod parameters;
 mod run;
 mod schedule;
 mod summary;
+mod surface;
 
 pub use options::{BackendChoice, Options};
 pub use summary::{Summary, SystemTime};

@@ -10,6 +10,8 @@ pub struct Scheduled<'a> {
     pub system: &'a System,
     /// Why.
     pub because: String,
+    /// Steps between two runs.
+    pub every: u64,
 }
 
 /// Resolves a scene's schedule; complaints go to `diagnostics`.
@@ -21,7 +23,9 @@ pub fn resolve<'a>(
 ) -> Vec<Scheduled<'a>> {
     let Some(names) = names else {
         let all = registry.systems().iter();
-        return all.filter_map(|system| Some(Scheduled { system, because: (system.because)(world)? })).collect();
+        return all
+            .filter_map(|system| Some(Scheduled { system, because: (system.because)(world)?, every: system.every }))
+            .collect();
     };
     let mut schedule: Vec<Scheduled<'a>> = Vec::new();
     for (place, name) in names.iter().enumerate() {
@@ -44,7 +48,7 @@ pub fn resolve<'a>(
                 .note(format!("`{name}` {b}, `{}` {a}; the order of phases is {}", earlier.system.name, phases()));
         }
         let because = (system.because)(world).unwrap_or_else(|| "the scene's schedule names it".into());
-        schedule.push(Scheduled { system, because });
+        schedule.push(Scheduled { system, because, every: system.every });
     }
     for system in registry.systems() {
         if let Some(because) = (system.because)(world)

@@ -1,0 +1,87 @@
+//! What a scene's `parameters` say, for the systems they are for.
+
+use super::schedule::Scheduled;
+use crate::components::Clock;
+use crate::scene::schema::Scene;
+use crate::scene::{Diagnostics, choice};
+use crate::systems::Registry;
+use bevy_ecs::prelude::*;
+use ron::Value;
+use ron::value::Map;
+
+/// The parameter that the engine takes itself: the time between two runs (s).
+const EVERY: &str = "every";
+
+/// Hands each system of the schedule its parameters, and sets how often it runs. Complaints go to `diagnostics`.
+pub(super) fn hand_out(
+    scene: &Scene,
+    registry: &Registry,
+    schedule: &mut [Scheduled<'_>],
+    world: &mut World,
+    diagnostics: &mut Diagnostics,
+) {
+    for name in scene.parameters.keys() {
+        let path = path_of(name);
+        match registry.get(name) {
+            None => {
+                let known = registry.systems().iter().filter(|s| s.custom).map(|s| s.name.as_str());
+                diagnostics
+                    .error_at(path.as_str(), format!("there is no system named `{name}` to give parameters to"))
+                    .notes(choice(name, known));
+            }
+            Some(system) if !system.custom => {
+                diagnostics
+                    .error_at(path.as_str(), format!("the built-in system `{name}` has no parameters"))
+                    .note(format!("what it does comes from {}", system.called_for_by));
+            }
+            Some(_) if !schedule.iter().any(|entry| entry.system.name == *name) => {
+                diagnostics
+                    .warn_at(path.as_str(), format!("`{name}` is not in the schedule and does nothing"))
+                    .note(format!("add \"{name}\" to `schedule`"));
+            }
+            Some(_) => {}
+        }
+    }
+    let time_step = world.resource::<Clock>().time_step;
+    for (place, entry) in schedule.iter_mut().enumerate().filter(|(_, entry)| entry.system.custom) {
+        let name = &entry.system.name;
+        let given = scene.parameters.get(name);
+        let path = if given.is_some() { path_of(name) } else { format!("schedule[{place}]") };
+        let mut complain = |message: String| {
+            diagnostics.error_at(path.as_str(), message).note(ALLOWED);
+        };
+        let mut fields = match given.cloned() {
+            None | Some(Value::Unit) => Map::new(),
+            Some(Value::Map(fields)) => fields,
+            Some(_) => {
+                complain(format!("the parameters of `{name}` have names: (strength: 3, ...)"));
+                continue;
+            }
+        };
+        match fields.remove(&Value::String(EVERY.into())) {
+            None => {}
+            Some(Value::Number(time)) if time.into_f64() > 0.0 => {
+                entry.every = crate::assembly::steps_of(time.into_f64(), time_step);
+            }
+            Some(_) => {
+                complain(format!("`every` of `{name}` is the time between two runs (s), above 0"));
+            }
+        }
+        let result = match entry.system.parameters {
+            Some(read) => read(Value::Map(fields), world),
+            None => match fields.iter().next() {
+                Some((Value::String(field), _)) => Err(format!("it has no `{field}`; allowed: {EVERY}")),
+                Some(_) | None => Ok(()),
+            },
+        };
+        if let Err(reason) = result {
+            complain(format!("the parameters of `{name}` do not fit: {reason}"));
+        }
+    }
+}
+
+const ALLOWED: &str = "what a custom system takes is said where it is registered; `every` (s) goes with all of them";
+
+fn path_of(name: &str) -> String {
+    format!("parameters.\"{name}\"")
+}

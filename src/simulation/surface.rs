@@ -1,0 +1,37 @@
+//! The surface of a body, for programs that draw it.
+
+use super::Simulation;
+use crate::components::*;
+use crate::error::Error;
+use crate::mesh::Mesh;
+
+impl Simulation {
+    /// Triangles of a body's surface: places in [`displacements`](Simulation::displacements) and
+    /// [`rest_positions`](Simulation::rest_positions), counter-clockwise seen from outside. A quadrilateral is two of
+    /// them; faces that removed elements lay bare count. They change only when elements are removed.
+    ///
+    /// # Errors
+    /// No such body; what the GPU says.
+    pub fn surface_triangles(&mut self, body: &str) -> Result<Vec<[u32; 3]>, Error> {
+        let body = self.body(body)?;
+        crate::backend::device::bring_to_host(&mut self.world, |_, name| name == Alive::NAME)?;
+        let Some(authoring) = self.world.get::<Authoring>(body) else { return Ok(Vec::new()) };
+        let there = |element: usize| {
+            let (block, row) = authoring.element_rows[element];
+            let alive = self.world.get::<Alive>(authoring.blocks[block as usize]);
+            alive.is_none_or(|alive| alive[row as usize] == 1)
+        };
+        let tets = authoring.tets.len();
+        let left = Mesh {
+            points: vec![glam::DVec3::ZERO; authoring.node_rows.len()],
+            tets: (0..tets).filter(|&e| there(e)).map(|e| authoring.tets[e]).collect(),
+            hexes: (0..authoring.hexes.len()).filter(|&e| there(tets + e)).map(|e| authoring.hexes[e]).collect(),
+            ..Mesh::default()
+        };
+        let triangles = |face: crate::mesh::SurfaceFace| {
+            let [a, b, c, d] = face.nodes;
+            std::iter::once([a, b, c]).chain((c != d).then_some([a, c, d]))
+        };
+        Ok(left.surface().into_iter().flat_map(triangles).collect())
+    }
+}
