@@ -40,13 +40,24 @@ pub enum Command {
     Render(RenderArguments),
 }
 
+impl Command {
+    /// Whether it looks for a GPU.
+    pub fn may_open_a_gpu(&self) -> bool {
+        match self {
+            Command::Run(arguments) => arguments.how.backend != BackendName::Cpu,
+            Command::Explain(arguments) => arguments.how.backend != BackendName::Cpu,
+            Command::Render(_) => true,
+            Command::Check(_) => false,
+        }
+    }
+}
+
 /// Which scene.
 #[derive(Args)]
 pub struct SceneArguments {
     /// The scene file (.ron)
     pub scene: PathBuf,
-    /// Put a value into the scene in place of what stands there, or as something new:
-    /// --set materials.tissue.density=1060 --set 'bodies.cube.mesh.cells=(20, 20, 20)'
+    /// Put a value into the scene, such as materials.tissue.density=1060; may be given several times
     #[arg(long, value_name = "PATH=VALUE")]
     pub set: Vec<String>,
 }
@@ -74,7 +85,7 @@ pub struct RunArguments {
     pub scene: SceneArguments,
     #[command(flatten)]
     pub how: HowArguments,
-    /// The folder to write into; what an earlier run has left there is replaced [default: out/NAME-OF-THE-SCENE]
+    /// The folder to write into, in place of an earlier run's output [default: out/NAME-OF-THE-SCENE]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }

@@ -6,6 +6,7 @@ mod explain;
 mod failure;
 mod interrupt;
 mod progress;
+mod quiet_driver;
 mod render;
 mod report;
 mod run;
@@ -19,7 +20,11 @@ use std::process::ExitCode;
 
 /// Reads the arguments, does what they ask for, and tells what went wrong.
 pub fn main() -> ExitCode {
-    let done = match Arguments::parse().command {
+    let command = Arguments::parse().command;
+    if command.may_open_a_gpu() {
+        quiet_driver::restart_if_noisy();
+    }
+    let done = match command {
         Command::Run(arguments) => run::command(&arguments),
         Command::Check(arguments) => check::command(&arguments),
         Command::Explain(arguments) => explain::command(&arguments),

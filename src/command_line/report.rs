@@ -66,8 +66,11 @@ fn speeds(summary: &Summary, page: &mut Page) {
             format!("{each} a step, {element} an element and step; {} before", quantity(summary.setup_seconds, "s")),
         );
     }
-    if summary.ended != "finished" {
-        page.row("ended", &summary.ended);
+    match summary.ended.as_str() {
+        "finished" => {}
+        "interrupted" => page.row("ended", "interrupted; what was written until then is whole"),
+        // the reason itself is told on stderr and stands in summary.json
+        _ => page.row("ended", "too early; the fields hold the last good state"),
     }
 }
 
@@ -93,6 +96,9 @@ fn systems(summary: &Summary, page: &mut Page) {
 
 fn energies(summary: &Summary, page: &mut Page) {
     let energies = &summary.energies;
+    if !(energies.kinetic.is_finite() && energies.strain.is_finite()) {
+        return page.row("energies", "not finite");
+    }
     let held = [("kinetic", energies.kinetic), ("strain", energies.strain), ("hourglass", energies.hourglass)];
     let line = |list: &[(&str, f64)]| {
         list.iter().map(|(name, value)| format!("{name} {}", quantity(*value, "J"))).collect::<Vec<_>>().join(", ")

@@ -52,11 +52,6 @@ impl Paint {
         self.with("1;31", text)
     }
 
-    /// For warnings.
-    pub fn yellow(self, text: &str) -> String {
-        self.with("1;33", text)
-    }
-
     /// For headings.
     pub fn bold(self, text: &str) -> String {
         self.with("1", text)

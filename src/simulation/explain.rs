@@ -240,10 +240,10 @@ fn system_in_use(entry: &Entry, system: Option<&System>, on_gpu: bool, sizes: &S
     let on_device = on_gpu && system.is_some_and(|system| system.kernels.is_some());
     let travels = match &entry.job {
         Job::Host { reads, writes, observes: false, .. } if on_gpu && !on_device => {
-            let mut brought = reads.clone();
-            brought.extend(writes.iter().filter(|name| !reads.contains(name)));
-            let (brought_bytes, sent_bytes) = (sizes.sum(&brought), sizes.sum(writes));
-            Some(Travels { brought, brought_bytes, sent: writes.clone(), sent_bytes })
+            let (mut brought, sent) = (sizes.existing(reads), sizes.existing(writes));
+            brought.extend(sent.iter().filter(|name| !reads.contains(name)));
+            let (brought_bytes, sent_bytes) = (sizes.sum(&brought), sizes.sum(&sent));
+            Some(Travels { brought, brought_bytes, sent, sent_bytes })
         }
         _ => None,
     };

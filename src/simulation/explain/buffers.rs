@@ -33,6 +33,12 @@ impl Sizes {
         Self { bytes, names }
     }
 
+    /// Those of some names that occur in the world: systems also ask for columns that the scene may not call for.
+    pub fn existing(&self, names: &[&'static str]) -> Vec<&'static str> {
+        let occurs = |name: &&str| self.bytes.keys().any(|(_, column)| column == name);
+        names.iter().copied().filter(|name| occurs(&name)).collect()
+    }
+
     /// Bytes of all columns of these names.
     pub fn sum(&self, names: &[&'static str]) -> u64 {
         self.bytes.iter().filter(|((_, name), _)| names.contains(name)).map(|(_, bytes)| bytes).sum()

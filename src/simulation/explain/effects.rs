@@ -44,14 +44,15 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
     let mut effects = vec![
         Effect {
             name: "neo_hookean",
-            on: neo_hookean.map(|law| format!("shear modulus {} Pa, bulk modulus {} Pa", law.shear, law.bulk)),
+            on: neo_hookean
+                .map(|law| format!("shear modulus {} Pa, bulk modulus {} Pa", short(law.shear), short(law.bulk))),
             turned_on_by: in_material("neo_hookean"),
         },
         Effect {
             name: "fibres",
             on: fibres.map(|f| {
                 let course = if f.tension_only > 0.0 { "they only pull" } else { "they pull and push" };
-                format!("η = {} Pa, {course}", f.eta)
+                format!("η = {} Pa, {course}", short(f.eta))
             }),
             turned_on_by: in_material("fibres"),
         },
@@ -122,6 +123,11 @@ fn cpu_variant(block: &Block, precision: Precision, world: &World) -> String {
         Precision::F64 => "f64",
     };
     format!("{:?} in {lanes}, groups of {LANES}, {fibres} fibres, {viscosity} viscosity", block.kind)
+}
+
+/// Six digits are enough to recognise a parameter that was computed from others.
+fn short(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
 }
 
 fn many(count: usize, word: &str) -> String {

@@ -1,0 +1,163 @@
+//! The shape of the code: imports run one way, wgpu lives in one place, files stay small, a system is where its name says.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// All files of an ending below some folders, by path from the root, with their texts.
+fn files(folders: &[&str], ending: &str) -> BTreeMap<String, String> {
+    let mut found = BTreeMap::new();
+    let mut waiting: Vec<PathBuf> = folders.iter().map(|folder| root().join(folder)).collect();
+    while let Some(path) = waiting.pop() {
+        if path.is_dir() {
+            waiting.extend(std::fs::read_dir(&path).unwrap().map(|entry| entry.unwrap().path()));
+        } else if path.extension().is_some_and(|e| e == ending) {
+            let name = path.strip_prefix(root()).unwrap().display().to_string();
+            found.insert(name, std::fs::read_to_string(&path).unwrap());
+        }
+    }
+    assert!(!found.is_empty(), "nothing in {folders:?}");
+    found
+}
+
+/// Code without comments and without tests at its end.
+fn code(text: &str) -> String {
+    let text = text.split("#[cfg(test)]").next().unwrap();
+    text.lines().map(|line| line.split("//").next().unwrap()).collect::<Vec<_>>().join("\n")
+}
+
+/// Modules of the crate that code names: `crate::x`, and the first words of `crate::{x, y::z}`.
+fn imports(code: &str) -> Vec<String> {
+    let word = |text: &str| text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
+    let mut names = Vec::new();
+    for part in code.split("crate::").skip(1) {
+        let Some(list) = part.strip_prefix('{') else {
+            names.push(word(part));
+            continue;
+        };
+        let (mut depth, mut start) = (0, true);
+        for (at, c) in list.char_indices() {
+            if start && !c.is_whitespace() {
+                names.push(word(&list[at..]));
+                start = false;
+            }
+            match c {
+                '{' => depth += 1,
+                '}' if depth == 0 => break,
+                '}' => depth -= 1,
+                ',' if depth == 0 => start = true,
+                _ => {}
+            }
+        }
+    }
+    names
+}
+
+/// math ← components ← elements, materials ← backend ← systems ← simulation, command line; beside them the files that a
+/// scene comes from and goes to.
+#[test]
+fn imports_run_one_way() {
+    let inputs = ["mesh", "scene"];
+    let data = ["math", "components", "elements", "materials"];
+    // what each part may name; itself and `error` (which knows every part's errors) are always allowed
+    let allowed: [(&str, Vec<&str>); 13] = [
+        ("src/math", vec![]),
+        ("src/mesh", vec![]),
+        ("src/scene", vec!["mesh"]),
+        ("src/materials", vec!["math"]),
+        ("src/elements", vec!["math"]),
+        ("src/components", [&inputs[..], &["math", "elements", "materials"]].concat()),
+        ("src/output", vec!["mesh"]),
+        ("src/render", vec!["mesh", "output", "scene"]),
+        ("src/backend", [&inputs[..], &data, &["evaluation"]].concat()),
+        ("src/evaluation.rs", [&inputs[..], &data, &["backend"]].concat()),
+        ("src/assembly", [&inputs[..], &data, &["backend", "evaluation", "systems"]].concat()),
+        ("src/observation", [&inputs[..], &data, &["backend", "evaluation", "output"]].concat()),
+        ("systems", [&inputs[..], &data, &["backend", "evaluation", "observation", "assembly"]].concat()),
+    ];
+    let parts = [
+        "math",
+        "mesh",
+        "scene",
+        "materials",
+        "elements",
+        "components",
+        "output",
+        "render",
+        "backend",
+        "evaluation",
+        "assembly",
+        "observation",
+        "systems",
+        "simulation",
+        "command",
+    ];
+    let mut wrong = Vec::new();
+    for (part, allowed) in &allowed {
+        let own = part.trim_start_matches("src/").trim_end_matches(".rs");
+        for (file, text) in files(&[part], "rs") {
+            for name in imports(&code(&text)) {
+                if parts.contains(&name.as_str()) && name != own && !allowed.contains(&name.as_str()) {
+                    wrong.push(format!("{file} names crate::{name}; {part} may name {allowed:?}"));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn wgpu_is_known_in_one_place() {
+    for (file, text) in files(&["src", "systems"], "rs") {
+        let known = code(&text).contains("wgpu");
+        assert!(!known || file.starts_with("src/backend/gpu/"), "{file} knows wgpu");
+    }
+}
+
+/// Longer files, and why.
+const LONG: [(&str, &str); 1] = [("src/scene/schema.rs", "every word of a scene on one page, mostly documentation")];
+
+#[test]
+fn files_are_at_most_400_lines() {
+    for ending in ["rs", "wgsl"] {
+        for (file, text) in files(&["src", "systems", "shaders", "tests", "benches", "examples"], ending) {
+            let (lines, long) = (text.lines().count(), LONG.iter().any(|(name, _)| *name == file));
+            assert!(lines <= 400 || long, "{file} has {lines} lines");
+            assert!(lines > 400 || !long, "{file} is short by now: take it off the list");
+        }
+    }
+}
+
+#[test]
+fn every_system_is_a_file_of_its_name_and_a_line_of_the_step() {
+    let names: Vec<String> = sinew::systems::standard().into_iter().map(|system| system.name).collect();
+    let step = std::fs::read_to_string(root().join("systems/mod.rs")).unwrap();
+    let listed: Vec<&str> = step
+        .lines()
+        .filter_map(|line| line.strip_prefix("//! "))
+        .skip_while(|line| !line.starts_with("```"))
+        .skip(1)
+        .take_while(|line| !line.starts_with("```"))
+        .filter(|line| !line.starts_with(' '))
+        .filter_map(|line| line.split_whitespace().next())
+        .collect();
+    assert_eq!(listed, names, "the step's list at the top of systems/mod.rs");
+    let stems: Vec<String> = files(&["systems"], "rs")
+        .into_keys()
+        .map(|file| file.trim_start_matches("systems/").trim_end_matches(".rs").to_string())
+        .filter(|stem| !["mod", "registry"].contains(&stem.as_str()) && !stem.contains('/'))
+        .collect();
+    for stem in &stems {
+        assert!(names.contains(stem), "systems/{stem}.rs is no system of the step");
+    }
+    for name in &names {
+        assert!(stems.contains(name), "the system {name} has no file systems/{name}.rs");
+        // what only observes runs on the host
+        let shader = root().join(format!("shaders/{name}.wgsl"));
+        assert!(name == "observe" || shader.exists(), "the system {name} has no file shaders/{name}.wgsl");
+    }
+}

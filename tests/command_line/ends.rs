@@ -1,0 +1,131 @@
+//! How the command ends: one status for each kind of failure, and words that say where and what.
+
+use crate::sinew::{Ended, Place, SCENE};
+use std::fs;
+use std::process::Stdio;
+
+#[test]
+fn a_wrong_scene_ends_with_2_all_its_mistakes_and_no_output() {
+    let scene = SCENE.replace("density", "densty").replace("duration: 0.2", "duration: -1");
+    let place = Place::with_scene(&scene);
+    for command in ["run", "check", "explain", "render"] {
+        let ended = place.sinew(&[command, "block.ron"]);
+        ended.wants(
+            2,
+            &["block.ron:5:", "`densty`", "did you mean `density`?", "block.ron:3:", "2 errors; nothing was run"],
+        );
+        assert!(ended.said.is_empty() && !place.path("out").exists());
+    }
+}
+
+#[test]
+fn a_scene_that_is_not_there_ends_with_2() {
+    Place::new().sinew(&["run", "blocks.ron"]).wants(2, &["cannot read the scene blocks.ron"]);
+}
+
+#[test]
+fn a_broken_mesh_ends_with_2_and_names_the_file() {
+    let scene = SCENE.replace("Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3), elements: Hex8)", "File(path: \"m.msh\")");
+    let place = Place::with_scene(&scene);
+    place.sinew(&["run", "block.ron"]).wants(2, &["m.msh"]);
+    fs::write(place.path("m.msh"), "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0").unwrap();
+    for command in ["run", "check"] {
+        place.sinew(&[command, "block.ron"]).wants(2, &["m.msh", "nothing was run"]);
+    }
+}
+
+#[test]
+fn wrong_options_end_with_2() {
+    let place = Place::new();
+    place.sinew(&["run"]).wants(2, &["SCENE"]);
+    place.sinew(&["run", "block.ron", "--backend", "tpu"]).wants(2, &["tpu", "auto, cpu, gpu"]);
+    place.sinew(&["run", "block.ron", "--threads", "-1"]).wants(2, &["--threads"]);
+    place.sinew(&["run", "block.ron", "--set", "duration"]).wants(2, &["a value is missing"]);
+    place.sinew(&["run", "block.ron", "--backend", "gpu", "--precision", "f64"]).wants(2, &["f32 only"]);
+    assert!(!place.path("out").exists());
+}
+
+#[test]
+fn a_run_that_breaks_down_ends_with_1_and_keeps_what_it_wrote() {
+    let place = Place::new();
+    let sudden = "loads[0]=Gravity(acceleration: (0, 0, -9000), curve: Step(start: 0.1))";
+    let ended = place.sinew(&["run", "block.ron", "--backend", "cpu", "--set", sudden]);
+    ended.wants(1, &["broke down", "element", "of body block", "Likely causes"].map(|w| w.trim_start_matches("of ")));
+    let frames = place.frames("out/block");
+    assert!(frames.len() >= 10, "{frames:?}");
+    assert!(place.table("out/block/probe_top.csv").len() >= 10);
+    let summary = place.json("out/block/summary.json");
+    assert!(summary["ended"].as_str().unwrap().contains("broke down"));
+    assert!(!place.path("out/block/nodes.csv").exists(), "nodes without meaning");
+    place.done(&["render", "out/block", "--no-animation"]);
+}
+
+#[test]
+fn an_output_folder_that_cannot_be_written_ends_with_3() {
+    let place = Place::new();
+    fs::write(place.path("file"), "").unwrap();
+    place.sinew(&["run", "block.ron", "--out", "file"]).wants(3, &["file is a file"]);
+    fs::create_dir(place.path("photos")).unwrap();
+    fs::write(place.path("photos/holiday.jpg"), "").unwrap();
+    place.sinew(&["run", "block.ron", "--out", "photos"]).wants(3, &["holiday.jpg", "sinew.json"]);
+    assert_eq!(fs::read_dir(place.path("photos")).unwrap().count(), 1);
+}
+
+/// A limit on the size of files stands in for a full disk: any user can set it.
+#[cfg(unix)]
+#[test]
+fn files_that_cannot_grow_end_the_run_with_3_and_stay_readable() {
+    let place = Place::new();
+    let limited = "trap '' XFSZ; ulimit -f 16; exec \"$0\" run block.ron --backend cpu --set probes.top.every=1e-5 \
+                   --set integration.step=1e-4";
+    let mut command = std::process::Command::new("bash");
+    command.args(["-c", limited, env!("CARGO_BIN_EXE_sinew")]).current_dir(place.folder.path());
+    let ended = Ended::of(command.output().unwrap());
+    ended.wants(3, &["cannot write", "probe_top.csv", "File too large"]);
+    assert!(place.table("out/block/probe_top.csv").len() > 100);
+    assert!(!place.frames("out/block").is_empty());
+}
+
+/// The real thing, where a small file system can be mounted.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_ends_the_run_with_3_and_leaves_whole_files() {
+    let place = Place::new();
+    fs::create_dir(place.path("disk")).unwrap();
+    let disk = place.path("disk").display().to_string();
+    let mounted = std::process::Command::new("mount").args(["-t", "tmpfs", "-o", "size=96k", "tmpfs", &disk]).output();
+    if !mounted.is_ok_and(|output| output.status.success()) {
+        eprintln!("left out: a file system of 96 kB cannot be mounted without root's rights");
+        return;
+    }
+    let ended = place.sinew(&["run", "block.ron", "--backend", "cpu", "--out", "disk/out"]);
+    let frames = std::panic::catch_unwind(|| place.frames("disk/out"));
+    let table = std::panic::catch_unwind(|| place.table("disk/out/probe_top.csv"));
+    let _ = std::process::Command::new("umount").arg(&disk).output();
+    ended.wants(3, &["disk/out", "No space left on device"]);
+    assert!(!frames.unwrap().is_empty() && !table.unwrap().is_empty());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_result_that_cannot_be_said_ends_with_3_and_a_closed_pipe_does_not() {
+    let place = Place::new();
+    let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let said = place.command(&["check", "block.ron"]).stdout(full).stderr(Stdio::piped()).output().unwrap();
+    Ended::of(said).wants(3, &["cannot write to the standard output"]);
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let said = place.command(&["explain", "block.ron", "--backend", "cpu"]).stdout(writer).output().unwrap();
+    Ended::of(said).wants(0, &[]);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn without_a_gpu_the_run_ends_with_4_and_says_what_to_do() {
+    let place = Place::new();
+    let mut command = place.command(&["run", "block.ron", "--backend", "gpu"]);
+    command.env("VK_DRIVER_FILES", "/nowhere").env("VK_ICD_FILENAMES", "/nowhere");
+    Ended::of(command.output().unwrap()).wants(4, &["no GPU", "mesa-vulkan-drivers"]);
+    assert!(!place.path("out").exists());
+    place.sinew(&["run", "block.ron", "--backend", "gpu", "--gpu", "no such device"]).wants(4, &["no GPU"]);
+}

@@ -1,0 +1,52 @@
+//! `sinew explain`.
+
+use crate::sinew::{Place, SCENE};
+
+const FIBRES: &str = "materials.tissue.fibres=(eta: 1000, direction: Around(axis: (0, 0, 1), center: (-1, -1, 0)))";
+
+#[test]
+fn only_what_the_scene_calls_for_has_columns() {
+    let place = Place::new();
+    let without = place.done(&["explain", "block.ron", "--backend", "cpu"]);
+    let with = place.done(&["explain", "block.ron", "--backend", "cpu", "--set", FIBRES]);
+    assert!(!without.contains("fibre_direction") && !without.contains("viscous_memory"), "{without}");
+    assert!(with.contains("fibre_direction of block/tissue/Hex8"), "{with}");
+    assert!(without.contains("without fibres, without viscosity"), "{without}");
+    assert!(with.contains("with fibres, without viscosity"), "{with}");
+}
+
+#[test]
+fn what_is_off_says_what_turns_it_on() {
+    let said = Place::new().done(&["explain", "block.ron", "--backend", "cpu"]);
+    for words in [
+        "off  turned on by `fibres` in the material tissue",
+        "off  turned on by `prony` in the material tissue",
+        "off  turned on by an entry under `removal` on the body block",
+        "pressure          turned on by `Pressure(...)` under `loads`",
+        "because: 1 gravity load",
+    ] {
+        assert!(said.contains(words), "{words:?} is not in\n{said}");
+    }
+    let viscous = "materials.tissue.prony=(terms: [(alpha: 0.5, tau: 0.1)])";
+    let on = Place::new().done(&["explain", "block.ron", "--backend", "cpu", "--set", viscous]);
+    assert!(on.contains("on   1 Prony term, Exact integrator") && on.contains("viscous_memory"), "{on}");
+}
+
+#[test]
+fn json_holds_what_the_page_says() {
+    let place = Place::with_scene(SCENE);
+    let text = place.done(&["explain", "block.ron", "--backend", "cpu", "--json"]);
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!((&json["nodes"], &json["elements"]), (&64.into(), &27.into()));
+    let names = |key: &str| {
+        let list = json[key].as_array().unwrap().iter();
+        list.map(|system| system["name"].as_str().unwrap().to_string()).collect::<Vec<_>>()
+    };
+    assert_eq!(names("systems"), ["boundary", "element_forces", "gather", "gravity", "integrate", "observe"]);
+    assert_eq!(names("systems_off"), ["nodal_force", "pressure", "traction", "element_removal"]);
+    let columns = json["columns"].as_array().unwrap();
+    let displacement = columns.iter().find(|column| column["name"] == "displacement").unwrap();
+    assert_eq!((&displacement["of"], &displacement["bytes"]), (&"block".into(), &(64 * 3 * 4).into()));
+    let sum: u64 = columns.iter().map(|column| column["bytes"].as_u64().unwrap()).sum();
+    assert_eq!(json["host_bytes"], sum);
+}

@@ -1,0 +1,10 @@
+//! The built command: its outputs, what it says, and how it ends.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod sinew;
+
+mod ends;
+mod explains;
+mod interrupted;
+mod renders;
+mod runs;

@@ -1,0 +1,89 @@
+//! `sinew run`.
+
+use crate::sinew::Place;
+
+#[test]
+fn a_run_leaves_all_its_outputs_and_they_can_be_read() {
+    let place = Place::new();
+    let said = place.done(&["run", "block.ron", "--backend", "cpu"]);
+    for words in ["Small block", "CPU (1 thread", "64 nodes, 27 elements", "sinew render out/block", "element_forces"] {
+        assert!(said.contains(words), "{words:?} is not in\n{said}");
+    }
+    let frames = place.frames("out/block");
+    assert!(frames.len() >= 20, "{frames:?}");
+    assert_eq!(frames[0], 0.0, "the start is observed");
+    assert!((frames[frames.len() - 1] - 0.2).abs() < 1e-9, "the end is observed: {frames:?}");
+    let top = place.table("out/block/probe_top.csv");
+    assert_eq!((top[0][0], top[0][3]), (0.0, 0.0));
+    assert!(top[top.len() - 1][3] < -1e-3, "the block does not sag: {top:?}");
+    assert!(place.table("out/block/energy.csv").len() >= 5);
+    assert_eq!(place.table("out/block/nodes.csv").len(), 64);
+    let summary = place.json("out/block/summary.json");
+    assert_eq!((&summary["ended"], &summary["nodes"]), (&"finished".into(), &64.into()));
+    assert_eq!(summary["steps"], summary["planned_steps"]);
+}
+
+#[test]
+fn values_of_set_reach_the_run_and_the_copy_of_the_scene() {
+    let place = Place::new();
+    let set = ["--set", "bodies.block.mesh.cells=(2, 2, 2)", "--set", "duration=0.1"];
+    place.done(&[&["run", "block.ron", "--backend", "cpu", "--out", "here/and/there"], &set[..]].concat());
+    let summary = place.json("here/and/there/summary.json");
+    assert_eq!(summary["elements"], 8);
+    assert!((summary["simulated"].as_f64().unwrap() - 0.1).abs() < 1e-9);
+    assert!(place.read("here/and/there/scene.ron").contains("cells: (2, 2, 2)"));
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_nodes() {
+    let place = Place::new();
+    let run = |threads: &str| {
+        let large = ["--set", "bodies.block.mesh.cells=(14, 14, 14)", "--set", "duration=0.02"];
+        let how = ["run", "block.ron", "--backend", "cpu", "--threads", threads];
+        let said = place.done(&[&how[..], &large[..]].concat());
+        (said, place.read("out/block/nodes.csv"))
+    };
+    let ((one, alone), (three, together)) = (run("1"), run("3"));
+    assert!(one.contains("1 thread,") && three.contains("3 threads"), "{one}{three}");
+    assert!(alone == together, "the nodes of 1 and 3 threads differ");
+}
+
+#[test]
+fn precision_is_chosen_and_said() {
+    let place = Place::new();
+    place.done(&["run", "block.ron", "--precision", "f64", "--out", "f64"]);
+    place.done(&["run", "block.ron", "--precision", "f32", "--backend", "cpu", "--out", "f32"]);
+    assert_eq!(place.json("f64/summary.json")["precision"], "f64");
+    assert_eq!(place.json("f32/summary.json")["precision"], "f32");
+    let sag = |out: &str| place.table(&format!("{out}/probe_top.csv")).last().unwrap()[3];
+    assert!((sag("f64") - sag("f32")).abs() < 1e-4 * sag("f64").abs());
+    assert_ne!(sag("f64"), sag("f32"));
+}
+
+#[test]
+fn a_second_run_replaces_the_first_and_its_pictures() {
+    let place = Place::new();
+    place.done(&["run", "block.ron", "--backend", "cpu"]);
+    place.done(&["render", "out/block", "--no-animation"]);
+    let mut before = place.frames("out/block").len();
+    assert!(place.path("out/block/picture.png").exists());
+    place.done(&["run", "block.ron", "--backend", "cpu", "--set", "output.fields_every=0.1"]);
+    assert!(!place.path("out/block/picture.png").exists(), "a picture of another run is left");
+    before -= place.frames("out/block").len();
+    assert!(before > 10);
+}
+
+#[test]
+fn check_tells_what_a_run_will_leave() {
+    let place = Place::new();
+    let said = place.done(&["check", "block.ron"]);
+    assert!(said.starts_with("sound: 64 nodes, 27 elements in 1 block;"), "{said}");
+    place.done(&["run", "block.ron", "--backend", "cpu"]);
+    for (file, rows) in [
+        ("fields.pvd", format!("{} frames", place.frames("out/block").len())),
+        ("probe_top.csv", format!("{} rows", place.table("out/block/probe_top.csv").len())),
+        ("energy.csv", format!("{} rows", place.table("out/block/energy.csv").len())),
+    ] {
+        assert!(said.contains(&format!("{file} ({rows})")), "{file} ({rows}) is not in\n{said}");
+    }
+}

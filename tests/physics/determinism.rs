@@ -1,0 +1,122 @@
+//! The same scene gives the same bits (gate G6), any numbering the same motion, f32 the motion of f64.
+//!
+//! Bounds: a shuffled mesh sums the same forces in another order: eps a step, 60 steps, moduli 1e4: 1e-12 of the displacement
+//! in f64, 1e-4 in f32; f32 against f64 likewise 1e-4.
+
+use crate::configurations::{Configuration, configurations};
+use crate::grids::{Grid, bits, grid};
+use crate::random::Random;
+use glam::DVec3;
+use sinew::components::Precision;
+use sinew::mesh::ElementKind;
+use sinew::{BackendChoice, Options, Simulation};
+use std::path::Path;
+
+/// Both kinds, more elements than one thread would take alone: 512 hexahedra below, 1536 tetrahedra above.
+fn mesh(cells: usize) -> Grid {
+    let kind = move |layer: usize| if layer < cells { ElementKind::Hex8 } else { ElementKind::Tet4 };
+    grid([cells, cells, cells + cells / 2], kind).moved(|x| x / cells as f64)
+}
+
+fn scene(effects: bool) -> String {
+    let effects = if effects {
+        [
+            "fibres: (eta: 2000, direction: Around(center: (0.5, -0.3, 0), axis: (0, 0, 1))), prony: (terms: [(alpha: 0.5, tau: 0.1)]), damping: 0.1,",
+            "removal: [(when: StretchAbove(1.1)), (on: Sphere(center: (0.5, 0.5, 1), radius: 0.3), when: During(start: 0.01, end: 0.3))],",
+        ]
+    } else {
+        ["", ""]
+    };
+    format!(
+        "(duration: 100, bodies: {{\"b\": (mesh: File(path: \"mesh.vtk\"), material: \"m\", spin: (1, 2, 3))}},
+        materials: {{\"m\": (density: 1000, {} neo_hookean: Young(young: 3e3, poisson: 0.45))}},
+        constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))], {}
+        loads: [Gravity(acceleration: (0, 0, -9.81)), Pressure(on: Surface(normal: (0, 0, 1)), pressure: 400),
+            Traction(on: Surface(normal: (1, 0, 0)), traction: (0, 100, 0))],
+        integration: (step: 0.004), output: (energies_every: 0.1))",
+        effects[0], effects[1]
+    )
+}
+
+fn start(mesh: &Grid, run: &Configuration, effects: bool, folder: &Path) -> Simulation {
+    mesh.write(&folder.join("mesh.vtk"));
+    run.start_in(&scene(effects), folder)
+}
+
+#[test]
+fn bits_are_the_same_from_run_to_run_and_for_any_number_of_threads() {
+    let (folder, mesh) = (tempfile::tempdir().unwrap(), mesh(8));
+    for precision in [Precision::F64, Precision::F32] {
+        let of = |threads: usize| {
+            let options = Options { backend: BackendChoice::Cpu, precision, threads, ..Options::default() };
+            let run = Configuration { name: "CPU", options };
+            let mut simulation = start(&mesh, &run, true, folder.path());
+            simulation.advance(60).unwrap();
+            let energies = format!("{:?}", simulation.energies().unwrap());
+            let removed = simulation.summary("").unwrap().removed_elements;
+            (bits(&mut simulation, "b"), energies, removed)
+        };
+        let one = of(1);
+        assert!(one.2 > 10, "elements must be removed for this to say something: {}", one.2);
+        for threads in [1, 2, 3, 5, 16] {
+            let other = of(threads);
+            assert!(one == other, "{precision:?}, {threads} threads: not the same bits; {} and {}", one.1, other.1);
+        }
+    }
+}
+
+#[test]
+fn gpu_gives_the_same_bits_from_run_to_run() {
+    let (folder, mesh) = (tempfile::tempdir().unwrap(), mesh(4));
+    for run in configurations().iter().filter(|run| run.options.backend == BackendChoice::Gpu) {
+        let of = || {
+            let mut simulation = start(&mesh, run, true, folder.path());
+            simulation.advance(40).unwrap();
+            bits(&mut simulation, "b")
+        };
+        assert!(of() == of(), "not the same bits");
+    }
+}
+
+fn largest_difference(a: &[DVec3], b: &[DVec3]) -> f64 {
+    let largest = a.iter().fold(0.0_f64, |largest, u| largest.max(u.length()));
+    a.iter().zip(b).fold(0.0_f64, |worst, (a, b)| worst.max((*a - *b).length())) / largest
+}
+
+#[test]
+fn f32_moves_as_f64_does() {
+    let (folder, mesh) = (tempfile::tempdir().unwrap(), mesh(4));
+    let all: Vec<(&str, Vec<DVec3>)> = configurations()
+        .iter()
+        .map(|run| {
+            let mut simulation = start(&mesh, run, true, folder.path());
+            simulation.advance(60).unwrap();
+            (run.name, simulation.displacements("b").unwrap())
+        })
+        .collect();
+    for (name, displacements) in &all[1..] {
+        let error = largest_difference(&all[0].1, displacements);
+        println!("{name}: {error:.1e}");
+        assert!(error < 1e-4, "{name}: {error:e}");
+    }
+}
+
+#[test]
+fn numbering_does_not_matter() {
+    let (folder, mesh) = (tempfile::tempdir().unwrap(), mesh(4));
+    let mut random = Random(61);
+    let (points, elements) = (random.permutation(mesh.points.len()), random.permutation(mesh.elements.len()));
+    let shuffled = mesh.shuffled(&points, &elements);
+    for run in &configurations() {
+        let of = |mesh: &Grid| {
+            let mut simulation = start(mesh, run, true, folder.path());
+            simulation.advance(60).unwrap();
+            simulation.displacements("b").unwrap()
+        };
+        let (plain, moved) = (of(&mesh), of(&shuffled));
+        let back: Vec<DVec3> = points.iter().map(|&to| moved[to]).collect();
+        let error = largest_difference(&plain, &back);
+        println!("{}: {error:.1e}", run.name);
+        assert!(error < run.bound(1e-11, 1e-4), "{}: {error:e}", run.name);
+    }
+}

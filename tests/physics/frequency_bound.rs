@@ -1,0 +1,105 @@
+//! The bound of the highest frequency against the eigenvalues of single elements.
+//!
+//! ω² ≤ (n/ρ)(λ tr G + (2μ + 8η/3) λ_max(G)) plus what hourglass control adds; equal for a cube of Hex8. The stiffness is
+//! the central difference of the forces at rest (h = 1e-6: errs by h² and eps/h, below 1e-8), its eigenvalues those of
+//! Jacobi's rotations.
+
+use crate::elements::{NEO_HOOKEAN, YOUNG, corners, distorted, forces, neo_hookean};
+use crate::random::Random;
+use glam::DVec3;
+use sinew::elements::{Element, Hex8, MOST_NODES, Stiffness, Tet4};
+use sinew::materials::Fibres;
+use sinew::mesh::ElementKind;
+
+const DENSITY: f64 = 1000.0;
+
+/// Largest eigenvalue of M⁻¹K of a free element with lumped mass.
+fn highest<E: Element>(points: &[DVec3], eta: f64, a: DVec3) -> f64 {
+    let fibres = Fibres { eta, tension_only: 0.0 };
+    let of = |u: &[[f64; 3]; MOST_NODES]| {
+        forces::<E>(points, u, |k| neo_hookean(k).plus(&fibres.isochoric(k, a.to_array())))
+    };
+    let (size, h) = (3 * E::NODES, 1e-6);
+    let mass = DENSITY * E::rest_shape(points, YOUNG)[E::VOLUME_ROW] / E::NODES as f64;
+    let mut k = vec![vec![0.0; size]; size];
+    for column in 0..size {
+        let moved = |by: f64| {
+            let mut u = [[0.0; 3]; MOST_NODES];
+            u[column / 3][column % 3] = by;
+            of(&u)
+        };
+        let (plus, minus) = (moved(h), moved(-h));
+        for row in 0..size {
+            k[row][column] = (plus[row / 3][row % 3] - minus[row / 3][row % 3]) / (2.0 * h) / mass;
+        }
+    }
+    jacobi(k)
+}
+
+/// Largest eigenvalue of a symmetric matrix.
+fn jacobi(mut a: Vec<Vec<f64>>) -> f64 {
+    let size = a.len();
+    for _ in 0..30 {
+        for p in 0..size {
+            for q in p + 1..size {
+                if a[p][q].abs() < 1e-14 * (a[p][p].abs() + a[q][q].abs()) {
+                    continue;
+                }
+                let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
+                let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
+                let (c, s) = ((t * t + 1.0).sqrt().recip(), t / (t * t + 1.0).sqrt());
+                for row in a.iter_mut() {
+                    (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
+                }
+                for column in 0..size {
+                    (a[p][column], a[q][column]) =
+                        (c * a[p][column] - s * a[q][column], s * a[p][column] + c * a[q][column]);
+                }
+            }
+        }
+    }
+    (0..size).fold(0.0, |largest, i| largest.max(a[i][i]))
+}
+
+fn bound<E: Element>(points: &[DVec3], eta: f64) -> f64 {
+    let lambda = NEO_HOOKEAN.bulk - 2.0 / 3.0 * NEO_HOOKEAN.shear;
+    let stiffness = Stiffness { lambda, deviatoric: 2.0 * NEO_HOOKEAN.shear + 8.0 / 3.0 * eta, density: DENSITY };
+    E::frequency_bound(&E::rest_shape(points, YOUNG), &stiffness)
+}
+
+fn is_never_below<E: Element>(kind: ElementKind) {
+    let mut random = Random(31);
+    let (mut tightest, mut loosest): (f64, f64) = (f64::INFINITY, 0.0);
+    for round in 0..60 {
+        let mut points = distorted(kind, &mut random);
+        // some flat ones too
+        if round % 3 == 0 {
+            points.iter_mut().for_each(|x| x.z *= 0.05);
+        }
+        let eta = [0.0, 2000.0, 1e6][round % 3];
+        let (omega, bound) = (highest::<E>(&points, eta, random.vector().normalize()), bound::<E>(&points, eta));
+        tightest = tightest.min((bound / omega).sqrt());
+        loosest = loosest.max((bound / omega).sqrt());
+        assert!(bound >= omega * (1.0 - 1e-7), "{points:?}, η {eta}: bound {bound}, true {omega}");
+    }
+    println!("bound/ω for {}: {tightest:.3} to {loosest:.3}", E::NAME);
+}
+
+#[test]
+fn is_never_below_the_true_one_of_tetrahedra() {
+    is_never_below::<Tet4>(ElementKind::Tet4);
+}
+
+#[test]
+fn is_never_below_the_true_one_of_hexahedra() {
+    is_never_below::<Hex8>(ElementKind::Hex8);
+}
+
+#[test]
+fn is_exact_for_the_cube() {
+    for size in [0.01, 1.0] {
+        let points: Vec<DVec3> = corners(ElementKind::Hex8).iter().map(|&x| x * size).collect();
+        let (omega, bound) = (highest::<Hex8>(&points, 0.0, DVec3::X), bound::<Hex8>(&points, 0.0));
+        assert!((bound / omega - 1.0).abs() < 1e-6, "size {size}: bound {bound}, true {omega}");
+    }
+}

@@ -1,0 +1,102 @@
+//! Meshes of the tests' own: cells of either kind by layer, points moved at will, nodes and elements in any order.
+
+use glam::DVec3;
+use sinew::Simulation;
+use sinew::mesh::ElementKind;
+use std::fmt::Write;
+use std::path::Path;
+
+/// Six tetrahedra along the diagonal of a cell, by corner bits (1: upper in x, 2: in y, 4: in z).
+const KUHN: [[usize; 4]; 6] = [[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4, 5, 7], [0, 5, 1, 7]];
+/// A hexahedron's corners likewise, in VTK order.
+const HEX: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
+
+/// Points and elements.
+#[derive(Clone)]
+pub struct Grid {
+    pub points: Vec<DVec3>,
+    pub elements: Vec<Vec<usize>>,
+    /// Whether a point is on no side of the box.
+    pub interior: Vec<bool>,
+}
+
+/// A box of unit cells; `kind` says what the cells of a layer in z are.
+pub fn grid(cells: [usize; 3], kind: impl Fn(usize) -> ElementKind) -> Grid {
+    let at = |i: usize, j: usize, k: usize| i + (cells[0] + 1) * (j + (cells[1] + 1) * k);
+    let mut grid = Grid { points: Vec::new(), elements: Vec::new(), interior: Vec::new() };
+    for k in 0..=cells[2] {
+        for j in 0..=cells[1] {
+            for i in 0..=cells[0] {
+                grid.points.push(DVec3::new(i as f64, j as f64, k as f64));
+                let inside = |n: usize, axis: usize| n > 0 && n < cells[axis];
+                grid.interior.push(inside(i, 0) && inside(j, 1) && inside(k, 2));
+            }
+        }
+    }
+    for k in 0..cells[2] {
+        for j in 0..cells[1] {
+            for i in 0..cells[0] {
+                let corner = |bits: usize| at(i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2));
+                match kind(k) {
+                    ElementKind::Hex8 => grid.elements.push(HEX.map(corner).to_vec()),
+                    ElementKind::Tet4 => grid.elements.extend(KUHN.map(|tet| tet.map(corner).to_vec())),
+                }
+            }
+        }
+    }
+    grid
+}
+
+impl Grid {
+    /// With all points moved.
+    pub fn moved(mut self, to: impl FnMut(DVec3) -> DVec3) -> Self {
+        self.points = self.points.into_iter().map(to).collect();
+        self
+    }
+
+    /// With the points that are not on a side moved.
+    pub fn distorted(mut self, mut by: impl FnMut(DVec3) -> DVec3) -> Self {
+        for (point, _) in self.points.iter_mut().zip(&self.interior).filter(|(_, interior)| **interior) {
+            *point += by(*point);
+        }
+        self
+    }
+
+    /// With point `i` at place `points[i]` and element `i` at place `elements[i]`.
+    pub fn shuffled(&self, points: &[usize], elements: &[usize]) -> Self {
+        let mut other = self.clone();
+        for (from, &to) in points.iter().enumerate() {
+            other.points[to] = self.points[from];
+            other.interior[to] = self.interior[from];
+        }
+        for (from, &to) in elements.iter().enumerate() {
+            other.elements[to] = self.elements[from].iter().map(|&point| points[point]).collect();
+        }
+        other
+    }
+
+    /// Writes a legacy VTK file.
+    pub fn write(&self, path: &Path) {
+        let mut text = String::from("# vtk DataFile Version 3.0\ntest\nASCII\nDATASET UNSTRUCTURED_GRID\n");
+        writeln!(text, "POINTS {} double", self.points.len()).unwrap();
+        for p in &self.points {
+            writeln!(text, "{:?} {:?} {:?}", p.x, p.y, p.z).unwrap();
+        }
+        let numbers: usize = self.elements.iter().map(|e| e.len() + 1).sum();
+        writeln!(text, "CELLS {} {numbers}", self.elements.len()).unwrap();
+        for element in &self.elements {
+            let nodes: Vec<String> = element.iter().map(usize::to_string).collect();
+            writeln!(text, "{} {}", element.len(), nodes.join(" ")).unwrap();
+        }
+        writeln!(text, "CELL_TYPES {}", self.elements.len()).unwrap();
+        for element in &self.elements {
+            writeln!(text, "{}", if element.len() == 4 { 10 } else { 12 }).unwrap();
+        }
+        std::fs::write(path, text).unwrap();
+    }
+}
+
+/// The bits of a body's displacements.
+pub fn bits(simulation: &mut Simulation, body: &str) -> Vec<[u64; 3]> {
+    simulation.displacements(body).unwrap().iter().map(|u| u.to_array().map(f64::to_bits)).collect()
+}

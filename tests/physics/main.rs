@@ -1,0 +1,23 @@
+//! The physics against closed forms: pointwise laws, elements, whole scenes; in f64, f32 and on the GPU.
+//!
+//! E = 3000 Pa, ν = .45, ρ = 1000 kg/m³ (so μ = 1034.4828, λ = 9310.3448, κ = 10000 Pa) unless a file says otherwise.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod bars;
+mod clock_and_limit;
+mod columns;
+mod configurations;
+mod conservation;
+mod determinism;
+mod elements;
+mod frequency_bound;
+mod grids;
+mod hourglass;
+mod laws;
+mod loads;
+mod motions;
+mod points;
+mod random;
+mod removal;
+mod statics;
+mod viscosity;

@@ -1,0 +1,113 @@
+//! One material point: a cube of 1 m, one Hex8 or six Tet4, deformed as told. Closed forms 1 to 3.
+//!
+//! Uniaxial (lateral stretch t solves (μ/3) J^(−5/3) (λ² − t²) = κ (J − 1)): σ = 3κ(J − 1), P = σ t²/... per rest area.
+//! Simple shear γ = .4 with fibres at θ in the plane: σ12 as listed. Step shear at 45° relaxing: σ12(t) = S12 (1 − α + α e^(−t/τ)).
+//! P from the kernel (what its nodes feel on a face of 1 m²), σ from the host's evaluation in f64.
+//! Bounds: figures are given to 1e-4 Pa, so 1e-7 of κ; f32 rounds E to 6e-8 of entries up to 3: 1e-5 of (κ + 2μ + 4η)
+//! = 2e4 Pa.
+
+use crate::configurations::{Configuration, configurations, near};
+use sinew::Simulation;
+
+const MODULI: f64 = 2e4;
+
+fn cube(run: &Configuration, elements: &str, material: &str, constraints: &str, time: &str) -> Simulation {
+    run.start(&format!(
+        "({time}, bodies: {{\"b\": (mesh: Box(size: (1, 1, 1), cells: (1, 1, 1), elements: {elements}), material: \"m\")}},
+        materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), {material})}},
+        constraints: [{constraints}],
+        probes: {{\"stress\": (what: Stress, on: All), \"ratio\": (what: VolumeRatio, on: All),
+            \"right\": (what: Reaction, on: Plane(normal: (1, 0, 0), at: 1)),
+            \"top\": (what: Reaction, on: Plane(normal: (0, 1, 0), at: 1)),
+            \"moved\": (what: Displacement, on: Plane(normal: (0, 1, 0), at: 1))}})"
+    ))
+}
+
+/// λ, t, J, σ, P.
+const UNIAXIAL: [[f64; 5]; 3] = [
+    [1.5, 0.8363969, 1.0493397, 1480.1921, 1035.4829],
+    [0.7, 1.1756426, 0.9674949, -975.1535, -1347.7943],
+    [2.0, 0.7420503, 1.1012775, 3038.3236, 1673.0186],
+];
+
+#[test]
+fn uniaxial_stress_is_the_closed_form() {
+    for [stretch, lateral, ratio, sigma, first] in UNIAXIAL {
+        for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
+            let (x, t) = (stretch - 1.0, lateral - 1.0);
+            let told = format!("Prescribed(on: All, gradient: (({x:?}, 0, 0), (0, {t:?}, 0), (0, 0, {t:?})))");
+            let mut simulation = cube(run, elements, "", &told, "duration: 0.02, integration: (step: 0.001)");
+            simulation.advance(2).unwrap();
+            let what = |name: &str| format!("{}, {elements}, λ = {stretch}: {name}", run.name);
+            // t is given to 5e-8, and ∂σ/∂t = 2κ λ t
+            let bound = run.bound(1e-7, 1e-5);
+            near(&what("σ"), simulation.probe("stress").unwrap()[0], sigma, MODULI, bound.max(2e-7));
+            near(&what("σ across"), simulation.probe("stress").unwrap()[1], 0.0, MODULI, bound.max(2e-7));
+            near(&what("J"), simulation.probe("ratio").unwrap()[0], ratio, 1.0, bound.max(2e-7));
+            near(&what("P"), simulation.probe("right").unwrap()[0], first, MODULI, bound.max(2e-7));
+        }
+    }
+}
+
+/// Stretched only along x and left to find its width by itself, damped to rest.
+#[test]
+fn stretched_cube_finds_its_width() {
+    let [stretch, lateral, ..] = UNIAXIAL[0];
+    for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
+        let told = format!(
+            "Prescribed(on: All, axes: [X], gradient: (({:?}, 0, 0), (0, 0, 0), (0, 0, 0)), curve: Smooth(end: 2)),
+            Fixed(on: Plane(normal: (0, 1, 0), at: 0), axes: [Y]), Fixed(on: Plane(normal: (0, 0, 1), at: 0), axes: [Z])",
+            stretch - 1.0
+        );
+        // damped near critically (ω = 2 √(3 κ/ρ) or so), e^(−5·6)
+        let mut simulation = cube(run, elements, "damping: 10", &told, "duration: 8, integration: (safety: 0.6)");
+        let steps = simulation.planned_steps();
+        simulation.advance(steps).unwrap();
+        let moved = simulation.probe("moved").unwrap()[1];
+        near(&format!("{}, {elements}: t − 1", run.name), moved, lateral - 1.0, 1.0, run.bound(1e-7, 1e-5));
+    }
+}
+
+#[test]
+fn sheared_fibres_pull_as_in_the_closed_form() {
+    for (angle, expected) in [(0.0_f64, 413.7931), (45.0, 1757.7931), (90.0, 669.7931), (135.0, 797.7931)] {
+        for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
+            let (sin, cos) = angle.to_radians().sin_cos();
+            let fibres = format!("fibres: (eta: 2000, direction: Along({cos:?}, {sin:?}, 0))");
+            let told = "Prescribed(on: All, gradient: ((0, 0.4, 0), (0, 0, 0), (0, 0, 0)))";
+            let mut simulation = cube(run, elements, &fibres, told, "duration: 0.02, integration: (step: 0.001)");
+            simulation.advance(2).unwrap();
+            let what = |name: &str| format!("{}, {elements}, {angle}°: {name}", run.name);
+            let (stress, bound) = (simulation.probe("stress").unwrap(), run.bound(1e-8, 1e-5));
+            near(&what("σ12"), stress[3], expected, MODULI, bound.max(1e-8));
+            // P e2 = σ e2 for F = I + γ e1⊗e2
+            near(&what("P12"), simulation.probe("top").unwrap()[0], expected, MODULI, bound.max(1e-8));
+            if angle == 45.0 {
+                for (place, expected) in [(0, 1044.7448), (1, -42.3724), (2, -1002.3724)] {
+                    near(&what("σ"), stress[place], expected, MODULI, bound.max(1e-8));
+                }
+            }
+        }
+    }
+}
+
+/// The shear comes in the first step, linearly as far as `Exact` knows: as if at once half a step later, but for h²/24.
+#[test]
+fn sheared_fibres_relax_as_in_the_closed_form() {
+    let fibres = "fibres: (eta: 2000, direction: Along(1, 1, 0)), prony: (terms: [(alpha: 0.5, tau: 0.58)])";
+    let told = "Prescribed(on: All, gradient: ((0, 0.4, 0), (0, 0, 0), (0, 0, 0)))";
+    let (alpha, tau, step) = (0.5, 0.58, 0.005);
+    for (time, figure) in [(0.1, 1618.603), (0.58, 1202.2245), (1.0, 1035.6273), (10.0, 878.8966)] {
+        let expected = |time: f64| 1757.7931 * (1.0 - alpha + alpha * (-time / tau).exp());
+        near("the formula", expected(time), figure, MODULI, 1e-7);
+        for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
+            let mut simulation = cube(run, elements, fibres, told, "duration: 10, integration: (step: 0.005)");
+            simulation.advance_to(time).unwrap();
+            let what = |name: &str| format!("{}, {elements}, t = {time} s: {name}", run.name);
+            // h²/24 = 3e-6 of the share that relaxes
+            let bound = run.bound(1e-6, 2e-5);
+            near(&what("σ12"), simulation.probe("stress").unwrap()[3], expected(time - step / 2.0), MODULI, bound);
+            near(&what("P12"), simulation.probe("top").unwrap()[0], expected(time - 1.5 * step), MODULI, bound);
+        }
+    }
+}

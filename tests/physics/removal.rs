@@ -1,0 +1,199 @@
+//! Removal: when elements go, what is left, what is booked (H17, H18).
+//!
+//! Mass: what is gone is ρ V of the elements gone, to 1e-6. Energy: KE + IE + HG + removed + losses − W − E₀ below 1 % (2 % in
+//! f32) of the largest. An island falls with g: Σ m v grows by Σ m g Δt a step, to rounding (1e-10, 1e-4 in f32).
+
+use crate::columns::{external_forces, masses, velocities};
+use crate::configurations::{Configuration, configurations, near};
+use glam::DVec3;
+use sinew::Simulation;
+
+/// A bar of 6 cells (or 36 tetrahedra) of 1 m, step 1e-3 s.
+fn bar(run: &Configuration, elements: &str, rest: &str) -> Simulation {
+    run.start(&format!(
+        "(duration: 0.2, bodies: {{\"b\": (mesh: Box(size: (6, 1, 1), cells: (6, 1, 1), elements: {elements}), material: \"m\")}},
+        materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
+        integration: (step: 1e-3), output: (energies_every: 0.1), {rest})"
+    ))
+}
+
+fn alive(simulation: &mut Simulation) -> Vec<u8> {
+    simulation.fields("b").unwrap().alive
+}
+
+#[test]
+fn elements_go_at_their_time() {
+    for run in &configurations() {
+        let mut simulation = bar(run, "Hex8", "removal: [(on: Elements([1, 3]), when: At(0.05))]");
+        simulation.advance(49).unwrap();
+        assert_eq!(alive(&mut simulation), [1; 6], "{}", run.name);
+        simulation.advance(1).unwrap();
+        assert_eq!(alive(&mut simulation), [1, 0, 1, 0, 1, 1], "{}", run.name);
+    }
+}
+
+#[test]
+fn elements_go_one_after_the_other_from_the_middle_outwards() {
+    for run in &configurations() {
+        let mut simulation =
+            bar(run, "Hex8", "removal: [(on: Elements([0, 1, 2, 3, 4]), when: During(start: 0.02, end: 0.06))]");
+        let expected = [
+            (19, [1, 1, 1, 1, 1, 1]),
+            (20, [1, 1, 0, 1, 1, 1]),
+            (30, [1, 0, 0, 1, 1, 1]),
+            (40, [1, 0, 0, 0, 1, 1]),
+            (50, [0, 0, 0, 0, 1, 1]),
+            (60, [0, 0, 0, 0, 0, 1]),
+        ];
+        for (step, expected) in expected {
+            simulation.advance(step - simulation.step_count()).unwrap();
+            assert_eq!(alive(&mut simulation), expected, "{}, step {step}", run.name);
+        }
+    }
+}
+
+/// Told gradients make every element the same; each limit is a little below or above what they amount to.
+#[test]
+fn criteria_take_what_passes_them_and_nothing_else() {
+    // λ = 1.3, across .9: J = 1.053, Ψ = μ/2 (J^(−2/3) (1.69 + 1.62) − 3) + κ/2 .053²
+    let (ratio, shear) = (1.3 * 0.81_f64, 3000.0 / 2.9);
+    let energy = 0.5 * shear * (ratio.powf(-2.0 / 3.0) * (1.69 + 1.62) - 3.0) + 0.5e4 * (ratio - 1.0) * (ratio - 1.0);
+    let stretched = "((0.3, 0, 0), (0, -0.1, 0), (0, 0, -0.1))";
+    let squeezed = "((-0.3, 0, 0), (0, 0, 0), (0, 0, 0))";
+    let cases = [
+        (stretched, format!("StretchAbove({})", 1.3 - 1e-4), true),
+        (stretched, format!("StretchAbove({})", 1.3 + 1e-4), false),
+        (stretched, format!("VolumeRatioAbove({})", ratio - 1e-4), true),
+        (stretched, format!("VolumeRatioAbove({})", ratio + 1e-4), false),
+        (squeezed, "VolumeRatioBelow(0.7001)".into(), true),
+        (squeezed, "VolumeRatioBelow(0.6999)".into(), false),
+        (stretched, format!("EnergyDensityAbove({})", energy * 0.999), true),
+        (stretched, format!("EnergyDensityAbove({})", energy * 1.001), false),
+    ];
+    for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
+        for (gradient, when, goes) in &cases {
+            let rest = format!("constraints: [Prescribed(on: All, gradient: {gradient})], removal: [(when: {when})]");
+            let mut simulation = bar(run, elements, &rest);
+            // they are looked at in every tenth step
+            simulation.advance(20).unwrap();
+            let left = alive(&mut simulation).contains(&1);
+            assert_eq!(left, !goes, "{}, {elements}, {when}", run.name);
+            let selected = bar(run, elements, &rest.replace("(when:", "(on: Elements([0]), when:"));
+            let (mut selected, all) = (selected, if elements == "Hex8" { 6 } else { 36 });
+            selected.advance(20).unwrap();
+            let gone = alive(&mut selected).iter().filter(|&&alive| alive == 0).count();
+            assert_eq!(gone, usize::from(*goes), "{}, {elements}, {when}: only one of {all} may go", run.name);
+        }
+    }
+}
+
+#[test]
+fn island_falls_with_exactly_g_and_mass_is_booked() {
+    for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
+        let rest =
+            "constraints: [Fixed(on: Plane(normal: (1, 0, 0), at: 0))], loads: [Gravity(acceleration: (0, 0, -9.81))],
+            removal: [(on: Box(min: (2, 0, 0), max: (4, 1, 1)), when: At(0.05))]";
+        let mut simulation = bar(run, elements, rest);
+        let island: Vec<usize> = simulation
+            .rest_positions("b")
+            .unwrap()
+            .iter()
+            .enumerate()
+            .filter(|(_, x)| x.x > 3.9)
+            .map(|(i, _)| i)
+            .collect();
+        let momentum = |simulation: &mut Simulation| -> (f64, f64) {
+            let (m, v) = (masses(simulation, "b"), velocities(simulation, "b"));
+            (island.iter().map(|&i| m[i] * v[i].z).sum(), island.iter().map(|&i| m[i]).sum())
+        };
+        simulation.advance(60).unwrap();
+        let (before, mass) = momentum(&mut simulation);
+        simulation.advance(100).unwrap();
+        let (after, _) = momentum(&mut simulation);
+        let what = format!("{}, {elements}", run.name);
+        near(&format!("{what}: mass of the island"), mass, 2000.0, 2000.0, run.bound(1e-12, 1e-6));
+        near(&format!("{what}: g"), (after - before) / (mass * 0.1), -9.81, 9.81, run.bound(1e-10, 1e-4));
+        let summary = simulation.summary("").unwrap();
+        near(&format!("{what}: mass removed"), summary.removed_mass, 2000.0, 2000.0, 1e-6);
+        assert_eq!(summary.removed_elements, if elements == "Hex8" { 2 } else { 12 });
+    }
+}
+
+#[test]
+fn nodes_without_elements_are_parked() {
+    for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
+        let rest = "loads: [Gravity(acceleration: (0, 0, -9.81)), NodalForce(on: All, force: (1, 0, 0))],
+            removal: [(on: Box(min: (4, 0, 0), max: (6, 1, 1)), when: At(0.05))]";
+        let mut simulation = bar(run, elements, rest);
+        simulation.advance(51).unwrap();
+        let parked: Vec<usize> = simulation
+            .rest_positions("b")
+            .unwrap()
+            .iter()
+            .enumerate()
+            .filter(|(_, x)| x.x > 4.9)
+            .map(|(i, _)| i)
+            .collect();
+        let before = simulation.displacements("b").unwrap();
+        simulation.advance(100).unwrap();
+        let after = simulation.displacements("b").unwrap();
+        for &node in &parked {
+            assert_eq!(before[node], after[node], "{}, {elements}: node {node} is not parked", run.name);
+            assert_eq!(masses(&mut simulation, "b")[node], 0.0);
+        }
+        assert!(after.iter().all(|u| u.is_finite()));
+    }
+}
+
+#[test]
+fn faces_of_removed_elements_bear_no_load() {
+    for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
+        for load in [
+            "Traction(on: Plane(normal: (0, 0, 1), at: 1), traction: (0, 0, -10))",
+            "Pressure(on: Plane(normal: (0, 0, 1), at: 1), pressure: 10)",
+        ] {
+            let rest = format!(
+                "constraints: [Prescribed(on: All)], loads: [{load}], removal: [(on: Box(min: (4, 0, 0), max: (6, 1, 1)), when: At(0.05))]"
+            );
+            let mut simulation = bar(run, elements, &rest);
+            let mut net = |steps: u64| {
+                simulation.advance(steps).unwrap();
+                external_forces(&mut simulation, "b").iter().sum::<DVec3>().z
+            };
+            let (before, after) = (net(50), net(2));
+            near(&format!("{}, {elements}: before", run.name), before, -60.0, 60.0, run.bound(1e-12, 1e-6));
+            near(&format!("{}, {elements}: after", run.name), after, -40.0, 60.0, run.bound(1e-12, 1e-6));
+        }
+    }
+}
+
+#[test]
+fn energy_that_goes_with_elements_is_booked() {
+    for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
+        let rest =
+            "constraints: [Fixed(on: Plane(normal: (1, 0, 0), at: 0))], loads: [Gravity(acceleration: (3, 0, -2))],
+            removal: [(on: Elements([1, 4]), when: At(0.1)), (on: Elements([2]), when: At(0.15))]";
+        let mut simulation = bar(run, elements, &rest.replace("duration: 0.2", "duration: 0.3"));
+        simulation.advance(200).unwrap();
+        let e = simulation.energies().unwrap();
+        println!("{e:?}");
+        assert!(e.removed > 0.05 * e.kinetic, "{e:?}");
+        let sum = e.kinetic + e.strain + e.hourglass + e.removed - e.load_work.unwrap() - e.constraint_work.unwrap();
+        near(&format!("{}, {elements}", run.name), sum, 0.0, e.load_work.unwrap(), run.bound(0.01, 0.02));
+    }
+}
+
+#[test]
+fn a_body_of_which_everything_is_removed_is_no_crash() {
+    for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
+        let rest = "loads: [Gravity(acceleration: (0, 0, -9.81)), Pressure(on: Surface(), pressure: 3)], removal: [(when: At(0.05))],
+            probes: {\"stress\": (what: Stress, on: All), \"u\": (what: Displacement, on: All)}";
+        let mut simulation = bar(run, elements, rest);
+        simulation.advance(200).unwrap();
+        let summary = simulation.summary("finished").unwrap();
+        near("mass removed", summary.removed_mass, 6000.0, 6000.0, 1e-6);
+        assert!(simulation.probe("stress").unwrap().iter().all(|x| *x == 0.0));
+        assert!(simulation.probe("u").unwrap().iter().all(|x| x.is_finite()));
+        assert_eq!((summary.energies.strain, summary.energies.kinetic), (0.0, 0.0));
+    }
+}
