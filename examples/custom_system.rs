@@ -59,7 +59,8 @@ fn run(scene: &SceneFile, backend: BackendChoice, folder: Option<&str>) -> Resul
     let summary = simulation.summary("finished")?;
     println!("{}: {} steps in {:.2} s", summary.backend, summary.steps, summary.run_seconds);
     for system in &summary.systems {
-        let time = system.seconds.map_or("(on the device)".into(), |s| format!("{:.1} %", 100.0 * s / summary.run_seconds));
+        let time =
+            system.seconds.map_or("(on the device)".into(), |s| format!("{:.1} %", 100.0 * s / summary.run_seconds));
         println!("  {:16} {time}", system.name);
         if !system.brought.is_empty() {
             println!("  {:16} brought: {}; sent: {}", "", system.brought.join(", "), system.sent.join(", "));

@@ -50,5 +50,11 @@ fn draw(frame: u32, positions: &[DVec3], triangles: &[[u32; 3]]) {
     let area = |[a, b, c]: &[u32; 3]| (corner(*b) - corner(*a)).cross(corner(*c) - corner(*a)).length() / 2.0;
     let area: f64 = triangles.iter().map(area).sum();
     let top = positions.iter().copied().reduce(|a, b| if b.z > a.z { b } else { a }).unwrap_or_default();
-    println!("frame {frame:2}: area {:.1} cm², top at ({:+.1}, {:+.1}, {:.1}) mm", 1e4 * area, 1e3 * top.x, 1e3 * top.y, 1e3 * top.z);
+    println!(
+        "frame {frame:2}: area {:.1} cm², top at ({:+.1}, {:+.1}, {:.1}) mm",
+        1e4 * area,
+        1e3 * top.x,
+        1e3 * top.y,
+        1e3 * top.z
+    );
 }

@@ -4,14 +4,13 @@
 use sinew::scene::{SceneFile, validate};
 use std::path::Path;
 
-const SCHEMA: &str = include_str!("../src/scene/schema.rs");
 const REFERENCE: &str = include_str!("../docs/scene.md");
 
 /// The names of all fields and variants: what has a comment with three slashes or stands in an enum, and is no function.
 fn words_of_the_schema() -> Vec<&'static str> {
     let mut words = Vec::new();
     let mut inside = false;
-    for line in SCHEMA.lines() {
+    for line in sinew::scene::schema::TEXT.iter().flat_map(|file| file.lines()) {
         if line.starts_with("pub struct") || line.starts_with("pub enum") {
             inside = true;
         } else if line == "}" {

@@ -1,15 +1,14 @@
 //! What the words of a scene mean, as their own documentation says: messages quote it.
 
-/// The source of the words; its comments are the one place where their meaning stands.
-const SCHEMA: &str = include_str!("schema.rs");
+use super::schema::TEXT;
 
 /// The first sentence on a field of a struct or of a variant, with its unit: `duration` of `Scene` is
 /// "Simulated time (s)."
 pub fn meaning(owner: &str, field: &str) -> Option<String> {
-    let mut lines = SCHEMA
-        .lines()
-        .map(str::trim)
-        .skip_while(|line| !(line.starts_with(&format!("pub struct {owner} {{")) || *line == format!("{owner} {{")));
+    let mut lines =
+        TEXT.iter().flat_map(|file| file.lines()).map(str::trim).skip_while(|line| {
+            !(line.starts_with(&format!("pub struct {owner} {{")) || *line == format!("{owner} {{"))
+        });
     lines.next()?;
     let mut doc = String::new();
     for line in lines {

@@ -23,7 +23,9 @@ pub fn resolve<'a>(
 ) -> Vec<Scheduled<'a>> {
     let Some(names) = names else {
         let all = registry.systems().iter();
-        return all.filter_map(|system| Some(Scheduled { system, because: (system.because)(world)?, every: system.every })).collect();
+        return all
+            .filter_map(|system| Some(Scheduled { system, because: (system.because)(world)?, every: system.every }))
+            .collect();
     };
     let mut schedule: Vec<Scheduled<'a>> = Vec::new();
     for (place, name) in names.iter().enumerate() {

@@ -35,7 +35,7 @@ fn scene(effects: Effects) -> String {
     let removal = if effects == Effects::All { removal } else { "" };
     format!(
         "(duration: 100, bodies: {{\"b\": (mesh: File(path: \"mesh.vtk\"), material: \"m\", spin: (1, 2, 3))}},
-        materials: {{\"m\": (density: 1000, {} neo_hookean: Young(young: 3e3, poisson: 0.45))}},
+        materials: {{\"m\": (density: 1000, {laws} neo_hookean: Young(young: 3e3, poisson: 0.45))}},
         constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))], {removal}
         loads: [Gravity(acceleration: (0, 0, -9.81)), Pressure(on: Surface(normal: (0, 0, 1)), pressure: 400),
             Traction(on: Surface(normal: (1, 0, 0)), traction: (0, 100, 0))],

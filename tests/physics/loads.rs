@@ -36,7 +36,8 @@ fn nodal_forces_are_each_or_in_total_what_the_scene_says() {
     for run in &configurations() {
         let force = DVec3::new(0.1, -0.2, 0.3);
         let of = |share: &str| {
-            let load = format!("NodalForce(on: Plane(normal: (0, 0, 1), at: 0.4), force: (0.1, -0.2, 0.3), share: {share})");
+            let load =
+                format!("NodalForce(on: Plane(normal: (0, 0, 1), at: 0.4), force: (0.1, -0.2, 0.3), share: {share})");
             forces(run, "Hex8", "", &load).0
         };
         // 4 × 3 nodes on top
@@ -91,10 +92,12 @@ fn pressure_follows_the_surface_and_traction_does_not() {
         for _ in 0..4 {
             let f = random.rotation() * random.deformation();
             let told = format!("Prescribed(on: All, gradient: {})", rows(f - DMat3::IDENTITY));
-            let (pushed, _) = forces(run, elements, &told, "Pressure(on: Plane(normal: (1, 0, 0), at: 0.3), pressure: 700)");
+            let (pushed, _) =
+                forces(run, elements, &told, "Pressure(on: Plane(normal: (1, 0, 0), at: 0.3), pressure: 700)");
             let area = f.determinant() * (f.inverse().transpose() * DVec3::X) * 0.08;
             is(run, "pressure", pushed.iter().sum(), area * -700.0, 700.0 * area.length());
-            let (pulled, _) = forces(run, elements, &told, "Traction(on: Plane(normal: (1, 0, 0), at: 0.3), traction: (10, 20, 30))");
+            let (pulled, _) =
+                forces(run, elements, &told, "Traction(on: Plane(normal: (1, 0, 0), at: 0.3), traction: (10, 20, 30))");
             let expected = DVec3::new(10.0, 20.0, 30.0) * 0.08;
             is(run, "traction", pulled.iter().sum(), expected, expected.length());
         }
@@ -127,7 +130,11 @@ fn curves_are_their_formulas() {
             ),
         ];
         for (curve, expected) in cases {
-            assert!((curve.value(t) - expected).abs() < 1e-14, "{curve:?} at {t}: {} instead of {expected}", curve.value(t));
+            assert!(
+                (curve.value(t) - expected).abs() < 1e-14,
+                "{curve:?} at {t}: {} instead of {expected}",
+                curve.value(t)
+            );
         }
     }
 }
@@ -136,7 +143,10 @@ fn curves_are_their_formulas() {
 #[test]
 fn loads_follow_their_curves() {
     let curves = [
-        ("Step(start: 0.002, end: 0.004)", (|t| f64::from((0.002 - 1e-9..0.004 - 1e-9).contains(&t))) as fn(f64) -> f64),
+        (
+            "Step(start: 0.002, end: 0.004)",
+            (|t| f64::from((0.002 - 1e-9..0.004 - 1e-9).contains(&t))) as fn(f64) -> f64,
+        ),
         ("Ramp(start: 0.001, end: 0.003)", |t| ((t - 0.001) / 0.002).clamp(0.0, 1.0)),
         ("Smooth(end: 0.004)", |t| smooth((t / 0.004).min(1.0))),
         ("Table([(0, 2), (0.002, -1)])", |t| 2.0 - 3.0 * (t / 0.002).min(1.0)),

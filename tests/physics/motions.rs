@@ -8,7 +8,8 @@ use glam::{DMat3, DVec3};
 
 #[test]
 fn prescribed_nodes_are_where_the_formula_says_along_their_axes_only() {
-    let gradient = DMat3::from_cols(DVec3::new(0.1, 0.02, 0.0), DVec3::new(0.0, -0.1, 0.03), DVec3::new(0.05, 0.0, 0.2));
+    let gradient =
+        DMat3::from_cols(DVec3::new(0.1, 0.02, 0.0), DVec3::new(0.0, -0.1, 0.03), DVec3::new(0.05, 0.0, 0.2));
     let (shift, center) = (DVec3::new(0.01, -0.02, 0.03), DVec3::new(0.05, 0.1, 0.0));
     for run in configurations() {
         for (axes, told) in [("X, Y, Z", [true; 3]), ("X, Z", [true, false, true]), ("Y", [false, true, false])] {
@@ -33,7 +34,11 @@ fn prescribed_nodes_are_where_the_formula_says_along_their_axes_only() {
                     for axis in 0..3 {
                         let error = (u[axis] - expected[axis]).abs() / 0.1;
                         if told[axis] {
-                            assert!(error < run.bound(1e-12, 1e-6), "{}: {u} instead of {expected}: {error:e}", run.name);
+                            assert!(
+                                error < run.bound(1e-12, 1e-6),
+                                "{}: {u} instead of {expected}: {error:e}",
+                                run.name
+                            );
                         } else if factor == 1.0 {
                             assert!(error > 1e-4, "{}: axis {axis} is free and yet moves as told", run.name);
                         }

@@ -1,0 +1,212 @@
+//! What acts on bodies: constraints, loads, their course in time, removal.
+
+use super::Select;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// What holds or moves nodes.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub enum Constraint {
+    /// Nodes that do not move along the given axes.
+    Fixed {
+        /// The body; may be left out when there is one only.
+        #[serde(default)]
+        body: Option<String>,
+        /// Which nodes.
+        on: Select,
+        /// Along which axes.
+        #[serde(default = "all_axes")]
+        axes: Vec<Axis>,
+    },
+    /// Nodes that move as told along the given axes:
+    /// displacement + gradient·(X − center) + (R(rotation) − 1)(X − center), all three multiplied by the curve
+    /// (of the rotation its angle).
+    Prescribed {
+        /// The body; may be left out when there is one only.
+        #[serde(default)]
+        body: Option<String>,
+        /// Which nodes.
+        on: Select,
+        /// Along which axes.
+        #[serde(default = "all_axes")]
+        axes: Vec<Axis>,
+        /// A common displacement (m).
+        #[serde(default)]
+        displacement: DVec3,
+        /// Rows of a displacement gradient.
+        #[serde(default)]
+        gradient: [DVec3; 3],
+        /// A rotation about `center`: axis times angle (degrees).
+        #[serde(default)]
+        rotation: DVec3,
+        /// The fixed point of gradient and rotation (m).
+        #[serde(default)]
+        center: DVec3,
+        /// Course in time.
+        #[serde(default)]
+        curve: Curve,
+    },
+}
+
+/// A coordinate axis.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Axis {
+    X,
+    Y,
+    Z,
+}
+
+/// What pushes and pulls.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub enum Load {
+    /// Gravity on one body, or on all.
+    Gravity {
+        /// The body; left out: all.
+        #[serde(default)]
+        body: Option<String>,
+        /// Acceleration (m/s²).
+        acceleration: DVec3,
+        /// Course in time.
+        #[serde(default)]
+        curve: Curve,
+    },
+    /// A force on nodes.
+    NodalForce {
+        /// The body; may be left out when there is one only.
+        #[serde(default)]
+        body: Option<String>,
+        /// Which nodes.
+        on: Select,
+        /// Force (N).
+        force: DVec3,
+        /// Whether each node gets the force, or all together.
+        #[serde(default)]
+        share: Share,
+        /// Course in time.
+        #[serde(default)]
+        curve: Curve,
+    },
+    /// A pressure that follows the surface and pushes inwards.
+    Pressure {
+        /// The body; may be left out when there is one only.
+        #[serde(default)]
+        body: Option<String>,
+        /// Which faces of the surface.
+        on: Select,
+        /// Pressure (Pa), positive inwards.
+        pressure: f64,
+        /// Course in time.
+        #[serde(default)]
+        curve: Curve,
+    },
+    /// A dead load: force per rest area in a fixed direction.
+    Traction {
+        /// The body; may be left out when there is one only.
+        #[serde(default)]
+        body: Option<String>,
+        /// Which faces of the surface.
+        on: Select,
+        /// Force per rest area (Pa).
+        traction: DVec3,
+        /// Course in time.
+        #[serde(default)]
+        curve: Curve,
+    },
+}
+
+/// How a force is shared among nodes.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
+pub enum Share {
+    /// Each node gets it.
+    #[default]
+    Each,
+    /// All nodes together get it, in equal parts.
+    Total,
+}
+
+/// A factor over time; what it multiplies is said where it is used.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub enum Curve {
+    /// 1 from `start` until `end`, else 0 (s).
+    Step {
+        /// First instant (s).
+        #[serde(default)]
+        start: f64,
+        /// From then on 0 again (s).
+        #[serde(default)]
+        end: Option<f64>,
+    },
+    /// A straight line from 0 at `start` to 1 at `end`, held after (s).
+    Ramp {
+        /// 0 until then (s).
+        #[serde(default)]
+        start: f64,
+        /// 1 from then on (s).
+        end: f64,
+    },
+    /// As `Ramp`, by the 3-4-5 polynomial 10s³ − 15s⁴ + 6s⁵: no jump of velocity or acceleration.
+    Smooth {
+        /// 0 until then (s).
+        #[serde(default)]
+        start: f64,
+        /// 1 from then on (s).
+        end: f64,
+    },
+    /// Straight lines through (time (s), factor), held before the first and after the last.
+    Table(Vec<(f64, f64)>),
+}
+
+impl Default for Curve {
+    fn default() -> Self {
+        Curve::Step { start: 0.0, end: None }
+    }
+}
+
+/// Elements to be removed.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Removal {
+    /// The body; may be left out when there is one only.
+    #[serde(default)]
+    pub body: Option<String>,
+    /// Which elements may go.
+    #[serde(default = "everything")]
+    pub on: Select,
+    /// When they go.
+    pub when: When,
+}
+
+/// When elements are removed.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub enum When {
+    /// All at one time (s).
+    At(f64),
+    /// One after the other between two times (s), those nearest to the selection's centroid first.
+    During {
+        /// The first goes (s).
+        start: f64,
+        /// The last has gone (s).
+        end: f64,
+    },
+    /// Each as soon as its largest principal stretch exceeds this.
+    StretchAbove(f64),
+    /// Each as soon as its volume ratio J falls below this.
+    VolumeRatioBelow(f64),
+    /// Each as soon as its volume ratio J exceeds this.
+    VolumeRatioAbove(f64),
+    /// Each as soon as its strain energy per rest volume exceeds this (J/m³).
+    EnergyDensityAbove(f64),
+}
+
+fn all_axes() -> Vec<Axis> {
+    vec![Axis::X, Axis::Y, Axis::Z]
+}
+
+fn everything() -> Select {
+    Select::All
+}

@@ -1,0 +1,109 @@
+//! Bodies and their meshes.
+
+use super::{ElementKind, Select};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// A body: a mesh, what it is made of, where it is and how it starts.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Body {
+    /// Where the mesh comes from.
+    pub mesh: MeshSource,
+    /// The name of the material of all elements that `regions` does not name.
+    pub material: String,
+    /// Parts made of another material; a later entry wins.
+    #[serde(default)]
+    pub regions: Vec<Region>,
+    /// Multiplies all coordinates of the mesh, before anything else (1 = metres).
+    #[serde(default = "one")]
+    pub scale: f64,
+    /// Turns the mesh about the axes x, then y, then z through the origin (degrees).
+    #[serde(default)]
+    pub rotate: DVec3,
+    /// Moves the mesh (m), after scale and rotation.
+    #[serde(default)]
+    pub translate: DVec3,
+    /// Velocity at the start (m/s).
+    #[serde(default)]
+    pub velocity: DVec3,
+    /// Angular velocity at the start about the centre of mass (rad/s).
+    #[serde(default)]
+    pub spin: DVec3,
+}
+
+/// Elements of a body made of another material.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Region {
+    /// Which elements.
+    pub on: Select,
+    /// The name of their material.
+    pub material: String,
+}
+
+/// A mesh file, or a generator with its parameters.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub enum MeshSource {
+    /// A Gmsh (.msh), legacy VTK (.vtk) or VTU (.vtu) file, its path relative to the scene file.
+    File {
+        /// The path.
+        path: String,
+        /// Turn inverted elements the right way round instead of refusing the mesh.
+        #[serde(default)]
+        flip_inverted: bool,
+    },
+    /// A cuboid with one corner in the origin.
+    Box {
+        /// Edge lengths (m).
+        size: DVec3,
+        /// Cells along each edge; a cell is one hexahedron or six tetrahedra.
+        cells: (u32, u32, u32),
+        /// The kind of elements.
+        #[serde(default)]
+        elements: ElementKind,
+    },
+    /// A cylinder about the z axis that stands on z = 0.
+    Cylinder {
+        /// Radius (m).
+        radius: f64,
+        /// Height (m).
+        height: f64,
+        /// Cells across the diameter.
+        across: u32,
+        /// Cells along the axis.
+        along: u32,
+        /// The kind of elements.
+        #[serde(default)]
+        elements: ElementKind,
+    },
+    /// An ellipsoid about the origin.
+    Ellipsoid {
+        /// Half-axes (m).
+        radii: DVec3,
+        /// Cells across each axis.
+        across: u32,
+        /// The kind of elements.
+        #[serde(default)]
+        elements: ElementKind,
+    },
+    /// A biconvex lens about the origin, its axis along z: two spherical caps on a common circle.
+    Lens {
+        /// Diameter of the common circle (m).
+        diameter: f64,
+        /// Thickness on the axis (m).
+        thickness: f64,
+        /// Cells across the diameter.
+        across: u32,
+        /// Cells through the thickness.
+        through: u32,
+        /// The kind of elements.
+        #[serde(default)]
+        elements: ElementKind,
+    },
+}
+
+fn one() -> f64 {
+    1.0
+}

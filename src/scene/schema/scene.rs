@@ -1,0 +1,118 @@
+//! The whole scene, its time step, its outputs, its picture.
+
+use super::{Body, Constraint, Load, Material, Probe, Removal};
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// A whole scene.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Scene {
+    /// What the scene shows, in a few words.
+    #[serde(default)]
+    pub title: String,
+    /// Simulated time (s).
+    pub duration: f64,
+    /// The bodies, by name.
+    pub bodies: BTreeMap<String, Body>,
+    /// The materials, by name.
+    pub materials: BTreeMap<String, Material>,
+    /// What holds or moves nodes.
+    #[serde(default)]
+    pub constraints: Vec<Constraint>,
+    /// What pushes and pulls.
+    #[serde(default)]
+    pub loads: Vec<Load>,
+    /// Which elements go, and when.
+    #[serde(default)]
+    pub removal: Vec<Removal>,
+    /// What to observe, by name.
+    #[serde(default)]
+    pub probes: BTreeMap<String, Probe>,
+    /// The time step and how it is taken.
+    #[serde(default)]
+    pub integration: Integration,
+    /// Systems in the order they run in each step; left out, it is derived from what the scene contains.
+    #[serde(default)]
+    pub schedule: Option<Vec<String>>,
+    /// Parameters of custom systems, by the system's name.
+    #[serde(default)]
+    pub parameters: BTreeMap<String, ron::Value>,
+    /// What is written, and how often.
+    #[serde(default)]
+    pub output: Output,
+    /// How `sinew render` draws the scene.
+    #[serde(default)]
+    pub picture: Picture,
+}
+
+/// The time step and how it is taken.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields, default)]
+pub struct Integration {
+    /// The step (s); left out: the stable step times `safety`.
+    pub step: Option<f64>,
+    /// Share of the stable step that is taken.
+    pub safety: f64,
+    /// Take a `step` beyond the stable one all the same.
+    pub beyond_stable_step: bool,
+    /// Sum displacements with compensation: three numbers a node more, and f32 keeps the digits that plain sums lose.
+    pub compensated: bool,
+}
+
+impl Default for Integration {
+    fn default() -> Self {
+        Self { step: None, safety: 0.9, beyond_stable_step: false, compensated: true }
+    }
+}
+
+/// What is written, and how often.
+#[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields, default)]
+pub struct Output {
+    /// Time between VTU files (s); a twentieth of the duration when left out.
+    pub fields_every: Option<f64>,
+    /// Time between rows of `energy.csv` (s). Naming it also books the work of all forces in every step.
+    pub energies_every: Option<f64>,
+}
+
+/// How a scene is drawn.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields, default)]
+pub struct Picture {
+    /// The field that gives the colour.
+    pub field: Field,
+    /// Where the eye stands, seen from the middle of the scene.
+    pub from: DVec3,
+    /// Width and height (pixels).
+    pub size: (u32, u32),
+}
+
+impl Default for Picture {
+    fn default() -> Self {
+        Self { field: Field::Displacement, from: DVec3::new(1.0, -2.0, 0.8), size: (960, 720) }
+    }
+}
+
+/// A field to colour by.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+pub enum Field {
+    /// Length of the displacement (m).
+    Displacement,
+    /// Length of the velocity (m/s).
+    Speed,
+    /// von Mises stress (Pa).
+    VonMises,
+    /// Pressure, the negative mean stress (Pa).
+    Pressure,
+    /// Volume ratio J.
+    VolumeRatio,
+}
+
+impl Scene {
+    /// Time between outputs of fields (s).
+    pub fn fields_every(&self) -> f64 {
+        self.output.fields_every.unwrap_or(self.duration / 20.0)
+    }
+}

@@ -1,0 +1,95 @@
+//! Selections by place, name or number, and probes on them.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// Which nodes, faces or elements of a body at rest, by place, name or number. Faces count when all their nodes do,
+/// elements when their centroid does.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub enum Select {
+    /// Everything.
+    All,
+    /// A named set of the mesh (a physical group).
+    Set(String),
+    /// The plane of all points with normal·X = at.
+    Plane {
+        /// The plane's normal; its length does not matter.
+        normal: DVec3,
+        /// Distance from the origin along the normal (m).
+        at: f64,
+        /// How far off the plane a point may lie (m); 1e-6 of the body's size when left out.
+        #[serde(default)]
+        tolerance: Option<f64>,
+    },
+    /// An axis-parallel box, its walls included.
+    Box {
+        /// Lower corner (m).
+        min: DVec3,
+        /// Upper corner (m).
+        max: DVec3,
+    },
+    /// A ball, its surface included.
+    Sphere {
+        /// Centre (m).
+        center: DVec3,
+        /// Radius (m).
+        radius: f64,
+    },
+    /// Faces of the surface whose outward normal at rest lies within an angle of a direction, and their nodes.
+    Surface {
+        /// The direction; left out: the whole surface.
+        #[serde(default)]
+        normal: Option<DVec3>,
+        /// The largest angle (degrees).
+        #[serde(default = "thirty")]
+        within: f64,
+    },
+    /// Nodes by the author's numbers.
+    Nodes(Vec<u64>),
+    /// Elements by the author's numbers.
+    Elements(Vec<u64>),
+    /// What is in all of these.
+    And(Vec<Select>),
+    /// What is in any of these.
+    Or(Vec<Select>),
+    /// What is not in this.
+    Not(Box<Select>),
+}
+
+/// One thing to observe: what, where, how often (s; every output of fields when left out).
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Probe {
+    /// The body; may be left out when there is one only.
+    #[serde(default)]
+    pub body: Option<String>,
+    /// What to observe.
+    pub what: Quantity,
+    /// On which nodes or elements.
+    pub on: Select,
+    /// Time between observations (s).
+    #[serde(default)]
+    pub every: Option<f64>,
+}
+
+/// What a probe observes.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+pub enum Quantity {
+    /// Mean displacement of the nodes (m).
+    Displacement,
+    /// Mean position of the nodes (m).
+    Position,
+    /// Mean velocity of the nodes (m/s), in the middle of the step that led there.
+    Velocity,
+    /// What holds the nodes: the sum of internal less external forces (N).
+    Reaction,
+    /// Volume mean of the Cauchy stress of the elements: xx, yy, zz, xy, yz, xz (Pa).
+    Stress,
+    /// Volume mean of the volume ratio J of the elements.
+    VolumeRatio,
+}
+
+fn thirty() -> f64 {
+    30.0
+}
