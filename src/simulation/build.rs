@@ -185,6 +185,7 @@ fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> 
     let mut observer = Observer::default();
     observer.fields_every = every(scene.scene.fields_every());
     observer.energies_every = scene.scene.output.energies_every.map_or(0, every);
+    observer.watch_energy = scene.scene.integration.beyond_stable_step;
     observer.last_step = steps;
     observer.watch_probes(world);
     observer
