@@ -19,8 +19,8 @@ pub fn system() -> System {
         "says where fixed and prescribed nodes go",
         "`Fixed(...)` or `Prescribed(...)` under `constraints`",
         |world| {
-            let fixed = super::registry::count::<Fixed>(world, "fixed set");
-            let prescribed = super::registry::count::<Prescribed>(world, "prescribed set");
+            let fixed = super::registry::count::<Fixed>(world, "fixed set", "fixed sets");
+            let prescribed = super::registry::count::<Prescribed>(world, "prescribed set", "prescribed sets");
             match (fixed, prescribed) {
                 (Some(f), Some(p)) => Some(format!("{f}, {p}")),
                 (some, None) | (None, some) => some,

@@ -21,7 +21,7 @@ pub fn system() -> System {
         Phase::ElementForces,
         "strain, stress and nodal forces of every element",
         "bodies",
-        |world| super::registry::count::<Block>(world, "element block"),
+        |world| super::registry::count::<Block>(world, "element block", "element blocks"),
         element_forces,
     )
     .on_device(kernels)

@@ -27,7 +27,7 @@ pub fn system() -> System {
         "removes elements by time and by criterion",
         "an entry under `removal`",
         |world| {
-            super::registry::count::<Alive>(world, "block may lose elements")
+            super::registry::count::<Alive>(world, "block that may lose elements", "blocks that may lose elements")
                 .map(|s| s.replace("elementss", "elements"))
         },
         element_removal,

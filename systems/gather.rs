@@ -17,7 +17,7 @@ pub fn system() -> System {
         Phase::Gather,
         "sums element forces at the nodes",
         "bodies",
-        |world| super::registry::count::<Corners>(world, "body with elements").map(|s| s.replace("bodys", "bodies")),
+        |world| super::registry::count::<Corners>(world, "body with elements", "bodies with elements"),
         gather,
     )
     .on_device(kernels)

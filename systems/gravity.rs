@@ -16,7 +16,7 @@ pub fn system() -> System {
         Phase::Loads,
         "adds mass times acceleration to the external forces",
         "`Gravity(...)` under `loads`",
-        |world| super::registry::count::<Gravity>(world, "gravity load"),
+        |world| super::registry::count::<Gravity>(world, "gravity load", "gravity loads"),
         gravity,
     )
     .on_device(kernels)

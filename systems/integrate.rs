@@ -23,7 +23,7 @@ pub fn system() -> System {
         Phase::Integrate,
         "moves the nodes by one step of central differences",
         "bodies",
-        |world| super::registry::count::<Displacement>(world, "body").map(|s| s.replace("bodys", "bodies")),
+        |world| super::registry::count::<Displacement>(world, "body", "bodies"),
         integrate,
     )
     .on_device(kernels)

@@ -16,7 +16,7 @@ pub fn system() -> System {
         Phase::Loads,
         "adds forces on chosen nodes to the external forces",
         "`NodalForce(...)` under `loads`",
-        |world| super::registry::count::<NodalForce>(world, "nodal force"),
+        |world| super::registry::count::<NodalForce>(world, "nodal force", "nodal forces"),
         nodal_force,
     )
     .on_device(kernels)

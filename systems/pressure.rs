@@ -20,7 +20,7 @@ pub fn system() -> System {
         Phase::Loads,
         "adds pressures that follow the surface to the external forces",
         "`Pressure(...)` under `loads`",
-        |world| super::registry::count::<Pressure>(world, "pressure"),
+        |world| super::registry::count::<Pressure>(world, "pressure", "pressures"),
         pressure,
     )
     .on_device(kernels)

@@ -159,10 +159,10 @@ impl Registry {
 }
 
 /// "3 loads", "1 load", or nothing for none: how often a component occurs in a world.
-pub(crate) fn count<C: Component>(world: &mut World, word: &str) -> Option<String> {
+pub(crate) fn count<C: Component>(world: &mut World, one: &str, many: &str) -> Option<String> {
     match world.query::<&C>().iter(world).count() {
         0 => None,
-        1 => Some(format!("1 {word}")),
-        n => Some(format!("{n} {word}s")),
+        1 => Some(format!("1 {one}")),
+        n => Some(format!("{n} {many}")),
     }
 }

@@ -17,7 +17,7 @@ pub fn system() -> System {
         Phase::Loads,
         "adds dead loads on the surface to the external forces",
         "`Traction(...)` under `loads`",
-        |world| super::registry::count::<Traction>(world, "traction"),
+        |world| super::registry::count::<Traction>(world, "traction", "tractions"),
         traction,
     )
     .on_device(kernels)
