@@ -3,7 +3,7 @@
 use super::Buffers;
 use super::gpu::{BufferKind, Gpu};
 use super::kernel::{BindingKind, BufferId, Kernel, KernelId, compose};
-use crate::components::Column;
+use crate::components::*;
 use crate::error::Error;
 use bevy_ecs::component::ComponentId;
 use bevy_ecs::prelude::*;
@@ -36,6 +36,31 @@ impl ColumnAccess {
             id: |world| world.component_id::<C>(),
         }
     }
+}
+
+/// Every kind of column there is.
+pub fn all_columns() -> Vec<ColumnAccess> {
+    vec![
+        ColumnAccess::of::<Displacement>(),
+        ColumnAccess::of::<DisplacementStep>(),
+        ColumnAccess::of::<DisplacementCompensation>(),
+        ColumnAccess::of::<Mass>(),
+        ColumnAccess::of::<DampingCoefficient>(),
+        ColumnAccess::of::<InternalForce>(),
+        ColumnAccess::of::<ExternalForce>(),
+        ColumnAccess::of::<ConstrainedAxes>(),
+        ColumnAccess::of::<Work>(),
+        ColumnAccess::of::<ElementForce>(),
+        ColumnAccess::of::<FirstNonFinite>(),
+        ColumnAccess::of::<Connectivity>(),
+        ColumnAccess::of::<RestShape>(),
+        ColumnAccess::of::<FibreDirection>(),
+        ColumnAccess::of::<ViscousMemory>(),
+        ColumnAccess::of::<Alive>(),
+        ColumnAccess::of::<RemovalStep>(),
+        ColumnAccess::of::<RemovedEnergy>(),
+        ColumnAccess::of::<FirstInverted>(),
+    ]
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -21,10 +21,10 @@ pub struct Probe {
 pub struct Energies {
     /// ½ m v² in the middle of the last step.
     pub kinetic: f64,
-    /// Elastic energy of the laws at the present deformation (with viscosity: what an instantaneous deformation would
-    /// store).
+    /// Elastic energy of the laws, in the middle of the last step too, so that energies add up (with viscosity: what an
+    /// instantaneous deformation would store).
     pub strain: f64,
-    /// In hourglass control.
+    /// In hourglass control, likewise.
     pub hourglass: f64,
     /// Kinetic and elastic energy of removed elements, at the time of their removal.
     pub removed: f64,

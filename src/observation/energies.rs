@@ -75,11 +75,24 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
     Ok(sum)
 }
 
+/// Displacements in the middle of the last step, where velocities are: only there do the energies add up. Constrained
+/// nodes are where they are, since their work is booked to the end of the step.
+fn middle_of_step(world: &World, body: Entity) -> Option<Reals> {
+    let (u, step) = (world.get::<Displacement>(body)?, world.get::<DisplacementStep>(body)?);
+    let axes = world.get::<ConstrainedAxes>(body)?;
+    let moved = world.resource::<Clock>().step > 0;
+    let middle = |i: usize| {
+        let free = axes[i / 3] >> (i % 3) & 1 == 0;
+        u.get(i) - if moved && free { 0.5 * step.get(i) } else { 0.0 }
+    };
+    Some(Reals::from_f64(Precision::F64, (0..u.len()).map(middle)))
+}
+
 /// Elastic and hourglass energy of a block (J), summed in a fixed order.
 fn block_energies(world: &World, entity: Entity) -> (f64, f64) {
     let parts = (|| {
         let block = world.get::<Block>(entity)?;
-        let displacement = world.get::<Displacement>(block.body)?;
+        let displacement = &middle_of_step(world, block.body)?;
         let (connectivity, shape) = (world.get::<Connectivity>(entity)?, world.get::<RestShape>(entity)?);
         let law = world.get::<BlockLaw<f64>>(entity)?;
         let fibre_direction = world.get::<FibreDirection>(entity).map(|f| &f.0);

@@ -6,7 +6,7 @@ use super::schedule::{Scheduled, resolve};
 use super::{Entry, Facts, Job, Options, Simulation};
 use crate::assembly::{Assembly, StableStep, assemble, assemble_in_time, stable_step};
 use crate::backend::cpu::Cpu;
-use crate::backend::device::{ColumnAccess, Device};
+use crate::backend::device::{Device, all_columns};
 use crate::components::*;
 use crate::error::Error;
 use crate::observation::Observer;
@@ -222,31 +222,6 @@ fn writes(access: &SystemAccess, id: ComponentId) -> bool {
         SystemAccess::Shared(set) => set.combined_access().has_write(id),
         SystemAccess::Exclusive => true,
     }
-}
-
-/// Every kind of column there is.
-pub(super) fn all_columns() -> Vec<ColumnAccess> {
-    vec![
-        ColumnAccess::of::<Displacement>(),
-        ColumnAccess::of::<DisplacementStep>(),
-        ColumnAccess::of::<DisplacementCompensation>(),
-        ColumnAccess::of::<Mass>(),
-        ColumnAccess::of::<DampingCoefficient>(),
-        ColumnAccess::of::<InternalForce>(),
-        ColumnAccess::of::<ExternalForce>(),
-        ColumnAccess::of::<ConstrainedAxes>(),
-        ColumnAccess::of::<Work>(),
-        ColumnAccess::of::<ElementForce>(),
-        ColumnAccess::of::<FirstNonFinite>(),
-        ColumnAccess::of::<Connectivity>(),
-        ColumnAccess::of::<RestShape>(),
-        ColumnAccess::of::<FibreDirection>(),
-        ColumnAccess::of::<ViscousMemory>(),
-        ColumnAccess::of::<Alive>(),
-        ColumnAccess::of::<RemovalStep>(),
-        ColumnAccess::of::<RemovedEnergy>(),
-        ColumnAccess::of::<FirstInverted>(),
-    ]
 }
 
 /// Whether a phase comes after the clock has been moved on.

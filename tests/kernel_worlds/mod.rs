@@ -22,6 +22,8 @@ pub struct Effects {
     pub compensated: bool,
     pub energies: bool,
     pub removal: bool,
+    /// A removal criterion for all elements, as RON writes it.
+    pub criterion: Option<&'static str>,
 }
 
 pub const ALONG: &str = "Along(1, 2, 3)";
@@ -41,6 +43,7 @@ impl Effects {
             compensated: true,
             energies: true,
             removal: true,
+            criterion: None,
         }
     }
 
@@ -106,6 +109,7 @@ impl Effects {
         } else {
             String::new()
         };
+        let criterion = self.criterion.map_or(String::new(), |when| both(&format!("(body: \"BODY\", when: {when}),")));
         let energies = if self.energies { "output: (energies_every: 0.1)," } else { "" };
         let body = |kind: &str| {
             format!(
@@ -122,7 +126,7 @@ impl Effects {
             }},
             constraints: [{moved}],
             loads: [{loads}],
-            removal: [{removal}],
+            removal: [{removal} {criterion}],
             integration: (compensated: {}),
             {energies}
             )",

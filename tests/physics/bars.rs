@@ -79,22 +79,23 @@ fn clamped_beam_swings_at_0_2798_hertz() {
     }
 }
 
-/// Stiff (E = 3e5 Pa), so that it hardly lengthens, and viscous, so that it comes to rest within its own length.
+/// Stiff (E = 3e4 Pa), so that it hardly lengthens (.1 %: the spin falls by that), and viscous, so that it comes to rest
+/// within its own length. Across, the load of its own width is ρω² b²/12 = .33 Pa.
+/// f32: u is rounded to 6e-8·.1 m, over h = .005 m and κ = 1e5 Pa: .1 Pa.
 #[test]
 fn spinning_bar_bears_its_centrifugal_load() {
     for run in configurations() {
         let mut simulation = run.start(
-            "(duration: 0.25, bodies: {\"b\": (mesh: Box(size: (0.1, 0.01, 0.01), cells: (20, 2, 2), elements: Hex8), material: \"m\", spin: (0, 0, 6.283185307))},
-            materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e5, poisson: 0.45), prony: (terms: [(alpha: 0.5, tau: 0.002)]))},
+            "(duration: 1, bodies: {\"b\": (mesh: Box(size: (0.1, 0.01, 0.01), cells: (20, 2, 2), elements: Hex8), material: \"m\", spin: (0, 0, 6.283185307))},
+            materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e4, poisson: 0.45), prony: (terms: [(alpha: 0.5, tau: 0.006)]))},
             probes: {\"stress\": (what: Stress, on: Box(min: (0.045, 0, 0), max: (0.055, 0.01, 0.01)))})",
         );
         let steps = simulation.planned_steps();
         simulation.advance(steps).unwrap();
-        // a quarter turn has made x to y; linear elements have the exact stress of lumped masses, the two middle ones that
-        // of the middle: 49.348; extension .03 % and viscous losses of spin are below 1e-3
+        // after a full turn; linear elements have the exact stress of lumped masses, the middle ones that of the middle
         let stress = simulation.probe("stress").unwrap();
-        near(&format!("{}: σ along", run.name), stress[1], 49.348, 49.348, 0.01);
-        near(&format!("{}: σ across", run.name), stress[0], 0.0, 49.348, 0.03);
+        near(&format!("{}: σ along", run.name), stress[0], 49.348, 49.348, 0.01);
+        near(&format!("{}: σ across", run.name), stress[1], 0.33, 49.348, 0.01);
     }
 }
 

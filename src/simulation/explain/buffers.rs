@@ -4,7 +4,7 @@ use super::Buffer;
 use crate::backend::Buffers;
 use crate::backend::kernel::BufferId;
 use crate::components::{Corners, Label, RestPosition};
-use crate::simulation::build::all_columns;
+use crate::backend::device::all_columns;
 use bevy_ecs::prelude::*;
 use std::collections::BTreeMap;
 

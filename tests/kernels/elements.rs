@@ -1,0 +1,82 @@
+//! `element_forces`.
+
+use super::kernel_worlds::{ALONG, AROUND, Effects};
+use super::magnitude::{ROUNDINGS, magnitude};
+use super::pair::{UNIT, entities, run};
+use bevy_ecs::prelude::*;
+use sinew::components::*;
+use sinew::evaluation::{lane_place, node_count};
+
+fn compare_element_forces(effects: &Effects, change: impl Fn(&mut World)) {
+    let Some(mut pair) = run("element_forces", effects, 3, change) else { return };
+    // for every place of the body's column the bound of its element
+    let mut bounds = std::collections::BTreeMap::new();
+    let blocks = entities::<Block>(pair.host.world_mut());
+    for block in blocks {
+        let data = pair.before().get::<Block>(block).unwrap();
+        let numbers = 3 * node_count(data.kind);
+        for row in 0..data.count {
+            let force = ROUNDINGS * UNIT * magnitude(pair.before(), block, row).force;
+            (0..numbers).for_each(|k| {
+                bounds.insert((data.body, data.force_offset + lane_place(row, numbers, k)), force);
+            });
+        }
+    }
+    // fill-up lanes: both leave or make them zero, so clear them here
+    for body in entities::<ElementForce>(pair.host.world_mut()) {
+        for simulation in [&mut pair.host, &mut pair.device] {
+            let mut column = simulation.world_mut().get_mut::<ElementForce>(body).unwrap();
+            (0..column.len()).filter(|i| !bounds.contains_key(&(body, *i))).for_each(|i| column.set(i, 0.0));
+        }
+    }
+    pair.agree::<ElementForce>(|_, body, i| bounds.get(&(body, i)).copied().unwrap_or(0.0));
+    if effects.prony > 0 {
+        pair.agree::<ViscousMemory>(|pair, block, i| {
+            let data = pair.before().get::<Block>(block).unwrap();
+            let row = i / (16 * 6 * effects.prony) * 16 + i % 16;
+            if row >= data.count {
+                return f64::INFINITY;
+            }
+            // q + rate (aim S − q): four roundings of the history, and those of the stress in proportion
+            let law = pair.before().get::<sinew::backend::cpu::BlockLaw<f64>>(block).unwrap();
+            let part = law.prony.iter().map(|term| (term.rate * term.aim).abs()).fold(0.0, f64::max);
+            UNIT * (4.0 * 200.0 + ROUNDINGS * part * magnitude(pair.before(), block, row).stress)
+        });
+    }
+    pair.identical::<FirstInverted>();
+}
+
+#[test]
+fn elements_exert_the_same_forces() {
+    for fibres in [None, Some(ALONG), Some(AROUND)] {
+        for (prony, tension_only, backward_euler) in
+            [(0, false, false), (0, true, false), (1, false, true), (2, true, false)]
+        {
+            let effects = Effects { fibres, prony, tension_only, backward_euler, ..Effects::default() };
+            compare_element_forces(&effects, |_| {});
+        }
+    }
+}
+
+/// Turns some displacements up until elements are squeezed to nothing and inside out.
+fn crush(world: &mut World) {
+    for body in entities::<Displacement>(world) {
+        let mut u = world.get_mut::<Displacement>(body).unwrap();
+        for i in 60..120 {
+            let value = u.get(i);
+            u.set(i, 12.0 * value);
+        }
+    }
+}
+
+#[test]
+fn inverted_elements_are_found_and_make_no_nan() {
+    let effects = Effects { fibres: Some(ALONG), ..Effects::default() };
+    let Some(mut pair) = run("element_forces", &effects, 3, crush) else { return };
+    pair.identical::<FirstInverted>();
+    assert!(pair.changed::<FirstInverted>() >= 2);
+    for body in entities::<ElementForce>(pair.device.world_mut()) {
+        let force = pair.device.world().get::<ElementForce>(body).unwrap();
+        assert!((0..force.len()).all(|i| force.get(i).is_finite()));
+    }
+}

@@ -1,0 +1,49 @@
+//! `element_removal`.
+
+use super::kernel_worlds::{ALONG, AROUND, Effects};
+use super::magnitude::{ROUNDINGS, magnitude};
+use super::pair::{UNIT, run};
+use sinew::components::*;
+
+#[test]
+fn the_same_elements_are_removed() {
+    for effects in
+        [Effects { removal: true, damping: true, fibres: Some(AROUND), ..Effects::default() }, Effects::all()]
+    {
+        for step in [0, 9] {
+            let Some(mut pair) = run("element_removal", &effects, step, |_| {}) else { return };
+            pair.identical::<Alive>();
+            pair.identical::<RestShape>();
+            // some by time; of the criteria of every tenth step far more
+            let removed = pair.changed::<Alive>();
+            assert!((if step == 9 { 100 } else { 10 }..1500).contains(&removed), "{removed} removed in step {step}");
+            pair.agree::<RemovedEnergy>(|pair, block, i| {
+                let data = pair.before().get::<Block>(block).unwrap();
+                if i >= data.count {
+                    return 0.0;
+                }
+                let magnitude = magnitude(pair.before(), block, i);
+                // a stress along a strain, plus forces along displacements, plus 300 kg/m³ under 10 cm³ at 1 m/s
+                ROUNDINGS * UNIT * (magnitude.force * 0.01 + 1e-5)
+            });
+            // sums of up to 24 shares
+            pair.agree::<Mass>(|pair, body, i| 24.0 * UNIT * pair.host().get::<Mass>(body).unwrap().get(i));
+            pair.agree::<DampingCoefficient>(|pair, body, i| {
+                26.0 * UNIT * pair.host().get::<DampingCoefficient>(body).unwrap().get(i)
+            });
+        }
+    }
+}
+
+#[test]
+fn each_criterion_alone_finds_the_same_elements() {
+    for criterion in
+        ["StretchAbove(1.07)", "VolumeRatioAbove(1.02)", "VolumeRatioBelow(0.98)", "EnergyDensityAbove(120)"]
+    {
+        let effects = Effects { criterion: Some(criterion), fibres: Some(ALONG), ..Effects::default() };
+        let Some(mut pair) = run("element_removal", &effects, 9, |_| {}) else { return };
+        pair.identical::<Alive>();
+        let removed = pair.changed::<Alive>();
+        assert!((200..1300).contains(&removed), "{removed} by {criterion}");
+    }
+}
