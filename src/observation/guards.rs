@@ -5,8 +5,8 @@ use crate::components::*;
 use crate::error::{Error, Instability};
 use bevy_ecs::prelude::*;
 
-/// How much more energy elements may hold than was spent on them, in shares of all there is: what booking the work of
-/// constraints by the force at the beginning of a step may err by, and more than that is made of nothing.
+/// How much more energy elements may hold than was spent on them, in shares of all there is: more than a step near the
+/// stable one may err by.
 const MADE_OF_NOTHING: f64 = 0.1;
 
 /// Stops at the first displacement that is not finite, or element that is turned inside out.
