@@ -63,6 +63,8 @@ pub struct SystemInUse {
     pub because: String,
     /// `host` or `device`.
     pub on: &'static str,
+    /// How many kernels it has on the device; one whose work is done beforehand needs none.
+    pub kernels: usize,
     /// Steps between two runs.
     pub every: u64,
     /// What travels for it in each of its runs; for host systems between a GPU's.
@@ -204,10 +206,14 @@ impl Simulation {
         });
         let systems_off = systems_off.collect();
         let known = |entry: &Entry| registry.get(&entry.name);
-        let systems = self.entries.iter().map(|entry| system_in_use(entry, known(entry), on_gpu, &sizes)).collect();
+        let mut systems: Vec<SystemInUse> =
+            self.entries.iter().map(|entry| system_in_use(entry, known(entry), on_gpu, &sizes)).collect();
         let scheduled: Vec<&System> = self.entries.iter().filter_map(known).collect();
         let (kernels, buffers) =
             if on_gpu { kernels::describe(&scheduled, &sizes, &mut self.world)? } else { Default::default() };
+        for system in &mut systems {
+            system.kernels = kernels.iter().filter(|kernel| kernel.system == system.name).count();
+        }
         let columns = host_columns(&sizes, &mut self.world);
         let total = |buffers: &[Buffer]| buffers.iter().map(|buffer| buffer.bytes).sum::<u64>();
         let (host_bytes, device_bytes) = (total(&columns), total(&buffers));
@@ -253,6 +259,7 @@ fn system_in_use(entry: &Entry, system: Option<&System>, on_gpu: bool, sizes: &S
         does: system.map_or_else(String::new, |system| system.does.clone()),
         because: entry.because.clone(),
         on: if on_device { "device" } else { "host" },
+        kernels: 0,
         every: system.map_or(1, |system| system.every),
         travels,
     }

@@ -1,6 +1,6 @@
 //! `sinew explain`.
 
-use crate::sinew::{Place, SCENE};
+use crate::sinew::{Ended, Place, SCENE};
 
 const FIBRES: &str = "materials.tissue.fibres=(eta: 1000, direction: Around(axis: (0, 0, 1), center: (-1, -1, 0)))";
 
@@ -49,4 +49,38 @@ fn json_holds_what_the_page_says() {
     assert_eq!((&displacement["of"], &displacement["bytes"]), (&"block".into(), &(64 * 3 * 4).into()));
     let sum: u64 = columns.iter().map(|column| column["bytes"].as_u64().unwrap()).sum();
     assert_eq!(json["host_bytes"], sum);
+}
+
+/// Kernels are put together and buffers counted where no driver is.
+fn on_a_gpu(more: &[&str]) -> serde_json::Value {
+    let place = Place::new();
+    let mut command = place.command(&[&["explain", "block.ron", "--backend", "gpu", "--json"], more].concat());
+    command.env("VK_DRIVER_FILES", "/nowhere").env("VK_ICD_FILENAMES", "/nowhere");
+    let ended = Ended::of(command.output().unwrap());
+    ended.wants(0, &[]);
+    serde_json::from_str(&ended.said).unwrap()
+}
+
+#[test]
+fn kernels_are_shown_with_their_fragments_and_buffers_without_a_gpu() {
+    let json = on_a_gpu(&[]);
+    let kernels = json["kernels"].as_array().unwrap();
+    let forces = kernels.iter().find(|kernel| kernel["system"] == "element_forces").unwrap();
+    assert_eq!((&forces["label"], &forces["threads"]), (&"element_forces of block/tissue/Hex8".into(), &27.into()));
+    let paths: Vec<&str> =
+        forces["fragments"].as_array().unwrap().iter().map(|piece| piece["path"].as_str().unwrap()).collect();
+    assert!(paths.contains(&"shaders/hex8.wgsl") && paths.contains(&"shaders/neo_hookean.wgsl"), "{paths:?}");
+    let displacement =
+        &forces["bindings"].as_array().unwrap().iter().find(|b| b["variable"] == "displacement").unwrap();
+    assert_eq!((&displacement["access"], &displacement["bytes"]), (&"read".into(), &(64 * 3 * 4).into()));
+    let sum: u64 = json["buffers"].as_array().unwrap().iter().map(|buffer| buffer["bytes"].as_u64().unwrap()).sum();
+    assert_eq!(json["device_bytes"], sum);
+}
+
+#[test]
+fn a_scene_without_fibres_has_no_fibre_code_and_no_fibre_buffer() {
+    let words = |json: &serde_json::Value| format!("{}{}{}", json["kernels"], json["buffers"], json["columns"]);
+    let (without, with) = (words(&on_a_gpu(&[])), words(&on_a_gpu(&["--set", FIBRES])));
+    assert!(!without.contains("fibre"), "{without}");
+    assert!(with.contains("shaders/fibres.wgsl") && with.contains("fibre_direction"), "{with}");
 }

@@ -36,7 +36,7 @@ impl Sizes {
     /// Those of some names that occur in the world: systems also ask for columns that the scene may not call for.
     pub fn existing(&self, names: &[&'static str]) -> Vec<&'static str> {
         let occurs = |name: &&str| self.bytes.keys().any(|(_, column)| column == name);
-        names.iter().copied().filter(|name| occurs(&name)).collect()
+        names.iter().copied().filter(|name| occurs(name)).collect()
     }
 
     /// Bytes of all columns of these names.

@@ -32,7 +32,13 @@ impl Display for Explanation {
 fn write_system(system: &SystemInUse, on_gpu: bool, f: &mut Formatter<'_>) -> Result {
     writeln!(f, "  {:<16}  {}", system.name, system.does)?;
     let every = if system.every == 1 { String::new() } else { format!(", in every {}th step", system.every) };
-    let place = if on_gpu { format!(", on the {}", system.on) } else { String::new() };
+    let place = match (on_gpu, system.on, system.kernels) {
+        (false, ..) => String::new(),
+        (true, "device", 0) => ", on the device, where it needs no kernel".to_string(),
+        (true, "device", 1) => ", on the device, 1 kernel".to_string(),
+        (true, "device", kernels) => format!(", on the device, {kernels} kernels"),
+        (true, ..) => ", on the host".to_string(),
+    };
     writeln!(f, "  {:16}  because: {}{place}{every}", "", system.because)?;
     let Some(travels) = &system.travels else { return Ok(()) };
     let list = |names: &[&str], bytes: u64| match names {
