@@ -2,9 +2,9 @@
 
 use super::Buffer;
 use crate::backend::Buffers;
+use crate::backend::device::all_columns;
 use crate::backend::kernel::BufferId;
 use crate::components::{Corners, Label, RestPosition};
-use crate::backend::device::all_columns;
 use bevy_ecs::prelude::*;
 use std::collections::BTreeMap;
 
