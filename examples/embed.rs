@@ -20,7 +20,8 @@ const SCENE: &str = r#"(
 /// Simulated time a frame (s).
 const FRAME: f64 = 1.0 / 60.0;
 
-fn main() -> Result<(), Error> {
+#[allow(missing_docs)]
+pub fn main() -> Result<(), Error> {
     let scene = SceneFile::from_text("jelly", SCENE, Path::new("."), &[])?;
     let mut simulation = Simulation::new(&scene, &Options::default())?;
     let rest = simulation.rest_positions("jelly")?;

@@ -1,4 +1,5 @@
-// Work booked for energies, for integrate: by loads, against damping, by constraints, by internal forces (J).
+// Work booked for energies, for integrate: by loads, against damping, by constraints, by internal forces (J), then the last
+// step along constrained axes (m), which boundary has written over.
 @group(0) @binding(0) var<storage, read_write> work: array<f32>;
 
 fn book_work(
@@ -9,12 +10,19 @@ fn book_work(
     inner: vec3<f32>,
     outer: vec3<f32>,
 ) {
-    // the mean of the steps before and after makes the balance exact; constrained axes have only the step after
-    let along = select(0.5 * (before + after), after, constrained);
-    let lost = coefficient_of(node) * step.rate * along * along;
+    let first = 7u * node;
+    let kept = vec3<f32>(work[first + 4u], work[first + 5u], work[first + 6u]);
+    // in the middle of each step the balance is exact; the first step is booked by half
+    let mean = 0.5 * (select(before, kept, constrained) + after);
+    let along = (0.5 + 0.5 * step.divide) * mean;
+    let lost = coefficient_of(node) * step.rate * mean * along;
     let held = select(vec3<f32>(0.0), (inner - outer) * along + lost, constrained);
-    work[4u * node] += dot(outer, along);
-    work[4u * node + 1u] += lost.x + lost.y + lost.z;
-    work[4u * node + 2u] += held.x + held.y + held.z;
-    work[4u * node + 3u] += dot(inner, along);
+    work[first] += dot(outer, along);
+    work[first + 1u] += lost.x + lost.y + lost.z;
+    work[first + 2u] += held.x + held.y + held.z;
+    work[first + 3u] += dot(inner, along);
+    let last = select(kept, after, constrained);
+    work[first + 4u] = last.x;
+    work[first + 5u] = last.y;
+    work[first + 6u] = last.z;
 }

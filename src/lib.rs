@@ -41,3 +41,8 @@ pub use error::{Error, Instability};
 pub use scene::SceneFile;
 pub use simulation::explain;
 pub use simulation::{BackendChoice, Options, Simulation, Summary, SystemTime};
+
+/// The code in the readme compiles and runs.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

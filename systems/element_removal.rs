@@ -26,10 +26,7 @@ pub fn system() -> System {
         Phase::Removal,
         "removes elements by time and by criterion",
         "an entry under `removal`",
-        |world| {
-            super::registry::count::<Alive>(world, "block that may lose elements", "blocks that may lose elements")
-                .map(|s| s.replace("elementss", "elements"))
-        },
+        |world| super::registry::count::<Alive>(world, "block that may lose elements", "blocks that may lose elements"),
         element_removal,
     )
     .on_device(kernels)

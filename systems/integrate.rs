@@ -40,6 +40,8 @@ struct Factors<T> {
     divide: T,
     /// 1/Δt (1/s).
     rate: T,
+    /// Share of a step's work that is booked: 1, in the first step ½.
+    booked: T,
 }
 
 impl<T: Scalar> Factors<T> {
@@ -50,6 +52,7 @@ impl<T: Scalar> Factors<T> {
             half_step: T::from_f64(0.5 * dt),
             divide: T::from_f64(if first { 0.0 } else { 1.0 }),
             rate: T::from_f64(1.0 / dt),
+            booked: T::from_f64(if first { 0.5 } else { 1.0 }),
         }
     }
 }
@@ -117,7 +120,7 @@ fn move_nodes<T: Scalar>(
 ) -> Option<u32> {
     let bad = std::sync::atomic::AtomicU32::new(u32::MAX);
     let mut compensations = compensation.map(|c| c.chunks_mut(3 * ROWS_A_TASK));
-    let mut works = work.map(|w| w.chunks_mut(4 * ROWS_A_TASK));
+    let mut works = work.map(|w| w.chunks_mut(WORK_NUMBERS * ROWS_A_TASK));
     let tasks = u.chunks_mut(3 * ROWS_A_TASK).zip(step.chunks_mut(3 * ROWS_A_TASK)).enumerate().map(|(task, rows)| {
         (
             task * ROWS_A_TASK,
@@ -130,7 +133,7 @@ fn move_nodes<T: Scalar>(
         for row in 0..u.len() / 3 {
             let at = 3 * row..3 * row + 3;
             let mut sum = Sum { u: &mut u[at.clone()], lost: compensation.as_mut().map(|c| &mut c[at.clone()]) };
-            let work = work.as_mut().map(|w| &mut w[4 * row..4 * row + 4]);
+            let work = work.as_mut().map(|w| &mut w[WORK_NUMBERS * row..WORK_NUMBERS * (row + 1)]);
             move_node(inputs, first + row, &mut sum, &mut step[at], work);
             if !sum.u.iter().all(|x| x.to_f64().is_finite()) {
                 bad.fetch_min((first + row) as u32, std::sync::atomic::Ordering::Relaxed);
@@ -170,7 +173,7 @@ fn move_node<T: Scalar>(
     mut work: Option<&mut [T]>,
 ) {
     let (zero, one) = (T::default(), T::from_f64(1.0));
-    let Factors { force: force_factor, half_step, divide, rate } = inputs.factors;
+    let Factors { force: force_factor, half_step, divide, rate, booked } = inputs.factors;
     let (mass, axes) = (inputs.mass[node], inputs.axes[node]);
     if mass <= zero {
         step.fill(zero);
@@ -190,10 +193,12 @@ fn move_node<T: Scalar>(
         }
         sum.add(i, step[i]);
         if let Some(work) = &mut work {
-            // forces at the beginning of the step work along the mean of the steps before and after, which makes the
-            // balance of the scheme exact; constrained axes have only the step after
-            let along = if constrained { step[i] } else { T::from_f64(0.5) * (before + step[i]) };
-            let lost = coefficient * rate * along * along;
+            // forces at the beginning of the step work along the mean of the steps before and after, in the first step
+            // along half of it: so the balance of the scheme is exact in the middle of each step
+            let before = if constrained { std::mem::replace(&mut work[4 + i], step[i]) } else { before };
+            let mean = T::from_f64(0.5) * (before + step[i]);
+            let along = booked * mean;
+            let lost = coefficient * rate * mean * along;
             work[0] += external * along;
             work[1] += lost;
             work[3] += internal * along;

@@ -45,8 +45,9 @@ pub(super) fn insert_node_columns(
     if !scene.loads.is_empty() {
         entity.insert(ExternalForce(vectors()));
     }
-    if scene.output.energies_every.is_some() {
-        entity.insert(Work(Reals::zeros(precision, 4 * count)));
+    // a step beyond the stable one is watched by its balance of energy
+    if scene.output.energies_every.is_some() || scene.integration.beyond_stable_step {
+        entity.insert(Work(Reals::zeros(precision, WORK_NUMBERS * count)));
     }
     let used =
         std::iter::once(&scene.bodies[name].material).chain(scene.bodies[name].regions.iter().map(|r| &r.material));

@@ -38,8 +38,8 @@ pub struct Assembly<'a> {
     pub materials: BTreeMap<String, Entity>,
 }
 
-/// Puts a scene's world together, without a time step yet. Complaints go to `diagnostics`; `None` when some of them are
-/// errors.
+/// Puts a scene's world together, without a time step yet. Complaints go to `diagnostics`. `None` when the bodies cannot be
+/// made; there may be errors all the same when they can.
 pub fn assemble<'a>(
     scene: &'a SceneFile,
     precision: Precision,
@@ -62,9 +62,10 @@ pub fn assemble<'a>(
     if diagnostics.has_errors() {
         return None;
     }
+    // what is wrong with these does not keep other mistakes from being found
     constraints::spawn(&assembly, world, diagnostics);
     loads::spawn(&assembly, world, diagnostics);
-    (!diagnostics.has_errors()).then_some(assembly)
+    Some(assembly)
 }
 
 /// What depends on the time step: removal by time, probes, the laws' history.

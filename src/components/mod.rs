@@ -28,7 +28,7 @@ pub use load::{FaceCorners, Gravity, NodalForce, Pressure, Traction};
 pub use material::{Damping, Density, Prony};
 pub use nodes::{
     Authoring, ConstrainedAxes, Corners, DampingCoefficient, Displacement, DisplacementCompensation, DisplacementStep,
-    ElementForce, ExternalForce, FirstNonFinite, InternalForce, Mass, RestPosition, Work,
+    ElementForce, ExternalForce, FirstNonFinite, InternalForce, Mass, RestPosition, WORK_NUMBERS, Work,
 };
 pub use observation::{Energies, Probe};
 

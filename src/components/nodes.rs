@@ -28,8 +28,9 @@ columns! {
     ExternalForce(Reals) = "external_force";
     /// Bits 0, 1, 2: the node does not move freely along x, y, z.
     ConstrainedAxes(Vec<u32>) = "constrained_axes";
-    /// Work done on or by a node since the start (J): by loads, against damping, by constraints, by internal forces; four
-    /// numbers a node. Exists when energies are asked for.
+    /// Work done on or by a node since the start (J): by loads, against damping, by constraints, by internal forces; then
+    /// the last step along constrained axes (m), which `boundary` writes over: [`WORK_NUMBERS`] a node. Exists when
+    /// energies are asked for.
     Work(Reals) = "work";
     /// One number: the lowest row of a node whose displacement was found not finite, by the integrator itself in every
     /// step; `u32::MAX`: none.
@@ -38,6 +39,9 @@ columns! {
     /// [`LANES`](crate::math::LANES) elements by corner, component, element.
     ElementForce(Reals) = "element_force";
 }
+
+/// Numbers a node in [`Work`].
+pub const WORK_NUMBERS: usize = 7;
 
 /// Which corners of elements meet in a node: the gather's map, in compressed rows. `corners[starts[i]..starts[i + 1]]` are
 /// places in [`ElementForce`] of the x component; y and z follow [`LANES`](crate::math::LANES) and twice that later.

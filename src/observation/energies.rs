@@ -54,7 +54,7 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
         let rows = 0..mass.len();
         sum.kinetic += rows.clone().map(|row| kinetic(row, &|_| true)).sum::<f64>();
         if let Some(work) = work {
-            let total = |i: usize| rows.clone().map(|row| work.get(4 * row + i)).sum::<f64>();
+            let total = |i: usize| rows.clone().map(|row| work.get(WORK_NUMBERS * row + i)).sum::<f64>();
             // constraints also give the kinetic energy of what they move
             let moved = rows.clone().map(|row| kinetic(row, &|i| axes[row] >> i & 1 == 1)).sum::<f64>();
             *sum.load_work.get_or_insert(0.0) += total(0);
@@ -75,16 +75,12 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
     Ok(sum)
 }
 
-/// Displacements in the middle of the last step, where velocities are: only there do the energies add up. Constrained
-/// nodes are where they are, since their work is booked to the end of the step.
+/// Displacements in the middle of the last step, where velocities are: only there do the energies add up.
 fn middle_of_step(world: &World, body: Entity) -> Option<Reals> {
     let (u, step) = (world.get::<Displacement>(body)?, world.get::<DisplacementStep>(body)?);
-    let axes = world.get::<ConstrainedAxes>(body)?;
-    let moved = world.resource::<Clock>().step > 0;
-    let middle = |i: usize| {
-        let free = axes[i / 3] >> (i % 3) & 1 == 0;
-        u.get(i) - if moved && free { 0.5 * step.get(i) } else { 0.0 }
-    };
+    // before the first step the column of steps holds the initial velocity
+    let back = if world.resource::<Clock>().step > 0 { 0.5 } else { 0.0 };
+    let middle = |i: usize| u.get(i) - back * step.get(i);
     Some(Reals::from_f64(Precision::F64, (0..u.len()).map(middle)))
 }
 

@@ -5,6 +5,10 @@ use crate::components::*;
 use crate::error::{Error, Instability};
 use bevy_ecs::prelude::*;
 
+/// How much more energy elements may hold than was spent on them, in shares of all there is: more than a step near the
+/// stable one may err by.
+const MADE_OF_NOTHING: f64 = 0.1;
+
 /// Stops at the first displacement that is not finite, or element that is turned inside out.
 pub(super) fn check(world: &mut World, good_until: f64) -> Result<(), Error> {
     bring_to_host(world, |_, name| name == FirstInverted::NAME || name == FirstNonFinite::NAME)?;
@@ -34,4 +38,31 @@ pub(super) fn check(world: &mut World, good_until: f64) -> Result<(), Error> {
     let body = world.get::<Label>(body).map(|label| label.0.clone()).unwrap_or_default();
     let (time, step) = (clock.time(), clock.step);
     Err(Error::Unstable(Box::new(Instability { time, step, body, what, cause: cause.into(), good_until })))
+}
+
+/// Stops when elements hold more energy than was ever spent on them: so a step beyond the stable one shows that does not
+/// run away, because large motion holds it. Of viscous blocks only what remains in the long term counts.
+pub(super) fn check_energy(world: &mut World, good_until: f64) -> Result<(), Error> {
+    let energies = super::energies(world)?;
+    let Some(spent) = energies.internal_work else { return Ok(()) };
+    let alpha = |prony: &Prony| prony.terms.iter().map(|(alpha, _)| alpha).sum::<f64>();
+    let viscous = world.query_filtered::<&Prony, With<Density>>().iter(world).map(alpha).fold(0.0, f64::max);
+    let held = (1.0 - viscous) * energies.strain + energies.hourglass;
+    let works = [energies.load_work, energies.constraint_work].map(|work| work.unwrap_or(0.0).abs());
+    let scale = works.into_iter().fold(energies.kinetic + energies.strain + energies.hourglass, f64::max);
+    if held - spent <= MADE_OF_NOTHING * scale {
+        return Ok(());
+    }
+    let clock = *world.resource::<Clock>();
+    let mut bodies: Vec<String> =
+        world.query_filtered::<&Label, With<Authoring>>().iter(world).map(|label| label.0.clone()).collect();
+    bodies.sort();
+    Err(Error::Unstable(Box::new(Instability {
+        time: clock.time(),
+        step: clock.step,
+        body: bodies.join(", "),
+        what: format!("elements hold {held:.3e} J, but only {spent:.3e} J were spent on them"),
+        cause: "a time step beyond the stable one (leave `step` out to have it found)".into(),
+        good_until,
+    })))
 }

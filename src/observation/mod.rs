@@ -25,6 +25,8 @@ pub struct Observer {
     pub fields_every: u64,
     /// Steps between rows of energies; 0: none.
     pub energies_every: u64,
+    /// Whether the guards look at the balance of energy: when a step beyond the stable one is allowed.
+    pub watch_energy: bool,
     /// The last step of the run, which is always observed.
     pub last_step: u64,
     files: Option<Files>,
@@ -94,6 +96,9 @@ impl Observer {
         let last = clock.step == self.last_step;
         let due = |every: u64| every != 0 && (clock.step.is_multiple_of(every) || last);
         guards::check(world, self.good_until)?;
+        if self.watch_energy {
+            guards::check_energy(world, self.good_until)?;
+        }
         let probes: Vec<(Entity, String)> = self
             .probes
             .iter()

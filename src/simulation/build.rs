@@ -2,7 +2,7 @@
 
 use super::options::choose;
 use super::parameters::hand_out;
-use super::schedule::{Scheduled, resolve};
+use super::schedule::{Scheduled, check_names, resolve};
 use super::{Entry, Facts, Job, Options, Simulation};
 use crate::assembly::{Assembly, StableStep, assemble, assemble_in_time, stable_step};
 use crate::backend::cpu::Cpu;
@@ -34,18 +34,10 @@ impl Simulation {
         let started = Instant::now();
         let mut diagnostics = scene.diagnostics();
         let mut world = World::new();
-        let assembly = assemble(scene, options.precision, &mut world, &mut diagnostics);
-        let Some(assembly) = assembly else { return Err(diagnostics.into()) };
-        let Some((clock, stable, steps)) = clock(scene, &mut world, &mut diagnostics) else {
+        let plan = plan(scene, options.precision, registry, &mut world, &mut diagnostics);
+        let Some(Plan { assembly, clock, stable, steps, schedule }) = plan.filter(|_| !diagnostics.has_errors()) else {
             return Err(diagnostics.into());
         };
-        world.insert_resource(clock);
-        assemble_in_time(&assembly, &mut world, &mut diagnostics);
-        let mut schedule = resolve(scene.scene.schedule.as_deref(), registry, &mut world, &mut diagnostics);
-        hand_out(&scene.scene, registry, &mut schedule, &mut world, &mut diagnostics);
-        if diagnostics.has_errors() {
-            return Err(diagnostics.into());
-        }
         let (nodes, elements) = counts(&assembly);
         world.insert_resource(Cpu::new(options.threads, elements));
         let observer = observer(scene, &clock, steps, &mut world);
@@ -99,18 +91,38 @@ impl Simulation {
     }
 }
 
+/// What a scene comes to before a backend is chosen.
+struct Plan<'a> {
+    assembly: Assembly<'a>,
+    clock: Clock,
+    stable: StableStep,
+    steps: u64,
+    schedule: Vec<Scheduled<'a>>,
+}
+
+/// Makes a scene's world and its schedule. All mistakes that can be found go to `diagnostics`.
+fn plan<'a>(
+    scene: &'a SceneFile,
+    precision: Precision,
+    registry: &'a Registry,
+    world: &mut World,
+    diagnostics: &mut Diagnostics,
+) -> Option<Plan<'a>> {
+    let assembly = assemble(scene, precision, world, diagnostics);
+    check_names(scene.scene.schedule.as_deref().unwrap_or_default(), registry, diagnostics);
+    let assembly = assembly?;
+    let (clock, stable, steps) = clock(scene, world, diagnostics)?;
+    world.insert_resource(clock);
+    assemble_in_time(&assembly, world, diagnostics);
+    let mut schedule = resolve(scene.scene.schedule.as_deref(), registry, world, diagnostics);
+    hand_out(&scene.scene, registry, &mut schedule, world, diagnostics);
+    Some(Plan { assembly, clock, stable, steps, schedule })
+}
+
 /// Checks a scene as far as making its world goes: everything except choosing a backend. All that was found.
 pub(super) fn check(scene: &SceneFile, registry: &Registry) -> Diagnostics {
     let mut diagnostics = scene.diagnostics();
-    let mut world = World::new();
-    if let Some(assembly) = assemble(scene, Precision::F32, &mut world, &mut diagnostics)
-        && let Some((clock, ..)) = clock(scene, &mut world, &mut diagnostics)
-    {
-        world.insert_resource(clock);
-        assemble_in_time(&assembly, &mut world, &mut diagnostics);
-        let mut schedule = resolve(scene.scene.schedule.as_deref(), registry, &mut world, &mut diagnostics);
-        hand_out(&scene.scene, registry, &mut schedule, &mut world, &mut diagnostics);
-    }
+    plan(scene, Precision::F32, registry, &mut World::new(), &mut diagnostics);
     diagnostics
 }
 
@@ -173,6 +185,7 @@ fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> 
     let mut observer = Observer::default();
     observer.fields_every = every(scene.scene.fields_every());
     observer.energies_every = scene.scene.output.energies_every.map_or(0, every);
+    observer.watch_energy = scene.scene.integration.beyond_stable_step;
     observer.last_step = steps;
     observer.watch_probes(world);
     observer

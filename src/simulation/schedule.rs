@@ -14,7 +14,34 @@ pub struct Scheduled<'a> {
     pub every: u64,
 }
 
-/// Resolves a scene's schedule; complaints go to `diagnostics`.
+/// Looks for mistakes in a scene's schedule that show without its world: names and their order.
+pub fn check_names(names: &[String], registry: &Registry, diagnostics: &mut Diagnostics) {
+    let mut schedule: Vec<&System> = Vec::new();
+    for (place, name) in names.iter().enumerate() {
+        let path = format!("schedule[{place}]");
+        let Some(system) = registry.get(name) else {
+            let known = registry.systems().iter().map(|system| system.name.as_str());
+            diagnostics
+                .error_at(path.as_str(), format!("there is no system named `{name}`"))
+                .notes(choice(name, known));
+            continue;
+        };
+        if schedule.iter().any(|earlier| earlier.name == *name) {
+            diagnostics.error_at(path.as_str(), format!("`{name}` is in the schedule already; a step runs it once"));
+            continue;
+        }
+        if let Some(earlier) = schedule.iter().find(|earlier| earlier.phase > system.phase) {
+            let (a, b) = (phase_word(earlier.phase), phase_word(system.phase));
+            diagnostics
+                .error_at(path.as_str(), format!("`{name}` must stand before `{}`", earlier.name))
+                .note(format!("`{name}` {b}, `{}` {a}; the order of phases is {}", earlier.name, phases()));
+        }
+        schedule.push(system);
+    }
+}
+
+/// The systems of a scene in order: those it names, as far as there are such, or those it needs. That one is missing which
+/// it needs goes to `diagnostics`.
 pub fn resolve<'a>(
     names: Option<&[String]>,
     registry: &'a Registry,
@@ -28,25 +55,7 @@ pub fn resolve<'a>(
             .collect();
     };
     let mut schedule: Vec<Scheduled<'a>> = Vec::new();
-    for (place, name) in names.iter().enumerate() {
-        let path = format!("schedule[{place}]");
-        let Some(system) = registry.get(name) else {
-            let known = registry.systems().iter().map(|system| system.name.as_str());
-            diagnostics
-                .error_at(path.as_str(), format!("there is no system named `{name}`"))
-                .notes(choice(name, known));
-            continue;
-        };
-        if schedule.iter().any(|earlier| earlier.system.name == *name) {
-            diagnostics.error_at(path.as_str(), format!("`{name}` is in the schedule already; a step runs it once"));
-            continue;
-        }
-        if let Some(earlier) = schedule.iter().find(|earlier| earlier.system.phase > system.phase) {
-            let (a, b) = (phase_word(earlier.system.phase), phase_word(system.phase));
-            diagnostics
-                .error_at(path.as_str(), format!("`{name}` must stand before `{}`", earlier.system.name))
-                .note(format!("`{name}` {b}, `{}` {a}; the order of phases is {}", earlier.system.name, phases()));
-        }
+    for system in names.iter().filter_map(|name| registry.get(name)) {
         let because = (system.because)(world).unwrap_or_else(|| "the scene's schedule names it".into());
         schedule.push(Scheduled { system, because, every: system.every });
     }

@@ -140,8 +140,10 @@ fn system_time(entry: &super::Entry, on_gpu: bool) -> SystemTime {
             let none = Vec::new;
             SystemTime { name, because, on: "device", seconds: None, runs: None, brought: none(), sent: none() }
         }
-        Job::Host { reads, writes, .. } => {
-            let travelling = |columns: &Vec<&'static str>| if on_gpu { columns.clone() } else { Vec::new() };
+        Job::Host { reads, writes, observes, .. } => {
+            // what observes may see everything, and fetches for itself what is due
+            let travels = on_gpu && !observes;
+            let travelling = |columns: &Vec<&'static str>| if travels { columns.clone() } else { Vec::new() };
             let (brought, sent) = (travelling(reads), travelling(writes));
             let seconds = Some(entry.time.as_secs_f64());
             SystemTime { name, because, on: "host", seconds, runs: Some(entry.runs), brought, sent }

@@ -71,10 +71,13 @@ fn compare_motion(pair: &mut Pair, effects: &Effects) {
         let dt = pair.before().resource::<Clock>().time_step;
         pair.agree::<Work>(|pair, body, i| {
             let old = pair.before().get::<Work>(body).unwrap().get(i).abs();
-            let damping = pair.before().get::<DampingCoefficient>(body).map_or(0.0, |c| c.get(i / 4));
+            let node = i / WORK_NUMBERS;
+            let damping = pair.before().get::<DampingCoefficient>(body).map_or(0.0, |c| c.get(node));
             let moved =
-                |world: &World, axis: usize| world.get::<DisplacementStep>(body).unwrap().get(3 * (i / 4) + axis).abs();
-            let steps: f64 = (0..3).map(|axis| moved(pair.before(), axis) + moved(pair.host(), axis)).sum();
+                |world: &World, axis: usize| world.get::<DisplacementStep>(body).unwrap().get(3 * node + axis).abs();
+            let kept = |axis: usize| pair.before().get::<Work>(body).unwrap().get(WORK_NUMBERS * node + 4 + axis).abs();
+            let steps: f64 =
+                (0..3).map(|axis| moved(pair.before(), axis) + kept(axis) + moved(pair.host(), axis)).sum();
             // forces under 0.01 N along the steps, six products and their sums, each step with its own twelve roundings
             24.0 * UNIT * (old + 0.02 * steps + damping / dt * steps * steps)
         });

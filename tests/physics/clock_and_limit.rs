@@ -8,7 +8,7 @@ fn scene(cells: usize, integration: &str) -> String {
     format!(
         "(duration: 100, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: ({cells}, {cells}, {cells}), elements: Hex8), material: \"m\", spin: (1, 0, 0.3))}},
         materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
-        integration: ({integration}), output: (energies_every: 10))"
+        integration: ({integration}))"
     )
 }
 

@@ -1,7 +1,7 @@
 //! Removal: when elements go, what is left, what is booked (H17, H18).
 //!
-//! Mass: what is gone is ρ V of the elements gone, to 1e-6. Energy: KE + IE + HG + removed + losses − W − E₀ below 1 % (2 % in
-//! f32) of the largest. An island falls with g: Σ m v grows by Σ m g Δt a step, to rounding (1e-10, 1e-4 in f32).
+//! Mass: what is gone is ρ V of the elements gone, to 1e-6. Energy: KE + IE + HG + removed − W below 1e-4 of W: work is
+//! booked to (ωΔt)²/12 with Δt = 1e-3 s and ω < 30/s. An island falls with g: Σ m v grows by Σ m g Δt a step, to rounding (1e-10, 1e-4 in f32).
 
 use crate::columns::{external_forces, masses, velocities};
 use crate::configurations::{Configuration, configurations, near};
@@ -35,7 +35,8 @@ fn elements_go_at_their_time() {
 #[test]
 fn elements_go_one_after_the_other_from_the_middle_outwards() {
     for run in &configurations() {
-        let mut simulation = bar(run, "Hex8", "removal: [(on: Elements([0, 1, 2, 3, 4]), when: During(start: 0.02, end: 0.06))]");
+        let mut simulation =
+            bar(run, "Hex8", "removal: [(on: Elements([0, 1, 2, 3, 4]), when: During(start: 0.02, end: 0.06))]");
         let expected = [
             (19, [1, 1, 1, 1, 1, 1]),
             (20, [1, 1, 0, 1, 1, 1]),
@@ -89,11 +90,18 @@ fn criteria_take_what_passes_them_and_nothing_else() {
 #[test]
 fn island_falls_with_exactly_g_and_mass_is_booked() {
     for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
-        let rest = "constraints: [Fixed(on: Plane(normal: (1, 0, 0), at: 0))], loads: [Gravity(acceleration: (0, 0, -9.81))],
+        let rest =
+            "constraints: [Fixed(on: Plane(normal: (1, 0, 0), at: 0))], loads: [Gravity(acceleration: (0, 0, -9.81))],
             removal: [(on: Box(min: (2, 0, 0), max: (4, 1, 1)), when: At(0.05))]";
         let mut simulation = bar(run, elements, rest);
-        let island: Vec<usize> =
-            simulation.rest_positions("b").unwrap().iter().enumerate().filter(|(_, x)| x.x > 3.9).map(|(i, _)| i).collect();
+        let island: Vec<usize> = simulation
+            .rest_positions("b")
+            .unwrap()
+            .iter()
+            .enumerate()
+            .filter(|(_, x)| x.x > 3.9)
+            .map(|(i, _)| i)
+            .collect();
         let momentum = |simulation: &mut Simulation| -> (f64, f64) {
             let (m, v) = (masses(simulation, "b"), velocities(simulation, "b"));
             (island.iter().map(|&i| m[i] * v[i].z).sum(), island.iter().map(|&i| m[i]).sum())
@@ -118,8 +126,14 @@ fn nodes_without_elements_are_parked() {
             removal: [(on: Box(min: (4, 0, 0), max: (6, 1, 1)), when: At(0.05))]";
         let mut simulation = bar(run, elements, rest);
         simulation.advance(51).unwrap();
-        let parked: Vec<usize> =
-            simulation.rest_positions("b").unwrap().iter().enumerate().filter(|(_, x)| x.x > 4.9).map(|(i, _)| i).collect();
+        let parked: Vec<usize> = simulation
+            .rest_positions("b")
+            .unwrap()
+            .iter()
+            .enumerate()
+            .filter(|(_, x)| x.x > 4.9)
+            .map(|(i, _)| i)
+            .collect();
         let before = simulation.displacements("b").unwrap();
         simulation.advance(100).unwrap();
         let after = simulation.displacements("b").unwrap();
@@ -134,7 +148,10 @@ fn nodes_without_elements_are_parked() {
 #[test]
 fn faces_of_removed_elements_bear_no_load() {
     for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
-        for load in ["Traction(on: Plane(normal: (0, 0, 1), at: 1), traction: (0, 0, -10))", "Pressure(on: Plane(normal: (0, 0, 1), at: 1), pressure: 10)"] {
+        for load in [
+            "Traction(on: Plane(normal: (0, 0, 1), at: 1), traction: (0, 0, -10))",
+            "Pressure(on: Plane(normal: (0, 0, 1), at: 1), pressure: 10)",
+        ] {
             let rest = format!(
                 "constraints: [Prescribed(on: All)], loads: [{load}], removal: [(on: Box(min: (4, 0, 0), max: (6, 1, 1)), when: At(0.05))]"
             );
@@ -155,15 +172,15 @@ fn energy_that_goes_with_elements_is_booked() {
     for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
         // clamped at both ends: what is left swings on and does not fall
         let rest = "constraints: [Fixed(on: Plane(normal: (1, 0, 0), at: 0)), Fixed(on: Plane(normal: (1, 0, 0), at: 6))],
-            loads: [Gravity(acceleration: (3, 0, -2))], removal: [(on: Box(min: (2, 0, 0), max: (4, 1, 0.7)), when: At(0.1))]";
+            loads: [Gravity(acceleration: (3, 0, -2))], removal: [(on: Box(min: (2, 0, 0), max: (4, 1, 0.7)), when: At(0.8))]";
         let mut simulation = bar(run, elements, rest);
-        simulation.advance(200).unwrap();
+        simulation.advance(1200).unwrap();
         let e = simulation.energies().unwrap();
         println!("{e:?}");
         let work = e.load_work.unwrap();
         assert!(e.removed > 0.05 * work, "{e:?}");
         let sum = e.kinetic + e.strain + e.hourglass + e.removed - work - e.constraint_work.unwrap();
-        near(&format!("{}, {elements}", run.name), sum, 0.0, work, run.bound(0.01, 0.02));
+        near(&format!("{}, {elements}", run.name), sum, 0.0, work, 1e-4);
     }
 }
 

@@ -55,7 +55,8 @@ pub struct Integration {
     pub step: Option<f64>,
     /// Share of the stable step that is taken.
     pub safety: f64,
-    /// Take a `step` beyond the stable one all the same.
+    /// Take a `step` beyond the stable one all the same. Work is booked then, and the run stops when elements hold more
+    /// energy than was spent on them.
     pub beyond_stable_step: bool,
     /// Sum displacements with compensation: three numbers a node more, and f32 keeps the digits that plain sums lose.
     pub compensated: bool,

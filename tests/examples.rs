@@ -1,0 +1,73 @@
+//! The examples run, and the custom system does the same on both backends.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[allow(dead_code)]
+#[path = "../examples/custom_system.rs"]
+mod custom_system;
+#[path = "../examples/embed.rs"]
+mod embed;
+
+use sinew::{BackendChoice, SceneFile};
+
+#[test]
+fn embed_runs() {
+    embed::main().unwrap();
+}
+
+#[test]
+fn custom_system_pulls_alike_on_both_backends() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/magnet.ron");
+    let scene = SceneFile::load(path, &["duration=0.3".into()]).unwrap();
+    let cpu = custom_system::run(&scene, BackendChoice::Cpu, None).unwrap();
+    assert!(cpu > 1e-3, "the gel rises by {cpu} m only");
+    if sinew::backend::gpu::gpu_or_reason().is_some() {
+        let gpu = custom_system::run(&scene, BackendChoice::Gpu, None).unwrap();
+        assert!((gpu - cpu).abs() < 1e-4 * cpu, "{gpu} m on the GPU, {cpu} m on the CPU");
+    }
+}
+
+/// The scenes that the guides show: those of the README, which stand alone.
+#[test]
+fn scenes_in_the_readme_are_sound() {
+    let guide = include_str!("../README.md");
+    let scenes: Vec<&str> = guide.split("```ron\n").skip(1).filter_map(|rest| rest.split("```").next()).collect();
+    assert!(!scenes.is_empty());
+    for text in scenes {
+        let scene = SceneFile::from_text("README", text, std::path::Path::new("."), &[]);
+        let scene = scene.unwrap_or_else(|wrong| panic!("{}", wrong.render(false)));
+        let found = sinew::Simulation::check(&scene, &sinew::systems::Registry::default());
+        assert!(found.is_empty(), "{}", found.render(false));
+    }
+}
+
+/// A guide that names a file, a test or a picture that is not there leads nowhere.
+#[test]
+fn links_and_paths_in_the_guides_lead_somewhere() {
+    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
+    for guide in ["README.md", "docs/physics.md", "docs/systems.md", "docs/scene.md"] {
+        let text = std::fs::read_to_string(root.join(guide)).unwrap();
+        let folder = root.join(guide).parent().unwrap().to_path_buf();
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            let file = link.split('#').next().unwrap();
+            assert!(link.starts_with("http") || file.is_empty() || folder.join(file).exists(), "{guide}: {link}");
+        }
+        // words in code that look like tests: letters and at least two underscores
+        let tests = sources(&root.join("tests"));
+        for word in text.split('`').skip(1).step_by(2) {
+            let test = word.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+            if guide == "docs/physics.md" && test && word.matches('_').count() >= 3 {
+                assert!(tests.contains(&format!("fn {word}")), "{guide}: there is no test {word}");
+            }
+        }
+    }
+}
+
+/// All that is written below a folder.
+fn sources(folder: &std::path::Path) -> String {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let parts = entries.map(|path| match path.is_dir() {
+        true => sources(&path),
+        false => std::fs::read_to_string(path).unwrap_or_default(),
+    });
+    parts.collect()
+}

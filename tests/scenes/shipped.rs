@@ -1,0 +1,94 @@
+//! What holds for all of them.
+
+use super::{reference, scene};
+use sinew::components::Precision;
+use sinew::scene::load;
+use sinew::scene::schema::Scene;
+use sinew::systems::Registry;
+use sinew::{BackendChoice, Options, Simulation};
+
+/// The scenes, and what makes each of them short and coarse.
+const SCENES: [(&str, &[&str]); 5] = [
+    ("cube_under_gravity", &["bodies.cube.mesh.cells=(5, 5, 5)", "duration=0.3"]),
+    ("stretched_bar", &["bodies.bar.mesh.cells=(20, 2, 2)", "duration=0.5"]),
+    ("twisted_column", &["bodies.column.mesh.cells=(4, 4, 16)", "duration=1.2"]),
+    (
+        "lens_tets",
+        &["duration=0.05", "loads[0].curve=Smooth(end: 0.01)", "removal[0].when=During(start: 0.01, end: 0.04)"],
+    ),
+    (
+        "lens_hexes",
+        &[
+            "bodies.lens.mesh.across=8",
+            "bodies.lens.mesh.through=4",
+            "duration=0.1",
+            "loads[0].curve=Smooth(end: 0.02)",
+            "removal[0].when=During(start: 0.02, end: 0.05)",
+            "removal[1].when=During(start: 0.05, end: 0.08)",
+        ],
+    ),
+];
+
+#[test]
+fn every_scene_in_the_folder_is_tested_here() {
+    let folder = format!("{}/scenes", env!("CARGO_MANIFEST_DIR"));
+    let mut found: Vec<String> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter_map(|name| name.strip_suffix(".ron").map(str::to_string))
+        .collect();
+    let mut tested: Vec<String> = SCENES.iter().map(|(name, _)| name.to_string()).collect();
+    found.sort();
+    tested.sort();
+    assert_eq!(found, tested);
+}
+
+#[test]
+fn scenes_are_sound_without_a_warning() {
+    for (name, _) in SCENES {
+        let found = Simulation::check(&scene(name, &[]), &Registry::default());
+        assert!(found.is_empty(), "{}", found.render(false));
+    }
+}
+
+#[test]
+fn scenes_have_a_title_and_something_to_observe() {
+    for (name, _) in SCENES {
+        let scene = scene(name, &[]).scene;
+        assert!(!scene.title.is_empty() && !scene.probes.is_empty(), "{name}");
+    }
+}
+
+#[test]
+fn a_scene_written_and_read_again_is_the_same() {
+    for (name, _) in SCENES {
+        let before = scene(name, &[]).scene;
+        let text = load::options().to_string_pretty(&before, ron::ser::PrettyConfig::default()).unwrap();
+        let after: Scene = load::options().from_str(&text).unwrap_or_else(|wrong| panic!("{name}: {wrong}\n{text}"));
+        assert_eq!(before, after, "{name}");
+    }
+}
+
+#[test]
+fn every_backend_and_precision_ends_with_the_same_displacements() {
+    let gpu = sinew::backend::gpu::gpu_or_reason().is_some();
+    for (name, sets) in SCENES {
+        let scene = scene(name, sets);
+        let end = |options: &Options| {
+            let mut simulation = Simulation::new(&scene, options).unwrap();
+            simulation.advance(simulation.planned_steps()).unwrap_or_else(|wrong| panic!("{name}: {wrong}"));
+            let body = scene.scene.bodies.keys().next().unwrap();
+            simulation.displacements(body).unwrap()
+        };
+        let exact = end(&reference());
+        let size = exact.iter().map(|u| u.length()).fold(0.0, f64::max);
+        assert!(size > 1e-5, "{name}: nothing moves: {size} m");
+        let single = Options { backend: BackendChoice::Cpu, precision: Precision::F32, ..Options::default() };
+        let device = Options { backend: BackendChoice::Gpu, ..single.clone() };
+        for options in [Some(single), gpu.then_some(device)].into_iter().flatten() {
+            let found = end(&options);
+            let worst = found.iter().zip(&exact).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+            assert!(worst < 2e-4 * size, "{name} on {:?}: {worst} m of {size} m", options.backend);
+        }
+    }
+}
