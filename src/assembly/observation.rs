@@ -31,7 +31,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             nodes = body.rows_of(&marks);
         }
         let every = probe.every.unwrap_or_else(|| scene.fields_every());
-        let every = steps_of(every, time_step);
+        let every = Cadence::new(every, time_step);
         world.spawn((Label(name.clone()), Probe { what: probe.what, nodes, elements, every }, OfBody(body.entity)));
     }
 }

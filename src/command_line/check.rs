@@ -6,8 +6,8 @@ use super::failure::count_of;
 use super::progress;
 use super::terminal::{self, Paint};
 use super::wording::{count, counted, quantity};
-use sinew::assembly::steps_of;
 use sinew::components::Block;
+use sinew::components::Cadence;
 use sinew::systems::Registry;
 use sinew::{BackendChoice, Error, Options, SceneFile, Simulation};
 
@@ -50,10 +50,7 @@ fn verdict(simulation: &mut Simulation) -> Result<String, Error> {
 /// The files of a run, and how long those that grow become.
 fn outputs(simulation: &Simulation, steps: u64) -> Vec<String> {
     // the start, each time that it is due, and the end
-    let rows = |every: f64| {
-        let every = steps_of(every, simulation.time_step());
-        1 + steps / every + u64::from(!steps.is_multiple_of(every))
-    };
+    let rows = |every: f64| Cadence::new(every, simulation.time_step()).count(steps);
     let scene = simulation.scene();
     let mut files = vec![format!("fields.pvd ({})", counted(rows(scene.fields_every()), "frame"))];
     files.extend(scene.output.energies_every.map(|every| format!("energy.csv ({} rows)", count(rows(every)))));

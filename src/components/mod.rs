@@ -30,7 +30,7 @@ pub use nodes::{
     Authoring, ConstrainedAxes, Corners, DampingCoefficient, Displacement, DisplacementCompensation, DisplacementStep,
     ElementForce, ExternalForce, FirstNonFinite, InternalForce, Mass, RestPosition, WORK_NUMBERS, Work,
 };
-pub use observation::{Energies, Probe};
+pub use observation::{Cadence, Energies, Probe};
 
 use bevy_ecs::prelude::*;
 

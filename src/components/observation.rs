@@ -12,8 +12,72 @@ pub struct Probe {
     pub nodes: Vec<u32>,
     /// Elements: place of the block in the body's list, and row there.
     pub elements: Vec<(u32, u32)>,
-    /// Steps between observations.
-    pub every: u64,
+    /// How often.
+    pub every: Cadence,
+}
+
+/// How often something is observed: at the start, and at the first step that is not earlier than each multiple of an
+/// interval.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cadence {
+    /// The interval in steps, at least 1; infinite: never.
+    steps: f64,
+}
+
+impl Default for Cadence {
+    fn default() -> Self {
+        Self { steps: f64::INFINITY }
+    }
+}
+
+impl Cadence {
+    /// From an interval and the time step (s).
+    pub fn new(interval: f64, time_step: f64) -> Self {
+        Self { steps: (interval / time_step).max(1.0) }
+    }
+
+    /// The first step after `step` that is observed.
+    pub fn next_after(&self, step: u64) -> u64 {
+        // a time that is a whole number of steps is met in spite of rounding
+        let multiple = (step as f64 / self.steps + 1e-9).floor() + 1.0;
+        ((multiple * self.steps - 1e-6).ceil() as u64).max(step + 1)
+    }
+
+    /// Whether a step is observed.
+    pub fn is_due(&self, step: u64) -> bool {
+        self.steps.is_finite() && (step == 0 || self.next_after(step - 1) == step)
+    }
+
+    /// How many observations `steps` steps bring, the start and the end included.
+    pub fn count(&self, steps: u64) -> u64 {
+        let whole = (steps as f64 / self.steps + 1e-9).floor() as u64 + 1;
+        if self.is_due(steps) { whole } else { whole + 1 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn observations_follow_their_times_and_not_rounded_steps() {
+        // 20 intervals in 609 steps: not a whole number of steps each
+        let cadence = Cadence::new(0.05, 1.0 / 609.0);
+        let mut due = vec![0];
+        while due[due.len() - 1] < 609 {
+            due.push(cadence.next_after(due[due.len() - 1]));
+        }
+        assert_eq!((due.len(), due[1], due[20]), (21, 31, 609));
+        assert!((0..=609).all(|step| cadence.is_due(step) == due.contains(&step)));
+        assert_eq!(cadence.count(609), 21);
+    }
+
+    #[test]
+    fn an_interval_below_a_step_is_every_step_and_none_is_never() {
+        assert!((0..10).all(|step| Cadence::new(1e-9, 1.0).is_due(step)));
+        assert!((0..10).all(|step| !Cadence::default().is_due(step)));
+        assert_eq!(Cadence::default().next_after(7), u64::MAX);
+    }
 }
 
 /// Energies of all bodies (J).

@@ -21,16 +21,16 @@ pub const GUARD_STEPS: u64 = 256;
 /// What is observed when, and where it goes. A resource; the system `observe` runs it.
 #[derive(Resource, Default)]
 pub struct Observer {
-    /// Steps between frames of fields; 0: none.
-    pub fields_every: u64,
-    /// Steps between rows of energies; 0: none.
-    pub energies_every: u64,
+    /// How often fields are written.
+    pub fields: Cadence,
+    /// How often energies are taken; `None`: not at all.
+    pub energy: Option<Cadence>,
     /// Whether the guards look at the balance of energy: when a step beyond the stable one is allowed.
     pub watch_energy: bool,
     /// The last step of the run, which is always observed.
     pub last_step: u64,
     files: Option<Files>,
-    probes: Vec<(Entity, String, u64)>,
+    probes: Vec<(Entity, String, Cadence)>,
     /// What each probe saw last: time (s) and values.
     pub latest: BTreeMap<String, (f64, Vec<f64>)>,
     /// The energies as they were observed last.
@@ -48,7 +48,7 @@ struct Files {
 impl Observer {
     /// Observes the probes of a world.
     pub fn watch_probes(&mut self, world: &mut World) {
-        let mut probes: Vec<(Entity, String, u64)> = world
+        let mut probes: Vec<(Entity, String, Cadence)> = world
             .query::<(Entity, &Label, &Probe)>()
             .iter(world)
             .map(|(entity, label, probe)| (entity, label.0.clone(), probe.every))
@@ -63,9 +63,9 @@ impl Observer {
     /// Files that cannot be created.
     pub fn write_into(&mut self, folder: &mut Folder, world: &World) -> Result<(), OutputError> {
         let series = Series::create(folder)?;
-        let energies = match self.energies_every {
-            0 => None,
-            _ => Some(Table::create(&folder.claim("energy.csv")?, &energies::HEADER)?),
+        let energies = match self.energy {
+            None => None,
+            Some(_) => Some(Table::create(&folder.claim("energy.csv")?, &energies::HEADER)?),
         };
         let mut probes = BTreeMap::new();
         for (entity, name, _) in &self.probes {
@@ -79,10 +79,9 @@ impl Observer {
 
     /// The next step, after `step`, at whose end something is due.
     pub fn next_due(&self, step: u64) -> u64 {
-        let next = |every: u64| step.checked_div(every).map_or(u64::MAX, |whole| (whole + 1) * every);
-        let mut due = next(GUARD_STEPS).min(next(self.fields_every)).min(next(self.energies_every));
-        for (_, _, every) in &self.probes {
-            due = due.min(next(*every));
+        let mut due = ((step / GUARD_STEPS + 1) * GUARD_STEPS).min(self.fields.next_after(step));
+        for cadence in self.energy.iter().chain(self.probes.iter().map(|(_, _, cadence)| cadence)) {
+            due = due.min(cadence.next_after(step));
         }
         if step < self.last_step { due.min(self.last_step) } else { due }
     }
@@ -94,7 +93,7 @@ impl Observer {
     pub fn observe(&mut self, world: &mut World) -> Result<(), Error> {
         let clock = *world.resource::<Clock>();
         let last = clock.step == self.last_step;
-        let due = |every: u64| every != 0 && (clock.step.is_multiple_of(every) || last);
+        let due = |cadence: Cadence| last || cadence.is_due(clock.step);
         guards::check(world, self.good_until, self.watch_energy)?;
         if self.watch_energy {
             guards::check_energy(world, self.good_until)?;
@@ -102,7 +101,7 @@ impl Observer {
         let probes: Vec<(Entity, String)> = self
             .probes
             .iter()
-            .filter(|(_, _, every)| due(*every))
+            .filter(|(_, _, cadence)| due(*cadence))
             .map(|(entity, name, _)| (*entity, name.clone()))
             .collect();
         for (entity, name) in probes {
@@ -114,14 +113,14 @@ impl Observer {
             }
             self.latest.insert(name, (clock.time(), values));
         }
-        if due(self.energies_every) {
+        if self.energy.is_some_and(due) {
             let energies = energies(world)?;
             if let Some(table) = self.files.as_mut().and_then(|files| files.energies.as_mut()) {
                 table.row(&energies::row(clock.time(), &energies))?;
             }
             self.energies = Some(energies);
         }
-        if due(self.fields_every)
+        if due(self.fields)
             && let Some(files) = &mut self.files
         {
             fields::write(world, &mut files.series)?;

@@ -199,10 +199,10 @@ fn counts(assembly: &Assembly<'_>) -> (usize, usize) {
 }
 
 fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> Observer {
-    let every = |time: f64| crate::assembly::steps_of(time, clock.time_step);
+    let every = |time: f64| Cadence::new(time, clock.time_step);
     let mut observer = Observer::default();
-    observer.fields_every = every(scene.scene.fields_every());
-    observer.energies_every = scene.scene.output.energies_every.map_or(0, every);
+    observer.fields = every(scene.scene.fields_every());
+    observer.energy = scene.scene.output.energies_every.map(every);
     observer.watch_energy = scene.scene.integration.beyond_stable_step;
     observer.last_step = steps;
     observer.watch_probes(world);
