@@ -9,16 +9,19 @@ use bevy_ecs::prelude::*;
 /// stable one may err by.
 const MADE_OF_NOTHING: f64 = 0.1;
 
-/// Stops at the first displacement that is not finite, or element that is turned inside out.
-pub(super) fn check(world: &mut World, good_until: f64) -> Result<(), Error> {
+/// What leads to a breakdown when the scene insists on a step beyond the stable one.
+const STEP_TOO_LARGE: &str = "a time step beyond the stable one (leave `step` out to have it found)";
+
+/// Stops at the first displacement that is not finite, or element that is turned inside out. `beyond`: the scene insists on
+/// a step beyond the stable one.
+pub(super) fn check(world: &mut World, good_until: f64, beyond: bool) -> Result<(), Error> {
     bring_to_host(world, |_, name| name == FirstInverted::NAME || name == FirstNonFinite::NAME)?;
     let clock = *world.resource::<Clock>();
     let mut found: Option<(Entity, String, &str)> = None;
     for (body, authoring, node) in world.query::<(Entity, &Authoring, &FirstNonFinite)>().iter(world) {
         if node[0] != u32::MAX {
             let what = format!("the displacement of node {} is not finite", authoring.node_id(node[0] as usize));
-            found =
-                Some((body, what, "a time step beyond the stable one, a load that is too sudden, or a wrong modulus"));
+            found = Some((body, what, "a load that is too sudden, a wrong modulus, or a time step that is too large"));
         }
     }
     // what turned inside out did so before it blew up
@@ -35,6 +38,7 @@ pub(super) fn check(world: &mut World, good_until: f64) -> Result<(), Error> {
         }
     }
     let Some((body, what, cause)) = found else { return Ok(()) };
+    let cause = if beyond { STEP_TOO_LARGE } else { cause };
     let body = world.get::<Label>(body).map(|label| label.0.clone()).unwrap_or_default();
     let (time, step) = (clock.time(), clock.step);
     Err(Error::Unstable(Box::new(Instability { time, step, body, what, cause: cause.into(), good_until })))
@@ -62,7 +66,7 @@ pub(super) fn check_energy(world: &mut World, good_until: f64) -> Result<(), Err
         step: clock.step,
         body: bodies.join(", "),
         what: format!("elements hold {held:.3e} J, but only {spent:.3e} J were spent on them"),
-        cause: "a time step beyond the stable one (leave `step` out to have it found)".into(),
+        cause: STEP_TOO_LARGE.into(),
         good_until,
     })))
 }

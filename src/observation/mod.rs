@@ -95,7 +95,7 @@ impl Observer {
         let clock = *world.resource::<Clock>();
         let last = clock.step == self.last_step;
         let due = |every: u64| every != 0 && (clock.step.is_multiple_of(every) || last);
-        guards::check(world, self.good_until)?;
+        guards::check(world, self.good_until, self.watch_energy)?;
         if self.watch_energy {
             guards::check_energy(world, self.good_until)?;
         }

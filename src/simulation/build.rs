@@ -1,12 +1,14 @@
 //! From a scene to a simulation.
 
-use super::options::choose;
+use super::options::{BackendChoice, Chosen, choose};
 use super::parameters::hand_out;
 use super::schedule::{Scheduled, check_names, resolve};
 use super::{Entry, Facts, Job, Options, Simulation};
 use crate::assembly::{Assembly, StableStep, assemble, assemble_in_time, stable_step};
 use crate::backend::cpu::Cpu;
 use crate::backend::device::{Device, all_columns};
+use crate::backend::gpu::Gpu;
+use crate::backend::kernel::KernelId;
 use crate::components::*;
 use crate::error::Error;
 use crate::observation::Observer;
@@ -49,24 +51,33 @@ impl Simulation {
         }
         add_called_for_columns(&schedule, &access, &assembly, &mut world);
 
-        let chosen = choose(options)?;
-        let on_gpu = chosen.gpu.is_some();
-        let backend = match &chosen.gpu {
-            Some(gpu) => format!("GPU ({})", gpu.report().name),
-            None => {
-                let cpu = world.resource::<Cpu>();
-                format!("CPU ({} threads, {})", cpu.threads(), cpu.instruction_set()).replace("(1 threads", "(1 thread")
-            }
+        let Chosen { gpu, mut why } = choose(options)?;
+        let gpu_name = gpu.as_ref().map(|gpu| gpu.report().name.clone());
+        let prepared = match gpu {
+            None => None,
+            Some(gpu) => match kernels_on(gpu, &schedule, &mut world) {
+                Ok(kernels) => Some(kernels),
+                // a GPU that was not asked for need not be up to the scene
+                Err(Error::Gpu(reason)) if options.backend == BackendChoice::Auto => {
+                    why = format!("the GPU cannot take this scene: {reason}");
+                    world.remove_resource::<Device>();
+                    None
+                }
+                Err(error) => return Err(error),
+            },
         };
-        if let Some(gpu) = chosen.gpu {
-            world.insert_resource(Device::new(gpu, all_columns()));
-        }
+        let on_gpu = prepared.is_some();
+        let backend = match gpu_name.filter(|_| on_gpu) {
+            Some(name) => format!("GPU ({name})"),
+            None => world.resource::<Cpu>().describe(),
+        };
+        let mut kernels = prepared.unwrap_or_default().into_iter();
         let mut entries = Vec::new();
         for ((scheduled, host), access) in schedule.iter().zip(hosts).zip(&access) {
             let system = scheduled.system;
-            let job = match system.kernels {
-                Some(kernels) if on_gpu => Job::Kernels(Device::prepare(&mut world, kernels)?),
-                _ => {
+            let job = match kernels.next().flatten() {
+                Some(kernels) => Job::Kernels(kernels),
+                None => {
                     let (reads, writes) = columns_of(access, &world);
                     Job::Host { system: host, every: scheduled.every, observes: system.observes, reads, writes }
                 }
@@ -77,7 +88,7 @@ impl Simulation {
         let facts = Facts {
             on_gpu,
             backend,
-            why: chosen.why,
+            why,
             precision: options.precision,
             stable,
             steps,
@@ -89,6 +100,13 @@ impl Simulation {
         };
         Ok(Self { world, entries, scene: scene.scene.clone(), facts, elapsed: Duration::ZERO })
     }
+}
+
+/// Takes a GPU for the run and makes the kernels of all systems ready that have some.
+fn kernels_on(gpu: Gpu, schedule: &[Scheduled<'_>], world: &mut World) -> Result<Vec<Option<Vec<KernelId>>>, Error> {
+    world.insert_resource(Device::new(gpu, all_columns()));
+    let kernels = schedule.iter().map(|entry| entry.system.kernels);
+    kernels.map(|describe| describe.map(|describe| Device::prepare(world, describe)).transpose()).collect()
 }
 
 /// What a scene comes to before a backend is chosen.

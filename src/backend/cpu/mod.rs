@@ -54,6 +54,12 @@ impl Cpu {
         }
     }
 
+    /// Threads and instruction set in a few words.
+    pub fn describe(&self) -> String {
+        let plural = if self.threads == 1 { "" } else { "s" };
+        format!("CPU ({} thread{plural}, {})", self.threads, self.instruction_set())
+    }
+
     pub(crate) fn arch(&self) -> pulp::Arch {
         self.arch
     }
