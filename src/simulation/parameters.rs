@@ -24,10 +24,15 @@ pub(super) fn hand_out(
         let path = path_of(name);
         match registry.get(name) {
             None => {
-                let known = registry.systems().iter().filter(|s| s.custom).map(|s| s.name.as_str());
+                let known: Vec<&str> =
+                    registry.systems().iter().filter(|s| s.custom).map(|s| s.name.as_str()).collect();
+                let notes = match known.is_empty() {
+                    true => vec!["a program adds systems of its own; this one has none".to_string()],
+                    false => choice(name, known),
+                };
                 diagnostics
                     .error_at(path.as_str(), format!("there is no system named `{name}` to give parameters to"))
-                    .notes(choice(name, known));
+                    .notes(notes);
             }
             Some(system) if !system.custom => {
                 diagnostics
