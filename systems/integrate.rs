@@ -135,7 +135,8 @@ fn move_nodes<T: Scalar>(
             let mut sum = Sum { u: &mut u[at.clone()], lost: compensation.as_mut().map(|c| &mut c[at.clone()]) };
             let work = work.as_mut().map(|w| &mut w[WORK_NUMBERS * row..WORK_NUMBERS * (row + 1)]);
             move_node(inputs, first + row, &mut sum, &mut step[at], work);
-            if !sum.u.iter().all(|x| x.to_f64().is_finite()) {
+            // what is not finite in one component is not finite in the sum
+            if !(sum.u[0] + sum.u[1] + sum.u[2]).to_f64().is_finite() {
                 bad.fetch_min((first + row) as u32, std::sync::atomic::Ordering::Relaxed);
             }
         }
@@ -182,14 +183,14 @@ fn move_node<T: Scalar>(
     let per_mass = one / mass;
     let coefficient = inputs.damping.map_or(zero, |c| c[node]);
     let a = coefficient * half_step * per_mass;
+    let shrink = if inputs.damping.is_some() { one / (one + divide * a) } else { one };
     for i in 0..3 {
         let internal = inputs.internal[3 * node + i];
         let external = inputs.external.map_or(zero, |r| r[3 * node + i]);
         let constrained = axes >> i & 1 == 1;
         let before = step[i];
         if !constrained {
-            let pushed = (one - a) * before + force_factor * ((external - internal) * per_mass);
-            step[i] = if inputs.damping.is_some() { pushed / (one + divide * a) } else { pushed };
+            step[i] = ((one - a) * before + force_factor * ((external - internal) * per_mass)) * shrink;
         }
         sum.add(i, step[i]);
         if let Some(work) = &mut work {

@@ -30,7 +30,7 @@ fn an_output_folder_is_drawn_as_its_scene_wants_or_as_told() {
     let told =
         ["--field", "displacement.z", "--from", "-1,-2,0.5", "--size", "400x300", "--at", "0.1", "--to", "a.png"];
     let said = place.done(&[&["render", "elsewhere"], &told[..]].concat());
-    assert!(said.contains("a.png  displacement.z, t = 0.09"), "{said}");
+    assert!(said.contains("a.png  displacement.z, t = 0.1"), "{said}");
     assert_eq!(fs::read(place.path("a.png")).unwrap()[16..24], [0, 0, 1, 144, 0, 0, 1, 44]);
 }
 
