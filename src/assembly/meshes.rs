@@ -54,6 +54,9 @@ pub(super) fn meshes(scene: &SceneFile, diagnostics: &mut Diagnostics) -> Vec<(S
     let mut meshes = Vec::new();
     for (name, body) in &scene.scene.bodies {
         let path = format!("bodies.\"{name}\".mesh");
+        if diagnostics.has_error_in(path.as_str()) {
+            continue;
+        }
         match mesh_of(body, &scene.folder) {
             Err(error) => {
                 diagnostics.error_at(path.as_str(), error.to_string());

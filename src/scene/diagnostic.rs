@@ -136,6 +136,14 @@ impl Diagnostics {
         self.push(Diagnostic::error(None, message))
     }
 
+    /// Whether an error has been told about the value at a path, or a part of it.
+    pub fn has_error_in(&self, path: impl Into<Path>) -> bool {
+        let Some(tree) = self.tree.as_ref() else { return false };
+        let within = path.into().span(&tree.root);
+        let inside = |at: &Span| within.start <= at.start && at.end <= within.end;
+        self.list.iter().any(|d| d.severity == Severity::Error && d.at.as_ref().is_some_and(inside))
+    }
+
     fn span(&self, path: &Path) -> Option<Span> {
         let tree = self.tree.as_ref()?;
         let span = path.span(&tree.root);
