@@ -61,16 +61,18 @@ fn element_removal(
         let Ok((_, displacement, step, ..)) = bodies.get(block.body) else { continue };
         let material = Material { law, fibre_direction: fibres.map(|f| &f.0), memory: memory.map(|m| &m.0) };
         let of_block: Vec<&RemovalCriterion> = criteria.iter().filter(|c| look && c.block == entity).collect();
-        let goes = |row: usize| {
-            alive[row] == 1
-                && (u64::from(by_time[row]) <= clock.step && by_time[row] != u32::MAX
-                    || of_block.iter().any(|c| {
-                        (c.rows.is_empty() || c.rows.binary_search(&(row as u32)).is_ok())
-                            && measure(c.measure, row, block.kind, connectivity, &shape, displacement, &material)
-                                > c.limit
-                    }))
+        let due = |row: usize| alive[row] == 1 && u64::from(by_time[row]) <= clock.step && by_time[row] != u32::MAX;
+        let passes = |row: usize, c: &RemovalCriterion| {
+            (c.rows.is_empty() || c.rows.binary_search(&(row as u32)).is_ok())
+                && measure(c.measure, row, block.kind, connectivity, &shape, displacement, &material) > c.limit
         };
-        let gone = rows_where(&cpu, block.count, goes);
+        // to look at the time alone is too little work to share
+        let gone = match of_block.is_empty() {
+            true => (0..block.count).filter(|&row| due(row)).collect(),
+            false => rows_where(&cpu, block.count, |row| {
+                due(row) || alive[row] == 1 && of_block.iter().any(|c| passes(row, c))
+            }),
+        };
         let density = densities.get(block.material).map_or(0.0, |(density, _)| density.0);
         for &row in &gone {
             let state = ElementState::of(block.kind, row, connectivity, &shape, displacement);

@@ -74,7 +74,7 @@ pub struct HowArguments {
     /// The number type; f64 is the reference and runs on the CPU only
     #[arg(long, value_enum, default_value_t = PrecisionName::F32)]
     pub precision: PrecisionName,
-    /// CPU threads; 0 is one a core. Results are the same for any number
+    /// CPU threads; 0 is one a core, or a single one for small bodies. Results are the same for any number
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub threads: u16,
 }

@@ -23,7 +23,7 @@ pub struct Options {
     pub backend: BackendChoice,
     /// The number type.
     pub precision: Precision,
-    /// CPU threads; 0: one a core.
+    /// CPU threads; 0: one a core, and one only for bodies too small to share.
     pub threads: usize,
     /// Which GPU, when there are several.
     pub gpu: Choice,

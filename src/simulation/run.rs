@@ -2,6 +2,7 @@
 
 use super::build::after_the_step;
 use super::{Entry, Job, Simulation};
+use crate::backend::cpu::Cpu;
 use crate::backend::device::{Device, bring_to_host, send_to_device};
 use crate::backend::kernel::KernelId;
 use crate::components::*;
@@ -38,12 +39,24 @@ impl Simulation {
     pub fn advance(&mut self, count: u64) -> Result<(), Error> {
         let started = Instant::now();
         let target = self.step_count() + count;
-        let mut result = Ok(());
-        while result.is_ok() && self.step_count() < target {
-            result = if self.facts.on_gpu { self.device_steps(target) } else { self.host_step() };
-        }
+        let pool = self.world.resource::<Cpu>().pool().filter(|_| !self.facts.on_gpu);
+        let result = match pool {
+            Some(pool) => pool.install(|| self.steps_to(target)),
+            None => self.steps_to(target),
+        };
         self.elapsed += started.elapsed();
         result
+    }
+
+    fn steps_to(&mut self, target: u64) -> Result<(), Error> {
+        while self.step_count() < target {
+            if self.facts.on_gpu {
+                self.device_steps(target)?;
+            } else {
+                self.host_step()?;
+            }
+        }
+        Ok(())
     }
 
     /// Observes the present state, whatever is due.

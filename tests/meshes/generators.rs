@@ -187,23 +187,3 @@ fn impossible_parameters_are_refused_with_what_is_allowed() {
         assert!(found.contains(expected), "found    {found}\nexpected {expected}");
     }
 }
-
-/// Run with `cargo test --release --test meshes -- --ignored --nocapture million`.
-#[test]
-#[ignore = "a measurement, meaningful in release builds only"]
-fn a_million_tetrahedra_are_made_and_skinned_fast() {
-    let start = std::time::Instant::now();
-    let mesh = box_mesh(DVec3::ONE, (55, 55, 55), ElementKind::Tet4).unwrap();
-    let made = start.elapsed();
-    let surface = mesh.surface();
-    let skinned = start.elapsed() - made;
-    let soundness = mesh.soundness();
-    println!(
-        "{} tetrahedra: made in {made:?}, surface of {} in {skinned:?}, sound {} in {:?}",
-        mesh.tets.len(),
-        surface.len(),
-        soundness.is_sound(),
-        start.elapsed() - made - skinned
-    );
-    assert!(made.as_secs_f64() < 0.3 && skinned.as_secs_f64() < 0.5);
-}
