@@ -112,6 +112,29 @@ impl ElementState {
     }
 }
 
+/// Adds a block's lumped masses (kg) and damping coefficients (kg/s) to its nodes', from the elements that still have
+/// volume: ρV over the nodes of each, and the damping rate (1/s) times that.
+pub fn add_nodal_masses(
+    block: &Block,
+    connectivity: &[u32],
+    shape: &Reals,
+    density: f64,
+    rate: f64,
+    mass: &mut [f64],
+    damping: &mut [f64],
+) {
+    let nodes = node_count(block.kind);
+    let volume_row = with_element!(block.kind, E => E::VOLUME_ROW);
+    for row in 0..block.count {
+        let share = density * shape.get(lane_place(row, row_count(block.kind), volume_row)) / nodes as f64;
+        for corner in 0..nodes {
+            let node = connectivity[lane_place(row, nodes, corner)] as usize;
+            mass[node] += share;
+            damping[node] += share * rate;
+        }
+    }
+}
+
 /// von Mises stress and pressure (Pa) of a Cauchy stress.
 pub fn von_mises_and_pressure(s: &[f64; 6]) -> (f64, f64) {
     let mean = (s[0] + s[1] + s[2]) / 3.0;

@@ -7,8 +7,8 @@ use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK};
 use crate::backend::kernel::{Fragment, Kernel, Uniform, uniform};
 use crate::backend::step::with_step;
 use crate::components::*;
-use crate::elements::{Element, Hex8, Tet4};
-use crate::evaluation::{ElementState, Material, lane_place, node_count, row_count, with_element};
+use crate::elements::Element;
+use crate::evaluation::{ElementState, Material, add_nodal_masses, lane_place, node_count, row_count, with_element};
 use crate::scene::schema::ElementKind;
 use crate::shader;
 use bevy_ecs::prelude::*;
@@ -161,19 +161,8 @@ fn weigh(
     let (mut masses, mut coefficients) = (vec![0.0; count], vec![0.0; count]);
     for (_, block, connectivity, shape, ..) in authoring.blocks.iter().filter_map(|&block| blocks.get(block).ok()) {
         let Ok((density, rate)) = materials.get(block.material) else { continue };
-        let nodes = node_count(block.kind);
-        let volume = match block.kind {
-            ElementKind::Tet4 => Tet4::VOLUME_ROW,
-            ElementKind::Hex8 => Hex8::VOLUME_ROW,
-        };
-        for row in 0..block.count {
-            let share = density.0 * shape.get(lane_place(row, row_count(block.kind), volume)) / nodes as f64;
-            for corner in 0..nodes {
-                let node = connectivity[lane_place(row, nodes, corner)] as usize;
-                masses[node] += share;
-                coefficients[node] += share * rate.map_or(0.0, |rate| rate.0);
-            }
-        }
+        let rate = rate.map_or(0.0, |rate| rate.0);
+        add_nodal_masses(block, connectivity, shape, density.0, rate, &mut masses, &mut coefficients);
     }
     (0..count).for_each(|node| mass.set(node, masses[node]));
     if let Some(damping) = damping {

@@ -3,8 +3,8 @@
 use super::Assembly;
 use crate::backend::cpu::BlockLaw;
 use crate::components::*;
-use crate::elements::{Element, Stiffness};
-use crate::evaluation::{lane_place, node_count, row_count, with_element};
+use crate::elements::Stiffness;
+use crate::evaluation::{add_nodal_masses, lane_place, node_count};
 use crate::materials::{Fibres, NeoHookean};
 use crate::math::LANES;
 use crate::mesh::Mesh;
@@ -104,16 +104,7 @@ pub fn nodal_masses(entities: &[Entity], count: usize, world: &World) -> (Vec<f6
     for (block, connectivity, shape) in blocks(entities, world) {
         let density = world.get::<Density>(block.material).map_or(0.0, |d| d.0);
         let rate = world.get::<Damping>(block.material).map_or(0.0, |d| d.0);
-        let nodes = node_count(block.kind);
-        let volume_row = with_element!(block.kind, E => E::VOLUME_ROW);
-        for row in 0..block.count {
-            let share = density * shape.get(lane_place(row, row_count(block.kind), volume_row)) / nodes as f64;
-            for corner in 0..nodes {
-                let node = connectivity[lane_place(row, nodes, corner)] as usize;
-                mass[node] += share;
-                damping[node] += share * rate;
-            }
-        }
+        add_nodal_masses(block, connectivity, shape, density, rate, &mut mass, &mut damping);
     }
     (mass, damping)
 }
