@@ -1,0 +1,206 @@
+//! A graph as a straight line of instructions over numbered slots, which a machine without branches can walk for a whole
+//! register of elements at a time.
+
+use super::graph::{Binary, Graph, Id, Node, Unary};
+use super::Untranslatable;
+use crate::math::Real;
+
+/// Slots that a program may use: constants, inputs and what lives at the same time.
+pub const SLOTS: usize = 256;
+
+/// What an instruction does. Products that go into sums are one instruction with them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Code {
+    Unary(Unary),
+    Binary(Binary),
+    /// a b + c
+    MultiplyAdd,
+    /// a b − c
+    MultiplySubtract,
+    /// c − a b
+    NegativeMultiplyAdd,
+    /// b where a > 0, else c
+    Select,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Instruction {
+    code: Code,
+    to: u8,
+    a: u8,
+    b: u8,
+    c: u8,
+}
+
+/// A function of numbers without control flow: runs over any [`Real`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Program {
+    inputs: usize,
+    constants: Vec<f64>,
+    instructions: Vec<Instruction>,
+    outputs: Vec<u8>,
+    slots: usize,
+}
+
+/// Where a program keeps its numbers: inputs first, then constants, which stay.
+pub type Slots<R> = [R; SLOTS];
+
+impl Program {
+    /// Lays a graph out for the outputs that are wanted; what they do not need is left out.
+    pub(super) fn new(graph: &Graph, inputs: usize, outputs: &[Id]) -> Result<Self, Untranslatable> {
+        let fused = fused(graph, outputs);
+        let mut last = vec![None; graph.nodes().len()];
+        for output in outputs {
+            last[output.index()] = Some(usize::MAX);
+        }
+        for index in (0..graph.nodes().len()).rev() {
+            if last[index].is_some() {
+                for operand in operands(&fused, index) {
+                    last[operand.index()] = last[operand.index()].max(Some(index));
+                }
+            }
+        }
+        let mut places = vec![None; graph.nodes().len()];
+        let mut constants = Vec::new();
+        for (index, node) in graph.nodes().iter().enumerate().filter(|(index, _)| last[*index].is_some()) {
+            match node {
+                Node::Input(number) => places[index] = Some(usize::from(*number)),
+                Node::Constant(bits) => {
+                    places[index] = Some(inputs + constants.len());
+                    constants.push(f64::from_bits(*bits));
+                }
+                _ => {}
+            }
+        }
+        let mut free = FreeSlots { used: inputs + constants.len(), free: Vec::new() };
+        let mut instructions = Vec::new();
+        for (index, step) in fused.iter().enumerate() {
+            let (Some((code, arguments)), Some(_)) = (step, last[index]) else { continue };
+            let at = |k: usize| arguments.get(k).and_then(|id| places[id.index()]).unwrap_or(0) as u8;
+            let (a, b, c) = (at(0), at(1), at(2));
+            for (k, operand) in arguments.iter().enumerate() {
+                let dies = last[operand.index()] == Some(index) && !arguments[..k].contains(operand);
+                let lasting = matches!(graph.node(*operand), Node::Constant(_));
+                if let Some(place) = places[operand.index()].filter(|_| dies && !lasting) {
+                    free.free.push(place);
+                }
+            }
+            let to = free.take();
+            places[index] = Some(to);
+            instructions.push(Instruction { code: *code, to: to as u8, a, b, c });
+        }
+        if free.used > SLOTS {
+            let message = format!("this needs {} numbers at the same time; {SLOTS} are there", free.used);
+            return Err(Untranslatable::new(naga::Span::UNDEFINED, message)
+                .note("use results soon after they are computed, and fewer different constants"));
+        }
+        let outputs = outputs.iter().map(|id| places[id.index()].unwrap_or(0) as u8).collect();
+        Ok(Self { inputs, constants, instructions, outputs, slots: free.used })
+    }
+
+    /// Slots with the constants in their places, for numbers like one.
+    #[inline(always)]
+    pub fn slots<R: Real>(&self, like: R) -> Slots<R> {
+        let mut slots = [like; SLOTS];
+        for (slot, constant) in slots[self.inputs..].iter_mut().zip(&self.constants) {
+            *slot = like.constant(*constant);
+        }
+        slots
+    }
+
+    /// Runs on the inputs that stand at the beginning of the slots. The number `k` of the result is found by
+    /// [`output`](Self::output).
+    #[inline(always)]
+    pub fn run<R: Real>(&self, slots: &mut Slots<R>) {
+        for i in &self.instructions {
+            let (a, b) = (slots[usize::from(i.a)], slots[usize::from(i.b)]);
+            let result = match i.code {
+                Code::Unary(function) => function.of(a),
+                Code::Binary(function) => function.of(a, b),
+                Code::MultiplyAdd => a.mul_add(b, slots[usize::from(i.c)]),
+                Code::MultiplySubtract => a.mul_add(b, -slots[usize::from(i.c)]),
+                Code::NegativeMultiplyAdd => (-a).mul_add(b, slots[usize::from(i.c)]),
+                Code::Select => a.if_positive(b, slots[usize::from(i.c)]),
+            };
+            slots[usize::from(i.to)] = result;
+        }
+    }
+
+    /// A number of the result.
+    #[inline(always)]
+    pub fn output<R: Real>(&self, slots: &Slots<R>, number: usize) -> R {
+        slots[usize::from(self.outputs[number])]
+    }
+
+    /// The result for one set of inputs.
+    pub fn of<R: Real, const N: usize>(&self, like: R, inputs: &[R]) -> [R; N] {
+        let mut slots = self.slots(like);
+        slots[..self.inputs].copy_from_slice(inputs);
+        self.run(&mut slots);
+        std::array::from_fn(|number| self.output(&slots, number))
+    }
+
+    /// Instructions, constants, and slots in use at the same time.
+    pub fn size(&self) -> (usize, usize, usize) {
+        (self.instructions.len(), self.constants.len(), self.slots)
+    }
+}
+
+struct FreeSlots {
+    used: usize,
+    free: Vec<usize>,
+}
+
+impl FreeSlots {
+    fn take(&mut self) -> usize {
+        self.free.pop().unwrap_or_else(|| {
+            self.used += 1;
+            self.used - 1
+        })
+    }
+}
+
+type Step = Option<(Code, Vec<Id>)>;
+
+/// The instruction of each value, none for inputs and constants. A product that only a sum uses goes into it.
+fn fused(graph: &Graph, outputs: &[Id]) -> Vec<Step> {
+    let mut uses = vec![0_usize; graph.nodes().len()];
+    for output in outputs {
+        uses[output.index()] += 1;
+    }
+    for index in (0..graph.nodes().len()).rev() {
+        if uses[index] > 0 {
+            match graph.nodes()[index] {
+                Node::Unary(_, a) => uses[a.index()] += 1,
+                Node::Binary(_, a, b) => [a, b].iter().for_each(|id| uses[id.index()] += 1),
+                Node::Select(a, b, c) => [a, b, c].iter().for_each(|id| uses[id.index()] += 1),
+                Node::Input(_) | Node::Constant(_) => {}
+            }
+        }
+    }
+    let product = |id: Id| match graph.node(id) {
+        Node::Binary(Binary::Multiply, a, b) if uses[id.index()] == 1 => Some((a, b)),
+        _ => None,
+    };
+    let step = |node: &Node| match *node {
+        Node::Input(_) | Node::Constant(_) => None,
+        Node::Binary(Binary::Add, x, y) => Some(match (product(x), product(y)) {
+            (_, Some((a, b))) => (Code::MultiplyAdd, vec![a, b, x]),
+            (Some((a, b)), None) => (Code::MultiplyAdd, vec![a, b, y]),
+            _ => (Code::Binary(Binary::Add), vec![x, y]),
+        }),
+        Node::Binary(Binary::Subtract, x, y) => Some(match (product(x), product(y)) {
+            (Some((a, b)), _) => (Code::MultiplySubtract, vec![a, b, y]),
+            (None, Some((a, b))) => (Code::NegativeMultiplyAdd, vec![a, b, x]),
+            _ => (Code::Binary(Binary::Subtract), vec![x, y]),
+        }),
+        Node::Unary(function, a) => Some((Code::Unary(function), vec![a])),
+        Node::Binary(function, a, b) => Some((Code::Binary(function), vec![a, b])),
+        Node::Select(a, b, c) => Some((Code::Select, vec![a, b, c])),
+    };
+    graph.nodes().iter().map(step).collect()
+}
+
+fn operands(steps: &[Step], index: usize) -> impl Iterator<Item = Id> + '_ {
+    steps[index].iter().flat_map(|(_, arguments)| arguments.iter().copied())
+}

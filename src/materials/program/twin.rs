@@ -1,0 +1,137 @@
+//! WGSL text read in double precision: the same text with `f64` for `f32`, from which naga folds constants such as
+//! 1.0 / 3.0 to all their digits. WGSL itself knows no `f64`; naga does.
+
+use std::ops::Range;
+
+/// The text in double precision, and where each changed word came from.
+pub(super) struct Twin {
+    pub(super) text: String,
+    /// Bytes in the twin and in the original of each word that changed.
+    changed: Vec<(Range<usize>, Range<usize>)>,
+}
+
+impl Twin {
+    /// Changes the words of a text that parses: float types, and numbers with a point or an exponent.
+    pub(super) fn new(original: &str) -> Self {
+        let mut twin = Self { text: String::with_capacity(original.len() * 5 / 4), changed: Vec::new() };
+        let mut at = 0;
+        while at < original.len() {
+            let rest = &original[at..];
+            let length = token(rest);
+            let word = &rest[..length];
+            if let Some(other) = double(word) {
+                let start = twin.text.len();
+                twin.text.push_str(&other);
+                twin.changed.push((start..twin.text.len(), at..at + length));
+            } else {
+                twin.text.push_str(word);
+            }
+            at += length;
+        }
+        twin
+    }
+
+    /// The place in the original of a place in the twin.
+    pub(super) fn original(&self, range: Range<usize>) -> Range<usize> {
+        self.place(range.start, false)..self.place(range.end, true)
+    }
+
+    fn place(&self, at: usize, end: bool) -> usize {
+        let before = self.changed.partition_point(|(word, _)| if end { word.start < at } else { word.start <= at });
+        match before.checked_sub(1).and_then(|last| self.changed.get(last)) {
+            None => at,
+            Some((word, original)) if at < word.end => if end { original.end } else { original.start },
+            Some((word, original)) => original.end + (at - word.end),
+        }
+    }
+}
+
+/// Length of the first token: a word, a number, a comment, or one other character.
+fn token(text: &str) -> usize {
+    let word = |c: char| c.is_alphanumeric() || c == '_';
+    let mut characters = text.chars();
+    let (first, second) = (characters.next(), characters.next());
+    match first {
+        Some('/') if second == Some('/') => text.find('\n').unwrap_or(text.len()),
+        Some('/') if second == Some('*') => block_comment(text),
+        Some(c) if c.is_ascii_digit() || (c == '.' && second.is_some_and(|c| c.is_ascii_digit())) => number(text),
+        Some(c) if word(c) => text.find(|c| !word(c)).unwrap_or(text.len()),
+        Some(c) => c.len_utf8(),
+        None => 0,
+    }
+}
+
+/// Block comments may stand within each other.
+fn block_comment(text: &str) -> usize {
+    let (mut depth, mut at) = (0, 0);
+    while at < text.len() {
+        if text[at..].starts_with("/*") {
+            (depth, at) = (depth + 1, at + 2);
+        } else if text[at..].starts_with("*/") {
+            (depth, at) = (depth - 1, at + 2);
+            if depth == 0 {
+                return at;
+            }
+        } else {
+            at += text[at..].chars().next().map_or(1, char::len_utf8);
+        }
+    }
+    text.len()
+}
+
+fn number(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let hexadecimal = text.starts_with("0x") || text.starts_with("0X");
+    let mut at = 0;
+    while at < bytes.len() {
+        let exponent = matches!(bytes[at], b'e' | b'E') && !hexadecimal || matches!(bytes[at], b'p' | b'P');
+        let sign = exponent && matches!(bytes.get(at + 1), Some(b'+' | b'-'));
+        match bytes[at] {
+            b'.' => at += 1,
+            c if c.is_ascii_alphanumeric() => at += if sign { 2 } else { 1 },
+            _ => break,
+        }
+    }
+    at
+}
+
+/// What stands for a word in double precision, where that is another.
+fn double(word: &str) -> Option<String> {
+    if word == "f32" {
+        return Some("f64".to_owned());
+    }
+    if word.starts_with(|c: char| c.is_ascii_digit()) || (word.starts_with('.') && word.len() > 1) {
+        let hexadecimal = word.starts_with("0x") || word.starts_with("0X");
+        let digits = if hexadecimal && !word.contains(['p', 'P', '.']) { word } else { word.trim_end_matches('f') };
+        let float = digits.len() < word.len()
+            || word.contains('.')
+            || (!hexadecimal && word.contains(['e', 'E']))
+            || word.contains(['p', 'P']);
+        return float.then(|| format!("{digits}lf"));
+    }
+    // vec3f, mat3x3f
+    let stem = word.strip_suffix('f')?;
+    let size = |text: &str| matches!(text, "2" | "3" | "4");
+    let known = stem.strip_prefix("vec").is_some_and(size)
+        || stem.strip_prefix("mat").and_then(|sizes| sizes.split_once('x')).is_some_and(|(a, b)| size(a) && size(b));
+    known.then(|| format!("{stem}<f64>"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_change_and_places_lead_back() {
+        let text = "// 1.0 f32\nfn f(x: f32, v: vec3f) -> f32 { let a = 2.5e-3 + 1f; return x * v.x + .5 /* 1.0 */ - f32(3) * b2; }";
+        let twin = Twin::new(text);
+        let expected = "// 1.0 f32\nfn f(x: f64, v: vec3<f64>) -> f64 { let a = 2.5e-3lf + 1lf; return x * v.x + .5lf /* 1.0 */ - f64(3) * b2; }";
+        assert_eq!(twin.text, expected);
+        for word in ["return", "b2", "v.x", "let", "-> ", "*/ -", "(3)"] {
+            let at = twin.text.find(word).unwrap_or(0);
+            assert_eq!(&text[twin.original(at..at + word.len())], word);
+        }
+        let at = twin.text.find("2.5e-3lf").unwrap_or(0);
+        assert_eq!(&text[twin.original(at..at + 8)], "2.5e-3");
+    }
+}
