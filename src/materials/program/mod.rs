@@ -13,7 +13,7 @@ mod translate;
 mod twin;
 mod value;
 
-pub use tape::{Program, SLOTS, Slots};
+pub use tape::{Program, SLOTS};
 
 use graph::Graph;
 use naga::{AddressSpace, Module, Span, TypeInner};

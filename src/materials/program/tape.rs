@@ -42,9 +42,6 @@ pub struct Program {
     slots: usize,
 }
 
-/// Where a program keeps its numbers: inputs first, then constants, which stay.
-pub type Slots<R> = [R; SLOTS];
-
 impl Program {
     /// Lays a graph out for the outputs that are wanted; what they do not need is left out.
     pub(super) fn new(graph: &Graph, inputs: usize, outputs: &[Id]) -> Result<Self, Untranslatable> {
@@ -98,46 +95,49 @@ impl Program {
         Ok(Self { inputs, constants, instructions, outputs, slots: free.used })
     }
 
-    /// Slots with the constants in their places, for numbers like one.
+    /// The result for some inputs: the numbers of all arguments in order, and as many as the function returns.
     #[inline(always)]
-    pub fn slots<R: Real>(&self, like: R) -> Slots<R> {
-        let mut slots = [like; SLOTS];
-        for (slot, constant) in slots[self.inputs..].iter_mut().zip(&self.constants) {
-            *slot = like.constant(*constant);
+    pub fn run<R: Real, const INPUTS: usize, const OUTPUTS: usize>(&self, inputs: [R; INPUTS]) -> [R; OUTPUTS] {
+        debug_assert!(INPUTS == self.inputs && OUTPUTS == self.outputs.len(), "not this program's numbers");
+        // what is not touched need not be made
+        match self.slots {
+            0..=16 => self.walk::<R, INPUTS, OUTPUTS, 16>(inputs),
+            17..=64 => self.walk::<R, INPUTS, OUTPUTS, 64>(inputs),
+            _ => self.walk::<R, INPUTS, OUTPUTS, SLOTS>(inputs),
         }
-        slots
     }
 
-    /// Runs on the inputs that stand at the beginning of the slots. The number `k` of the result is found by
-    /// [`output`](Self::output).
+    /// `COUNT` is a power of two that is at least the number of slots, so that no index needs to be checked.
     #[inline(always)]
-    pub fn run<R: Real>(&self, slots: &mut Slots<R>) {
+    fn walk<R: Real, const INPUTS: usize, const OUTPUTS: usize, const COUNT: usize>(
+        &self,
+        inputs: [R; INPUTS],
+    ) -> [R; OUTPUTS] {
+        let at = |place: u8| usize::from(place) & (COUNT - 1);
+        let like = inputs[0];
+        let mut slots = [like; COUNT];
+        for (number, input) in inputs.into_iter().enumerate() {
+            slots[number & (COUNT - 1)] = input;
+        }
+        for (number, constant) in self.constants.iter().enumerate() {
+            slots[(INPUTS + number) & (COUNT - 1)] = like.constant(*constant);
+        }
         for i in &self.instructions {
-            let (a, b) = (slots[usize::from(i.a)], slots[usize::from(i.b)]);
-            let result = match i.code {
+            let (a, b, c) = (slots[at(i.a)], slots[at(i.b)], slots[at(i.c)]);
+            slots[at(i.to)] = match i.code {
                 Code::Unary(function) => function.of(a),
                 Code::Binary(function) => function.of(a, b),
-                Code::MultiplyAdd => a.mul_add(b, slots[usize::from(i.c)]),
-                Code::MultiplySubtract => a.mul_add(b, -slots[usize::from(i.c)]),
-                Code::NegativeMultiplyAdd => (-a).mul_add(b, slots[usize::from(i.c)]),
-                Code::Select => a.if_positive(b, slots[usize::from(i.c)]),
+                Code::MultiplyAdd => a.mul_add(b, c),
+                Code::MultiplySubtract => a.mul_add(b, -c),
+                Code::NegativeMultiplyAdd => (-a).mul_add(b, c),
+                Code::Select => a.if_positive(b, c),
             };
-            slots[usize::from(i.to)] = result;
         }
-    }
-
-    /// A number of the result.
-    #[inline(always)]
-    pub fn output<R: Real>(&self, slots: &Slots<R>, number: usize) -> R {
-        slots[usize::from(self.outputs[number])]
-    }
-
-    /// The result for one set of inputs.
-    pub fn of<R: Real, const N: usize>(&self, like: R, inputs: &[R]) -> [R; N] {
-        let mut slots = self.slots(like);
-        slots[..self.inputs].copy_from_slice(inputs);
-        self.run(&mut slots);
-        std::array::from_fn(|number| self.output(&slots, number))
+        let mut outputs = [like; OUTPUTS];
+        for (output, place) in outputs.iter_mut().zip(&self.outputs) {
+            *output = slots[at(*place)];
+        }
+        outputs
     }
 
     /// Instructions, constants, and slots in use at the same time.
