@@ -40,8 +40,10 @@ uniform!(PronyTerm<f32> { stress, memory, rate, aim });
 /// A law's WGSL twin, its parameters, and how they are laid out.
 struct ElasticPart {
     fragment: Fragment,
+    /// Empty for a law without parameters.
     bytes: Vec<u8>,
-    layout: Layout,
+    /// None where the bytes were laid out by reflection.
+    layout: Option<Layout>,
 }
 
 macro_rules! elastic_parts {
@@ -52,8 +54,13 @@ macro_rules! elastic_parts {
                     $(ElasticLaw::$law(law) => Self {
                         fragment: shader!($stem),
                         bytes: law.bytes(),
-                        layout: <$law<f32> as Uniform>::LAYOUT,
+                        layout: Some(<$law<f32> as Uniform>::LAYOUT),
                     },)*
+                    ElasticLaw::UserLaw(law) => Self {
+                        fragment: Fragment::new(law.parts().path.as_str(), law.parts().text.as_str()),
+                        bytes: law.parts().uniform.clone(),
+                        layout: None,
+                    },
                 }
             }
         }
@@ -71,7 +78,7 @@ pub(crate) struct BlockKernels {
     label: String,
     columns: [BufferId; 2],
     parameters: BufferId,
-    elastic: BufferId,
+    elastic: Option<BufferId>,
     fibres: Option<(BufferId, BufferId)>,
 }
 
@@ -97,8 +104,9 @@ impl BlockKernels {
         let columns = [buffers.column(block.body, Displacement::NAME), buffers.column(entity, Connectivity::NAME)];
         let parameters = Block { count: block.count as u32, force_offset: block.force_offset as u32 };
         let parameters = buffers.uniform(format!("block of {label}"), &parameters.bytes());
-        let elastic = buffers
-            .uniform(format!("{} of {label}", law.elastic.name()), &ElasticPart::of(&law.elastic).bytes);
+        let bytes = ElasticPart::of(&law.elastic).bytes;
+        let elastic =
+            (!bytes.is_empty()).then(|| buffers.uniform(format!("{} of {label}", law.elastic.name()), &bytes));
         let fibres = law.fibres.as_ref().map(|(fibres, uniform)| {
             let direction = match uniform {
                 Some([x, y, z]) => {
@@ -132,12 +140,14 @@ impl BlockKernels {
             .fragment(shader!("finite_strain"))
             .fragment(shader!("volume_ratio"))
             .bind_uniform::<Block>("block", self.parameters)
-            .bind("elastic", self.elastic)
             .bind("displacement", self.columns[0])
             .bind("connectivity", self.columns[1])
             .threads(self.block.count as u32);
-        kernel.layouts.push(("elastic", elastic.layout));
-        kernel
+        kernel.layouts.extend(elastic.layout.map(|layout| ("elastic", layout)));
+        match self.elastic {
+            Some(buffer) => kernel.bind("elastic", buffer),
+            None => kernel,
+        }
     }
 
     /// Adds where the element type's pressure comes from.

@@ -7,6 +7,7 @@ pub(crate) mod face_kernel;
 pub mod gpu;
 pub mod kernel;
 pub mod step;
+pub mod user_law;
 
 use bevy_ecs::prelude::*;
 use kernel::BufferId;

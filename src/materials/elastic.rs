@@ -1,6 +1,6 @@
 //! What an elastic law is, and the list of those there are.
 
-use super::{Kinematics, NeoHookean};
+use super::{Kinematics, NeoHookean, UserLaw};
 use crate::math::{Mat3, Real, Scalar, Sym3};
 
 /// An isotropic elastic law over the numbers `R`: Ψ = Ψ_iso + U(θ), so that S = S_iso + U'(θ) ∂θ/∂E.
@@ -55,11 +55,12 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
     fn small_strain_moduli(&self) -> [R; 2];
 }
 
-/// All elastic laws: type and name. One line here makes a law known to both backends.
+/// All elastic laws with a WGSL file of ours: type and name. One line here makes a law known to both backends.
 macro_rules! each_elastic_law {
-    ($then:ident) => {
+    ($then:ident $($more:tt)*) => {
         $then! {
             NeoHookean = "neo_hookean";
+            $($more)*
         }
     };
 }
@@ -180,4 +181,4 @@ macro_rules! elastic_laws {
         }
     };
 }
-each_elastic_law!(elastic_laws);
+each_elastic_law!(elastic_laws UserLaw = "law";);

@@ -7,7 +7,9 @@ mod elastic;
 mod fibres;
 mod kinematics;
 mod neo_hookean;
+pub mod program;
 mod prony;
+mod user_law;
 
 pub(crate) use elastic::each_elastic_law;
 pub use elastic::{Elastic, ElasticLaw, WithElastic};
@@ -15,3 +17,4 @@ pub use fibres::Fibres;
 pub use kinematics::{J_FLOOR, Kinematics};
 pub use neo_hookean::NeoHookean;
 pub use prony::PronyTerm;
+pub use user_law::{LawPrograms, UserLaw};

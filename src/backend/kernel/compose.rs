@@ -5,7 +5,7 @@ use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{Module, ResourceBinding, ShaderStage};
 
 use super::diagnose::Sources;
-use super::reflect::{binding, members};
+use super::reflect::{binding, members, type_name};
 use super::{Binding, BindingKind, Fragment, KernelError, Member, STEP_VARIABLE};
 
 /// A compute entry point.
@@ -115,6 +115,13 @@ impl Composed {
             name: name.to_owned(),
             found: self.structs.iter().map(|s| s.name.clone()).collect(),
         })
+    }
+
+    /// Types of the arguments of a WGSL function, and of its result.
+    pub fn signature(&self, name: &str) -> Option<(Vec<String>, Option<String>)> {
+        let (_, function) = self.module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(name))?;
+        let arguments = function.arguments.iter().map(|argument| type_name(&self.module, argument.ty)).collect();
+        Some((arguments, function.result.as_ref().map(|result| type_name(&self.module, result.ty))))
     }
 
     /// A binding by the name of its variable.

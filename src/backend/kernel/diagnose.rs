@@ -27,6 +27,10 @@ pub enum KernelError {
         message: String,
         /// The whole text for a person, with the source lines.
         report: String,
+        /// Fragment, bytes in it, and a word on each place that matters; the place at fault first.
+        places: Vec<(String, Range<usize>, String)>,
+        /// More on what is wrong.
+        notes: Vec<String>,
     },
     /// The entry point is not there.
     #[error("kernel `{label}`: no compute entry point `{entry}` in {paths}; there is {}", listed(found))]
@@ -172,10 +176,15 @@ impl Sources {
             Some(place) => self.position(place.file_id, place.range.start),
             None => (String::new(), 0, 0),
         };
-        let diagnostic = Diagnostic::error().with_message(&message).with_labels(places).with_notes(notes);
+        let named = |place: &Label<usize>| {
+            (self.files.name(place.file_id).unwrap_or_default(), place.range.clone(), place.message.clone())
+        };
+        let found = places.iter().map(named).collect();
+        let diagnostic =
+            Diagnostic::error().with_message(&message).with_labels(places).with_notes(notes.clone());
         let report = term::emit_into_string(&term::Config::default(), &self.files, &diagnostic);
         let report = report.map_or_else(|_| format!("{path}:{line}:{column}: {message}"), |r| r.trim_end().to_owned());
-        KernelError::Wgsl { path, line, column, message, report }
+        KernelError::Wgsl { path, line, column, message, report, places: found, notes }
     }
 
     /// The fragment, and the bytes in it, that a range of the whole text begins in.

@@ -12,8 +12,10 @@ mod tape;
 mod translate;
 mod twin;
 mod value;
+mod words;
 
 pub use tape::{Program, SLOTS};
+pub(crate) use words::{is_name, words};
 
 use graph::Graph;
 use naga::{AddressSpace, Module, Span, TypeInner};
@@ -44,6 +46,9 @@ impl Untranslatable {
         self
     }
 }
+
+/// Functions of ours that look at the bits of a number: what they mean is known by their names.
+pub const KNOWN_BY_NAME: [&str; 1] = ["inverse_cbrt"];
 
 const NOT_ALLOWED: &str = "this is not possible in a law of one's own";
 const FUNCTIONS: &str = "allowed: abs, all, any, clamp, cross, determinant, distance, dot, exp, exp2, fma, inverseSqrt, \

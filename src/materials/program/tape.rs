@@ -33,7 +33,7 @@ struct Instruction {
 }
 
 /// A function of numbers without control flow: runs over any [`Real`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct Program {
     inputs: usize,
     constants: Vec<f64>,
@@ -102,7 +102,8 @@ impl Program {
         // what is not touched need not be made
         match self.slots {
             0..=16 => self.walk::<R, INPUTS, OUTPUTS, 16>(inputs),
-            17..=64 => self.walk::<R, INPUTS, OUTPUTS, 64>(inputs),
+            17..=32 => self.walk::<R, INPUTS, OUTPUTS, 32>(inputs),
+            33..=64 => self.walk::<R, INPUTS, OUTPUTS, 64>(inputs),
             _ => self.walk::<R, INPUTS, OUTPUTS, SLOTS>(inputs),
         }
     }
@@ -138,6 +139,15 @@ impl Program {
             *output = slots[at(*place)];
         }
         outputs
+    }
+
+    /// Whether it is the same, bit by bit.
+    pub(crate) fn is(&self, other: &Self) -> bool {
+        let bits = |program: &Self| program.constants.iter().map(|c| c.to_bits()).collect::<Vec<_>>();
+        self.inputs == other.inputs
+            && self.instructions == other.instructions
+            && self.outputs == other.outputs
+            && bits(self) == bits(other)
     }
 
     /// Instructions, constants, and slots in use at the same time.

@@ -1,7 +1,7 @@
 //! From the statements of a WGSL function to a graph. What a branch or a loop does is done for every element and chosen
 //! from afterwards, so that no control flow is left.
 
-use super::graph::{Graph, Id, Unary};
+use super::graph::{Graph, Unary};
 use super::value::{Place, Test, Value, Variable};
 use super::{NOT_ALLOWED, Untranslatable};
 use naga::{Arena, Block, Expression, Function, Handle, Module, Span, Statement, SwitchValue};
@@ -329,14 +329,6 @@ impl<'m> Translator<'m> {
         *target = chosen.with_whole_numbers_of(Some(&value));
         frame.state.loose[number] |= running != Test::Known(true);
         Ok(())
-    }
-
-    /// A single number of the graph.
-    pub(super) fn float(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<Id> {
-        match self.value(frame, handle)? {
-            Value::Float(id) => Ok(id),
-            _ => Err(Untranslatable::new(frame.expressions.get_span(handle), NOT_ALLOWED)),
-        }
     }
 }
 

@@ -1,6 +1,7 @@
 //! WGSL text read in double precision: the same text with `f64` for `f32`, from which naga folds constants such as
 //! 1.0 / 3.0 to all their digits. WGSL itself knows no `f64`; naga does.
 
+use super::words::words;
 use std::ops::Range;
 
 /// The text in double precision, and where each changed word came from.
@@ -14,19 +15,16 @@ impl Twin {
     /// Changes the words of a text that parses: float types, and numbers with a point or an exponent.
     pub(super) fn new(original: &str) -> Self {
         let mut twin = Self { text: String::with_capacity(original.len() * 5 / 4), changed: Vec::new() };
-        let mut at = 0;
-        while at < original.len() {
-            let rest = &original[at..];
-            let length = token(rest);
-            let word = &rest[..length];
-            if let Some(other) = double(word) {
-                let start = twin.text.len();
-                twin.text.push_str(&other);
-                twin.changed.push((start..twin.text.len(), at..at + length));
-            } else {
-                twin.text.push_str(word);
+        for range in words(original) {
+            let word = &original[range.clone()];
+            match double(word) {
+                Some(other) => {
+                    let start = twin.text.len();
+                    twin.text.push_str(&other);
+                    twin.changed.push((start..twin.text.len(), range));
+                }
+                None => twin.text.push_str(word),
             }
-            at += length;
         }
         twin
     }
@@ -44,55 +42,6 @@ impl Twin {
             Some((word, original)) => original.end + (at - word.end),
         }
     }
-}
-
-/// Length of the first token: a word, a number, a comment, or one other character.
-fn token(text: &str) -> usize {
-    let word = |c: char| c.is_alphanumeric() || c == '_';
-    let mut characters = text.chars();
-    let (first, second) = (characters.next(), characters.next());
-    match first {
-        Some('/') if second == Some('/') => text.find('\n').unwrap_or(text.len()),
-        Some('/') if second == Some('*') => block_comment(text),
-        Some(c) if c.is_ascii_digit() || (c == '.' && second.is_some_and(|c| c.is_ascii_digit())) => number(text),
-        Some(c) if word(c) => text.find(|c| !word(c)).unwrap_or(text.len()),
-        Some(c) => c.len_utf8(),
-        None => 0,
-    }
-}
-
-/// Block comments may stand within each other.
-fn block_comment(text: &str) -> usize {
-    let (mut depth, mut at) = (0, 0);
-    while at < text.len() {
-        if text[at..].starts_with("/*") {
-            (depth, at) = (depth + 1, at + 2);
-        } else if text[at..].starts_with("*/") {
-            (depth, at) = (depth - 1, at + 2);
-            if depth == 0 {
-                return at;
-            }
-        } else {
-            at += text[at..].chars().next().map_or(1, char::len_utf8);
-        }
-    }
-    text.len()
-}
-
-fn number(text: &str) -> usize {
-    let bytes = text.as_bytes();
-    let hexadecimal = text.starts_with("0x") || text.starts_with("0X");
-    let mut at = 0;
-    while at < bytes.len() {
-        let exponent = matches!(bytes[at], b'e' | b'E') && !hexadecimal || matches!(bytes[at], b'p' | b'P');
-        let sign = exponent && matches!(bytes.get(at + 1), Some(b'+' | b'-'));
-        match bytes[at] {
-            b'.' => at += 1,
-            c if c.is_ascii_alphanumeric() => at += if sign { 2 } else { 1 },
-            _ => break,
-        }
-    }
-    at
 }
 
 /// What stands for a word in double precision, where that is another.
