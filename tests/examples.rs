@@ -7,7 +7,7 @@ mod custom_system;
 #[path = "../examples/embed.rs"]
 mod embed;
 
-use sinew::{BackendChoice, SceneFile};
+use sinew::{BackendChoice, Options, SceneFile, Simulation};
 
 #[test]
 fn embed_runs() {
@@ -23,6 +23,23 @@ fn custom_system_pulls_alike_on_both_backends() {
     if sinew::backend::gpu::gpu_or_reason().is_some() {
         let gpu = custom_system::run(&scene, BackendChoice::Gpu, None).unwrap();
         assert!((gpu - cpu).abs() < 1e-4 * cpu, "{gpu} m on the GPU, {cpu} m on the CPU");
+    }
+}
+
+/// P = μ exp(b (Ī₁ − 3)) (λ − λ^(−2)) of a strip that keeps its volume, which this one does to 1 %.
+#[test]
+fn own_law_pulls_a_strip_as_its_closed_form_says_on_both_backends() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/own_law.ron");
+    let scene = SceneFile::load(path, &[]).unwrap();
+    let stretch: f64 = 1.4;
+    let invariant = stretch.powi(2) + 2.0 / stretch - 3.0;
+    let expected = 2000.0 * (2.0 * invariant).exp() * (stretch - stretch.powi(-2)) * 0.01 * 0.005;
+    let gpu = sinew::backend::gpu::gpu_or_reason().map(|_| BackendChoice::Gpu);
+    for backend in std::iter::once(BackendChoice::Cpu).chain(gpu) {
+        let mut run = Simulation::new(&scene, &Options { backend, ..Options::default() }).unwrap();
+        run.advance_to(0.6).unwrap();
+        let force = run.probe("grip").unwrap()[0];
+        assert!((force / expected - 1.0).abs() < 0.02, "{backend:?}: {force} N instead of {expected} N");
     }
 }
 
@@ -44,7 +61,7 @@ fn scenes_in_the_readme_are_sound() {
 #[test]
 fn links_and_paths_in_the_guides_lead_somewhere() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-    for guide in ["README.md", "docs/physics.md", "docs/systems.md", "docs/scene.md"] {
+    for guide in ["README.md", "docs/physics.md", "docs/systems.md", "docs/laws.md", "docs/scene.md"] {
         let text = std::fs::read_to_string(root.join(guide)).unwrap();
         let folder = root.join(guide).parent().unwrap().to_path_buf();
         for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {

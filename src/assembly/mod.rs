@@ -11,6 +11,7 @@ mod observation;
 mod removal;
 mod select;
 mod time_step;
+mod user_laws;
 
 pub use body::BodyParts;
 pub use meshes::{PlacedMesh, mesh_of};
@@ -48,10 +49,11 @@ pub fn assemble<'a>(
 ) -> Option<Assembly<'a>> {
     crate::scene::validate(scene, diagnostics);
     let meshes = meshes::meshes(scene, diagnostics);
+    let mut laws = user_laws::read(scene, diagnostics);
     if diagnostics.has_errors() {
         return None;
     }
-    let materials = spawn_materials(&scene.scene, world);
+    let materials = spawn_materials(&scene.scene, &mut laws, world);
     world.insert_resource(Signals::default());
     let mut assembly = Assembly { scene, precision, bodies: BTreeMap::new(), materials };
     for (name, mesh) in meshes {
@@ -76,13 +78,20 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     columns::start(assembly, world);
 }
 
-fn spawn_materials(scene: &schema::Scene, world: &mut World) -> BTreeMap<String, Entity> {
+fn spawn_materials(
+    scene: &schema::Scene,
+    laws: &mut BTreeMap<String, user_laws::Read>,
+    world: &mut World,
+) -> BTreeMap<String, Entity> {
     let mut spawned = BTreeMap::new();
     for (name, material) in &scene.materials {
         let mut entity = world.spawn((Label(name.clone()), Density(material.density)));
         if let Some(moduli) = material.neo_hookean {
             let (shear, bulk) = moduli.moduli();
             entity.insert(NeoHookean { shear, bulk });
+        }
+        if let Some(law) = laws.remove(name) {
+            entity.insert((law.law, law.findings));
         }
         if let Some(fibres) = &material.fibres {
             let tension_only = if fibres.tension_only { 1.0 } else { 0.0 };

@@ -17,6 +17,15 @@ pub enum Severity {
     Warning,
 }
 
+/// A file beside the scene that mistakes can be in.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TextFile {
+    /// Its path, as messages show it.
+    pub name: String,
+    /// What it holds.
+    pub text: String,
+}
+
 /// One mistake.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
@@ -24,8 +33,10 @@ pub struct Diagnostic {
     pub severity: Severity,
     /// What is wrong: one sentence without a full stop.
     pub message: String,
-    /// Where it stands in the scene's text; none for what has no place there.
+    /// Where it stands in the scene's text, or in `file`; none for what has no place there.
     pub at: Option<Span>,
+    /// Another file that it is about.
+    pub file: Option<Arc<TextFile>>,
     /// A word on the place.
     pub label: String,
     /// Other places that matter, each with a word.
@@ -41,6 +52,7 @@ impl Diagnostic {
             severity: Severity::Error,
             message: message.into(),
             at: at.into(),
+            file: None,
             label: String::new(),
             also: Vec::new(),
             notes: Vec::new(),
@@ -141,7 +153,8 @@ impl Diagnostics {
         let Some(tree) = self.tree.as_ref() else { return false };
         let within = path.into().span(&tree.root);
         let inside = |at: &Span| within.start <= at.start && at.end <= within.end;
-        self.list.iter().any(|d| d.severity == Severity::Error && d.at.as_ref().is_some_and(inside))
+        let told = |d: &Diagnostic| d.severity == Severity::Error && d.file.is_none() && d.at.as_ref().is_some_and(inside);
+        self.list.iter().any(told)
     }
 
     fn span(&self, path: &Path) -> Option<Span> {
@@ -180,15 +193,19 @@ impl Diagnostics {
             Severity::Error => "error",
             Severity::Warning => "warning",
         };
-        let (Some(source), Some(at)) = (&self.source, &diagnostic.at) else {
-            return format!("{grade}: {}", diagnostic.message);
+        let (name, text, start) = match (&diagnostic.file, &self.source, &diagnostic.at) {
+            (Some(file), _, Some(at)) => (file.name.as_str(), file.text.as_str(), at.start),
+            (Some(file), _, None) => return format!("{}: {grade}: {}", file.name, diagnostic.message),
+            (None, Some(source), Some(at)) => {
+                let place = source.place(at);
+                match place.text.checked_sub(1) {
+                    None => (source.name.as_str(), source.file.as_str(), place.span.start),
+                    Some(set) => ("--set", source.sets[set].as_str(), place.span.start),
+                }
+            }
+            _ => return format!("{grade}: {}", diagnostic.message),
         };
-        let place = source.place(at);
-        let (name, text) = match place.text.checked_sub(1) {
-            None => (source.name.as_str(), source.file.as_str()),
-            Some(set) => ("--set", source.sets[set].as_str()),
-        };
-        let before = &text[..place.span.start];
+        let before = &text[..start];
         let line = before.matches('\n').count() + 1;
         let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
         format!("{name}:{line}:{column}: {grade}: {}", diagnostic.message)
@@ -196,7 +213,8 @@ impl Diagnostics {
 
     fn sorted(&self) -> Vec<&Diagnostic> {
         let mut sorted: Vec<&Diagnostic> = self.list.iter().collect();
-        sorted.sort_by_key(|diagnostic| diagnostic.at.as_ref().map(|span| span.start));
+        let file = |diagnostic: &Diagnostic| diagnostic.file.as_ref().map(|file| file.name.clone());
+        sorted.sort_by_key(|diagnostic| (file(diagnostic), diagnostic.at.as_ref().map(|span| span.start)));
         sorted
     }
 
@@ -212,7 +230,11 @@ impl Diagnostics {
         let sorted = self.sorted();
         let mut text = String::new();
         for diagnostic in sorted.iter().take(MOST_SHOWN) {
-            let shown = self.shown(diagnostic);
+            let mut shown = self.shown(diagnostic);
+            if let (Some(file), Some(at)) = (&diagnostic.file, &diagnostic.at) {
+                let number = files.add(file.name.clone(), file.text.as_str());
+                shown.labels.push(Label::primary(number, at.clone()).with_message(&diagnostic.label));
+            }
             let config = Config::default();
             let written = if color {
                 let mut bytes = Vec::new();
@@ -245,7 +267,7 @@ impl Diagnostics {
             Severity::Warning => Grade::Warning,
         };
         let mut labels = Vec::new();
-        if let (Some(source), Some(at)) = (&self.source, &diagnostic.at) {
+        if let (Some(source), Some(at), None) = (&self.source, &diagnostic.at, &diagnostic.file) {
             let place = source.place(at);
             labels.push(Label::primary(place.text, place.span).with_message(&diagnostic.label));
             for (span, label) in &diagnostic.also {
@@ -253,7 +275,11 @@ impl Diagnostics {
                 labels.push(Label::secondary(place.text, place.span).with_message(label));
             }
         }
-        Shown::new(grade).with_message(&diagnostic.message).with_labels(labels).with_notes(diagnostic.notes.clone())
+        let message = match (&diagnostic.file, &diagnostic.at) {
+            (Some(file), None) => format!("{}: {}", file.name, diagnostic.message),
+            _ => diagnostic.message.clone(),
+        };
+        Shown::new(grade).with_message(message).with_labels(labels).with_notes(diagnostic.notes.clone())
     }
 }
 

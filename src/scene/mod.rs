@@ -12,7 +12,7 @@ pub mod syntax;
 pub mod validate;
 pub mod words;
 
-pub use diagnostic::{Diagnostic, Diagnostics, Severity};
+pub use diagnostic::{Diagnostic, Diagnostics, Severity, TextFile};
 pub use load::SceneFile;
 pub use suggest::{choice, nearest};
 pub use validate::validate;

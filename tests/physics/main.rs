@@ -20,4 +20,5 @@ mod points;
 mod random;
 mod removal;
 mod statics;
+mod user_laws;
 mod viscosity;

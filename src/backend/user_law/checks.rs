@@ -6,9 +6,10 @@ use super::names::declared;
 use super::{About, Complaint, FUNCTIONS};
 use crate::materials::{Kinematics, LawPrograms};
 use crate::math::{Mat3, Real, Scalar, Sym3};
+use bevy_ecs::component::Component;
 
 /// What was found of a law when it was tried.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Component, Clone, Copy, Debug, PartialEq)]
 pub struct Findings {
     /// Shear modulus at small strains (Pa).
     pub shear: f64,

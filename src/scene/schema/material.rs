@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// A material: a density and the effects it has. An effect that is not named does not exist.
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
@@ -12,6 +13,9 @@ pub struct Material {
     /// Isotropic elasticity; every material needs an elastic law, and this is the one there is.
     #[serde(default)]
     pub neo_hookean: Option<NeoHookean>,
+    /// An elastic law of your own, written in WGSL, in place of the built-in ones.
+    #[serde(default)]
+    pub law: Option<OwnLaw>,
     /// Fibres in one direction (transverse isotropy).
     #[serde(default)]
     pub fibres: Option<Fibres>,
@@ -41,6 +45,17 @@ pub enum NeoHookean {
         /// Bulk modulus κ (Pa).
         bulk: f64,
     },
+}
+
+/// An elastic law of your own: a WGSL file with four functions, and the parameters it needs.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct OwnLaw {
+    /// The file (.wgsl), its path relative to the scene file.
+    pub file: String,
+    /// A number for each member of the struct of `var<uniform> elastic`, by name.
+    #[serde(default)]
+    pub parameters: BTreeMap<String, f64>,
 }
 
 /// Fibres: Ψ = η/2 (Ī₄ − 1)², the η of Comas et al. 2008 (other codes mean 2η by the same letter).

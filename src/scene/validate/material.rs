@@ -28,11 +28,22 @@ fn validate_material(judge: &mut Judge, path: &Path, name: &str, material: &Mate
     judge.above_zero(&path.name("density"), material.density, "kg/m³");
     match &material.neo_hookean {
         Some(law) => elastic(judge, &path.name("neo_hookean"), *law),
+        None if material.law.is_some() => {}
         None => {
             judge
                 .out
                 .error_at(path.name("neo_hookean"), format!("the material `{name}` has no elastic law"))
                 .note("add for instance neo_hookean: Young(young: 3000, poisson: 0.45)");
+        }
+    }
+    if let Some(law) = &material.law {
+        let path = path.name("law");
+        if material.neo_hookean.is_some() {
+            let message = format!("the material `{name}` has two elastic laws: `law` and `neo_hookean`");
+            judge.out.error_at(&path, message).note("leave one of them out");
+        }
+        if law.file.is_empty() {
+            judge.out.error_at(path.name("file"), "the path of the law is empty");
         }
     }
     if let Some(fibres) = &material.fibres {

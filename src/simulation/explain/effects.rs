@@ -2,7 +2,8 @@
 
 use super::{Effect, Part};
 use crate::components::*;
-use crate::materials::{Fibres, NeoHookean};
+use crate::backend::user_law::Findings;
+use crate::materials::{Fibres, NeoHookean, UserLaw};
 use crate::math::LANES;
 use crate::scene::schema::Scene;
 use bevy_ecs::prelude::*;
@@ -49,6 +50,11 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
             turned_on_by: in_material("neo_hookean"),
         },
         Effect {
+            name: "law",
+            on: own_law(block.material, world),
+            turned_on_by: format!("{} in place of `neo_hookean`", in_material("law")),
+        },
+        Effect {
             name: "fibres",
             on: fibres.map(|f| {
                 let course = if f.tension_only > 0.0 { "they only pull" } else { "they pull and push" };
@@ -78,9 +84,25 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
             on: entity.contains::<FibreDirection>().then(|| "one an element".into()),
             turned_on_by: "`direction: Around(...)` or `Field(...)` under `fibres`; now one for the whole block".into(),
         };
-        effects.insert(2, varying);
+        effects.insert(3, varying);
     }
     effects
+}
+
+/// What was found of a law of the user's own when it was tried.
+fn own_law(material: Entity, world: &World) -> Option<String> {
+    let (law, found) = (world.get::<UserLaw<f64>>(material)?, world.get::<Findings>(material)?);
+    let parts = law.parts();
+    let (instructions, _, slots) = parts.isochoric.size();
+    let finite = match found.finite_up_to {
+        None => format!("finite in all {} deformations tried", found.tried),
+        Some(size) => format!("finite for ∇u below {size}"),
+    };
+    Some(format!(
+        "{}: shear modulus {} Pa, bulk modulus {} Pa; stress is dΨ/dE within {:.0e}, in f32 within {:.0e} at strains of 1e-4; \
+         {finite}; {instructions} instructions over {slots} registers an element on the CPU",
+        parts.path, short(found.shear), short(found.bulk), found.derivative_error, found.single_precision_error,
+    ))
 }
 
 fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> Vec<Effect> {
