@@ -241,7 +241,8 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
                 .fragment(shader!("row"))
                 .bind_uniform::<Integrate>("nodes", nodes)
                 .threads(count);
-            let kernel = columns.iter().fold(kernel, |kernel, name| kernel.bind(name, buffers.column(body, column(name))));
+            let kernel =
+                columns.iter().fold(kernel, |kernel, name| kernel.bind(name, buffers.column(body, column(name))));
             with_step(with_optional(kernel, optional, compensated, relaxed), world)
         };
         let [external, damped, worked] = optional;

@@ -162,7 +162,11 @@ fn clock(scene: &SceneFile, world: &mut World, diagnostics: &mut Diagnostics) ->
         let load_steps = load_steps.unwrap_or_else(|| crate::assembly::load_steps(world));
         let growth = 1.0 / load_steps as f64;
         let relaxation = Relaxation { end: duration, since: (0, 0.0), growth, damping: 0.0, gain: 1.0 };
-        return Some((Clock { step: 0, time_step: duration * growth, relaxation: Some(relaxation) }, stable, max_steps));
+        return Some((
+            Clock { step: 0, time_step: duration * growth, relaxation: Some(relaxation) },
+            stable,
+            max_steps,
+        ));
     }
     let limit = stable.time_step;
     if !(limit.is_finite() && limit > 0.0) {

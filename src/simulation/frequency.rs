@@ -42,7 +42,13 @@ pub(super) fn largest_eigenvalue(mut forces: Vec<&mut HostSystem>, world: &mut W
 }
 
 /// M^(−½) K M^(−½) x, in units of the factor that is in the roots.
-fn image(x: &[f64], roots: &[f64], amplitude: f64, forces: &mut [&mut HostSystem], world: &mut World) -> Option<Vec<f64>> {
+fn image(
+    x: &[f64],
+    roots: &[f64],
+    amplitude: f64,
+    forces: &mut [&mut HostSystem],
+    world: &mut World,
+) -> Option<Vec<f64>> {
     let mut u: Vec<f64> = x.iter().zip(roots).map(|(x, root)| x * root).collect();
     let largest = u.iter().fold(0.0_f64, |largest, u| largest.max(u.abs()));
     let scale = amplitude / largest;

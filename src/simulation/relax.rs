@@ -6,7 +6,7 @@
 //! back, and forces count half from there.
 
 use super::Simulation;
-use super::residual::{Residual, State};
+use super::residual::{Motion, Residual, State};
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::{Error, NotConverged};
@@ -20,6 +20,11 @@ const LOOK: u64 = 40;
 const MOST_SETBACKS: u32 = 10;
 /// Damping a at most: beyond 1 a step would turn round.
 const MOST_DAMPING: f64 = 1.0;
+/// Motion that tells of frequencies is more than so many last digits of the displacements.
+const CLEAR_OF_ROUNDING: f64 = 1000.0;
+/// What rounding may make of the residual, in units of its estimate: lightly damped, it keeps stiff motion awake (seen: up
+/// to 4.3).
+const ROUNDING: f64 = 6.0;
 /// What the remaining motion may be, in tolerances of the residual: it errs on the side of too much.
 const MOTION: f64 = 10.0;
 /// A residual that has not fallen by a tenth in so many times that the slowest motion needs to fall by e will not fall.
@@ -32,7 +37,9 @@ pub struct Equilibrium {
     pub reached: bool,
     /// ‖R − F‖ over free axes, as a share of `scale`.
     pub residual: f64,
-    /// The share that is small enough.
+    /// About what rounding of the displacements makes of the residual at least, as a share of `scale`.
+    pub rounding: f64,
+    /// The share that is small enough, beside what rounding makes.
     pub tolerance: f64,
     /// ‖R‖ over free axes and ‖F − R‖ over held ones, together (N).
     pub scale: f64,
@@ -55,6 +62,8 @@ pub(super) struct Relaxing {
     /// Step and residual when the residual was last seen to fall by a tenth.
     best: (u64, f64),
     largest_scale: f64,
+    /// The look that first saw loads at rest.
+    settled_at: Option<u64>,
 }
 
 impl Relaxing {
@@ -66,6 +75,7 @@ impl Relaxing {
             before: State::of(world),
             best: (0, f64::INFINITY),
             largest_scale: 0.0,
+            settled_at: None,
         }
     }
 
@@ -127,11 +137,19 @@ impl Relaxing {
             }
             return self.take_back(world, relaxation, clock.step);
         }
-        if let Some(frequency) = now.frequency_since(&self.before, world) {
-            relaxation.damping = (relaxation.gain.sqrt() * frequency * clock.time_step).min(MOST_DAMPING);
-        }
         let share = relaxation.share(clock.step);
-        self.judge(&now, &residual, relaxation.damping, world);
+        let motion = now.motion_since(&self.before, world);
+        let tiny = CLEAR_OF_ROUNDING * residual.digit * motion.displaced;
+        if let Some(frequency) = motion.frequency.filter(|_| motion.moved > tiny) {
+            let damping = (relaxation.gain.sqrt() * frequency * clock.time_step).min(MOST_DAMPING);
+            // the quotient is never below the lowest frequency: with loads at rest the least is the best
+            let settled = self.settled_at.is_some_and(|step| clock.step > step + 2 * LOOK);
+            relaxation.damping = if settled { damping.min(relaxation.damping) } else { damping };
+        }
+        if share >= 1.0 {
+            self.settled_at.get_or_insert(clock.step);
+        }
+        self.judge(&motion, &residual, clock.step - self.before.step, relaxation.damping, world);
         world.resource_scope(|world, mut observer: Mut<Observer>| {
             world.resource_mut::<Clock>().relaxation = Some(relaxation);
             observer.quiet = share >= 1.0;
@@ -141,7 +159,10 @@ impl Relaxing {
         })?;
         self.before = now;
         let (found, tolerance) = (&self.equilibrium, self.equilibrium.tolerance);
-        if share >= 1.0 && found.residual <= tolerance && found.remaining_motion <= MOTION * tolerance {
+        if share >= 1.0
+            && found.residual <= tolerance + ROUNDING * found.rounding
+            && found.remaining_motion <= MOTION * tolerance
+        {
             self.equilibrium.reached = true;
             return Ok(());
         }
@@ -158,18 +179,19 @@ impl Relaxing {
     }
 
     /// How far the present state is from equilibrium.
-    fn judge(&mut self, now: &State, residual: &Residual, damping: f64, world: &mut World) {
+    fn judge(&mut self, motion: &Motion, residual: &Residual, steps: u64, damping: f64, world: &World) {
         let scale = residual.scale_square.sqrt();
         self.largest_scale = self.largest_scale.max(scale);
         // forces that balance to nothing in the end are small beside what they were on the way
         let scale = scale.max(1e-3 * self.largest_scale);
         let share = |part: f64, whole: f64| if part > 0.0 { part / whole } else { 0.0 };
-        let (moved, motion) = now.motion(world);
         let found = &mut self.equilibrium;
         found.scale = scale;
         found.residual = share(residual.square.sqrt(), scale);
         // critically damped motion falls by e in 1/a steps
-        found.remaining_motion = share(motion / damping.max(1e-9), moved);
+        let still = motion.moved / (steps.max(1) as f64 * damping.max(1e-9));
+        found.remaining_motion = share(still, motion.displaced);
+        found.rounding = share(residual.rounding_square.sqrt(), scale);
         found.worst = residual.worst_in_words(world);
     }
 
@@ -184,6 +206,7 @@ impl Relaxing {
         send_to_device(world, |_, name| State::COLUMNS.contains(&name))?;
         world.resource_mut::<Clock>().relaxation = Some(relaxation);
         self.equilibrium.setbacks += 1;
+        self.settled_at = None;
         self.next_look = (step + LOOK).min(self.most_steps);
         Ok(())
     }

@@ -21,8 +21,6 @@ struct Body {
     internal: Vec<f64>,
     /// R there (N).
     load: Vec<f64>,
-    /// The last step (m).
-    step: Vec<f64>,
 }
 
 /// The sums that tell how far a state is from equilibrium.
@@ -31,6 +29,11 @@ pub(super) struct Residual {
     pub square: f64,
     /// ‖R‖² over free axes and ‖F − R‖² over held ones (N²).
     pub scale_square: f64,
+    /// What rounding of the displacements may be of `square` (N²): a node's stiffness, which its fictitious mass bounds,
+    /// times the last digit of its largest displacement.
+    pub rounding_square: f64,
+    /// Rounding of a number, as a share of it.
+    pub digit: f64,
     worst: Option<(Entity, usize, f64)>,
 }
 
@@ -70,8 +73,7 @@ impl State {
                     compensation: lost.map(|lost| lost.0.clone()),
                     place: all.clone().map(|i| exact(i) - step.get(i)).collect(),
                     internal: all.clone().map(|i| internal.get(i)).collect(),
-                    load: all.clone().map(load).collect(),
-                    step: all.map(|i| step.get(i)).collect(),
+                    load: all.map(load).collect(),
                 }
             })
             .collect();
@@ -86,9 +88,7 @@ impl State {
             if let Some(mut u) = entity.get_mut::<Displacement>() {
                 u.0.clone_from(&body.displacement);
             }
-            if let (Some(mut lost), Some(before)) =
-                (entity.get_mut::<DisplacementCompensation>(), &body.compensation)
-            {
+            if let (Some(mut lost), Some(before)) = (entity.get_mut::<DisplacementCompensation>(), &body.compensation) {
                 lost.0.clone_from(before);
             }
             if let Some(mut step) = entity.get_mut::<DisplacementStep>() {
@@ -103,9 +103,9 @@ impl State {
         }
     }
 
-    /// The Rayleigh quotient of what has changed since another state, as an angular frequency (1/s); `None` when nothing
-    /// moved, or against no force.
-    pub fn frequency_since(&self, before: &State, world: &World) -> Option<f64> {
+    /// What has changed since another state.
+    pub fn motion_since(&self, before: &State, world: &World) -> Motion {
+        let mut sum = Motion::default();
         let (mut work, mut weight) = (0.0, 0.0);
         for (now, before) in self.bodies.iter().zip(&before.bodies) {
             let Some(mass) = world.get::<FictitiousMass>(now.entity) else { continue };
@@ -113,25 +113,27 @@ impl State {
                 let moved = now.place[i] - before.place[i];
                 work += moved * (now.internal[i] - before.internal[i]);
                 weight += moved * moved * mass.get(i / 3);
+                sum.moved += moved * moved;
+                sum.displaced += now.place[i] * now.place[i];
             }
         }
         let square = work / weight;
-        (square.is_finite() && square > 0.0).then(|| square.sqrt())
+        sum.frequency = (square.is_finite() && square > 0.0).then(|| square.sqrt());
+        sum.moved = sum.moved.sqrt();
+        sum.displaced = sum.displaced.sqrt();
+        sum
     }
+}
 
-    /// Root mean squares of the displacements and of the last step, over free axes (m).
-    pub fn motion(&self, world: &World) -> (f64, f64) {
-        let (mut moved, mut motion, mut count) = (0.0, 0.0, 0_usize);
-        for body in &self.bodies {
-            for i in free(body.entity, 0..body.place.len(), world) {
-                moved += body.place[i] * body.place[i];
-                motion += body.step[i] * body.step[i];
-                count += 1;
-            }
-        }
-        let mean = |sum: f64| (sum / count.max(1) as f64).sqrt();
-        (mean(moved), mean(motion))
-    }
+/// What has changed from one state to another, along free axes.
+#[derive(Default)]
+pub(super) struct Motion {
+    /// The Rayleigh quotient of the change, as an angular frequency (1/s); `None` when nothing moved, or against no force.
+    pub frequency: Option<f64>,
+    /// Norm of the change of the displacements (m).
+    pub moved: f64,
+    /// Norm of the displacements (m).
+    pub displaced: f64,
 }
 
 /// The axes among some along which a body's nodes move freely: not held, and not parked.
@@ -147,16 +149,24 @@ fn free(body: Entity, axes: Range<usize>, world: &World) -> impl Iterator<Item =
 impl Residual {
     /// Of a state.
     pub fn of(state: &State, world: &World) -> Self {
-        let mut sum = Self { square: 0.0, scale_square: 0.0, worst: None };
+        let mut sum = Self { square: 0.0, scale_square: 0.0, rounding_square: 0.0, digit: 0.0, worst: None };
+        let time_step = world.resource::<Clock>().time_step;
         for body in &state.bodies {
             let net = |i: usize| body.internal[i] - body.load[i];
             let all: f64 = (0..body.load.len()).map(|i| net(i) * net(i)).sum();
             let mut square = 0.0;
+            sum.digit = match body.displacement {
+                Reals::F32(_) => f64::from(f32::EPSILON),
+                Reals::F64(_) => f64::EPSILON,
+            };
+            let mass = world.get::<FictitiousMass>(body.entity);
+            let stiffness = |node: usize| mass.map_or(0.0, |mass| mass.get(node)) / (time_step * time_step);
             let mut node = (usize::MAX, 0.0);
             for i in free(body.entity, 0..body.load.len(), world) {
                 let part = net(i) * net(i);
                 square += part;
                 sum.scale_square += body.load[i] * body.load[i];
+                sum.rounding_square += (stiffness(i / 3) * sum.digit * body.place[i]).powi(2);
                 node = (i / 3, if node.0 == i / 3 { node.1 + part } else { part });
                 if sum.worst.is_none_or(|(.., most)| node.1 > most) {
                     sum.worst = Some((body.entity, node.0, node.1));
