@@ -41,6 +41,7 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
     let fibres = world.get::<Fibres<f64>>(block.material);
     let prony = world.get::<Prony>(block.material);
     let damping = world.get::<Damping>(block.material);
+    let at_rest = world.resource::<Clock>().relaxation.is_some();
     let mut effects = vec![
         Effect {
             name: elastic.map_or("elastic law", |law| law.name()),
@@ -65,13 +66,19 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
         },
         Effect {
             name: "viscosity",
-            on: prony.map(|p| format!("{}, {:?} integrator", many(p.terms.len(), "Prony term"), p.integrator)),
+            on: prony.map(|p| match at_rest {
+                true => format!("{}, of which the long term remains", many(p.terms.len(), "Prony term")),
+                false => format!("{}, {:?} integrator", many(p.terms.len(), "Prony term"), p.integrator),
+            }),
             turned_on_by: in_material("prony"),
         },
         Effect {
             name: "damping",
-            on: damping.map(|damping| format!("{} 1/s, proportional to mass", damping.0)),
-            turned_on_by: in_material("damping"),
+            on: damping.filter(|_| !at_rest).map(|damping| format!("{} 1/s, proportional to mass", damping.0)),
+            turned_on_by: match at_rest {
+                true => "a transient analysis".into(),
+                false => in_material("damping"),
+            },
         },
         Effect {
             name: "removal",
@@ -109,6 +116,11 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> 
             name: "damping",
             on: entity.contains::<DampingCoefficient>().then(|| "a material of the body is damped".into()),
             turned_on_by: "`damping` in a material of the body".into(),
+        },
+        Effect {
+            name: "relaxation",
+            on: entity.contains::<FictitiousMass>().then(|| "to rest, with masses and damping chosen for it".into()),
+            turned_on_by: "`analysis: Static()`".into(),
         },
         Effect {
             name: "compensated sum",
