@@ -3,7 +3,7 @@
 use super::{Effect, Part};
 use crate::components::*;
 use crate::backend::user_law::Findings;
-use crate::materials::{Fibres, NeoHookean, UserLaw};
+use crate::materials::{ElasticLaw, Fibres, UserLaw};
 use crate::math::LANES;
 use crate::scene::schema::Scene;
 use bevy_ecs::prelude::*;
@@ -38,21 +38,24 @@ fn name(world: &World, entity: Entity) -> String {
 
 fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &str, world: &World) -> Vec<Effect> {
     let in_material = |word: &str| format!("`{word}` in the material {material}");
-    let neo_hookean = world.get::<NeoHookean<f64>>(block.material);
+    let elastic = ElasticLaw::of(world.entity(block.material));
     let fibres = world.get::<Fibres<f64>>(block.material);
     let prony = world.get::<Prony>(block.material);
     let damping = world.get::<Damping>(block.material);
+    let at_rest = world.resource::<Clock>().relaxation.is_some();
     let mut effects = vec![
         Effect {
-            name: "neo_hookean",
-            on: neo_hookean
-                .map(|law| format!("shear modulus {} Pa, bulk modulus {} Pa", short(law.shear), short(law.bulk))),
-            turned_on_by: in_material("neo_hookean"),
+            name: elastic.map_or("elastic law", |law| law.name()),
+            on: elastic.map(|law| {
+                let [shear, bulk] = law.small_strain_moduli().map(short);
+                format!("shear modulus {shear} Pa, bulk modulus {bulk} Pa{}", trial(block.material, world))
+            }),
+            turned_on_by: format!("an elastic law in the material {material}"),
         },
         Effect {
-            name: "law",
-            on: own_law(block.material, world),
-            turned_on_by: format!("{} in place of `neo_hookean`", in_material("law")),
+            name: "averaged nodal pressure",
+            on: entity.contains::<NodalVolumeChange>().then(|| "pressures are means around nodes".into()),
+            turned_on_by: format!("elements Tet4NodalPressure in the mesh of {body}"),
         },
         Effect {
             name: "fibres",
@@ -64,13 +67,19 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
         },
         Effect {
             name: "viscosity",
-            on: prony.map(|p| format!("{}, {:?} integrator", many(p.terms.len(), "Prony term"), p.integrator)),
+            on: prony.map(|p| match at_rest {
+                true => format!("{}, of which the long term remains", many(p.terms.len(), "Prony term")),
+                false => format!("{}, {:?} integrator", many(p.terms.len(), "Prony term"), p.integrator),
+            }),
             turned_on_by: in_material("prony"),
         },
         Effect {
             name: "damping",
-            on: damping.map(|damping| format!("{} 1/s, proportional to mass", damping.0)),
-            turned_on_by: in_material("damping"),
+            on: damping.filter(|_| !at_rest).map(|damping| format!("{} 1/s, proportional to mass", damping.0)),
+            turned_on_by: match at_rest {
+                true => "a transient analysis".into(),
+                false => in_material("damping"),
+            },
         },
         Effect {
             name: "removal",
@@ -84,25 +93,27 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
             on: entity.contains::<FibreDirection>().then(|| "one an element".into()),
             turned_on_by: "`direction: Around(...)` or `Field(...)` under `fibres`; now one for the whole block".into(),
         };
-        effects.insert(3, varying);
+        effects.insert(2, varying);
     }
     effects
 }
 
 /// What was found of a law of the user's own when it was tried.
-fn own_law(material: Entity, world: &World) -> Option<String> {
-    let (law, found) = (world.get::<UserLaw<f64>>(material)?, world.get::<Findings>(material)?);
+fn trial(material: Entity, world: &World) -> String {
+    let (Some(law), Some(found)) = (world.get::<UserLaw<f64>>(material), world.get::<Findings>(material)) else {
+        return String::new();
+    };
     let parts = law.parts();
     let (instructions, _, slots) = parts.isochoric.size();
     let finite = match found.finite_up_to {
         None => format!("finite in all {} deformations tried", found.tried),
         Some(size) => format!("finite for ∇u below {size}"),
     };
-    Some(format!(
-        "{}: shear modulus {} Pa, bulk modulus {} Pa; stress is dΨ/dE within {:.0e}, in f32 within {:.0e} at strains of 1e-4; \
-         {finite}; {instructions} instructions over {slots} registers an element on the CPU",
-        parts.path, short(found.shear), short(found.bulk), found.derivative_error, found.single_precision_error,
-    ))
+    format!(
+        " ({}: stress is dΨ/dE within {:.0e}, in f32 within {:.0e} at strains of 1e-4; {finite}; \
+         {instructions} instructions over {slots} registers on the CPU)",
+        parts.path, found.derivative_error, found.single_precision_error,
+    )
 }
 
 fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> Vec<Effect> {
@@ -124,6 +135,11 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> 
             name: "damping",
             on: entity.contains::<DampingCoefficient>().then(|| "a material of the body is damped".into()),
             turned_on_by: "`damping` in a material of the body".into(),
+        },
+        Effect {
+            name: "relaxation",
+            on: entity.contains::<FictitiousMass>().then(|| "to rest, with masses and damping chosen for it".into()),
+            turned_on_by: "`analysis: Static()`".into(),
         },
         Effect {
             name: "compensated sum",
