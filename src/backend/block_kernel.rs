@@ -139,10 +139,7 @@ impl BlockKernels {
             .fragment(shader!("volume_ratio"))
             .bind("displacement", self.columns[0]);
         kernel.layouts.extend(elastic.layout.map(|layout| ("elastic", layout)));
-        match self.elastic {
-            Some(buffer) => kernel.bind("elastic", buffer),
-            None => kernel,
-        }
+        kernel
     }
 
     /// A kernel that knows the block's layout only; a thread for each element.
@@ -154,6 +151,14 @@ impl BlockKernels {
             .bind_uniform::<Block>("block", self.parameters)
             .bind("connectivity", self.columns[1])
             .threads(self.block.count as u32)
+    }
+
+    /// Adds the parameters of the elastic law, if it has any.
+    fn with_parameters(&self, kernel: Kernel) -> Kernel {
+        match self.elastic {
+            Some(buffer) => kernel.bind("elastic", buffer),
+            None => kernel,
+        }
     }
 
     /// Adds where the element type's pressure comes from.
@@ -196,7 +201,7 @@ impl BlockKernels {
         if terms > 0 {
             text += &format!("const TERMS: u32 = {terms}u;\n");
         }
-        let kernel = self.with_fibres(kernel.bind("elastic", self.elastic));
+        let kernel = self.with_fibres(self.with_parameters(kernel));
         let kernel = self.with_pressure(kernel, buffers).fragment(self.generated("stress", text));
         if terms == 0 {
             return kernel;
@@ -217,7 +222,7 @@ impl BlockKernels {
         };
         let text =
             format!("fn fibres_energy_at(element: u32, k: Kinematics) -> f32 {{\n    return {fibres};\n}}\n");
-        self.with_pressure(self.with_fibres(kernel.bind("elastic", self.elastic)), buffers)
+        self.with_pressure(self.with_fibres(self.with_parameters(kernel)), buffers)
             .fragment(shader!("energy"))
             .fragment(self.generated("energy", text))
     }

@@ -6,6 +6,6 @@ mod real;
 mod simd;
 mod tensor;
 
-pub use real::{Real, Scalar};
+pub use real::{Real, Scalar, Task};
 pub use simd::{F32s, F64s, LANES, SimdScalar};
 pub use tensor::{Mat3, Sym3, dot, dot_plus, minor};

@@ -42,6 +42,10 @@ pub trait Real:
     /// (m, k) with x = m·2^k, m in [√½, √2), k whole, for a normal x > 0: its bits.
     fn mantissa_and_exponent(self) -> (Self, Self);
 
+    /// Does a task out of line, with the instructions that this kind of number has: compiled once for the kind of number,
+    /// not once more at each place.
+    fn apart<T: Task<Self>>(self, task: T) -> T::Output;
+
     /// |x|.
     #[inline(always)]
     fn abs(self) -> Self {
@@ -74,6 +78,14 @@ pub trait Real:
     fn ln_1p(self) -> Self {
         elementary::ln_1p(self)
     }
+}
+
+/// Something large to compute with a kind of number: see [`Real::apart`].
+pub trait Task<R> {
+    /// What comes of it.
+    type Output;
+    /// Does it; must be inlined.
+    fn run(self) -> Self::Output;
 }
 
 /// One number: `f32` or `f64`.
@@ -128,6 +140,10 @@ macro_rules! scalar {
             #[inline(always)]
             fn inverse_cbrt(self) -> Self {
                 refine_inverse_cbrt(self, <$scalar>::from_bits($guess.wrapping_sub(self.to_bits() / 3)), $steps)
+            }
+            #[inline(never)]
+            fn apart<T: Task<Self>>(self, task: T) -> T::Output {
+                task.run()
             }
             #[inline(always)]
             fn min(self, other: Self) -> Self {

@@ -3,14 +3,26 @@
 use super::real::{
     GUESS_F32, GUESS_F64, ONE_F32, ONE_F64, ROOT_HALF_F32, ROOT_HALF_F64, STEPS_F32, STEPS_F64, refine_inverse_cbrt,
 };
-use super::{Real, Scalar};
-use pulp::Simd;
+use super::{Real, Scalar, Task};
+use pulp::{Simd, WithSimd};
 use std::fmt::{Debug, Formatter, Result};
+use std::marker::PhantomData;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// How many elements are stored side by side: the widest register's number of `f32` (AVX-512), half a GPU's subgroup.
 /// Narrower registers take a group in several parts.
 pub const LANES: usize = 16;
+
+/// A task where the compiler may use the instructions of a kind of register.
+struct WithInstructions<R, T>(T, PhantomData<R>);
+
+impl<R, T: Task<R>> WithSimd for WithInstructions<R, T> {
+    type Output = T::Output;
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> T::Output {
+        self.0.run()
+    }
+}
 
 /// A scalar with a vector register of its kind.
 pub trait SimdScalar: Scalar {
@@ -116,6 +128,10 @@ macro_rules! vector {
             fn inverse_cbrt(self) -> Self {
                 let guess = self.with($guess(self.simd, self.value));
                 refine_inverse_cbrt(self, guess, $steps)
+            }
+            #[inline(never)]
+            fn apart<T: Task<Self>>(self, task: T) -> T::Output {
+                self.simd.vectorize(WithInstructions::<Self, T>(task, PhantomData))
             }
             #[inline(always)]
             fn min(self, other: Self) -> Self {

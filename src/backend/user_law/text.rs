@@ -23,17 +23,21 @@ pub(super) fn in_double_precision(text: &str) -> String {
     whole + text
 }
 
-/// Without the bodies of functions that the translation knows by their names.
+/// Without the bodies of functions that the translation knows by their names, and without others that look at bits.
 fn without_bits(text: &str) -> String {
     let mut parts = text.split("\nfn ");
     let mut whole = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let (head, body) = part.split_once("{\n").unwrap_or((part, ""));
         let end = body.find("\n}").map_or(body.len(), |at| at + 2);
-        whole.push_str("\nfn ");
-        match KNOWN_BY_NAME.iter().any(|name| head.starts_with(name)) {
-            true => whole.push_str(&format!("{head}{{\n    return x;\n}}{}", &body[end..])),
-            false => whole.push_str(part),
+        let name = head.split('(').next().unwrap_or_default();
+        whole.push('\n');
+        if KNOWN_BY_NAME.contains(&name) {
+            whole.push_str(&format!("fn {head}{{\n    return x;\n}}{}", &body[end..]));
+        } else if body[..end].contains("bitcast") {
+            whole.push_str(&body[end..]);
+        } else {
+            whole.push_str(&format!("fn {part}"));
         }
     }
     whole

@@ -20,7 +20,11 @@ pub(super) enum Unary {
     Abs,
     Sqrt,
     Exp,
+    /// e^x − 1.
+    ExpLessOne,
     Log,
+    /// ln(1 + x).
+    LogOfOnePlus,
     InverseCbrt,
 }
 
@@ -139,8 +143,10 @@ impl Unary {
             Self::Abs => x.max(-x),
             Self::Sqrt => x.sqrt(),
             Self::Exp => x.exp(),
+            Self::ExpLessOne => x.exp_m1(),
             // as on the GPU: what has no logarithm must be found out, not go on as some number
             Self::Log => x.if_positive(x.ln(), x.constant(f64::NAN)),
+            Self::LogOfOnePlus => (x + x.constant(1.0)).if_positive(x.ln_1p(), x.constant(f64::NAN)),
             Self::InverseCbrt => x.inverse_cbrt(),
         }
     }

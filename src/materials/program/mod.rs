@@ -48,7 +48,8 @@ impl Untranslatable {
 }
 
 /// Functions of ours that look at the bits of a number: what they mean is known by their names.
-pub const KNOWN_BY_NAME: [&str; 1] = ["inverse_cbrt"];
+pub const KNOWN_BY_NAME: [&str; 4] =
+    ["inverse_cbrt", "exponential", "exponential_less_one", "logarithm_of_one_plus"];
 
 const NOT_ALLOWED: &str = "this is not possible in a law of one's own";
 const FUNCTIONS: &str = "allowed: abs, all, any, clamp, cross, determinant, distance, dot, exp, exp2, fma, inverseSqrt, \

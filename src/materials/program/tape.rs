@@ -3,7 +3,7 @@
 
 use super::graph::{Binary, Graph, Id, Node, Unary};
 use super::Untranslatable;
-use crate::math::Real;
+use crate::math::{Real, Task};
 
 /// Slots that a program may use: constants, inputs and what lives at the same time.
 pub const SLOTS: usize = 256;
@@ -99,46 +99,12 @@ impl Program {
     #[inline(always)]
     pub fn run<R: Real, const INPUTS: usize, const OUTPUTS: usize>(&self, inputs: [R; INPUTS]) -> [R; OUTPUTS] {
         debug_assert!(INPUTS == self.inputs && OUTPUTS == self.outputs.len(), "not this program's numbers");
+        let like = inputs[0];
         // what is not touched need not be made
         match self.slots {
-            0..=16 => self.walk::<R, INPUTS, OUTPUTS, 16>(inputs),
-            17..=32 => self.walk::<R, INPUTS, OUTPUTS, 32>(inputs),
-            33..=64 => self.walk::<R, INPUTS, OUTPUTS, 64>(inputs),
-            _ => self.walk::<R, INPUTS, OUTPUTS, SLOTS>(inputs),
+            0..=32 => like.apart(Walk::<R, INPUTS, OUTPUTS, 32> { program: self, inputs }),
+            _ => like.apart(Walk::<R, INPUTS, OUTPUTS, SLOTS> { program: self, inputs }),
         }
-    }
-
-    /// `COUNT` is a power of two that is at least the number of slots, so that no index needs to be checked.
-    #[inline(always)]
-    fn walk<R: Real, const INPUTS: usize, const OUTPUTS: usize, const COUNT: usize>(
-        &self,
-        inputs: [R; INPUTS],
-    ) -> [R; OUTPUTS] {
-        let at = |place: u8| usize::from(place) & (COUNT - 1);
-        let like = inputs[0];
-        let mut slots = [like; COUNT];
-        for (number, input) in inputs.into_iter().enumerate() {
-            slots[number & (COUNT - 1)] = input;
-        }
-        for (number, constant) in self.constants.iter().enumerate() {
-            slots[(INPUTS + number) & (COUNT - 1)] = like.constant(*constant);
-        }
-        for i in &self.instructions {
-            let (a, b, c) = (slots[at(i.a)], slots[at(i.b)], slots[at(i.c)]);
-            slots[at(i.to)] = match i.code {
-                Code::Unary(function) => function.of(a),
-                Code::Binary(function) => function.of(a, b),
-                Code::MultiplyAdd => a.mul_add(b, c),
-                Code::MultiplySubtract => a.mul_add(b, -c),
-                Code::NegativeMultiplyAdd => (-a).mul_add(b, c),
-                Code::Select => a.if_positive(b, c),
-            };
-        }
-        let mut outputs = [like; OUTPUTS];
-        for (output, place) in outputs.iter_mut().zip(&self.outputs) {
-            *output = slots[at(*place)];
-        }
-        outputs
     }
 
     /// Whether it is the same, bit by bit.
@@ -153,6 +119,48 @@ impl Program {
     /// Instructions, constants, and slots in use at the same time.
     pub fn size(&self) -> (usize, usize, usize) {
         (self.instructions.len(), self.constants.len(), self.slots)
+    }
+}
+
+/// A run of a program. `COUNT` is a power of two that is at least the number of slots, so that no index needs to be
+/// checked.
+struct Walk<'a, R, const INPUTS: usize, const OUTPUTS: usize, const COUNT: usize> {
+    program: &'a Program,
+    inputs: [R; INPUTS],
+}
+
+impl<R: Real, const INPUTS: usize, const OUTPUTS: usize, const COUNT: usize> Task<R>
+    for Walk<'_, R, INPUTS, OUTPUTS, COUNT>
+{
+    type Output = [R; OUTPUTS];
+
+    #[inline(always)]
+    fn run(self) -> [R; OUTPUTS] {
+        let at = |place: u8| usize::from(place) & (COUNT - 1);
+        let like = self.inputs[0];
+        let mut slots = [like; COUNT];
+        for (number, input) in self.inputs.into_iter().enumerate() {
+            slots[number & (COUNT - 1)] = input;
+        }
+        for (number, constant) in self.program.constants.iter().enumerate() {
+            slots[(INPUTS + number) & (COUNT - 1)] = like.constant(*constant);
+        }
+        for i in &self.program.instructions {
+            let (a, b, c) = (slots[at(i.a)], slots[at(i.b)], slots[at(i.c)]);
+            slots[at(i.to)] = match i.code {
+                Code::Unary(function) => function.of(a),
+                Code::Binary(function) => function.of(a, b),
+                Code::MultiplyAdd => a.mul_add(b, c),
+                Code::MultiplySubtract => a.mul_add(b, -c),
+                Code::NegativeMultiplyAdd => (-a).mul_add(b, c),
+                Code::Select => a.if_positive(b, c),
+            };
+        }
+        let mut outputs = [like; OUTPUTS];
+        for (output, place) in outputs.iter_mut().zip(&self.program.outputs) {
+            *output = slots[at(*place)];
+        }
+        outputs
     }
 }
 

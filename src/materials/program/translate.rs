@@ -3,7 +3,7 @@
 
 use super::graph::{Graph, Unary};
 use super::value::{Place, Test, Value, Variable};
-use super::{NOT_ALLOWED, Untranslatable};
+use super::{KNOWN_BY_NAME, NOT_ALLOWED, Untranslatable};
 use naga::{Arena, Block, Expression, Function, Handle, Module, Span, Statement, SwitchValue};
 
 pub(super) type Result<T> = std::result::Result<T, Untranslatable>;
@@ -52,11 +52,8 @@ impl<'m> Translator<'m> {
 
     /// What a function returns for these arguments.
     pub(super) fn call(&mut self, function: &'m Function, arguments: Vec<Value>, at: Span) -> Result<Value> {
-        // a guess from the bits of a single number has no twin in double precision: this one is known by name
-        if let ("inverse_cbrt", [Value::Float(x)]) =
-            (function.name.as_deref().unwrap_or_default(), arguments.as_slice())
-        {
-            return Ok(Value::Float(self.graph.unary(Unary::InverseCbrt, *x)));
+        if let Some(known) = self.known_by_name(function, &arguments) {
+            return Ok(known);
         }
         if arguments.iter().any(|argument| matches!(argument, Value::Place(_))) {
             return Err(Untranslatable::new(at, "a pointer cannot be handed to a function").note(
@@ -74,6 +71,20 @@ impl<'m> Translator<'m> {
         frame.state.loose = vec![false; frame.state.locals.len()];
         self.block(&mut frame, &function.body)?;
         frame.state.result.ok_or_else(|| Untranslatable::new(at, "this function returns nothing"))
+    }
+
+    /// The result of a function of ours that looks at the bits of a number: that has no twin in double precision.
+    fn known_by_name(&mut self, function: &Function, arguments: &[Value]) -> Option<Value> {
+        let &[Value::Float(x)] = arguments else { return None };
+        let name = function.name.as_deref().filter(|name| KNOWN_BY_NAME.contains(name))?;
+        let function = match name {
+            "inverse_cbrt" => Unary::InverseCbrt,
+            "exponential" => Unary::Exp,
+            "exponential_less_one" => Unary::ExpLessOne,
+            "logarithm_of_one_plus" => Unary::LogOfOnePlus,
+            _ => return None,
+        };
+        Some(Value::Float(self.graph.unary(function, x)))
     }
 
     /// The value of an expression of the module itself.
