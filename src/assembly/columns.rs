@@ -40,7 +40,7 @@ pub(super) fn insert_node_columns(
         FirstNonFinite(vec![u32::MAX]),
     ));
     if scene.integration.compensated && precision == Precision::F32 {
-        entity.insert(DisplacementCompensation(vectors()));
+        entity.insert(DisplacementCompensation(Reals::zeros(precision, COMPENSATION_NUMBERS * count)));
     }
     if !scene.loads.is_empty() {
         entity.insert(ExternalForce(vectors()));
