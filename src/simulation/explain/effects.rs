@@ -2,7 +2,7 @@
 
 use super::{Effect, Part};
 use crate::components::*;
-use crate::materials::{Fibres, NeoHookean};
+use crate::materials::{ElasticLaw, Fibres};
 use crate::math::LANES;
 use crate::scene::schema::Scene;
 use bevy_ecs::prelude::*;
@@ -37,16 +37,23 @@ fn name(world: &World, entity: Entity) -> String {
 
 fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &str, world: &World) -> Vec<Effect> {
     let in_material = |word: &str| format!("`{word}` in the material {material}");
-    let neo_hookean = world.get::<NeoHookean<f64>>(block.material);
+    let elastic = ElasticLaw::of(world.entity(block.material));
     let fibres = world.get::<Fibres<f64>>(block.material);
     let prony = world.get::<Prony>(block.material);
     let damping = world.get::<Damping>(block.material);
     let mut effects = vec![
         Effect {
-            name: "neo_hookean",
-            on: neo_hookean
-                .map(|law| format!("shear modulus {} Pa, bulk modulus {} Pa", short(law.shear), short(law.bulk))),
-            turned_on_by: in_material("neo_hookean"),
+            name: elastic.map_or("elastic law", |law| law.name()),
+            on: elastic.map(|law| {
+                let [shear, bulk] = law.small_strain_moduli().map(short);
+                format!("shear modulus {shear} Pa, bulk modulus {bulk} Pa")
+            }),
+            turned_on_by: format!("an elastic law in the material {material}"),
+        },
+        Effect {
+            name: "averaged nodal pressure",
+            on: entity.contains::<NodalVolumeChange>().then(|| "pressures are means around nodes".into()),
+            turned_on_by: format!("elements Tet4NodalPressure in the mesh of {body}"),
         },
         Effect {
             name: "fibres",
