@@ -1,6 +1,6 @@
 // Families of fibres that stiffen exponentially; twin of src/materials/exponential_fibres.rs. FAMILIES and
 // family_direction are generated.
-struct ExponentialFibre {
+struct ExponentialFamily {
     k1: f32, // Pa
     k2: f32,
     dispersion: f32,
@@ -11,10 +11,10 @@ struct ExponentialFibre {
     z: f32,
     unused: f32,
 }
-@group(0) @binding(0) var<uniform> exponential_fibres: array<ExponentialFibre, FAMILIES>;
+@group(0) @binding(0) var<uniform> exponential_fibres: array<ExponentialFamily, FAMILIES>;
 
 // Ē, or 0 where the family does not pull, and I₄ − 1
-fn exponential_strain(f: ExponentialFibre, k: Kinematics, a: vec3<f32>) -> vec2<f32> {
+fn exponential_strain(f: ExponentialFamily, k: Kinematics, a: vec3<f32>) -> vec2<f32> {
     let i4_change = 2.0 * sym_quadratic(k.green_strain, a);
     let w = j_m23_change(k);
     let change = i4_change + w + w * i4_change;
@@ -23,7 +23,7 @@ fn exponential_strain(f: ExponentialFibre, k: Kinematics, a: vec3<f32>) -> vec2<
 }
 
 // 2k₁ Ē exp(k₂ Ē²) ∂Ē/∂C (Pa)
-fn exponential_stress(f: ExponentialFibre, k: Kinematics, a: vec3<f32>) -> Sym3 {
+fn exponential_stress(f: ExponentialFamily, k: Kinematics, a: vec3<f32>) -> Sym3 {
     let strain = exponential_strain(f, k, a);
     let factor = 2.0 * f.k1 * strain.x * exponential(f.k2 * strain.x * strain.x) * k.j_m23;
     let spread = inverse_c_times(k, sym_scaled(sym_deviator(k.green_strain), 2.0 * f.dispersion));

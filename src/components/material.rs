@@ -1,6 +1,6 @@
 //! Effects of a material that are not pointwise laws; those are in [`materials`](crate::materials).
 
-use crate::materials::PronyTerm;
+use crate::materials::{ExponentialFibre, PronyTerm};
 use crate::scene::schema::ViscousIntegrator;
 use bevy_ecs::prelude::*;
 
@@ -12,22 +12,31 @@ pub struct Density(pub f64);
 #[derive(Component, Clone, Copy, Debug)]
 pub struct Damping(pub f64);
 
-/// Viscosity of the isochoric stress.
+/// Families of fibres that stiffen exponentially.
+#[derive(Component, Clone, Debug)]
+pub struct ExponentialFibres(pub Vec<ExponentialFibre<f64>>);
+
+/// Viscosity of the isochoric stress and of the pressure.
 #[derive(Component, Clone, Debug)]
 pub struct Prony {
-    /// Share α and time τ (s) of each term.
+    /// Share α and time τ (s) of each term of the isochoric stress.
     pub terms: Vec<(f64, f64)>,
+    /// The same of the pressure.
+    pub volumetric: Vec<(f64, f64)>,
     /// How the history is carried on.
     pub integrator: ViscousIntegrator,
+    /// Whether the relaxed stress is freed of what is a pressure by now.
+    pub reproject: bool,
 }
 
 impl Prony {
-    /// Coefficients of the recursion for a time step (s).
-    pub fn coefficients(&self, time_step: f64) -> Vec<PronyTerm<f64>> {
+    /// Coefficients of the recursions for a time step (s): of the isochoric stress, of the pressure.
+    pub fn coefficients(&self, time_step: f64) -> [Vec<PronyTerm<f64>>; 2] {
         let make = match self.integrator {
             ViscousIntegrator::Exact => PronyTerm::exact,
             ViscousIntegrator::BackwardEuler => PronyTerm::backward_euler,
         };
-        self.terms.iter().map(|&(alpha, tau)| make(alpha, tau, time_step)).collect()
+        [&self.terms, &self.volumetric]
+            .map(|terms| terms.iter().map(|&(alpha, tau)| make(alpha, tau, time_step)).collect())
     }
 }

@@ -17,6 +17,12 @@ pub struct Fibres<T: Send + Sync + 'static> {
 }
 
 impl<R: Real> Fibres<R> {
+    /// The same fibres over other numbers.
+    #[inline(always)]
+    pub fn map<Q: Real>(&self, number: impl Fn(R) -> Q) -> Fibres<Q> {
+        Fibres { eta: number(self.eta), tension_only: number(self.tension_only) }
+    }
+
     /// Ī₄ − 1 and I₄ for the unit direction `a`, exact to rounding for small strains.
     #[inline(always)]
     fn stretch(&self, k: &Kinematics<R>, a: [R; 3]) -> (R, R) {

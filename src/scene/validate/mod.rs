@@ -1,6 +1,7 @@
 //! Whether the values of a scene make sense, as far as that can be said without its meshes.
 
 mod action;
+mod elastic_law;
 mod geometry;
 mod material;
 mod names;
