@@ -10,6 +10,7 @@ mod locality;
 mod material;
 mod meshes;
 mod observation;
+mod relaxation;
 mod removal;
 mod select;
 mod time_step;
@@ -17,6 +18,7 @@ mod time_step;
 pub use body::BodyParts;
 pub use meshes::{PlacedMesh, mesh_of};
 pub use observation::steps_of;
+pub use relaxation::load_steps;
 pub use select::Selection;
 pub use time_step::{StableStep, stable_step};
 
@@ -75,6 +77,9 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     observation::spawn(assembly, world, diagnostics);
     columns::insert_laws(assembly.precision, world);
     columns::start(assembly, world);
+    if assembly.scene.scene.is_static() {
+        relaxation::insert_fictitious_masses(assembly, world);
+    }
 }
 
 impl Assembly<'_> {

@@ -1,5 +1,6 @@
 //! Effects of a material that are not pointwise laws; those are in [`materials`](crate::materials).
 
+use super::Clock;
 use crate::materials::{ExponentialFibre, PronyTerm};
 use crate::scene::schema::ViscousIntegrator;
 use bevy_ecs::prelude::*;
@@ -30,13 +31,15 @@ pub struct Prony {
 }
 
 impl Prony {
-    /// Coefficients of the recursions for a time step (s): of the isochoric stress, of the pressure.
-    pub fn coefficients(&self, time_step: f64) -> [Vec<PronyTerm<f64>>; 2] {
+    /// Coefficients of the recursions for the clock's step, of the isochoric stress and of the pressure; in a static analysis
+    /// of what remains in the long term.
+    pub fn coefficients(&self, clock: &Clock) -> [Vec<PronyTerm<f64>>; 2] {
         let make = match self.integrator {
+            _ if clock.relaxation.is_some() => |alpha, _, _| PronyTerm::long_term(alpha),
             ViscousIntegrator::Exact => PronyTerm::exact,
             ViscousIntegrator::BackwardEuler => PronyTerm::backward_euler,
         };
         [&self.terms, &self.volumetric]
-            .map(|terms| terms.iter().map(|&(alpha, tau)| make(alpha, tau, time_step)).collect())
+            .map(|terms| terms.iter().map(|&(alpha, tau)| make(alpha, tau, clock.time_step)).collect())
     }
 }

@@ -42,6 +42,7 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
     let families = world.get::<ExponentialFibres>(block.material);
     let prony = world.get::<Prony>(block.material);
     let damping = world.get::<Damping>(block.material);
+    let at_rest = world.resource::<Clock>().relaxation.is_some();
     let mut effects = vec![
         Effect {
             name: elastic.map_or("elastic law", |law| law.name()),
@@ -76,13 +77,16 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
         },
         Effect {
             name: "viscosity",
-            on: prony.map(viscosity),
+            on: prony.map(|prony| viscosity(prony, at_rest)),
             turned_on_by: in_material("prony"),
         },
         Effect {
             name: "damping",
-            on: damping.map(|damping| format!("{} 1/s, proportional to mass", damping.0)),
-            turned_on_by: in_material("damping"),
+            on: damping.filter(|_| !at_rest).map(|damping| format!("{} 1/s, proportional to mass", damping.0)),
+            turned_on_by: match at_rest {
+                true => "a transient analysis".into(),
+                false => in_material("damping"),
+            },
         },
         Effect {
             name: "removal",
@@ -101,14 +105,18 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
     effects
 }
 
-fn viscosity(prony: &Prony) -> String {
+fn viscosity(prony: &Prony, at_rest: bool) -> String {
     let counts = [(&prony.terms, "Prony term"), (&prony.volumetric, "Prony term of the pressure")];
     let counts = counts.iter().filter(|(terms, _)| !terms.is_empty()).map(|(terms, word)| match terms.len() {
         1 => format!("1 {word}"),
         count => format!("{count} {}", word.replace("term", "terms")),
     });
     let reproject = if prony.reproject { ", re-projected" } else { "" };
-    format!("{}, {:?} integrator{reproject}", counts.collect::<Vec<_>>().join(" and "), prony.integrator)
+    let counts = counts.collect::<Vec<_>>().join(" and ");
+    match at_rest {
+        true => format!("{counts}, of which the long term remains{reproject}"),
+        false => format!("{counts}, {:?} integrator{reproject}", prony.integrator),
+    }
 }
 
 fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> Vec<Effect> {
@@ -130,6 +138,11 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> 
             name: "damping",
             on: entity.contains::<DampingCoefficient>().then(|| "a material of the body is damped".into()),
             turned_on_by: "`damping` in a material of the body".into(),
+        },
+        Effect {
+            name: "relaxation",
+            on: entity.contains::<FictitiousMass>().then(|| "to rest, with masses and damping chosen for it".into()),
+            turned_on_by: "`analysis: Static()`".into(),
         },
         Effect {
             name: "compensated sum",
