@@ -106,15 +106,6 @@ impl ElementState {
     }
 }
 
-impl PointKinematics {
-    /// Cauchy stress (Pa) from the first Piola-Kirchhoff stress: xx, yy, zz, xy, yz, xz.
-    pub fn cauchy(&self, first: &Mat3<f64>) -> [f64; 6] {
-        let f = |i: usize, j: usize| self.gradient.0[i][j] + if i == j { 1.0 } else { 0.0 };
-        let entry = |i: usize, j: usize| (0..3).map(|k| first.0[i][k] * f(j, k)).sum::<f64>() / self.kinematics.j;
-        [entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(1, 2), entry(0, 2)]
-    }
-}
-
 fn largest_stretch(green_strain: &Sym3<f64>) -> f64 {
     let [xx, yy, zz, xy, yz, xz] = green_strain.0;
     let strain = glam::DMat3::from_cols_array(&[xx, xy, xz, xy, yy, yz, xz, yz, zz]);

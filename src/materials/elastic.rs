@@ -1,7 +1,7 @@
 //! What an elastic law is, and the list of those there are.
 
-use super::{Kinematics, NeoHookean};
-use crate::math::{Mat3, Real, Scalar, Sym3};
+use super::{ArrudaBoyce, Kinematics, Linear, MooneyRivlin, NeoHookean, Ogden, StVenantKirchhoff};
+use crate::math::{Mat3, Real, Scalar, Sym3, dot_plus};
 
 /// An isotropic elastic law over the numbers `R`: Ψ = Ψ_iso + U(θ), so that S = S_iso + U'(θ) ∂θ/∂E.
 ///
@@ -42,6 +42,19 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
         k.adjugate_c.scaled(pressure / k.j)
     }
 
+    /// What a stress (Pa) is without its part that acts on θ and so is a pressure: s − (s:C)/3 C⁻¹ where θ is J − 1.
+    #[inline(always)]
+    fn without_pressure(k: &Kinematics<R>, stress: Sym3<R>) -> Sym3<R> {
+        k.without_pressure(&stress)
+    }
+
+    /// Cauchy stress (Pa) from the first Piola-Kirchhoff stress and J: P Fᵀ/J.
+    fn cauchy(gradient: &Mat3<R>, j: R, first: &Mat3<R>) -> Sym3<R> {
+        let (h, p) = (&gradient.0, &first.0);
+        let entry = |i: usize, k: usize| dot_plus(p[i], h[k], p[i][k]) / j;
+        Sym3([entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(1, 2), entry(0, 2)])
+    }
+
     /// U'(θ) (Pa), positive when the volume has grown.
     fn pressure(&self, theta: R) -> R;
 
@@ -59,7 +72,12 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
 macro_rules! each_elastic_law {
     ($then:ident) => {
         $then! {
+            Linear = "linear";
+            StVenantKirchhoff = "st_venant_kirchhoff";
             NeoHookean = "neo_hookean";
+            MooneyRivlin = "mooney_rivlin";
+            Ogden = "ogden";
+            ArrudaBoyce = "arruda_boyce";
         }
     };
 }
@@ -147,6 +165,20 @@ macro_rules! elastic_laws {
             pub fn volumetric(&self, k: &Kinematics<T>, pressure: T) -> Sym3<T> {
                 match self {
                     $(Self::$law(_) => <$law<T>>::volumetric(k, pressure),)*
+                }
+            }
+
+            /// As [`Elastic::without_pressure`].
+            pub fn without_pressure(&self, k: &Kinematics<T>, stress: Sym3<T>) -> Sym3<T> {
+                match self {
+                    $(Self::$law(_) => <$law<T>>::without_pressure(k, stress),)*
+                }
+            }
+
+            /// As [`Elastic::cauchy`].
+            pub fn cauchy(&self, gradient: &Mat3<T>, j: T, first: &Mat3<T>) -> Sym3<T> {
+                match self {
+                    $(Self::$law(_) => <$law<T>>::cauchy(gradient, j, first),)*
                 }
             }
 

@@ -9,7 +9,10 @@ mod selection;
 pub use crate::mesh::ElementKind;
 pub use action::{Axis, Constraint, Curve, Load, Removal, Share, When};
 pub use body::{Body, MeshSource, Region};
-pub use material::{Direction, Fibres, Material, NeoHookean, Prony, PronyTerm, ViscousIntegrator};
+pub use material::{
+    ArrudaBoyce, Direction, Elasticity, ExponentialFibres, Fibres, Material, MooneyRivlin, Ogden, OgdenTerm, Prony,
+    PronyTerm, ViscousIntegrator,
+};
 pub use scene::{Analysis, Field, Integration, Output, Picture, Scene};
 pub use selection::{Probe, Quantity, Select};
 
