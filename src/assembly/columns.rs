@@ -5,7 +5,7 @@ use crate::backend::cpu::BlockLaw;
 use crate::components::*;
 use crate::elements::Stiffness;
 use crate::evaluation::{add_nodal_masses, lane_place, node_count, point_count};
-use crate::materials::{ElasticLaw, Fibres};
+use crate::materials::{Elastic, ElasticLaw, Fibres};
 use crate::math::LANES;
 use crate::mesh::{ElementKind, Mesh};
 use bevy_ecs::prelude::*;

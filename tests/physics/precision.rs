@@ -7,6 +7,7 @@
 
 use crate::configurations::{Configuration, configurations};
 use glam::DVec3;
+use sinew::BackendChoice;
 use sinew::components::Precision;
 
 const STEPS: u64 = 100_000;
@@ -45,10 +46,11 @@ fn compensated_f32_follows_f64_at_the_stable_step_and_at_a_twentieth() {
         let exact = course(reference, step, true);
         for run in all.iter().filter(|run| run.options.precision == Precision::F32) {
             let compensated = difference(&exact, &course(run, step, true));
-            let plain = difference(&exact, &course(run, step, false));
-            println!("{}, Δt {step} s: compensated {compensated:.1e}, plain {plain:.1e}", run.name);
+            println!("{}, Δt {step} s: compensated {compensated:.1e}", run.name);
             assert!(compensated < 1e-6, "{}, Δt {step} s: {compensated:e}", run.name);
-            if step < 1e-3 {
+            if step < 1e-3 && run.options.backend == BackendChoice::Cpu {
+                let plain = difference(&exact, &course(run, step, false));
+                println!("{}, Δt {step} s: plain {plain:.1e}", run.name);
                 assert!(plain > 10.0 * compensated, "{}: {plain:e}", run.name);
             }
         }
