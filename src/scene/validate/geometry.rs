@@ -9,6 +9,9 @@ use crate::scene::syntax::Path;
 /// More cells than any machine holds: a slip of the finger, told before memory runs out.
 const MOST_CELLS: u128 = 1_000_000_000;
 
+/// More refinement than the smallest mesh bears.
+const MOST_TIMES: u32 = 9;
+
 /// What mesh files may end in.
 const MESH_FILES: [&str; 3] = ["msh", "vtk", "vtu"];
 
@@ -17,6 +20,11 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
         let path = scene("bodies").name(name);
         mesh(file, judge, &path.name("mesh"), &body.mesh);
         judge.above_zero(&path.name("scale"), body.scale, "");
+        if body.refine > MOST_TIMES {
+            judge
+                .must(&path.name("refine"), &format!("at most {MOST_TIMES}"), body.refine)
+                .note("each time makes eight elements of one: 10 times make a billion of it");
+        }
         for (i, region) in body.regions.iter().enumerate() {
             select::validate(judge, &path.name("regions").index(i).name("on"), &region.on);
         }
