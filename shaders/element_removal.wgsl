@@ -1,5 +1,5 @@
-// Takes away the elements whose time has come; twin of systems/element_removal.rs. energy_density is generated from the
-// block's material, extinguish from its element type. criterion.wgsl sets the time of elements that pass a limit.
+// Takes away the elements whose time has come; twin of systems/element_removal.rs. extinguish is generated from the block's
+// element type. criterion.wgsl sets the time of elements that pass a limit.
 struct Removal {
     share: f32, // density over nodes of an element (kg/m³)
 }
@@ -32,9 +32,8 @@ fn element_removal(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
         return;
     }
     let e = element_of(element);
-    let gradient = displacement_gradient(e);
-    let elastic = energy_density(element, kinematics(gradient)) * e.volume;
-    removed_energy[element] = elastic + hourglass_energy(element, e, gradient) + kinetic_energy(element, e.volume);
+    let elastic = energy_density(element, e) * e.volume;
+    removed_energy[element] = elastic + hourglass_energy(element, e) + kinetic_energy(element, e.volume);
     alive[element] = 0u;
     extinguish(element);
 }

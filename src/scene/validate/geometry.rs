@@ -25,6 +25,7 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
                 .must(&path.name("refine"), &format!("at most {MOST_TIMES}"), body.refine)
                 .note("each time makes eight elements of one: 10 times make a billion of it");
         }
+        judge.not_negative(&path.name("hourglass"), body.hourglass, "");
         for (i, region) in body.regions.iter().enumerate() {
             select::validate(judge, &path.name("regions").index(i).name("on"), &region.on);
         }
@@ -34,7 +35,15 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
 
 fn mesh(file: &SceneFile, judge: &mut Judge, path: &Path, mesh: &MeshSource) {
     match mesh {
-        MeshSource::File { path: name, .. } => mesh_file(file, judge, &path.name("path"), name),
+        MeshSource::File { path: name, tets, hexes, .. } => {
+            mesh_file(file, judge, &path.name("path"), name);
+            if !tets.is_tetrahedron() {
+                judge.must(&path.name("tets"), "Tet4 or Tet4NodalPressure", format!("{tets:?}"));
+            }
+            if hexes.is_tetrahedron() {
+                judge.must(&path.name("hexes"), "Hex8 or Hex8MeanDilatation", format!("{hexes:?}"));
+            }
+        }
         MeshSource::Box { size, cells, .. } => {
             judge.all_above_zero(&path.name("size"), *size, "m");
             let cells = [cells.0, cells.1, cells.2];
