@@ -2,7 +2,7 @@
 
 use super::{Judge, scene, select};
 use crate::scene::load::SceneFile;
-use crate::scene::schema::{MeshSource, Picture};
+use crate::scene::schema::{Accuracy, AccuracyReference, MeshSource, Picture};
 use crate::scene::suggest::{choice, list};
 use crate::scene::syntax::Path;
 
@@ -31,6 +31,23 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
         }
     }
     picture(judge, &file.scene.picture);
+    accuracy(judge, &file.scene.accuracy);
+}
+
+fn accuracy(judge: &mut Judge, wanted: &Accuracy) {
+    let path = scene("accuracy");
+    if let Some(target) = wanted.target {
+        judge.above_zero(&path.name("target"), target, "");
+    }
+    let empty = match &wanted.reference {
+        AccuracyReference::SelfMade => false,
+        AccuracyReference::Values(values) => values.is_empty(),
+        AccuracyReference::Files(files) => files.is_empty(),
+    };
+    if empty {
+        let message = "the reference is empty: there is nothing to measure errors against";
+        judge.out.error_at(path.name("reference"), message).note("leave `reference` out to have one made");
+    }
 }
 
 fn mesh(file: &SceneFile, judge: &mut Judge, path: &Path, mesh: &MeshSource) {
