@@ -18,7 +18,7 @@ fn element_forces(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wor
         return;
     }
     let e = element_of(element);
-    let shared = shared_pressure(element, e);
+    let mean = mean_pressure(element, e);
     var forces = Forces();
     for (var point = 0u; point < POINTS; point++) {
         let at = at_point(e, point);
@@ -26,7 +26,7 @@ fn element_forces(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wor
         if e.volume > 0.0 && k.true_j < 0.0 {
             atomicMin(&first_inverted[0], element);
         }
-        let pressure = point_pressure(shared, k);
+        let pressure = point_pressure(mean, k);
         let stress = sym_plus(isochoric_stress(element, point, k), elastic_volumetric(k, pressure));
         forces = add_stress(forces, point, at, elastic_first_stress(at.gradient, stress));
     }

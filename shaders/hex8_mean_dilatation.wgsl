@@ -130,12 +130,12 @@ fn mean_volume_change(e: Element) -> f32 {
 }
 
 // Pa
-fn shared_pressure(element: u32, e: Element) -> f32 {
+fn mean_pressure(element: u32, e: Element) -> f32 {
     return elastic_pressure(mean_volume_change(e));
 }
 
-fn point_pressure(shared: f32, k: Kinematics) -> f32 {
-    return shared;
+fn point_pressure(mean: f32, k: Kinematics) -> f32 {
+    return mean;
 }
 
 // J/m³

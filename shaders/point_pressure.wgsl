@@ -1,9 +1,9 @@
 // Pressure (Pa) of elements with one point: from the volume there.
-fn shared_pressure(element: u32, e: Element) -> f32 {
+fn mean_pressure(element: u32, e: Element) -> f32 {
     return 0.0;
 }
 
-fn point_pressure(shared: f32, k: Kinematics) -> f32 {
+fn point_pressure(mean: f32, k: Kinematics) -> f32 {
     return elastic_pressure(elastic_volume_measure(k));
 }
 

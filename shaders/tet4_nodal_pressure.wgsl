@@ -5,7 +5,7 @@ fn corner_volume_change(element: u32, corner: u32) -> f32 {
     return nodal_volume_change[connectivity[place(element, NODES, corner)]];
 }
 
-fn shared_pressure(element: u32, e: Element) -> f32 {
+fn mean_pressure(element: u32, e: Element) -> f32 {
     var sum = 0.0;
     for (var corner = 0u; corner < NODES; corner++) {
         sum += elastic_pressure(corner_volume_change(element, corner));
@@ -13,8 +13,8 @@ fn shared_pressure(element: u32, e: Element) -> f32 {
     return sum / f32(NODES);
 }
 
-fn point_pressure(shared: f32, k: Kinematics) -> f32 {
-    return shared;
+fn point_pressure(mean: f32, k: Kinematics) -> f32 {
+    return mean;
 }
 
 // J/m³

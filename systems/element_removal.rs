@@ -201,7 +201,8 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
         for some in of_block.chunks(32) {
             kernels.push(with_step(criterion_kernel(block, some, buffers), world));
         }
-        kernels.push(with_step(removal_kernel(block, world, buffers), world));
+        kernels.push(with_step(motion_kernel(block, world, buffers), world));
+        kernels.push(with_step(removal_kernel(block, buffers), world));
         if !weighed.contains(&block.block.body) {
             weighed.push(block.block.body);
         }
@@ -251,23 +252,32 @@ fn criterion_kernel(block: &BlockKernels, criteria: &[&RemovalCriterion], buffer
     block.with_energy(kernel, buffers)
 }
 
-fn removal_kernel(block: &BlockKernels, world: &World, buffers: &mut dyn Buffers) -> Kernel {
-    let (kind, material) = (block.block.kind, block.block.material);
-    let (volume, further) = with_element!(kind, E => (E::VOLUME_ROW, E::FORCE_ROW));
+const REMOVED: [&str; 4] = [RestShape::NAME, Alive::NAME, RemovalStep::NAME, RemovedEnergy::NAME];
+
+fn motion_kernel(block: &BlockKernels, world: &World, buffers: &mut dyn Buffers) -> Kernel {
+    let density = world.get::<Density>(block.block.material).map_or(0.0, |density| density.0);
+    let removal = Removal { share: (density / node_count(block.block.kind) as f64) as f32 };
+    let kernel = block
+        .of_columns("removed_motion")
+        .fragment(shader!("removed_motion"))
+        .fragment(shader!("due"))
+        .bind_uniform::<Removal>("removal", buffers.uniform("element_removal".into(), &removal.bytes()))
+        .bind(DisplacementStep::NAME, buffers.column(block.block.body, DisplacementStep::NAME));
+    REMOVED.iter().fold(kernel, |k, name| k.bind(name, buffers.column(block.entity, name)))
+}
+
+fn removal_kernel(block: &BlockKernels, buffers: &mut dyn Buffers) -> Kernel {
+    let (volume, further) = with_element!(block.block.kind, E => (E::VOLUME_ROW, E::FORCE_ROW));
     let mut text = String::from("fn extinguish(element: u32) {\n");
     for row in std::iter::once(volume).chain(further) {
         text += &format!("    rest_shape[place(element, ROWS, {row}u)] = 0.0;\n");
     }
-    let density = world.get::<Density>(material).map_or(0.0, |density| density.0);
-    let removal = Removal { share: (density / node_count(kind) as f64) as f32 };
     let kernel = block
         .kernel("element_removal")
         .fragment(shader!("element_removal"))
-        .fragment(block.generated("extinction", text + "}\n"))
-        .bind_uniform::<Removal>("removal", buffers.uniform("element_removal".into(), &removal.bytes()))
-        .bind(DisplacementStep::NAME, buffers.column(block.block.body, DisplacementStep::NAME));
-    let columns = [RestShape::NAME, Alive::NAME, RemovalStep::NAME, RemovedEnergy::NAME];
-    let kernel = columns.iter().fold(kernel, |k, name| k.bind(name, buffers.column(block.entity, name)));
+        .fragment(shader!("due"))
+        .fragment(block.generated("extinction", text + "}\n"));
+    let kernel = REMOVED.iter().fold(kernel, |k, name| k.bind(name, buffers.column(block.entity, name)));
     block.with_energy(kernel, buffers)
 }
 

@@ -116,28 +116,33 @@ impl BlockKernels {
     /// each element.
     pub fn kernel(&self, entry: &'static str) -> Kernel {
         let elastic = ElasticPart::of(&self.law.elastic);
-        let mut kernel = Kernel::new(format!("{entry} of {}", self.label), entry)
-            .fragment(shader!("row"))
+        let mut kernel = self
+            .of_columns(entry)
             .fragment(shader!("tensor"))
             .fragment(shader!("kinematics"))
-            .fragment(shader!("block"))
             .fragment(shader!("point"))
             .fragment(match self.block.kind {
                 ElementKind::Tet4 | ElementKind::Tet4NodalPressure => shader!("tet4"),
                 ElementKind::Hex8 => shader!("hex8"),
                 ElementKind::Hex8MeanDilatation => shader!("hex8_mean_dilatation"),
             })
-            .fragment(self.generated("constants", self.constants()))
             .fragment(elastic.fragment)
             .fragment(shader!("finite_strain"))
             .fragment(shader!("volume_ratio"))
-            .bind_uniform::<Block>("block", self.parameters)
-            .bind("elastic", self.elastic)
-            .bind("displacement", self.columns[0])
-            .bind("connectivity", self.columns[1])
-            .threads(self.block.count as u32);
+            .bind("displacement", self.columns[0]);
         kernel.layouts.push(("elastic", elastic.layout));
         kernel
+    }
+
+    /// A kernel that knows the block's layout only; a thread for each element.
+    pub fn of_columns(&self, entry: &'static str) -> Kernel {
+        Kernel::new(format!("{entry} of {}", self.label), entry)
+            .fragment(shader!("row"))
+            .fragment(shader!("block"))
+            .fragment(self.generated("constants", self.constants()))
+            .bind_uniform::<Block>("block", self.parameters)
+            .bind("connectivity", self.columns[1])
+            .threads(self.block.count as u32)
     }
 
     /// Adds where the element type's pressure comes from.
@@ -180,7 +185,8 @@ impl BlockKernels {
         if terms > 0 {
             text += &format!("const TERMS: u32 = {terms}u;\n");
         }
-        let kernel = self.with_pressure(self.with_fibres(kernel), buffers).fragment(self.generated("stress", text));
+        let kernel = self.with_fibres(kernel.bind("elastic", self.elastic));
+        let kernel = self.with_pressure(kernel, buffers).fragment(self.generated("stress", text));
         if terms == 0 {
             return kernel;
         }
@@ -200,7 +206,7 @@ impl BlockKernels {
         };
         let text =
             format!("fn fibres_energy_at(element: u32, k: Kinematics) -> f32 {{\n    return {fibres};\n}}\n");
-        self.with_pressure(self.with_fibres(kernel), buffers)
+        self.with_pressure(self.with_fibres(kernel.bind("elastic", self.elastic)), buffers)
             .fragment(shader!("energy"))
             .fragment(self.generated("energy", text))
     }
