@@ -60,6 +60,9 @@ fn spending(split: &Split) -> Option<String> {
     let (space, time, round_off) = (split.space?, split.time.unwrap_or(0.0), split.round_off.unwrap_or(0.0));
     let model = split.model.unwrap_or(0.0);
     let total = split.total?;
+    if split.space_is_a_bound && space > time.max(round_off) {
+        return None;
+    }
     if split.stays || model > space.max(time).max(round_off) {
         let model = if split.model.is_some() { model } else { total };
         return Some(format!(

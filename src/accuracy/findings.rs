@@ -6,7 +6,7 @@ use super::field::same_mesh;
 use super::pareto::observed_order;
 use super::plan::Varied;
 use super::quantities::{distance, readings};
-use super::reference::{CLEARLY, FIELD, Reference, Source};
+use super::reference::{CLEARLY, Error, FIELD, Reference, Source};
 use super::richardson::extrapolate;
 use super::solver::Solution;
 use super::study::Row;
@@ -45,6 +45,8 @@ pub struct Split {
     pub total: Option<f64>,
     /// What cells of no size would change.
     pub space: Option<f64>,
+    /// Whether `space` is only a bound: the reference cannot tell it from none.
+    pub space_is_a_bound: bool,
     /// What a quarter of the step changes.
     pub time: Option<f64>,
     /// What f64 changes.
@@ -190,15 +192,17 @@ impl Facts<'_> {
             .filter(|&row| self.rows[row].varied == Varied::Hourglass)
             .filter_map(|row| self.apart(written, row))
             .reduce(f64::max);
-        let alone = self.rows.iter().find(|row| row.varied == Varied::SpaceAlone);
-        let alone = alone.and_then(|row| row.errors.get(self.judged_by)).map(|error| error.error);
-        let (mut space, mut model) = (alone.or(total), None);
+        let alone = self.rows.iter().find(|row| row.varied == Varied::SpaceAlone && row.measured().is_some());
+        let alone = alone.or(Some(&self.rows[written])).and_then(|row| row.errors.get(self.judged_by));
+        let space_is_a_bound = alone.is_some_and(|error| !error.is_clear());
+        let (mut space, mut model) = (alone.map(Error::vouched), None);
         if !matches!(self.reference.source, Source::SelfMade | Source::None) {
             model = self.model(written);
+            // of two errors of unknown sign the difference is the least that space can be
             space = space.zip(model).map(|(all, model)| (all - model).abs()).or(space);
         }
         let stays = self.stays(written, time, round_off);
-        Split { total, space, time, round_off, model, hourglass, stays }
+        Split { total, space, space_is_a_bound, time, round_off, model, hourglass, stays }
     }
 
     /// What the error comes to with cells of no size; `None` where that cannot be told from 0 or from what is not known.

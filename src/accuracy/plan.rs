@@ -3,6 +3,7 @@
 use super::configuration::{Configuration, Digits, Factor};
 use super::solver::{Choices, Cost, Refusal, Solver};
 use serde::Serialize;
+use std::cmp::Reverse;
 
 /// The share of the budget that the configurations themselves may claim before the reference takes the rest.
 const ROWS_SHARE: f64 = 0.4;
@@ -65,6 +66,9 @@ pub struct Plan {
     pub no_reference: Option<String>,
     /// The configurations, in the order in which they are shown.
     pub rows: Vec<Planned>,
+    /// The order in which they run, by their places in `rows`: who ends a study early, or a budget that is spent before it was
+    /// predicted to be, leaves the most telling ones done.
+    pub order: Vec<usize>,
     /// What all that runs takes, as predicted (s).
     pub predicted: f64,
     /// What it may take (s).
@@ -87,7 +91,7 @@ pub fn plan(solver: &mut dyn Solver, choices: &Choices, budget: f64, make_refere
         rows.push(Planned { varied, configuration, label, fate });
     }
     let modest: f64 = rows.iter().filter(|row| row.configuration.mesh <= Factor::ONE).map(seconds).sum();
-    let mut plan = Plan { reference: Vec::new(), no_reference: None, rows, predicted: 0.0, budget };
+    let mut plan = Plan { reference: Vec::new(), no_reference: None, rows, order: Vec::new(), predicted: 0.0, budget };
     if make_reference {
         reference(solver, choices, &mut plan, budget - modest.min(ROWS_SHARE * budget))?;
     }
@@ -98,22 +102,23 @@ pub fn plan(solver: &mut dyn Solver, choices: &Choices, budget: f64, make_refere
         let ((a, cost_a), (b, cost_b)) = (key(&plan.rows[a]), key(&plan.rows[b]));
         a.cmp(&b).then(cost_a.total_cmp(&cost_b))
     });
-    for place in order {
+    for &place in &order {
         let Fate::LeftOut(cost) = plan.rows[place].fate else { continue };
         if plan.predicted + cost.seconds <= budget {
             plan.predicted += cost.seconds;
             plan.rows[place].fate = Fate::Run(cost);
         }
     }
+    plan.order = order;
     Ok(plan)
 }
 
-/// What is given a place in the budget first.
+/// What is given a place in the budget first: the scene itself, then what is about as cheap, then other meshes by cost.
 fn urgency(varied: Varied) -> u8 {
     match varied {
         Varied::Nothing => 0,
-        Varied::Effect => 1,
-        _ => 2,
+        Varied::Mesh => 2,
+        _ => 1,
     }
 }
 
@@ -144,7 +149,7 @@ fn variations(choices: &Choices) -> Vec<(Varied, Configuration)> {
             add(Varied::Mesh, &|c| (c.element, c.mesh) = (element, mesh));
         }
     }
-    for step in [2, 4] {
+    for &step in &choices.steps {
         add(Varied::Step, &|c| c.step = step);
     }
     choices.digits.iter().for_each(|digits| add(Varied::Digits, &|c| c.digits = *digits));
@@ -153,7 +158,7 @@ fn variations(choices: &Choices) -> Vec<(Varied, Configuration)> {
     choices.laws.iter().for_each(|law| add(Varied::Law, &|c| c.law = Some(law.clone())));
     choices.places.iter().for_each(|place| add(Varied::Place, &|c| c.place = *place));
     if choices.digits.contains(&Digits::Double) {
-        add(Varied::SpaceAlone, &|c| (c.digits, c.step) = (Digits::Double, 4));
+        add(Varied::SpaceAlone, &|c| (c.digits, c.step) = (Digits::Double, finest_step(choices)));
     }
     choices.effects.iter().for_each(|effect| add(Varied::Effect, &|c| c.without = Some(effect.clone())));
     list
@@ -181,7 +186,8 @@ pub fn nested(meshes: [Factor; 3]) -> bool {
 /// into `share` (s).
 fn reference(solver: &mut dyn Solver, choices: &Choices, plan: &mut Plan, share: f64) -> Result<(), Refusal> {
     let mut candidates = triples(&choices.meshes);
-    candidates.sort_by_key(|&[a, b, c]| (std::cmp::Reverse(c), !nested([a, b, c]), a, b));
+    // coarse ones follow no power of the cell size yet
+    candidates.sort_by_key(|&[a, b, c]| (Reverse(c), !nested([a, b, c]), Reverse(b), Reverse(a)));
     let (mut least, mut why) = (f64::INFINITY, "the meshes of the scene come in fewer than three sizes".to_string());
     for meshes in candidates {
         let mut three = Vec::new();
@@ -213,11 +219,16 @@ fn reference(solver: &mut dyn Solver, choices: &Choices, plan: &mut Plan, share:
     Ok(())
 }
 
+/// What the step is divided by where time must not err.
+fn finest_step(choices: &Choices) -> u32 {
+    choices.steps.iter().copied().max().unwrap_or(1)
+}
+
 /// The most accurate way there is to solve the scene on a mesh.
 fn best(choices: &Choices, mesh: Factor) -> Configuration {
     let element = choices.elements.last().copied().or(choices.base.element);
     let viscous = choices.viscous.first().copied().or(choices.base.viscous);
-    Configuration { element, mesh, step: 4, digits: Digits::Double, viscous, ..choices.base.clone() }
+    Configuration { element, mesh, step: finest_step(choices), digits: Digits::Double, viscous, ..choices.base.clone() }
 }
 
 /// All sets of three meshes that lie far enough apart.

@@ -37,6 +37,8 @@ pub struct Choices {
     pub elements: Vec<ElementKind>,
     /// How fine meshes can be, ascending; all of one shape, so that errors follow a power of the cell size.
     pub meshes: Vec<Factor>,
+    /// What the step can be divided by; empty where there is no step to choose.
+    pub steps: Vec<u32>,
     /// Number types.
     pub digits: Vec<Digits>,
     /// Hourglass stiffness against the scene's; empty where there is none to change.

@@ -167,13 +167,14 @@ pub fn study(solver: &mut dyn Solver, settings: &Settings, watch: &mut dyn Watch
         _ => Reference::none(plan.no_reference.as_deref().unwrap_or("its runs did not come to an end")),
     };
 
-    let (mut rows, mut solutions) = (Vec::new(), Vec::new());
-    for planned in &plan.rows {
-        let (mut row, solution) = work.run(planned);
+    let mut done: Vec<(usize, (Row, Option<Solution>))> = Vec::new();
+    for &place in &plan.order {
+        let (mut row, solution) = work.run(&plan.rows[place]);
         row.errors = solution.as_ref().map(|solution| reference.errors(solution)).unwrap_or_default();
-        rows.push(row);
-        solutions.push(solution);
+        done.push((place, (row, solution)));
     }
+    done.sort_by_key(|(place, _)| *place);
+    let (mut rows, solutions): (Vec<Row>, Vec<Option<Solution>>) = done.into_iter().map(|(_, done)| done).unzip();
     let interrupted = work.interrupted;
     let judged_by = judged_by(settings, &rows);
     let points: Vec<(f64, f64)> = rows.iter().map(|row| point(row, &judged_by)).collect();

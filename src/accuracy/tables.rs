@@ -56,6 +56,7 @@ fn ratio(value: f64) -> String {
         v if v >= 9.95 => format!("{v:.0}"),
         v if v >= 0.995 => format!("{v:.1}"),
         v if v >= 0.0995 => format!("{v:.2}"),
+        v if v >= 9.95e-4 => format!("{v:.3}"),
         v => format!("{v:.1e}"),
     }
 }
@@ -72,7 +73,8 @@ pub fn split(study: &Study) -> Vec<(&'static str, String)> {
     ];
     let mut lines: Vec<(&'static str, String)> = Vec::new();
     for (name, part) in parts {
-        lines.push((name, part.map_or_else(|| "not known".into(), percent)));
+        let bound = if name == "space" && split.space_is_a_bound { "below " } else { "" };
+        lines.push((name, part.map_or_else(|| "not known".into(), |part| format!("{bound}{}", percent(part)))));
     }
     lines
 }

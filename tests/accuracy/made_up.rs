@@ -92,6 +92,7 @@ impl Solver for MadeUp {
             base: base(),
             elements: vec![ElementKind::Tet4, ElementKind::Hex8],
             meshes: [(1, 2), (1, 1), (2, 1), (4, 1)].map(|(up, down)| Factor::new(up, down)).to_vec(),
+            steps: vec![2, 4],
             digits: vec![Digits::Plain, Digits::Compensated, Digits::Double],
             hourglass: vec![0.5],
             viscous: vec![],

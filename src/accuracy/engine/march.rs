@@ -71,7 +71,7 @@ fn column(probe: &str, what: Quantity, component: usize) -> (String, String) {
 /// Why an error means that there is no solution.
 pub fn refusal(error: Error) -> Refusal {
     match error {
-        Error::Unstable(_) => Refusal::Broke(error.to_string()),
+        Error::Unstable(_) | Error::NotConverged(_) => Refusal::Broke(error.to_string()),
         Error::Scene(diagnostics) => {
             let errors = diagnostics.list().into_iter().filter(|d| d.severity == crate::scene::Severity::Error);
             let first = errors.map(|error| error.message.clone()).next();
@@ -137,6 +137,16 @@ impl Run<'_> {
             self.field.bodies.insert(name.clone(), body);
         }
         let all = simulation.planned_steps();
+        if scene.scene.is_static() {
+            while !simulation.is_finished() && simulation.step_count() < all {
+                if interrupted() {
+                    return Err(Refusal::Interrupted);
+                }
+                let steps = (all - simulation.step_count()).min(2000);
+                self.seconds += timed(simulation, steps)?;
+            }
+            return self.look(simulation, self.looks.count, scene.scene.duration);
+        }
         for look in 0..=self.looks.count {
             let target = all * look / self.looks.count;
             while simulation.step_count() < target {
@@ -146,13 +156,12 @@ impl Run<'_> {
                 let steps = (target - simulation.step_count()).min(2000);
                 self.seconds += timed(simulation, steps)?;
             }
-            self.look(simulation, look, target)?;
+            self.look(simulation, look, target as f64 * simulation.time_step())?;
         }
         Ok(())
     }
 
-    fn look(&mut self, simulation: &mut Simulation, look: u64, step: u64) -> Result<(), Refusal> {
-        let time = step as f64 * simulation.time_step();
+    fn look(&mut self, simulation: &mut Simulation, look: u64, time: f64) -> Result<(), Refusal> {
         for (name, what, components) in self.looks.probes.clone() {
             if what != Quantity::Reaction {
                 let values = simulation.probe(&name).map_err(refusal)?;
@@ -175,6 +184,7 @@ impl Run<'_> {
         // reactions are made of the forces at the beginning of the step before: those of now are known one step later
         let reactions: Vec<_> = self.looks.probes.iter().filter(|(_, what, _)| *what == Quantity::Reaction).collect();
         if !reactions.is_empty() {
+            // (in equilibrium nothing moves any more, and no step is taken)
             let started = Instant::now();
             simulation.advance(1).map_err(refusal)?;
             let last = look == self.looks.count;
@@ -208,8 +218,8 @@ impl Run<'_> {
             field: Some(self.field),
             seconds: self.seconds,
             timed: 1,
-            simulated: Some(scene.scene.duration),
-            steps: summary.planned_steps,
+            simulated: (!scene.scene.is_static()).then_some(scene.scene.duration),
+            steps: if scene.scene.is_static() { summary.steps } else { summary.planned_steps },
             elements: summary.elements as u64,
             nodes: summary.nodes as u64,
             time_step: summary.time_step,

@@ -53,8 +53,10 @@ pub struct Engine<'a> {
 struct Calibration {
     mesh: Factor,
     elements: f64,
-    /// The largest stable step, and the step as the scene wants it (s).
+    /// The step as the scene wants it (s).
     step: f64,
+    /// Steps taken: of a search for equilibrium all.
+    steps: u64,
     setup: f64,
     seconds_a_step: f64,
     look: f64,
@@ -67,14 +69,15 @@ impl<'a> Engine<'a> {
         Self { file, options, gpu, effects, interrupted, looks: None, known: Vec::new() }
     }
 
-    /// Looks at numbers over time that all configurations share: as many intervals, from the start to the end.
+    /// Looks at numbers over time that all configurations share: as many intervals, from the start to the end; 0 of a search
+    /// for equilibrium.
     ///
     /// # Errors
     /// That the scene as it is written cannot be run.
     pub fn looks(&mut self) -> Result<u64, Refusal> {
         let base = self.base(&self.elements()?);
         self.calibrate(&base)?;
-        Ok(self.looks.as_ref().map_or(0, |looks| looks.count))
+        Ok(self.looks.as_ref().filter(|_| !self.file.scene.is_static()).map_or(0, |looks| looks.count))
     }
 
     /// The scene as it is written; `elements` are the kinds that its bodies can have.
@@ -154,7 +157,10 @@ impl<'a> Engine<'a> {
 
     /// What a few steps show of a configuration, on a mesh that is quickly made.
     fn calibrate(&mut self, configuration: &Configuration) -> Result<Calibration, Refusal> {
-        let kind = Configuration { mesh: Factor::ONE, step: 1, hourglass: 1.0, ..configuration.clone() };
+        let is_static = self.file.scene.is_static();
+        let meshes = self.meshes();
+        let coarsest = meshes.first().copied().filter(|_| is_static).unwrap_or(Factor::ONE);
+        let kind = Configuration { mesh: coarsest, step: 1, hourglass: 1.0, ..configuration.clone() };
         if let Some((_, known)) = self.known.iter().find(|(known, _)| *known == kind) {
             return Ok(*known);
         }
@@ -169,20 +175,27 @@ impl<'a> Engine<'a> {
         let step = wanted.unwrap_or(found);
         let steps = simulation.planned_steps();
         if self.looks.is_none() {
-            self.looks = Some(Looks::new(self.file, &reactions(&self.file.scene), (self.file.scene.duration / step) as u64));
+            let steps = (self.file.scene.duration / step) as u64;
+            self.looks = Some(Looks::new(self.file, &reactions(&self.file.scene), steps));
         }
-        let (mut seconds_a_step, mut taken, mut count) = (f64::INFINITY, 0.0, 1);
-        while taken < CALIBRATION && simulation.step_count() < steps {
-            let count_now = count.min(steps - simulation.step_count());
-            let seconds = march::timed(&mut simulation, count_now)?;
-            seconds_a_step = seconds_a_step.min(seconds / count_now as f64);
-            (taken, count) = (taken + seconds, count * 2);
+        // of a search for equilibrium nobody knows how many steps it takes: it is gone through, on the coarsest mesh
+        let enough = if scene.scene.is_static() { f64::INFINITY } else { CALIBRATION };
+        let (mut taken, mut count) = (0.0, 1);
+        while taken < enough && simulation.step_count() < steps && !simulation.is_finished() {
+            if (self.interrupted)() {
+                return Err(Refusal::Interrupted);
+            }
+            let now = count.min(steps - simulation.step_count());
+            taken += march::timed(&mut simulation, now)?;
+            count = (count * 2).min(4000);
         }
+        let all_steps = simulation.step_count();
+        let seconds_a_step = taken / all_steps.max(1) as f64;
         let started = Instant::now();
         simulation.energies().map_err(refusal)?;
         let look = started.elapsed().as_secs_f64();
         let (elements, setup) = (summary.elements as f64, summary.setup_seconds);
-        let calibration = Calibration { mesh: Factor::ONE, elements, step, setup, seconds_a_step, look };
+        let calibration = Calibration { mesh: coarsest, elements, step, steps: all_steps, setup, seconds_a_step, look };
         self.known.push((kind, calibration));
         Ok(calibration)
     }
@@ -201,6 +214,7 @@ impl Solver for Engine<'_> {
         Ok(Choices {
             elements,
             meshes: self.meshes(),
+            steps: if scene.is_static() { Vec::new() } else { vec![2, 4] },
             digits: vec![Digits::Plain, Digits::Compensated, Digits::Double],
             hourglass: if hexes { vec![0.5, 2.0] } else { Vec::new() },
             viscous: if viscous { both.to_vec() } else { Vec::new() },
@@ -223,7 +237,11 @@ impl Solver for Engine<'_> {
         let duration = self.file.scene.duration;
         let looks = self.looks.as_ref().map_or(FIELDS, |looks| looks.count);
         let most = known.step / finer.max(1e-9) / f64::from(configuration.step);
-        let steps = (duration / self.looks.as_ref().map_or(most, |looks| looks.fitting(duration, most))).round();
+        let steps = match self.file.scene.is_static() {
+            // waves must cross the body so many times, and take a step a cell
+            true => known.steps as f64 * finer,
+            false => (duration / self.looks.as_ref().map_or(most, |looks| looks.fitting(duration, most))).round(),
+        };
         let growth = finer.powi(3);
         let run = steps * known.seconds_a_step * growth;
         let again = if run < 0.1 { 3.0 } else { 1.0 };
@@ -239,6 +257,10 @@ impl Solver for Engine<'_> {
             None => return Err(Refusal::Refused("nothing has been predicted yet".into())),
         };
         let integration = &self.file.scene.integration;
+        if self.file.scene.is_static() {
+            let scene = variant(self.file, configuration, None);
+            return march::solve(&scene, &options, &looks, &self.interrupted);
+        }
         let largest = match integration.step {
             Some(step) => step,
             None => {

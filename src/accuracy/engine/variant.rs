@@ -4,7 +4,10 @@ use super::effects::switch_off;
 use crate::accuracy::configuration::{Configuration, Digits, Factor, Place};
 use crate::mesh::ElementKind;
 use crate::scene::SceneFile;
-use crate::scene::schema::{Axis, Constraint, Load, MeshSource, Probe, Quantity, Scene, Select};
+use crate::scene::schema::{Analysis, Axis, Constraint, Load, MeshSource, Probe, Quantity, Scene, Select};
+
+/// The residual that searches for equilibrium in f64 end with.
+const TOLERANCE: f64 = 1e-8;
 
 /// How the mesh of a body is made finer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -112,6 +115,12 @@ pub fn variant(file: &SceneFile, configuration: &Configuration, step: Option<f64
     scene.integration.step = step;
     if let Some(effect) = &configuration.without {
         switch_off(scene, effect);
+    }
+    if let Analysis::Static { tolerance, .. } = &mut scene.analysis
+        && configuration.digits == Digits::Double
+    {
+        // what is left of the way to rest must not be taken for an error of the mesh
+        *tolerance = Some(tolerance.map_or(TOLERANCE, |asked| asked.min(TOLERANCE)));
     }
     scene.output.fields_every = Some(scene.duration);
     scene.output.energies_every = None;
