@@ -12,7 +12,8 @@ const COUNTS: f64 = 0.33;
 pub fn advice(rows: &[Row], split: &Split, source: Source, judged_by: &str, target: f64) -> Vec<String> {
     let mut sentences = Vec::new();
     if source == Source::None {
-        sentences.push("Without a reference nothing can be said about errors; the times are measured all the same.".into());
+        sentences
+            .push("Without a reference nothing can be said about errors; the times are measured all the same.".into());
         return sentences;
     }
     let with_errors: Vec<(&Row, Error, f64)> = rows
@@ -49,7 +50,10 @@ fn cheapest(rows: &[(&Row, Error, f64)], target: f64) -> String {
             let nearest = rows.iter().min_by(|a, b| a.1.vouched().total_cmp(&b.1.vouched()));
             nearest.map_or(String::new(), |(row, error, time)| {
                 let (error, time) = (told(error), seconds(*time));
-                format!("Nothing that ran is surely under {target}; the nearest is {}, {error} at {time} a second.", row.label)
+                format!(
+                    "Nothing that ran is surely under {target}; the nearest is {}, {error} at {time} a second.",
+                    row.label
+                )
             })
         }
     }
@@ -76,7 +80,8 @@ fn spending(split: &Split) -> Option<String> {
     if largest <= 0.0 {
         return None;
     }
-    let others: Vec<&(&str, f64)> = parts.iter().enumerate().filter(|(i, _)| *i != place).map(|(_, part)| part).collect();
+    let others: Vec<&(&str, f64)> =
+        parts.iter().enumerate().filter(|(i, _)| *i != place).map(|(_, part)| part).collect();
     let also: Vec<&str> = others.iter().filter(|(_, part)| *part > COUNTS * largest).map(|(what, _)| *what).collect();
     let not: Vec<&str> = others.iter().filter(|(_, part)| *part <= COUNTS * largest).map(|(what, _)| *what).collect();
     let advice = match (also.is_empty(), not.is_empty()) {

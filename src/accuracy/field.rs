@@ -73,16 +73,25 @@ impl FieldReference {
         let lengths = [length(c), length(&all[2])];
         // what extrapolation leaves of a node's error it leaves, near enough, of the largest one
         let largest = |a: &[DVec3], b: &[DVec3]| {
-            a.iter().zip(b).zip(&sample.masses).filter(|(_, mass)| **mass > 0.0).map(|((a, b), _)| a.distance(*b))
+            a.iter()
+                .zip(b)
+                .zip(&sample.masses)
+                .filter(|(_, mass)| **mass > 0.0)
+                .map(|((a, b), _)| a.distance(*b))
                 .fold(0.0, f64::max)
         };
-        let (Some(middle_end), Some(fine_end)) = (sample.others[0].last(), sample.others[1].last()) else { return None };
+        let (Some(middle_end), Some(fine_end)) = (sample.others[0].last(), sample.others[1].last()) else {
+            return None;
+        };
         let top = fine_end.iter().map(|u| u.length()).fold(0.0, f64::max);
         let near = length(&b.iter().zip(c).map(|(b, c)| b - c).collect::<Vec<_>>());
         let spread = if near > 0.0 { end.uncertainty / near } else { 0.0 };
         let gain = end.order.map_or(0.0, |order| sizes[2].powf(order) / (sizes[1].powf(order) - sizes[2].powf(order)));
-        let mut uncertainty =
-            [end.uncertainty / lengths[0], over_time.uncertainty / lengths[1], spread * largest(middle_end, fine_end) / top];
+        let mut uncertainty = [
+            end.uncertainty / lengths[0],
+            over_time.uncertainty / lengths[1],
+            spread * largest(middle_end, fine_end) / top,
+        ];
         let order = end.order;
         if !nested && gain > 0.0 {
             // the finest field as it is, off by all that extrapolation would add, and a quarter more
@@ -138,8 +147,11 @@ fn compare(masses: &[f64], own: &[Vec<DVec3>], reference: &[Vec<DVec3>]) -> Opti
 /// Values of fields at the nodes of the first: its own, and the others' interpolated.
 fn sample(own: &Field, others: &[&Field]) -> Option<Sample> {
     let times = own.times.len();
-    let mut sample =
-        Sample { masses: Vec::new(), own: vec![Vec::new(); times], others: vec![vec![Vec::new(); times]; others.len()] };
+    let mut sample = Sample {
+        masses: Vec::new(),
+        own: vec![Vec::new(); times],
+        others: vec![vec![Vec::new(); times]; others.len()],
+    };
     for (name, body) in &own.bodies {
         let mut there = vec![true; body.mesh.points.len()];
         let mut found: Vec<Vec<Vec<DVec3>>> = Vec::new();

@@ -15,7 +15,8 @@ pub fn read(paths: &[PathBuf], duration: f64, looks: u64) -> Result<Reference, S
     let mut files = Vec::new();
     for path in paths {
         if path.is_dir() {
-            let entries = std::fs::read_dir(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+            let entries =
+                std::fs::read_dir(path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
             let inside = entries.filter_map(|entry| Some(entry.ok()?.path()));
             files.extend(inside.filter(|file| kind(file).is_some()));
         } else {
@@ -99,13 +100,7 @@ impl Table {
 }
 
 /// Quantities of a probe's table. Its last row must be at the end of the scene.
-fn probe(
-    name: &str,
-    table: &Table,
-    file: &Path,
-    duration: f64,
-    looks: u64,
-) -> Result<BTreeMap<String, Entry>, String> {
+fn probe(name: &str, table: &Table, file: &Path, duration: f64, looks: u64) -> Result<BTreeMap<String, Entry>, String> {
     let wrong = |what: String| Err(format!("{}: {what}", file.display()));
     if table.header.first().is_none_or(|column| !column.starts_with("time")) {
         return wrong("the first column must be `time (s)`".into());

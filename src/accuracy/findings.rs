@@ -153,7 +153,8 @@ impl Facts<'_> {
         if near <= CLEARLY * noise || far <= near {
             return None;
         }
-        Some(Order { of: "time step".into(), order: (far / near - 1.0).log2(), rows: 3 }).filter(|o| o.order.is_finite())
+        Some(Order { of: "time step".into(), order: (far / near - 1.0).log2(), rows: 3 })
+            .filter(|o| o.order.is_finite())
     }
 
     /// Distance of two rows in the quantity judged by, relative.

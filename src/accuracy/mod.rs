@@ -26,6 +26,7 @@ pub mod richardson;
 pub mod solver;
 pub mod study;
 pub mod tables;
+mod work;
 
 pub use configuration::{Configuration, Digits, Factor, Place};
 pub use engine::Engine;

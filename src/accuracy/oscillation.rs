@@ -27,7 +27,13 @@ pub fn oscillation(times: &[f64], values: &[f64]) -> Option<Oscillation> {
     let (mut side, mut extreme) = (0usize, None::<usize>);
     for i in 0..values.len() {
         let offset = values[i] - mean;
-        let now = if offset > leave { 2 } else if offset < -leave { 1 } else { 0 };
+        let now = if offset > leave {
+            2
+        } else if offset < -leave {
+            1
+        } else {
+            0
+        };
         if now != 0 && now != side {
             if let Some(at) = extreme.filter(|_| side != 0) {
                 turns[side - 1].push(peak(values, at));
@@ -47,10 +53,7 @@ pub fn oscillation(times: &[f64], values: &[f64]) -> Option<Oscillation> {
     let (lowest, highest) = (middle(&turns[0])?, middle(&turns[1])?);
     let (first, last) = (upwards.first()?, upwards.last()?);
     let periods = upwards.len() - 1;
-    (periods >= 2).then(|| Oscillation {
-        amplitude: 0.5 * (highest - lowest),
-        period: (last - first) / periods as f64,
-    })
+    (periods >= 2).then(|| Oscillation { amplitude: 0.5 * (highest - lowest), period: (last - first) / periods as f64 })
 }
 
 /// When the signal last passed its mean before the sample `i`.

@@ -6,6 +6,7 @@ use super::pareto::front;
 use super::plan::{Fate, Plan, Planned, Varied, nested, plan};
 use super::reference::{Error, FIELD, Reference, Source};
 use super::solver::{Choices, Cost, Refusal, Solution, Solver};
+use super::work::Work;
 use crate::scene::suggest::{choice, list};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -131,7 +132,7 @@ impl Row {
         }
     }
 
-    fn of(planned: &Planned, outcome: Outcome) -> Self {
+    pub(super) fn of(planned: &Planned, outcome: Outcome) -> Self {
         let predicted = match planned.fate {
             Fate::Run(cost) | Fate::LeftOut(cost) => Some(cost),
             Fate::Refused(_) => None,
@@ -153,7 +154,7 @@ pub fn study(solver: &mut dyn Solver, settings: &Settings, watch: &mut dyn Watch
     let plan = plan(solver, &choices, settings.budget, settings.reference.is_none())?;
     watch.planned(&plan);
     let running = plan.rows.iter().filter(|row| matches!(row.fate, Fate::Run(_))).count() + plan.reference.len();
-    let mut work = Work { solver, watch, started, budget: settings.budget, done: 0, all: running, interrupted: false };
+    let mut work = Work::new(solver, watch, started, settings.budget, running);
 
     let (made_of, mut three): (Vec<Row>, Vec<Option<Solution>>) =
         plan.reference.iter().map(|planned| work.run(planned)).unzip();
@@ -175,7 +176,7 @@ pub fn study(solver: &mut dyn Solver, settings: &Settings, watch: &mut dyn Watch
     }
     done.sort_by_key(|(place, _)| *place);
     let (mut rows, solutions): (Vec<Row>, Vec<Option<Solution>>) = done.into_iter().map(|(_, done)| done).unzip();
-    let interrupted = work.interrupted;
+    let interrupted = work.is_interrupted();
     let judged_by = judged_by(settings, &rows);
     let points: Vec<(f64, f64)> = rows.iter().map(|row| point(row, &judged_by)).collect();
     for (row, on_front) in rows.iter_mut().zip(front(&points)) {
@@ -237,54 +238,8 @@ fn check_names(choices: &Choices, settings: &Settings) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// The runs of a study.
-struct Work<'a> {
-    solver: &'a mut dyn Solver,
-    watch: &'a mut dyn Watch,
-    started: Instant,
-    budget: f64,
-    done: usize,
-    all: usize,
-    interrupted: bool,
-}
-
-impl Work<'_> {
-    fn run(&mut self, planned: &Planned) -> (Row, Option<Solution>) {
-        let cost = match &planned.fate {
-            Fate::Refused(why) => return (Row::of(planned, Outcome::Refused(why.clone())), None),
-            Fate::LeftOut(cost) => {
-                let why = format!("predicted {}", rounded(cost.seconds));
-                return (Row::of(planned, Outcome::LeftOut(why)), None);
-            }
-            Fate::Run(cost) => cost,
-        };
-        if self.interrupted {
-            return (Row::of(planned, Outcome::LeftOut("interrupted".into())), None);
-        }
-        // predictions are no promises: a quarter more than the budget is the end
-        let spent = self.started.elapsed().as_secs_f64();
-        if spent + cost.seconds > 1.25 * self.budget {
-            let why = format!("the budget is spent; predicted {}", rounded(cost.seconds));
-            return (Row::of(planned, Outcome::LeftOut(why)), None);
-        }
-        self.done += 1;
-        self.watch.begins(&planned.label, cost.seconds, self.done, self.all);
-        let (outcome, solution) = match self.solver.solve(&planned.configuration) {
-            Ok(solution) => (Outcome::Done(Measured::of(&solution)), Some(solution)),
-            Err(Refusal::Refused(why)) => (Outcome::Refused(why), None),
-            Err(Refusal::Broke(why)) => (Outcome::Broke(why), None),
-            Err(Refusal::Interrupted) => {
-                self.interrupted = true;
-                (Outcome::LeftOut("interrupted".into()), None)
-            }
-        };
-        self.watch.ended(&planned.label, &outcome);
-        (Row::of(planned, outcome), solution)
-    }
-}
-
 impl Measured {
-    fn of(solution: &Solution) -> Self {
+    pub(super) fn of(solution: &Solution) -> Self {
         Self {
             seconds: solution.seconds,
             timed: solution.timed,
@@ -298,9 +253,4 @@ impl Measured {
             hourglass_share: solution.hourglass_share,
         }
     }
-}
-
-/// Seconds with two digits.
-pub fn rounded(seconds: f64) -> String {
-    if seconds >= 10.0 { format!("{seconds:.0} s") } else { format!("{seconds:.2} s") }
 }

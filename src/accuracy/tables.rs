@@ -42,7 +42,8 @@ pub fn cells(study: &Study) -> Vec<Cells> {
                 m.elements.to_string(),
                 m.steps.to_string(),
                 seconds(m.seconds_per_second),
-                written.map_or_else(|| "—".into(), |w| format!("×{}", ratio(m.seconds_per_second / w.seconds_per_second))),
+                written
+                    .map_or_else(|| "—".into(), |w| format!("×{}", ratio(m.seconds_per_second / w.seconds_per_second))),
             ],
         };
         Cells { label: row.label.clone(), numbers, error, on_front: row.on_front }
@@ -85,9 +86,27 @@ pub fn csv(study: &Study) -> String {
     let quantities: BTreeSet<&String> = study.rows.iter().flat_map(|row| row.errors.keys()).collect();
     let mut writer = csv::Writer::from_writer(Vec::new());
     let mut header: Vec<String> = [
-        "configuration", "part", "varied", "element", "mesh", "step divided by", "number type", "hourglass", "outcome",
-        "why", "elements", "nodes", "steps", "time step (s)", "simulated (s)", "wall time (s)",
-        "wall time per simulated second (s)", "predicted (s)", "hourglass over strain energy", "backend", "on front",
+        "configuration",
+        "part",
+        "varied",
+        "element",
+        "mesh",
+        "step divided by",
+        "number type",
+        "hourglass",
+        "outcome",
+        "why",
+        "elements",
+        "nodes",
+        "steps",
+        "time step (s)",
+        "simulated (s)",
+        "wall time (s)",
+        "wall time per simulated second (s)",
+        "predicted (s)",
+        "hourglass over strain energy",
+        "backend",
+        "on front",
     ]
     .map(String::from)
     .to_vec();
@@ -105,16 +124,31 @@ pub fn csv(study: &Study) -> String {
         };
         let c = &row.configuration;
         let mut line: Vec<String> = vec![
-            row.label.clone(), part.into(), format!("{:?}", row.varied), c.element_name(), c.mesh.value().to_string(),
-            c.step.to_string(), c.digits.to_string(), c.hourglass.to_string(), outcome.into(), why.into(),
+            row.label.clone(),
+            part.into(),
+            format!("{:?}", row.varied),
+            c.element_name(),
+            c.mesh.value().to_string(),
+            c.step.to_string(),
+            c.digits.to_string(),
+            c.hourglass.to_string(),
+            outcome.into(),
+            why.into(),
         ];
         let number = |value: Option<f64>| value.map(|value| value.to_string()).unwrap_or_default();
         let predicted = number(row.predicted.map(|cost| cost.seconds));
         match row.measured() {
             Some(m) => line.extend([
-                m.elements.to_string(), m.nodes.to_string(), m.steps.to_string(), m.time_step.to_string(),
-                number(m.simulated), m.seconds.to_string(), m.seconds_per_second.to_string(), predicted,
-                m.hourglass_share.to_string(), m.backend.clone(),
+                m.elements.to_string(),
+                m.nodes.to_string(),
+                m.steps.to_string(),
+                m.time_step.to_string(),
+                number(m.simulated),
+                m.seconds.to_string(),
+                m.seconds_per_second.to_string(),
+                predicted,
+                m.hourglass_share.to_string(),
+                m.backend.clone(),
             ]),
             None => {
                 line.extend(vec![String::new(); 7]);
@@ -148,14 +182,18 @@ pub fn markdown(study: &Study, title: &str, command: &str) -> String {
     }
     text += &format!("\nErrors are relative, in {}. Reference: {}.", study.judged_by, study.reference);
     if let Some(uncertainty) = study.reference_uncertainty.filter(|uncertainty| *uncertainty > 0.0) {
-        text += &format!(" It may itself be off by {}; errors below three times that are told as bounds.", percent(uncertainty));
+        text += &format!(
+            " It may itself be off by {}; errors below three times that are told as bounds.",
+            percent(uncertainty)
+        );
     }
     text += "\n\n";
     let headings = headings(study);
     text += &format!("| {} | front |\n|---|--:|--:|--:|--:|--:|---|\n", headings.join(" | "));
     for row in cells(study) {
         let front = if row.on_front { "●" } else { "" };
-        text += &format!("| {} | {} | {} | {front} |\n", row.label, row.numbers.join(" | "), row.error.replace('|', "\\|"));
+        text +=
+            &format!("| {} | {} | {} | {front} |\n", row.label, row.numbers.join(" | "), row.error.replace('|', "\\|"));
     }
     text += "\n| part of the error as written | |\n|---|--:|\n";
     for (part, size) in split(study) {

@@ -56,8 +56,9 @@ impl<'a> Locator<'a> {
         let mut touching = Vec::new();
         for element in 0..mesh.element_count() {
             let corners = mesh.element(element).iter().map(|&node| mesh.points[node as usize]);
-            let (a, b) = corners
-                .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), corner| (low.min(corner), high.max(corner)));
+            let (a, b) = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), corner| {
+                (low.min(corner), high.max(corner))
+            });
             let margin = 1e-6 * (b - a);
             let (a, b) = (locator.cell(a - margin), locator.cell(b + margin));
             for z in a[2]..=b[2] {

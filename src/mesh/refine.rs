@@ -58,8 +58,7 @@ impl Mesh {
         for hex in &hexes {
             self.hexes.extend(eight_hexes(hex, &mut middles));
         }
-        let elements: Vec<Vec<u32>> =
-            tets.iter().map(|t| t.to_vec()).chain(hexes.iter().map(|h| h.to_vec())).collect();
+        let elements: Vec<Vec<u32>> = tets.iter().map(|t| t.to_vec()).chain(hexes.iter().map(|h| h.to_vec())).collect();
         let faces: Vec<[u32; 4]> = surface.iter().map(|face| face.nodes).collect();
         for (name, set) in &mut self.node_sets {
             let own = self.face_sets.get(name).filter(|faces| same_points(faces, set));
@@ -208,7 +207,8 @@ fn eight_hexes(hex: &[u32; 8], middles: &mut Middles) -> [[u32; 8]; 8] {
         *point = if parents.len() == 1 { parents[0] } else { middles.of(&parents) };
     }
     CORNERS.map(|corner| {
-        let at = |bits: usize| (0..3).map(move |axis| ((corner >> axis & 1) + (bits >> axis & 1)) * 3usize.pow(axis as u32));
+        let at =
+            |bits: usize| (0..3).map(move |axis| ((corner >> axis & 1) + (bits >> axis & 1)) * 3usize.pow(axis as u32));
         CORNERS.map(|bits| grid[at(bits).sum::<usize>()])
     })
 }

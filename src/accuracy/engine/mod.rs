@@ -1,5 +1,6 @@
 //! The solver that this crate is: a scene file, run in many ways.
 
+mod calibration;
 mod effects;
 mod march;
 mod variant;
@@ -13,8 +14,8 @@ use crate::mesh::ElementKind;
 use crate::scene::SceneFile;
 use crate::scene::schema::{Load, MeshSource, Share, ViscousIntegrator};
 use crate::{BackendChoice, Options, Simulation};
-use march::{FIELDS, Looks, refusal};
-use std::time::Instant;
+use calibration::Calibration;
+use march::{Looks, refusal};
 use variant::{Finer, cells, finer, names_elements, reactions, variant, written};
 
 /// How fine meshes can be against the scene's.
@@ -32,9 +33,6 @@ const MESHES: [Factor; 12] = [
     Factor::new(6, 1),
     Factor::new(8, 1),
 ];
-/// Steps are timed for this long to predict with (s).
-const CALIBRATION: f64 = 0.04;
-
 /// How a study runs a scene.
 #[derive(Clone, Debug)]
 pub struct Engine<'a> {
@@ -46,20 +44,6 @@ pub struct Engine<'a> {
     interrupted: fn() -> bool,
     looks: Option<Looks>,
     known: Vec<(Configuration, Calibration)>,
-}
-
-/// What a few steps of a configuration have shown.
-#[derive(Clone, Copy, Debug)]
-struct Calibration {
-    mesh: Factor,
-    elements: f64,
-    /// The step as the scene wants it (s).
-    step: f64,
-    /// Steps taken: of a search for equilibrium all.
-    steps: u64,
-    setup: f64,
-    seconds_a_step: f64,
-    look: f64,
 }
 
 impl<'a> Engine<'a> {
@@ -112,8 +96,7 @@ impl<'a> Engine<'a> {
         for body in scene.bodies.values() {
             let shape = match &body.mesh {
                 MeshSource::File { .. } => {
-                    let mesh =
-                        mesh_of(body, &self.file.folder).map_err(|error| Refusal::Refused(error.to_string()))?;
+                    let mesh = mesh_of(body, &self.file.folder).map_err(|error| Refusal::Refused(error.to_string()))?;
                     match (mesh.tets.is_empty(), mesh.hexes.is_empty()) {
                         (false, true) => Some(true),
                         (true, false) => Some(false),
@@ -154,51 +137,6 @@ impl<'a> Engine<'a> {
         }
         notes
     }
-
-    /// What a few steps show of a configuration, on a mesh that is quickly made.
-    fn calibrate(&mut self, configuration: &Configuration) -> Result<Calibration, Refusal> {
-        let is_static = self.file.scene.is_static();
-        let meshes = self.meshes();
-        let coarsest = meshes.first().copied().filter(|_| is_static).unwrap_or(Factor::ONE);
-        let kind = Configuration { mesh: coarsest, step: 1, hourglass: 1.0, ..configuration.clone() };
-        if let Some((_, known)) = self.known.iter().find(|(known, _)| *known == kind) {
-            return Ok(*known);
-        }
-        if (self.interrupted)() {
-            return Err(Refusal::Interrupted);
-        }
-        let wanted = self.file.scene.integration.step;
-        let scene = variant(self.file, &kind, None);
-        let mut simulation = Simulation::new(&scene, &self.options(&kind)).map_err(refusal)?;
-        let summary = simulation.summary("calibration").map_err(refusal)?;
-        let found = self.file.scene.integration.safety * summary.stable_step;
-        let step = wanted.unwrap_or(found);
-        let steps = simulation.planned_steps();
-        if self.looks.is_none() {
-            let steps = (self.file.scene.duration / step) as u64;
-            self.looks = Some(Looks::new(self.file, &reactions(&self.file.scene), steps));
-        }
-        // of a search for equilibrium nobody knows how many steps it takes: it is gone through, on the coarsest mesh
-        let enough = if scene.scene.is_static() { f64::INFINITY } else { CALIBRATION };
-        let (mut taken, mut count) = (0.0, 1);
-        while taken < enough && simulation.step_count() < steps && !simulation.is_finished() {
-            if (self.interrupted)() {
-                return Err(Refusal::Interrupted);
-            }
-            let now = count.min(steps - simulation.step_count());
-            taken += march::timed(&mut simulation, now)?;
-            count = (count * 2).min(4000);
-        }
-        let all_steps = simulation.step_count();
-        let seconds_a_step = taken / all_steps.max(1) as f64;
-        let started = Instant::now();
-        simulation.energies().map_err(refusal)?;
-        let look = started.elapsed().as_secs_f64();
-        let (elements, setup) = (summary.elements as f64, summary.setup_seconds);
-        let calibration = Calibration { mesh: coarsest, elements, step, steps: all_steps, setup, seconds_a_step, look };
-        self.known.push((kind, calibration));
-        Ok(calibration)
-    }
 }
 
 impl Solver for Engine<'_> {
@@ -231,23 +169,7 @@ impl Solver for Engine<'_> {
         if configuration.place == Place::Gpu && configuration.digits == Digits::Double {
             return Err(Refusal::Refused("the GPU computes in f32 only".into()));
         }
-        let known = self.calibrate(configuration)?;
-        let finer = configuration.mesh.value() / known.mesh.value();
-        let elements = known.elements * finer.powi(3);
-        let duration = self.file.scene.duration;
-        let looks = self.looks.as_ref().map_or(FIELDS, |looks| looks.count);
-        let most = known.step / finer.max(1e-9) / f64::from(configuration.step);
-        let steps = match self.file.scene.is_static() {
-            // waves must cross the body so many times, and take a step a cell
-            true => known.steps as f64 * finer,
-            false => (duration / self.looks.as_ref().map_or(most, |looks| looks.fitting(duration, most))).round(),
-        };
-        let growth = finer.powi(3);
-        let run = steps * known.seconds_a_step * growth;
-        let again = if run < 0.1 { 3.0 } else { 1.0 };
-        // energies are looked at a few times as often as fields, and setting up happens once more to find the step
-        let beside = known.setup * growth * (again + 1.0) + known.look * growth * (looks as f64).min(60.0);
-        Ok(Cost { seconds: again * run + beside, elements: elements as u64, steps: steps as u64 })
+        self.cost(configuration)
     }
 
     fn solve(&mut self, configuration: &Configuration) -> Result<Solution, Refusal> {

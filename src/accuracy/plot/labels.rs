@@ -62,7 +62,14 @@ fn candidates(wide: f64, high: f64) -> Vec<(f64, f64, bool)> {
         let reach = 14.0 * f64::from(ring);
         for turn in 0..16 {
             let (sin, cos) = (std::f64::consts::TAU * f64::from(turn) / 16.0).sin_cos();
-            let dx = reach * cos + if cos < -0.1 { -wide } else if cos > 0.1 { 0.0 } else { -0.5 * wide };
+            let dx = reach * cos
+                + if cos < -0.1 {
+                    -wide
+                } else if cos > 0.1 {
+                    0.0
+                } else {
+                    -0.5 * wide
+                };
             list.push((dx, reach * sin - 0.5 * high, true));
         }
     }

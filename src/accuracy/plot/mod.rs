@@ -160,7 +160,12 @@ fn marks(svg: &mut Svg, points: &[Point<'_>], x: &Axis, y: &Axis) {
     }
     for point in points.iter().filter(|point| is_mesh(point.row)) {
         let written = point.row.varied == Varied::Nothing;
-        svg.circle(at(point), if written { 8.0 } else { 5.5 }, colour(&point.row.configuration.element_name()), point.clear);
+        svg.circle(
+            at(point),
+            if written { 8.0 } else { 5.5 },
+            colour(&point.row.configuration.element_name()),
+            point.clear,
+        );
         if written {
             svg.ring(at(point), 11.5, INK);
         }

@@ -25,9 +25,8 @@ const TARGET: f64 = 0.01;
 /// Studies a scene, says what came out, writes it into a folder.
 pub fn command(arguments: &AccuracyArguments) -> Outcome {
     let file = SceneFile::load(&arguments.scene.scene, &arguments.scene.set)?;
-    let diagnostics = progress::during("reading meshes, looking for mistakes", || {
-        Simulation::check(&file, &Registry::default())
-    });
+    let diagnostics =
+        progress::during("reading meshes, looking for mistakes", || Simulation::check(&file, &Registry::default()));
     if diagnostics.has_errors() {
         return Err(diagnostics.into());
     }
@@ -37,9 +36,8 @@ pub fn command(arguments: &AccuracyArguments) -> Outcome {
     let gpu = arguments.backend != BackendName::Cpu && has_gpu(&Choice::parse(&arguments.gpu));
     let mut engine = Engine::new(&file, arguments.options(), gpu, arguments.effects, interrupt::is_asked);
     interrupt::listen();
-    let made = settings(arguments, &file, &mut engine).and_then(|settings| {
-        study(&mut engine, &settings, &mut Teller::default()).map_err(failure)
-    });
+    let made = settings(arguments, &file, &mut engine)
+        .and_then(|settings| study(&mut engine, &settings, &mut Teller::default()).map_err(failure));
     interrupt::rest();
     let study = made?;
     let title = if file.scene.title.is_empty() { "a scene" } else { &file.scene.title };

@@ -27,18 +27,26 @@ pub fn text(study: &Study, title: &str, folder: &Path, paint: Paint) -> String {
     for (number, effect) in study.findings.effects.iter().enumerate() {
         let heading = if number == 0 { "effects" } else { "" };
         let costs = percent(effect.costs);
-        text += &format!("{heading:10} {}: {costs} of the time; without it {} off\n", effect.effect, percent(effect.changes));
+        text += &format!(
+            "{heading:10} {}: {costs} of the time; without it {} off\n",
+            effect.effect,
+            percent(effect.changes)
+        );
     }
     for (number, sentence) in study.findings.advice.iter().enumerate() {
         let heading = if number == 0 { "advice" } else { "" };
         text += &format!("{heading:10} {sentence}\n");
     }
     let target = percent(study.target);
-    text += &format!("{:10} {}\n", "target", match study.findings.verdict {
-        Verdict::Met => format!("the scene as written meets {target}"),
-        Verdict::NotMet => format!("the scene as written does not meet {target}"),
-        Verdict::CannotTell => format!("whether the scene as written meets {target} cannot be told"),
-    });
+    text += &format!(
+        "{:10} {}\n",
+        "target",
+        match study.findings.verdict {
+            Verdict::Met => format!("the scene as written meets {target}"),
+            Verdict::NotMet => format!("the scene as written does not meet {target}"),
+            Verdict::CannotTell => format!("whether the scene as written meets {target} cannot be told"),
+        }
+    );
     for note in &study.notes {
         text += &format!("{:10} {note}\n", "note");
     }
