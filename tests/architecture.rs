@@ -78,7 +78,7 @@ fn imports_run_one_way() {
         ("src/assembly", [&inputs[..], &data, &["backend", "evaluation", "systems"]].concat()),
         ("src/observation", [&inputs[..], &data, &["backend", "evaluation", "output"]].concat()),
         ("systems", [&inputs[..], &data, &["backend", "evaluation", "observation", "assembly"]].concat()),
-        ("src/accuracy", [&inputs[..], &["components", "backend", "assembly", "observation"]].concat()),
+        ("src/accuracy", [&inputs[..], &["components", "materials", "backend", "assembly", "observation"]].concat()),
     ];
     let parts = [
         "math",

@@ -2,6 +2,7 @@
 
 mod calibration;
 mod effects;
+mod ladder;
 mod march;
 mod variant;
 
@@ -16,7 +17,7 @@ use crate::scene::schema::{Load, MeshSource, Share, ViscousIntegrator};
 use crate::{BackendChoice, Options, Simulation};
 use calibration::Calibration;
 use march::{Looks, refusal};
-use variant::{Finer, cells, finer, names_elements, reactions, variant, written};
+use variant::{Finer, cells, finer, names_elements, variant, written};
 
 /// How fine meshes can be against the scene's.
 const MESHES: [Factor; 12] = [
@@ -156,7 +157,7 @@ impl Solver for Engine<'_> {
             digits: vec![Digits::Plain, Digits::Compensated, Digits::Double],
             hourglass: if hexes { vec![0.5, 2.0] } else { Vec::new() },
             viscous: if viscous { both.to_vec() } else { Vec::new() },
-            laws: Vec::new(),
+            laws: ladder::laws(scene),
             places,
             quantities: self.looks.as_ref().map(Looks::names).unwrap_or_default(),
             effects: if self.effects { effects::effects(scene) } else { Vec::new() },

@@ -1,6 +1,7 @@
 //! From a configuration to the scene that it means.
 
 use super::effects::switch_off;
+use super::ladder::climb;
 use crate::accuracy::configuration::{Configuration, Digits, Factor, Place};
 use crate::mesh::ElementKind;
 use crate::scene::SceneFile;
@@ -110,6 +111,9 @@ pub fn variant(file: &SceneFile, configuration: &Configuration, step: Option<f64
     }
     if let Some(viscous) = configuration.viscous {
         scene.materials.values_mut().filter_map(|m| m.prony.as_mut()).for_each(|prony| prony.integrator = viscous);
+    }
+    if let Some(law) = &configuration.law {
+        climb(scene, law);
     }
     scene.integration.compensated = configuration.digits == Digits::Compensated;
     scene.integration.step = step;
