@@ -22,3 +22,4 @@ mod random;
 mod removal;
 mod statics;
 mod viscosity;
+mod viscous_pressure;
