@@ -7,7 +7,7 @@ use super::{Assembly, PlacedMesh, select};
 use crate::components::*;
 use crate::elements::{Element, MOST_ROWS};
 use crate::evaluation::{averages, extinguish, lane_place, node_count, row_count, with_element};
-use crate::materials::ElasticLaw;
+use crate::materials::{Elastic, ElasticLaw};
 use crate::math::LANES;
 use crate::mesh::{ElementKind, Mesh};
 use crate::scene::diagnostic::Diagnostics;

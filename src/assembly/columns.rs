@@ -5,7 +5,7 @@ use crate::backend::cpu::BlockLaw;
 use crate::components::*;
 use crate::elements::Stiffness;
 use crate::evaluation::{add_nodal_masses, lane_place, node_count, point_count};
-use crate::materials::{ElasticLaw, Fibres};
+use crate::materials::{Elastic, ElasticLaw, Fibres};
 use crate::math::LANES;
 use crate::mesh::{ElementKind, Mesh};
 use bevy_ecs::prelude::*;
@@ -40,7 +40,7 @@ pub(super) fn insert_node_columns(
         FirstNonFinite(vec![u32::MAX]),
     ));
     if scene.integration.compensated && precision == Precision::F32 {
-        entity.insert(DisplacementCompensation(vectors()));
+        entity.insert(DisplacementCompensation(Reals::zeros(precision, COMPENSATION_NUMBERS * count)));
     }
     if !scene.loads.is_empty() {
         entity.insert(ExternalForce(vectors()));

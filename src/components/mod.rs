@@ -27,7 +27,7 @@ pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
 pub use load::{FaceCorners, Gravity, NodalForce, Pressure, Traction};
 pub use material::{Damping, Density, ExponentialFibres, Prony};
 pub use nodes::{
-    Authoring, ConstrainedAxes, Corners, DampingCoefficient, Displacement, DisplacementCompensation, DisplacementStep,
+    Authoring, COMPENSATION_NUMBERS, ConstrainedAxes, Corners, DampingCoefficient, Displacement, DisplacementCompensation, DisplacementStep,
     ElementForce, ExternalForce, FictitiousMass, FirstNonFinite, InternalForce, Mass, RestPosition, WORK_NUMBERS, Work,
 };
 pub use observation::{Cadence, Energies, Probe};

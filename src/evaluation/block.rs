@@ -4,7 +4,7 @@ use super::{ElementState, averages, lane_place, node_count, point_count};
 use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK};
 use crate::components::*;
 use crate::elements::MOST_NODES;
-use crate::materials::Kinematics;
+use crate::materials::{Elastic, Kinematics};
 use crate::math::{Mat3, Sym3};
 use bevy_ecs::prelude::*;
 use std::borrow::Cow;

@@ -4,7 +4,7 @@ use super::{lane_place, node_count, point_count, row_count, with_element};
 use crate::backend::cpu::BlockLaw;
 use crate::components::*;
 use crate::elements::{Element, MOST_NODES, MOST_POINTS, largest_eigenvalue};
-use crate::materials::Kinematics;
+use crate::materials::{Elastic, Kinematics};
 use crate::math::{Mat3, Sym3};
 use crate::mesh::ElementKind;
 

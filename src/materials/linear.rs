@@ -27,16 +27,16 @@ impl<R: Real> Elastic<R> for Linear<R> {
     }
 
     #[inline(always)]
-    fn kinematics(gradient: &Mat3<R>) -> Kinematics<R> {
+    fn kinematics(&self, gradient: &Mat3<R>) -> Kinematics<R> {
         Kinematics::linear(gradient)
     }
 
     #[inline(always)]
-    fn first_stress(_: &Mat3<R>, stress: &Sym3<R>) -> Mat3<R> {
+    fn first_stress(&self, _: &Mat3<R>, stress: &Sym3<R>) -> Mat3<R> {
         Mat3(stress.rows())
     }
 
-    fn cauchy(_: &Mat3<R>, _: R, first: &Mat3<R>) -> Sym3<R> {
+    fn cauchy(&self, _: &Mat3<R>, _: R, first: &Mat3<R>) -> Sym3<R> {
         let p = &first.0;
         Sym3([p[0][0], p[1][1], p[2][2], p[0][1], p[1][2], p[0][2]])
     }
@@ -49,13 +49,13 @@ impl<R: Real> Elastic<R> for Linear<R> {
 
     /// p I.
     #[inline(always)]
-    fn volumetric(k: &Kinematics<R>, pressure: R) -> Sym3<R> {
+    fn volumetric(&self, k: &Kinematics<R>, pressure: R) -> Sym3<R> {
         k.adjugate_c.scaled(pressure)
     }
 
     /// A stress without a trace acts on no volume, ever.
     #[inline(always)]
-    fn without_pressure(_: &Kinematics<R>, stress: Sym3<R>) -> Sym3<R> {
+    fn without_pressure(&self, _: &Kinematics<R>, stress: Sym3<R>) -> Sym3<R> {
         stress
     }
 

@@ -17,7 +17,7 @@ mod st_venant_kirchhoff;
 
 pub use arruda_boyce::ArrudaBoyce;
 pub(crate) use elastic::each_elastic_law;
-pub use elastic::{Elastic, ElasticLaw, WithElastic};
+pub use elastic::{Elastic, ElasticLaw};
 pub use exponential_fibres::ExponentialFibre;
 pub use fibres::Fibres;
 pub use kinematics::{J_FLOOR, Kinematics};

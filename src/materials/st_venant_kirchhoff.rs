@@ -35,20 +35,20 @@ impl<R: Real> Elastic<R> for StVenantKirchhoff<R> {
 
     /// tr E.
     #[inline(always)]
-    fn volume_measure(k: &Kinematics<R>) -> R {
+    fn volume_measure(&self, k: &Kinematics<R>) -> R {
         k.green_strain.trace()
     }
 
     /// p I.
     #[inline(always)]
-    fn volumetric(_: &Kinematics<R>, pressure: R) -> Sym3<R> {
+    fn volumetric(&self, _: &Kinematics<R>, pressure: R) -> Sym3<R> {
         let zero = pressure.constant(0.0);
         Sym3([pressure, pressure, pressure, zero, zero, zero])
     }
 
     /// A stress without a trace does not act on θ = tr E, whatever the deformation.
     #[inline(always)]
-    fn without_pressure(_: &Kinematics<R>, stress: Sym3<R>) -> Sym3<R> {
+    fn without_pressure(&self, _: &Kinematics<R>, stress: Sym3<R>) -> Sym3<R> {
         stress
     }
 

@@ -4,6 +4,7 @@ use bevy_ecs::prelude::*;
 use sinew::components::*;
 use sinew::elements::{Element, Hex8MeanDilatation, MOST_NODES};
 use sinew::evaluation::{ElementState, lane_place, node_count, row_count};
+use sinew::materials::Elastic;
 use sinew::mesh::ElementKind;
 
 /// Σ|tᵢ| of the forces on an element's corners and of its stress. With ∇u = h, stresses are sums of moduli times strains

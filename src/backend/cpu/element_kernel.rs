@@ -4,7 +4,7 @@ mod effects;
 
 use super::{BlockLaw, Cpu};
 use crate::elements::{Element, MOST_NODES, PressureFrom};
-use crate::materials::{Elastic, ElasticLaw, WithElastic};
+use crate::materials::{Elastic, ElasticLaw};
 use crate::math::{LANES, Real, SimdScalar};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
@@ -30,22 +30,33 @@ pub struct BlockColumns<'a, T> {
 
 /// Fills in the forces of a block and carries its viscous history on by one step. Says whether an element has J < 0.
 ///
-/// The neo-Hookean law has a kernel of its own for each combination of fibres and viscosity, so that what a material lacks
-/// is not even asked for; the other laws, and the rarer effects, have one that asks.
+/// One kernel an element type for all laws and effects, which asks for them at each point.
 pub fn run_block<E: Element, T: SimdScalar>(
     cpu: &Cpu,
     columns: BlockColumns<'_, T>,
     law: &BlockLaw<T>,
     groups_a_patch: usize,
 ) -> bool {
-    let block = Block::<E, T> { cpu, columns, law, groups_a_patch, element: PhantomData };
+    Block::<E, T> { cpu, columns, law, groups_a_patch, element: PhantomData }.run::<_, ASK>(&law.elastic)
+}
+
+/// The same in f32, where speed counts: the neo-Hookean law has a kernel of its own for each combination of fibres and
+/// viscosity, so that what a material lacks is not even asked for.
+pub fn run_block_fast<E: Element>(
+    cpu: &Cpu,
+    columns: BlockColumns<'_, f32>,
+    law: &BlockLaw<f32>,
+    groups_a_patch: usize,
+) -> bool {
+    let ElasticLaw::NeoHookean(elastic) = &law.elastic else { return run_block::<E, f32>(cpu, columns, law, groups_a_patch) };
     let plain = law.exponential.is_empty() && law.volumetric.is_empty() && !law.reproject;
-    match (&law.elastic, law.fibres.is_some(), !law.prony.is_empty()) {
-        (ElasticLaw::NeoHookean(elastic), false, false) if plain => block.run::<_, 0>(elastic),
-        (ElasticLaw::NeoHookean(elastic), true, false) if plain => block.run::<_, FIBRES>(elastic),
-        (ElasticLaw::NeoHookean(elastic), false, true) if plain => block.run::<_, VISCOSITY>(elastic),
-        (ElasticLaw::NeoHookean(elastic), true, true) if plain => block.run::<_, { FIBRES | VISCOSITY }>(elastic),
-        (other, ..) => other.with(block),
+    let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
+    match (law.fibres.is_some(), !law.prony.is_empty()) {
+        _ if !plain => block.run::<_, ASK>(&law.elastic),
+        (false, false) => block.run::<_, 0>(elastic),
+        (true, false) => block.run::<_, FIBRES>(elastic),
+        (false, true) => block.run::<_, VISCOSITY>(elastic),
+        (true, true) => block.run::<_, { FIBRES | VISCOSITY }>(elastic),
     }
 }
 
@@ -61,13 +72,6 @@ struct Block<'a, E, T: SimdScalar> {
     law: &'a BlockLaw<T>,
     groups_a_patch: usize,
     element: PhantomData<E>,
-}
-
-impl<E: Element, T: SimdScalar> WithElastic<T> for Block<'_, E, T> {
-    type Output = bool;
-    fn with<L: Elastic<T>>(self, elastic: &L) -> bool {
-        self.run::<L, ASK>(elastic)
-    }
 }
 
 impl<E: Element, T: SimdScalar> Block<'_, E, T> {
@@ -198,7 +202,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         let rest_shape = &self.rest_shape[group * E::ROWS * LANES..(group + 1) * E::ROWS * LANES];
         let shared = match E::PRESSURE {
             PressureFrom::Point => zero,
-            PressureFrom::MeanOverPoints => elastic.pressure(mean_volume_change::<E, T, L, S>(simd, &u, rest_shape, at)),
+            PressureFrom::MeanOverPoints => elastic.pressure(mean_volume_change::<E, T, L, S>(simd, &elastic, &u, rest_shape, at)),
             PressureFrom::Nodes => self.mean_of_nodes(simd, &elastic, group, at),
         };
         let mut forces = E::no_forces(zero);
@@ -210,9 +214,9 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
                 #[inline(always)]
                 |row: usize| T::load(simd, &rest_shape[row * LANES + at..]),
             );
-            let k = <L::Of<T::Vector<S>>>::kinematics(&state.gradient);
+            let k = elastic.kinematics(&state.gradient);
             let mut pressure = match E::PRESSURE {
-                PressureFrom::Point => elastic.pressure(<L::Of<T::Vector<S>>>::volume_measure(&k)),
+                PressureFrom::Point => elastic.pressure(elastic.volume_measure(&k)),
                 _ => shared,
             };
             if EFFECTS == ASK && !self.law.volumetric.is_empty() {
@@ -229,10 +233,10 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
                 isochoric = self.relax(simd, group, at, point, isochoric);
             }
             if EFFECTS == ASK && self.law.reproject {
-                isochoric = <L::Of<T::Vector<S>>>::without_pressure(&k, isochoric);
+                isochoric = elastic.without_pressure(&k, isochoric);
             }
-            let stress = isochoric.plus(&<L::Of<T::Vector<S>>>::volumetric(&k, pressure));
-            let stress = <L::Of<T::Vector<S>>>::first_stress(&state.gradient, &stress);
+            let stress = isochoric.plus(&elastic.volumetric(&k, pressure));
+            let stress = elastic.first_stress(&state.gradient, &stress);
             E::add_stress(&mut forces, point, &state, &stress);
             worst = worst.max(-k.true_j);
         }
@@ -274,6 +278,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
 #[inline(always)]
 fn mean_volume_change<E: Element, T: SimdScalar, L: Elastic<T>, S: Simd>(
     simd: S,
+    elastic: &L::Of<T::Vector<S>>,
     u: &E::Prepared<T::Vector<S>>,
     rest_shape: &[T],
     at: usize,
@@ -287,8 +292,8 @@ fn mean_volume_change<E: Element, T: SimdScalar, L: Elastic<T>, S: Simd>(
             #[inline(always)]
             |row: usize| T::load(simd, &rest_shape[row * LANES + at..]),
         );
-        let k = <L::Of<T::Vector<S>>>::kinematics(&state.gradient);
-        change = state.volume.mul_add(<L::Of<T::Vector<S>>>::volume_measure(&k), change);
+        let k = elastic.kinematics(&state.gradient);
+        change = state.volume.mul_add(elastic.volume_measure(&k), change);
         volume += state.volume;
     }
     change / volume

@@ -1,7 +1,7 @@
 //! The material of a block, ready for its kernel.
 
 use crate::components::FamilyDirection;
-use crate::materials::{ElasticLaw, ExponentialFibre, Fibres, PronyTerm};
+use crate::materials::{Elastic, ElasticLaw, ExponentialFibre, Fibres, PronyTerm};
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 
@@ -45,7 +45,7 @@ impl<T: Scalar> BlockLaw<T> {
         };
         let terms = |terms: &[PronyTerm<T>]| terms.iter().map(|term| term.map(round)).collect();
         BlockLaw {
-            elastic: self.elastic.rounded(),
+            elastic: self.elastic.map(round),
             fibres: self.fibres.as_ref().map(|(fibres, from)| (fibres.map(round), direction(from))),
             exponential: self.exponential.iter().map(|(family, from)| (family.map(round), direction(from))).collect(),
             prony: terms(&self.prony),

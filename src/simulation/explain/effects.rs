@@ -2,7 +2,7 @@
 
 use super::{Effect, Part};
 use crate::components::*;
-use crate::materials::{ElasticLaw, ExponentialFibre, Fibres};
+use crate::materials::{Elastic, ElasticLaw, ExponentialFibre, Fibres};
 use crate::math::LANES;
 use crate::scene::schema::Scene;
 use bevy_ecs::prelude::*;

@@ -26,19 +26,19 @@ macro_rules! elastic {
 
         impl Law for $name {
             fn kinematics<R: Real>(gradient: &Mat3<R>) -> Kinematics<R> {
-                <materials::$name<R> as Elastic<R>>::kinematics(gradient)
+                Self::of(gradient.0[0][0]).kinematics(gradient)
             }
             fn first_stress<R: Real>(gradient: &Mat3<R>, stress: &Sym3<R>) -> Mat3<R> {
-                <materials::$name<R> as Elastic<R>>::first_stress(gradient, stress)
+                Self::of(gradient.0[0][0]).first_stress(gradient, stress)
             }
             fn stress<R: Real>(k: &Kinematics<R>, _: [R; 3]) -> Sym3<R> {
                 let law = Self::of(k.j);
-                let pressure = law.pressure(<materials::$name<R> as Elastic<R>>::volume_measure(k));
-                law.isochoric(k).plus(&<materials::$name<R> as Elastic<R>>::volumetric(k, pressure))
+                let pressure = law.pressure(law.volume_measure(k));
+                law.isochoric(k).plus(&law.volumetric(k, pressure))
             }
             fn energy<R: Real>(k: &Kinematics<R>, _: [R; 3]) -> R {
                 let law = Self::of(k.j);
-                let theta = <materials::$name<R> as Elastic<R>>::volume_measure(k);
+                let theta = law.volume_measure(k);
                 law.isochoric_energy(k) + law.volumetric_energy(theta)
             }
             // from the sources' formulas, not from the law's own
