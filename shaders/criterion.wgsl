@@ -1,5 +1,5 @@
 // Finds elements that pass a limit and makes the coming step the one before which they go. LIMITS, CRITERION_STEPS and
-// passes_a_limit are generated from the block's criteria, energy_density from its material.
+// passes_a_limit are generated from the block's criteria.
 @group(0) @binding(0) var<uniform> limits: array<vec4<f32>, LIMITS>;
 @group(0) @binding(1) var<storage, read> rest_shape: array<f32>;
 @group(0) @binding(2) var<storage, read> alive: array<u32>;
@@ -35,6 +35,27 @@ fn largest_stretch(strain: Sym3) -> f32 {
     return sqrt(max(0.0, 1.0 + 2.0 * max(d.x, max(d.y, d.z))));
 }
 
+// The largest of all points.
+fn stretch_of(e: Element) -> f32 {
+    var largest = 0.0;
+    for (var point = 0u; point < POINTS; point++) {
+        largest = max(largest, largest_stretch(elastic_kinematics(at_point(e, point).gradient).green_strain));
+    }
+    return largest;
+}
+
+// J: mean over the points.
+fn volume_ratio_of(e: Element) -> f32 {
+    var sum = 0.0;
+    var volume = 0.0;
+    for (var point = 0u; point < POINTS; point++) {
+        let at = at_point(e, point);
+        sum += at.volume * elastic_kinematics(at.gradient).true_j;
+        volume += at.volume;
+    }
+    return sum / volume;
+}
+
 @compute @workgroup_size(64)
 fn criterion(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let element = row(id, groups);
@@ -42,7 +63,7 @@ fn criterion(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
     if element >= block.count || coming % CRITERION_STEPS != 0u || alive[element] == 0u || criteria[element] == 0u {
         return;
     }
-    if passes_a_limit(element, criteria[element], kinematics(displacement_gradient(element_of(element)))) {
+    if passes_a_limit(element, criteria[element], element_of(element)) {
         removal_step[element] = min(removal_step[element], coming);
     }
 }

@@ -43,15 +43,24 @@ fn element_of(row: u32) -> Element {
     );
 }
 
-// ∇u
-fn displacement_gradient(e: Element) -> mat3x3<f32> {
+struct Forces {
+    gradient: mat3x3<f32>, // ∇u
+    stress: mat3x3<f32>, // first Piola-Kirchhoff stress (Pa)
+}
+
+fn at_point(e: Element, point: u32) -> PointState {
     var h = mat3x3<f32>(e.u1.x * e.b1, e.u1.y * e.b1, e.u1.z * e.b1);
     h = plus_outer(h, e.u2, e.b2);
     h = plus_outer(h, e.u3, e.b3);
     h = plus_outer(h, e.u4, e.b4);
     h = plus_outer(h, e.u5, e.b5);
     h = plus_outer(h, e.u6, e.b6);
-    return plus_outer(h, e.u7, e.b7);
+    h = plus_outer(h, e.u7, e.b7);
+    return PointState(h, h, e.volume);
+}
+
+fn add_stress(forces: Forces, point: u32, at: PointState, stress: mat3x3<f32>) -> Forces {
+    return Forces(at.gradient, stress);
 }
 
 // XᵀΓ_m (m)
@@ -69,15 +78,15 @@ fn hourglass_displacements(row: u32, e: Element, h: mat3x3<f32>) -> array<vec3<f
     );
 }
 
-// Nodal forces (N) from the first Piola-Kirchhoff stress (Pa).
-fn corner_forces(row: u32, e: Element, gradient: mat3x3<f32>, first_stress: mat3x3<f32>) -> array<vec3<f32>, NODES> {
-    let displacements = hourglass_displacements(row, e, gradient);
+// Nodal forces (N).
+fn corner_forces(row: u32, e: Element, forces: Forces) -> array<vec3<f32>, NODES> {
+    let displacements = hourglass_displacements(row, e, forces.gradient);
     let stiffness = rest_shape[place(row, ROWS, HOURGLASS_STIFFNESS)];
     let p = stiffness * displacements[0];
     let q = stiffness * displacements[1];
     let r = stiffness * displacements[2];
     let s = stiffness * displacements[3];
-    var folded = e.volume * first_stress;
+    var folded = e.volume * forces.stress;
     folded = plus_outer(folded, -p, hourglass_arm(row, 0u));
     folded = plus_outer(folded, -q, hourglass_arm(row, 1u));
     folded = plus_outer(folded, -r, hourglass_arm(row, 2u));
@@ -93,8 +102,8 @@ fn corner_forces(row: u32, e: Element, gradient: mat3x3<f32>, first_stress: mat3
 }
 
 // J
-fn hourglass_energy(row: u32, e: Element, gradient: mat3x3<f32>) -> f32 {
-    let q = hourglass_displacements(row, e, gradient);
+fn hourglass_energy(row: u32, e: Element) -> f32 {
+    let q = hourglass_displacements(row, e, at_point(e, 0u).gradient);
     let squares = dot(q[0], q[0]) + dot(q[1], q[1]) + dot(q[2], q[2]) + dot(q[3], q[3]);
     return 0.5 * rest_shape[place(row, ROWS, HOURGLASS_STIFFNESS)] * squares;
 }

@@ -3,24 +3,28 @@ struct NeoHookean {
     shear: f32, // Pa
     bulk: f32, // Pa
 }
-@group(0) @binding(0) var<uniform> neo_hookean: NeoHookean;
+@group(0) @binding(0) var<uniform> elastic: NeoHookean;
 
 // μJ^(−2/3) C⁻¹·2 dev E (Pa)
-fn neo_hookean_isochoric(k: Kinematics) -> Sym3 {
+fn elastic_isochoric(k: Kinematics) -> Sym3 {
     let e = k.green_strain;
     let deviator = Sym3(e.diagonal - sym_trace(e) * (1.0 / 3.0), e.others);
-    let factor = 2.0 * neo_hookean.shear * k.j_m23 / (k.j * k.j);
+    let factor = 2.0 * elastic.shear * k.j_m23 / (k.j * k.j);
     return sym_scaled(sym_times_coaxial(k.adjugate_c, deviator), factor);
 }
 
-// κJ(J − 1) C⁻¹ (Pa)
-fn neo_hookean_volumetric(k: Kinematics) -> Sym3 {
-    return sym_scaled(k.adjugate_c, neo_hookean.bulk * k.volume_change / k.j);
+// κ(J − 1) (Pa)
+fn elastic_pressure(theta: f32) -> f32 {
+    return elastic.bulk * theta;
 }
 
 // J/m³
-fn neo_hookean_energy(k: Kinematics) -> f32 {
+fn elastic_isochoric_energy(k: Kinematics) -> f32 {
     let trace_c = 3.0 + 2.0 * sym_trace(k.green_strain);
-    return 0.5 * neo_hookean.shear * (k.j_m23 * trace_c - 3.0)
-        + 0.5 * neo_hookean.bulk * k.volume_change * k.volume_change;
+    return 0.5 * elastic.shear * (k.j_m23 * trace_c - 3.0);
+}
+
+// J/m³
+fn elastic_volumetric_energy(theta: f32) -> f32 {
+    return 0.5 * elastic.bulk * theta * theta;
 }

@@ -19,11 +19,11 @@ fn set_memory_vector(at: u32, v: vec3<f32>) {
 }
 
 // S_iso − Υ (Pa); the memory is carried on by a step.
-fn relaxed(element: u32, isochoric: Sym3) -> Sym3 {
+fn relaxed(element: u32, point: u32, isochoric: Sym3) -> Sym3 {
     var stress = isochoric;
     for (var number = 0u; number < TERMS; number++) {
         let term = prony[number];
-        let at = place(element, 6u * TERMS, 6u * number);
+        let at = place(element, 6u * TERMS * POINTS, 6u * (point * TERMS + number));
         let memory = Sym3(memory_vector(at), memory_vector(at + 3u * LANES));
         let overstress = sym_plus(sym_scaled(isochoric, term.stress), sym_scaled(memory, term.memory));
         stress = sym_plus(stress, sym_scaled(overstress, -1.0));

@@ -1,4 +1,4 @@
-// The four-node tetrahedron; twin of src/elements/tet4.rs.
+// The four-node tetrahedron; twin of src/elements/tet4.rs, also with averaged nodal pressure.
 struct Element {
     // displacements of nodes 1 to 3 less that of node 0 (m)
     u1: vec3<f32>,
@@ -24,20 +24,30 @@ fn element_of(row: u32) -> Element {
     );
 }
 
-// ∇u
-fn displacement_gradient(e: Element) -> mat3x3<f32> {
-    return plus_outer(plus_outer(mat3x3<f32>(e.u1.x * e.g1, e.u1.y * e.g1, e.u1.z * e.g1), e.u2, e.g2), e.u3, e.g3);
+// First Piola-Kirchhoff stress (Pa)
+struct Forces {
+    stress: mat3x3<f32>,
 }
 
-// Nodal forces (N) from the first Piola-Kirchhoff stress (Pa).
-fn corner_forces(row: u32, e: Element, gradient: mat3x3<f32>, first_stress: mat3x3<f32>) -> array<vec3<f32>, NODES> {
-    let stress = e.volume * first_stress;
+fn at_point(e: Element, point: u32) -> PointState {
+    var h = mat3x3<f32>(e.u1.x * e.g1, e.u1.y * e.g1, e.u1.z * e.g1);
+    h = plus_outer(plus_outer(h, e.u2, e.g2), e.u3, e.g3);
+    return PointState(h, h, e.volume);
+}
+
+fn add_stress(forces: Forces, point: u32, at: PointState, stress: mat3x3<f32>) -> Forces {
+    return Forces(stress);
+}
+
+// Nodal forces (N).
+fn corner_forces(row: u32, e: Element, forces: Forces) -> array<vec3<f32>, NODES> {
+    let stress = e.volume * forces.stress;
     let f1 = times_vector(stress, e.g1);
     let f2 = times_vector(stress, e.g2);
     let f3 = times_vector(stress, e.g3);
     return array<vec3<f32>, NODES>(-f1 - f2 - f3, f1, f2, f3);
 }
 
-fn hourglass_energy(row: u32, e: Element, gradient: mat3x3<f32>) -> f32 {
+fn hourglass_energy(row: u32, e: Element) -> f32 {
     return 0.0;
 }

@@ -7,10 +7,8 @@ use crate::backend::block_kernel::BlockKernels;
 use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, run_block};
 use crate::backend::kernel::Kernel;
 use crate::components::*;
-use crate::elements::{Element, Hex8, Tet4};
-use crate::evaluation::node_count;
+use crate::evaluation::{ElementState, node_count, with_element};
 use crate::math::{LANES, SimdScalar};
-use crate::scene::schema::ElementKind;
 use crate::shader;
 use bevy_ecs::prelude::*;
 
@@ -32,8 +30,10 @@ type BlockQuery<'a> = (
     &'a Connectivity,
     &'a RestShape,
     Option<&'a FibreDirection>,
+    Option<&'a NodalVolumeChange>,
     Option<&'a mut ViscousMemory>,
-    AnyOf<(&'a BlockLaw<f32>, &'a BlockLaw<f64>)>,
+    &'a BlockLaw<f64>,
+    Option<&'a BlockLaw<f32>>,
     &'a mut FirstInverted,
 );
 
@@ -44,64 +44,66 @@ fn element_forces(
 ) {
     for (authoring, displacement, mut force) in &mut bodies {
         for &entity in &authoring.blocks {
-            let Ok((block, connectivity, shape, fibres, memory, law, mut inverted)) = blocks.get_mut(entity) else {
+            let Ok((block, connectivity, shape, fibres, means, memory, law, rounded, mut inverted)) =
+                blocks.get_mut(entity)
+            else {
                 continue;
             };
             let memory = memory.map(|m| &mut m.into_inner().0);
-            let found = match (&mut force.0, law) {
-                (Reals::F32(force), (Some(law), _)) => {
-                    forces_of(&cpu, block, connectivity, shape, fibres, memory, law, displacement, force)
-                }
-                (Reals::F64(force), (_, Some(law))) => {
-                    forces_of(&cpu, block, connectivity, shape, fibres, memory, law, displacement, force)
-                }
-                _ => false,
+            let columns = (connectivity, shape, fibres, means, memory, displacement);
+            let found = match (&mut force.0, rounded) {
+                (Reals::F32(force), Some(law)) => forces_of(&cpu, block, columns, law, force),
+                (Reals::F64(force), _) => forces_of(&cpu, block, columns, law, force),
+                (Reals::F32(_), None) => false,
             };
             if found && inverted[0] == u32::MAX {
-                inverted[0] = first_inverted(block, connectivity, shape, displacement);
+                inverted[0] = first_inverted(block, connectivity, shape, displacement, law);
             }
         }
     }
 }
 
+type Columns<'a> = (
+    &'a Connectivity,
+    &'a RestShape,
+    Option<&'a FibreDirection>,
+    Option<&'a NodalVolumeChange>,
+    Option<&'a mut Reals>,
+    &'a Displacement,
+);
+
 fn forces_of<T: SimdScalar>(
     cpu: &Cpu,
     block: &Block,
-    connectivity: &[u32],
-    shape: &RestShape,
-    fibres: Option<&FibreDirection>,
-    memory: Option<&mut Reals>,
+    (connectivity, shape, fibres, means, memory, displacement): Columns<'_>,
     law: &BlockLaw<T>,
-    displacement: &Displacement,
     force: &mut [T],
 ) -> bool {
-    let groups = block.count.div_ceil(LANES);
-    let nodes = match block.kind {
-        ElementKind::Tet4 => Tet4::NODES,
-        ElementKind::Hex8 => Hex8::NODES,
-    };
+    let length = block.count.div_ceil(LANES) * LANES * 3 * node_count(block.kind);
     let columns = BlockColumns {
         displacement: displacement.slice(),
         connectivity,
         rest_shape: shape.slice(),
         fibre_direction: fibres.map(|f| f.slice()),
+        nodal_volume_change: means.map_or(&[], |means| means.slice()),
         memory: memory.map_or(&mut [], |m| m.slice_mut()),
-        force: &mut force[block.force_offset..block.force_offset + groups * LANES * 3 * nodes],
+        force: &mut force[block.force_offset..block.force_offset + length],
     };
-    match block.kind {
-        ElementKind::Tet4 => run_block::<Tet4, T>(cpu, columns, law, patch_groups(block.kind)),
-        ElementKind::Hex8 => run_block::<Hex8, T>(cpu, columns, law, patch_groups(block.kind)),
-    }
+    with_element!(block.kind, E => run_block::<E, T>(cpu, columns, law, patch_groups(block.kind)))
 }
 
 /// The lowest row with J < 0. Only called when the kernel has found one.
-fn first_inverted(block: &Block, connectivity: &[u32], shape: &RestShape, displacement: &Displacement) -> u32 {
-    let worst = (0..block.count).find(|&row| {
-        let state = crate::evaluation::ElementState::of(block.kind, row, connectivity, shape, displacement);
-        state.volume > 0.0 && state.kinematics.true_j < 0.0
-    });
+fn first_inverted(
+    block: &Block,
+    connectivity: &[u32],
+    shape: &RestShape,
+    displacement: &Displacement,
+    law: &BlockLaw<f64>,
+) -> u32 {
+    let inverted =
+        |row: &usize| ElementState::of(block.kind, *row, connectivity, shape, displacement, law).is_inverted();
     // rounding may hide from f64 what the kernel saw
-    worst.map_or(0, |row| row as u32)
+    (0..block.count).find(inverted).map_or(0, |row| row as u32)
 }
 
 /// One kernel for each block, of the fragments that its element type and its material call for.

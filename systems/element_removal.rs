@@ -8,10 +8,12 @@ use crate::backend::kernel::{Fragment, Kernel, Uniform, uniform};
 use crate::backend::step::with_step;
 use crate::components::*;
 use crate::elements::Element;
-use crate::evaluation::{ElementState, Material, add_nodal_masses, lane_place, node_count, row_count, with_element};
-use crate::scene::schema::ElementKind;
+use crate::evaluation::{
+    BlockView, ElementState, add_nodal_masses, extinguish, lane_place, node_count, row_count, with_element,
+};
 use crate::shader;
 use bevy_ecs::prelude::*;
+use std::borrow::Cow;
 
 /// Criteria are looked at in every tenth step: a wave passes a tenth of an element's height in a step, and to look costs
 /// as much as the forces.
@@ -40,6 +42,7 @@ type BlockQuery<'a> = (
     &'a BlockLaw<f64>,
     Option<&'a FibreDirection>,
     Option<&'a ViscousMemory>,
+    Option<&'a NodalVolumeChange>,
     &'a mut Alive,
     &'a RemovalStep,
     &'a mut RemovedEnergy,
@@ -57,28 +60,39 @@ fn element_removal(
 ) {
     let look = clock.step.is_multiple_of(CRITERION_STEPS);
     let mut touched: Vec<Entity> = Vec::new();
-    for (entity, block, connectivity, mut shape, law, fibres, memory, mut alive, by_time, mut energies) in &mut blocks {
+    for (entity, block, connectivity, mut shape, law, fibres, memory, means, mut alive, by_time, mut energies) in &mut blocks {
         let Ok((_, displacement, step, ..)) = bodies.get(block.body) else { continue };
-        let material = Material { law, fibre_direction: fibres.map(|f| &f.0), memory: memory.map(|m| &m.0) };
+        let view = BlockView {
+            block,
+            connectivity,
+            shape: &shape,
+            displacement,
+            law,
+            fibre_direction: fibres.map(|f| &f.0),
+            memory: memory.map(|m| &m.0),
+            nodal_volume_change: means.map(|means| Cow::Borrowed(&means.0)),
+        };
         let of_block: Vec<&RemovalCriterion> = criteria.iter().filter(|c| look && c.block == entity).collect();
         let due = |row: usize| alive[row] == 1 && u64::from(by_time[row]) <= clock.step && by_time[row] != u32::MAX;
         let passes = |row: usize, c: &RemovalCriterion| {
-            (c.rows.is_empty() || c.rows.binary_search(&(row as u32)).is_ok())
-                && measure(c.measure, row, block.kind, connectivity, &shape, displacement, &material) > c.limit
+            (c.rows.is_empty() || c.rows.binary_search(&(row as u32)).is_ok()) && measure(c.measure, row, &view) > c.limit
         };
         // to look at the time alone is too little work to share
-        let gone = match of_block.is_empty() {
+        let gone: Vec<usize> = match of_block.is_empty() {
             true => (0..block.count).filter(|&row| due(row)).collect(),
             false => rows_where(&cpu, block.count, |row| {
                 due(row) || alive[row] == 1 && of_block.iter().any(|c| passes(row, c))
             }),
         };
         let density = densities.get(block.material).map_or(0.0, |(density, _)| density.0);
-        for &row in &gone {
-            let state = ElementState::of(block.kind, row, connectivity, &shape, displacement);
-            let kinetic = kinetic_energy(&state, density, step, clock.time_step);
-            let elastic = material.energy(row, &state.kinematics) * state.volume;
-            energies.set(row, elastic + state.hourglass_energy(row, &shape) + kinetic);
+        let held = |row: usize| {
+            let state = view.element(row);
+            let elastic = view.energy(row, &state) * state.volume;
+            elastic + state.hourglass_energy(row, view.shape) + kinetic_energy(&state, density, step, clock.time_step)
+        };
+        let held: Vec<f64> = gone.iter().map(|&row| held(row)).collect();
+        for (&row, held) in gone.iter().zip(held) {
+            energies.set(row, held);
             alive[row] = 0;
             extinguish(block.kind, row, &mut shape);
         }
@@ -94,7 +108,7 @@ fn element_removal(
                 .blocks
                 .get(block as usize)
                 .and_then(|&block| blocks.get(block).ok())
-                .map_or(0, |b| b.7[row as usize])
+                .map_or(0, |b| b.8[row as usize])
         };
         let of_body = |of: &OfBody| of.0 == body;
         for (mut load, _) in pressures.iter_mut().filter(|(_, of)| of_body(of)) {
@@ -112,21 +126,13 @@ fn rows_where(cpu: &Cpu, count: usize, holds: impl Fn(usize) -> bool + Sync + Se
     cpu.map(count.div_ceil(ROWS_A_TASK), |task| rows(task).collect::<Vec<usize>>()).concat()
 }
 
-fn measure(
-    measure: Measure,
-    row: usize,
-    kind: ElementKind,
-    connectivity: &[u32],
-    shape: &Reals,
-    displacement: &Reals,
-    material: &Material<'_>,
-) -> f64 {
-    let state = ElementState::of(kind, row, connectivity, shape, displacement);
+fn measure(measure: Measure, row: usize, view: &BlockView<'_>) -> f64 {
+    let state = view.element(row);
     match measure {
         Measure::Stretch => state.largest_stretch(),
-        Measure::VolumeRatio => state.kinematics.true_j,
-        Measure::NegativeVolumeRatio => -state.kinematics.true_j,
-        Measure::EnergyDensity => material.energy(row, &state.kinematics),
+        Measure::VolumeRatio => state.volume_ratio(),
+        Measure::NegativeVolumeRatio => -state.volume_ratio(),
+        Measure::EnergyDensity => view.energy(row, &state),
     }
 }
 
@@ -136,17 +142,6 @@ fn kinetic_energy(state: &ElementState, density: f64, step: &Reals, time_step: f
     let share = density * state.volume / nodes as f64;
     let squares = state.nodes[..nodes].iter().map(|&node| step.vector(node as usize).length_squared());
     0.5 * share * squares.sum::<f64>() / (time_step * time_step)
-}
-
-/// Makes an element exert nothing.
-fn extinguish(kind: ElementKind, row: usize, shape: &mut Reals) {
-    let numbers = row_count(kind);
-    with_element!(kind, E => {
-        shape.set(lane_place(row, numbers, E::VOLUME_ROW), 0.0);
-        if let Some(hourglass) = E::HOURGLASS_ROW {
-            shape.set(lane_place(row, numbers, hourglass), 0.0);
-        }
-    });
 }
 
 /// Sums the mass and damping of a body's nodes from the elements that are left.
@@ -206,7 +201,8 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
         for some in of_block.chunks(32) {
             kernels.push(with_step(criterion_kernel(block, some, buffers), world));
         }
-        kernels.push(with_step(removal_kernel(block, world, buffers), world));
+        kernels.push(with_step(motion_kernel(block, world, buffers), world));
+        kernels.push(with_step(removal_kernel(block, buffers), world));
         if !weighed.contains(&block.block.body) {
             weighed.push(block.block.body);
         }
@@ -222,15 +218,15 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
 fn criterion_kernel(block: &BlockKernels, criteria: &[&RemovalCriterion], buffers: &mut dyn Buffers) -> Kernel {
     let mut text = format!(
         "const LIMITS: u32 = {}u;\nconst CRITERION_STEPS: u32 = {CRITERION_STEPS}u;\n\
-         fn passes_a_limit(element: u32, watching: u32, k: Kinematics) -> bool {{\n    return false",
+         fn passes_a_limit(element: u32, watching: u32, e: Element) -> bool {{\n    return false",
         criteria.len()
     );
     for (bit, criterion) in criteria.iter().enumerate() {
         let measure = match criterion.measure {
-            Measure::Stretch => "largest_stretch(k.green_strain)",
-            Measure::VolumeRatio => "k.true_j",
-            Measure::NegativeVolumeRatio => "-k.true_j",
-            Measure::EnergyDensity => "energy_density(element, k)",
+            Measure::Stretch => "stretch_of(e)",
+            Measure::VolumeRatio => "volume_ratio_of(e)",
+            Measure::NegativeVolumeRatio => "-volume_ratio_of(e)",
+            Measure::EnergyDensity => "energy_density(element, e)",
         };
         text += &format!("\n        || (((watching >> {bit}u) & 1u) == 1u && {measure} > limits[{bit}].x)");
     }
@@ -252,26 +248,37 @@ fn criterion_kernel(block: &BlockKernels, criteria: &[&RemovalCriterion], buffer
         .bind("limits", limits)
         .bind("criteria", bits);
     let columns = [RestShape::NAME, Alive::NAME, RemovalStep::NAME];
-    block.with_energy(columns.iter().fold(kernel, |k, name| k.bind(name, buffers.column(block.entity, name))))
+    let kernel = columns.iter().fold(kernel, |k, name| k.bind(name, buffers.column(block.entity, name)));
+    block.with_energy(kernel, buffers)
 }
 
-fn removal_kernel(block: &BlockKernels, world: &World, buffers: &mut dyn Buffers) -> Kernel {
-    let (kind, material) = (block.block.kind, block.block.material);
-    let (volume, hourglass) = with_element!(kind, E => (E::VOLUME_ROW, E::HOURGLASS_ROW));
+const REMOVED: [&str; 4] = [RestShape::NAME, Alive::NAME, RemovalStep::NAME, RemovedEnergy::NAME];
+
+fn motion_kernel(block: &BlockKernels, world: &World, buffers: &mut dyn Buffers) -> Kernel {
+    let density = world.get::<Density>(block.block.material).map_or(0.0, |density| density.0);
+    let removal = Removal { share: (density / node_count(block.block.kind) as f64) as f32 };
+    let kernel = block
+        .of_columns("removed_motion")
+        .fragment(shader!("removed_motion"))
+        .fragment(shader!("due"))
+        .bind_uniform::<Removal>("removal", buffers.uniform("element_removal".into(), &removal.bytes()))
+        .bind(DisplacementStep::NAME, buffers.column(block.block.body, DisplacementStep::NAME));
+    REMOVED.iter().fold(kernel, |k, name| k.bind(name, buffers.column(block.entity, name)))
+}
+
+fn removal_kernel(block: &BlockKernels, buffers: &mut dyn Buffers) -> Kernel {
+    let (volume, further) = with_element!(block.block.kind, E => (E::VOLUME_ROW, E::FORCE_ROW));
     let mut text = String::from("fn extinguish(element: u32) {\n");
-    for row in std::iter::once(volume).chain(hourglass) {
+    for row in std::iter::once(volume).chain(further) {
         text += &format!("    rest_shape[place(element, ROWS, {row}u)] = 0.0;\n");
     }
-    let density = world.get::<Density>(material).map_or(0.0, |density| density.0);
-    let removal = Removal { share: (density / node_count(kind) as f64) as f32 };
     let kernel = block
         .kernel("element_removal")
         .fragment(shader!("element_removal"))
-        .fragment(block.generated("extinction", text + "}\n"))
-        .bind_uniform::<Removal>("removal", buffers.uniform("element_removal".into(), &removal.bytes()))
-        .bind(DisplacementStep::NAME, buffers.column(block.block.body, DisplacementStep::NAME));
-    let columns = [RestShape::NAME, Alive::NAME, RemovalStep::NAME, RemovedEnergy::NAME];
-    block.with_energy(columns.iter().fold(kernel, |k, name| k.bind(name, buffers.column(block.entity, name))))
+        .fragment(shader!("due"))
+        .fragment(block.generated("extinction", text + "}\n"));
+    let kernel = REMOVED.iter().fold(kernel, |k, name| k.bind(name, buffers.column(block.entity, name)));
+    block.with_energy(kernel, buffers)
 }
 
 fn mass_kernel(block: &BlockKernels, first: bool, world: &World, buffers: &mut dyn Buffers) -> Option<Kernel> {

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! boundary         Prescribed                   -> DisplacementStep of constrained axes   per node
+//! nodal_volume     Displacement, RestShape      -> NodalVolumeChange                      per element, per node
 //! element_forces   Displacement, RestShape, law -> ElementForce                           per element
 //! gather           ElementForce, Corners        -> InternalForce (ExternalForce: zero)    per node, fixed order
 //! gravity          Mass                         -> ExternalForce                          per node
@@ -20,6 +21,7 @@ mod gather;
 mod gravity;
 mod integrate;
 mod nodal_force;
+mod nodal_volume;
 mod observe;
 mod pressure;
 mod registry;
@@ -31,6 +33,7 @@ pub use registry::{DescribeKernels, HostSystem, Phase, Registry, System};
 pub fn standard() -> Vec<System> {
     vec![
         boundary::system(),
+        nodal_volume::system(),
         element_forces::system(),
         gather::system(),
         gravity::system(),

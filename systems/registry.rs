@@ -11,6 +11,8 @@ use bevy_ecs::system::IntoSystem;
 pub enum Phase {
     /// Says where constrained nodes go in this step.
     Boundary,
+    /// Takes means around nodes that element forces need.
+    NodalMeans,
     /// Fills in the forces of elements.
     ElementForces,
     /// Sums them at the nodes, and clears the loads of the last step.

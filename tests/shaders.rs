@@ -10,12 +10,15 @@ use sinew::components::Signals;
 use std::collections::BTreeSet;
 
 /// Fragments that belong to no system, element or material by name, and what calls for them.
-const SUPPORT: [(&str, &str); 17] = [
+const SUPPORT: [(&str, &str); 25] = [
     ("alive", "loads on faces of elements that can go"),
     ("block", "columns of element blocks"),
     ("criterion", "removal by criterion"),
     ("damping_coefficient", "damping, in integrate"),
     ("displacement_compensation", "compensated sums, in integrate"),
+    ("due", "removal"),
+    ("removed_motion", "the motion of elements that go"),
+    ("energy", "elastic energy, where elements can go"),
     ("external_force", "loads, in integrate"),
     ("fibres_field", "fibres of differing directions"),
     ("fibres_uniform", "fibres of one direction"),
@@ -28,6 +31,11 @@ const SUPPORT: [(&str, &str); 17] = [
     ("tensor", "small tensors"),
     ("work", "energies, in integrate"),
     ("kinematics", "strain measures"),
+    ("finite_strain", "laws for large strains"),
+    ("nodal_mean", "the second half of nodal_volume"),
+    ("point", "an element at an integration point"),
+    ("point_pressure", "pressure from the only point"),
+    ("volume_ratio", "laws whose measure of volume is J"),
 ];
 
 fn kernels(effects: &Effects) -> Vec<(String, Kernel)> {
@@ -120,19 +128,23 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
     let expected = [
         "block",
         "element_forces",
+        "finite_strain",
         "gather",
         "hex8",
         "integrate",
         "kinematics",
         "neo_hookean",
+        "point",
+        "point_pressure",
         "row",
         "step",
         "tensor",
         "tet4",
+        "volume_ratio",
     ];
     assert_eq!(files, expected.map(|stem| format!("{stem}.wgsl")).iter().map(String::as_str).collect());
     let without = buffers(&Effects::default());
-    let cases: [(Effects, &[&str], &[&str]); 7] = [
+    let cases: [(Effects, &[&str], &[&str]); 8] = [
         (Effects { fibres: Some(AROUND), ..Effects::default() }, &["fibres", "fibres_field"], &["fibre_direction"]),
         (Effects { prony: 1, ..Effects::default() }, &["prony"], &["viscous_memory"]),
         (Effects { damping: true, ..Effects::default() }, &["damping_coefficient"], &["damping_coefficient"]),
@@ -147,6 +159,11 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
             &["displacement_compensation"],
         ),
         (Effects { energies: true, ..Effects::default() }, &["work"], &["work"]),
+        (
+            Effects { averaged: true, ..Effects::default() },
+            &["nodal_volume", "nodal_mean", "tet4_nodal_pressure", "hex8_mean_dilatation"],
+            &["nodal_volume_change", "element_volume"],
+        ),
         (Effects { removal: true, ..Effects::default() }, &["element_removal", "criterion", "node_mass"], &["alive"]),
     ];
     for (effects, stems, names) in cases {
@@ -173,7 +190,7 @@ fn every_shader_is_named_after_a_system_an_element_or_a_material_or_listed() {
     let shaders = stems("shaders");
     let mut known: BTreeSet<String> = SUPPORT.iter().map(|(stem, _)| (*stem).to_owned()).collect();
     for folder in ["systems", "src/elements", "src/materials"] {
-        known.extend(stems(folder).into_iter().filter(|stem| !["mod", "registry", "observe"].contains(&stem.as_str())));
+        known.extend(stems(folder).into_iter().filter(|stem| !["mod", "registry", "observe", "elastic"].contains(&stem.as_str())));
     }
     assert_eq!(shaders, known);
 }

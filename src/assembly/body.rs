@@ -1,11 +1,12 @@
 //! Bodies: node columns and element blocks from a mesh.
 
 use super::locality::{element_order, node_rows};
+use super::columns::block_corners;
 use super::{Assembly, PlacedMesh, select};
 use crate::components::*;
 use crate::elements::{Element, MOST_ROWS};
-use crate::evaluation::{lane_place, node_count, row_count, with_element};
-use crate::materials::NeoHookean;
+use crate::evaluation::{averages, extinguish, lane_place, node_count, row_count, with_element};
+use crate::materials::ElasticLaw;
 use crate::math::LANES;
 use crate::mesh::{ElementKind, Mesh};
 use crate::scene::diagnostic::Diagnostics;
@@ -49,12 +50,13 @@ pub(super) fn spawn(
     let materials = element_materials(assembly, name, &placed, diagnostics)?;
     let mesh = &placed.mesh;
     // one block for each element type and material that occur together
-    let mut members: BTreeMap<(usize, &str), Vec<u32>> = BTreeMap::new();
+    let (tets, hexes) = assembly.scene.scene.bodies[name].mesh.element_kinds();
+    let mut members: BTreeMap<(ElementKind, &str), Vec<u32>> = BTreeMap::new();
     for (element, material) in materials.iter().enumerate() {
-        let kind = usize::from(element >= mesh.tets.len());
+        let kind = if element < mesh.tets.len() { tets } else { hexes };
         members.entry((kind, material)).or_default().push(element as u32);
     }
-    let members: Vec<((usize, &str), Vec<u32>)> =
+    let members: Vec<((ElementKind, &str), Vec<u32>)> =
         members.into_iter().map(|(key, elements)| (key, element_order(mesh, elements))).collect();
     let ordered = members.iter().flat_map(|(_, elements)| elements.iter().map(|&e| mesh.element(e as usize)));
     let node_rows = node_rows(mesh.points.len(), ordered);
@@ -67,8 +69,7 @@ pub(super) fn spawn(
         for (row, &element) in elements.iter().enumerate() {
             element_rows[element as usize] = (place as u32, row as u32);
         }
-        let kind = [ElementKind::Tet4, ElementKind::Hex8][*kind];
-        let material = assembly.materials[*material];
+        let (kind, material) = (*kind, assembly.materials[*material]);
         let builder = BlockBuilder { assembly, mesh, node_rows: &node_rows, kind, material, elements };
         blocks.push(builder.spawn(world, body, force_length, name, diagnostics));
         force_length += elements.len().div_ceil(LANES) * LANES * 3 * node_count(kind);
@@ -130,7 +131,9 @@ impl BlockBuilder<'_> {
         name: &str,
         diagnostics: &mut Diagnostics,
     ) -> Entity {
-        let young = world.get::<NeoHookean<f64>>(self.material).map_or(0.0, |m| young(m.shear, m.bulk));
+        let law = ElasticLaw::of(world.entity(self.material));
+        let young = law.map_or(0.0, |law| young(law.small_strain_moduli()));
+        let hourglass = self.assembly.scene.scene.bodies[name].hourglass;
         let material_name = world.get::<Label>(self.material).map(|label| label.0.clone()).unwrap_or_default();
         let fibres = self.assembly.scene.scene.materials[&material_name].fibres.as_ref();
         let (uniform, varying) = match fibres {
@@ -145,14 +148,24 @@ impl BlockBuilder<'_> {
             force_offset,
             fibre_direction: uniform,
         };
+        let connectivity = self.connectivity();
         let mut entity = world.spawn((
             Label(format!("{name}/{material_name}/{:?}", self.kind)),
             OfBody(body),
             block,
-            Connectivity(self.connectivity()),
-            RestShape(self.rest_shapes(young)),
+            Connectivity(connectivity.clone()),
+            RestShape(self.rest_shapes(hourglass * young)),
             FirstInverted(vec![u32::MAX]),
         ));
+        if averages(self.kind) {
+            let corners = block_corners(self.kind, self.elements.len(), &connectivity, self.mesh.points.len());
+            let precision = self.assembly.precision;
+            entity.insert((
+                corners,
+                ElementVolume(Reals::zeros(precision, 2 * self.padded())),
+                NodalVolumeChange(Reals::zeros(precision, self.mesh.points.len())),
+            ));
+        }
         if let Some(directions) = varying {
             entity.insert(FibreDirection(directions));
         }
@@ -179,7 +192,9 @@ impl BlockBuilder<'_> {
     fn rest_shapes(&self, young: f64) -> Reals {
         let numbers = row_count(self.kind);
         let mut shapes = Reals::zeros(self.assembly.precision, self.padded() * numbers);
-        for (row, &element) in self.elements.iter().enumerate() {
+        for row in 0..self.padded() {
+            // elements that fill up the last group have the last element's shape and no volume
+            let element = self.elements[row.min(self.elements.len() - 1)];
             let nodes = self.mesh.element(element as usize);
             let mut points = [DVec3::ZERO; 8];
             for (point, &node) in points.iter_mut().zip(nodes) {
@@ -188,6 +203,9 @@ impl BlockBuilder<'_> {
             let shape: [f64; MOST_ROWS] = with_element!(self.kind, E => E::rest_shape(&points[..nodes.len()], young));
             for k in 0..numbers {
                 shapes.set(lane_place(row, numbers, k), shape[k]);
+            }
+            if row >= self.elements.len() {
+                extinguish(self.kind, row, &mut shapes);
             }
         }
         shapes
@@ -248,6 +266,6 @@ impl BlockBuilder<'_> {
 }
 
 /// Small-strain Young's modulus (Pa) from shear and bulk modulus.
-pub(super) fn young(shear: f64, bulk: f64) -> f64 {
+fn young([shear, bulk]: [f64; 2]) -> f64 {
     9.0 * bulk * shear / (3.0 * bulk + shear)
 }

@@ -4,10 +4,10 @@ use super::Assembly;
 use crate::backend::cpu::BlockLaw;
 use crate::components::*;
 use crate::elements::Stiffness;
-use crate::evaluation::{add_nodal_masses, lane_place, node_count};
-use crate::materials::{Fibres, NeoHookean};
+use crate::evaluation::{add_nodal_masses, lane_place, node_count, point_count};
+use crate::materials::{ElasticLaw, Fibres};
 use crate::math::LANES;
-use crate::mesh::Mesh;
+use crate::mesh::{ElementKind, Mesh};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -98,6 +98,24 @@ fn corners(entities: &[Entity], count: usize, world: &World) -> Corners {
     Corners { starts, corners }
 }
 
+/// Which elements of a block meet in each of a body's nodes.
+pub(super) fn block_corners(kind: ElementKind, count: usize, connectivity: &[u32], nodes: usize) -> BlockCorners {
+    let corners = node_count(kind);
+    let node_of = |row: usize, corner: usize| connectivity[lane_place(row, corners, corner)] as usize;
+    let mut starts = vec![0_u32; nodes + 1];
+    let all = || (0..count).flat_map(|row| (0..corners).map(move |corner| (row, corner)));
+    all().for_each(|(row, corner)| starts[node_of(row, corner) + 1] += 1);
+    (0..nodes).for_each(|node| starts[node + 1] += starts[node]);
+    let mut next = starts.clone();
+    let mut elements = vec![0; starts[nodes] as usize];
+    for (row, corner) in all() {
+        let place = &mut next[node_of(row, corner)];
+        elements[*place as usize] = row as u32;
+        *place += 1;
+    }
+    BlockCorners { starts, elements }
+}
+
 /// Lumped mass (kg) and damping coefficient (kg/s) of every node, from the elements that still have volume.
 pub fn nodal_masses(entities: &[Entity], count: usize, world: &World) -> (Vec<f64>, Vec<f64>) {
     let (mut mass, mut damping) = (vec![0.0; count], vec![0.0; count]);
@@ -111,8 +129,8 @@ pub fn nodal_masses(entities: &[Entity], count: usize, world: &World) -> (Vec<f6
 
 /// What the stable step depends on, of a material.
 pub fn stiffness(world: &World, material: Entity) -> Stiffness {
-    let moduli = world.get::<NeoHookean<f64>>(material);
-    let (shear, bulk) = moduli.map_or((0.0, 0.0), |m| (m.shear, m.bulk));
+    let law = ElasticLaw::of(world.entity(material));
+    let [shear, bulk] = law.map_or([0.0; 2], |law| law.small_strain_moduli());
     let eta = world.get::<Fibres<f64>>(material).map_or(0.0, |f| f.eta);
     Stiffness {
         // a negative λ only softens
@@ -128,11 +146,11 @@ pub(super) fn insert_laws(precision: Precision, world: &mut World) {
     let entities: Vec<(Entity, Block)> =
         world.query::<(Entity, &Block)>().iter(world).map(|(entity, block)| (entity, block.clone())).collect();
     for (entity, block) in entities {
-        let Some(&neo_hookean) = world.get::<NeoHookean<f64>>(block.material) else { continue };
+        let Some(elastic) = ElasticLaw::of(world.entity(block.material)) else { continue };
         let fibres = world.get::<Fibres<f64>>(block.material).map(|&fibres| (fibres, block.fibre_direction));
         let prony = world.get::<Prony>(block.material).map_or(Vec::new(), |prony| prony.coefficients(time_step));
-        let memory = 6 * prony.len() * block.count.div_ceil(LANES) * LANES;
-        let law = BlockLaw { neo_hookean, fibres, prony };
+        let memory = 6 * prony.len() * point_count(block.kind) * block.count.div_ceil(LANES) * LANES;
+        let law = BlockLaw { elastic, fibres, prony };
         let mut entity = world.entity_mut(entity);
         if precision == Precision::F32 {
             entity.insert(law.rounded::<f32>());

@@ -35,7 +35,7 @@ impl PlacedMesh {
 /// What is wrong with the file or the parameters.
 pub fn mesh_of(body: &Body, folder: &Path) -> Result<Mesh, crate::mesh::MeshError> {
     let mut mesh = match &body.mesh {
-        MeshSource::File { path, flip_inverted } => Mesh::read(folder.join(path), *flip_inverted)?,
+        MeshSource::File { path, flip_inverted, .. } => Mesh::read(folder.join(path), *flip_inverted)?,
         MeshSource::Box { size, cells, elements } => generators::box_mesh(*size, *cells, *elements)?,
         MeshSource::Cylinder { radius, height, across, along, elements } => {
             generators::cylinder_mesh(*radius, *height, *across, *along, *elements)?

@@ -2,12 +2,15 @@
 
 use super::Buffers;
 use super::cpu::BlockLaw;
-use super::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};
-use crate::components::{self, Column, Connectivity, Displacement, FibreDirection, Label, ViscousMemory};
-use crate::elements::{Element, Hex8, Tet4};
-use crate::materials::{Fibres, J_FLOOR, NeoHookean, PronyTerm};
+use super::kernel::{BufferId, Fragment, Kernel, Layout, Uniform, uniform};
+use crate::components::{
+    self, Column, Connectivity, Displacement, FibreDirection, Label, NodalVolumeChange, ViscousMemory,
+};
+use crate::elements::{Element, PressureFrom};
+use crate::evaluation::with_element;
+use crate::materials::{ElasticLaw, Fibres, J_FLOOR, NeoHookean, PronyTerm, each_elastic_law};
 use crate::math::LANES;
-use crate::scene::schema::ElementKind;
+use crate::mesh::ElementKind;
 use crate::shader;
 use bevy_ecs::prelude::*;
 
@@ -34,6 +37,30 @@ uniform!(NeoHookean<f32> { shear, bulk });
 uniform!(Fibres<f32> { eta, tension_only });
 uniform!(PronyTerm<f32> { stress, memory, rate, aim });
 
+/// A law's WGSL twin, its parameters, and how they are laid out.
+struct ElasticPart {
+    fragment: Fragment,
+    bytes: Vec<u8>,
+    layout: Layout,
+}
+
+macro_rules! elastic_parts {
+    ($($law:ident = $stem:literal;)*) => {
+        impl ElasticPart {
+            fn of(law: &ElasticLaw<f32>) -> Self {
+                match law {
+                    $(ElasticLaw::$law(law) => Self {
+                        fragment: shader!($stem),
+                        bytes: law.bytes(),
+                        layout: <$law<f32> as Uniform>::LAYOUT,
+                    },)*
+                }
+            }
+        }
+    };
+}
+each_elastic_law!(elastic_parts);
+
 /// Makes kernels of one block, all on the same uniform buffers.
 pub(crate) struct BlockKernels {
     /// The block.
@@ -44,7 +71,7 @@ pub(crate) struct BlockKernels {
     label: String,
     columns: [BufferId; 2],
     parameters: BufferId,
-    neo_hookean: BufferId,
+    elastic: BufferId,
     fibres: Option<(BufferId, BufferId)>,
 }
 
@@ -70,7 +97,8 @@ impl BlockKernels {
         let columns = [buffers.column(block.body, Displacement::NAME), buffers.column(entity, Connectivity::NAME)];
         let parameters = Block { count: block.count as u32, force_offset: block.force_offset as u32 };
         let parameters = buffers.uniform(format!("block of {label}"), &parameters.bytes());
-        let neo_hookean = buffers.uniform(format!("neo_hookean of {label}"), &law.neo_hookean.bytes());
+        let elastic = buffers
+            .uniform(format!("{} of {label}", law.elastic.name()), &ElasticPart::of(&law.elastic).bytes);
         let fibres = law.fibres.as_ref().map(|(fibres, uniform)| {
             let direction = match uniform {
                 Some([x, y, z]) => {
@@ -81,29 +109,56 @@ impl BlockKernels {
             };
             (buffers.uniform(format!("fibres of {label}"), &fibres.bytes()), direction)
         });
-        Self { entity, block, law, label, columns, parameters, neo_hookean, fibres }
+        Self { entity, block, law, label, columns, parameters, elastic, fibres }
     }
 
     /// A kernel with the block's element type, strain measures and laws of stress and energy without history; a thread for
     /// each element.
     pub fn kernel(&self, entry: &'static str) -> Kernel {
-        let element = match self.block.kind {
-            ElementKind::Tet4 => shader!("tet4"),
-            ElementKind::Hex8 => shader!("hex8"),
-        };
-        let kernel = Kernel::new(format!("{entry} of {}", self.label), entry)
-            .fragment(shader!("row"))
+        let elastic = ElasticPart::of(&self.law.elastic);
+        let mut kernel = self
+            .of_columns(entry)
             .fragment(shader!("tensor"))
             .fragment(shader!("kinematics"))
+            .fragment(shader!("point"))
+            .fragment(match self.block.kind {
+                ElementKind::Tet4 | ElementKind::Tet4NodalPressure => shader!("tet4"),
+                ElementKind::Hex8 => shader!("hex8"),
+                ElementKind::Hex8MeanDilatation => shader!("hex8_mean_dilatation"),
+            })
+            .fragment(elastic.fragment)
+            .fragment(shader!("finite_strain"))
+            .fragment(shader!("volume_ratio"))
+            .bind("displacement", self.columns[0]);
+        kernel.layouts.push(("elastic", elastic.layout));
+        kernel
+    }
+
+    /// A kernel that knows the block's layout only; a thread for each element.
+    pub fn of_columns(&self, entry: &'static str) -> Kernel {
+        Kernel::new(format!("{entry} of {}", self.label), entry)
+            .fragment(shader!("row"))
             .fragment(shader!("block"))
-            .fragment(element)
             .fragment(self.generated("constants", self.constants()))
-            .fragment(shader!("neo_hookean"))
             .bind_uniform::<Block>("block", self.parameters)
-            .bind_uniform::<NeoHookean<f32>>("neo_hookean", self.neo_hookean)
-            .bind("displacement", self.columns[0])
             .bind("connectivity", self.columns[1])
-            .threads(self.block.count as u32);
+            .threads(self.block.count as u32)
+    }
+
+    /// Adds where the element type's pressure comes from.
+    fn with_pressure(&self, kernel: Kernel, buffers: &mut dyn Buffers) -> Kernel {
+        match with_element!(self.block.kind, E => E::PRESSURE) {
+            PressureFrom::Point => kernel.fragment(shader!("point_pressure")),
+            // comes with the element type
+            PressureFrom::MeanOverPoints => kernel,
+            PressureFrom::Nodes => kernel
+                .fragment(shader!("tet4_nodal_pressure"))
+                .bind(NodalVolumeChange::NAME, buffers.column(self.entity, NodalVolumeChange::NAME)),
+        }
+    }
+
+    /// Adds the fibres, if there are any.
+    fn with_fibres(&self, kernel: Kernel) -> Kernel {
         let Some((fibres, direction)) = self.fibres else { return kernel };
         let kernel = kernel.fragment(shader!("fibres")).bind_uniform::<Fibres<f32>>("fibres", fibres);
         match self.law.fibres {
@@ -117,21 +172,21 @@ impl BlockKernels {
     /// Adds the stress of the material, which carries its history on by a step.
     pub fn with_stress(&self, kernel: Kernel, buffers: &mut dyn Buffers) -> Kernel {
         let mut text = String::from(
-            "fn isochoric_stress(element: u32, k: Kinematics) -> Sym3 {\n    var stress = neo_hookean_isochoric(k);\n",
+            "fn isochoric_stress(element: u32, point: u32, k: Kinematics) -> Sym3 {\n    var stress = elastic_isochoric(k);\n",
         );
         if self.law.fibres.is_some() {
             text += "    stress = sym_plus(stress, fibres_isochoric(k, fibre_direction_of(element)));\n";
         }
         let terms = self.law.prony.len();
         if terms > 0 {
-            text += "    stress = relaxed(element, stress);\n";
+            text += "    stress = relaxed(element, point, stress);\n";
         }
-        text += "    return stress;\n}\n\
-                 fn volumetric_stress(k: Kinematics) -> Sym3 {\n    return neo_hookean_volumetric(k);\n}\n";
+        text += "    return stress;\n}\n";
         if terms > 0 {
             text += &format!("const TERMS: u32 = {terms}u;\n");
         }
-        let kernel = kernel.fragment(self.generated("stress", text));
+        let kernel = self.with_fibres(kernel.bind("elastic", self.elastic));
+        let kernel = self.with_pressure(kernel, buffers).fragment(self.generated("stress", text));
         if terms == 0 {
             return kernel;
         }
@@ -144,15 +199,16 @@ impl BlockKernels {
     }
 
     /// Adds the elastic energy per rest volume of the material.
-    pub fn with_energy(&self, kernel: Kernel) -> Kernel {
+    pub fn with_energy(&self, kernel: Kernel, buffers: &mut dyn Buffers) -> Kernel {
         let fibres = match self.law.fibres {
-            Some(_) => " + fibres_energy(k, fibre_direction_of(element))",
-            None => "",
+            Some(_) => "fibres_energy(k, fibre_direction_of(element))",
+            None => "0.0",
         };
-        let text = format!(
-            "fn energy_density(element: u32, k: Kinematics) -> f32 {{\n    return neo_hookean_energy(k){fibres};\n}}\n"
-        );
-        kernel.fragment(self.generated("energy", text))
+        let text =
+            format!("fn fibres_energy_at(element: u32, k: Kinematics) -> f32 {{\n    return {fibres};\n}}\n");
+        self.with_pressure(self.with_fibres(kernel.bind("elastic", self.elastic)), buffers)
+            .fragment(shader!("energy"))
+            .fragment(self.generated("energy", text))
     }
 
     /// Text that is made for this block.
@@ -161,18 +217,16 @@ impl BlockKernels {
     }
 
     fn constants(&self) -> String {
-        match self.block.kind {
-            ElementKind::Tet4 => constants::<Tet4>(),
-            ElementKind::Hex8 => constants::<Hex8>(),
-        }
+        with_element!(self.block.kind, E => constants::<E>())
     }
 }
 
 fn constants<E: Element>() -> String {
     format!(
-        "const LANES: u32 = {LANES}u;\nconst NODES: u32 = {}u;\nconst ROWS: u32 = {}u;\nconst VOLUME_ROW: u32 = {}u;\n\
-         const J_FLOOR: f32 = {J_FLOOR:e};\n",
+        "const LANES: u32 = {LANES}u;\nconst NODES: u32 = {}u;\nconst POINTS: u32 = {}u;\nconst ROWS: u32 = {}u;\n\
+         const VOLUME_ROW: u32 = {}u;\nconst J_FLOOR: f32 = {J_FLOOR:e};\n",
         E::NODES,
+        E::POINTS,
         E::ROWS,
         E::VOLUME_ROW,
     )

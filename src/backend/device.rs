@@ -60,6 +60,8 @@ pub fn all_columns() -> Vec<ColumnAccess> {
         ColumnAccess::of::<RemovalStep>(),
         ColumnAccess::of::<RemovedEnergy>(),
         ColumnAccess::of::<FirstInverted>(),
+        ColumnAccess::of::<ElementVolume>(),
+        ColumnAccess::of::<NodalVolumeChange>(),
     ]
 }
 

@@ -39,6 +39,12 @@ columns! {
     RemovalStep(Vec<u32>) = "removal_step";
     /// Elastic and hourglass energy (J) that each element held when it was removed. Exists with [`Alive`].
     RemovedEnergy(Reals) = "removed_energy";
+    /// Volume at rest (m³) of each element that is there, and that times θ, by which its law measures the change of volume.
+    /// Exists with [`NodalVolumeChange`].
+    ElementVolume(Reals) = "element_volume";
+    /// θ of each node of the body: the mean over the block's elements around it, by rest volume. Exists for elements with
+    /// averaged nodal pressure.
+    NodalVolumeChange(Reals) = "nodal_volume_change";
     /// One number: the lowest row of an element found with J < 0, by the kernel itself in every step; `u32::MAX`: none.
     FirstInverted(Vec<u32>) = "first_inverted";
 }
@@ -46,7 +52,17 @@ columns! {
 /// Elements of a patch: enough to be worth a task, few enough that their nodes and forces stay in a core's cache.
 pub const fn patch_groups(kind: ElementKind) -> usize {
     match kind {
-        ElementKind::Tet4 => 1024 / crate::math::LANES,
-        ElementKind::Hex8 => 224 / crate::math::LANES,
+        ElementKind::Tet4 | ElementKind::Tet4NodalPressure => 1024 / crate::math::LANES,
+        ElementKind::Hex8 | ElementKind::Hex8MeanDilatation => 224 / crate::math::LANES,
     }
+}
+
+/// Which elements of a block meet in a node: `elements[starts[i]..starts[i + 1]]` are rows of elements around node row `i`,
+/// ascending. Exists with [`NodalVolumeChange`].
+#[derive(Component, Clone, Debug)]
+pub struct BlockCorners {
+    /// Where each node's elements begin; one number more than nodes.
+    pub starts: Vec<u32>,
+    /// Rows of elements.
+    pub elements: Vec<u32>,
 }

@@ -3,8 +3,8 @@
 //! | entity | components |
 //! |---|---|
 //! | body | node columns ([`nodes`]), [`Corners`], [`ElementForce`], [`Authoring`] |
-//! | element block: one element type, one material, one body | [`Block`], [`Connectivity`], [`RestShape`] and, where called for, [`FibreDirection`], [`ViscousMemory`], [`Alive`], [`RemovalStep`] |
-//! | material | [`Density`], [`NeoHookean`](crate::materials::NeoHookean), [`Fibres`](crate::materials::Fibres), [`Prony`], [`Damping`]: an effect exists when its component does |
+//! | element block: one element type, one material, one body | [`Block`], [`Connectivity`], [`RestShape`] and, where called for, [`FibreDirection`], [`ViscousMemory`], [`NodalVolumeChange`], [`Alive`], [`RemovalStep`] |
+//! | material | [`Density`], an [elastic law](crate::materials::ElasticLaw), [`Fibres`](crate::materials::Fibres), [`Prony`], [`Damping`]: an effect exists when its component does |
 //! | constraint, load, removal | [`Fixed`], [`Prescribed`], [`Gravity`], [`NodalForce`], [`Pressure`], [`Traction`], [`RemovalCriterion`] with the rows they act on |
 //! | probe | [`Probe`] |
 
@@ -18,8 +18,8 @@ pub mod nodes;
 mod observation;
 
 pub use block::{
-    Alive, Block, Connectivity, FibreDirection, FirstInverted, RemovalStep, RemovedEnergy, RestShape, ViscousMemory,
-    patch_groups,
+    Alive, Block, BlockCorners, Connectivity, ElementVolume, FibreDirection, FirstInverted, NodalVolumeChange,
+    RemovalStep, RemovedEnergy, RestShape, ViscousMemory, patch_groups,
 };
 pub use clock::{Clock, Signal, Signals};
 pub use column::{Column, Precision, Reals};

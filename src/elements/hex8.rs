@@ -1,6 +1,6 @@
 //! The eight-node hexahedron with one integration point and hourglass control.
 
-use super::{Element, MOST_NODES, MOST_ROWS, Stiffness, gradient_measure, vector};
+use super::{Element, MOST_NODES, MOST_ROWS, PointState, PressureFrom, Stiffness, gradient_measure, vector};
 use crate::math::{Mat3, Real, dot, dot_plus};
 use glam::{DMat3, DVec3};
 
@@ -16,7 +16,7 @@ use glam::{DMat3, DVec3};
 #[derive(Clone, Copy, Debug)]
 pub struct Hex8;
 
-const NODE_SIGNS: [[f64; 3]; 8] = [
+pub(super) const NODE_SIGNS: [[f64; 3]; 8] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],
     [1.0, 1.0, -1.0],
@@ -60,7 +60,7 @@ pub fn mean_gradients(points: &[DVec3]) -> (f64, [DVec3; 8]) {
 }
 
 /// ∂N_a/∂ξ at a point of the reference cube.
-fn natural_gradients(at: [f64; 3]) -> [DVec3; 8] {
+pub(super) fn natural_gradients(at: [f64; 3]) -> [DVec3; 8] {
     NODE_SIGNS.map(|s| {
         let factor = [0, 1, 2].map(|i| 1.0 + s[i] * at[i]);
         DVec3::new(s[0] * factor[1] * factor[2], s[1] * factor[0] * factor[2], s[2] * factor[0] * factor[1]) / 8.0
@@ -113,9 +113,11 @@ fn hourglass_displacements<R: Real>(
 impl Element for Hex8 {
     const NAME: &'static str = "hex8";
     const NODES: usize = 8;
+    const POINTS: usize = 1;
     const ROWS: usize = 35;
     const VOLUME_ROW: usize = 21;
-    const HOURGLASS_ROW: Option<usize> = Some(22);
+    const FORCE_ROW: Option<usize> = Some(22);
+    const PRESSURE: PressureFrom = PressureFrom::Point;
 
     fn rest_shape(points: &[DVec3], young: f64) -> [f64; MOST_ROWS] {
         let (volume, b) = mean_gradients(points);
@@ -132,22 +134,40 @@ impl Element for Hex8 {
         shape
     }
 
+    type Prepared<R: Real> = [[R; 3]; MOST_NODES];
+    /// ∇u and the stress.
+    type Forces<R: Real> = [Mat3<R>; 2];
+
     #[inline(always)]
-    fn gradient<R: Real>(u: &[[R; 3]; MOST_NODES], shape: impl Fn(usize) -> R) -> Mat3<R> {
-        let mut h = Mat3::zero(u[0][0]);
-        for i in 0..3 {
-            for a in 1..8 {
-                h.add_to_row(i, u[a][i] - u[0][i], vector(&shape, 3 * (a - 1)));
-            }
-        }
-        h
+    fn prepare<R: Real>(u: &[[R; 3]; MOST_NODES]) -> [[R; 3]; MOST_NODES] {
+        *u
     }
 
     #[inline(always)]
-    fn forces<R: Real>(
+    fn at_point<R: Real>(u: &[[R; 3]; MOST_NODES], _point: usize, shape: impl Fn(usize) -> R) -> PointState<R> {
+        let mut gradient = Mat3::zero(u[0][0]);
+        for i in 0..3 {
+            for a in 1..8 {
+                gradient.add_to_row(i, u[a][i] - u[0][i], vector(&shape, 3 * (a - 1)));
+            }
+        }
+        PointState { gradient, adjugate: gradient, volume: shape(Self::VOLUME_ROW) }
+    }
+
+    #[inline(always)]
+    fn no_forces<R: Real>(like: R) -> [Mat3<R>; 2] {
+        [Mat3::zero(like); 2]
+    }
+
+    #[inline(always)]
+    fn add_stress<R: Real>(forces: &mut [Mat3<R>; 2], _point: usize, at: &PointState<R>, stress: &Mat3<R>) {
+        *forces = [at.gradient, *stress];
+    }
+
+    #[inline(always)]
+    fn store_forces<R: Real>(
         u: &[[R; 3]; MOST_NODES],
-        gradient: &Mat3<R>,
-        stress: &Mat3<R>,
+        [gradient, stress]: &[Mat3<R>; 2],
         shape: impl Fn(usize) -> R,
         mut store: impl FnMut(usize, usize, R),
     ) {

@@ -3,10 +3,14 @@
 //! An element is one Rust file with its WGSL twin of the same stem in `shaders/`.
 
 mod hex8;
+mod hex8_mean_dilatation;
 mod tet4;
+mod tet4_nodal_pressure;
 
 pub use hex8::Hex8;
+pub use hex8_mean_dilatation::Hex8MeanDilatation;
 pub use tet4::Tet4;
+pub use tet4_nodal_pressure::Tet4NodalPressure;
 
 use crate::math::{Mat3, Real};
 use glam::DVec3;
@@ -15,50 +19,94 @@ use glam::DVec3;
 pub const MOST_NODES: usize = 8;
 /// Rest-shape numbers of the element type that has most.
 pub const MOST_ROWS: usize = 35;
+/// Integration points of the element type that has most.
+pub const MOST_POINTS: usize = 8;
 
-/// A kind of element with one integration point.
+/// A kind of element.
 ///
 /// What an element knows of its shape at rest is a column of [`ROWS`](Element::ROWS) numbers, made once in `f64`; `shape`
-/// below gives them by row. Row [`VOLUME_ROW`](Element::VOLUME_ROW) is the rest volume (m³). All force-giving rows are
-/// proportional to rows that removal can zero: an element whose volume and hourglass rows are zero exerts nothing.
+/// below gives them by row. Row [`VOLUME_ROW`](Element::VOLUME_ROW) is the rest volume (m³). All forces are proportional to
+/// rows that removal can zero: an element whose volume and [`FORCE_ROW`](Element::FORCE_ROW) are zero exerts nothing.
+///
+/// Forces are made in four strides: displacements are prepared, each integration point gives its gradient, stresses are
+/// added point by point, and what they come to is stored corner by corner.
 pub trait Element: Copy + Send + Sync + 'static {
     /// Its name in scenes, shaders and reports.
     const NAME: &'static str;
     /// How many nodes.
     const NODES: usize;
+    /// How many integration points.
+    const POINTS: usize;
     /// How many numbers describe the rest shape.
     const ROWS: usize;
     /// Which of them is the volume.
     const VOLUME_ROW: usize;
-    /// Which of them is the hourglass stiffness, if any.
-    const HOURGLASS_ROW: Option<usize>;
+    /// Which further number forces are proportional to, if any.
+    const FORCE_ROW: Option<usize>;
+    /// Where the pressure comes from.
+    const PRESSURE: PressureFrom;
+
+    /// What all points need of the displacements.
+    type Prepared<R: Real>: Copy;
+    /// What stresses add up to before it is spread over the corners.
+    type Forces<R: Real>: Copy;
 
     /// The rest shape from the nodes' rest positions (m); `young` is the small-strain Young's modulus (Pa) that hourglass
     /// control is scaled by.
     fn rest_shape(points: &[DVec3], young: f64) -> [f64; MOST_ROWS];
 
-    /// Displacement gradient ∇u from nodal displacements (m); rows: components, columns: coordinates.
-    fn gradient<R: Real>(u: &[[R; 3]; MOST_NODES], shape: impl Fn(usize) -> R) -> Mat3<R>;
+    /// Makes nodal displacements (m) ready.
+    fn prepare<R: Real>(u: &[[R; 3]; MOST_NODES]) -> Self::Prepared<R>;
 
-    /// Nodal forces (N) that the element exerts against its deformation, from the first Piola-Kirchhoff stress (Pa).
+    /// The state at an integration point.
+    fn at_point<R: Real>(u: &Self::Prepared<R>, point: usize, shape: impl Fn(usize) -> R) -> PointState<R>;
+
+    /// No forces yet.
+    fn no_forces<R: Real>(like: R) -> Self::Forces<R>;
+
+    /// Adds what the first Piola-Kirchhoff stress (Pa) at a point exerts.
+    fn add_stress<R: Real>(forces: &mut Self::Forces<R>, point: usize, at: &PointState<R>, stress: &Mat3<R>);
+
+    /// Nodal forces (N) that the element exerts against its deformation, hourglass control included.
     /// They go to `store` (corner, component, force) one component after the other: so few numbers are needed at a time
     /// that they fit into registers.
-    fn forces<R: Real>(
-        u: &[[R; 3]; MOST_NODES],
-        gradient: &Mat3<R>,
-        stress: &Mat3<R>,
+    fn store_forces<R: Real>(
+        u: &Self::Prepared<R>,
+        forces: &Self::Forces<R>,
         shape: impl Fn(usize) -> R,
         store: impl FnMut(usize, usize, R),
     );
 
-    /// Energy (J) in the hourglass control.
-    fn hourglass_energy<R: Real>(u: &[[R; 3]; MOST_NODES], gradient: &Mat3<R>, shape: impl Fn(usize) -> R) -> R;
+    /// Energy (J) in the hourglass control, for the gradient at the only point.
+    fn hourglass_energy<R: Real>(u: &Self::Prepared<R>, gradient: &Mat3<R>, shape: impl Fn(usize) -> R) -> R;
 
     /// Upper bound of the largest squared angular frequency (1/s²) of the free element with lumped mass.
     ///
     /// ω² ≤ (n/ρ)(λ tr G + 2μ' λ_max(G)), G = Σ g gᵀ, n nodes; λ, μ' and ρ as [`Stiffness`] has them; plus what the
     /// hourglass control adds. Rigorous at rest; stretch raises the true value by about 1/σ_min(F)².
     fn frequency_bound(shape: &[f64; MOST_ROWS], stiffness: &Stiffness) -> f64;
+}
+
+/// Where an element's pressure comes from: constraining the volume at too many points locks an element as ν → ½.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PressureFrom {
+    /// From the volume at its only point.
+    Point,
+    /// From the mean volume over all its points.
+    MeanOverPoints,
+    /// From the mean volume around each of its nodes: the system `nodal_volume` has to run before.
+    Nodes,
+}
+
+/// An element at one of its integration points.
+#[derive(Clone, Copy, Debug)]
+pub struct PointState<R> {
+    /// ∇u; rows: components, columns: coordinates.
+    pub gradient: Mat3<R>,
+    /// det(∂X/∂ξ) (∂X/∂ξ)⁻¹ (m²), where stresses are added up in natural coordinates; else meaningless.
+    pub adjugate: Mat3<R>,
+    /// The point's share of the rest volume (m³), also of an element that has been removed.
+    pub volume: R,
 }
 
 /// Three numbers of a rest shape, from a row on.

@@ -1,6 +1,6 @@
 //! The neo-Hookean law in isochoric and volumetric parts.
 
-use super::Kinematics;
+use super::{Elastic, Kinematics};
 use crate::math::{Real, Sym3};
 use bevy_ecs::component::Component;
 
@@ -17,11 +17,17 @@ pub struct NeoHookean<T: Send + Sync + 'static> {
     pub bulk: T,
 }
 
-impl<R: Real> NeoHookean<R> {
-    /// Isochoric second Piola-Kirchhoff stress (Pa): μJ^(−2/3)(I − tr C/3 C⁻¹), written as μJ^(−2/3) C⁻¹·2 dev E, which
-    /// keeps the digits of a small strain.
+impl<R: Real> Elastic<R> for NeoHookean<R> {
+    type Of<Q: Real> = NeoHookean<Q>;
+
     #[inline(always)]
-    pub fn isochoric(&self, k: &Kinematics<R>) -> Sym3<R> {
+    fn map<Q: Real>(&self, number: impl Fn(R) -> Q) -> NeoHookean<Q> {
+        NeoHookean { shear: number(self.shear), bulk: number(self.bulk) }
+    }
+
+    /// μJ^(−2/3)(I − tr C/3 C⁻¹), written as μJ^(−2/3) C⁻¹·2 dev E, which keeps the digits of a small strain.
+    #[inline(always)]
+    fn isochoric(&self, k: &Kinematics<R>) -> Sym3<R> {
         let e = &k.green_strain.0;
         let mean = k.green_strain.trace() * self.shear.constant(1.0 / 3.0);
         let deviator = Sym3([e[0] - mean, e[1] - mean, e[2] - mean, e[3], e[4], e[5]]);
@@ -29,17 +35,27 @@ impl<R: Real> NeoHookean<R> {
         k.adjugate_c.times_coaxial(&deviator).scaled(factor)
     }
 
-    /// Volumetric second Piola-Kirchhoff stress (Pa): κJ(J − 1) C⁻¹.
+    /// κ(J − 1).
     #[inline(always)]
-    pub fn volumetric(&self, k: &Kinematics<R>) -> Sym3<R> {
-        k.adjugate_c.scaled(self.bulk * k.volume_change / k.j)
+    fn pressure(&self, theta: R) -> R {
+        self.bulk * theta
     }
 
-    /// Strain energy per rest volume (J/m³).
+    /// μ/2 (Ī₁ − 3).
     #[inline(always)]
-    pub fn energy(&self, k: &Kinematics<R>) -> R {
+    fn isochoric_energy(&self, k: &Kinematics<R>) -> R {
         let (half, three) = (self.shear.constant(0.5), self.shear.constant(3.0));
         let trace_c = three + self.shear.constant(2.0) * k.green_strain.trace();
-        half * self.shear * (k.j_m23 * trace_c - three) + half * self.bulk * k.volume_change * k.volume_change
+        half * self.shear * (k.j_m23 * trace_c - three)
+    }
+
+    /// κ/2 (J − 1)².
+    #[inline(always)]
+    fn volumetric_energy(&self, theta: R) -> R {
+        self.shear.constant(0.5) * self.bulk * theta * theta
+    }
+
+    fn small_strain_moduli(&self) -> [R; 2] {
+        [self.shear, self.bulk]
     }
 }

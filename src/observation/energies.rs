@@ -1,10 +1,10 @@
 //! Energies and mass.
 
-use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK};
+use crate::backend::cpu::{Cpu, ROWS_A_TASK};
 use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::error::Error;
-use crate::evaluation::{ElementState, Material};
+use crate::evaluation::BlockView;
 use bevy_ecs::prelude::*;
 
 /// The columns of `energy.csv`.
@@ -87,21 +87,17 @@ fn middle_of_step(world: &World, body: Entity) -> Option<Reals> {
 /// Elastic and hourglass energy of a block (J), summed in a fixed order.
 fn block_energies(world: &World, entity: Entity) -> (f64, f64) {
     let parts = (|| {
-        let block = world.get::<Block>(entity)?;
-        let displacement = &middle_of_step(world, block.body)?;
-        let (connectivity, shape) = (world.get::<Connectivity>(entity)?, world.get::<RestShape>(entity)?);
-        let law = world.get::<BlockLaw<f64>>(entity)?;
-        let fibre_direction = world.get::<FibreDirection>(entity).map(|f| &f.0);
-        let material = Material { law, fibre_direction, memory: None };
+        let displacement = &middle_of_step(world, world.get::<Block>(entity)?.body)?;
+        let view = BlockView::under(world, entity, displacement)?;
         let task = |task: usize| {
-            let rows = task * ROWS_A_TASK..block.count.min((task + 1) * ROWS_A_TASK);
+            let rows = task * ROWS_A_TASK..view.block.count.min((task + 1) * ROWS_A_TASK);
             rows.fold((0.0, 0.0), |(strain, hourglass), row| {
-                let state = ElementState::of(block.kind, row, connectivity, shape, displacement);
-                let energy = material.energy(row, &state.kinematics) * state.volume;
-                (strain + energy, hourglass + state.hourglass_energy(row, shape))
+                let state = view.element(row);
+                let energy = view.energy(row, &state) * state.volume;
+                (strain + energy, hourglass + state.hourglass_energy(row, view.shape))
             })
         };
-        Some(world.resource::<Cpu>().map(block.count.div_ceil(ROWS_A_TASK), task))
+        Some(world.resource::<Cpu>().map(view.block.count.div_ceil(ROWS_A_TASK), task))
     })();
     parts.unwrap_or_default().into_iter().fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1))
 }

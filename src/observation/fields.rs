@@ -1,10 +1,10 @@
 //! Fields of a body in the author's order, evaluated on the host in f64.
 
-use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK};
+use crate::backend::cpu::{Cpu, ROWS_A_TASK};
 use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::error::Error;
-use crate::evaluation::{ElementState, Material, node_count, von_mises_and_pressure};
+use crate::evaluation::{BlockView, node_count, von_mises_and_pressure};
 use crate::output::{Array, Frame, Series, Values};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -77,27 +77,19 @@ pub fn internal_forces(world: &mut World, body: Entity) -> Result<Vec<DVec3>, Er
 
 fn elements_of(world: &World, entity: Entity) -> Vec<ElementRow> {
     let all = (|| {
-        let block = world.get::<Block>(entity)?;
-        let displacement = world.get::<Displacement>(block.body)?;
-        let (connectivity, shape) = (world.get::<Connectivity>(entity)?, world.get::<RestShape>(entity)?);
-        let material = Material {
-            law: world.get::<BlockLaw<f64>>(entity)?,
-            fibre_direction: world.get::<FibreDirection>(entity).map(|f| &f.0),
-            memory: world.get::<ViscousMemory>(entity).map(|m| &m.0),
-        };
+        let view = BlockView::now(world, entity)?;
         let alive = world.get::<Alive>(entity);
         let element = |row: usize| {
-            let state = ElementState::of(block.kind, row, connectivity, shape, displacement);
             if alive.is_some_and(|alive| alive[row] == 0) {
                 return (1.0, [0.0; 6], 0, [[0.0; 3]; 8]);
             }
-            let stress = material.stress(row, &state.kinematics);
-            (state.kinematics.true_j, state.cauchy(&stress), 1, state.forces(row, shape, &stress))
+            let state = view.element(row);
+            (state.volume_ratio(), view.cauchy(row, &state), 1, view.forces(row, &state))
         };
         let task = |task: usize| {
-            (task * ROWS_A_TASK..block.count.min((task + 1) * ROWS_A_TASK)).map(element).collect::<Vec<ElementRow>>()
+            (task * ROWS_A_TASK..view.block.count.min((task + 1) * ROWS_A_TASK)).map(element).collect::<Vec<ElementRow>>()
         };
-        Some(world.resource::<Cpu>().map(block.count.div_ceil(ROWS_A_TASK), task).concat())
+        Some(world.resource::<Cpu>().map(view.block.count.div_ceil(ROWS_A_TASK), task).concat())
     })();
     all.unwrap_or_default()
 }

@@ -1,10 +1,9 @@
 //! Probes.
 
-use crate::backend::cpu::BlockLaw;
 use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::error::Error;
-use crate::evaluation::{ElementState, Material};
+use crate::evaluation::{BlockView, ElementState};
 use crate::scene::schema::Quantity;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -67,8 +66,8 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
             let force = |row: u32| vector(internal, row as usize) - vector(external, row as usize);
             probe.nodes.iter().map(|&row| force(row)).sum::<DVec3>().to_array().to_vec()
         }
-        Quantity::Stress => element_mean(world, body, &probe, |state, stress| state.cauchy(stress).to_vec()),
-        Quantity::VolumeRatio => element_mean(world, body, &probe, |state, _| vec![state.kinematics.true_j]),
+        Quantity::Stress => element_mean(world, body, &probe, |view, row, state| view.cauchy(row, state).to_vec()),
+        Quantity::VolumeRatio => element_mean(world, body, &probe, |_, _, state| vec![state.volume_ratio()]),
     })
 }
 
@@ -77,31 +76,20 @@ fn element_mean(
     world: &World,
     body: Entity,
     probe: &Probe,
-    of: impl Fn(&ElementState, &crate::math::Sym3<f64>) -> Vec<f64>,
+    of: impl Fn(&BlockView<'_>, usize, &ElementState) -> Vec<f64>,
 ) -> Vec<f64> {
     let length = header(probe.what).len() - 1;
     let (mut sum, mut volume) = (vec![0.0; length], 0.0);
-    let (Some(authoring), Some(displacement)) = (world.get::<Authoring>(body), world.get::<Displacement>(body)) else {
-        return sum;
-    };
+    let Some(authoring) = world.get::<Authoring>(body) else { return sum };
+    let mut views: Vec<Option<BlockView<'_>>> = authoring.blocks.iter().map(|_| None).collect();
     for &(place, row) in &probe.elements {
-        let entity = authoring.blocks[place as usize];
-        let (Some(block), Some(connectivity), Some(shape), Some(law)) = (
-            world.get::<Block>(entity),
-            world.get::<Connectivity>(entity),
-            world.get::<RestShape>(entity),
-            world.get::<BlockLaw<f64>>(entity),
-        ) else {
-            continue;
-        };
-        let material = Material {
-            law,
-            fibre_direction: world.get::<FibreDirection>(entity).map(|f| &f.0),
-            memory: world.get::<ViscousMemory>(entity).map(|m| &m.0),
-        };
-        let state = ElementState::of(block.kind, row as usize, connectivity, shape, displacement);
-        let stress = material.stress(row as usize, &state.kinematics);
-        for (sum, value) in sum.iter_mut().zip(of(&state, &stress)) {
+        let (view, row) = (&mut views[place as usize], row as usize);
+        if view.is_none() {
+            *view = BlockView::now(world, authoring.blocks[place as usize]);
+        }
+        let Some(view) = view else { continue };
+        let state = view.element(row);
+        for (sum, value) in sum.iter_mut().zip(of(view, row, &state)) {
             *sum += state.volume * value;
         }
         volume += state.volume;

@@ -72,8 +72,9 @@ pub fn resolve<'a>(
     schedule
 }
 
-const PHASES: [Phase; 7] = [
+const PHASES: [Phase; 8] = [
     Phase::Boundary,
+    Phase::NodalMeans,
     Phase::ElementForces,
     Phase::Gather,
     Phase::Loads,
@@ -85,6 +86,7 @@ const PHASES: [Phase; 7] = [
 fn phase_word(phase: Phase) -> &'static str {
     match phase {
         Phase::Boundary => "says where constrained nodes go",
+        Phase::NodalMeans => "takes means around nodes",
         Phase::ElementForces => "fills in element forces",
         Phase::Gather => "sums forces at the nodes",
         Phase::Loads => "adds external forces",

@@ -24,6 +24,8 @@ pub struct Effects {
     pub removal: bool,
     /// A removal criterion for all elements, as RON writes it.
     pub criterion: Option<&'static str>,
+    /// Elements that take their pressure from means.
+    pub averaged: bool,
 }
 
 pub const ALONG: &str = "Along(1, 2, 3)";
@@ -44,6 +46,7 @@ impl Effects {
             energies: true,
             removal: true,
             criterion: None,
+            averaged: false,
         }
     }
 
@@ -63,6 +66,8 @@ impl Effects {
             all.push(Self { damping, loads, compensated, energies, removal, moved: true, ..Self::default() });
         }
         all.push(Self::all());
+        all.push(Self { averaged: true, ..Self::default() });
+        all.push(Self { averaged: true, ..Self::all() });
         all
     }
 
@@ -130,8 +135,8 @@ impl Effects {
             integration: (compensated: {}),
             {energies}
             )",
-            body("Tet4"),
-            body("Hex8"),
+            body(if self.averaged { "Tet4NodalPressure" } else { "Tet4" }),
+            body(if self.averaged { "Hex8MeanDilatation" } else { "Hex8" }),
             self.compensated
         )
     }
@@ -219,7 +224,8 @@ pub fn randomize(world: &mut World, seed: u64) {
         }
         fill!(
             Displacement: 0.1 * SPACING, DisplacementStep: 1e-5, DisplacementCompensation: 1e-11,
-            InternalForce: 0.01, ExternalForce: 0.01, ElementForce: 0.01, ViscousMemory: 200.0, Work: 1e-6
+            InternalForce: 0.01, ExternalForce: 0.01, ElementForce: 0.01, ViscousMemory: 200.0, Work: 1e-6,
+            ElementVolume: 1e-6, NodalVolumeChange: 0.05
         );
         // parked nodes, and axes held without a load
         if let Some(mut mass) = world.get_mut::<Mass>(entity) {

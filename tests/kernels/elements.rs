@@ -5,7 +5,7 @@ use super::magnitude::{ROUNDINGS, magnitude};
 use super::pair::{UNIT, entities, run};
 use bevy_ecs::prelude::*;
 use sinew::components::*;
-use sinew::evaluation::{lane_place, node_count};
+use sinew::evaluation::{lane_place, node_count, point_count};
 
 fn compare_element_forces(effects: &Effects, change: impl Fn(&mut World)) {
     let Some(mut pair) = run("element_forces", effects, 3, change) else { return };
@@ -33,7 +33,7 @@ fn compare_element_forces(effects: &Effects, change: impl Fn(&mut World)) {
     if effects.prony > 0 {
         pair.agree::<ViscousMemory>(|pair, block, i| {
             let data = pair.before().get::<Block>(block).unwrap();
-            let row = i / (16 * 6 * effects.prony) * 16 + i % 16;
+            let row = i / (16 * 6 * effects.prony * point_count(data.kind)) * 16 + i % 16;
             if row >= data.count {
                 return f64::INFINITY;
             }
@@ -52,8 +52,10 @@ fn elements_exert_the_same_forces() {
         for (prony, tension_only, backward_euler) in
             [(0, false, false), (0, true, false), (1, false, true), (2, true, false)]
         {
-            let effects = Effects { fibres, prony, tension_only, backward_euler, ..Effects::default() };
-            compare_element_forces(&effects, |_| {});
+            for averaged in [false, true] {
+                let effects = Effects { fibres, prony, tension_only, backward_euler, averaged, ..Effects::default() };
+                compare_element_forces(&effects, |_| {});
+            }
         }
     }
 }
@@ -79,4 +81,28 @@ fn inverted_elements_are_found_and_make_no_nan() {
         let force = pair.device.world().get::<ElementForce>(body).unwrap();
         assert!((0..force.len()).all(|i| force.get(i).is_finite()));
     }
+}
+
+/// A node's θ is a mean of up to 24 products, each of θ (|∇u| ≤ h to 16 roundings) and a volume; the sums err by 24 more.
+#[test]
+fn volumes_around_nodes_change_alike() {
+    let effects = Effects { averaged: true, ..Effects::default() };
+    let Some(mut pair) = run("nodal_volume", &effects, 3, |_| {}) else { return };
+    let blocks = entities::<NodalVolumeChange>(pair.host.world_mut());
+    let mut largest: f64 = 0.0;
+    for block in blocks {
+        let means = pair.host.world().get::<NodalVolumeChange>(block).unwrap();
+        largest = (0..means.len()).fold(largest, |largest, i| largest.max(means.get(i).abs()));
+    }
+    assert!((0.01..0.5).contains(&largest), "{largest}");
+    pair.agree::<NodalVolumeChange>(|_, _, _| 64.0 * UNIT * 3.0 * largest);
+    pair.agree::<ElementVolume>(|pair, block, i| {
+        let count = pair.before().get::<Block>(block).unwrap().count;
+        if i / 32 * 16 + i % 16 >= count {
+            return f64::INFINITY;
+        }
+        let volumes = pair.host().get::<ElementVolume>(block).unwrap();
+        let products = (0..volumes.len()).filter(|i| i % 32 >= 16).map(|i| volumes.get(i).abs());
+        if i % 32 < 16 { 0.0 } else { 16.0 * UNIT * 3.0 * products.fold(0.0, f64::max) }
+    });
 }

@@ -2,7 +2,9 @@
 
 use bevy_ecs::prelude::*;
 use sinew::components::*;
+use sinew::elements::{Element, Hex8MeanDilatation, MOST_NODES};
 use sinew::evaluation::{ElementState, lane_place, node_count, row_count};
+use sinew::mesh::ElementKind;
 
 /// Σ|tᵢ| of the forces on an element's corners and of its stress. With ∇u = h, stresses are sums of moduli times strains
 /// h + hᵀ + hᵀh, times C⁻¹ and powers of J; rounding of O(1) intermediate values (C, J) counts with the moduli times
@@ -17,20 +19,29 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
     let shape = world.get::<RestShape>(block).unwrap();
     let displacement = world.get::<Displacement>(data.body).unwrap();
     let law = world.get::<sinew::backend::cpu::BlockLaw<f64>>(block).unwrap();
-    let state = ElementState::of(data.kind, row, world.get::<Connectivity>(block).unwrap(), shape, displacement);
-    let h = state.gradient.0.iter().flatten().map(|x| x.abs()).fold(0.0, f64::max);
+    let state =
+        ElementState::of(data.kind, row, world.get::<Connectivity>(block).unwrap(), shape, displacement, law);
+    let entries = state.points().iter().flat_map(|point| point.gradient.0).flatten();
+    let h = entries.map(|x| x.abs()).fold(0.0, f64::max);
     let number = |k: usize| shape.get(lane_place(row, row_count(data.kind), k));
     let nodes = node_count(data.kind);
-    let gradients: f64 = (0..3 * (nodes - 1)).map(|k| number(k).abs()).fold(0.0, f64::max);
+    let gradients = match data.kind {
+        ElementKind::Hex8MeanDilatation => natural_gradients(number),
+        _ => (0..3 * (nodes - 1)).map(|k| number(k).abs()).fold(0.0, f64::max),
+    };
     let spread = state.displacements[..nodes].iter().flatten().map(|x| x.abs()).fold(0.0, f64::max);
     // terms of h itself cancel: a gradient is a sum of seven products at most
     let h = h.max(spread * gradients);
     let eta = law.fibres.as_ref().map_or(0.0, |(fibres, _)| fibres.eta);
-    let moduli = 2.0 * law.neo_hookean.shear + law.neo_hookean.bulk + 2.0 * eta;
-    let compressed = state.kinematics.j.min(1.0);
+    let [shear, bulk] = law.elastic.small_strain_moduli();
+    let moduli = 2.0 * shear + bulk + 2.0 * eta;
+    let compressed = state.points().iter().map(|point| point.kinematics.j).fold(1.0, f64::min);
     let memory = world.get::<ViscousMemory>(block).map_or(0.0, |_| 400.0);
-    let stress = moduli * h * (1.0 + h).powi(4) / compressed.powi(3) + memory;
-    let hourglass = if nodes == 8 {
+    let nodal = world.get::<NodalVolumeChange>(block).map_or(0.0, |means| {
+        bulk * state.nodes[..nodes].iter().map(|&node| means.get(node as usize).abs()).fold(0.0, f64::max)
+    });
+    let stress = (moduli * h + nodal) * (1.0 + h).powi(4) / compressed.powi(3) + memory;
+    let hourglass = if data.kind == ElementKind::Hex8 {
         // q is a sum of eight displacements, and folded back along the element's arms with its gradients
         number(22) * 8.0 * spread * 8.0
     } else {
@@ -39,6 +50,17 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
     Magnitude { stress, force: state.volume * stress * (1.0 + h) * gradients * nodes as f64 + hourglass }
 }
 
+/// The largest ∂ξ/∂X, which stands for gradients in natural coordinates.
+fn natural_gradients(number: impl Fn(usize) -> f64) -> f64 {
+    let still = Hex8MeanDilatation::prepare(&[[0.0; 3]; MOST_NODES]);
+    let inverse = |point: usize| {
+        let at = Hex8MeanDilatation::at_point(&still, point, &number);
+        at.adjugate.0.into_iter().flatten().map(move |x| (x / at.volume).abs())
+    };
+    (0..8).flat_map(inverse).fold(0.0, f64::max)
+}
+
 /// The longest way from displacements to a corner's force: a gradient (8 roundings), strains and J (8), a cube root (10),
-/// two laws (20), viscosity (8), F S (6), a force and the sum of all (16).
-pub const ROUNDINGS: f64 = 76.0;
+/// two laws (20), viscosity (8), F S (6), a force and the sum of all (16). Eight points with gradients in natural coordinates
+/// (∂X/∂ξ 3, its adjugate and determinant 6, a division 3) and a sum over them (8) stay within what is left.
+pub const ROUNDINGS: f64 = 96.0;

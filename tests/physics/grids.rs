@@ -37,9 +37,9 @@ pub fn grid(cells: [usize; 3], kind: impl Fn(usize) -> ElementKind) -> Grid {
         for j in 0..cells[1] {
             for i in 0..cells[0] {
                 let corner = |bits: usize| at(i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2));
-                match kind(k) {
-                    ElementKind::Hex8 => grid.elements.push(HEX.map(corner).to_vec()),
-                    ElementKind::Tet4 => grid.elements.extend(KUHN.map(|tet| tet.map(corner).to_vec())),
+                match kind(k).is_tetrahedron() {
+                    false => grid.elements.push(HEX.map(corner).to_vec()),
+                    true => grid.elements.extend(KUHN.map(|tet| tet.map(corner).to_vec())),
                 }
             }
         }

@@ -16,9 +16,10 @@ type Nodal = [[f64; 3]; MOST_NODES];
 /// Hourglass forces alone: without stress there is nothing else.
 fn control(points: &[DVec3], u: &Nodal) -> (Nodal, f64) {
     let shape = Hex8::rest_shape(points, YOUNG);
-    let gradient = Hex8::gradient(u, |k| shape[k]);
+    let gradient = Hex8::at_point(u, 0, |k| shape[k]).gradient;
     let mut forces = [[0.0; 3]; MOST_NODES];
-    Hex8::forces(u, &gradient, &Mat3([[0.0; 3]; 3]), |k| shape[k], |corner, i, force| forces[corner][i] = force);
+    let sums = [gradient, Mat3([[0.0; 3]; 3])];
+    Hex8::store_forces(u, &sums, |k| shape[k], |corner, i, force| forces[corner][i] = force);
     (forces, Hex8::hourglass_energy(u, &gradient, |k| shape[k]))
 }
 
@@ -83,18 +84,14 @@ impl Cantilever {
             let nodes = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
                 .map(|(x, y, z)| self.node(i + x, j + y, k + z));
             let local = nodes.map(|node| u[node]);
-            let gradient = Hex8::gradient(&local, |k| self.shape[k]);
+            let gradient = Hex8::at_point(&local, 0, |k| self.shape[k]).gradient;
             let h = gradient.0;
             let pressure = self.lambda * (h[0][0] + h[1][1] + h[2][2]);
             let entry = |a: usize, b: usize| self.shear * (h[a][b] + h[b][a]) + if a == b { pressure } else { 0.0 };
             let stress = Mat3([0, 1, 2].map(|a| [0, 1, 2].map(|b| entry(a, b))));
-            Hex8::forces(
-                &local,
-                &gradient,
-                &stress,
-                |k| self.shape[k],
-                |corner, i, force| forces[nodes[corner]][i] += force,
-            );
+            let sums = [gradient, stress];
+            let store = |corner: usize, i: usize, force| forces[nodes[corner]][i] += force;
+            Hex8::store_forces(&local, &sums, |k| self.shape[k], store);
         }
         (0..(n + 1) * (n + 1)).for_each(|clamped| forces[clamped] = [0.0; 3]);
         forces

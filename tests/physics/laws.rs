@@ -7,7 +7,7 @@
 
 use crate::random::{Random, gradient};
 use glam::{DMat3, DVec3};
-use sinew::materials::{Fibres, Kinematics, NeoHookean};
+use sinew::materials::{Elastic, Fibres, Kinematics, NeoHookean};
 use sinew::math::{Real, Sym3};
 
 const SHEAR: f64 = 3000.0 / 2.9;
@@ -37,10 +37,11 @@ fn fibres<R: Real>(like: R, tension_only: f64) -> Fibres<R> {
 
 impl Law for Isotropic {
     fn stress<R: Real>(k: &Kinematics<R>, _: [R; 3]) -> Sym3<R> {
-        neo_hookean(k.j).isochoric(k).plus(&neo_hookean(k.j).volumetric(k))
+        let law = neo_hookean(k.j);
+        law.isochoric(k).plus(&<NeoHookean<R> as Elastic<R>>::volumetric(k, law.pressure(k.volume_change)))
     }
     fn energy<R: Real>(k: &Kinematics<R>, _: [R; 3]) -> R {
-        neo_hookean(k.j).energy(k)
+        neo_hookean(k.j).isochoric_energy(k) + neo_hookean(k.j).volumetric_energy(k.volume_change)
     }
     const SMALL: (f64, f64, f64) = (BULK - 2.0 / 3.0 * SHEAR, 2.0 * SHEAR, 0.0);
 }

@@ -1,8 +1,8 @@
 //! Forces of all elements of a block, a register full at a time.
 
 use super::{BlockLaw, Cpu};
-use crate::elements::{Element, MOST_NODES};
-use crate::materials::{Fibres, Kinematics, NeoHookean, PronyTerm};
+use crate::elements::{Element, MOST_NODES, PressureFrom};
+use crate::materials::{Elastic, ElasticLaw, Fibres, Kinematics, PronyTerm, WithElastic};
 use crate::math::{LANES, Real, SimdScalar, Sym3};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
@@ -18,6 +18,8 @@ pub struct BlockColumns<'a, T> {
     pub rest_shape: &'a [T],
     /// Fibre directions, where they differ.
     pub fibre_direction: Option<&'a [T]>,
+    /// θ of each node of the body; empty for elements that do not need it.
+    pub nodal_volume_change: &'a [T],
     /// Viscous history; empty without viscosity.
     pub memory: &'a mut [T],
     /// The block's part of the element forces (N).
@@ -25,69 +27,104 @@ pub struct BlockColumns<'a, T> {
 }
 
 /// Fills in the forces of a block and carries its viscous history on by one step. Says whether an element has J < 0.
+///
+/// The neo-Hookean law has a kernel of its own for each combination of effects, so that what a material lacks is not even
+/// asked for; the other laws ask.
 pub fn run_block<E: Element, T: SimdScalar>(
     cpu: &Cpu,
     columns: BlockColumns<'_, T>,
     law: &BlockLaw<T>,
     groups_a_patch: usize,
 ) -> bool {
-    match (law.fibres.is_some(), !law.prony.is_empty()) {
-        (false, false) => run_kernel::<E, T, false, false>(cpu, columns, law, groups_a_patch),
-        (true, false) => run_kernel::<E, T, true, false>(cpu, columns, law, groups_a_patch),
-        (false, true) => run_kernel::<E, T, false, true>(cpu, columns, law, groups_a_patch),
-        (true, true) => run_kernel::<E, T, true, true>(cpu, columns, law, groups_a_patch),
+    let block = Block::<E, T> { cpu, columns, law, groups_a_patch, element: PhantomData };
+    match (&law.elastic, law.fibres.is_some(), !law.prony.is_empty()) {
+        (ElasticLaw::NeoHookean(elastic), false, false) => block.run::<_, 0>(elastic),
+        (ElasticLaw::NeoHookean(elastic), true, false) => block.run::<_, FIBRES>(elastic),
+        (ElasticLaw::NeoHookean(elastic), false, true) => block.run::<_, VISCOSITY>(elastic),
+        (ElasticLaw::NeoHookean(elastic), true, true) => block.run::<_, { FIBRES | VISCOSITY }>(elastic),
+        #[allow(unreachable_patterns)]
+        (other, ..) => other.with(block),
     }
 }
 
-fn run_kernel<E: Element, T: SimdScalar, const FIBRES: bool, const PRONY: bool>(
-    cpu: &Cpu,
-    columns: BlockColumns<'_, T>,
-    law: &BlockLaw<T>,
+/// Effects of a kernel, as bits.
+const FIBRES: u8 = 1;
+const VISCOSITY: u8 = 2;
+/// The kernel asks the block's law which effects it has.
+const ASK: u8 = 4;
+
+struct Block<'a, E, T: SimdScalar> {
+    cpu: &'a Cpu,
+    columns: BlockColumns<'a, T>,
+    law: &'a BlockLaw<T>,
     groups_a_patch: usize,
-) -> bool {
-    let inverted = AtomicBool::new(false);
-    let patch = groups_a_patch * LANES;
-    let memory_a_group = 6 * law.prony.len();
-    let patches = columns.force.chunks_mut(patch * 3 * E::NODES).enumerate();
-    // without viscosity there is no memory to hand out
-    let mut memories = columns.memory.chunks_mut((patch * memory_a_group).max(1));
-    let tasks = patches.map(move |(index, force)| Patch::<E, T, FIBRES, PRONY> {
-        displacement: columns.displacement,
-        connectivity: &columns.connectivity[index * patch * E::NODES..],
-        rest_shape: &columns.rest_shape[index * patch * E::ROWS..],
-        fibre_direction: columns.fibre_direction.map(|all| &all[index * patch * 3..]),
-        memory: memories.next().unwrap_or_default(),
-        force,
-        law,
-        element: PhantomData,
-    });
-    cpu.for_each(tasks, |patch| {
-        if cpu.arch().dispatch(patch) {
-            inverted.store(true, Ordering::Relaxed);
-        }
-    });
-    inverted.into_inner()
+    element: PhantomData<E>,
 }
 
-struct Patch<'a, E, T: SimdScalar, const FIBRES: bool, const PRONY: bool> {
+impl<E: Element, T: SimdScalar> WithElastic<T> for Block<'_, E, T> {
+    type Output = bool;
+    fn with<L: Elastic<T>>(self, elastic: &L) -> bool {
+        self.run::<L, ASK>(elastic)
+    }
+}
+
+impl<E: Element, T: SimdScalar> Block<'_, E, T> {
+    fn run<L: Elastic<T>, const EFFECTS: u8>(self, elastic: &L) -> bool {
+        let Self { cpu, columns, law, groups_a_patch, element } = self;
+        let inverted = AtomicBool::new(false);
+        let patch = groups_a_patch * LANES;
+        let memory_an_element = memory_numbers::<E, T>(law);
+        let patches = columns.force.chunks_mut(patch * 3 * E::NODES).enumerate();
+        // without viscosity there is no memory to hand out
+        let mut memories = columns.memory.chunks_mut((patch * memory_an_element).max(1));
+        let tasks = patches.map(move |(index, force)| Patch::<E, T, L, EFFECTS> {
+            displacement: columns.displacement,
+            nodal_volume_change: columns.nodal_volume_change,
+            connectivity: &columns.connectivity[index * patch * E::NODES..],
+            rest_shape: &columns.rest_shape[index * patch * E::ROWS..],
+            fibre_direction: columns.fibre_direction.map(|all| &all[index * patch * 3..]),
+            memory: memories.next().unwrap_or_default(),
+            force,
+            elastic,
+            law,
+            element,
+        });
+        cpu.for_each(tasks, |patch| {
+            if cpu.arch().dispatch(patch) {
+                inverted.store(true, Ordering::Relaxed);
+            }
+        });
+        inverted.into_inner()
+    }
+}
+
+/// Numbers of viscous history an element has: six a Prony term and integration point.
+fn memory_numbers<E: Element, T: SimdScalar>(law: &BlockLaw<T>) -> usize {
+    6 * law.prony.len() * E::POINTS
+}
+
+struct Patch<'a, E, T: SimdScalar, L, const EFFECTS: u8> {
     displacement: &'a [T],
+    nodal_volume_change: &'a [T],
     connectivity: &'a [u32],
     rest_shape: &'a [T],
     fibre_direction: Option<&'a [T]>,
     memory: &'a mut [T],
     force: &'a mut [T],
+    elastic: &'a L,
     law: &'a BlockLaw<T>,
     element: PhantomData<E>,
 }
 
-impl<E: Element, T: SimdScalar, const FIBRES: bool, const PRONY: bool> WithSimd for Patch<'_, E, T, FIBRES, PRONY> {
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd for Patch<'_, E, T, L, EFFECTS> {
     type Output = bool;
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) -> bool {
         let mut worst = T::splat(simd, T::default());
         for group in 0..self.force.len() / (LANES * 3 * E::NODES) {
-            let displacements = self.group_displacements(group);
+            let nodes = &self.connectivity[group * E::NODES * LANES..(group + 1) * E::NODES * LANES];
+            let displacements = group_vectors::<E, T>(nodes, self.displacement);
             let mut at = 0;
             while at < LANES {
                 worst = worst.max(self.part_of_group(simd, group, at, &displacements));
@@ -100,22 +137,47 @@ impl<E: Element, T: SimdScalar, const FIBRES: bool, const PRONY: bool> WithSimd 
     }
 }
 
-impl<E: Element, T: SimdScalar, const FIBRES: bool, const PRONY: bool> Patch<'_, E, T, FIBRES, PRONY> {
-    /// Displacements of a group's nodes, brought side by side.
-    #[inline(always)]
-    fn group_displacements(&self, group: usize) -> [[[T; LANES]; 3]; MOST_NODES] {
-        let mut displacements = [[[T::default(); LANES]; 3]; MOST_NODES];
-        let nodes = &self.connectivity[group * E::NODES * LANES..(group + 1) * E::NODES * LANES];
-        for corner in 0..E::NODES {
-            for lane in 0..LANES {
-                let row = 3 * nodes[corner * LANES + lane] as usize;
-                let u = &self.displacement[row..row + 3];
-                for i in 0..3 {
-                    displacements[corner][i][lane] = u[i];
-                }
+/// Vectors of a group's nodes, brought side by side.
+#[inline(always)]
+pub(super) fn group_vectors<E: Element, T: SimdScalar>(nodes: &[u32], column: &[T]) -> [[[T; LANES]; 3]; MOST_NODES] {
+    let mut vectors = [[[T::default(); LANES]; 3]; MOST_NODES];
+    for corner in 0..E::NODES {
+        for lane in 0..LANES {
+            let row = 3 * nodes[corner * LANES + lane] as usize;
+            let vector = &column[row..row + 3];
+            for i in 0..3 {
+                vectors[corner][i][lane] = vector[i];
             }
         }
-        displacements
+    }
+    vectors
+}
+
+/// A register full of nodal vectors, from lane `at` on.
+#[inline(always)]
+pub(super) fn corner_registers<E: Element, T: SimdScalar, S: Simd>(
+    simd: S,
+    vectors: &[[[T; LANES]; 3]; MOST_NODES],
+    at: usize,
+) -> [[T::Vector<S>; 3]; MOST_NODES] {
+    let mut u = [[T::splat(simd, T::default()); 3]; MOST_NODES];
+    for corner in 0..E::NODES {
+        for i in 0..3 {
+            u[corner][i] = T::load(simd, &vectors[corner][i][at..]);
+        }
+    }
+    u
+}
+
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
+    #[inline(always)]
+    fn has_fibres(&self) -> bool {
+        if EFFECTS == ASK { self.law.fibres.is_some() } else { EFFECTS & FIBRES != 0 }
+    }
+
+    #[inline(always)]
+    fn has_viscosity(&self) -> bool {
+        if EFFECTS == ASK { !self.law.prony.is_empty() } else { EFFECTS & VISCOSITY != 0 }
     }
 
     /// One register full of elements, from lane `at` on. Returns −J V, positive for inverted elements.
@@ -127,42 +189,75 @@ impl<E: Element, T: SimdScalar, const FIBRES: bool, const PRONY: bool> Patch<'_,
         at: usize,
         displacements: &[[[T; LANES]; 3]; MOST_NODES],
     ) -> T::Vector<S> {
-        let law = self.law;
-        let zero = T::splat(simd, T::default());
-        let mut u = [[zero; 3]; MOST_NODES];
-        for corner in 0..E::NODES {
-            for i in 0..3 {
-                u[corner][i] = T::load(simd, &displacements[corner][i][at..]);
-            }
-        }
-        let rest_shape = &self.rest_shape[group * E::ROWS * LANES..(group + 1) * E::ROWS * LANES];
-        let gradient = E::gradient(
-            &u,
+        let elastic = self.elastic.map(
             #[inline(always)]
-            |row: usize| T::load(simd, &rest_shape[row * LANES + at..]),
+            |number: T| T::splat(simd, number),
         );
-        let k = Kinematics::new(&gradient);
-        let neo_hookean =
-            NeoHookean { shear: T::splat(simd, law.neo_hookean.shear), bulk: T::splat(simd, law.neo_hookean.bulk) };
-        let mut isochoric = neo_hookean.isochoric(&k);
-        if FIBRES {
-            isochoric = isochoric.plus(&self.fibre_stress(simd, group, at, &k));
+        let zero = T::splat(simd, T::default());
+        let u = E::prepare(&corner_registers::<E, T, S>(simd, displacements, at));
+        let rest_shape = &self.rest_shape[group * E::ROWS * LANES..(group + 1) * E::ROWS * LANES];
+        let shared = match E::PRESSURE {
+            PressureFrom::Point => zero,
+            PressureFrom::MeanOverPoints => elastic.pressure(mean_volume_change::<E, T, L, S>(simd, &u, rest_shape, at)),
+            PressureFrom::Nodes => self.mean_of_nodes(simd, &elastic, group, at),
+        };
+        let mut forces = E::no_forces(zero);
+        let mut worst = zero.constant(f64::MIN);
+        for point in 0..E::POINTS {
+            let state = E::at_point(
+                &u,
+                point,
+                #[inline(always)]
+                |row: usize| T::load(simd, &rest_shape[row * LANES + at..]),
+            );
+            let k = <L::Of<T::Vector<S>>>::kinematics(&state.gradient);
+            let pressure = match E::PRESSURE {
+                PressureFrom::Point => elastic.pressure(<L::Of<T::Vector<S>>>::volume_measure(&k)),
+                _ => shared,
+            };
+            let mut isochoric = elastic.isochoric(&k);
+            if self.has_fibres() {
+                isochoric = isochoric.plus(&self.fibre_stress(simd, group, at, &k));
+            }
+            if self.has_viscosity() {
+                isochoric = self.relax(simd, group, at, point, isochoric);
+            }
+            let stress = isochoric.plus(&<L::Of<T::Vector<S>>>::volumetric(&k, pressure));
+            let stress = <L::Of<T::Vector<S>>>::first_stress(&state.gradient, &stress);
+            E::add_stress(&mut forces, point, &state, &stress);
+            worst = worst.max(-k.true_j);
         }
-        if PRONY {
-            isochoric = self.relax(simd, group, at, isochoric);
-        }
-        let stress = gradient.plus_identity_times(&isochoric.plus(&neo_hookean.volumetric(&k)));
         let out = &mut self.force[group * 3 * E::NODES * LANES..(group + 1) * 3 * E::NODES * LANES];
-        E::forces(
+        E::store_forces(
             &u,
-            &gradient,
-            &stress,
+            &forces,
             #[inline(always)]
             |row: usize| T::load(simd, &rest_shape[row * LANES + at..]),
             #[inline(always)]
             |corner: usize, i: usize, force| T::store(force, &mut out[(3 * corner + i) * LANES + at..]),
         );
-        -(k.true_j * T::load(simd, &rest_shape[E::VOLUME_ROW * LANES + at..]))
+        worst * T::load(simd, &rest_shape[E::VOLUME_ROW * LANES + at..])
+    }
+
+    /// Mean of the pressures (Pa) at the nodes.
+    #[inline(always)]
+    fn mean_of_nodes<S: Simd>(
+        &self,
+        simd: S,
+        elastic: &L::Of<T::Vector<S>>,
+        group: usize,
+        at: usize,
+    ) -> T::Vector<S> {
+        let nodes = &self.connectivity[group * E::NODES * LANES..(group + 1) * E::NODES * LANES];
+        let mut sum = T::splat(simd, T::default());
+        for corner in 0..E::NODES {
+            let mut lanes = [T::default(); LANES];
+            for lane in 0..T::width::<S>() {
+                lanes[lane] = self.nodal_volume_change[nodes[corner * LANES + at + lane] as usize];
+            }
+            sum += elastic.pressure(T::load(simd, &lanes));
+        }
+        sum * sum.constant(1.0 / E::NODES as f64)
     }
 
     #[inline(always)]
@@ -196,6 +291,7 @@ impl<E: Element, T: SimdScalar, const FIBRES: bool, const PRONY: bool> Patch<'_,
         simd: S,
         group: usize,
         at: usize,
+        point: usize,
         isochoric: Sym3<T::Vector<S>>,
     ) -> Sym3<T::Vector<S>> {
         let terms = self.law.prony.len();
@@ -207,7 +303,7 @@ impl<E: Element, T: SimdScalar, const FIBRES: bool, const PRONY: bool> Patch<'_,
                 rate: T::splat(simd, term.rate),
                 aim: T::splat(simd, term.aim),
             };
-            let first = (group * 6 * terms + 6 * number) * LANES + at;
+            let first = (group * memory_numbers::<E, T>(self.law) + 6 * (point * terms + number)) * LANES + at;
             let mut memory = isochoric;
             for i in 0..6 {
                 memory.0[i] = T::load(simd, &self.memory[first + i * LANES..]);
@@ -223,4 +319,28 @@ impl<E: Element, T: SimdScalar, const FIBRES: bool, const PRONY: bool> Patch<'_,
         }
         stress
     }
+}
+
+/// θ̄ = Σ V_q θ_q / V of elements with several points.
+#[inline(always)]
+fn mean_volume_change<E: Element, T: SimdScalar, L: Elastic<T>, S: Simd>(
+    simd: S,
+    u: &E::Prepared<T::Vector<S>>,
+    rest_shape: &[T],
+    at: usize,
+) -> T::Vector<S> {
+    let mut change = T::splat(simd, T::default());
+    let mut volume = change;
+    for point in 0..E::POINTS {
+        let state = E::at_point(
+            u,
+            point,
+            #[inline(always)]
+            |row: usize| T::load(simd, &rest_shape[row * LANES + at..]),
+        );
+        let k = <L::Of<T::Vector<S>>>::kinematics(&state.gradient);
+        change = state.volume.mul_add(<L::Of<T::Vector<S>>>::volume_measure(&k), change);
+        volume += state.volume;
+    }
+    change / volume
 }

@@ -1,6 +1,6 @@
 //! The material of a block, ready for its kernel.
 
-use crate::materials::{Fibres, NeoHookean, PronyTerm};
+use crate::materials::{ElasticLaw, Fibres, PronyTerm};
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 
@@ -9,7 +9,7 @@ use bevy_ecs::prelude::*;
 #[derive(Component, Clone, Debug)]
 pub struct BlockLaw<T: Scalar> {
     /// Isotropic elasticity.
-    pub neo_hookean: NeoHookean<T>,
+    pub elastic: ElasticLaw<T>,
     /// Fibres, and their direction when it is the same for the whole block.
     pub fibres: Option<(Fibres<T>, Option<[T; 3]>)>,
     /// Viscosity, for the run's time step.
@@ -21,7 +21,7 @@ impl BlockLaw<f64> {
     pub fn rounded<T: Scalar>(&self) -> BlockLaw<T> {
         let round = |value: f64| T::from_f64(value);
         BlockLaw {
-            neo_hookean: NeoHookean { shear: round(self.neo_hookean.shear), bulk: round(self.neo_hookean.bulk) },
+            elastic: self.elastic.rounded(),
             fibres: self.fibres.map(|(f, direction)| {
                 let fibres = Fibres { eta: round(f.eta), tension_only: round(f.tension_only) };
                 (fibres, direction.map(|a| a.map(round)))

@@ -2,9 +2,11 @@
 
 mod element_kernel;
 mod law;
+mod volume_kernel;
 
 pub use element_kernel::{BlockColumns, run_block};
 pub use law::BlockLaw;
+pub use volume_kernel::run_volumes;
 
 use bevy_ecs::prelude::*;
 use std::sync::Arc;

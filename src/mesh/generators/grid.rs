@@ -58,10 +58,7 @@ impl Grid {
         if cells.contains(&0) {
             return refuse("there must be at least 1 cell in each direction".into());
         }
-        let most = match kind {
-            ElementKind::Tet4 => u64::from(u32::MAX) / 6,
-            ElementKind::Hex8 => MOST_CELLS,
-        };
+        let most = if kind.is_tetrahedron() { u64::from(u32::MAX) / 6 } else { MOST_CELLS };
         let count = cells.iter().try_fold(1u64, |product, &n| product.checked_mul(u64::from(n)));
         let points = cells.iter().try_fold(1u64, |product, &n| product.checked_mul(u64::from(n) + 1));
         let fits = |value: Option<u64>, limit: u64| value.is_some_and(|value| value <= limit);
@@ -88,9 +85,9 @@ impl Grid {
         let mut mesh = Mesh::default();
         let cells = nx as usize * ny as usize * nz as usize;
         let points = (nx as usize + 1) * (ny as usize + 1) * (nz as usize + 1);
-        let reserved = mesh.points.try_reserve_exact(points).and_then(|()| match self.kind {
-            ElementKind::Tet4 => mesh.tets.try_reserve_exact(6 * cells),
-            ElementKind::Hex8 => mesh.hexes.try_reserve_exact(cells),
+        let reserved = mesh.points.try_reserve_exact(points).and_then(|()| match self.kind.is_tetrahedron() {
+            true => mesh.tets.try_reserve_exact(6 * cells),
+            false => mesh.hexes.try_reserve_exact(cells),
         });
         if reserved.is_err() {
             let (name, parameter, value) = ("generator", "number of cells", cells.to_string());
@@ -128,9 +125,9 @@ impl Grid {
 
     /// The corners (by bits) of the elements of a cell.
     fn elements(&self, cell: [u32; 3], mut see: impl FnMut(&[u8])) {
-        match self.kind {
-            ElementKind::Hex8 => see(&HEX),
-            ElementKind::Tet4 => {
+        match self.kind.is_tetrahedron() {
+            false => see(&HEX),
+            true => {
                 let mirror = self.mirror(cell);
                 for tet in KUHN {
                     let [a, b, c, d] = tet.map(|corner| corner ^ mirror);

@@ -18,14 +18,28 @@ pub use lens::lens_mesh;
 use super::MeshError;
 use serde::{Deserialize, Serialize};
 
-/// Kinds of elements that generators make.
-#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
+/// Kinds of elements. Generators make six tetrahedra or one hexahedron of a cell.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ElementKind {
-    /// Four-node tetrahedra, six a cell.
+    /// Four-node tetrahedra: quick, and stiff near incompressibility (locking).
     #[default]
     Tet4,
-    /// Eight-node hexahedra, one a cell.
+    /// Four-node tetrahedra with averaged nodal pressure: they hardly lock.
+    Tet4NodalPressure,
+    /// Eight-node hexahedra with one point and hourglass control: quick, and they do not lock.
     Hex8,
+    /// Eight-node hexahedra with eight points and mean dilatation: accurate, and slower.
+    Hex8MeanDilatation,
+}
+
+impl ElementKind {
+    /// All kinds.
+    pub const ALL: [ElementKind; 4] = [Self::Tet4, Self::Tet4NodalPressure, Self::Hex8, Self::Hex8MeanDilatation];
+
+    /// Whether it is a tetrahedron; else it is a hexahedron.
+    pub fn is_tetrahedron(self) -> bool {
+        matches!(self, Self::Tet4 | Self::Tet4NodalPressure)
+    }
 }
 
 /// Refuses a length that is not a positive number.

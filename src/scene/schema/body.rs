@@ -30,6 +30,9 @@ pub struct Body {
     /// Angular velocity at the start about the centre of mass (rad/s).
     #[serde(default)]
     pub spin: DVec3,
+    /// Multiplies the hourglass stiffness of one-point hexahedra; 0 leaves their hourglass modes free.
+    #[serde(default = "one")]
+    pub hourglass: f64,
 }
 
 /// Elements of a body made of another material.
@@ -53,6 +56,12 @@ pub enum MeshSource {
         /// Turn inverted elements the right way round instead of refusing the mesh.
         #[serde(default)]
         flip_inverted: bool,
+        /// What tetrahedra are taken for.
+        #[serde(default = "tet4")]
+        tets: ElementKind,
+        /// What hexahedra are taken for.
+        #[serde(default = "hex8")]
+        hexes: ElementKind,
     },
     /// A cuboid with one corner in the origin.
     Box {
@@ -104,6 +113,27 @@ pub enum MeshSource {
     },
 }
 
+impl MeshSource {
+    /// What its tetrahedra and its hexahedra are taken for.
+    pub fn element_kinds(&self) -> (ElementKind, ElementKind) {
+        match self {
+            Self::File { tets, hexes, .. } => (*tets, *hexes),
+            Self::Box { elements, .. }
+            | Self::Cylinder { elements, .. }
+            | Self::Ellipsoid { elements, .. }
+            | Self::Lens { elements, .. } => (*elements, *elements),
+        }
+    }
+}
+
 fn one() -> f64 {
     1.0
+}
+
+fn tet4() -> ElementKind {
+    ElementKind::Tet4
+}
+
+fn hex8() -> ElementKind {
+    ElementKind::Hex8
 }

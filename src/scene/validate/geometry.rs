@@ -17,6 +17,7 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
         let path = scene("bodies").name(name);
         mesh(file, judge, &path.name("mesh"), &body.mesh);
         judge.above_zero(&path.name("scale"), body.scale, "");
+        judge.not_negative(&path.name("hourglass"), body.hourglass, "");
         for (i, region) in body.regions.iter().enumerate() {
             select::validate(judge, &path.name("regions").index(i).name("on"), &region.on);
         }
@@ -26,7 +27,15 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
 
 fn mesh(file: &SceneFile, judge: &mut Judge, path: &Path, mesh: &MeshSource) {
     match mesh {
-        MeshSource::File { path: name, .. } => mesh_file(file, judge, &path.name("path"), name),
+        MeshSource::File { path: name, tets, hexes, .. } => {
+            mesh_file(file, judge, &path.name("path"), name);
+            if !tets.is_tetrahedron() {
+                judge.must(&path.name("tets"), "Tet4 or Tet4NodalPressure", format!("{tets:?}"));
+            }
+            if hexes.is_tetrahedron() {
+                judge.must(&path.name("hexes"), "Hex8 or Hex8MeanDilatation", format!("{hexes:?}"));
+            }
+        }
         MeshSource::Box { size, cells, .. } => {
             judge.all_above_zero(&path.name("size"), *size, "m");
             let cells = [cells.0, cells.1, cells.2];

@@ -1,0 +1,27 @@
+// Books the kinetic energy of elements that are about to be taken away: in a kernel of its own, so that neither this one nor
+// element_removal has more than eight buffers.
+struct Removal {
+    share: f32, // density over nodes of an element (kg/m³)
+}
+@group(0) @binding(0) var<uniform> removal: Removal;
+@group(0) @binding(1) var<storage, read> rest_shape: array<f32>;
+@group(0) @binding(2) var<storage, read> alive: array<u32>;
+@group(0) @binding(3) var<storage, read> removal_step: array<u32>;
+@group(0) @binding(4) var<storage, read_write> removed_energy: array<f32>;
+@group(0) @binding(5) var<storage, read> displacement_step: array<f32>;
+
+// ½ m v² of the element's share of its nodes (J), v in the middle of the last step.
+@compute @workgroup_size(64)
+fn removed_motion(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let element = row(id, groups);
+    if element >= block.count || !is_due(element) {
+        return;
+    }
+    var squares = 0.0;
+    for (var corner = 0u; corner < NODES; corner++) {
+        let at = 3u * connectivity[place(element, NODES, corner)];
+        let v = step.rate * vec3<f32>(displacement_step[at], displacement_step[at + 1u], displacement_step[at + 2u]);
+        squares += dot(v, v);
+    }
+    removed_energy[element] = 0.5 * removal.share * rest_shape[place(element, ROWS, VOLUME_ROW)] * squares;
+}

@@ -1,0 +1,122 @@
+//! One element's state.
+
+use super::{lane_place, node_count, point_count, row_count, with_element};
+use crate::backend::cpu::BlockLaw;
+use crate::components::*;
+use crate::elements::{Element, MOST_NODES, MOST_POINTS, largest_eigenvalue};
+use crate::materials::Kinematics;
+use crate::math::{Mat3, Sym3};
+use crate::mesh::ElementKind;
+
+/// The state at an integration point.
+#[derive(Clone, Copy, Debug)]
+pub struct PointKinematics {
+    /// ∇u.
+    pub gradient: Mat3<f64>,
+    /// Strain measures, as the law takes them.
+    pub kinematics: Kinematics<f64>,
+    /// The point's share of the element's volume.
+    pub share: f64,
+}
+
+/// An element's kinematics.
+pub struct ElementState {
+    /// Its kind.
+    pub kind: ElementKind,
+    /// Rows of its nodes.
+    pub nodes: [u32; MOST_NODES],
+    /// Its nodes' displacements (m).
+    pub displacements: [[f64; 3]; MOST_NODES],
+    /// Rest volume (m³); 0 once removed.
+    pub volume: f64,
+    points: [PointKinematics; MOST_POINTS],
+}
+
+impl ElementState {
+    /// Looks at element `row` of a block.
+    pub fn of(
+        kind: ElementKind,
+        row: usize,
+        connectivity: &[u32],
+        shape: &Reals,
+        displacement: &Reals,
+        law: &BlockLaw<f64>,
+    ) -> Self {
+        let mut nodes = [0; MOST_NODES];
+        let mut displacements = [[0.0; 3]; MOST_NODES];
+        for corner in 0..node_count(kind) {
+            nodes[corner] = connectivity[lane_place(row, node_count(kind), corner)];
+            displacements[corner] = displacement.vector(nodes[corner] as usize).to_array();
+        }
+        let number = |k: usize| shape.get(lane_place(row, row_count(kind), k));
+        with_element!(kind, E => {
+            let u = E::prepare(&displacements);
+            let states: [_; E::POINTS] = std::array::from_fn(|point| E::at_point(&u, point, number));
+            let whole: f64 = states.iter().map(|state| state.volume).sum();
+            let at = |point: usize| {
+                let state = &states[point.min(E::POINTS - 1)];
+                let share = if E::POINTS == 1 { 1.0 } else { state.volume / whole };
+                PointKinematics { gradient: state.gradient, kinematics: law.elastic.kinematics(&state.gradient), share }
+            };
+            let points = std::array::from_fn(at);
+            Self { kind, nodes, displacements, volume: number(E::VOLUME_ROW), points }
+        })
+    }
+
+    /// The state at its integration points.
+    pub fn points(&self) -> &[PointKinematics] {
+        &self.points[..point_count(self.kind)]
+    }
+
+    /// Volume ratio J: mean over the points.
+    pub fn volume_ratio(&self) -> f64 {
+        self.points().iter().map(|point| point.share * point.kinematics.true_j).sum()
+    }
+
+    /// Whether it is turned inside out at one of its points.
+    pub fn is_inverted(&self) -> bool {
+        self.volume > 0.0 && self.points().iter().any(|point| point.kinematics.true_j < 0.0)
+    }
+
+    /// Nodal forces (N) for a first Piola-Kirchhoff stress (Pa) at each point.
+    pub fn forces(&self, row: usize, shape: &Reals, stress: impl Fn(usize) -> Mat3<f64>) -> [[f64; 3]; MOST_NODES] {
+        let number = |k: usize| shape.get(lane_place(row, row_count(self.kind), k));
+        let mut forces = [[0.0; 3]; MOST_NODES];
+        with_element!(self.kind, E => {
+            let u = E::prepare(&self.displacements);
+            let mut sums = E::no_forces(0.0);
+            for point in 0..E::POINTS {
+                E::add_stress(&mut sums, point, &E::at_point(&u, point, number), &stress(point));
+            }
+            E::store_forces(&u, &sums, number, |corner, i, force| forces[corner][i] = force);
+        });
+        forces
+    }
+
+    /// Energy in hourglass control (J).
+    pub fn hourglass_energy(&self, row: usize, shape: &Reals) -> f64 {
+        let number = |k: usize| shape.get(lane_place(row, row_count(self.kind), k));
+        let gradient = &self.points[0].gradient;
+        with_element!(self.kind, E => E::hourglass_energy(&E::prepare(&self.displacements), gradient, number))
+    }
+
+    /// Largest principal stretch of all points.
+    pub fn largest_stretch(&self) -> f64 {
+        self.points().iter().map(|point| largest_stretch(&point.kinematics.green_strain)).fold(0.0, f64::max)
+    }
+}
+
+impl PointKinematics {
+    /// Cauchy stress (Pa) from the first Piola-Kirchhoff stress: xx, yy, zz, xy, yz, xz.
+    pub fn cauchy(&self, first: &Mat3<f64>) -> [f64; 6] {
+        let f = |i: usize, j: usize| self.gradient.0[i][j] + if i == j { 1.0 } else { 0.0 };
+        let entry = |i: usize, j: usize| (0..3).map(|k| first.0[i][k] * f(j, k)).sum::<f64>() / self.kinematics.j;
+        [entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(1, 2), entry(0, 2)]
+    }
+}
+
+fn largest_stretch(green_strain: &Sym3<f64>) -> f64 {
+    let [xx, yy, zz, xy, yz, xz] = green_strain.0;
+    let strain = glam::DMat3::from_cols_array(&[xx, xy, xz, xy, yy, yz, xz, yz, zz]);
+    (1.0 + 2.0 * largest_eigenvalue(&strain)).max(0.0).sqrt()
+}
