@@ -4,7 +4,7 @@ struct Integrate {
     count: u32, // nodes
 }
 @group(0) @binding(0) var<uniform> nodes: Integrate;
-@group(0) @binding(1) var<storage, read> mass: array<f32>;
+@group(0) @binding(1) var<storage, read> mass: array<f32>; // fictitious in a static analysis
 @group(0) @binding(2) var<storage, read> internal_force: array<f32>;
 @group(0) @binding(3) var<storage, read> constrained_axes: array<u32>;
 @group(0) @binding(4) var<storage, read_write> displacement: array<f32>;

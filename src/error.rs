@@ -3,6 +3,7 @@
 use crate::backend::gpu::{GpuError, NoGpu};
 use crate::output::OutputError;
 use crate::scene::Diagnostics;
+use crate::simulation::Equilibrium;
 
 /// Why a simulation does not start or go on.
 #[derive(Debug, thiserror::Error)]
@@ -22,6 +23,9 @@ pub enum Error {
     /// What was simulated is no longer physical. Outputs up to the last observation are kept.
     #[error("{0}")]
     Unstable(Box<Instability>),
+    /// A static analysis found no equilibrium. Outputs up to the last observation are kept.
+    #[error("{0}")]
+    NotConverged(Box<NotConverged>),
     /// Options that do not go together.
     #[error("{0}")]
     Options(String),
@@ -47,6 +51,44 @@ pub struct Instability {
     /// The last observation before (s).
     pub good_until: f64,
 }
+
+/// How far a static analysis came that found no equilibrium.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NotConverged {
+    /// Steps taken.
+    pub steps: u64,
+    /// The step since which the residual has not fallen, if that is why it was given up.
+    pub stalled_at: Option<u64>,
+    /// The residual and where it is largest.
+    pub equilibrium: Equilibrium,
+}
+
+impl std::fmt::Display for NotConverged {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Equilibrium { residual, tolerance, scale, remaining_motion, worst, setbacks, .. } = &self.equilibrium;
+        let (body, node, force) = worst;
+        write!(
+            f,
+            "no equilibrium after {} steps: the residual is {residual:.2e} of loads and reactions ({scale:.3e} N) where \
+             {tolerance:.0e} is allowed, and nodes have about {remaining_motion:.1e} of their displacements still to go. \
+             The largest force that nothing balances is {force:.3e} N, at node {node} of body {body}",
+            self.steps
+        )?;
+        if *setbacks > 0 {
+            write!(f, "; steps were taken back {setbacks} times (a larger `load_steps` lets loads grow more slowly)")?;
+        }
+        match self.stalled_at {
+            Some(step) => write!(
+                f,
+                ". It has not fallen since step {step}: run in f64, raise the `tolerance` of the analysis, or see whether \
+                 the body is held and can bear its loads"
+            ),
+            None => write!(f, ". Allow more `max_steps`, or raise the `tolerance` of the analysis"),
+        }
+    }
+}
+
+impl std::error::Error for NotConverged {}
 
 impl From<Diagnostics> for Error {
     fn from(diagnostics: Diagnostics) -> Self {

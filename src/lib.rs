@@ -37,10 +37,10 @@ pub use bevy_ecs;
 pub use glam;
 pub use serde;
 
-pub use error::{Error, Instability};
+pub use error::{Error, Instability, NotConverged};
 pub use scene::SceneFile;
 pub use simulation::explain;
-pub use simulation::{BackendChoice, Options, Simulation, Summary, SystemTime};
+pub use simulation::{BackendChoice, Equilibrium, Options, Simulation, Summary, SystemTime};
 
 /// The code in the readme compiles and runs.
 #[cfg(doctest)]

@@ -17,6 +17,9 @@ use bevy_ecs::prelude::*;
 /// ωΔt ≤ 2 for any damping. The classical form with three coefficients loses 2 to 10 % in f32, this one 1e-6; with
 /// [`DisplacementCompensation`] the sum of steps is as good as in f64. Constrained axes take the step that `boundary`
 /// wrote; nodes without mass are parked.
+///
+/// In a static analysis the same recursion relaxes: the mass is [`FictitiousMass`], a is one number for all nodes, and
+/// forces are multiplied with a gain ([`Relaxation`]).
 pub fn system() -> System {
     System::built_in(
         "integrate",
@@ -32,7 +35,7 @@ pub fn system() -> System {
 /// What a step multiplies forces and damping with.
 #[derive(Clone, Copy)]
 struct Factors<T> {
-    /// Δt², in the first step half of it (s²).
+    /// Δt², in the first step half of it, times the gain of a static analysis (s²).
     force: T,
     /// Δt/2 (s).
     half_step: T,
@@ -42,23 +45,27 @@ struct Factors<T> {
     rate: T,
     /// Share of a step's work that is booked: 1, in the first step ½.
     booked: T,
+    /// a of a static analysis, else 0.
+    relaxation: T,
 }
 
 impl<T: Scalar> Factors<T> {
     fn of(clock: &Clock) -> Self {
         let (dt, first) = (clock.time_step, clock.step == 0);
+        let (gain, damping) = clock.relaxation.map_or((1.0, 0.0), |relaxation| (relaxation.gain, relaxation.damping));
         Self {
-            force: T::from_f64(dt * dt * if first { 0.5 } else { 1.0 }),
+            force: T::from_f64(gain * dt * dt * if first { 0.5 } else { 1.0 }),
             half_step: T::from_f64(0.5 * dt),
             divide: T::from_f64(if first { 0.0 } else { 1.0 }),
             rate: T::from_f64(1.0 / dt),
             booked: T::from_f64(if first { 0.5 } else { 1.0 }),
+            relaxation: T::from_f64(damping),
         }
     }
 }
 
 type BodyQuery<'a> = (
-    &'a Mass,
+    (&'a Mass, Option<&'a FictitiousMass>),
     &'a InternalForce,
     Option<&'a ExternalForce>,
     &'a ConstrainedAxes,
@@ -71,7 +78,8 @@ type BodyQuery<'a> = (
 );
 
 fn integrate(clock: Res<Clock>, cpu: Res<Cpu>, mut bodies: Query<BodyQuery>) {
-    for (mass, internal, external, axes, damping, mut u, mut step, compensation, work, mut first) in &mut bodies {
+    for (masses, internal, external, axes, damping, mut u, mut step, compensation, work, mut first) in &mut bodies {
+        let mass = masses.1.map_or(&masses.0.0, |fictitious| &fictitious.0);
         macro_rules! run {
             ($variant:ident) => {
                 if let (Reals::$variant(u), Reals::$variant(step)) = (&mut u.0, &mut step.0) {
@@ -174,7 +182,7 @@ fn move_node<T: Scalar>(
     mut work: Option<&mut [T]>,
 ) {
     let (zero, one) = (T::default(), T::from_f64(1.0));
-    let Factors { force: force_factor, half_step, divide, rate, booked } = inputs.factors;
+    let Factors { force: force_factor, half_step, divide, rate, booked, relaxation } = inputs.factors;
     let (mass, axes) = (inputs.mass[node], inputs.axes[node]);
     if mass <= zero {
         step.fill(zero);
@@ -182,8 +190,8 @@ fn move_node<T: Scalar>(
     }
     let per_mass = one / mass;
     let coefficient = inputs.damping.map_or(zero, |c| c[node]);
-    let a = coefficient * half_step * per_mass;
-    let shrink = if inputs.damping.is_some() { one / (one + divide * a) } else { one };
+    let a = coefficient * half_step * per_mass + relaxation;
+    let shrink = if a > zero { one / (one + divide * a) } else { one };
     for i in 0..3 {
         let internal = inputs.internal[3 * node + i];
         let external = inputs.external.map_or(zero, |r| r[3 * node + i]);
@@ -223,6 +231,8 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let bodies: Vec<_> = query.iter(world).map(|(body, mass, e, d, w)| (body, mass.len() as u32, [e, d, w])).collect();
     let mut kernels = Vec::new();
     for (body, count, optional) in bodies {
+        let relaxed = world.get::<FictitiousMass>(body).is_some();
+        let column = |name: &'static str| if relaxed && name == Mass::NAME { FictitiousMass::NAME } else { name };
         let compensated = world.get::<DisplacementCompensation>(body).is_some();
         let nodes = buffers.uniform("integrate".into(), &Integrate { count }.bytes());
         let mut kernel = |entry: &'static str, columns: &[&'static str]| {
@@ -231,8 +241,9 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
                 .fragment(shader!("row"))
                 .bind_uniform::<Integrate>("nodes", nodes)
                 .threads(count);
-            let kernel = columns.iter().fold(kernel, |kernel, name| kernel.bind(name, buffers.column(body, name)));
-            with_step(with_optional(kernel, optional, compensated), world)
+            let kernel =
+                columns.iter().fold(kernel, |kernel, name| kernel.bind(name, buffers.column(body, column(name))));
+            with_step(with_optional(kernel, optional, compensated, relaxed), world)
         };
         let [external, damped, worked] = optional;
         let mut push = vec![Mass::NAME, InternalForce::NAME, ConstrainedAxes::NAME, DisplacementStep::NAME];
@@ -254,7 +265,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
 }
 
 /// Fragments of the columns a body has, and a line for each that it has not.
-fn with_optional(kernel: Kernel, [external, damped, worked]: [bool; 3], compensated: bool) -> Kernel {
+fn with_optional(kernel: Kernel, [external, damped, worked]: [bool; 3], compensated: bool, relaxed: bool) -> Kernel {
     let mut without = String::new();
     let mut fragments = Vec::new();
     if external {
@@ -264,6 +275,8 @@ fn with_optional(kernel: Kernel, [external, damped, worked]: [bool; 3], compensa
     }
     if damped {
         fragments.push(shader!("damping_coefficient"));
+    } else if relaxed {
+        fragments.push(shader!("relaxation"));
     } else {
         without += "fn damped(node: u32, before: vec3<f32>, pushed: vec3<f32>, per_mass: f32) -> vec3<f32> {\n    \
                     return before + pushed;\n}\n";

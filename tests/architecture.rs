@@ -74,7 +74,7 @@ fn imports_run_one_way() {
         ("src/output", vec!["mesh"]),
         ("src/render", vec!["mesh", "output", "scene"]),
         ("src/backend", [&inputs[..], &data, &["evaluation"]].concat()),
-        ("src/evaluation.rs", [&inputs[..], &data, &["backend"]].concat()),
+        ("src/evaluation", [&inputs[..], &data, &["backend"]].concat()),
         ("src/assembly", [&inputs[..], &data, &["backend", "evaluation", "systems"]].concat()),
         ("src/observation", [&inputs[..], &data, &["backend", "evaluation", "output"]].concat()),
         ("systems", [&inputs[..], &data, &["backend", "evaluation", "observation", "assembly"]].concat()),

@@ -10,7 +10,7 @@ use sinew::components::Signals;
 use std::collections::BTreeSet;
 
 /// Fragments that belong to no system, element or material by name, and what calls for them.
-const SUPPORT: [(&str, &str); 25] = [
+const SUPPORT: [(&str, &str); 26] = [
     ("alive", "loads on faces of elements that can go"),
     ("block", "columns of element blocks"),
     ("criterion", "removal by criterion"),
@@ -26,6 +26,7 @@ const SUPPORT: [(&str, &str); 25] = [
     ("lost", "compensated sums, in boundary"),
     ("node_damping", "damping, where elements can go"),
     ("node_mass", "mass, where elements can go"),
+    ("relaxation", "a static analysis, in integrate"),
     ("row", "the row of an invocation"),
     ("step", "what is the same for a whole step"),
     ("tensor", "small tensors"),

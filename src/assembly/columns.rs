@@ -45,8 +45,8 @@ pub(super) fn insert_node_columns(
     if !scene.loads.is_empty() {
         entity.insert(ExternalForce(vectors()));
     }
-    // a step beyond the stable one is watched by its balance of energy
-    if scene.output.energies_every.is_some() || scene.integration.beyond_stable_step {
+    // a step beyond the stable one is watched by its balance of energy; pseudo-steps to rest do no work worth booking
+    if !scene.is_static() && (scene.output.energies_every.is_some() || scene.integration.beyond_stable_step) {
         entity.insert(Work(Reals::zeros(precision, WORK_NUMBERS * count)));
     }
     let used =
@@ -57,7 +57,8 @@ pub(super) fn insert_node_columns(
     let (mass, damping) = nodal_masses(&authoring.blocks, count, world);
     let mut entity = world.entity_mut(body);
     entity.insert(Mass(Reals::from_f64(precision, mass.into_iter())));
-    if damped {
+    // what relaxes is damped as it needs
+    if damped && !scene.is_static() {
         entity.insert(DampingCoefficient(Reals::from_f64(precision, damping.into_iter())));
     }
 }
@@ -142,13 +143,13 @@ pub fn stiffness(world: &World, material: Entity) -> Stiffness {
 
 /// Gives every block its law, in f64 for looking at it and in the run's precision for its kernel, and its history.
 pub(super) fn insert_laws(precision: Precision, world: &mut World) {
-    let time_step = world.resource::<Clock>().time_step;
+    let clock = *world.resource::<Clock>();
     let entities: Vec<(Entity, Block)> =
         world.query::<(Entity, &Block)>().iter(world).map(|(entity, block)| (entity, block.clone())).collect();
     for (entity, block) in entities {
         let Some(elastic) = ElasticLaw::of(world.entity(block.material)) else { continue };
         let fibres = world.get::<Fibres<f64>>(block.material).map(|&fibres| (fibres, block.fibre_direction));
-        let prony = world.get::<Prony>(block.material).map_or(Vec::new(), |prony| prony.coefficients(time_step));
+        let prony = world.get::<Prony>(block.material).map_or(Vec::new(), |prony| prony.coefficients(&clock));
         let memory = 6 * prony.len() * point_count(block.kind) * block.count.div_ceil(LANES) * LANES;
         let law = BlockLaw { elastic, fibres, prony };
         let mut entity = world.entity_mut(entity);
@@ -162,8 +163,12 @@ pub(super) fn insert_laws(precision: Precision, world: &mut World) {
     }
 }
 
-/// First half step of all nodes, from the bodies' velocity and spin; none along constrained axes.
+/// First half step of all nodes, from the bodies' velocity and spin; none along constrained axes, and none in a static
+/// analysis.
 pub(super) fn start(assembly: &Assembly<'_>, world: &mut World) {
+    if assembly.scene.scene.is_static() {
+        return;
+    }
     let time_step = world.resource::<Clock>().time_step;
     for (name, parts) in &assembly.bodies {
         let body = &assembly.scene.scene.bodies[name];

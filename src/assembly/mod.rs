@@ -8,6 +8,7 @@ mod loads;
 mod locality;
 mod meshes;
 mod observation;
+mod relaxation;
 mod removal;
 mod select;
 mod time_step;
@@ -15,6 +16,7 @@ mod time_step;
 pub use body::BodyParts;
 pub use meshes::{PlacedMesh, mesh_of};
 pub use observation::steps_of;
+pub use relaxation::load_steps;
 pub use select::Selection;
 pub use time_step::{StableStep, stable_step};
 
@@ -74,6 +76,9 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     observation::spawn(assembly, world, diagnostics);
     columns::insert_laws(assembly.precision, world);
     columns::start(assembly, world);
+    if assembly.scene.scene.is_static() {
+        relaxation::insert_fictitious_masses(assembly, world);
+    }
 }
 
 fn spawn_materials(scene: &schema::Scene, world: &mut World) -> BTreeMap<String, Entity> {

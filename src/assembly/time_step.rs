@@ -18,22 +18,31 @@ pub struct StableStep {
     pub element: u64,
 }
 
+/// The bound of the largest squared angular frequency (1/s²) of each element of a block, by its row.
+pub(super) fn square_frequency<'a>(
+    world: &'a World,
+    entity: Entity,
+    block: &'a Block,
+) -> Option<impl Fn(usize) -> f64 + Sync + 'a> {
+    let stiffness = stiffness(world, block.material);
+    let shape = world.get::<RestShape>(entity)?;
+    let numbers = row_count(block.kind);
+    Some(move |row: usize| {
+        let mut rest = [0.0; MOST_ROWS];
+        for k in 0..numbers {
+            rest[k] = shape.get(lane_place(row, numbers, k));
+        }
+        with_element!(block.kind, E => E::frequency_bound(&rest, &stiffness))
+    })
+}
+
 /// Bound of all elements of all bodies; `None` for a world without elements.
 pub fn stable_step(world: &mut World) -> Option<StableStep> {
     let blocks: Vec<(Entity, Block)> =
         world.query::<(Entity, &Block)>().iter(world).map(|(entity, block)| (entity, block.clone())).collect();
     let mut worst: Option<(f64, Entity, usize)> = None;
     for (entity, block) in blocks {
-        let stiffness = stiffness(world, block.material);
-        let Some(shape) = world.get::<RestShape>(entity) else { continue };
-        let numbers = row_count(block.kind);
-        let frequency = |row: usize| {
-            let mut rest = [0.0; MOST_ROWS];
-            for k in 0..numbers {
-                rest[k] = shape.get(lane_place(row, numbers, k));
-            }
-            with_element!(block.kind, E => E::frequency_bound(&rest, &stiffness))
-        };
+        let Some(frequency) = square_frequency(world, entity, &block) else { continue };
         // the highest frequency; among equals the lowest row, whatever the order of work
         let higher = |a: (f64, usize), b: (f64, usize)| {
             if b.0 > a.0 || (b.0 == a.0 && b.1 < a.1) { b } else { a }

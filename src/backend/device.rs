@@ -45,6 +45,7 @@ pub fn all_columns() -> Vec<ColumnAccess> {
         ColumnAccess::of::<DisplacementStep>(),
         ColumnAccess::of::<DisplacementCompensation>(),
         ColumnAccess::of::<Mass>(),
+        ColumnAccess::of::<FictitiousMass>(),
         ColumnAccess::of::<DampingCoefficient>(),
         ColumnAccess::of::<InternalForce>(),
         ColumnAccess::of::<ExternalForce>(),

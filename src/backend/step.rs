@@ -8,7 +8,7 @@ use bevy_ecs::prelude::*;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Step {
-    /// Δt², in the first step half of it (s²).
+    /// Δt², in the first step half of it, times the gain of a static analysis (s²).
     pub force_factor: f32,
     /// Δt/2 (s).
     pub half_step: f32,
@@ -20,27 +20,28 @@ pub struct Step {
     pub number: u32,
     /// Always 0, which no compiler knows: a number combined with it keeps its rounding.
     pub zero: u32,
+    /// a = cΔt/2 of a static analysis, else 0.
+    pub relaxation: f32,
     /// Nothing: signals begin on 16 bytes.
-    pub pad0: u32,
-    /// Nothing.
-    pub pad1: u32,
+    pub pad: u32,
 }
 
-uniform!(Step { force_factor, half_step, divide, rate, number, zero, pad0, pad1 });
+uniform!(Step { force_factor, half_step, divide, rate, number, zero, relaxation, pad });
 
 impl Step {
     /// The step that begins at the clock's time.
     pub fn of(clock: &Clock) -> Self {
         let (dt, first) = (clock.time_step, clock.step == 0);
+        let (gain, damping) = clock.relaxation.map_or((1.0, 0.0), |relaxation| (relaxation.gain, relaxation.damping));
         Self {
-            force_factor: (dt * dt * if first { 0.5 } else { 1.0 }) as f32,
+            force_factor: (gain * dt * dt * if first { 0.5 } else { 1.0 }) as f32,
             half_step: (0.5 * dt) as f32,
             divide: if first { 0.0 } else { 1.0 },
             rate: (1.0 / dt) as f32,
             number: u32::try_from(clock.step).unwrap_or(u32::MAX),
             zero: 0,
-            pad0: 0,
-            pad1: 0,
+            relaxation: damping as f32,
+            pad: 0,
         }
     }
 }

@@ -33,17 +33,29 @@ fn verdict(simulation: &mut Simulation) -> Result<String, Error> {
     let blocks = world.query::<&Block>().iter(world).count() as u64;
     let (body, element) = &summary.stable_step_element;
     let mut lines = format!(
-        "{}, {} in {}; {} of {} for {}\n",
+        "{}, {} in {}; ",
         counted(summary.nodes as u64, "node"),
         counted(summary.elements as u64, "element"),
         counted(blocks, "block"),
-        counted(summary.planned_steps, "step"),
-        quantity(summary.time_step, "s"),
-        quantity(simulation.scene().duration, "s"),
     );
-    let stable = quantity(summary.stable_step, "s");
-    lines += &format!("stable step: {stable}, set by element {element} of {body}\n");
-    lines += &format!("a run writes: {}\n", outputs(simulation, summary.planned_steps).join(", "));
+    lines += &match &summary.equilibrium {
+        None => format!(
+            "{} of {} for {}\nstable step: {}, set by element {element} of {body}\n",
+            counted(summary.planned_steps, "step"),
+            quantity(summary.time_step, "s"),
+            quantity(simulation.scene().duration, "s"),
+            quantity(summary.stable_step, "s"),
+        ),
+        Some(sought) => format!(
+            "rest under what acts at {}: at most {}, in the first {} of them loads grow\n",
+            quantity(simulation.scene().duration, "s"),
+            counted(summary.planned_steps, "pseudo-step"),
+            sought.load_steps,
+        ),
+    };
+    // a static analysis observes while loads grow, and at the end
+    let observed = summary.equilibrium.as_ref().map_or(summary.planned_steps, |sought| sought.load_steps);
+    lines += &format!("a run writes: {}\n", outputs(simulation, observed).join(", "));
     Ok(lines)
 }
 
@@ -62,6 +74,7 @@ fn outputs(simulation: &Simulation, steps: u64) -> Vec<String> {
         1 => files.push("nodes.csv".into()),
         _ => files.extend(scene.bodies.keys().map(|name| format!("nodes_{name}.csv"))),
     }
+    files.extend(scene.is_static().then(|| "convergence.csv".to_string()));
     files.extend(["summary.json".into(), "scene.ron".into()]);
     files
 }

@@ -25,7 +25,7 @@ impl Failure {
     pub fn status(&self) -> u8 {
         match self {
             Failure::Engine(error) => match **error {
-                Error::Unstable(_) => 1,
+                Error::Unstable(_) | Error::NotConverged(_) => 1,
                 Error::Scene(_) | Error::Options(_) => 2,
                 Error::Output(_) => 3,
                 Error::NoGpu(_) | Error::Gpu(_) => 4,

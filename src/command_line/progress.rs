@@ -2,6 +2,7 @@
 
 use super::{terminal, wording};
 use indicatif::{ProgressBar, ProgressStyle};
+use sinew::Equilibrium;
 use std::time::{Duration, Instant};
 
 /// Time between two lines where there is no terminal.
@@ -13,13 +14,38 @@ pub struct Progress {
     started: Instant,
     told: Instant,
     duration: f64,
+    /// The largest residual with all loads, from which a static analysis comes down.
+    first_residual: f64,
 }
 
 impl Progress {
-    /// Begins; `duration` is the simulated time (s), `steps` how many there are.
-    pub fn begin(steps: u64, duration: f64) -> Self {
+    /// Begins; `duration` is the simulated time (s), `steps` how many there are, if it is known (not to rest).
+    pub fn begin(steps: u64, duration: f64, to_rest: bool) -> Self {
+        let steps = if to_rest { 100 } else { steps };
         let bar = terminal::is_watched().then(|| bar(steps, "{bar:30} {percent:>3} %  {msg}"));
-        Self { bar, started: Instant::now(), told: Instant::now(), duration }
+        Self { bar, started: Instant::now(), told: Instant::now(), duration, first_residual: 0.0 }
+    }
+
+    /// Tells how far a static analysis is: the residual after so many steps.
+    pub fn tell_residual(&mut self, steps: u64, found: &Equilibrium) {
+        if found.residual.is_finite() {
+            self.first_residual = self.first_residual.max(found.residual);
+        }
+        if self.bar.is_none() && self.told.elapsed() < QUIET {
+            return;
+        }
+        // a residual falls by the same factor in the same time
+        let fallen = (self.first_residual / found.residual).ln() / (self.first_residual / found.tolerance).ln();
+        let share = if fallen.is_finite() { fallen.clamp(0.0, 1.0) } else { 0.0 };
+        let at = format!("step {steps}, residual {:.1e}, sought {:.0e}", found.residual, found.tolerance);
+        match &self.bar {
+            Some(bar) => {
+                bar.set_message(at);
+                bar.set_position((100.0 * share) as u64);
+            }
+            None => terminal::aside(&format!("{:3.0} %  {at}\n", 100.0 * share)),
+        }
+        self.told = Instant::now();
     }
 
     /// Tells how far it is: steps done of all, and the simulated time (s).

@@ -3,7 +3,7 @@
 use super::run::PICTURES;
 use super::terminal::Paint;
 use super::wording::{bytes, counted, digits, quantity, speed};
-use sinew::{SceneFile, Summary};
+use sinew::{Equilibrium, SceneFile, Summary};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -18,10 +18,13 @@ pub fn text(summary: &Summary, scene: &SceneFile, folder: &Path, paint: Paint) -
     page.row("meshes", format!("{nodes}, {elements}"));
     let (body, element) = &summary.stable_step_element;
     let stable = quantity(summary.stable_step, "s");
-    page.row(
-        "time step",
-        format!("{}; stable up to {stable}, set by element {element} of {body}", quantity(summary.time_step, "s")),
-    );
+    match &summary.equilibrium {
+        None => page.row(
+            "time step",
+            format!("{}; stable up to {stable}, set by element {element} of {body}", quantity(summary.time_step, "s")),
+        ),
+        Some(found) => equilibrium(found, &mut page),
+    }
     speeds(summary, &mut page);
     systems(summary, &mut page);
     energies(summary, &mut page);
@@ -51,13 +54,45 @@ impl Page {
     }
 }
 
+fn equilibrium(found: &Equilibrium, page: &mut Page) {
+    let scale = quantity(found.scale, "N");
+    let rounding = match found.rounding > 0.1 * found.tolerance {
+        true => format!(", of it some {} by rounding", digits(found.rounding)),
+        false => String::new(),
+    };
+    let word = if found.reached { "rest" } else { "no rest" };
+    page.row(
+        word,
+        format!(
+            "residual {} of loads and reactions ({scale}), sought {:.0e}{rounding}",
+            digits(found.residual),
+            found.tolerance
+        ),
+    );
+    let (body, node, force) = &found.worst;
+    page.row("", format!("largest at node {node} of {body}: {}", quantity(*force, "N")));
+    let taken_back = match found.setbacks {
+        0 => String::new(),
+        n => format!("; steps taken back {n} times"),
+    };
+    page.row("", format!("about {} of displacements to go{taken_back}", digits(found.remaining_motion)));
+}
+
 fn speeds(summary: &Summary, page: &mut Page) {
     let steps = match summary.steps == summary.planned_steps {
         true => counted(summary.steps, "step"),
         false => format!("{} of {}", counted(summary.steps, "step"), summary.planned_steps),
     };
     let (simulated, run) = (quantity(summary.simulated, "s"), quantity(summary.run_seconds, "s"));
-    page.row("run", format!("{steps}, {simulated} simulated in {run}: {}", speed(summary.real_time_factor)));
+    match &summary.equilibrium {
+        None => {
+            page.row("run", format!("{steps}, {simulated} simulated in {run}: {}", speed(summary.real_time_factor)))
+        }
+        Some(found) => {
+            let steps = counted(summary.steps, "pseudo-step");
+            page.row("run", format!("{steps} in {run}; loads grew over the first {}", found.load_steps));
+        }
+    }
     if summary.steps > 0 {
         let each = quantity(summary.seconds_a_step, "s");
         let element = quantity(summary.nanoseconds_an_element_and_step * 1e-9, "s");

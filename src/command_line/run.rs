@@ -56,10 +56,10 @@ pub fn run(scene: &SceneFile, options: &Options, path: &Path) -> Result<(Summary
 fn steps(simulation: &mut Simulation, duration: f64) -> Outcome {
     simulation.observe()?;
     let all = simulation.planned_steps();
-    let mut progress = Progress::begin(all, duration);
+    let mut progress = Progress::begin(all, duration, simulation.scene().is_static());
     let mut chunk = 1;
     let mut advance = || {
-        while simulation.step_count() < all {
+        while !simulation.is_finished() && simulation.step_count() < all {
             if interrupt::is_asked() {
                 return Err(Failure::Interrupted);
             }
@@ -68,7 +68,10 @@ fn steps(simulation: &mut Simulation, duration: f64) -> Outcome {
             let share = CHUNK.as_secs_f64() / started.elapsed().as_secs_f64().max(1e-9);
             // at most four times more: a chunk without output says little of one with it
             chunk = ((chunk as f64 * share.clamp(0.1, 4.0)) as u64).clamp(1, 1 << 20);
-            progress.tell(simulation.step_count(), all, simulation.time());
+            match simulation.equilibrium() {
+                None => progress.tell(simulation.step_count(), all, simulation.time()),
+                Some(found) => progress.tell_residual(simulation.step_count(), found),
+            }
         }
         Ok(())
     };
@@ -86,8 +89,10 @@ fn finish(simulation: &mut Simulation, folder: &mut Folder, ended: &Outcome) -> 
         Err(_) => "failed".to_string(),
     };
     let summed = simulation.summary(&word)?;
-    // a run that broke down ends in numbers that mean nothing; the fields hold its last good state
-    if !matches!(ended, Err(Failure::Engine(error)) if matches!(**error, Error::Unstable(_))) {
+    // a run that broke down ends in numbers that mean nothing, one that found no equilibrium in none that was asked for;
+    // the fields hold the last good state
+    let meaningless = |error: &Error| matches!(error, Error::Unstable(_) | Error::NotConverged(_));
+    if !matches!(ended, Err(Failure::Engine(error)) if meaningless(error)) {
         simulation.write_nodes(folder)?;
     }
     summary::write(&folder.claim("summary.json")?, &summed)?;

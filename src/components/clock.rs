@@ -12,13 +12,56 @@ pub struct Clock {
     pub step: u64,
     /// Δt (s).
     pub time_step: f64,
+    /// How steps lead to rest, in a static analysis.
+    pub relaxation: Option<Relaxation>,
 }
 
 impl Clock {
-    /// The present time (s).
+    /// The present time (s). In a static analysis it grows with the loads up to the scene's duration and stays there.
     pub fn time(&self) -> f64 {
-        self.step as f64 * self.time_step
+        match &self.relaxation {
+            None => self.step as f64 * self.time_step,
+            Some(relaxation) => relaxation.end * relaxation.progress(self.step),
+        }
     }
+
+    /// What turns a step's displacement into a velocity (1/s): 1/Δt; 0 in a static analysis, whose steps are no motion.
+    pub fn rate(&self) -> f64 {
+        if self.relaxation.is_some() { 0.0 } else { 1.0 / self.time_step }
+    }
+}
+
+/// Dynamic relaxation: pseudo-steps that lead to rest. Chosen by the simulation, anew every so many steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Relaxation {
+    /// The time whose loads and motions are wanted (s).
+    pub end: f64,
+    /// A step, and how far loads had grown in it: from there they grow by `growth` a step.
+    pub since: (u64, f64),
+    /// Growth of the progress of loads in a step.
+    pub growth: f64,
+    /// a = cΔt/2 of the damping c, the same for all nodes.
+    pub damping: f64,
+    /// What forces are multiplied with, over the fictitious mass: how much the bound of the stable step is outdone.
+    pub gain: f64,
+}
+
+impl Relaxation {
+    /// How far loads and motions have grown at the end of so many steps, from 0 to 1.
+    pub fn progress(&self, steps: u64) -> f64 {
+        (self.since.1 + self.growth * steps.saturating_sub(self.since.0) as f64).min(1.0)
+    }
+
+    /// What loads and motions are multiplied with then: the progress by the 3-4-5 polynomial, so that nothing begins or
+    /// ends suddenly.
+    pub fn share(&self, steps: u64) -> f64 {
+        smooth(self.progress(steps))
+    }
+}
+
+/// 10s³ − 15s⁴ + 6s⁵, from 0 to 1 without a jump of the first two derivatives.
+fn smooth(s: f64) -> f64 {
+    s * s * s * (10.0 + s * (6.0 * s - 15.0))
 }
 
 /// A number or three that depend on time alone.
@@ -53,14 +96,14 @@ impl Signal {
         }
     }
 
-    fn fill(&self, now: f64, next: f64, slots: &mut [[f64; 4]]) {
+    fn fill(&self, factor: impl Fn(&Curve, bool) -> f64, slots: &mut [[f64; 4]]) {
         match self {
             Signal::Load { curve, amplitude } => {
-                let v = *amplitude * curve.value(now);
+                let v = *amplitude * factor(curve, false);
                 slots[0] = [v.x, v.y, v.z, 0.0];
             }
             Signal::Motion { curve, displacement, gradient, rotation } => {
-                let factor = curve.value(next);
+                let factor = factor(curve, true);
                 let a = *gradient * factor + rotation_less_identity(*rotation * factor);
                 let b = *displacement * factor;
                 for i in 0..3 {
@@ -101,9 +144,18 @@ impl Signals {
 
     /// Evaluates all signals for the step from `now` to `next` (s).
     pub fn evaluate(&mut self, now: f64, next: f64) {
+        self.fill(|curve, ends| curve.value(if ends { next } else { now }));
+    }
+
+    /// Takes a share of what all signals are at a time (s): of a rotation, of its angle.
+    pub fn approach(&mut self, time: f64, share: f64) {
+        self.fill(|curve, _| share * curve.value(time));
+    }
+
+    fn fill(&mut self, factor: impl Fn(&Curve, bool) -> f64) {
         let mut slot = 0;
         for source in &self.sources {
-            source.fill(now, next, &mut self.values[slot..]);
+            source.fill(&factor, &mut self.values[slot..]);
             slot += source.slots();
         }
     }
@@ -127,10 +179,7 @@ impl Curve {
                 }
             }
             Curve::Ramp { start, end } => share(*start, *end),
-            Curve::Smooth { start, end } => {
-                let s = share(*start, *end);
-                s * s * s * (10.0 + s * (6.0 * s - 15.0))
-            }
+            Curve::Smooth { start, end } => smooth(share(*start, *end)),
             Curve::Table(points) => {
                 let after = points.partition_point(|&(t, _)| t <= time);
                 match (after.checked_sub(1).map(|i| points[i]), points.get(after)) {

@@ -1,5 +1,6 @@
 //! Effects of a material that are not pointwise laws; those are in [`materials`](crate::materials).
 
+use super::Clock;
 use crate::materials::PronyTerm;
 use crate::scene::schema::ViscousIntegrator;
 use bevy_ecs::prelude::*;
@@ -22,12 +23,13 @@ pub struct Prony {
 }
 
 impl Prony {
-    /// Coefficients of the recursion for a time step (s).
-    pub fn coefficients(&self, time_step: f64) -> Vec<PronyTerm<f64>> {
+    /// Coefficients of the recursion for the clock's step; in a static analysis, of what remains in the long term.
+    pub fn coefficients(&self, clock: &Clock) -> Vec<PronyTerm<f64>> {
         let make = match self.integrator {
+            _ if clock.relaxation.is_some() => |alpha, _, _| PronyTerm::long_term(alpha),
             ViscousIntegrator::Exact => PronyTerm::exact,
             ViscousIntegrator::BackwardEuler => PronyTerm::backward_euler,
         };
-        self.terms.iter().map(|&(alpha, tau)| make(alpha, tau, time_step)).collect()
+        self.terms.iter().map(|&(alpha, tau)| make(alpha, tau, clock.time_step)).collect()
     }
 }

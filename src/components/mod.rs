@@ -21,14 +21,14 @@ pub use block::{
     Alive, Block, BlockCorners, Connectivity, ElementVolume, FibreDirection, FirstInverted, NodalVolumeChange,
     RemovalStep, RemovedEnergy, RestShape, ViscousMemory, patch_groups,
 };
-pub use clock::{Clock, Signal, Signals};
+pub use clock::{Clock, Relaxation, Signal, Signals};
 pub use column::{Column, Precision, Reals};
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
 pub use load::{FaceCorners, Gravity, NodalForce, Pressure, Traction};
 pub use material::{Damping, Density, Prony};
 pub use nodes::{
     Authoring, ConstrainedAxes, Corners, DampingCoefficient, Displacement, DisplacementCompensation, DisplacementStep,
-    ElementForce, ExternalForce, FirstNonFinite, InternalForce, Mass, RestPosition, WORK_NUMBERS, Work,
+    ElementForce, ExternalForce, FictitiousMass, FirstNonFinite, InternalForce, Mass, RestPosition, WORK_NUMBERS, Work,
 };
 pub use observation::{Cadence, Energies, Probe};
 

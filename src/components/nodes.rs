@@ -20,6 +20,9 @@ columns! {
     DisplacementCompensation(Reals) = "displacement_compensation";
     /// Lumped mass (kg), a number a node; 0 parks the node.
     Mass(Reals) = "mass";
+    /// Mass (kg) that makes every element's bound of the stable step the same, for static analyses: the real mass only
+    /// weighs there. A number a node.
+    FictitiousMass(Reals) = "fictitious_mass";
     /// Σ c m over a node's elements (kg/s): damping rate times mass. Exists when a material is damped.
     DampingCoefficient(Reals) = "damping_coefficient";
     /// Force of the deformed elements on the node, sign such that M ü = R − F (N), a vector a node.

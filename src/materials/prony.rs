@@ -39,6 +39,11 @@ impl PronyTerm<f64> {
         let rate = time_step / (time_step + tau);
         Self { stress: rate * alpha, memory: tau / (time_step + tau), rate, aim: alpha }
     }
+
+    /// What has relaxed after a long time, Υ = αS, whatever the history; q stays as it is.
+    pub fn long_term(alpha: f64) -> Self {
+        Self { stress: alpha, memory: 0.0, rate: 0.0, aim: 0.0 }
+    }
 }
 
 impl<R: Real> PronyTerm<R> {

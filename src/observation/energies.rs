@@ -42,12 +42,12 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
     let wanted =
         [Displacement::NAME, DisplacementStep::NAME, Mass::NAME, Work::NAME, RestShape::NAME, RemovedEnergy::NAME];
     bring_to_host(world, |_, name| wanted.contains(&name))?;
-    let time_step = world.resource::<Clock>().time_step;
+    let rate = world.resource::<Clock>().rate();
     let mut sum = Energies::default();
     let mut bodies = world.query::<(Entity, &Mass, &DisplacementStep, &ConstrainedAxes, Option<&Work>)>();
     for (_, mass, step, axes, work) in bodies.iter(world) {
         let kinetic = |row: usize, along: &dyn Fn(usize) -> bool| {
-            let v = step.vector(row) / time_step;
+            let v = step.vector(row) * rate;
             let square: f64 = (0..3).filter(|&i| along(i)).map(|i| v[i] * v[i]).sum();
             0.5 * mass.get(row) * square
         };
@@ -78,8 +78,9 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
 /// Displacements in the middle of the last step, where velocities are: only there do the energies add up.
 fn middle_of_step(world: &World, body: Entity) -> Option<Reals> {
     let (u, step) = (world.get::<Displacement>(body)?, world.get::<DisplacementStep>(body)?);
-    // before the first step the column of steps holds the initial velocity
-    let back = if world.resource::<Clock>().step > 0 { 0.5 } else { 0.0 };
+    // before the first step the column of steps holds the initial velocity; at rest there is no middle
+    let clock = world.resource::<Clock>();
+    let back = if clock.step > 0 && clock.relaxation.is_none() { 0.5 } else { 0.0 };
     let middle = |i: usize| u.get(i) - back * step.get(i);
     Some(Reals::from_f64(Precision::F64, (0..u.len()).map(middle)))
 }

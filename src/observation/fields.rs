@@ -36,12 +36,12 @@ type ElementRow = (f64, [f64; 6], u8, [[f64; 3]; 8]);
 /// What the GPU says.
 pub fn body_fields(world: &mut World, body: Entity) -> Result<BodyFields, Error> {
     bring_to_host(world, |_, name| COLUMNS.contains(&name))?;
-    let time_step = world.resource::<Clock>().time_step;
+    let rate = world.resource::<Clock>().rate();
     let mut fields = BodyFields::default();
     let Some(authoring) = world.get::<Authoring>(body) else { return Ok(fields) };
     if let (Some(u), Some(step)) = (world.get::<Displacement>(body), world.get::<DisplacementStep>(body)) {
         fields.displacement = authoring.node_rows.iter().map(|&row| u.vector(row as usize)).collect();
-        fields.velocity = authoring.node_rows.iter().map(|&row| step.vector(row as usize) / time_step).collect();
+        fields.velocity = authoring.node_rows.iter().map(|&row| step.vector(row as usize) * rate).collect();
     }
     let blocks: Vec<Vec<ElementRow>> = authoring.blocks.iter().map(|&block| elements_of(world, block)).collect();
     for &(block, row) in &authoring.element_rows {

@@ -12,9 +12,9 @@ const MADE_OF_NOTHING: f64 = 0.1;
 /// What leads to a breakdown when the scene insists on a step beyond the stable one.
 const STEP_TOO_LARGE: &str = "a time step beyond the stable one (leave `step` out to have it found)";
 
-/// Stops at the first displacement that is not finite, or element that is turned inside out. `beyond`: the scene insists on
-/// a step beyond the stable one.
-pub(super) fn check(world: &mut World, good_until: f64, beyond: bool) -> Result<(), Error> {
+/// What broke down, if something did: the first displacement that is not finite, or element that is turned inside out.
+/// `beyond`: the scene insists on a step beyond the stable one.
+pub(super) fn find(world: &mut World, good_until: f64, beyond: bool) -> Result<Option<Instability>, Error> {
     bring_to_host(world, |_, name| name == FirstInverted::NAME || name == FirstNonFinite::NAME)?;
     let clock = *world.resource::<Clock>();
     let mut found: Option<(Entity, String, &str)> = None;
@@ -37,11 +37,11 @@ pub(super) fn check(world: &mut World, good_until: f64, beyond: bool) -> Result<
             found = Some((block.body, what, cause));
         }
     }
-    let Some((body, what, cause)) = found else { return Ok(()) };
+    let Some((body, what, cause)) = found else { return Ok(None) };
     let cause = if beyond { STEP_TOO_LARGE } else { cause };
     let body = world.get::<Label>(body).map(|label| label.0.clone()).unwrap_or_default();
     let (time, step) = (clock.time(), clock.step);
-    Err(Error::Unstable(Box::new(Instability { time, step, body, what, cause: cause.into(), good_until })))
+    Ok(Some(Instability { time, step, body, what, cause: cause.into(), good_until }))
 }
 
 /// Stops when elements hold more energy than was ever spent on them: so a step beyond the stable one shows that does not

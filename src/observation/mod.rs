@@ -10,7 +10,7 @@ pub use fields::{BodyFields, body_fields, internal_forces};
 pub use probes::{header, observe_probe};
 
 use crate::components::*;
-use crate::error::Error;
+use crate::error::{Error, Instability};
 use crate::output::{Folder, OutputError, Series, Table};
 use bevy_ecs::prelude::*;
 use std::collections::BTreeMap;
@@ -27,8 +27,10 @@ pub struct Observer {
     pub energy: Option<Cadence>,
     /// Whether the guards look at the balance of energy: when a step beyond the stable one is allowed.
     pub watch_energy: bool,
-    /// The last step of the run, which is always observed.
+    /// The last step of the run, which is always observed. That of a static analysis is known when it is there.
     pub last_step: u64,
+    /// Whether loads stand still on the way to rest: then nothing but the last step is observed.
+    pub quiet: bool,
     files: Option<Files>,
     probes: Vec<(Entity, String, Cadence)>,
     /// What each probe saw last: time (s) and values.
@@ -43,7 +45,11 @@ struct Files {
     series: Series,
     energies: Option<Table>,
     probes: BTreeMap<String, Table>,
+    convergence: Option<Table>,
 }
+
+/// The columns of `convergence.csv`.
+const CONVERGENCE: [&str; 5] = ["step", "load share", "residual", "remaining motion", "damping"];
 
 impl Observer {
     /// Observes the probes of a world.
@@ -73,17 +79,41 @@ impl Observer {
             let path = folder.claim(&format!("probe_{name}.csv"))?;
             probes.insert(name.clone(), Table::create(&path, &header(probe.what))?);
         }
-        self.files = Some(Files { series, energies, probes });
+        let convergence = match world.resource::<Clock>().relaxation {
+            None => None,
+            Some(_) => Some(Table::create(&folder.claim("convergence.csv")?, &CONVERGENCE)?),
+        };
+        self.files = Some(Files { series, energies, probes, convergence });
         Ok(())
     }
 
     /// The next step, after `step`, at whose end something is due.
     pub fn next_due(&self, step: u64) -> u64 {
-        let mut due = ((step / GUARD_STEPS + 1) * GUARD_STEPS).min(self.fields.next_after(step));
-        for cadence in self.energy.iter().chain(self.probes.iter().map(|(_, _, cadence)| cadence)) {
+        let mut due = (step / GUARD_STEPS + 1) * GUARD_STEPS;
+        let cadences = self.energy.iter().chain(self.probes.iter().map(|(_, _, cadence)| cadence));
+        for cadence in cadences.chain([&self.fields]).filter(|_| !self.quiet) {
             due = due.min(cadence.next_after(step));
         }
         if step < self.last_step { due.min(self.last_step) } else { due }
+    }
+
+    /// What the guards find at the present step.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn trouble(&self, world: &mut World) -> Result<Option<Instability>, Error> {
+        guards::find(world, self.good_until, self.watch_energy)
+    }
+
+    /// Notes how a static analysis converges: what the columns of `convergence.csv` hold.
+    ///
+    /// # Errors
+    /// Files that cannot be written.
+    pub fn note_convergence(&mut self, row: [f64; 5]) -> Result<(), Error> {
+        if let Some(table) = self.files.as_mut().and_then(|files| files.convergence.as_mut()) {
+            table.row(&row)?;
+        }
+        Ok(())
     }
 
     /// Observes what is due at the present step.
@@ -93,8 +123,15 @@ impl Observer {
     pub fn observe(&mut self, world: &mut World) -> Result<(), Error> {
         let clock = *world.resource::<Clock>();
         let last = clock.step == self.last_step;
-        let due = |cadence: Cadence| last || cadence.is_due(clock.step);
-        guards::check(world, self.good_until, self.watch_energy)?;
+        // a static analysis shows states on the way while loads grow, and the state at rest, but none between
+        let quiet = clock.relaxation.is_some_and(|relaxation| relaxation.progress(clock.step) >= 1.0);
+        let due = |cadence: Cadence| last || !quiet && cadence.is_due(clock.step);
+        match guards::find(world, self.good_until, self.watch_energy)? {
+            None => {}
+            // the steps since the last look at the residual will be taken back
+            Some(_) if clock.relaxation.is_some() => return Ok(()),
+            Some(found) => return Err(Error::Unstable(Box::new(found))),
+        }
         if self.watch_energy {
             guards::check_energy(world, self.good_until)?;
         }

@@ -46,7 +46,7 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
         let sum: DVec3 = probe.nodes.iter().map(|&row| of(row as usize)).sum();
         (sum / probe.nodes.len().max(1) as f64).to_array().to_vec()
     };
-    let time_step = world.resource::<Clock>().time_step;
+    let rate = world.resource::<Clock>().rate();
     let entity = world.entity(body);
     let vector = |reals: Option<&Reals>, row: usize| reals.map_or(DVec3::ZERO, |reals| reals.vector(row));
     let displacement = entity.get::<Displacement>().map(|u| &u.0);
@@ -58,7 +58,7 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
         }
         Quantity::Velocity => {
             let step = entity.get::<DisplacementStep>().map(|d| &d.0);
-            mean(&|row| vector(step, row) / time_step)
+            mean(&|row| vector(step, row) * rate)
         }
         Quantity::Reaction => {
             let internal = entity.get::<InternalForce>().map(|f| &f.0);

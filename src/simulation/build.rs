@@ -1,7 +1,9 @@
 //! From a scene to a simulation.
 
+use super::frequency::largest_eigenvalue;
 use super::options::{BackendChoice, Chosen, choose};
 use super::parameters::hand_out;
+use super::relax::Relaxing;
 use super::schedule::{Scheduled, check_names, resolve};
 use super::{Entry, Facts, Job, Options, Simulation};
 use crate::assembly::{Assembly, StableStep, assemble, assemble_in_time, stable_step};
@@ -12,6 +14,7 @@ use crate::backend::kernel::KernelId;
 use crate::components::*;
 use crate::error::Error;
 use crate::observation::Observer;
+use crate::scene::schema::Analysis;
 use crate::scene::{Diagnostics, SceneFile};
 use crate::systems::{HostSystem, Phase, Registry};
 use bevy_ecs::component::ComponentId;
@@ -50,6 +53,10 @@ impl Simulation {
             access.push(system.initialize(&mut world));
         }
         add_called_for_columns(&schedule, &access, &assembly, &mut world);
+        let forces = schedule.iter().zip(&mut hosts).filter(|(entry, _)| {
+            !entry.system.custom && (Phase::ElementForces..=Phase::Gather).contains(&entry.system.phase)
+        });
+        let relaxing = relaxing(scene, options.precision, forces.map(|(_, host)| host).collect(), &mut world);
 
         let Chosen { gpu, mut why } = choose(options)?;
         let gpu_name = gpu.as_ref().map(|gpu| gpu.report().name.clone());
@@ -98,7 +105,7 @@ impl Simulation {
             setup: started.elapsed(),
             warnings: diagnostics,
         };
-        Ok(Self { world, entries, scene: scene.scene.clone(), facts, elapsed: Duration::ZERO })
+        Ok(Self { world, entries, scene: scene.scene.clone(), facts, relaxing, elapsed: Duration::ZERO })
     }
 }
 
@@ -151,6 +158,16 @@ fn clock(scene: &SceneFile, world: &mut World, diagnostics: &mut Diagnostics) ->
         return None;
     };
     let (integration, duration) = (&scene.scene.integration, scene.scene.duration);
+    if let Analysis::Static { max_steps, load_steps, .. } = scene.scene.analysis {
+        let load_steps = load_steps.unwrap_or_else(|| crate::assembly::load_steps(world));
+        let growth = 1.0 / load_steps as f64;
+        let relaxation = Relaxation { end: duration, since: (0, 0.0), growth, damping: 0.0, gain: 1.0 };
+        return Some((
+            Clock { step: 0, time_step: duration * growth, relaxation: Some(relaxation) },
+            stable,
+            max_steps,
+        ));
+    }
     let limit = stable.time_step;
     if !(limit.is_finite() && limit > 0.0) {
         let message = format!(
@@ -190,7 +207,25 @@ fn clock(scene: &SceneFile, world: &mut World, diagnostics: &mut Diagnostics) ->
         );
         return None;
     }
-    Some((Clock { step: 0, time_step }, stable, steps as u64))
+    Some((Clock { step: 0, time_step, relaxation: None }, stable, steps as u64))
+}
+
+/// What drives a static analysis; `forces` are the systems that find internal forces.
+fn relaxing(
+    scene: &SceneFile,
+    precision: Precision,
+    forces: Vec<&mut HostSystem>,
+    world: &mut World,
+) -> Option<Relaxing> {
+    let Analysis::Static { tolerance, max_steps, .. } = scene.scene.analysis else { return None };
+    let highest = largest_eigenvalue(forces, world);
+    let load_steps = world.resource_mut::<Clock>().relaxation.as_mut().map_or(0, |relaxation| {
+        relaxation.gain = scene.scene.integration.safety.powi(2) / highest;
+        (1.0 / relaxation.growth).round() as u64
+    });
+    // what rounding leaves of the residual in f32 is some 1e-6
+    let reachable = if precision == Precision::F64 { 1e-6 } else { 1e-5 };
+    Some(Relaxing::new(tolerance.unwrap_or(reachable), max_steps, load_steps, world))
 }
 
 fn counts(assembly: &Assembly<'_>) -> (usize, usize) {
@@ -203,8 +238,8 @@ fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> 
     let mut observer = Observer::default();
     observer.fields = every(scene.scene.fields_every());
     observer.energy = scene.scene.output.energies_every.map(every);
-    observer.watch_energy = scene.scene.integration.beyond_stable_step;
-    observer.last_step = steps;
+    observer.watch_energy = scene.scene.integration.beyond_stable_step && clock.relaxation.is_none();
+    observer.last_step = if clock.relaxation.is_some() { u64::MAX } else { steps };
     observer.watch_probes(world);
     observer
 }

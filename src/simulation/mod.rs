@@ -3,14 +3,18 @@
 mod access;
 mod build;
 pub mod explain;
+mod frequency;
 mod options;
 mod parameters;
+mod relax;
+mod residual;
 mod run;
 mod schedule;
 mod summary;
 mod surface;
 
 pub use options::{BackendChoice, Options};
+pub use relax::Equilibrium;
 pub use summary::{Summary, SystemTime};
 
 use crate::assembly::StableStep;
@@ -27,6 +31,7 @@ pub struct Simulation {
     entries: Vec<Entry>,
     scene: Scene,
     facts: Facts,
+    relaxing: Option<relax::Relaxing>,
     elapsed: Duration,
 }
 

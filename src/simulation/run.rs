@@ -31,10 +31,11 @@ impl Simulation {
         self.advance(target.saturating_sub(self.step_count()))
     }
 
-    /// Takes `count` steps. On the GPU they go in as few submissions as observations and custom systems allow.
+    /// Takes `count` steps. On the GPU they go in as few submissions as observations and custom systems allow. A static
+    /// analysis stops where it finds equilibrium; there further calls do nothing.
     ///
     /// # Errors
-    /// That the simulation broke down (the world keeps the state in which this was noticed), that the GPU failed, or that
+    /// That the simulation broke down or found no equilibrium (the world keeps the state in which this was noticed), that the GPU failed, or that
     /// outputs could not be written.
     pub fn advance(&mut self, count: u64) -> Result<(), Error> {
         let started = Instant::now();
@@ -49,14 +50,24 @@ impl Simulation {
     }
 
     fn steps_to(&mut self, target: u64) -> Result<(), Error> {
-        while self.step_count() < target {
-            if self.facts.on_gpu {
-                self.device_steps(target)?;
-            } else {
-                self.host_step()?;
+        while self.step_count() < target && self.relaxing.is_none() {
+            self.some_steps(target)?;
+        }
+        while self.step_count() < target
+            && let Some(relaxing) = self.relaxing.as_ref().filter(|relaxing| !relaxing.equilibrium.reached)
+        {
+            let next_look = relaxing.next_look();
+            self.some_steps(target.min(next_look))?;
+            if self.step_count() >= next_look {
+                self.look()?;
             }
         }
         Ok(())
+    }
+
+    /// One step on the host, or as many as can be submitted together.
+    fn some_steps(&mut self, target: u64) -> Result<(), Error> {
+        if self.facts.on_gpu { self.device_steps(target) } else { self.host_step() }
     }
 
     /// Observes the present state, whatever is due.
@@ -68,10 +79,12 @@ impl Simulation {
     }
 
     fn evaluate_signals(&mut self, step: u64) {
-        let time_step = self.world.resource::<Clock>().time_step;
-        let now = step as f64 * time_step;
-        let next = (step + 1) as f64 * time_step;
-        self.world.resource_mut::<Signals>().evaluate(now, next);
+        let clock = *self.world.resource::<Clock>();
+        let mut signals = self.world.resource_mut::<Signals>();
+        match &clock.relaxation {
+            Some(relaxation) => signals.approach(relaxation.end, relaxation.share(step + 1)),
+            None => signals.evaluate(step as f64 * clock.time_step, (step + 1) as f64 * clock.time_step),
+        }
     }
 
     fn host_step(&mut self) -> Result<(), Error> {

@@ -49,6 +49,8 @@ pub struct Summary {
     pub systems: Vec<SystemTime>,
     /// What travelled between host and device.
     pub traffic: Option<Traffic>,
+    /// The equilibrium of a static analysis.
+    pub equilibrium: Option<super::Equilibrium>,
     /// Energies at the end (J).
     pub energies: Energies,
     /// Mass at the start (kg).
@@ -123,6 +125,7 @@ impl Simulation {
             nanoseconds_an_element_and_step: a_step * 1e9 / facts.elements.max(1) as f64,
             systems: self.entries.iter().map(|entry| system_time(entry, facts.on_gpu)).collect(),
             traffic: self.world.get_resource::<Device>().map(Device::traffic),
+            equilibrium: self.equilibrium().cloned(),
             energies,
             mass: facts.initial_mass,
             removed_mass: facts.initial_mass - mass,

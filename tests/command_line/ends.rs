@@ -61,6 +61,19 @@ fn a_run_that_breaks_down_ends_with_1_and_keeps_what_it_wrote() {
 }
 
 #[test]
+fn a_search_for_rest_that_finds_none_ends_with_1_and_says_how_far_it_came() {
+    let place = Place::new();
+    let analysis = "analysis=Static(max_steps: 120)";
+    let ended = place.sinew(&["run", "block.ron", "--backend", "cpu", "--set", analysis]);
+    ended.wants(1, &["no equilibrium after 120 steps", "the residual is", "at node", "max_steps"]);
+    let summary = place.json("out/block/summary.json");
+    assert!(summary["ended"].as_str().unwrap().contains("no equilibrium"));
+    assert_eq!(summary["equilibrium"]["reached"], false);
+    assert!(!place.path("out/block/nodes.csv").exists(), "nodes that are no equilibrium");
+    assert_eq!(place.frames("out/block").len(), 1, "a frame that is no equilibrium");
+}
+
+#[test]
 fn an_output_folder_that_cannot_be_written_ends_with_3() {
     let place = Place::new();
     fs::write(place.path("file"), "").unwrap();

@@ -43,7 +43,7 @@ fn json_holds_what_the_page_says() {
         list.map(|system| system["name"].as_str().unwrap().to_string()).collect::<Vec<_>>()
     };
     assert_eq!(names("systems"), ["boundary", "element_forces", "gather", "gravity", "integrate", "observe"]);
-    assert_eq!(names("systems_off"), ["nodal_force", "pressure", "traction", "element_removal"]);
+    assert_eq!(names("systems_off"), ["nodal_volume", "nodal_force", "pressure", "traction", "element_removal"]);
     let columns = json["columns"].as_array().unwrap();
     let displacement = columns.iter().find(|column| column["name"] == "displacement").unwrap();
     assert_eq!((&displacement["of"], &displacement["bytes"]), (&"block".into(), &(64 * 3 * 4).into()));

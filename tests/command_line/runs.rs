@@ -24,6 +24,33 @@ fn a_run_leaves_all_its_outputs_and_they_can_be_read() {
 }
 
 #[test]
+fn a_scene_at_rest_shows_its_residual_and_how_it_came_down() {
+    let place = Place::new();
+    let set = ["--set", "analysis=Static()", "--set", "probes.top.every=0.2", "--precision", "f64"];
+    let said = place.done(&[&["run", "block.ron", "--backend", "cpu"], &set[..]].concat());
+    for words in ["rest", "residual", "of loads and reactions", "sought 1e-6", "pseudo-steps", "loads grew over"] {
+        assert!(said.contains(words), "{words:?} is not in\n{said}");
+    }
+    assert_eq!(place.frames("out/block"), [0.0, 0.2], "the start and rest");
+    let top = place.table("out/block/probe_top.csv");
+    assert_eq!(top.iter().map(|row| row[0]).collect::<Vec<_>>(), [0.0, 0.2]);
+    let way = place.table("out/block/convergence.csv");
+    let (first, last) = (&way[0], &way[way.len() - 1]);
+    assert!(way.len() > 3 && last[2] <= 1e-6 && first[2] > 1e-3 && last[1] == 1.0, "{way:?}");
+    let summary = place.json("out/block/summary.json");
+    assert_eq!((&summary["ended"], &summary["equilibrium"]["reached"]), (&"finished".into(), &true.into()));
+    assert_eq!(summary["equilibrium"]["residual"], last[2]);
+    assert_eq!(summary["steps"], last[0]);
+    assert!(summary["steps"].as_u64() < summary["planned_steps"].as_u64());
+    assert_eq!(summary["energies"]["kinetic"], 0.0);
+    assert_eq!(place.table("out/block/nodes.csv").len(), 64);
+    let said = place.done(&[&["check", "block.ron"], &set[..2]].concat());
+    assert!(said.contains("rest under what acts at 200 ms") && said.contains("convergence.csv"), "{said}");
+    let said = place.done(&[&["explain", "block.ron", "--backend", "gpu"], &set[..2]].concat());
+    assert!(said.contains("fictitious_mass") && said.contains("shaders/relaxation.wgsl"), "{said}");
+}
+
+#[test]
 fn values_of_set_reach_the_run_and_the_copy_of_the_scene() {
     let place = Place::new();
     let set = ["--set", "bodies.block.mesh.cells=(2, 2, 2)", "--set", "duration=0.1"];

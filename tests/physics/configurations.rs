@@ -5,6 +5,9 @@ use sinew::components::Precision;
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
 use std::path::Path;
 
+/// All kinds of elements, as scenes name them.
+pub const ELEMENTS: [&str; 4] = ["Tet4", "Tet4NodalPressure", "Hex8", "Hex8MeanDilatation"];
+
 /// A backend with a number type.
 pub struct Configuration {
     pub name: &'static str,

@@ -25,6 +25,8 @@ enum Effects {
     Laws,
     /// And removal.
     All,
+    /// The same, with pressures from means.
+    Means,
 }
 
 fn scene(effects: Effects) -> String {
@@ -32,9 +34,10 @@ fn scene(effects: Effects) -> String {
         prony: (terms: [(alpha: 0.5, tau: 0.1)]), damping: 0.1,";
     let removal = "removal: [(when: StretchAbove(1.1)), (on: Sphere(center: (0.5, 0.5, 1), radius: 0.3),
         when: During(start: 0.01, end: 0.3))],";
-    let removal = if effects == Effects::All { removal } else { "" };
+    let removal = if effects == Effects::Laws { "" } else { removal };
+    let kinds = if effects == Effects::Means { "tets: Tet4NodalPressure, hexes: Hex8MeanDilatation" } else { "" };
     format!(
-        "(duration: 100, bodies: {{\"b\": (mesh: File(path: \"mesh.vtk\"), material: \"m\", spin: (1, 2, 3))}},
+        "(duration: 100, bodies: {{\"b\": (mesh: File(path: \"mesh.vtk\", {kinds}), material: \"m\", spin: (1, 2, 3))}},
         materials: {{\"m\": (density: 1000, {laws} neo_hookean: Young(young: 3e3, poisson: 0.45))}},
         constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))], {removal}
         loads: [Gravity(acceleration: (0, 0, -9.81)), Pressure(on: Surface(normal: (0, 0, 1)), pressure: 400),
@@ -51,11 +54,12 @@ fn start(mesh: &Grid, run: &Configuration, effects: Effects, folder: &Path) -> S
 #[test]
 fn bits_are_the_same_from_run_to_run_and_for_any_number_of_threads() {
     let (folder, mesh) = (tempfile::tempdir().unwrap(), mesh(8));
-    for precision in [Precision::F64, Precision::F32] {
+    let both = |precision| [Effects::All, Effects::Means].map(|effects| (precision, effects));
+    for (precision, effects) in [Precision::F64, Precision::F32].into_iter().flat_map(both) {
         let of = |threads: usize| {
             let options = Options { backend: BackendChoice::Cpu, precision, threads, ..Options::default() };
             let run = Configuration { name: "CPU", options };
-            let mut simulation = start(&mesh, &run, Effects::All, folder.path());
+            let mut simulation = start(&mesh, &run, effects, folder.path());
             simulation.advance(60).unwrap();
             let energies = format!("{:?}", simulation.energies().unwrap());
             let removed = simulation.summary("").unwrap().removed_elements;
@@ -74,12 +78,14 @@ fn bits_are_the_same_from_run_to_run_and_for_any_number_of_threads() {
 fn gpu_gives_the_same_bits_from_run_to_run() {
     let (folder, mesh) = (tempfile::tempdir().unwrap(), mesh(4));
     for run in configurations().iter().filter(|run| run.options.backend == BackendChoice::Gpu) {
-        let of = || {
-            let mut simulation = start(&mesh, run, Effects::All, folder.path());
-            simulation.advance(40).unwrap();
-            bits(&mut simulation, "b")
-        };
-        assert!(of() == of(), "not the same bits");
+        for effects in [Effects::All, Effects::Means] {
+            let of = || {
+                let mut simulation = start(&mesh, run, effects, folder.path());
+                simulation.advance(40).unwrap();
+                bits(&mut simulation, "b")
+            };
+            assert!(of() == of(), "not the same bits");
+        }
     }
 }
 
@@ -91,18 +97,18 @@ fn largest_difference(a: &[DVec3], b: &[DVec3]) -> f64 {
 #[test]
 fn f32_moves_as_f64_does() {
     let (folder, mesh) = (tempfile::tempdir().unwrap(), mesh(4));
-    let all: Vec<(&str, Vec<DVec3>)> = configurations()
-        .iter()
-        .map(|run| {
-            let mut simulation = start(&mesh, run, Effects::All, folder.path());
+    for effects in [Effects::All, Effects::Means] {
+        let of = |run: &Configuration| {
+            let mut simulation = start(&mesh, run, effects, folder.path());
             simulation.advance(60).unwrap();
             (run.name, simulation.displacements("b").unwrap())
-        })
-        .collect();
-    for (name, displacements) in &all[1..] {
-        let error = largest_difference(&all[0].1, displacements);
-        println!("{name}: {error:.1e}");
-        assert!(error < 1e-4, "{name}: {error:e}");
+        };
+        let all: Vec<(&str, Vec<DVec3>)> = configurations().iter().map(of).collect();
+        for (name, displacements) in &all[1..] {
+            let error = largest_difference(&all[0].1, displacements);
+            println!("{name}: {error:.1e}");
+            assert!(error < 1e-4, "{name}: {error:e}");
+        }
     }
 }
 

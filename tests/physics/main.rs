@@ -10,6 +10,7 @@ mod configurations;
 mod conservation;
 mod determinism;
 mod elements;
+mod equilibrium;
 mod frequency_bound;
 mod grids;
 mod hourglass;

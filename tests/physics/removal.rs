@@ -4,7 +4,7 @@
 //! booked to (ωΔt)²/12 with Δt = 1e-3 s and ω < 30/s. An island falls with g: Σ m v grows by Σ m g Δt a step, to rounding (1e-10, 1e-4 in f32).
 
 use crate::columns::{external_forces, masses, velocities};
-use crate::configurations::{Configuration, configurations, near};
+use crate::configurations::{ELEMENTS, Configuration, configurations, near};
 use glam::DVec3;
 use sinew::Simulation;
 
@@ -70,7 +70,7 @@ fn criteria_take_what_passes_them_and_nothing_else() {
         (stretched, format!("EnergyDensityAbove({})", energy * 0.999), true),
         (stretched, format!("EnergyDensityAbove({})", energy * 1.001), false),
     ];
-    for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
+    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
         for (gradient, when, goes) in &cases {
             let rest = format!("constraints: [Prescribed(on: All, gradient: {gradient})], removal: [(when: {when})]");
             let mut simulation = bar(run, elements, &rest);
@@ -89,7 +89,7 @@ fn criteria_take_what_passes_them_and_nothing_else() {
 
 #[test]
 fn island_falls_with_exactly_g_and_mass_is_booked() {
-    for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
+    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
         let rest =
             "constraints: [Fixed(on: Plane(normal: (1, 0, 0), at: 0))], loads: [Gravity(acceleration: (0, 0, -9.81))],
             removal: [(on: Box(min: (2, 0, 0), max: (4, 1, 1)), when: At(0.05))]";
@@ -121,7 +121,7 @@ fn island_falls_with_exactly_g_and_mass_is_booked() {
 
 #[test]
 fn nodes_without_elements_are_parked() {
-    for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
+    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
         let rest = "loads: [Gravity(acceleration: (0, 0, -9.81)), NodalForce(on: All, force: (1, 0, 0))],
             removal: [(on: Box(min: (4, 0, 0), max: (6, 1, 1)), when: At(0.05))]";
         let mut simulation = bar(run, elements, rest);
@@ -147,7 +147,7 @@ fn nodes_without_elements_are_parked() {
 
 #[test]
 fn faces_of_removed_elements_bear_no_load() {
-    for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
+    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
         for load in [
             "Traction(on: Plane(normal: (0, 0, 1), at: 1), traction: (0, 0, -10))",
             "Pressure(on: Plane(normal: (0, 0, 1), at: 1), pressure: 10)",
@@ -169,7 +169,7 @@ fn faces_of_removed_elements_bear_no_load() {
 
 #[test]
 fn energy_that_goes_with_elements_is_booked() {
-    for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
+    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
         // clamped at both ends: what is left swings on and does not fall
         let rest = "constraints: [Fixed(on: Plane(normal: (1, 0, 0), at: 0)), Fixed(on: Plane(normal: (1, 0, 0), at: 6))],
             loads: [Gravity(acceleration: (3, 0, -2))], removal: [(on: Box(min: (2, 0, 0), max: (4, 1, 0.7)), when: At(0.8))]";
@@ -186,7 +186,7 @@ fn energy_that_goes_with_elements_is_booked() {
 
 #[test]
 fn a_body_of_which_everything_is_removed_is_no_crash() {
-    for (run, elements) in configurations().iter().flat_map(|run| [(run, "Tet4"), (run, "Hex8")]) {
+    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
         let rest = "loads: [Gravity(acceleration: (0, 0, -9.81)), Pressure(on: Surface(), pressure: 3)], removal: [(when: At(0.05))],
             probes: {\"stress\": (what: Stress, on: All), \"u\": (what: Displacement, on: All)}";
         let mut simulation = bar(run, elements, rest);

@@ -109,12 +109,12 @@ fn words_that_do_not_fit_are_told_with_those_that_do() {
         (
             "Hex8",
             "hex8",
-            r"9:74: error: `elements` cannot be `hex8` | unknown word | did you mean `Hex8`? | allowed: Tet4, Hex8",
+            r"9:74: error: `elements` cannot be `hex8` | unknown word | did you mean `Hex8`? | allowed: Tet4, Tet4NodalPressure, Hex8, Hex8MeanDilatation",
         ),
-        ("Hex8", "Hex20", r"9:74: error: `elements` cannot be `Hex20` | unknown word | allowed: Tet4, Hex8"),
+        ("Hex8", "Hex20", r"9:74: error: `elements` cannot be `Hex20` | unknown word | allowed: Tet4, Tet4NodalPressure, Hex8, Hex8MeanDilatation"),
         ("Hex8", r#""Hex8""#, r"9:74: error: `elements` must be a word without quotes | write Hex8"),
         ("Hex8", "Hex8()", r"9:74: error: `Hex8` stands alone, without brackets | write Hex8"),
-        ("Hex8", "8", r"9:74: error: `elements` must be one of the words below | found a number | allowed: Tet4, Hex8"),
+        ("Hex8", "8", r"9:74: error: `elements` must be one of the words below | found a number | allowed: Tet4, Tet4NodalPressure, Hex8, Hex8MeanDilatation"),
         (
             "Box(size",
             "Bx(size",

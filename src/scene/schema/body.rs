@@ -148,6 +148,8 @@ impl MeshSource {
             Self::Box { elements, .. }
             | Self::Cylinder { elements, .. }
             | Self::Ellipsoid { elements, .. }
+            | Self::Hexahedron { elements, .. }
+            | Self::Tube { elements, .. }
             | Self::Lens { elements, .. } => (*elements, *elements),
         }
     }

@@ -10,7 +10,7 @@ pub use crate::mesh::ElementKind;
 pub use action::{Axis, Constraint, Curve, Load, Removal, Share, When};
 pub use body::{Body, MeshSource, Region};
 pub use material::{Direction, Fibres, Material, NeoHookean, Prony, PronyTerm, ViscousIntegrator};
-pub use scene::{Field, Integration, Output, Picture, Scene};
+pub use scene::{Analysis, Field, Integration, Output, Picture, Scene};
 pub use selection::{Probe, Quantity, Select};
 
 /// The texts of these files: what a field means is told in the words it is documented with.

@@ -12,8 +12,11 @@ pub struct Scene {
     /// What the scene shows, in a few words.
     #[serde(default)]
     pub title: String,
-    /// Simulated time (s).
+    /// Simulated time (s); the time whose loads and motions a static analysis takes.
     pub duration: f64,
+    /// Motion over time, or rest under what acts at the end.
+    #[serde(default)]
+    pub analysis: Analysis,
     /// The bodies, by name.
     pub bodies: BTreeMap<String, Body>,
     /// The materials, by name.
@@ -47,6 +50,32 @@ pub struct Scene {
     pub picture: Picture,
 }
 
+/// What is sought.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub enum Analysis {
+    /// Motion over time.
+    #[default]
+    Transient,
+    /// Equilibrium under loads and motions as their curves stand at `duration`.
+    Static {
+        /// The residual that is small enough, as a share of loads and reactions; 1e-6 in f64 and 1e-5 in f32 when left
+        /// out.
+        #[serde(default)]
+        tolerance: Option<f64>,
+        /// Pseudo-steps after which the search is given up.
+        #[serde(default = "most_steps")]
+        max_steps: u64,
+        /// Pseudo-steps over which loads and motions grow; found from the mesh when left out.
+        #[serde(default)]
+        load_steps: Option<u64>,
+    },
+}
+
+fn most_steps() -> u64 {
+    200_000
+}
+
 /// The time step and how it is taken.
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
@@ -72,7 +101,7 @@ impl Default for Integration {
 #[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields, default)]
 pub struct Output {
-    /// Time between VTU files (s); a twentieth of the duration when left out.
+    /// Time between VTU files (s); a twentieth of the duration when left out, in a static analysis all of it.
     pub fields_every: Option<f64>,
     /// Time between rows of `energy.csv` (s). Naming it also books the work of all forces in every step.
     pub energies_every: Option<f64>,
@@ -114,6 +143,12 @@ pub enum Field {
 impl Scene {
     /// Time between outputs of fields (s).
     pub fn fields_every(&self) -> f64 {
-        self.output.fields_every.unwrap_or(self.duration / 20.0)
+        let whole = if self.is_static() { self.duration } else { self.duration / 20.0 };
+        self.output.fields_every.unwrap_or(whole)
+    }
+
+    /// Whether equilibrium is sought instead of motion.
+    pub fn is_static(&self) -> bool {
+        matches!(self.analysis, Analysis::Static { .. })
     }
 }

@@ -1,6 +1,7 @@
 //! Whether the values of a scene make sense, as far as that can be said without its meshes.
 
 mod action;
+mod analysis;
 mod geometry;
 mod material;
 mod names;
@@ -22,6 +23,7 @@ pub fn validate(file: &SceneFile, diagnostics: &mut Diagnostics) {
     geometry::validate(file, &mut judge);
     action::validate(&file.scene, &mut judge);
     time::validate(&file.scene, &mut judge);
+    analysis::validate(&file.scene, &mut judge);
 }
 
 /// Notes mistakes of the common kinds.

@@ -2,7 +2,7 @@
 
 use super::{Effect, Part};
 use crate::components::*;
-use crate::materials::{Fibres, NeoHookean};
+use crate::materials::{ElasticLaw, Fibres};
 use crate::math::LANES;
 use crate::scene::schema::Scene;
 use bevy_ecs::prelude::*;
@@ -37,16 +37,24 @@ fn name(world: &World, entity: Entity) -> String {
 
 fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &str, world: &World) -> Vec<Effect> {
     let in_material = |word: &str| format!("`{word}` in the material {material}");
-    let neo_hookean = world.get::<NeoHookean<f64>>(block.material);
+    let elastic = ElasticLaw::of(world.entity(block.material));
     let fibres = world.get::<Fibres<f64>>(block.material);
     let prony = world.get::<Prony>(block.material);
     let damping = world.get::<Damping>(block.material);
+    let at_rest = world.resource::<Clock>().relaxation.is_some();
     let mut effects = vec![
         Effect {
-            name: "neo_hookean",
-            on: neo_hookean
-                .map(|law| format!("shear modulus {} Pa, bulk modulus {} Pa", short(law.shear), short(law.bulk))),
-            turned_on_by: in_material("neo_hookean"),
+            name: elastic.map_or("elastic law", |law| law.name()),
+            on: elastic.map(|law| {
+                let [shear, bulk] = law.small_strain_moduli().map(short);
+                format!("shear modulus {shear} Pa, bulk modulus {bulk} Pa")
+            }),
+            turned_on_by: format!("an elastic law in the material {material}"),
+        },
+        Effect {
+            name: "averaged nodal pressure",
+            on: entity.contains::<NodalVolumeChange>().then(|| "pressures are means around nodes".into()),
+            turned_on_by: format!("elements Tet4NodalPressure in the mesh of {body}"),
         },
         Effect {
             name: "fibres",
@@ -58,13 +66,19 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
         },
         Effect {
             name: "viscosity",
-            on: prony.map(|p| format!("{}, {:?} integrator", many(p.terms.len(), "Prony term"), p.integrator)),
+            on: prony.map(|p| match at_rest {
+                true => format!("{}, of which the long term remains", many(p.terms.len(), "Prony term")),
+                false => format!("{}, {:?} integrator", many(p.terms.len(), "Prony term"), p.integrator),
+            }),
             turned_on_by: in_material("prony"),
         },
         Effect {
             name: "damping",
-            on: damping.map(|damping| format!("{} 1/s, proportional to mass", damping.0)),
-            turned_on_by: in_material("damping"),
+            on: damping.filter(|_| !at_rest).map(|damping| format!("{} 1/s, proportional to mass", damping.0)),
+            turned_on_by: match at_rest {
+                true => "a transient analysis".into(),
+                false => in_material("damping"),
+            },
         },
         Effect {
             name: "removal",
@@ -102,6 +116,11 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> 
             name: "damping",
             on: entity.contains::<DampingCoefficient>().then(|| "a material of the body is damped".into()),
             turned_on_by: "`damping` in a material of the body".into(),
+        },
+        Effect {
+            name: "relaxation",
+            on: entity.contains::<FictitiousMass>().then(|| "to rest, with masses and damping chosen for it".into()),
+            turned_on_by: "`analysis: Static()`".into(),
         },
         Effect {
             name: "compensated sum",

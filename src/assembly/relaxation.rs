@@ -1,0 +1,84 @@
+//! What a static analysis needs to know of meshes: fictitious masses, and how many steps a push takes from end to end.
+
+use super::Assembly;
+use super::time_step::square_frequency;
+use crate::components::*;
+use crate::elements::Element;
+use crate::evaluation::{lane_place, node_count, row_count, with_element};
+use bevy_ecs::prelude::*;
+
+/// Loads grow over at least so many pseudo-steps.
+const FEWEST_LOAD_STEPS: u64 = 100;
+/// Pseudo-steps for each element between what is held and what is farthest from it: a push passes about an element in a
+/// step, and must be able to spread while it grows.
+const STEPS_AN_ELEMENT: u64 = 5;
+
+/// Gives every body [`FictitiousMass`]: each element weighs ω²Δt²/4 of its mass, ω its frequency bound, so that Δt is the
+/// bound of the stable step of all elements, whatever their size, stiffness and density.
+pub(super) fn insert_fictitious_masses(assembly: &Assembly<'_>, world: &mut World) {
+    let time_step = world.resource::<Clock>().time_step;
+    for parts in assembly.bodies.values() {
+        let mut mass = vec![0.0; parts.node_rows.len()];
+        for &entity in &parts.blocks {
+            let (Some(block), Some(connectivity), Some(shape)) =
+                (world.get::<Block>(entity), world.get::<Connectivity>(entity), world.get::<RestShape>(entity))
+            else {
+                continue;
+            };
+            let Some(frequency) = square_frequency(world, entity, block) else { continue };
+            let density = world.get::<Density>(block.material).map_or(0.0, |density| density.0);
+            let (nodes, numbers) = (node_count(block.kind), row_count(block.kind));
+            let volume_row = with_element!(block.kind, E => E::VOLUME_ROW);
+            for row in 0..block.count {
+                let real = density * shape.get(lane_place(row, numbers, volume_row)) / nodes as f64;
+                let share = real * 0.25 * frequency(row) * time_step * time_step;
+                for corner in 0..nodes {
+                    mass[connectivity[lane_place(row, nodes, corner)] as usize] += share;
+                }
+            }
+        }
+        let mass = Reals::from_f64(assembly.precision, mass.into_iter());
+        world.entity_mut(parts.entity).insert(FictitiousMass(mass));
+    }
+}
+
+/// Pseudo-steps over which loads should grow: by the elements that lie between nodes that are held or moved and the node
+/// farthest from any of them. A body that nothing holds counts from its first node.
+pub fn load_steps(world: &mut World) -> u64 {
+    let bodies: Vec<(Vec<Entity>, Vec<u32>)> = world
+        .query::<(&Authoring, &ConstrainedAxes)>()
+        .iter(world)
+        .map(|(authoring, axes)| {
+            let held = |axes: &u32| if *axes == 0 { u32::MAX } else { 0 };
+            (authoring.blocks.clone(), axes.iter().map(held).collect())
+        })
+        .collect();
+    let mut farthest = 0;
+    for (blocks, mut distance) in bodies {
+        if distance.iter().all(|&d| d > 0) {
+            distance.iter_mut().take(1).for_each(|d| *d = 0);
+        }
+        while blocks.iter().any(|&block| spread(world, block, &mut distance)) {}
+        farthest = farthest.max(distance.into_iter().filter(|&d| d < u32::MAX).max().unwrap_or(0));
+    }
+    FEWEST_LOAD_STEPS.max(STEPS_AN_ELEMENT * u64::from(farthest))
+}
+
+/// Carries distances on from corner to corner of each element; whether one became shorter.
+fn spread(world: &World, block: Entity, distance: &mut [u32]) -> bool {
+    let (Some(kind), Some(connectivity)) = (world.get::<Block>(block), world.get::<Connectivity>(block)) else {
+        return false;
+    };
+    let (nodes, mut shorter) = (node_count(kind.kind), false);
+    for row in 0..kind.count {
+        let node = |corner: usize| connectivity[lane_place(row, nodes, corner)] as usize;
+        let nearest = (0..nodes).map(|corner| distance[node(corner)]).min().unwrap_or(u32::MAX);
+        for corner in 0..nodes {
+            if distance[node(corner)] > nearest.saturating_add(1) {
+                distance[node(corner)] = nearest + 1;
+                shorter = true;
+            }
+        }
+    }
+    shorter
+}

@@ -1,0 +1,221 @@
+//! Dynamic relaxation: pseudo-steps to equilibrium, their damping chosen anew from what the last ones did.
+//!
+//! Every [`LOOK`] steps the residual is taken, the lowest frequency of the motion is estimated by the Rayleigh quotient
+//! ω² = Δuᵀ ΔF / Δuᵀ M Δu of what has changed since the last look, and all nodes are damped critically for it,
+//! c = 2ω (Underwood 1983). Steps that end in numbers that are not finite or in elements turned inside out are taken
+//! back, and forces count half from there.
+
+use super::Simulation;
+use super::residual::{Motion, Residual, State};
+use crate::backend::device::{bring_to_host, send_to_device};
+use crate::components::*;
+use crate::error::{Error, NotConverged};
+use crate::observation::Observer;
+use bevy_ecs::prelude::*;
+use serde::Serialize;
+
+/// Steps between two looks at the residual.
+const LOOK: u64 = 40;
+/// How often steps may be taken back.
+const MOST_SETBACKS: u32 = 10;
+/// Damping a at most: beyond 1 a step would turn round.
+const MOST_DAMPING: f64 = 1.0;
+/// Motion that tells of frequencies is more than so many last digits of the displacements.
+const CLEAR_OF_ROUNDING: f64 = 1000.0;
+/// What rounding may make of the residual, in units of its estimate: lightly damped, it keeps stiff motion awake (seen: up
+/// to 4.3).
+const ROUNDING: f64 = 6.0;
+/// What the remaining motion may be, in tolerances of the residual: it errs on the side of too much.
+const MOTION: f64 = 10.0;
+/// A residual that has not fallen by a tenth in so many times that the slowest motion needs to fall by e will not fall.
+const PATIENCE: f64 = 30.0;
+
+/// The equilibrium that a static analysis has found, or how far it came.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Equilibrium {
+    /// Whether it is one within the tolerance.
+    pub reached: bool,
+    /// ‖R − F‖ over free axes, as a share of `scale`.
+    pub residual: f64,
+    /// About what rounding of the displacements makes of the residual at least, as a share of `scale`.
+    pub rounding: f64,
+    /// The share that is small enough, beside what rounding makes.
+    pub tolerance: f64,
+    /// ‖R‖ over free axes and ‖F − R‖ over held ones, together (N).
+    pub scale: f64,
+    /// About how far nodes still have to go, as a share of their displacements (root mean squares).
+    pub remaining_motion: f64,
+    /// The body with the largest force that nothing balances, the author's number of its node, and the force (N).
+    pub worst: (String, u64, f64),
+    /// Steps over which loads grew, as planned.
+    pub load_steps: u64,
+    /// How often steps were taken back.
+    pub setbacks: u32,
+}
+
+/// A static analysis at work.
+pub(super) struct Relaxing {
+    pub equilibrium: Equilibrium,
+    most_steps: u64,
+    next_look: u64,
+    before: State,
+    /// Step and residual when the residual was last seen to fall by a tenth.
+    best: (u64, f64),
+    largest_scale: f64,
+    /// The look that first saw loads at rest.
+    settled_at: Option<u64>,
+}
+
+impl Relaxing {
+    pub fn new(tolerance: f64, most_steps: u64, load_steps: u64, world: &mut World) -> Self {
+        Self {
+            equilibrium: Equilibrium { residual: f64::INFINITY, tolerance, load_steps, ..Equilibrium::default() },
+            most_steps,
+            next_look: LOOK.min(most_steps),
+            before: State::of(world),
+            best: (0, f64::INFINITY),
+            largest_scale: 0.0,
+            settled_at: None,
+        }
+    }
+
+    /// The next step at whose end the residual is looked at.
+    pub fn next_look(&self) -> u64 {
+        self.next_look
+    }
+}
+
+impl Simulation {
+    /// The equilibrium of a static analysis, or how far it has come; `None` for one of motion.
+    pub fn equilibrium(&self) -> Option<&Equilibrium> {
+        self.relaxing.as_ref().map(|relaxing| &relaxing.equilibrium)
+    }
+
+    /// Whether all is done: the scene's duration has passed, or equilibrium is reached.
+    pub fn is_finished(&self) -> bool {
+        match &self.relaxing {
+            Some(relaxing) => relaxing.equilibrium.reached,
+            None => self.step_count() >= self.planned_steps(),
+        }
+    }
+
+    /// Takes all steps that are left, to the end of the scene's duration or to equilibrium.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn finish(&mut self) -> Result<(), Error> {
+        self.advance(self.planned_steps().saturating_sub(self.step_count()))
+    }
+
+    /// Looks at the residual, and chooses how to go on.
+    pub(super) fn look(&mut self) -> Result<(), Error> {
+        let Some(mut relaxing) = self.relaxing.take() else { return Ok(()) };
+        let looked = relaxing.look(&mut self.world);
+        let reached = relaxing.equilibrium.reached;
+        self.relaxing = Some(relaxing);
+        looked?;
+        if reached {
+            self.world.resource_mut::<Observer>().last_step = self.step_count();
+            self.observe()?;
+        }
+        Ok(())
+    }
+}
+
+impl Relaxing {
+    fn look(&mut self, world: &mut World) -> Result<(), Error> {
+        let clock = *world.resource::<Clock>();
+        let Some(mut relaxation) = clock.relaxation else { return Ok(()) };
+        bring_to_host(world, |_, name| State::COLUMNS.contains(&name))?;
+        let now = State::of(world);
+        let residual = Residual::of(&now, world);
+        let trouble = world.resource_scope(|world, observer: Mut<Observer>| observer.trouble(world))?;
+        let blown = !residual.square.is_finite() || !residual.scale_square.is_finite();
+        if trouble.is_some() || blown {
+            if self.equilibrium.setbacks >= MOST_SETBACKS || clock.step >= self.most_steps {
+                return Err(trouble.map_or_else(|| self.given_up(clock.step), |found| Error::Unstable(Box::new(found))));
+            }
+            return self.take_back(world, relaxation, clock.step);
+        }
+        let share = relaxation.share(clock.step);
+        let motion = now.motion_since(&self.before, world);
+        let tiny = CLEAR_OF_ROUNDING * residual.digit * motion.displaced;
+        if let Some(frequency) = motion.frequency.filter(|_| motion.moved > tiny) {
+            let damping = (relaxation.gain.sqrt() * frequency * clock.time_step).min(MOST_DAMPING);
+            // the quotient is never below the lowest frequency: with loads at rest the least is the best
+            let settled = self.settled_at.is_some_and(|step| clock.step > step + 2 * LOOK);
+            relaxation.damping = if settled { damping.min(relaxation.damping) } else { damping };
+        }
+        if share >= 1.0 {
+            self.settled_at.get_or_insert(clock.step);
+        }
+        self.judge(&motion, &residual, clock.step - self.before.step, relaxation.damping, world);
+        world.resource_scope(|world, mut observer: Mut<Observer>| {
+            world.resource_mut::<Clock>().relaxation = Some(relaxation);
+            observer.quiet = share >= 1.0;
+            let found = &self.equilibrium;
+            let row = [clock.step as f64, share, found.residual, found.remaining_motion, relaxation.damping];
+            observer.note_convergence(row)
+        })?;
+        self.before = now;
+        let (found, tolerance) = (&self.equilibrium, self.equilibrium.tolerance);
+        if share >= 1.0
+            && found.residual <= tolerance + ROUNDING * found.rounding
+            && found.remaining_motion <= MOTION * tolerance
+        {
+            self.equilibrium.reached = true;
+            return Ok(());
+        }
+        if share < 1.0 || found.residual < 0.9 * self.best.1 {
+            self.best = (clock.step, found.residual);
+        }
+        let patience = PATIENCE / relaxation.damping.max(1e-9);
+        let stalled = (clock.step - self.best.0) as f64 > patience.max(50.0 * LOOK as f64);
+        if stalled || clock.step >= self.most_steps {
+            return Err(self.given_up(clock.step));
+        }
+        self.next_look = (clock.step + LOOK).min(self.most_steps);
+        Ok(())
+    }
+
+    /// How far the present state is from equilibrium.
+    fn judge(&mut self, motion: &Motion, residual: &Residual, steps: u64, damping: f64, world: &World) {
+        let scale = residual.scale_square.sqrt();
+        self.largest_scale = self.largest_scale.max(scale);
+        // forces that balance to nothing in the end are small beside what they were on the way
+        let scale = scale.max(1e-3 * self.largest_scale);
+        let share = |part: f64, whole: f64| if part > 0.0 { part / whole } else { 0.0 };
+        let found = &mut self.equilibrium;
+        found.scale = scale;
+        found.residual = share(residual.square.sqrt(), scale);
+        // critically damped motion falls by e in 1/a steps
+        let still = motion.moved / (steps.max(1) as f64 * damping.max(1e-9));
+        found.remaining_motion = share(still, motion.displaced);
+        found.rounding = share(residual.rounding_square.sqrt(), scale);
+        found.worst = residual.worst_in_words(world);
+    }
+
+    /// Goes back to the last look, from where forces count half and loads grow half as fast.
+    fn take_back(&mut self, world: &mut World, mut relaxation: Relaxation, step: u64) -> Result<(), Error> {
+        let progress = relaxation.progress(self.before.step);
+        relaxation.since = (step, progress);
+        relaxation.growth *= 0.5;
+        relaxation.gain *= 0.5;
+        self.before.restore(world);
+        self.before.step = step;
+        send_to_device(world, |_, name| State::COLUMNS.contains(&name))?;
+        world.resource_mut::<Clock>().relaxation = Some(relaxation);
+        self.equilibrium.setbacks += 1;
+        self.settled_at = None;
+        self.next_look = (step + LOOK).min(self.most_steps);
+        Ok(())
+    }
+
+    fn given_up(&self, steps: u64) -> Error {
+        Error::NotConverged(Box::new(NotConverged {
+            steps,
+            stalled_at: (steps < self.most_steps).then_some(self.best.0),
+            equilibrium: self.equilibrium.clone(),
+        }))
+    }
+}

@@ -1,0 +1,189 @@
+//! What a static analysis sees of all bodies when it looks: displacements, forces, and what has changed.
+
+use crate::components::*;
+use bevy_ecs::prelude::*;
+use std::ops::Range;
+
+/// Displacements and forces of all bodies, one after the other in a fixed order.
+pub(super) struct State {
+    /// Steps taken.
+    pub step: u64,
+    bodies: Vec<Body>,
+}
+
+struct Body {
+    entity: Entity,
+    displacement: Reals,
+    compensation: Option<Reals>,
+    /// u at the beginning of the last step (m), where the forces are.
+    place: Vec<f64>,
+    /// F there (N).
+    internal: Vec<f64>,
+    /// R there (N).
+    load: Vec<f64>,
+}
+
+/// The sums that tell how far a state is from equilibrium.
+pub(super) struct Residual {
+    /// ‖R − F‖² over free axes (N²).
+    pub square: f64,
+    /// ‖R‖² over free axes and ‖F − R‖² over held ones (N²).
+    pub scale_square: f64,
+    /// What rounding of the displacements may be of `square` (N²): a node's stiffness, which its fictitious mass bounds,
+    /// times the last digit of its largest displacement.
+    pub rounding_square: f64,
+    /// Rounding of a number, as a share of it.
+    pub digit: f64,
+    worst: Option<(Entity, usize, f64)>,
+}
+
+impl State {
+    /// What must be on the host to see a state and to go back to one.
+    pub const COLUMNS: [&'static str; 7] = [
+        Displacement::NAME,
+        DisplacementStep::NAME,
+        DisplacementCompensation::NAME,
+        InternalForce::NAME,
+        ExternalForce::NAME,
+        FirstInverted::NAME,
+        FirstNonFinite::NAME,
+    ];
+
+    /// The present state.
+    pub fn of(world: &mut World) -> Self {
+        let step = world.resource::<Clock>().step;
+        type Columns<'a> = (
+            Entity,
+            &'a Displacement,
+            &'a DisplacementStep,
+            Option<&'a DisplacementCompensation>,
+            &'a InternalForce,
+            Option<&'a ExternalForce>,
+        );
+        let mut bodies: Vec<Body> = world
+            .query::<Columns>()
+            .iter(world)
+            .map(|(entity, u, step, lost, internal, external)| {
+                let all = 0..u.len();
+                let load = |i: usize| external.map_or(0.0, |external| external.get(i));
+                let exact = |i: usize| u.get(i) - lost.map_or(0.0, |lost| lost.get(i));
+                Body {
+                    entity,
+                    displacement: u.0.clone(),
+                    compensation: lost.map(|lost| lost.0.clone()),
+                    place: all.clone().map(|i| exact(i) - step.get(i)).collect(),
+                    internal: all.clone().map(|i| internal.get(i)).collect(),
+                    load: all.map(load).collect(),
+                }
+            })
+            .collect();
+        bodies.sort_by_key(|body| body.entity);
+        Self { step, bodies }
+    }
+
+    /// Puts all bodies where they were, at rest, and forgets what went wrong since.
+    pub fn restore(&self, world: &mut World) {
+        for body in &self.bodies {
+            let mut entity = world.entity_mut(body.entity);
+            if let Some(mut u) = entity.get_mut::<Displacement>() {
+                u.0.clone_from(&body.displacement);
+            }
+            if let (Some(mut lost), Some(before)) = (entity.get_mut::<DisplacementCompensation>(), &body.compensation) {
+                lost.0.clone_from(before);
+            }
+            if let Some(mut step) = entity.get_mut::<DisplacementStep>() {
+                step.bytes_mut().fill(0);
+            }
+            if let Some(mut found) = entity.get_mut::<FirstNonFinite>() {
+                found[0] = u32::MAX;
+            }
+        }
+        for mut found in world.query::<&mut FirstInverted>().iter_mut(world) {
+            found[0] = u32::MAX;
+        }
+    }
+
+    /// What has changed since another state.
+    pub fn motion_since(&self, before: &State, world: &World) -> Motion {
+        let mut sum = Motion::default();
+        let (mut work, mut weight) = (0.0, 0.0);
+        for (now, before) in self.bodies.iter().zip(&before.bodies) {
+            let Some(mass) = world.get::<FictitiousMass>(now.entity) else { continue };
+            for i in free(now.entity, 0..now.place.len(), world) {
+                let moved = now.place[i] - before.place[i];
+                work += moved * (now.internal[i] - before.internal[i]);
+                weight += moved * moved * mass.get(i / 3);
+                sum.moved += moved * moved;
+                sum.displaced += now.place[i] * now.place[i];
+            }
+        }
+        let square = work / weight;
+        sum.frequency = (square.is_finite() && square > 0.0).then(|| square.sqrt());
+        sum.moved = sum.moved.sqrt();
+        sum.displaced = sum.displaced.sqrt();
+        sum
+    }
+}
+
+/// What has changed from one state to another, along free axes.
+#[derive(Default)]
+pub(super) struct Motion {
+    /// The Rayleigh quotient of the change, as an angular frequency (1/s); `None` when nothing moved, or against no force.
+    pub frequency: Option<f64>,
+    /// Norm of the change of the displacements (m).
+    pub moved: f64,
+    /// Norm of the displacements (m).
+    pub displaced: f64,
+}
+
+/// The axes among some along which a body's nodes move freely: not held, and not parked.
+fn free(body: Entity, axes: Range<usize>, world: &World) -> impl Iterator<Item = usize> + '_ {
+    let held = world.get::<ConstrainedAxes>(body);
+    let mass = world.get::<FictitiousMass>(body);
+    axes.filter(move |&i| {
+        let held = held.is_some_and(|held| held[i / 3] >> (i % 3) & 1 == 1);
+        !held && mass.is_some_and(|mass| mass.get(i / 3) > 0.0)
+    })
+}
+
+impl Residual {
+    /// Of a state.
+    pub fn of(state: &State, world: &World) -> Self {
+        let mut sum = Self { square: 0.0, scale_square: 0.0, rounding_square: 0.0, digit: 0.0, worst: None };
+        let time_step = world.resource::<Clock>().time_step;
+        for body in &state.bodies {
+            let net = |i: usize| body.internal[i] - body.load[i];
+            let all: f64 = (0..body.load.len()).map(|i| net(i) * net(i)).sum();
+            let mut square = 0.0;
+            sum.digit = match body.displacement {
+                Reals::F32(_) => f64::from(f32::EPSILON),
+                Reals::F64(_) => f64::EPSILON,
+            };
+            let mass = world.get::<FictitiousMass>(body.entity);
+            let stiffness = |node: usize| mass.map_or(0.0, |mass| mass.get(node)) / (time_step * time_step);
+            let mut node = (usize::MAX, 0.0);
+            for i in free(body.entity, 0..body.load.len(), world) {
+                let part = net(i) * net(i);
+                square += part;
+                sum.scale_square += body.load[i] * body.load[i];
+                sum.rounding_square += (stiffness(i / 3) * sum.digit * body.place[i]).powi(2);
+                node = (i / 3, if node.0 == i / 3 { node.1 + part } else { part });
+                if sum.worst.is_none_or(|(.., most)| node.1 > most) {
+                    sum.worst = Some((body.entity, node.0, node.1));
+                }
+            }
+            sum.square += square;
+            // what is not free is held
+            sum.scale_square += (all - square).max(0.0);
+        }
+        sum
+    }
+
+    /// The body, the author's number of the node, and the force that nothing balances (N).
+    pub fn worst_in_words(&self, world: &World) -> (String, u64, f64) {
+        let Some((body, row, square)) = self.worst else { return (String::new(), 0, 0.0) };
+        let name = world.get::<Label>(body).map(|label| label.0.clone()).unwrap_or_default();
+        let node = world.get::<Authoring>(body).map_or(row as u64, |authoring| authoring.node_id(row));
+        (name, node, square.sqrt())
+    }
+}
