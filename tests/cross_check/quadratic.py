@@ -1,7 +1,7 @@
 """Implicit statics with quadratic hexahedra: FElupe's elements and laws, a Newton loop, and extrapolation.
 
-None of it is shared with sinew: 27-node hexahedra with 27 points, either of displacements alone or with continuous
-linear pressure and dilatation (Taylor-Hood, "mixed"), an exact tangent, a direct solver.
+None of it is shared with sinew: 27-node hexahedra with 27 points, either of displacements alone or with pressure and
+dilatation linear in each cell ("mixed": Q2/P1, stable and without locking), an exact tangent, a direct solver.
 """
 
 import json
@@ -11,6 +11,7 @@ from pathlib import Path
 
 import felupe as fem
 import numpy as np
+from felupe.element import Element
 from pypardiso import spsolve
 
 np.seterr(invalid="ignore")  # inverted elements on the way make NaN, which shortens the step
@@ -41,10 +42,23 @@ def quadratic(points, unit):
     )
 
 
+class Linear(Element):
+    """1, r, s, t in each cell: no nodes, no continuity."""
+
+    def __init__(self):
+        self.shape, self.points = (4,), np.zeros((4, 3))
+
+    def function(self, rst):
+        return np.array([1, *rst])
+
+    def gradient(self, rst):
+        return np.vstack([np.zeros(3), np.eye(3)])
+
+
 class Body:
     """A block of 27-node hexahedra: `place` puts the corners of `cells` of the unit cube where they belong.
 
-    `law` is a material of FElupe; `mixed` adds continuous linear pressure and dilatation.
+    `law` is a material of FElupe; `mixed` adds pressure and dilatation.
     """
 
     def __init__(self, cells, place, law, mixed=True):
@@ -55,7 +69,14 @@ class Body:
         self.mesh = fem.Mesh(points, connectivity, kind)
         self.region = fem.RegionTriQuadraticHexahedron(self.mesh)
         if mixed:
-            self.field = fem.FieldsMixed(self.region, n=3, disconnect=False)
+            own = np.arange(4 * len(connectivity)).reshape(-1, 4)
+            linear = fem.Region(
+                fem.Mesh(np.zeros((own.size, 3)), own, "linear"), Linear(), self.region.quadrature, grad=False
+            )
+            pressure, dilatation = fem.Field(linear, dim=1), fem.Field(linear, dim=1)
+            dilatation.values[::4] = 1
+            self.field = fem.FieldContainer([fem.Field(self.region, dim=3), pressure, dilatation])
+            self.middles = self.unit[connectivity[:, :8]].mean(axis=1)
         else:
             self.field = fem.FieldContainer([fem.Field(self.region, dim=3)])
         self.solid = fem.SolidBody(umat=law, field=self.field)
@@ -66,20 +87,39 @@ class Body:
 
     def start_from(self, other):
         """Takes over another body's solution, interpolated by its own shape functions in the unit cube."""
-        for mine, theirs in zip(self.field, other.field):
-            count, target = len(theirs.values), self.unit[: len(mine.values)]
-            order = 2 if count == len(other.unit) else 1
-            table = np.zeros((*(order * other.cells + 1), theirs.values.shape[1]))
-            table[tuple(np.rint(other.unit[:count] * order * other.cells).astype(int).T)] = theirs.values
-            cell = np.minimum((target * other.cells).astype(int), other.cells - 1)
-            t = target * other.cells - cell
-            shape = [(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)] if order == 2 else [1 - t, t]
-            mine.values[:] = 0
-            for i, j, k in np.ndindex(order + 1, order + 1, order + 1):
-                weight = shape[i][:, 0] * shape[j][:, 1] * shape[k][:, 2]
-                mine.values[:] += weight[:, None] * table[tuple((order * cell + [i, j, k]).T)]
+        self.displacement[:] = other.interpolated(self.unit)
+        for mine, theirs in zip(self.field[1:], other.field[1:]):
+            cell, t = other.locate(self.middles)
+            table = np.zeros((*other.cells, 4))
+            table[tuple(other.locate(other.middles)[0].T)] = theirs.values.reshape(-1, 4)
+            row = table[tuple(cell.T)]
+            mine.values[::4, 0] = row[:, 0] + (row[:, 1:] * (2 * t - 1)).sum(axis=1)
+            mine.values.reshape(-1, 4)[:, 1:] = row[:, 1:] * other.cells / self.cells
         self.started = True
         return self
+
+    def locate(self, unit):
+        """The cell of points of the unit cube, and where in it they are (0 to 1)."""
+        cell = np.minimum((unit * self.cells).astype(int), self.cells - 1)
+        return cell, unit * self.cells - cell
+
+    def interpolated(self, unit):
+        """Displacements (m) at points of the unit cube, by the shape functions."""
+        cell, t = self.locate(unit)
+        shape = [(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)]
+        table = np.zeros((*(2 * self.cells + 1), 3))
+        table[tuple(np.rint(self.unit * 2 * self.cells).astype(int).T)] = self.displacement
+        weights = (shape[i][:, 0] * shape[j][:, 1] * shape[k][:, 2] for i, j, k in np.ndindex(3, 3, 3))
+        corners = (table[tuple((2 * cell + list(ijk)).T)] for ijk in np.ndindex(3, 3, 3))
+        return sum(weight[:, None] * corner for weight, corner in zip(weights, corners))
+
+    def at(self, point):
+        """Displacement (m) of a point at rest in a block whose cells are boxes."""
+        unit = []
+        for axis in range(3):
+            lines = np.unique(np.round(self.mesh.points[:, axis], 12))[::2]
+            unit.append(np.interp(point[axis], lines, np.linspace(0, 1, len(lines))))
+        return self.interpolated(np.array([unit]))[0]
 
     @property
     def displacement(self):
@@ -247,12 +287,13 @@ def study(problem, levels, run, units, how):
         rows.append({name: float(value) for name, value in row.items()})
         shown = "  ".join(f"{name} {value:.9g}" for name, value in rows[-1].items())
         print(f"{problem} {level}: {shown}  ({time.time() - start:.0f} s)", flush=True)
-    for name in rows[0]:
+    for name in rows[0] if len(rows) > 2 else []:
         limit, doubt, order = extrapolate([1 / level for level in levels[-3:]], [row[name] for row in rows[-3:]])
         told = f"order {order:.2f}" if order else "no clear order: the finest mesh"
         print(f"  {name}: {limit:.9g} ± {doubt:.2g} {units[name]} ({told})", flush=True)
         meshes = {str(level): row[name] for level, row in zip(levels, rows)}
-        record(problem, name, limit, doubt, units[name], how, {"cells": meshes, "observed_order": order})
+        made = f"FElupe {fem.__version__}, 27-node hexahedra with linear pressure: {how}, extrapolated"
+        record(problem, name, limit, doubt, units[name], made, {"cells": meshes, "observed_order": order})
 
 
 def record(problem, quantity, value, uncertainty, unit, how, more=None):
@@ -260,6 +301,6 @@ def record(problem, quantity, value, uncertainty, unit, how, more=None):
     REFERENCES.parent.mkdir(parents=True, exist_ok=True)
     table = json.loads(REFERENCES.read_text()) if REFERENCES.exists() else {}
     table.setdefault(problem, {})[quantity] = {
-        "value": value, "uncertainty": uncertainty, "unit": unit, "how": f"FElupe {fem.__version__}, 27-node hexahedra: {how}", **(more or {})
+        "value": value, "uncertainty": uncertainty, "unit": unit, "how": how, **(more or {})
     }
     REFERENCES.write_text(json.dumps(table, indent=2, sort_keys=True, ensure_ascii=False) + "\n")
