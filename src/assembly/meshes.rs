@@ -51,6 +51,7 @@ pub fn mesh_of(body: &Body, folder: &Path) -> Result<Mesh, crate::mesh::MeshErro
             generators::lens_mesh(*diameter, *thickness, *across, *through, *elements)?
         }
     };
+    mesh.refine(body.refine)?;
     mesh.place(body.scale, body.rotate, body.translate)?;
     Ok(mesh)
 }

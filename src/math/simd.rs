@@ -1,6 +1,8 @@
 //! Vector registers as [`Real`] numbers, of the width that the machine turns out to have at run time.
 
-use super::real::{GUESS_F32, GUESS_F64, STEPS_F32, STEPS_F64, refine_inverse_cbrt};
+use super::real::{
+    GUESS_F32, GUESS_F64, ONE_F32, ONE_F64, ROOT_HALF_F32, ROOT_HALF_F64, STEPS_F32, STEPS_F64, refine_inverse_cbrt,
+};
 use super::{Real, Scalar};
 use pulp::Simd;
 use std::fmt::{Debug, Formatter, Result};
@@ -26,7 +28,8 @@ pub trait SimdScalar: Scalar {
 
 macro_rules! vector {
     ($name:ident, $scalar:ty, $raw:ident, $lanes:ident, $load:ident, $store:ident, $splat:ident, $add:ident, $sub:ident,
-     $mul:ident, $div:ident, $neg:ident, $max:ident, $mul_add:ident, $guess:ident, $steps:expr) => {
+     $mul:ident, $div:ident, $neg:ident, $max:ident, $mul_add:ident, $guess:ident, $steps:expr, $min:ident, $sqrt:ident,
+     $above:ident, $select:ident, $to_bits:ident, $from_bits:ident, $power:ident, $split:ident) => {
         #[doc = concat!("A register of `", stringify!($scalar), "`.")]
         #[derive(Clone, Copy)]
         pub struct $name<S: Simd> {
@@ -95,6 +98,8 @@ macro_rules! vector {
             }
         }
         impl<S: Simd> Real for $name<S> {
+            const EPSILON: f64 = <$scalar>::EPSILON as f64;
+
             #[inline(always)]
             fn constant(self, value: f64) -> Self {
                 self.with(self.simd.$splat(value as $scalar))
@@ -111,6 +116,30 @@ macro_rules! vector {
             fn inverse_cbrt(self) -> Self {
                 let guess = self.with($guess(self.simd, self.value));
                 refine_inverse_cbrt(self, guess, $steps)
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                self.with(self.simd.$min(self.value, other.value))
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                self.with(self.simd.$sqrt(self.value))
+            }
+            #[inline(always)]
+            fn if_positive(self, then: Self, otherwise: Self) -> Self {
+                let simd = self.simd;
+                let mask = simd.$above(self.value, simd.$splat(0.0));
+                let chosen = simd.$select(mask, simd.$to_bits(then.value), simd.$to_bits(otherwise.value));
+                self.with(simd.$from_bits(chosen))
+            }
+            #[inline(always)]
+            fn power_of_two(self) -> Self {
+                self.with($power(self.simd, self.value))
+            }
+            #[inline(always)]
+            fn mantissa_and_exponent(self) -> (Self, Self) {
+                let (mantissa, exponent) = $split(self.simd, self.value);
+                (self.with(mantissa), self.with(exponent))
             }
         }
         impl SimdScalar for $scalar {
@@ -151,6 +180,48 @@ fn guess_f64s<S: Simd>(_: S, mut x: S::f64s) -> S::f64s {
     x
 }
 
+/// 2^k: k + bias in the last bits of a large number, moved to where the exponent stands.
+#[inline(always)]
+fn power_f32s<S: Simd>(simd: S, k: S::f32s) -> S::f32s {
+    let large = simd.add_f32s(k, simd.splat_f32s(1.5 / f32::EPSILON + 127.0));
+    let bits = simd.transmute_u32s_f32s(large);
+    simd.transmute_f32s_u32s(simd.wrapping_dyn_shl_u32s(bits, simd.splat_u32s(23)))
+}
+
+// pulp knows no shifts of 64 bits: compilers find the vector instruction for such a loop
+#[inline(always)]
+fn power_f64s<S: Simd>(_: S, mut k: S::f64s) -> S::f64s {
+    for k in bytemuck::cast_slice_mut::<S::f64s, f64>(std::slice::from_mut(&mut k)) {
+        *k = Real::power_of_two(*k);
+    }
+    k
+}
+
+/// Mantissa in [√½, √2) and exponent.
+#[inline(always)]
+fn split_f32s<S: Simd>(simd: S, x: S::f32s) -> (S::f32s, S::f32s) {
+    // 2²³ with the exponent and its bias in the last bits
+    const LARGE: f32 = 8_388_608.0;
+    let shifted = simd.add_u32s(simd.transmute_u32s_f32s(x), simd.splat_u32s(ONE_F32 - ROOT_HALF_F32));
+    let mantissa = simd.add_u32s(simd.and_u32s(shifted, simd.splat_u32s(0x007f_ffff)), simd.splat_u32s(ROOT_HALF_F32));
+    let places = simd.wrapping_dyn_shr_u32s(shifted, simd.splat_u32s(23));
+    let exponent = simd.transmute_f32s_u32s(simd.or_u32s(places, simd.splat_u32s(LARGE.to_bits())));
+    (simd.transmute_f32s_u32s(mantissa), simd.sub_f32s(exponent, simd.splat_f32s(LARGE + 127.0)))
+}
+
+#[inline(always)]
+fn split_f64s<S: Simd>(simd: S, x: S::f64s) -> (S::f64s, S::f64s) {
+    const LARGE: f64 = 4_503_599_627_370_496.0;
+    let (mut mantissa, mut exponent) = (x, x);
+    for bits in bytemuck::cast_slice_mut::<S::f64s, u64>(std::slice::from_mut(&mut mantissa)) {
+        *bits = ((*bits).wrapping_add(ONE_F64 - ROOT_HALF_F64) & 0x000f_ffff_ffff_ffff) + ROOT_HALF_F64;
+    }
+    for bits in bytemuck::cast_slice_mut::<S::f64s, u64>(std::slice::from_mut(&mut exponent)) {
+        *bits = (*bits).wrapping_add(ONE_F64 - ROOT_HALF_F64) >> 52 | LARGE.to_bits();
+    }
+    (mantissa, simd.sub_f64s(exponent, simd.splat_f64s(LARGE + 1023.0)))
+}
+
 vector!(
     F32s,
     f32,
@@ -167,7 +238,15 @@ vector!(
     max_f32s,
     mul_add_e_f32s,
     guess_f32s,
-    STEPS_F32
+    STEPS_F32,
+    min_f32s,
+    sqrt_f32s,
+    greater_than_f32s,
+    select_u32s,
+    transmute_u32s_f32s,
+    transmute_f32s_u32s,
+    power_f32s,
+    split_f32s
 );
 vector!(
     F64s,
@@ -185,5 +264,13 @@ vector!(
     max_f64s,
     mul_add_e_f64s,
     guess_f64s,
-    STEPS_F64
+    STEPS_F64,
+    min_f64s,
+    sqrt_f64s,
+    greater_than_f64s,
+    select_u64s,
+    transmute_u64s_f64s,
+    transmute_f64s_u64s,
+    power_f64s,
+    split_f64s
 );

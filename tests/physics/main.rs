@@ -18,6 +18,7 @@ mod laws;
 mod loads;
 mod motions;
 mod points;
+mod precision;
 mod random;
 mod removal;
 mod statics;

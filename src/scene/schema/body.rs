@@ -15,6 +15,9 @@ pub struct Body {
     /// Parts made of another material; a later entry wins.
     #[serde(default)]
     pub regions: Vec<Region>,
+    /// Cuts every element of the mesh into eight, so many times over.
+    #[serde(default)]
+    pub refine: u32,
     /// Multiplies all coordinates of the mesh, before anything else (1 = metres).
     #[serde(default = "one")]
     pub scale: f64,

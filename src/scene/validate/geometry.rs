@@ -3,12 +3,15 @@
 use super::{Judge, scene, select};
 use crate::mesh::generators::cells_around;
 use crate::scene::load::SceneFile;
-use crate::scene::schema::{MeshSource, Picture};
+use crate::scene::schema::{Accuracy, AccuracyReference, MeshSource, Picture};
 use crate::scene::suggest::{choice, list};
 use crate::scene::syntax::Path;
 
 /// More cells than any machine holds: a slip of the finger, told before memory runs out.
 const MOST_CELLS: u128 = 1_000_000_000;
+
+/// More refinement than the smallest mesh bears.
+const MOST_TIMES: u32 = 9;
 
 /// What mesh files may end in.
 const MESH_FILES: [&str; 3] = ["msh", "vtk", "vtu"];
@@ -18,12 +21,34 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
         let path = scene("bodies").name(name);
         mesh(file, judge, &path.name("mesh"), &body.mesh);
         judge.above_zero(&path.name("scale"), body.scale, "");
+        if body.refine > MOST_TIMES {
+            judge
+                .must(&path.name("refine"), &format!("at most {MOST_TIMES}"), body.refine)
+                .note("each time makes eight elements of one: 10 times make a billion of it");
+        }
         judge.not_negative(&path.name("hourglass"), body.hourglass, "");
         for (i, region) in body.regions.iter().enumerate() {
             select::validate(judge, &path.name("regions").index(i).name("on"), &region.on);
         }
     }
     picture(judge, &file.scene.picture);
+    accuracy(judge, &file.scene.accuracy);
+}
+
+fn accuracy(judge: &mut Judge, wanted: &Accuracy) {
+    let path = scene("accuracy");
+    if let Some(target) = wanted.target {
+        judge.above_zero(&path.name("target"), target, "");
+    }
+    let empty = match &wanted.reference {
+        AccuracyReference::SelfMade => false,
+        AccuracyReference::Values(values) => values.is_empty(),
+        AccuracyReference::Files(files) => files.is_empty(),
+    };
+    if empty {
+        let message = "the reference is empty: there is nothing to measure errors against";
+        judge.out.error_at(path.name("reference"), message).note("leave `reference` out to have one made");
+    }
 }
 
 fn mesh(file: &SceneFile, judge: &mut Judge, path: &Path, mesh: &MeshSource) {
