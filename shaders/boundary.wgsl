@@ -22,7 +22,7 @@ fn boundary(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroup
         if ((motion.axes >> axis) & 1u) == 1u {
             let at = 3u * rows[i] + axis;
             let goal = dot(step.signals[motion.signal + axis], arm);
-            displacement_step[at] = (goal - displacement[at]) + lost_of(at);
+            displacement_step[at] = (goal - displacement[at]) + lost_of(rows[i], axis);
         }
     }
 }

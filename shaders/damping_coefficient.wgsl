@@ -1,4 +1,4 @@
-// Damping proportional to mass, centred, for integrate: with a = cΔt/(2m), ((1 − a) d + push)/(1 + a).
+// Damping proportional to mass, centred, for integrate: with a = cΔt/(2m), a step d changes by (push − 2a d)/(1 + a).
 @group(0) @binding(0) var<storage, read> damping_coefficient: array<f32>;
 
 fn coefficient_of(node: u32) -> f32 {
@@ -7,5 +7,5 @@ fn coefficient_of(node: u32) -> f32 {
 
 fn damped(node: u32, before: vec3<f32>, pushed: vec3<f32>, per_mass: f32) -> vec3<f32> {
     let a = coefficient_of(node) * step.half_step * per_mass;
-    return ((1.0 - a) * before + pushed) / (1.0 + step.divide * a);
+    return (pushed - (1.0 + step.divide) * a * before) / (1.0 + step.divide * a);
 }

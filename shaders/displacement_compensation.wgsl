@@ -1,4 +1,5 @@
-// The compensated sum, for integrate: what rounding leaves out of a step goes into the next one.
+// Compensated sums (Kahan 1965), for integrate: what rounding leaves out of a displacement or of its step goes into the next.
+// Six numbers a node: what the displacement, then what the step has too much of.
 @group(0) @binding(0) var<storage, read_write> displacement_compensation: array<f32>;
 
 // The same number, in a way that no compiler can look through: else (u + d) − u becomes d, and nothing is compensated.
@@ -6,17 +7,38 @@ fn rounded(x: vec3<f32>) -> vec3<f32> {
     return bitcast<vec3<f32>>(bitcast<vec3<u32>>(x) ^ vec3<u32>(step.zero));
 }
 
-fn add(at: u32, u: vec3<f32>, d: vec3<f32>) -> vec3<f32> {
-    let lost = vec3<f32>(
+fn lost_at(at: u32) -> vec3<f32> {
+    return vec3<f32>(
         displacement_compensation[at],
         displacement_compensation[at + 1u],
         displacement_compensation[at + 2u],
     );
-    let exact = rounded(rounded(d) - lost);
-    let sum = rounded(u + exact);
-    let left_out = rounded(sum - u) - exact;
+}
+
+fn compensated_add(at: u32, sum: vec3<f32>, change: vec3<f32>) -> vec3<f32> {
+    let exact = rounded(rounded(change) - lost_at(at));
+    let after = rounded(sum + exact);
+    let left_out = rounded(after - sum) - exact;
     displacement_compensation[at] = left_out.x;
     displacement_compensation[at + 1u] = left_out.y;
     displacement_compensation[at + 2u] = left_out.z;
-    return sum;
+    return after;
+}
+
+// The longer step.
+fn add_to_step(node: u32, before: vec3<f32>, change: vec3<f32>) -> vec3<f32> {
+    return compensated_add(6u * node + 3u, before, change);
+}
+
+// A parked node has no step, and nothing of it is left out.
+fn forget_step(node: u32) {
+    displacement_compensation[6u * node + 3u] = 0.0;
+    displacement_compensation[6u * node + 4u] = 0.0;
+    displacement_compensation[6u * node + 5u] = 0.0;
+}
+
+// The displacement after the step; what boundary wrote is the whole of a constrained one.
+fn add_step(node: u32, u: vec3<f32>, d: vec3<f32>, constrained: vec3<bool>) -> vec3<f32> {
+    let lost = select(lost_at(6u * node + 3u), vec3<f32>(0.0), constrained);
+    return compensated_add(6u * node, u, d - lost);
 }

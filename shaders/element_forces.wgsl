@@ -1,5 +1,5 @@
 // Forces of deformed elements on their corners; twin of systems/element_forces.rs.
-// The element's and the material's fragments say how; isochoric_stress and write_forces are generated.
+// The element's and the material's fragments say how; isochoric_stress, viscous_pressure and write_forces are generated.
 @group(0) @binding(0) var<storage, read> rest_shape: array<f32>;
 @group(0) @binding(1) var<storage, read_write> element_force: array<f32>;
 @group(0) @binding(2) var<storage, read_write> first_inverted: array<atomic<u32>>;
@@ -26,7 +26,7 @@ fn element_forces(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wor
         if e.volume > 0.0 && k.true_j < 0.0 {
             atomicMin(&first_inverted[0], element);
         }
-        let pressure = point_pressure(mean, k);
+        let pressure = viscous_pressure(element, point, point_pressure(mean, k));
         let stress = sym_plus(isochoric_stress(element, point, k), elastic_volumetric(k, pressure));
         forces = add_stress(forces, point, at, elastic_first_stress(at.gradient, stress));
     }

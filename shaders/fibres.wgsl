@@ -8,11 +8,7 @@ struct Fibres {
 // Ī₄ − 1 and I₄ for the unit direction a
 fn fibres_stretch(k: Kinematics, a: vec3<f32>) -> vec2<f32> {
     let i4_change = 2.0 * sym_quadratic(k.green_strain, a);
-    // one Newton step on (1+w)³ J² = 1 brings back the digits that J^(−2/3) − 1 has lost
-    var w = k.j_m23 - 1.0;
-    let cube = w * (3.0 + w * (3.0 + w));
-    let square = k.volume_change * (2.0 + k.volume_change);
-    w -= (cube + square + cube * square) * k.j_m23 * (1.0 / 3.0);
+    let w = j_m23_change(k);
     return vec2<f32>(i4_change + w + w * i4_change, 1.0 + i4_change);
 }
 

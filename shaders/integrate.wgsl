@@ -1,5 +1,5 @@
 // Central differences in velocity form; twin of systems/integrate.rs. What a body has no column for is a line generated in
-// place of a fragment: external_force_of, damped, coefficient_of, book_work, add.
+// place of a fragment: external_force_of, damped, coefficient_of, book_work, add_to_step, add_step, forget_step.
 struct Integrate {
     count: u32, // nodes
 }
@@ -16,6 +16,10 @@ fn step_of(node: u32) -> vec3<f32> {
     return vec3<f32>(displacement_step[at], displacement_step[at + 1u], displacement_step[at + 2u]);
 }
 
+fn constrained_at(node: u32) -> vec3<bool> {
+    return (vec3<u32>(constrained_axes[node]) & vec3<u32>(1u, 2u, 4u)) != vec3<u32>(0u);
+}
+
 // The node's next step (m); constrained axes keep what boundary wrote, nodes without mass are parked.
 fn push(node: u32) -> vec3<f32> {
     let at = 3u * node;
@@ -25,10 +29,12 @@ fn push(node: u32) -> vec3<f32> {
         let before = step_of(node);
         let inner = vec3<f32>(internal_force[at], internal_force[at + 1u], internal_force[at + 2u]);
         let outer = external_force_of(node);
-        let pushed = damped(node, before, step.force_factor * ((outer - inner) * per_mass), per_mass);
-        let constrained = (vec3<u32>(constrained_axes[node]) & vec3<u32>(1u, 2u, 4u)) != vec3<u32>(0u);
-        after = select(pushed, before, constrained);
+        let change = damped(node, before, step.force_factor * ((outer - inner) * per_mass), per_mass);
+        let constrained = constrained_at(node);
+        after = select(add_to_step(node, before, change), before, constrained);
         book_work(node, before, after, constrained, inner, outer);
+    } else {
+        forget_step(node);
     }
     displacement_step[at] = after.x;
     displacement_step[at + 1u] = after.y;
@@ -38,7 +44,8 @@ fn push(node: u32) -> vec3<f32> {
 
 fn move_on(node: u32, d: vec3<f32>) {
     let at = 3u * node;
-    let u = add(at, vec3<f32>(displacement[at], displacement[at + 1u], displacement[at + 2u]), d);
+    let before = vec3<f32>(displacement[at], displacement[at + 1u], displacement[at + 2u]);
+    let u = add_step(node, before, d, constrained_at(node));
     displacement[at] = u.x;
     displacement[at + 1u] = u.y;
     displacement[at + 2u] = u.z;

@@ -33,3 +33,23 @@ fn kinematics(h: mat3x3<f32>) -> Kinematics {
         j_m13 * j_m13,
     );
 }
+
+// J^(−2/3) − 1: one Newton step on (1+w)³ J² = 1 brings back the digits that the difference has lost
+fn j_m23_change(k: Kinematics) -> f32 {
+    let w = k.j_m23 - 1.0;
+    let cube = w * (3.0 + w * (3.0 + w));
+    let square = k.volume_change * (2.0 + k.volume_change);
+    return w - (cube + square + cube * square) * k.j_m23 * (1.0 / 3.0);
+}
+
+// C⁻¹ m for an m with the eigenvectors of C
+fn inverse_c_times(k: Kinematics, m: Sym3) -> Sym3 {
+    return sym_scaled(sym_times_coaxial(k.adjugate_c, m), 1.0 / (k.j * k.j));
+}
+
+// Ī₁ − 3
+fn i1_change(k: Kinematics) -> f32 {
+    let w = j_m23_change(k);
+    let twice = 2.0 * sym_trace(k.green_strain);
+    return 3.0 * w + (twice + w * twice);
+}

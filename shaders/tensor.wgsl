@@ -28,6 +28,15 @@ fn sym_trace(a: Sym3) -> f32 {
     return a.diagonal.x + a.diagonal.y + a.diagonal.z;
 }
 
+fn sym_deviator(a: Sym3) -> Sym3 {
+    return Sym3(a.diagonal - sym_trace(a) * (1.0 / 3.0), a.others);
+}
+
+// The sum of the products of all nine entries.
+fn sym_contracted(a: Sym3, b: Sym3) -> f32 {
+    return dot(a.diagonal, b.diagonal) + 2.0 * dot(a.others, b.others);
+}
+
 // The inverse times the determinant.
 fn sym_adjugate(s: Sym3) -> Sym3 {
     let d = s.diagonal;

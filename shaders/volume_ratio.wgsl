@@ -7,3 +7,9 @@ fn elastic_volume_measure(k: Kinematics) -> f32 {
 fn elastic_volumetric(k: Kinematics, pressure: f32) -> Sym3 {
     return sym_scaled(k.adjugate_c, pressure / k.j);
 }
+
+// What a stress (Pa) is without its part that acts on J: s − (s:C)/3 C⁻¹
+fn elastic_without_pressure(k: Kinematics, stress: Sym3) -> Sym3 {
+    let pressing = sym_trace(stress) + 2.0 * sym_contracted(stress, k.green_strain);
+    return sym_plus(stress, sym_scaled(k.adjugate_c, pressing * (-1.0 / 3.0) / (k.j * k.j)));
+}

@@ -62,7 +62,7 @@ fn move_rows<T: Scalar>(
             let [x, y, z, shift] = motion[axis];
             let place = 3 * row as usize + axis;
             let target = T::from_f64(x * arm.x + y * arm.y + z * arm.z + shift);
-            let lost = compensation.map_or(T::default(), |c| c[place]);
+            let lost = compensation.map_or(T::default(), |c| c[COMPENSATION_NUMBERS * row as usize + axis]);
             step[place] = (target - displacement[place]) + lost;
         }
     }
@@ -100,7 +100,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
         } else {
             kernel.fragment(Fragment::new(
                 "generated: sums that are not compensated",
-                "fn lost_of(at: u32) -> f32 {\n    return 0.0;\n}\n",
+                "fn lost_of(node: u32, axis: u32) -> f32 {\n    return 0.0;\n}\n",
             ))
         };
         kernels.push(with_step(kernel, world));

@@ -4,7 +4,7 @@
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::block_kernel::BlockKernels;
-use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, run_block};
+use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, run_block, run_block_fast};
 use crate::backend::kernel::Kernel;
 use crate::components::*;
 use crate::evaluation::{ElementState, node_count, with_element};
@@ -51,9 +51,16 @@ fn element_forces(
             };
             let memory = memory.map(|m| &mut m.into_inner().0);
             let columns = (connectivity, shape, fibres, means, memory, displacement);
+            let patch = patch_groups(block.kind);
             let found = match (&mut force.0, rounded) {
-                (Reals::F32(force), Some(law)) => forces_of(&cpu, block, columns, law, force),
-                (Reals::F64(force), _) => forces_of(&cpu, block, columns, law, force),
+                (Reals::F32(force), Some(law)) => {
+                    let columns = of_kernel(block, columns, force);
+                    with_element!(block.kind, E => run_block_fast::<E>(&cpu, columns, law, patch))
+                }
+                (Reals::F64(force), _) => {
+                    let columns = of_kernel(block, columns, force);
+                    with_element!(block.kind, E => run_block::<E, f64>(&cpu, columns, law, patch))
+                }
                 (Reals::F32(_), None) => false,
             };
             if found && inverted[0] == u32::MAX {
@@ -72,15 +79,14 @@ type Columns<'a> = (
     &'a Displacement,
 );
 
-fn forces_of<T: SimdScalar>(
-    cpu: &Cpu,
+/// The columns as the kernel takes them.
+fn of_kernel<'a, T: SimdScalar>(
     block: &Block,
-    (connectivity, shape, fibres, means, memory, displacement): Columns<'_>,
-    law: &BlockLaw<T>,
-    force: &mut [T],
-) -> bool {
+    (connectivity, shape, fibres, means, memory, displacement): Columns<'a>,
+    force: &'a mut [T],
+) -> BlockColumns<'a, T> {
     let length = block.count.div_ceil(LANES) * LANES * 3 * node_count(block.kind);
-    let columns = BlockColumns {
+    BlockColumns {
         displacement: displacement.slice(),
         connectivity,
         rest_shape: shape.slice(),
@@ -88,8 +94,7 @@ fn forces_of<T: SimdScalar>(
         nodal_volume_change: means.map_or(&[], |means| means.slice()),
         memory: memory.map_or(&mut [], |m| m.slice_mut()),
         force: &mut force[block.force_offset..block.force_offset + length],
-    };
-    with_element!(block.kind, E => run_block::<E, T>(cpu, columns, law, patch_groups(block.kind)))
+    }
 }
 
 /// The lowest row with J < 0. Only called when the kernel has found one.

@@ -127,7 +127,7 @@ fn move_nodes<T: Scalar>(
     work: Option<&mut [T]>,
 ) -> Option<u32> {
     let bad = std::sync::atomic::AtomicU32::new(u32::MAX);
-    let mut compensations = compensation.map(|c| c.chunks_mut(3 * ROWS_A_TASK));
+    let mut compensations = compensation.map(|c| c.chunks_mut(COMPENSATION_NUMBERS * ROWS_A_TASK));
     let mut works = work.map(|w| w.chunks_mut(WORK_NUMBERS * ROWS_A_TASK));
     let tasks = u.chunks_mut(3 * ROWS_A_TASK).zip(step.chunks_mut(3 * ROWS_A_TASK)).enumerate().map(|(task, rows)| {
         (
@@ -140,9 +140,11 @@ fn move_nodes<T: Scalar>(
     cpu.for_each(tasks, |(first, (u, step), mut compensation, mut work)| {
         for row in 0..u.len() / 3 {
             let at = 3 * row..3 * row + 3;
-            let mut sum = Sum { u: &mut u[at.clone()], lost: compensation.as_mut().map(|c| &mut c[at.clone()]) };
+            let lost = COMPENSATION_NUMBERS * row..COMPENSATION_NUMBERS * (row + 1);
+            let lost = compensation.as_mut().map(|c| &mut c[lost]);
+            let mut sum = Sum { u: &mut u[at.clone()], step: &mut step[at], lost };
             let work = work.as_mut().map(|w| &mut w[WORK_NUMBERS * row..WORK_NUMBERS * (row + 1)]);
-            move_node(inputs, first + row, &mut sum, &mut step[at], work);
+            move_node(inputs, first + row, &mut sum, work);
             // what is not finite in one component is not finite in the sum
             if !(sum.u[0] + sum.u[1] + sum.u[2]).to_f64().is_finite() {
                 bad.fetch_min((first + row) as u32, std::sync::atomic::Ordering::Relaxed);
@@ -152,25 +154,48 @@ fn move_nodes<T: Scalar>(
     Some(bad.into_inner()).filter(|&row| row != u32::MAX)
 }
 
-/// A displacement, summed with what rounding left out.
+/// A displacement and its step, summed with what rounding left out of both.
 struct Sum<'a, T> {
     u: &'a mut [T],
+    step: &'a mut [T],
     lost: Option<&'a mut [T]>,
 }
 
 impl<T: Scalar> Sum<'_, T> {
+    /// Makes the step longer. At a small Δt the change has few digits in common with the step, and is lost without
+    /// compensation.
     #[inline(always)]
-    fn add(&mut self, i: usize, step: T) {
+    fn push(&mut self, i: usize, change: T) {
         match &mut self.lost {
-            None => self.u[i] += step,
+            None => self.step[i] += change,
+            Some(lost) => compensated_add(&mut self.step[i], &mut lost[3 + i], change),
+        }
+    }
+
+    /// Takes the step.
+    #[inline(always)]
+    fn go(&mut self, i: usize, constrained: bool) {
+        match &mut self.lost {
+            None => self.u[i] += self.step[i],
             Some(lost) => {
-                let exact = step - lost[i];
-                let sum = self.u[i] + exact;
-                lost[i] = (sum - self.u[i]) - exact;
-                self.u[i] = sum;
+                // what boundary wrote is the whole of a constrained step
+                if constrained {
+                    lost[3 + i] = T::default();
+                }
+                let exact = self.step[i] - lost[3 + i];
+                compensated_add(&mut self.u[i], &mut lost[i], exact);
             }
         }
     }
+}
+
+/// sum += change, where `lost` is what rounding has made of the sum too much (Kahan 1965).
+#[inline(always)]
+fn compensated_add<T: Scalar>(sum: &mut T, lost: &mut T, change: T) {
+    let exact = change - *lost;
+    let rounded = *sum + exact;
+    *lost = (rounded - *sum) - exact;
+    *sum = rounded;
 }
 
 #[inline(always)]
@@ -178,14 +203,13 @@ fn move_node<T: Scalar>(
     inputs: &Inputs<'_, T>,
     node: usize,
     sum: &mut Sum<'_, T>,
-    step: &mut [T],
     mut work: Option<&mut [T]>,
 ) {
     let (zero, one) = (T::default(), T::from_f64(1.0));
     let Factors { force: force_factor, half_step, divide, rate, booked, relaxation } = inputs.factors;
     let (mass, axes) = (inputs.mass[node], inputs.axes[node]);
     if mass <= zero {
-        step.fill(zero);
+        sum.step.fill(zero);
         return;
     }
     let per_mass = one / mass;
@@ -196,16 +220,18 @@ fn move_node<T: Scalar>(
         let internal = inputs.internal[3 * node + i];
         let external = inputs.external.map_or(zero, |r| r[3 * node + i]);
         let constrained = axes >> i & 1 == 1;
-        let before = step[i];
+        let before = sum.step[i];
         if !constrained {
-            step[i] = ((one - a) * before + force_factor * ((external - internal) * per_mass)) * shrink;
+            let pushed = force_factor * ((external - internal) * per_mass);
+            sum.push(i, (pushed - (one + divide) * a * before) * shrink);
         }
-        sum.add(i, step[i]);
+        sum.go(i, constrained);
+        let step = sum.step[i];
         if let Some(work) = &mut work {
             // forces at the beginning of the step work along the mean of the steps before and after, in the first step
             // along half of it: so the balance of the scheme is exact in the middle of each step
-            let before = if constrained { std::mem::replace(&mut work[4 + i], step[i]) } else { before };
-            let mean = T::from_f64(0.5) * (before + step[i]);
+            let before = if constrained { std::mem::replace(&mut work[4 + i], step) } else { before };
+            let mean = T::from_f64(0.5) * (before + step);
             let along = booked * mean;
             let lost = coefficient * rate * mean * along;
             work[0] += external * along;
@@ -251,12 +277,15 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
         push.extend(damped.then_some(DampingCoefficient::NAME));
         push.extend(worked.then_some(Work::NAME));
         let mut displace = vec![Displacement::NAME, FirstNonFinite::NAME];
-        displace.extend(compensated.then_some(DisplacementCompensation::NAME));
-        if push.len() + displace.len() <= WEBGPU_STORAGE_BUFFERS {
+        let lost = compensated.then_some(DisplacementCompensation::NAME);
+        if push.len() + displace.len() + usize::from(compensated) <= WEBGPU_STORAGE_BUFFERS {
             push.extend(displace);
+            push.extend(lost);
             kernels.push(kernel("integrate", &push));
         } else {
-            displace.push(DisplacementStep::NAME);
+            displace.extend([DisplacementStep::NAME, ConstrainedAxes::NAME]);
+            push.extend(lost);
+            displace.extend(lost);
             kernels.push(kernel("integrate_push", &push));
             kernels.push(kernel("integrate_move", &displace));
         }
@@ -279,7 +308,7 @@ fn with_optional(kernel: Kernel, [external, damped, worked]: [bool; 3], compensa
         fragments.push(shader!("relaxation"));
     } else {
         without += "fn damped(node: u32, before: vec3<f32>, pushed: vec3<f32>, per_mass: f32) -> vec3<f32> {\n    \
-                    return before + pushed;\n}\n";
+                    return pushed;\n}\n";
     }
     if worked {
         fragments.push(shader!("work"));
@@ -293,7 +322,10 @@ fn with_optional(kernel: Kernel, [external, damped, worked]: [bool; 3], compensa
     if compensated {
         fragments.push(shader!("displacement_compensation"));
     } else {
-        without += "fn add(at: u32, u: vec3<f32>, d: vec3<f32>) -> vec3<f32> {\n    return u + d;\n}\n";
+        without += "fn add_to_step(node: u32, before: vec3<f32>, change: vec3<f32>) -> vec3<f32> {\n    \
+                    return before + change;\n}\nfn forget_step(node: u32) {}\n\
+                    fn add_step(node: u32, u: vec3<f32>, d: vec3<f32>, constrained: vec3<bool>) -> vec3<f32> {\n    \
+                    return u + d;\n}\n";
     }
     let kernel = fragments.into_iter().fold(kernel, Kernel::fragment);
     if without.is_empty() { kernel } else { kernel.fragment(Fragment::new("generated: what the body lacks", without)) }

@@ -7,7 +7,7 @@ use crate::backend::block_kernel::BlockKernels;
 use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK, run_volumes};
 use crate::backend::kernel::{Fragment, Kernel, Uniform, uniform};
 use crate::components::*;
-use crate::evaluation::with_element;
+use crate::elements::Tet4NodalPressure;
 use crate::math::{LANES, Scalar, SimdScalar};
 use crate::shader;
 use bevy_ecs::prelude::*;
@@ -61,7 +61,7 @@ fn means_of<T: SimdScalar>(
     means: &mut [T],
 ) {
     let (u, shape, groups) = (displacement.slice(), shape.slice(), patch_groups(block.kind));
-    with_element!(block.kind, E => run_volumes::<E, T>(cpu, law, u, connectivity, shape, groups, volumes));
+    run_volumes::<Tet4NodalPressure, T>(cpu, law, u, connectivity, shape, groups, volumes);
     let tasks = means.chunks_mut(ROWS_A_TASK).enumerate();
     cpu.for_each(tasks, |(task, rows)| {
         for (row, mean) in rows.iter_mut().enumerate() {

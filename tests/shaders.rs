@@ -10,7 +10,7 @@ use sinew::components::Signals;
 use std::collections::BTreeSet;
 
 /// Fragments that belong to no system, element or material by name, and what calls for them.
-const SUPPORT: [(&str, &str); 26] = [
+const SUPPORT: [(&str, &str); 28] = [
     ("alive", "loads on faces of elements that can go"),
     ("block", "columns of element blocks"),
     ("criterion", "removal by criterion"),
@@ -18,6 +18,8 @@ const SUPPORT: [(&str, &str); 26] = [
     ("displacement_compensation", "compensated sums, in integrate"),
     ("due", "removal"),
     ("removed_motion", "the motion of elements that go"),
+    ("eigen", "principal stretches, in laws"),
+    ("elementary", "exponential and logarithm, in laws"),
     ("energy", "elastic energy, where elements can go"),
     ("external_force", "loads, in integrate"),
     ("fibres_field", "fibres of differing directions"),

@@ -2,15 +2,15 @@
 
 use super::locality::{element_order, node_rows};
 use super::columns::block_corners;
+use super::fibres::Members;
 use super::{Assembly, PlacedMesh, select};
 use crate::components::*;
 use crate::elements::{Element, MOST_ROWS};
 use crate::evaluation::{averages, extinguish, lane_place, node_count, row_count, with_element};
-use crate::materials::ElasticLaw;
+use crate::materials::{Elastic, ElasticLaw};
 use crate::math::LANES;
 use crate::mesh::{ElementKind, Mesh};
 use crate::scene::diagnostic::Diagnostics;
-use crate::scene::schema::Direction;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -135,18 +135,16 @@ impl BlockBuilder<'_> {
         let young = law.map_or(0.0, |law| young(law.small_strain_moduli()));
         let hourglass = self.assembly.scene.scene.bodies[name].hourglass;
         let material_name = world.get::<Label>(self.material).map(|label| label.0.clone()).unwrap_or_default();
-        let fibres = self.assembly.scene.scene.materials[&material_name].fibres.as_ref();
-        let (uniform, varying) = match fibres {
-            None => (None, None),
-            Some(fibres) => self.fibre_directions(&fibres.direction, name, &material_name, diagnostics),
-        };
+        let members = Members { mesh: self.mesh, elements: self.elements, body: name, material: &material_name };
+        let material = &self.assembly.scene.scene.materials[&material_name];
+        let (fibre_directions, varying) = members.directions(material, self.assembly.precision, diagnostics);
         let block = Block {
             body,
             material: self.material,
             kind: self.kind,
             count: self.elements.len(),
             force_offset,
-            fibre_direction: uniform,
+            fibre_directions,
         };
         let connectivity = self.connectivity();
         let mut entity = world.spawn((
@@ -209,59 +207,6 @@ impl BlockBuilder<'_> {
             }
         }
         shapes
-    }
-
-    /// One direction for the block, or one an element.
-    fn fibre_directions(
-        &self,
-        direction: &Direction,
-        body: &str,
-        material: &str,
-        diagnostics: &mut Diagnostics,
-    ) -> (Option<[f64; 3]>, Option<Reals>) {
-        let of_element: Box<dyn Fn(u32) -> DVec3> = match direction {
-            Direction::Along(x, y, z) => return (Some(DVec3::new(*x, *y, *z).normalize().to_array()), None),
-            Direction::Around { center, axis } => Box::new(|element| {
-                let nodes = self.mesh.element(element as usize);
-                let centroid = nodes.iter().map(|&n| self.mesh.points[n as usize]).sum::<DVec3>() / nodes.len() as f64;
-                axis.cross(centroid - *center)
-            }),
-            Direction::Field(name) => match self.mesh.element_vectors.get(name) {
-                Some(vectors) => Box::new(|element| vectors[element as usize]),
-                None => {
-                    let names: Vec<&str> = self.mesh.element_vectors.keys().map(String::as_str).collect();
-                    let path = format!("materials.\"{material}\".fibres.direction");
-                    diagnostics
-                        .error_at(
-                            path.as_str(),
-                            format!("the mesh of {body} has no vectors on elements named {name:?}"),
-                        )
-                        .notes(crate::scene::choice(name, names));
-                    return (None, None);
-                }
-            },
-        };
-        let mut directions = Reals::zeros(self.assembly.precision, self.padded() * 3);
-        let mut without = Vec::new();
-        for (row, &element) in self.elements.iter().enumerate() {
-            let unit = of_element(element).normalize_or_zero();
-            if unit == DVec3::ZERO {
-                without.push(self.mesh.element_ids.of(element as usize));
-            }
-            for i in 0..3 {
-                directions.set(lane_place(row, 3, i), unit[i]);
-            }
-        }
-        if !without.is_empty() {
-            let path = format!("materials.\"{material}\".fibres.direction");
-            let message = format!(
-                "{} elements of {body} have no fibre direction (a vector of no length), the first is {}",
-                without.len(),
-                without[0]
-            );
-            diagnostics.error_at(path.as_str(), message);
-        }
-        (None, Some(directions))
     }
 }
 

@@ -5,7 +5,7 @@ use crate::backend::cpu::BlockLaw;
 use crate::components::*;
 use crate::elements::Stiffness;
 use crate::evaluation::{add_nodal_masses, lane_place, node_count, point_count};
-use crate::materials::{ElasticLaw, Fibres};
+use crate::materials::{Elastic, ElasticLaw, Fibres};
 use crate::math::LANES;
 use crate::mesh::{ElementKind, Mesh};
 use bevy_ecs::prelude::*;
@@ -40,7 +40,7 @@ pub(super) fn insert_node_columns(
         FirstNonFinite(vec![u32::MAX]),
     ));
     if scene.integration.compensated && precision == Precision::F32 {
-        entity.insert(DisplacementCompensation(vectors()));
+        entity.insert(DisplacementCompensation(Reals::zeros(precision, COMPENSATION_NUMBERS * count)));
     }
     if !scene.loads.is_empty() {
         entity.insert(ExternalForce(vectors()));
@@ -132,11 +132,13 @@ pub fn nodal_masses(entities: &[Entity], count: usize, world: &World) -> (Vec<f6
 pub fn stiffness(world: &World, material: Entity) -> Stiffness {
     let law = ElasticLaw::of(world.entity(material));
     let [shear, bulk] = law.map_or([0.0; 2], |law| law.small_strain_moduli());
-    let eta = world.get::<Fibres<f64>>(material).map_or(0.0, |f| f.eta);
+    let fibres = world.get::<Fibres<f64>>(material).map_or(0.0, |f| f.eta);
+    let families = world.get::<ExponentialFibres>(material);
+    let families: f64 = families.map_or(0.0, |all| all.0.iter().map(|family| family.small_strain_eta()).sum());
     Stiffness {
         // a negative λ only softens
         lambda: (bulk - 2.0 / 3.0 * shear).max(0.0),
-        deviatoric: 2.0 * shear + 8.0 / 3.0 * eta,
+        deviatoric: 2.0 * shear + 8.0 / 3.0 * (fibres + families),
         density: world.get::<Density>(material).map_or(0.0, |d| d.0),
     }
 }
@@ -148,10 +150,20 @@ pub(super) fn insert_laws(precision: Precision, world: &mut World) {
         world.query::<(Entity, &Block)>().iter(world).map(|(entity, block)| (entity, block.clone())).collect();
     for (entity, block) in entities {
         let Some(elastic) = ElasticLaw::of(world.entity(block.material)) else { continue };
-        let fibres = world.get::<Fibres<f64>>(block.material).map(|&fibres| (fibres, block.fibre_direction));
-        let prony = world.get::<Prony>(block.material).map_or(Vec::new(), |prony| prony.coefficients(&clock));
-        let memory = 6 * prony.len() * point_count(block.kind) * block.count.div_ceil(LANES) * LANES;
-        let law = BlockLaw { elastic, fibres, prony };
+        let mut directions = block.fibre_directions.iter().copied();
+        let fibres = world.get::<Fibres<f64>>(block.material).copied().zip(directions.next());
+        let families = world.get::<ExponentialFibres>(block.material).map_or(Vec::new(), |all| all.0.clone());
+        let prony = world.get::<Prony>(block.material);
+        let [terms, volumetric] = prony.map_or([vec![], vec![]], |prony| prony.coefficients(&clock));
+        let law = BlockLaw {
+            elastic,
+            fibres,
+            exponential: families.into_iter().zip(directions).collect(),
+            prony: terms,
+            volumetric,
+            reproject: prony.is_some_and(|prony| prony.reproject),
+        };
+        let memory = law.memory_numbers(point_count(block.kind)) * block.count.div_ceil(LANES) * LANES;
         let mut entity = world.entity_mut(entity);
         if precision == Precision::F32 {
             entity.insert(law.rounded::<f32>());

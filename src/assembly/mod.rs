@@ -4,8 +4,10 @@
 mod body;
 mod columns;
 mod constraints;
+mod fibres;
 mod loads;
 mod locality;
+mod material;
 mod meshes;
 mod observation;
 mod relaxation;
@@ -22,7 +24,6 @@ pub use select::Selection;
 pub use time_step::{StableStep, stable_step};
 
 use crate::components::*;
-use crate::materials::{Fibres, NeoHookean};
 use crate::scene::SceneFile;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema;
@@ -55,7 +56,7 @@ pub fn assemble<'a>(
     if diagnostics.has_errors() {
         return None;
     }
-    let materials = spawn_materials(&scene.scene, &mut laws, world);
+    let materials = material::spawn(&scene.scene, &mut laws, world);
     world.insert_resource(Signals::default());
     let mut assembly = Assembly { scene, precision, bodies: BTreeMap::new(), materials };
     for (name, mesh) in meshes {
@@ -80,47 +81,6 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     columns::start(assembly, world);
     if assembly.scene.scene.is_static() {
         relaxation::insert_fictitious_masses(assembly, world);
-    }
-}
-
-fn spawn_materials(
-    scene: &schema::Scene,
-    laws: &mut BTreeMap<String, user_laws::Read>,
-    world: &mut World,
-) -> BTreeMap<String, Entity> {
-    let mut spawned = BTreeMap::new();
-    for (name, material) in &scene.materials {
-        let mut entity = world.spawn((Label(name.clone()), Density(material.density)));
-        if let Some(moduli) = material.neo_hookean {
-            let (shear, bulk) = moduli.moduli();
-            entity.insert(NeoHookean { shear, bulk });
-        }
-        if let Some(law) = laws.remove(name) {
-            entity.insert((law.law, law.findings));
-        }
-        if let Some(fibres) = &material.fibres {
-            let tension_only = if fibres.tension_only { 1.0 } else { 0.0 };
-            entity.insert(Fibres { eta: fibres.eta, tension_only });
-        }
-        if let Some(prony) = &material.prony {
-            let terms = prony.terms.iter().map(|term| (term.alpha, term.tau)).collect();
-            entity.insert(Prony { terms, integrator: prony.integrator });
-        }
-        if let Some(rate) = material.damping {
-            entity.insert(Damping(rate));
-        }
-        spawned.insert(name.clone(), entity.id());
-    }
-    spawned
-}
-
-impl schema::NeoHookean {
-    /// Shear and bulk modulus (Pa).
-    pub fn moduli(&self) -> (f64, f64) {
-        match *self {
-            Self::Young { young, poisson } => (young / (2.0 * (1.0 + poisson)), young / (3.0 * (1.0 - 2.0 * poisson))),
-            Self::Moduli { shear, bulk } => (shear, bulk),
-        }
     }
 }
 

@@ -3,9 +3,9 @@
 pub(super) use crate::backend::user_law::Read;
 
 use crate::backend::user_law::{About, Complaint, read as read_law};
+use crate::scene::SceneFile;
 use crate::scene::diagnostic::{Diagnostic, Diagnostics, Severity, TextFile};
 use crate::scene::schema::OwnLaw;
-use crate::scene::SceneFile;
 use crate::scene::syntax::Path;
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -2,13 +2,14 @@
 
 use super::Buffers;
 use super::cpu::BlockLaw;
-use super::kernel::{BufferId, Fragment, Kernel, Layout, Uniform, uniform};
+use super::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};
+use super::law_kernel::{ElasticPart, ExponentialFamily, family_directions, ground};
 use crate::components::{
-    self, Column, Connectivity, Displacement, FibreDirection, Label, NodalVolumeChange, ViscousMemory,
+    self, Column, Connectivity, Displacement, FamilyDirection, FibreDirection, Label, NodalVolumeChange, ViscousMemory,
 };
 use crate::elements::{Element, PressureFrom};
 use crate::evaluation::with_element;
-use crate::materials::{ElasticLaw, Fibres, J_FLOOR, NeoHookean, PronyTerm, each_elastic_law};
+use crate::materials::{Fibres, J_FLOOR, PronyTerm};
 use crate::math::LANES;
 use crate::mesh::ElementKind;
 use crate::shader;
@@ -33,41 +34,6 @@ struct UniformDirection {
 }
 uniform!(UniformDirection { x, y, z });
 
-uniform!(NeoHookean<f32> { shear, bulk });
-uniform!(Fibres<f32> { eta, tension_only });
-uniform!(PronyTerm<f32> { stress, memory, rate, aim });
-
-/// A law's WGSL twin, its parameters, and how they are laid out.
-struct ElasticPart {
-    fragment: Fragment,
-    /// Empty for a law without parameters.
-    bytes: Vec<u8>,
-    /// None where the bytes were laid out by reflection.
-    layout: Option<Layout>,
-}
-
-macro_rules! elastic_parts {
-    ($($law:ident = $stem:literal;)*) => {
-        impl ElasticPart {
-            fn of(law: &ElasticLaw<f32>) -> Self {
-                match law {
-                    $(ElasticLaw::$law(law) => Self {
-                        fragment: shader!($stem),
-                        bytes: law.bytes(),
-                        layout: Some(<$law<f32> as Uniform>::LAYOUT),
-                    },)*
-                    ElasticLaw::UserLaw(law) => Self {
-                        fragment: Fragment::new(law.parts().path.as_str(), law.parts().text.as_str()),
-                        bytes: law.parts().uniform.clone(),
-                        layout: None,
-                    },
-                }
-            }
-        }
-    };
-}
-each_elastic_law!(elastic_parts);
-
 /// Makes kernels of one block, all on the same uniform buffers.
 pub(crate) struct BlockKernels {
     /// The block.
@@ -79,7 +45,10 @@ pub(crate) struct BlockKernels {
     columns: [BufferId; 2],
     parameters: BufferId,
     elastic: Option<BufferId>,
-    fibres: Option<(BufferId, BufferId)>,
+    fibres: Option<BufferId>,
+    uniform_direction: Option<BufferId>,
+    families: Option<BufferId>,
+    varying_directions: Option<BufferId>,
 }
 
 impl BlockKernels {
@@ -107,17 +76,33 @@ impl BlockKernels {
         let bytes = ElasticPart::of(&law.elastic).bytes;
         let elastic =
             (!bytes.is_empty()).then(|| buffers.uniform(format!("{} of {label}", law.elastic.name()), &bytes));
-        let fibres = law.fibres.as_ref().map(|(fibres, uniform)| {
-            let direction = match uniform {
-                Some([x, y, z]) => {
-                    let direction = UniformDirection { x: *x, y: *y, z: *z };
-                    buffers.uniform(format!("fibre_direction of {label}"), &direction.bytes())
-                }
-                None => buffers.column(entity, FibreDirection::NAME),
-            };
-            (buffers.uniform(format!("fibres of {label}"), &fibres.bytes()), direction)
-        });
-        Self { entity, block, law, label, columns, parameters, elastic, fibres }
+        let fibres =
+            law.fibres.as_ref().map(|(fibres, _)| buffers.uniform(format!("fibres of {label}"), &fibres.bytes()));
+        let uniform_direction = match law.fibres {
+            Some((_, FamilyDirection::Uniform([x, y, z]))) => {
+                let direction = UniformDirection { x, y, z };
+                Some(buffers.uniform(format!("fibre_direction of {label}"), &direction.bytes()))
+            }
+            _ => None,
+        };
+        let families = law.exponential.iter().flat_map(|family| ExponentialFamily::new(family).bytes());
+        let families: Vec<u8> = families.collect();
+        let families =
+            (!families.is_empty()).then(|| buffers.uniform(format!("exponential_fibres of {label}"), &families));
+        let varying_directions = (law.varying_families() > 0).then(|| buffers.column(entity, FibreDirection::NAME));
+        Self {
+            entity,
+            block,
+            law,
+            label,
+            columns,
+            parameters,
+            elastic,
+            fibres,
+            uniform_direction,
+            families,
+            varying_directions,
+        }
     }
 
     /// A kernel with the block's element type, strain measures and laws of stress and energy without history; a thread for
@@ -135,9 +120,8 @@ impl BlockKernels {
                 ElementKind::Hex8MeanDilatation => shader!("hex8_mean_dilatation"),
             })
             .fragment(elastic.fragment)
-            .fragment(shader!("finite_strain"))
-            .fragment(shader!("volume_ratio"))
             .bind("displacement", self.columns[0]);
+        kernel.fragments.extend(ground(&self.law.elastic));
         kernel.layouts.extend(elastic.layout.map(|layout| ("elastic", layout)));
         kernel
     }
@@ -173,40 +157,71 @@ impl BlockKernels {
         }
     }
 
-    /// Adds the fibres, if there are any.
-    fn with_fibres(&self, kernel: Kernel) -> Kernel {
-        let Some((fibres, direction)) = self.fibres else { return kernel };
-        let kernel = kernel.fragment(shader!("fibres")).bind_uniform::<Fibres<f32>>("fibres", fibres);
-        match self.law.fibres {
-            Some((_, Some(_))) => kernel
-                .fragment(shader!("fibres_uniform"))
-                .bind_uniform::<UniformDirection>("uniform_direction", direction),
-            _ => kernel.fragment(shader!("fibres_field")).bind("fibre_direction", direction),
+    /// Adds all families of fibres, if there are any.
+    fn with_fibres(&self, mut kernel: Kernel) -> Kernel {
+        let mut text = String::new();
+        if let Some(fibres) = self.fibres {
+            kernel = kernel.fragment(shader!("fibres")).bind_uniform::<Fibres<f32>>("fibres", fibres);
+            match (self.uniform_direction, &self.law.fibres) {
+                (Some(direction), _) => {
+                    kernel = kernel
+                        .fragment(shader!("fibres_uniform"))
+                        .bind_uniform::<UniformDirection>("uniform_direction", direction);
+                }
+                (None, Some((_, FamilyDirection::Varying(place)))) => {
+                    text += "fn fibre_direction_of(element: u32) -> vec3<f32> {\n";
+                    text += &format!("    return varying_direction(element, {place}u);\n}}\n");
+                }
+                (None, _) => {}
+            }
+        }
+        if let Some(families) = self.families {
+            text += &family_directions(&self.law.exponential);
+            kernel = kernel
+                .fragment(shader!("exponential_fibres"))
+                .bind_uniform::<ExponentialFamily>("exponential_fibres", families);
+            if !kernel.fragments.contains(&shader!("elementary")) {
+                kernel = kernel.fragment(shader!("elementary"));
+            }
+        }
+        if let Some(directions) = self.varying_directions {
+            text += &format!("const VARYING: u32 = {}u;\n", self.law.varying_families());
+            kernel = kernel.fragment(shader!("fibres_field")).bind("fibre_direction", directions);
+        }
+        match text.is_empty() {
+            true => kernel,
+            false => kernel.fragment(self.generated("fibres", text)),
         }
     }
 
     /// Adds the stress of the material, which carries its history on by a step.
     pub fn with_stress(&self, kernel: Kernel, buffers: &mut dyn Buffers) -> Kernel {
-        let mut text = String::from(
-            "fn isochoric_stress(element: u32, point: u32, k: Kinematics) -> Sym3 {\n    var stress = elastic_isochoric(k);\n",
-        );
-        if self.law.fibres.is_some() {
-            text += "    stress = sym_plus(stress, fibres_isochoric(k, fibre_direction_of(element)));\n";
-        }
-        let terms = self.law.prony.len();
-        if terms > 0 {
-            text += "    stress = relaxed(element, point, stress);\n";
-        }
-        text += "    return stress;\n}\n";
-        if terms > 0 {
-            text += &format!("const TERMS: u32 = {terms}u;\n");
+        let law = &self.law;
+        let (terms, volumetric) = (law.prony.len(), law.volumetric.len());
+        let lines = [
+            (true, "var stress = elastic_isochoric(k);"),
+            (law.fibres.is_some(), "stress = sym_plus(stress, fibres_isochoric(k, fibre_direction_of(element)));"),
+            (self.families.is_some(), "stress = sym_plus(stress, exponential_isochoric(element, k));"),
+            (terms > 0, "stress = relaxed(element, point, stress);"),
+            (law.reproject, "stress = elastic_without_pressure(k, stress);"),
+            (true, "return stress;"),
+        ];
+        let mut text = String::from("fn isochoric_stress(element: u32, point: u32, k: Kinematics) -> Sym3 {\n");
+        text.extend(lines.iter().filter(|(there, _)| *there).map(|(_, line)| format!("    {line}\n")));
+        text += "}\nfn viscous_pressure(element: u32, point: u32, pressure: f32) -> f32 {\n";
+        text += match volumetric {
+            0 => "    return pressure;\n}\n",
+            _ => "    return relaxed_pressure(element, point, pressure);\n}\n",
+        };
+        if terms + volumetric > 0 {
+            text += &format!("const TERMS: u32 = {terms}u;\nconst VOLUMETRIC_TERMS: u32 = {volumetric}u;\n");
         }
         let kernel = self.with_fibres(self.with_parameters(kernel));
         let kernel = self.with_pressure(kernel, buffers).fragment(self.generated("stress", text));
-        if terms == 0 {
+        if terms + volumetric == 0 {
             return kernel;
         }
-        let bytes: Vec<u8> = self.law.prony.iter().flat_map(Uniform::bytes).collect();
+        let bytes: Vec<u8> = law.prony.iter().chain(&law.volumetric).flat_map(Uniform::bytes).collect();
         let prony = buffers.uniform(format!("prony of {}", self.label), &bytes);
         kernel
             .fragment(shader!("prony"))
@@ -216,12 +231,13 @@ impl BlockKernels {
 
     /// Adds the elastic energy per rest volume of the material.
     pub fn with_energy(&self, kernel: Kernel, buffers: &mut dyn Buffers) -> Kernel {
-        let fibres = match self.law.fibres {
-            Some(_) => "fibres_energy(k, fibre_direction_of(element))",
-            None => "0.0",
-        };
-        let text =
-            format!("fn fibres_energy_at(element: u32, k: Kinematics) -> f32 {{\n    return {fibres};\n}}\n");
+        let energies = [
+            self.fibres.map(|_| "fibres_energy(k, fibre_direction_of(element))"),
+            self.families.map(|_| "exponential_energy(element, k)"),
+        ];
+        let energies: Vec<&str> = energies.into_iter().flatten().collect();
+        let sum = if energies.is_empty() { "0.0".into() } else { energies.join(" + ") };
+        let text = format!("fn fibres_energy_at(element: u32, k: Kinematics) -> f32 {{\n    return {sum};\n}}\n");
         self.with_pressure(self.with_fibres(self.with_parameters(kernel)), buffers)
             .fragment(shader!("energy"))
             .fragment(self.generated("energy", text))

@@ -6,6 +6,7 @@ pub mod device;
 pub(crate) mod face_kernel;
 pub mod gpu;
 pub mod kernel;
+mod law_kernel;
 pub mod step;
 pub mod user_law;
 

@@ -20,8 +20,17 @@ pub struct Block {
     pub count: usize,
     /// Where the block's part of the body's [`ElementForce`](super::ElementForce) begins.
     pub force_offset: usize,
-    /// Fibre direction of all elements when it is the same (unit vector).
-    pub fibre_direction: Option<[f64; 3]>,
+    /// Of each family of fibres its direction: first that of `fibres`, then those of `exponential_fibres`.
+    pub fibre_directions: Vec<FamilyDirection<f64>>,
+}
+
+/// Where a family of fibres has its direction from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FamilyDirection<T> {
+    /// The same unit vector in all elements.
+    Uniform([T; 3]),
+    /// One an element: which of the directions in [`FibreDirection`].
+    Varying(usize),
 }
 
 columns! {
@@ -29,9 +38,9 @@ columns! {
     Connectivity(Vec<u32>) = "connectivity";
     /// What the element type knows of the rest shape: see [`Element`](crate::elements::Element).
     RestShape(Reals) = "rest_shape";
-    /// Unit vector along the fibres at rest, where it differs from element to element.
+    /// Unit vectors along the fibres at rest, of the families where they differ from element to element.
     FibreDirection(Reals) = "fibre_direction";
-    /// Viscous history q: six numbers a Prony term.
+    /// Viscous history q: six numbers a point and Prony term, then one a term of the pressure.
     ViscousMemory(Reals) = "viscous_memory";
     /// 1 until the element is removed, then 0. Exists when elements can be removed.
     Alive(Vec<u32>) = "alive";

@@ -1,7 +1,7 @@
 //! Effects of a material that are not pointwise laws; those are in [`materials`](crate::materials).
 
 use super::Clock;
-use crate::materials::PronyTerm;
+use crate::materials::{ExponentialFibre, PronyTerm};
 use crate::scene::schema::ViscousIntegrator;
 use bevy_ecs::prelude::*;
 
@@ -13,23 +13,33 @@ pub struct Density(pub f64);
 #[derive(Component, Clone, Copy, Debug)]
 pub struct Damping(pub f64);
 
-/// Viscosity of the isochoric stress.
+/// Families of fibres that stiffen exponentially.
+#[derive(Component, Clone, Debug)]
+pub struct ExponentialFibres(pub Vec<ExponentialFibre<f64>>);
+
+/// Viscosity of the isochoric stress and of the pressure.
 #[derive(Component, Clone, Debug)]
 pub struct Prony {
-    /// Share α and time τ (s) of each term.
+    /// Share α and time τ (s) of each term of the isochoric stress.
     pub terms: Vec<(f64, f64)>,
+    /// The same of the pressure.
+    pub volumetric: Vec<(f64, f64)>,
     /// How the history is carried on.
     pub integrator: ViscousIntegrator,
+    /// Whether the relaxed stress is freed of what is a pressure by now.
+    pub reproject: bool,
 }
 
 impl Prony {
-    /// Coefficients of the recursion for the clock's step; in a static analysis, of what remains in the long term.
-    pub fn coefficients(&self, clock: &Clock) -> Vec<PronyTerm<f64>> {
+    /// Coefficients of the recursions for the clock's step, of the isochoric stress and of the pressure; in a static analysis
+    /// of what remains in the long term.
+    pub fn coefficients(&self, clock: &Clock) -> [Vec<PronyTerm<f64>>; 2] {
         let make = match self.integrator {
             _ if clock.relaxation.is_some() => |alpha, _, _| PronyTerm::long_term(alpha),
             ViscousIntegrator::Exact => PronyTerm::exact,
             ViscousIntegrator::BackwardEuler => PronyTerm::backward_euler,
         };
-        self.terms.iter().map(|&(alpha, tau)| make(alpha, tau, clock.time_step)).collect()
+        [&self.terms, &self.volumetric]
+            .map(|terms| terms.iter().map(|&(alpha, tau)| make(alpha, tau, clock.time_step)).collect())
     }
 }

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | body | node columns ([`nodes`]), [`Corners`], [`ElementForce`], [`Authoring`] |
 //! | element block: one element type, one material, one body | [`Block`], [`Connectivity`], [`RestShape`] and, where called for, [`FibreDirection`], [`ViscousMemory`], [`NodalVolumeChange`], [`Alive`], [`RemovalStep`] |
-//! | material | [`Density`], an [elastic law](crate::materials::ElasticLaw), [`Fibres`](crate::materials::Fibres), [`Prony`], [`Damping`]: an effect exists when its component does |
+//! | material | [`Density`], an [elastic law](crate::materials::ElasticLaw), [`Fibres`](crate::materials::Fibres), [`ExponentialFibres`], [`Prony`], [`Damping`]: an effect exists when its component does |
 //! | constraint, load, removal | [`Fixed`], [`Prescribed`], [`Gravity`], [`NodalForce`], [`Pressure`], [`Traction`], [`RemovalCriterion`] with the rows they act on |
 //! | probe | [`Probe`] |
 
@@ -18,16 +18,16 @@ pub mod nodes;
 mod observation;
 
 pub use block::{
-    Alive, Block, BlockCorners, Connectivity, ElementVolume, FibreDirection, FirstInverted, NodalVolumeChange,
+    Alive, Block, BlockCorners, Connectivity, ElementVolume, FamilyDirection, FibreDirection, FirstInverted, NodalVolumeChange,
     RemovalStep, RemovedEnergy, RestShape, ViscousMemory, patch_groups,
 };
 pub use clock::{Clock, Relaxation, Signal, Signals};
 pub use column::{Column, Precision, Reals};
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
 pub use load::{FaceCorners, Gravity, NodalForce, Pressure, Traction};
-pub use material::{Damping, Density, Prony};
+pub use material::{Damping, Density, ExponentialFibres, Prony};
 pub use nodes::{
-    Authoring, ConstrainedAxes, Corners, DampingCoefficient, Displacement, DisplacementCompensation, DisplacementStep,
+    Authoring, COMPENSATION_NUMBERS, ConstrainedAxes, Corners, DampingCoefficient, Displacement, DisplacementCompensation, DisplacementStep,
     ElementForce, ExternalForce, FictitiousMass, FirstNonFinite, InternalForce, Mass, RestPosition, WORK_NUMBERS, Work,
 };
 pub use observation::{Cadence, Energies, Probe};

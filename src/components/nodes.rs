@@ -16,7 +16,8 @@ columns! {
     /// Displacement of the last step, u_n − u_{n−1} (m), a vector a node: velocity in the middle of the step times Δt.
     /// On constrained axes `boundary` writes the step to come here.
     DisplacementStep(Reals) = "displacement_step";
-    /// What rounding has left out of the displacement (m), a vector a node; u minus this is the sum of all steps.
+    /// What rounding has made of the displacement and of its step too much (m), a vector each: [`COMPENSATION_NUMBERS`] a
+    /// node. Exists in f32 where sums are compensated.
     DisplacementCompensation(Reals) = "displacement_compensation";
     /// Lumped mass (kg), a number a node; 0 parks the node.
     Mass(Reals) = "mass";
@@ -42,6 +43,9 @@ columns! {
     /// [`LANES`](crate::math::LANES) elements by corner, component, element.
     ElementForce(Reals) = "element_force";
 }
+
+/// Numbers a node in [`DisplacementCompensation`].
+pub const COMPENSATION_NUMBERS: usize = 6;
 
 /// Numbers a node in [`Work`].
 pub const WORK_NUMBERS: usize = 7;

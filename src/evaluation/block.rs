@@ -4,7 +4,7 @@ use super::{ElementState, averages, lane_place, node_count, point_count};
 use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK};
 use crate::components::*;
 use crate::elements::MOST_NODES;
-use crate::materials::Kinematics;
+use crate::materials::{Elastic, Kinematics};
 use crate::math::{Mat3, Sym3};
 use bevy_ecs::prelude::*;
 use std::borrow::Cow;
@@ -66,20 +66,30 @@ impl<'a> BlockView<'a> {
     pub fn stress(&self, row: usize, state: &ElementState, point: usize) -> Mat3<f64> {
         let (law, k) = (self.law, &state.points()[point].kinematics);
         let mut isochoric = law.elastic.isochoric(k);
-        if let Some((fibres, uniform)) = &law.fibres {
-            isochoric = isochoric.plus(&fibres.isochoric(k, self.direction(row, *uniform)));
+        if let Some((fibres, from)) = &law.fibres {
+            isochoric = isochoric.plus(&fibres.isochoric(k, self.direction(row, from)));
         }
-        let mut stress = isochoric;
+        for (family, from) in &law.exponential {
+            isochoric = isochoric.plus(&family.isochoric(k, self.direction(row, from)));
+        }
+        let (mut stress, instant) = (isochoric, self.pressure(state, k));
+        let mut pressure = instant;
         if let Some(memory) = self.memory {
-            let terms = law.prony.len();
-            let numbers = 6 * terms * point_count(state.kind);
+            let (terms, points) = (law.prony.len(), point_count(state.kind));
+            let history = |place: usize| memory.get(lane_place(row, law.memory_numbers(points), place));
             for (number, term) in law.prony.iter().enumerate() {
                 let first = 6 * (point * terms + number);
-                let history = Sym3(std::array::from_fn(|i| memory.get(lane_place(row, numbers, first + i))));
+                let history = Sym3(std::array::from_fn(|i| history(first + i)));
                 stress = stress.plus(&term.relaxed(&isochoric, &history).scaled(-1.0));
             }
+            for (number, term) in law.volumetric.iter().enumerate() {
+                pressure -= term.relaxed_pressure(instant, history(6 * terms * points + number));
+            }
+            if law.reproject {
+                stress = law.elastic.without_pressure(k, stress);
+            }
         }
-        let stress = stress.plus(&law.elastic.volumetric(k, self.pressure(state, k)));
+        let stress = stress.plus(&law.elastic.volumetric(k, pressure));
         law.elastic.first_stress(&state.points()[point].gradient, &stress)
     }
 
@@ -92,8 +102,9 @@ impl<'a> BlockView<'a> {
     pub fn cauchy(&self, row: usize, state: &ElementState) -> [f64; 6] {
         let mut mean = [0.0; 6];
         for (number, point) in state.points().iter().enumerate() {
-            let stress = point.cauchy(&self.stress(row, state, number));
-            (0..6).for_each(|i| mean[i] += point.share * stress[i]);
+            let first = self.stress(row, state, number);
+            let stress = self.law.elastic.cauchy(&point.gradient, point.kinematics.j, &first);
+            (0..6).for_each(|i| mean[i] += point.share * stress.0[i]);
         }
         mean
     }
@@ -103,8 +114,10 @@ impl<'a> BlockView<'a> {
         let elastic = &self.law.elastic;
         let isochoric = |k: &Kinematics<f64>| {
             let fibres = self.law.fibres.as_ref();
-            let fibres = fibres.map_or(0.0, |(fibres, uniform)| fibres.energy(k, self.direction(row, *uniform)));
-            elastic.isochoric_energy(k) + fibres
+            let fibres = fibres.map_or(0.0, |(fibres, from)| fibres.energy(k, self.direction(row, from)));
+            let families = self.law.exponential.iter();
+            let exponential: f64 = families.map(|(family, from)| family.energy(k, self.direction(row, from))).sum();
+            elastic.isochoric_energy(k) + fibres + exponential
         };
         let mean: f64 = state.points().iter().map(|point| point.share * isochoric(&point.kinematics)).sum();
         mean + self.mean_over_volume_changes(state, |theta| elastic.volumetric_energy(theta))
@@ -134,11 +147,14 @@ impl<'a> BlockView<'a> {
         state.points().iter().map(|point| point.share * measure(&point.kinematics)).sum()
     }
 
-    fn direction(&self, row: usize, uniform: Option<[f64; 3]>) -> [f64; 3] {
-        match (uniform, self.fibre_direction) {
-            (Some(a), _) => a,
-            (None, Some(all)) => [0, 1, 2].map(|i| all.get(lane_place(row, 3, i))),
-            (None, None) => [0.0; 3],
+    fn direction(&self, row: usize, from: &FamilyDirection<f64>) -> [f64; 3] {
+        match (from, self.fibre_direction) {
+            (FamilyDirection::Uniform(a), _) => *a,
+            (FamilyDirection::Varying(place), Some(all)) => {
+                let numbers = 3 * self.law.varying_families();
+                [0, 1, 2].map(|i| all.get(lane_place(row, numbers, 3 * place + i)))
+            }
+            (FamilyDirection::Varying(_), None) => [0.0; 3],
         }
     }
 }

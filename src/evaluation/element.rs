@@ -4,7 +4,7 @@ use super::{lane_place, node_count, point_count, row_count, with_element};
 use crate::backend::cpu::BlockLaw;
 use crate::components::*;
 use crate::elements::{Element, MOST_NODES, MOST_POINTS, largest_eigenvalue};
-use crate::materials::Kinematics;
+use crate::materials::{Elastic, Kinematics};
 use crate::math::{Mat3, Sym3};
 use crate::mesh::ElementKind;
 
@@ -103,15 +103,6 @@ impl ElementState {
     /// Largest principal stretch of all points.
     pub fn largest_stretch(&self) -> f64 {
         self.points().iter().map(|point| largest_stretch(&point.kinematics.green_strain)).fold(0.0, f64::max)
-    }
-}
-
-impl PointKinematics {
-    /// Cauchy stress (Pa) from the first Piola-Kirchhoff stress: xx, yy, zz, xy, yz, xz.
-    pub fn cauchy(&self, first: &Mat3<f64>) -> [f64; 6] {
-        let f = |i: usize, j: usize| self.gradient.0[i][j] + if i == j { 1.0 } else { 0.0 };
-        let entry = |i: usize, j: usize| (0..3).map(|k| first.0[i][k] * f(j, k)).sum::<f64>() / self.kinematics.j;
-        [entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(1, 2), entry(0, 2)]
     }
 }
 

@@ -1,7 +1,7 @@
 //! What an elastic law is, and the list of those there are.
 
-use super::{Kinematics, NeoHookean, UserLaw};
-use crate::math::{Mat3, Real, Scalar, Sym3};
+use super::{ArrudaBoyce, Kinematics, Linear, MooneyRivlin, NeoHookean, Ogden, StVenantKirchhoff, UserLaw};
+use crate::math::{Mat3, Real, Sym3, dot_plus};
 
 /// An isotropic elastic law over the numbers `R`: Ψ = Ψ_iso + U(θ), so that S = S_iso + U'(θ) ∂θ/∂E.
 ///
@@ -17,13 +17,13 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
 
     /// Strain measures of a displacement gradient.
     #[inline(always)]
-    fn kinematics(gradient: &Mat3<R>) -> Kinematics<R> {
+    fn kinematics(&self, gradient: &Mat3<R>) -> Kinematics<R> {
         Kinematics::new(gradient)
     }
 
     /// First Piola-Kirchhoff stress (Pa) from the second: F S.
     #[inline(always)]
-    fn first_stress(gradient: &Mat3<R>, stress: &Sym3<R>) -> Mat3<R> {
+    fn first_stress(&self, gradient: &Mat3<R>, stress: &Sym3<R>) -> Mat3<R> {
         gradient.plus_identity_times(stress)
     }
 
@@ -32,14 +32,27 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
 
     /// θ.
     #[inline(always)]
-    fn volume_measure(k: &Kinematics<R>) -> R {
+    fn volume_measure(&self, k: &Kinematics<R>) -> R {
         k.volume_change
     }
 
     /// Second Piola-Kirchhoff stress (Pa) of a pressure (Pa): p ∂θ/∂E, with J C⁻¹ for ∂θ/∂E.
     #[inline(always)]
-    fn volumetric(k: &Kinematics<R>, pressure: R) -> Sym3<R> {
+    fn volumetric(&self, k: &Kinematics<R>, pressure: R) -> Sym3<R> {
         k.adjugate_c.scaled(pressure / k.j)
+    }
+
+    /// What a stress (Pa) is without its part that acts on θ and so is a pressure: s − (s:C)/3 C⁻¹ where θ is J − 1.
+    #[inline(always)]
+    fn without_pressure(&self, k: &Kinematics<R>, stress: Sym3<R>) -> Sym3<R> {
+        k.without_pressure(&stress)
+    }
+
+    /// Cauchy stress (Pa) from the first Piola-Kirchhoff stress and J: P Fᵀ/J.
+    fn cauchy(&self, gradient: &Mat3<R>, j: R, first: &Mat3<R>) -> Sym3<R> {
+        let (h, p) = (&gradient.0, &first.0);
+        let entry = |i: usize, k: usize| dot_plus(p[i], h[k], p[i][k]) / j;
+        Sym3([entry(0, 0), entry(1, 1), entry(2, 2), entry(0, 1), entry(1, 2), entry(0, 2)])
     }
 
     /// U'(θ) (Pa), positive when the volume has grown.
@@ -59,28 +72,25 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
 macro_rules! each_elastic_law {
     ($then:ident $($more:tt)*) => {
         $then! {
+            Linear = "linear";
+            StVenantKirchhoff = "st_venant_kirchhoff";
             NeoHookean = "neo_hookean";
+            MooneyRivlin = "mooney_rivlin";
+            Ogden = "ogden";
+            ArrudaBoyce = "arruda_boyce";
             $($more)*
         }
     };
 }
 pub(crate) use each_elastic_law;
 
-/// What is done with a law whatever its type.
-pub trait WithElastic<T: Scalar> {
-    /// What comes of it.
-    type Output;
-    /// Does it.
-    fn with<L: Elastic<T>>(self, law: &L) -> Self::Output;
-}
-
 macro_rules! elastic_laws {
     ($($law:ident = $name:literal;)*) => {
-        /// Any elastic law.
+        /// Any elastic law. It is a law itself: one that asks at each point which it is.
         #[derive(Clone, Copy, Debug)]
         #[allow(missing_docs)]
-        pub enum ElasticLaw<T: Scalar> {
-            $($law($law<T>),)*
+        pub enum ElasticLaw<R: Real> {
+            $($law($law<R>),)*
         }
 
         impl ElasticLaw<f64> {
@@ -93,87 +103,82 @@ macro_rules! elastic_laws {
             }
         }
 
-        impl<T: Scalar> ElasticLaw<T> {
+        impl<R: Real> ElasticLaw<R> {
             /// Its name in scenes, and the stem of its WGSL twin.
             pub fn name(&self) -> &'static str {
                 match self {
                     $(Self::$law(_) => $name,)*
                 }
             }
+        }
 
-            /// In another precision.
-            pub fn rounded<Q: Scalar>(&self) -> ElasticLaw<Q> {
-                match self {
-                    $(Self::$law(law) => ElasticLaw::$law(law.map(|x| Q::from_f64(x.to_f64()))),)*
-                }
-            }
+        impl<R: Real> Elastic<R> for ElasticLaw<R> {
+            type Of<Q: Real> = ElasticLaw<Q>;
 
-            /// Does something with the law as what it is.
             #[inline(always)]
-            pub fn with<W: WithElastic<T>>(&self, what: W) -> W::Output {
+            fn map<Q: Real>(&self, number: impl Fn(R) -> Q) -> ElasticLaw<Q> {
                 match self {
-                    $(Self::$law(law) => what.with(law),)*
+                    $(Self::$law(law) => ElasticLaw::$law(law.map(number)),)*
                 }
             }
-
-            /// As [`Elastic::kinematics`].
-            pub fn kinematics(&self, gradient: &Mat3<T>) -> Kinematics<T> {
+            #[inline(always)]
+            fn kinematics(&self, gradient: &Mat3<R>) -> Kinematics<R> {
                 match self {
-                    $(Self::$law(_) => <$law<T>>::kinematics(gradient),)*
+                    $(Self::$law(law) => law.kinematics(gradient),)*
                 }
             }
-
-            /// As [`Elastic::first_stress`].
-            pub fn first_stress(&self, gradient: &Mat3<T>, stress: &Sym3<T>) -> Mat3<T> {
+            #[inline(always)]
+            fn first_stress(&self, gradient: &Mat3<R>, stress: &Sym3<R>) -> Mat3<R> {
                 match self {
-                    $(Self::$law(_) => <$law<T>>::first_stress(gradient, stress),)*
+                    $(Self::$law(law) => law.first_stress(gradient, stress),)*
                 }
             }
-
-            /// As [`Elastic::isochoric`].
-            pub fn isochoric(&self, k: &Kinematics<T>) -> Sym3<T> {
+            #[inline(always)]
+            fn isochoric(&self, k: &Kinematics<R>) -> Sym3<R> {
                 match self {
                     $(Self::$law(law) => law.isochoric(k),)*
                 }
             }
-
-            /// As [`Elastic::volume_measure`].
-            pub fn volume_measure(&self, k: &Kinematics<T>) -> T {
+            #[inline(always)]
+            fn volume_measure(&self, k: &Kinematics<R>) -> R {
                 match self {
-                    $(Self::$law(_) => <$law<T>>::volume_measure(k),)*
+                    $(Self::$law(law) => law.volume_measure(k),)*
                 }
             }
-
-            /// As [`Elastic::volumetric`].
-            pub fn volumetric(&self, k: &Kinematics<T>, pressure: T) -> Sym3<T> {
+            #[inline(always)]
+            fn volumetric(&self, k: &Kinematics<R>, pressure: R) -> Sym3<R> {
                 match self {
-                    $(Self::$law(_) => <$law<T>>::volumetric(k, pressure),)*
+                    $(Self::$law(law) => law.volumetric(k, pressure),)*
                 }
             }
-
-            /// As [`Elastic::pressure`].
-            pub fn pressure(&self, theta: T) -> T {
+            #[inline(always)]
+            fn without_pressure(&self, k: &Kinematics<R>, stress: Sym3<R>) -> Sym3<R> {
+                match self {
+                    $(Self::$law(law) => law.without_pressure(k, stress),)*
+                }
+            }
+            fn cauchy(&self, gradient: &Mat3<R>, j: R, first: &Mat3<R>) -> Sym3<R> {
+                match self {
+                    $(Self::$law(law) => law.cauchy(gradient, j, first),)*
+                }
+            }
+            #[inline(always)]
+            fn pressure(&self, theta: R) -> R {
                 match self {
                     $(Self::$law(law) => law.pressure(theta),)*
                 }
             }
-
-            /// As [`Elastic::isochoric_energy`].
-            pub fn isochoric_energy(&self, k: &Kinematics<T>) -> T {
+            fn isochoric_energy(&self, k: &Kinematics<R>) -> R {
                 match self {
                     $(Self::$law(law) => law.isochoric_energy(k),)*
                 }
             }
-
-            /// As [`Elastic::volumetric_energy`].
-            pub fn volumetric_energy(&self, theta: T) -> T {
+            fn volumetric_energy(&self, theta: R) -> R {
                 match self {
                     $(Self::$law(law) => law.volumetric_energy(theta),)*
                 }
             }
-
-            /// As [`Elastic::small_strain_moduli`].
-            pub fn small_strain_moduli(&self) -> [T; 2] {
+            fn small_strain_moduli(&self) -> [R; 2] {
                 match self {
                     $(Self::$law(law) => law.small_strain_moduli(),)*
                 }

@@ -17,17 +17,18 @@ pub struct Fibres<T: Send + Sync + 'static> {
 }
 
 impl<R: Real> Fibres<R> {
+    /// The same fibres over other numbers.
+    #[inline(always)]
+    pub fn map<Q: Real>(&self, number: impl Fn(R) -> Q) -> Fibres<Q> {
+        Fibres { eta: number(self.eta), tension_only: number(self.tension_only) }
+    }
+
     /// Ī₄ − 1 and I₄ for the unit direction `a`, exact to rounding for small strains.
     #[inline(always)]
     fn stretch(&self, k: &Kinematics<R>, a: [R; 3]) -> (R, R) {
-        let (one, two, three) = (self.eta.constant(1.0), self.eta.constant(2.0), self.eta.constant(3.0));
+        let (one, two) = (self.eta.constant(1.0), self.eta.constant(2.0));
         let i4_change = two * k.green_strain.quadratic(a);
-        // w = J^(−2/3) − 1 solves (1+w)³ J² = 1: one Newton step on the expanded form brings back the lost digits
-        let w = k.j_m23 - one;
-        let cube = w * (three + w * (three + w));
-        let square = k.volume_change * (two + k.volume_change);
-        let residual = cube + square + cube * square;
-        let w = w - residual * k.j_m23 * self.eta.constant(1.0 / 3.0);
+        let w = k.j_m23_change();
         let change = i4_change + w + w * i4_change;
         (change, one + i4_change)
     }

@@ -52,4 +52,56 @@ impl<R: Real> Kinematics<R> {
         let j_m23 = j_m13 * j_m13;
         Self { green_strain, adjugate_c: c.adjugate(), volume_change, j, true_j: one + change, j_m23 }
     }
+
+    /// Strain measures of the linear theory: ε = ½(∇u + ∇uᵀ) as `green_strain`, tr ε as change of volume, and no
+    /// difference between the body at rest and deformed: C = I.
+    #[inline(always)]
+    pub fn linear(gradient: &Mat3<R>) -> Self {
+        let h = &gradient.0;
+        let (zero, half, one) = (h[0][0].constant(0.0), h[0][0].constant(0.5), h[0][0].constant(1.0));
+        let shears = [half * (h[0][1] + h[1][0]), half * (h[1][2] + h[2][1]), half * (h[0][2] + h[2][0])];
+        let trace = h[0][0] + h[1][1] + h[2][2];
+        Self {
+            green_strain: Sym3([h[0][0], h[1][1], h[2][2], shears[0], shears[1], shears[2]]),
+            adjugate_c: Sym3([one, one, one, zero, zero, zero]),
+            volume_change: trace,
+            j: one,
+            true_j: one + trace,
+            j_m23: one,
+        }
+    }
+
+    /// J^(−2/3) − 1, exact to rounding for small strains.
+    #[inline(always)]
+    pub fn j_m23_change(&self) -> R {
+        let (two, three) = (self.j.constant(2.0), self.j.constant(3.0));
+        // w = J^(−2/3) − 1 solves (1+w)³ J² = 1: one Newton step on the expanded form brings back the lost digits
+        let w = self.j_m23 - self.j.constant(1.0);
+        let cube = w * (three + w * (three + w));
+        let square = self.volume_change * (two + self.volume_change);
+        let residual = cube + square + cube * square;
+        w - residual * self.j_m23 * self.j.constant(1.0 / 3.0)
+    }
+
+    /// C⁻¹ m for a symmetric m with the eigenvectors of C.
+    #[inline(always)]
+    pub fn inverse_c_times(&self, m: &Sym3<R>) -> Sym3<R> {
+        self.adjugate_c.times_coaxial(m).scaled(self.j.constant(1.0) / (self.j * self.j))
+    }
+
+    /// Ī₁ − 3 with Ī₁ = J^(−2/3) tr C.
+    #[inline(always)]
+    pub fn i1_change(&self) -> R {
+        let w = self.j_m23_change();
+        let twice = self.j.constant(2.0) * self.green_strain.trace();
+        self.j.constant(3.0).mul_add(w, twice + w * twice)
+    }
+
+    /// What a stress is without its part that acts on J: s − (s:C)/3 C⁻¹.
+    #[inline(always)]
+    pub fn without_pressure(&self, s: &Sym3<R>) -> Sym3<R> {
+        // C = I + 2E
+        let pressing = s.trace() + self.j.constant(2.0) * s.contracted(&self.green_strain);
+        s.plus(&self.adjugate_c.scaled(pressing * self.j.constant(-1.0 / 3.0) / (self.j * self.j)))
+    }
 }

@@ -1,10 +1,11 @@
-//! Viscosity: the isochoric stress relaxes in exponentials.
+//! Viscosity: stress relaxes in exponentials.
 
 use crate::math::{Real, Sym3};
 
-/// One term of a Prony series: the share α of the isochoric stress relaxes with the time τ.
+/// One term of a Prony series: the share α of a stress relaxes with the time τ. The stress is S_iso, or the pressure, whose
+/// history is one number a term.
 ///
-/// The stress S_iso is reduced by Υ, and six numbers q a term carry the history (Comas et al. 2008, eqs. 1 to 4; the WGSL
+/// S_iso is reduced by Υ, and six numbers q a term carry the history (Comas et al. 2008, eqs. 1 to 4; the WGSL
 /// twin is `shaders/prony.wgsl`). Both integrators are the same linear recursion with other coefficients:
 /// Υ = `stress`·S + `memory`·q, then q ← q + `rate`·(`aim`·S − q). The increment form keeps the digits of a small
 /// step, but f32 stalls when the increment falls under one ulp of q: the long-term stress is then off by up to 1e-4.
@@ -47,6 +48,29 @@ impl PronyTerm<f64> {
 }
 
 impl<R: Real> PronyTerm<R> {
+    /// The same term over other numbers.
+    #[inline(always)]
+    pub fn map<Q: Real>(&self, number: impl Fn(R) -> Q) -> PronyTerm<Q> {
+        PronyTerm {
+            stress: number(self.stress),
+            memory: number(self.memory),
+            rate: number(self.rate),
+            aim: number(self.aim),
+        }
+    }
+
+    /// The share of a pressure (Pa) that has relaxed.
+    #[inline(always)]
+    pub fn relaxed_pressure(&self, pressure: R, memory: R) -> R {
+        self.stress.mul_add(pressure, self.memory * memory)
+    }
+
+    /// The memory of a pressure after the step.
+    #[inline(always)]
+    pub fn pressure_carried_on(&self, pressure: R, memory: R) -> R {
+        self.rate.mul_add(self.aim.mul_add(pressure, -memory), memory)
+    }
+
     /// Υ of this term (Pa) for the present isochoric stress and memory.
     #[inline(always)]
     pub fn relaxed(&self, isochoric: &Sym3<R>, memory: &Sym3<R>) -> Sym3<R> {

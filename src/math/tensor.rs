@@ -69,8 +69,9 @@ impl<R: Real> Mat3<R> {
 }
 
 impl<R: Real> Sym3<R> {
+    /// All nine entries, row by row.
     #[inline(always)]
-    fn rows(&self) -> [[R; 3]; 3] {
+    pub fn rows(&self) -> [[R; 3]; 3] {
         let [xx, yy, zz, xy, yz, xz] = self.0;
         [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
     }
@@ -118,6 +119,24 @@ impl<R: Real> Sym3<R> {
     pub fn times_coaxial(&self, other: &Self) -> Self {
         let (a, b) = (self.rows(), other.rows());
         Sym3([dot(a[0], b[0]), dot(a[1], b[1]), dot(a[2], b[2]), dot(a[0], b[1]), dot(a[1], b[2]), dot(a[0], b[2])])
+    }
+
+    /// The deviator: self less a third of its trace on the diagonal.
+    #[inline(always)]
+    pub fn deviator(mut self) -> Self {
+        let mean = self.trace() * self.0[0].constant(1.0 / 3.0);
+        for i in 0..3 {
+            self.0[i] -= mean;
+        }
+        self
+    }
+
+    /// self:other, the sum of the products of all nine entries.
+    #[inline(always)]
+    pub fn contracted(&self, other: &Self) -> R {
+        let (a, b) = (&self.0, &other.0);
+        let others = dot([a[3], a[4], a[5]], [b[3], b[4], b[5]]);
+        dot_plus([a[0], a[1], a[2]], [b[0], b[1], b[2]], others + others)
     }
 
     /// v·self·v.

@@ -14,5 +14,5 @@ pub mod words;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, TextFile};
 pub use load::SceneFile;
-pub use suggest::{choice, nearest};
+pub use suggest::{choice, list, nearest};
 pub use validate::validate;

@@ -66,7 +66,8 @@ impl State {
             .map(|(entity, u, step, lost, internal, external)| {
                 let all = 0..u.len();
                 let load = |i: usize| external.map_or(0.0, |external| external.get(i));
-                let exact = |i: usize| u.get(i) - lost.map_or(0.0, |lost| lost.get(i));
+                let lost_of = |i: usize| lost.map_or(0.0, |lost| lost.get(COMPENSATION_NUMBERS * (i / 3) + i % 3));
+                let exact = |i: usize| u.get(i) - lost_of(i);
                 Body {
                     entity,
                     displacement: u.0.clone(),
@@ -81,6 +82,19 @@ impl State {
         Self { step, bodies }
     }
 
+    /// Turns it into the state at rest before any load.
+    pub fn forget(&mut self) {
+        for body in &mut self.bodies {
+            body.displacement.bytes_mut().fill(0);
+            if let Some(lost) = &mut body.compensation {
+                lost.bytes_mut().fill(0);
+            }
+            for column in [&mut body.place, &mut body.internal, &mut body.load] {
+                column.fill(0.0);
+            }
+        }
+    }
+
     /// Puts all bodies where they were, at rest, and forgets what went wrong since.
     pub fn restore(&self, world: &mut World) {
         for body in &self.bodies {
@@ -90,6 +104,9 @@ impl State {
             }
             if let (Some(mut lost), Some(before)) = (entity.get_mut::<DisplacementCompensation>(), &body.compensation) {
                 lost.0.clone_from(before);
+                // at rest the step is exact
+                let steps = (0..lost.len()).filter(|i| i % COMPENSATION_NUMBERS >= 3).collect::<Vec<_>>();
+                steps.into_iter().for_each(|i| lost.set(i, 0.0));
             }
             if let Some(mut step) = entity.get_mut::<DisplacementStep>() {
                 step.bytes_mut().fill(0);

@@ -26,7 +26,27 @@ pub struct Effects {
     pub criterion: Option<&'static str>,
     /// Elements that take their pressure from means.
     pub averaged: bool,
+    /// The elastic law, as RON writes it; else the neo-Hookean one.
+    pub law: Option<&'static str>,
+    /// Families of fibres that stiffen, as RON writes them.
+    pub families: Option<&'static str>,
+    /// Viscosity of the pressure.
+    pub volumetric: bool,
+    pub reproject: bool,
 }
+
+pub const LAWS: [&str; 6] = [
+    "linear: Moduli(shear: 1034, bulk: 10000)",
+    "st_venant_kirchhoff: Moduli(shear: 1034, bulk: 10000)",
+    "neo_hookean: Moduli(shear: 1034, bulk: 10000)",
+    "mooney_rivlin: (c10: 300, c01: 200, bulk: 10000)",
+    "ogden: (terms: [(mu: 1400, alpha: 1.3), (mu: 3, alpha: 5), (mu: -30, alpha: -2)], bulk: 10000)",
+    "arruda_boyce: (shear: 700, locking_stretch: 1.8, bulk: 10000)",
+];
+
+/// One family along a line, and one around an axis that pushes, too.
+pub const FAMILIES: &str = "[(k1: 900, k2: 0.4, dispersion: 0.1, direction: Along(1, 2, 3)),
+    (k1: 700, k2: 0.3, direction: Around(axis: (0.3, 0.2, 1)), tension_only: false)]";
 
 pub const ALONG: &str = "Along(1, 2, 3)";
 pub const AROUND: &str = "Around(center: (0.1, 0.2, -0.3), axis: (0.3, 0.2, 1))";
@@ -47,6 +67,10 @@ impl Effects {
             removal: true,
             criterion: None,
             averaged: false,
+            law: None,
+            families: Some(FAMILIES),
+            volumetric: true,
+            reproject: true,
         }
     }
 
@@ -65,6 +89,14 @@ impl Effects {
             let (compensated, energies, removal) = (bit(2), bit(3), bit(4));
             all.push(Self { damping, loads, compensated, energies, removal, moved: true, ..Self::default() });
         }
+        for law in LAWS {
+            let families = (!law.starts_with("linear")).then_some(FAMILIES);
+            for averaged in [false, true] {
+                let plain = Self { law: Some(law), averaged, ..Self::default() };
+                all.push(Self { prony: 1, families, removal: true, ..plain.clone() });
+                all.push(Self { volumetric: true, reproject: true, ..plain });
+            }
+        }
         all.push(Self::all());
         all.push(Self { averaged: true, ..Self::default() });
         all.push(Self { averaged: true, ..Self::all() });
@@ -78,10 +110,16 @@ impl Effects {
         });
         let terms = ["(alpha: 0.4, tau: 0.58),", "(alpha: 0.2, tau: 0.01),"][..self.prony].concat();
         let integrator = if self.backward_euler { "BackwardEuler" } else { "Exact" };
-        let prony = match self.prony {
-            0 => String::new(),
-            _ => format!("prony: (terms: [{terms}], integrator: {integrator}),"),
+        let volumetric = if self.volumetric { "(alpha: 0.3, tau: 0.05), (alpha: 0.1, tau: 2)" } else { "" };
+        let prony = match (self.prony, self.volumetric) {
+            (0, false) => String::new(),
+            _ => format!(
+                "prony: (terms: [{terms}], volumetric: [{volumetric}], integrator: {integrator}, reproject: {}),",
+                self.reproject
+            ),
         };
+        let law = self.law.unwrap_or(LAWS[2]);
+        let families = self.families.map_or(String::new(), |families| format!("exponential_fibres: {families},"));
         let damping = if self.damping { "damping: 20," } else { "" };
         let both = |text: &str| ["tets", "hexes"].map(|body| text.replace("BODY", body)).concat();
         let loads = if self.loads {
@@ -126,7 +164,7 @@ impl Effects {
             "(title: \"effects\", duration: 1,
             bodies: {{ \"tets\": {}, \"hexes\": {} }},
             materials: {{
-                \"tissue\": (density: 1000, neo_hookean: Moduli(shear: 1034, bulk: 10000), {fibres} {prony} {damping}),
+                \"tissue\": (density: 1000, {law}, {fibres} {families} {prony} {damping}),
                 \"plain\": (density: 1200, neo_hookean: Moduli(shear: 3000, bulk: 9000)),
             }},
             constraints: [{moved}],

@@ -1,7 +1,7 @@
 //! `element_forces`.
 
-use super::kernel_worlds::{ALONG, AROUND, Effects};
-use super::magnitude::{ROUNDINGS, magnitude};
+use super::kernel_worlds::{ALONG, AROUND, Effects, FAMILIES, LAWS};
+use super::magnitude::{OGDEN_ROUNDINGS, ROUNDINGS, magnitude};
 use super::pair::{UNIT, entities, run};
 use bevy_ecs::prelude::*;
 use sinew::components::*;
@@ -9,6 +9,8 @@ use sinew::evaluation::{lane_place, node_count, point_count};
 
 fn compare_element_forces(effects: &Effects, change: impl Fn(&mut World)) {
     let Some(mut pair) = run("element_forces", effects, 3, change) else { return };
+    let ogden = effects.law.is_some_and(|law| law.starts_with("ogden"));
+    let roundings = if ogden { ROUNDINGS + OGDEN_ROUNDINGS } else { ROUNDINGS };
     // for every place of the body's column the bound of its element
     let mut bounds = std::collections::BTreeMap::new();
     let blocks = entities::<Block>(pair.host.world_mut());
@@ -16,7 +18,7 @@ fn compare_element_forces(effects: &Effects, change: impl Fn(&mut World)) {
         let data = pair.before().get::<Block>(block).unwrap();
         let numbers = 3 * node_count(data.kind);
         for row in 0..data.count {
-            let force = ROUNDINGS * UNIT * magnitude(pair.before(), block, row).force;
+            let force = roundings * UNIT * magnitude(pair.before(), block, row).force;
             (0..numbers).for_each(|k| {
                 bounds.insert((data.body, data.force_offset + lane_place(row, numbers, k)), force);
             });
@@ -30,17 +32,18 @@ fn compare_element_forces(effects: &Effects, change: impl Fn(&mut World)) {
         }
     }
     pair.agree::<ElementForce>(|_, body, i| bounds.get(&(body, i)).copied().unwrap_or(0.0));
-    if effects.prony > 0 {
+    if effects.prony > 0 || effects.volumetric {
         pair.agree::<ViscousMemory>(|pair, block, i| {
             let data = pair.before().get::<Block>(block).unwrap();
-            let row = i / (16 * 6 * effects.prony * point_count(data.kind)) * 16 + i % 16;
+            let law = pair.before().get::<sinew::backend::cpu::BlockLaw<f64>>(block).unwrap();
+            let row = i / (16 * law.memory_numbers(point_count(data.kind))) * 16 + i % 16;
             if row >= data.count {
                 return f64::INFINITY;
             }
             // q + rate (aim S − q): four roundings of the history, and those of the stress in proportion
-            let law = pair.before().get::<sinew::backend::cpu::BlockLaw<f64>>(block).unwrap();
-            let part = law.prony.iter().map(|term| (term.rate * term.aim).abs()).fold(0.0, f64::max);
-            UNIT * (4.0 * 200.0 + ROUNDINGS * part * magnitude(pair.before(), block, row).stress)
+            let terms = law.prony.iter().chain(&law.volumetric);
+            let part = terms.map(|term| (term.rate * term.aim).abs()).fold(0.0, f64::max);
+            UNIT * (4.0 * 200.0 + roundings * part * magnitude(pair.before(), block, row).stress)
         });
     }
     pair.identical::<FirstInverted>();
@@ -56,6 +59,29 @@ fn elements_exert_the_same_forces() {
                 let effects = Effects { fibres, prony, tension_only, backward_euler, averaged, ..Effects::default() };
                 compare_element_forces(&effects, |_| {});
             }
+        }
+    }
+}
+
+#[test]
+fn laws_of_the_ladder_exert_the_same_forces() {
+    for law in LAWS {
+        for averaged in [false, true] {
+            compare_element_forces(&Effects { law: Some(law), averaged, ..Effects::default() }, |_| {});
+            let families = (!law.starts_with("linear")).then_some(FAMILIES);
+            let viscous = Effects { law: Some(law), averaged, families, prony: 1, reproject: true, ..Effects::default() };
+            compare_element_forces(&viscous, |_| {});
+        }
+    }
+}
+
+#[test]
+fn pressures_relax_alike() {
+    for averaged in [false, true] {
+        for prony in [0, 2] {
+            let effects = Effects { volumetric: true, averaged, prony, fibres: Some(AROUND), ..Effects::default() };
+            compare_element_forces(&effects, |_| {});
+            compare_element_forces(&Effects { families: Some(FAMILIES), ..effects }, |_| {});
         }
     }
 }

@@ -4,6 +4,7 @@ use bevy_ecs::prelude::*;
 use sinew::components::*;
 use sinew::elements::{Element, Hex8MeanDilatation, MOST_NODES};
 use sinew::evaluation::{ElementState, lane_place, node_count, row_count};
+use sinew::materials::Elastic;
 use sinew::mesh::ElementKind;
 
 /// Σ|tᵢ| of the forces on an element's corners and of its stress. With ∇u = h, stresses are sums of moduli times strains
@@ -34,7 +35,13 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
     let h = h.max(spread * gradients);
     let eta = law.fibres.as_ref().map_or(0.0, |(fibres, _)| fibres.eta);
     let [shear, bulk] = law.elastic.small_strain_moduli();
-    let moduli = 2.0 * shear + bulk + 2.0 * eta;
+    // a family's stress grows by exp(k₂Ē²), and its rounding by 2k₂Ē² times that
+    let families = law.exponential.iter().map(|(family, _)| {
+        let strain = 2.0 * h * (1.0 + h);
+        let exponent = family.k2 * strain * strain;
+        4.0 * family.k1 * exponent.exp() * (1.0 + 2.0 * exponent)
+    });
+    let moduli = 2.0 * shear + bulk + 2.0 * eta + families.sum::<f64>();
     let compressed = state.points().iter().map(|point| point.kinematics.j).fold(1.0, f64::min);
     let memory = world.get::<ViscousMemory>(block).map_or(0.0, |_| 400.0);
     let nodal = world.get::<NodalVolumeChange>(block).map_or(0.0, |means| {
@@ -64,3 +71,6 @@ fn natural_gradients(number: impl Fn(usize) -> f64) -> f64 {
 /// two laws (20), viscosity (8), F S (6), a force and the sum of all (16). Eight points with gradients in natural coordinates
 /// (∂X/∂ξ 3, its adjugate and determinant 6, a division 3) and a sum over them (8) stay within what is left.
 pub const ROUNDINGS: f64 = 96.0;
+
+/// What Ogden's law adds to it: twelve rotations (6 each), logarithms (12) and exponentials (16).
+pub const OGDEN_ROUNDINGS: f64 = 100.0;

@@ -58,7 +58,8 @@ fn compare_motion(pair: &mut Pair, effects: &Effects) {
             for i in 0..pair.host().get::<Displacement>(body).unwrap().len() {
                 // u less what was lost is the exact sum, but for the rounding of what was lost
                 let sum = |world: &World| {
-                    let lost = world.get::<DisplacementCompensation>(body).unwrap().get(i);
+                    let lost = world.get::<DisplacementCompensation>(body).unwrap();
+                    let lost = lost.get(COMPENSATION_NUMBERS * (i / 3) + i % 3);
                     (world.get::<Displacement>(body).unwrap().get(i) - lost, lost)
                 };
                 let ((host, lost), (device, _)) = (sum(pair.host()), sum(pair.device.world()));

@@ -50,7 +50,7 @@ pub fn forces<E: Element>(
     for point in 0..E::POINTS {
         let at = E::at_point(&prepared, point, |k| shape[k]);
         let k = Kinematics::new(&at.gradient);
-        let stress = isochoric(&k).plus(&<NeoHookean<f64> as Elastic<f64>>::volumetric(&k, pressure));
+        let stress = isochoric(&k).plus(&NEO_HOOKEAN.volumetric(&k, pressure));
         E::add_stress(&mut sums, point, &at, &at.gradient.plus_identity_times(&stress));
     }
     let mut forces = [[0.0; 3]; MOST_NODES];
@@ -148,7 +148,7 @@ fn rigid_rotation_makes_no_force<E: Element>(kind: ElementKind) {
         worst64 = all.iter().flatten().fold(worst64, |worst, x| worst.max(x.abs()));
         let k = Kinematics::<f32>::new(&gradient(q));
         let law = NeoHookean { shear: NEO_HOOKEAN.shear as f32, bulk: NEO_HOOKEAN.bulk as f32 };
-        let s = law.isochoric(&k).plus(&<NeoHookean<f32> as Elastic<f32>>::volumetric(&k, law.pressure(k.volume_change)));
+        let s = law.isochoric(&k).plus(&law.volumetric(&k, law.pressure(k.volume_change)));
         worst32 = s.0.iter().fold(worst32, |worst, x| worst.max(f64::from(x.abs())));
     }
     println!("rotation: force {worst64:.1e} N in f64, stress {worst32:.1e} Pa in f32");

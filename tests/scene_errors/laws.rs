@@ -78,7 +78,10 @@ fn print_all() {
         ("return elastic.bulk * change;", "return elastic.bulk * change; }\nfn place() -> f32 { return 0.0;"),
         ("fn elastic_pressure(change: f32)", "fn elastic_presure(change: f32)"),
         ("fn elastic_pressure(change: f32) -> f32", "fn elastic_pressure(k: Kinematics) -> f32"),
-        ("fn elastic_pressure(change: f32) -> f32 {\n    return elastic.bulk * change;", "fn elastic_pressure(change: f32) -> vec3<f32> {\n    return vec3(elastic.bulk * change);"),
+        (
+            "fn elastic_pressure(change: f32) -> f32 {\n    return elastic.bulk * change;",
+            "fn elastic_pressure(change: f32) -> vec3<f32> {\n    return vec3(elastic.bulk * change);",
+        ),
         ("elastic: Law;", "elastic: Law;\nvar<private> last: f32;"),
         ("elastic: Law;", "elastic: Law;\n@group(0) @binding(1) var<storage, read_write> table: array<f32>;"),
         ("elastic: Law;", "elastic: Law;\n@group(0) @binding(1) var<uniform> more: Law;"),
@@ -91,16 +94,25 @@ fn print_all() {
         ("return elastic.bulk * change;", "var p = change; for (var i = 0; i < i32(p); i++) { p += 1.0; } return p;"),
         ("return elastic.bulk * change;", "var p = change; while (p > 0.0) { p -= 1.0; } return p;"),
         ("return elastic.bulk * change;", "let t = array<f32, 2>(1.0, 2.0); let i = u32(change); return t[i];"),
-        ("return elastic.bulk * change;", "var p = change; grow(&p); return p; }\nfn grow(p: ptr<function, f32>) { *p = 2.0 * *p;"),
+        (
+            "return elastic.bulk * change;",
+            "var p = change; grow(&p); return p; }\nfn grow(p: ptr<function, f32>) { *p = 2.0 * *p;",
+        ),
         ("return elastic.bulk * change;", "return elastic.bulk * bitcast<f32>(bitcast<u32>(change));"),
         ("return elastic.bulk * change;", "return elastic.bulk * (change + 0.01);"),
         ("return elastic.bulk * change;", "return elastic.bulk * change * change / change;"),
         ("return elastic.bulk * change;", "return -elastic.bulk * change;"),
         ("2.0 * elastic.mu", "elastic.mu"),
-        ("return 0.5 * elastic.bulk * change * change;", "return 0.5 * elastic.bulk * change * change * (1.0 + change);"),
+        (
+            "return 0.5 * elastic.bulk * change * change;",
+            "return 0.5 * elastic.bulk * change * change * (1.0 + change);",
+        ),
         ("e.diagonal - sym_trace(e) / 3.0", "vec3(2.0, 1.0, 1.0) * (e.diagonal - sym_trace(e) / 3.0)"),
         ("sym_trace(e) / 3.0, e.others", "sym_trace(e) / 3.0, vec3(1.0, 2.0, 1.0) * e.others"),
-        ("Sym3(e.diagonal - sym_trace(e) / 3.0, e.others);", "Sym3(vec3((k.j_m23 * (1.0 + 2.0 * e.diagonal) - k.j_m23 * (3.0 + 2.0 * sym_trace(e)) / 3.0) / (2.0 * k.j_m23)), e.others);"),
+        (
+            "Sym3(e.diagonal - sym_trace(e) / 3.0, e.others);",
+            "Sym3(vec3((k.j_m23 * (1.0 + 2.0 * e.diagonal) - k.j_m23 * (3.0 + 2.0 * sym_trace(e)) / 3.0) / (2.0 * k.j_m23)), e.others);",
+        ),
     ];
     for (old, new) in cases {
         assert!(GOOD.contains(old), "{old}");

@@ -1,9 +1,11 @@
 //! Forces of all elements of a block, a register full at a time.
 
+mod effects;
+
 use super::{BlockLaw, Cpu};
 use crate::elements::{Element, MOST_NODES, PressureFrom};
-use crate::materials::{Elastic, ElasticLaw, Fibres, Kinematics, PronyTerm, WithElastic};
-use crate::math::{LANES, Real, SimdScalar, Sym3};
+use crate::materials::{Elastic, ElasticLaw};
+use crate::math::{LANES, Real, SimdScalar};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -28,22 +30,33 @@ pub struct BlockColumns<'a, T> {
 
 /// Fills in the forces of a block and carries its viscous history on by one step. Says whether an element has J < 0.
 ///
-/// The neo-Hookean law has a kernel of its own for each combination of effects, so that what a material lacks is not even
-/// asked for; the other laws ask.
+/// One kernel an element type for all laws and effects, which asks for them at each point.
 pub fn run_block<E: Element, T: SimdScalar>(
     cpu: &Cpu,
     columns: BlockColumns<'_, T>,
     law: &BlockLaw<T>,
     groups_a_patch: usize,
 ) -> bool {
-    let block = Block::<E, T> { cpu, columns, law, groups_a_patch, element: PhantomData };
-    match (&law.elastic, law.fibres.is_some(), !law.prony.is_empty()) {
-        (ElasticLaw::NeoHookean(elastic), false, false) => block.run::<_, 0>(elastic),
-        (ElasticLaw::NeoHookean(elastic), true, false) => block.run::<_, FIBRES>(elastic),
-        (ElasticLaw::NeoHookean(elastic), false, true) => block.run::<_, VISCOSITY>(elastic),
-        (ElasticLaw::NeoHookean(elastic), true, true) => block.run::<_, { FIBRES | VISCOSITY }>(elastic),
-        #[allow(unreachable_patterns)]
-        (other, ..) => other.with(block),
+    Block::<E, T> { cpu, columns, law, groups_a_patch, element: PhantomData }.run::<_, ASK>(&law.elastic)
+}
+
+/// The same in f32, where speed counts: the neo-Hookean law has a kernel of its own for each combination of fibres and
+/// viscosity, so that what a material lacks is not even asked for.
+pub fn run_block_fast<E: Element>(
+    cpu: &Cpu,
+    columns: BlockColumns<'_, f32>,
+    law: &BlockLaw<f32>,
+    groups_a_patch: usize,
+) -> bool {
+    let ElasticLaw::NeoHookean(elastic) = &law.elastic else { return run_block::<E, f32>(cpu, columns, law, groups_a_patch) };
+    let plain = law.exponential.is_empty() && law.volumetric.is_empty() && !law.reproject;
+    let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
+    match (law.fibres.is_some(), !law.prony.is_empty()) {
+        _ if !plain => block.run::<_, ASK>(&law.elastic),
+        (false, false) => block.run::<_, 0>(elastic),
+        (true, false) => block.run::<_, FIBRES>(elastic),
+        (false, true) => block.run::<_, VISCOSITY>(elastic),
+        (true, true) => block.run::<_, { FIBRES | VISCOSITY }>(elastic),
     }
 }
 
@@ -61,19 +74,13 @@ struct Block<'a, E, T: SimdScalar> {
     element: PhantomData<E>,
 }
 
-impl<E: Element, T: SimdScalar> WithElastic<T> for Block<'_, E, T> {
-    type Output = bool;
-    fn with<L: Elastic<T>>(self, elastic: &L) -> bool {
-        self.run::<L, ASK>(elastic)
-    }
-}
-
 impl<E: Element, T: SimdScalar> Block<'_, E, T> {
     fn run<L: Elastic<T>, const EFFECTS: u8>(self, elastic: &L) -> bool {
         let Self { cpu, columns, law, groups_a_patch, element } = self;
         let inverted = AtomicBool::new(false);
         let patch = groups_a_patch * LANES;
-        let memory_an_element = memory_numbers::<E, T>(law);
+        let memory_an_element = law.memory_numbers(E::POINTS);
+        let varying = law.varying_families();
         let patches = columns.force.chunks_mut(patch * 3 * E::NODES).enumerate();
         // without viscosity there is no memory to hand out
         let mut memories = columns.memory.chunks_mut((patch * memory_an_element).max(1));
@@ -82,7 +89,8 @@ impl<E: Element, T: SimdScalar> Block<'_, E, T> {
             nodal_volume_change: columns.nodal_volume_change,
             connectivity: &columns.connectivity[index * patch * E::NODES..],
             rest_shape: &columns.rest_shape[index * patch * E::ROWS..],
-            fibre_direction: columns.fibre_direction.map(|all| &all[index * patch * 3..]),
+            fibre_direction: columns.fibre_direction.map(|all| &all[index * patch * 3 * varying..]),
+            varying,
             memory: memories.next().unwrap_or_default(),
             force,
             elastic,
@@ -98,17 +106,13 @@ impl<E: Element, T: SimdScalar> Block<'_, E, T> {
     }
 }
 
-/// Numbers of viscous history an element has: six a Prony term and integration point.
-fn memory_numbers<E: Element, T: SimdScalar>(law: &BlockLaw<T>) -> usize {
-    6 * law.prony.len() * E::POINTS
-}
-
 struct Patch<'a, E, T: SimdScalar, L, const EFFECTS: u8> {
     displacement: &'a [T],
     nodal_volume_change: &'a [T],
     connectivity: &'a [u32],
     rest_shape: &'a [T],
     fibre_direction: Option<&'a [T]>,
+    varying: usize,
     memory: &'a mut [T],
     force: &'a mut [T],
     elastic: &'a L,
@@ -198,7 +202,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         let rest_shape = &self.rest_shape[group * E::ROWS * LANES..(group + 1) * E::ROWS * LANES];
         let shared = match E::PRESSURE {
             PressureFrom::Point => zero,
-            PressureFrom::MeanOverPoints => elastic.pressure(mean_volume_change::<E, T, L, S>(simd, &u, rest_shape, at)),
+            PressureFrom::MeanOverPoints => elastic.pressure(mean_volume_change::<E, T, L, S>(simd, &elastic, &u, rest_shape, at)),
             PressureFrom::Nodes => self.mean_of_nodes(simd, &elastic, group, at),
         };
         let mut forces = E::no_forces(zero);
@@ -210,20 +214,29 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
                 #[inline(always)]
                 |row: usize| T::load(simd, &rest_shape[row * LANES + at..]),
             );
-            let k = <L::Of<T::Vector<S>>>::kinematics(&state.gradient);
-            let pressure = match E::PRESSURE {
-                PressureFrom::Point => elastic.pressure(<L::Of<T::Vector<S>>>::volume_measure(&k)),
+            let k = elastic.kinematics(&state.gradient);
+            let mut pressure = match E::PRESSURE {
+                PressureFrom::Point => elastic.pressure(elastic.volume_measure(&k)),
                 _ => shared,
             };
+            if EFFECTS == ASK && !self.law.volumetric.is_empty() {
+                pressure = self.relax_pressure(simd, group, at, point, pressure);
+            }
             let mut isochoric = elastic.isochoric(&k);
             if self.has_fibres() {
                 isochoric = isochoric.plus(&self.fibre_stress(simd, group, at, &k));
             }
+            if EFFECTS == ASK && !self.law.exponential.is_empty() {
+                isochoric = isochoric.plus(&self.exponential_stress(simd, group, at, &k));
+            }
             if self.has_viscosity() {
                 isochoric = self.relax(simd, group, at, point, isochoric);
             }
-            let stress = isochoric.plus(&<L::Of<T::Vector<S>>>::volumetric(&k, pressure));
-            let stress = <L::Of<T::Vector<S>>>::first_stress(&state.gradient, &stress);
+            if EFFECTS == ASK && self.law.reproject {
+                isochoric = elastic.without_pressure(&k, isochoric);
+            }
+            let stress = isochoric.plus(&elastic.volumetric(&k, pressure));
+            let stress = elastic.first_stress(&state.gradient, &stress);
             E::add_stress(&mut forces, point, &state, &stress);
             worst = worst.max(-k.true_j);
         }
@@ -259,72 +272,13 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         }
         sum * sum.constant(1.0 / E::NODES as f64)
     }
-
-    #[inline(always)]
-    fn fibre_stress<S: Simd>(
-        &self,
-        simd: S,
-        group: usize,
-        at: usize,
-        k: &Kinematics<T::Vector<S>>,
-    ) -> Sym3<T::Vector<S>> {
-        let zero = T::splat(simd, T::default());
-        let Some((fibres, uniform)) = &self.law.fibres else {
-            return Sym3([zero; 6]);
-        };
-        let fibres = Fibres { eta: T::splat(simd, fibres.eta), tension_only: T::splat(simd, fibres.tension_only) };
-        let mut direction = [zero; 3];
-        for i in 0..3 {
-            direction[i] = match (uniform, self.fibre_direction) {
-                (Some(a), _) => T::splat(simd, a[i]),
-                (None, Some(all)) => T::load(simd, &all[(group * 3 + i) * LANES + at..]),
-                (None, None) => zero,
-            };
-        }
-        fibres.isochoric(k, direction)
-    }
-
-    /// S_iso − Υ; the memory is carried on.
-    #[inline(always)]
-    fn relax<S: Simd>(
-        &mut self,
-        simd: S,
-        group: usize,
-        at: usize,
-        point: usize,
-        isochoric: Sym3<T::Vector<S>>,
-    ) -> Sym3<T::Vector<S>> {
-        let terms = self.law.prony.len();
-        let mut stress = isochoric;
-        for (number, term) in self.law.prony.iter().enumerate() {
-            let term = PronyTerm {
-                stress: T::splat(simd, term.stress),
-                memory: T::splat(simd, term.memory),
-                rate: T::splat(simd, term.rate),
-                aim: T::splat(simd, term.aim),
-            };
-            let first = (group * memory_numbers::<E, T>(self.law) + 6 * (point * terms + number)) * LANES + at;
-            let mut memory = isochoric;
-            for i in 0..6 {
-                memory.0[i] = T::load(simd, &self.memory[first + i * LANES..]);
-            }
-            let relaxed = term.relaxed(&isochoric, &memory);
-            for i in 0..6 {
-                stress.0[i] -= relaxed.0[i];
-            }
-            let memory = term.carried_on(&isochoric, &memory);
-            for i in 0..6 {
-                T::store(memory.0[i], &mut self.memory[first + i * LANES..]);
-            }
-        }
-        stress
-    }
 }
 
 /// θ̄ = Σ V_q θ_q / V of elements with several points.
 #[inline(always)]
 fn mean_volume_change<E: Element, T: SimdScalar, L: Elastic<T>, S: Simd>(
     simd: S,
+    elastic: &L::Of<T::Vector<S>>,
     u: &E::Prepared<T::Vector<S>>,
     rest_shape: &[T],
     at: usize,
@@ -338,8 +292,8 @@ fn mean_volume_change<E: Element, T: SimdScalar, L: Elastic<T>, S: Simd>(
             #[inline(always)]
             |row: usize| T::load(simd, &rest_shape[row * LANES + at..]),
         );
-        let k = <L::Of<T::Vector<S>>>::kinematics(&state.gradient);
-        change = state.volume.mul_add(<L::Of<T::Vector<S>>>::volume_measure(&k), change);
+        let k = elastic.kinematics(&state.gradient);
+        change = state.volume.mul_add(elastic.volume_measure(&k), change);
         volume += state.volume;
     }
     change / volume

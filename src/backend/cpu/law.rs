@@ -1,41 +1,56 @@
 //! The material of a block, ready for its kernel.
 
-use crate::materials::{ElasticLaw, Fibres, PronyTerm};
+use crate::components::FamilyDirection;
+use crate::materials::{Elastic, ElasticLaw, ExponentialFibre, Fibres, PronyTerm};
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 
 /// All that a block's kernel needs of its material, in the kernel's precision. What the material does not have is `None`
-/// or empty, and then is not in the kernel either: kernels are compiled for each combination.
+/// or empty, and costs nothing.
 #[derive(Component, Clone, Debug)]
 pub struct BlockLaw<T: Scalar> {
     /// Isotropic elasticity.
     pub elastic: ElasticLaw<T>,
-    /// Fibres, and their direction when it is the same for the whole block.
-    pub fibres: Option<(Fibres<T>, Option<[T; 3]>)>,
-    /// Viscosity, for the run's time step.
+    /// Fibres.
+    pub fibres: Option<(Fibres<T>, FamilyDirection<T>)>,
+    /// Families of fibres that stiffen exponentially.
+    pub exponential: Vec<(ExponentialFibre<T>, FamilyDirection<T>)>,
+    /// Viscosity of the isochoric stress, for the run's time step.
     pub prony: Vec<PronyTerm<T>>,
+    /// Viscosity of the pressure, for the run's time step.
+    pub volumetric: Vec<PronyTerm<T>>,
+    /// Whether the relaxed isochoric stress is freed of what is a pressure by now.
+    pub reproject: bool,
 }
 
-impl BlockLaw<f64> {
-    /// Rounds to the run's precision.
-    pub fn rounded<T: Scalar>(&self) -> BlockLaw<T> {
-        let round = |value: f64| T::from_f64(value);
+impl<T: Scalar> BlockLaw<T> {
+    /// Families of fibres whose direction differs from element to element.
+    pub fn varying_families(&self) -> usize {
+        let directions = self.fibres.iter().map(|(_, direction)| direction);
+        let directions = directions.chain(self.exponential.iter().map(|(_, direction)| direction));
+        directions.filter(|direction| matches!(direction, FamilyDirection::Varying(_))).count()
+    }
+
+    /// Numbers of viscous history that an element with so many integration points has.
+    pub fn memory_numbers(&self, points: usize) -> usize {
+        6 * self.prony.len() * points + self.volumetric.len()
+    }
+
+    /// Rounds to another precision.
+    pub fn rounded<Q: Scalar>(&self) -> BlockLaw<Q> {
+        let round = |value: T| Q::from_f64(value.to_f64());
+        let direction = |from: &FamilyDirection<T>| match *from {
+            FamilyDirection::Uniform(a) => FamilyDirection::Uniform(a.map(round)),
+            FamilyDirection::Varying(place) => FamilyDirection::Varying(place),
+        };
+        let terms = |terms: &[PronyTerm<T>]| terms.iter().map(|term| term.map(round)).collect();
         BlockLaw {
-            elastic: self.elastic.rounded(),
-            fibres: self.fibres.map(|(f, direction)| {
-                let fibres = Fibres { eta: round(f.eta), tension_only: round(f.tension_only) };
-                (fibres, direction.map(|a| a.map(round)))
-            }),
-            prony: self
-                .prony
-                .iter()
-                .map(|t| PronyTerm {
-                    stress: round(t.stress),
-                    memory: round(t.memory),
-                    rate: round(t.rate),
-                    aim: round(t.aim),
-                })
-                .collect(),
+            elastic: self.elastic.map(round),
+            fibres: self.fibres.as_ref().map(|(fibres, from)| (fibres.map(round), direction(from))),
+            exponential: self.exponential.iter().map(|(family, from)| (family.map(round), direction(from))).collect(),
+            prony: terms(&self.prony),
+            volumetric: terms(&self.volumetric),
+            reproject: self.reproject,
         }
     }
 }

@@ -4,7 +4,7 @@ mod element_kernel;
 mod law;
 mod volume_kernel;
 
-pub use element_kernel::{BlockColumns, run_block};
+pub use element_kernel::{BlockColumns, run_block, run_block_fast};
 pub use law::BlockLaw;
 pub use volume_kernel::run_volumes;
 

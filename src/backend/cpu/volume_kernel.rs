@@ -3,7 +3,7 @@
 use super::element_kernel::{corner_registers, group_vectors};
 use super::{BlockLaw, Cpu};
 use crate::elements::{Element, MOST_NODES};
-use crate::materials::{Elastic, WithElastic};
+use crate::materials::{Elastic, ElasticLaw};
 use crate::math::{LANES, SimdScalar};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
@@ -18,48 +18,36 @@ pub fn run_volumes<E: Element, T: SimdScalar>(
     groups_a_patch: usize,
     volumes: &mut [T],
 ) {
-    let element = PhantomData::<E>;
-    law.elastic.with(Volumes { cpu, displacement, connectivity, rest_shape, groups_a_patch, volumes, element });
+    let patch = groups_a_patch * LANES;
+    let tasks = volumes.chunks_mut(2 * patch).enumerate().map(|(index, volumes)| Patch::<E, T> {
+        displacement,
+        connectivity: &connectivity[index * patch * E::NODES..],
+        rest_shape: &rest_shape[index * patch * E::ROWS..],
+        elastic: &law.elastic,
+        volumes,
+        element: PhantomData,
+    });
+    cpu.for_each(tasks, |patch| cpu.arch().dispatch(patch));
 }
 
-struct Volumes<'a, E, T> {
-    cpu: &'a Cpu,
+struct Patch<'a, E, T: SimdScalar> {
     displacement: &'a [T],
     connectivity: &'a [u32],
     rest_shape: &'a [T],
-    groups_a_patch: usize,
+    elastic: &'a ElasticLaw<T>,
     volumes: &'a mut [T],
     element: PhantomData<E>,
 }
 
-impl<E: Element, T: SimdScalar> WithElastic<T> for Volumes<'_, E, T> {
-    type Output = ();
-    fn with<L: Elastic<T>>(self, _: &L) {
-        let patch = self.groups_a_patch * LANES;
-        let tasks = self.volumes.chunks_mut(2 * patch).enumerate().map(|(index, volumes)| Patch::<E, T, L> {
-            displacement: self.displacement,
-            connectivity: &self.connectivity[index * patch * E::NODES..],
-            rest_shape: &self.rest_shape[index * patch * E::ROWS..],
-            volumes,
-            types: PhantomData,
-        });
-        self.cpu.for_each(tasks, |patch| self.cpu.arch().dispatch(patch));
-    }
-}
-
-struct Patch<'a, E, T, L> {
-    displacement: &'a [T],
-    connectivity: &'a [u32],
-    rest_shape: &'a [T],
-    volumes: &'a mut [T],
-    types: PhantomData<(E, L)>,
-}
-
-impl<E: Element, T: SimdScalar, L: Elastic<T>> WithSimd for Patch<'_, E, T, L> {
+impl<E: Element, T: SimdScalar> WithSimd for Patch<'_, E, T> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
+        let elastic = self.elastic.map(
+            #[inline(always)]
+            |number: T| T::splat(simd, number),
+        );
         for group in 0..self.volumes.len() / (2 * LANES) {
             let nodes = &self.connectivity[group * E::NODES * LANES..(group + 1) * E::NODES * LANES];
             let displacements: [[[T; LANES]; 3]; MOST_NODES] = group_vectors::<E, T>(nodes, self.displacement);
@@ -73,8 +61,8 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>> WithSimd for Patch<'_, E, T, L> {
                     #[inline(always)]
                     |row: usize| T::load(simd, &rest_shape[row * LANES + at..]),
                 );
-                let k = <L::Of<T::Vector<S>>>::kinematics(&state.gradient);
-                let theta = <L::Of<T::Vector<S>>>::volume_measure(&k);
+                let k = elastic.kinematics(&state.gradient);
+                let theta = elastic.volume_measure(&k);
                 T::store(state.volume, &mut self.volumes[2 * group * LANES + at..]);
                 T::store(state.volume * theta, &mut self.volumes[(2 * group + 1) * LANES + at..]);
                 at += T::width::<S>();

@@ -1,6 +1,7 @@
 //! Whether what has the form of a law is one: finite, without stress at rest, isotropic and stiff at small strains, and
 //! with stresses that are the derivatives of its energies.
 
+use super::comparison::{Comparison, largest};
 use super::deformations::{self, Deformation, shown};
 use super::names::declared;
 use super::{About, Complaint, FUNCTIONS};
@@ -27,8 +28,6 @@ pub struct Findings {
 
 /// Every law must be finite up to here.
 const MUST_BE_FINITE: f64 = 0.01;
-/// Allowed difference of a stress and the derivative of its energy, by differences of 1e-5: these err by 1e-7.
-const DERIVATIVE: f64 = 1e-4;
 /// Stress at rest that is allowed, in parts of the moduli.
 const REST: f64 = 1e-9;
 /// Volume changes that pressures are tried at.
@@ -65,10 +64,6 @@ struct Trial<'a> {
     text: &'a str,
 }
 
-fn largest(numbers: &[f64]) -> f64 {
-    numbers.iter().fold(0.0, |largest: f64, x| if x.is_nan() { f64::NAN } else { largest.max(x.abs()) })
-}
-
 fn inner(a: &Sym3<f64>, b: &Sym3<f64>) -> f64 {
     (0..6).map(|i| a.0[i] * b.0[i] * if i < 3 { 1.0 } else { 2.0 }).sum()
 }
@@ -95,7 +90,12 @@ impl Trial<'_> {
             let k = Kinematics::new(&deformation.gradient);
             let (law, change) = (self.law, k.volume_change);
             let stress = law.isochoric_stress(&k).0;
-            let numbers = [largest(&stress), law.pressure_at(change), law.isochoric_energy_at(&k), law.volumetric_energy_at(change)];
+            let numbers = [
+                largest(&stress),
+                law.pressure_at(change),
+                law.isochoric_energy_at(&k),
+                law.volumetric_energy_at(change),
+            ];
             let Some(function) = numbers.iter().position(|number| !number.is_finite()) else { continue };
             if deformation.size > MUST_BE_FINITE {
                 return Ok(Some(deformation.size));
@@ -145,12 +145,12 @@ impl Trial<'_> {
             let message = format!("`{}` is not 0 at rest: {:.4e} Pa", FUNCTIONS[function].0, largest(&rest.0));
             return Err(vec![self.about(function, message).note("an undeformed body has no stress")]);
         }
-        for strain in [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.3, 0.0, 0.0], [0.2, 0.0, -1.0, 0.0, 0.5, 0.7]] {
+        for strain in [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.3, 0.0, 0.0], [0.2, 0.0, -1.0, 0.0, 0.5, 0.7]]
+        {
             let (found, trace) = (tangent(strain), strain[0] + strain[1] + strain[2]);
             let spherical = (bulk - 2.0 / 3.0 * shear) * trace;
-            let error: [f64; 6] = std::array::from_fn(|i| {
-                found[i] - 2.0 * shear * strain[i] - if i < 3 { spherical } else { 0.0 }
-            });
+            let error: [f64; 6] =
+                std::array::from_fn(|i| found[i] - 2.0 * shear * strain[i] - if i < 3 { spherical } else { 0.0 });
             if largest(&error) > 1e-4 * scale {
                 let moduli = shears.map(|shear| format!("{shear:.4}")).join(", ");
                 let message = format!("the law is not isotropic: its shear moduli in xy, yz, xz are {moduli} Pa");
@@ -184,7 +184,9 @@ impl Trial<'_> {
             let (stress, derivative) = (stress.0.as_flattened(), derivative.0.as_flattened());
             comparison.add(stress, derivative, shear * size, || shown(gradient));
         }
-        comparison.outcome(|what| self.about(0, format!("`elastic_isochoric` is not the derivative of `elastic_isochoric_energy`: {what}")))
+        comparison.outcome(|what| {
+            self.about(0, format!("`elastic_isochoric` is not the derivative of `elastic_isochoric_energy`: {what}"))
+        })
     }
 
     /// Compares U'(θ) with the derivative of U(θ).
@@ -200,7 +202,9 @@ impl Trial<'_> {
                 comparison.add(&[pressure], &[derivative], bulk * change.abs(), || format!("volume_change = {change}"));
             }
         }
-        comparison.outcome(|what| self.about(1, format!("`elastic_pressure` is not the derivative of `elastic_volumetric_energy`: {what}")))
+        comparison.outcome(|what| {
+            self.about(1, format!("`elastic_pressure` is not the derivative of `elastic_volumetric_energy`: {what}"))
+        })
     }
 
     /// Largest relative error of stresses in f32 at strains around 1e-4.
@@ -215,7 +219,9 @@ impl Trial<'_> {
             let error: [f64; 6] = std::array::from_fn(|i| found[i] - expected[i]);
             let pressure = self.law.pressure_at(exact.volume_change);
             let pressure_error = f64::from(self.law.pressure_at(k.volume_change)) - pressure;
-            worst = worst.max(largest(&error) / largest(&expected)).max(pressure_error.abs() / pressure.abs().max(Real::abs(expected[0])));
+            worst = worst
+                .max(largest(&error) / largest(&expected))
+                .max(pressure_error.abs() / pressure.abs().max(Real::abs(expected[0])));
         }
         worst
     }
@@ -249,49 +255,5 @@ impl Trial<'_> {
             ));
         }
         warnings
-    }
-}
-
-/// Stresses beside derivatives of energies.
-#[derive(Default)]
-struct Comparison {
-    /// Largest relative error, and where.
-    worst: f64,
-    at: String,
-    found: f64,
-    expected: f64,
-    /// Sums for the factor that is between them, if it is one.
-    products: f64,
-    squares: f64,
-    /// The pairs, scaled.
-    pairs: Vec<(f64, f64)>,
-}
-
-impl Comparison {
-    fn add(&mut self, stress: &[f64], derivative: &[f64], least: f64, at: impl Fn() -> String) {
-        let scale = largest(stress).max(largest(derivative)).max(least);
-        for (&found, &expected) in stress.iter().zip(derivative) {
-            self.products += found * expected / (scale * scale);
-            self.squares += (expected / scale).powi(2);
-            self.pairs.push((found / scale, expected / scale));
-            let error = (found - expected).abs() / scale;
-            if error > self.worst || error.is_nan() {
-                (self.worst, self.at, self.found, self.expected) = (error, at(), found, expected);
-            }
-        }
-    }
-
-    fn outcome(self, complaint: impl Fn(String) -> Complaint) -> Result<f64, Box<Complaint>> {
-        if self.worst <= DERIVATIVE {
-            return Ok(self.worst);
-        }
-        let (found, expected) = (self.found, self.expected);
-        let factor = self.products / self.squares;
-        let alike = self.pairs.iter().all(|(found, expected)| (found - factor * expected).abs() < 10.0 * DERIVATIVE);
-        let complaint = complaint(format!("{found:.6} Pa, the derivative {expected:.6} Pa")).note(format!("at {}", self.at));
-        Err(Box::new(match alike && factor.is_finite() {
-            true => complaint.note(format!("it is {factor:.4} times the derivative everywhere: a factor too much or too little?")),
-            false => complaint,
-        }))
     }
 }

@@ -57,7 +57,11 @@ fn foreign(composed: &Composed, declared: &[Declared], complaints: &mut Vec<Comp
     };
     for point in &module.entry_points {
         let message = format!("`{}` is an entry point: a law has none", point.name);
-        complain(&point.name, message, "the element kernel calls the law's functions; leave out @compute and @workgroup_size");
+        complain(
+            &point.name,
+            message,
+            "the element kernel calls the law's functions; leave out @compute and @workgroup_size",
+        );
     }
     for (_, value) in module.overrides.iter() {
         let name = value.name.as_deref().unwrap_or_default();
@@ -159,8 +163,11 @@ fn parameters(
         packed.bytes[at..at + 4].copy_from_slice(&(value as f32).to_le_bytes());
     }
     for name in given.keys().filter(|name| !names.contains(&name.as_str())) {
-        let mut complaint = Complaint::new(About::Parameter(name.clone()), format!("the law has no parameter `{name}`"));
-        complaint.notes.extend(crate::scene::nearest(name, names.iter().copied()).map(|n| format!("did you mean `{n}`?")));
+        let mut complaint =
+            Complaint::new(About::Parameter(name.clone()), format!("the law has no parameter `{name}`"));
+        complaint
+            .notes
+            .extend(crate::scene::nearest(name, names.iter().copied()).map(|n| format!("did you mean `{n}`?")));
         complaints.push(complaint.note(needs.clone()));
     }
     packed

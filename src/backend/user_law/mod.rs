@@ -2,6 +2,7 @@
 //! fragments as the GPU will, translated for the CPU, and found to be a law before anything is simulated with it.
 
 mod checks;
+mod comparison;
 mod deformations;
 mod interface;
 mod names;

@@ -28,7 +28,9 @@ pub(super) fn declared(text: &str) -> Vec<Declared> {
             // var<storage, read> x
             "<" if kind.is_some() => template += 1,
             ">" if kind.is_some() => template = template.saturating_sub(1),
-            "fn" | "struct" | "var" | "const" | "alias" | "override" if depth == 0 => (kind, template) = (Some(word), 0),
+            "fn" | "struct" | "var" | "const" | "alias" | "override" if depth == 0 => {
+                (kind, template) = (Some(word), 0)
+            }
             _ if is_name(word) && depth == 0 && template == 0 => {
                 if let Some(kind) = kind.take() {
                     found.push(Declared { kind: kind.to_owned(), name: word.to_owned(), at: range });
@@ -50,7 +52,7 @@ pub(super) fn member(text: &str, of: &Declared, member: &str) -> Range<usize> {
 
 /// The fragments that a law may call, and with which it is compiled.
 pub(super) fn to_call() -> Vec<Fragment> {
-    vec![shader!("tensor"), shader!("kinematics")]
+    vec![shader!("tensor"), shader!("kinematics"), shader!("elementary"), shader!("eigen")]
 }
 
 /// The other fragments that can be in one kernel with a law.
@@ -62,6 +64,7 @@ pub(super) fn beside() -> Vec<Fragment> {
         shader!("element_forces"),
         shader!("element_removal"),
         shader!("energy"),
+        shader!("exponential_fibres"),
         shader!("fibres"),
         shader!("fibres_field"),
         shader!("fibres_uniform"),
@@ -82,10 +85,14 @@ pub(super) fn beside() -> Vec<Fragment> {
 }
 
 /// Names that kernels are generated with.
-const GENERATED: [&str; 10] = [
+const GENERATED: [&str; 14] = [
     "isochoric_stress",
     "energy_density",
     "fibres_energy_at",
+    "viscous_pressure",
+    "family_direction",
+    "FAMILIES",
+    "VOLUMETRIC_TERMS",
     "TERMS",
     "LANES",
     "NODES",
@@ -130,7 +137,8 @@ mod tests {
             let names: Vec<String> = declared(&text).into_iter().map(|d| d.name).collect();
             let law = names.iter().any(|name| name == "elastic_isochoric");
             // kernels of nodes and faces have no element
-            let elements = ["alive", "block", "prony", "fibres", "element", "point", "nodal_v", "nodal_m", "hex8", "tet4"];
+            let elements =
+                ["alive", "block", "prony", "fibres", "element", "point", "nodal_v", "nodal_m", "hex8", "tet4"];
             let meets = elements.iter().any(|part| name.contains(part)) || text.contains("Kinematics");
             assert!(law || !meets || known.contains(&name), "{name} is in no list of src/backend/user_law/names.rs");
         }

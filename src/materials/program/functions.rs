@@ -77,7 +77,9 @@ impl Translator<'_> {
             (F::Normalize, [a]) => {
                 let vector = floats(a, at)?;
                 let length = self.length(&vector);
-                Ok(Value::vector(vector.into_iter().map(|x| self.graph.binary(Binary::Divide, x, length)).collect::<Vec<_>>()))
+                Ok(Value::vector(
+                    vector.into_iter().map(|x| self.graph.binary(Binary::Divide, x, length)).collect::<Vec<_>>(),
+                ))
             }
             (F::Outer, [a, b]) => {
                 let (a, b) = (floats(a, at)?, floats(b, at)?);

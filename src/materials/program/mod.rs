@@ -5,7 +5,9 @@
 //! precision, with the author's parameters put in as constants; a [`Program`] then runs it over any
 //! [`Real`](crate::math::Real): in f64 as the reference, over registers as the CPU backend does.
 
+mod arithmetic;
 mod expression;
+mod flow;
 mod functions;
 mod graph;
 mod tape;
@@ -48,8 +50,7 @@ impl Untranslatable {
 }
 
 /// Functions of ours that look at the bits of a number: what they mean is known by their names.
-pub const KNOWN_BY_NAME: [&str; 4] =
-    ["inverse_cbrt", "exponential", "exponential_less_one", "logarithm_of_one_plus"];
+pub const KNOWN_BY_NAME: [&str; 4] = ["inverse_cbrt", "exponential", "exponential_less_one", "logarithm_of_one_plus"];
 
 const NOT_ALLOWED: &str = "this is not possible in a law of one's own";
 const FUNCTIONS: &str = "allowed: abs, all, any, clamp, cross, determinant, distance, dot, exp, exp2, fma, inverseSqrt, \

@@ -1,8 +1,8 @@
 //! A graph as a straight line of instructions over numbered slots, which a machine without branches can walk for a whole
 //! register of elements at a time.
 
-use super::graph::{Binary, Graph, Id, Node, Unary};
 use super::Untranslatable;
+use super::graph::{Binary, Graph, Id, Node, Unary};
 use crate::math::{Real, Task};
 
 /// Slots that a program may use: constants, inputs and what lives at the same time.

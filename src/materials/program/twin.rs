@@ -38,7 +38,13 @@ impl Twin {
         let before = self.changed.partition_point(|(word, _)| if end { word.start < at } else { word.start <= at });
         match before.checked_sub(1).and_then(|last| self.changed.get(last)) {
             None => at,
-            Some((word, original)) if at < word.end => if end { original.end } else { original.start },
+            Some((word, original)) if at < word.end => {
+                if end {
+                    original.end
+                } else {
+                    original.start
+                }
+            }
             Some((word, original)) => original.end + (at - word.end),
         }
     }

@@ -82,6 +82,17 @@ impl Value {
         Value::Parts(ids.into_iter().map(Value::Float).collect())
     }
 
+    /// Whole numbers that came to vary, taken from another value instead.
+    pub(super) fn with_whole_numbers_of(self, other: Option<&Value>) -> Value {
+        match (self, other) {
+            (Value::Varying, Some(other)) => other.clone(),
+            (Value::Parts(parts), Some(Value::Parts(others))) => Value::Parts(
+                parts.into_iter().zip(others).map(|(part, other)| part.with_whole_numbers_of(Some(other))).collect(),
+            ),
+            (value, _) => value,
+        }
+    }
+
     /// Makes every whole number a varying one.
     pub(super) fn forget_whole_numbers(&mut self) {
         match self {

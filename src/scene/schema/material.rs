@@ -10,15 +10,33 @@ use std::collections::BTreeMap;
 pub struct Material {
     /// Density at rest (kg/m³).
     pub density: f64,
-    /// Isotropic elasticity; every material needs an elastic law, and this is the one there is.
+    /// Hooke's law for small strains and rotations. Every material needs exactly one elastic law.
     #[serde(default)]
-    pub neo_hookean: Option<NeoHookean>,
-    /// An elastic law of your own, written in WGSL, in place of the built-in ones.
+    pub linear: Option<Elasticity>,
+    /// Hooke's law in Green's strain: large rotations, small strains.
+    #[serde(default)]
+    pub st_venant_kirchhoff: Option<Elasticity>,
+    /// The neo-Hookean law, for large strains.
+    #[serde(default)]
+    pub neo_hookean: Option<Elasticity>,
+    /// The Mooney-Rivlin law, for large strains.
+    #[serde(default)]
+    pub mooney_rivlin: Option<MooneyRivlin>,
+    /// Ogden's law in principal stretches, for large strains.
+    #[serde(default)]
+    pub ogden: Option<Ogden>,
+    /// The eight-chain law of Arruda and Boyce, which stiffens towards a locking stretch.
+    #[serde(default)]
+    pub arruda_boyce: Option<ArrudaBoyce>,
+    /// An elastic law of your own, written in WGSL.
     #[serde(default)]
     pub law: Option<OwnLaw>,
-    /// Fibres in one direction (transverse isotropy).
+    /// Fibres in one direction (transverse isotropy), on top of the elastic law.
     #[serde(default)]
     pub fibres: Option<Fibres>,
+    /// Families of fibres that stiffen exponentially (Holzapfel-Gasser-Ogden), on top of the elastic law.
+    #[serde(default)]
+    pub exponential_fibres: Option<Vec<ExponentialFibres>>,
     /// Viscosity of the isochoric stress.
     #[serde(default)]
     pub prony: Option<Prony>,
@@ -27,10 +45,10 @@ pub struct Material {
     pub damping: Option<f64>,
 }
 
-/// Moduli of the neo-Hookean law, as one of two pairs.
+/// Moduli of an isotropic law, as one of two pairs.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
-pub enum NeoHookean {
+pub enum Elasticity {
     /// Young's modulus (Pa) and Poisson's ratio, both of small strains.
     Young {
         /// Young's modulus (Pa).
@@ -56,6 +74,72 @@ pub struct OwnLaw {
     /// A number for each member of the struct of `var<uniform> elastic`, by name.
     #[serde(default)]
     pub parameters: BTreeMap<String, f64>,
+}
+
+/// Ψ = c₁₀ (Ī₁ − 3) + c₀₁ (Ī₂ − 3) + κ/2 (J − 1)².
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct MooneyRivlin {
+    /// c₁₀ (Pa); c₁₀ + c₀₁ is half the shear modulus of small strains.
+    pub c10: f64,
+    /// c₀₁ (Pa).
+    pub c01: f64,
+    /// Bulk modulus κ (Pa).
+    pub bulk: f64,
+}
+
+/// Ψ = Σ μ/α (λ̄₁^α + λ̄₂^α + λ̄₃^α − 3) + κ/2 (J − 1)².
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Ogden {
+    /// One to four terms; half the sum of all μ α is the shear modulus of small strains.
+    pub terms: Vec<OgdenTerm>,
+    /// Bulk modulus κ (Pa).
+    pub bulk: f64,
+}
+
+/// One term of an [`Ogden`] law.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct OgdenTerm {
+    /// μ (Pa), of the sign of α.
+    pub mu: f64,
+    /// The exponent α.
+    pub alpha: f64,
+}
+
+/// Ψ = μ Σ Cᵢ λ_m^(2−2i) (Ī₁ⁱ − 3ⁱ) + κ/2 (J − 1)², five terms.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct ArrudaBoyce {
+    /// μ (Pa), below the shear modulus of small strains.
+    pub shear: f64,
+    /// The locking stretch λ_m of a chain, above 1.
+    pub locking_stretch: f64,
+    /// Bulk modulus κ (Pa).
+    pub bulk: f64,
+}
+
+/// A family of fibres: Ψ = k₁/(2k₂) (exp(k₂ Ē²) − 1), Ē = κ_d (Ī₁ − 3) + (1 − 3κ_d)(Ī₄ − 1).
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct ExponentialFibres {
+    /// Stiffness k₁ (Pa).
+    pub k1: f64,
+    /// How fast it grows with the strain, k₂.
+    pub k2: f64,
+    /// Dispersion κ_d of the directions: 0 all along `direction`, 1/3 all directions alike.
+    #[serde(default)]
+    pub dispersion: f64,
+    /// The mean direction at rest.
+    pub direction: Direction,
+    /// Whether the family only pulls, or pushes back as well when compressed.
+    #[serde(default = "yes")]
+    pub tension_only: bool,
+}
+
+fn yes() -> bool {
+    true
 }
 
 /// Fibres: Ψ = η/2 (Ī₄ − 1)², the η of Comas et al. 2008 (other codes mean 2η by the same letter).
@@ -89,15 +173,22 @@ pub enum Direction {
     Field(String),
 }
 
-/// Viscosity: relaxation of the isochoric stress in exponentials.
+/// Viscosity: relaxation in exponentials, of the isochoric stress and of the pressure.
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Prony {
-    /// The terms: share α of the instantaneous stress that relaxes with time τ (s).
+    /// The terms: share α of the instantaneous isochoric stress that relaxes with time τ (s).
+    #[serde(default)]
     pub terms: Vec<PronyTerm>,
+    /// The same for the pressure.
+    #[serde(default)]
+    pub volumetric: Vec<PronyTerm>,
     /// How the history is carried on.
     #[serde(default)]
     pub integrator: ViscousIntegrator,
+    /// Whether the relaxed stress is freed of the part that has become a pressure since the past that it comes from.
+    #[serde(default)]
+    pub reproject: bool,
 }
 
 /// One exponential of a [`Prony`] series.

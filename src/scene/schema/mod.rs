@@ -1,5 +1,6 @@
 //! The words of a scene file: one Rust type for each, read by serde. SI units throughout (m, kg, s, Pa).
 
+mod accuracy;
 mod action;
 mod body;
 mod material;
@@ -7,17 +8,19 @@ mod scene;
 mod selection;
 
 pub use crate::mesh::ElementKind;
+pub use accuracy::{Accuracy, AccuracyReference};
 pub use action::{Axis, Constraint, Curve, Load, Removal, Share, When};
 pub use body::{Body, MeshSource, Region};
-pub use material::{Direction, Fibres, Material, NeoHookean, OwnLaw, Prony, PronyTerm, ViscousIntegrator};
+pub use material::{ArrudaBoyce, Direction, Elasticity, ExponentialFibres, Fibres, Material, MooneyRivlin, Ogden, OgdenTerm, OwnLaw, Prony, PronyTerm, ViscousIntegrator};
 pub use scene::{Analysis, Field, Integration, Output, Picture, Scene};
 pub use selection::{Probe, Quantity, Select};
 
 /// The texts of these files: what a field means is told in the words it is documented with.
-pub const TEXT: [&str; 5] = [
+pub const TEXT: [&str; 6] = [
     include_str!("scene.rs"),
     include_str!("body.rs"),
     include_str!("material.rs"),
     include_str!("action.rs"),
     include_str!("selection.rs"),
+    include_str!("accuracy.rs"),
 ];

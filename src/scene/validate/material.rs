@@ -1,7 +1,7 @@
-//! Materials: densities, moduli, fibres, viscosity.
+//! Materials: densities, fibres, viscosity; elastic laws have a file of their own.
 
-use super::{Judge, scene, show};
-use crate::scene::schema::{Direction, Fibres, Material, MeshSource, NeoHookean, Prony, Scene};
+use super::{Judge, elastic_law, scene, show};
+use crate::scene::schema::{Direction, ExponentialFibres, Material, MeshSource, Prony, PronyTerm, Scene};
 use crate::scene::syntax::Path;
 use glam::DVec3;
 
@@ -9,14 +9,18 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
     for (name, material) in &scene_.materials {
         let path = scene("materials").name(name);
         validate_material(judge, &path, name, material);
-        if let Some(Fibres { direction: Direction::Field(field), .. }) = &material.fibres {
-            let place = path.name("fibres").name("direction");
+        let fibres = material.fibres.iter().map(|fibres| (path.name("fibres"), &fibres.direction));
+        let families = material.exponential_fibres.iter().flatten().enumerate();
+        let families = families.map(|(i, family)| (path.name("exponential_fibres").index(i), &family.direction));
+        for (place, direction) in fibres.chain(families) {
+            let Direction::Field(field) = direction else { continue };
             for (body, found) in &scene_.bodies {
                 let uses = found.material == *name || found.regions.iter().any(|region| region.material == *name);
                 if uses && !matches!(found.mesh, MeshSource::File { .. }) {
+                    let message = format!("the mesh of `{body}` has no cell data `{field}`: it is generated");
                     judge
                         .out
-                        .error_at(&place, format!("the mesh of `{body}` has no cell data `{field}`: it is generated"))
+                        .error_at(place.name("direction"), message)
                         .note("allowed for generated meshes: Along(x, y, z), Around(center: ..., axis: ...)");
                 }
             }
@@ -26,68 +30,29 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
 
 fn validate_material(judge: &mut Judge, path: &Path, name: &str, material: &Material) {
     judge.above_zero(&path.name("density"), material.density, "kg/m³");
-    match &material.neo_hookean {
-        Some(law) => elastic(judge, &path.name("neo_hookean"), *law),
-        None if material.law.is_some() => {}
-        None => {
-            judge
-                .out
-                .error_at(path.name("neo_hookean"), format!("the material `{name}` has no elastic law"))
-                .note("add for instance neo_hookean: Young(young: 3000, poisson: 0.45)");
-        }
-    }
-    if let Some(law) = &material.law {
-        let path = path.name("law");
-        if material.neo_hookean.is_some() {
-            let message = format!("the material `{name}` has two elastic laws: `law` and `neo_hookean`");
-            judge.out.error_at(&path, message).note("leave one of them out");
-        }
-        if law.file.is_empty() {
-            judge.out.error_at(path.name("file"), "the path of the law is empty");
-        }
-    }
+    elastic_law::validate(judge, path, name, material);
     if let Some(fibres) = &material.fibres {
         let path = path.name("fibres");
         judge.not_negative(&path.name("eta"), fibres.eta, "Pa");
         direction(judge, &path.name("direction"), &fibres.direction);
     }
+    if let Some(families) = &material.exponential_fibres {
+        let path = path.name("exponential_fibres");
+        if families.is_empty() {
+            judge
+                .out
+                .error_at(&path, "`exponential_fibres` has no families")
+                .note("add (k1: ..., k2: ..., direction: ...), or leave `exponential_fibres` out");
+        }
+        for (i, family) in families.iter().enumerate() {
+            exponential(judge, &path.index(i), family);
+        }
+    }
     if let Some(prony) = &material.prony {
-        viscous(judge, &path.name("prony").name("terms"), prony);
+        viscous(judge, &path.name("prony"), prony);
     }
     if let Some(damping) = material.damping {
         judge.not_negative(&path.name("damping"), damping, "s⁻¹");
-    }
-}
-
-fn elastic(judge: &mut Judge, path: &Path, law: NeoHookean) {
-    match law {
-        NeoHookean::Young { young, poisson } => {
-            judge.above_zero(&path.name("young"), young, "Pa");
-            let path = path.name("poisson");
-            if poisson >= 0.5 {
-                judge
-                    .must(&path, "between -1 and 0.5", show(poisson))
-                    .note("0.5 means no change of volume at all: an infinite bulk modulus, and a stable step of 0")
-                    .note("soft tissue is usually given 0.45 to 0.499");
-            } else if poisson <= -1.0 {
-                judge
-                    .must(&path, "between -1 and 0.5", show(poisson))
-                    .note("at -1 and below the bulk modulus is infinite or negative");
-            }
-        }
-        NeoHookean::Moduli { shear, bulk } => {
-            judge.above_zero(&path.name("shear"), shear, "Pa");
-            judge.above_zero(&path.name("bulk"), bulk, "Pa");
-            let poisson = (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear));
-            if shear > 0.0 && bulk > 0.0 && poisson < 0.0 {
-                judge.out.warn_at(path.name("bulk"), format!("`bulk` is small: Poisson's ratio is {poisson:.3}")).note(
-                    format!(
-                        "Poisson's ratio is above 0 when `bulk` is above 2/3 `shear`, here {}",
-                        show(shear * 2.0 / 3.0)
-                    ),
-                );
-            }
-        }
     }
 }
 
@@ -107,15 +72,34 @@ fn direction(judge: &mut Judge, path: &Path, direction: &Direction) {
     }
 }
 
-fn viscous(judge: &mut Judge, path: &Path, prony: &Prony) {
-    if prony.terms.is_empty() {
-        judge.out.error_at(path, "`prony` has no terms").note("add (alpha: ..., tau: ...), or leave `prony` out");
+fn exponential(judge: &mut Judge, path: &Path, family: &ExponentialFibres) {
+    judge.not_negative(&path.name("k1"), family.k1, "Pa");
+    judge.not_negative(&path.name("k2"), family.k2, "");
+    if !(0.0..=1.0 / 3.0).contains(&family.dispersion) {
+        judge
+            .must(&path.name("dispersion"), "between 0 and 1/3", show(family.dispersion))
+            .note("0: all fibres along the direction; 1/3: as many in every direction");
     }
-    for (i, term) in prony.terms.iter().enumerate() {
+    direction(judge, &path.name("direction"), &family.direction);
+}
+
+fn viscous(judge: &mut Judge, path: &Path, prony: &Prony) {
+    if prony.terms.is_empty() && prony.volumetric.is_empty() {
+        judge
+            .out
+            .error_at(path.name("terms"), "`prony` has no terms")
+            .note("add (alpha: ..., tau: ...), or leave `prony` out");
+    }
+    relaxation(judge, &path.name("terms"), &prony.terms);
+    relaxation(judge, &path.name("volumetric"), &prony.volumetric);
+}
+
+fn relaxation(judge: &mut Judge, path: &Path, terms: &[PronyTerm]) {
+    for (i, term) in terms.iter().enumerate() {
         judge.not_negative(&path.index(i).name("alpha"), term.alpha, "");
         judge.above_zero(&path.index(i).name("tau"), term.tau, "s");
     }
-    let sum: f64 = prony.terms.iter().map(|term| term.alpha).sum();
+    let sum: f64 = terms.iter().map(|term| term.alpha).sum();
     if sum >= 1.0 {
         judge
             .out

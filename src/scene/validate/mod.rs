@@ -2,6 +2,7 @@
 
 mod action;
 mod analysis;
+mod elastic_law;
 mod geometry;
 mod material;
 mod names;

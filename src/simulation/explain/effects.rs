@@ -3,7 +3,7 @@
 use super::{Effect, Part};
 use crate::components::*;
 use crate::backend::user_law::Findings;
-use crate::materials::{ElasticLaw, Fibres, UserLaw};
+use crate::materials::{Elastic, ElasticLaw, ExponentialFibre, Fibres, UserLaw};
 use crate::math::LANES;
 use crate::scene::schema::Scene;
 use bevy_ecs::prelude::*;
@@ -40,6 +40,7 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
     let in_material = |word: &str| format!("`{word}` in the material {material}");
     let elastic = ElasticLaw::of(world.entity(block.material));
     let fibres = world.get::<Fibres<f64>>(block.material);
+    let families = world.get::<ExponentialFibres>(block.material);
     let prony = world.get::<Prony>(block.material);
     let damping = world.get::<Damping>(block.material);
     let at_rest = world.resource::<Clock>().relaxation.is_some();
@@ -66,11 +67,18 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
             turned_on_by: in_material("fibres"),
         },
         Effect {
-            name: "viscosity",
-            on: prony.map(|p| match at_rest {
-                true => format!("{}, of which the long term remains", many(p.terms.len(), "Prony term")),
-                false => format!("{}, {:?} integrator", many(p.terms.len(), "Prony term"), p.integrator),
+            name: "exponential fibres",
+            on: families.map(|all| {
+                let family = |f: &ExponentialFibre<f64>| format!("k₁ = {} Pa, k₂ = {}", short(f.k1), short(f.k2));
+                let each: Vec<String> = all.0.iter().map(family).collect();
+                let count = if each.len() == 1 { "1 family".into() } else { format!("{} families", each.len()) };
+                format!("{count}: {}", each.join("; "))
             }),
+            turned_on_by: in_material("exponential_fibres"),
+        },
+        Effect {
+            name: "viscosity",
+            on: prony.map(|prony| viscosity(prony, at_rest)),
             turned_on_by: in_material("prony"),
         },
         Effect {
@@ -87,11 +95,11 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
             turned_on_by: format!("an entry under `removal` on the body {body}"),
         },
     ];
-    if fibres.is_some() {
+    if fibres.is_some() || families.is_some() {
         let varying = Effect {
             name: "directions",
             on: entity.contains::<FibreDirection>().then(|| "one an element".into()),
-            turned_on_by: "`direction: Around(...)` or `Field(...)` under `fibres`; now one for the whole block".into(),
+            turned_on_by: "`direction: Around(...)` or `Field(...)` of the fibres; now one for the whole block".into(),
         };
         effects.insert(2, varying);
     }
@@ -114,6 +122,20 @@ fn trial(material: Entity, world: &World) -> String {
          {instructions} instructions over {slots} registers on the CPU)",
         parts.path, found.derivative_error, found.single_precision_error,
     )
+}
+
+fn viscosity(prony: &Prony, at_rest: bool) -> String {
+    let counts = [(&prony.terms, "Prony term"), (&prony.volumetric, "Prony term of the pressure")];
+    let counts = counts.iter().filter(|(terms, _)| !terms.is_empty()).map(|(terms, word)| match terms.len() {
+        1 => format!("1 {word}"),
+        count => format!("{count} {}", word.replace("term", "terms")),
+    });
+    let reproject = if prony.reproject { ", re-projected" } else { "" };
+    let counts = counts.collect::<Vec<_>>().join(" and ");
+    match at_rest {
+        true => format!("{counts}, of which the long term remains{reproject}"),
+        false => format!("{counts}, {:?} integrator{reproject}", prony.integrator),
+    }
 }
 
 fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> Vec<Effect> {
@@ -156,14 +178,22 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> 
 
 /// Which of the compiled kernels a block runs on the CPU.
 fn cpu_variant(block: &Block, precision: Precision, world: &World) -> String {
-    let word = |is: bool| if is { "with" } else { "without" };
-    let fibres = word(world.get::<Fibres<f64>>(block.material).is_some());
-    let viscosity = word(world.get::<Prony>(block.material).is_some());
+    let material = world.entity(block.material);
+    let (families, prony) = (material.contains::<ExponentialFibres>(), material.get::<Prony>());
+    let plain = !families && prony.is_none_or(|prony| prony.volumetric.is_empty() && !prony.reproject);
+    let variant = match ElasticLaw::of(material) {
+        Some(ElasticLaw::NeoHookean(_)) if plain => {
+            let word = |is: bool| if is { "with" } else { "without" };
+            let fibres = word(material.contains::<Fibres<f64>>());
+            format!("{fibres} fibres, {} viscosity", word(prony.is_some()))
+        }
+        law => format!("of {}, which asks for each effect", law.map_or("no law", |law| law.name())),
+    };
     let lanes = match precision {
         Precision::F32 => "f32",
         Precision::F64 => "f64",
     };
-    format!("{:?} in {lanes}, groups of {LANES}, {fibres} fibres, {viscosity} viscosity", block.kind)
+    format!("{:?} in {lanes}, groups of {LANES}, {variant}", block.kind)
 }
 
 /// Six digits are enough to recognise a parameter that was computed from others.

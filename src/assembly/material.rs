@@ -1,0 +1,97 @@
+//! Materials: entities with a component for every effect.
+
+use super::user_laws;
+use crate::components::{Damping, Density, ExponentialFibres, Label, Prony};
+use crate::materials::{
+    ArrudaBoyce, ExponentialFibre, Fibres, Linear, MooneyRivlin, NeoHookean, Ogden, StVenantKirchhoff,
+};
+use crate::scene::schema::{self, Elasticity, Material};
+use bevy_ecs::prelude::*;
+use std::collections::BTreeMap;
+
+/// The materials of a scene, by name.
+pub(super) fn spawn(
+    scene: &schema::Scene,
+    laws: &mut BTreeMap<String, user_laws::Read>,
+    world: &mut World,
+) -> BTreeMap<String, Entity> {
+    let mut spawned = BTreeMap::new();
+    for (name, material) in &scene.materials {
+        let mut entity = world.spawn((Label(name.clone()), Density(material.density)));
+        insert_elastic_law(&mut entity, material);
+        if let Some(user_laws::Read { law, findings, .. }) = laws.remove(name) {
+            entity.insert((law, findings));
+        }
+        if let Some(fibres) = &material.fibres {
+            entity.insert(Fibres { eta: fibres.eta, tension_only: number(fibres.tension_only) });
+        }
+        if let Some(families) = &material.exponential_fibres {
+            let family = |family: &schema::ExponentialFibres| ExponentialFibre {
+                k1: family.k1,
+                k2: family.k2,
+                dispersion: family.dispersion,
+                tension_only: number(family.tension_only),
+            };
+            entity.insert(ExponentialFibres(families.iter().map(family).collect()));
+        }
+        if let Some(prony) = &material.prony {
+            let terms = |terms: &[schema::PronyTerm]| terms.iter().map(|term| (term.alpha, term.tau)).collect();
+            entity.insert(Prony {
+                terms: terms(&prony.terms),
+                volumetric: terms(&prony.volumetric),
+                integrator: prony.integrator,
+                reproject: prony.reproject,
+            });
+        }
+        if let Some(rate) = material.damping {
+            entity.insert(Damping(rate));
+        }
+        spawned.insert(name.clone(), entity.id());
+    }
+    spawned
+}
+
+fn number(yes: bool) -> f64 {
+    if yes { 1.0 } else { 0.0 }
+}
+
+/// The one law that validation has seen.
+fn insert_elastic_law(entity: &mut EntityWorldMut<'_>, material: &Material) {
+    if let Some((shear, bulk)) = material.linear.map(|law| law.moduli()) {
+        entity.insert(Linear { shear, bulk });
+    }
+    if let Some((shear, bulk)) = material.st_venant_kirchhoff.map(|law| law.moduli()) {
+        entity.insert(StVenantKirchhoff { shear, bulk });
+    }
+    if let Some((shear, bulk)) = material.neo_hookean.map(|law| law.moduli()) {
+        entity.insert(NeoHookean { shear, bulk });
+    }
+    if let Some(schema::MooneyRivlin { c10, c01, bulk }) = material.mooney_rivlin {
+        entity.insert(MooneyRivlin { c10, c01, bulk });
+    }
+    if let Some(law) = &material.ogden {
+        let terms: Vec<(f64, f64)> = law.terms.iter().map(|term| (term.mu, term.alpha)).collect();
+        entity.insert(Ogden::new(&terms, law.bulk));
+    }
+    if let Some(schema::ArrudaBoyce { shear, locking_stretch, bulk }) = material.arruda_boyce {
+        entity.insert(ArrudaBoyce { shear, locking_stretch, bulk });
+    }
+}
+
+impl Elasticity {
+    /// Shear and bulk modulus (Pa).
+    pub fn moduli(&self) -> (f64, f64) {
+        match *self {
+            Self::Young { young, poisson } => (young / (2.0 * (1.0 + poisson)), young / (3.0 * (1.0 - 2.0 * poisson))),
+            Self::Moduli { shear, bulk } => (shear, bulk),
+        }
+    }
+}
+
+/// Directions of all families of fibres, with the fields they stand in: `fibres` first, then `exponential_fibres`.
+pub(super) fn directions(material: &Material) -> Vec<(String, &schema::Direction)> {
+    let fibres = material.fibres.iter().map(|fibres| ("fibres".to_string(), &fibres.direction));
+    let families = material.exponential_fibres.iter().flatten().enumerate();
+    let families = families.map(|(i, family)| (format!("exponential_fibres[{i}]"), &family.direction));
+    fibres.chain(families).collect()
+}

@@ -1,0 +1,133 @@
+//! What a material has on top of its elastic law: fibres and viscosity.
+
+use super::Patch;
+use crate::components::FamilyDirection;
+use crate::elements::Element;
+use crate::materials::{Elastic, Kinematics};
+use crate::math::{LANES, SimdScalar, Sym3};
+use pulp::Simd;
+
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
+    /// S of the fibres (Pa).
+    #[inline(always)]
+    pub(super) fn fibre_stress<S: Simd>(
+        &self,
+        simd: S,
+        group: usize,
+        at: usize,
+        k: &Kinematics<T::Vector<S>>,
+    ) -> Sym3<T::Vector<S>> {
+        let Some((fibres, direction)) = &self.law.fibres else {
+            return Sym3([T::splat(simd, T::default()); 6]);
+        };
+        let fibres = fibres.map(
+            #[inline(always)]
+            |number: T| T::splat(simd, number),
+        );
+        fibres.isochoric(k, self.direction(simd, group, at, direction))
+    }
+
+    /// Of all families that stiffen exponentially.
+    #[inline(always)]
+    pub(super) fn exponential_stress<S: Simd>(
+        &self,
+        simd: S,
+        group: usize,
+        at: usize,
+        k: &Kinematics<T::Vector<S>>,
+    ) -> Sym3<T::Vector<S>> {
+        let mut stress = Sym3([T::splat(simd, T::default()); 6]);
+        for (family, direction) in &self.law.exponential {
+            let family = family.map(
+                #[inline(always)]
+                |number: T| T::splat(simd, number),
+            );
+            stress = stress.plus(&family.isochoric(k, self.direction(simd, group, at, direction)));
+        }
+        stress
+    }
+
+    /// Unit vectors of a family.
+    #[inline(always)]
+    fn direction<S: Simd>(
+        &self,
+        simd: S,
+        group: usize,
+        at: usize,
+        direction: &FamilyDirection<T>,
+    ) -> [T::Vector<S>; 3] {
+        let mut unit = [T::splat(simd, T::default()); 3];
+        for i in 0..3 {
+            unit[i] = match (direction, self.fibre_direction) {
+                (FamilyDirection::Uniform(a), _) => T::splat(simd, a[i]),
+                (FamilyDirection::Varying(place), Some(all)) => {
+                    T::load(simd, &all[((group * self.varying + place) * 3 + i) * LANES + at..])
+                }
+                (FamilyDirection::Varying(_), None) => unit[i],
+            };
+        }
+        unit
+    }
+
+    /// p − Υ; the memory is carried on, at the last of the points, which all have the same pressure.
+    #[inline(always)]
+    pub(super) fn relax_pressure<S: Simd>(
+        &mut self,
+        simd: S,
+        group: usize,
+        at: usize,
+        point: usize,
+        pressure: T::Vector<S>,
+    ) -> T::Vector<S> {
+        let mut rest = pressure;
+        for (number, term) in self.law.volumetric.iter().enumerate() {
+            let term = term.map(
+                #[inline(always)]
+                |number: T| T::splat(simd, number),
+            );
+            let first = group * self.law.memory_numbers(E::POINTS) + 6 * self.law.prony.len() * E::POINTS;
+            let place = (first + number) * LANES + at;
+            let memory = T::load(simd, &self.memory[place..]);
+            rest -= term.relaxed_pressure(pressure, memory);
+            if point + 1 == E::POINTS {
+                T::store(term.pressure_carried_on(pressure, memory), &mut self.memory[place..]);
+            }
+        }
+        rest
+    }
+
+    /// S_iso − Υ; the memory is carried on.
+    #[inline(always)]
+    pub(super) fn relax<S: Simd>(
+        &mut self,
+        simd: S,
+        group: usize,
+        at: usize,
+        point: usize,
+        isochoric: Sym3<T::Vector<S>>,
+    ) -> Sym3<T::Vector<S>> {
+        let terms = self.law.prony.len();
+        let mut stress = isochoric;
+        for (number, term) in self.law.prony.iter().enumerate() {
+            let term = term.map(
+                #[inline(always)]
+                |number: T| T::splat(simd, number),
+            );
+            let first = (group * self.law.memory_numbers(E::POINTS) + 6 * (point * terms + number)) * LANES + at;
+            let mut memory = isochoric;
+            for i in 0..6 {
+                memory.0[i] = T::load(simd, &self.memory[first + i * LANES..]);
+            }
+            let relaxed = term.relaxed(&isochoric, &memory);
+            for i in 0..6 {
+                stress.0[i] -= relaxed.0[i];
+            }
+            let memory = term.carried_on(&isochoric, &memory);
+            for i in 0..6 {
+                T::store(memory.0[i], &mut self.memory[first + i * LANES..]);
+            }
+        }
+        stress
+    }
+}
+
