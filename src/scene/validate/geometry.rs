@@ -1,6 +1,7 @@
 //! Bodies and their meshes, and the picture.
 
 use super::{Judge, scene, select};
+use crate::mesh::generators::cells_around;
 use crate::scene::load::SceneFile;
 use crate::scene::schema::{Accuracy, AccuracyReference, MeshSource, Picture};
 use crate::scene::suggest::{choice, list};
@@ -63,11 +64,24 @@ fn mesh(file: &SceneFile, judge: &mut Judge, path: &Path, mesh: &MeshSource) {
         }
         MeshSource::Box { size, cells, .. } => {
             judge.all_above_zero(&path.name("size"), *size, "m");
-            let cells = [cells.0, cells.1, cells.2];
-            for (i, count) in cells.into_iter().enumerate() {
-                at_least_one(judge, &path.name("cells").index(i), count);
+            each_way(judge, &path.name("cells"), *cells);
+        }
+        MeshSource::Hexahedron { cells, .. } => each_way(judge, &path.name("cells"), *cells),
+        MeshSource::Tube { inner, outer, height, angle, cells, .. } => {
+            judge.above_zero(&path.name("inner"), *inner, "m");
+            judge.above_zero(&path.name("height"), *height, "m");
+            if outer <= inner {
+                let found = super::with_unit(*outer, "m");
+                let note = format!("`inner` is {}", super::with_unit(*inner, "m"));
+                judge.must(&path.name("outer"), "more than `inner`", found).note(note);
             }
-            not_too_many(judge, &path.name("cells"), cells);
+            if !(*angle > 0.0 && *angle <= 360.0) {
+                judge.must(&path.name("angle"), "above 0 and at most 360 degrees", angle);
+            } else if cells.1 > 0 && cells.1 < cells_around(*angle) {
+                let be = format!("{} or more for an angle of {angle} degrees", cells_around(*angle));
+                judge.must(&path.name("cells").index(1), &be, cells.1).note("a cell turns by less than 180 degrees");
+            }
+            each_way(judge, &path.name("cells"), *cells);
         }
         MeshSource::Cylinder { radius, height, across, along, .. } => {
             judge.above_zero(&path.name("radius"), *radius, "m");
@@ -94,6 +108,15 @@ fn mesh(file: &SceneFile, judge: &mut Judge, path: &Path, mesh: &MeshSource) {
             not_too_many(judge, &path.name("across"), [*across, *across, *through]);
         }
     }
+}
+
+/// Cells in three directions: at least one in each, and not more than a machine holds.
+fn each_way(judge: &mut Judge, path: &Path, cells: (u32, u32, u32)) {
+    let cells = [cells.0, cells.1, cells.2];
+    for (i, count) in cells.into_iter().enumerate() {
+        at_least_one(judge, &path.index(i), count);
+    }
+    not_too_many(judge, path, cells);
 }
 
 fn at_least_one(judge: &mut Judge, path: &Path, count: u32) {
