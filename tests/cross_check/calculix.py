@@ -13,7 +13,7 @@ import cantilever
 import gravity_bar
 import numpy as np
 import squeezed_cube
-from quadratic import bulk_of, moduli, record
+from quadratic import bulk_of, moduli, record_check
 
 # offsets of the 20 nodes from a cell's first corner, in half cells
 CORNERS = [(0, 0, 0), (2, 0, 0), (2, 2, 0), (0, 2, 0), (0, 0, 2), (2, 0, 2), (2, 2, 2), (0, 2, 2)]
@@ -117,6 +117,4 @@ if __name__ == "__main__":
         for n in map(int, levels or ["4", "6", "8"]):
             for quantity, value in problems[name](n).items():
                 print(f"{name} {n}: {quantity} {value:.9g}", flush=True)
-                how = f"CalculiX 2.20, C3D20R, the mesh of the reference with n = {n}"
-                unit = "N" if quantity == "force" else "m"
-                record(name, f"{quantity}_calculix_{n}", value, 0, unit, how)
+                record_check(name, quantity, "CalculiX 2.20, C3D20R", n, value)
