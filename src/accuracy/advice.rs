@@ -18,7 +18,7 @@ pub fn advice(rows: &[Row], split: &Split, source: Source, judged_by: &str, targ
     }
     let with_errors: Vec<(&Row, Error, f64)> = rows
         .iter()
-        .filter(|row| row.varied != Varied::Effect)
+        .filter(|row| row.varied.is_ranked())
         .filter_map(|row| Some((row, *row.errors.get(judged_by)?, row.measured()?.seconds_per_second)))
         .collect();
     if with_errors.is_empty() {

@@ -43,6 +43,8 @@ impl FieldError {
 /// Nodes at which fields are compared: masses, and values of one field after the other.
 struct Sample {
     masses: Vec<f64>,
+    /// Whether the node is a node of the first other mesh too, where nothing is interpolated.
+    shared: Vec<bool>,
     /// One list a time, all bodies in order.
     own: Vec<Vec<DVec3>>,
     others: Vec<Vec<Vec<DVec3>>>,
@@ -107,13 +109,31 @@ impl FieldReference {
     /// How far a field is from this one; `None` where they have no nodes, bodies or times in common, or where nothing moves.
     pub fn error_of(&self, field: &Field) -> Option<FieldError> {
         let parts: Vec<&Field> = self.parts.iter().collect();
-        let sample = sample(field, &parts)?;
+        let mut sample = sample(field, &parts)?;
+        if self.gain != 0.0 && sample.shared.contains(&true) {
+            // between the nodes of the coarser mesh, extrapolation would multiply the errors of interpolation
+            sample.keep_shared();
+        }
         let (fine, middle) = (sample.others.last()?, sample.others.first()?);
         let times = sample.own.len();
         let reference: Vec<Vec<DVec3>> = (0..times)
             .map(|t| fine[t].iter().zip(&middle[t]).map(|(f, m)| *f + self.gain * (*f - *m)).collect())
             .collect();
         compare(&sample.masses, &sample.own, &reference)
+    }
+}
+
+impl Sample {
+    fn keep_shared(&mut self) {
+        let shared = std::mem::take(&mut self.shared);
+        let keep = |values: &mut Vec<DVec3>| {
+            let mut marks = shared.iter();
+            values.retain(|_| marks.next().is_some_and(|shared| *shared));
+        };
+        self.own.iter_mut().for_each(keep);
+        self.others.iter_mut().flatten().for_each(keep);
+        let mut marks = shared.iter();
+        self.masses.retain(|_| marks.next().is_some_and(|shared| *shared));
     }
 }
 
@@ -144,23 +164,32 @@ fn compare(masses: &[f64], own: &[Vec<DVec3>], reference: &[Vec<DVec3>]) -> Opti
     (length > 0.0 && error.all().iter().all(|error| error.is_finite())).then_some(error)
 }
 
+/// Where a node lies in another mesh.
+#[derive(Clone, Copy, PartialEq)]
+enum At {
+    Node,
+    Between,
+    Outside,
+}
+
 /// Values of fields at the nodes of the first: its own, and the others' interpolated.
 fn sample(own: &Field, others: &[&Field]) -> Option<Sample> {
     let times = own.times.len();
-    let mut sample = Sample {
-        masses: Vec::new(),
-        own: vec![Vec::new(); times],
-        others: vec![vec![Vec::new(); times]; others.len()],
-    };
+    let none = vec![Vec::new(); times];
+    let mut sample =
+        Sample { masses: Vec::new(), shared: Vec::new(), own: none.clone(), others: vec![none; others.len()] };
     for (name, body) in &own.bodies {
-        let mut there = vec![true; body.mesh.points.len()];
+        let mut nodes = vec![At::Node; body.mesh.points.len()];
+        let mut shared: Option<Vec<bool>> = None;
         let mut found: Vec<Vec<Vec<DVec3>>> = Vec::new();
         for other in others {
             let other_body = other.bodies.get(name).filter(|_| other.times.len() == times)?;
-            found.push(at_nodes(body, other_body, &mut there));
+            found.push(at_nodes(body, other_body, &mut nodes));
+            shared.get_or_insert_with(|| nodes.iter().map(|at| *at == At::Node).collect());
         }
-        for node in (0..there.len()).filter(|&node| there[node]) {
+        for node in (0..nodes.len()).filter(|&node| nodes[node] != At::Outside) {
             sample.masses.push(body.masses[node]);
+            sample.shared.push(shared.as_ref().is_some_and(|shared| shared[node]));
             for time in 0..times {
                 sample.own[time].push(body.displacements[time][node]);
                 for (values, found) in sample.others.iter_mut().zip(&found) {
@@ -172,8 +201,9 @@ fn sample(own: &Field, others: &[&Field]) -> Option<Sample> {
     (!sample.masses.is_empty()).then_some(sample)
 }
 
-/// Displacements of `other` at the nodes of `body`, one list a time. Marks nodes that lie outside of the other's mesh.
-fn at_nodes(body: &BodyField, other: &BodyField, there: &mut [bool]) -> Vec<Vec<DVec3>> {
+/// Displacements of `other` at the nodes of `body`, one list a time. Marks where nodes lie in the other's
+/// mesh; a mark that says less stays.
+fn at_nodes(body: &BodyField, other: &BodyField, nodes: &mut [At]) -> Vec<Vec<DVec3>> {
     let points = &body.mesh.points;
     if *points == other.mesh.points {
         return other.displacements.clone();
@@ -182,9 +212,12 @@ fn at_nodes(body: &BodyField, other: &BodyField, there: &mut [bool]) -> Vec<Vec<
     let locator = Locator::new(&other.mesh);
     for (node, point) in points.iter().enumerate() {
         let Some(location) = locator.locate(*point).filter(|location| location.outside <= OUTSIDE) else {
-            there[node] = false;
+            nodes[node] = At::Outside;
             continue;
         };
+        if nodes[node] == At::Node && location.weights.iter().all(|weight| *weight < 1.0 - 1e-6) {
+            nodes[node] = At::Between;
+        }
         let corners = other.mesh.element(location.element);
         for (values, displacements) in values.iter_mut().zip(&other.displacements) {
             let shares = corners.iter().zip(location.weights);

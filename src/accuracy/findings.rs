@@ -198,7 +198,10 @@ impl Facts<'_> {
         let space_is_a_bound = alone.is_some_and(|error| !error.is_clear());
         let (mut space, mut model) = (alone.map(Error::vouched), None);
         if !matches!(self.reference.source, Source::SelfMade | Source::None) {
-            model = self.model(written);
+            model = self.model(written).filter(|left| {
+                // what step and rounding make stays on every mesh too
+                *left > CLEARLY * (time.unwrap_or(0.0) + round_off.unwrap_or(0.0))
+            });
             // of two errors of unknown sign the difference is the least that space can be
             space = space.zip(model).map(|(all, model)| (all - model).abs()).or(space);
         }

@@ -33,6 +33,14 @@ pub enum Varied {
     Effect,
 }
 
+impl Varied {
+    /// Whether it solves the same problem in another way, and may be ranked with the others; another law or an effect less
+    /// is another problem.
+    pub fn is_ranked(self) -> bool {
+        !matches!(self, Varied::Law | Varied::Effect)
+    }
+}
+
 /// What becomes of a configuration.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fate {

@@ -7,6 +7,9 @@ use std::collections::{BTreeMap, HashMap};
 /// How far apart two points may lie and still be one, in sizes of the body.
 const SAME: f64 = 1e-6;
 
+/// More cells of that size than a body is long.
+const FAR: DVec3 = DVec3::splat(1e12);
+
 /// Rest positions and displacements at the end of points, by body.
 #[derive(Clone, Debug, Default)]
 pub struct PointReference {
@@ -22,10 +25,11 @@ impl PointReference {
         for (name, body) in &field.bodies {
             let only = || self.bodies.values().next().filter(|_| field.bodies.len() == 1 && self.bodies.len() == 1);
             let Some(points) = self.bodies.get(name).or_else(only) else { continue };
-            let low = points.iter().map(|(x, _)| *x).fold(DVec3::INFINITY, DVec3::min);
-            let high = points.iter().map(|(x, _)| *x).fold(DVec3::NEG_INFINITY, DVec3::max);
+            let low = body.mesh.points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+            let high = body.mesh.points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
             let cell = SAME * (high - low).length().max(1e-300);
-            let key = |x: DVec3| ((x - low) / cell).round().as_i64vec3().to_array();
+            // points far outside of the body are all the same to it
+            let key = |x: DVec3| ((x - low) / cell).round().clamp(-FAR, FAR).as_i64vec3().to_array();
             let known: HashMap<[i64; 3], DVec3> = points.iter().map(|(x, u)| (key(*x), *u)).collect();
             for (node, x) in body.mesh.points.iter().enumerate() {
                 let (at, own) = (key(*x), body.displacements.last()?[node]);

@@ -7,6 +7,8 @@
 const CREDIBLE: std::ops::RangeInclusive<f64> = 0.5..=4.0;
 /// The order that displacements of linear elements have in smooth problems.
 const FORMAL: f64 = 2.0;
+/// How many times the spread of three results is uncertain that follow no power of the cell size (Roache's factor of safety).
+const LOST: f64 = 3.0;
 /// The least share of the extrapolated step that is taken for uncertain.
 const FLOOR: f64 = 0.1;
 
@@ -26,7 +28,7 @@ pub struct Limit {
 ///
 /// Where the observed order p is credible, the limit is the extrapolation by it, and its uncertainty is how far the
 /// extrapolation by the formal order 2 lies from it, but at least a tenth of the extrapolated step. Elsewhere nothing is
-/// extrapolated: the limit is the finest result, and its uncertainty the largest distance between the three.
+/// extrapolated: the limit is the finest result, and its uncertainty three times the largest distance between the three.
 pub fn extrapolate(sizes: [f64; 3], results: [&[f64]; 3], norm: impl Fn(&[f64]) -> f64) -> Limit {
     let [coarse, middle, fine] = results;
     let (first, second) = (difference(coarse, middle), difference(middle, fine));
@@ -39,7 +41,8 @@ pub fn extrapolate(sizes: [f64; 3], results: [&[f64]; 3], norm: impl Fn(&[f64]) 
     let same_way = first.iter().zip(&second).map(|(a, b)| a * b).sum::<f64>() > 0.0;
     let order = same_way.then(|| order(sizes, far / near)).flatten().filter(|order| CREDIBLE.contains(order));
     let Some(order) = order else {
-        return Limit { values: fine.to_vec(), uncertainty: far.max(near).max(norm(&difference(coarse, fine))), order };
+        let spread = far.max(near).max(norm(&difference(coarse, fine)));
+        return Limit { values: fine.to_vec(), uncertainty: LOST * spread, order };
     };
     let by = |order: f64| gain(sizes, order);
     let values: Vec<f64> = fine.iter().zip(&second).map(|(fine, second)| fine - by(order) * second).collect();

@@ -154,7 +154,7 @@ pub fn study(solver: &mut dyn Solver, settings: &Settings, watch: &mut dyn Watch
     let plan = plan(solver, &choices, settings.budget, settings.reference.is_none())?;
     watch.planned(&plan);
     let running = plan.rows.iter().filter(|row| matches!(row.fate, Fate::Run(_))).count() + plan.reference.len();
-    let mut work = Work::new(solver, watch, started, settings.budget, running);
+    let mut work = Work::new(solver, watch, settings.budget, running);
 
     let (made_of, mut three): (Vec<Row>, Vec<Option<Solution>>) =
         plan.reference.iter().map(|planned| work.run(planned)).unzip();
@@ -201,10 +201,10 @@ pub fn study(solver: &mut dyn Solver, settings: &Settings, watch: &mut dyn Watch
     })
 }
 
-/// Where a row stands in the plot: wall time per simulated second, and the error that can be vouched for. An effect switched
-/// off is another problem and stands nowhere.
+/// Where a row stands in the plot: wall time per simulated second, and the error that can be vouched for. What solves
+/// another problem stands nowhere.
 fn point(row: &Row, judged_by: &str) -> (f64, f64) {
-    let error = row.errors.get(judged_by).filter(|_| row.varied != Varied::Effect);
+    let error = row.errors.get(judged_by).filter(|_| row.varied.is_ranked());
     match (row.measured(), error) {
         (Some(measured), Some(error)) => (measured.seconds_per_second, error.vouched()),
         _ => (f64::NAN, f64::NAN),

@@ -17,15 +17,9 @@ pub struct Work<'a> {
 }
 
 impl<'a> Work<'a> {
-    /// Nothing done yet of `all` runs, since `started`, with a budget (s).
-    pub fn new(
-        solver: &'a mut dyn Solver,
-        watch: &'a mut dyn Watch,
-        started: Instant,
-        budget: f64,
-        all: usize,
-    ) -> Self {
-        Self { solver, watch, started, budget, done: 0, all, interrupted: false }
+    /// Nothing done yet of `all` runs, which may take `budget` from now on (s).
+    pub fn new(solver: &'a mut dyn Solver, watch: &'a mut dyn Watch, budget: f64, all: usize) -> Self {
+        Self { solver, watch, started: Instant::now(), budget, done: 0, all, interrupted: false }
     }
 
     /// Whether somebody has ended the study.

@@ -103,6 +103,9 @@ pub struct AccuracyArguments {
     /// Wall time the study may take, in seconds; what does not fit is left out by name
     #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = above_zero)]
     pub budget: f64,
+    /// The finest mesh to try, in the scene's cells along an edge: 2 has half the cell size
+    #[arg(long, value_name = "TIMES", value_parser = above_zero)]
+    pub finest: Option<f64>,
     /// The error that is good enough, such as 1% or 0.01; decides the exit status
     #[arg(long, value_name = "ERROR", value_parser = share)]
     pub target: Option<f64>,

@@ -142,7 +142,7 @@ fn shape(r: DVec3) -> [f64; 8] {
 }
 
 fn in_hex(element: usize, p: [DVec3; 8], x: DVec3) -> Location {
-    let mut r = DVec3::ZERO;
+    let (mut r, mut reached) = (DVec3::ZERO, false);
     // Newton's method; the map is linear on a parallelepiped and nearly so elsewhere
     for _ in 0..20 {
         let (n, mut here, mut slope) = (shape(r), DVec3::ZERO, DMat3::ZERO);
@@ -158,9 +158,14 @@ fn in_hex(element: usize, p: [DVec3; 8], x: DVec3) -> Location {
         if !r.is_finite() {
             return Location { element, weights: [0.125; 8], outside: f64::INFINITY };
         }
-        if step.length() < 1e-13 {
+        if step.length() < 1e-10 {
+            // the step that has just been taken was the last that matters: the next would be its square
+            reached = true;
             break;
         }
+    }
+    if !reached {
+        return Location { element, weights: [0.125; 8], outside: f64::INFINITY };
     }
     let clipped = r.clamp(DVec3::NEG_ONE, DVec3::ONE);
     Location { element, weights: shape(clipped), outside: (r - clipped).abs().max_element() / 2.0 }

@@ -23,3 +23,4 @@ mod random;
 mod removal;
 mod statics;
 mod viscosity;
+mod viscous_pressure;

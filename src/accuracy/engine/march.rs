@@ -21,7 +21,7 @@ const AGAIN: u32 = 3;
 /// What is looked at in a scene.
 #[derive(Clone, Debug)]
 pub struct Looks {
-    /// Looks at probes over the duration, a multiple of 40.
+    /// Looks at probes over the duration: ten, or a multiple of forty.
     pub count: u64,
     /// Probes: name, what, and the components that mean something.
     pub probes: Vec<(String, Quantity, Vec<usize>)>,
@@ -31,7 +31,7 @@ impl Looks {
     /// For a scene that has been prepared; `steps` is how many the coarsest step takes: looks must not make it much finer.
     pub fn new(scene: &SceneFile, reactions: &[(String, crate::scene::schema::Probe, Vec<Axis>)], steps: u64) -> Self {
         let grain = FIELDS * ENERGIES_A_FIELD;
-        let count = (steps / 10 / grain).clamp(1, 10) * grain;
+        let count = if steps < 10 * grain { FIELDS } else { (steps / 10 / grain).clamp(1, 10) * grain };
         let mut probes: Vec<(String, Quantity, Vec<usize>)> = Vec::new();
         for (name, probe) in &scene.scene.probes {
             let all = 0..crate::observation::header(probe.what).len() - 1;
@@ -168,7 +168,7 @@ impl Run<'_> {
                 self.keep(&name, what, &components, time, &values);
             }
         }
-        if look.is_multiple_of(self.looks.count / (FIELDS * ENERGIES_A_FIELD)) {
+        if look.is_multiple_of((self.looks.count / (FIELDS * ENERGIES_A_FIELD)).max(1)) {
             let energies = simulation.energies().map_err(refusal)?;
             for (name, value) in [("energy.kinetic", energies.kinetic), ("energy.strain", energies.strain)] {
                 self.push(name.into(), "energy", "J".into(), time, value);

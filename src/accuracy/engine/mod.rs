@@ -42,6 +42,7 @@ pub struct Engine<'a> {
     /// Whether there is a GPU to compare with.
     gpu: bool,
     effects: bool,
+    finest: f64,
     interrupted: fn() -> bool,
     looks: Option<Looks>,
     known: Vec<(Configuration, Calibration)>,
@@ -51,7 +52,12 @@ impl<'a> Engine<'a> {
     /// For a scene that is sound. `options` say how the scene as it is written runs; `gpu`, whether to compare with a GPU;
     /// `effects`, whether to switch effects off; `interrupted`, whether somebody wants the study to end.
     pub fn new(file: &'a SceneFile, options: Options, gpu: bool, effects: bool, interrupted: fn() -> bool) -> Self {
-        Self { file, options, gpu, effects, interrupted, looks: None, known: Vec::new() }
+        Self { file, options, gpu, effects, finest: f64::INFINITY, interrupted, looks: None, known: Vec::new() }
+    }
+
+    /// With no mesh finer than so many times the scene's.
+    pub fn up_to(self, finest: f64) -> Self {
+        Self { finest, ..self }
     }
 
     /// Looks at numbers over time that all configurations share: as many intervals, from the start to the end; 0 of a search
@@ -120,7 +126,7 @@ impl<'a> Engine<'a> {
                 counts.all(|count| factor.times(count).is_some())
             }
         };
-        MESHES.into_iter().filter(fits).collect()
+        MESHES.into_iter().filter(|factor| factor.value() <= self.finest && fits(factor)).collect()
     }
 
     fn notes(&self) -> Vec<String> {

@@ -57,7 +57,9 @@ fn selections(scene: &Scene) -> impl Iterator<Item = &Select> {
 pub fn cells(mesh: &MeshSource) -> Vec<u32> {
     match mesh {
         MeshSource::File { .. } => Vec::new(),
-        MeshSource::Box { cells, .. } => vec![cells.0, cells.1, cells.2],
+        MeshSource::Box { cells, .. } | MeshSource::Hexahedron { cells, .. } | MeshSource::Tube { cells, .. } => {
+            vec![cells.0, cells.1, cells.2]
+        }
         MeshSource::Cylinder { across, along, .. } => vec![*across, *along],
         MeshSource::Ellipsoid { across, .. } => vec![*across],
         MeshSource::Lens { across, through, .. } => vec![*across, *through],
@@ -79,7 +81,9 @@ fn remesh(scene: &mut Scene, factor: Factor, element: Option<ElementKind>) {
                 Some(kind) if kind.is_tetrahedron() => tets,
                 _ => hexes,
             },
-            MeshSource::Box { cells, elements, .. } => {
+            MeshSource::Box { cells, elements, .. }
+            | MeshSource::Hexahedron { cells, elements, .. }
+            | MeshSource::Tube { cells, elements, .. } => {
                 [&mut cells.0, &mut cells.1, &mut cells.2].into_iter().for_each(times);
                 elements
             }

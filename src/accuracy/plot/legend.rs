@@ -1,7 +1,7 @@
 //! What colours and marks mean.
 
 use super::svg::Svg;
-use super::{FAINT, FRAME, FRONT, INK, Point, is_mesh};
+use super::{FAINT, FRAME, FRONT, INK, LAW, OTHER, Point, is_mesh};
 
 /// Colours that people with every kind of sight can tell apart (M. Okabe, K. Ito 2008), by element.
 const COLOURS: [(&str, &str); 4] =
@@ -37,8 +37,12 @@ pub fn legend(svg: &mut Svg, points: &[Point<'_>], real: bool) {
         };
         entry(svg, &draw, &element);
     }
-    if points.iter().any(|point| !is_mesh(point.row)) {
-        entry(svg, &|svg, at| svg.diamond(at, 5.0, "#6b7480", true), "one thing changed");
+    let other = |point: &Point<'_>| !is_mesh(point.row) && point.row.varied.is_ranked();
+    if points.iter().any(other) {
+        entry(svg, &|svg, at| svg.diamond(at, 5.0, OTHER, true), "one thing changed");
+    }
+    if points.iter().any(|point| !point.row.varied.is_ranked()) {
+        entry(svg, &|svg, at| svg.diamond(at, 5.0, LAW, true), "another law: not ranked");
     }
     entry(svg, &|svg, at| svg.ring(at, 9.0, INK), "the scene as written");
     let draw = |svg: &mut Svg, at: (f64, f64)| svg.path(&[(at.0 - 14.0, at.1), (at.0 + 14.0, at.1)], FRONT, 5.0, 0.55);

@@ -10,7 +10,6 @@ pub use labels::{Area, Spot, place};
 pub use picture::{PlotError, png};
 
 use super::advice::{percent, seconds};
-use super::pareto::front;
 use super::plan::Varied;
 use super::reference::CLEARLY;
 use super::study::{Row, Study};
@@ -25,6 +24,8 @@ const FRAME: Area = [92.0, 84.0, 880.0, 620.0];
 const INK: &str = "#2c323a";
 const FAINT: &str = "#8a929c";
 const FRONT: &str = "#e8b53c";
+const OTHER: &str = "#6b7480";
+const LAW: &str = "#8a63a8";
 
 /// A row with a place in the plot.
 struct Point<'a> {
@@ -125,9 +126,8 @@ fn lines(svg: &mut Svg, study: &Study, points: &[Point<'_>], x: &Axis, y: &Axis,
         svg.line((FRAME[0], at), (FRAME[2], at), "#5b8c5a", 1.4, "2 4");
         svg.text((FRAME[0] + 6.0, at - 5.0), &format!("target {}", percent(study.target)), 12.5, "#5b8c5a", "start");
     }
-    let places: Vec<(f64, f64)> = points.iter().map(|point| (point.time, point.error)).collect();
     let mut best: Vec<(f64, f64)> =
-        places.iter().zip(front(&places)).filter(|(_, on)| *on).map(|(p, _)| (x.at(p.0), y.at(p.1))).collect();
+        points.iter().filter(|point| point.row.on_front).map(|point| (x.at(point.time), y.at(point.error))).collect();
     best.sort_by(|a, b| a.0.total_cmp(&b.0));
     // a staircase: what lies between two configurations nobody has measured
     let mut stairs: Vec<(f64, f64)> = Vec::new();
@@ -156,7 +156,8 @@ fn is_mesh(row: &Row) -> bool {
 fn marks(svg: &mut Svg, points: &[Point<'_>], x: &Axis, y: &Axis) {
     let at = |point: &Point<'_>| (x.at(point.time), y.at(point.error));
     for point in points.iter().filter(|point| !is_mesh(point.row)) {
-        svg.diamond(at(point), 5.0, "#6b7480", point.clear);
+        let colour = if point.row.varied.is_ranked() { OTHER } else { LAW };
+        svg.diamond(at(point), 5.0, colour, point.clear);
     }
     for point in points.iter().filter(|point| is_mesh(point.row)) {
         let written = point.row.varied == Varied::Nothing;
@@ -182,7 +183,11 @@ fn marks(svg: &mut Svg, points: &[Point<'_>], x: &Axis, y: &Axis) {
     let spots = place(&wanted, taken.collect(), [FRAME[0] + 2.0, FRAME[1] + 20.0, FRAME[2] - 2.0, FRAME[3] - 2.0]);
     for ((point, name), spot) in order.iter().zip(&names).zip(spots) {
         let Some(spot) = spot else { continue };
-        let ink = if is_mesh(point.row) { colour(&point.row.configuration.element_name()) } else { "#4a525c" };
+        let ink = match point.row.varied {
+            _ if is_mesh(point.row) => colour(&point.row.configuration.element_name()),
+            varied if varied.is_ranked() => "#4a525c",
+            _ => LAW,
+        };
         if spot.far {
             let middle = spot.x + 0.5 * labels::width(name);
             let end = (at(point).0.clamp(spot.x, middle + 0.5 * labels::width(name)), spot.y - 4.0);

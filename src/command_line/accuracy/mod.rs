@@ -34,7 +34,8 @@ pub fn command(arguments: &AccuracyArguments) -> Outcome {
     let path = arguments.out.clone().unwrap_or_else(|| accuracy_folder(&arguments.scene.scene));
     let mut folder = Folder::create(&path)?;
     let gpu = arguments.backend != BackendName::Cpu && has_gpu(&Choice::parse(&arguments.gpu));
-    let mut engine = Engine::new(&file, arguments.options(), gpu, arguments.effects, interrupt::is_asked);
+    let mut engine = Engine::new(&file, arguments.options(), gpu, arguments.effects, interrupt::is_asked)
+        .up_to(arguments.finest.unwrap_or(f64::INFINITY));
     interrupt::listen();
     let made = settings(arguments, &file, &mut engine)
         .and_then(|settings| study(&mut engine, &settings, &mut Teller::default()).map_err(failure));
@@ -105,6 +106,9 @@ fn command_line(arguments: &AccuracyArguments) -> String {
     }
     if let Some(by) = &arguments.by {
         line += &format!(" --by {by}");
+    }
+    if let Some(finest) = arguments.finest {
+        line += &format!(" --finest {finest}");
     }
     if arguments.effects {
         line += " --effects";
