@@ -297,10 +297,20 @@ def study(problem, levels, run, units, how):
 
 
 def record(problem, quantity, value, uncertainty, unit, how, more=None):
-    """Puts a reference value into docs/accuracy/references.json."""
+    """Puts a reference value into docs/accuracy/references.json; checks by other codes stay."""
     REFERENCES.parent.mkdir(parents=True, exist_ok=True)
     table = json.loads(REFERENCES.read_text()) if REFERENCES.exists() else {}
-    table.setdefault(problem, {})[quantity] = {
-        "value": value, "uncertainty": uncertainty, "unit": unit, "how": how, **(more or {})
-    }
+    entry = table.setdefault(problem, {}).setdefault(quantity, {})
+    entry.update({"value": value, "uncertainty": uncertainty, "unit": unit, "how": how, **(more or {})})
+    write(table)
+
+
+def record_check(problem, quantity, code, level, value):
+    """Puts what another code finds on a mesh beside the reference value."""
+    table = json.loads(REFERENCES.read_text())
+    table[problem][quantity].setdefault("checks", {}).setdefault(code, {})[str(level)] = value
+    write(table)
+
+
+def write(table):
     REFERENCES.write_text(json.dumps(table, indent=2, sort_keys=True, ensure_ascii=False) + "\n")
