@@ -78,7 +78,7 @@ impl Engine<'_> {
         let mut simulation = Simulation::new(&scene, &self.options(&kind)).map_err(refusal)?;
         let summary = simulation.summary("calibration").map_err(refusal)?;
         let found = self.file.scene.integration.safety * summary.stable_step;
-        let step = wanted.unwrap_or(found);
+        let step = wanted.map_or(found, |step| step.min(found));
         let steps = simulation.planned_steps();
         if self.looks.is_none() {
             let steps = (self.file.scene.duration / step) as u64;
