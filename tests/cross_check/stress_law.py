@@ -51,7 +51,7 @@ def st_venant_kirchhoff(C):
 
 
 def ogden(C):
-    stretches = tm.sqrt(tm.linalg.eigvalsh(C) * tm.linalg.det(C) ** (-1 / 3))
+    stretches = tm.sqrt(tm.linalg.eigvalsh(C, eps=0) * tm.linalg.det(C) ** (-1 / 3))
     return sum(mu / alpha * (tm.sum(stretches**alpha) - 3) for mu, alpha in [(800, 2.5), (-150, -3)]) + volumetric(C)
 
 
