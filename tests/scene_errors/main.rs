@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod good;
+mod materials;
 mod mutations;
 mod set;
 mod several;

@@ -173,12 +173,12 @@ fn no_gradient_makes_a_nan() {
         }
     }
     for f in extremes {
-        check::<samples::Linear>(f);
-        check::<samples::StVenantKirchhoff>(f);
-        check::<samples::NeoHookean>(f);
-        check::<samples::MooneyRivlin>(f);
-        check::<samples::Ogden>(f);
-        check::<samples::ArrudaBoyce>(f);
+        check::<Linear>(f);
+        check::<StVenantKirchhoff>(f);
+        check::<NeoHookean>(f);
+        check::<MooneyRivlin>(f);
+        check::<Ogden>(f);
+        check::<ArrudaBoyce>(f);
         check::<samples::ExponentialFibres>(f);
     }
 }
