@@ -30,6 +30,13 @@ fn add_to_step(node: u32, before: vec3<f32>, change: vec3<f32>) -> vec3<f32> {
     return compensated_add(6u * node + 3u, before, change);
 }
 
+// A parked node has no step, and nothing of it is left out.
+fn forget_step(node: u32) {
+    displacement_compensation[6u * node + 3u] = 0.0;
+    displacement_compensation[6u * node + 4u] = 0.0;
+    displacement_compensation[6u * node + 5u] = 0.0;
+}
+
 // The displacement after the step; what boundary wrote is the whole of a constrained one.
 fn add_step(node: u32, u: vec3<f32>, d: vec3<f32>, constrained: vec3<bool>) -> vec3<f32> {
     let lost = select(lost_at(6u * node + 3u), vec3<f32>(0.0), constrained);

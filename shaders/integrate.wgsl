@@ -1,5 +1,5 @@
 // Central differences in velocity form; twin of systems/integrate.rs. What a body has no column for is a line generated in
-// place of a fragment: external_force_of, damped, coefficient_of, book_work, add_to_step, add_step.
+// place of a fragment: external_force_of, damped, coefficient_of, book_work, add_to_step, add_step, forget_step.
 struct Integrate {
     count: u32, // nodes
 }
@@ -33,6 +33,8 @@ fn push(node: u32) -> vec3<f32> {
         let constrained = constrained_at(node);
         after = select(add_to_step(node, before, change), before, constrained);
         book_work(node, before, after, constrained, inner, outer);
+    } else {
+        forget_step(node);
     }
     displacement_step[at] = after.x;
     displacement_step[at + 1u] = after.y;

@@ -15,6 +15,7 @@
 //! # }
 //! ```
 
+pub mod accuracy;
 pub mod assembly;
 pub mod backend;
 pub mod components;

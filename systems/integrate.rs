@@ -323,7 +323,7 @@ fn with_optional(kernel: Kernel, [external, damped, worked]: [bool; 3], compensa
         fragments.push(shader!("displacement_compensation"));
     } else {
         without += "fn add_to_step(node: u32, before: vec3<f32>, change: vec3<f32>) -> vec3<f32> {\n    \
-                    return before + change;\n}\n\
+                    return before + change;\n}\nfn forget_step(node: u32) {}\n\
                     fn add_step(node: u32, u: vec3<f32>, d: vec3<f32>, constrained: vec3<bool>) -> vec3<f32> {\n    \
                     return u + d;\n}\n";
     }

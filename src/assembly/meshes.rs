@@ -41,10 +41,17 @@ pub fn mesh_of(body: &Body, folder: &Path) -> Result<Mesh, crate::mesh::MeshErro
             generators::cylinder_mesh(*radius, *height, *across, *along, *elements)?
         }
         MeshSource::Ellipsoid { radii, across, elements } => generators::ellipsoid_mesh(*radii, *across, *elements)?,
+        MeshSource::Hexahedron { corners, cells, elements } => {
+            generators::hexahedron_mesh(*corners, *cells, *elements)?
+        }
+        MeshSource::Tube { inner, outer, height, angle, cells, elements } => {
+            generators::tube_mesh(*inner, *outer, *height, *angle, *cells, *elements)?
+        }
         MeshSource::Lens { diameter, thickness, across, through, elements } => {
             generators::lens_mesh(*diameter, *thickness, *across, *through, *elements)?
         }
     };
+    mesh.refine(body.refine)?;
     mesh.place(body.scale, body.rotate, body.translate)?;
     Ok(mesh)
 }

@@ -1,6 +1,7 @@
 //! What a static analysis needs to know of meshes: fictitious masses, and how many steps a push takes from end to end.
 
 use super::Assembly;
+use super::columns::stiffness;
 use super::time_step::square_frequency;
 use crate::components::*;
 use crate::elements::Element;
@@ -11,7 +12,10 @@ use bevy_ecs::prelude::*;
 const FEWEST_LOAD_STEPS: u64 = 100;
 /// Pseudo-steps for each element between what is held and what is farthest from it: a push passes about an element in a
 /// step, and must be able to spread while it grows.
-const STEPS_AN_ELEMENT: u64 = 5;
+const STEPS_AN_ELEMENT: f64 = 5.0;
+/// The same where nodes are moved as told, in times that a shear wave takes through an element: what is turned or bent by
+/// them must follow, or comes to rest elsewhere.
+const SHEAR_STEPS_AN_ELEMENT: f64 = 10.0;
 
 /// Gives every body [`FictitiousMass`]: each element weighs ω²Δt²/4 of its mass, ω its frequency bound, so that Δt is the
 /// bound of the stable step of all elements, whatever their size, stiffness and density.
@@ -53,6 +57,11 @@ pub fn load_steps(world: &mut World) -> u64 {
             (authoring.blocks.clone(), axes.iter().map(held).collect())
         })
         .collect();
+    let slowness = if world.query::<&Prescribed>().iter(world).next().is_none() {
+        STEPS_AN_ELEMENT
+    } else {
+        SHEAR_STEPS_AN_ELEMENT * slowest_shear(world)
+    };
     let mut farthest = 0;
     for (blocks, mut distance) in bodies {
         if distance.iter().all(|&d| d > 0) {
@@ -61,7 +70,17 @@ pub fn load_steps(world: &mut World) -> u64 {
         while blocks.iter().any(|&block| spread(world, block, &mut distance)) {}
         farthest = farthest.max(distance.into_iter().filter(|&d| d < u32::MAX).max().unwrap_or(0));
     }
-    FEWEST_LOAD_STEPS.max(STEPS_AN_ELEMENT * u64::from(farthest))
+    FEWEST_LOAD_STEPS.max((slowness * f64::from(farthest)) as u64)
+}
+
+/// The largest ratio √((λ + 2μ)/μ) of the speeds of pressure and shear waves.
+fn slowest_shear(world: &mut World) -> f64 {
+    let materials: Vec<Entity> = world.query::<&Block>().iter(world).map(|block| block.material).collect();
+    let ratio = |&material: &Entity| {
+        let found = stiffness(world, material);
+        ((found.lambda + found.deviatoric) / (0.5 * found.deviatoric)).sqrt()
+    };
+    materials.iter().map(ratio).fold(1.0, f64::max)
 }
 
 /// Carries distances on from corner to corner of each element; whether one became shorter.

@@ -252,8 +252,9 @@ fn elements(placed: &PlacedMesh, select: &Select) -> Vec<bool> {
         }
         Select::Nodes(_) => return all_nodes(nodes(placed, select)),
         Select::Elements(ids) => {
-            let known = numbers(mesh.element_count(), &mesh.element_ids);
-            ids.iter().filter_map(|id| known.get(id)).for_each(|&row| marks[row] = true);
+            // parts of a refined element share its number
+            let wanted: std::collections::HashSet<u64> = ids.iter().copied().collect();
+            (0..marks.len()).for_each(|row| marks[row] = wanted.contains(&mesh.element_ids.of(row)));
         }
         _ => return combine(placed, select, elements).unwrap_or(marks),
     }

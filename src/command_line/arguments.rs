@@ -14,6 +14,8 @@ Exit status:
   2    the scene or the options are wrong; nothing was run
   3    outputs could not be written
   4    there is no GPU, or it failed
+  5    accuracy: the scene as it is written does not meet its --target
+  6    accuracy: the reference is too coarse to tell whether it does
   130  interrupted; what was written until then is kept";
 
 /// Soft tissue, fast: total Lagrangian explicit finite elements on the CPU and the GPU.
@@ -38,6 +40,9 @@ pub enum Command {
     /// Draw a scene or the output of a run
     #[command(after_help = STATUSES)]
     Render(RenderArguments),
+    /// Show what accuracy costs in time: solve a scene in many ways, time each, measure each against a reference
+    #[command(after_help = STATUSES)]
+    Accuracy(AccuracyArguments),
 }
 
 impl Command {
@@ -47,6 +52,7 @@ impl Command {
             Command::Run(arguments) => arguments.how.backend != BackendName::Cpu,
             Command::Explain(arguments) => arguments.how.backend != BackendName::Cpu,
             Command::Render(_) => true,
+            Command::Accuracy(arguments) => arguments.backend != BackendName::Cpu,
             Command::Check(_) => false,
         }
     }
@@ -88,6 +94,54 @@ pub struct RunArguments {
     /// The folder to write into, in place of an earlier run's output [default: out/NAME-OF-THE-SCENE]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub struct AccuracyArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// Wall time the study may take, in seconds; what does not fit is left out by name
+    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = above_zero)]
+    pub budget: f64,
+    /// The finest mesh to try, in the scene's cells along an edge: 2 has half the cell size
+    #[arg(long, value_name = "TIMES", value_parser = above_zero)]
+    pub finest: Option<f64>,
+    /// The error that is good enough, such as 1% or 0.01; decides the exit status
+    #[arg(long, value_name = "ERROR", value_parser = share)]
+    pub target: Option<f64>,
+    /// The quantity to judge by: displacement, tip.uz, tip.uz.over_time, energy.strain ... [default: the scene's]
+    #[arg(long, value_name = "QUANTITY")]
+    pub by: Option<String>,
+    /// Tables of an earlier run to measure against: probe_NAME.csv, nodes.csv or its folder; may be given several times
+    #[arg(long, value_name = "PATH")]
+    pub reference: Vec<PathBuf>,
+    /// Switch off each effect of the scene in turn and show what it costs and what it changes
+    #[arg(long)]
+    pub effects: bool,
+    /// Where the scene as written runs: auto is the CPU, compared with a hardware GPU if there is one
+    #[arg(long, value_enum, default_value_t = BackendName::Auto)]
+    pub backend: BackendName,
+    /// Which GPU: best, hardware, software, or a part of its name
+    #[arg(long, value_name = "NAME", default_value = "best")]
+    pub gpu: String,
+    /// The number type of the scene as written
+    #[arg(long, value_enum, default_value_t = PrecisionName::F32)]
+    pub precision: PrecisionName,
+    /// CPU threads; one, so that times can be compared with each other
+    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    pub threads: u16,
+    /// The folder to write into, in place of an earlier study [default: out/NAME-OF-THE-SCENE-accuracy]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+impl AccuracyArguments {
+    /// How the scene as written runs.
+    pub fn options(&self) -> Options {
+        let backend = if self.backend == BackendName::Gpu { BackendName::Gpu } else { BackendName::Cpu };
+        let (gpu, precision, threads) = (self.gpu.clone(), self.precision, self.threads);
+        HowArguments { backend, gpu, precision, threads }.options()
+    }
 }
 
 #[derive(Args)]
@@ -180,6 +234,17 @@ fn size(text: &str) -> Result<(u32, u32), String> {
     let halves = text.split_once(['x', 'X', '×']);
     let numbers = halves.and_then(|(wide, high)| Some((wide.trim().parse().ok()?, high.trim().parse().ok()?)));
     numbers.ok_or_else(|| "width and height with an x between are wanted, such as 960x720".into())
+}
+
+fn above_zero(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
+    number.ok_or_else(|| "a number above 0 is wanted, such as 60".into())
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    let (number, factor) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
+    let number = above_zero(number.trim()).map(|number| number * factor);
+    number.map_err(|_| "an error above 0 is wanted, such as 1% or 0.01".into())
 }
 
 fn time(text: &str) -> Result<f64, String> {

@@ -14,6 +14,14 @@ pub enum Failure {
     Picture(Box<RenderError>),
     /// Options that make no sense together.
     Options(String),
+    /// A study of a scene that breaks down.
+    Broke(String),
+    /// A scene that does not meet its target; what there is to say has been said.
+    TargetMissed,
+    /// A reference too coarse to tell; likewise.
+    TargetUnclear,
+    /// A plot could not be drawn.
+    Plot(sinew::accuracy::plot::PlotError),
     /// The result could not be said.
     Silent(std::io::Error),
     /// Ctrl-C; what there is to say has been said.
@@ -35,6 +43,10 @@ impl Failure {
                 _ => 2,
             },
             Failure::Options(_) => 2,
+            Failure::Broke(_) => 1,
+            Failure::Plot(_) => 3,
+            Failure::TargetMissed => 5,
+            Failure::TargetUnclear => 6,
             Failure::Silent(_) => 3,
             Failure::Interrupted => 130,
         }
@@ -48,9 +60,10 @@ impl Failure {
                 error => complain(&error.to_string()),
             },
             Failure::Picture(error) => complain(&error.to_string()),
-            Failure::Options(text) => complain(text),
+            Failure::Options(text) | Failure::Broke(text) => complain(text),
+            Failure::Plot(error) => complain(&error.to_string()),
             Failure::Silent(error) => complain(&format!("cannot write to the standard output: {error}")),
-            Failure::Interrupted => {}
+            Failure::Interrupted | Failure::TargetMissed | Failure::TargetUnclear => {}
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The command `sinew`: its arguments, what each part of it does, and how it ends.
 
+mod accuracy;
 mod arguments;
 mod check;
 mod explain;
@@ -29,6 +30,7 @@ pub fn main() -> ExitCode {
         Command::Check(arguments) => check::command(&arguments),
         Command::Explain(arguments) => explain::command(&arguments),
         Command::Render(arguments) => render::command(&arguments),
+        Command::Accuracy(arguments) => accuracy::command(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

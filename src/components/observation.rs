@@ -48,6 +48,11 @@ impl Cadence {
         self.steps.is_finite() && (step == 0 || self.next_after(step - 1) == step)
     }
 
+    /// Whether an observation is due after one number of steps and not after another, which need not be whole.
+    pub fn lies_between(&self, before: f64, after: f64) -> bool {
+        (after / self.steps).floor() > (before / self.steps).floor()
+    }
+
     /// How many observations `steps` steps bring, the start and the end included.
     pub fn count(&self, steps: u64) -> u64 {
         let whole = (steps as f64 / self.steps + 1e-9).floor() as u64 + 1;

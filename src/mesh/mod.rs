@@ -5,9 +5,11 @@
 mod error;
 pub mod generators;
 mod gmsh;
+mod locate;
 pub mod measure;
 mod placement;
 mod read;
+mod refine;
 pub mod soundness;
 mod surface;
 mod vtk;
@@ -15,6 +17,7 @@ pub mod vtu;
 
 pub use error::{MeshError, Place};
 pub use generators::ElementKind;
+pub use locate::{Location, Locator};
 pub use surface::SurfaceFace;
 
 use glam::DVec3;

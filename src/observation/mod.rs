@@ -29,8 +29,10 @@ pub struct Observer {
     pub watch_energy: bool,
     /// The last step of the run, which is always observed. That of a static analysis is known when it is there.
     pub last_step: u64,
-    /// Whether loads stand still on the way to rest: then nothing but the last step is observed.
-    pub quiet: bool,
+    /// Of a static analysis, where steps are taken back and time stands still: only the start, the last step, and what
+    /// [`observe_on_the_way`](Observer::observe_on_the_way) is called for.
+    pub to_rest: bool,
+    on_the_way: f64,
     files: Option<Files>,
     probes: Vec<(Entity, String, Cadence)>,
     /// What each probe saw last: time (s) and values.
@@ -91,7 +93,7 @@ impl Observer {
     pub fn next_due(&self, step: u64) -> u64 {
         let mut due = (step / GUARD_STEPS + 1) * GUARD_STEPS;
         let cadences = self.energy.iter().chain(self.probes.iter().map(|(_, _, cadence)| cadence));
-        for cadence in cadences.chain([&self.fields]).filter(|_| !self.quiet) {
+        for cadence in cadences.chain([&self.fields]).filter(|_| !self.to_rest) {
             due = due.min(cadence.next_after(step));
         }
         if step < self.last_step { due.min(self.last_step) } else { due }
@@ -123,9 +125,8 @@ impl Observer {
     pub fn observe(&mut self, world: &mut World) -> Result<(), Error> {
         let clock = *world.resource::<Clock>();
         let last = clock.step == self.last_step;
-        // a static analysis shows states on the way while loads grow, and the state at rest, but none between
-        let quiet = clock.relaxation.is_some_and(|relaxation| relaxation.progress(clock.step) >= 1.0);
-        let due = |cadence: Cadence| last || !quiet && cadence.is_due(clock.step);
+        let to_rest = self.to_rest;
+        let due = |cadence: Cadence| last || cadence.is_due(clock.step) && (clock.step == 0 || !to_rest);
         match guards::find(world, self.good_until, self.watch_energy)? {
             None => {}
             // the steps since the last look at the residual will be taken back
@@ -135,6 +136,22 @@ impl Observer {
         if self.watch_energy {
             guards::check_energy(world, self.good_until)?;
         }
+        self.observe_when(due, world)
+    }
+
+    /// Observes what is due at the present time of a static analysis whose loads still grow.
+    ///
+    /// # Errors
+    /// Files that cannot be written.
+    pub fn observe_on_the_way(&mut self, world: &mut World) -> Result<(), Error> {
+        let clock = *world.resource::<Clock>();
+        let (before, now) = (self.on_the_way, clock.time() / clock.time_step);
+        self.on_the_way = now.max(before);
+        self.observe_when(|cadence| cadence.lies_between(before, now), world)
+    }
+
+    fn observe_when(&mut self, due: impl Fn(Cadence) -> bool + Copy, world: &mut World) -> Result<(), Error> {
+        let clock = *world.resource::<Clock>();
         let probes: Vec<(Entity, String)> = self
             .probes
             .iter()

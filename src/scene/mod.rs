@@ -14,5 +14,5 @@ pub mod words;
 
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
 pub use load::SceneFile;
-pub use suggest::choice;
+pub use suggest::{choice, list};
 pub use validate::validate;

@@ -115,6 +115,24 @@ impl Simulation {
         crate::observation::internal_forces(&mut self.world, body)
     }
 
+    /// Lumped masses of a body's nodes (kg), in the author's order; 0 for those whose elements are all removed.
+    ///
+    /// # Errors
+    /// No such body; what the GPU says.
+    pub fn masses(&mut self, body: &str) -> Result<Vec<f64>, Error> {
+        let body = self.body(body)?;
+        crate::backend::device::bring_to_host(&mut self.world, |entity, name| entity == body && name == Mass::NAME)?;
+        let (Some(authoring), Some(mass)) = (self.world.get::<Authoring>(body), self.world.get::<Mass>(body)) else {
+            return Ok(Vec::new());
+        };
+        Ok(authoring.node_rows.iter().map(|&row| mass.get(row as usize)).collect())
+    }
+
+    /// Whether steps are taken on a GPU.
+    pub fn is_on_gpu(&self) -> bool {
+        self.facts.on_gpu
+    }
+
     /// Energies of all bodies at the present step.
     ///
     /// # Errors

@@ -239,6 +239,7 @@ fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> 
     observer.fields = every(scene.scene.fields_every());
     observer.energy = scene.scene.output.energies_every.map(every);
     observer.watch_energy = scene.scene.integration.beyond_stable_step && clock.relaxation.is_none();
+    observer.to_rest = clock.relaxation.is_some();
     observer.last_step = if clock.relaxation.is_some() { u64::MAX } else { steps };
     observer.watch_probes(world);
     observer

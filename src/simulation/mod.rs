@@ -10,6 +10,7 @@ mod relax;
 mod residual;
 mod run;
 mod schedule;
+mod stretch;
 mod summary;
 mod surface;
 

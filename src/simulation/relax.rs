@@ -2,11 +2,12 @@
 //!
 //! Every [`LOOK`] steps the residual is taken, the lowest frequency of the motion is estimated by the Rayleigh quotient
 //! ω² = Δuᵀ ΔF / Δuᵀ M Δu of what has changed since the last look, and all nodes are damped critically for it,
-//! c = 2ω (Underwood 1983). Steps that end in numbers that are not finite or in elements turned inside out are taken
-//! back, and forces count half from there.
+//! c = 2ω (Underwood 1983). Forces count less where elements are squeezed, which raises the highest frequency. Steps that
+//! end in numbers that are not finite or in elements turned inside out are taken back.
 
 use super::Simulation;
 use super::residual::{Motion, Residual, State};
+use super::stretch::least_stretch;
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::{Error, NotConverged};
@@ -16,17 +17,21 @@ use serde::Serialize;
 
 /// Steps between two looks at the residual.
 const LOOK: u64 = 40;
+/// Elements are looked at while loads grow, then in every so many looks.
+const LOOKS_BETWEEN_STRETCHES: u64 = 10;
 /// How often steps may be taken back.
 const MOST_SETBACKS: u32 = 10;
 /// Damping a at most: beyond 1 a step would turn round.
 const MOST_DAMPING: f64 = 1.0;
-/// Motion that tells of frequencies is more than so many last digits of the displacements.
-const CLEAR_OF_ROUNDING: f64 = 1000.0;
+/// Motion that tells of frequencies makes forces so many times what rounding makes.
+const CLEAR_OF_ROUNDING: f64 = 10.0;
 /// What rounding may make of the residual, in units of its estimate: lightly damped, it keeps stiff motion awake (seen: up
 /// to 4.3).
 const ROUNDING: f64 = 6.0;
 /// What the remaining motion may be, in tolerances of the residual: it errs on the side of too much.
 const MOTION: f64 = 10.0;
+/// From a turning point to the middle of the slowest motion in units of 1/a, and somewhat more: π/2, if a is right.
+const TURN: f64 = 3.0;
 /// A residual that has not fallen by a tenth in so many times that the slowest motion needs to fall by e will not fall.
 const PATIENCE: f64 = 30.0;
 
@@ -62,8 +67,17 @@ pub(super) struct Relaxing {
     /// Step and residual when the residual was last seen to fall by a tenth.
     best: (u64, f64),
     largest_scale: f64,
+    largest_displaced: f64,
+    /// The gain before anything is squeezed, and the share of it that squeezed elements leave.
+    gain: f64,
+    squeezed: f64,
+    looks: u64,
+    /// The lowest frequency, as far as it is known (1/s).
+    frequency: f64,
     /// The look that first saw loads at rest.
     settled_at: Option<u64>,
+    /// The look since which all is as quiet as it must be.
+    quiet_since: Option<u64>,
 }
 
 impl Relaxing {
@@ -75,7 +89,13 @@ impl Relaxing {
             before: State::of(world),
             best: (0, f64::INFINITY),
             largest_scale: 0.0,
+            largest_displaced: 0.0,
+            gain: world.resource::<Clock>().relaxation.map_or(1.0, |relaxation| relaxation.gain),
+            squeezed: 1.0,
+            looks: 0,
+            frequency: 0.0,
             settled_at: None,
+            quiet_since: None,
         }
     }
 
@@ -138,31 +158,41 @@ impl Relaxing {
             return self.take_back(world, relaxation, clock.step);
         }
         let share = relaxation.share(clock.step);
+        if share < 1.0 || self.looks.is_multiple_of(LOOKS_BETWEEN_STRETCHES) {
+            self.squeezed = least_stretch(world).powi(2);
+        }
+        self.looks += 1;
+        relaxation.gain = self.gain * self.squeezed;
         let motion = now.motion_since(&self.before, world);
-        let tiny = CLEAR_OF_ROUNDING * residual.digit * motion.displaced;
+        // forces of a motion are to loads about as the motion is to displacements; they must stand out from rounding
+        let noise = residual.digit.max((residual.rounding_square / residual.scale_square).sqrt());
+        let tiny = CLEAR_OF_ROUNDING * noise * motion.displaced;
         if let Some(frequency) = motion.frequency.filter(|_| motion.moved > tiny) {
-            let damping = (relaxation.gain.sqrt() * frequency * clock.time_step).min(MOST_DAMPING);
             // the quotient is never below the lowest frequency: with loads at rest the least is the best
             let settled = self.settled_at.is_some_and(|step| clock.step > step + 2 * LOOK);
-            relaxation.damping = if settled { damping.min(relaxation.damping) } else { damping };
+            self.frequency = if settled { frequency.min(self.frequency) } else { frequency };
         }
+        relaxation.damping = (relaxation.gain.sqrt() * self.frequency * clock.time_step).min(MOST_DAMPING);
         if share >= 1.0 {
             self.settled_at.get_or_insert(clock.step);
         }
         self.judge(&motion, &residual, clock.step - self.before.step, relaxation.damping, world);
+        world.resource_mut::<Clock>().relaxation = Some(relaxation);
+        let found = &self.equilibrium;
+        let row = [clock.step as f64, share, found.residual, found.remaining_motion, relaxation.damping];
         world.resource_scope(|world, mut observer: Mut<Observer>| {
-            world.resource_mut::<Clock>().relaxation = Some(relaxation);
-            observer.quiet = share >= 1.0;
-            let found = &self.equilibrium;
-            let row = [clock.step as f64, share, found.residual, found.remaining_motion, relaxation.damping];
-            observer.note_convergence(row)
+            observer.note_convergence(row)?;
+            if share < 1.0 { observer.observe_on_the_way(world) } else { Ok(()) }
         })?;
         self.before = now;
         let (found, tolerance) = (&self.equilibrium, self.equilibrium.tolerance);
-        if share >= 1.0
+        let quiet = share >= 1.0
             && found.residual <= tolerance + ROUNDING * found.rounding
-            && found.remaining_motion <= MOTION * tolerance
-        {
+            && found.remaining_motion <= MOTION * tolerance;
+        self.quiet_since = self.quiet_since.filter(|_| quiet).or(quiet.then_some(clock.step));
+        // where rounding hides soft motion, a look must not have met it at its turning point
+        let long = (clock.step - self.quiet_since.unwrap_or(clock.step)) as f64 >= TURN / relaxation.damping.max(1e-9);
+        if quiet && (long || found.residual <= tolerance) {
             self.equilibrium.reached = true;
             return Ok(());
         }
@@ -190,23 +220,29 @@ impl Relaxing {
         found.residual = share(residual.square.sqrt(), scale);
         // critically damped motion falls by e in 1/a steps
         let still = motion.moved / (steps.max(1) as f64 * damping.max(1e-9));
-        found.remaining_motion = share(still, motion.displaced);
+        // what goes back to rest is displaced by nothing in the end
+        self.largest_displaced = self.largest_displaced.max(motion.displaced);
+        found.remaining_motion = share(still, motion.displaced.max(1e-3 * self.largest_displaced));
         found.rounding = share(residual.rounding_square.sqrt(), scale);
         found.worst = residual.worst_in_words(world);
     }
 
-    /// Goes back to the last look, from where forces count half and loads grow half as fast.
+    /// Goes back to the last look, from where forces count half. While loads still grow, it goes back to the start, where
+    /// they grow at a quarter of the pace: what has been pushed too suddenly may have taken a way that leads elsewhere.
     fn take_back(&mut self, world: &mut World, mut relaxation: Relaxation, step: u64) -> Result<(), Error> {
-        let progress = relaxation.progress(self.before.step);
-        relaxation.since = (step, progress);
-        relaxation.growth *= 0.5;
-        relaxation.gain *= 0.5;
+        if self.settled_at.is_none() {
+            self.before.forget();
+            relaxation.growth *= 0.25;
+            relaxation.since = (step, 0.0);
+            self.squeezed = 1.0;
+        }
+        self.gain *= 0.5;
+        relaxation.gain = self.gain * self.squeezed;
         self.before.restore(world);
         self.before.step = step;
         send_to_device(world, |_, name| State::COLUMNS.contains(&name))?;
         world.resource_mut::<Clock>().relaxation = Some(relaxation);
         self.equilibrium.setbacks += 1;
-        self.settled_at = None;
         self.next_look = (step + LOOK).min(self.most_steps);
         Ok(())
     }

@@ -82,6 +82,19 @@ impl State {
         Self { step, bodies }
     }
 
+    /// Turns it into the state at rest before any load.
+    pub fn forget(&mut self) {
+        for body in &mut self.bodies {
+            body.displacement.bytes_mut().fill(0);
+            if let Some(lost) = &mut body.compensation {
+                lost.bytes_mut().fill(0);
+            }
+            for column in [&mut body.place, &mut body.internal, &mut body.load] {
+                column.fill(0.0);
+            }
+        }
+    }
+
     /// Puts all bodies where they were, at rest, and forgets what went wrong since.
     pub fn restore(&self, world: &mut World) {
         for body in &self.bodies {

@@ -4,7 +4,7 @@
 //! inscribed into a smooth surface misses a share of the volume that falls with the square of the cell size.
 
 use glam::DVec3;
-use sinew::mesh::generators::{box_mesh, cylinder_mesh, ellipsoid_mesh, lens_mesh};
+use sinew::mesh::generators::{box_mesh, cylinder_mesh, ellipsoid_mesh, hexahedron_mesh, lens_mesh, tube_mesh};
 use sinew::mesh::measure::{hex_determinants, hex_longest_edge, tet_longest_edge, tet_smallest_altitude};
 use sinew::mesh::{ElementKind, Mesh, MeshError};
 use std::f64::consts::PI;
@@ -162,10 +162,84 @@ fn surface_faces_come_in_the_order_of_their_elements() {
     }
 }
 
+/// Cook's panel with a twisted top.
+fn panel() -> [DVec3; 8] {
+    let flat = [(0.0, 0.0), (0.048, 0.044), (0.048, 0.06), (0.0, 0.044)];
+    let corner = |i: usize| DVec3::new(flat[i % 4].0, flat[i % 4].1, [0.0, 0.005][i / 4]);
+    let mut corners = [0, 1, 2, 3, 4, 5, 6, 7].map(corner);
+    corners[6].z = 0.006;
+    corners
+}
+
+#[test]
+fn a_hexahedron_fills_its_corners_whatever_the_cells() {
+    // a trilinear block is what its six bilinear faces enclose
+    let whole = hexahedron_mesh(panel(), (1, 1, 1), ElementKind::Hex8).unwrap().volume();
+    let middle = (0.044 + 0.016) / 2.0 * 0.048 * 0.005;
+    assert!(whole > middle && whole < 1.1 * middle, "{whole} m³");
+    for kind in KINDS {
+        let mesh = hexahedron_mesh(panel(), (6, 5, 2), kind).unwrap();
+        let miss = (mesh.volume() / whole - 1.0).abs();
+        // hexahedra share the block's own faces; tetrahedra cut the twisted top into triangles
+        assert!(miss < if kind == ElementKind::Hex8 { 1e-12 } else { 1e-3 }, "{kind:?}: {miss:e}");
+        assert_closed(&mesh, "hexahedron");
+        let soundness = mesh.soundness();
+        assert!(soundness.is_sound() && soundness.warnings.is_empty(), "{kind:?}: {soundness:?}");
+        let loaded = &mesh.node_sets["x1"];
+        assert!(loaded.len() == 6 * 3 && loaded.iter().all(|&row| mesh.points[row as usize].x == 0.048));
+        for corner in panel() {
+            assert!(mesh.points.iter().any(|point| point.distance(corner) < 1e-15), "no node at {corner}");
+        }
+        let named: usize = mesh.face_sets.values().map(Vec::len).sum();
+        assert_eq!(named, mesh.surface().len());
+    }
+    let unit = [0, 1, 2, 3, 4, 5, 6, 7]
+        .map(|i| DVec3::new([0.0, 1.0, 1.0, 0.0][i % 4], [0.0, 0.0, 1.0, 1.0][i % 4], [0.0, 1.0][i / 4]));
+    let (block, cube) = (hexahedron_mesh(unit, (3, 2, 4), KINDS[0]), box_mesh(DVec3::ONE, (3, 2, 4), KINDS[0]));
+    let (block, cube) = (block.unwrap(), cube.unwrap());
+    assert_eq!(block.tets, cube.tets);
+    assert!(block.points.iter().zip(&cube.points).all(|(a, b)| a.distance(*b) < 1e-15), "a box is a hexahedron");
+}
+
+#[test]
+fn a_tube_is_closed_sound_and_named_as_ring_and_as_sector() {
+    for kind in KINDS {
+        for (angle, around) in [(360.0, 3), (360.0, 16), (90.0, 1), (90.0, 7), (300.0, 12)] {
+            let what = format!("{kind:?}, {angle}° of {around} cells");
+            let mesh = tube_mesh(0.01, 0.02, 0.03, angle, (3, around, 2), kind).unwrap();
+            assert_closed(&mesh, &what);
+            let soundness = mesh.soundness();
+            assert!(soundness.is_sound() && soundness.warnings.is_empty(), "{what}: {soundness:?}");
+            // a ring of straight walls: n triangles of r² sin(φ/n)/2 less those inside
+            let share = (f64::to_radians(angle) / f64::from(around)).sin() * f64::from(around) / 2.0;
+            let exact = share * (0.02f64.powi(2) - 0.01f64.powi(2)) * 0.03;
+            assert!((mesh.volume() / exact - 1.0).abs() < 1e-12, "{what}: {} of {exact} m³", mesh.volume());
+            let open = u32::from(angle < 360.0);
+            assert_eq!(mesh.points.len() as u32, 4 * (around + open) * 3, "{what}: points");
+            let named: usize = mesh.face_sets.values().map(Vec::len).sum();
+            assert_eq!(named, mesh.surface().len(), "{what}: every face of the surface has a name");
+            for (set, radius) in [("inner", 0.01), ("outer", 0.02)] {
+                let at = |row: &u32| mesh.points[*row as usize].truncate().length();
+                assert!(mesh.node_sets[set].iter().all(|row| (at(row) - radius).abs() < 1e-15), "{what}: {set}");
+            }
+            let push: DVec3 = mesh.face_sets["inner"].iter().map(|&face| area_vector(&mesh, face)).sum();
+            assert!(angle == 360.0 && push.length() < 1e-15 || push.length() > 1e-5, "{what}: {push}");
+            assert_eq!(mesh.node_sets.contains_key("start"), angle < 360.0, "{what}");
+        }
+    }
+    let quarter = tube_mesh(0.01, 0.02, 0.03, 90.0, (2, 4, 1), ElementKind::Hex8).unwrap();
+    for (set, flat) in [("start", DVec3::Y), ("end", DVec3::X)] {
+        let rows = &quarter.node_sets[set];
+        assert!(rows.len() == 6 && rows.iter().all(|&row| quarter.points[row as usize].dot(flat) == 0.0), "{set}");
+    }
+}
+
 #[test]
 fn impossible_parameters_are_refused_with_what_is_allowed() {
     let kind = ElementKind::Tet4;
     let text = |result: Result<Mesh, MeshError>| result.unwrap_err().to_string();
+    let mut swapped = panel();
+    swapped.swap(1, 3);
     for (found, expected) in [
         (
             text(box_mesh(DVec3::ONE, (4, 0, 4), kind)),
@@ -182,6 +256,25 @@ fn impossible_parameters_are_refused_with_what_is_allowed() {
         (text(box_mesh(DVec3::ONE, (u32::MAX, u32::MAX, u32::MAX), kind)), "at most 715827882 cells"),
         (text(cylinder_mesh(f64::NAN, 1.0, 4, 4, kind)), "Cylinder: radius is NaN;"),
         (text(ellipsoid_mesh(DVec3::new(1.0, 1.0, f64::INFINITY), 4, kind)), "Ellipsoid: radii.z is inf;"),
+        (
+            text(hexahedron_mesh(swapped, (1, 1, 1), kind)),
+            "Hexahedron: corners[0] is (0, 0, 0); there the block is flat",
+        ),
+        (text(hexahedron_mesh([DVec3::NAN; 8], (1, 1, 1), kind)), "Hexahedron: corners[0] is [NaN, NaN, NaN]; it must"),
+        (text(hexahedron_mesh(panel(), (1, 1, 0), kind)), "Hexahedron: cells is 1×1×0; there must be at least 1"),
+        (
+            text(tube_mesh(2.0, 2.0, 1.0, 90.0, (1, 1, 1), kind)),
+            "Tube: outer is 2 m; it must be more than `inner`, 2 m",
+        ),
+        (
+            text(tube_mesh(1.0, 2.0, 1.0, 0.0, (1, 1, 1), kind)),
+            "Tube: angle is 0°; it must be above 0° and at most 360°",
+        ),
+        (text(tube_mesh(1.0, 2.0, 1.0, f64::NAN, (1, 1, 1), kind)), "Tube: angle is NaN°;"),
+        (
+            text(tube_mesh(1.0, 2.0, 1.0, 360.0, (1, 2, 1), kind)),
+            "Tube: cells is 1×2×1; an angle of 360° needs at least 3 cells around",
+        ),
         (text(lens_mesh(1.0, 1.5, 4, 4, kind)), "Lens: thickness is 1.5 m; it must be at most the diameter, 1 m"),
     ] {
         assert!(found.contains(expected), "found    {found}\nexpected {expected}");

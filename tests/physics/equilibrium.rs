@@ -49,7 +49,7 @@ fn column(mesh: &str, regions: &str, materials: &str, load: &str) -> String {
         constraints: [Fixed(on: All, axes: [X, Y]), Fixed(on: Plane(normal: (0, 0, 1), at: 0))], loads: [{load}],
         probes: {{
             \"top\": (what: Displacement, on: Plane(normal: (0, 0, 1), at: 0.1)),
-            \"middle\": (what: Displacement, on: Plane(normal: (0, 0, 1), at: 0.05, tolerance: 1e-6)),
+            \"lower\": (what: Displacement, on: Box(min: (-1, -1, 1e-6), max: (1, 1, 0.050001))),
         }})"
     )
 }
@@ -157,11 +157,12 @@ fn graded_mesh_costs_a_fraction_of_the_steps_of_motion() {
         let slowest = std::f64::consts::PI / 2.0 * f64::sqrt(11379.3 / 1000.0) / 0.1;
         let in_motion = 16.0 / slowest / (0.9 * simulation.summary("").unwrap().stable_step);
         println!("{}: {steps} steps instead of {in_motion:.0}", run.name);
-        assert!(10.0 * steps as f64 > 0.0 && in_motion > 8.0 * steps as f64, "{steps} of {in_motion}");
+        assert!(in_motion > 8.0 * steps as f64, "{steps} of {in_motion}");
     }
 }
 
-/// H11: lower half 1e4 times as stiff. In 1-D strain each half has its own exact stretch.
+/// H11: lower half 1e4 times as stiff. In 1-D strain each half has its own exact stretch; the mean over the lower half's five
+/// layers of nodes above the held one is 0.6 of the interface's displacement.
 #[test]
 fn interface_of_stiff_and_soft_goes_where_the_series_says() {
     let stiff = "\"stiff\": (density: 1000, neo_hookean: Young(young: 3e7, poisson: 0.45)),";
@@ -173,7 +174,7 @@ fn interface_of_stiff_and_soft_goes_where_the_series_says() {
         let mut simulation = run.start(&scene);
         let what = format!("{}, {elements}", run.name);
         rest(&what, &mut simulation);
-        let (middle, top) = (-simulation.probe("middle").unwrap()[2], -simulation.probe("top").unwrap()[2]);
+        let (middle, top) = (-simulation.probe("lower").unwrap()[2] / 0.6, -simulation.probe("top").unwrap()[2]);
         near(&format!("{what}: interface"), middle, 0.05 * hard, 0.05 * hard, 0.01);
         near(&format!("{what}: top"), top, 0.05 * (soft + hard), 0.05 * soft, run.bound(2e-5, 1e-4));
     }
@@ -192,9 +193,9 @@ fn density_changes_nothing_where_nothing_weighs() {
     }
 }
 
-/// Pseudo-steps too large for what is squeezed flat are taken back; the way there does not show in the end.
+/// What is pushed too suddenly is taken back; the way does not show in the end.
 #[test]
-fn block_squeezed_by_sixty_percent_is_found_by_steps_taken_back() {
+fn block_squeezed_by_sixty_percent_is_the_same_at_any_pace() {
     for run in configurations() {
         let squeezed = |more: &str| {
             let mut simulation = run.start(&format!(
@@ -210,10 +211,10 @@ fn block_squeezed_by_sixty_percent_is_found_by_steps_taken_back() {
             assert!(fields.volume_ratio.iter().all(|&ratio| ratio > 0.5), "{:?}", fields.volume_ratio);
             (setbacks, fields.displacement)
         };
-        let ((setbacks, quick), (_, slow)) = (squeezed("load_steps: 40"), squeezed("load_steps: 2000"));
-        let apart = quick.iter().zip(&slow).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+        let ((setbacks, sudden), (none, slow)) = (squeezed("load_steps: 8"), squeezed("load_steps: 1000"));
+        let apart = sudden.iter().zip(&slow).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
         println!("{}: {setbacks} setbacks, {apart:e} m apart", run.name);
-        assert!(setbacks > 0, "{}: nothing was taken back", run.name);
+        assert!(setbacks > 0 && none == 0, "{}: {setbacks} and {none} times taken back", run.name);
         assert!(apart < run.bound(1e-6, 1e-5), "{}: {apart:e} m apart", run.name);
     }
 }

@@ -165,6 +165,19 @@ fn bodies_selections_and_pictures_are_checked() {
         ),
         (
             "mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4), elements: Hex8)",
+            "mesh: Tube(inner: 0.02, outer: 0.01, height: 0, angle: 270, cells: (4, 1, 0))",
+            r"9:61: error: `height` must be above 0, found 0 m
+9:47: error: `outer` must be more than `inner`, found 0.01 m | `inner` is 0.02 m
+9:87: error: `cells` must be 2 or more for an angle of 270 degrees, found 1 | a cell turns by less than 180 degrees
+9:90: error: `cells` must be 1 or more, found 0",
+        ),
+        (
+            "mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4), elements: Hex8)",
+            "mesh: Tube(inner: 0.01, outer: 0.02, height: 1, angle: 361, cells: (4, 8, 1))",
+            r"9:72: error: `angle` must be above 0 and at most 360 degrees, found 361",
+        ),
+        (
+            "mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4), elements: Hex8)",
             "mesh: Ellipsoid(radii: (1, 1, 0), across: 2000)",
             r"9:43: error: `radii` must be above 0, found 0 m
 9:55: error: the mesh would have 8000000000 cells | at most 1000000000 are allowed",

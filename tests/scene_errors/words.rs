@@ -118,12 +118,12 @@ fn words_that_do_not_fit_are_told_with_those_that_do() {
         (
             "Box(size",
             "Bx(size",
-            r"9:19: error: `mesh` cannot be `Bx` | unknown word | did you mean `Box`? | allowed: File, Box, Cylinder, Ellipsoid, Lens",
+            r"9:19: error: `mesh` cannot be `Bx` | unknown word | did you mean `Box`? | allowed: File, Box, Cylinder, Ellipsoid, Hexahedron, Tube, Lens",
         ),
         (
             "mesh: Box",
             "mesh: ",
-            r"9:19: error: `mesh` must be one of the words below | found fields in brackets ( ) | allowed: File, Box, Cylinder, Ellipsoid, Lens",
+            r"9:19: error: `mesh` must be one of the words below | found fields in brackets ( ) | allowed: File, Box, Cylinder, Ellipsoid, Hexahedron, Tube, Lens",
         ),
         (
             r#"material: "tissue""#,

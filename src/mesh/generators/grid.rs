@@ -37,6 +37,8 @@ pub(super) struct Grid {
     kind: ElementKind,
     /// Axes along which the diagonals of the lower half are mirrored, so that they run from the middle outwards.
     mirrored: [bool; 3],
+    /// Whether the last row of points along y is the first.
+    ring: bool,
 }
 
 impl Grid {
@@ -68,7 +70,7 @@ impl Grid {
                 u32::MAX
             ));
         }
-        Ok(Grid { cells, kind, mirrored: [false; 3] })
+        Ok(Grid { cells, kind, mirrored: [false; 3], ring: false })
     }
 
     /// Lets the diagonals of cells run outwards along these axes. On round shapes a cell in a corner of the grid has
@@ -79,12 +81,23 @@ impl Grid {
         self
     }
 
+    /// Closes the grid along y: its two sides there become one. Diagonals must not be mirrored along y.
+    pub fn ring(mut self) -> Self {
+        self.ring = true;
+        self
+    }
+
+    /// Points along y.
+    fn points_along_y(&self) -> u32 {
+        if self.ring { self.cells[1] } else { self.cells[1] + 1 }
+    }
+
     /// The mesh with points placed by their indices. Refuses a grid that does not fit into memory.
     pub fn mesh(&self, place: impl Fn([u32; 3]) -> DVec3) -> Result<Mesh, MeshError> {
         let [nx, ny, nz] = self.cells;
         let mut mesh = Mesh::default();
         let cells = nx as usize * ny as usize * nz as usize;
-        let points = (nx as usize + 1) * (ny as usize + 1) * (nz as usize + 1);
+        let points = (nx as usize + 1) * self.points_along_y() as usize * (nz as usize + 1);
         let reserved = mesh.points.try_reserve_exact(points).and_then(|()| match self.kind.is_tetrahedron() {
             true => mesh.tets.try_reserve_exact(6 * cells),
             false => mesh.hexes.try_reserve_exact(cells),
@@ -94,7 +107,7 @@ impl Grid {
             return Err(MeshError::Parameter { name, parameter, value, allowed: "it must fit into memory".into() });
         }
         for k in 0..=nz {
-            for j in 0..=ny {
+            for j in 0..self.points_along_y() {
                 mesh.points.extend((0..=nx).map(|i| place([i, j, k])));
             }
         }
@@ -115,7 +128,8 @@ impl Grid {
     /// The row of the point at a corner of a cell.
     fn row(&self, cell: [u32; 3], corner: u8) -> u32 {
         let [i, j, k] = [0, 1, 2].map(|axis| cell[axis] + u32::from(corner >> axis & 1));
-        i + (self.cells[0] + 1) * (j + (self.cells[1] + 1) * k)
+        let across = self.points_along_y();
+        i + (self.cells[0] + 1) * (j % across + across * k)
     }
 
     /// Bits of the axes along which a cell's diagonal is mirrored.

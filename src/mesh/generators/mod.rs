@@ -7,13 +7,18 @@ mod r#box;
 mod cylinder;
 mod ellipsoid;
 mod grid;
+mod hexahedron;
 mod lens;
 mod round;
+mod tube;
 
 pub use r#box::box_mesh;
 pub use cylinder::cylinder_mesh;
 pub use ellipsoid::ellipsoid_mesh;
+pub use hexahedron::hexahedron_mesh;
 pub use lens::lens_mesh;
+pub(crate) use tube::cells_around;
+pub use tube::tube_mesh;
 
 use super::MeshError;
 use serde::{Deserialize, Serialize};

@@ -15,6 +15,9 @@ pub struct Body {
     /// Parts made of another material; a later entry wins.
     #[serde(default)]
     pub regions: Vec<Region>,
+    /// Cuts every element of the mesh into eight, so many times over.
+    #[serde(default)]
+    pub refine: u32,
     /// Multiplies all coordinates of the mesh, before anything else (1 = metres).
     #[serde(default = "one")]
     pub scale: f64,
@@ -97,6 +100,33 @@ pub enum MeshSource {
         #[serde(default)]
         elements: ElementKind,
     },
+    /// A block with eight corners: a box mapped trilinearly.
+    Hexahedron {
+        /// Four corners round the bottom, counter-clockwise seen from the top, then the four above them (m).
+        corners: [DVec3; 8],
+        /// Cells along the edges from corner 0 to corners 1, 3 and 4.
+        cells: (u32, u32, u32),
+        /// The kind of elements.
+        #[serde(default)]
+        elements: ElementKind,
+    },
+    /// A thick-walled tube about the z axis that stands on z = 0, or a sector of it from the x axis on.
+    Tube {
+        /// Inner radius (m).
+        inner: f64,
+        /// Outer radius (m).
+        outer: f64,
+        /// Height (m).
+        height: f64,
+        /// How far round it goes (degrees); 360 closes the ring.
+        #[serde(default = "full_turn")]
+        angle: f64,
+        /// Cells through the wall, around and along the axis.
+        cells: (u32, u32, u32),
+        /// The kind of elements.
+        #[serde(default)]
+        elements: ElementKind,
+    },
     /// A biconvex lens about the origin, its axis along z: two spherical caps on a common circle.
     Lens {
         /// Diameter of the common circle (m).
@@ -121,9 +151,15 @@ impl MeshSource {
             Self::Box { elements, .. }
             | Self::Cylinder { elements, .. }
             | Self::Ellipsoid { elements, .. }
+            | Self::Hexahedron { elements, .. }
+            | Self::Tube { elements, .. }
             | Self::Lens { elements, .. } => (*elements, *elements),
         }
     }
+}
+
+fn full_turn() -> f64 {
+    360.0
 }
 
 fn one() -> f64 {

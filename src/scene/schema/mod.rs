@@ -1,5 +1,6 @@
 //! The words of a scene file: one Rust type for each, read by serde. SI units throughout (m, kg, s, Pa).
 
+mod accuracy;
 mod action;
 mod body;
 mod material;
@@ -7,6 +8,7 @@ mod scene;
 mod selection;
 
 pub use crate::mesh::ElementKind;
+pub use accuracy::{Accuracy, AccuracyReference};
 pub use action::{Axis, Constraint, Curve, Load, Removal, Share, When};
 pub use body::{Body, MeshSource, Region};
 pub use material::{
@@ -17,10 +19,11 @@ pub use scene::{Analysis, Field, Integration, Output, Picture, Scene};
 pub use selection::{Probe, Quantity, Select};
 
 /// The texts of these files: what a field means is told in the words it is documented with.
-pub const TEXT: [&str; 5] = [
+pub const TEXT: [&str; 6] = [
     include_str!("scene.rs"),
     include_str!("body.rs"),
     include_str!("material.rs"),
     include_str!("action.rs"),
     include_str!("selection.rs"),
+    include_str!("accuracy.rs"),
 ];

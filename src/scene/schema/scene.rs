@@ -1,6 +1,6 @@
 //! The whole scene, its time step, its outputs, its picture.
 
-use super::{Body, Constraint, Load, Material, Probe, Removal};
+use super::{Accuracy, Body, Constraint, Load, Material, Probe, Removal};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -48,6 +48,9 @@ pub struct Scene {
     /// How `sinew render` draws the scene.
     #[serde(default)]
     pub picture: Picture,
+    /// What `sinew accuracy` measures the scene against.
+    #[serde(default)]
+    pub accuracy: Accuracy,
 }
 
 /// What is sought.

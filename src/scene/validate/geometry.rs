@@ -1,13 +1,17 @@
 //! Bodies and their meshes, and the picture.
 
 use super::{Judge, scene, select};
+use crate::mesh::generators::cells_around;
 use crate::scene::load::SceneFile;
-use crate::scene::schema::{MeshSource, Picture};
+use crate::scene::schema::{Accuracy, AccuracyReference, MeshSource, Picture};
 use crate::scene::suggest::{choice, list};
 use crate::scene::syntax::Path;
 
 /// More cells than any machine holds: a slip of the finger, told before memory runs out.
 const MOST_CELLS: u128 = 1_000_000_000;
+
+/// More refinement than the smallest mesh bears.
+const MOST_TIMES: u32 = 9;
 
 /// What mesh files may end in.
 const MESH_FILES: [&str; 3] = ["msh", "vtk", "vtu"];
@@ -17,12 +21,34 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
         let path = scene("bodies").name(name);
         mesh(file, judge, &path.name("mesh"), &body.mesh);
         judge.above_zero(&path.name("scale"), body.scale, "");
+        if body.refine > MOST_TIMES {
+            judge
+                .must(&path.name("refine"), &format!("at most {MOST_TIMES}"), body.refine)
+                .note("each time makes eight elements of one: 10 times make a billion of it");
+        }
         judge.not_negative(&path.name("hourglass"), body.hourglass, "");
         for (i, region) in body.regions.iter().enumerate() {
             select::validate(judge, &path.name("regions").index(i).name("on"), &region.on);
         }
     }
     picture(judge, &file.scene.picture);
+    accuracy(judge, &file.scene.accuracy);
+}
+
+fn accuracy(judge: &mut Judge, wanted: &Accuracy) {
+    let path = scene("accuracy");
+    if let Some(target) = wanted.target {
+        judge.above_zero(&path.name("target"), target, "");
+    }
+    let empty = match &wanted.reference {
+        AccuracyReference::SelfMade => false,
+        AccuracyReference::Values(values) => values.is_empty(),
+        AccuracyReference::Files(files) => files.is_empty(),
+    };
+    if empty {
+        let message = "the reference is empty: there is nothing to measure errors against";
+        judge.out.error_at(path.name("reference"), message).note("leave `reference` out to have one made");
+    }
 }
 
 fn mesh(file: &SceneFile, judge: &mut Judge, path: &Path, mesh: &MeshSource) {
@@ -38,11 +64,24 @@ fn mesh(file: &SceneFile, judge: &mut Judge, path: &Path, mesh: &MeshSource) {
         }
         MeshSource::Box { size, cells, .. } => {
             judge.all_above_zero(&path.name("size"), *size, "m");
-            let cells = [cells.0, cells.1, cells.2];
-            for (i, count) in cells.into_iter().enumerate() {
-                at_least_one(judge, &path.name("cells").index(i), count);
+            each_way(judge, &path.name("cells"), *cells);
+        }
+        MeshSource::Hexahedron { cells, .. } => each_way(judge, &path.name("cells"), *cells),
+        MeshSource::Tube { inner, outer, height, angle, cells, .. } => {
+            judge.above_zero(&path.name("inner"), *inner, "m");
+            judge.above_zero(&path.name("height"), *height, "m");
+            if outer <= inner {
+                let found = super::with_unit(*outer, "m");
+                let note = format!("`inner` is {}", super::with_unit(*inner, "m"));
+                judge.must(&path.name("outer"), "more than `inner`", found).note(note);
             }
-            not_too_many(judge, &path.name("cells"), cells);
+            if !(*angle > 0.0 && *angle <= 360.0) {
+                judge.must(&path.name("angle"), "above 0 and at most 360 degrees", angle);
+            } else if cells.1 > 0 && cells.1 < cells_around(*angle) {
+                let be = format!("{} or more for an angle of {angle} degrees", cells_around(*angle));
+                judge.must(&path.name("cells").index(1), &be, cells.1).note("a cell turns by less than 180 degrees");
+            }
+            each_way(judge, &path.name("cells"), *cells);
         }
         MeshSource::Cylinder { radius, height, across, along, .. } => {
             judge.above_zero(&path.name("radius"), *radius, "m");
@@ -69,6 +108,15 @@ fn mesh(file: &SceneFile, judge: &mut Judge, path: &Path, mesh: &MeshSource) {
             not_too_many(judge, &path.name("across"), [*across, *across, *through]);
         }
     }
+}
+
+/// Cells in three directions: at least one in each, and not more than a machine holds.
+fn each_way(judge: &mut Judge, path: &Path, cells: (u32, u32, u32)) {
+    let cells = [cells.0, cells.1, cells.2];
+    for (i, count) in cells.into_iter().enumerate() {
+        at_least_one(judge, &path.index(i), count);
+    }
+    not_too_many(judge, path, cells);
 }
 
 fn at_least_one(judge: &mut Judge, path: &Path, count: u32) {

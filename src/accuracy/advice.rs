@@ -1,0 +1,143 @@
+//! What to do about it, in sentences.
+
+use super::findings::Split;
+use super::plan::Varied;
+use super::reference::{Error, Source};
+use super::study::Row;
+
+/// A part of the error counts beside another when it is more than this share of it.
+const COUNTS: f64 = 0.33;
+
+/// Sentences, the most important first.
+pub fn advice(rows: &[Row], split: &Split, source: Source, judged_by: &str, target: f64) -> Vec<String> {
+    let mut sentences = Vec::new();
+    if source == Source::None {
+        sentences
+            .push("Without a reference nothing can be said about errors; the times are measured all the same.".into());
+        return sentences;
+    }
+    let with_errors: Vec<(&Row, Error, f64)> = rows
+        .iter()
+        .filter(|row| row.varied.is_ranked())
+        .filter_map(|row| Some((row, *row.errors.get(judged_by)?, row.measured()?.seconds_per_second)))
+        .collect();
+    if with_errors.is_empty() {
+        sentences.push(format!("No configuration has an error in {judged_by}: nothing ran to its end."));
+        return sentences;
+    }
+    sentences.push(cheapest(&with_errors, target));
+    sentences.extend(spending(split));
+    sentences.extend(better(&with_errors));
+    let clear = with_errors.iter().filter(|(_, error, _)| error.is_clear()).count();
+    if clear * 2 < with_errors.len() {
+        sentences.push(format!(
+            "The reference is too coarse: {clear} of {} configurations err clearly more than it may itself. Their \
+             order says nothing; give the study a larger --budget.",
+            with_errors.len()
+        ));
+    }
+    sentences
+}
+
+fn cheapest(rows: &[(&Row, Error, f64)], target: f64) -> String {
+    let under = rows.iter().filter(|(_, error, _)| error.error + error.uncertainty <= target);
+    let target = percent(target);
+    match under.min_by(|a, b| a.2.total_cmp(&b.2)) {
+        Some((row, error, time)) => {
+            format!("Cheapest under {target}: {}, {} at {}.", row.label, told(error), price(row, *time))
+        }
+        None => {
+            let nearest = rows.iter().min_by(|a, b| a.1.vouched().total_cmp(&b.1.vouched()));
+            nearest.map_or(String::new(), |(row, error, time)| {
+                let (error, price) = (told(error), price(row, *time));
+                format!("Nothing that ran is surely under {target}; the nearest is {}, {error} at {price}.", row.label)
+            })
+        }
+    }
+}
+
+/// Wall time, and that it is for a simulated second where something is simulated in time.
+fn price(row: &Row, time: f64) -> String {
+    let timed = row.measured().is_some_and(|measured| measured.simulated.is_some());
+    format!("{}{}", seconds(time), if timed { " a second" } else { "" })
+}
+
+/// Where to spend: on the part of the error that is largest.
+fn spending(split: &Split) -> Option<String> {
+    let (space, time, round_off) = (split.space?, split.time.unwrap_or(0.0), split.round_off.unwrap_or(0.0));
+    let model = split.model.unwrap_or(0.0);
+    let total = split.total?;
+    if split.space_is_a_bound && space > time.max(round_off) {
+        return None;
+    }
+    if split.stays || model > space.max(time).max(round_off) {
+        let model = if split.model.is_some() { model } else { total };
+        return Some(format!(
+            "An error of {} does not fall with the mesh: it is in the model or in the reference, and neither a finer mesh nor \
+             a smaller step takes it away.",
+            percent(model)
+        ));
+    }
+    let parts = [("the mesh", space), ("the step", time), ("the number type", round_off)];
+    let (place, &(what, largest)) = parts.iter().enumerate().max_by(|a, b| a.1.1.total_cmp(&b.1.1))?;
+    if largest <= 0.0 {
+        return None;
+    }
+    let others: Vec<&(&str, f64)> =
+        parts.iter().enumerate().filter(|(i, _)| *i != place).map(|(_, part)| part).collect();
+    let also: Vec<&str> = others.iter().filter(|(_, part)| *part > COUNTS * largest).map(|(what, _)| *what).collect();
+    let not: Vec<&str> = others.iter().filter(|(_, part)| *part <= COUNTS * largest).map(|(what, _)| *what).collect();
+    let advice = match (also.is_empty(), not.is_empty()) {
+        (true, _) => format!("Spend on {what}, not on {}", not.join(" or ")),
+        (false, true) => format!("Spend on {what}, and on {} too", also.join(" and ")),
+        (false, false) => format!("Spend on {what} and on {}, not on {}", also.join(" and "), not.join(" or ")),
+    };
+    let shares: Vec<String> = parts.iter().map(|(what, part)| format!("{what} makes {}", percent(*part))).collect();
+    Some(format!("{advice}: as written, {}.", shares.join(", ")))
+}
+
+/// Whether something is both cheaper and no worse than the scene as it is written.
+fn better(rows: &[(&Row, Error, f64)]) -> Option<String> {
+    let (_, written, time) = rows.iter().find(|(row, ..)| row.varied == Varied::Nothing)?;
+    let better = rows.iter().filter(|(row, error, t)| {
+        row.on_front && *t < 0.7 * time && error.error <= written.error && (error.is_clear() || written.is_clear())
+    });
+    let (row, error, t) = better.min_by(|a, b| a.2.total_cmp(&b.2))?;
+    Some(format!(
+        "The scene as written costs more than it must: {} errs less ({} instead of {}) in {} of its time.",
+        row.label,
+        told(error),
+        told(written),
+        percent(t / time)
+    ))
+}
+
+/// An error in words; what the reference cannot tell from none is said to be below a bound.
+pub fn told(error: &Error) -> String {
+    if error.is_clear() { percent(error.error) } else { format!("below {}", percent(error.vouched())) }
+}
+
+/// A share in percent with two digits: `0.34 %`, `12 %`, `2.3e-5 %`.
+pub fn percent(share: f64) -> String {
+    let value = 100.0 * share;
+    match value.abs() {
+        0.0 => "0 %".into(),
+        size if size >= 9.95 => format!("{value:.0} %"),
+        size if size >= 0.995 => format!("{value:.1} %"),
+        size if size >= 0.0995 => format!("{value:.2} %"),
+        size if size >= 0.00995 => format!("{value:.3} %"),
+        _ => format!("{value:.1e} %"),
+    }
+}
+
+/// Seconds with a prefix and two to three digits.
+pub fn seconds(value: f64) -> String {
+    let (factor, unit) = match value.abs() {
+        size if size >= 1.0 => (1.0, "s"),
+        size if size >= 1e-3 => (1e3, "ms"),
+        size if size >= 1e-6 => (1e6, "µs"),
+        _ => (1e9, "ns"),
+    };
+    let value = value * factor;
+    if value >= 99.5 { format!("{value:.0} {unit}") } else { format!("{value:.2} {unit}") }
+}

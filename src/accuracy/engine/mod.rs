@@ -1,0 +1,235 @@
+//! The solver that this crate is: a scene file, run in many ways.
+
+mod calibration;
+mod effects;
+mod ladder;
+mod march;
+mod variant;
+
+use super::configuration::{Configuration, Digits, Factor, Place};
+use super::solver::{Choices, Cost, Refusal, Solution, Solver};
+use crate::assembly::mesh_of;
+use crate::backend::gpu::Choice;
+use crate::components::Precision;
+use crate::mesh::ElementKind;
+use crate::scene::SceneFile;
+use crate::scene::schema::{Load, MeshSource, Share, ViscousIntegrator};
+use crate::{BackendChoice, Options, Simulation};
+use calibration::Calibration;
+use march::{Looks, refusal};
+use variant::{Finer, cells, finer, names_elements, variant, written};
+
+/// How fine meshes can be against the scene's.
+const MESHES: [Factor; 12] = [
+    Factor::new(1, 4),
+    Factor::new(1, 3),
+    Factor::new(1, 2),
+    Factor::new(2, 3),
+    Factor::new(3, 4),
+    Factor::ONE,
+    Factor::new(3, 2),
+    Factor::new(2, 1),
+    Factor::new(3, 1),
+    Factor::new(4, 1),
+    Factor::new(6, 1),
+    Factor::new(8, 1),
+];
+/// How a study runs a scene.
+#[derive(Clone, Debug)]
+pub struct Engine<'a> {
+    file: &'a SceneFile,
+    options: Options,
+    /// Whether there is a GPU to compare with.
+    gpu: bool,
+    effects: bool,
+    finest: f64,
+    interrupted: fn() -> bool,
+    looks: Option<Looks>,
+    known: Vec<(Configuration, Calibration)>,
+    /// Kinds of elements that all bodies can have, once they are known.
+    kinds: Option<Vec<ElementKind>>,
+}
+
+impl<'a> Engine<'a> {
+    /// For a scene that is sound. `options` say how the scene as it is written runs; `gpu`, whether to compare with a GPU;
+    /// `effects`, whether to switch effects off; `interrupted`, whether somebody wants the study to end.
+    pub fn new(file: &'a SceneFile, options: Options, gpu: bool, effects: bool, interrupted: fn() -> bool) -> Self {
+        Self {
+            file,
+            options,
+            gpu,
+            effects,
+            finest: f64::INFINITY,
+            interrupted,
+            looks: None,
+            known: Vec::new(),
+            kinds: None,
+        }
+    }
+
+    /// With no mesh finer than so many times the scene's.
+    pub fn up_to(self, finest: f64) -> Self {
+        Self { finest, ..self }
+    }
+
+    /// Looks at numbers over time that all configurations share: as many intervals, from the start to the end; 0 of a search
+    /// for equilibrium.
+    ///
+    /// # Errors
+    /// That the scene as it is written cannot be run.
+    pub fn looks(&mut self) -> Result<u64, Refusal> {
+        let kinds = self.elements()?;
+        let base = self.base(&kinds);
+        self.kinds = Some(kinds);
+        self.calibrate(&base)?;
+        Ok(self.looks.as_ref().filter(|_| !self.file.scene.is_static()).map_or(0, |looks| looks.count))
+    }
+
+    /// The scene as it is written; `elements` are the kinds that its bodies can have.
+    fn base(&self, elements: &[ElementKind]) -> Configuration {
+        let place = if self.options.backend == BackendChoice::Gpu { Place::Gpu } else { Place::Cpu };
+        let scene = &self.file.scene;
+        let mut kinds: Vec<ElementKind> = Vec::new();
+        for body in scene.bodies.values() {
+            let (tets, hexes) = body.mesh.element_kinds();
+            kinds.push(if elements.contains(&tets) { tets } else { hexes });
+        }
+        kinds.dedup();
+        let element = if let [kind] = kinds[..] { Some(kind).filter(|kind| elements.contains(kind)) } else { None };
+        written(scene, element, self.options.precision == Precision::F64, place)
+    }
+
+    fn options(&self, configuration: &Configuration) -> Options {
+        Options {
+            backend: match configuration.place {
+                Place::Cpu => BackendChoice::Cpu,
+                Place::Gpu => BackendChoice::Gpu,
+            },
+            precision: if configuration.digits == Digits::Double { Precision::F64 } else { Precision::F32 },
+            ..self.options.clone()
+        }
+    }
+
+    /// Kinds of elements that all bodies can have.
+    fn elements(&self) -> Result<Vec<ElementKind>, Refusal> {
+        let scene = &self.file.scene;
+        let mut kinds = ElementKind::ALL.to_vec();
+        for body in scene.bodies.values() {
+            let shape = match &body.mesh {
+                MeshSource::File { .. } => {
+                    let mesh = mesh_of(body, &self.file.folder).map_err(|error| Refusal::Refused(error.to_string()))?;
+                    match (mesh.tets.is_empty(), mesh.hexes.is_empty()) {
+                        (false, true) => Some(true),
+                        (true, false) => Some(false),
+                        _ => return Ok(Vec::new()),
+                    }
+                }
+                mesh => names_elements(scene).then_some(mesh.element_kinds().0.is_tetrahedron()),
+            };
+            kinds.retain(|kind| shape.is_none_or(|tets| kind.is_tetrahedron() == tets));
+        }
+        Ok(kinds)
+    }
+
+    fn meshes(&self) -> Vec<Factor> {
+        let scene = &self.file.scene;
+        let fits = |factor: &Factor| match finer(scene) {
+            Finer::Cut => factor.down == 1 && factor.up.is_power_of_two(),
+            Finer::Cells => {
+                let mut counts = scene.bodies.values().flat_map(|body| cells(&body.mesh));
+                counts.all(|count| factor.times(count).is_some())
+            }
+        };
+        MESHES.into_iter().filter(|factor| factor.value() <= self.finest && fits(factor)).collect()
+    }
+
+    fn notes(&self) -> Vec<String> {
+        let scene = &self.file.scene;
+        let mut notes = Vec::new();
+        if finer(scene) == Finer::Cut {
+            notes.push("meshes are made finer by cutting elements: curved outlines stay the polygons they are".into());
+        }
+        let each = |load: &Load| matches!(load, Load::NodalForce { share: Share::Each, .. });
+        if let Some(number) = scene.loads.iter().position(each) {
+            notes.push(format!(
+                "loads[{number}] gives each node its force: where finer meshes have more nodes there it grows; share: Total \
+                 would not"
+            ));
+        }
+        notes
+    }
+}
+
+impl Engine<'_> {
+    /// The step that the scene wants (s). One that it names itself is kept where it is stable, and for the scene as it is
+    /// written, which may be meant to go beyond.
+    fn step(&self, configuration: &Configuration, options: &Options) -> Result<f64, Refusal> {
+        let integration = &self.file.scene.integration;
+        let own = self.base(self.kinds.as_deref().unwrap_or_default());
+        let as_written = (configuration.element, configuration.mesh) == (own.element, own.mesh);
+        if let Some(step) = integration.step.filter(|_| as_written) {
+            return Ok(step);
+        }
+        let scene = variant(self.file, configuration, None);
+        let cpu = Options { backend: BackendChoice::Cpu, ..options.clone() };
+        let mut simulation = Simulation::new(&scene, &cpu).map_err(refusal)?;
+        let found = integration.safety * simulation.summary("not run").map_err(refusal)?.stable_step;
+        Ok(integration.step.map_or(found, |step| step.min(found)))
+    }
+}
+
+impl Solver for Engine<'_> {
+    fn choices(&mut self) -> Result<Choices, Refusal> {
+        self.looks()?;
+        let elements = self.kinds.clone().unwrap_or_default();
+        let base = self.base(&elements);
+        let scene = &self.file.scene;
+        let hexes = base.element.is_none_or(|kind| kind == ElementKind::Hex8);
+        let viscous = scene.materials.values().any(|material| material.prony.is_some());
+        let places = if self.gpu { vec![Place::Cpu, Place::Gpu] } else { Vec::new() };
+        let both = [ViscousIntegrator::Exact, ViscousIntegrator::BackwardEuler];
+        Ok(Choices {
+            elements,
+            meshes: self.meshes(),
+            steps: if scene.is_static() { Vec::new() } else { vec![2, 4] },
+            digits: vec![Digits::Plain, Digits::Compensated, Digits::Double],
+            hourglass: if hexes { vec![0.5, 2.0] } else { Vec::new() },
+            viscous: if viscous { both.to_vec() } else { Vec::new() },
+            laws: ladder::laws(scene),
+            places,
+            quantities: self.looks.as_ref().map(Looks::names).unwrap_or_default(),
+            effects: if self.effects { effects::effects(scene) } else { Vec::new() },
+            notes: self.notes(),
+            base,
+        })
+    }
+
+    fn predict(&mut self, configuration: &Configuration) -> Result<Cost, Refusal> {
+        if configuration.place == Place::Gpu && configuration.digits == Digits::Double {
+            return Err(Refusal::Refused("the GPU computes in f32 only".into()));
+        }
+        self.cost(configuration)
+    }
+
+    fn solve(&mut self, configuration: &Configuration) -> Result<Solution, Refusal> {
+        let options = self.options(configuration);
+        let looks = match &self.looks {
+            Some(looks) => looks.clone(),
+            None => return Err(Refusal::Refused("nothing has been predicted yet".into())),
+        };
+        if self.file.scene.is_static() {
+            let scene = variant(self.file, configuration, None);
+            return march::solve(&scene, &options, &looks, &self.interrupted);
+        }
+        let largest = self.step(configuration, &options)?;
+        let step = looks.fitting(self.file.scene.duration, largest / f64::from(configuration.step));
+        let scene = variant(self.file, configuration, Some(step));
+        march::solve(&scene, &options, &looks, &self.interrupted)
+    }
+}
+
+/// Whether a GPU answers to a name; with `Choice::Best`, whether there is a hardware GPU.
+pub fn has_gpu(choice: &Choice) -> bool {
+    let wanted = if *choice == Choice::Best { Choice::Hardware } else { choice.clone() };
+    crate::backend::gpu::Gpu::open(&wanted).is_ok()
+}

@@ -1,0 +1,26 @@
+//! A drawing as pixels.
+
+use resvg::{tiny_skia, usvg};
+use std::sync::Arc;
+
+/// Why a drawing could not be turned into pixels.
+#[derive(Debug, thiserror::Error)]
+#[error("the plot cannot be drawn: {0}")]
+pub struct PlotError(String);
+
+/// A PNG file of an SVG drawing, `zoom` pixels a unit, with the letters that sinew brings along.
+///
+/// # Errors
+/// That it is no SVG, or too large for memory.
+pub fn png(svg: &str, zoom: f32) -> Result<Vec<u8>, PlotError> {
+    let mut fonts = usvg::fontdb::Database::new();
+    fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
+    fonts.load_font_data(epaint_default_fonts::HACK_REGULAR.to_vec());
+    let options = usvg::Options { fontdb: Arc::new(fonts), font_family: "Ubuntu".into(), ..usvg::Options::default() };
+    let tree = usvg::Tree::from_str(svg, &options).map_err(|error| PlotError(error.to_string()))?;
+    let size = tree.size();
+    let (width, height) = ((size.width() * zoom) as u32, (size.height() * zoom) as u32);
+    let mut page = tiny_skia::Pixmap::new(width, height).ok_or_else(|| PlotError("it is too large".into()))?;
+    resvg::render(&tree, tiny_skia::Transform::from_scale(zoom, zoom), &mut page.as_mut());
+    page.encode_png().map_err(|error| PlotError(error.to_string()))
+}

@@ -1,0 +1,147 @@
+//! What solutions are measured against: numbers that an author gives, files of an earlier run, or a solution made for it.
+
+use super::field::FieldReference;
+use super::points::PointReference;
+use super::quantities::{distance, mean_square, readings};
+use super::richardson::extrapolate;
+use super::solver::{Field, Solution};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// Names of what is measured of the displacement field: at the end, over time, and its largest distance at the end.
+pub const FIELD: [&str; 3] = ["displacement", "displacement.over_time", "displacement.largest"];
+
+/// An error is told from the reference's own when it is so many times larger.
+pub const CLEARLY: f64 = 3.0;
+
+/// Where a reference comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Source {
+    /// The author's numbers.
+    Values,
+    /// Files of an earlier run.
+    Files,
+    /// Made for this study from three meshes.
+    SelfMade,
+    /// There is none.
+    None,
+}
+
+/// What solutions are measured against.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// Where it comes from.
+    pub source: Source,
+    /// A sentence on it.
+    pub told: String,
+    /// Quantities by name.
+    pub entries: BTreeMap<String, Entry>,
+    /// The displacement field on meshes.
+    pub field: Option<FieldReference>,
+    /// The displacements of single points.
+    pub points: Option<PointReference>,
+}
+
+/// The reference of a quantity.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// Its values.
+    pub values: Vec<f64>,
+    /// How far they may be off, root mean square (in its unit).
+    pub uncertainty: f64,
+    /// What errors are divided by; `None`: the value itself, or what the solution says where that is 0.
+    pub scale: Option<f64>,
+    /// The observed order in the cell size, where it was extrapolated.
+    pub order: Option<f64>,
+}
+
+/// An error and how well it is known, both relative.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Error {
+    /// The distance from the reference.
+    pub error: f64,
+    /// How far the reference may be off.
+    pub uncertainty: f64,
+}
+
+impl Error {
+    /// Whether it is the solution's error and not the reference's.
+    pub fn is_clear(&self) -> bool {
+        self.error > CLEARLY * self.uncertainty
+    }
+
+    /// What can be vouched for: the error, or what the reference cannot tell from none.
+    pub fn vouched(&self) -> f64 {
+        self.error.max(CLEARLY * self.uncertainty)
+    }
+}
+
+impl Reference {
+    /// None: nothing has an error.
+    pub fn none(why: &str) -> Self {
+        let (entries, told) = (BTreeMap::new(), format!("none: {why}"));
+        Self { source: Source::None, told, entries, field: None, points: None }
+    }
+
+    /// From an author's numbers, by quantity.
+    pub fn of_values(values: &BTreeMap<String, f64>) -> Self {
+        let entry = |(name, value): (&String, &f64)| {
+            let entry = Entry { values: vec![*value], uncertainty: 0.0, scale: None, order: None };
+            (name.clone(), entry)
+        };
+        let entries = values.iter().map(entry).collect();
+        let told = "values that the scene names, taken for exact".to_string();
+        Self { source: Source::Values, told, entries, field: None, points: None }
+    }
+
+    /// From solutions on three meshes with cells of `sizes`, descending; `nested`: nodes of each are nodes of the next.
+    pub fn of_three(sizes: [f64; 3], solutions: &[Solution; 3], nested: bool) -> Self {
+        let [coarse, middle, fine] = [0, 1, 2].map(|i| readings(&solutions[i]));
+        let mut entries = BTreeMap::new();
+        for (name, finest) in &fine {
+            let (Some(a), Some(b)) = (coarse.get(name), middle.get(name)) else { continue };
+            if a.values.len() != finest.values.len() || b.values.len() != finest.values.len() {
+                continue;
+            }
+            let limit = extrapolate(sizes, [&a.values, &b.values, &finest.values], mean_square);
+            let (scale, order) = (Some(finest.scale), limit.order);
+            entries.insert(name.clone(), Entry { values: limit.values, uncertainty: limit.uncertainty, scale, order });
+        }
+        let fields: Option<Vec<Field>> = solutions.iter().map(|solution| solution.field.clone()).collect();
+        let fields: Option<[Field; 3]> = fields.and_then(|fields| fields.try_into().ok());
+        let field = fields.and_then(|fields| FieldReference::of_three(sizes, fields, nested));
+        let told = "made here: three meshes, f64, a quarter of the step, extrapolated to cells of no size".to_string();
+        Self { source: Source::SelfMade, told, entries, field, points: None }
+    }
+
+    /// The errors of a solution, by quantity.
+    pub fn errors(&self, solution: &Solution) -> BTreeMap<String, Error> {
+        let mut errors = BTreeMap::new();
+        let own = readings(solution);
+        for (name, entry) in &self.entries {
+            let Some(reading) = own.get(name) else { continue };
+            let value = mean_square(&entry.values);
+            let scale = entry.scale.unwrap_or(if value > 0.0 { value } else { reading.scale });
+            let error = Error {
+                error: distance(&reading.values, &entry.values) / scale,
+                uncertainty: entry.uncertainty / scale,
+            };
+            if error.error.is_finite() && error.uncertainty.is_finite() {
+                errors.insert(name.clone(), error);
+            }
+        }
+        let Some(field) = &solution.field else { return errors };
+        if let Some(found) = self.field.as_ref().and_then(|reference| Some((reference, reference.error_of(field)?))) {
+            let (reference, found) = found;
+            for ((name, error), uncertainty) in FIELD.iter().zip(found.all()).zip(reference.uncertainty) {
+                if field.times.len() > 1 || *name != FIELD[1] {
+                    errors.insert((*name).into(), Error { error, uncertainty });
+                }
+            }
+        } else if let Some([at_end, largest]) = self.points.as_ref().and_then(|points| points.error_of(field)) {
+            errors.insert(FIELD[0].into(), Error { error: at_end, uncertainty: 0.0 });
+            errors.insert(FIELD[2].into(), Error { error: largest, uncertainty: 0.0 });
+        }
+        errors
+    }
+}
