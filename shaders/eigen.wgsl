@@ -21,7 +21,7 @@ fn sym_eigen(s: Sym3) -> Eigen {
     var x = vec3<f32>(1.0, 0.0, 0.0);
     var y = vec3<f32>(0.0, 1.0, 0.0);
     var z = vec3<f32>(0.0, 0.0, 1.0);
-    for (var sweep = 0u; sweep < 4u; sweep++) {
+    for (var sweep = 0u; sweep < 5u; sweep++) {
         let a = zeroing_rotation(d.x, d.y, o.x);
         d = vec3<f32>(d.x - a.x * o.x, d.y + a.x * o.x, d.z);
         o = vec3<f32>(0.0, a.z * o.z + a.y * o.y, a.y * o.z - a.z * o.y);

@@ -33,14 +33,14 @@ impl<R: Real> Rotation<R> {
 
 impl<R: Real> Sym3<R> {
     /// Eigenvalues, and the unit eigenvector of each, both to a few ε of the largest entry. Jacobi's cyclic rotations: the
-    /// entries off the diagonal fall quadratically, and four sweeps (f64: five) bring them below ε for every matrix.
+    /// entries off the diagonal fall quadratically, and five sweeps (f64: six) bring them below ε.
     #[inline(always)]
     pub fn eigen(&self) -> ([R; 3], [[R; 3]; 3]) {
         let [mut xx, mut yy, mut zz, mut xy, mut yz, mut xz] = self.0;
         let (zero, one) = (xx.constant(0.0), xx.constant(1.0));
         // rows: what will be the eigenvectors
         let mut v = [[one, zero, zero], [zero, one, zero], [zero, zero, one]];
-        for _ in 0..if R::EPSILON > 1e-10 { 4 } else { 5 } {
+        for _ in 0..if R::EPSILON > 1e-10 { 5 } else { 6 } {
             let r = Rotation::zeroing(xx, yy, xy);
             (xx, yy) = (xx - r.tangent * xy, yy + r.tangent * xy);
             (xz, yz, xy) = (r.cosine * xz - r.sine * yz, r.sine * xz + r.cosine * yz, zero);

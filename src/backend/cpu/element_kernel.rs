@@ -4,8 +4,8 @@ mod effects;
 
 use super::{BlockLaw, Cpu};
 use crate::elements::{Element, MOST_NODES, PressureFrom};
-use crate::materials::{Elastic, ElasticLaw};
-use crate::math::{LANES, Real, SimdScalar};
+use crate::materials::{Elastic, ElasticLaw, Kinematics};
+use crate::math::{LANES, Real, SimdScalar, Sym3};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -141,6 +141,21 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd for P
     }
 }
 
+/// S_iso of a law in a function of its own: what all laws come to is too much code to stand in every element's kernel.
+struct Isochoric<'a, L, R> {
+    elastic: &'a L,
+    k: &'a Kinematics<R>,
+}
+
+impl<R: Real, L: Elastic<R>> WithSimd for Isochoric<'_, L, R> {
+    type Output = Sym3<R>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Sym3<R> {
+        self.elastic.isochoric(self.k)
+    }
+}
+
 /// Vectors of a group's nodes, brought side by side.
 #[inline(always)]
 pub(super) fn group_vectors<E: Element, T: SimdScalar>(nodes: &[u32], column: &[T]) -> [[[T; LANES]; 3]; MOST_NODES] {
@@ -222,7 +237,10 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
             if EFFECTS == ASK && !self.law.volumetric.is_empty() {
                 pressure = self.relax_pressure(simd, group, at, point, pressure);
             }
-            let mut isochoric = elastic.isochoric(&k);
+            let mut isochoric = match EFFECTS {
+                ASK => simd.vectorize(Isochoric { elastic: &elastic, k: &k }),
+                _ => elastic.isochoric(&k),
+            };
             if self.has_fibres() {
                 isochoric = isochoric.plus(&self.fibre_stress(simd, group, at, &k));
             }
