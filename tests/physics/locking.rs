@@ -17,7 +17,9 @@ enum Bound {
 #[test]
 fn elements_lock_as_told_or_not_at_all() {
     let bounds = [Above(0.40), Below(0.09), Below(0.05), Below(0.02)];
-    for (run, (elements, bound)) in configurations().iter().flat_map(|run| ELEMENTS.iter().zip(&bounds).map(move |e| (run, e))) {
+    for (run, (elements, bound)) in
+        configurations().iter().flat_map(|run| ELEMENTS.iter().zip(&bounds).map(move |e| (run, e)))
+    {
         let mut simulation = run.start(&format!(
             "(duration: 1, analysis: Static(), bodies: {{\"b\": (mesh: Box(size: (0.1, 0.02, 0.02), cells: (20, 4, 4), elements: {elements}), material: \"m\")}},
             materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 2.98e4, poisson: 0.49))}},

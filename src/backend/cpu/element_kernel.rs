@@ -48,7 +48,9 @@ pub fn run_block_fast<E: Element>(
     law: &BlockLaw<f32>,
     groups_a_patch: usize,
 ) -> bool {
-    let ElasticLaw::NeoHookean(elastic) = &law.elastic else { return run_block::<E, f32>(cpu, columns, law, groups_a_patch) };
+    let ElasticLaw::NeoHookean(elastic) = &law.elastic else {
+        return run_block::<E, f32>(cpu, columns, law, groups_a_patch);
+    };
     let plain = law.exponential.is_empty() && law.volumetric.is_empty() && !law.reproject;
     let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
     match (law.fibres.is_some(), !law.prony.is_empty()) {
@@ -217,7 +219,9 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         let rest_shape = &self.rest_shape[group * E::ROWS * LANES..(group + 1) * E::ROWS * LANES];
         let shared = match E::PRESSURE {
             PressureFrom::Point => zero,
-            PressureFrom::MeanOverPoints => elastic.pressure(mean_volume_change::<E, T, L, S>(simd, &elastic, &u, rest_shape, at)),
+            PressureFrom::MeanOverPoints => {
+                elastic.pressure(mean_volume_change::<E, T, L, S>(simd, &elastic, &u, rest_shape, at))
+            }
             PressureFrom::Nodes => self.mean_of_nodes(simd, &elastic, group, at),
         };
         let mut forces = E::no_forces(zero);
@@ -272,13 +276,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
 
     /// Mean of the pressures (Pa) at the nodes.
     #[inline(always)]
-    fn mean_of_nodes<S: Simd>(
-        &self,
-        simd: S,
-        elastic: &L::Of<T::Vector<S>>,
-        group: usize,
-        at: usize,
-    ) -> T::Vector<S> {
+    fn mean_of_nodes<S: Simd>(&self, simd: S, elastic: &L::Of<T::Vector<S>>, group: usize, at: usize) -> T::Vector<S> {
         let nodes = &self.connectivity[group * E::NODES * LANES..(group + 1) * E::NODES * LANES];
         let mut sum = T::splat(simd, T::default());
         for corner in 0..E::NODES {
