@@ -9,8 +9,9 @@ struct Eigen {
 fn zeroing_rotation(app: f32, aqq: f32, apq: f32) -> vec3<f32> {
     let twice = apq + apq;
     let difference = aqq - app;
-    let root = sqrt(difference * difference + twice * twice);
-    let t = select(-twice, twice, difference > 0.0) / (abs(difference) + root + 1e-18);
+    // where squares underflow the angle must stay below 45 degrees
+    let root = max(sqrt(difference * difference + twice * twice), abs(twice));
+    let t = select(-twice, twice, difference > 0.0) / (abs(difference) + root + 1e-36);
     let c = 1.0 / sqrt(t * t + 1.0);
     return vec3<f32>(t, c, t * c);
 }
@@ -21,7 +22,7 @@ fn sym_eigen(s: Sym3) -> Eigen {
     var x = vec3<f32>(1.0, 0.0, 0.0);
     var y = vec3<f32>(0.0, 1.0, 0.0);
     var z = vec3<f32>(0.0, 0.0, 1.0);
-    for (var sweep = 0u; sweep < 5u; sweep++) {
+    for (var sweep = 0u; sweep < 4u; sweep++) {
         let a = zeroing_rotation(d.x, d.y, o.x);
         d = vec3<f32>(d.x - a.x * o.x, d.y + a.x * o.x, d.z);
         o = vec3<f32>(0.0, a.z * o.z + a.y * o.y, a.y * o.z - a.z * o.y);

@@ -50,7 +50,7 @@ error: `elements` cannot be `Hex20`
 8 │             mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4), elements: Hex20),
   │                                                                          ^^^^^ unknown word
   │
-  = allowed: Tet4, Hex8
+  = allowed: Tet4, Tet4NodalPressure, Hex8, Hex8MeanDilatation
 
 error: there is no material `tisue`
   ┌─ cube.ron:9:23
