@@ -174,7 +174,7 @@ fn bodies_selections_and_pictures_are_checked() {
         (
             "mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4), elements: Hex8)",
             "mesh: Tube(inner: 0.01, outer: 0.02, height: 1, angle: 361, cells: (4, 8, 1))",
-            r"9:72: error: `angle` must be above 0 and at most 360 degrees, found 361",
+            r"9:68: error: `angle` must be above 0 and at most 360 degrees, found 361",
         ),
         (
             "mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4), elements: Hex8)",
