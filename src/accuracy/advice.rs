@@ -31,7 +31,7 @@ pub fn advice(rows: &[Row], split: &Split, source: Source, judged_by: &str, targ
     let clear = with_errors.iter().filter(|(_, error, _)| error.is_clear()).count();
     if clear * 2 < with_errors.len() {
         sentences.push(format!(
-            "The reference is too coarse: of {} configurations only {clear} err clearly more than it may itself. Their \
+            "The reference is too coarse: {clear} of {} configurations err clearly more than it may itself. Their \
              order says nothing; give the study a larger --budget.",
             with_errors.len()
         ));
@@ -44,19 +44,22 @@ fn cheapest(rows: &[(&Row, Error, f64)], target: f64) -> String {
     let target = percent(target);
     match under.min_by(|a, b| a.2.total_cmp(&b.2)) {
         Some((row, error, time)) => {
-            format!("Cheapest under {target}: {}, {} at {} a second.", row.label, told(error), seconds(*time))
+            format!("Cheapest under {target}: {}, {} at {}.", row.label, told(error), price(row, *time))
         }
         None => {
             let nearest = rows.iter().min_by(|a, b| a.1.vouched().total_cmp(&b.1.vouched()));
             nearest.map_or(String::new(), |(row, error, time)| {
-                let (error, time) = (told(error), seconds(*time));
-                format!(
-                    "Nothing that ran is surely under {target}; the nearest is {}, {error} at {time} a second.",
-                    row.label
-                )
+                let (error, price) = (told(error), price(row, *time));
+                format!("Nothing that ran is surely under {target}; the nearest is {}, {error} at {price}.", row.label)
             })
         }
     }
+}
+
+/// Wall time, and that it is for a simulated second where something is simulated in time.
+fn price(row: &Row, time: f64) -> String {
+    let timed = row.measured().is_some_and(|measured| measured.simulated.is_some());
+    format!("{}{}", seconds(time), if timed { " a second" } else { "" })
 }
 
 /// Where to spend: on the part of the error that is largest.

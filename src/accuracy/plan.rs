@@ -1,6 +1,6 @@
 //! What a study will run: everything is predicted first, and what does not fit into the budget is left out by name.
 
-use super::configuration::{Configuration, Digits, Factor};
+use super::configuration::{Configuration, Digits, Factor, Place};
 use super::solver::{Choices, Cost, Refusal, Solver};
 use serde::Serialize;
 use std::cmp::Reverse;
@@ -160,13 +160,19 @@ fn variations(choices: &Choices) -> Vec<(Varied, Configuration)> {
     for &step in &choices.steps {
         add(Varied::Step, &|c| c.step = step);
     }
-    choices.digits.iter().for_each(|digits| add(Varied::Digits, &|c| c.digits = *digits));
+    for &digits in &choices.digits {
+        // GPUs compute in f32 only
+        let place = if digits == Digits::Double { Place::Cpu } else { base.place };
+        add(Varied::Digits, &|c| (c.digits, c.place) = (digits, place));
+    }
     choices.hourglass.iter().for_each(|scale| add(Varied::Hourglass, &|c| c.hourglass = *scale));
     choices.viscous.iter().for_each(|viscous| add(Varied::Viscous, &|c| c.viscous = Some(*viscous)));
     choices.laws.iter().for_each(|law| add(Varied::Law, &|c| c.law = Some(law.clone())));
     choices.places.iter().for_each(|place| add(Varied::Place, &|c| c.place = *place));
     if choices.digits.contains(&Digits::Double) {
-        add(Varied::SpaceAlone, &|c| (c.digits, c.step) = (Digits::Double, finest_step(choices)));
+        add(Varied::SpaceAlone, &|c| {
+            (c.digits, c.step, c.place) = (Digits::Double, finest_step(choices), Place::Cpu);
+        });
     }
     choices.effects.iter().for_each(|effect| add(Varied::Effect, &|c| c.without = Some(effect.clone())));
     list
@@ -236,7 +242,8 @@ fn finest_step(choices: &Choices) -> u32 {
 fn best(choices: &Choices, mesh: Factor) -> Configuration {
     let element = choices.elements.last().copied().or(choices.base.element);
     let viscous = choices.viscous.first().copied().or(choices.base.viscous);
-    Configuration { element, mesh, step: finest_step(choices), digits: Digits::Double, viscous, ..choices.base.clone() }
+    let (step, digits, place) = (finest_step(choices), Digits::Double, Place::Cpu);
+    Configuration { element, mesh, step, digits, viscous, place, ..choices.base.clone() }
 }
 
 /// All sets of three meshes that lie far enough apart.

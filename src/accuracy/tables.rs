@@ -2,6 +2,7 @@
 
 use super::advice::{percent, seconds, told};
 use super::plan::Varied;
+use super::reference::Source;
 use super::study::{Outcome, Row, Study};
 use std::collections::BTreeSet;
 
@@ -75,9 +76,21 @@ pub fn split(study: &Study) -> Vec<(&'static str, String)> {
     let mut lines: Vec<(&'static str, String)> = Vec::new();
     for (name, part) in parts {
         let bound = if name == "space" && split.space_is_a_bound { "below " } else { "" };
-        lines.push((name, part.map_or_else(|| "not known".into(), |part| format!("{bound}{}", percent(part)))));
+        lines
+            .push((name, part.map_or_else(|| unknown(name, study.source), |part| format!("{bound}{}", percent(part)))));
     }
     lines
+}
+
+/// Why a part of the error has no number.
+fn unknown(part: &str, source: Source) -> String {
+    match (part, source) {
+        ("model", Source::SelfMade) => "not seen: the reference shares it",
+        ("model", Source::Values | Source::Files) => "none that can be told",
+        ("hourglass", _) => "not varied",
+        _ => "not known",
+    }
+    .into()
 }
 
 /// All rows and all quantities, for programs: one line a configuration.

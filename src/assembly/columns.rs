@@ -151,7 +151,9 @@ pub(super) fn insert_laws(precision: Precision, world: &mut World) {
     for (entity, block) in entities {
         let Some(elastic) = ElasticLaw::of(world.entity(block.material)) else { continue };
         let mut directions = block.fibre_directions.iter().copied();
-        let fibres = world.get::<Fibres<f64>>(block.material).copied().zip(directions.next());
+        // the first direction is theirs only where there are such fibres
+        let fibres = world.get::<Fibres<f64>>(block.material).copied();
+        let fibres = fibres.and_then(|fibres| directions.next().map(|from| (fibres, from)));
         let families = world.get::<ExponentialFibres>(block.material).map_or(Vec::new(), |all| all.0.clone());
         let prony = world.get::<Prony>(block.material);
         let [terms, volumetric] = prony.map_or([vec![], vec![]], |prony| prony.coefficients(&clock));

@@ -3,6 +3,9 @@
 use super::Kinematics;
 use crate::math::{Real, Sym3};
 
+/// Where k₂ Ē² stops growing: so far beyond all tissue (e⁴⁰ = 2e17) the stress only has to stay a number.
+const LARGEST_EXPONENT: f64 = 40.0;
+
 /// One family: Ψ = k₁/(2k₂) (exp(k₂ Ē²) − 1), Ē = κ_d (Ī₁ − 3) + (1 − 3κ_d)(Ī₄ − 1) (Gasser, Ogden & Holzapfel
 /// 2006; with κ_d = 0 Holzapfel, Gasser & Ogden 2000; its WGSL twin is `shaders/exponential_fibres.wgsl`).
 ///
@@ -40,6 +43,12 @@ impl<R: Real> ExponentialFibre<R> {
         self.k1.constant(-3.0).mul_add(self.dispersion, self.k1.constant(1.0))
     }
 
+    /// k₂ Ē².
+    #[inline(always)]
+    fn exponent(&self, strain: R) -> R {
+        (self.k2 * strain * strain).min(self.k2.constant(LARGEST_EXPONENT))
+    }
+
     /// Ē, or 0 where the family does not pull, and I₄ − 1, for the unit direction `a`.
     #[inline(always)]
     fn strain(&self, k: &Kinematics<R>, a: [R; 3]) -> (R, R) {
@@ -54,7 +63,7 @@ impl<R: Real> ExponentialFibre<R> {
     #[inline(always)]
     pub fn isochoric(&self, k: &Kinematics<R>, a: [R; 3]) -> Sym3<R> {
         let (strain, i4_change) = self.strain(k, a);
-        let factor = self.k1.constant(2.0) * self.k1 * strain * (self.k2 * strain * strain).exp() * k.j_m23;
+        let factor = self.k1.constant(2.0) * self.k1 * strain * self.exponent(strain).exp() * k.j_m23;
         // κ_d (I − I₁/3 C⁻¹) = κ_d C⁻¹ 2 dev E, and (1 − 3κ_d)(a⊗a − I₄/3 C⁻¹)
         let spread = k.inverse_c_times(&k.green_strain.deviator().scaled(self.dispersion + self.dispersion));
         let third = self.k1.constant(-1.0 / 3.0) / (k.j * k.j);
@@ -69,7 +78,7 @@ impl<R: Real> ExponentialFibre<R> {
         let strain = self.strain(k, a).0;
         let (square, one) = (strain * strain, self.k1.constant(1.0));
         // (exp(x) − 1)/k₂ is Ē² where k₂ = 0
-        let grown = (self.k2 * square).exp_m1() / self.k2.if_positive(self.k2, one);
+        let grown = self.exponent(strain).exp_m1() / self.k2.if_positive(self.k2, one);
         self.k1.constant(0.5) * self.k1 * self.k2.if_positive(grown, square)
     }
 

@@ -29,5 +29,5 @@ def run(n, coarser, mixed=True):
 
 
 if __name__ == "__main__":
-    levels = [int(n) for n in sys.argv[1:]] or [2, 4, 6, 8]
-    study("gravity_bar", levels, run, {"tip_z": "m", "tip_x": "m"}, "half bar of 3n x n/2 x n cells")
+    levels = [int(n) for n in sys.argv[1:]] or [3, 4, 6]
+    study("gravity_bar", levels, run, {"tip_z": "m", "tip_x": "m"}, "half bar of 3n x n/2 x n graded cells")

@@ -259,8 +259,9 @@ def neo_hookean(shear, bulk, mixed=True):
 def extrapolate(sizes, values):
     """The limit of three values on ever finer meshes (cell sizes relative), its uncertainty and the observed order.
 
-    Fits value = limit + c·sizeᵖ through the three. The uncertainty is half of what the limit differs from the finest
-    value, and no less than what the limit moves when the order is taken as 2 between the two finest.
+    Fits value = limit + c·sizeᵖ through the three. The uncertainty is the whole of what the limit differs from the
+    finest value: cautious, for orders fall where stresses have no bound. Without a clear order the finest value counts,
+    and the spread of the three is its uncertainty.
     """
     (h0, h1, h2), (v0, v1, v2) = sizes, [float(v) for v in values]
     slope = lambda p: (v0 - v1) * (h1**p - h2**p) - (v1 - v2) * (h0**p - h1**p)
@@ -271,8 +272,7 @@ def extrapolate(sizes, values):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if slope(low) * slope(middle) > 0 else (low, middle)
     limit = v2 + (v2 - v1) * h2**low / (h1**low - h2**low)
-    second = v2 + (v2 - v1) * h2**2 / (h1**2 - h2**2)
-    return limit, max(0.5 * abs(limit - v2), abs(limit - second) * 0.5), low
+    return limit, abs(limit - v2), low
 
 
 def study(problem, levels, run, units, how):
@@ -297,10 +297,20 @@ def study(problem, levels, run, units, how):
 
 
 def record(problem, quantity, value, uncertainty, unit, how, more=None):
-    """Puts a reference value into docs/accuracy/references.json."""
+    """Puts a reference value into docs/accuracy/references.json; checks by other codes stay."""
     REFERENCES.parent.mkdir(parents=True, exist_ok=True)
     table = json.loads(REFERENCES.read_text()) if REFERENCES.exists() else {}
-    table.setdefault(problem, {})[quantity] = {
-        "value": value, "uncertainty": uncertainty, "unit": unit, "how": how, **(more or {})
-    }
+    entry = table.setdefault(problem, {}).setdefault(quantity, {})
+    entry.update({"value": value, "uncertainty": uncertainty, "unit": unit, "how": how, **(more or {})})
+    write(table)
+
+
+def record_check(problem, quantity, code, level, value):
+    """Puts what another code finds on a mesh beside the reference value."""
+    table = json.loads(REFERENCES.read_text())
+    table[problem][quantity].setdefault("checks", {}).setdefault(code, {})[str(level)] = value
+    write(table)
+
+
+def write(table):
     REFERENCES.write_text(json.dumps(table, indent=2, sort_keys=True, ensure_ascii=False) + "\n")

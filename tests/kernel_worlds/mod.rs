@@ -22,6 +22,8 @@ pub struct Effects {
     pub compensated: bool,
     pub energies: bool,
     pub removal: bool,
+    /// A static analysis; nothing is removed in one.
+    pub at_rest: bool,
     /// A removal criterion for all elements, as RON writes it.
     pub criterion: Option<&'static str>,
     /// Elements that take their pressure from means.
@@ -65,6 +67,7 @@ impl Effects {
             compensated: true,
             energies: true,
             removal: true,
+            at_rest: false,
             criterion: None,
             averaged: false,
             law: None,
@@ -96,6 +99,17 @@ impl Effects {
                 all.push(Self { prony: 1, families, removal: true, ..plain.clone() });
                 all.push(Self { volumetric: true, reproject: true, ..plain });
             }
+        }
+        for (loads, compensated) in [(false, false), (false, true), (true, false), (true, true)] {
+            all.push(Self {
+                at_rest: true,
+                prony: 1,
+                damping: true,
+                loads,
+                compensated,
+                moved: true,
+                ..Self::default()
+            });
         }
         all.push(Self::all());
         all.push(Self { averaged: true, ..Self::default() });
@@ -154,6 +168,7 @@ impl Effects {
         };
         let criterion = self.criterion.map_or(String::new(), |when| both(&format!("(body: \"BODY\", when: {when}),")));
         let energies = if self.energies { "output: (energies_every: 0.1)," } else { "" };
+        let analysis = if self.at_rest { "Static()" } else { "Transient" };
         let body = |kind: &str| {
             format!(
                 "(mesh: Ellipsoid(radii: (0.05, 0.04, 0.06), across: 6, elements: {kind}), material: \"tissue\",
@@ -161,7 +176,7 @@ impl Effects {
             )
         };
         format!(
-            "(title: \"effects\", duration: 1,
+            "(title: \"effects\", duration: 1, analysis: {analysis},
             bodies: {{ \"tets\": {}, \"hexes\": {} }},
             materials: {{
                 \"tissue\": (density: 1000, {law}, {fibres} {families} {prony} {damping}),
@@ -267,6 +282,9 @@ pub fn randomize(world: &mut World, seed: u64) {
         );
         // parked nodes, and axes held without a load
         if let Some(mut mass) = world.get_mut::<Mass>(entity) {
+            mass.set(3, 0.0);
+        }
+        if let Some(mut mass) = world.get_mut::<FictitiousMass>(entity) {
             mass.set(3, 0.0);
         }
         if let Some(mut axes) = world.get_mut::<ConstrainedAxes>(entity) {

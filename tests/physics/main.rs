@@ -16,6 +16,7 @@ mod grids;
 mod hourglass;
 mod laws;
 mod loads;
+mod locking;
 mod motions;
 mod points;
 mod precision;

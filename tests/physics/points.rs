@@ -7,7 +7,7 @@
 //! Bounds: figures are given to 1e-4 Pa, so 1e-7 of κ; f32 rounds E to 6e-8 of entries up to 3: 1e-5 of (κ + 2μ + 4η)
 //! = 2e4 Pa.
 
-use crate::configurations::{ELEMENTS, Configuration, configurations, near};
+use crate::configurations::{Configuration, ELEMENTS, configurations, near};
 use sinew::Simulation;
 
 const MODULI: f64 = 2e4;
@@ -129,6 +129,39 @@ fn sheared_fibres_relax_as_in_the_closed_form() {
             let bound = run.bound(1e-6, 2e-5);
             near(&what("σ12"), simulation.probe("stress").unwrap()[3], expected(time - step / 2.0), MODULI, bound);
             near(&what("P12"), simulation.probe("top").unwrap()[0], expected(time - 1.5 * step), MODULI, bound);
+        }
+    }
+}
+
+/// Fibres along x, stretched by λ at constant volume: S_f = 2 Ψ' (a⊗a − I₄/3 C⁻¹) with Ψ' = k₁ E exp(k₂ E²), E = λ² − 1, so
+/// that σ_xx − σ_yy = μ(λ² − 1/λ) + 2 Ψ' λ². With `fibres` of η beside them 2η(λ² − 1) λ² comes on top.
+#[test]
+fn exponential_fibres_pull_in_a_scene_with_and_without_other_fibres() {
+    let (k1, k2, eta, stretch) = (400.0, 0.6, 300.0, 1.3f64);
+    let strain = stretch * stretch - 1.0;
+    let (x, t) = (stretch - 1.0, stretch.powf(-0.5) - 1.0);
+    let told = format!("Prescribed(on: All, gradient: (({x:?}, 0, 0), (0, {t:?}, 0), (0, 0, {t:?})))");
+    let elastic = 3e3 / 2.9 * (stretch * stretch - 1.0 / stretch);
+    let family = 2.0 * k1 * strain * (k2 * strain * strain).exp() * stretch * stretch;
+    let others = 2.0 * eta * strain * stretch * stretch;
+    let families = format!("exponential_fibres: [(k1: {k1:?}, k2: {k2:?}, direction: Along(1, 0, 0))]");
+    for (material, expected) in [
+        (families.clone(), elastic + family),
+        (format!("{families}, fibres: (eta: {eta:?}, direction: Along(1, 0, 0))"), elastic + family + others),
+    ] {
+        for run in &configurations() {
+            for elements in ELEMENTS {
+                let mut simulation =
+                    cube(run, elements, &material, &told, "duration: 0.02, integration: (step: 0.001)");
+                simulation.advance(2).unwrap();
+                let what = format!("{}, {elements}, {material}", run.name);
+                let (along, up) = ((1.0 + t).powi(2), (1.0 + t) * stretch);
+                // what the kernel's forces say, and what the probe of stress says
+                let [right, top] = ["right", "top"].map(|name| simulation.probe(name).unwrap());
+                near(&what, right[0] / along - top[1] / up, expected, MODULI, run.bound(1e-12, 1e-5));
+                let stress = simulation.probe("stress").unwrap();
+                near(&what, stress[0] - stress[1], expected, MODULI, run.bound(1e-12, 1e-5));
+            }
         }
     }
 }

@@ -3,6 +3,7 @@
 
 mod good;
 mod laws;
+mod materials;
 mod mutations;
 mod set;
 mod several;

@@ -1,6 +1,7 @@
 //! The scenes that ship: sound, the same on every backend, and physically right.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod accuracy;
 mod bar;
 mod column;
 mod cube;

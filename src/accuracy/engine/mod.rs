@@ -46,13 +46,25 @@ pub struct Engine<'a> {
     interrupted: fn() -> bool,
     looks: Option<Looks>,
     known: Vec<(Configuration, Calibration)>,
+    /// Kinds of elements that all bodies can have, once they are known.
+    kinds: Option<Vec<ElementKind>>,
 }
 
 impl<'a> Engine<'a> {
     /// For a scene that is sound. `options` say how the scene as it is written runs; `gpu`, whether to compare with a GPU;
     /// `effects`, whether to switch effects off; `interrupted`, whether somebody wants the study to end.
     pub fn new(file: &'a SceneFile, options: Options, gpu: bool, effects: bool, interrupted: fn() -> bool) -> Self {
-        Self { file, options, gpu, effects, finest: f64::INFINITY, interrupted, looks: None, known: Vec::new() }
+        Self {
+            file,
+            options,
+            gpu,
+            effects,
+            finest: f64::INFINITY,
+            interrupted,
+            looks: None,
+            known: Vec::new(),
+            kinds: None,
+        }
     }
 
     /// With no mesh finer than so many times the scene's.
@@ -66,7 +78,9 @@ impl<'a> Engine<'a> {
     /// # Errors
     /// That the scene as it is written cannot be run.
     pub fn looks(&mut self) -> Result<u64, Refusal> {
-        let base = self.base(&self.elements()?);
+        let kinds = self.elements()?;
+        let base = self.base(&kinds);
+        self.kinds = Some(kinds);
         self.calibrate(&base)?;
         Ok(self.looks.as_ref().filter(|_| !self.file.scene.is_static()).map_or(0, |looks| looks.count))
     }
@@ -146,10 +160,28 @@ impl<'a> Engine<'a> {
     }
 }
 
+impl Engine<'_> {
+    /// The step that the scene wants (s). One that it names itself is kept where it is stable, and for the scene as it is
+    /// written, which may be meant to go beyond.
+    fn step(&self, configuration: &Configuration, options: &Options) -> Result<f64, Refusal> {
+        let integration = &self.file.scene.integration;
+        let own = self.base(self.kinds.as_deref().unwrap_or_default());
+        let as_written = (configuration.element, configuration.mesh) == (own.element, own.mesh);
+        if let Some(step) = integration.step.filter(|_| as_written) {
+            return Ok(step);
+        }
+        let scene = variant(self.file, configuration, None);
+        let cpu = Options { backend: BackendChoice::Cpu, ..options.clone() };
+        let mut simulation = Simulation::new(&scene, &cpu).map_err(refusal)?;
+        let found = integration.safety * simulation.summary("not run").map_err(refusal)?.stable_step;
+        Ok(integration.step.map_or(found, |step| step.min(found)))
+    }
+}
+
 impl Solver for Engine<'_> {
     fn choices(&mut self) -> Result<Choices, Refusal> {
         self.looks()?;
-        let elements = self.elements()?;
+        let elements = self.kinds.clone().unwrap_or_default();
         let base = self.base(&elements);
         let scene = &self.file.scene;
         let hexes = base.element.is_none_or(|kind| kind == ElementKind::Hex8);
@@ -185,20 +217,11 @@ impl Solver for Engine<'_> {
             Some(looks) => looks.clone(),
             None => return Err(Refusal::Refused("nothing has been predicted yet".into())),
         };
-        let integration = &self.file.scene.integration;
         if self.file.scene.is_static() {
             let scene = variant(self.file, configuration, None);
             return march::solve(&scene, &options, &looks, &self.interrupted);
         }
-        let largest = match integration.step {
-            Some(step) => step,
-            None => {
-                let scene = variant(self.file, configuration, None);
-                let cpu = Options { backend: BackendChoice::Cpu, ..options.clone() };
-                let mut simulation = Simulation::new(&scene, &cpu).map_err(refusal)?;
-                integration.safety * simulation.summary("not run").map_err(refusal)?.stable_step
-            }
-        };
+        let largest = self.step(configuration, &options)?;
         let step = looks.fitting(self.file.scene.duration, largest / f64::from(configuration.step));
         let scene = variant(self.file, configuration, Some(step));
         march::solve(&scene, &options, &looks, &self.interrupted)

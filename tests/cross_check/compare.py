@@ -1,0 +1,139 @@
+"""Runs the scenes of scenes/accuracy with every element on three meshes and measures them against the references.
+
+Writes docs/accuracy/elements.csv and puts the tables into docs/accuracy.md. Usage: compare.py SINEW [PROBLEM ...];
+`compare.py none tables` only measures the values that are there against the references once more.
+"""
+
+import csv
+import json
+import math
+import re
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+RECORD = ROOT / "docs" / "accuracy"
+ELEMENTS = ["Tet4", "Tet4NodalPressure", "Hex8", "Hex8MeanDilatation"]
+
+
+def wall_pressure(probes, cells):
+    """The pressure (Pa) on the wall of the moved cylinder from what holds the nodes at 45 degrees."""
+    return probes["wall"][0] / (0.014 * 0.005 * math.sin(math.pi / 2 / cells[1]) * math.cos(math.pi / 4))
+
+
+def of(probe, axis, factor=1.0):
+    return lambda probes, cells: factor * probes[probe]["xyz".index(axis)]
+
+
+# problem: body, meshes from coarse to fine, quantities by their names in references.json
+PROBLEMS = {
+    "gravity_bar": ("bar", [(10, 2, 2), (20, 4, 4), (40, 8, 8)], {"tip_z": of("tip", "z")}),
+    "cantilever": ("bar", [(20, 2, 2), (40, 4, 4), (80, 8, 8)], {"tip_z": of("tip", "z")}),
+    "cantilever_small": ("bar", [(20, 2, 2), (40, 4, 4), (80, 8, 8)], {"tip_z": of("tip", "z")}),
+    "squeezed_cube": ("cube", [(4, 4, 4), (8, 8, 8), (16, 16, 16)],
+                      {"force": of("plate", "z"), "bulge": of("side", "x")}),
+    "cook": ("panel", [(8, 8, 1), (16, 16, 2), (32, 32, 4)], {"corner_y": of("corner", "y")}),
+    "cook_plane_strain": ("panel", [(8, 8, 1), (16, 16, 1), (32, 32, 1)], {"corner_y": of("corner", "y")}),
+    "twisted_column": ("column", [(4, 4, 16), (8, 8, 32), (12, 12, 48)],
+                       {"axial_force": of("lid", "z"), "corner_x": of("edge", "x")}),
+    "thick_cylinder": ("tube", [(4, 8, 1), (8, 16, 2), (16, 32, 2)], {"inner_displacement": of("inside", "x")}),
+    "thick_cylinder_moved": ("tube", [(4, 8, 1), (8, 16, 2), (16, 32, 2)],
+                             {"pressure": wall_pressure, "outer_displacement": of("outside", "x")}),
+    "anisotropic_bar": ("bar", [(20, 2, 2), (40, 4, 4), (80, 8, 8)],
+                        {"pull": of("pull", "x"), "shear_force": of("pull", "z"), "quarter_z": of("quarter", "z")}),
+}
+# problems that are another's scene with values put in
+VARIANTS = {
+    "cantilever_small": ("cantilever", ["loads[0].traction=(0, 0, -0.03)"]),
+    "cook_plane_strain": ("cook", ["constraints[1].on=All"]),
+}
+
+
+def run(sinew, scene, sets, precision="f64"):
+    """Runs a scene; its summary, or None and why not."""
+    with tempfile.TemporaryDirectory() as folder:
+        command = [sinew, "run", str(ROOT / "scenes" / "accuracy" / f"{scene}.ron"), "--backend", "cpu",
+                   "--precision", precision, "--out", f"{folder}/out"]
+        for value in sets:
+            command += ["--set", value]
+        told = subprocess.run(command, capture_output=True, text=True)
+        if told.returncode != 0:
+            return None, next((line for line in told.stderr.splitlines() if line.strip()), "no word")
+        return json.loads(Path(folder, "out", "summary.json").read_text()), ""
+
+
+def study(sinew, problem, references):
+    """All elements on all meshes of a problem: a row each."""
+    scene, sets = VARIANTS.get(problem, (problem, []))
+    body, meshes, quantities = PROBLEMS[problem]
+    for elements in ELEMENTS:
+        for cells in meshes:
+            own = [f"bodies.{body}.mesh.elements={elements}", f"bodies.{body}.mesh.cells={cells}"]
+            summary, wrong = run(sinew, scene, sets + own)
+            for quantity, formula in quantities.items():
+                reference = references[problem][quantity]
+                row = {"problem": problem, "quantity": quantity, "elements": elements,
+                       "cells": "×".join(map(str, cells)), "reference": reference["value"],
+                       "uncertainty": reference["uncertainty"], "unit": reference["unit"], "why_not": wrong}
+                if summary:
+                    probes = {name: value for name, (_, value) in summary["probes"].items()}
+                    value = formula(probes, cells)
+                    row |= {"value": value, "error": value / reference["value"] - 1, "steps": summary["steps"],
+                            "seconds": summary["run_seconds"]}
+                print({k: row.get(k) for k in ["problem", "quantity", "elements", "cells", "value", "error", "seconds", "why_not"]}, flush=True)
+                yield row
+
+
+def table(rows):
+    """A Markdown table of errors: elements down, meshes across."""
+    meshes = list(dict.fromkeys(row["cells"] for row in rows))
+    text = "| element | " + " | ".join(meshes) + " |\n|---|" + "---|" * len(meshes) + "\n"
+    for elements in ELEMENTS:
+        cells = []
+        for mesh in meshes:
+            row = next(row for row in rows if row["elements"] == elements and row["cells"] == mesh)
+            error = row.get("error")
+            cells.append("failed" if error in (None, "") else f"{100 * float(error):+.2g} %")
+        text += f"| `{elements}` | " + " | ".join(cells) + " |\n"
+    return text
+
+
+def put_into_record(rows):
+    """Replaces what stands between <!-- PROBLEM QUANTITY --> and <!-- end --> in docs/accuracy.md."""
+    page = ROOT / "docs" / "accuracy.md"
+    text = page.read_text()
+    for key in dict.fromkeys((row["problem"], row["quantity"]) for row in rows):
+        mark = f"<!-- {key[0]} {key[1]} -->"
+        own = table([row for row in rows if (row["problem"], row["quantity"]) == key])
+        text = re.sub(re.escape(mark) + r"\n.*?<!-- end -->", f"{mark}\n{own}<!-- end -->", text, flags=re.S)
+    page.write_text(text)
+
+
+def keep(rows, results):
+    """Writes all rows."""
+    columns = ["problem", "quantity", "elements", "cells", "value", "reference", "uncertainty", "unit", "error", "steps",
+               "seconds", "why_not"]
+    with results.open("w") as file:
+        writer = csv.DictWriter(file, columns, lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+if __name__ == "__main__":
+    sinew, wanted = sys.argv[1], sys.argv[2:] or list(PROBLEMS)
+    references = json.loads((RECORD / "references.json").read_text())
+    results = RECORD / "elements.csv"
+    rows = list(csv.DictReader(results.open())) if results.exists() else []
+    for row in rows:
+        reference = references[row["problem"]][row["quantity"]]
+        row |= {"reference": reference["value"], "uncertainty": reference["uncertainty"]}
+        if row["value"]:
+            row["error"] = float(row["value"]) / reference["value"] - 1
+    for problem in [] if wanted == ["tables"] else wanted:
+        rows = [row for row in rows if row["problem"] != problem] + list(study(sinew, problem, references))
+        keep(rows, results)
+    keep(rows, results)
+    if (ROOT / "docs" / "accuracy.md").exists():
+        put_into_record(rows)
