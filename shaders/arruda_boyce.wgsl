@@ -31,7 +31,7 @@ fn chain_series(change: f32) -> vec2<f32> {
 
 // 2 ∂Ψ/∂Ī₁ J^(−2/3) (I − I₁/3 C⁻¹) (Pa)
 fn elastic_isochoric(k: Kinematics) -> Sym3 {
-    let factor = 4.0 * elastic.shear * chain_series(i1_change(k)).y * k.j_m23;
+    let factor = 4.0 * elastic.shear * chain_series(min(i1_change(k), 100.0)).y * k.j_m23;
     return inverse_c_times(k, sym_scaled(sym_deviator(k.green_strain), factor));
 }
 

@@ -9,8 +9,9 @@ struct Eigen {
 fn zeroing_rotation(app: f32, aqq: f32, apq: f32) -> vec3<f32> {
     let twice = apq + apq;
     let difference = aqq - app;
-    let root = sqrt(difference * difference + twice * twice);
-    let t = select(-twice, twice, difference > 0.0) / (abs(difference) + root + 1e-18);
+    // where squares underflow the angle must stay below 45 degrees
+    let root = max(sqrt(difference * difference + twice * twice), abs(twice));
+    let t = select(-twice, twice, difference > 0.0) / (abs(difference) + root + 1e-36);
     let c = 1.0 / sqrt(t * t + 1.0);
     return vec3<f32>(t, c, t * c);
 }

@@ -60,7 +60,9 @@ fn element_removal(
 ) {
     let look = clock.step.is_multiple_of(CRITERION_STEPS);
     let mut touched: Vec<Entity> = Vec::new();
-    for (entity, block, connectivity, mut shape, law, fibres, memory, means, mut alive, by_time, mut energies) in &mut blocks {
+    for (entity, block, connectivity, mut shape, law, fibres, memory, means, mut alive, by_time, mut energies) in
+        &mut blocks
+    {
         let Ok((_, displacement, step, ..)) = bodies.get(block.body) else { continue };
         let view = BlockView {
             block,
@@ -75,7 +77,8 @@ fn element_removal(
         let of_block: Vec<&RemovalCriterion> = criteria.iter().filter(|c| look && c.block == entity).collect();
         let due = |row: usize| alive[row] == 1 && u64::from(by_time[row]) <= clock.step && by_time[row] != u32::MAX;
         let passes = |row: usize, c: &RemovalCriterion| {
-            (c.rows.is_empty() || c.rows.binary_search(&(row as u32)).is_ok()) && measure(c.measure, row, &view) > c.limit
+            (c.rows.is_empty() || c.rows.binary_search(&(row as u32)).is_ok())
+                && measure(c.measure, row, &view) > c.limit
         };
         // to look at the time alone is too little work to share
         let gone: Vec<usize> = match of_block.is_empty() {

@@ -199,12 +199,7 @@ fn compensated_add<T: Scalar>(sum: &mut T, lost: &mut T, change: T) {
 }
 
 #[inline(always)]
-fn move_node<T: Scalar>(
-    inputs: &Inputs<'_, T>,
-    node: usize,
-    sum: &mut Sum<'_, T>,
-    mut work: Option<&mut [T]>,
-) {
+fn move_node<T: Scalar>(inputs: &Inputs<'_, T>, node: usize, sum: &mut Sum<'_, T>, mut work: Option<&mut [T]>) {
     let (zero, one) = (T::default(), T::from_f64(1.0));
     let Factors { force: force_factor, half_step, divide, rate, booked, relaxation } = inputs.factors;
     let (mass, axes) = (inputs.mass[node], inputs.axes[node]);

@@ -170,7 +170,7 @@ impl Facts<'_> {
     }
 
     /// Distance of the scene as it is written from the first row that `is` says, and that ran.
-    fn from_written(&self, is: impl Fn(&Row) -> bool) -> Option<f64> {
+    fn against_written(&self, is: impl Fn(&Row) -> bool) -> Option<f64> {
         let written = self.written()?;
         let all = (0..self.rows.len()).filter(|&row| is(&self.rows[row]));
         all.filter_map(|row| self.apart(written, row)).next()
@@ -181,13 +181,13 @@ impl Facts<'_> {
         if self.rows[written].configuration.digits == Double {
             return Some(0.0);
         }
-        self.from_written(|row| row.varied == Varied::Digits && row.configuration.digits == Double)
+        self.against_written(|row| row.varied == Varied::Digits && row.configuration.digits == Double)
     }
 
     fn split(&self) -> Split {
         let Some(written) = self.written() else { return Split::default() };
         let total = self.rows[written].errors.get(self.judged_by).map(|error| error.error);
-        let time = self.from_written(|row| row.varied == Varied::Step && row.configuration.step == 4);
+        let time = self.against_written(|row| row.varied == Varied::Step && row.configuration.step == 4);
         let round_off = self.round_off(written);
         let hourglass = (0..self.rows.len())
             .filter(|&row| self.rows[row].varied == Varied::Hourglass)

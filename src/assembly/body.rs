@@ -1,8 +1,8 @@
 //! Bodies: node columns and element blocks from a mesh.
 
-use super::locality::{element_order, node_rows};
 use super::columns::block_corners;
 use super::fibres::Members;
+use super::locality::{element_order, node_rows};
 use super::{Assembly, PlacedMesh, select};
 use crate::components::*;
 use crate::elements::{Element, MOST_ROWS};

@@ -74,7 +74,8 @@ impl Members<'_> {
                 }
             },
         };
-        let directions: Vec<DVec3> = self.elements.iter().map(|&element| of_element(element).normalize_or_zero()).collect();
+        let directions: Vec<DVec3> =
+            self.elements.iter().map(|&element| of_element(element).normalize_or_zero()).collect();
         let without = |(_, unit): &(&u32, &DVec3)| **unit == DVec3::ZERO;
         let mut without = self.elements.iter().zip(&directions).filter(without);
         if let Some((&first, _)) = without.next() {

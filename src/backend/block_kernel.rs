@@ -73,8 +73,8 @@ impl BlockKernels {
         let columns = [buffers.column(block.body, Displacement::NAME), buffers.column(entity, Connectivity::NAME)];
         let parameters = Block { count: block.count as u32, force_offset: block.force_offset as u32 };
         let parameters = buffers.uniform(format!("block of {label}"), &parameters.bytes());
-        let elastic = buffers
-            .uniform(format!("{} of {label}", law.elastic.name()), &ElasticPart::of(&law.elastic).bytes);
+        let elastic =
+            buffers.uniform(format!("{} of {label}", law.elastic.name()), &ElasticPart::of(&law.elastic).bytes);
         let fibres =
             law.fibres.as_ref().map(|(fibres, _)| buffers.uniform(format!("fibres of {label}"), &fibres.bytes()));
         let uniform_direction = match law.fibres {

@@ -64,7 +64,9 @@ pub(super) fn family_directions(families: &[(ExponentialFibre<f32>, FamilyDirect
     text += "fn family_direction(element: u32, family: u32) -> vec3<f32> {\n";
     for (number, (_, direction)) in families.iter().enumerate() {
         if let FamilyDirection::Varying(place) = direction {
-            text += &format!("    if family == {number}u {{\n        return varying_direction(element, {place}u);\n    }}\n");
+            text += &format!(
+                "    if family == {number}u {{\n        return varying_direction(element, {place}u);\n    }}\n"
+            );
         }
     }
     text += "    let f = exponential_fibres[family];\n    return vec3<f32>(f.x, f.y, f.z);\n}\n";

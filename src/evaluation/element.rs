@@ -54,7 +54,7 @@ impl ElementState {
             let states: [_; E::POINTS] = std::array::from_fn(|point| E::at_point(&u, point, number));
             let whole: f64 = states.iter().map(|state| state.volume).sum();
             let at = |point: usize| {
-                let state = &states[point.min(E::POINTS - 1)];
+                let state = states.get(point).unwrap_or(&states[0]);
                 let share = if E::POINTS == 1 { 1.0 } else { state.volume / whole };
                 PointKinematics { gradient: state.gradient, kinematics: law.elastic.kinematics(&state.gradient), share }
             };

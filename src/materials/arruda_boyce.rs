@@ -20,6 +20,9 @@ pub struct ArrudaBoyce<T: Send + Sync + 'static> {
     pub bulk: T,
 }
 
+/// Where Ī₁ − 3 stops counting (chains stretched tenfold): so far beyond locking the stress only has to stay a number.
+const LARGEST_CHANGE: f64 = 100.0;
+
 /// Cᵢ.
 const SERIES: [f64; 5] = [1.0 / 2.0, 1.0 / 20.0, 11.0 / 1050.0, 19.0 / 7000.0, 519.0 / 673_750.0];
 
@@ -62,7 +65,7 @@ impl<R: Real> Elastic<R> for ArrudaBoyce<R> {
     /// 2 ∂Ψ/∂Ī₁ J^(−2/3) (I − I₁/3 C⁻¹).
     #[inline(always)]
     fn isochoric(&self, k: &Kinematics<R>) -> Sym3<R> {
-        let (_, slope) = self.series(k.i1_change());
+        let (_, slope) = self.series(k.i1_change().min(self.shear.constant(LARGEST_CHANGE)));
         let factor = self.shear.constant(4.0) * self.shear * slope * k.j_m23;
         k.inverse_c_times(&k.green_strain.deviator().scaled(factor))
     }

@@ -15,10 +15,10 @@ impl<R: Real> Rotation<R> {
     fn zeroing(app: R, aqq: R, apq: R) -> Self {
         let (one, twice) = (app.constant(1.0), apq + apq);
         let difference = aqq - app;
-        // t = sgn(θ)/(|θ| + √(θ² + 1)) with θ = difference/twice, multiplied out: nothing is divided by apq = 0. Squares
-        // of what is smaller than the last summand underflow; then any small rotation will do
-        let smallest = app.constant(if R::EPSILON > 1e-10 { 1e-18 } else { 1e-150 });
-        let root = (difference * difference + twice * twice).sqrt();
+        // t = sgn(θ)/(|θ| + √(θ² + 1)) with θ = difference/twice, multiplied out: nothing is divided by apq = 0. Where
+        // squares underflow the root is at least |twice|, so that the angle stays below 45 degrees
+        let smallest = app.constant(if R::EPSILON > 1e-10 { 1e-36 } else { 1e-300 });
+        let root = (difference * difference + twice * twice).sqrt().max(twice.abs());
         let tangent = difference.if_positive(twice, -twice) / (difference.abs() + root + smallest);
         let cosine = one / tangent.mul_add(tangent, one).sqrt();
         Self { tangent, cosine, sine: tangent * cosine }
@@ -33,7 +33,7 @@ impl<R: Real> Rotation<R> {
 
 impl<R: Real> Sym3<R> {
     /// Eigenvalues, and the unit eigenvector of each, both to a few ε of the largest entry. Jacobi's cyclic rotations: the
-    /// entries off the diagonal fall quadratically, and four sweeps (f64: five) bring them below ε for every matrix.
+    /// entries off the diagonal fall quadratically, and four sweeps (f64: five) bring them below ε.
     #[inline(always)]
     pub fn eigen(&self) -> ([R; 3], [[R; 3]; 3]) {
         let [mut xx, mut yy, mut zz, mut xy, mut yz, mut xz] = self.0;

@@ -87,7 +87,9 @@ fn elements_of(world: &World, entity: Entity) -> Vec<ElementRow> {
             (state.volume_ratio(), view.cauchy(row, &state), 1, view.forces(row, &state))
         };
         let task = |task: usize| {
-            (task * ROWS_A_TASK..view.block.count.min((task + 1) * ROWS_A_TASK)).map(element).collect::<Vec<ElementRow>>()
+            (task * ROWS_A_TASK..view.block.count.min((task + 1) * ROWS_A_TASK))
+                .map(element)
+                .collect::<Vec<ElementRow>>()
         };
         Some(world.resource::<Cpu>().map(view.block.count.div_ceil(ROWS_A_TASK), task).concat())
     })();

@@ -93,12 +93,28 @@ fn a_softer_material_is_found_out_by_a_run_of_the_harder_one() {
     let place = Place::new();
     let rest = ["--set", "analysis=Static()"];
     let finer = ["--set", "bodies.block.mesh.cells=(8, 8, 8)", "--precision", "f64", rest[0], rest[1]];
+    // on coarser meshes the error of the mesh hides part of the law's
+    let meshed = ["--set", "bodies.block.mesh.cells=(4, 4, 4)"];
     let (status, ..) = place.sinew(&[&["run", "block.ron", "--backend", "cpu", "--out", "hard"], &finer[..]].concat());
     assert_eq!(status, 0);
     let softer = "materials.tissue.neo_hookean=Young(young: 2400, poisson: 0.45)";
-    let more =
-        ["--budget", "60", "--finest", "2", "--reference", "hard", "--by", "top.uz", "--set", softer, "--target", "1%", rest[0], rest[1]];
-    let (status, said, aside) = place.study(&more);
+    let more = [
+        "--budget",
+        "60",
+        "--finest",
+        "2",
+        "--reference",
+        "hard",
+        "--by",
+        "top.uz",
+        "--set",
+        softer,
+        "--target",
+        "1%",
+        rest[0],
+        rest[1],
+    ];
+    let (status, said, aside) = place.study(&[&more[..], &meshed[..]].concat());
     assert_eq!(status, 5, "{said}{aside}");
     assert!(said.contains("does not fall with the mesh"), "{said}");
     // nothing is simulated in time

@@ -25,10 +25,10 @@ fn every_point_of_a_body_is_found_where_it_is() {
                 let element = (share.x * mesh.element_count() as f64) as usize;
                 // inside of an element: any mean of its corners
                 let corners = mesh.element(element);
-                let weights: Vec<f64> = (0..corners.len()).map(|i| 0.1 + ((i as f64 + 1.0) * share.y * 7.3).fract()).collect();
+                let weights: Vec<f64> =
+                    (0..corners.len()).map(|i| 0.1 + ((i as f64 + 1.0) * share.y * 7.3).fract()).collect();
                 let sum: f64 = weights.iter().sum();
-                let x: DVec3 =
-                    corners.iter().zip(&weights).map(|(&c, w)| mesh.points[c as usize] * (w / sum)).sum();
+                let x: DVec3 = corners.iter().zip(&weights).map(|(&c, w)| mesh.points[c as usize] * (w / sum)).sum();
                 let found = locator.locate(x).unwrap();
                 let there: DVec3 = mesh
                     .element(found.element)

@@ -15,8 +15,17 @@ fn the_plot_is_a_drawing_with_axes_units_front_real_time_and_legend() {
     let document = roxmltree::Document::parse(&drawing).unwrap();
     let texts: Vec<&str> = document.descendants().filter(|n| n.has_tag_name("text")).filter_map(|n| n.text()).collect();
     for words in [
-        "What accuracy costs: a bar & <its> weight", "wall time per simulated second", "relative error of displacement",
-        "real time", "Pareto front", "Tet4", "Hex8", "as written", "×2", "Δt/4", "target 1.0 %",
+        "What accuracy costs: a bar & <its> weight",
+        "wall time per simulated second",
+        "relative error of displacement",
+        "real time",
+        "Pareto front",
+        "Tet4",
+        "Hex8",
+        "as written",
+        "×2",
+        "Δt/4",
+        "target 1.0 %",
     ] {
         assert!(texts.iter().any(|text| text.contains(words)), "{words:?} is not in {texts:?}");
     }
@@ -47,15 +56,13 @@ fn the_picture_has_letters_without_any_fonts_of_the_system() {
 
 #[test]
 fn labels_of_a_crowd_do_not_lie_on_each_other_or_on_points() {
-    let crowd: Vec<(f64, f64)> = (0..14).map(|i| (300.0 + 4.0 * f64::from(i % 4), 300.0 + 5.0 * f64::from(i / 4))).collect();
+    let crowd: Vec<(f64, f64)> =
+        (0..14).map(|i| (300.0 + 4.0 * f64::from(i % 4), 300.0 + 5.0 * f64::from(i / 4))).collect();
     let labels: Vec<((f64, f64), &str)> = crowd.iter().map(|&at| (at, "some label")).collect();
     let points = crowd.iter().map(|(x, y)| [x - 6.0, y - 6.0, x + 6.0, y + 6.0]).collect();
     let spots = place(&labels, points, [0.0, 0.0, 800.0, 600.0]);
-    let areas: Vec<[f64; 4]> = spots
-        .iter()
-        .flatten()
-        .map(|spot| [spot.x, spot.y - 10.0, spot.x + 68.0, spot.y + 2.0])
-        .collect();
+    let areas: Vec<[f64; 4]> =
+        spots.iter().flatten().map(|spot| [spot.x, spot.y - 10.0, spot.x + 68.0, spot.y + 2.0]).collect();
     assert!(areas.len() >= 12, "{} of 14 have a place", areas.len());
     for (i, a) in areas.iter().enumerate() {
         for b in &areas[..i] {

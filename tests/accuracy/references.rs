@@ -18,7 +18,8 @@ const NODES: &str = "id,X,Y,Z,ux,uy,uz,fx,fy,fz,mass\n0,0,0,0,0,0,0,0,0,0,1\n7,1
 
 #[test]
 fn probes_and_nodes_of_a_folder_are_a_reference() {
-    let (_keep, path) = folder(&[("probe_tip.csv", PROBE), ("nodes.csv", NODES), ("energy.csv", "x\n"), ("note.txt", "")]);
+    let (_keep, path) =
+        folder(&[("probe_tip.csv", PROBE), ("nodes.csv", NODES), ("energy.csv", "x\n"), ("note.txt", "")]);
     let reference = read(&[path], 1.0, 4).unwrap();
     let end = &reference.entries["tip.uz"];
     assert_eq!((end.values.as_slice(), end.scale), (&[-4.0][..], Some(5.0)), "measured against the length (3, 0, -4)");

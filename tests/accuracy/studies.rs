@@ -180,8 +180,21 @@ fn effects_are_told_with_what_they_cost_and_change_and_are_not_ranked() {
 fn everything_is_varied_one_at_a_time_and_elements_with_every_mesh() {
     let study = run(&mut MadeUp::default(), &settings());
     for label in [
-        "as written", "mesh ×1/2", "mesh ×2", "mesh ×4", "Tet4", "Tet4, mesh ×1/2", "Tet4, mesh ×2", "Tet4, mesh ×4", "Δt/2",
-        "Δt/4", "f32 plain", "f64", "hourglass ×0.5", "Δt/4, f64", "without gravity",
+        "as written",
+        "mesh ×1/2",
+        "mesh ×2",
+        "mesh ×4",
+        "Tet4",
+        "Tet4, mesh ×1/2",
+        "Tet4, mesh ×2",
+        "Tet4, mesh ×4",
+        "Δt/2",
+        "Δt/4",
+        "f32 plain",
+        "f64",
+        "hourglass ×0.5",
+        "Δt/4, f64",
+        "without gravity",
     ] {
         row(&study, label);
     }

@@ -93,13 +93,13 @@ def study(sinew, problem, references):
 def table(rows):
     """A Markdown table of errors: elements down, meshes across."""
     meshes = list(dict.fromkeys(row["cells"] for row in rows))
-    text = "| element | " + " | ".join(meshes) + " |\n|---|" + "---|" * len(meshes) + "\n"
+    text = "| element | " + " | ".join(f"{mesh} cells" for mesh in meshes) + " |\n|---|" + "---|" * len(meshes) + "\n"
     for elements in ELEMENTS:
         cells = []
         for mesh in meshes:
             row = next(row for row in rows if row["elements"] == elements and row["cells"] == mesh)
-            error = row.get("error")
-            cells.append("failed" if error in (None, "") else f"{100 * float(error):+.2g} %")
+            done = row.get("error") not in (None, "")
+            cells.append(f"{100 * float(row['error']):+.2f} % ({float(row['seconds']):.2g} s)" if done else "no result")
         text += f"| `{elements}` | " + " | ".join(cells) + " |\n"
     return text
 

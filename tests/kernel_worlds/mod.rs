@@ -101,7 +101,15 @@ impl Effects {
             }
         }
         for (loads, compensated) in [(false, false), (false, true), (true, false), (true, true)] {
-            all.push(Self { at_rest: true, prony: 1, damping: true, loads, compensated, moved: true, ..Self::default() });
+            all.push(Self {
+                at_rest: true,
+                prony: 1,
+                damping: true,
+                loads,
+                compensated,
+                moved: true,
+                ..Self::default()
+            });
         }
         all.push(Self::all());
         all.push(Self { averaged: true, ..Self::default() });

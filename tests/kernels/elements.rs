@@ -69,7 +69,8 @@ fn laws_of_the_ladder_exert_the_same_forces() {
         for averaged in [false, true] {
             compare_element_forces(&Effects { law: Some(law), averaged, ..Effects::default() }, |_| {});
             let families = (!law.starts_with("linear")).then_some(FAMILIES);
-            let viscous = Effects { law: Some(law), averaged, families, prony: 1, reproject: true, ..Effects::default() };
+            let viscous =
+                Effects { law: Some(law), averaged, families, prony: 1, reproject: true, ..Effects::default() };
             compare_element_forces(&viscous, |_| {});
         }
     }

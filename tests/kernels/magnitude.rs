@@ -20,8 +20,7 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
     let shape = world.get::<RestShape>(block).unwrap();
     let displacement = world.get::<Displacement>(data.body).unwrap();
     let law = world.get::<sinew::backend::cpu::BlockLaw<f64>>(block).unwrap();
-    let state =
-        ElementState::of(data.kind, row, world.get::<Connectivity>(block).unwrap(), shape, displacement, law);
+    let state = ElementState::of(data.kind, row, world.get::<Connectivity>(block).unwrap(), shape, displacement, law);
     let entries = state.points().iter().flat_map(|point| point.gradient.0).flatten();
     let h = entries.map(|x| x.abs()).fold(0.0, f64::max);
     let number = |k: usize| shape.get(lane_place(row, row_count(data.kind), k));

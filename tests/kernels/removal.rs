@@ -7,13 +7,11 @@ use sinew::components::*;
 
 #[test]
 fn the_same_elements_are_removed() {
-    for effects in
-        [
-            Effects { removal: true, damping: true, fibres: Some(AROUND), ..Effects::default() },
-            Effects::all(),
-            Effects { averaged: true, ..Effects::all() },
-        ]
-    {
+    for effects in [
+        Effects { removal: true, damping: true, fibres: Some(AROUND), ..Effects::default() },
+        Effects::all(),
+        Effects { averaged: true, ..Effects::all() },
+    ] {
         for step in [0, 9] {
             let Some(mut pair) = run("element_removal", &effects, step, |_| {}) else { return };
             pair.identical::<Alive>();

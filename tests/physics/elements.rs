@@ -8,9 +8,7 @@ use crate::configurations::configurations;
 use crate::grids::{Grid, grid};
 use crate::random::{Random, gradient, rows};
 use glam::{DMat3, DVec3};
-use sinew::elements::{
-    Element, Hex8, Hex8MeanDilatation, MOST_NODES, MOST_ROWS, Tet4, Tet4NodalPressure,
-};
+use sinew::elements::{Element, Hex8, Hex8MeanDilatation, MOST_NODES, MOST_ROWS, Tet4, Tet4NodalPressure};
 use sinew::materials::{Elastic, Kinematics, NeoHookean};
 use sinew::math::{Mat3, Scalar, Sym3};
 use sinew::mesh::ElementKind;
@@ -168,9 +166,8 @@ fn forces_are_the_gradient_of_the_energy<E: Element>(kind: ElementKind) {
         let energy = |u: &[[f64; 3]; MOST_NODES]| {
             let prepared = E::prepare(u);
             let at = |point: usize| E::at_point(&prepared, point, |k| shape[k]);
-            let isochoric = |point: usize| {
-                at(point).volume * NEO_HOOKEAN.isochoric_energy(&Kinematics::new(&at(point).gradient))
-            };
+            let isochoric =
+                |point: usize| at(point).volume * NEO_HOOKEAN.isochoric_energy(&Kinematics::new(&at(point).gradient));
             (0..E::POINTS).map(isochoric).sum::<f64>()
                 + shape[E::VOLUME_ROW] * NEO_HOOKEAN.volumetric_energy(mean_volume_change::<E>(&shape, u))
                 + E::hourglass_energy(&prepared, &at(0).gradient, |k| shape[k])

@@ -16,9 +16,8 @@ const DENSITY: f64 = 1000.0;
 /// Largest eigenvalue of M⁻¹K of a free element with lumped mass.
 fn highest<E: Element>(points: &[DVec3], eta: f64, a: DVec3) -> f64 {
     let fibres = Fibres { eta, tension_only: 0.0 };
-    let of = |u: &[[f64; 3]; MOST_NODES]| {
-        forces::<E>(points, u, |k| isochoric(k).plus(&fibres.isochoric(k, a.to_array())))
-    };
+    let of =
+        |u: &[[f64; 3]; MOST_NODES]| forces::<E>(points, u, |k| isochoric(k).plus(&fibres.isochoric(k, a.to_array())));
     let (size, h) = (3 * E::NODES, 1e-6);
     let mass = DENSITY * E::rest_shape(points, YOUNG)[E::VOLUME_ROW] / E::NODES as f64;
     let mut k = vec![vec![0.0; size]; size];

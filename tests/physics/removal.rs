@@ -4,7 +4,7 @@
 //! booked to (ωΔt)²/12 with Δt = 1e-3 s and ω < 30/s. An island falls with g: Σ m v grows by Σ m g Δt a step, to rounding (1e-10, 1e-4 in f32).
 
 use crate::columns::{external_forces, masses, velocities};
-use crate::configurations::{ELEMENTS, Configuration, configurations, near};
+use crate::configurations::{Configuration, ELEMENTS, configurations, near};
 use glam::DVec3;
 use sinew::Simulation;
 

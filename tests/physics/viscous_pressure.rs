@@ -97,7 +97,8 @@ fn reprojection_frees_relaxed_stress_of_its_false_pressure() {
             "neo_hookean: Young(young: 3e3, poisson: 0.45),
             prony: (terms: [(alpha: {alpha}, tau: {tau})], reproject: {reproject})"
         );
-        for (run, elements) in configurations().iter().flat_map(|run| ["Tet4", "Hex8MeanDilatation"].map(|e| (run, e))) {
+        for (run, elements) in configurations().iter().flat_map(|run| ["Tet4", "Hex8MeanDilatation"].map(|e| (run, e)))
+        {
             let mut simulation = cube(run, elements, &material, &told);
             for n in [0, 10] {
                 simulation.advance_to(f64::from(401 + n) * step).unwrap();

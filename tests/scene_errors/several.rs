@@ -27,7 +27,7 @@ const EXPECTED: &str = r#"error: the field `duration` is missing in the scene
 1 │ (
   │ ^ Scene needs `duration`
   │
-  = duration: Simulated time (s).
+  = duration: Simulated time (s); the time whose loads and motions a static analysis takes.
 
 error: `fields_every` must be a number
   ┌─ --set:1:21
@@ -42,7 +42,7 @@ error: unknown field `densty`
   │                    ^^^^^^ not a field of Material
   │
   = did you mean `density`?
-  = allowed: density, neo_hookean, fibres, prony, damping
+  = allowed: density, linear, st_venant_kirchhoff, neo_hookean, mooney_rivlin, ogden, arruda_boyce, fibres, exponential_fibres, prony, damping
 
 error: `elements` cannot be `Hex20`
   ┌─ cube.ron:8:74
@@ -50,7 +50,7 @@ error: `elements` cannot be `Hex20`
 8 │             mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4), elements: Hex20),
   │                                                                          ^^^^^ unknown word
   │
-  = allowed: Tet4, Hex8
+  = allowed: Tet4, Tet4NodalPressure, Hex8, Hex8MeanDilatation
 
 error: there is no material `tisue`
   ┌─ cube.ron:9:23

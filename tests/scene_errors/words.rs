@@ -61,17 +61,17 @@ fn words_that_do_not_fit_are_told_with_those_that_do() {
         (
             "duration: 0.5,",
             "duratoin: 0.5,",
-            r"3:5: error: unknown field `duratoin` | not a field of Scene | did you mean `duration`? | allowed: title, duration, bodies, materials, constraints, loads, removal, probes, integration, schedule, parameters, output, picture",
+            r"3:5: error: unknown field `duratoin` | not a field of Scene | did you mean `duration`? | allowed: title, duration, analysis, bodies, materials, constraints, loads, removal, probes, integration, schedule, parameters, output, picture, accuracy",
         ),
         (
             "duration: 0.5,",
             "",
-            r"1:1: error: the field `duration` is missing in the scene | Scene needs `duration` | duration: Simulated time (s).",
+            r"1:1: error: the field `duration` is missing in the scene | Scene needs `duration` | duration: Simulated time (s); the time whose loads and motions a static analysis takes.",
         ),
         (
             "duration: 0.5,",
             "duration: 0.5, colour: 3,",
-            r"3:20: error: unknown field `colour` | not a field of Scene | allowed: title, duration, bodies, materials, constraints, loads, removal, probes, integration, schedule, parameters, output, picture",
+            r"3:20: error: unknown field `colour` | not a field of Scene | allowed: title, duration, analysis, bodies, materials, constraints, loads, removal, probes, integration, schedule, parameters, output, picture, accuracy",
         ),
         ("duration: 0.5,", r#"duration: "0.5","#, r"3:15: error: `duration` must be a number | found a text"),
         ("duration: 0.5,", "duration: 1.2.3,", r"3:15: error: `1.2.3` is not a number | written like 0.05, 5e-2 or 3"),
@@ -111,10 +111,18 @@ fn words_that_do_not_fit_are_told_with_those_that_do() {
             "hex8",
             r"9:74: error: `elements` cannot be `hex8` | unknown word | did you mean `Hex8`? | allowed: Tet4, Tet4NodalPressure, Hex8, Hex8MeanDilatation",
         ),
-        ("Hex8", "Hex20", r"9:74: error: `elements` cannot be `Hex20` | unknown word | allowed: Tet4, Tet4NodalPressure, Hex8, Hex8MeanDilatation"),
+        (
+            "Hex8",
+            "Hex20",
+            r"9:74: error: `elements` cannot be `Hex20` | unknown word | allowed: Tet4, Tet4NodalPressure, Hex8, Hex8MeanDilatation",
+        ),
         ("Hex8", r#""Hex8""#, r"9:74: error: `elements` must be a word without quotes | write Hex8"),
         ("Hex8", "Hex8()", r"9:74: error: `Hex8` stands alone, without brackets | write Hex8"),
-        ("Hex8", "8", r"9:74: error: `elements` must be one of the words below | found a number | allowed: Tet4, Tet4NodalPressure, Hex8, Hex8MeanDilatation"),
+        (
+            "Hex8",
+            "8",
+            r"9:74: error: `elements` must be one of the words below | found a number | allowed: Tet4, Tet4NodalPressure, Hex8, Hex8MeanDilatation",
+        ),
         (
             "Box(size",
             "Bx(size",
@@ -138,7 +146,7 @@ fn words_that_do_not_fit_are_told_with_those_that_do() {
             r#""tissue": ("#,
             r#""tissue": Stuff("#,
             r"5:19: error: `Stuff` does not belong here | `tissue` is written without a word before the brackets
-5:53: error: the material `tissue` has no elastic law | add for instance neo_hookean: Young(young: 3000, poisson: 0.45)",
+5:53: error: the material `tissue` has no elastic law | add for instance neo_hookean: Young(young: 3000, poisson: 0.45) | elastic laws: linear, st_venant_kirchhoff, neo_hookean, mooney_rivlin, ogden, arruda_boyce",
         ),
         (
             "    loads: [\n",

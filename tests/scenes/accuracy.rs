@@ -32,7 +32,10 @@ fn every_scene_of_the_record_is_sound_for_every_element_and_a_coarser_mesh() {
             let complaints = Simulation::check(&scene, &Registry::default());
             assert!(complaints.is_empty(), "{name} of {kind:?}: {}", complaints.render(false));
             let reference = &scene.scene.accuracy.reference;
-            assert!(matches!(reference, AccuracyReference::Values(_)), "{name} has a reference of its own: {reference:?}");
+            assert!(
+                matches!(reference, AccuracyReference::Values(_)),
+                "{name} has a reference of its own: {reference:?}"
+            );
         }
     }
 }

@@ -52,10 +52,15 @@ impl Engine<'_> {
     }
 
     /// A mesh that is quickly made and large enough to tell of elements instead of what a step costs without any.
-    fn mesh_to_calibrate_on(&self) -> Factor {
+    fn mesh_to_calibrate_on(&self, configuration: &Configuration) -> Factor {
         let meshes = self.meshes();
         if self.file.scene.is_static() {
-            return meshes.first().copied().unwrap_or(Factor::ONE);
+            // a coarse mesh may lack the nodes that the scene speaks of
+            let stands = |mesh: &&Factor| {
+                let kind = Configuration { mesh: **mesh, ..configuration.clone() };
+                Simulation::new(&variant(self.file, &kind, None), &self.options(&kind)).is_ok()
+            };
+            return meshes.iter().find(stands).copied().unwrap_or(Factor::ONE);
         }
         // the first is the scene as it is written
         let elements = self.known.first().map_or(f64::INFINITY, |(_, known)| known.elements);
@@ -65,7 +70,7 @@ impl Engine<'_> {
 
     /// What a few steps show of a configuration, on a mesh that is quickly made.
     pub(super) fn calibrate(&mut self, configuration: &Configuration) -> Result<Calibration, Refusal> {
-        let mesh = self.mesh_to_calibrate_on();
+        let mesh = self.mesh_to_calibrate_on(configuration);
         let kind = Configuration { mesh, step: 1, hourglass: 1.0, ..configuration.clone() };
         if let Some((_, known)) = self.known.iter().find(|(known, _)| *known == kind) {
             return Ok(*known);

@@ -4,8 +4,8 @@ mod effects;
 
 use super::{BlockLaw, Cpu};
 use crate::elements::{Element, MOST_NODES, PressureFrom};
-use crate::materials::{Elastic, ElasticLaw};
-use crate::math::{LANES, Real, SimdScalar};
+use crate::materials::{Elastic, ElasticLaw, Kinematics};
+use crate::math::{LANES, Real, SimdScalar, Sym3};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -48,7 +48,9 @@ pub fn run_block_fast<E: Element>(
     law: &BlockLaw<f32>,
     groups_a_patch: usize,
 ) -> bool {
-    let ElasticLaw::NeoHookean(elastic) = &law.elastic else { return run_block::<E, f32>(cpu, columns, law, groups_a_patch) };
+    let ElasticLaw::NeoHookean(elastic) = &law.elastic else {
+        return run_block::<E, f32>(cpu, columns, law, groups_a_patch);
+    };
     let plain = law.exponential.is_empty() && law.volumetric.is_empty() && !law.reproject;
     let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
     match (law.fibres.is_some(), !law.prony.is_empty()) {
@@ -141,6 +143,21 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd for P
     }
 }
 
+/// S_iso of a law in a function of its own: what all laws come to is too much code to stand in every element's kernel.
+struct Isochoric<'a, L, R> {
+    elastic: &'a L,
+    k: &'a Kinematics<R>,
+}
+
+impl<R: Real, L: Elastic<R>> WithSimd for Isochoric<'_, L, R> {
+    type Output = Sym3<R>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Sym3<R> {
+        self.elastic.isochoric(self.k)
+    }
+}
+
 /// Vectors of a group's nodes, brought side by side.
 #[inline(always)]
 pub(super) fn group_vectors<E: Element, T: SimdScalar>(nodes: &[u32], column: &[T]) -> [[[T; LANES]; 3]; MOST_NODES] {
@@ -202,7 +219,9 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         let rest_shape = &self.rest_shape[group * E::ROWS * LANES..(group + 1) * E::ROWS * LANES];
         let shared = match E::PRESSURE {
             PressureFrom::Point => zero,
-            PressureFrom::MeanOverPoints => elastic.pressure(mean_volume_change::<E, T, L, S>(simd, &elastic, &u, rest_shape, at)),
+            PressureFrom::MeanOverPoints => {
+                elastic.pressure(mean_volume_change::<E, T, L, S>(simd, &elastic, &u, rest_shape, at))
+            }
             PressureFrom::Nodes => self.mean_of_nodes(simd, &elastic, group, at),
         };
         let mut forces = E::no_forces(zero);
@@ -222,7 +241,10 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
             if EFFECTS == ASK && !self.law.volumetric.is_empty() {
                 pressure = self.relax_pressure(simd, group, at, point, pressure);
             }
-            let mut isochoric = elastic.isochoric(&k);
+            let mut isochoric = match EFFECTS {
+                ASK => simd.vectorize(Isochoric { elastic: &elastic, k: &k }),
+                _ => elastic.isochoric(&k),
+            };
             if self.has_fibres() {
                 isochoric = isochoric.plus(&self.fibre_stress(simd, group, at, &k));
             }
@@ -254,13 +276,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
 
     /// Mean of the pressures (Pa) at the nodes.
     #[inline(always)]
-    fn mean_of_nodes<S: Simd>(
-        &self,
-        simd: S,
-        elastic: &L::Of<T::Vector<S>>,
-        group: usize,
-        at: usize,
-    ) -> T::Vector<S> {
+    fn mean_of_nodes<S: Simd>(&self, simd: S, elastic: &L::Of<T::Vector<S>>, group: usize, at: usize) -> T::Vector<S> {
         let nodes = &self.connectivity[group * E::NODES * LANES..(group + 1) * E::NODES * LANES];
         let mut sum = T::splat(simd, T::default());
         for corner in 0..E::NODES {

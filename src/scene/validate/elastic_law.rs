@@ -59,10 +59,8 @@ pub(super) fn validate(judge: &mut Judge, path: &Path, name: &str, material: &Ma
         arruda_boyce(judge, &path.name("arruda_boyce"), law);
     }
     if material.linear.is_some() {
-        let fibres = [
-            ("fibres", material.fibres.is_some()),
-            ("exponential_fibres", material.exponential_fibres.is_some()),
-        ];
+        let fibres =
+            [("fibres", material.fibres.is_some()), ("exponential_fibres", material.exponential_fibres.is_some())];
         for (word, _) in fibres.into_iter().filter(|(_, there)| *there) {
             judge
                 .out
@@ -100,10 +98,9 @@ fn bulk_modulus(judge: &mut Judge, path: &Path, bulk: f64, shear: f64, called: &
     judge.above_zero(&path.name("bulk"), bulk, "Pa");
     let poisson = (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear));
     if shear > 0.0 && bulk > 0.0 && poisson < 0.0 {
-        judge.out.warn_at(path.name("bulk"), format!("`bulk` is small: Poisson's ratio is {poisson:.3}")).note(format!(
-            "Poisson's ratio is above 0 when `bulk` is above 2/3 {called}, here {}",
-            show(shear * 2.0 / 3.0)
-        ));
+        judge.out.warn_at(path.name("bulk"), format!("`bulk` is small: Poisson's ratio is {poisson:.3}")).note(
+            format!("Poisson's ratio is above 0 when `bulk` is above 2/3 {called}, here {}", show(shear * 2.0 / 3.0)),
+        );
     }
 }
 
@@ -150,7 +147,10 @@ fn ogden(judge: &mut Judge, path: &Path, law: &Ogden) {
     if count > 0 && shear <= 0.0 {
         judge
             .out
-            .error_at(&terms, format!("the sum of all `mu` times `alpha` must be above 0, found {} Pa", show(2.0 * shear)))
+            .error_at(
+                &terms,
+                format!("the sum of all `mu` times `alpha` must be above 0, found {} Pa", show(2.0 * shear)),
+            )
             .note("half of it is the shear modulus of small strains");
     }
     bulk_modulus(judge, path, law.bulk, shear, "of half the sum of all `mu` times `alpha`");

@@ -102,7 +102,8 @@ fn arruda_boyce_series_has_its_values() {
 /// P = λE(λ² − 1)/2 in tension along one axis with the others held at the width that makes S₂₂ = 0: E Young's modulus.
 #[test]
 fn st_venant_kirchhoff_is_hookes_law_in_greens_strain() {
-    let (young, poisson) = (9.0 * BULK * SHEAR / (3.0 * BULK + SHEAR), (3.0 * BULK - 2.0 * SHEAR) / (6.0 * BULK + 2.0 * SHEAR));
+    let (young, poisson) =
+        (9.0 * BULK * SHEAR / (3.0 * BULK + SHEAR), (3.0 * BULK - 2.0 * SHEAR) / (6.0 * BULK + 2.0 * SHEAR));
     for stretch in [0.6_f64, 0.9, 1.1, 1.4] {
         let strain = 0.5 * (stretch * stretch - 1.0);
         let across = (1.0 - 2.0 * poisson * strain).sqrt();

@@ -3,9 +3,9 @@
 use super::Patch;
 use crate::components::FamilyDirection;
 use crate::elements::Element;
-use crate::materials::{Elastic, Kinematics};
-use crate::math::{LANES, SimdScalar, Sym3};
-use pulp::Simd;
+use crate::materials::{Elastic, ExponentialFibre, Kinematics};
+use crate::math::{LANES, Real, SimdScalar, Sym3};
+use pulp::{Simd, WithSimd};
 
 impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
     /// S of the fibres (Pa).
@@ -42,7 +42,8 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
                 #[inline(always)]
                 |number: T| T::splat(simd, number),
             );
-            stress = stress.plus(&family.isochoric(k, self.direction(simd, group, at, direction)));
+            let direction = self.direction(simd, group, at, direction);
+            stress = stress.plus(&simd.vectorize(Exponential { family: &family, k, direction }));
         }
         stress
     }
@@ -131,3 +132,18 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
     }
 }
 
+/// S of a family in a function of its own, for the same reason as [`Isochoric`](super::Isochoric).
+struct Exponential<'a, R> {
+    family: &'a ExponentialFibre<R>,
+    k: &'a Kinematics<R>,
+    direction: [R; 3],
+}
+
+impl<R: Real> WithSimd for Exponential<'_, R> {
+    type Output = Sym3<R>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Sym3<R> {
+        self.family.isochoric(self.k, self.direction)
+    }
+}
