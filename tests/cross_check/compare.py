@@ -15,6 +15,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 RECORD = ROOT / "docs" / "accuracy"
+LONGEST = 400  # s: what takes longer is told as such
 ELEMENTS = ["Tet4", "Tet4NodalPressure", "Hex8", "Hex8MeanDilatation"]
 
 
@@ -42,7 +43,7 @@ PROBLEMS = {
     "thick_cylinder_moved": ("tube", [(4, 8, 1), (8, 16, 2), (16, 32, 2)],
                              {"pressure": wall_pressure, "outer_displacement": of("outside", "x")}),
     "anisotropic_bar": ("bar", [(20, 2, 2), (40, 4, 4), (80, 8, 8)],
-                        {"pull": of("pull", "x"), "shear_force": of("pull", "z"), "quarter_z": of("quarter", "z")}),
+                        {"pull": of("pull", "x"), "shear_force": of("pull", "z"), "fifth_z": of("fifth", "z")}),
 }
 # problems that are another's scene with values put in
 VARIANTS = {
@@ -58,9 +59,12 @@ def run(sinew, scene, sets, precision="f64"):
                    "--precision", precision, "--out", f"{folder}/out"]
         for value in sets:
             command += ["--set", value]
-        told = subprocess.run(command, capture_output=True, text=True)
+        try:
+            told = subprocess.run(command, capture_output=True, text=True, timeout=LONGEST)
+        except subprocess.TimeoutExpired:
+            return None, f"stopped after {LONGEST} s"
         if told.returncode != 0:
-            return None, next((line for line in told.stderr.splitlines() if line.strip()), "no word")
+            return None, next((line for line in told.stderr.splitlines() if line.startswith("error")), "no word")
         return json.loads(Path(folder, "out", "summary.json").read_text()), ""
 
 
@@ -89,13 +93,13 @@ def study(sinew, problem, references):
 def table(rows):
     """A Markdown table of errors: elements down, meshes across."""
     meshes = list(dict.fromkeys(row["cells"] for row in rows))
-    text = "| element | " + " | ".join(meshes) + " |\n|---|" + "---|" * len(meshes) + "\n"
+    text = "| element | " + " | ".join(f"{mesh} cells" for mesh in meshes) + " |\n|---|" + "---|" * len(meshes) + "\n"
     for elements in ELEMENTS:
         cells = []
         for mesh in meshes:
             row = next(row for row in rows if row["elements"] == elements and row["cells"] == mesh)
-            error = row.get("error")
-            cells.append("failed" if error in (None, "") else f"{100 * float(error):+.2g} %")
+            done = row.get("error") not in (None, "")
+            cells.append(f"{100 * float(row['error']):+.2f} % ({float(row['seconds']):.2g} s)" if done else "no result")
         text += f"| `{elements}` | " + " | ".join(cells) + " |\n"
     return text
 

@@ -9,7 +9,7 @@ use sinew::systems::Registry;
 
 /// The scenes, their bodies, and a coarse mesh.
 const SCENES: [(&str, &str, &str); 9] = [
-    ("anisotropic_bar", "bar", "(8, 2, 2)"),
+    ("anisotropic_bar", "bar", "(10, 2, 2)"),
     ("cantilever", "bar", "(10, 2, 2)"),
     ("cook", "panel", "(4, 4, 2)"),
     ("gravity_bar", "bar", "(10, 2, 2)"),
