@@ -21,7 +21,8 @@ pub use meshes::{PlacedMesh, mesh_of};
 pub use observation::steps_of;
 pub use relaxation::load_steps;
 pub use select::Selection;
-pub use time_step::{StableStep, stable_step};
+pub use columns::insert_laws;
+pub use time_step::{StableStep, StepSetter, author_of, square_frequencies, stable_step};
 
 use crate::components::*;
 use crate::scene::SceneFile;
@@ -77,7 +78,7 @@ pub fn assemble<'a>(
 pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
     removal::spawn(assembly, world, diagnostics);
     observation::spawn(assembly, world, diagnostics);
-    columns::insert_laws(assembly.precision, world);
+    insert_laws(assembly.precision, world);
     columns::start(assembly, world);
     if assembly.scene.scene.is_static() {
         relaxation::insert_fictitious_masses(assembly, world);

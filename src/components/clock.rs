@@ -17,6 +17,11 @@ pub struct Clock {
 }
 
 impl Clock {
+    /// At the beginning of a motion in steps of Δt (s).
+    pub fn with_step(time_step: f64) -> Self {
+        Self { step: 0, time_step, relaxation: None }
+    }
+
     /// The present time (s). In a static analysis it grows with the loads up to the scene's duration and stays there.
     pub fn time(&self) -> f64 {
         match &self.relaxation {

@@ -10,15 +10,17 @@ mod relax;
 mod residual;
 mod run;
 mod schedule;
+mod stable_step;
 mod stretch;
 mod summary;
 mod surface;
+mod tangent;
 
 pub use options::{BackendChoice, Options};
 pub use relax::Equilibrium;
+pub use stable_step::Stability;
 pub use summary::{Summary, SystemTime};
 
-use crate::assembly::StableStep;
 use crate::backend::kernel::KernelId;
 use crate::scene::Diagnostics;
 use crate::scene::schema::Scene;
@@ -57,7 +59,7 @@ struct Facts {
     backend: String,
     why: String,
     precision: crate::components::Precision,
-    stable: StableStep,
+    stability: Stability,
     steps: u64,
     nodes: usize,
     elements: usize,

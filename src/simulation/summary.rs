@@ -23,12 +23,16 @@ pub struct Summary {
     pub nodes: usize,
     /// Elements of all bodies at the start.
     pub elements: usize,
-    /// The largest step that the element bound shows to be stable (s).
+    /// The step up to which the run is stable at the start (s), by what `integration.bound` says.
     pub stable_step: f64,
-    /// The element that sets it: body and author's number.
+    /// The stiffest element: body and author's number.
     pub stable_step_element: (String, u64),
+    /// What is known of the stable step at the start: the bound, the elements that set it, the true limit.
+    pub stability: super::Stability,
     /// Δt (s).
     pub time_step: f64,
+    /// The step over the true limit at the start; `None` in a static analysis.
+    pub share_of_limit: Option<f64>,
     /// Steps taken.
     pub steps: u64,
     /// Steps that the scene lasts.
@@ -112,9 +116,11 @@ impl Simulation {
             },
             nodes: facts.nodes,
             elements: facts.elements,
-            stable_step: facts.stable.time_step,
-            stable_step_element: (facts.stable.body.clone(), facts.stable.element),
+            stable_step: facts.stability.stable_step,
+            stable_step_element: facts.stability.bound.culprit(),
+            stability: facts.stability.clone(),
             time_step: self.time_step(),
+            share_of_limit: facts.stability.limit.map(|limit| self.time_step() / limit),
             steps,
             planned_steps: facts.steps,
             simulated: self.time(),

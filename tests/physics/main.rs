@@ -24,6 +24,7 @@ mod programs;
 mod random;
 mod removal;
 mod statics;
+mod true_limit;
 mod user_laws;
 mod viscosity;
 mod viscous_pressure;
