@@ -22,8 +22,8 @@ const MATERIALS: [&str; 11] = [
     "ogden: (terms: [(mu: 500, alpha: 4), (mu: -100, alpha: -2)], bulk: 2e4)",
     "arruda_boyce: (shear: 1000, locking_stretch: 1.7, bulk: 1e4)",
     r#"law: (file: "own_law.wgsl", parameters: {"mu": 1e3, "b": 3, "bulk": 1e4})"#,
-    "neo_hookean: Young(young: 3e3, poisson: 0.45), fibres: (eta: 1e6, direction: Uniform((0.6, 0, 0.8)))",
-    "neo_hookean: Young(young: 3e3, poisson: 0.45), exponential_fibres: [(k1: 2e3, k2: 20, direction: Uniform((1, 0, 0)), tension_only: false), (k1: 1e3, k2: 5, dispersion: 0.2, direction: Uniform((0, 1, 0)), tension_only: false)]",
+    "neo_hookean: Young(young: 3e3, poisson: 0.45), fibres: (eta: 1e6, direction: Along(0.6, 0, 0.8))",
+    "neo_hookean: Young(young: 3e3, poisson: 0.45), exponential_fibres: [(k1: 2e3, k2: 20, direction: Along(1, 0, 0), tension_only: false), (k1: 1e3, k2: 5, dispersion: 0.2, direction: Along(0, 1, 0), tension_only: false)]",
     "neo_hookean: Young(young: 3e3, poisson: 0.45), prony: (terms: [(alpha: 0.5, tau: 50)], volumetric: [(alpha: 0.2, tau: 50)])",
 ];
 
@@ -31,8 +31,8 @@ const MATERIALS: [&str; 11] = [
 fn scene(elements: &str, material: &str, held: bool) -> String {
     let constraints = if held { "Fixed(on: Box(min: (-1, -1, -1), max: (0.03, 1, 1))), Fixed(on: Box(min: (0.07, 0.07, -1), max: (1, 1, 1)), axes: [Y])" } else { "" };
     format!(
-        r#"(duration: 1, bodies: {{"b": (material: "m", mesh: Hexahedron(corners: [(0, 0, 0), (0.1, 0.01, 0), (0.12, 0.09, 0.01),
-        (0, 0.1, 0), (0, 0, 0.05), (0.1, 0, 0.04), (0.09, 0.11, 0.06), (0.02, 0.1, 0.05)], cells: (2, 2, 1),
+        r#"(duration: 1, bodies: {{"b": (material: "m", mesh: Hexahedron(corners: ((0, 0, 0), (0.1, 0.01, 0), (0.12, 0.09, 0.01),
+        (0, 0.1, 0), (0, 0, 0.05), (0.1, 0, 0.04), (0.09, 0.11, 0.06), (0.02, 0.1, 0.05)), cells: (2, 2, 1),
         elements: {elements}))}}, materials: {{"m": (density: 1000, {material})}}, constraints: [{constraints}])"#
     )
 }
@@ -116,7 +116,7 @@ fn is_never_above_the_true_one_and_close_to_it_for_every_element_and_law() {
 
 #[test]
 fn knows_of_fibres_that_are_slack_but_may_pull_at_any_moment() {
-    let material = "neo_hookean: Young(young: 3e3, poisson: 0.45), fibres: (eta: 1e5, direction: Uniform((1, 0, 0)), tension_only: TENSION)";
+    let material = "neo_hookean: Young(young: 3e3, poisson: 0.45), fibres: (eta: 1e5, direction: Along(1, 0, 0), tension_only: TENSION)";
     for elements in ELEMENTS {
         let limit = |tension: &str| {
             let text = scene(elements, &material.replace("TENSION", tension), false);
