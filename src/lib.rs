@@ -41,7 +41,7 @@ pub use serde;
 pub use error::{Error, Instability, NotConverged};
 pub use scene::SceneFile;
 pub use simulation::explain;
-pub use simulation::{BackendChoice, Equilibrium, Options, Simulation, Stability, Summary, SystemTime};
+pub use simulation::{BackendChoice, Equilibrium, Options, Simulation, Stability, StepHistory, Summary, SystemTime};
 
 /// The code in the readme compiles and runs.
 #[cfg(doctest)]

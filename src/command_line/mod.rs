@@ -11,6 +11,7 @@ mod quiet_driver;
 mod render;
 mod report;
 mod run;
+mod stability;
 mod terminal;
 mod wording;
 

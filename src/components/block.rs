@@ -66,6 +66,10 @@ pub const fn patch_groups(kind: ElementKind) -> usize {
     }
 }
 
+/// When each element goes at the latest (s); infinite: never by time. Exists with [`RemovalStep`] where elements go by time.
+#[derive(Component, Clone, Debug)]
+pub struct RemovalTime(pub Vec<f64>);
+
 /// Which elements of a block meet in a node: `elements[starts[i]..starts[i + 1]]` are rows of elements around node row `i`,
 /// ascending. Exists with [`NodalVolumeChange`].
 #[derive(Component, Clone, Debug)]

@@ -2,6 +2,8 @@
 
 use super::frequency::largest_eigenvalue;
 use super::options::{BackendChoice, Chosen, choose};
+use super::beat::Beat;
+use super::follow::Follower;
 use super::parameters::hand_out;
 use super::relax::Relaxing;
 use super::schedule::{Scheduled, check_names, resolve};
@@ -83,7 +85,8 @@ impl Simulation {
                 Some(kernels) => Job::Kernels(kernels),
                 None => {
                     let (reads, writes) = columns_of(access, &world);
-                    Job::Host { system: host, every: scheduled.every, observes: system.observes, reads, writes }
+                    let beat = Beat::new(scheduled.every, scheduled.interval);
+                    Job::Host { system: host, beat, observes: system.observes, reads, writes }
                 }
             };
             let (name, because) = (system.name.clone(), scheduled.because.clone());
@@ -102,7 +105,8 @@ impl Simulation {
             setup: started.elapsed(),
             warnings: diagnostics,
         };
-        Ok(Self { world, entries, scene: scene.scene.clone(), facts, relaxing, elapsed: Duration::ZERO })
+        let follower = Follower::new(&scene.scene, &facts.stability, &world);
+        Ok(Self { world, entries, scene: scene.scene.clone(), facts, relaxing, follower, elapsed: Duration::ZERO })
     }
 }
 

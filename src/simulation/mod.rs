@@ -1,9 +1,12 @@
 //! A scene at work: the world, its schedule, its clock.
 
 mod access;
+mod beat;
 mod build;
 pub mod explain;
+mod follow;
 mod frequency;
+mod growth;
 mod options;
 mod parameters;
 mod relax;
@@ -11,17 +14,21 @@ mod residual;
 mod run;
 mod schedule;
 mod stable_step;
+mod step_change;
 mod stretch;
 mod summary;
 mod surface;
 mod tangent;
+mod watch;
 
 pub use options::{BackendChoice, Options};
 pub use relax::Equilibrium;
+pub use follow::StepHistory;
 pub use stable_step::Stability;
 pub use summary::{Summary, SystemTime};
 
 use crate::backend::kernel::KernelId;
+use beat::Beat;
 use crate::scene::Diagnostics;
 use crate::scene::schema::Scene;
 use crate::systems::{HostSystem, Phase};
@@ -35,6 +42,7 @@ pub struct Simulation {
     scene: Scene,
     facts: Facts,
     relaxing: Option<relax::Relaxing>,
+    follower: Option<follow::Follower>,
     elapsed: Duration,
 }
 
@@ -49,7 +57,7 @@ struct Entry {
 }
 
 enum Job {
-    Host { system: HostSystem, every: u64, observes: bool, reads: Vec<&'static str>, writes: Vec<&'static str> },
+    Host { system: HostSystem, beat: Beat, observes: bool, reads: Vec<&'static str>, writes: Vec<&'static str> },
     Kernels(Vec<KernelId>),
 }
 

@@ -3,7 +3,7 @@
 use super::Simulation;
 use super::frequency::largest_eigenvalue;
 use super::tangent::Tangent;
-use crate::assembly::{StableStep, stable_step};
+use crate::assembly::{StableStep, StepSetter, stable_step};
 use crate::backend::device::bring_to_host;
 use crate::error::Error;
 use crate::scene::schema::{Scene, StepBound};
@@ -12,7 +12,7 @@ use bevy_ecs::prelude::*;
 use serde::Serialize;
 
 /// The true limit is known to the share of half of this.
-const ACCURACY: f64 = 0.04;
+pub(super) const ACCURACY: f64 = 0.04;
 /// The same where a scene's own step lies within the margin.
 const SHARP: f64 = 0.005;
 /// Elements that make the step so many times smaller than a usual one needs are told of.
@@ -30,12 +30,14 @@ pub struct Stability {
     pub found_from: &'static str,
     /// The stable step by that (s).
     pub stable_step: f64,
+    /// The first step that is taken (s).
+    pub step: f64,
 }
 
 impl Stability {
     /// Of a static analysis.
     pub fn of_rest(bound: StableStep) -> Self {
-        Self { stable_step: bound.time_step, bound, limit: None, found_from: "elements" }
+        Self { stable_step: bound.time_step, step: 0.0, bound, limit: None, found_from: "elements" }
     }
 }
 
@@ -85,8 +87,9 @@ pub(super) fn choose(scene: &SceneFile, world: &mut World, diagnostics: &mut Dia
         StepBound::Elements => ("elements", bound.time_step),
         StepBound::Iterated => ("iterated", limit),
     };
-    let stability = Stability { bound, limit: Some(limit), found_from, stable_step };
+    let mut stability = Stability { bound, limit: Some(limit), found_from, stable_step, step: 0.0 };
     let (time_step, steps) = taken(&scene.scene, &stability, diagnostics);
+    stability.step = time_step;
     if steps > 1e15 {
         let duration = scene.scene.duration;
         diagnostics.error_at(
@@ -162,10 +165,10 @@ fn warn_of_costly(bound: &StableStep, diagnostics: &mut Diagnostics) {
 }
 
 /// An element that sets the step, in a line.
-pub(crate) fn setter(worst: &crate::assembly::StepSetter) -> String {
+fn setter(worst: &StepSetter) -> String {
+    let StepSetter { body, element, bound, cost, gain } = worst;
     format!(
-        "element {} of {}: stable up to {:.3e} s, {:.3} times below the usual; without those so far the step could be {:.3} \
-         times longer",
-        worst.element, worst.body, worst.bound, worst.cost, worst.gain
+        "element {element} of {body}: stable up to {bound:.3e} s, {cost:.4} times below the usual; without it and those \
+         before it the step could be {gain:.4} times longer"
     )
 }

@@ -29,10 +29,12 @@ pub struct Summary {
     pub stable_step_element: (String, u64),
     /// What is known of the stable step at the start: the bound, the elements that set it, the true limit.
     pub stability: super::Stability,
-    /// Δt (s).
+    /// Δt at the end (s).
     pub time_step: f64,
-    /// The step over the true limit at the start; `None` in a static analysis.
+    /// The first step over the true limit at the start; `None` in a static analysis.
     pub share_of_limit: Option<f64>,
+    /// How the step went during the run; `None` in a static analysis.
+    pub step_history: Option<super::StepHistory>,
     /// Steps taken.
     pub steps: u64,
     /// Steps that the scene lasts.
@@ -120,7 +122,8 @@ impl Simulation {
             stable_step_element: facts.stability.bound.culprit(),
             stability: facts.stability.clone(),
             time_step: self.time_step(),
-            share_of_limit: facts.stability.limit.map(|limit| self.time_step() / limit),
+            share_of_limit: facts.stability.limit.map(|limit| facts.stability.step / limit),
+            step_history: self.step_history().copied(),
             steps,
             planned_steps: facts.steps,
             simulated: self.time(),

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod bars;
+mod changing_step;
 mod clock_and_limit;
 mod columns;
 mod configurations;
