@@ -254,8 +254,9 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let bodies: Vec<_> = query.iter(world).map(|(body, mass, e, d, w)| (body, mass.len() as u32, [e, d, w])).collect();
     let mut kernels = Vec::new();
     for (body, count, optional) in bodies {
-        let relaxed = world.get::<FictitiousMass>(body).is_some();
-        let column = |name: &'static str| if relaxed && name == Mass::NAME { FictitiousMass::NAME } else { name };
+        let relaxed = world.get_resource::<Clock>().is_some_and(|clock| clock.relaxation.is_some());
+        let fictitious = world.get::<FictitiousMass>(body).is_some();
+        let column = |name: &'static str| if fictitious && name == Mass::NAME { FictitiousMass::NAME } else { name };
         let compensated = world.get::<DisplacementCompensation>(body).is_some();
         let nodes = buffers.uniform("integrate".into(), &Integrate { count }.bytes());
         let mut kernel = |entry: &'static str, columns: &[&'static str]| {

@@ -81,7 +81,11 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     observation::spawn(assembly, world, diagnostics);
     insert_laws(assembly.precision, world);
     columns::start(assembly, world);
-    if assembly.scene.scene.is_static() {
+    let scene = &assembly.scene.scene;
+    if scene.when_unstable() == schema::WhenUnstable::Remove && !scene.is_static() {
+        assembly.bodies.values().for_each(|body| removal::insert_columns(assembly.precision, body, world));
+    }
+    if scene.is_static() {
         relaxation::insert_fictitious_masses(assembly, world);
     }
 }

@@ -18,7 +18,7 @@ pub mod nodes;
 mod observation;
 
 pub use block::{
-    Alive, Block, BlockCorners, Connectivity, ElementVolume, FamilyDirection, FibreDirection, FirstInverted,
+    AddedMass, Alive, Block, BlockCorners, Connectivity, ElementVolume, FamilyDirection, FibreDirection, FirstInverted,
     NodalVolumeChange, RemovalStep, RemovalTime, RemovedEnergy, RestShape, ViscousMemory, patch_groups,
 };
 pub use clock::{Clock, Relaxation, Signal, Signals};

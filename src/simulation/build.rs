@@ -105,7 +105,7 @@ impl Simulation {
             setup: started.elapsed(),
             warnings: diagnostics,
         };
-        let follower = Follower::new(&scene.scene, &facts.stability, &world);
+        let follower = Follower::new(&scene.scene, &facts.stability, facts.initial_mass, &mut world);
         Ok(Self { world, entries, scene: scene.scene.clone(), facts, relaxing, follower, elapsed: Duration::ZERO })
     }
 }

@@ -1,31 +1,29 @@
 //! The stable step followed during the run: a cheap bound every few steps, the highest frequency itself when that comes
 //! close, and what the scene wants done about it.
 
+use super::policies::WORTH;
 use super::stable_step::{ACCURACY, Stability, limits};
 use super::tangent::Tangent;
 use super::watch::{Seen, Watched};
-use super::Simulation;
-use crate::backend::device::bring_to_host;
+use super::{Simulation, mass_scaling};
+use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
-use crate::error::{Error, Instability};
+use crate::error::Error;
 use crate::scene::schema::{Scene, StepBound, WhenUnstable};
 use bevy_ecs::prelude::*;
 use serde::Serialize;
 use std::time::Instant;
 
-/// Steps between two looks at all elements: at least, and at most.
+/// Steps between two looks at all elements: at least, and at most; and no more than half of all steps so far, because what
+/// begins smoothly becomes faster.
 const LOOKS: (u64, u64) = (16, 256);
 /// Between two looks strains change by so much, at the present speed.
 const STRAIN: f64 = 0.05;
 /// Steps between two findings of the highest frequency where the step can be made smaller on the cheap bound's word. Each
 /// costs about a hundred steps.
 const SHARP_LOOKS: u64 = 1000;
-/// Larger by less is not worth a change.
-const WORTH: f64 = 1.1;
 /// The highest frequency is found anew for a larger step when the bound of the elements has fallen to this share.
 const RELIEF: f64 = 0.6;
-/// A step so many times smaller than the first is given up.
-const LEAST: f64 = 1e-4;
 
 /// How the step went during the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -48,6 +46,8 @@ pub struct StepHistory {
     pub added_mass: f64,
     /// The same as a share of all mass.
     pub added_share: f64,
+    /// Kinetic energy that mass brought which was added during the run (J).
+    pub added_energy: f64,
     /// Elements that were removed because they need a smaller step.
     pub removed: u64,
 }
@@ -58,60 +58,76 @@ pub(super) struct Follower {
     pub safety: f64,
     /// The step takes nothing but the bound of the elements for granted: it never grows beyond that.
     by_elements: bool,
-    /// The scene's own step, which it never grows beyond (s).
+    /// The scene's own step, which it never grows beyond (s), and its share of the stable one at the start; else 0.
     own: f64,
-    duration: f64,
-    first: f64,
-    next: u64,
-    watched: Vec<Watched>,
+    own_share: f64,
+    pub duration: f64,
+    pub first: f64,
+    pub next: u64,
+    pub watched: Vec<Watched>,
     /// The highest ω² when it was found last (1/s²), in which step, and what was seen then.
-    known: f64,
-    known_at: u64,
+    pub known: f64,
+    pub known_at: u64,
     seen: Option<Seen>,
     pub history: StepHistory,
 }
 
 impl Follower {
     /// `None` where there is no motion.
-    pub fn new(scene: &Scene, stability: &Stability, world: &World) -> Option<Self> {
+    pub fn new(scene: &Scene, stability: &Stability, initial_mass: f64, world: &mut World) -> Option<Self> {
         let (limit, integration) = (stability.limit?, &scene.integration);
         let step = world.resource::<Clock>().time_step;
+        let added = if scene.scales_mass() { mass_scaling::weigh(world).mass } else { 0.0 };
+        // a scene's own step may need elements to go before they do harm
+        let next = if step > limit && scene.when_unstable() == WhenUnstable::Remove { 0 } else { LOOKS.0 };
         Some(Self {
             policy: scene.when_unstable(),
             safety: integration.safety,
             by_elements: integration.bound == StepBound::Elements,
             own: integration.step.unwrap_or(f64::INFINITY),
+            own_share: integration.step.map_or(0.0, |step| step / limit),
             duration: scene.duration,
             first: step,
-            next: LOOKS.0,
+            next,
             watched: Vec::new(),
             known: square_of(limit),
             known_at: 0,
             seen: None,
-            history: StepHistory { smallest: step, largest: step, ..StepHistory::default() },
+            history: StepHistory {
+                smallest: step,
+                largest: step,
+                added_mass: added,
+                added_share: added / initial_mass,
+                ..StepHistory::default()
+            },
         })
     }
 
-    /// The share of the stable step beyond which a step counts as too large: half of what `safety` leaves is used up.
-    fn most(&self) -> f64 {
-        0.5 * (1.0 + self.safety)
+    /// The share of the stable step beyond which a step counts as too large: half of what was left at the start is used up.
+    pub fn most(&self) -> f64 {
+        0.5 * (1.0 + self.safety.max(self.own_share).min(1.0))
     }
 
     /// The largest step that may be taken when so much is stable (s).
-    fn wanted(&self, limit: f64, seen: &Seen) -> f64 {
+    pub fn wanted(&self, limit: f64, seen: &Seen) -> f64 {
         let elements = if self.by_elements { self.safety * step_of(seen.at_rest) } else { f64::INFINITY };
         (self.safety * limit).min(elements).min(self.own)
     }
 
 }
 
+/// How many elements there were at the last finding.
+fn before_alive(follower: &Follower) -> usize {
+    follower.seen.map_or(usize::MAX, |seen| seen.alive)
+}
+
 /// 2/ω.
-fn step_of(square: f64) -> f64 {
+pub(super) fn step_of(square: f64) -> f64 {
     2.0 / square.sqrt()
 }
 
 /// ω² of a stable step.
-fn square_of(step: f64) -> f64 {
+pub(super) fn square_of(step: f64) -> f64 {
     4.0 / (step * step)
 }
 
@@ -147,7 +163,14 @@ impl Simulation {
         let all = follower.watched.iter().map(|block| block.look(&self.world, follower.known));
         let mut seen = all.fold(Seen::NOTHING, Seen::and);
         follower.history.looks += 1;
-        follower.next = step + (STRAIN / seen.speed).clamp(LOOKS.0 as f64, LOOKS.1 as f64) as u64;
+        let calm = ((STRAIN / seen.speed) as u64).min(step / 2);
+        follower.next = step + calm.clamp(LOOKS.0, LOOKS.1);
+        if seen.alive < before_alive(follower) && matches!(follower.policy, WhenUnstable::ScaleMass { .. }) {
+            // what was added to removed elements goes with them
+            bring_to_host(&mut self.world, |_, name| [Mass::NAME, FictitiousMass::NAME].contains(&name))?;
+            mass_scaling::weigh(&mut self.world);
+            send_to_device(&mut self.world, |_, name| name == FictitiousMass::NAME)?;
+        }
         if !seen.speed.is_finite() || seen.alive == 0 {
             // what is no number is the guards' business
             return Ok(());
@@ -159,7 +182,8 @@ impl Simulation {
         let may_grow = follower.policy == WhenUnstable::Adapt && time_step * WORTH < follower.wanted(f64::INFINITY, &seen);
         let waited = step >= follower.known_at + SHARP_LOOKS;
         // the cheap bound may say anything of what it was not made for
-        let vague = follower.policy != WhenUnstable::Watch && time_step > 2.0 * step_of(seen.square);
+        let acts = matches!(follower.policy, WhenUnstable::ScaleMass { .. } | WhenUnstable::Remove);
+        let vague = acts || follower.policy != WhenUnstable::Watch && time_step > 2.0 * step_of(seen.square);
         if pressing && (waited || vague) || relieved && may_grow && waited {
             bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
             if let Some(found) = limits(&mut self.world, ACCURACY) {
@@ -183,59 +207,9 @@ impl Simulation {
                 }
                 Ok(())
             }
-            WhenUnstable::ScaleMass { .. } | WhenUnstable::Remove => Ok(()),
+            _ if time_step <= follower.most() * step_of(seen.square) => Ok(()),
+            WhenUnstable::ScaleMass { .. } => self.make_heavier(follower, time_step),
+            WhenUnstable::Remove => self.remove_quickest(follower, &seen),
         }
-    }
-
-    /// Makes the step smaller where it must be, and larger where that is worth while.
-    fn adapt(&mut self, follower: &mut Follower, seen: &Seen, time_step: f64) -> Result<(), Error> {
-        let limit = step_of(seen.square);
-        let wanted = follower.wanted(limit, seen);
-        let known_now = follower.known_at == self.step_count();
-        let smaller = time_step > follower.most() * limit;
-        if !(smaller || known_now && wanted > WORTH * time_step) {
-            return Ok(());
-        }
-        if wanted < LEAST * follower.first {
-            return Err(self.too_small(follower, wanted));
-        }
-        let clock = *self.world.resource::<Clock>();
-        let left = follower.duration - clock.time();
-        // the scene ends with a whole step
-        let (new, last) = match (left / wanted - 1e-6).ceil() {
-            steps if steps >= 1.0 => (left / steps, clock.step + steps as u64),
-            _ => (wanted, self.planned_steps()),
-        };
-        let history = &mut follower.history;
-        history.changes += 1;
-        history.smallest = history.smallest.min(new);
-        history.largest = history.largest.max(new);
-        self.change_step(new, last)
-    }
-
-    /// The stable step has gone to nothing.
-    fn too_small(&self, follower: &Follower, wanted: f64) -> Error {
-        let worst = follower.watched.iter().flat_map(|block| {
-            let elements = block.now(&self.world).into_iter();
-            elements.map(|(row, square)| (square, block.entity, row))
-        });
-        let worst = worst.max_by(|a, b| a.0.total_cmp(&b.0));
-        let named = worst.and_then(|(_, entity, row)| crate::assembly::author_of(&self.world, entity, row));
-        let (body, element) = named.unwrap_or_default();
-        Error::Unstable(Box::new(Instability {
-            time: self.time(),
-            step: self.step_count(),
-            body,
-            what: format!(
-                "the stable step has shrunk to {wanted:.3e} s, less than a {:.0}th of {:.3e} s at the start; element \
-                 {element} is deformed most",
-                1.0 / LEAST,
-                follower.first
-            ),
-            cause: "tissue that is squeezed flat or stiffens without end (remove such elements by VolumeRatioBelow, or \
-                    when_unstable: Remove)"
-                .into(),
-            good_until: self.time(),
-        }))
     }
 }

@@ -1,12 +1,13 @@
 //! The step of a scene: what is stable at the start, and what of it is taken.
 
-use super::Simulation;
 use super::frequency::largest_eigenvalue;
 use super::tangent::Tangent;
-use crate::assembly::{StableStep, StepSetter, stable_step};
+use super::{Simulation, mass_scaling};
+use crate::assembly::{StableStep, StepSetter, square_frequencies, stable_step};
 use crate::backend::device::bring_to_host;
+use crate::components::*;
 use crate::error::Error;
-use crate::scene::schema::{Scene, StepBound};
+use crate::scene::schema::{Scene, StepBound, WhenUnstable};
 use crate::scene::{Diagnostics, SceneFile};
 use bevy_ecs::prelude::*;
 use serde::Serialize;
@@ -17,6 +18,8 @@ pub(super) const ACCURACY: f64 = 0.04;
 const SHARP: f64 = 0.005;
 /// Elements that make the step so many times smaller than a usual one needs are told of.
 const COSTLY: f64 = 10.0;
+/// More added mass than this share is always told of.
+const WORTH_TELLING: f64 = 0.05;
 
 /// What is known of the stable step at the start.
 #[derive(Clone, Debug, Serialize)]
@@ -72,19 +75,24 @@ impl Simulation {
 pub(super) fn choose(scene: &SceneFile, world: &mut World, diagnostics: &mut Diagnostics) -> Option<(Stability, f64, u64)> {
     let bound = found_bound(world, diagnostics)?;
     warn_of_costly(&bound, diagnostics);
-    let mut limits = limits(world, ACCURACY);
     let integration = &scene.scene.integration;
+    // what the elements are stable up to, once they are made heavier where the scene wants that
+    let heavier = match scene.scene.when_unstable() {
+        WhenUnstable::ScaleMass { most } => scale_mass(scene, &bound, most, world, diagnostics),
+        _ => bound.time_step,
+    };
+    let mut limits = limits(world, ACCURACY);
     // a step of the scene's own may lie within the margin
     if let (Some(step), Some(known)) = (integration.step, &limits)
-        && step > known.safe.max(bound.time_step)
+        && step > known.safe.max(heavier)
         && step < known.certainly_unstable
     {
         limits = self::limits(world, SHARP);
     }
     // the bound is certain as well: at rest the better of both counts
-    let limit = limits.map_or(bound.time_step, |found| found.safe.max(bound.time_step));
+    let limit = limits.map_or(heavier, |found| found.safe.max(heavier));
     let (found_from, stable_step) = match integration.bound {
-        StepBound::Elements => ("elements", bound.time_step),
+        StepBound::Elements => ("elements", heavier),
         StepBound::Iterated => ("iterated", limit),
     };
     let mut stability = Stability { bound, limit: Some(limit), found_from, stable_step, step: 0.0 };
@@ -99,6 +107,50 @@ pub(super) fn choose(scene: &SceneFile, world: &mut World, diagnostics: &mut Dia
         return None;
     }
     Some((stability, time_step, steps as u64))
+}
+
+/// Makes elements heavier for the step that the scene wants, or for the largest that so much added mass allows. What all
+/// elements are stable up to then (s).
+fn scale_mass(
+    scene: &SceneFile,
+    bound: &StableStep,
+    most: f64,
+    world: &mut World,
+    diagnostics: &mut Diagnostics,
+) -> f64 {
+    let integration = &scene.scene.integration;
+    let wanted = match integration.step {
+        Some(step) => (step / integration.safety).max(bound.time_step),
+        None => mass_scaling::step_for(world, most, bound.time_step, bound.usual),
+    };
+    let precision = match world.query::<&Mass>().iter(world).next() {
+        Some(Mass(Reals::F32(_))) => Precision::F32,
+        _ => Precision::F64,
+    };
+    mass_scaling::insert_columns(precision, world);
+    let mut blocks: Vec<Entity> = world.query_filtered::<Entity, With<Block>>().iter(world).collect();
+    blocks.sort();
+    for block in blocks {
+        let squares = square_frequencies(world, block).into_iter().enumerate();
+        let bounds: Vec<(usize, f64)> = squares.map(|(row, (square, _))| (row, 2.0 / square.sqrt())).collect();
+        mass_scaling::make_heavier(world, block, &bounds, wanted);
+    }
+    let added = mass_scaling::weigh(world).mass;
+    let all: f64 = world.query::<&Mass>().iter(world).map(|mass| (0..mass.len()).map(|i| mass.get(i)).sum::<f64>()).sum();
+    let share = added / all;
+    // rounding of what just fits is no reason to warn
+    if share > most * (1.0 + 1e-6) || share > WORTH_TELLING {
+        diagnostics
+            .warn_at(
+                "integration.when_unstable",
+                format!("{added:.3e} kg are added for a stable step of {wanted:.3e} s: {:.1} % of all mass", 100.0 * share),
+            )
+            .note(format!(
+                "motion is slowed where mass is added; a smaller `step` needs less, and without `step` no more than `most` \
+                 ({most}) is added"
+            ));
+    }
+    wanted
 }
 
 /// The bound of all elements, if it is one.
@@ -126,7 +178,8 @@ fn taken(scene: &Scene, stability: &Stability, diagnostics: &mut Diagnostics) ->
         return (duration / steps, steps);
     };
     let limit = stability.limit.unwrap_or(stability.stable_step);
-    if step > limit {
+    // what needs a smaller step goes before it does harm
+    if step > limit && scene.when_unstable() != WhenUnstable::Remove {
         let (body, element) = stability.bound.culprit();
         let message = format!(
             "a step of {step} s is beyond the stable one of {limit:.4e} s (the stiffest is element {element} of {body})"

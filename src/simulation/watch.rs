@@ -1,5 +1,6 @@
 //! How much quicker elements can have become: a cheap bound, from how far they are deformed now.
 
+use super::mass_scaling::heaviness;
 use super::growth::{Growth, right_cauchy_green, sizes, with_identity};
 use crate::assembly::square_frequencies;
 use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK};
@@ -57,11 +58,18 @@ impl Watched {
         blocks.sort();
         let watched = |&entity: &Entity| {
             let growth = Growth::of(world.get::<BlockLaw<f64>>(entity)?);
-            let squares: Vec<f64> = square_frequencies(world, entity).into_iter().map(|(square, _)| square).collect();
-            let known_growth = vec![1.0; squares.len()];
-            Some(Self { entity, growth, squares, known_growth })
+            let mut watched = Self { entity, growth, squares: Vec::new(), known_growth: Vec::new() };
+            watched.weigh(world);
+            watched.known_growth = vec![1.0; watched.squares.len()];
+            Some(watched)
         };
         blocks.iter().filter_map(watched).collect()
+    }
+
+    /// Takes the bounds at rest anew, with the mass that was added by now.
+    pub fn weigh(&mut self, world: &World) {
+        let squares = square_frequencies(world, self.entity).into_iter().enumerate();
+        self.squares = squares.map(|(row, (square, _))| square / heaviness(world, self.entity, row)).collect();
     }
 
     /// Looks at all elements; ω² of all was `known` (1/s²) when it was found last.

@@ -101,6 +101,22 @@ fn a_second_run_replaces_the_first_and_its_pictures() {
 }
 
 #[test]
+fn check_names_what_sets_the_step_and_what_it_costs() {
+    let place = Place::new();
+    let said = place.done(&["check", "block.ron"]);
+    for words in ["true limit:", "the step is 0.", "elements that set it:", "costs 1 times the steps"] {
+        assert!(said.contains(words), "no {words:?} in\n{said}");
+    }
+    assert_eq!(said.matches("  element ").count(), 10, "{said}");
+    let facts: serde_json::Value = serde_json::from_str(&place.done(&["check", "--json", "block.ron"])).unwrap();
+    let number = |path: &str| facts.pointer(path).and_then(|x| x.as_f64()).unwrap();
+    assert!(number("/stability/limit") > number("/stability/bound/time_step"), "{facts}");
+    let share = number("/stability/step") / number("/stability/limit");
+    assert!((number("/share_of_limit") - share).abs() < 1e-12 && share < 1.0, "{facts}");
+    assert_eq!(facts["stability"]["bound"]["worst"].as_array().unwrap().len(), 10);
+}
+
+#[test]
 fn check_tells_what_a_run_will_leave() {
     let place = Place::new();
     let said = place.done(&["check", "block.ron"]);

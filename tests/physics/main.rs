@@ -26,6 +26,7 @@ mod random;
 mod removal;
 mod statics;
 mod true_limit;
+mod unstable_elements;
 mod user_laws;
 mod viscosity;
 mod viscous_pressure;

@@ -201,6 +201,11 @@ impl Scene {
         self.integration.when_unstable.unwrap_or(if insists { WhenUnstable::Watch } else { WhenUnstable::Adapt })
     }
 
+    /// Whether elements are made heavier.
+    pub fn scales_mass(&self) -> bool {
+        matches!(self.when_unstable(), WhenUnstable::ScaleMass { .. }) && !self.is_static()
+    }
+
     /// Whether equilibrium is sought instead of motion.
     pub fn is_static(&self) -> bool {
         matches!(self.analysis, Analysis::Static { .. })
