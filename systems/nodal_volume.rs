@@ -42,10 +42,24 @@ fn nodal_volume(cpu: Res<Cpu>, mut blocks: Query<BlockQuery>, bodies: Query<&Dis
         let Ok(displacement) = bodies.get(block.body) else { continue };
         match (&mut volumes.0, &mut means.0, rounded) {
             (Reals::F32(volumes), Reals::F32(means), Some(law)) => {
-                means_of(&cpu, block, (connectivity, shape.slice(), corners, displacement.slice()), law, volumes, means);
+                means_of(
+                    &cpu,
+                    block,
+                    (connectivity, shape.slice(), corners, displacement.slice()),
+                    law,
+                    volumes,
+                    means,
+                );
             }
             (Reals::F64(volumes), Reals::F64(means), _) => {
-                means_of(&cpu, block, (connectivity, shape.slice(), corners, displacement.slice()), law, volumes, means);
+                means_of(
+                    &cpu,
+                    block,
+                    (connectivity, shape.slice(), corners, displacement.slice()),
+                    law,
+                    volumes,
+                    means,
+                );
             }
             _ => {}
         }

@@ -17,12 +17,12 @@ mod time_step;
 mod user_laws;
 
 pub use body::BodyParts;
+pub use columns::insert_laws;
 pub use meshes::{PlacedMesh, mesh_of};
 pub use observation::steps_of;
 pub use relaxation::load_steps;
 pub use removal::step_of;
 pub use select::Selection;
-pub use columns::insert_laws;
 pub use time_step::{StableStep, StepSetter, author_of, square_frequencies, stable_step};
 
 use crate::components::*;

@@ -64,13 +64,7 @@ pub(super) fn insert_columns(precision: Precision, body: &BodyParts, world: &mut
 }
 
 /// Each marked element goes at the first step that is not earlier than its time.
-fn by_time(
-    body: &BodyParts,
-    marks: &[bool],
-    time_step: f64,
-    world: &mut World,
-    time: impl Fn(usize) -> f64,
-) {
+fn by_time(body: &BodyParts, marks: &[bool], time_step: f64, world: &mut World, time: impl Fn(usize) -> f64) {
     for &block in &body.blocks {
         let count = world.get::<RemovalStep>(block).map_or(0, |column| column.len());
         if world.get::<RemovalTime>(block).is_none() {

@@ -100,9 +100,7 @@ pub fn stable_step(world: &mut World) -> Option<StableStep> {
         all.extend(there.map(|(row, (square, volume))| Ranked { square, volume, block, row }));
     }
     // the highest frequency first; among equals the lowest row, whatever the order of work
-    all.par_sort_unstable_by(|a, b| {
-        b.square.total_cmp(&a.square).then(a.block.cmp(&b.block)).then(a.row.cmp(&b.row))
-    });
+    all.par_sort_unstable_by(|a, b| b.square.total_cmp(&a.square).then(a.block.cmp(&b.block)).then(a.row.cmp(&b.row)));
     let half = 0.5 * all.iter().map(|element| element.volume).sum::<f64>();
     let mut volume = 0.0;
     let usual = all.iter().find(|element| {

@@ -4,8 +4,8 @@ use super::Outcome;
 use super::arguments::CheckArguments;
 use super::failure::{Failure, count_of};
 use super::progress;
-use super::terminal::{self, Paint};
 use super::stability;
+use super::terminal::{self, Paint};
 use super::wording::{count, counted, quantity};
 use sinew::components::Block;
 use sinew::components::Cadence;
@@ -24,7 +24,8 @@ pub fn command(arguments: &CheckArguments) -> Outcome {
     let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
     let mut simulation = progress::during("building the simulation", || Simulation::new(&scene, &options))?;
     if arguments.json {
-        let text = serde_json::to_string_pretty(&facts(&mut simulation)?).map_err(|error| Failure::Silent(error.into()))?;
+        let text =
+            serde_json::to_string_pretty(&facts(&mut simulation)?).map_err(|error| Failure::Silent(error.into()))?;
         return terminal::say(&format!("{text}\n"));
     }
     let warnings = if diagnostics.is_empty() { String::new() } else { format!(", with {}", count_of(&diagnostics)) };

@@ -1,9 +1,9 @@
 //! From a scene to a simulation.
 
-use super::frequency::largest_eigenvalue;
-use super::options::{BackendChoice, Chosen, choose};
 use super::beat::Beat;
 use super::follow::Follower;
+use super::frequency::largest_eigenvalue;
+use super::options::{BackendChoice, Chosen, choose};
 use super::parameters::hand_out;
 use super::relax::Relaxing;
 use super::schedule::{Scheduled, check_names, resolve};
@@ -43,7 +43,8 @@ impl Simulation {
         let mut diagnostics = scene.diagnostics();
         let mut world = World::new();
         let plan = plan(scene, options.precision, options.threads, registry, &mut world, &mut diagnostics);
-        let Some(Plan { assembly, clock, stability, steps, schedule }) = plan.filter(|_| !diagnostics.has_errors()) else {
+        let Some(Plan { assembly, clock, stability, steps, schedule }) = plan.filter(|_| !diagnostics.has_errors())
+        else {
             return Err(diagnostics.into());
         };
         let (nodes, elements) = counts(&assembly);

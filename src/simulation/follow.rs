@@ -19,9 +19,9 @@ use std::time::Instant;
 const LOOKS: (u64, u64) = (16, 256);
 /// Between two looks strains change by so much, at the present speed.
 const STRAIN: f64 = 0.05;
-/// Steps between two findings of the highest frequency where the step can be made smaller on the cheap bound's word. Each
-/// costs about a hundred steps.
-const SHARP_LOOKS: u64 = 1000;
+/// The highest frequency is found so many times, and once more for so many steps: each costs about a hundred steps. Beyond
+/// that the cheap bound is taken at its word.
+const SHARP_LOOKS: (u64, u64) = (4, 1000);
 /// The highest frequency is found anew for a larger step when the bound of the elements has fallen to this share.
 const RELIEF: f64 = 0.6;
 
@@ -69,6 +69,8 @@ pub(super) struct Follower {
     pub known: f64,
     pub known_at: u64,
     seen: Option<Seen>,
+    /// Whether the step was made smaller on the word of the cheap bound.
+    pub guessed: bool,
     pub history: StepHistory,
 }
 
@@ -93,11 +95,13 @@ impl Follower {
             known: square_of(limit),
             known_at: 0,
             seen: None,
+            guessed: false,
             history: StepHistory {
                 smallest: step,
                 largest: step,
                 added_mass: added,
                 added_share: added / initial_mass,
+                beyond_since: (step > limit).then_some(0.0),
                 ..StepHistory::default()
             },
         })
@@ -113,7 +117,6 @@ impl Follower {
         let elements = if self.by_elements { self.safety * step_of(seen.at_rest) } else { f64::INFINITY };
         (self.safety * limit).min(elements).min(self.own)
     }
-
 }
 
 /// How many elements there were at the last finding.
@@ -179,12 +182,14 @@ impl Simulation {
         let pressing = time_step > follower.most() * step_of(seen.square);
         let before = follower.seen.unwrap_or(seen);
         let relieved = seen.of_elements < RELIEF * before.of_elements || seen.alive < before.alive;
-        let may_grow = follower.policy == WhenUnstable::Adapt && time_step * WORTH < follower.wanted(f64::INFINITY, &seen);
-        let waited = step >= follower.known_at + SHARP_LOOKS;
+        let may_grow =
+            follower.policy == WhenUnstable::Adapt && time_step * WORTH < follower.wanted(f64::INFINITY, &seen);
+        let affordable = follower.history.sharp_looks < SHARP_LOOKS.0 + step / SHARP_LOOKS.1;
         // the cheap bound may say anything of what it was not made for
         let acts = matches!(follower.policy, WhenUnstable::ScaleMass { .. } | WhenUnstable::Remove);
         let vague = acts || follower.policy != WhenUnstable::Watch && time_step > 2.0 * step_of(seen.square);
-        if pressing && (waited || vague) || relieved && may_grow && waited {
+        let better = affordable && (pressing || follower.guessed || relieved && may_grow);
+        if better || pressing && vague {
             bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
             if let Some(found) = limits(&mut self.world, ACCURACY) {
                 for block in &mut follower.watched {
@@ -193,6 +198,7 @@ impl Simulation {
                 (follower.known, follower.known_at) = (square_of(found.safe), step);
                 seen.square = follower.known;
                 follower.seen = Some(seen);
+                follower.guessed = false;
                 follower.history.sharp_looks += 1;
             }
         }
@@ -201,7 +207,8 @@ impl Simulation {
             WhenUnstable::Adapt => self.adapt(follower, &seen, time_step),
             WhenUnstable::Watch => {
                 if time_step > step_of(follower.known) {
-                    follower.history.beyond_since = Some(self.time());
+                    let now = self.time();
+                    follower.history.beyond_since.get_or_insert(now);
                     // told once; the guards see to the rest
                     follower.next = u64::MAX;
                 }

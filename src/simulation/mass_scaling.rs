@@ -111,8 +111,12 @@ pub(super) fn weigh(world: &mut World) -> Added {
 
 /// Gives nodes their parts of what was added to the elements of a block that are there; all of it (kg).
 fn spread(world: &World, entity: Entity, nodes: &mut [f64]) -> f64 {
-    let parts =
-        (world.get::<Block>(entity), world.get::<Connectivity>(entity), world.get::<AddedMass>(entity), world.get::<RestShape>(entity));
+    let parts = (
+        world.get::<Block>(entity),
+        world.get::<Connectivity>(entity),
+        world.get::<AddedMass>(entity),
+        world.get::<RestShape>(entity),
+    );
     let (Some(block), Some(connectivity), Some(added), Some(shape)) = parts else { return 0.0 };
     let corners = node_count(block.kind);
     let mut sum = 0.0;

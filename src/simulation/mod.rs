@@ -23,17 +23,17 @@ mod surface;
 mod tangent;
 mod watch;
 
+pub use follow::StepHistory;
 pub use options::{BackendChoice, Options};
 pub use relax::Equilibrium;
-pub use follow::StepHistory;
 pub use stable_step::Stability;
 pub use summary::{Summary, SystemTime};
 
 use crate::backend::kernel::KernelId;
-use beat::Beat;
 use crate::scene::Diagnostics;
 use crate::scene::schema::Scene;
 use crate::systems::{HostSystem, Phase};
+use beat::Beat;
 use bevy_ecs::prelude::*;
 use std::time::Duration;
 

@@ -35,6 +35,7 @@ impl Simulation {
             steps if steps >= 1.0 => (left / steps, clock.step + steps as u64),
             _ => (wanted, self.planned_steps()),
         };
+        follower.guessed |= !known_now;
         let history = &mut follower.history;
         history.changes += 1;
         history.smallest = history.smallest.min(new);
@@ -102,9 +103,10 @@ impl Simulation {
                 1.0 / LEAST,
                 follower.first
             ),
-            cause: "tissue that is squeezed flat or stiffens without end (remove such elements by VolumeRatioBelow, or \
+            cause:
+                "tissue that is squeezed flat or stiffens without end (remove such elements by VolumeRatioBelow, or \
                     when_unstable: Remove)"
-                .into(),
+                    .into(),
             good_until: self.time(),
         }))
     }

@@ -132,9 +132,9 @@ impl Simulation {
     fn device_steps(&mut self, target: u64) -> Result<(), Error> {
         let step = self.step_count();
         let custom_due = |step: u64| {
-            self.entries.iter().any(
-                |entry| matches!(entry.job, Job::Host { beat, observes: false, .. } if beat.is_due(step)),
-            )
+            self.entries
+                .iter()
+                .any(|entry| matches!(entry.job, Job::Host { beat, observes: false, .. } if beat.is_due(step)))
         };
         if custom_due(step) {
             return self.device_step_around_hosts(step);

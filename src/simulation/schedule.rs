@@ -53,7 +53,9 @@ pub fn resolve<'a>(
     let Some(names) = names else {
         let all = registry.systems().iter();
         return all
-            .filter_map(|system| Some(Scheduled { system, because: (system.because)(world)?, every: system.every, interval: None }))
+            .filter_map(|system| {
+                Some(Scheduled { system, because: (system.because)(world)?, every: system.every, interval: None })
+            })
             .collect();
     };
     let mut schedule: Vec<Scheduled<'a>> = Vec::new();

@@ -72,7 +72,11 @@ impl Simulation {
 }
 
 /// The stable step of a scene whose world has its laws, its step and the number of its steps.
-pub(super) fn choose(scene: &SceneFile, world: &mut World, diagnostics: &mut Diagnostics) -> Option<(Stability, f64, u64)> {
+pub(super) fn choose(
+    scene: &SceneFile,
+    world: &mut World,
+    diagnostics: &mut Diagnostics,
+) -> Option<(Stability, f64, u64)> {
     let bound = found_bound(world, diagnostics)?;
     warn_of_costly(&bound, diagnostics);
     let integration = &scene.scene.integration;
@@ -136,7 +140,8 @@ fn scale_mass(
         mass_scaling::make_heavier(world, block, &bounds, wanted);
     }
     let added = mass_scaling::weigh(world).mass;
-    let all: f64 = world.query::<&Mass>().iter(world).map(|mass| (0..mass.len()).map(|i| mass.get(i)).sum::<f64>()).sum();
+    let all: f64 =
+        world.query::<&Mass>().iter(world).map(|mass| (0..mass.len()).map(|i| mass.get(i)).sum::<f64>()).sum();
     let share = added / all;
     // rounding of what just fits is no reason to warn
     if share > most * (1.0 + 1e-6) || share > WORTH_TELLING {
@@ -161,8 +166,10 @@ pub(super) fn found_bound(world: &mut World, diagnostics: &mut Diagnostics) -> O
     };
     if !(bound.time_step.is_finite() && bound.time_step > 0.0) {
         let (body, element) = bound.culprit();
-        let message =
-            format!("no stable time step can be found: element {element} of {body} has a bound of {} s", bound.time_step);
+        let message = format!(
+            "no stable time step can be found: element {element} of {body} has a bound of {} s",
+            bound.time_step
+        );
         diagnostics.error_at("materials", message);
         return None;
     }
@@ -214,7 +221,9 @@ fn warn_of_costly(bound: &StableStep, diagnostics: &mut Diagnostics) {
     for worst in &bound.worst {
         warning.note(setter(worst));
     }
-    warning.note("mend the mesh there, or have such elements made heavier: integration: (when_unstable: ScaleMass())");
+    warning.note(
+        "look at the mesh and the material there, or have such elements made heavier: integration: (when_unstable: ScaleMass())",
+    );
 }
 
 /// An element that sets the step, in a line.

@@ -24,13 +24,8 @@ const COLUMNS: [&str; 8] = [
 ];
 
 /// What it writes.
-const WRITTEN: [&str; 5] = [
-    DisplacementStep::NAME,
-    DisplacementCompensation::NAME,
-    Work::NAME,
-    ViscousMemory::NAME,
-    RemovalStep::NAME,
-];
+const WRITTEN: [&str; 5] =
+    [DisplacementStep::NAME, DisplacementCompensation::NAME, Work::NAME, ViscousMemory::NAME, RemovalStep::NAME];
 
 impl Simulation {
     /// Takes steps of another length (s) from the present one on, whatever is stable; the scene ends with the last whole
@@ -98,7 +93,8 @@ fn relax_on(world: &mut World, clock: &Clock) -> Result<(), Error> {
     let blocks: Vec<Entity> = world.query_filtered::<Entity, With<ViscousMemory>>().iter(world).collect();
     for entity in blocks {
         let Some(block) = world.get::<Block>(entity) else { continue };
-        let Some([terms, volumetric]) = world.get::<Prony>(block.material).map(|prony| prony.coefficients(clock)) else {
+        let Some([terms, volumetric]) = world.get::<Prony>(block.material).map(|prony| prony.coefficients(clock))
+        else {
             continue;
         };
         let Some(mut law) = world.get::<BlockLaw<f64>>(entity).cloned() else { continue };

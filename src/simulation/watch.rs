@@ -1,7 +1,7 @@
 //! How much quicker elements can have become: a cheap bound, from how far they are deformed now.
 
-use super::mass_scaling::heaviness;
 use super::growth::{Growth, right_cauchy_green, sizes, with_identity};
+use super::mass_scaling::heaviness;
 use crate::assembly::square_frequencies;
 use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK};
 use crate::components::*;

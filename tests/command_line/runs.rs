@@ -39,7 +39,9 @@ fn a_scene_at_rest_shows_its_residual_and_how_it_came_down() {
     assert!(way.len() > 3 && last[2] <= 1e-6 && first[2] > 1e-3 && last[1] == 1.0, "{way:?}");
     let summary = place.json("out/block/summary.json");
     assert_eq!((&summary["ended"], &summary["equilibrium"]["reached"]), (&"finished".into(), &true.into()));
-    assert_eq!(summary["equilibrium"]["residual"], last[2]);
+    // the JSON reader rounds a number's last digit as it likes
+    let residual = summary["equilibrium"]["residual"].as_f64().unwrap();
+    assert!((residual / last[2] - 1.0).abs() <= 2.0 * f64::EPSILON, "{residual:e}, {:e}", last[2]);
     assert_eq!(summary["steps"], last[0]);
     assert!(summary["steps"].as_u64() < summary["planned_steps"].as_u64());
     assert_eq!(summary["energies"]["kinetic"], 0.0);

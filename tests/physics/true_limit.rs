@@ -29,7 +29,11 @@ const MATERIALS: [&str; 11] = [
 
 /// A block with corners out of line, 2 × 2 × 1 cells.
 fn scene(elements: &str, material: &str, held: bool) -> String {
-    let constraints = if held { "Fixed(on: Box(min: (-1, -1, -1), max: (0.03, 1, 1))), Fixed(on: Box(min: (0.07, 0.07, -1), max: (1, 1, 1)), axes: [Y])" } else { "" };
+    let constraints = if held {
+        "Fixed(on: Box(min: (-1, -1, -1), max: (0.03, 1, 1))), Fixed(on: Box(min: (0.07, 0.07, -1), max: (1, 1, 1)), axes: [Y])"
+    } else {
+        ""
+    };
     format!(
         r#"(duration: 1, bodies: {{"b": (material: "m", mesh: Hexahedron(corners: ((0, 0, 0), (0.1, 0.01, 0), (0.12, 0.09, 0.01),
         (0, 0.1, 0), (0, 0, 0.05), (0.1, 0, 0.04), (0.09, 0.11, 0.06), (0.02, 0.1, 0.05)), cells: (2, 2, 1),

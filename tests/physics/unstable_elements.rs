@@ -95,7 +95,12 @@ fn elements_that_need_a_smaller_step_are_removed() {
         let mut simulation = start(run, 0.05, &more).unwrap();
         simulation.finish().unwrap();
         let summary = simulation.summary("finished").unwrap();
-        assert_eq!((summary.removed_elements, summary.step_history.unwrap().removed), (1, 1), "{}", configurations()[run].name);
+        assert_eq!(
+            (summary.removed_elements, summary.step_history.unwrap().removed),
+            (1, 1),
+            "{}",
+            configurations()[run].name
+        );
         assert_eq!(simulation.time_step(), step);
         // the two that are left fall on
         near("mass", summary.mass - summary.removed_mass, 1000.0 * 4e-4 * 0.04, 0.016, 1e-6);
@@ -104,7 +109,21 @@ fn elements_that_need_a_smaller_step_are_removed() {
 
 #[test]
 fn unknown_policies_are_told_with_what_is_allowed() {
-    let wrong = sinew::SceneFile::from_text("test", &column(1.0, "integration: (when_unstable: Hope)"), Path::new("."), &[]);
+    let wrong =
+        sinew::SceneFile::from_text("test", &column(1.0, "integration: (when_unstable: Hope)"), Path::new("."), &[]);
     let text = wrong.unwrap_err().render(false);
     assert!(text.contains("Adapt") && text.contains("ScaleMass") && text.contains("Watch"), "{text}");
+}
+
+#[test]
+fn step_grows_again_when_the_element_that_sets_it_is_gone() {
+    for run in 0..configurations().len() {
+        let more = "removal: [(on: Elements([12]), when: At(0.01))]";
+        let mut simulation = start(run, 0.01, more).unwrap();
+        let first = simulation.time_step();
+        simulation.finish().unwrap();
+        let history = simulation.step_history().unwrap();
+        assert!(history.changes >= 1 && history.largest > 20.0 * first, "{history:?}");
+        near("the end", simulation.time(), 0.2, 0.2, 1e-12);
+    }
 }

@@ -1,7 +1,7 @@
 //! Durations, steps, intervals and curves.
 
 use super::{Judge, scene, show, with_unit};
-use crate::scene::schema::{Constraint, Curve, Load, Scene, WhenUnstable, When};
+use crate::scene::schema::{Constraint, Curve, Load, Scene, When, WhenUnstable};
 use crate::scene::syntax::Path;
 
 /// More points than a curve needs; a table of a longer signal is thinned out before.
