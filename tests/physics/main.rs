@@ -17,6 +17,7 @@ mod hourglass;
 mod laws;
 mod loads;
 mod locking;
+mod manufactured;
 mod motions;
 mod points;
 mod precision;
