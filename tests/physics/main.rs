@@ -11,6 +11,7 @@ mod conservation;
 mod determinism;
 mod elements;
 mod equilibrium;
+mod far_away;
 mod frequency_bound;
 mod grids;
 mod hourglass;
