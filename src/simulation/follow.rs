@@ -101,7 +101,7 @@ impl Follower {
                 largest: step,
                 added_mass: added,
                 added_share: added / initial_mass,
-                beyond_since: (step > limit).then_some(0.0),
+                beyond_since: (step > limit && scene.when_unstable() == WhenUnstable::Watch).then_some(0.0),
                 ..StepHistory::default()
             },
         })
