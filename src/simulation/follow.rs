@@ -22,6 +22,10 @@ const STRAIN: f64 = 0.05;
 /// The highest frequency is found so many times, and once more for so many steps: each costs about a hundred steps. Beyond
 /// that the cheap bound is taken at its word.
 const SHARP_LOOKS: (u64, u64) = (4, 1000);
+/// A step that is so many times the stable one by the cheap bound tells of its limits rather than of the step.
+pub(super) const VAGUE: f64 = 2.0;
+/// Steps between two findings beyond that.
+const REST: u64 = 100;
 /// The highest frequency is found anew for a larger step when the bound of the elements has fallen to this share.
 const RELIEF: f64 = 0.6;
 
@@ -185,11 +189,15 @@ impl Simulation {
         let may_grow =
             follower.policy == WhenUnstable::Adapt && time_step * WORTH < follower.wanted(f64::INFINITY, &seen);
         let affordable = follower.history.sharp_looks < SHARP_LOOKS.0 + step / SHARP_LOOKS.1;
-        // the cheap bound may say anything of what it was not made for
-        let acts = matches!(follower.policy, WhenUnstable::ScaleMass { .. } | WhenUnstable::Remove);
-        let vague = acts || follower.policy != WhenUnstable::Watch && time_step > 2.0 * step_of(seen.square);
         let better = affordable && (pressing || follower.guessed || relieved && may_grow);
-        if better || pressing && vague {
+        let worth_it = match follower.policy {
+            // far off the cheap bound says nothing
+            WhenUnstable::Adapt => time_step > VAGUE * step_of(seen.square) && step >= follower.known_at + REST,
+            WhenUnstable::Watch => false,
+            // mass is not added and elements are not removed on its word
+            WhenUnstable::ScaleMass { .. } | WhenUnstable::Remove => true,
+        };
+        if better || pressing && worth_it {
             bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
             if let Some(found) = limits(&mut self.world, ACCURACY) {
                 for block in &mut follower.watched {
@@ -214,7 +222,7 @@ impl Simulation {
                 }
                 Ok(())
             }
-            _ if time_step <= follower.most() * step_of(seen.square) => Ok(()),
+            _ if follower.known_at != step || time_step <= follower.most() * step_of(seen.square) => Ok(()),
             WhenUnstable::ScaleMass { .. } => self.make_heavier(follower, time_step),
             WhenUnstable::Remove => self.remove_quickest(follower, &seen),
         }

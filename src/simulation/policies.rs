@@ -1,6 +1,6 @@
 //! What is done when the stable step becomes smaller than the step: the policies of `integration.when_unstable`.
 
-use super::follow::{Follower, square_of, step_of};
+use super::follow::{Follower, VAGUE, square_of, step_of};
 use super::stable_step::{ACCURACY, limits};
 use super::watch::Seen;
 use super::{Simulation, mass_scaling};
@@ -21,7 +21,9 @@ impl Simulation {
         let limit = step_of(seen.square);
         let wanted = follower.wanted(limit, seen);
         let known_now = follower.known_at == self.step_count();
-        let smaller = time_step > follower.most() * limit;
+        // of what the cheap bound was not made for it may say anything: until the true limit is found the step stays
+        let sure = known_now || time_step <= VAGUE * limit;
+        let smaller = sure && time_step > follower.most() * limit;
         if !(smaller || known_now && wanted > WORTH * time_step) {
             return Ok(());
         }
