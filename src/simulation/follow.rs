@@ -17,8 +17,9 @@ use std::time::Instant;
 /// Steps between two looks at all elements: at least, and at most; and no more than half of all steps so far, because what
 /// begins smoothly becomes faster.
 const LOOKS: (u64, u64) = (16, 256);
-/// Between two looks strains change by so much, at the present speed.
-const STRAIN: f64 = 0.05;
+/// Between two looks strains change by so much, at the present speed: close to the limit, and where the step is half of it
+/// or less.
+const STRAIN: (f64, f64) = (0.05, 0.25);
 /// The highest frequency is found so many times, and once more for so many steps: each costs about a hundred steps. Beyond
 /// that the cheap bound is taken at its word.
 const SHARP_LOOKS: (u64, u64) = (4, 1000);
@@ -170,7 +171,11 @@ impl Simulation {
         let all = follower.watched.iter().map(|block| block.look(&self.world, follower.known));
         let mut seen = all.fold(Seen::NOTHING, Seen::and);
         follower.history.looks += 1;
-        let calm = ((STRAIN / seen.speed) as u64).min(step / 2);
+        let time_step = self.world.resource::<Clock>().time_step;
+        // far below the limit more may happen unseen
+        let room = follower.most() * step_of(seen.square) / time_step - 1.0;
+        let strain = (STRAIN.1 * room).clamp(STRAIN.0, STRAIN.1);
+        let calm = ((strain / seen.speed) as u64).min(step / 2);
         follower.next = step + calm.clamp(LOOKS.0, LOOKS.1);
         if seen.alive < before_alive(follower) && matches!(follower.policy, WhenUnstable::ScaleMass { .. }) {
             // what was added to removed elements goes with them
@@ -182,7 +187,6 @@ impl Simulation {
             // what is no number is the guards' business
             return Ok(());
         }
-        let time_step = self.world.resource::<Clock>().time_step;
         let pressing = time_step > follower.most() * step_of(seen.square);
         let before = follower.seen.unwrap_or(seen);
         let relieved = seen.of_elements < RELIEF * before.of_elements || seen.alive < before.alive;

@@ -113,3 +113,56 @@ fn a_scene_that_stays_stable_keeps_its_step_and_its_bits() {
     };
     assert_eq!(end("when_unstable: Adapt"), end("when_unstable: Watch"));
 }
+
+/// A sheared viscous block that is held: the step is changed while its stress relaxes.
+#[test]
+fn relaxed_stress_goes_on_across_changes_of_the_step() {
+    let text = r#"(duration: 2, bodies: {"b": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (1, 1, 1), elements: Hex8MeanDilatation), material: "m")},
+        materials: {"m": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45),
+            prony: (terms: [(alpha: 0.3, tau: 0.1), (alpha: 0.2, tau: 1)], volumetric: [(alpha: 0.2, tau: 0.3)]))},
+        constraints: [Prescribed(on: All, gradient: ((0.1, 0.2, 0), (0, 0, 0), (0, 0, 0)), curve: Smooth(end: 0.2))],
+        integration: (when_unstable: Watch))"#;
+    for run in configurations() {
+        let force = |simulation: &mut Simulation| simulation.internal_forces("b").unwrap()[0];
+        let (mut changed, mut even) = (run.start(text), run.start(text));
+        let first = even.time_step();
+        for (number, factor) in [0.2, 0.7, 0.1, 1.0].iter().enumerate() {
+            changed.advance_to(0.15 * (number + 1) as f64).unwrap();
+            let before = force(&mut changed);
+            changed.set_time_step(factor * first).unwrap();
+            let after = force(&mut changed);
+            near("the force", (after - before).length(), 0.0, before.length(), run.bound(1e-12, 2e-6));
+        }
+        changed.advance_to(1.5).unwrap();
+        even.advance_to(1.5).unwrap();
+        let (a, b) = (force(&mut changed), force(&mut even));
+        // both recursions are of second order in Δt/τ, which is at most 0.03 here
+        near("the end", (a - b).length(), 0.0, b.length(), 1e-3);
+    }
+}
+
+#[test]
+fn what_goes_by_time_and_what_is_observed_keeps_its_times() {
+    let text = r#"(duration: 0.4, bodies: {"b": (mesh: Box(size: (0.1, 0.02, 0.02), cells: (6, 1, 1), elements: Hex8), material: "m")},
+        materials: {"m": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.3))},
+        removal: [(on: Plane(normal: (1, 0, 0), at: 0), when: At(0.1))],
+        probes: {"end": (what: Position, on: Plane(normal: (1, 0, 0), at: 0.1), every: 0.04)},
+        integration: (step: 1e-3))"#;
+    for run in configurations() {
+        let mut simulation = run.start(text);
+        let mass = |simulation: &mut Simulation| simulation.masses("b").unwrap().iter().sum::<f64>();
+        let whole = mass(&mut simulation);
+        simulation.advance(51).unwrap();
+        simulation.set_time_step(3e-4).unwrap();
+        simulation.advance_to(0.0999).unwrap();
+        near("mass before", mass(&mut simulation), whole, whole, 1e-6);
+        simulation.advance_to(0.1005).unwrap();
+        near("mass after", mass(&mut simulation), whole * 5.0 / 6.0, whole, 1e-6);
+        simulation.advance_to(0.1206).unwrap();
+        let summary = simulation.summary("").unwrap();
+        let seen = summary.probes["end"].0;
+        assert!((0.12 - 1e-9..0.1204).contains(&seen), "{}: seen at {seen}", run.name);
+        simulation.finish().unwrap();
+        assert!((simulation.time() - 0.4).abs() <= 0.5 * 3e-4, "{}", simulation.time());
+    }
+}

@@ -292,7 +292,7 @@ fn times_and_curves_are_checked() {
         (
             "duration: 0.5,",
             "duration: 0.5, integration: (when_unstable: ScaleMass(most: -0.1)),",
-            r"3:67: error: `most` must be above 0 and at most 1, found -0.1 | it is the share of all mass that may be added; 0.05 when left out",
+            r"3:65: error: `most` must be above 0 and at most 1, found -0.1 | it is the share of all mass that may be added; 0.05 when left out",
         ),
         (
             "duration: 0.5,",
