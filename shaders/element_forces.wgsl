@@ -27,8 +27,8 @@ fn element_forces(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wor
             atomicMin(&first_inverted[0], element);
         }
         let pressure = viscous_pressure(element, point, point_pressure(mean, k));
-        let stress = sym_plus(isochoric_stress(element, point, k), elastic_volumetric(k, pressure));
-        forces = add_stress(forces, point, at, elastic_first_stress(at.gradient, stress));
+        let stress = elastic_first_stress(at.gradient, k, isochoric_stress(element, point, k), pressure);
+        forces = add_stress(forces, point, at, stress);
     }
     write_forces(element, corner_forces(element, e, forces));
 }

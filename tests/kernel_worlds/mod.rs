@@ -37,10 +37,11 @@ pub struct Effects {
     pub reproject: bool,
 }
 
-pub const LAWS: [&str; 6] = [
+pub const LAWS: [&str; 7] = [
     "linear: Moduli(shear: 1034, bulk: 10000)",
     "st_venant_kirchhoff: Moduli(shear: 1034, bulk: 10000)",
     "neo_hookean: Moduli(shear: 1034, bulk: 10000)",
+    "stable_neo_hookean: Moduli(shear: 1034, bulk: 10000)",
     "mooney_rivlin: (c10: 300, c01: 200, bulk: 10000)",
     "ogden: (terms: [(mu: 1400, alpha: 1.3), (mu: 3, alpha: 5), (mu: -30, alpha: -2)], bulk: 10000)",
     "arruda_boyce: (shear: 700, locking_stretch: 1.8, bulk: 10000)",

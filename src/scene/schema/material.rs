@@ -19,6 +19,9 @@ pub struct Material {
     /// The neo-Hookean law, for large strains.
     #[serde(default)]
     pub neo_hookean: Option<Elasticity>,
+    /// The stable neo-Hookean law, defined for every deformation, also of tissue that is turned inside out.
+    #[serde(default)]
+    pub stable_neo_hookean: Option<Elasticity>,
     /// The Mooney-Rivlin law, for large strains.
     #[serde(default)]
     pub mooney_rivlin: Option<MooneyRivlin>,
