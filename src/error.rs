@@ -17,6 +17,9 @@ pub enum Error {
     /// The GPU failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    /// The GPU failed in the middle of a run. Outputs up to the last observation are kept.
+    #[error("{0}")]
+    GpuFailed(Box<GpuFailure>),
     /// Outputs could not be written.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -29,6 +32,23 @@ pub enum Error {
     /// Options that do not go together.
     #[error("{0}")]
     Options(String),
+}
+
+/// How far a run came whose GPU failed.
+#[derive(Clone, Debug, thiserror::Error)]
+#[error(
+    "the GPU failed after t = {good_until} s, before t = {time} s (step {step}): {reason}. Outputs up to t = {good_until} s are \
+     kept. The CPU takes every scene: --backend cpu"
+)]
+pub struct GpuFailure {
+    /// What the GPU says.
+    pub reason: GpuError,
+    /// When it was noticed (s).
+    pub time: f64,
+    /// The same in steps.
+    pub step: u64,
+    /// The last observation before (s).
+    pub good_until: f64,
 }
 
 /// Where and how a simulation broke down.

@@ -38,10 +38,10 @@ pub use bevy_ecs;
 pub use glam;
 pub use serde;
 
-pub use error::{Error, Instability, NotConverged};
+pub use error::{Error, GpuFailure, Instability, NotConverged};
 pub use scene::SceneFile;
 pub use simulation::explain;
-pub use simulation::{BackendChoice, Equilibrium, Options, Simulation, Summary, SystemTime};
+pub use simulation::{BackendChoice, Equilibrium, Inversions, Options, Simulation, Summary, SystemTime};
 
 /// The code in the readme compiles and runs.
 #[cfg(doctest)]

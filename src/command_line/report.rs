@@ -163,6 +163,14 @@ fn mass(summary: &Summary, page: &mut Page) {
         );
     }
     page.row("mass", line);
+    let inversions = summary.inversions.iter().map(|found| {
+        let left = match found.left {
+            0 => "none is at the end".to_string(),
+            left => format!("{} still at the end", counted(left as u64, "element")),
+        };
+        format!("elements of {} were inside out, one of them {}; {left}", found.body, found.element)
+    });
+    page.rows("inversion", inversions.collect::<Vec<_>>());
 }
 
 fn probes(summary: &Summary, scene: &SceneFile, page: &mut Page) {

@@ -6,7 +6,7 @@ use super::progress::{self, Progress};
 use super::terminal::{self, Paint};
 use super::{Outcome, interrupt, report};
 use sinew::output::{Folder, OutputError, replace, summary};
-use sinew::{Error, Options, SceneFile, Simulation, Summary};
+use sinew::{BackendChoice, Error, Options, SceneFile, Simulation, Summary};
 use std::io::Write;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -23,9 +23,26 @@ const CHUNK: Duration = Duration::from_millis(50);
 pub fn command(arguments: &RunArguments) -> Outcome {
     let scene = SceneFile::load(&arguments.scene.scene, &arguments.scene.set)?;
     let folder = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene.scene));
-    let (summary, ended) = run(&scene, &arguments.how.options(), &folder)?;
+    let options = arguments.how.options();
+    let mut outcome = run(&scene, &options, &folder);
+    if let Some((cpu, why)) = after_the_gpu(&options, &outcome) {
+        terminal::aside(&format!("{why}\n`--backend auto` takes the CPU then, from the start\n"));
+        outcome = run(&scene, &cpu, &folder);
+    }
+    let (summary, ended) = outcome?;
     terminal::say(&report::text(&summary, &scene, &folder, Paint::of_stdout()))?;
     ended
+}
+
+/// How to run again what the GPU gave up and was not asked for, and what it said.
+fn after_the_gpu(options: &Options, outcome: &Result<(Summary, Outcome), Failure>) -> Option<(Options, String)> {
+    let (Err(failure) | Ok((_, Err(failure)))) = outcome else { return None };
+    match failure {
+        Failure::Engine(error) if options.backend == BackendChoice::Auto && matches!(**error, Error::GpuFailed(_)) => {
+            Some((Options { backend: BackendChoice::Cpu, ..options.clone() }, error.to_string()))
+        }
+        _ => None,
+    }
 }
 
 /// Runs a scene into a folder: what it amounted to, and how it ended. An outer error means that there is no summary.

@@ -19,7 +19,7 @@ mod observation;
 
 pub use block::{
     Alive, Block, BlockCorners, Connectivity, ElementVolume, FamilyDirection, FibreDirection, FirstInverted,
-    NodalVolumeChange, RemovalStep, RemovedEnergy, RestShape, ViscousMemory, patch_groups,
+    NodalVolumeChange, OnInversion, RemovalStep, RemovedEnergy, RestShape, ViscousMemory, patch_groups,
 };
 pub use clock::{Clock, Relaxation, Signal, Signals};
 pub use column::{Column, Precision, Reals};

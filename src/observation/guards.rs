@@ -3,6 +3,7 @@
 use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::error::{Error, Instability};
+use crate::scene::schema::Inversion;
 use bevy_ecs::prelude::*;
 
 /// How much more energy elements may hold than was spent on them, in shares of all there is: more than a step near the
@@ -25,15 +26,17 @@ pub(super) fn find(world: &mut World, good_until: f64, beyond: bool) -> Result<O
         }
     }
     // what turned inside out did so before it blew up
-    for (entity, block, inverted) in world.query::<(Entity, &Block, &FirstInverted)>().iter(world) {
+    type Noted<'a> = (Entity, &'a Block, &'a FirstInverted, Option<&'a OnInversion>);
+    for (entity, block, inverted, policy) in world.query::<Noted>().iter(world) {
         if inverted[0] != u32::MAX
+            && policy != Some(&OnInversion(Inversion::Recover))
             && let Some(authoring) = world.get::<Authoring>(block.body)
         {
             let place = authoring.blocks.iter().position(|&b| b == entity).unwrap_or(0);
             let element = authoring.element_id(place, inverted[0] as usize);
             let what = format!("element {element} is turned inside out (J < 0)");
-            let cause = "a load or motion too large or too sudden for the mesh (use a ramp, a finer mesh, or remove \
-                         such elements by VolumeRatioBelow), or a time step that is too large (lower integration.safety)";
+            let cause = "a load or motion too large or too sudden for the mesh (use a ramp, a finer mesh, or say by \
+                         `inversion` of the material what becomes of such elements), or a time step that is too large (lower integration.safety)";
             found = Some((block.body, what, cause));
         }
     }

@@ -16,7 +16,7 @@ mod surface;
 
 pub use options::{BackendChoice, Options};
 pub use relax::Equilibrium;
-pub use summary::{Summary, SystemTime};
+pub use summary::{Inversions, Summary, SystemTime};
 
 use crate::assembly::StableStep;
 use crate::backend::kernel::KernelId;

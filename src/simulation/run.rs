@@ -6,7 +6,7 @@ use crate::backend::cpu::Cpu;
 use crate::backend::device::{Device, bring_to_host, send_to_device};
 use crate::backend::kernel::KernelId;
 use crate::components::*;
-use crate::error::Error;
+use crate::error::{Error, GpuFailure};
 use crate::observation::Observer;
 use bevy_ecs::prelude::*;
 use std::time::Instant;
@@ -46,7 +46,14 @@ impl Simulation {
             None => self.steps_to(target),
         };
         self.elapsed += started.elapsed();
-        result
+        result.map_err(|error| self.with_what_is_kept(error))
+    }
+
+    /// Says of a GPU that failed how far the run came.
+    fn with_what_is_kept(&self, error: Error) -> Error {
+        let Error::Gpu(reason) = error else { return error };
+        let good_until = self.world.get_resource::<Observer>().map_or(0.0, |observer| observer.good_until);
+        Error::GpuFailed(Box::new(GpuFailure { reason, time: self.time(), step: self.step_count(), good_until }))
     }
 
     fn steps_to(&mut self, target: u64) -> Result<(), Error> {

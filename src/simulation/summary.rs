@@ -4,7 +4,10 @@ use super::{Job, Simulation};
 use crate::backend::device::{Device, Traffic};
 use crate::components::*;
 use crate::error::Error;
+use crate::evaluation::BlockView;
 use crate::observation::Observer;
+use crate::scene::schema::Inversion;
+use bevy_ecs::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -59,10 +62,43 @@ pub struct Summary {
     pub removed_mass: f64,
     /// Elements removed.
     pub removed_elements: usize,
+    /// Of each block whose elements were turned inside out and recover: who, and whether some still are.
+    pub inversions: Vec<Inversions>,
     /// What each probe saw last: time (s) and values.
     pub probes: BTreeMap<String, (f64, Vec<f64>)>,
     /// How it ended: `finished`, `interrupted`, or what went wrong.
     pub ended: String,
+}
+
+/// Elements of a block that were turned inside out in a run and are left to recover.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Inversions {
+    /// The body.
+    pub body: String,
+    /// One of them, by the author's number.
+    pub element: u64,
+    /// How many are inside out at the end.
+    pub left: usize,
+}
+
+fn inversions(world: &mut World) -> Result<Vec<Inversions>, Error> {
+    crate::backend::device::bring_to_host(world, |_, name| name == FirstInverted::NAME || name == Displacement::NAME)?;
+    let mut query = world.query::<(Entity, &FirstInverted, &OnInversion)>();
+    let recovering = query.iter(world).filter(|(.., policy)| policy.0 == Inversion::Recover);
+    let mut noted: Vec<(Entity, u32)> = recovering.map(|(entity, first, _)| (entity, first[0])).collect();
+    noted.retain(|&(_, row)| row != u32::MAX);
+    noted.sort_unstable();
+    let found = noted.into_iter().filter_map(|(entity, row)| {
+        let view = BlockView::now(world, entity)?;
+        let authoring = world.get::<Authoring>(view.block.body)?;
+        let place = authoring.blocks.iter().position(|&block| block == entity)?;
+        Some(Inversions {
+            body: world.get::<Label>(view.block.body)?.0.clone(),
+            element: authoring.element_id(place, row as usize),
+            left: (0..view.block.count).filter(|&row| view.element(row).is_inverted()).count(),
+        })
+    });
+    Ok(found.collect())
 }
 
 /// A system's share of a run.
@@ -130,6 +166,7 @@ impl Simulation {
             mass: facts.initial_mass,
             removed_mass: facts.initial_mass - mass,
             removed_elements: removed,
+            inversions: inversions(&mut self.world)?,
             probes: self.world.resource::<Observer>().latest.clone(),
             ended: ended.into(),
         })

@@ -15,6 +15,7 @@ mod far_away;
 mod frequency_bound;
 mod grids;
 mod hourglass;
+mod inversion;
 mod laws;
 mod loads;
 mod locking;

@@ -1,7 +1,7 @@
 //! Static analyses: their numbers, and what of a scene has no meaning at rest.
 
 use super::{Judge, scene, show};
-use crate::scene::schema::{Analysis, Constraint, Quantity, Scene};
+use crate::scene::schema::{Analysis, Constraint, Inversion, Quantity, Scene};
 use glam::DVec3;
 
 pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
@@ -35,6 +35,14 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
             .note("which ones go depends on the way to rest, and pseudo-steps are no way that a body takes")
             .note("leave `removal` out, or use `analysis: Transient`");
     }
+    for (name, material) in &scene_.materials {
+        if material.inversion == Some(Inversion::Remove) {
+            judge
+                .out
+                .error_at(scene("materials").name(name).name("inversion"), "a static analysis cannot remove elements")
+                .note("allowed: Stop, and Recover for stable_neo_hookean");
+        }
+    }
     meaningless(scene_, judge);
     for name in scene_.bodies.keys() {
         let holds = |constraint: &Constraint| {
@@ -59,6 +67,9 @@ fn meaningless(scene_: &Scene, judge: &mut Judge) {
         if body.velocity != DVec3::ZERO || body.spin != DVec3::ZERO {
             let field = if body.velocity != DVec3::ZERO { "velocity" } else { "spin" };
             ignore(scene("bodies").name(name).name(field), "how a body moves at the start");
+        }
+        if body.start.is_some() {
+            ignore(scene("bodies").name(name).name("start"), "how a body is deformed at the start");
         }
     }
     if scene_.integration.step.is_some() {

@@ -3,7 +3,7 @@
 use super::{Judge, scene, select};
 use crate::mesh::generators::cells_around;
 use crate::scene::load::SceneFile;
-use crate::scene::schema::{Accuracy, AccuracyReference, MeshSource, Picture};
+use crate::scene::schema::{Accuracy, AccuracyReference, MeshSource, Picture, Start};
 use crate::scene::suggest::{choice, list};
 use crate::scene::syntax::Path;
 
@@ -27,6 +27,9 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
                 .note("each time makes eight elements of one: 10 times make a billion of it");
         }
         judge.not_negative(&path.name("hourglass"), body.hourglass, "");
+        if let Some(Start::Scrambled { amplitude, .. }) = body.start {
+            judge.not_negative(&path.name("start").name("amplitude"), amplitude, "m");
+        }
         for (i, region) in body.regions.iter().enumerate() {
             select::validate(judge, &path.name("regions").index(i).name("on"), &region.on);
         }
