@@ -17,6 +17,8 @@ const SUPPORT: [(&str, &str); 28] = [
     ("damping_coefficient", "damping, in integrate"),
     ("displacement_compensation", "compensated sums, in integrate"),
     ("due", "removal"),
+    ("note_inverted", "elements turned inside out stop the run, or recover"),
+    ("remove_inverted", "elements turned inside out go"),
     ("removed_motion", "the motion of elements that go"),
     ("eigen", "principal stretches, in laws"),
     ("elementary", "exponential and logarithm, in laws"),
@@ -137,6 +139,7 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
         "integrate",
         "kinematics",
         "neo_hookean",
+        "note_inverted",
         "point",
         "point_pressure",
         "row",
@@ -147,7 +150,8 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
     ];
     assert_eq!(files, expected.map(|stem| format!("{stem}.wgsl")).iter().map(String::as_str).collect());
     let without = buffers(&Effects::default());
-    let cases: [(Effects, &[&str], &[&str]); 8] = [
+    let cases: [(Effects, &[&str], &[&str]); 9] = [
+        (Effects { inversion: Some("Remove"), ..Effects::default() }, &["remove_inverted"], &["removal_step"]),
         (Effects { fibres: Some(AROUND), ..Effects::default() }, &["fibres", "fibres_field"], &["fibre_direction"]),
         (Effects { prony: 1, ..Effects::default() }, &["prony"], &["viscous_memory"]),
         (Effects { damping: true, ..Effects::default() }, &["damping_coefficient"], &["damping_coefficient"]),

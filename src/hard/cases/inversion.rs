@@ -10,7 +10,8 @@ const ENDS: &str = "materials.tissue=(density: 1000, neo_hookean: Young(young: 3
 /// The largest displacement over a length (m).
 fn left(simulation: &mut Simulation, length: f64) -> Result<f64, Error> {
     let displacements = simulation.displacements("body")?;
-    Ok(displacements.iter().fold(0.0_f64, |largest, u| if u.is_finite() { largest.max(u.length()) } else { f64::NAN }) / length)
+    Ok(displacements.iter().fold(0.0_f64, |largest, u| if u.is_finite() { largest.max(u.length()) } else { f64::NAN })
+        / length)
 }
 
 /// H05.
