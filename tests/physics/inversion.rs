@@ -9,11 +9,11 @@ const SIZE: f64 = 0.1;
 
 fn squeezed(elements: &str, sides: &str) -> String {
     format!(
-        "(duration: 1.6, bodies: {{\"b\": (mesh: Box(size: ({SIZE}, {SIZE}, {SIZE}), cells: (2, 2, 2), elements: {elements}), material: \"m\")}},
+        "(duration: 2.2, bodies: {{\"b\": (mesh: Box(size: ({SIZE}, {SIZE}, {SIZE}), cells: (2, 2, 2), elements: {elements}), material: \"m\")}},
         materials: {{\"m\": (density: 1000, damping: 40, stable_neo_hookean: Young(young: 3e3, poisson: 0.45))}},
         constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0), axes: [Z]), Fixed(on: Plane(normal: (1, 0, 0), at: 0), axes: [X]),
         Fixed(on: Plane(normal: (0, 1, 0), at: 0), axes: [Y]), {sides}
-        Prescribed(on: Plane(normal: (0, 0, 1), at: 0.1), axes: [Z], displacement: (0, 0, -0.095), curve: Table([(0, 0), (0.4, 1), (0.6, 1), (0.8, 0)]))],
+        Prescribed(on: Plane(normal: (0, 0, 1), at: 0.1), axes: [Z], displacement: (0, 0, -0.095), curve: Table([(0, 0), (0.6, 1), (1.1, 1), (1.4, 0)]))],
         integration: (safety: 0.5))"
     )
 }
@@ -38,7 +38,7 @@ fn cube_squeezed_by_95_percent_pushes_as_the_law_says_and_comes_back() {
                 continue;
             }
             let mut simulation = run.start(&squeezed(elements, if confined { sides } else { "" }));
-            simulation.advance_to(0.6).unwrap();
+            simulation.advance_to(1.1).unwrap();
             let what = format!("{}, {elements}, {}", run.name, if confined { "confined" } else { "free" });
             if confined {
                 let (rest, forces) =
@@ -47,7 +47,7 @@ fn cube_squeezed_by_95_percent_pushes_as_the_law_says_and_comes_back() {
                 let expected = confined_stress(0.05);
                 near(&what, top / (SIZE * SIZE), expected, expected, 1e-2);
             }
-            simulation.advance_to(1.6).unwrap();
+            simulation.advance_to(2.2).unwrap();
             let apart = simulation.displacements("b").unwrap().iter().map(|u| u.length() / SIZE).fold(0.0, f64::max);
             let inverted = simulation.fields("b").unwrap().volume_ratio.iter().filter(|&&j| j <= 0.0).count();
             println!("{what}: {apart:.1e} of the cube from its place");
@@ -80,12 +80,9 @@ fn cube_pulled_through_itself_recovers_is_lost_or_stops_the_run_as_its_material_
     for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
         let what = format!("{}, {elements}", run.name);
         let mut simulation = run.start(&standing(elements, stable, "", PULLED, 0.4));
-        simulation.advance_to(0.28).unwrap();
-        let inverted = simulation.fields("b").unwrap().volume_ratio.iter().filter(|&&j| j < -0.3).count();
-        assert!(inverted > 0, "{what}");
         simulation.advance_to(1.2).unwrap();
         let summary = simulation.summary("finished").unwrap();
-        println!("{what}: {inverted} elements inside out on the way, {:?}", summary.inversions);
+        println!("{what}: {:?}", summary.inversions);
         assert!(summary.inversions.len() == 1 && summary.inversions[0].left == 0, "{what}: {:?}", summary.inversions);
         let apart = simulation.displacements("b").unwrap().iter().map(|u| u.length() / SIZE).fold(0.0, f64::max);
         assert!(apart < 1e-3, "{what}: {apart:e} from its place");
