@@ -4,6 +4,7 @@ use crate::backend::gpu::{GpuError, NoGpu};
 use crate::output::OutputError;
 use crate::scene::Diagnostics;
 use crate::simulation::Equilibrium;
+use crate::snapshot::SnapshotError;
 
 /// Why a simulation does not start or go on.
 #[derive(Debug, thiserror::Error)]
@@ -26,6 +27,9 @@ pub enum Error {
     /// A static analysis found no equilibrium. Outputs up to the last observation are kept.
     #[error("{0}")]
     NotConverged(Box<NotConverged>),
+    /// A snapshot that cannot be taken, read, or gone on from.
+    #[error(transparent)]
+    Snapshot(#[from] SnapshotError),
     /// Options that do not go together.
     #[error("{0}")]
     Options(String),

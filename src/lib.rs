@@ -30,6 +30,7 @@ pub mod output;
 pub mod render;
 pub mod scene;
 mod simulation;
+pub mod snapshot;
 #[path = "../systems/mod.rs"]
 pub mod systems;
 
@@ -42,6 +43,7 @@ pub use error::{Error, Instability, NotConverged};
 pub use scene::SceneFile;
 pub use simulation::explain;
 pub use simulation::{BackendChoice, Equilibrium, Options, Simulation, Summary, SystemTime};
+pub use snapshot::Snapshot;
 
 /// The code in the readme compiles and runs.
 #[cfg(doctest)]

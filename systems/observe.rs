@@ -20,6 +20,7 @@ pub fn system() -> System {
         every: 1,
         custom: false,
         parameters: None,
+        state: None,
     }
 }
 

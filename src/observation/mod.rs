@@ -14,6 +14,7 @@ use crate::error::{Error, Instability};
 use crate::output::{Folder, OutputError, Series, Table};
 use bevy_ecs::prelude::*;
 use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 
 /// Steps between two looks at the guards, at most.
 pub const GUARD_STEPS: u64 = 256;
@@ -25,6 +26,8 @@ pub struct Observer {
     pub fields: Cadence,
     /// How often energies are taken; `None`: not at all.
     pub energy: Option<Cadence>,
+    /// How often snapshots are written; `None`: never.
+    pub snapshots: Option<Cadence>,
     /// Whether the guards look at the balance of energy: when a step beyond the stable one is allowed.
     pub watch_energy: bool,
     /// The last step of the run, which is always observed. That of a static analysis is known when it is there.
@@ -44,6 +47,7 @@ pub struct Observer {
 }
 
 struct Files {
+    folder: PathBuf,
     series: Series,
     energies: Option<Table>,
     probes: BTreeMap<String, Table>,
@@ -85,18 +89,25 @@ impl Observer {
             None => None,
             Some(_) => Some(Table::create(&folder.claim("convergence.csv")?, &CONVERGENCE)?),
         };
-        self.files = Some(Files { series, energies, probes, convergence });
+        self.files = Some(Files { folder: folder.path().to_path_buf(), series, energies, probes, convergence });
         Ok(())
     }
 
     /// The next step, after `step`, at whose end something is due.
     pub fn next_due(&self, step: u64) -> u64 {
         let mut due = (step / GUARD_STEPS + 1) * GUARD_STEPS;
-        let cadences = self.energy.iter().chain(self.probes.iter().map(|(_, _, cadence)| cadence));
+        let cadences =
+            self.energy.iter().chain(&self.snapshots).chain(self.probes.iter().map(|(_, _, cadence)| cadence));
         for cadence in cadences.chain([&self.fields]).filter(|_| !self.to_rest) {
             due = due.min(cadence.next_after(step));
         }
         if step < self.last_step { due.min(self.last_step) } else { due }
+    }
+
+    /// The folder for the snapshot that is due at a step, if one is: in each interval, and at the end.
+    pub fn snapshot_folder(&self, step: u64) -> Option<&Path> {
+        let due = self.snapshots?.is_due(step) || step == self.last_step;
+        self.files.as_ref().filter(|_| due && step > 0).map(|files| files.folder.as_path())
     }
 
     /// What the guards find at the present step.

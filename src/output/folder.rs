@@ -89,7 +89,9 @@ fn clear(folder: &Path, names: &BTreeSet<String>) -> Result<(), OutputError> {
 fn is_known(name: &str) -> bool {
     let number = name.strip_prefix("fields_").and_then(|rest| rest.strip_suffix(".vtu"));
     let frame = number.is_some_and(|digits| digits.len() >= 6 && digits.bytes().all(|byte| byte.is_ascii_digit()));
-    frame || KNOWN.contains(&name)
+    let number = name.strip_prefix("snapshot_").and_then(|rest| rest.strip_suffix(".sinew"));
+    let snapshot = number.is_some_and(|digits| digits.len() >= 9 && digits.bytes().all(|byte| byte.is_ascii_digit()));
+    frame || snapshot || KNOWN.contains(&name)
 }
 
 /// A name that stays in the folder on every system.

@@ -153,7 +153,8 @@ impl Diagnostics {
         let Some(tree) = self.tree.as_ref() else { return false };
         let within = path.into().span(&tree.root);
         let inside = |at: &Span| within.start <= at.start && at.end <= within.end;
-        let told = |d: &Diagnostic| d.severity == Severity::Error && d.file.is_none() && d.at.as_ref().is_some_and(inside);
+        let told =
+            |d: &Diagnostic| d.severity == Severity::Error && d.file.is_none() && d.at.as_ref().is_some_and(inside);
         self.list.iter().any(told)
     }
 

@@ -16,6 +16,7 @@ use crate::error::Error;
 use crate::observation::Observer;
 use crate::scene::schema::Analysis;
 use crate::scene::{Diagnostics, SceneFile};
+use crate::snapshot::{Keeping, identity};
 use crate::systems::{HostSystem, Phase, Registry};
 use bevy_ecs::component::ComponentId;
 use bevy_ecs::prelude::*;
@@ -92,6 +93,8 @@ impl Simulation {
             let (name, because) = (system.name.clone(), scheduled.because.clone());
             entries.push(Entry { name, phase: system.phase, because, job, time: Duration::ZERO, runs: 0 });
         }
+        let keeping = keeping(scene, options.precision, &schedule, &access, &mut world);
+        world.insert_resource(keeping);
         let facts = Facts {
             on_gpu,
             backend,
@@ -105,7 +108,15 @@ impl Simulation {
             setup: started.elapsed(),
             warnings: diagnostics,
         };
-        Ok(Self { world, entries, scene: scene.scene.clone(), facts, relaxing, elapsed: Duration::ZERO })
+        Ok(Self {
+            world,
+            entries,
+            scene: scene.scene.clone(),
+            facts,
+            relaxing,
+            elapsed: Duration::ZERO,
+            began: (0, 0.0),
+        })
     }
 }
 
@@ -238,6 +249,7 @@ fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> 
     let mut observer = Observer::default();
     observer.fields = every(scene.scene.fields_every());
     observer.energy = scene.scene.output.energies_every.map(every);
+    observer.snapshots = scene.scene.output.snapshots_every.filter(|_| !scene.scene.is_static()).map(every);
     observer.watch_energy = scene.scene.integration.beyond_stable_step && clock.relaxation.is_none();
     observer.to_rest = clock.relaxation.is_some();
     observer.last_step = if clock.relaxation.is_some() { u64::MAX } else { steps };
@@ -262,6 +274,23 @@ fn add_called_for_columns(
                 world.entity_mut(body.entity).insert(ExternalForce(Reals::zeros(assembly.precision, length)));
             }
         }
+    }
+}
+
+/// What snapshots must know of the simulation.
+fn keeping(
+    scene: &SceneFile,
+    precision: Precision,
+    schedule: &[Scheduled<'_>],
+    access: &[SystemAccess],
+    world: &mut World,
+) -> Keeping {
+    let custom = || schedule.iter().zip(access).filter(|(entry, _)| entry.system.custom);
+    Keeping {
+        identity: identity(&scene.scene, world),
+        precision,
+        written: custom().flat_map(|(_, access)| columns_of(access, world).1).collect(),
+        systems: custom().filter_map(|(entry, _)| Some((entry.system.name.clone(), entry.system.state?))).collect(),
     }
 }
 

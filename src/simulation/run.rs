@@ -99,7 +99,7 @@ impl Simulation {
             entry.run_on_host(step, &mut self.world)?;
         }
         self.world.resource_mut::<Clock>().step = step + 1;
-        Ok(())
+        self.keep_what_is_due()
     }
 
     /// As many steps as can be taken before a host system has to run, or one step around it.
@@ -135,7 +135,7 @@ impl Simulation {
                 entry.run_on_host(step - 1, &mut self.world)?;
             }
         }
-        Ok(())
+        self.keep_what_is_due()
     }
 
     fn device_step_around_hosts(&mut self, step: u64) -> Result<(), Error> {

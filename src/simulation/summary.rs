@@ -33,6 +33,8 @@ pub struct Summary {
     pub steps: u64,
     /// Steps that the scene lasts.
     pub planned_steps: u64,
+    /// The time of the snapshot that the run has gone on from (s).
+    pub resumed_at: Option<f64>,
     /// Simulated time (s).
     pub simulated: f64,
     /// Time from the scene to the first step (s).
@@ -100,7 +102,8 @@ impl Simulation {
             .map(|(block, alive)| alive[..block.count].iter().filter(|&&alive| alive == 0).count())
             .sum();
         let (steps, run) = (self.step_count(), self.elapsed.as_secs_f64());
-        let a_step = run / steps.max(1) as f64;
+        let (first, since) = self.began;
+        let a_step = run / steps.saturating_sub(first).max(1) as f64;
         let facts = &self.facts;
         Ok(Summary {
             title: self.scene.title.clone(),
@@ -117,10 +120,11 @@ impl Simulation {
             time_step: self.time_step(),
             steps,
             planned_steps: facts.steps,
+            resumed_at: (first > 0).then_some(since),
             simulated: self.time(),
             setup_seconds: facts.setup.as_secs_f64(),
             run_seconds: run,
-            real_time_factor: run / self.time().max(f64::MIN_POSITIVE),
+            real_time_factor: run / (self.time() - since).max(f64::MIN_POSITIVE),
             seconds_a_step: a_step,
             nanoseconds_an_element_and_step: a_step * 1e9 / facts.elements.max(1) as f64,
             systems: self.entries.iter().map(|entry| system_time(entry, facts.on_gpu)).collect(),

@@ -23,6 +23,7 @@ mod precision;
 mod programs;
 mod random;
 mod removal;
+mod snapshots;
 mod statics;
 mod user_laws;
 mod viscosity;

@@ -180,8 +180,7 @@ impl Sources {
             (self.files.name(place.file_id).unwrap_or_default(), place.range.clone(), place.message.clone())
         };
         let found = places.iter().map(named).collect();
-        let diagnostic =
-            Diagnostic::error().with_message(&message).with_labels(places).with_notes(notes.clone());
+        let diagnostic = Diagnostic::error().with_message(&message).with_labels(places).with_notes(notes.clone());
         let report = term::emit_into_string(&term::Config::default(), &self.files, &diagnostic);
         let report = report.map_or_else(|_| format!("{path}:{line}:{column}: {message}"), |r| r.trim_end().to_owned());
         KernelError::Wgsl { path, line, column, message, report, places: found, notes }

@@ -11,7 +11,10 @@ pub use crate::mesh::ElementKind;
 pub use accuracy::{Accuracy, AccuracyReference};
 pub use action::{Axis, Constraint, Curve, Load, Removal, Share, When};
 pub use body::{Body, MeshSource, Region};
-pub use material::{ArrudaBoyce, Direction, Elasticity, ExponentialFibres, Fibres, Material, MooneyRivlin, Ogden, OgdenTerm, OwnLaw, Prony, PronyTerm, ViscousIntegrator};
+pub use material::{
+    ArrudaBoyce, Direction, Elasticity, ExponentialFibres, Fibres, Material, MooneyRivlin, Ogden, OgdenTerm, OwnLaw,
+    Prony, PronyTerm, ViscousIntegrator,
+};
 pub use scene::{Analysis, Field, Integration, Output, Picture, Scene};
 pub use selection::{Probe, Quantity, Select};
 

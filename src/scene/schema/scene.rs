@@ -108,6 +108,8 @@ pub struct Output {
     pub fields_every: Option<f64>,
     /// Time between rows of `energy.csv` (s). Naming it also books the work of all forces in every step.
     pub energies_every: Option<f64>,
+    /// Time between snapshots (s), from which `sinew run --resume` goes on; none when left out.
+    pub snapshots_every: Option<f64>,
 }
 
 /// How a scene is drawn.

@@ -20,9 +20,11 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
             .note("it is the share of the stable step that is taken; 0.9 when left out");
     }
     let path = scene("output");
-    for (field, value) in
-        [("fields_every", scene_.output.fields_every), ("energies_every", scene_.output.energies_every)]
-    {
+    for (field, value) in [
+        ("fields_every", scene_.output.fields_every),
+        ("energies_every", scene_.output.energies_every),
+        ("snapshots_every", scene_.output.snapshots_every),
+    ] {
         if let Some(value) = value {
             every(judge, &path.name(field), value, scene_.duration);
         }

@@ -1,8 +1,8 @@
 //! What blocks and bodies have or lack, and what would give it to them.
 
 use super::{Effect, Part};
-use crate::components::*;
 use crate::backend::user_law::Findings;
+use crate::components::*;
 use crate::materials::{Elastic, ElasticLaw, ExponentialFibre, Fibres, UserLaw};
 use crate::math::LANES;
 use crate::scene::schema::Scene;
