@@ -161,6 +161,14 @@ impl Signals {
         }
     }
 
+    /// Whether nodes have been moved as told by a jump until a time (s).
+    pub fn have_jumped(&self, until: f64) -> bool {
+        self.sources.iter().any(|source| {
+            matches!(source, Signal::Motion { curve: Curve::Step { start, .. }, displacement, gradient, rotation }
+                if *start <= until && (*displacement, *gradient, *rotation) != (DVec3::ZERO, DMat3::ZERO, DVec3::ZERO))
+        })
+    }
+
     /// Values of all slots in the present step.
     pub fn values(&self) -> &[[f64; 4]] {
         &self.values

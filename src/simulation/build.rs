@@ -13,7 +13,7 @@ use crate::backend::gpu::Gpu;
 use crate::backend::kernel::KernelId;
 use crate::components::*;
 use crate::error::Error;
-use crate::observation::Observer;
+use crate::observation::{Observer, Watch, WatchKernels};
 use crate::scene::schema::Analysis;
 use crate::scene::{Diagnostics, SceneFile};
 use crate::snapshot::{Keeping, identity};
@@ -69,6 +69,7 @@ impl Simulation {
                 Err(Error::Gpu(reason)) if options.backend == BackendChoice::Auto => {
                     why = format!("the GPU cannot take this scene: {reason}");
                     world.remove_resource::<Device>();
+                    world.remove_resource::<WatchKernels>();
                     None
                 }
                 Err(error) => return Err(error),
@@ -94,7 +95,13 @@ impl Simulation {
             entries.push(Entry { name, phase: system.phase, because, job, time: Duration::ZERO, runs: 0 });
         }
         let keeping = keeping(scene, options.precision, &schedule, &access, &mut world);
+        // who writes more than loads makes energy
+        let external = ExternalForce::NAME;
+        let foreign = keeping.written.iter().any(|name| *name != external);
         world.insert_resource(keeping);
+        world.insert_resource(GuardMemory::default());
+        let mut observer = world.resource_mut::<Observer>();
+        (observer.watch.foreign, observer.on_gpu) = (foreign, on_gpu);
         let facts = Facts {
             on_gpu,
             backend,
@@ -116,6 +123,7 @@ impl Simulation {
             relaxing,
             elapsed: Duration::ZERO,
             began: (0, 0.0),
+            failure: None,
         })
     }
 }
@@ -123,6 +131,11 @@ impl Simulation {
 /// Takes a GPU for the run and makes the kernels of all systems ready that have some.
 fn kernels_on(gpu: Gpu, schedule: &[Scheduled<'_>], world: &mut World) -> Result<Vec<Option<Vec<KernelId>>>, Error> {
     world.insert_resource(Device::new(gpu, all_columns()));
+    if world.resource::<Clock>().relaxation.is_none() {
+        crate::systems::add_watch_columns(world);
+        let watch = Device::prepare(world, crate::systems::watch_kernels)?;
+        world.insert_resource(WatchKernels(watch));
+    }
     let kernels = schedule.iter().map(|entry| entry.system.kernels);
     kernels.map(|describe| describe.map(|describe| Device::prepare(world, describe)).transpose()).collect()
 }
@@ -250,7 +263,12 @@ fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> 
     observer.fields = every(scene.scene.fields_every());
     observer.energy = scene.scene.output.energies_every.map(every);
     observer.snapshots = scene.scene.output.snapshots_every.filter(|_| !scene.scene.is_static()).map(every);
-    observer.watch_energy = scene.scene.integration.beyond_stable_step && clock.relaxation.is_none();
+    observer.watch = Watch {
+        limits: scene.scene.guards.clone(),
+        beyond: scene.scene.integration.beyond_stable_step && clock.relaxation.is_none(),
+        foreign: false,
+        removal: !scene.scene.removal.is_empty(),
+    };
     observer.to_rest = clock.relaxation.is_some();
     observer.last_step = if clock.relaxation.is_some() { u64::MAX } else { steps };
     observer.watch_probes(world);

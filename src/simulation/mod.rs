@@ -37,6 +37,8 @@ pub struct Simulation {
     elapsed: Duration,
     /// Step and time (s) from which `elapsed` counts: of the start, or of a snapshot that was gone on from.
     began: (u64, f64),
+    /// How it broke down.
+    failure: Option<crate::error::Instability>,
 }
 
 /// A system of the running schedule.

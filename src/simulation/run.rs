@@ -46,7 +46,18 @@ impl Simulation {
             None => self.steps_to(target),
         };
         self.elapsed += started.elapsed();
-        result
+        result.map_err(|error| self.note(error))
+    }
+
+    /// Notes how the simulation broke down, and leaves the last states where files are written.
+    fn note(&mut self, error: Error) -> Error {
+        let Error::Unstable(mut broken) = error else { return error };
+        if self.failure.is_none() && self.relaxing.is_none() {
+            // what cannot be written now must not hide why the run ended
+            let _ = self.leave_last_states(&mut broken);
+        }
+        self.failure = Some((*broken).clone());
+        Error::Unstable(broken)
     }
 
     fn steps_to(&mut self, target: u64) -> Result<(), Error> {
@@ -75,7 +86,8 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn observe(&mut self) -> Result<(), Error> {
-        self.world.resource_scope(|world, mut observer: Mut<Observer>| observer.observe(world))
+        let observed = self.world.resource_scope(|world, mut observer: Mut<Observer>| observer.observe(world));
+        observed.map_err(|error| self.note(error))
     }
 
     fn evaluate_signals(&mut self, step: u64) {

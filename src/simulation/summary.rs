@@ -63,6 +63,10 @@ pub struct Summary {
     pub removed_elements: usize,
     /// What each probe saw last: time (s) and values.
     pub probes: BTreeMap<String, (f64, Vec<f64>)>,
+    /// What the guards have seen and warned of.
+    pub guards: GuardMemory,
+    /// How it broke down, if it did.
+    pub failure: Option<crate::Instability>,
     /// How it ended: `finished`, `interrupted`, or what went wrong.
     pub ended: String,
 }
@@ -135,6 +139,8 @@ impl Simulation {
             removed_mass: facts.initial_mass - mass,
             removed_elements: removed,
             probes: self.world.resource::<Observer>().latest.clone(),
+            guards: self.guards(),
+            failure: self.failure.clone(),
             ended: ended.into(),
         })
     }

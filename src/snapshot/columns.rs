@@ -22,7 +22,15 @@ const STATE: [&str; 14] = [
     RemovedEnergy::NAME,
 ];
 /// Columns that never change, or are made afresh in every step before they are read.
-const NEVER: [&str; 4] = [Connectivity::NAME, ElementForce::NAME, ElementVolume::NAME, NodalVolumeChange::NAME];
+const NEVER: [&str; 7] = [
+    Connectivity::NAME,
+    ElementForce::NAME,
+    ElementVolume::NAME,
+    NodalVolumeChange::NAME,
+    MiddleDisplacement::NAME,
+    NodeSums::NAME,
+    ElementSums::NAME,
+];
 
 /// Where a column belongs: a body by its name, or one of its blocks by its place in the body's list.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize, PartialEq, Eq, PartialOrd, Ord)]

@@ -44,6 +44,7 @@ struct Head {
     identity: Identity,
     clock: Clock,
     columns: Vec<ColumnEntry>,
+    guards: GuardMemory,
     systems: BTreeMap<String, Value>,
 }
 
@@ -188,6 +189,7 @@ fn take(world: &mut World, keeping: &Keeping, clock: Clock) -> Result<Snapshot, 
         identity: keeping.identity.clone(),
         clock,
         columns: entries,
+        guards: world.get_resource::<GuardMemory>().cloned().unwrap_or_default(),
         systems,
     };
     Ok(Snapshot { head, data })
@@ -209,6 +211,7 @@ fn put(snapshot: &Snapshot, world: &mut World, keeping: &Keeping) -> Result<(), 
         data = rest;
     }
     world.insert_resource(snapshot.head.clock);
+    world.insert_resource(snapshot.head.guards.clone());
     update_faces(world);
     for (system, state) in &keeping.systems {
         let refused = |reason| SnapshotError::System { system: system.clone(), done: "taken back", reason };
