@@ -22,6 +22,7 @@ pub mod components;
 pub mod elements;
 mod error;
 pub mod evaluation;
+pub mod hard;
 pub mod materials;
 pub mod math;
 pub mod mesh;

@@ -14,9 +14,8 @@ fn names_that_do_not_match_are_listed_on_both_sides() {
     let (x, y) = (storage(&mut gpu, "x", &[0.0]), storage(&mut gpu, "y", &[0.0]));
     let kernel = Kernel::new("saxpy", "saxpy").fragment(Fragment::new("saxpy.wgsl", SAXPY)).fragment(shader!("row"));
     let error = gpu.prepare(&kernel.bind("x", x).bind("z", y).bind("x", y)).unwrap_err();
-    let GpuError::Kernel(KernelError::Bindings(mismatch)) = &error else {
-        panic!("{error}");
-    };
+    let GpuError::Kernel(kernel) = &error else { panic!("{error}") };
+    let KernelError::Bindings(mismatch) = kernel.as_ref() else { panic!("{error}") };
     assert_eq!(mismatch.without_buffer, ["y", "scale"]);
     assert_eq!(mismatch.without_variable, ["z", "x (given twice)"]);
     let text = error.to_string();

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 const STATUSES: &str = "\
 Exit status:
   0    done
-  1    the simulation broke down; what was written until then is kept
+  1    the simulation broke down; what was written until then is kept. hard: a case did not end as it should
   2    the scene or the options are wrong; nothing was run
   3    outputs could not be written
   4    there is no GPU, or it failed
@@ -43,6 +43,9 @@ pub enum Command {
     /// Show what accuracy costs in time: solve a scene in many ways, time each, measure each against a reference
     #[command(after_help = STATUSES)]
     Accuracy(AccuracyArguments),
+    /// Run the hard cases: what must stay stable, or fail honestly
+    #[command(after_help = STATUSES)]
+    Hard(HardArguments),
 }
 
 impl Command {
@@ -53,6 +56,7 @@ impl Command {
             Command::Explain(arguments) => arguments.how.backend != BackendName::Cpu,
             Command::Render(_) => true,
             Command::Accuracy(arguments) => arguments.backend != BackendName::Cpu,
+            Command::Hard(arguments) => arguments.backend != BackendName::Cpu,
             Command::Check(_) => false,
         }
     }
@@ -145,6 +149,22 @@ impl AccuracyArguments {
         let (gpu, precision, threads) = (self.gpu.clone(), self.precision, self.threads);
         HowArguments { backend, gpu, precision, threads }.options()
     }
+}
+
+#[derive(Args)]
+pub struct HardArguments {
+    /// The cases, such as H05 or buckling [default: all]
+    #[arg(value_name = "CASE")]
+    pub cases: Vec<String>,
+    /// In full size, with finer meshes, longer runs and timed gates; else in a size for everyday
+    #[arg(long)]
+    pub full: bool,
+    /// Where: auto is the CPU in f64 and f32, and a GPU if there is any, a software one too
+    #[arg(long, value_enum, default_value_t = BackendName::Auto)]
+    pub backend: BackendName,
+    /// A folder for hard.md, hard.csv and hard.json
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 #[derive(Args)]

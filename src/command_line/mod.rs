@@ -5,6 +5,7 @@ mod arguments;
 mod check;
 mod explain;
 mod failure;
+mod hard;
 mod interrupt;
 mod progress;
 mod quiet_driver;
@@ -31,6 +32,7 @@ pub fn main() -> ExitCode {
         Command::Explain(arguments) => explain::command(&arguments),
         Command::Render(arguments) => render::command(&arguments),
         Command::Accuracy(arguments) => accuracy::command(&arguments),
+        Command::Hard(arguments) => hard::command(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

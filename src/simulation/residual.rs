@@ -135,6 +135,7 @@ impl State {
             }
         }
         let square = work / weight;
+        sum.work = work;
         sum.frequency = (square.is_finite() && square > 0.0).then(|| square.sqrt());
         sum.moved = sum.moved.sqrt();
         sum.displaced = sum.displaced.sqrt();
@@ -147,6 +148,8 @@ impl State {
 pub(super) struct Motion {
     /// The Rayleigh quotient of the change, as an angular frequency (1/s); `None` when nothing moved, or against no force.
     pub frequency: Option<f64>,
+    /// Work against the change of internal forces (J); below 0 where bodies give way, as a column that buckles.
+    pub work: f64,
     /// Norm of the change of the displacements (m).
     pub moved: f64,
     /// Norm of the displacements (m).

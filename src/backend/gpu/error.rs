@@ -36,7 +36,7 @@ pub enum NoGpu {
 pub enum GpuError {
     /// The kernel itself is wrong.
     #[error(transparent)]
-    Kernel(#[from] KernelError),
+    Kernel(Box<KernelError>),
     /// More than the device takes, found before it was asked.
     #[error("`{label}`: {wanted} {unit} wanted, {adapter} allows {limit} ({limit_name})")]
     OverLimit {
@@ -112,6 +112,12 @@ pub enum GpuError {
         /// wgpu's text.
         message: String,
     },
+}
+
+impl From<KernelError> for GpuError {
+    fn from(error: KernelError) -> Self {
+        Self::Kernel(Box::new(error))
+    }
 }
 
 fn aligned(offset: u64, bytes: u64) -> &'static str {

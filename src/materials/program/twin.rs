@@ -15,9 +15,11 @@ impl Twin {
     /// Changes the words of a text that parses: float types, and numbers with a point or an exponent.
     pub(super) fn new(original: &str) -> Self {
         let mut twin = Self { text: String::with_capacity(original.len() * 5 / 4), changed: Vec::new() };
+        let mut constant = Constant::default();
         for range in words(original) {
             let word = &original[range.clone()];
-            match double(word) {
+            let other = if constant.holds(word) { constant.abstracted(word) } else { double(word) };
+            match other {
                 Some(other) => {
                     let start = twin.text.len();
                     twin.text.push_str(&other);
@@ -50,6 +52,43 @@ impl Twin {
     }
 }
 
+/// Where a declaration of a constant has got to. naga folds numbers of no type yet to all the digits of `f64`, numbers of
+/// type `f64` not at all: so constants keep the former.
+#[derive(Default)]
+enum Constant {
+    #[default]
+    Outside,
+    Name,
+    Type,
+    Value,
+}
+
+impl Constant {
+    /// Moves on to the next word; whether that belongs to the declaration.
+    fn holds(&mut self, word: &str) -> bool {
+        *self = match (&self, word) {
+            (Self::Outside, "const") => Self::Name,
+            (Self::Name, ":") => Self::Type,
+            (Self::Name | Self::Type, "=") => Self::Value,
+            (Self::Value, ";") => Self::Outside,
+            _ => return !matches!(self, Self::Outside),
+        };
+        !matches!(self, Self::Outside)
+    }
+
+    /// What stands for a word of it, where that is another: `const a: f32` has no type.
+    fn abstracted(&self, word: &str) -> Option<String> {
+        match self {
+            Self::Type => (!word.trim().is_empty()).then(String::new),
+            _ => double(word).map(|other| match other.strip_suffix("lf") {
+                Some(digits) if digits.contains(['.', 'e', 'E', 'p', 'P']) => digits.to_owned(),
+                Some(digits) => format!("{digits}.0"),
+                None => other,
+            }),
+        }
+    }
+}
+
 /// What stands for a word in double precision, where that is another.
 fn double(word: &str) -> Option<String> {
     if word == "f32" {
@@ -75,6 +114,14 @@ fn double(word: &str) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn constants_stay_without_a_type() {
+        let text = "const third: f32 = 1.0 / 3f; const v = vec3f(third, 1.0, 2); fn f() -> f32 { const a = 1e3; return a * 2.0; }";
+        let twin = Twin::new(text);
+        let expected = "const third  = 1.0 / 3.0; const v = vec3<f64>(third, 1.0, 2); fn f() -> f64 { const a = 1e3; return a * 2.0lf; }";
+        assert_eq!(twin.text, expected);
+    }
 
     #[test]
     fn words_change_and_places_lead_back() {

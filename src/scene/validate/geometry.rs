@@ -27,6 +27,15 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
                 .note("each time makes eight elements of one: 10 times make a billion of it");
         }
         judge.not_negative(&path.name("hourglass"), body.hourglass, "");
+        if body.hourglass == 0.0 {
+            judge
+                .out
+                .warn_at(
+                    path.name("hourglass"),
+                    "without hourglass control one-point hexahedra have motions that nothing resists",
+                )
+                .note("they grow unseen and spoil what is computed: leave `hourglass` out, or use Hex8MeanDilatation");
+        }
         for (i, region) in body.regions.iter().enumerate() {
             select::validate(judge, &path.name("regions").index(i).name("on"), &region.on);
         }

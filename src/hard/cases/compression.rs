@@ -1,0 +1,74 @@
+//! Cubes pressed together.
+
+use super::super::Trial;
+use super::point::Law;
+use crate::error::Error;
+use crate::observation::BodyFields;
+
+const SHEAR: f64 = 1e4;
+
+/// H01.
+pub fn squeezed_cube(trial: &mut Trial<'_>) -> Result<(), Error> {
+    let all = trial.full || trial.configuration.is_f64();
+    let ratios: &[f64] = if all { &[0.49, 0.499, 0.4999] } else { &[0.49] };
+    let mut steps = Vec::new();
+    for &poisson in ratios {
+        let bulk = 2.0 * SHEAR * (1.0 + poisson) / (3.0 * (1.0 - 2.0 * poisson));
+        let sets = vec![format!("materials.tissue.neo_hookean=Moduli(shear: {SHEAR}, bulk: {bulk})")];
+        let mut simulation = trial.start(&sets)?;
+        steps.push(simulation.time_step() * bulk.sqrt());
+        trial.run(&mut simulation, 0.01)?;
+        let locks = matches!(trial.configuration.elements_name(), "Tet4");
+        if !locks {
+            let checkered = checkerboard(&simulation.fields("body")?, 6, trial.configuration.is_tets());
+            trial.most(format!("checkerboard of pressures at ν {poisson}"), checkered, 0.05);
+        }
+        if !locks && all {
+            let force = simulation.probe("plate")?[2];
+            let mut finer = sets.clone();
+            finer.push("bodies.body.mesh.cells=(9, 9, 9)".into());
+            let mut fine = trial.start(&finer)?;
+            fine.finish()?;
+            trial.near(format!("force at ν {poisson}"), force, fine.probe("plate")?[2], 0.05);
+        }
+    }
+    let [least, most] = steps.iter().fold([f64::INFINITY, 0.0_f64], |[l, m], s| [l.min(*s), m.max(*s)]);
+    trial.most("change of Δt √κ", most / least - 1.0, 0.05);
+    Ok(())
+}
+
+/// How much of the pressures goes up and down from cell to cell, relative to their mean.
+fn checkerboard(fields: &BodyFields, cells: usize, tets: bool) -> f64 {
+    let a_cell = if tets { 6 } else { 1 };
+    let pressure = |cell: usize| {
+        let stresses = &fields.stress[cell * a_cell..(cell + 1) * a_cell];
+        -stresses.iter().map(|s| s[0] + s[1] + s[2]).sum::<f64>() / (3 * a_cell) as f64
+    };
+    let sign =
+        |cell: usize| if (cell % cells + cell / cells % cells + cell / cells / cells) % 2 == 0 { 1.0 } else { -1.0 };
+    let count = cells.pow(3);
+    let mean: f64 = (0..count).map(pressure).sum();
+    (0..count).map(|cell| sign(cell) * pressure(cell)).sum::<f64>().abs() / mean.abs()
+}
+
+/// H07.
+pub fn crushed_cube(trial: &mut Trial<'_>) -> Result<(), Error> {
+    let law = Law::young(3000.0, 0.45);
+    let area = 0.1 * 0.1;
+    for (name, constraint, stress) in [
+        ("confined", "constraints[1]=Fixed(on: All, axes: [X, Y])", law.confined(0.05)),
+        (
+            "free",
+            "constraints[1]=Fixed(on: And([Set(\"x0\"), Set(\"y0\"), Set(\"z0\")]), axes: [X, Y])",
+            law.free(0.05),
+        ),
+    ] {
+        let mut simulation = trial.start(&[constraint.into()])?;
+        simulation.advance_to(0.8)?;
+        trial.near(format!("force, {name}"), simulation.probe("plate")?[2], stress * area, 0.01);
+        simulation.finish()?;
+        let left = simulation.displacements("body")?.iter().fold(0.0_f64, |largest, u| largest.max(u.length()));
+        trial.most(format!("what stays of the displacement, {name}"), left / 0.1, 1e-3);
+    }
+    Ok(())
+}
