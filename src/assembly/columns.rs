@@ -8,7 +8,7 @@ use crate::evaluation::{add_nodal_masses, lane_place, node_count, point_count};
 use crate::materials::{Elastic, ElasticLaw, Fibres};
 use crate::math::LANES;
 use crate::mesh::{ElementKind, Mesh};
-use crate::scene::schema::Constraint;
+use crate::scene::schema::{Constraint, Guard};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -50,7 +50,7 @@ pub(super) fn insert_node_columns(
     let mut noticed = vec![u32::MAX];
     if !scene.is_static() && (scene.output.energies_every.is_some() || moved) {
         entity.insert(Work(Reals::zeros(precision, WORK_NUMBERS * count)));
-    } else if !scene.is_static() {
+    } else if !scene.is_static() && !scene.guards.off.contains(&Guard::Energy) {
         noticed.resize(SPENT_AT + 2 * count.div_ceil(SPENT_ROWS), 0);
     }
     entity.insert(FirstNonFinite(noticed));

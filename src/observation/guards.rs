@@ -73,7 +73,7 @@ pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch) -> Result
     world.insert_resource(memory);
     let stop = watch.limits.energy.stop;
     let (made, held) = made;
-    if made <= stop * scale || watch.foreign || watch.limits.off.contains(&Guard::Energy) {
+    if made <= stop * scale || watch.foreign {
         return Ok(());
     }
     let mut bodies: Vec<String> =
@@ -107,13 +107,16 @@ fn balance(memory: &mut GuardMemory, seen: &Look, watch: &Watch, world: &World) 
         all += sums.strain + sums.hourglass;
     }
     memory.scale = memory.scale.max(all).max(seen.spent.abs());
+    if watch.limits.off.contains(&Guard::Energy) {
+        return (0.0, held);
+    }
     let made = held - seen.spent;
     let made = if viscous || watch.removal { made.max(0.0) } else { made };
     let limit = watch.limits.energy.warn;
     if memory.scale > 0.0 && (made / memory.scale).abs() > memory.imbalance.abs() {
         memory.imbalance = made / memory.scale;
     }
-    if made.abs() > limit * memory.scale && !watch.limits.off.contains(&Guard::Energy) {
+    if made.abs() > limit * memory.scale {
         let share = made / memory.scale;
         let way = if made > 0.0 { "came from nothing" } else { "went into nothing" };
         let message = format!(

@@ -21,9 +21,11 @@ use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 
 /// Steps between two looks for numbers that are not finite and for elements turned inside out, at most, on the host. On a
-/// GPU its kernels look in every step, and the host asks them at least in every 256.
+/// GPU its kernels look in every step, and the host asks them in every 256 at least; where systems of one's own run on the
+/// host meanwhile, in every 16 there, too.
 pub const HOST_GUARD_STEPS: u64 = 16;
-const DEVICE_GUARD_STEPS: u64 = 256;
+/// The same where all systems run on the device.
+pub const DEVICE_GUARD_STEPS: u64 = 256;
 
 /// What is observed when, and where it goes. A resource; the system `observe` runs it.
 #[derive(Resource, Default)]
@@ -38,6 +40,8 @@ pub struct Observer {
     pub watch: Watch,
     /// Whether steps are taken on a GPU.
     pub on_gpu: bool,
+    /// Whether they are so without a system that runs on the host.
+    pub all_on_device: bool,
     /// The last step that passed all guards in a look at energies and elements.
     pub looked_at: Option<u64>,
     /// The last states that passed all guards, the oldest first.
@@ -111,7 +115,7 @@ impl Observer {
 
     /// The next step, after `step`, at whose end something is due.
     pub fn next_due(&self, step: u64) -> u64 {
-        let flags = if self.on_gpu { DEVICE_GUARD_STEPS } else { HOST_GUARD_STEPS };
+        let flags = if self.all_on_device { DEVICE_GUARD_STEPS } else { HOST_GUARD_STEPS };
         let mut due = (step / flags + 1) * flags;
         if !self.to_rest {
             due = due.min((step / self.watch.limits.every + 1) * self.watch.limits.every);

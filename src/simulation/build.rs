@@ -102,6 +102,7 @@ impl Simulation {
         world.insert_resource(GuardMemory::default());
         let mut observer = world.resource_mut::<Observer>();
         (observer.watch.foreign, observer.on_gpu) = (foreign, on_gpu);
+        observer.all_on_device = on_gpu && !schedule.iter().any(|entry| entry.system.custom);
         let facts = Facts {
             on_gpu,
             backend,

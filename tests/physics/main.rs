@@ -14,6 +14,7 @@ mod equilibrium;
 mod far_away;
 mod frequency_bound;
 mod grids;
+mod guards;
 mod hourglass;
 mod laws;
 mod loads;
