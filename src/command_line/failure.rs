@@ -34,7 +34,7 @@ impl Failure {
         match self {
             Failure::Engine(error) => match **error {
                 Error::Unstable(_) | Error::NotConverged(_) => 1,
-                Error::Scene(_) | Error::Options(_) => 2,
+                Error::Scene(_) | Error::Options(_) | Error::Snapshot(_) => 2,
                 Error::Output(_) => 3,
                 Error::NoGpu(_) | Error::Gpu(_) | Error::GpuFailed(_) => 4,
             },

@@ -28,6 +28,7 @@ pub fn text(summary: &Summary, scene: &SceneFile, folder: &Path, paint: Paint) -
     speeds(summary, &mut page);
     systems(summary, &mut page);
     energies(summary, &mut page);
+    guards(summary, &mut page);
     mass(summary, &mut page);
     probes(summary, scene, &mut page);
     outputs(folder, &mut page);
@@ -149,6 +150,23 @@ fn energies(summary: &Summary, page: &mut Page) {
     if !booked.is_empty() {
         page.row("work", line(&booked));
     }
+}
+
+fn guards(summary: &Summary, page: &mut Page) {
+    let seen = &summary.guards;
+    if seen.looks == 0 {
+        return;
+    }
+    let mut line = format!("energy balances to {:.2} %", 100.0 * seen.imbalance.abs());
+    if let Some(least) = &seen.least_volume_ratio {
+        let _ = write!(line, ", smallest J {} (element {} of {})", digits(least.value), least.id, least.body);
+    }
+    if let Some(fastest) = &seen.fastest_node {
+        let speed = quantity(fastest.value, "m/s");
+        let _ = write!(line, ", fastest node {} of {}: {speed}", fastest.id, fastest.body);
+    }
+    page.row("guards", line);
+    page.rows("warnings", seen.warnings.iter().map(|w| format!("from t = {} s: {}", digits(w.time), w.message)));
 }
 
 fn mass(summary: &Summary, page: &mut Page) {

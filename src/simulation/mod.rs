@@ -4,6 +4,7 @@ mod access;
 mod build;
 pub mod explain;
 mod frequency;
+mod keep;
 mod options;
 mod parameters;
 mod relax;
@@ -34,6 +35,10 @@ pub struct Simulation {
     facts: Facts,
     relaxing: Option<relax::Relaxing>,
     elapsed: Duration,
+    /// Step and time (s) from which `elapsed` counts: of the start, or of a snapshot that was gone on from.
+    began: (u64, f64),
+    /// How it broke down.
+    failure: Option<crate::error::Instability>,
 }
 
 /// A system of the running schedule.

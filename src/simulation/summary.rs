@@ -36,6 +36,8 @@ pub struct Summary {
     pub steps: u64,
     /// Steps that the scene lasts.
     pub planned_steps: u64,
+    /// The time of the snapshot that the run has gone on from (s).
+    pub resumed_at: Option<f64>,
     /// Simulated time (s).
     pub simulated: f64,
     /// Time from the scene to the first step (s).
@@ -66,6 +68,10 @@ pub struct Summary {
     pub inversions: Vec<Inversions>,
     /// What each probe saw last: time (s) and values.
     pub probes: BTreeMap<String, (f64, Vec<f64>)>,
+    /// What the guards have seen and warned of.
+    pub guards: GuardMemory,
+    /// How it broke down, if it did.
+    pub failure: Option<crate::Instability>,
     /// How it ended: `finished`, `interrupted`, or what went wrong.
     pub ended: String,
 }
@@ -136,7 +142,8 @@ impl Simulation {
             .map(|(block, alive)| alive[..block.count].iter().filter(|&&alive| alive == 0).count())
             .sum();
         let (steps, run) = (self.step_count(), self.elapsed.as_secs_f64());
-        let a_step = run / steps.max(1) as f64;
+        let (first, since) = self.began;
+        let a_step = run / steps.saturating_sub(first).max(1) as f64;
         let facts = &self.facts;
         Ok(Summary {
             title: self.scene.title.clone(),
@@ -153,10 +160,11 @@ impl Simulation {
             time_step: self.time_step(),
             steps,
             planned_steps: facts.steps,
+            resumed_at: (first > 0).then_some(since),
             simulated: self.time(),
             setup_seconds: facts.setup.as_secs_f64(),
             run_seconds: run,
-            real_time_factor: run / self.time().max(f64::MIN_POSITIVE),
+            real_time_factor: run / (self.time() - since).max(f64::MIN_POSITIVE),
             seconds_a_step: a_step,
             nanoseconds_an_element_and_step: a_step * 1e9 / facts.elements.max(1) as f64,
             systems: self.entries.iter().map(|entry| system_time(entry, facts.on_gpu)).collect(),
@@ -168,6 +176,8 @@ impl Simulation {
             removed_elements: removed,
             inversions: inversions(&mut self.world)?,
             probes: self.world.resource::<Observer>().latest.clone(),
+            guards: self.guards(),
+            failure: self.failure.clone(),
             ended: ended.into(),
         })
     }

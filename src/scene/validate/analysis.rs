@@ -63,6 +63,12 @@ fn meaningless(scene_: &Scene, judge: &mut Judge) {
     let mut ignore = |path, what: &str| {
         judge.out.warn_at(&path, format!("a static analysis ignores {what}"));
     };
+    if scene_.output.snapshots_every.is_some() {
+        ignore(
+            scene("output").name("snapshots_every"),
+            "`snapshots_every`: its pseudo-steps are nothing to go on from",
+        );
+    }
     for (name, body) in &scene_.bodies {
         if body.velocity != DVec3::ZERO || body.spin != DVec3::ZERO {
             let field = if body.velocity != DVec3::ZERO { "velocity" } else { "spin" };
