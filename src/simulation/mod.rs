@@ -5,6 +5,7 @@ mod build;
 pub mod explain;
 mod frequency;
 mod options;
+mod outputs;
 mod parameters;
 mod relax;
 mod residual;

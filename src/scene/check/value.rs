@@ -152,7 +152,7 @@ impl<'de> Deserializer<'de> for Value<'_> {
             let mut diagnostic =
                 Diagnostic::error(found.span.clone(), format!("`{}` does not belong here", found.text));
             diagnostic.label(format!("{} is written without a word before the brackets", self.called()));
-            self.about.found.borrow_mut().push(diagnostic);
+            drop(self.about.tell(diagnostic));
             // its fields are those of something else
             return StandIn.deserialize_struct(name, fields, visitor);
         }
@@ -184,7 +184,7 @@ impl<'de> Deserializer<'de> for Value<'_> {
                 let mut diagnostic =
                     Diagnostic::error(self.node.mark(), format!("{} cannot be `{found}`", self.called()));
                 diagnostic.label("unknown word").notes(choice(found, variants.iter().copied()));
-                self.about.found.borrow_mut().push(diagnostic);
+                drop(self.about.tell(diagnostic));
             }
         }
         StandIn.deserialize_enum(name, variants, visitor)

@@ -27,10 +27,7 @@ impl<'a> Value<'a> {
         }
         let mut diagnostic = Diagnostic::error(at, message);
         diagnostic.label(label);
-        let mut found = self.about.found.borrow_mut();
-        found.push(diagnostic);
-        let last = found.len() - 1;
-        RefMut::map(found, |found| &mut found[last])
+        self.about.tell(diagnostic)
     }
 
     /// Notes that this value is of another kind than it must be.
@@ -93,7 +90,7 @@ impl<'a> Value<'a> {
         } else {
             diagnostic.notes(choice(name, fields.iter().copied()));
         }
-        self.about.found.borrow_mut().push(diagnostic);
+        drop(self.about.tell(diagnostic));
     }
 
     /// Notes a missing field, but not when one of the unknown ones is probably it, misspelt.
@@ -110,6 +107,6 @@ impl<'a> Value<'a> {
         if let Some(meaning) = meaning(owner, field) {
             diagnostic.note(format!("{field}: {meaning}"));
         }
-        self.about.found.borrow_mut().push(diagnostic);
+        drop(self.about.tell(diagnostic));
     }
 }
