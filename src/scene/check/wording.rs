@@ -56,6 +56,16 @@ impl<'a> Value<'a> {
         }
     }
 
+    /// Notes numbers in a value, or in what it holds, that are none.
+    pub(super) fn numbers_inside(&self) {
+        if matches!(self.node.kind, Kind::Number) && ron::from_str::<ron::Value>(self.token()).is_err() {
+            self.note(format!("`{}` is not a number", self.token()), "written like 0.05, 5e-2 or 3");
+        }
+        for child in self.node.children() {
+            self.of(child).numbers_inside();
+        }
+    }
+
     pub(super) fn not_whole(&self, least: i128, most: i128) {
         let from = if least == 0 { ", 0 or above" } else { "" };
         let expected = format!("a whole number{from}");
