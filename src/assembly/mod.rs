@@ -51,7 +51,9 @@ pub fn assemble<'a>(
     world: &mut World,
     diagnostics: &mut Diagnostics,
 ) -> Option<Assembly<'a>> {
-    crate::scene::validate(scene, diagnostics);
+    if !crate::scene::validate(scene, diagnostics) {
+        return None;
+    }
     let meshes = meshes::meshes(scene, diagnostics);
     let mut laws = user_laws::read(scene, diagnostics);
     if diagnostics.has_errors() {

@@ -9,11 +9,11 @@ use super::wording::{count, counted, quantity};
 use sinew::components::Block;
 use sinew::components::Cadence;
 use sinew::systems::Registry;
-use sinew::{BackendChoice, Error, Options, SceneFile, Simulation};
+use sinew::{BackendChoice, Error, Options, Simulation};
 
 /// Shows all that is wrong, and a line of verdict.
 pub fn command(arguments: &SceneArguments) -> Outcome {
-    let scene = SceneFile::load(&arguments.scene, &arguments.set)?;
+    let scene = arguments.load()?;
     let reading = "reading meshes, looking for mistakes";
     let diagnostics = progress::during(reading, || Simulation::check(&scene, &Registry::default()));
     if diagnostics.has_errors() {

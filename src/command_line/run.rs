@@ -21,7 +21,7 @@ const CHUNK: Duration = Duration::from_millis(50);
 
 /// Runs a scene and tells on stdout what it amounted to.
 pub fn command(arguments: &RunArguments) -> Outcome {
-    let scene = SceneFile::load(&arguments.scene.scene, &arguments.scene.set)?;
+    let scene = arguments.scene.load()?;
     let folder = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene.scene));
     let (folder, from) = match &arguments.resume {
         None => (folder, None),

@@ -2,6 +2,7 @@
 
 use super::frequency::largest_eigenvalue;
 use super::options::{BackendChoice, Chosen, choose};
+use super::outputs;
 use super::parameters::hand_out;
 use super::relax::Relaxing;
 use super::schedule::{Scheduled, check_names, resolve};
@@ -162,6 +163,7 @@ fn plan<'a>(
     check_names(scene.scene.schedule.as_deref().unwrap_or_default(), registry, diagnostics);
     let assembly = assembly?;
     let (clock, stable, steps) = clock(scene, world, diagnostics)?;
+    outputs::check(scene, &clock, steps, diagnostics);
     world.insert_resource(clock);
     assemble_in_time(&assembly, world, diagnostics);
     let mut schedule = resolve(scene.scene.schedule.as_deref(), registry, world, diagnostics);

@@ -6,6 +6,7 @@ pub mod explain;
 mod frequency;
 mod keep;
 mod options;
+mod outputs;
 mod parameters;
 mod relax;
 mod residual;

@@ -1,6 +1,7 @@
 //! Static analyses: their numbers, and what of a scene has no meaning at rest.
 
 use super::{Judge, scene, show};
+use crate::scene::limits::PSEUDO_STEPS;
 use crate::scene::schema::{Analysis, Constraint, Inversion, Quantity, Scene};
 use glam::DVec3;
 
@@ -16,6 +17,9 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
     }
     if max_steps == 0 {
         judge.must(&path.name("max_steps"), "at least 1", max_steps);
+    }
+    if max_steps > PSEUDO_STEPS {
+        judge.must(&path.name("max_steps"), &format!("at most {PSEUDO_STEPS}"), max_steps);
     }
     match load_steps {
         Some(0) => {

@@ -4,8 +4,6 @@ use super::{Judge, scene, show, with_unit};
 use crate::scene::schema::{Constraint, Curve, EnergyGuard, Guard, Guards, Load, Scene, When};
 use crate::scene::syntax::Path;
 
-/// More points than a curve needs; a table of a longer signal is thinned out before.
-const MOST_POINTS: usize = 1_000_000;
 /// More states than are of use after a breakdown.
 const MOST_STATES: u64 = 100;
 
@@ -144,13 +142,6 @@ fn table(judge: &mut Judge, path: &Path, points: &[(f64, f64)]) {
             .out
             .error_at(path, "the table has no points")
             .note("a point is (time, factor): Table([(0, 0), (0.1, 1)])");
-    }
-    if points.len() > MOST_POINTS {
-        judge
-            .out
-            .error_at(path, format!("the table has {} points", points.len()))
-            .note(format!("at most {MOST_POINTS} are allowed"));
-        return;
     }
     for (i, pair) in points.windows(2).enumerate() {
         if pair[1].0 <= pair[0].0 {
