@@ -10,7 +10,7 @@ use sinew::components::Signals;
 use std::collections::BTreeSet;
 
 /// Fragments that belong to no system, element or material by name, and what calls for them.
-const SUPPORT: [(&str, &str); 31] = [
+const SUPPORT: [(&str, &str); 33] = [
     ("alive", "loads on faces of elements that can go"),
     ("block", "columns of element blocks"),
     ("criterion", "removal by criterion"),
