@@ -15,7 +15,8 @@ use bevy_ecs::prelude::*;
 ///
 /// The first step starts half way, d ← (1 − a) d + ½Δt² (R − F)/m with d = v₀Δt, so that free fall is exact. Stable iff
 /// ωΔt ≤ 2 for any damping. The classical form with three coefficients loses 2 to 10 % in f32, this one 1e-6; with
-/// [`DisplacementCompensation`] the sum of steps is as good as in f64. Constrained axes take the step that `boundary`
+/// [`DisplacementCompensation`] the sum of steps is as good as in f64. Where Δt changes, d is scaled to the new one
+/// beforehand, and forces act over the mean of both, (Δt + Δt')/2 in place of Δt in the push and in a. Constrained axes take the step that `boundary`
 /// wrote; nodes without mass are parked.
 ///
 /// In a static analysis the same recursion relaxes: the mass is [`FictitiousMass`], a is one number for all nodes, and
@@ -35,15 +36,16 @@ pub fn system() -> System {
 /// What a step multiplies forces and damping with.
 #[derive(Clone, Copy)]
 struct Factors<T> {
-    /// Δt², in the first step half of it, times the gain of a static analysis (s²).
+    /// Δt times the time between the middles of the last and of this step (see [`Clock::between_middles`]), times the gain
+    /// of a static analysis (s²).
     force: T,
-    /// Δt/2 (s).
+    /// Half the time between the middles, in the first step Δt/2 (s).
     half_step: T,
     /// 1, in the first step 0.
     divide: T,
     /// 1/Δt (1/s).
     rate: T,
-    /// Share of a step's work that is booked: 1, in the first step ½.
+    /// Share of a step's work that is booked, the time between the middles over Δt: 1, in the first step ½.
     booked: T,
     /// a of a static analysis, else 0.
     relaxation: T,
@@ -51,14 +53,14 @@ struct Factors<T> {
 
 impl<T: Scalar> Factors<T> {
     fn of(clock: &Clock) -> Self {
-        let (dt, first) = (clock.time_step, clock.step == 0);
+        let (dt, between, first) = (clock.time_step, clock.between_middles(), clock.step == 0);
         let (gain, damping) = clock.relaxation.map_or((1.0, 0.0), |relaxation| (relaxation.gain, relaxation.damping));
         Self {
-            force: T::from_f64(gain * dt * dt * if first { 0.5 } else { 1.0 }),
-            half_step: T::from_f64(0.5 * dt),
+            force: T::from_f64(gain * dt * between),
+            half_step: T::from_f64(0.5 * if first { dt } else { between }),
             divide: T::from_f64(if first { 0.0 } else { 1.0 }),
             rate: T::from_f64(1.0 / dt),
-            booked: T::from_f64(if first { 0.5 } else { 1.0 }),
+            booked: T::from_f64(between / dt),
             relaxation: T::from_f64(damping),
         }
     }
@@ -276,9 +278,10 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let bodies: Vec<_> = query.iter(world).map(|(body, mass, e, d, w)| (body, mass.len() as u32, [e, d, w])).collect();
     let mut kernels = Vec::new();
     for (body, count, optional) in bodies {
-        let relaxed = world.get::<FictitiousMass>(body).is_some();
+        let relaxed = world.get_resource::<Clock>().is_some_and(|clock| clock.relaxation.is_some());
         let spent = world.get::<FirstNonFinite>(body).is_some_and(|noticed| noticed.len() > SPENT_AT);
-        let column = |name: &'static str| if relaxed && name == Mass::NAME { FictitiousMass::NAME } else { name };
+        let fictitious = world.get::<FictitiousMass>(body).is_some();
+        let column = |name: &'static str| if fictitious && name == Mass::NAME { FictitiousMass::NAME } else { name };
         let compensated = world.get::<DisplacementCompensation>(body).is_some();
         let nodes = buffers.uniform("integrate".into(), &Integrate { count }.bytes());
         let mut kernel = |entry: &'static str, columns: &[&'static str]| {

@@ -149,7 +149,7 @@ pub fn stiffness(world: &World, material: Entity) -> Stiffness {
 }
 
 /// Gives every block its law, in f64 for looking at it and in the run's precision for its kernel, and its history.
-pub(super) fn insert_laws(precision: Precision, world: &mut World) {
+pub fn insert_laws(precision: Precision, world: &mut World) {
     let clock = *world.resource::<Clock>();
     let entities: Vec<(Entity, Block)> =
         world.query::<(Entity, &Block)>().iter(world).map(|(entity, block)| (entity, block.clone())).collect();

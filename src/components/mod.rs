@@ -19,8 +19,9 @@ pub mod nodes;
 mod observation;
 
 pub use block::{
-    Alive, Block, BlockCorners, Connectivity, ElementSums, ElementVolume, FamilyDirection, FibreDirection,
-    FirstInverted, NodalVolumeChange, OnInversion, RemovalStep, RemovedEnergy, RestShape, ViscousMemory, patch_groups,
+    AddedMass, Alive, Block, BlockCorners, Connectivity, ElementSums, ElementVolume, FamilyDirection, FibreDirection,
+    FirstInverted, NodalVolumeChange, OnInversion, RemovalStep, RemovalTime, RemovedEnergy, RestShape, ViscousMemory,
+    patch_groups,
 };
 pub use clock::{Clock, Relaxation, Signal, Signals};
 pub use column::{Column, Precision, Reals};

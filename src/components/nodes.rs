@@ -21,8 +21,9 @@ columns! {
     DisplacementCompensation(Reals) = "displacement_compensation";
     /// Lumped mass (kg), a number a node; 0 parks the node.
     Mass(Reals) = "mass";
-    /// Mass (kg) that makes every element's bound of the stable step the same, for static analyses: the real mass only
-    /// weighs there. A number a node.
+    /// Mass (kg) that resists acceleration in place of the real one, which only weighs then: in static analyses the mass
+    /// that makes every element's bound of the stable step the same, else the real one and what was added to it where a
+    /// scene has mass scaled. A number a node.
     FictitiousMass(Reals) = "fictitious_mass";
     /// Σ c m over a node's elements (kg/s): damping rate times mass. Exists when a material is damped.
     DampingCoefficient(Reals) = "damping_coefficient";

@@ -85,6 +85,15 @@ impl Observer {
         self.probes = probes;
     }
 
+    /// Goes on with steps of the clock's new length; the run ends with `last_step`.
+    pub fn change_step(&mut self, clock: &Clock, last_step: u64) {
+        let probes = self.probes.iter_mut().map(|(_, _, cadence)| cadence);
+        for cadence in probes.chain(&mut self.energy).chain([&mut self.fields]) {
+            cadence.change_step(clock.step, clock.time_step);
+        }
+        self.last_step = last_step;
+    }
+
     /// Writes all that is observed from now on into a folder.
     ///
     /// # Errors
