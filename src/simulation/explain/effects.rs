@@ -144,7 +144,7 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> 
         Precision::F64 => "`compensated: true` under `integration`, in f32 only",
     };
     let booking = scene.output.energies_every.map_or_else(
-        || "a step beyond the stable one is watched by its balance of energy".into(),
+        || "nodes are moved as told, and only all of it tells with how much work".into(),
         |every| format!("a row in every {every} s"),
     );
     vec![
@@ -171,7 +171,7 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> 
         Effect {
             name: "booking of work",
             on: entity.contains::<Work>().then_some(booking),
-            turned_on_by: "`energies_every` under `output`, or `beyond_stable_step` under `integration`".into(),
+            turned_on_by: "`energies_every` under `output`, or `Prescribed(...)` under `constraints`".into(),
         },
     ]
 }
