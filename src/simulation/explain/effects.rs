@@ -143,10 +143,10 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> 
         Precision::F32 => "`compensated: true` under `integration`",
         Precision::F64 => "`compensated: true` under `integration`, in f32 only",
     };
-    let booking = scene.output.energies_every.map_or_else(
-        || "nodes are moved as told, and only all of it tells with how much work".into(),
-        |every| format!("a row in every {every} s"),
-    );
+    let booking = scene
+        .output
+        .energies_every
+        .map_or_else(|| "energies are asked for".into(), |every| format!("a row in every {every} s"));
     vec![
         Effect {
             name: "external forces",
@@ -171,7 +171,7 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> 
         Effect {
             name: "booking of work",
             on: entity.contains::<Work>().then_some(booking),
-            turned_on_by: "`energies_every` under `output`, or `Prescribed(...)` under `constraints`".into(),
+            turned_on_by: "`energies_every` under `output`".into(),
         },
     ]
 }
