@@ -33,6 +33,7 @@ pub use nodes::{
     Authoring, COMPENSATION_NUMBERS, ConstrainedAxes, Corners, DampingCoefficient, Displacement,
     DisplacementCompensation, DisplacementStep, ElementForce, ExternalForce, FictitiousMass, FirstNonFinite,
     InternalForce, Mass, MiddleDisplacement, NodeSums, RestPosition, SPENT_AT, SPENT_ROWS, WORK_NUMBERS, Work,
+    before_at,
 };
 pub use observation::{Cadence, Energies, Probe};
 

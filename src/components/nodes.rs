@@ -34,13 +34,14 @@ columns! {
     /// Bits 0, 1, 2: the node does not move freely along x, y, z.
     ConstrainedAxes(Vec<u32>) = "constrained_axes";
     /// Work done on or by a node since the start (J): by loads, against damping, by constraints, by internal forces; then
-    /// the last step along constrained axes (m), which `boundary` writes over: [`WORK_NUMBERS`] a node. Exists in
-    /// motions whose energies are asked for or whose nodes are moved as told.
+    /// the last step along constrained axes (m), which `boundary` writes over: [`WORK_NUMBERS`] a node. Exists when
+    /// energies are asked for.
     Work(Reals) = "work";
     /// What the integrator notices in passing. First the lowest row of a node whose displacement was found not finite;
     /// `u32::MAX`: none. In a motion without [`Work`], from [`SPENT_AT`] on, the work against internal forces since the start: for each
-    /// [`SPENT_ROWS`] nodes, as bits of f32, a sum and what rounding has left out of it (J). One column: kernels may have
-    /// few.
+    /// [`SPENT_ROWS`] nodes, as bits of f32, a sum and what rounding has left out of it (J). With prescribed nodes, from
+    /// [`before_at`] on, a vector a node: bits of the last step (m) along prescribed axes, which `boundary` has written over.
+    /// One column: kernels may have few.
     FirstNonFinite(Vec<u32>) = "first_non_finite";
     /// Displacement in the middle of the last step (m), a vector a node: for the guards on a GPU.
     MiddleDisplacement(Reals) = "middle_displacement";
@@ -59,6 +60,11 @@ pub const SPENT_AT: usize = 4;
 
 /// Nodes that share a sum there.
 pub const SPENT_ROWS: usize = 64;
+
+/// Where the last steps along prescribed axes begin in [`FirstNonFinite`] of a body with so many nodes.
+pub const fn before_at(nodes: usize) -> usize {
+    SPENT_AT + 2 * nodes.div_ceil(SPENT_ROWS)
+}
 
 /// Numbers a node in [`Work`].
 pub const WORK_NUMBERS: usize = 7;

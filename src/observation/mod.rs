@@ -94,6 +94,15 @@ impl Observer {
         self.last_step = last_step;
     }
 
+    /// Goes on at the clock's time, wherever steps had another length before.
+    pub fn go_on(&mut self, clock: &Clock, last_step: u64) {
+        let probes = self.probes.iter_mut().map(|(_, _, cadence)| cadence);
+        for cadence in probes.chain(&mut self.energy).chain([&mut self.fields]) {
+            cadence.go_on(clock.since, clock.time_step);
+        }
+        self.last_step = last_step;
+    }
+
     /// Writes all that is observed from now on into a folder.
     ///
     /// # Errors

@@ -11,6 +11,7 @@ mod keep;
 mod mass_scaling;
 mod options;
 mod outputs;
+mod pace;
 mod parameters;
 mod policies;
 mod relax;
