@@ -10,9 +10,9 @@ use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::Error;
 use crate::scene::schema::{Scene, StepBound, WhenUnstable};
-use bevy_ecs::prelude::*;
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
+use bevy_ecs::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 

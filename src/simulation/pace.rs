@@ -53,11 +53,11 @@ impl Simulation {
         }
         self.facts.steps = pace.last_step;
         self.world.resource_mut::<Observer>().go_on(&clock, pace.last_step);
-        match (&mut self.follower, pace.found) {
-            (Some(follower), Some(found)) if !follower.take_up(found, &mut self.world) => {
-                Err(senseless("it is that of other elements".into()).into())
-            }
-            _ => Ok(()),
+        if let (Some(follower), Some(found)) = (&mut self.follower, pace.found)
+            && !follower.take_up(found, &mut self.world)
+        {
+            return Err(senseless("it is that of other elements".into()).into());
         }
+        Ok(())
     }
 }

@@ -1,8 +1,7 @@
 //! The guards: looks see what energies and fields say, limits end a run and warn, and nothing that is no number is found
 //! late or written.
 
-use crate::configurations::{Configuration, configurations, scene_of};
-use sinew::bevy_ecs;
+use crate::configurations::{configurations, scene_of};
 use sinew::bevy_ecs::prelude::*;
 use sinew::components::*;
 use sinew::observation::{HOST_GUARD_STEPS, look};
