@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use sinew::components::Precision;
+use sinew::scene::Allowed;
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
 use std::path::{Path, PathBuf};
 
@@ -29,7 +30,9 @@ fn scene(mesh: &Path) -> SceneFile {
           loads: [Gravity(acceleration: (0, 0, -9.81)), Pressure(on: Surface(), pressure: 1)])",
         mesh.to_str().unwrap()
     );
-    SceneFile::from_text("shared mesh", &text, Path::new(""), &[]).unwrap_or_else(|wrong| panic!("{wrong}"))
+    let allowed = Allowed::files_anywhere();
+    SceneFile::from_text_allowing("shared mesh", &text, Path::new(""), &[], allowed)
+        .unwrap_or_else(|wrong| panic!("{wrong}"))
 }
 
 #[test]

@@ -1,11 +1,11 @@
 //! Meshes of a scene's bodies: made or read, placed, and checked.
 
-use crate::mesh::{Mesh, SurfaceFace, generators};
+use crate::mesh::{Mesh, MeshError, SurfaceFace, generators};
 use crate::scene::SceneFile;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Body, MeshSource};
 use glam::DVec3;
-use std::path::Path;
+use std::path::PathBuf;
 use std::sync::OnceLock;
 
 /// A mesh where the author wants it, with its surface when somebody asks for it.
@@ -29,13 +29,13 @@ impl PlacedMesh {
     }
 }
 
-/// Makes or reads the mesh of a body and places it; files are relative to `folder`.
+/// Makes or reads the mesh of a body of `scene` and places it.
 ///
 /// # Errors
-/// What is wrong with the file or the parameters.
-pub fn mesh_of(body: &Body, folder: &Path) -> Result<Mesh, crate::mesh::MeshError> {
+/// What is wrong with the file or the parameters; more elements than the scene is allowed.
+pub fn mesh_of(body: &Body, scene: &SceneFile) -> Result<Mesh, MeshError> {
     let mut mesh = match &body.mesh {
-        MeshSource::File { path, flip_inverted, .. } => Mesh::read(folder.join(path), *flip_inverted)?,
+        MeshSource::File { path, flip_inverted, .. } => Mesh::read(mesh_file(scene, path)?, *flip_inverted)?,
         MeshSource::Box { size, cells, elements } => generators::box_mesh(*size, *cells, *elements)?,
         MeshSource::Cylinder { radius, height, across, along, elements } => {
             generators::cylinder_mesh(*radius, *height, *across, *along, *elements)?
@@ -51,24 +51,47 @@ pub fn mesh_of(body: &Body, folder: &Path) -> Result<Mesh, crate::mesh::MeshErro
             generators::lens_mesh(*diameter, *thickness, *across, *through, *elements)?
         }
     };
+    let elements = (mesh.element_count() as u64).saturating_mul(8_u64.saturating_pow(body.refine));
+    if elements > scene.allowed.elements {
+        return Err(too_many(elements, scene));
+    }
     mesh.refine(body.refine)?;
     mesh.place(body.scale, body.rotate, body.translate)?;
     Ok(mesh)
 }
 
+/// The path of a mesh file, if the scene may read it.
+fn mesh_file(scene: &SceneFile, name: &str) -> Result<PathBuf, MeshError> {
+    scene.file(name).map_err(|outside| MeshError::Unreadable {
+        file: name.into(),
+        source: std::io::Error::new(std::io::ErrorKind::PermissionDenied, outside),
+    })
+}
+
+fn too_many(elements: u64, scene: &SceneFile) -> MeshError {
+    let allowed = format!("at most {} are allowed in all bodies together", scene.allowed.elements);
+    MeshError::Parameter { name: "the mesh", parameter: "number of elements", value: elements.to_string(), allowed }
+}
+
 /// The meshes of all bodies; complaints of all of them.
 pub(super) fn meshes(scene: &SceneFile, diagnostics: &mut Diagnostics) -> Vec<(String, PlacedMesh)> {
+    let mut all = 0;
     let mut meshes = Vec::new();
     for (name, body) in &scene.scene.bodies {
         let path = format!("bodies.\"{name}\".mesh");
         if diagnostics.has_error_in(path.as_str()) {
             continue;
         }
-        match mesh_of(body, &scene.folder) {
+        match mesh_of(body, scene) {
             Err(error) => {
                 diagnostics.error_at(path.as_str(), error.to_string());
             }
             Ok(mesh) => {
+                all += mesh.element_count() as u64;
+                if all > scene.allowed.elements {
+                    diagnostics.error_at(path.as_str(), too_many(all, scene).to_string());
+                    break;
+                }
                 let soundness = mesh.soundness();
                 for finding in &soundness.errors {
                     diagnostics.error_at(path.as_str(), format!("the mesh of {name}: {}", finding));

@@ -13,6 +13,7 @@ mod observation;
 mod relaxation;
 mod removal;
 mod select;
+mod start;
 mod time_step;
 mod user_laws;
 
@@ -52,7 +53,9 @@ pub fn assemble<'a>(
     world: &mut World,
     diagnostics: &mut Diagnostics,
 ) -> Option<Assembly<'a>> {
-    crate::scene::validate(scene, diagnostics);
+    if !crate::scene::validate(scene, diagnostics) {
+        return None;
+    }
     let meshes = meshes::meshes(scene, diagnostics);
     let mut laws = user_laws::read(scene, diagnostics);
     if diagnostics.has_errors() {
@@ -81,9 +84,11 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     observation::spawn(assembly, world, diagnostics);
     insert_laws(assembly.precision, world);
     columns::start(assembly, world);
+    start::deform(assembly, world, diagnostics);
     let scene = &assembly.scene.scene;
     if scene.when_unstable() == schema::WhenUnstable::Remove && !scene.is_static() {
-        assembly.bodies.values().for_each(|body| removal::insert_columns(assembly.precision, body, world));
+        let blocks = assembly.bodies.values().flat_map(|body| &body.blocks);
+        blocks.for_each(|&block| removal::insert_columns(assembly.precision, block, world));
     }
     if scene.is_static() {
         relaxation::insert_fictitious_masses(assembly, world);

@@ -4,7 +4,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::Vec3;
 use sinew::backend::gpu::Choice;
 use sinew::components::Precision;
-use sinew::{BackendChoice, Options};
+use sinew::scene::{Allowed, Diagnostics};
+use sinew::{BackendChoice, Options, SceneFile};
 use std::path::{Path, PathBuf};
 
 const STATUSES: &str = "\
@@ -70,6 +71,21 @@ pub struct SceneArguments {
     /// Put a value into the scene, such as materials.tissue.density=1060; may be given several times
     #[arg(long, value_name = "PATH=VALUE")]
     pub set: Vec<String>,
+    /// Let the scene name files outside its own folder
+    #[arg(long)]
+    pub allow_outside: bool,
+}
+
+impl SceneArguments {
+    /// Reads the scene.
+    pub fn load(&self) -> Result<SceneFile, Diagnostics> {
+        SceneFile::load_allowing(&self.scene, &self.set, allowed(self.allow_outside))
+    }
+}
+
+/// What a scene may ask for.
+pub fn allowed(outside: bool) -> Allowed {
+    Allowed { outside, ..Allowed::default() }
 }
 
 /// What `sinew check` is told.
@@ -108,6 +124,9 @@ pub struct RunArguments {
     /// The folder to write into, in place of an earlier run's output [default: out/NAME-OF-THE-SCENE]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Go on from a snapshot of the same scene, see output.snapshots_every; writes into out/NAME-OF-THE-SCENE-resumed
+    #[arg(long, value_name = "FILE")]
+    pub resume: Option<PathBuf>,
 }
 
 #[derive(Args)]
@@ -190,6 +209,9 @@ pub struct RenderArguments {
     /// An output folder, or a scene file; a scene is run first where its output is missing or older than it
     #[arg(value_name = "SCENE|OUT")]
     pub what: PathBuf,
+    /// Let the scene name files outside its own folder
+    #[arg(long)]
+    pub allow_outside: bool,
     /// What gives the colour: displacement, speed, von_mises, pressure, volume_ratio, or a component such as
     /// displacement.z or stress.xy [default: the scene's]
     #[arg(long, value_name = "NAME")]

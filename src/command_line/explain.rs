@@ -11,7 +11,7 @@ use sinew::{BackendChoice, Error, Options, SceneFile, Simulation};
 
 /// Prints a page or JSON.
 pub fn command(arguments: &ExplainArguments) -> Outcome {
-    let scene = SceneFile::load(&arguments.scene.scene, &arguments.scene.set)?;
+    let scene = arguments.scene.load()?;
     let work = || explanation(&scene, &arguments.how.options(), arguments.how.backend);
     let explanation = progress::during("reading meshes, building the simulation", work)?;
     if arguments.json {

@@ -1,6 +1,6 @@
 //! `sinew render`: pictures of an output folder, or of a scene that is run first where need be.
 
-use super::arguments::{RenderArguments, default_folder};
+use super::arguments::{RenderArguments, allowed, default_folder};
 use super::failure::Failure;
 use super::run::{self, PICTURES, SCENE};
 use super::terminal;
@@ -15,7 +15,7 @@ use std::time::SystemTime;
 /// Draws.
 pub fn command(arguments: &RenderArguments) -> Outcome {
     let files = files(arguments)?;
-    let (folder, picture, ended) = source(&arguments.what)?;
+    let (folder, picture, ended) = source(&arguments.what, arguments.allow_outside)?;
     for (animate, file) in files {
         let options = Options {
             field: arguments.field.clone().unwrap_or_else(|| field_name(picture.field).into()),
@@ -47,7 +47,7 @@ fn files(arguments: &RenderArguments) -> Result<Vec<(bool, Option<PathBuf>)>, Fa
 }
 
 /// The folder to draw, how its scene wants to be drawn, and how the run ended where one was needed.
-fn source(what: &Path) -> Result<(PathBuf, Picture, Outcome), Failure> {
+fn source(what: &Path, outside: bool) -> Result<(PathBuf, Picture, Outcome), Failure> {
     if what.is_dir() {
         if !what.join("sinew.json").exists() {
             let text = format!("{} is no output folder of sinew (it has no sinew.json)", what.display());
@@ -56,7 +56,7 @@ fn source(what: &Path) -> Result<(PathBuf, Picture, Outcome), Failure> {
         let picture = SceneFile::load(what.join(SCENE), &[]).map(|scene| scene.scene.picture).unwrap_or_default();
         return Ok((what.to_path_buf(), picture, Ok(())));
     }
-    let scene = SceneFile::load(what, &[])?;
+    let scene = SceneFile::load_allowing(what, &[], allowed(outside))?;
     let folder = default_folder(what);
     let picture = scene.scene.picture.clone();
     let Some(reason) = why_run(&scene, &folder) else {
@@ -64,7 +64,7 @@ fn source(what: &Path) -> Result<(PathBuf, Picture, Outcome), Failure> {
         return Ok((folder, picture, Ok(())));
     };
     terminal::aside(&format!("running {} first: {reason}\n", what.display()));
-    let (_, ended) = run::run(&scene, &RunOptions::default(), &folder)?;
+    let (_, ended) = run::run(&scene, &RunOptions::default(), &folder, None)?;
     match ended {
         Err(Failure::Interrupted) => Err(Failure::Interrupted),
         // what was written until a breakdown can be seen, and often says why
@@ -84,7 +84,7 @@ fn why_run(scene: &SceneFile, folder: &Path) -> Option<String> {
         return Some(format!("it has changed since {} was written", folder.display()));
     }
     let meshes = scene.scene.bodies.values().filter_map(|body| match &body.mesh {
-        MeshSource::File { path, .. } => Some(scene.folder.join(path)),
+        MeshSource::File { path, .. } => scene.file(path).ok(),
         _ => None,
     });
     let newer = meshes.into_iter().find(|mesh| changed(mesh) > written);

@@ -37,9 +37,16 @@ columns! {
     /// the last step along constrained axes (m), which `boundary` writes over: [`WORK_NUMBERS`] a node. Exists when
     /// energies are asked for.
     Work(Reals) = "work";
-    /// One number: the lowest row of a node whose displacement was found not finite, by the integrator itself in every
-    /// step; `u32::MAX`: none.
+    /// What the integrator notices in passing. First the lowest row of a node whose displacement was found not finite;
+    /// `u32::MAX`: none. In a motion without [`Work`], from [`SPENT_AT`] on, the work against internal forces since the start: for each
+    /// [`SPENT_ROWS`] nodes, as bits of f32, a sum and what rounding has left out of it (J). With prescribed nodes, from
+    /// [`before_at`] on, a vector a node: bits of the last step (m) along prescribed axes, which `boundary` has written over.
+    /// One column: kernels may have few.
     FirstNonFinite(Vec<u32>) = "first_non_finite";
+    /// Displacement in the middle of the last step (m), a vector a node: for the guards on a GPU.
+    MiddleDisplacement(Reals) = "middle_displacement";
+    /// What each 64 nodes come to, four words each: bits of ½ m d² (kg m²) and of the longest step's square (m²), its row.
+    NodeSums(Vec<u32>) = "node_sums";
     /// Forces of all elements on their corners (N), all blocks of the body one after the other: in each group of
     /// [`LANES`](crate::math::LANES) elements by corner, component, element.
     ElementForce(Reals) = "element_force";
@@ -47,6 +54,17 @@ columns! {
 
 /// Numbers a node in [`DisplacementCompensation`].
 pub const COMPENSATION_NUMBERS: usize = 6;
+
+/// Where sums of work begin in [`FirstNonFinite`].
+pub const SPENT_AT: usize = 4;
+
+/// Nodes that share a sum there.
+pub const SPENT_ROWS: usize = 64;
+
+/// Where the last steps along prescribed axes begin in [`FirstNonFinite`] of a body with so many nodes.
+pub const fn before_at(nodes: usize) -> usize {
+    SPENT_AT + 2 * nodes.div_ceil(SPENT_ROWS)
+}
 
 /// Numbers a node in [`Work`].
 pub const WORK_NUMBERS: usize = 7;

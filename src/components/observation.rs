@@ -48,6 +48,14 @@ impl Cadence {
         }
     }
 
+    /// Counts from a step and the time at its beginning (s), in steps of a length (s).
+    pub fn go_on(&mut self, (step, time): (u64, f64), time_step: f64) {
+        if self.steps.is_finite() {
+            self.since = (step, time / self.interval);
+            self.steps = (self.interval / time_step).max(1.0);
+        }
+    }
+
     /// How many intervals have passed at the beginning of a step.
     fn passed(&self, step: u64) -> f64 {
         self.since.1 + step.saturating_sub(self.since.0) as f64 / self.steps

@@ -76,10 +76,21 @@ impl Mesh {
         let ids = (0..elements.len()).flat_map(|parent| [self.element_ids.of(parent); 8]).collect();
         self.element_ids = Ids::Named(ids);
         if let Ids::Named(ids) = &mut self.point_ids {
-            let next = ids.iter().max().map_or(0, |id| id + 1);
-            ids.extend((next..).take(middles.points.len() - before));
+            ids.extend(free_numbers(ids, middles.points.len() - before));
         }
         self.points = middles.points;
+    }
+}
+
+/// So many numbers that none of `ids` is: those after the largest, or where these come to an end the smallest.
+fn free_numbers(ids: &[u64], count: usize) -> Vec<u64> {
+    let next = ids.iter().max().map_or(Some(0), |id| id.checked_add(1));
+    match next.filter(|next| next.checked_add(count as u64).is_some()) {
+        Some(next) => (next..).take(count).collect(),
+        None => {
+            let taken: BTreeSet<u64> = ids.iter().copied().collect();
+            (0..).filter(|number| !taken.contains(number)).take(count).collect()
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! What is wrong with a scene, where, and how it is shown.
 
+use super::limits::MISTAKES;
 use super::source::Source;
 use super::syntax::{Fault, Node, Path, Span, Tree};
 use codespan_reporting::diagnostic::{Diagnostic as Shown, Label, Severity as Grade};
@@ -50,7 +51,7 @@ impl Diagnostic {
     pub fn error(at: impl Into<Option<Span>>, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
-            message: message.into(),
+            message: shortened(message.into()),
             at: at.into(),
             file: None,
             label: String::new(),
@@ -61,19 +62,19 @@ impl Diagnostic {
 
     /// Adds a word on the place.
     pub fn label(&mut self, label: impl Into<String>) -> &mut Self {
-        self.label = label.into();
+        self.label = shortened(label.into());
         self
     }
 
     /// Adds a note: what is allowed, what to do.
     pub fn note(&mut self, note: impl Into<String>) -> &mut Self {
-        self.notes.push(note.into());
+        self.notes.push(shortened(note.into()));
         self
     }
 
     /// Adds notes.
     pub fn notes(&mut self, notes: impl IntoIterator<Item = String>) -> &mut Self {
-        self.notes.extend(notes);
+        self.notes.extend(notes.into_iter().map(shortened));
         self
     }
 
@@ -93,6 +94,33 @@ impl From<Fault> for Diagnostic {
     }
 }
 
+/// The longest sentence that is told, and the longest line of a file that is shown (bytes).
+const LONGEST: usize = 4000;
+
+/// The beginning of a text that is too long to be read: a word of a scene that is repeated may be of any length.
+fn shortened(mut text: String) -> String {
+    if text.len() > LONGEST {
+        text.truncate(text.floor_char_boundary(LONGEST));
+        text.push_str("...");
+    }
+    text
+}
+
+/// Whether the line around a place is too long to be shown.
+fn is_long(text: &str, at: usize) -> bool {
+    let (before, after) = text.split_at(at);
+    let start = before.rfind('\n').map_or(0, |end| end + 1);
+    before.len() - start + after.find('\n').unwrap_or(after.len()) > LONGEST
+}
+
+/// `cube.ron:3:15`: a file, a line and a column of it.
+fn numbered((name, text, start): (&str, &str, usize)) -> String {
+    let before = &text[..start];
+    let line = before.matches('\n').count() + 1;
+    let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
+    format!("{name}:{line}:{column}")
+}
+
 /// How many mistakes are shown in one go.
 const MOST_SHOWN: usize = 50;
 
@@ -102,12 +130,14 @@ pub struct Diagnostics {
     source: Option<Arc<Source>>,
     tree: Option<Arc<Tree>>,
     list: Vec<Diagnostic>,
+    /// Whether errors gave way to later ones.
+    lost_errors: bool,
 }
 
 impl Diagnostics {
     /// Nothing wrong yet with this text.
     pub fn new(source: Arc<Source>, tree: Arc<Tree>) -> Self {
-        Self { source: Some(source), tree: Some(tree), list: Vec::new() }
+        Self { source: Some(source), tree: Some(tree), ..Self::default() }
     }
 
     /// One mistake that is not in a text: a file that cannot be read.
@@ -124,6 +154,10 @@ impl Diagnostics {
 
     /// Adds a mistake.
     pub fn push(&mut self, diagnostic: Diagnostic) -> &mut Diagnostic {
+        // of more than anybody reads the last one gives way
+        if self.list.len() >= MISTAKES {
+            self.lost_errors |= self.list.pop().is_some_and(|lost| lost.severity == Severity::Error);
+        }
         self.list.push(diagnostic);
         let last = self.list.len() - 1;
         &mut self.list[last]
@@ -171,7 +205,7 @@ impl Diagnostics {
 
     /// Whether one of them keeps the scene from running.
     pub fn has_errors(&self) -> bool {
-        self.list.iter().any(|diagnostic| diagnostic.severity == Severity::Error)
+        self.lost_errors || self.list.iter().any(|diagnostic| diagnostic.severity == Severity::Error)
     }
 
     /// Whether nothing is wrong.
@@ -194,22 +228,36 @@ impl Diagnostics {
             Severity::Error => "error",
             Severity::Warning => "warning",
         };
-        let (name, text, start) = match (&diagnostic.file, &self.source, &diagnostic.at) {
-            (Some(file), _, Some(at)) => (file.name.as_str(), file.text.as_str(), at.start),
-            (Some(file), _, None) => return format!("{}: {grade}: {}", file.name, diagnostic.message),
-            (None, Some(source), Some(at)) => {
-                let place = source.place(at);
-                match place.text.checked_sub(1) {
-                    None => (source.name.as_str(), source.file.as_str(), place.span.start),
-                    Some(set) => ("--set", source.sets[set].as_str(), place.span.start),
-                }
-            }
-            _ => return format!("{grade}: {}", diagnostic.message),
-        };
-        let before = &text[..start];
-        let line = before.matches('\n').count() + 1;
-        let column = before.chars().rev().take_while(|c| *c != '\n').count() + 1;
-        format!("{name}:{line}:{column}: {grade}: {}", diagnostic.message)
+        let message = &diagnostic.message;
+        match (&diagnostic.file, &diagnostic.at) {
+            (Some(file), None) => format!("{}: {grade}: {message}", file.name),
+            (_, None) => format!("{grade}: {message}"),
+            (_, Some(at)) => match self.text_at(diagnostic, at) {
+                Some(place) => format!("{}: {grade}: {message}", numbered(place)),
+                None => format!("{grade}: {message}"),
+            },
+        }
+    }
+
+    /// The name and text of the file that a place of a mistake is in, and the byte where it begins.
+    fn text_at<'a>(&'a self, diagnostic: &'a Diagnostic, at: &Span) -> Option<(&'a str, &'a str, usize)> {
+        if let Some(file) = &diagnostic.file {
+            return Some((&file.name, &file.text, at.start));
+        }
+        let source = self.source.as_ref()?;
+        let place = source.place(at);
+        Some(match place.text.checked_sub(1) {
+            None => (&source.name, &source.file, place.span.start),
+            Some(set) => ("--set", &source.sets[set], place.span.start),
+        })
+    }
+
+    /// Where a mistake is, if a line that would be shown for it is too long for that.
+    fn on_a_long_line(&self, diagnostic: &Diagnostic) -> Option<String> {
+        let places = diagnostic.at.iter().chain(diagnostic.also.iter().map(|(span, _)| span));
+        let mut texts = places.filter_map(|at| self.text_at(diagnostic, at));
+        let long = texts.find(|(_, text, start)| is_long(text, *start))?;
+        Some(diagnostic.at.as_ref().and_then(|at| self.text_at(diagnostic, at)).map_or(numbered(long), numbered))
     }
 
     fn sorted(&self) -> Vec<&Diagnostic> {
@@ -232,7 +280,10 @@ impl Diagnostics {
         let mut text = String::new();
         for diagnostic in sorted.iter().take(MOST_SHOWN) {
             let mut shown = self.shown(diagnostic);
-            if let (Some(file), Some(at)) = (&diagnostic.file, &diagnostic.at) {
+            if let Some(place) = self.on_a_long_line(diagnostic) {
+                shown.message.push_str(&format!(" ({place})"));
+                shown.labels.clear();
+            } else if let (Some(file), Some(at)) = (&diagnostic.file, &diagnostic.at) {
                 let number = files.add(file.name.clone(), file.text.as_str());
                 shown.labels.push(Label::primary(number, at.clone()).with_message(&diagnostic.label));
             }

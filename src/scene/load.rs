@@ -2,12 +2,14 @@
 
 use super::check::check;
 use super::diagnostic::{Diagnostic, Diagnostics};
+use super::limits::{self, Allowed};
 use super::partial::wrong_values;
 use super::schema::Scene;
 use super::set;
 use super::source::Source;
 use super::syntax::{Span, Tree, parse};
 use ron::extensions::Extensions;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -20,6 +22,8 @@ pub struct SceneFile {
     pub path: PathBuf,
     /// The folder that mesh files are relative to.
     pub folder: PathBuf,
+    /// What the scene may ask for.
+    pub allowed: Allowed,
     source: Arc<Source>,
     tree: Arc<Tree>,
 }
@@ -36,16 +40,30 @@ impl SceneFile {
     /// # Errors
     /// All mistakes in the words of the file, or that it cannot be read.
     pub fn load(path: impl AsRef<Path>, sets: &[String]) -> Result<Self, Diagnostics> {
+        Self::load_allowing(path, sets, Allowed::default())
+    }
+
+    /// As [`Self::load`]; `allowed` is what the scene may ask for.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn load_allowing(path: impl AsRef<Path>, sets: &[String], allowed: Allowed) -> Result<Self, Diagnostics> {
         let path = path.as_ref();
         let name = path.display().to_string();
-        let bytes =
-            std::fs::read(path).map_err(|error| Diagnostics::of(format!("cannot read the scene {name}: {error}")))?;
+        let unreadable = |error| Diagnostics::of(format!("cannot read the scene {name}: {error}"));
+        let mut bytes = Vec::new();
+        // one byte more than is allowed tells that there are too many, be it a device without end
+        let file = std::fs::File::open(path).map_err(unreadable)?;
+        file.take(limits::TEXT_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+        if bytes.len() > limits::TEXT_BYTES {
+            return Err(Diagnostics::of(too_long(&name)));
+        }
         let text = String::from_utf8(bytes).map_err(|error| {
             let at = error.utf8_error().valid_up_to();
             Diagnostics::of(format!("the scene {name} is not a text in UTF-8 (byte {at}); is it the right file?"))
         })?;
         let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
-        let mut scene = Self::from_text(&name, &text, &folder, sets)?;
+        let mut scene = Self::from_text_allowing(&name, &text, &folder, sets, allowed)?;
         scene.path = path.to_path_buf();
         Ok(scene)
     }
@@ -55,6 +73,27 @@ impl SceneFile {
     /// # Errors
     /// All mistakes in the words of the text.
     pub fn from_text(name: &str, text: &str, folder: &Path, sets: &[String]) -> Result<Self, Diagnostics> {
+        Self::from_text_allowing(name, text, folder, sets, Allowed::default())
+    }
+
+    /// As [`Self::from_text`]; `allowed` is what the scene may ask for.
+    ///
+    /// # Errors
+    /// As [`Self::from_text`].
+    pub fn from_text_allowing(
+        name: &str,
+        text: &str,
+        folder: &Path,
+        sets: &[String],
+        allowed: Allowed,
+    ) -> Result<Self, Diagnostics> {
+        if text.len() > limits::TEXT_BYTES {
+            return Err(Diagnostics::of(too_long(name)));
+        }
+        if sets.len() > limits::SETS {
+            let (found, most) = (sets.len(), limits::SETS);
+            return Err(Diagnostics::of(format!("--set is given {found} times; at most {most} are allowed")));
+        }
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let mut source = Source::new(name, text, sets);
         let mut tree = parse(source.text());
@@ -72,7 +111,7 @@ impl SceneFile {
         mistakes.extend(wrong_words);
         let (source, tree) = (Arc::new(source), Arc::new(tree));
         let mut diagnostics = Diagnostics::new(Arc::clone(&source), Arc::clone(&tree));
-        let file = |scene| Self { scene, path: name.into(), folder: folder.to_path_buf(), source, tree };
+        let file = |scene| Self { scene, path: name.into(), folder: folder.to_path_buf(), allowed, source, tree };
         if mistakes.is_empty() {
             match options().from_str::<Scene>(diagnostics.text()) {
                 Ok(scene) => return Ok(file(scene)),
@@ -101,6 +140,13 @@ impl SceneFile {
     pub fn diagnostics(&self) -> Diagnostics {
         Diagnostics::new(Arc::clone(&self.source), Arc::clone(&self.tree))
     }
+}
+
+fn too_long(name: &str) -> String {
+    format!(
+        "the scene {name} has more than {} bytes, the most that are allowed; long lists of nodes can be named sets of a mesh",
+        limits::TEXT_BYTES
+    )
 }
 
 /// A mistake that ron finds and [`check`] does not.

@@ -1,7 +1,9 @@
 //! Scene files: their words, how they are read, and what is said when they are wrong.
 
+mod beside;
 pub mod check;
 pub mod diagnostic;
+pub mod limits;
 pub mod load;
 mod partial;
 pub mod schema;
@@ -12,7 +14,9 @@ pub mod syntax;
 pub mod validate;
 pub mod words;
 
+pub use beside::Outside;
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, TextFile};
+pub use limits::Allowed;
 pub use load::SceneFile;
 pub use suggest::{choice, list, nearest};
 pub use validate::validate;

@@ -3,6 +3,7 @@
 
 use super::check::wants_text;
 use super::diagnostic::Diagnostic;
+use super::limits::SET_BYTES;
 use super::schema::Scene;
 use super::source::{Origin, Source};
 use super::suggest::choice;
@@ -14,6 +15,13 @@ use super::syntax::{Kind, Lost, Node, Path, Segment, Span, Tree, parse};
 /// Why it cannot be put in: a path that leads nowhere, a value that is not RON.
 pub fn apply(source: &mut Source, tree: &Tree, number: usize) -> Result<(), Box<Diagnostic>> {
     let argument = source.sets[number].clone();
+    if argument.len() > SET_BYTES {
+        let begin: String = argument.chars().take(40).collect();
+        let message = format!("--set {begin}...: {} bytes; at most {SET_BYTES} are allowed", argument.len());
+        let mut diagnostic = Diagnostic::error(None, message);
+        diagnostic.note("long values belong into the scene file");
+        return Err(Box::new(diagnostic));
+    }
     let fail = |message: String| Box::new(Diagnostic::error(None, format!("--set {argument}: {message}")));
     let (path, value) = argument.split_once('=').ok_or_else(|| {
         let mut diagnostic = fail("a value is missing".to_string());

@@ -1,7 +1,9 @@
 //! How often a system runs on the host.
 
+use serde::{Deserialize, Serialize};
+
 /// Every so many steps, counted from one of them.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Beat {
     every: u64,
     from: u64,

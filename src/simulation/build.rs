@@ -4,6 +4,7 @@ use super::beat::Beat;
 use super::follow::Follower;
 use super::frequency::largest_eigenvalue;
 use super::options::{BackendChoice, Chosen, choose};
+use super::outputs;
 use super::parameters::hand_out;
 use super::relax::Relaxing;
 use super::schedule::{Scheduled, check_names, resolve};
@@ -16,9 +17,10 @@ use crate::backend::gpu::Gpu;
 use crate::backend::kernel::KernelId;
 use crate::components::*;
 use crate::error::Error;
-use crate::observation::Observer;
+use crate::observation::{Observer, Watch, WatchKernels};
 use crate::scene::schema::Analysis;
 use crate::scene::{Diagnostics, SceneFile};
+use crate::snapshot::{Keeping, identity};
 use crate::systems::{HostSystem, Phase, Registry};
 use bevy_ecs::component::ComponentId;
 use bevy_ecs::prelude::*;
@@ -68,6 +70,7 @@ impl Simulation {
                 Err(Error::Gpu(reason)) if options.backend == BackendChoice::Auto => {
                     why = format!("the GPU cannot take this scene: {reason}");
                     world.remove_resource::<Device>();
+                    world.remove_resource::<WatchKernels>();
                     None
                 }
                 Err(error) => return Err(error),
@@ -93,6 +96,15 @@ impl Simulation {
             let (name, because) = (system.name.clone(), scheduled.because.clone());
             entries.push(Entry { name, phase: system.phase, because, job, time: Duration::ZERO, runs: 0 });
         }
+        let keeping = keeping(scene, options.precision, &schedule, &access, &mut world);
+        // who writes more than loads makes energy
+        let external = ExternalForce::NAME;
+        let foreign = keeping.written.iter().any(|name| *name != external);
+        world.insert_resource(keeping);
+        world.insert_resource(GuardMemory::default());
+        let mut observer = world.resource_mut::<Observer>();
+        (observer.watch.foreign, observer.on_gpu) = (foreign, on_gpu);
+        observer.all_on_device = on_gpu && !schedule.iter().any(|entry| entry.system.custom);
         let facts = Facts {
             on_gpu,
             backend,
@@ -107,13 +119,28 @@ impl Simulation {
             warnings: diagnostics,
         };
         let follower = Follower::new(&scene.scene, &facts.stability, facts.initial_mass, &mut world);
-        Ok(Self { world, entries, scene: scene.scene.clone(), facts, relaxing, follower, elapsed: Duration::ZERO })
+        Ok(Self {
+            world,
+            entries,
+            scene: scene.scene.clone(),
+            facts,
+            relaxing,
+            follower,
+            elapsed: Duration::ZERO,
+            began: (0, 0.0),
+            failure: None,
+        })
     }
 }
 
 /// Takes a GPU for the run and makes the kernels of all systems ready that have some.
 fn kernels_on(gpu: Gpu, schedule: &[Scheduled<'_>], world: &mut World) -> Result<Vec<Option<Vec<KernelId>>>, Error> {
     world.insert_resource(Device::new(gpu, all_columns()));
+    if world.resource::<Clock>().relaxation.is_none() {
+        crate::systems::add_watch_columns(world);
+        let watch = Device::prepare(world, crate::systems::watch_kernels)?;
+        world.insert_resource(WatchKernels(watch));
+    }
     let kernels = schedule.iter().map(|entry| entry.system.kernels);
     kernels.map(|describe| describe.map(|describe| Device::prepare(world, describe)).transpose()).collect()
 }
@@ -144,6 +171,7 @@ fn plan<'a>(
     world.insert_resource(Clock::with_step(1.0));
     insert_laws(precision, world);
     let (clock, stability, steps) = clock(scene, world, diagnostics)?;
+    outputs::check(scene, &clock, steps, diagnostics);
     world.insert_resource(clock);
     assemble_in_time(&assembly, world, diagnostics);
     let mut schedule = resolve(scene.scene.schedule.as_deref(), registry, world, diagnostics);
@@ -201,7 +229,13 @@ fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> 
     let mut observer = Observer::default();
     observer.fields = every(scene.scene.fields_every());
     observer.energy = scene.scene.output.energies_every.map(every);
-    observer.watch_energy = scene.scene.integration.beyond_stable_step && clock.relaxation.is_none();
+    observer.snapshots = scene.scene.output.snapshots_every.filter(|_| !scene.scene.is_static()).map(every);
+    observer.watch = Watch {
+        limits: scene.scene.guards.clone(),
+        beyond: scene.scene.integration.beyond_stable_step && clock.relaxation.is_none(),
+        foreign: false,
+        removal: !scene.scene.removal.is_empty(),
+    };
     observer.to_rest = clock.relaxation.is_some();
     observer.last_step = if clock.relaxation.is_some() { u64::MAX } else { steps };
     observer.watch_probes(world);
@@ -225,6 +259,23 @@ fn add_called_for_columns(
                 world.entity_mut(body.entity).insert(ExternalForce(Reals::zeros(assembly.precision, length)));
             }
         }
+    }
+}
+
+/// What snapshots must know of the simulation.
+fn keeping(
+    scene: &SceneFile,
+    precision: Precision,
+    schedule: &[Scheduled<'_>],
+    access: &[SystemAccess],
+    world: &mut World,
+) -> Keeping {
+    let custom = || schedule.iter().zip(access).filter(|(entry, _)| entry.system.custom);
+    Keeping {
+        identity: identity(&scene.scene, world),
+        precision,
+        written: custom().flat_map(|(_, access)| columns_of(access, world).1).collect(),
+        systems: custom().filter_map(|(entry, _)| Some((entry.system.name.clone(), entry.system.state?))).collect(),
     }
 }
 

@@ -10,8 +10,10 @@ use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::Error;
 use crate::scene::schema::{Scene, StepBound, WhenUnstable};
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
 use bevy_ecs::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
 /// Steps between two looks at all elements: at least, and at most; and no more than half of all steps so far, because what
@@ -31,7 +33,7 @@ const REST: u64 = 100;
 const RELIEF: f64 = 0.6;
 
 /// How the step went during the run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StepHistory {
     /// How often it was changed.
     pub changes: u64,
@@ -121,6 +123,54 @@ impl Follower {
     pub fn wanted(&self, limit: f64, seen: &Seen) -> f64 {
         let elements = if self.by_elements { self.safety * step_of(seen.at_rest) } else { f64::INFINITY };
         (self.safety * limit).min(elements).min(self.own)
+    }
+}
+
+/// What has been found so far, for snapshots.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Found {
+    next: u64,
+    known: f64,
+    known_at: u64,
+    seen: Option<Seen>,
+    guessed: bool,
+    history: StepHistory,
+    /// Of each block, as base64 of f32; none before the first look.
+    growths: Vec<String>,
+}
+
+impl Follower {
+    /// What has been found so far.
+    pub fn found(&self) -> Found {
+        let growth = |block: &Watched| {
+            let bytes: Vec<u8> = block.known_growth().iter().flat_map(|growth| growth.to_le_bytes()).collect();
+            BASE64_STANDARD.encode(bytes)
+        };
+        Found {
+            next: self.next,
+            known: self.known,
+            known_at: self.known_at,
+            seen: self.seen,
+            guessed: self.guessed,
+            history: self.history,
+            growths: self.watched.iter().map(growth).collect(),
+        }
+    }
+
+    /// Goes on from what had been found; false where it does not fit the world.
+    pub fn take_up(&mut self, found: Found, world: &mut World) -> bool {
+        self.watched = if found.growths.is_empty() { Vec::new() } else { Watched::all(world) };
+        let growth = |text: &String| {
+            let bytes = BASE64_STANDARD.decode(text).ok()?;
+            Some(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect::<Vec<f32>>())
+        };
+        let growths: Option<Vec<Vec<f32>>> = found.growths.iter().map(growth).collect();
+        let Some(growths) = growths.filter(|growths| growths.len() == self.watched.len()) else { return false };
+        let fits = self.watched.iter_mut().zip(growths).all(|(block, growth)| block.take_known_growth(growth));
+        (self.next, self.known, self.known_at) = (found.next, found.known, found.known_at);
+        (self.seen, self.guessed, self.history) = (found.seen, found.guessed, found.history);
+        fits && self.known.is_finite()
     }
 }
 

@@ -144,8 +144,13 @@ fn tangents(law: &BlockLaw<f64>, stretches: &[f64; 3]) -> [f64; 3] {
         for (family, _) in &law.exponential {
             isochoric = isochoric.plus(&family.isochoric(&k, along));
         }
-        let volumetric = law.elastic.volumetric(&k, law.elastic.pressure(law.elastic.volume_measure(&k)));
-        [law.elastic.first_stress(gradient, &isochoric), law.elastic.first_stress(gradient, &volumetric)]
+        let pressure = law.elastic.pressure(law.elastic.volume_measure(&k));
+        let without = law.elastic.first_stress(gradient, &k, &isochoric, 0.0);
+        let mut volumetric = law.elastic.first_stress(gradient, &k, &isochoric, pressure);
+        for (row, less) in volumetric.0.iter_mut().zip(&without.0) {
+            row.iter_mut().zip(less).for_each(|(x, less)| *x -= less);
+        }
+        [without, volumetric]
     };
     let before = stresses(&gradient);
     let mut tangents = [[[0.0; 9]; 9]; 2];

@@ -7,8 +7,11 @@ pub mod explain;
 mod follow;
 mod frequency;
 mod growth;
+mod keep;
 mod mass_scaling;
 mod options;
+mod outputs;
+mod pace;
 mod parameters;
 mod policies;
 mod relax;
@@ -27,7 +30,7 @@ pub use follow::StepHistory;
 pub use options::{BackendChoice, Options};
 pub use relax::Equilibrium;
 pub use stable_step::Stability;
-pub use summary::{Summary, SystemTime};
+pub use summary::{Inversions, Summary, SystemTime};
 
 use crate::backend::kernel::KernelId;
 use crate::scene::Diagnostics;
@@ -46,6 +49,10 @@ pub struct Simulation {
     relaxing: Option<relax::Relaxing>,
     follower: Option<follow::Follower>,
     elapsed: Duration,
+    /// Step and time (s) from which `elapsed` counts: of the start, or of a snapshot that was gone on from.
+    began: (u64, f64),
+    /// How it broke down.
+    failure: Option<crate::error::Instability>,
 }
 
 /// A system of the running schedule.

@@ -6,7 +6,7 @@ use super::watch::Seen;
 use super::{Simulation, mass_scaling};
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
-use crate::error::{Error, Instability};
+use crate::error::{Criterion, Error, Instability};
 
 /// Larger by less is not worth a change.
 pub(super) const WORTH: f64 = 1.1;
@@ -110,6 +110,13 @@ impl Simulation {
                     when_unstable: Remove)"
                     .into(),
             good_until: self.time(),
+            criterion: Criterion {
+                value: Some(wanted),
+                limit: Some(LEAST * follower.first),
+                element: Some(element),
+                ..Criterion::of("step")
+            },
+            last_good: None,
         }))
     }
 }

@@ -8,6 +8,7 @@ use crate::backend::kernel::Uniform;
 use crate::components::*;
 use crate::error::Error;
 use crate::evaluation::{BlockView, lane_place, point_count};
+use crate::materials::PronyTerm;
 use crate::observation::Observer;
 use bevy_ecs::prelude::*;
 
@@ -90,17 +91,9 @@ fn scale_steps(world: &mut World, factor: f64) {
 /// The recursions of viscous materials take the coefficients of the new step. The memory of the exact one, H − φS, holds a
 /// coefficient of the old step too: what it stands for stays the same.
 fn relax_on(world: &mut World, clock: &Clock) -> Result<(), Error> {
-    let blocks: Vec<Entity> = world.query_filtered::<Entity, With<ViscousMemory>>().iter(world).collect();
-    for entity in blocks {
-        let Some(block) = world.get::<Block>(entity) else { continue };
-        let Some([terms, volumetric]) = world.get::<Prony>(block.material).map(|prony| prony.coefficients(clock))
-        else {
-            continue;
-        };
-        let Some(mut law) = world.get::<BlockLaw<f64>>(entity).cloned() else { continue };
-        let change = |(now, before): (&crate::materials::PronyTerm<f64>, &crate::materials::PronyTerm<f64>)| {
-            now.aim - before.aim
-        };
+    for (entity, [terms, volumetric]) in coefficients(world, clock) {
+        let Some(law) = world.get::<BlockLaw<f64>>(entity) else { continue };
+        let change = |(now, before): (&PronyTerm<f64>, &PronyTerm<f64>)| now.aim - before.aim;
         let changes = [
             terms.iter().zip(&law.prony).map(change).collect::<Vec<f64>>(),
             volumetric.iter().zip(&law.volumetric).map(change).collect(),
@@ -112,19 +105,48 @@ fn relax_on(world: &mut World, clock: &Clock) -> Result<(), Error> {
                 memory.set(place, value);
             });
         }
-        (law.prony, law.volumetric) = (terms, volumetric);
-        let label = world.get::<Label>(entity).map(|label| label.0.clone()).unwrap_or_default();
-        let rounded = law.rounded::<f32>();
-        let bytes: Vec<u8> = rounded.prony.iter().chain(&rounded.volumetric).flat_map(Uniform::bytes).collect();
-        if let Some(mut device) = world.get_resource_mut::<Device>() {
-            device.rewrite_uniform(&format!("prony of {label}"), &bytes)?;
-        }
-        let mut entity = world.entity_mut(entity);
-        if entity.contains::<BlockLaw<f32>>() {
-            entity.insert(rounded);
-        }
-        entity.insert(law);
+        take_coefficients(world, entity, terms, volumetric)?;
     }
+    Ok(())
+}
+
+/// The same where memories already belong to the step, as those of a snapshot do.
+pub(super) fn relax_as(world: &mut World, clock: &Clock) -> Result<(), Error> {
+    for (entity, [terms, volumetric]) in coefficients(world, clock) {
+        take_coefficients(world, entity, terms, volumetric)?;
+    }
+    Ok(())
+}
+
+/// Viscous blocks, with the coefficients of their terms and of their volumetric terms for a step.
+fn coefficients(world: &mut World, clock: &Clock) -> Vec<(Entity, [Vec<PronyTerm<f64>>; 2])> {
+    let blocks: Vec<Entity> = world.query_filtered::<Entity, With<ViscousMemory>>().iter(world).collect();
+    let of_block = |entity: Entity| {
+        let material = world.get::<Block>(entity)?.material;
+        Some((entity, world.get::<Prony>(material)?.coefficients(clock)))
+    };
+    blocks.into_iter().filter_map(of_block).collect()
+}
+
+fn take_coefficients(
+    world: &mut World,
+    entity: Entity,
+    terms: Vec<PronyTerm<f64>>,
+    volumetric: Vec<PronyTerm<f64>>,
+) -> Result<(), Error> {
+    let Some(mut law) = world.get::<BlockLaw<f64>>(entity).cloned() else { return Ok(()) };
+    (law.prony, law.volumetric) = (terms, volumetric);
+    let label = world.get::<Label>(entity).map(|label| label.0.clone()).unwrap_or_default();
+    let rounded = law.rounded::<f32>();
+    let bytes: Vec<u8> = rounded.prony.iter().chain(&rounded.volumetric).flat_map(Uniform::bytes).collect();
+    if let Some(mut device) = world.get_resource_mut::<Device>() {
+        device.rewrite_uniform(&format!("prony of {label}"), &bytes)?;
+    }
+    let mut entity = world.entity_mut(entity);
+    if entity.contains::<BlockLaw<f32>>() {
+        entity.insert(rounded);
+    }
+    entity.insert(law);
     Ok(())
 }
 

@@ -21,7 +21,7 @@ pub(super) struct Watched {
 }
 
 /// What a look at all elements shows.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Seen {
     /// ω² of all at most (1/s²).
     pub square: f64,
@@ -70,6 +70,20 @@ impl Watched {
     pub fn weigh(&mut self, world: &World) {
         let squares = square_frequencies(world, self.entity).into_iter().enumerate();
         self.squares = squares.map(|(row, (square, _))| square / heaviness(world, self.entity, row)).collect();
+    }
+
+    /// The growth of ω² of each element when the frequency of all was found last.
+    pub fn known_growth(&self) -> &[f32] {
+        &self.known_growth
+    }
+
+    /// Takes it from a snapshot; false where it is none of these elements.
+    pub fn take_known_growth(&mut self, growth: Vec<f32>) -> bool {
+        let fits = growth.len() == self.squares.len() && growth.iter().all(|growth| growth.is_finite());
+        if fits {
+            self.known_growth = growth;
+        }
+        fits
     }
 
     /// Looks at all elements; ω² of all was `known` (1/s²) when it was found last.

@@ -52,3 +52,74 @@ fn deeply_nested_xml_is_refused() {
     let text = "<a>".repeat(200_000);
     assert!(readers::read("deep.vtu", text.as_bytes()).is_err());
 }
+
+/// Few bytes that would take much memory are refused: what a file gives is in proportion to its length.
+#[test]
+fn files_out_of_all_proportion_are_refused() {
+    // one entity in many groups
+    let groups: String = (1..=1000).map(|group| format!("{group} ")).collect();
+    let elements: String = (1..=2000).map(|number| format!("{number} 1 2 3 4\n")).collect();
+    let file = |groups: &str| {
+        format!(
+            "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 0 1\n1 0 0 0 1 1 1 {groups} 0\n$EndEntities\n$Nodes\n1 4 1 4\n\
+         3 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n$EndNodes\n$Elements\n1 2000 1 2000\n3 1 4 2000\n{elements}$EndElements\n"
+        )
+    };
+    let told = readers::read("groups.msh", file(&format!("1000 {groups}")).as_bytes()).unwrap_err().to_string();
+    assert!(told.contains("entity 1 of dimension 3 is in 1000 groups"), "{told}");
+    // many data of elements, each for one element
+    let mut text = file("0");
+    for field in 0..2000 {
+        text += &format!("$ElementData\n1\n\"d{field}\"\n0\n3\n0\n3\n1\n7 1 0 0\n$EndElementData\n");
+    }
+    let told = readers::read("data.msh", text.as_bytes()).unwrap_err().to_string();
+    assert!(told.contains("2000 data of elements have 2000 values together"), "{told}");
+}
+
+/// Arrays that lie over each other, or are compressed to next to nothing.
+#[test]
+fn arrays_that_hold_more_than_their_file_are_refused() {
+    let blob = vec![0u8; 1 << 20];
+    let array = "<DataArray type=\"Int8\" Name=\"NAME\" format=\"appended\" offset=\"0\"/>";
+    let arrays: String = (0..40).map(|i| array.replace("NAME", &format!("a{i}"))).collect();
+    let file = |arrays: &str, points: usize, compressor: &str, data: &[u8]| {
+        let head = format!(
+            "<VTKFile type=\"UnstructuredGrid\" header_type=\"UInt64\"{compressor}><UnstructuredGrid><Piece NumberOfPoints=\"{points}\" \
+             NumberOfCells=\"0\"><Points><DataArray type=\"Int8\" NumberOfComponents=\"3\" format=\"appended\" offset=\"0\"/></Points>\
+             <Cells><DataArray type=\"Int8\" Name=\"connectivity\" format=\"ascii\"/><DataArray type=\"Int8\" Name=\"offsets\" format=\"ascii\"/>\
+             <DataArray type=\"Int8\" Name=\"types\" format=\"ascii\"/></Cells><PointData>{arrays}</PointData></Piece></UnstructuredGrid>\
+             <AppendedData encoding=\"raw\">_"
+        );
+        [head.as_bytes(), data, b"</AppendedData></VTKFile>"].concat()
+    };
+    let shared = [&(3_u64 << 18).to_le_bytes()[..], &blob].concat();
+    let arrays = arrays.replace("Int8\"", "Int8\" NumberOfComponents=\"3\"");
+    let told = readers::read("shared.vtu", &file(&arrays, 1 << 18, "", &shared)).unwrap_err().to_string();
+    assert!(told.contains("more than") && told.contains("a file of this length may hold"), "{told}");
+    // 48 MB in 48 kB
+    let mut packed = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::best());
+    std::io::Write::write_all(&mut packed, &vec![0; 48 << 20]).unwrap();
+    let packed = packed.finish().unwrap();
+    let header = [1, 48 << 20, 0, packed.len() as u64].map(u64::to_le_bytes).concat();
+    let bomb = file("", 16 << 20, " compressor=\"vtkZLibDataCompressor\"", &[&header[..], &packed].concat());
+    let told = readers::read("bomb.vtu", &bomb).unwrap_err().to_string();
+    assert!(told.contains("a file of this length may hold"), "{told}");
+}
+
+#[test]
+fn counts_that_no_file_holds_are_refused_unallocated() {
+    for name in ["claims.msh", "claims-4.msh", "claims.vtk", "claims.vtu"] {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/corpus/meshes").join(name);
+        let told = readers::read(name, &std::fs::read(path).unwrap()).unwrap_err().to_string();
+        assert!(told.contains("1000000000000000000"), "{told}");
+    }
+}
+
+#[test]
+fn a_node_with_the_largest_number_can_be_refined() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/corpus/meshes/last-number.msh");
+    let mut mesh = sinew::mesh::Mesh::read(path, false).unwrap();
+    mesh.refine(1).unwrap();
+    let sinew::mesh::Ids::Named(ids) = &mesh.point_ids else { panic!("numbers are lost") };
+    assert_eq!(ids, &[1, 2, 3, u64::MAX, 0, 4, 5, 6, 7, 8]);
+}

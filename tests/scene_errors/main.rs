@@ -3,8 +3,10 @@
 
 mod good;
 mod laws;
+mod limits;
 mod materials;
 mod mutations;
+mod outside;
 mod set;
 mod several;
 mod values;

@@ -132,7 +132,7 @@ impl Run<'_> {
         interrupted: &dyn Fn() -> bool,
     ) -> Result<(), Refusal> {
         for (name, body) in &scene.scene.bodies {
-            let mesh = mesh_of(body, &scene.folder).map_err(|error| Refusal::Refused(error.to_string()))?;
+            let mesh = mesh_of(body, scene).map_err(|error| Refusal::Refused(error.to_string()))?;
             let body = BodyField { mesh: Arc::new(mesh), masses: Vec::new(), displacements: Vec::new() };
             self.field.bodies.insert(name.clone(), body);
         }

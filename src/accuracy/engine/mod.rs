@@ -117,7 +117,7 @@ impl<'a> Engine<'a> {
         for body in scene.bodies.values() {
             let shape = match &body.mesh {
                 MeshSource::File { .. } => {
-                    let mesh = mesh_of(body, &self.file.folder).map_err(|error| Refusal::Refused(error.to_string()))?;
+                    let mesh = mesh_of(body, self.file).map_err(|error| Refusal::Refused(error.to_string()))?;
                     match (mesh.tets.is_empty(), mesh.hexes.is_empty()) {
                         (false, true) => Some(true),
                         (true, false) => Some(false),

@@ -24,7 +24,7 @@ const TARGET: f64 = 0.01;
 
 /// Studies a scene, says what came out, writes it into a folder.
 pub fn command(arguments: &AccuracyArguments) -> Outcome {
-    let file = SceneFile::load(&arguments.scene.scene, &arguments.scene.set)?;
+    let file = arguments.scene.load()?;
     let diagnostics =
         progress::during("reading meshes, looking for mistakes", || Simulation::check(&file, &Registry::default()));
     if diagnostics.has_errors() {
@@ -79,7 +79,10 @@ fn settings(arguments: &AccuracyArguments, file: &SceneFile, engine: &mut Engine
         match &wanted.reference {
             AccuracyReference::SelfMade => {}
             AccuracyReference::Values(values) => reference = Some(Reference::of_values(values)),
-            AccuracyReference::Files(files) => paths = files.iter().map(|path| file.folder.join(path)).collect(),
+            AccuracyReference::Files(files) => {
+                let found: Result<Vec<_>, _> = files.iter().map(|path| file.file(path)).collect();
+                paths = found.map_err(|outside| Failure::Options(outside.to_string()))?;
+            }
         }
     }
     if !paths.is_empty() {

@@ -5,6 +5,9 @@ use super::value::{Place, Test, Value, Variable};
 use super::{NOT_ALLOWED, Untranslatable};
 use naga::{Expression, Handle, Literal, ScalarKind, Span, Type, TypeInner};
 
+/// The largest value that a law may have, in double precision: 1000 numbers and more.
+const MOST_BYTES: u32 = 8192;
+
 impl<'m> Translator<'m> {
     pub(super) fn expression(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<Value> {
         let at = frame.expressions.get_span(handle);
@@ -113,7 +116,12 @@ impl<'m> Translator<'m> {
             ScalarKind::Bool => Ok(Value::Bool(Test::Known(false))),
             _ => Err(Untranslatable::new(at, NOT_ALLOWED)),
         };
-        Ok(match &self.module.types[ty].inner {
+        let inner = &self.module.types[ty].inner;
+        if inner.try_size(self.module.to_ctx()).is_none_or(|bytes| bytes > MOST_BYTES) {
+            let message = format!("a value of more than {MOST_BYTES} bytes is too large for a law");
+            return Err(Untranslatable::new(at, message).note("its numbers are handled one by one: use smaller arrays"));
+        }
+        Ok(match inner {
             TypeInner::Scalar(s) => scalar(self, s.kind)?,
             TypeInner::Vector { size, scalar: s } => Value::Parts(vec![scalar(self, s.kind)?; *size as usize]),
             TypeInner::Matrix { columns, rows, scalar: s } => {

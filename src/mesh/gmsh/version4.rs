@@ -80,7 +80,7 @@ impl File<'_> {
         let blocks = self.count4(8, 12, "blocks of elements")?;
         let total = self.count4(4, self.width, "elements")?;
         let _least_and_most = (self.size4("the smallest number")?, self.size4("the largest number")?);
-        let mut read = 0;
+        let (mut read, mut grouped) = (0, 0_usize);
         for _ in 0..blocks {
             let dimension = self.dimension4()?;
             let entity = self.cursor.int("the number of an entity")?;
@@ -88,6 +88,14 @@ impl File<'_> {
             let known = kinds::kind(kind).ok_or_else(|| self.unknown_kind(0, kind))?;
             let count = self.count4(4, self.width * (1 + known.nodes), "elements")?;
             let groups = self.groups.entities.get(&(dimension, entity)).cloned().unwrap_or_default();
+            // many groups of many elements are few bytes and much memory
+            grouped = grouped.saturating_add(count.saturating_mul(groups.len()));
+            let most = self.cursor.bytes().len();
+            if grouped > most {
+                let what = format!("entity {entity} of dimension {dimension} is in {} groups", groups.len());
+                let allowed = format!("all elements together may be in {most} groups, one a byte of the file");
+                return Err(self.cursor.fault(what, allowed));
+            }
             for _ in 0..count {
                 let number = self.size4("the number of an element")?;
                 self.element(number, known, &groups)?;

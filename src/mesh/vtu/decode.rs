@@ -49,11 +49,13 @@ pub fn base64(text: &[u8]) -> Result<Vec<u8>, Wrong> {
 }
 
 impl Packing {
-    /// The plain data that begin at the start of `bytes`; more may follow them.
-    pub fn unpack(&self, bytes: &[u8]) -> Result<Vec<u8>, Wrong> {
+    /// The plain data that begin at the start of `bytes`, `most` bytes of them; more may follow.
+    pub fn unpack(&self, bytes: &[u8], most: usize) -> Result<Vec<u8>, Wrong> {
+        let too_many = || format!("it holds more than {most} bytes, the most that a file of this length may hold");
         if self.compression == Compression::None {
             let length = self.header(bytes, 0)?;
-            return self.part(bytes, self.header as u64, length).map(<[u8]>::to_vec);
+            let part = self.part(bytes, self.header as u64, length)?;
+            return if part.len() > most { Err(too_many()) } else { Ok(part.to_vec()) };
         }
         let [blocks, size, last] = [self.header(bytes, 0)?, self.header(bytes, 1)?, self.header(bytes, 2)?];
         let header_end = blocks.checked_add(3).and_then(|count| count.checked_mul(self.header as u64));
@@ -62,8 +64,11 @@ impl Packing {
         for block in 0..blocks {
             let packed = self.header(bytes, 3 + block)?;
             let expected = if block + 1 == blocks && last > 0 { last } else { size };
-            if expected > (packed + 1).saturating_mul(MOST_EXPANSION) {
+            if expected > packed.saturating_add(1).saturating_mul(MOST_EXPANSION) {
                 return Err(format!("block {block} claims {expected} bytes in {packed} compressed ones"));
+            }
+            if expected > most.saturating_sub(plain.len()) as u64 {
+                return Err(too_many());
             }
             self.unpack_block(self.part(bytes, at, packed)?, expected as usize, &mut plain)?;
             at += packed;

@@ -7,7 +7,14 @@ use super::{DataArray, VtuFile};
 use crate::mesh::error::{Fault, Place};
 use glam::DVec3;
 use roxmltree::Node;
+use std::cell::Cell;
 use std::collections::BTreeMap;
+
+/// Numbers that a file may hold for each of its bytes. Compressed meshes come to two; arrays that share appended data, or
+/// are compressed to next to nothing, could come to any number.
+const NUMBERS_A_BYTE: usize = 20;
+/// Numbers that a file of any size may hold.
+const FEWEST_NUMBERS: usize = 1 << 20;
 
 /// What is needed to read arrays anywhere in a file.
 struct Reader<'a> {
@@ -15,6 +22,8 @@ struct Reader<'a> {
     appended: &'a Split<'a>,
     /// Offsets of all appended arrays, ascending: base64 text ends where the next begins.
     offsets: Vec<usize>,
+    /// How many numbers may still be read.
+    left: Cell<usize>,
 }
 
 /// Reads the bytes of a file.
@@ -34,7 +43,8 @@ pub fn parse(bytes: &[u8]) -> Result<VtuFile, Fault> {
     let offsets = root.descendants().filter_map(|node| node.attribute("offset")?.trim().parse().ok());
     let mut offsets: Vec<usize> = offsets.collect();
     offsets.sort_unstable();
-    let reader = Reader { packing: packing(root)?, appended: &appended, offsets };
+    let left = Cell::new(FEWEST_NUMBERS.saturating_add(NUMBERS_A_BYTE.saturating_mul(bytes.len())));
+    let reader = Reader { packing: packing(root)?, appended: &appended, offsets, left };
     let mut file = VtuFile::default();
     let mut pieces = 0;
     for piece in root.descendants().filter(|node| node.has_tag_name("Piece")) {
@@ -92,10 +102,9 @@ impl Reader<'_> {
         file.points.extend(column.values.chunks_exact(3).map(DVec3::from_slice));
         let node = child("Cells").ok_or_else(|| missing("Cells"))?;
         self.cells(node, cells, before, file)?;
-        for (name, rows, before, columns) in [
-            ("PointData", points, before, &mut file.point_data),
-            ("CellData", cells, file.types.len() - cells, &mut file.cell_data),
-        ] {
+        for (name, rows, columns) in
+            [("PointData", points, &mut file.point_data), ("CellData", cells, &mut file.cell_data)]
+        {
             let mut found = BTreeMap::new();
             for node in child(name).iter().flat_map(|data| data.children()).filter(Node::is_element) {
                 let title = node.attribute("Name").unwrap_or("").to_string();
@@ -104,7 +113,7 @@ impl Reader<'_> {
                     None => file.notes.push(format!("`{title}` in <{name}> holds no numbers and is left out")),
                 }
             }
-            join(columns, found, before, first, &mut file.notes);
+            join(columns, found, first, &mut file.notes);
         }
         Ok(())
     }
@@ -167,11 +176,13 @@ impl Reader<'_> {
             "ascii" => text_column(node, scalar)
                 .map_err(|word| wrong(format!("`{word}` among its values"), "numbers are needed"))?,
             "binary" => {
-                let bytes = base64(node.text().unwrap_or("").as_bytes()).and_then(|bytes| self.unpack(&bytes));
+                let bytes = base64(node.text().unwrap_or("").as_bytes());
+                let bytes = bytes.and_then(|bytes| self.unpack(&bytes, scalar));
                 scalar.column(&bytes.map_err(|what| wrong(what, "the file may be damaged"))?, self.packing.big_endian)
             }
             "appended" => {
-                let bytes = self.appended(node).map_err(|what| wrong(what, "the file may have been cut short"))?;
+                let bytes =
+                    self.appended(node, scalar).map_err(|what| wrong(what, "the file may have been cut short"))?;
                 scalar.column(&bytes, self.packing.big_endian)
             }
             other => return Err(wrong(format!("format `{other}`"), "it must be ascii, binary or appended")),
@@ -186,12 +197,24 @@ impl Reader<'_> {
         Ok(column)
     }
 
-    fn unpack(&self, bytes: &[u8]) -> Result<Vec<u8>, String> {
-        // writers leave an array without values empty, without a header
-        if bytes.is_empty() { Ok(Vec::new()) } else { self.packing.unpack(bytes) }
+    fn unpack(&self, bytes: &[u8], scalar: Scalar) -> Result<Vec<u8>, String> {
+        if bytes.is_empty() {
+            // writers leave an array without values empty, without a header
+            return Ok(Vec::new());
+        }
+        let plain = self.packing.unpack(bytes, self.left.get().saturating_mul(scalar.size()))?;
+        self.spend(plain.len() / scalar.size())?;
+        Ok(plain)
     }
 
-    fn appended(&self, node: Node) -> Result<Vec<u8>, String> {
+    /// Notes that so many numbers were read.
+    fn spend(&self, numbers: usize) -> Result<(), String> {
+        let left = self.left.get().checked_sub(numbers);
+        self.left.set(left.ok_or("the arrays hold more numbers than a file of this length may")?);
+        Ok(())
+    }
+
+    fn appended(&self, node: Node, scalar: Scalar) -> Result<Vec<u8>, String> {
         let offset = node.attribute("offset").unwrap_or("");
         let offset: usize = offset.trim().parse().map_err(|_| format!("offset `{offset}` is not a number"))?;
         let data = self.appended.data;
@@ -199,10 +222,13 @@ impl Reader<'_> {
             .get(offset..)
             .ok_or_else(|| format!("offset {offset} lies behind the {} appended bytes", data.len()))?;
         if !self.appended.base64 {
-            return self.unpack(from);
+            return self.unpack(from, scalar);
         }
         let next = self.offsets.iter().find(|&&next| next > offset).copied().unwrap_or(data.len());
-        self.unpack(&base64(&from[..next.min(data.len()) - offset])?)
+        let text = &from[..next.min(data.len()) - offset];
+        // arrays may share a text, which is decoded for each of them
+        self.spend(text.len() / 8)?;
+        self.unpack(&base64(text)?, scalar)
     }
 }
 
@@ -217,7 +243,6 @@ fn text_column(node: Node, scalar: Scalar) -> Result<DataArray, String> {
 fn join(
     columns: &mut BTreeMap<String, DataArray>,
     found: BTreeMap<String, DataArray>,
-    rows_before: usize,
     first: bool,
     notes: &mut Vec<String>,
 ) {
@@ -231,7 +256,6 @@ fn join(
             Some(more) => column.values.extend_from_slice(&more.values),
             None => notes.push(format!("`{name}` is not in all pieces and is left out")),
         }
-        debug_assert!(more.is_none() || column.values.len() >= rows_before * column.components);
         more.is_some()
     });
 }

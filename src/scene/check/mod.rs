@@ -10,10 +10,11 @@ mod value;
 mod wording;
 
 use super::diagnostic::Diagnostic;
+use super::limits::MISTAKES;
 use super::source::Source;
 use super::syntax::{Kind, Node, Span, parse};
 use serde::de::DeserializeOwned;
-use std::cell::RefCell;
+use std::cell::{RefCell, RefMut};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use value::Value;
@@ -70,6 +71,21 @@ struct About<'a> {
     required: BTreeSet<Required>,
 }
 
+impl About<'_> {
+    /// Notes a mistake; one too many is lost.
+    fn tell(&self, diagnostic: Diagnostic) -> RefMut<'_, Diagnostic> {
+        let mut found = self.found.borrow_mut();
+        if found.len() >= MISTAKES {
+            let mut lost = self.said_before.borrow_mut();
+            *lost = diagnostic;
+            return lost;
+        }
+        found.push(diagnostic);
+        let last = found.len() - 1;
+        RefMut::map(found, |found| &mut found[last])
+    }
+}
+
 /// A field that must be there.
 #[derive(Clone, PartialEq, Eq, PartialOrd, Ord)]
 struct Required {
@@ -121,7 +137,7 @@ impl fmt::Display for Stop {
 fn twice(node: &Node, text: &str, found: &mut Vec<Diagnostic>) {
     let mut seen: BTreeMap<&str, Span> = BTreeMap::new();
     let mut see = |name: &'_ str, span: &Span, first: Option<Span>| {
-        let Some(first) = first else { return };
+        let Some(first) = first.filter(|_| found.len() < MISTAKES) else { return };
         let mut diagnostic = Diagnostic::error(span.clone(), format!("`{name}` stands here twice"));
         diagnostic.label("the second time").also(first, "the first time").note("keep one of the two");
         found.push(diagnostic);

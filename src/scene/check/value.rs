@@ -38,8 +38,9 @@ impl<'de> Deserializer<'de> for Value<'_> {
         deserialize_u64 visit_u64 u64, deserialize_i8 visit_i8 i8, deserialize_i16 visit_i16 i16,
         deserialize_i32 visit_i32 i32, deserialize_i64 visit_i64 i64);
 
-    /// A value that may be anything: ron itself judges it.
+    /// A value that may be anything, with numbers that are some: ron itself judges it.
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Stop> {
+        self.numbers_inside();
         visitor.visit_unit()
     }
 
@@ -152,7 +153,7 @@ impl<'de> Deserializer<'de> for Value<'_> {
             let mut diagnostic =
                 Diagnostic::error(found.span.clone(), format!("`{}` does not belong here", found.text));
             diagnostic.label(format!("{} is written without a word before the brackets", self.called()));
-            self.about.found.borrow_mut().push(diagnostic);
+            drop(self.about.tell(diagnostic));
             // its fields are those of something else
             return StandIn.deserialize_struct(name, fields, visitor);
         }
@@ -184,7 +185,7 @@ impl<'de> Deserializer<'de> for Value<'_> {
                 let mut diagnostic =
                     Diagnostic::error(self.node.mark(), format!("{} cannot be `{found}`", self.called()));
                 diagnostic.label("unknown word").notes(choice(found, variants.iter().copied()));
-                self.about.found.borrow_mut().push(diagnostic);
+                drop(self.about.tell(diagnostic));
             }
         }
         StandIn.deserialize_enum(name, variants, visitor)

@@ -27,10 +27,7 @@ impl<'a> Value<'a> {
         }
         let mut diagnostic = Diagnostic::error(at, message);
         diagnostic.label(label);
-        let mut found = self.about.found.borrow_mut();
-        found.push(diagnostic);
-        let last = found.len() - 1;
-        RefMut::map(found, |found| &mut found[last])
+        self.about.tell(diagnostic)
     }
 
     /// Notes that this value is of another kind than it must be.
@@ -56,6 +53,16 @@ impl<'a> Value<'a> {
                 self.note(format!("`{token}` is not a number"), "written like 0.05, 5e-2 or 3");
                 None
             }
+        }
+    }
+
+    /// Notes numbers in a value, or in what it holds, that are none.
+    pub(super) fn numbers_inside(&self) {
+        if matches!(self.node.kind, Kind::Number) && ron::from_str::<ron::Value>(self.token()).is_err() {
+            self.note(format!("`{}` is not a number", self.token()), "written like 0.05, 5e-2 or 3");
+        }
+        for child in self.node.children() {
+            self.of(child).numbers_inside();
         }
     }
 
@@ -93,7 +100,7 @@ impl<'a> Value<'a> {
         } else {
             diagnostic.notes(choice(name, fields.iter().copied()));
         }
-        self.about.found.borrow_mut().push(diagnostic);
+        drop(self.about.tell(diagnostic));
     }
 
     /// Notes a missing field, but not when one of the unknown ones is probably it, misspelt.
@@ -110,6 +117,6 @@ impl<'a> Value<'a> {
         if let Some(meaning) = meaning(owner, field) {
             diagnostic.note(format!("{field}: {meaning}"));
         }
-        self.about.found.borrow_mut().push(diagnostic);
+        drop(self.about.tell(diagnostic));
     }
 }

@@ -2,10 +2,12 @@
 
 use super::scan::{Endless, Scan, starts_word};
 use super::{DEEPEST, Entry, Fault, Field, Kind, Node, Span, Tree, Word};
+use crate::scene::limits::{FAULTS, VALUES};
 
 /// Reads a text. Never fails: what is wrong is in [`Tree::faults`], and the tree holds the rest.
 pub fn parse(text: &str) -> Tree {
-    let mut parser = Parser { scan: Scan { text, at: 0 }, faults: Vec::new(), long_text: None, open: Vec::new() };
+    let mut parser =
+        Parser { scan: Scan { text, at: 0 }, faults: Vec::new(), long_text: None, open: Vec::new(), values: 0 };
     let root = parser.file().unwrap_or(Node { span: 0..text.len(), name: None, kind: Kind::Bad });
     Tree { root, faults: parser.faults }
 }
@@ -17,6 +19,8 @@ struct Parser<'a> {
     long_text: Option<(Span, usize)>,
     /// The brackets that are open, innermost last.
     open: Vec<Span>,
+    /// How many values there were so far.
+    values: usize,
 }
 
 /// Nothing after this place can be made sense of; the fault is on the list.
@@ -64,6 +68,14 @@ impl Parser<'_> {
 
     fn value(&mut self) -> Parsed<Node> {
         let start = self.scan.at;
+        self.values += 1;
+        if self.values > VALUES {
+            let message = format!("the scene has more than {VALUES} values, the most that are allowed");
+            return Err(self.fault(self.scan.here(), message, "one too many"));
+        }
+        if self.faults.len() >= FAULTS {
+            return Err(Stop);
+        }
         let kind = match self.scan.peek() {
             Some('[') => Kind::List(self.items(']')?),
             Some('{') => self.map()?,

@@ -2,16 +2,12 @@
 
 use super::{Judge, scene, select};
 use crate::mesh::generators::cells_around;
+use crate::scene::beside::Outside;
+use crate::scene::limits::MOST_REFINEMENT;
 use crate::scene::load::SceneFile;
-use crate::scene::schema::{Accuracy, AccuracyReference, MeshSource, Picture};
+use crate::scene::schema::{AccuracyReference, MeshSource, Picture, Start};
 use crate::scene::suggest::{choice, list};
 use crate::scene::syntax::Path;
-
-/// More cells than any machine holds: a slip of the finger, told before memory runs out.
-const MOST_CELLS: u128 = 1_000_000_000;
-
-/// More refinement than the smallest mesh bears.
-const MOST_TIMES: u32 = 9;
 
 /// What mesh files may end in.
 const MESH_FILES: [&str; 3] = ["msh", "vtk", "vtu"];
@@ -21,12 +17,15 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
         let path = scene("bodies").name(name);
         mesh(file, judge, &path.name("mesh"), &body.mesh);
         judge.above_zero(&path.name("scale"), body.scale, "");
-        if body.refine > MOST_TIMES {
+        if body.refine > MOST_REFINEMENT {
             judge
-                .must(&path.name("refine"), &format!("at most {MOST_TIMES}"), body.refine)
+                .must(&path.name("refine"), &format!("at most {MOST_REFINEMENT}"), body.refine)
                 .note("each time makes eight elements of one: 10 times make a billion of it");
         }
         judge.not_negative(&path.name("hourglass"), body.hourglass, "");
+        if let Some(Start::Scrambled { amplitude, .. }) = body.start {
+            judge.not_negative(&path.name("start").name("amplitude"), amplitude, "m");
+        }
         if body.hourglass == 0.0 {
             judge
                 .out
@@ -41,13 +40,21 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
         }
     }
     picture(judge, &file.scene.picture);
-    accuracy(judge, &file.scene.accuracy);
+    accuracy(file, judge);
 }
 
-fn accuracy(judge: &mut Judge, wanted: &Accuracy) {
+fn accuracy(file: &SceneFile, judge: &mut Judge) {
+    let wanted = &file.scene.accuracy;
     let path = scene("accuracy");
     if let Some(target) = wanted.target {
         judge.above_zero(&path.name("target"), target, "");
+    }
+    if let AccuracyReference::Files(files) = &wanted.reference {
+        for (i, name) in files.iter().enumerate() {
+            if let Err(outside) = file.file(name) {
+                tell_outside(judge, &path.name("reference").index(i), &outside);
+            }
+        }
     }
     let empty = match &wanted.reference {
         AccuracyReference::SelfMade => false,
@@ -97,12 +104,10 @@ fn mesh(file: &SceneFile, judge: &mut Judge, path: &Path, mesh: &MeshSource) {
             judge.above_zero(&path.name("height"), *height, "m");
             at_least_one(judge, &path.name("across"), *across);
             at_least_one(judge, &path.name("along"), *along);
-            not_too_many(judge, &path.name("across"), [*across, *across, *along]);
         }
         MeshSource::Ellipsoid { radii, across, .. } => {
             judge.all_above_zero(&path.name("radii"), *radii, "m");
             at_least_one(judge, &path.name("across"), *across);
-            not_too_many(judge, &path.name("across"), [*across; 3]);
         }
         MeshSource::Lens { diameter, thickness, across, through, .. } => {
             judge.above_zero(&path.name("diameter"), *diameter, "m");
@@ -114,18 +119,16 @@ fn mesh(file: &SceneFile, judge: &mut Judge, path: &Path, mesh: &MeshSource) {
             }
             at_least_one(judge, &path.name("across"), *across);
             at_least_one(judge, &path.name("through"), *through);
-            not_too_many(judge, &path.name("across"), [*across, *across, *through]);
         }
     }
 }
 
-/// Cells in three directions: at least one in each, and not more than a machine holds.
+/// Cells in three directions: at least one in each.
 fn each_way(judge: &mut Judge, path: &Path, cells: (u32, u32, u32)) {
     let cells = [cells.0, cells.1, cells.2];
     for (i, count) in cells.into_iter().enumerate() {
         at_least_one(judge, &path.index(i), count);
     }
-    not_too_many(judge, path, cells);
 }
 
 fn at_least_one(judge: &mut Judge, path: &Path, count: u32) {
@@ -134,18 +137,11 @@ fn at_least_one(judge: &mut Judge, path: &Path, count: u32) {
     }
 }
 
-fn not_too_many(judge: &mut Judge, path: &Path, cells: [u32; 3]) {
-    let total: u128 = cells.into_iter().map(u128::from).product();
-    if total > MOST_CELLS {
-        judge
-            .out
-            .error_at(path, format!("the mesh would have {total} cells"))
-            .note(format!("at most {MOST_CELLS} are allowed"));
-    }
-}
-
 fn mesh_file(file: &SceneFile, judge: &mut Judge, path: &Path, name: &str) {
-    let full = file.folder.join(name);
+    let full = match file.file(name) {
+        Ok(full) => full,
+        Err(outside) => return tell_outside(judge, path, &outside),
+    };
     let ending = full.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
     if name.is_empty() {
         judge.out.error_at(path, "the path of the mesh file is empty");
@@ -187,6 +183,12 @@ fn mesh_file(file: &SceneFile, judge: &mut Judge, path: &Path, name: &str) {
             .error_at(path, format!("`{name}` is no mesh file that can be read"))
             .note("allowed: Gmsh (.msh), legacy VTK (.vtk), VTU (.vtu)");
     }
+}
+
+/// Notes a file that the scene may not read.
+pub(super) fn tell_outside(judge: &mut Judge, path: &Path, outside: &Outside) {
+    let message = format!("`{}` lies outside the scene's folder", outside.name);
+    judge.out.error_at(path, message).note(Outside::HOW);
 }
 
 fn picture(judge: &mut Judge, picture: &Picture) {

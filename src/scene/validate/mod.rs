@@ -4,6 +4,7 @@ mod action;
 mod analysis;
 mod elastic_law;
 mod geometry;
+mod limits;
 mod material;
 mod names;
 mod numbers;
@@ -16,8 +17,13 @@ use super::syntax::{Path, Segment};
 use glam::DVec3;
 
 /// Adds all that is wrong with the values of a scene, each mistake with its place, the value found and what is allowed.
-pub fn validate(file: &SceneFile, diagnostics: &mut Diagnostics) {
+/// Gives whether it makes sense to go on: a scene with more of something than is allowed is not looked at further.
+pub fn validate(file: &SceneFile, diagnostics: &mut Diagnostics) -> bool {
     let mut judge = Judge { out: diagnostics };
+    if !limits::validate(file, &mut judge) {
+        return false;
+    }
+    limits::elements(file, &mut judge);
     numbers::validate(file, &mut judge);
     names::validate(&file.scene, &mut judge);
     material::validate(&file.scene, &mut judge);
@@ -25,6 +31,7 @@ pub fn validate(file: &SceneFile, diagnostics: &mut Diagnostics) {
     action::validate(&file.scene, &mut judge);
     time::validate(&file.scene, &mut judge);
     analysis::validate(&file.scene, &mut judge);
+    true
 }
 
 /// Notes mistakes of the common kinds.

@@ -101,7 +101,9 @@ fn body_named(scene_: &Scene, judge: &mut Judge, owner: &Path, body: Option<&Str
 /// Names become names of files and of columns of tables.
 fn file_name(judge: &mut Judge, path: &Path, what: &str, name: &str) {
     let notes = "letters, digits, _ and - do everywhere";
-    if name.is_empty() || name.starts_with('.') || name.contains(['/', '\\']) || name.contains(char::is_control) {
+    // what is refused here, an output folder refuses too
+    let fits = |letter: char| letter.is_alphanumeric() || matches!(letter, '_' | '-' | '.' | ' ');
+    if name.is_empty() || name.starts_with('.') || !name.chars().all(fits) {
         judge
             .out
             .error_at(path, format!("the {what} `{name}` needs another name: files are named after it"))

@@ -1,6 +1,7 @@
 //! Numbers anywhere in the scene, also in the parameters of custom systems, whose meaning is not known here.
 
 use super::{Judge, called};
+use crate::scene::diagnostic::Diagnostic;
 use crate::scene::load::SceneFile;
 use crate::scene::syntax::{Kind, Node, Path};
 
@@ -17,12 +18,14 @@ fn walk(node: &Node, path: &Path, text: &str, judge: &mut Judge) {
             let token = &text[node.span.clone()];
             match ron::from_str::<f64>(token) {
                 Ok(number) if !number.is_finite() => {
-                    judge.must(path, "finite", token);
+                    let message = format!("{} must be finite, found {token}", called(path));
+                    judge.out.push(Diagnostic::error(node.span.clone(), message));
                 }
                 Ok(number) if number.abs() > LARGEST => {
+                    let message = format!("{} is too large: {token}", called(path));
                     judge
                         .out
-                        .error_at(path, format!("{} is too large: {token}", called(path)))
+                        .push(Diagnostic::error(node.span.clone(), message))
                         .note("numbers up to 1e30 are allowed: the engine computes in single precision");
                 }
                 _ => {}

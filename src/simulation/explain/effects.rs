@@ -5,7 +5,7 @@ use crate::backend::user_law::Findings;
 use crate::components::*;
 use crate::materials::{Elastic, ElasticLaw, ExponentialFibre, Fibres, UserLaw};
 use crate::math::LANES;
-use crate::scene::schema::Scene;
+use crate::scene::schema::{Inversion, Scene};
 use bevy_ecs::prelude::*;
 
 /// All blocks, then all bodies.
@@ -95,6 +95,17 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
             turned_on_by: format!("an entry under `removal` on the body {body}"),
         },
     ];
+    match entity.get::<OnInversion>() {
+        None | Some(OnInversion(Inversion::Stop)) => {}
+        Some(OnInversion(policy)) => effects.push(Effect {
+            name: "inversion",
+            on: Some(match policy {
+                Inversion::Remove => "elements turned inside out are removed at once".into(),
+                _ => "elements turned inside out are pushed back by the law".into(),
+            }),
+            turned_on_by: in_material("inversion"),
+        }),
+    }
     if fibres.is_some() || families.is_some() {
         let varying = Effect {
             name: "directions",
@@ -143,10 +154,10 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> 
         Precision::F32 => "`compensated: true` under `integration`",
         Precision::F64 => "`compensated: true` under `integration`, in f32 only",
     };
-    let booking = scene.output.energies_every.map_or_else(
-        || "a step beyond the stable one is watched by its balance of energy".into(),
-        |every| format!("a row in every {every} s"),
-    );
+    let booking = scene
+        .output
+        .energies_every
+        .map_or_else(|| "energies are asked for".into(), |every| format!("a row in every {every} s"));
     vec![
         Effect {
             name: "external forces",
@@ -171,7 +182,7 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> 
         Effect {
             name: "booking of work",
             on: entity.contains::<Work>().then_some(booking),
-            turned_on_by: "`energies_every` under `output`, or `beyond_stable_step` under `integration`".into(),
+            turned_on_by: "`energies_every` under `output`".into(),
         },
     ]
 }

@@ -10,6 +10,9 @@ use std::collections::{BTreeMap, HashSet};
 const SUPPORTED: &str =
     "sinew simulates 4-node tetrahedra and 8-node hexahedra (voxels too): save the mesh with those alone";
 
+/// Vectors of elements that a file need not give.
+const SPARSE_VECTORS: usize = 1_000_000;
+
 /// No element of the mesh.
 const NONE: u32 = u32::MAX;
 
@@ -31,7 +34,7 @@ impl Draft {
         let elements = self.fill_elements(&mut mesh, &rows);
         mesh.point_ids = self.point_numbers.take().map_or(Ids::Rows, Ids::Named);
         self.fill_sets(&mut mesh, &rows, &elements);
-        self.fill_vectors(&mut mesh, &elements);
+        self.fill_vectors(&mut mesh, &elements)?;
         self.note_unused();
         mesh.notes = self.notes;
         Ok(mesh)
@@ -178,7 +181,14 @@ impl Draft {
         mesh.element_sets.values_mut().for_each(ascending);
     }
 
-    fn fill_vectors(&mut self, mesh: &mut Mesh, elements: &[u32]) {
+    fn fill_vectors(&mut self, mesh: &mut Mesh, elements: &[u32]) -> Result<(), Fault> {
+        // many data that are given for next to no element are few bytes and much memory
+        let given: usize = self.vectors.values().map(Vec::len).sum();
+        let wanted = self.vectors.len().saturating_mul(mesh.element_count());
+        if wanted > SPARSE_VECTORS + 100 * given {
+            let what = format!("{} data of elements have {given} values together", self.vectors.len());
+            return Err(Fault::whole(what, format!("{} elements need more", mesh.element_count())));
+        }
         let mut by_number: Vec<(u64, u32)> =
             self.cells.iter().map(|cell| cell.number).zip(elements.iter().copied()).collect();
         by_number.retain(|&(_, element)| element != NONE);
@@ -186,9 +196,10 @@ impl Draft {
         for (name, values) in &self.vectors {
             let mut vectors = vec![DVec3::ZERO; mesh.element_count()];
             let mut given = vec![false; vectors.len()];
-            for &(number, vector) in values {
-                let first = by_number.partition_point(|entry| entry.0 < number);
-                for &(_, element) in by_number[first..].iter().take_while(|entry| entry.0 == number) {
+            // a later vector of the same element wins
+            let values: BTreeMap<u64, DVec3> = values.iter().copied().collect();
+            for &(number, element) in &by_number {
+                if let Some(&vector) = values.get(&number) {
                     vectors[element as usize] = vector;
                     given[element as usize] = true;
                 }
@@ -202,6 +213,7 @@ impl Draft {
             }
             mesh.element_vectors.insert(name.clone(), vectors);
         }
+        Ok(())
     }
 
     /// Notes which cells are neither elements nor in a set.

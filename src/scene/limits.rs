@@ -1,0 +1,59 @@
+//! What a scene may ask for at most. A slip of the finger or a hostile file is told here, by name, before it takes all
+//! memory, time or disk; `docs/scene.md` lists the same numbers.
+
+/// Bytes of a scene's text.
+pub const TEXT_BYTES: usize = 16 << 20;
+/// Bytes of one `--set`.
+pub const SET_BYTES: usize = 64 << 10;
+/// How often `--set` may be given.
+pub const SETS: usize = 1000;
+/// Numbers, texts, words and brackets of a scene, counted one by one.
+pub const VALUES: usize = 2_000_000;
+/// Bodies; materials; regions of a body.
+pub const BODIES: usize = 1000;
+/// Constraints; loads; removals; probes.
+pub const ACTIONS: usize = 10_000;
+/// Points of a table; a longer signal is thinned out before.
+pub const TABLE_POINTS: usize = 100_000;
+/// Terms of each of a material's series (viscosity, families of fibres).
+pub const TERMS: usize = 100;
+/// Letters of the name of a body or probe: files are named after them.
+pub const NAME_LETTERS: usize = 100;
+/// Times that a mesh is refined: each makes eight elements of one, ten a billion.
+pub const MOST_REFINEMENT: u32 = 9;
+/// Elements of all bodies together, after `refine`. Element forces are addressed by 32 bits: 24 numbers a hexahedron.
+pub const ELEMENTS: u64 = 100_000_000;
+/// VTU files of a run.
+pub const FRAMES: u64 = 100_000;
+/// Rows of each table of a run.
+pub const ROWS: u64 = 10_000_000;
+/// Pseudo-steps of a static analysis.
+pub const PSEUDO_STEPS: u64 = 1_000_000_000;
+/// Bytes of a law of one's own.
+pub const LAW_BYTES: u64 = 1 << 20;
+/// Mistakes that are kept; there is enough to do.
+pub(super) const MISTAKES: usize = 100_000;
+/// Places where a text is no RON, after which reading it is given up.
+pub(super) const FAULTS: usize = 1000;
+
+/// What whoever loads a scene allows it. Scenes of strangers are best read with the default, or less.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Allowed {
+    /// Whether the scene may name files outside its own folder: by an absolute path, by `..`, or by a link that leads out.
+    pub outside: bool,
+    /// The most elements of all bodies together, after `refine`; [`ELEMENTS`] at most.
+    pub elements: u64,
+}
+
+impl Default for Allowed {
+    fn default() -> Self {
+        Self { outside: false, elements: ELEMENTS }
+    }
+}
+
+impl Allowed {
+    /// The default, and files anywhere.
+    pub fn files_anywhere() -> Self {
+        Self { outside: true, ..Self::default() }
+    }
+}

@@ -1,0 +1,106 @@
+//! Whether a scene has more of anything than is allowed. Looked at first: all else may take its time with what is too much.
+
+use super::{Judge, scene};
+use crate::scene::limits::{ACTIONS, BODIES, MOST_REFINEMENT, NAME_LETTERS, TABLE_POINTS, TERMS};
+use crate::scene::load::SceneFile;
+use crate::scene::schema::{Constraint, Curve, Load, MeshSource};
+use crate::scene::syntax::Path;
+
+/// Whether there is not too much of anything that is looked at one by one.
+pub(super) fn validate(file: &SceneFile, judge: &mut Judge) -> bool {
+    let found = &file.scene;
+    let mut limits = Limits { judge, kept: true };
+    limits.at_most(BODIES, found.bodies.len(), "bodies", || scene("bodies"));
+    limits.at_most(BODIES, found.materials.len(), "materials", || scene("materials"));
+    limits.at_most(ACTIONS, found.constraints.len(), "constraints", || scene("constraints"));
+    limits.at_most(ACTIONS, found.loads.len(), "loads", || scene("loads"));
+    limits.at_most(ACTIONS, found.removal.len(), "removals", || scene("removal"));
+    limits.at_most(ACTIONS, found.probes.len(), "probes", || scene("probes"));
+    if !limits.kept {
+        return false;
+    }
+    for (name, body) in &found.bodies {
+        limits.at_most(BODIES, body.regions.len(), "regions", || scene("bodies").name(name).name("regions"));
+    }
+    for (name, material) in &found.materials {
+        let path = || scene("materials").name(name);
+        let (families, prony) = (material.exponential_fibres.as_ref(), material.prony.as_ref());
+        limits.at_most(TERMS, families.map_or(0, Vec::len), "families", || path().name("exponential_fibres"));
+        for (field, terms) in [("terms", prony.map(|p| &p.terms)), ("volumetric", prony.map(|p| &p.volumetric))] {
+            limits.at_most(TERMS, terms.map_or(0, Vec::len), "terms", || path().name("prony").name(field));
+        }
+    }
+    for (i, constraint) in found.constraints.iter().enumerate() {
+        if let Constraint::Prescribed { curve, .. } = constraint {
+            limits.table(curve, || scene("constraints").index(i).name("curve"));
+        }
+    }
+    for (i, load) in found.loads.iter().enumerate() {
+        let (Load::Gravity { curve, .. }
+        | Load::NodalForce { curve, .. }
+        | Load::Pressure { curve, .. }
+        | Load::Traction { curve, .. }) = load;
+        limits.table(curve, || scene("loads").index(i).name("curve"));
+    }
+    let bodies = found.bodies.keys().map(|name| ("bodies", name));
+    for (what, name) in bodies.chain(found.probes.keys().map(|name| ("probes", name))) {
+        limits.at_most(NAME_LETTERS, name.chars().count(), "letters in a name", || scene(what).name(name));
+    }
+    limits.kept
+}
+
+struct Limits<'a, 'b> {
+    judge: &'a mut Judge<'b>,
+    kept: bool,
+}
+
+impl Limits<'_, '_> {
+    fn at_most(&mut self, most: usize, found: usize, what: &str, path: impl Fn() -> Path) {
+        if found > most {
+            self.judge.out.error_at(path(), format!("{found} {what}; at most {most} are allowed"));
+            self.kept = false;
+        }
+    }
+
+    fn table(&mut self, curve: &Curve, path: impl Fn() -> Path) {
+        if let Curve::Table(points) = curve {
+            self.at_most(TABLE_POINTS, points.len(), "points in a table", path);
+        }
+    }
+}
+
+/// Elements of all generated meshes, after `refine`. Those of files are counted when they are read.
+pub(super) fn elements(file: &SceneFile, judge: &mut Judge) {
+    let most = file.allowed.elements;
+    let mut all = 0_u128;
+    for (name, body) in &file.scene.bodies {
+        let Some((field, cells)) = cells(&body.mesh) else { continue };
+        let each = if body.mesh.element_kinds().0.is_tetrahedron() { 6 } else { 1 };
+        let made = cells * each * 8_u128.pow(body.refine.min(MOST_REFINEMENT));
+        all += made;
+        if all > u128::from(most) {
+            let refined = if body.refine > 0 { format!(", refined {} times", body.refine) } else { String::new() };
+            let message = format!("the mesh would have {made} elements: {cells} cells{refined}");
+            let others = if all > made { format!(", {all} with the bodies before") } else { String::new() };
+            judge
+                .out
+                .error_at(scene("bodies").name(name).name("mesh").name(field), message + &others)
+                .note(format!("at most {most} elements are allowed in all bodies together"));
+            return;
+        }
+    }
+}
+
+/// The cells of a generated mesh, and the field that says most about them.
+fn cells(mesh: &MeshSource) -> Option<(&'static str, u128)> {
+    let product = |[x, y, z]: [u32; 3]| u128::from(x) * u128::from(y) * u128::from(z);
+    Some(match *mesh {
+        MeshSource::File { .. } => return None,
+        MeshSource::Box { cells: (x, y, z), .. }
+        | MeshSource::Hexahedron { cells: (x, y, z), .. }
+        | MeshSource::Tube { cells: (x, y, z), .. } => ("cells", product([x, y, z])),
+        MeshSource::Cylinder { across, along, .. } => ("across", product([across, across, along])),
+        MeshSource::Ellipsoid { across, .. } => ("across", product([across; 3])),
+        MeshSource::Lens { across, through, .. } => ("across", product([across, across, through])),
+    })
+}
