@@ -34,10 +34,10 @@ pub(super) fn step_for(world: &mut World, most: f64, least: f64, usual: f64) -> 
     let mut elements = Vec::new();
     for block in blocks(world) {
         let squares = square_frequencies(world, block).into_iter().enumerate();
-        let light = squares.filter_map(|(row, (square, volume))| {
-            (volume > 0.0).then(|| Light { mass: mass_of(world, block, row), bound: 2.0 / square.sqrt() })
-        });
-        elements.extend(light);
+        let there = squares.filter(|(_, (_, volume))| *volume > 0.0);
+        elements.extend(
+            there.map(|(row, (square, _))| Light { mass: mass_of(world, block, row), bound: 2.0 / square.sqrt() }),
+        );
     }
     let all: f64 = elements.iter().map(|element| element.mass).sum();
     let added = |step: f64| elements.iter().map(|element| element.added(step)).sum::<f64>();

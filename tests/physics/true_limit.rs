@@ -110,7 +110,7 @@ fn is_never_above_the_true_one_and_close_to_it_for_every_element_and_law() {
         for (other, material) in MATERIALS.iter().enumerate() {
             let run = &runs[(number + other) % 2];
             for share in shares(run, elements, material, other % 2 == 0) {
-                assert!(share <= 1.0 && share >= 0.97, "{}, {elements}, {material}: {share} of the limit", run.name);
+                assert!((0.97..=1.0).contains(&share), "{}, {elements}, {material}: {share} of the limit", run.name);
                 (least, largest) = (least.min(share), largest.max(share));
             }
         }
