@@ -13,7 +13,8 @@ use crate::observation::Observer;
 use bevy_ecs::prelude::*;
 
 /// What a change reads or writes.
-const COLUMNS: [&str; 8] = [
+const COLUMNS: [&str; 9] = [
+    FirstNonFinite::NAME,
     Displacement::NAME,
     DisplacementStep::NAME,
     DisplacementCompensation::NAME,
@@ -25,8 +26,14 @@ const COLUMNS: [&str; 8] = [
 ];
 
 /// What it writes.
-const WRITTEN: [&str; 5] =
-    [DisplacementStep::NAME, DisplacementCompensation::NAME, Work::NAME, ViscousMemory::NAME, RemovalStep::NAME];
+const WRITTEN: [&str; 6] = [
+    DisplacementStep::NAME,
+    DisplacementCompensation::NAME,
+    Work::NAME,
+    FirstNonFinite::NAME,
+    ViscousMemory::NAME,
+    RemovalStep::NAME,
+];
 
 impl Simulation {
     /// Takes steps of another length (s) from the present one on, whatever is stable; the scene ends with the last whole
@@ -70,10 +77,13 @@ impl Simulation {
 /// Velocities are kept: steps, what rounding left out of them, and the last steps along constrained axes.
 fn scale_steps(world: &mut World, factor: f64) {
     let scale = |column: &mut Reals, i: usize| column.set(i, factor * column.get(i));
-    for (mut step, lost, work) in world
-        .query::<(&mut DisplacementStep, Option<&mut DisplacementCompensation>, Option<&mut Work>)>()
-        .iter_mut(world)
-    {
+    type Steps<'a> = (
+        &'a mut DisplacementStep,
+        Option<&'a mut DisplacementCompensation>,
+        Option<&'a mut Work>,
+        &'a mut FirstNonFinite,
+    );
+    for (mut step, lost, work, mut noticed) in world.query::<Steps>().iter_mut(world) {
         let nodes = step.len() / 3;
         (0..3 * nodes).for_each(|i| scale(&mut step, i));
         if let Some(mut lost) = lost {
@@ -81,6 +91,9 @@ fn scale_steps(world: &mut World, factor: f64) {
             (0..nodes).flat_map(|node| (3..6).map(move |i| COMPENSATION_NUMBERS * node + i)).for_each(|i| {
                 scale(&mut lost, i);
             });
+        }
+        for bits in noticed.get_mut(before_at(nodes)..).unwrap_or_default() {
+            *bits = ((factor * f64::from(f32::from_bits(*bits))) as f32).to_bits();
         }
         if let Some(mut work) = work {
             (0..nodes).flat_map(|node| (4..7).map(move |i| WORK_NUMBERS * node + i)).for_each(|i| scale(&mut work, i));
