@@ -20,8 +20,7 @@ fn elastic_pressure(theta: f32) -> f32 {
 
 // J/m³
 fn elastic_isochoric_energy(k: Kinematics) -> f32 {
-    let trace_c = 3.0 + 2.0 * sym_trace(k.green_strain);
-    return 0.5 * elastic.shear * (k.j_m23 * trace_c - 3.0);
+    return 0.5 * elastic.shear * i1_change(k);
 }
 
 // J/m³

@@ -10,6 +10,10 @@ use std::collections::BTreeMap;
 pub struct GuardMemory {
     /// Looks so far.
     pub looks: u64,
+    /// Energy below which rounding hides what becomes of it (J).
+    pub floor: f64,
+    /// What elements held at the start (J), where bodies start deformed.
+    pub at_start: f64,
     /// The largest energy so far (J): what imbalances are shares of.
     pub scale: f64,
     /// The largest imbalance so far, as a share of the scale then; positive where energy was made.

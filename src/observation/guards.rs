@@ -1,9 +1,11 @@
 //! Guards: what kernels found wrong in passing, and what a look at energies and elements shows, told in the author's words.
 
 use super::look::{Look, look};
+use crate::backend::cpu::BlockLaw;
 use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::error::{Criterion, Error, Instability};
+use crate::materials::Elastic;
 use crate::scene::schema::{Guard, Guards, Inversion};
 use bevy_ecs::prelude::*;
 
@@ -75,7 +77,7 @@ pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch) -> Result
     world.insert_resource(memory);
     let stop = watch.limits.energy.stop;
     let (made, held) = made;
-    if made <= stop * scale || watch.foreign {
+    if made <= stop * scale || watch.foreign || scale <= world.resource::<GuardMemory>().floor {
         return Ok(());
     }
     let mut bodies: Vec<String> =
@@ -99,26 +101,18 @@ pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch) -> Result
 /// Energy (J) that has come from nothing since the start (negative: gone), and what elements hold. Of viscous parts only
 /// what remains in the long term is known to be held; the rest may have been lost, so nothing is said of energy that went.
 fn balance(memory: &mut GuardMemory, seen: &Look, watch: &Watch, world: &World) -> (f64, f64) {
-    let (mut held, mut all, mut viscous) = (0.0, seen.kinetic, false);
-    for (entity, sums) in &seen.parts {
-        let prony = world.get::<Block>(*entity).and_then(|block| world.get::<Prony>(block.material));
-        let share = |terms: &[(f64, f64)]| terms.iter().map(|(alpha, _)| alpha).sum::<f64>();
-        let relaxed = prony.map_or(0.0, |prony| share(&prony.terms).max(share(&prony.volumetric)));
-        viscous |= relaxed > 0.0;
-        held += (1.0 - relaxed) * sums.strain + sums.hourglass;
-        all += sums.strain + sums.hourglass;
-    }
+    let Held { lasting: held, all, viscous } = held_by(seen, world);
     memory.scale = memory.scale.max(all).max(seen.spent.abs());
     if watch.limits.off.contains(&Guard::Energy) {
         return (0.0, held);
     }
-    let made = held - seen.spent;
+    let made = held - seen.spent - memory.at_start;
     let made = if viscous || watch.removal { made.max(0.0) } else { made };
     let limit = watch.limits.energy.warn;
     if memory.scale > 0.0 && (made / memory.scale).abs() > memory.imbalance.abs() {
         memory.imbalance = made / memory.scale;
     }
-    if made.abs() > limit * memory.scale {
+    if made.abs() > limit * memory.scale && memory.scale > memory.floor {
         let share = made / memory.scale;
         let way = if made > 0.0 { "came from nothing" } else { "went into nothing" };
         let message = format!(
@@ -130,6 +124,60 @@ fn balance(memory: &mut GuardMemory, seen: &Look, watch: &Watch, world: &World) 
         warn(memory, world, "energy", "", share, limit, message);
     }
     (made, held)
+}
+
+/// What is held (J).
+struct Held {
+    /// By elements, and of viscous ones what remains in the long term.
+    lasting: f64,
+    /// By elements and by motion.
+    all: f64,
+    /// Whether a part is viscous.
+    viscous: bool,
+}
+
+fn held_by(seen: &Look, world: &World) -> Held {
+    let mut held = Held { lasting: 0.0, all: seen.kinetic, viscous: false };
+    for (entity, sums) in &seen.parts {
+        let prony = world.get::<Block>(*entity).and_then(|block| world.get::<Prony>(block.material));
+        let share = |terms: &[(f64, f64)]| terms.iter().map(|(alpha, _)| alpha).sum::<f64>();
+        let relaxed = prony.map_or(0.0, |prony| share(&prony.terms).max(share(&prony.volumetric)));
+        held.viscous |= relaxed > 0.0;
+        held.lasting += (1.0 - relaxed) * sums.strain + sums.hourglass;
+        held.all += sums.strain + sums.hourglass;
+    }
+    held
+}
+
+/// Notes what bodies hold before the first step, from which on imbalances count.
+///
+/// # Errors
+/// What the GPU says.
+pub fn begin(world: &mut World) -> Result<(), Error> {
+    let seen = look(world)?;
+    let held = held_by(&seen, world);
+    let mut memory = world.get_resource_or_init::<GuardMemory>();
+    (memory.at_start, memory.scale) = (held.lasting, held.all);
+    let floor = rounding(world);
+    world.get_resource_or_init::<GuardMemory>().floor = floor;
+    Ok(())
+}
+
+/// Strains that f32 knows to a twentieth of their energy: volume changes cancel in it to eps/ε.
+const KNOWN_STRAIN: f64 = 1e-6;
+
+/// Energy (J) of all bodies at strains too small for f32 to be sure of it; nothing in f64.
+fn rounding(world: &mut World) -> f64 {
+    let mut floor = 0.0;
+    for (block, shape, law) in world.query::<(&Block, &RestShape, &BlockLaw<f64>)>().iter(world) {
+        let Reals::F32(_) = shape.0 else { continue };
+        let Some(mass) = world.get::<Mass>(block.body) else { continue };
+        let Some(density) = world.get::<Density>(block.material) else { continue };
+        let [shear, bulk] = law.elastic.small_strain_moduli();
+        let volume = (0..mass.len()).map(|row| mass.get(row)).sum::<f64>() / density.0;
+        floor += 0.5 * (bulk + shear) * volume * KNOWN_STRAIN * KNOWN_STRAIN;
+    }
+    floor
 }
 
 fn hourglass(memory: &mut GuardMemory, seen: &Look, watch: &Watch, world: &World) {

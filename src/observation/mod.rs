@@ -8,7 +8,7 @@ mod probes;
 
 pub use energies::{energies, mass};
 pub use fields::{BodyFields, body_fields, internal_forces, write as write_fields};
-pub use guards::Watch;
+pub use guards::{Watch, begin as begin_to_guard};
 pub use look::{Look, WatchKernels, look};
 pub use probes::{header, observe_probe};
 

@@ -102,6 +102,9 @@ impl Simulation {
         let foreign = keeping.written.iter().any(|name| *name != external);
         world.insert_resource(keeping);
         world.insert_resource(GuardMemory::default());
+        if world.resource::<Clock>().relaxation.is_none() {
+            crate::observation::begin_to_guard(&mut world)?;
+        }
         let mut observer = world.resource_mut::<Observer>();
         (observer.watch.foreign, observer.on_gpu) = (foreign, on_gpu);
         observer.all_on_device = on_gpu && !schedule.iter().any(|entry| entry.system.custom);

@@ -46,7 +46,7 @@ pub fn not_a_number(trial: &mut Trial<'_>) -> Result<(), Error> {
     let mesh = "# vtk DataFile Version 3.0\na tetrahedron\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n0 0 0\n1 0 0\n0 nan 0\n0 0 1\n\
                 CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n10\n";
     let made = trial.start_beside("bad.vtk", mesh, &["bodies.body.mesh=File(path: \"bad.vtk\")".into()]);
-    trial.refused("a coordinate that is no number", made, &["bad.vtk", "nan"]);
+    trial.refused("a coordinate that is no number", made, &["bad.vtk", "NaN"]);
 
     let nodal = if trial.configuration.elements_name() == "Tet4NodalPressure" { "\"nodal_volume\", " } else { "" };
     let schedule = format!(
