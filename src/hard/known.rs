@@ -44,6 +44,18 @@ pub const SHORTFALLS: &[Shortfall] = &[
         why: "a free cell of tetrahedra at a twentieth of its height is not symmetric, and tangles when it is let go; confined it passes",
     },
     Shortfall {
+        case: "h07",
+        on: |c| !c.is_tets(),
+        verdict: Verdict::Failed,
+        why: "confined it passes; a single free cell pushes as the formula says, and does not come back when it is let go: not understood yet",
+    },
+    Shortfall {
+        case: "h30",
+        on: |_| true,
+        verdict: Verdict::Failed,
+        why: "the step adapts and energy stays balanced; who only watches is not told, for the true limit, 1.4 times the bound, is not passed at 45 %: the gate asks too early",
+    },
+    Shortfall {
         case: "h27",
         on: |c| c.is_gpu() && !c.is_tets(),
         verdict: Verdict::Failed,
