@@ -45,15 +45,20 @@ impl Law {
         self.free_with_sides(stretch).1
     }
 
-    /// The stretch across, by bisection, and the stress (Pa).
+    /// The stretch across and the stress (Pa), followed from rest: further on, other stretches across are free of stress too.
     pub fn free_with_sides(&self, stretch: f64) -> (f64, f64) {
-        // what is pressed gets wider; there are other roots
-        let (mut low, mut high) = if stretch < 1.0 { (1.0, 20.0_f64) } else { (0.05, 1.0) };
-        for _ in 0..200 {
-            let middle = (low * high).sqrt();
-            if self.stress([stretch, middle, middle], 1) < 0.0 { low = middle } else { high = middle }
+        const STEPS: i32 = 200;
+        let mut across = 1.0;
+        for step in 1..=STEPS {
+            let along = stretch.powf(f64::from(step) / f64::from(STEPS));
+            for _ in 0..20 {
+                let h = 1e-4 * across;
+                let at = |side: f64| self.stress([along, side, side], 1);
+                across -= at(across) * 2.0 * h / (at(across + h) - at(across - h));
+            }
         }
-        (low, self.stress([stretch, low, low], 0))
+        (across, self.stress([stretch, across, across], 0))
+    }
     }
 }
 
@@ -68,5 +73,9 @@ mod tests {
         for (stretch, expected) in [(1.5, 1035.4829), (0.7, -1347.7943), (2.0, 1673.0186)] {
             assert!((law.free(stretch) - expected).abs() < 1e-3, "{stretch}: {}", law.free(stretch));
         }
+        // what stiff fibres cannot do without changing volume
+        let fibred = Law { shear: 1e3, bulk: 1e4, fibres: 1e6 };
+        let (across, _) = fibred.free_with_sides(1.02);
+        assert!(across > 1.0 && fibred.stress([1.02, across, across], 1).abs() < 1e-3, "{across}");
     }
 }
