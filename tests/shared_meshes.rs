@@ -31,7 +31,8 @@ fn scene(mesh: &Path) -> SceneFile {
         mesh.to_str().unwrap()
     );
     let allowed = Allowed::files_anywhere();
-    SceneFile::from_text_allowing("shared mesh", &text, Path::new(""), &[], allowed).unwrap_or_else(|wrong| panic!("{wrong}"))
+    SceneFile::from_text_allowing("shared mesh", &text, Path::new(""), &[], allowed)
+        .unwrap_or_else(|wrong| panic!("{wrong}"))
 }
 
 #[test]

@@ -3,11 +3,11 @@
 pub(super) use crate::backend::user_law::Read;
 
 use crate::backend::user_law::{About, Complaint, read as read_law};
-use crate::scene::{Outside, SceneFile};
 use crate::scene::diagnostic::{Diagnostic, Diagnostics, Severity, TextFile};
 use crate::scene::limits::LAW_BYTES;
 use crate::scene::schema::OwnLaw;
 use crate::scene::syntax::Path;
+use crate::scene::{Outside, SceneFile};
 use std::collections::BTreeMap;
 use std::io::Read as _;
 use std::sync::Arc;

@@ -16,7 +16,8 @@ impl Outside {
     pub const HOW: &'static str = HOW;
 }
 
-const HOW: &str = "put it into the folder or below, or allow it: --allow-outside, in a program Allowed { outside: true, .. }";
+const HOW: &str =
+    "put it into the folder or below, or allow it: --allow-outside, in a program Allowed { outside: true, .. }";
 
 impl SceneFile {
     /// Where a file is that the scene names, its path relative to the scene's folder. Links are followed: what counts is

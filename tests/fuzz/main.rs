@@ -82,7 +82,11 @@ fn attempt(target: &Target, input: &[u8], folder: &Path) -> Result<(), String> {
 
 /// Tries inputs; gives what went wrong, each kind once, with the file that shows it.
 fn try_all(target: &Target, inputs: impl Iterator<Item = Vec<u8>>) -> (usize, BTreeMap<String, PathBuf>) {
-    let folder = tempfile::Builder::new().prefix(&format!("{}-", target.name)).disable_cleanup(true).tempdir_in(place()).unwrap();
+    let folder = tempfile::Builder::new()
+        .prefix(&format!("{}-", target.name))
+        .disable_cleanup(true)
+        .tempdir_in(place())
+        .unwrap();
     let (mut tried, mut wrong) = (0, BTreeMap::new());
     for input in inputs {
         tried += 1;

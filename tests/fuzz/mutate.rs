@@ -7,14 +7,46 @@ const LONGEST: usize = 1 << 16;
 
 /// Numbers that programs trip over.
 const NUMBERS: [&str; 27] = [
-    "0", "-0", "1", "-1", "2", "3", "1e308", "-1e308", "1e309", "5e-324", "1e-30", "1e30", "3.5e38", "1e18", "1e12", "NaN", "inf", "-inf",
-    "255", "65536", "2147483648", "4294967295", "4294967296", "9223372036854775808", "18446744073709551615", "18446744073709551616",
+    "0",
+    "-0",
+    "1",
+    "-1",
+    "2",
+    "3",
+    "1e308",
+    "-1e308",
+    "1e309",
+    "5e-324",
+    "1e-30",
+    "1e30",
+    "3.5e38",
+    "1e18",
+    "1e12",
+    "NaN",
+    "inf",
+    "-inf",
+    "255",
+    "65536",
+    "2147483648",
+    "4294967295",
+    "4294967296",
+    "9223372036854775808",
+    "18446744073709551615",
+    "18446744073709551616",
     "0x7fffffff",
 ];
 
 /// Brackets and what they are closed with.
 const BRACKETS: [(&str, &str); 9] = [
-    ("(", ")"), ("[", "]"), ("{", "}"), ("Not(", ")"), ("And([", "])"), ("Some(", ")"), ("/*", "*/"), ("<a>", "</a>"), ("-", ""),
+    ("(", ")"),
+    ("[", "]"),
+    ("{", "}"),
+    ("Not(", ")"),
+    ("And([", "])"),
+    ("Some(", ")"),
+    ("/*", "*/"),
+    ("<a>", "</a>"),
+    ("-", ""),
 ];
 
 /// A hostile file: one of the corpus, changed.
@@ -45,7 +77,7 @@ fn change(rng: &mut Rng, bytes: &mut Vec<u8>, corpus: &[Vec<u8>]) {
             let (from, to) = stretch(rng, other.len());
             bytes.splice(start..end, other[from..to].iter().copied());
         }
-        7 | 8 | 9 => replace_number(rng, bytes),
+        7..=9 => replace_number(rng, bytes),
         10 => words(rng, bytes, |rng, words, places| {
             let (a, b) = (*rng.choice(places)?, *rng.choice(places)?);
             words.swap(a, b);
@@ -95,7 +127,9 @@ fn at(rng: &mut Rng, bytes: &mut [u8], change: impl FnOnce(&mut Rng, &mut u8)) {
 
 /// Puts a number that programs trip over in the place of one that is written as text.
 fn replace_number(rng: &mut Rng, bytes: &mut Vec<u8>) {
-    let begins = |i: usize| bytes[i].is_ascii_digit() && (i == 0 || !bytes[i - 1].is_ascii_alphanumeric() && bytes[i - 1] != b'.');
+    let begins = |i: usize| {
+        bytes[i].is_ascii_digit() && (i == 0 || !bytes[i - 1].is_ascii_alphanumeric() && bytes[i - 1] != b'.')
+    };
     let starts: Vec<usize> = (0..bytes.len()).filter(|&i| begins(i)).collect();
     let Some(&start) = rng.choice(&starts) else { return };
     let is_part = |&byte: &u8| byte.is_ascii_alphanumeric() || byte == b'.';
@@ -112,7 +146,8 @@ fn replace_number(rng: &mut Rng, bytes: &mut Vec<u8>) {
 
 /// Puts an integer that programs trip over where a binary one may stand.
 fn binary_number(rng: &mut Rng, bytes: &mut [u8]) {
-    let value = *rng.choice(&[0, 1, u64::MAX, 1 << 31, u64::from(u32::MAX), 1 << 32, 1 << 60, 1_000_000_000_000]).unwrap_or(&0);
+    let value =
+        *rng.choice(&[0, 1, u64::MAX, 1 << 31, u64::from(u32::MAX), 1 << 32, 1 << 60, 1_000_000_000_000]).unwrap_or(&0);
     let mut eight = if rng.bool() { value.to_le_bytes() } else { value.to_be_bytes() };
     if rng.bool() {
         eight.rotate_left(4);

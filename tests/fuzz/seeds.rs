@@ -20,7 +20,8 @@ fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
 /// Seeds of a target: all, and those of the corpus alone.
 pub fn of(target: &str) -> (Vec<Vec<u8>>, Vec<Vec<u8>>) {
     let folder = if target == "runs" { "scenes" } else { target };
-    let kept: Vec<Vec<u8>> = files(&root().join("tests/fuzz/corpus").join(folder)).into_iter().map(|(_, bytes)| bytes).collect();
+    let kept: Vec<Vec<u8>> =
+        files(&root().join("tests/fuzz/corpus").join(folder)).into_iter().map(|(_, bytes)| bytes).collect();
     let mut all = kept.clone();
     match target {
         "scenes" | "runs" => all.extend(scenes()),
@@ -32,7 +33,9 @@ pub fn of(target: &str) -> (Vec<Vec<u8>>, Vec<Vec<u8>>) {
         }
         "laws" => {
             let files = files(&root().join("examples"));
-            all.extend(files.into_iter().filter(|(path, _)| path.extension().is_some_and(|e| e == "wgsl")).map(|(_, b)| b));
+            all.extend(
+                files.into_iter().filter(|(path, _)| path.extension().is_some_and(|e| e == "wgsl")).map(|(_, b)| b),
+            );
         }
         _ => all.extend(TABLES.map(|table| table.as_bytes().to_vec())),
     }
@@ -47,7 +50,13 @@ fn scenes() -> Vec<Vec<u8>> {
     let mut scenes: Vec<Vec<u8>> =
         ron.map(|(_, bytes)| smaller(&String::from_utf8(bytes).unwrap()).into_bytes()).collect();
     let reference = include_str!("../../docs/scene.md");
-    scenes.extend(reference.split("```ron\n").skip(1).filter_map(|rest| rest.split("```").next()).map(|e| smaller(e).into_bytes()));
+    scenes.extend(
+        reference
+            .split("```ron\n")
+            .skip(1)
+            .filter_map(|rest| rest.split("```").next())
+            .map(|e| smaller(e).into_bytes()),
+    );
     scenes.push(SMALL.as_bytes().to_vec());
     scenes
 }

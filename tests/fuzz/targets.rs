@@ -126,7 +126,8 @@ fn reference(bytes: &[u8], path: &Path) {
         match sinew::accuracy::files::read(&[path.to_path_buf()], 1.0, looks) {
             Err(error) => assert!(error.len() > 10),
             Ok(found) => {
-                let finite = |entry: &sinew::accuracy::reference::Entry| entry.values.iter().all(|value| value.is_finite());
+                let finite =
+                    |entry: &sinew::accuracy::reference::Entry| entry.values.iter().all(|value| value.is_finite());
                 assert!(found.entries.values().all(finite), "a reference that is no number");
             }
         }

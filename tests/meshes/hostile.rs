@@ -59,10 +59,12 @@ fn files_out_of_all_proportion_are_refused() {
     // one entity in many groups
     let groups: String = (1..=1000).map(|group| format!("{group} ")).collect();
     let elements: String = (1..=2000).map(|number| format!("{number} 1 2 3 4\n")).collect();
-    let file = |groups: &str| format!(
-        "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 0 1\n1 0 0 0 1 1 1 {groups} 0\n$EndEntities\n$Nodes\n1 4 1 4\n\
+    let file = |groups: &str| {
+        format!(
+            "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Entities\n0 0 0 1\n1 0 0 0 1 1 1 {groups} 0\n$EndEntities\n$Nodes\n1 4 1 4\n\
          3 1 0 4\n1\n2\n3\n4\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n$EndNodes\n$Elements\n1 2000 1 2000\n3 1 4 2000\n{elements}$EndElements\n"
-    );
+        )
+    };
     let told = readers::read("groups.msh", file(&format!("1000 {groups}")).as_bytes()).unwrap_err().to_string();
     assert!(told.contains("entity 1 of dimension 3 is in 1000 groups"), "{told}");
     // many data of elements, each for one element

@@ -32,7 +32,10 @@ fn too_many_of_anything_are_refused_by_their_number() {
     let told = first("loads: [", &format!("removal: [{}], loads: [", "(when: At(1)),".repeat(10_001)));
     assert_eq!(told, "10001 removals; at most 10000 are allowed");
     let probe = |i| format!("\"p{i}\": (what: Position, on: All),");
-    assert_eq!(first("probes: {", &format!("probes: {{{}", many(10_000, probe))), "10001 probes; at most 10000 are allowed");
+    assert_eq!(
+        first("probes: {", &format!("probes: {{{}", many(10_000, probe))),
+        "10001 probes; at most 10000 are allowed"
+    );
     let regions = format!("material: \"tissue\", regions: [{}]", "(on: All, material: \"tissue\"),".repeat(1001));
     assert_eq!(first("material: \"tissue\"", &regions), "1001 regions; at most 1000 are allowed");
     let terms = format!("density: 1060, prony: (terms: [{}])", "(alpha: 0, tau: 1),".repeat(101));
@@ -162,7 +165,10 @@ fn outputs_without_end_are_refused() {
         Simulation::check(&scene, &Registry::default()).to_string()
     };
     let told = many(&[small, "output.fields_every=1e-9"]);
-    assert!(told.contains("a run would write 50000001 VTU files") && told.contains("at most 100000 are allowed"), "{told}");
+    assert!(
+        told.contains("a run would write 50000001 VTU files") && told.contains("at most 100000 are allowed"),
+        "{told}"
+    );
     let told = many(&[small, "output.energies_every=1e-8", "probes.tip.every=1e-8"]);
     assert!(told.contains("50000001 rows of energies") && told.contains("50000001 rows of a probe"), "{told}");
     assert!(told.contains("at most 10000000 are allowed"), "{told}");

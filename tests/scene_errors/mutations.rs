@@ -99,7 +99,8 @@ fn many_mistakes_are_told_in_bounded_space() {
         format!("(duration: 1, materials: {{}}, bodies: {{{bodies}}})")
     };
     let text = bodies(20_000);
-    let wrong_values = bodies(900).replace("(mesh: 3)", "(mesh: Box(size: (1, 1, 1), cells: (1, 1, 0)), material: \"m\")");
+    let wrong_values =
+        bodies(900).replace("(mesh: 3)", "(mesh: Box(size: (1, 1, 1), cells: (1, 1, 0)), material: \"m\")");
     let told = complaints(&wrong_values, &[]).to_string();
     assert!(told.contains("and 1750 more") && told.lines().count() < 1000, "{told}");
     let told = complaints(&text, &[]);

@@ -93,9 +93,8 @@ fn laws_and_references_are_files_too() {
 fn what_is_allowed_counts_beside_other_mistakes_too() {
     let place = Place::new();
     let text = with(MESH, "mesh: File(path: \"../outer.msh\")").replace("duration", "duraton");
-    let told = |allowed| {
-        SceneFile::from_text_allowing("a.ron", &text, &place.folder(), &[], allowed).unwrap_err().to_string()
-    };
+    let told =
+        |allowed| SceneFile::from_text_allowing("a.ron", &text, &place.folder(), &[], allowed).unwrap_err().to_string();
     assert!(told(Allowed::default()).contains(REFUSED));
     assert!(!told(Allowed::files_anywhere()).contains(REFUSED));
 }
@@ -106,7 +105,9 @@ fn names_of_bodies_and_probes_stay_in_the_output_folder() {
     let place = Place::new();
     let out = place.root.path().join("out");
     let mut folder = sinew::output::Folder::create(&out).unwrap();
-    for name in ["../x", "..", "a/b", "a\\b", "/x", "C:x", "a:b", "x\u{7}", "a\0", "con", "tip of it", "größe", "a*b", ".x", ""] {
+    for name in
+        ["../x", "..", "a/b", "a\\b", "/x", "C:x", "a:b", "x\u{7}", "a\0", "con", "tip of it", "größe", "a*b", ".x", ""]
+    {
         let quoted = format!("\"{}\": (what", name.escape_default());
         let scene = SceneFile::from_text("a.ron", &with("\"tip\": (what", &quoted), &place.folder(), &[]);
         let scene = scene.unwrap_or_else(|wrong| panic!("{name:?}: {wrong}"));

@@ -47,7 +47,11 @@ impl File<'_> {
                 }
             };
             let all = if of_cells { &mut self.grid.cell_data } else { &mut self.grid.point_data };
-            all.extend(columns.into_iter().filter(|(_, column)| Some(column.values.len()) == rows.checked_mul(column.components)));
+            all.extend(
+                columns
+                    .into_iter()
+                    .filter(|(_, column)| Some(column.values.len()) == rows.checked_mul(column.components)),
+            );
         }
         Ok(())
     }

@@ -181,7 +181,8 @@ impl Reader<'_> {
                 scalar.column(&bytes.map_err(|what| wrong(what, "the file may be damaged"))?, self.packing.big_endian)
             }
             "appended" => {
-                let bytes = self.appended(node, scalar).map_err(|what| wrong(what, "the file may have been cut short"))?;
+                let bytes =
+                    self.appended(node, scalar).map_err(|what| wrong(what, "the file may have been cut short"))?;
                 scalar.column(&bytes, self.packing.big_endian)
             }
             other => return Err(wrong(format!("format `{other}`"), "it must be ascii, binary or appended")),

@@ -1,12 +1,13 @@
 //! From a text to its tree, going on after what can be gone on from.
 
 use super::scan::{Endless, Scan, starts_word};
-use crate::scene::limits::{FAULTS, VALUES};
 use super::{DEEPEST, Entry, Fault, Field, Kind, Node, Span, Tree, Word};
+use crate::scene::limits::{FAULTS, VALUES};
 
 /// Reads a text. Never fails: what is wrong is in [`Tree::faults`], and the tree holds the rest.
 pub fn parse(text: &str) -> Tree {
-    let mut parser = Parser { scan: Scan { text, at: 0 }, faults: Vec::new(), long_text: None, open: Vec::new(), values: 0 };
+    let mut parser =
+        Parser { scan: Scan { text, at: 0 }, faults: Vec::new(), long_text: None, open: Vec::new(), values: 0 };
     let root = parser.file().unwrap_or(Node { span: 0..text.len(), name: None, kind: Kind::Bad });
     Tree { root, faults: parser.faults }
 }

@@ -2,10 +2,10 @@
 
 use super::{Judge, scene, select};
 use crate::mesh::generators::cells_around;
+use crate::scene::beside::Outside;
 use crate::scene::limits::MOST_REFINEMENT;
 use crate::scene::load::SceneFile;
 use crate::scene::schema::{AccuracyReference, MeshSource, Picture};
-use crate::scene::beside::Outside;
 use crate::scene::suggest::{choice, list};
 use crate::scene::syntax::Path;
 
