@@ -1,7 +1,7 @@
 //! What a step costs on one thread, what a large body costs to set up, and how much memory it takes.
 //!
 //! `cargo bench --bench step` prints ns an element and step beside criterion's own figures. `cargo bench --bench step -- 10`
-//! runs the small ones only.
+//! runs the small ones only, `-- guards` what the guards cost (with SINEW_BENCH_GPU set, on the GPU in f32).
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use criterion::{Criterion, Throughput};
@@ -12,15 +12,22 @@ use std::time::{Duration, Instant};
 
 /// A cube under gravity, `cells` along each edge, of a material with an elastic law and effects.
 fn cube(elements: &str, cells: u32, material: &str) -> SceneFile {
-    let text = format!(
+    scene(&cube_text(elements, cells, material))
+}
+
+fn cube_text(elements: &str, cells: u32, material: &str) -> String {
+    format!(
         "(duration: 1000.0,
           bodies: {{ \"cube\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: ({cells}, {cells}, {cells}), elements: {elements}),
                                material: \"tissue\") }},
           materials: {{ \"tissue\": (density: 1000, {material}) }},
           constraints: [Fixed(on: Set(\"z0\"))],
           loads: [Gravity(acceleration: (0, 0, -2))])"
-    );
-    SceneFile::from_text("cube", &text, Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples")), &[])
+    )
+}
+
+fn scene(text: &str) -> SceneFile {
+    SceneFile::from_text("cube", text, Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/examples")), &[])
         .unwrap_or_else(|wrong| panic!("{wrong}"))
 }
 
@@ -109,6 +116,47 @@ impl<'a> Group<'a> {
     }
 }
 
+/// What the guards of every run cost: blocks of steps with and without them by turns, the best of each, so that other work on
+/// the machine does not count. A block has two looks.
+fn guards() {
+    let gpu = std::env::var_os("SINEW_BENCH_GPU").is_some();
+    let configurations = [("f32", Precision::F32, gpu), ("f64", Precision::F64, false)];
+    let prescribed = "Prescribed(on: Set(\"z1\"), displacement: (0.001, 0, 0), curve: Smooth(end: 1))";
+    for (kind, cells) in [("Tet4", 20), ("Tet4NodalPressure", 20), ("Hex8", 30), ("Hex8MeanDilatation", 20)] {
+        for (word, precision, gpu) in configurations {
+            let of = |guards: &str, constraint: &str| {
+                let text = cube_text(kind, cells, "neo_hookean: Young(young: 3000, poisson: 0.45)")
+                    .replace("loads:", &format!("{guards} loads:"));
+                let text = text.replace("constraints: [", &format!("constraints: [{constraint}"));
+                let backend = if gpu { BackendChoice::Gpu } else { BackendChoice::Cpu };
+                let options = Options { backend, precision, threads: 1, ..Options::default() };
+                Simulation::new(&scene(&text), &options).unwrap_or_else(|wrong| panic!("{wrong}"))
+            };
+            let none = "guards: (off: [Energy, Hourglass], every: 1000000000),";
+            let moved = format!("{prescribed}, ");
+            let mut all = [of(none, ""), of("guards: (every: 1000000000),", ""), of("", ""), of("", &moved)];
+            let mut best = [f64::INFINITY; 4];
+            for _ in 0..6 {
+                for (simulation, best) in all.iter_mut().zip(&mut best) {
+                    let started = Instant::now();
+                    simulation.advance(512).expect("steps");
+                    *best = best.min(started.elapsed().as_secs_f64() / 512.0);
+                }
+            }
+            let share = |i: usize| 100.0 * (best[i] / best[0] - 1.0);
+            println!(
+                "guards, {kind} {cells}^3 {word}{}: {:.1} us a step without, booking {:+.1} %, all of them {:+.1} %, with \
+                 prescribed nodes {:+.1} %",
+                if gpu { " GPU" } else { "" },
+                best[0] * 1e6,
+                share(1),
+                share(2),
+                share(3)
+            );
+        }
+    }
+}
+
 /// Runs in a process of its own, so that its peak memory is its own.
 fn million() {
     let started = Instant::now();
@@ -137,6 +185,9 @@ fn peak_memory() -> Option<u64> {
 }
 
 fn main() {
+    if std::env::args().any(|argument| argument == "guards") {
+        return guards();
+    }
     if std::env::var_os("SINEW_BENCH_MILLION").is_some() {
         return million();
     }

@@ -4,6 +4,6 @@ fn elastic_kinematics(gradient: mat3x3<f32>) -> Kinematics {
 }
 
 // F S (Pa)
-fn elastic_first_stress(gradient: mat3x3<f32>, stress: Sym3) -> mat3x3<f32> {
-    return plus_identity_times(gradient, stress);
+fn elastic_first_stress(gradient: mat3x3<f32>, k: Kinematics, isochoric: Sym3, pressure: f32) -> mat3x3<f32> {
+    return plus_identity_times(gradient, sym_plus(isochoric, elastic_volumetric(k, pressure)));
 }

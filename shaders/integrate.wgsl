@@ -1,5 +1,5 @@
 // Central differences in velocity form; twin of systems/integrate.rs. What a body has no column for is a line generated in
-// place of a fragment: external_force_of, damped, coefficient_of, book_work, add_to_step, add_step, forget_step.
+// place of a fragment: external_force_of, damped, coefficient_of, book_work, spend, add_up_spent, add_to_step, add_step, forget_step.
 struct Integrate {
     count: u32, // nodes
 }
@@ -20,11 +20,18 @@ fn constrained_at(node: u32) -> vec3<bool> {
     return (vec3<u32>(constrained_axes[node]) & vec3<u32>(1u, 2u, 4u)) != vec3<u32>(0u);
 }
 
+// Whether a node has no mass, by its bits: comparisons of floats might be turned round, and park what is no number.
+fn is_parked(node: u32) -> bool {
+    let bits = bitcast<u32>(mass[node]);
+    let size = bits & 0x7fffffffu;
+    return size == 0u || (bits != size && size <= 0x7f800000u);
+}
+
 // The node's next step (m); constrained axes keep what boundary wrote, nodes without mass are parked.
 fn push(node: u32) -> vec3<f32> {
     let at = 3u * node;
     var after = vec3<f32>(0.0);
-    if mass[node] > 0.0 {
+    if !is_parked(node) {
         let per_mass = 1.0 / mass[node];
         let before = step_of(node);
         let inner = vec3<f32>(internal_force[at], internal_force[at + 1u], internal_force[at + 2u]);
@@ -33,6 +40,7 @@ fn push(node: u32) -> vec3<f32> {
         let constrained = constrained_at(node);
         after = select(add_to_step(node, before, change), before, constrained);
         book_work(node, before, after, constrained, inner, outer);
+        spend(before, after, inner);
     } else {
         forget_step(node);
     }
@@ -57,20 +65,30 @@ fn move_on(node: u32, d: vec3<f32>) {
 }
 
 @compute @workgroup_size(64)
-fn integrate(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn integrate(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
     let node = row(id, groups);
     if node < nodes.count {
         move_on(node, push(node));
     }
+    add_up_spent(local, node);
 }
 
 // The same in two kernels, for bodies with more columns than a kernel may have buffers.
 @compute @workgroup_size(64)
-fn integrate_push(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+fn integrate_push(
+    @builtin(global_invocation_id) id: vec3<u32>,
+    @builtin(num_workgroups) groups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
     let node = row(id, groups);
     if node < nodes.count {
         push(node);
     }
+    add_up_spent(local, node);
 }
 
 @compute @workgroup_size(64)

@@ -22,8 +22,8 @@ fn elastic_kinematics(h: mat3x3<f32>) -> Kinematics {
 }
 
 // P = S (Pa)
-fn elastic_first_stress(gradient: mat3x3<f32>, stress: Sym3) -> mat3x3<f32> {
-    return sym_rows(stress);
+fn elastic_first_stress(gradient: mat3x3<f32>, k: Kinematics, isochoric: Sym3, pressure: f32) -> mat3x3<f32> {
+    return sym_rows(sym_plus(isochoric, elastic_volumetric(k, pressure)));
 }
 
 // 2μ dev ε (Pa)

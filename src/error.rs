@@ -4,6 +4,7 @@ use crate::backend::gpu::{GpuError, NoGpu};
 use crate::output::OutputError;
 use crate::scene::Diagnostics;
 use crate::simulation::Equilibrium;
+use crate::snapshot::SnapshotError;
 
 /// Why a simulation does not start or go on.
 #[derive(Debug, thiserror::Error)]
@@ -17,6 +18,9 @@ pub enum Error {
     /// The GPU failed.
     #[error(transparent)]
     Gpu(#[from] GpuError),
+    /// The GPU failed in the middle of a run. Outputs up to the last observation are kept.
+    #[error("{0}")]
+    GpuFailed(Box<GpuFailure>),
     /// Outputs could not be written.
     #[error(transparent)]
     Output(#[from] OutputError),
@@ -26,17 +30,33 @@ pub enum Error {
     /// A static analysis found no equilibrium. Outputs up to the last observation are kept.
     #[error("{0}")]
     NotConverged(Box<NotConverged>),
+    /// A snapshot that cannot be taken, read, or gone on from.
+    #[error(transparent)]
+    Snapshot(#[from] SnapshotError),
     /// Options that do not go together.
     #[error("{0}")]
     Options(String),
 }
 
-/// Where and how a simulation broke down.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+/// How far a run came whose GPU failed.
+#[derive(Clone, Debug, thiserror::Error)]
 #[error(
-    "the simulation broke down before t = {time} s (step {step}) in body {body}: {what}. \
-     Likely causes: {cause}. Outputs up to t = {good_until} s are kept"
+    "the GPU failed after t = {good_until} s, before t = {time} s (step {step}): {reason}. Outputs up to t = {good_until} s are \
+     kept. The CPU takes every scene: --backend cpu"
 )]
+pub struct GpuFailure {
+    /// What the GPU says.
+    pub reason: GpuError,
+    /// When it was noticed (s).
+    pub time: f64,
+    /// The same in steps.
+    pub step: u64,
+    /// The last observation before (s).
+    pub good_until: f64,
+}
+
+/// Where and how a simulation broke down.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Instability {
     /// When it was noticed: it happened in one of the steps since the last check (s).
     pub time: f64,
@@ -50,7 +70,67 @@ pub struct Instability {
     pub cause: String,
     /// The last observation before (s).
     pub good_until: f64,
+    /// What ended the run, for programs.
+    pub criterion: Criterion,
+    /// The last state that passed all guards, where states were kept in files.
+    pub last_good: Option<LastGood>,
 }
+
+/// What ended a run, for programs.
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
+pub struct Criterion {
+    /// `not_finite`, `inverted`, `energy`, or `result` for a result that is not finite.
+    pub name: &'static str,
+    /// What was found, where it is a number.
+    pub value: Option<f64>,
+    /// What is allowed.
+    pub limit: Option<f64>,
+    /// The author's number of the node.
+    pub node: Option<u64>,
+    /// The author's number of the element.
+    pub element: Option<u64>,
+}
+
+impl Criterion {
+    /// A criterion by its name.
+    pub fn of(name: &'static str) -> Self {
+        Self { name, ..Self::default() }
+    }
+}
+
+/// The last state that passed all guards.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct LastGood {
+    /// When it was (s).
+    pub time: f64,
+    /// The same in steps.
+    pub step: u64,
+    /// Its snapshot in the output folder.
+    pub snapshot: String,
+    /// The series of the last states in the output folder.
+    pub series: String,
+}
+
+impl std::fmt::Display for Instability {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let Self { time, step, body, what, cause, good_until, .. } = self;
+        write!(
+            f,
+            "the simulation broke down before t = {time} s (step {step}) in body {body}: {what}. Likely causes: {cause}. \
+             Outputs up to t = {good_until} s are kept"
+        )?;
+        match &self.last_good {
+            None => Ok(()),
+            Some(LastGood { time, snapshot, series, .. }) => write!(
+                f,
+                "; {series} shows the last states, and the last good one, of t = {time} s, can be gone on from: --resume \
+                 {snapshot}"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for Instability {}
 
 /// How far a static analysis came that found no equilibrium.
 #[derive(Clone, Debug, PartialEq)]

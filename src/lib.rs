@@ -31,6 +31,7 @@ pub mod output;
 pub mod render;
 pub mod scene;
 mod simulation;
+pub mod snapshot;
 #[path = "../systems/mod.rs"]
 pub mod systems;
 
@@ -39,10 +40,11 @@ pub use bevy_ecs;
 pub use glam;
 pub use serde;
 
-pub use error::{Error, Instability, NotConverged};
+pub use error::{Error, GpuFailure, Instability, NotConverged};
 pub use scene::SceneFile;
 pub use simulation::explain;
-pub use simulation::{BackendChoice, Equilibrium, Options, Simulation, Summary, SystemTime};
+pub use simulation::{BackendChoice, Equilibrium, Inversions, Options, Simulation, Summary, SystemTime};
+pub use snapshot::Snapshot;
 
 /// The code in the readme compiles and runs.
 #[cfg(doctest)]

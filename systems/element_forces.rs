@@ -6,9 +6,11 @@ use crate::backend::Buffers;
 use crate::backend::block_kernel::BlockKernels;
 use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, run_block, run_block_fast};
 use crate::backend::kernel::Kernel;
+use crate::backend::step::with_step;
 use crate::components::*;
-use crate::evaluation::{ElementState, node_count, with_element};
+use crate::evaluation::{ElementState, lane_place, node_count, with_element};
 use crate::math::{LANES, SimdScalar};
+use crate::scene::schema::Inversion;
 use crate::shader;
 use bevy_ecs::prelude::*;
 
@@ -35,16 +37,19 @@ type BlockQuery<'a> = (
     &'a BlockLaw<f64>,
     Option<&'a BlockLaw<f32>>,
     &'a mut FirstInverted,
+    Option<&'a OnInversion>,
+    Option<&'a mut RemovalStep>,
 );
 
 fn element_forces(
     cpu: Res<Cpu>,
+    clock: Res<Clock>,
     mut blocks: Query<BlockQuery>,
     mut bodies: Query<(&Authoring, &Displacement, &mut ElementForce)>,
 ) {
     for (authoring, displacement, mut force) in &mut bodies {
         for &entity in &authoring.blocks {
-            let Ok((block, connectivity, shape, fibres, means, memory, law, rounded, mut inverted)) =
+            let Ok((block, connectivity, shape, fibres, means, memory, law, rounded, mut inverted, policy, removal)) =
                 blocks.get_mut(entity)
             else {
                 continue;
@@ -63,8 +68,19 @@ fn element_forces(
                 }
                 (Reals::F32(_), None) => false,
             };
-            if found && inverted[0] == u32::MAX {
-                inverted[0] = first_inverted(block, connectivity, shape, displacement, law);
+            let is_inverted =
+                |row: &usize| ElementState::of(block.kind, *row, connectivity, shape, displacement, law).is_inverted();
+            match (policy, removal) {
+                _ if !found => {}
+                (Some(OnInversion(Inversion::Remove)), Some(mut removal)) => {
+                    let gone = (0..block.count).filter(is_inverted);
+                    gone.for_each(|row| remove(row, block, clock.step + 1, &mut removal, &mut force));
+                }
+                // rounding may hide from f64 what the kernel saw
+                _ if inverted[0] == u32::MAX => {
+                    inverted[0] = (0..block.count).find(is_inverted).map_or(0, |row| row as u32);
+                }
+                _ => {}
             }
         }
     }
@@ -97,18 +113,11 @@ fn of_kernel<'a, T: SimdScalar>(
     }
 }
 
-/// The lowest row with J < 0. Only called when the kernel has found one.
-fn first_inverted(
-    block: &Block,
-    connectivity: &[u32],
-    shape: &RestShape,
-    displacement: &Displacement,
-    law: &BlockLaw<f64>,
-) -> u32 {
-    let inverted =
-        |row: &usize| ElementState::of(block.kind, *row, connectivity, shape, displacement, law).is_inverted();
-    // rounding may hide from f64 what the kernel saw
-    (0..block.count).find(inverted).map_or(0, |row| row as u32)
+/// An element exerts nothing any more and goes before `step`.
+fn remove(row: usize, block: &Block, step: u64, removal: &mut RemovalStep, force: &mut ElementForce) {
+    removal[row] = removal[row].min(u32::try_from(step).unwrap_or(u32::MAX));
+    let numbers = 3 * node_count(block.kind);
+    (0..numbers).for_each(|k| force.set(block.force_offset + lane_place(row, numbers, k), 0.0));
 }
 
 /// One kernel for each block, of the fragments that its element type and its material call for.
@@ -125,8 +134,18 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
             .fragment(shader!("element_forces"))
             .fragment(block.generated("corners", text + "}\n"))
             .bind(RestShape::NAME, buffers.column(block.entity, RestShape::NAME))
-            .bind(ElementForce::NAME, buffers.column(block.block.body, ElementForce::NAME))
-            .bind(FirstInverted::NAME, buffers.column(block.entity, FirstInverted::NAME));
+            .bind(ElementForce::NAME, buffers.column(block.block.body, ElementForce::NAME));
+        let kernel = match world.get::<OnInversion>(block.entity) {
+            Some(OnInversion(Inversion::Remove)) => with_step(
+                kernel
+                    .fragment(shader!("remove_inverted"))
+                    .bind(RemovalStep::NAME, buffers.column(block.entity, RemovalStep::NAME)),
+                world,
+            ),
+            _ => kernel
+                .fragment(shader!("note_inverted"))
+                .bind(FirstInverted::NAME, buffers.column(block.entity, FirstInverted::NAME)),
+        };
         kernels.push(block.with_stress(kernel, buffers));
     }
     kernels

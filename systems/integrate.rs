@@ -92,7 +92,9 @@ fn integrate(clock: Res<Clock>, cpu: Res<Cpu>, mut bodies: Query<BodyQuery>) {
                         factors: Factors::of(&clock),
                     };
                     let compensation = compensation.map(|c| c.into_inner().0.slice_mut());
-                    move_nodes(&cpu, &fixed, u, step, compensation, work.map(|w| w.into_inner().0.slice_mut()))
+                    let work = work.map(|w| w.into_inner().0.slice_mut());
+                    let spent = first.0.get_mut(SPENT_AT..).unwrap_or_default();
+                    move_nodes(&cpu, &fixed, u, step, compensation, work, spent)
                 } else {
                     None
                 }
@@ -125,26 +127,34 @@ fn move_nodes<T: Scalar>(
     step: &mut [T],
     compensation: Option<&mut [T]>,
     work: Option<&mut [T]>,
+    spent: &mut [u32],
 ) -> Option<u32> {
     let bad = std::sync::atomic::AtomicU32::new(u32::MAX);
     let mut compensations = compensation.map(|c| c.chunks_mut(COMPENSATION_NUMBERS * ROWS_A_TASK));
     let mut works = work.map(|w| w.chunks_mut(WORK_NUMBERS * ROWS_A_TASK));
+    // none where the whole work is booked
+    let mut sums = spent.chunks_mut(2 * ROWS_A_TASK / SPENT_ROWS);
     let tasks = u.chunks_mut(3 * ROWS_A_TASK).zip(step.chunks_mut(3 * ROWS_A_TASK)).enumerate().map(|(task, rows)| {
         (
             task * ROWS_A_TASK,
             rows,
             compensations.as_mut().and_then(Iterator::next),
             works.as_mut().and_then(Iterator::next),
+            sums.next().unwrap_or_default(),
         )
     });
-    cpu.for_each(tasks, |(first, (u, step), mut compensation, mut work)| {
-        for row in 0..u.len() / 3 {
+    cpu.for_each(tasks, |(first, (u, step), mut compensation, mut work, sums)| {
+        let (mut spent, rows) = (0.0, u.len() / 3);
+        for row in 0..rows {
             let at = 3 * row..3 * row + 3;
             let lost = COMPENSATION_NUMBERS * row..COMPENSATION_NUMBERS * (row + 1);
             let lost = compensation.as_mut().map(|c| &mut c[lost]);
             let mut sum = Sum { u: &mut u[at.clone()], step: &mut step[at], lost };
             let work = work.as_mut().map(|w| &mut w[WORK_NUMBERS * row..WORK_NUMBERS * (row + 1)]);
-            move_node(inputs, first + row, &mut sum, work);
+            spent += move_node(inputs, first + row, &mut sum, work);
+            if (row + 1).is_multiple_of(SPENT_ROWS) || row + 1 == rows {
+                add_to_sum(sums.get_mut(2 * (row / SPENT_ROWS)..), std::mem::take(&mut spent));
+            }
             // what is not finite in one component is not finite in the sum
             if !(sum.u[0] + sum.u[1] + sum.u[2]).to_f64().is_finite() {
                 bad.fetch_min((first + row) as u32, std::sync::atomic::Ordering::Relaxed);
@@ -198,19 +208,30 @@ fn compensated_add<T: Scalar>(sum: &mut T, lost: &mut T, change: T) {
     *sum = rounded;
 }
 
+/// Adds to a number that is kept as two of f32, as bits.
+fn add_to_sum(sum: Option<&mut [u32]>, part: f64) {
+    let Some([high, low, ..]) = sum else { return };
+    let total = f64::from(f32::from_bits(*high)) + f64::from(f32::from_bits(*low)) + part;
+    let rounded = total as f32;
+    *high = rounded.to_bits();
+    *low = ((total - f64::from(rounded)) as f32).to_bits();
+}
+
+/// Returns the work against internal forces (J).
 #[inline(always)]
-fn move_node<T: Scalar>(inputs: &Inputs<'_, T>, node: usize, sum: &mut Sum<'_, T>, mut work: Option<&mut [T]>) {
+fn move_node<T: Scalar>(inputs: &Inputs<'_, T>, node: usize, sum: &mut Sum<'_, T>, mut work: Option<&mut [T]>) -> f64 {
     let (zero, one) = (T::default(), T::from_f64(1.0));
     let Factors { force: force_factor, half_step, divide, rate, booked, relaxation } = inputs.factors;
     let (mass, axes) = (inputs.mass[node], inputs.axes[node]);
     if mass <= zero {
         sum.step.fill(zero);
-        return;
+        return 0.0;
     }
     let per_mass = one / mass;
     let coefficient = inputs.damping.map_or(zero, |c| c[node]);
     let a = coefficient * half_step * per_mass + relaxation;
     let shrink = if a > zero { one / (one + divide * a) } else { one };
+    let mut spent = zero;
     for i in 0..3 {
         let internal = inputs.internal[3 * node + i];
         let external = inputs.external.map_or(zero, |r| r[3 * node + i]);
@@ -222,6 +243,8 @@ fn move_node<T: Scalar>(inputs: &Inputs<'_, T>, node: usize, sum: &mut Sum<'_, T
         }
         sum.go(i, constrained);
         let step = sum.step[i];
+        // fixed axes have no step; where some are moved as told all the work is booked
+        spent += internal * (before + step);
         if let Some(work) = &mut work {
             // forces at the beginning of the step work along the mean of the steps before and after, in the first step
             // along half of it: so the balance of the scheme is exact in the middle of each step
@@ -237,6 +260,7 @@ fn move_node<T: Scalar>(inputs: &Inputs<'_, T>, node: usize, sum: &mut Sum<'_, T
             }
         }
     }
+    0.5 * (booked * spent).to_f64()
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -253,6 +277,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let mut kernels = Vec::new();
     for (body, count, optional) in bodies {
         let relaxed = world.get::<FictitiousMass>(body).is_some();
+        let spent = world.get::<FirstNonFinite>(body).is_some_and(|noticed| noticed.len() > SPENT_AT);
         let column = |name: &'static str| if relaxed && name == Mass::NAME { FictitiousMass::NAME } else { name };
         let compensated = world.get::<DisplacementCompensation>(body).is_some();
         let nodes = buffers.uniform("integrate".into(), &Integrate { count }.bytes());
@@ -264,7 +289,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
                 .threads(count);
             let kernel =
                 columns.iter().fold(kernel, |kernel, name| kernel.bind(name, buffers.column(body, column(name))));
-            with_step(with_optional(kernel, optional, compensated, relaxed), world)
+            with_step(with_optional(kernel, optional, compensated, relaxed, spent), world)
         };
         let [external, damped, worked] = optional;
         let mut push = vec![Mass::NAME, InternalForce::NAME, ConstrainedAxes::NAME, DisplacementStep::NAME];
@@ -279,6 +304,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
             kernels.push(kernel("integrate", &push));
         } else {
             displace.extend([DisplacementStep::NAME, ConstrainedAxes::NAME]);
+            push.extend(spent.then_some(FirstNonFinite::NAME));
             push.extend(lost);
             displace.extend(lost);
             kernels.push(kernel("integrate_push", &push));
@@ -289,7 +315,13 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
 }
 
 /// Fragments of the columns a body has, and a line for each that it has not.
-fn with_optional(kernel: Kernel, [external, damped, worked]: [bool; 3], compensated: bool, relaxed: bool) -> Kernel {
+fn with_optional(
+    kernel: Kernel,
+    [external, damped, worked]: [bool; 3],
+    compensated: bool,
+    relaxed: bool,
+    spent: bool,
+) -> Kernel {
     let mut without = String::new();
     let mut fragments = Vec::new();
     if external {
@@ -314,6 +346,13 @@ fn with_optional(kernel: Kernel, [external, damped, worked]: [bool; 3], compensa
         without += "fn book_work(node: u32, before: vec3<f32>, after: vec3<f32>, constrained: vec3<bool>, \
                     inner: vec3<f32>, outer: vec3<f32>) {}\n";
     }
+    if spent {
+        fragments.push(shader!("spent"));
+        without += &format!("const SPENT_AT: u32 = {SPENT_AT}u;\n");
+    } else {
+        without += "fn spend(before: vec3<f32>, after: vec3<f32>, inner: vec3<f32>) {}\n\
+                    fn add_up_spent(local: u32, node: u32) {}\n";
+    }
     if compensated {
         fragments.push(shader!("displacement_compensation"));
     } else {
@@ -323,5 +362,5 @@ fn with_optional(kernel: Kernel, [external, damped, worked]: [bool; 3], compensa
                     return u + d;\n}\n";
     }
     let kernel = fragments.into_iter().fold(kernel, Kernel::fragment);
-    if without.is_empty() { kernel } else { kernel.fragment(Fragment::new("generated: what the body lacks", without)) }
+    kernel.fragment(Fragment::new("generated: what the body has and lacks", without))
 }

@@ -27,6 +27,7 @@ mod pressure;
 mod registry;
 mod traction;
 
+pub(crate) use observe::{add_watch_columns, watch_kernels};
 pub use registry::{DescribeKernels, HostSystem, Phase, Registry, System};
 
 /// The built-in systems, in the order of a step.

@@ -89,7 +89,7 @@ struct Nodes {
 uniform!(Nodes { count });
 
 /// Two kernels for each block: a thread an element, then a thread a node.
-fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let mut kernels = Vec::new();
     for block in BlockKernels::of_world(world, buffers) {
         let Some(corners) = world.get::<BlockCorners>(block.entity) else { continue };

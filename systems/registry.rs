@@ -3,6 +3,7 @@
 use crate::backend::Buffers;
 use crate::backend::kernel::Kernel;
 use crate::error::Error;
+use crate::snapshot::StateAccess;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::IntoSystem;
 
@@ -57,6 +58,8 @@ pub struct System {
     pub(crate) custom: bool,
     /// Reads its parameters and inserts them as a resource.
     pub(crate) parameters: Option<ReadParameters>,
+    /// How its state gets into snapshots and back.
+    pub(crate) state: Option<StateAccess>,
 }
 
 /// Turns what a scene gives as a system's parameters into a resource; else says why it cannot.
@@ -86,6 +89,7 @@ impl System {
             every: 1,
             custom: true,
             parameters: None,
+            state: None,
         }
     }
 
@@ -99,6 +103,27 @@ impl System {
             let parameters: P = value.into_rust().map_err(|error| error.to_string())?;
             world.insert_resource(parameters);
             Ok(())
+        });
+        self
+    }
+
+    /// A custom system whose resource `S` belongs to the state of a simulation: snapshots hold it, and what goes on from one
+    /// has it back. `S` is anything that JSON can hold; it is put into the world by the system's parameters or by
+    /// [`Simulation::world_mut`](crate::Simulation::world_mut). A system's `Local`s are not kept.
+    pub fn with_state<S: Resource + serde::Serialize + serde::de::DeserializeOwned>(mut self) -> Self {
+        self.state = Some(StateAccess {
+            keep: |world| {
+                let state = world.get_resource::<S>().ok_or("it is not in the world")?;
+                match crate::output::not_finite(state).first() {
+                    Some((way, number)) => Err(format!("{way} is {number}")),
+                    None => serde_json::to_value(state).map_err(|error| error.to_string()),
+                }
+            },
+            take_back: |value, world| {
+                let state: S = serde_json::from_value(value).map_err(|error| error.to_string())?;
+                world.insert_resource(state);
+                Ok(())
+            },
         });
         self
     }

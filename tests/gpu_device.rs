@@ -111,3 +111,44 @@ fn kernels_are_timed_where_the_device_has_a_clock() {
     assert_eq!((times.len(), times[0].label.as_str(), times[0].dispatches), (1, "march", 300));
     assert!(times[0].nanoseconds > 0.0);
 }
+
+/// The device goes away between two observations: what was written stays whole, and the message says up to when.
+#[test]
+fn a_gpu_lost_in_a_run_leaves_what_was_observed_before() {
+    let scene = r#"(duration: 1, bodies: {"b": (mesh: Box(size: (1, 1, 1), cells: (1, 1, 1)), material: "m")},
+        materials: {"m": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))},
+        loads: [Gravity(acceleration: (0, 0, -1))], output: (fields_every: 0.25, energies_every: 0.25))"#;
+    let scene = sinew::SceneFile::from_text("lost.ron", scene, std::path::Path::new("."), &[]).unwrap();
+    let options = sinew::Options {
+        backend: sinew::BackendChoice::Gpu,
+        gpu: sinew::backend::gpu::Choice::parse(&std::env::var("SINEW_GPU").unwrap_or_default()),
+        ..sinew::Options::default()
+    };
+    if gpu_or_reason().is_none() {
+        return;
+    }
+    let path = std::env::temp_dir().join(format!("sinew-lost-{}", std::process::id()));
+    let mut simulation = sinew::Simulation::new(&scene, &options).unwrap();
+    let mut folder = sinew::output::Folder::create(&path).unwrap();
+    simulation.write_into(&mut folder).unwrap();
+    simulation.observe().unwrap();
+    simulation.advance_to(0.6).unwrap();
+    simulation.world_mut().resource_mut::<sinew::backend::device::Device>().gpu().destroy();
+    let error = simulation.advance_to(1.0).unwrap_err();
+    let text = error.to_string();
+    let sinew::Error::GpuFailed(failure) = error else { panic!("{text}") };
+    assert!(matches!(failure.reason, GpuError::Lost(_)), "{text}");
+    assert!((failure.good_until - 0.5).abs() < 0.1 && failure.time >= 0.59, "{text}");
+    assert!(text.contains("the GPU was lost") && text.contains("s are kept"), "{text}");
+    // again and again the same, never a panic
+    assert!(matches!(simulation.step(), Err(sinew::Error::GpuFailed(_))));
+    assert!(simulation.energies().is_err() && simulation.displacements("b").is_err());
+    let pvd = std::fs::read_to_string(path.join("fields.pvd")).unwrap();
+    let frames: Vec<&str> = pvd.split("file=\"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    assert_eq!(frames.len(), 3, "{pvd}");
+    for frame in frames {
+        assert!(std::fs::read(path.join(frame)).unwrap().ends_with(b"</VTKFile>\n"), "{frame} is cut");
+    }
+    assert_eq!(std::fs::read_to_string(path.join("energy.csv")).unwrap().lines().count(), 1 + 3);
+    std::fs::remove_dir_all(&path).unwrap();
+}

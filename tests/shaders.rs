@@ -10,13 +10,15 @@ use sinew::components::Signals;
 use std::collections::BTreeSet;
 
 /// Fragments that belong to no system, element or material by name, and what calls for them.
-const SUPPORT: [(&str, &str); 28] = [
+const SUPPORT: [(&str, &str); 31] = [
     ("alive", "loads on faces of elements that can go"),
     ("block", "columns of element blocks"),
     ("criterion", "removal by criterion"),
     ("damping_coefficient", "damping, in integrate"),
     ("displacement_compensation", "compensated sums, in integrate"),
     ("due", "removal"),
+    ("note_inverted", "elements turned inside out stop the run, or recover"),
+    ("remove_inverted", "elements turned inside out go"),
     ("removed_motion", "the motion of elements that go"),
     ("eigen", "principal stretches, in laws"),
     ("elementary", "exponential and logarithm, in laws"),
@@ -32,6 +34,9 @@ const SUPPORT: [(&str, &str); 28] = [
     ("row", "the row of an invocation"),
     ("step", "what is the same for a whole step"),
     ("tensor", "small tensors"),
+    ("spent", "work against internal forces, in integrate"),
+    ("watch_elements", "what the guards look at"),
+    ("watch_nodes", "what the guards look at"),
     ("work", "energies, in integrate"),
     ("kinematics", "strain measures"),
     ("finite_strain", "laws for large strains"),
@@ -137,6 +142,7 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
         "integrate",
         "kinematics",
         "neo_hookean",
+        "note_inverted",
         "point",
         "point_pressure",
         "row",
@@ -147,7 +153,8 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
     ];
     assert_eq!(files, expected.map(|stem| format!("{stem}.wgsl")).iter().map(String::as_str).collect());
     let without = buffers(&Effects::default());
-    let cases: [(Effects, &[&str], &[&str]); 8] = [
+    let cases: [(Effects, &[&str], &[&str]); 9] = [
+        (Effects { inversion: Some("Remove"), ..Effects::default() }, &["remove_inverted"], &["removal_step"]),
         (Effects { fibres: Some(AROUND), ..Effects::default() }, &["fibres", "fibres_field"], &["fibre_direction"]),
         (Effects { prony: 1, ..Effects::default() }, &["prony"], &["viscous_memory"]),
         (Effects { damping: true, ..Effects::default() }, &["damping_coefficient"], &["damping_coefficient"]),

@@ -154,6 +154,7 @@ impl BlockBuilder<'_> {
             Connectivity(connectivity.clone()),
             RestShape(self.rest_shapes(hourglass * young)),
             FirstInverted(vec![u32::MAX]),
+            OnInversion(material.inversion()),
         ));
         if averages(self.kind) {
             let corners = block_corners(self.kind, self.elements.len(), &connectivity, self.mesh.points.len());

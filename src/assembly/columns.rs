@@ -8,6 +8,7 @@ use crate::evaluation::{add_nodal_masses, lane_place, node_count, point_count};
 use crate::materials::{Elastic, ElasticLaw, Fibres};
 use crate::math::LANES;
 use crate::mesh::{ElementKind, Mesh};
+use crate::scene::schema::{Constraint, Guard};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -37,7 +38,6 @@ pub(super) fn insert_node_columns(
         InternalForce(vectors()),
         ElementForce(Reals::zeros(precision, force_length)),
         ConstrainedAxes(vec![0; count]),
-        FirstNonFinite(vec![u32::MAX]),
     ));
     if scene.integration.compensated && precision == Precision::F32 {
         entity.insert(DisplacementCompensation(Reals::zeros(precision, COMPENSATION_NUMBERS * count)));
@@ -45,10 +45,15 @@ pub(super) fn insert_node_columns(
     if !scene.loads.is_empty() {
         entity.insert(ExternalForce(vectors()));
     }
-    // a step beyond the stable one is watched by its balance of energy; pseudo-steps to rest do no work worth booking
-    if !scene.is_static() && (scene.output.energies_every.is_some() || scene.integration.beyond_stable_step) {
+    // pseudo-steps to rest do no work worth booking; where nodes are moved as told only the whole of it tells how much
+    let moved = scene.constraints.iter().any(|constraint| matches!(constraint, Constraint::Prescribed { .. }));
+    let mut noticed = vec![u32::MAX];
+    if !scene.is_static() && (scene.output.energies_every.is_some() || moved) {
         entity.insert(Work(Reals::zeros(precision, WORK_NUMBERS * count)));
+    } else if !scene.is_static() && !scene.guards.off.contains(&Guard::Energy) {
+        noticed.resize(SPENT_AT + 2 * count.div_ceil(SPENT_ROWS), 0);
     }
+    entity.insert(FirstNonFinite(noticed));
     let used =
         std::iter::once(&scene.bodies[name].material).chain(scene.bodies[name].regions.iter().map(|r| &r.material));
     let damped = used.into_iter().any(|material| scene.materials[material].damping.is_some());

@@ -3,7 +3,7 @@
 use super::user_laws;
 use crate::components::{Damping, Density, ExponentialFibres, Label, Prony};
 use crate::materials::{
-    ArrudaBoyce, ExponentialFibre, Fibres, Linear, MooneyRivlin, NeoHookean, Ogden, StVenantKirchhoff,
+    ArrudaBoyce, ExponentialFibre, Fibres, Linear, MooneyRivlin, NeoHookean, Ogden, StVenantKirchhoff, StableNeoHookean,
 };
 use crate::scene::schema::{self, Elasticity, Material};
 use bevy_ecs::prelude::*;
@@ -65,6 +65,9 @@ fn insert_elastic_law(entity: &mut EntityWorldMut<'_>, material: &Material) {
     }
     if let Some((shear, bulk)) = material.neo_hookean.map(|law| law.moduli()) {
         entity.insert(NeoHookean { shear, bulk });
+    }
+    if let Some((shear, bulk)) = material.stable_neo_hookean.map(|law| law.moduli()) {
+        entity.insert(StableNeoHookean { shear, bulk });
     }
     if let Some(schema::MooneyRivlin { c10, c01, bulk }) = material.mooney_rivlin {
         entity.insert(MooneyRivlin { c10, c01, bulk });

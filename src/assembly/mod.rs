@@ -13,6 +13,7 @@ mod observation;
 mod relaxation;
 mod removal;
 mod select;
+mod start;
 mod time_step;
 mod user_laws;
 
@@ -81,6 +82,7 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     observation::spawn(assembly, world, diagnostics);
     columns::insert_laws(assembly.precision, world);
     columns::start(assembly, world);
+    start::deform(assembly, world, diagnostics);
     if assembly.scene.scene.is_static() {
         relaxation::insert_fictitious_masses(assembly, world);
     }

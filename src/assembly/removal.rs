@@ -4,13 +4,20 @@ use super::{Assembly, BodyParts, select};
 use crate::components::*;
 use crate::math::LANES;
 use crate::scene::diagnostic::Diagnostics;
-use crate::scene::schema::{Select, When};
+use crate::scene::schema::{Inversion, Select, When};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
 /// Spawns all removals; blocks that may lose elements get the columns for it.
 pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
     let time_step = world.resource::<Clock>().time_step;
+    for body in assembly.bodies.values() {
+        for &block in &body.blocks {
+            if world.get::<OnInversion>(block) == Some(&OnInversion(Inversion::Remove)) {
+                insert_columns(assembly.precision, block, world);
+            }
+        }
+    }
     for (number, removal) in assembly.scene.scene.removal.iter().enumerate() {
         let Some(body) = assembly.body(&removal.body) else { continue };
         let path = format!("removal[{number}].on");
@@ -22,7 +29,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
                 continue;
             }
         };
-        insert_columns(assembly.precision, body, world);
+        body.blocks.iter().for_each(|&block| insert_columns(assembly.precision, block, world));
         match removal.when {
             When::At(time) => by_time(body, &marks, world, |_| time / time_step),
             When::During { start, end } => {
@@ -46,19 +53,17 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
     }
 }
 
-fn insert_columns(precision: Precision, body: &BodyParts, world: &mut World) {
-    for &block in &body.blocks {
-        let count = world.get::<Block>(block).map_or(0, |block| block.count);
-        let padded = count.div_ceil(LANES) * LANES;
-        let mut entity = world.entity_mut(block);
-        if !entity.contains::<Alive>() {
-            let alive = (0..padded).map(|row| u32::from(row < count)).collect();
-            entity.insert((
-                Alive(alive),
-                RemovalStep(vec![u32::MAX; padded]),
-                RemovedEnergy(Reals::zeros(precision, padded)),
-            ));
-        }
+fn insert_columns(precision: Precision, block: Entity, world: &mut World) {
+    let count = world.get::<Block>(block).map_or(0, |block| block.count);
+    let padded = count.div_ceil(LANES) * LANES;
+    let mut entity = world.entity_mut(block);
+    if !entity.contains::<Alive>() {
+        let alive = (0..padded).map(|row| u32::from(row < count)).collect();
+        entity.insert((
+            Alive(alive),
+            RemovalStep(vec![u32::MAX; padded]),
+            RemovedEnergy(Reals::zeros(precision, padded)),
+        ));
     }
 }
 

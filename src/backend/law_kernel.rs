@@ -4,13 +4,14 @@ use super::kernel::{Fragment, Layout, Uniform, uniform};
 use crate::components::FamilyDirection;
 use crate::materials::{
     ArrudaBoyce, ElasticLaw, ExponentialFibre, Fibres, Linear, MooneyRivlin, NeoHookean, Ogden, PronyTerm,
-    StVenantKirchhoff, each_elastic_law,
+    StVenantKirchhoff, StableNeoHookean, each_elastic_law,
 };
 use crate::shader;
 
 uniform!(Linear<f32> { shear, bulk });
 uniform!(StVenantKirchhoff<f32> { shear, bulk });
 uniform!(NeoHookean<f32> { shear, bulk });
+uniform!(StableNeoHookean<f32> { shear, bulk });
 uniform!(MooneyRivlin<f32> { c10, c01, bulk });
 uniform!(ArrudaBoyce<f32> { shear, locking_stretch, bulk });
 uniform!(Fibres<f32> { eta, tension_only });
@@ -109,6 +110,7 @@ pub(super) fn ground(law: &ElasticLaw<f32>) -> Vec<Fragment> {
     match law {
         ElasticLaw::Linear(_) => vec![],
         ElasticLaw::StVenantKirchhoff(_) => vec![shader!("finite_strain")],
+        ElasticLaw::StableNeoHookean(_) => vec![shader!("elementary")],
         // a law of one's own may call what Ogden's calls
         ElasticLaw::Ogden(_) | ElasticLaw::UserLaw(_) => {
             vec![shader!("finite_strain"), shader!("volume_ratio"), shader!("eigen"), shader!("elementary")]

@@ -114,6 +114,9 @@ pub struct RunArguments {
     /// The folder to write into, in place of an earlier run's output [default: out/NAME-OF-THE-SCENE]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Go on from a snapshot of the same scene, see output.snapshots_every; writes into out/NAME-OF-THE-SCENE-resumed
+    #[arg(long, value_name = "FILE")]
+    pub resume: Option<PathBuf>,
 }
 
 #[derive(Args)]

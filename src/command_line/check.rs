@@ -66,6 +66,9 @@ fn outputs(simulation: &Simulation, steps: u64) -> Vec<String> {
     let scene = simulation.scene();
     let mut files = vec![format!("fields.pvd ({})", counted(rows(scene.fields_every()), "frame"))];
     files.extend(scene.output.energies_every.map(|every| format!("energy.csv ({} rows)", count(rows(every)))));
+    // none of the start, one of the end
+    let snapshots = scene.output.snapshots_every.filter(|_| !scene.is_static());
+    files.extend(snapshots.map(|every| counted(rows(every) - 1, "snapshot")));
     for (name, probe) in &scene.probes {
         let every = probe.every.unwrap_or_else(|| scene.fields_every());
         files.push(format!("probe_{name}.csv ({} rows)", count(rows(every))));

@@ -34,9 +34,9 @@ impl Failure {
         match self {
             Failure::Engine(error) => match **error {
                 Error::Unstable(_) | Error::NotConverged(_) => 1,
-                Error::Scene(_) | Error::Options(_) => 2,
+                Error::Scene(_) | Error::Options(_) | Error::Snapshot(_) => 2,
                 Error::Output(_) => 3,
-                Error::NoGpu(_) | Error::Gpu(_) => 4,
+                Error::NoGpu(_) | Error::Gpu(_) | Error::GpuFailed(_) => 4,
             },
             Failure::Picture(error) => match **error {
                 RenderError::Write(_) => 3,

@@ -61,7 +61,8 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Case>, Failure> {
     let find = |name: &String| {
         let wanted = name.to_lowercase();
         CASES.iter().find(|case| case.id == wanted || case.name == wanted).ok_or_else(|| {
-            let all: Vec<String> = CASES.iter().map(|case| format!("{} {}", case.id.to_uppercase(), case.name)).collect();
+            let all: Vec<String> =
+                CASES.iter().map(|case| format!("{} {}", case.id.to_uppercase(), case.name)).collect();
             Failure::Options(format!("there is no hard case {name:?}; there are {}", all.join(", ")))
         })
     };

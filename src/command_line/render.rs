@@ -64,7 +64,7 @@ fn source(what: &Path, outside: bool) -> Result<(PathBuf, Picture, Outcome), Fai
         return Ok((folder, picture, Ok(())));
     };
     terminal::aside(&format!("running {} first: {reason}\n", what.display()));
-    let (_, ended) = run::run(&scene, &RunOptions::default(), &folder)?;
+    let (_, ended) = run::run(&scene, &RunOptions::default(), &folder, None)?;
     match ended {
         Err(Failure::Interrupted) => Err(Failure::Interrupted),
         // what was written until a breakdown can be seen, and often says why

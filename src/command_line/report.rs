@@ -28,6 +28,7 @@ pub fn text(summary: &Summary, scene: &SceneFile, folder: &Path, paint: Paint) -
     speeds(summary, &mut page);
     systems(summary, &mut page);
     energies(summary, &mut page);
+    guards(summary, &mut page);
     mass(summary, &mut page);
     probes(summary, scene, &mut page);
     outputs(folder, &mut page);
@@ -151,6 +152,23 @@ fn energies(summary: &Summary, page: &mut Page) {
     }
 }
 
+fn guards(summary: &Summary, page: &mut Page) {
+    let seen = &summary.guards;
+    if seen.looks == 0 {
+        return;
+    }
+    let mut line = format!("energy balances to {:.2} %", 100.0 * seen.imbalance.abs());
+    if let Some(least) = &seen.least_volume_ratio {
+        let _ = write!(line, ", smallest J {} (element {} of {})", digits(least.value), least.id, least.body);
+    }
+    if let Some(fastest) = &seen.fastest_node {
+        let speed = quantity(fastest.value, "m/s");
+        let _ = write!(line, ", fastest node {} of {}: {speed}", fastest.id, fastest.body);
+    }
+    page.row("guards", line);
+    page.rows("warnings", seen.warnings.iter().map(|w| format!("from t = {} s: {}", digits(w.time), w.message)));
+}
+
 fn mass(summary: &Summary, page: &mut Page) {
     let mut line = quantity(summary.mass * 1e3, "g");
     if summary.removed_elements > 0 {
@@ -163,6 +181,14 @@ fn mass(summary: &Summary, page: &mut Page) {
         );
     }
     page.row("mass", line);
+    let inversions = summary.inversions.iter().map(|found| {
+        let left = match found.left {
+            0 => "none is at the end".to_string(),
+            left => format!("{} still at the end", counted(left as u64, "element")),
+        };
+        format!("elements of {} were inside out, one of them {}; {left}", found.body, found.element)
+    });
+    page.rows("inversion", inversions.collect::<Vec<_>>());
 }
 
 fn probes(summary: &Summary, scene: &SceneFile, page: &mut Page) {

@@ -6,9 +6,9 @@ use super::progress::{self, Progress};
 use super::terminal::{self, Paint};
 use super::{Outcome, interrupt, report};
 use sinew::output::{Folder, OutputError, replace, summary};
-use sinew::{Error, Options, SceneFile, Simulation, Summary};
+use sinew::{BackendChoice, Error, Options, SceneFile, Simulation, Snapshot, Summary};
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// The scene as it was run, in the output folder.
@@ -23,16 +23,69 @@ const CHUNK: Duration = Duration::from_millis(50);
 pub fn command(arguments: &RunArguments) -> Outcome {
     let scene = arguments.scene.load()?;
     let folder = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.scene.scene));
-    let (summary, ended) = run(&scene, &arguments.how.options(), &folder)?;
+    let (folder, from) = match &arguments.resume {
+        None => (folder, None),
+        Some(file) => {
+            let folder = if arguments.out.is_some() { folder } else { with_suffix(&folder, "-resumed") };
+            (beside(file, folder)?, Some(Snapshot::read(file)?))
+        }
+    };
+    let options = arguments.how.options();
+    let mut outcome = run(&scene, &options, &folder, from.as_ref());
+    if let Some((cpu, why)) = after_the_gpu(&options, &outcome) {
+        terminal::aside(&format!("{why}\n`--backend auto` takes the CPU then, from the start\n"));
+        outcome = run(&scene, &cpu, &folder, from.as_ref());
+    }
+    let (summary, ended) = outcome?;
     terminal::say(&report::text(&summary, &scene, &folder, Paint::of_stdout()))?;
     ended
 }
 
-/// Runs a scene into a folder: what it amounted to, and how it ended. An outer error means that there is no summary.
-pub fn run(scene: &SceneFile, options: &Options, path: &Path) -> Result<(Summary, Outcome), Failure> {
+/// How to run again what the GPU gave up and was not asked for, and what it said.
+fn after_the_gpu(options: &Options, outcome: &Result<(Summary, Outcome), Failure>) -> Option<(Options, String)> {
+    let (Err(failure) | Ok((_, Err(failure)))) = outcome else { return None };
+    match failure {
+        Failure::Engine(error) if options.backend == BackendChoice::Auto && matches!(**error, Error::GpuFailed(_)) => {
+            Some((Options { backend: BackendChoice::Cpu, ..options.clone() }, error.to_string()))
+        }
+        _ => None,
+    }
+}
+
+/// `out/cube` and `-resumed` are `out/cube-resumed`.
+fn with_suffix(folder: &Path, suffix: &str) -> PathBuf {
+    let mut name = folder.file_name().unwrap_or_default().to_os_string();
+    name.push(suffix);
+    folder.with_file_name(name)
+}
+
+/// The folder to write into, if it is not the one that the snapshot lies in: that would be cleared.
+fn beside(snapshot: &Path, folder: PathBuf) -> Result<PathBuf, Failure> {
+    let canonical = |path: &Path| path.canonicalize().ok();
+    let lies_in = canonical(snapshot).and_then(|path| path.parent().map(Path::to_path_buf));
+    match lies_in.is_some() && lies_in == canonical(&folder) {
+        true => Err(Failure::Options(format!(
+            "{} lies in the folder that is to be written anew; name another with --out",
+            snapshot.display()
+        ))),
+        false => Ok(folder),
+    }
+}
+
+/// Runs a scene into a folder, from its start or from a snapshot: what it amounted to, and how it ended. An outer error
+/// means that there is no summary.
+pub fn run(
+    scene: &SceneFile,
+    options: &Options,
+    path: &Path,
+    from: Option<&Snapshot>,
+) -> Result<(Summary, Outcome), Failure> {
     let made = progress::during("reading meshes, building the simulation", || Simulation::new(scene, options));
     let mut simulation = made?;
     terminal::aside(&simulation.warnings().render(Paint::of_stderr().is_on()));
+    if let Some(snapshot) = from {
+        go_on_from(snapshot, &mut simulation)?;
+    }
     let mut folder = Folder::create(path)?;
     for picture in PICTURES {
         folder.claim(picture)?;
@@ -50,6 +103,16 @@ pub fn run(scene: &SceneFile, options: &Options, path: &Path) -> Result<(Summary
         (Err(failure), Err(_)) => Err(failure),
         (Ok(()), Err(failure)) => Err(failure),
     }
+}
+
+/// Goes on from a snapshot, if there is anything left to do.
+fn go_on_from(snapshot: &Snapshot, simulation: &mut Simulation) -> Outcome {
+    simulation.restore(snapshot)?;
+    if !simulation.is_finished() {
+        return Ok(());
+    }
+    let (time, end) = (snapshot.time(), simulation.scene().duration);
+    Err(Failure::Options(format!("the snapshot is of t = {time} s and the scene lasts until {end} s: nothing is left")))
 }
 
 /// Observes the start and takes all steps.

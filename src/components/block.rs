@@ -4,7 +4,7 @@
 
 use super::Reals;
 use super::column::columns;
-use crate::scene::schema::ElementKind;
+use crate::scene::schema::{ElementKind, Inversion};
 use bevy_ecs::prelude::*;
 
 /// What a block is.
@@ -23,6 +23,10 @@ pub struct Block {
     /// Of each family of fibres its direction: first that of `fibres`, then those of `exponential_fibres`.
     pub fibre_directions: Vec<FamilyDirection<f64>>,
 }
+
+/// What becomes of a block's elements that are turned inside out; where it is missing, the run stops.
+#[derive(Component, Clone, Copy, Debug, PartialEq, Eq)]
+pub struct OnInversion(pub Inversion);
 
 /// Where a family of fibres has its direction from.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -54,7 +58,11 @@ columns! {
     /// θ of each node of the body: the mean over the block's elements around it, by rest volume. Exists for elements with
     /// averaged nodal pressure.
     NodalVolumeChange(Reals) = "nodal_volume_change";
-    /// One number: the lowest row of an element found with J < 0, by the kernel itself in every step; `u32::MAX`: none.
+    /// What each 64 elements come to, four words each: bits of the elastic and the hourglass energy (J) and of the smallest
+    /// J, and its row. For the guards on a GPU.
+    ElementSums(Vec<u32>) = "element_sums";
+    /// One number: the lowest row of an element found with J < 0, by the kernel itself in every step; `u32::MAX`: none. Elements
+    /// that are removed for it ([`OnInversion`]) are not noted here.
     FirstInverted(Vec<u32>) = "first_inverted";
 }
 

@@ -3,10 +3,11 @@
 use crate::scene::schema::Curve;
 use bevy_ecs::prelude::*;
 use glam::{DMat3, DVec3};
+use serde::{Deserialize, Serialize};
 
 /// The clock counts steps; time is their number times Δt, exact however long the run (a sum of f32 steps reads 1087.7 s
 /// after 1e7 steps of 1e-4 s).
-#[derive(Resource, Clone, Copy, Debug)]
+#[derive(Resource, Clone, Copy, Debug, Deserialize, Serialize)]
 pub struct Clock {
     /// Steps taken.
     pub step: u64,
@@ -32,7 +33,7 @@ impl Clock {
 }
 
 /// Dynamic relaxation: pseudo-steps that lead to rest. Chosen by the simulation, anew every so many steps.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
 pub struct Relaxation {
     /// The time whose loads and motions are wanted (s).
     pub end: f64,
@@ -158,6 +159,14 @@ impl Signals {
             source.fill(&factor, &mut self.values[slot..]);
             slot += source.slots();
         }
+    }
+
+    /// Whether nodes have been moved as told by a jump until a time (s).
+    pub fn have_jumped(&self, until: f64) -> bool {
+        self.sources.iter().any(|source| {
+            matches!(source, Signal::Motion { curve: Curve::Step { start, .. }, displacement, gradient, rotation }
+                if *start <= until && (*displacement, *gradient, *rotation) != (DVec3::ZERO, DMat3::ZERO, DVec3::ZERO))
+        })
     }
 
     /// Values of all slots in the present step.

@@ -4,9 +4,10 @@ use crate::math::Scalar;
 use bevy_ecs::component::Mutable;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// The number type of a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
 pub enum Precision {
     /// 32 bits: fast, and the only one on the GPU.
     #[default]

@@ -12,24 +12,26 @@ mod block;
 mod clock;
 mod column;
 mod constraint;
+mod guard;
 mod load;
 mod material;
 pub mod nodes;
 mod observation;
 
 pub use block::{
-    Alive, Block, BlockCorners, Connectivity, ElementVolume, FamilyDirection, FibreDirection, FirstInverted,
-    NodalVolumeChange, RemovalStep, RemovedEnergy, RestShape, ViscousMemory, patch_groups,
+    Alive, Block, BlockCorners, Connectivity, ElementSums, ElementVolume, FamilyDirection, FibreDirection,
+    FirstInverted, NodalVolumeChange, OnInversion, RemovalStep, RemovedEnergy, RestShape, ViscousMemory, patch_groups,
 };
 pub use clock::{Clock, Relaxation, Signal, Signals};
 pub use column::{Column, Precision, Reals};
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
+pub use guard::{GuardMemory, Notice, Seen};
 pub use load::{FaceCorners, Gravity, NodalForce, Pressure, Traction};
 pub use material::{Damping, Density, ExponentialFibres, Prony};
 pub use nodes::{
     Authoring, COMPENSATION_NUMBERS, ConstrainedAxes, Corners, DampingCoefficient, Displacement,
     DisplacementCompensation, DisplacementStep, ElementForce, ExternalForce, FictitiousMass, FirstNonFinite,
-    InternalForce, Mass, RestPosition, WORK_NUMBERS, Work,
+    InternalForce, Mass, MiddleDisplacement, NodeSums, RestPosition, SPENT_AT, SPENT_ROWS, WORK_NUMBERS, Work,
 };
 pub use observation::{Cadence, Energies, Probe};
 

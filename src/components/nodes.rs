@@ -33,12 +33,18 @@ columns! {
     /// Bits 0, 1, 2: the node does not move freely along x, y, z.
     ConstrainedAxes(Vec<u32>) = "constrained_axes";
     /// Work done on or by a node since the start (J): by loads, against damping, by constraints, by internal forces; then
-    /// the last step along constrained axes (m), which `boundary` writes over: [`WORK_NUMBERS`] a node. Exists when
-    /// energies are asked for.
+    /// the last step along constrained axes (m), which `boundary` writes over: [`WORK_NUMBERS`] a node. Exists in
+    /// motions whose energies are asked for or whose nodes are moved as told.
     Work(Reals) = "work";
-    /// One number: the lowest row of a node whose displacement was found not finite, by the integrator itself in every
-    /// step; `u32::MAX`: none.
+    /// What the integrator notices in passing. First the lowest row of a node whose displacement was found not finite;
+    /// `u32::MAX`: none. In a motion without [`Work`], from [`SPENT_AT`] on, the work against internal forces since the start: for each
+    /// [`SPENT_ROWS`] nodes, as bits of f32, a sum and what rounding has left out of it (J). One column: kernels may have
+    /// few.
     FirstNonFinite(Vec<u32>) = "first_non_finite";
+    /// Displacement in the middle of the last step (m), a vector a node: for the guards on a GPU.
+    MiddleDisplacement(Reals) = "middle_displacement";
+    /// What each 64 nodes come to, four words each: bits of ½ m d² (kg m²) and of the longest step's square (m²), its row.
+    NodeSums(Vec<u32>) = "node_sums";
     /// Forces of all elements on their corners (N), all blocks of the body one after the other: in each group of
     /// [`LANES`](crate::math::LANES) elements by corner, component, element.
     ElementForce(Reals) = "element_force";
@@ -46,6 +52,12 @@ columns! {
 
 /// Numbers a node in [`DisplacementCompensation`].
 pub const COMPENSATION_NUMBERS: usize = 6;
+
+/// Where sums of work begin in [`FirstNonFinite`].
+pub const SPENT_AT: usize = 4;
+
+/// Nodes that share a sum there.
+pub const SPENT_ROWS: usize = 64;
 
 /// Numbers a node in [`Work`].
 pub const WORK_NUMBERS: usize = 7;

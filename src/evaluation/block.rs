@@ -89,8 +89,7 @@ impl<'a> BlockView<'a> {
                 stress = law.elastic.without_pressure(k, stress);
             }
         }
-        let stress = stress.plus(&law.elastic.volumetric(k, pressure));
-        law.elastic.first_stress(&state.points()[point].gradient, &stress)
+        law.elastic.first_stress(&state.points()[point].gradient, k, &stress, pressure)
     }
 
     /// Nodal forces (N).
@@ -103,7 +102,7 @@ impl<'a> BlockView<'a> {
         let mut mean = [0.0; 6];
         for (number, point) in state.points().iter().enumerate() {
             let first = self.stress(row, state, number);
-            let stress = self.law.elastic.cauchy(&point.gradient, point.kinematics.j, &first);
+            let stress = self.law.elastic.cauchy(&point.gradient, point.kinematics.divisor(), &first);
             (0..6).for_each(|i| mean[i] += point.share * stress.0[i]);
         }
         mean

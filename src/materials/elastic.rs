@@ -1,6 +1,8 @@
 //! What an elastic law is, and the list of those there are.
 
-use super::{ArrudaBoyce, Kinematics, Linear, MooneyRivlin, NeoHookean, Ogden, StVenantKirchhoff, UserLaw};
+use super::{
+    ArrudaBoyce, Kinematics, Linear, MooneyRivlin, NeoHookean, Ogden, StVenantKirchhoff, StableNeoHookean, UserLaw,
+};
 use crate::math::{Mat3, Real, Sym3, dot_plus};
 
 /// An isotropic elastic law over the numbers `R`: Ψ = Ψ_iso + U(θ), so that S = S_iso + U'(θ) ∂θ/∂E.
@@ -21,10 +23,10 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
         Kinematics::new(gradient)
     }
 
-    /// First Piola-Kirchhoff stress (Pa) from the second: F S.
+    /// First Piola-Kirchhoff stress (Pa): F S of S_iso, to which effects may have been added, and of a pressure (Pa).
     #[inline(always)]
-    fn first_stress(&self, gradient: &Mat3<R>, stress: &Sym3<R>) -> Mat3<R> {
-        gradient.plus_identity_times(stress)
+    fn first_stress(&self, gradient: &Mat3<R>, k: &Kinematics<R>, isochoric: &Sym3<R>, pressure: R) -> Mat3<R> {
+        gradient.plus_identity_times(&isochoric.plus(&self.volumetric(k, pressure)))
     }
 
     /// S_iso (Pa): all of the second Piola-Kirchhoff stress that the pressure does not give.
@@ -75,6 +77,7 @@ macro_rules! each_elastic_law {
             Linear = "linear";
             StVenantKirchhoff = "st_venant_kirchhoff";
             NeoHookean = "neo_hookean";
+            StableNeoHookean = "stable_neo_hookean";
             MooneyRivlin = "mooney_rivlin";
             Ogden = "ogden";
             ArrudaBoyce = "arruda_boyce";
@@ -128,9 +131,9 @@ macro_rules! elastic_laws {
                 }
             }
             #[inline(always)]
-            fn first_stress(&self, gradient: &Mat3<R>, stress: &Sym3<R>) -> Mat3<R> {
+            fn first_stress(&self, gradient: &Mat3<R>, k: &Kinematics<R>, isochoric: &Sym3<R>, pressure: R) -> Mat3<R> {
                 match self {
-                    $(Self::$law(law) => law.first_stress(gradient, stress),)*
+                    $(Self::$law(law) => law.first_stress(gradient, k, isochoric, pressure),)*
                 }
             }
             #[inline(always)]

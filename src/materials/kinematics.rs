@@ -13,7 +13,7 @@ pub struct Kinematics<R> {
     pub green_strain: Sym3<R>,
     /// det C · C⁻¹.
     pub adjugate_c: Sym3<R>,
-    /// J − 1, exact to rounding for small ∇u, at least [`J_FLOOR`] − 1.
+    /// J − 1, exact to rounding for small ∇u, at least [`J_FLOOR`] − 1 unless made [`of_any_volume`](Self::of_any_volume).
     pub volume_change: R,
     /// J, at least [`J_FLOOR`].
     pub j: R,
@@ -37,20 +37,19 @@ impl<R: Real> Kinematics<R> {
         let green_strain = Sym3(twice).scaled(half);
         let c = Sym3([one + twice[0], one + twice[1], one + twice[2], twice[3], twice[4], twice[5]]);
 
-        // J − 1 = first + second + third invariant of ∇u
-        let cofactor = [
-            minor(h[1][1], h[1][2], h[2][1], h[2][2]),
-            minor(h[1][2], h[1][0], h[2][2], h[2][0]),
-            minor(h[1][0], h[1][1], h[2][0], h[2][1]),
-        ];
-        let second =
-            cofactor[0] + minor(h[0][0], h[0][1], h[1][0], h[1][1]) + minor(h[0][0], h[0][2], h[2][0], h[2][2]);
-        let change = (h[0][0] + h[1][1] + h[2][2]) + second + dot(h[0], cofactor);
+        let change = volume_change(gradient);
         let volume_change = change.max(one.constant(J_FLOOR - 1.0));
         let j = one + volume_change;
         let j_m13 = j.inverse_cbrt();
         let j_m23 = j_m13 * j_m13;
         Self { green_strain, adjugate_c: c.adjugate(), volume_change, j, true_j: one + change, j_m23 }
+    }
+
+    /// The same for laws that are defined for every F: J − 1 as it is, also below [`J_FLOOR`] − 1. What has a power of J or
+    /// C⁻¹ in it keeps its floor.
+    #[inline(always)]
+    pub fn of_any_volume(gradient: &Mat3<R>) -> Self {
+        Self { volume_change: volume_change(gradient), ..Self::new(gradient) }
     }
 
     /// Strain measures of the linear theory: ε = ½(∇u + ∇uᵀ) as `green_strain`, tr ε as change of volume, and no
@@ -69,6 +68,12 @@ impl<R: Real> Kinematics<R> {
             true_j: one + trace,
             j_m23: one,
         }
+    }
+
+    /// J, but never nearer to 0 than [`J_FLOOR`]: what stresses per deformed area are divided by.
+    pub fn divisor(&self) -> R {
+        let floor = self.j.constant(J_FLOOR);
+        self.true_j.if_positive(self.true_j.max(floor), self.true_j.min(-floor))
     }
 
     /// J^(−2/3) − 1, exact to rounding for small strains.
@@ -104,4 +109,17 @@ impl<R: Real> Kinematics<R> {
         let pressing = s.trace() + self.j.constant(2.0) * s.contracted(&self.green_strain);
         s.plus(&self.adjugate_c.scaled(pressing * self.j.constant(-1.0 / 3.0) / (self.j * self.j)))
     }
+}
+
+/// J − 1 = first + second + third invariant of ∇u.
+#[inline(always)]
+fn volume_change<R: Real>(gradient: &Mat3<R>) -> R {
+    let h = &gradient.0;
+    let cofactor = [
+        minor(h[1][1], h[1][2], h[2][1], h[2][2]),
+        minor(h[1][2], h[1][0], h[2][2], h[2][0]),
+        minor(h[1][0], h[1][1], h[2][0], h[2][1]),
+    ];
+    let second = cofactor[0] + minor(h[0][0], h[0][1], h[1][0], h[1][1]) + minor(h[0][0], h[0][2], h[2][0], h[2][2]);
+    (h[0][0] + h[1][1] + h[2][2]) + second + dot(h[0], cofactor)
 }

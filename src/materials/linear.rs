@@ -32,8 +32,8 @@ impl<R: Real> Elastic<R> for Linear<R> {
     }
 
     #[inline(always)]
-    fn first_stress(&self, _: &Mat3<R>, stress: &Sym3<R>) -> Mat3<R> {
-        Mat3(stress.rows())
+    fn first_stress(&self, _: &Mat3<R>, k: &Kinematics<R>, isochoric: &Sym3<R>, pressure: R) -> Mat3<R> {
+        Mat3(isochoric.plus(&self.volumetric(k, pressure)).rows())
     }
 
     fn cauchy(&self, _: &Mat3<R>, _: R, first: &Mat3<R>) -> Sym3<R> {

@@ -15,6 +15,7 @@ mod ogden;
 pub mod program;
 mod prony;
 mod st_venant_kirchhoff;
+mod stable_neo_hookean;
 mod user_law;
 
 pub use arruda_boyce::ArrudaBoyce;
@@ -29,4 +30,5 @@ pub use neo_hookean::NeoHookean;
 pub use ogden::{OGDEN_TERMS, Ogden};
 pub use prony::PronyTerm;
 pub use st_venant_kirchhoff::StVenantKirchhoff;
+pub use stable_neo_hookean::StableNeoHookean;
 pub use user_law::{LawPrograms, UserLaw};

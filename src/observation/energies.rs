@@ -20,9 +20,13 @@ pub(super) const HEADER: [&str; 9] = [
     "internal work (J)",
 ];
 
-pub(super) fn row(time: f64, e: &Energies) -> [f64; 9] {
-    let booked = [e.load_work, e.damping_loss, e.constraint_work, e.internal_work].map(|work| work.unwrap_or(f64::NAN));
-    [time, e.kinetic, e.strain, e.hourglass, e.removed, booked[0], booked[1], booked[2], booked[3]]
+/// Columns without those of booked work.
+pub(super) const HELD: usize = 5;
+
+pub(super) fn row(time: f64, e: &Energies) -> Vec<f64> {
+    let booked = [e.load_work, e.damping_loss, e.constraint_work, e.internal_work];
+    let held = [time, e.kinetic, e.strain, e.hourglass, e.removed];
+    held.into_iter().chain(booked.into_iter().flatten()).collect()
 }
 
 /// Total mass of all bodies (kg), parked nodes and removed elements left out.

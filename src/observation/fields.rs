@@ -96,8 +96,8 @@ fn elements_of(world: &World, entity: Entity) -> Vec<ElementRow> {
     all.unwrap_or_default()
 }
 
-/// Writes the fields of all bodies as one frame.
-pub(super) fn write(world: &mut World, series: &mut Series) -> Result<(), Error> {
+/// Writes the fields of all bodies as one frame; or what of them is not finite, and nothing is written.
+pub fn write(world: &mut World, series: &mut Series) -> Result<Option<String>, Error> {
     let mut bodies: Vec<(Label, Entity)> =
         world.query_filtered::<(&Label, Entity), With<Authoring>>().iter(world).map(|(l, e)| (l.clone(), e)).collect();
     bodies.sort();
@@ -129,6 +129,17 @@ pub(super) fn write(world: &mut World, series: &mut Series) -> Result<(), Error>
     let von_mises = of_elements(&|f, e| von_mises_and_pressure(&f.stress[e]).0);
     let pressure = of_elements(&|f, e| von_mises_and_pressure(&f.stress[e]).1);
     let stress: Vec<f32> = elements.iter().flat_map(|(f, e)| f.stress[*e].map(|s| s as f32)).collect();
+    let real = [
+        ("displacement", &displacement),
+        ("velocity", &velocity),
+        ("J", &ratio),
+        ("von_mises", &von_mises),
+        ("pressure", &pressure),
+        ("stress", &stress),
+    ];
+    if let Some((name, _)) = real.iter().find(|(_, values)| values.iter().any(|value| !value.is_finite())) {
+        return Ok(Some(format!("the field {name}")));
+    }
     let alive: Vec<u8> = elements.iter().map(|(f, e)| f.alive[*e]).collect();
     let scalar = |name, values| Array { name, components: 1, values: Values::F32(values) };
     let frame = Frame {
@@ -149,5 +160,5 @@ pub(super) fn write(world: &mut World, series: &mut Series) -> Result<(), Error>
         ],
     };
     series.write(&frame)?;
-    Ok(())
+    Ok(None)
 }

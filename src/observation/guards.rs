@@ -1,72 +1,210 @@
-//! Guards: what kernels found wrong in passing, told in the author's words.
+//! Guards: what kernels found wrong in passing, and what a look at energies and elements shows, told in the author's words.
 
+use super::look::{Look, look};
 use crate::backend::device::bring_to_host;
 use crate::components::*;
-use crate::error::{Error, Instability};
+use crate::error::{Criterion, Error, Instability};
+use crate::scene::schema::{Guard, Guards, Inversion};
 use bevy_ecs::prelude::*;
-
-/// How much more energy elements may hold than was spent on them, in shares of all there is: more than a step near the
-/// stable one may err by.
-const MADE_OF_NOTHING: f64 = 0.1;
 
 /// What leads to a breakdown when the scene insists on a step beyond the stable one.
 const STEP_TOO_LARGE: &str = "a time step beyond the stable one (leave `step` out to have it found)";
+const JUMP: &str = "a prescribed motion that jumps (use a ramp: `curve: Smooth(end: ...)` or `Ramp(end: ...)`)";
+/// Parts that hold less than this share of all energy are not asked for their hourglass energy.
+const WORTH_LOOKING: f64 = 1e-3;
+
+/// How a scene wants to be guarded.
+#[derive(Clone, Debug, Default)]
+pub struct Watch {
+    /// Its limits.
+    pub limits: Guards,
+    /// Whether it insists on a step beyond the stable one.
+    pub beyond: bool,
+    /// Whether systems of the scene's own write more than external forces: energy is theirs to make, and only warned of.
+    pub foreign: bool,
+    /// Whether elements may go and take energy with them: what is lost then is no error.
+    pub removal: bool,
+}
 
 /// What broke down, if something did: the first displacement that is not finite, or element that is turned inside out.
-/// `beyond`: the scene insists on a step beyond the stable one.
-pub(super) fn find(world: &mut World, good_until: f64, beyond: bool) -> Result<Option<Instability>, Error> {
+pub(super) fn find(world: &mut World, good_until: f64, watch: &Watch) -> Result<Option<Instability>, Error> {
     bring_to_host(world, |_, name| name == FirstInverted::NAME || name == FirstNonFinite::NAME)?;
-    let clock = *world.resource::<Clock>();
-    let mut found: Option<(Entity, String, &str)> = None;
+    let mut found: Option<(Entity, String, &str, Criterion)> = None;
     for (body, authoring, node) in world.query::<(Entity, &Authoring, &FirstNonFinite)>().iter(world) {
         if node[0] != u32::MAX {
-            let what = format!("the displacement of node {} is not finite", authoring.node_id(node[0] as usize));
-            found = Some((body, what, "a load that is too sudden, a wrong modulus, or a time step that is too large"));
+            let node = authoring.node_id(node[0] as usize);
+            let what = format!("the displacement of node {node} is not finite");
+            let cause = "a load that is too sudden (use a ramp), a wrong modulus, a system of one's own that writes what is no \
+                         number, or a time step that is too large (lower integration.safety)";
+            let criterion = Criterion { node: Some(node), ..Criterion::of("not_finite") };
+            found = Some((body, what, cause, criterion));
         }
     }
     // what turned inside out did so before it blew up
-    for (entity, block, inverted) in world.query::<(Entity, &Block, &FirstInverted)>().iter(world) {
+    type Noted<'a> = (Entity, &'a Block, &'a FirstInverted, Option<&'a OnInversion>);
+    for (entity, block, inverted, policy) in world.query::<Noted>().iter(world) {
         if inverted[0] != u32::MAX
+            && policy != Some(&OnInversion(Inversion::Recover))
             && let Some(authoring) = world.get::<Authoring>(block.body)
         {
             let place = authoring.blocks.iter().position(|&b| b == entity).unwrap_or(0);
             let element = authoring.element_id(place, inverted[0] as usize);
             let what = format!("element {element} is turned inside out (J < 0)");
-            let cause = "a load or motion too large or too sudden for the mesh (use a ramp, a finer mesh, or remove \
-                         such elements by VolumeRatioBelow), or a time step that is too large (lower integration.safety)";
-            found = Some((block.body, what, cause));
+            let cause = "a load or motion too large or too sudden for the mesh (use a ramp, a finer mesh, or say by \
+                         `inversion` of the material what becomes of such elements), or a time step that is too large (lower integration.safety)";
+            let criterion = Criterion { limit: Some(0.0), element: Some(element), ..Criterion::of("inverted") };
+            found = Some((block.body, what, cause, criterion));
         }
     }
-    let Some((body, what, cause)) = found else { return Ok(None) };
-    let cause = if beyond { STEP_TOO_LARGE } else { cause };
-    let body = world.get::<Label>(body).map(|label| label.0.clone()).unwrap_or_default();
-    let (time, step) = (clock.time(), clock.step);
-    Ok(Some(Instability { time, step, body, what, cause: cause.into(), good_until }))
+    let Some((body, what, cause, criterion)) = found else { return Ok(None) };
+    let body = label(world, body);
+    Ok(Some(instability(world, watch, body, what, cause, criterion, good_until)))
 }
 
-/// Stops when elements hold more energy than was ever spent on them: so a step beyond the stable one shows that does not
-/// run away, because large motion holds it. Of viscous blocks only what remains in the long term counts.
-pub(super) fn check_energy(world: &mut World, good_until: f64) -> Result<(), Error> {
-    let energies = super::energies(world)?;
-    let Some(spent) = energies.internal_work else { return Ok(()) };
-    let alpha = |prony: &Prony| prony.terms.iter().map(|(alpha, _)| alpha).sum::<f64>();
-    let viscous = world.query_filtered::<&Prony, With<Density>>().iter(world).map(alpha).fold(0.0, f64::max);
-    let held = (1.0 - viscous) * energies.strain + energies.hourglass;
-    let works = [energies.load_work, energies.constraint_work].map(|work| work.unwrap_or(0.0).abs());
-    let scale = works.into_iter().fold(energies.kinetic + energies.strain + energies.hourglass, f64::max);
-    if held - spent <= MADE_OF_NOTHING * scale {
+/// Looks at energies and elements. Warns of what passes a limit, each once, and ends the run where elements hold more energy
+/// than was spent on them: so a step beyond the stable one shows that does not run away, because large motion holds it.
+pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch) -> Result<(), Error> {
+    let seen = look(world)?;
+    let clock = *world.resource::<Clock>();
+    let Some(mut memory) = world.remove_resource::<GuardMemory>() else { return Ok(()) };
+    memory.looks += 1;
+    remember(&mut memory, &seen, world);
+    let made = balance(&mut memory, &seen, watch, world);
+    hourglass(&mut memory, &seen, watch, world);
+    let scale = memory.scale;
+    world.insert_resource(memory);
+    let stop = watch.limits.energy.stop;
+    let (made, held) = made;
+    if made <= stop * scale || watch.foreign {
         return Ok(());
     }
-    let clock = *world.resource::<Clock>();
     let mut bodies: Vec<String> =
         world.query_filtered::<&Label, With<Authoring>>().iter(world).map(|label| label.0.clone()).collect();
     bodies.sort();
-    Err(Error::Unstable(Box::new(Instability {
-        time: clock.time(),
-        step: clock.step,
-        body: bodies.join(", "),
-        what: format!("elements hold {held:.3e} J, but only {spent:.3e} J were spent on them"),
-        cause: STEP_TOO_LARGE.into(),
-        good_until,
-    })))
+    let what = format!(
+        "elements hold {held:.3e} J, but only {:.3e} J were spent on them: {:.1} % of the largest energy so far came from \
+         nothing, {:.1} % are allowed (guards.energy.stop)",
+        seen.spent,
+        100.0 * made / scale,
+        100.0 * stop
+    );
+    let cause = "a time step that is too large (lower integration.safety), or a load or motion too sudden for the mesh (use a \
+                 ramp)";
+    let criterion = Criterion { value: Some(made / scale), limit: Some(stop), ..Criterion::of("energy") };
+    debug_assert!(clock.relaxation.is_none());
+    let broken = instability(world, watch, bodies.join(", "), what, cause, criterion, good_until);
+    Err(Error::Unstable(Box::new(broken)))
+}
+
+/// Energy (J) that has come from nothing since the start (negative: gone), and what elements hold. Of viscous parts only
+/// what remains in the long term is known to be held; the rest may have been lost, so nothing is said of energy that went.
+fn balance(memory: &mut GuardMemory, seen: &Look, watch: &Watch, world: &World) -> (f64, f64) {
+    let (mut held, mut all, mut viscous) = (0.0, seen.kinetic, false);
+    for (entity, sums) in &seen.parts {
+        let prony = world.get::<Block>(*entity).and_then(|block| world.get::<Prony>(block.material));
+        let share = |terms: &[(f64, f64)]| terms.iter().map(|(alpha, _)| alpha).sum::<f64>();
+        let relaxed = prony.map_or(0.0, |prony| share(&prony.terms).max(share(&prony.volumetric)));
+        viscous |= relaxed > 0.0;
+        held += (1.0 - relaxed) * sums.strain + sums.hourglass;
+        all += sums.strain + sums.hourglass;
+    }
+    memory.scale = memory.scale.max(all).max(seen.spent.abs());
+    if watch.limits.off.contains(&Guard::Energy) {
+        return (0.0, held);
+    }
+    let made = held - seen.spent;
+    let made = if viscous || watch.removal { made.max(0.0) } else { made };
+    let limit = watch.limits.energy.warn;
+    if memory.scale > 0.0 && (made / memory.scale).abs() > memory.imbalance.abs() {
+        memory.imbalance = made / memory.scale;
+    }
+    if made.abs() > limit * memory.scale {
+        let share = made / memory.scale;
+        let way = if made > 0.0 { "came from nothing" } else { "went into nothing" };
+        let message = format!(
+            "{:.1} % of the largest energy so far {way} ({:.1} % are a warning, guards.energy.warn): results are that \
+             uncertain; lower integration.safety, use ramps, or a finer mesh",
+            100.0 * share.abs(),
+            100.0 * limit
+        );
+        warn(memory, world, "energy", "", share, limit, message);
+    }
+    (made, held)
+}
+
+fn hourglass(memory: &mut GuardMemory, seen: &Look, watch: &Watch, world: &World) {
+    let limit = watch.limits.hourglass;
+    for (entity, sums) in &seen.parts {
+        let Some(part) = world.get::<Label>(*entity).map(|label| label.0.clone()) else { continue };
+        let peak = memory.peaks.entry(part.clone()).or_default();
+        *peak = peak.max(sums.strain);
+        if sums.hourglass <= 0.0 || sums.hourglass + *peak < WORTH_LOOKING * memory.scale {
+            continue;
+        }
+        let share = sums.hourglass / peak.max(f64::MIN_POSITIVE);
+        let worst = memory.hourglass.entry(part.clone()).or_default();
+        *worst = worst.max(share);
+        if share > limit && !watch.limits.off.contains(&Guard::Hourglass) {
+            let message = format!(
+                "hourglass control of {part} holds {:.0} % of the part's elastic energy ({:.0} % are a warning, \
+                 guards.hourglass): motion that elements with one point do not feel; use Hex8MeanDilatation, a finer mesh, \
+                 or spread the load over more nodes",
+                100.0 * share,
+                100.0 * limit
+            );
+            warn(memory, world, "hourglass", &part, share, limit, message);
+        }
+    }
+}
+
+fn warn(memory: &mut GuardMemory, world: &World, criterion: &str, part: &str, value: f64, limit: f64, message: String) {
+    if memory.warnings.iter().any(|notice| notice.criterion == criterion && notice.part == part) {
+        return;
+    }
+    let clock = world.resource::<Clock>();
+    let (criterion, part) = (criterion.to_string(), part.to_string());
+    memory.warnings.push(Notice { criterion, part, time: clock.time(), step: clock.step, value, limit, message });
+}
+
+/// Notes the smallest J and the fastest node.
+fn remember(memory: &mut GuardMemory, seen: &Look, world: &World) {
+    let time = world.resource::<Clock>().time();
+    for (entity, sums) in &seen.parts {
+        let (value, known) = (sums.least_volume_ratio, &memory.least_volume_ratio);
+        let less = value.is_finite() && known.as_ref().is_none_or(|known| value < known.value);
+        let Some(block) = world.get::<Block>(*entity).filter(|_| less) else { continue };
+        let Some(authoring) = world.get::<Authoring>(block.body) else { continue };
+        let place = authoring.blocks.iter().position(|block| block == entity).unwrap_or(0);
+        let id = authoring.element_id(place, sums.row as usize);
+        memory.least_volume_ratio = Some(Seen { value, body: label(world, block.body), id, time });
+    }
+    if let Some((body, row, value)) = seen.fastest
+        && memory.fastest_node.as_ref().is_none_or(|known| value > known.value)
+        && let Some(authoring) = world.get::<Authoring>(body)
+    {
+        let id = authoring.node_id(row as usize);
+        memory.fastest_node = Some(Seen { value, body: label(world, body), id, time });
+    }
+}
+
+fn label(world: &World, entity: Entity) -> String {
+    world.get::<Label>(entity).map(|label| label.0.clone()).unwrap_or_default()
+}
+
+/// The report of a breakdown at the present step.
+pub(super) fn instability(
+    world: &World,
+    watch: &Watch,
+    body: String,
+    what: String,
+    cause: &str,
+    criterion: Criterion,
+    good_until: f64,
+) -> Instability {
+    let clock = world.resource::<Clock>();
+    let (time, step) = (clock.time(), clock.step);
+    let jumped = world.get_resource::<Signals>().is_some_and(|signals| signals.have_jumped(time));
+    let cause = if watch.beyond { STEP_TOO_LARGE.into() } else { cause.to_string() };
+    let cause = if jumped { format!("{JUMP}; {cause}") } else { cause };
+    Instability { time, step, body, what, cause, good_until, criterion, last_good: None }
 }

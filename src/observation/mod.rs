@@ -3,20 +3,29 @@
 mod energies;
 mod fields;
 mod guards;
+mod look;
 mod probes;
 
 pub use energies::{energies, mass};
-pub use fields::{BodyFields, body_fields, internal_forces};
+pub use fields::{BodyFields, body_fields, internal_forces, write as write_fields};
+pub use guards::Watch;
+pub use look::{Look, WatchKernels, look};
 pub use probes::{header, observe_probe};
 
 use crate::components::*;
-use crate::error::{Error, Instability};
+use crate::error::{Criterion, Error, Instability};
 use crate::output::{Folder, OutputError, Series, Table};
+use crate::snapshot::Snapshot;
 use bevy_ecs::prelude::*;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
+use std::path::{Path, PathBuf};
 
-/// Steps between two looks at the guards, at most.
-pub const GUARD_STEPS: u64 = 256;
+/// Steps between two looks for numbers that are not finite and for elements turned inside out, at most, on the host. On a
+/// GPU its kernels look in every step, and the host asks them in every 256 at least; where systems of one's own run on the
+/// host meanwhile, in every 16 there, too.
+pub const HOST_GUARD_STEPS: u64 = 16;
+/// The same where all systems run on the device.
+pub const DEVICE_GUARD_STEPS: u64 = 256;
 
 /// What is observed when, and where it goes. A resource; the system `observe` runs it.
 #[derive(Resource, Default)]
@@ -25,8 +34,18 @@ pub struct Observer {
     pub fields: Cadence,
     /// How often energies are taken; `None`: not at all.
     pub energy: Option<Cadence>,
-    /// Whether the guards look at the balance of energy: when a step beyond the stable one is allowed.
-    pub watch_energy: bool,
+    /// How often snapshots are written; `None`: never.
+    pub snapshots: Option<Cadence>,
+    /// How the guards look.
+    pub watch: Watch,
+    /// Whether steps are taken on a GPU.
+    pub on_gpu: bool,
+    /// Whether they are so without a system that runs on the host.
+    pub all_on_device: bool,
+    /// The last step that passed all guards in a look at energies and elements.
+    pub looked_at: Option<u64>,
+    /// The last states that passed all guards, the oldest first.
+    pub window: VecDeque<Snapshot>,
     /// The last step of the run, which is always observed. That of a static analysis is known when it is there.
     pub last_step: u64,
     /// Of a static analysis, where steps are taken back and time stands still: only the start, the last step, and what
@@ -44,6 +63,7 @@ pub struct Observer {
 }
 
 struct Files {
+    folder: PathBuf,
     series: Series,
     energies: Option<Table>,
     probes: BTreeMap<String, Table>,
@@ -73,7 +93,11 @@ impl Observer {
         let series = Series::create(folder)?;
         let energies = match self.energy {
             None => None,
-            Some(_) => Some(Table::create(&folder.claim("energy.csv")?, &energies::HEADER)?),
+            Some(_) => {
+                // a static analysis books no work
+                let columns = if self.to_rest { energies::HELD } else { energies::HEADER.len() };
+                Some(Table::create(&folder.claim("energy.csv")?, &energies::HEADER[..columns])?)
+            }
         };
         let mut probes = BTreeMap::new();
         for (entity, name, _) in &self.probes {
@@ -85,18 +109,29 @@ impl Observer {
             None => None,
             Some(_) => Some(Table::create(&folder.claim("convergence.csv")?, &CONVERGENCE)?),
         };
-        self.files = Some(Files { series, energies, probes, convergence });
+        self.files = Some(Files { folder: folder.path().to_path_buf(), series, energies, probes, convergence });
         Ok(())
     }
 
     /// The next step, after `step`, at whose end something is due.
     pub fn next_due(&self, step: u64) -> u64 {
-        let mut due = (step / GUARD_STEPS + 1) * GUARD_STEPS;
-        let cadences = self.energy.iter().chain(self.probes.iter().map(|(_, _, cadence)| cadence));
+        let flags = if self.all_on_device { DEVICE_GUARD_STEPS } else { HOST_GUARD_STEPS };
+        let mut due = (step / flags + 1) * flags;
+        if !self.to_rest {
+            due = due.min((step / self.watch.limits.every + 1) * self.watch.limits.every);
+        }
+        let cadences =
+            self.energy.iter().chain(&self.snapshots).chain(self.probes.iter().map(|(_, _, cadence)| cadence));
         for cadence in cadences.chain([&self.fields]).filter(|_| !self.to_rest) {
             due = due.min(cadence.next_after(step));
         }
         if step < self.last_step { due.min(self.last_step) } else { due }
+    }
+
+    /// The folder for the snapshot that is due at a step, if one is: in each interval, and at the end.
+    pub fn snapshot_folder(&self, step: u64) -> Option<&Path> {
+        let due = self.snapshots?.is_due(step) || step == self.last_step;
+        self.files.as_ref().filter(|_| due && step > 0).map(|files| files.folder.as_path())
     }
 
     /// What the guards find at the present step.
@@ -104,7 +139,28 @@ impl Observer {
     /// # Errors
     /// What the GPU says.
     pub fn trouble(&self, world: &mut World) -> Result<Option<Instability>, Error> {
-        guards::find(world, self.good_until, self.watch_energy)
+        guards::find(world, self.good_until, &self.watch)
+    }
+
+    /// Whether a state is to be kept after the present step, because it has just passed all guards and may be the last.
+    /// Bringing it from a GPU takes time: there it is done in every sixteenth look.
+    pub fn keeps_state(&self, step: u64) -> bool {
+        let looks = step / self.watch.limits.every.max(1);
+        let wanted = self.watch.limits.window > 0 && self.files.is_some() && self.looked_at == Some(step);
+        wanted && !self.to_rest && (!self.on_gpu || looks.is_multiple_of(16))
+    }
+
+    /// Keeps a state, and lets go of the oldest.
+    pub fn keep_state(&mut self, state: Snapshot) {
+        self.window.push_back(state);
+        while self.window.len() as u64 > self.watch.limits.window {
+            self.window.pop_front();
+        }
+    }
+
+    /// The folder that is written into, if one is.
+    pub fn folder(&self) -> Option<&Path> {
+        self.files.as_ref().map(|files| files.folder.as_path())
     }
 
     /// Notes how a static analysis converges: what the columns of `convergence.csv` hold.
@@ -127,14 +183,16 @@ impl Observer {
         let last = clock.step == self.last_step;
         let to_rest = self.to_rest;
         let due = |cadence: Cadence| last || cadence.is_due(clock.step) && (clock.step == 0 || !to_rest);
-        match guards::find(world, self.good_until, self.watch_energy)? {
+        match guards::find(world, self.good_until, &self.watch)? {
             None => {}
             // the steps since the last look at the residual will be taken back
             Some(_) if clock.relaxation.is_some() => return Ok(()),
             Some(found) => return Err(Error::Unstable(Box::new(found))),
         }
-        if self.watch_energy {
-            guards::check_energy(world, self.good_until)?;
+        let look = clock.step.is_multiple_of(self.watch.limits.every.max(1)) || last;
+        if look && clock.step > 0 && !to_rest {
+            guards::weigh(world, self.good_until, &self.watch)?;
+            self.looked_at = Some(clock.step);
         }
         self.observe_when(due, world)
     }
@@ -150,6 +208,23 @@ impl Observer {
         self.observe_when(|cadence| cadence.lies_between(before, now), world)
     }
 
+    /// Refuses results that are not finite.
+    fn finite(
+        &self,
+        world: &mut World,
+        mut values: impl Iterator<Item = f64>,
+        what: impl Fn() -> String,
+    ) -> Result<(), Error> {
+        let Some(value) = values.find(|value| !value.is_finite()) else { return Ok(()) };
+        let found = format!("{} would be {value}", what());
+        let cause = "numbers beyond what can be expressed: loads, moduli or motions too large, or a system of one's own that \
+                     writes what is no number";
+        let criterion = Criterion::of("result");
+        let broken =
+            guards::instability(world, &self.watch, "all bodies".into(), found, cause, criterion, self.good_until);
+        Err(Error::Unstable(Box::new(broken)))
+    }
+
     fn observe_when(&mut self, due: impl Fn(Cadence) -> bool + Copy, world: &mut World) -> Result<(), Error> {
         let clock = *world.resource::<Clock>();
         let probes: Vec<(Entity, String)> = self
@@ -160,6 +235,7 @@ impl Observer {
             .collect();
         for (entity, name) in probes {
             let values = observe_probe(world, entity)?;
+            self.finite(world, values.iter().copied(), || format!("the probe {name}"))?;
             if let Some(table) = self.files.as_mut().and_then(|files| files.probes.get_mut(&name)) {
                 let mut row = vec![clock.time()];
                 row.extend(&values);
@@ -169,15 +245,20 @@ impl Observer {
         }
         if self.energy.is_some_and(due) {
             let energies = energies(world)?;
+            let row = energies::row(clock.time(), &energies);
+            self.finite(world, row.iter().copied(), || "the energies".into())?;
             if let Some(table) = self.files.as_mut().and_then(|files| files.energies.as_mut()) {
-                table.row(&energies::row(clock.time(), &energies))?;
+                table.row(&row)?;
             }
             self.energies = Some(energies);
         }
         if due(self.fields)
             && let Some(files) = &mut self.files
         {
-            fields::write(world, &mut files.series)?;
+            match fields::write(world, &mut files.series)? {
+                None => {}
+                Some(what) => self.finite(world, [f64::NAN].into_iter(), || what.clone())?,
+            }
         }
         self.good_until = clock.time();
         Ok(())

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// The mark of an output folder, written before anything else; it also names the tables of the run.
 const MARK: &str = "sinew.json";
 /// Files that every run may leave.
-const KNOWN: [&str; 4] = [FIELDS, "energy.csv", "nodes.csv", "summary.json"];
+const KNOWN: [&str; 5] = [FIELDS, "last_states.pvd", "energy.csv", "nodes.csv", "summary.json"];
 
 /// A folder that a run may write into.
 pub struct Folder {
@@ -87,9 +87,14 @@ fn clear(folder: &Path, names: &BTreeSet<String>) -> Result<(), OutputError> {
 
 /// Whether every run may leave a file of that name.
 fn is_known(name: &str) -> bool {
-    let number = name.strip_prefix("fields_").and_then(|rest| rest.strip_suffix(".vtu"));
+    let number = name
+        .strip_prefix("fields_")
+        .or_else(|| name.strip_prefix("last_states_"))
+        .and_then(|rest| rest.strip_suffix(".vtu"));
     let frame = number.is_some_and(|digits| digits.len() >= 6 && digits.bytes().all(|byte| byte.is_ascii_digit()));
-    frame || KNOWN.contains(&name)
+    let number = name.strip_prefix("snapshot_").and_then(|rest| rest.strip_suffix(".sinew"));
+    let snapshot = number.is_some_and(|digits| digits.len() >= 9 && digits.bytes().all(|byte| byte.is_ascii_digit()));
+    frame || snapshot || KNOWN.contains(&name)
 }
 
 /// A name that stays in the folder on every system.

@@ -23,6 +23,7 @@ mod vtu;
 
 pub use atomic::replace;
 pub use error::OutputError;
+pub use finite::not_finite;
 pub use folder::Folder;
 pub use nodes::Node;
 pub use pvd::{FIELDS, Series};

@@ -3,7 +3,7 @@
 use super::{Folder, Frame, OutputError, write_vtu};
 use std::fs::File;
 use std::io::{Seek, SeekFrom, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The series file's name.
 pub const FIELDS: &str = "fields.pvd";
@@ -15,6 +15,7 @@ const TAIL: &str = "  </Collection>\n</VTKFile>\n";
 /// line and themselves, in one call, so that a long series costs no more a frame than a short one.
 pub struct Series {
     folder: PathBuf,
+    name: String,
     path: PathBuf,
     file: File,
     /// Where the closing tags begin.
@@ -25,15 +26,27 @@ pub struct Series {
 impl Series {
     /// Begins an empty series in an output folder.
     pub fn create(folder: &Folder) -> Result<Series, OutputError> {
-        let path = folder.path().join(FIELDS);
+        Self::named(folder.path(), "fields")
+    }
+
+    /// Begins an empty series of another name: `NAME.pvd`, `NAME_000000.vtu` and so on.
+    pub fn named(folder: &Path, name: &str) -> Result<Series, OutputError> {
+        let path = folder.join(format!("{name}.pvd"));
         let mut file = File::create(&path).map_err(OutputError::system("create", &path))?;
         file.write_all(format!("{HEAD}{TAIL}").as_bytes()).map_err(OutputError::system("write", &path))?;
-        Ok(Series { folder: folder.path().to_path_buf(), path, file, tail: HEAD.len() as u64, frames: 0 })
+        Ok(Series {
+            folder: folder.to_path_buf(),
+            name: name.to_string(),
+            path,
+            file,
+            tail: HEAD.len() as u64,
+            frames: 0,
+        })
     }
 
     /// Writes the next frame and enters it in the series; returns its file.
     pub fn write(&mut self, frame: &Frame<'_>) -> Result<PathBuf, OutputError> {
-        let name = format!("fields_{:06}.vtu", self.frames);
+        let name = format!("{}_{:06}.vtu", self.name, self.frames);
         let path = self.folder.join(&name);
         write_vtu(&path, frame)?;
         self.enter(&format!("    <DataSet timestep=\"{:?}\" file=\"{name}\"/>\n", frame.time))

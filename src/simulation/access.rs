@@ -194,6 +194,10 @@ impl Simulation {
                 force: forces[place],
                 mass: mass.get(row as usize),
             };
+            if let Some(place) = (0..rest.len()).find(|&i| !displacements[i].is_finite() || !forces[i].is_finite()) {
+                let node = authoring.node_ids.of(place);
+                return Err(Error::Options(format!("nodes.csv is not written: node {node} of {name} is not finite")));
+            }
             nodes::write(&path, authoring.node_rows.iter().enumerate().map(node))?;
         }
         Ok(())

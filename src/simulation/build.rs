@@ -14,9 +14,10 @@ use crate::backend::gpu::Gpu;
 use crate::backend::kernel::KernelId;
 use crate::components::*;
 use crate::error::Error;
-use crate::observation::Observer;
+use crate::observation::{Observer, Watch, WatchKernels};
 use crate::scene::schema::Analysis;
 use crate::scene::{Diagnostics, SceneFile};
+use crate::snapshot::{Keeping, identity};
 use crate::systems::{HostSystem, Phase, Registry};
 use bevy_ecs::component::ComponentId;
 use bevy_ecs::prelude::*;
@@ -69,6 +70,7 @@ impl Simulation {
                 Err(Error::Gpu(reason)) if options.backend == BackendChoice::Auto => {
                     why = format!("the GPU cannot take this scene: {reason}");
                     world.remove_resource::<Device>();
+                    world.remove_resource::<WatchKernels>();
                     None
                 }
                 Err(error) => return Err(error),
@@ -93,6 +95,15 @@ impl Simulation {
             let (name, because) = (system.name.clone(), scheduled.because.clone());
             entries.push(Entry { name, phase: system.phase, because, job, time: Duration::ZERO, runs: 0 });
         }
+        let keeping = keeping(scene, options.precision, &schedule, &access, &mut world);
+        // who writes more than loads makes energy
+        let external = ExternalForce::NAME;
+        let foreign = keeping.written.iter().any(|name| *name != external);
+        world.insert_resource(keeping);
+        world.insert_resource(GuardMemory::default());
+        let mut observer = world.resource_mut::<Observer>();
+        (observer.watch.foreign, observer.on_gpu) = (foreign, on_gpu);
+        observer.all_on_device = on_gpu && !schedule.iter().any(|entry| entry.system.custom);
         let facts = Facts {
             on_gpu,
             backend,
@@ -106,13 +117,27 @@ impl Simulation {
             setup: started.elapsed(),
             warnings: diagnostics,
         };
-        Ok(Self { world, entries, scene: scene.scene.clone(), facts, relaxing, elapsed: Duration::ZERO })
+        Ok(Self {
+            world,
+            entries,
+            scene: scene.scene.clone(),
+            facts,
+            relaxing,
+            elapsed: Duration::ZERO,
+            began: (0, 0.0),
+            failure: None,
+        })
     }
 }
 
 /// Takes a GPU for the run and makes the kernels of all systems ready that have some.
 fn kernels_on(gpu: Gpu, schedule: &[Scheduled<'_>], world: &mut World) -> Result<Vec<Option<Vec<KernelId>>>, Error> {
     world.insert_resource(Device::new(gpu, all_columns()));
+    if world.resource::<Clock>().relaxation.is_none() {
+        crate::systems::add_watch_columns(world);
+        let watch = Device::prepare(world, crate::systems::watch_kernels)?;
+        world.insert_resource(WatchKernels(watch));
+    }
     let kernels = schedule.iter().map(|entry| entry.system.kernels);
     kernels.map(|describe| describe.map(|describe| Device::prepare(world, describe)).transpose()).collect()
 }
@@ -240,7 +265,13 @@ fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> 
     let mut observer = Observer::default();
     observer.fields = every(scene.scene.fields_every());
     observer.energy = scene.scene.output.energies_every.map(every);
-    observer.watch_energy = scene.scene.integration.beyond_stable_step && clock.relaxation.is_none();
+    observer.snapshots = scene.scene.output.snapshots_every.filter(|_| !scene.scene.is_static()).map(every);
+    observer.watch = Watch {
+        limits: scene.scene.guards.clone(),
+        beyond: scene.scene.integration.beyond_stable_step && clock.relaxation.is_none(),
+        foreign: false,
+        removal: !scene.scene.removal.is_empty(),
+    };
     observer.to_rest = clock.relaxation.is_some();
     observer.last_step = if clock.relaxation.is_some() { u64::MAX } else { steps };
     observer.watch_probes(world);
@@ -264,6 +295,23 @@ fn add_called_for_columns(
                 world.entity_mut(body.entity).insert(ExternalForce(Reals::zeros(assembly.precision, length)));
             }
         }
+    }
+}
+
+/// What snapshots must know of the simulation.
+fn keeping(
+    scene: &SceneFile,
+    precision: Precision,
+    schedule: &[Scheduled<'_>],
+    access: &[SystemAccess],
+    world: &mut World,
+) -> Keeping {
+    let custom = || schedule.iter().zip(access).filter(|(entry, _)| entry.system.custom);
+    Keeping {
+        identity: identity(&scene.scene, world),
+        precision,
+        written: custom().flat_map(|(_, access)| columns_of(access, world).1).collect(),
+        systems: custom().filter_map(|(entry, _)| Some((entry.system.name.clone(), entry.system.state?))).collect(),
     }
 }
 

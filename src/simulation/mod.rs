@@ -4,6 +4,7 @@ mod access;
 mod build;
 pub mod explain;
 mod frequency;
+mod keep;
 mod options;
 mod outputs;
 mod parameters;
@@ -17,7 +18,7 @@ mod surface;
 
 pub use options::{BackendChoice, Options};
 pub use relax::Equilibrium;
-pub use summary::{Summary, SystemTime};
+pub use summary::{Inversions, Summary, SystemTime};
 
 use crate::assembly::StableStep;
 use crate::backend::kernel::KernelId;
@@ -35,6 +36,10 @@ pub struct Simulation {
     facts: Facts,
     relaxing: Option<relax::Relaxing>,
     elapsed: Duration,
+    /// Step and time (s) from which `elapsed` counts: of the start, or of a snapshot that was gone on from.
+    began: (u64, f64),
+    /// How it broke down.
+    failure: Option<crate::error::Instability>,
 }
 
 /// A system of the running schedule.

@@ -6,7 +6,7 @@ use crate::backend::cpu::Cpu;
 use crate::backend::device::{Device, bring_to_host, send_to_device};
 use crate::backend::kernel::KernelId;
 use crate::components::*;
-use crate::error::Error;
+use crate::error::{Error, GpuFailure};
 use crate::observation::Observer;
 use bevy_ecs::prelude::*;
 use std::time::Instant;
@@ -46,7 +46,25 @@ impl Simulation {
             None => self.steps_to(target),
         };
         self.elapsed += started.elapsed();
-        result
+        result.map_err(|error| self.note(self.with_what_is_kept(error)))
+    }
+
+    /// Says of a GPU that failed how far the run came.
+    fn with_what_is_kept(&self, error: Error) -> Error {
+        let Error::Gpu(reason) = error else { return error };
+        let good_until = self.world.get_resource::<Observer>().map_or(0.0, |observer| observer.good_until);
+        Error::GpuFailed(Box::new(GpuFailure { reason, time: self.time(), step: self.step_count(), good_until }))
+    }
+
+    /// Notes how the simulation broke down, and leaves the last states where files are written.
+    fn note(&mut self, error: Error) -> Error {
+        let Error::Unstable(mut broken) = error else { return error };
+        if self.failure.is_none() && self.relaxing.is_none() {
+            // what cannot be written now must not hide why the run ended
+            let _ = self.leave_last_states(&mut broken);
+        }
+        self.failure = Some((*broken).clone());
+        Error::Unstable(broken)
     }
 
     fn steps_to(&mut self, target: u64) -> Result<(), Error> {
@@ -75,7 +93,8 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn observe(&mut self) -> Result<(), Error> {
-        self.world.resource_scope(|world, mut observer: Mut<Observer>| observer.observe(world))
+        let observed = self.world.resource_scope(|world, mut observer: Mut<Observer>| observer.observe(world));
+        observed.map_err(|error| self.note(error))
     }
 
     fn evaluate_signals(&mut self, step: u64) {
@@ -99,7 +118,7 @@ impl Simulation {
             entry.run_on_host(step, &mut self.world)?;
         }
         self.world.resource_mut::<Clock>().step = step + 1;
-        Ok(())
+        self.keep_what_is_due()
     }
 
     /// As many steps as can be taken before a host system has to run, or one step around it.
@@ -135,7 +154,7 @@ impl Simulation {
                 entry.run_on_host(step - 1, &mut self.world)?;
             }
         }
-        Ok(())
+        self.keep_what_is_due()
     }
 
     fn device_step_around_hosts(&mut self, step: u64) -> Result<(), Error> {

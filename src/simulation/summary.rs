@@ -4,7 +4,10 @@ use super::{Job, Simulation};
 use crate::backend::device::{Device, Traffic};
 use crate::components::*;
 use crate::error::Error;
+use crate::evaluation::BlockView;
 use crate::observation::Observer;
+use crate::scene::schema::Inversion;
+use bevy_ecs::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -33,6 +36,8 @@ pub struct Summary {
     pub steps: u64,
     /// Steps that the scene lasts.
     pub planned_steps: u64,
+    /// The time of the snapshot that the run has gone on from (s).
+    pub resumed_at: Option<f64>,
     /// Simulated time (s).
     pub simulated: f64,
     /// Time from the scene to the first step (s).
@@ -59,10 +64,47 @@ pub struct Summary {
     pub removed_mass: f64,
     /// Elements removed.
     pub removed_elements: usize,
+    /// Of each block whose elements were turned inside out and recover: who, and whether some still are.
+    pub inversions: Vec<Inversions>,
     /// What each probe saw last: time (s) and values.
     pub probes: BTreeMap<String, (f64, Vec<f64>)>,
+    /// What the guards have seen and warned of.
+    pub guards: GuardMemory,
+    /// How it broke down, if it did.
+    pub failure: Option<crate::Instability>,
     /// How it ended: `finished`, `interrupted`, or what went wrong.
     pub ended: String,
+}
+
+/// Elements of a block that were turned inside out in a run and are left to recover.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Inversions {
+    /// The body.
+    pub body: String,
+    /// One of them, by the author's number.
+    pub element: u64,
+    /// How many are inside out at the end.
+    pub left: usize,
+}
+
+fn inversions(world: &mut World) -> Result<Vec<Inversions>, Error> {
+    crate::backend::device::bring_to_host(world, |_, name| name == FirstInverted::NAME || name == Displacement::NAME)?;
+    let mut query = world.query::<(Entity, &FirstInverted, &OnInversion)>();
+    let recovering = query.iter(world).filter(|(.., policy)| policy.0 == Inversion::Recover);
+    let mut noted: Vec<(Entity, u32)> = recovering.map(|(entity, first, _)| (entity, first[0])).collect();
+    noted.retain(|&(_, row)| row != u32::MAX);
+    noted.sort_unstable();
+    let found = noted.into_iter().filter_map(|(entity, row)| {
+        let view = BlockView::now(world, entity)?;
+        let authoring = world.get::<Authoring>(view.block.body)?;
+        let place = authoring.blocks.iter().position(|&block| block == entity)?;
+        Some(Inversions {
+            body: world.get::<Label>(view.block.body)?.0.clone(),
+            element: authoring.element_id(place, row as usize),
+            left: (0..view.block.count).filter(|&row| view.element(row).is_inverted()).count(),
+        })
+    });
+    Ok(found.collect())
 }
 
 /// A system's share of a run.
@@ -100,7 +142,8 @@ impl Simulation {
             .map(|(block, alive)| alive[..block.count].iter().filter(|&&alive| alive == 0).count())
             .sum();
         let (steps, run) = (self.step_count(), self.elapsed.as_secs_f64());
-        let a_step = run / steps.max(1) as f64;
+        let (first, since) = self.began;
+        let a_step = run / steps.saturating_sub(first).max(1) as f64;
         let facts = &self.facts;
         Ok(Summary {
             title: self.scene.title.clone(),
@@ -117,10 +160,11 @@ impl Simulation {
             time_step: self.time_step(),
             steps,
             planned_steps: facts.steps,
+            resumed_at: (first > 0).then_some(since),
             simulated: self.time(),
             setup_seconds: facts.setup.as_secs_f64(),
             run_seconds: run,
-            real_time_factor: run / self.time().max(f64::MIN_POSITIVE),
+            real_time_factor: run / (self.time() - since).max(f64::MIN_POSITIVE),
             seconds_a_step: a_step,
             nanoseconds_an_element_and_step: a_step * 1e9 / facts.elements.max(1) as f64,
             systems: self.entries.iter().map(|entry| system_time(entry, facts.on_gpu)).collect(),
@@ -130,7 +174,10 @@ impl Simulation {
             mass: facts.initial_mass,
             removed_mass: facts.initial_mass - mass,
             removed_elements: removed,
+            inversions: inversions(&mut self.world)?,
             probes: self.world.resource::<Observer>().latest.clone(),
+            guards: self.guards(),
+            failure: self.failure.clone(),
             ended: ended.into(),
         })
     }

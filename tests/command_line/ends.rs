@@ -65,7 +65,7 @@ fn wrong_options_end_with_2() {
 fn a_run_that_breaks_down_ends_with_1_and_keeps_what_it_wrote() {
     let place = Place::new();
     let sudden = "loads[0]=Gravity(acceleration: (0, 0, -9000), curve: Step(start: 0.1))";
-    let ended = place.sinew(&["run", "block.ron", "--backend", "cpu", "--set", sudden]);
+    let ended = place.sinew(&["run", "block.ron", "--backend", "cpu", "--set", sudden, "--set", "guards.every=8"]);
     ended.wants(1, &["broke down", "element", "of body block", "Likely causes"].map(|w| w.trim_start_matches("of ")));
     let frames = place.frames("out/block");
     assert!(frames.len() >= 10, "{frames:?}");
@@ -73,6 +73,33 @@ fn a_run_that_breaks_down_ends_with_1_and_keeps_what_it_wrote() {
     let summary = place.json("out/block/summary.json");
     assert!(summary["ended"].as_str().unwrap().contains("broke down"));
     assert!(!place.path("out/block/nodes.csv").exists(), "nodes without meaning");
+    // for programs: what ended it, and where to go on from
+    let failure = &summary["failure"];
+    assert_eq!(failure["criterion"]["name"], "inverted");
+    assert!(failure["criterion"]["element"].is_u64() && failure["criterion"]["limit"] == 0.0, "{failure}");
+    let (good, series) = (failure["last_good"]["snapshot"].as_str(), failure["last_good"]["series"].as_str());
+    let (good, series) = (good.unwrap().to_string(), series.unwrap());
+    assert!(
+        place.path(&format!("out/block/{good}")).exists()
+            && place.read(&format!("out/block/{series}")).contains("last_states_000000.vtu")
+    );
+    assert!(failure["last_good"]["step"].as_u64() < failure["step"].as_u64());
+    let from = format!("out/block/{good}");
+    let again = place.sinew(&[
+        "run",
+        "block.ron",
+        "--backend",
+        "cpu",
+        "--set",
+        sudden,
+        "--set",
+        "guards.every=8",
+        "--resume",
+        &from,
+    ]);
+    again.wants(1, &["broke down", "inside out"]);
+    let resumed = place.json("out/block-resumed/summary.json");
+    assert_eq!((&resumed["failure"]["what"], &resumed["failure"]["step"]), (&failure["what"], &failure["step"]));
     place.done(&["render", "out/block", "--no-animation"]);
 }
 

@@ -114,3 +114,44 @@ fn check_tells_what_a_run_will_leave() {
         assert!(said.contains(&format!("{file} ({rows})")), "{file} ({rows}) is not in\n{said}");
     }
 }
+
+#[test]
+fn a_resumed_run_ends_in_the_same_numbers() {
+    let place = Place::new();
+    let set = ["--set", "output.snapshots_every=0.05"];
+    for precision in ["f32", "f64"] {
+        let run = ["run", "block.ron", "--backend", "cpu", "--precision", precision];
+        place.done(&[&run[..], &set[..]].concat());
+        let names = std::fs::read_dir(place.path("out/block")).unwrap().map(|e| e.unwrap().file_name());
+        let mut snapshots: Vec<String> = names.map(|n| n.to_string_lossy().into_owned()).collect();
+        snapshots.retain(|name| name.starts_with("snapshot_"));
+        snapshots.sort();
+        assert_eq!(snapshots.len(), 4, "{snapshots:?}");
+        let from = format!("out/block/{}", snapshots[1]);
+        let said = place.done(&[&run[..], &set[..], &["--resume", &from]].concat());
+        assert!(said.contains("out/block-resumed"), "{said}");
+        assert!(place.read("out/block/nodes.csv") == place.read("out/block-resumed/nodes.csv"), "other nodes");
+        let (whole, rest) = (place.json("out/block/summary.json"), place.json("out/block-resumed/summary.json"));
+        for key in ["steps", "energies", "guards", "simulated"] {
+            assert_eq!(whole[key], rest[key], "{key}");
+        }
+        assert!((rest["resumed_at"].as_f64().unwrap() - 0.1).abs() < 0.01, "{rest}");
+        let (whole, rest) = (place.table("out/block/probe_top.csv"), place.table("out/block-resumed/probe_top.csv"));
+        assert_eq!(whole.last(), rest.last());
+        assert!(rest[0][0] > 0.09 && rest.len() < whole.len());
+        // where nothing is left to do, where it would be cleared, and of another scene
+        let last = format!("out/block/{}", snapshots[3]);
+        place.sinew(&[&run[..], &set[..], &["--resume", &last]].concat()).wants(2, &["nothing is left"]);
+        place
+            .sinew(&[&run[..], &["--resume", &from, "--out", "out/block"]].concat())
+            .wants(2, &["name another with --out"]);
+        assert!(place.path(&from).exists());
+        let other = ["--set", "materials.tissue.density=900", "--resume", &from];
+        place.sinew(&[&run[..], &other[..]].concat()).wants(2, &["of another simulation", "materials"]);
+    }
+    std::fs::write(place.path("broken.sinew"), "no snapshot").unwrap();
+    place.sinew(&["run", "block.ron", "--resume", "broken.sinew"]).wants(2, &["no snapshot of sinew"]);
+    place
+        .sinew(&["run", "block.ron", "--resume", "nowhere.sinew"])
+        .wants(2, &["cannot read the snapshot nowhere.sinew"]);
+}

@@ -35,12 +35,15 @@ pub struct Effects {
     /// Viscosity of the pressure.
     pub volumetric: bool,
     pub reproject: bool,
+    /// What becomes of inverted elements, as RON writes it.
+    pub inversion: Option<&'static str>,
 }
 
-pub const LAWS: [&str; 6] = [
+pub const LAWS: [&str; 7] = [
     "linear: Moduli(shear: 1034, bulk: 10000)",
     "st_venant_kirchhoff: Moduli(shear: 1034, bulk: 10000)",
     "neo_hookean: Moduli(shear: 1034, bulk: 10000)",
+    "stable_neo_hookean: Moduli(shear: 1034, bulk: 10000)",
     "mooney_rivlin: (c10: 300, c01: 200, bulk: 10000)",
     "ogden: (terms: [(mu: 1400, alpha: 1.3), (mu: 3, alpha: 5), (mu: -30, alpha: -2)], bulk: 10000)",
     "arruda_boyce: (shear: 700, locking_stretch: 1.8, bulk: 10000)",
@@ -74,6 +77,7 @@ impl Effects {
             families: Some(FAMILIES),
             volumetric: true,
             reproject: true,
+            inversion: None,
         }
     }
 
@@ -111,6 +115,10 @@ impl Effects {
                 ..Self::default()
             });
         }
+        for averaged in [false, true] {
+            all.push(Self { inversion: Some("Remove"), averaged, removal: true, ..Self::default() });
+        }
+        all.push(Self { inversion: Some("Remove"), prony: 1, fibres: Some(AROUND), averaged: true, ..Self::default() });
         all.push(Self::all());
         all.push(Self { averaged: true, ..Self::default() });
         all.push(Self { averaged: true, ..Self::all() });
@@ -135,6 +143,7 @@ impl Effects {
         let law = self.law.unwrap_or(LAWS[2]);
         let families = self.families.map_or(String::new(), |families| format!("exponential_fibres: {families},"));
         let damping = if self.damping { "damping: 20," } else { "" };
+        let inversion = self.inversion.map_or(String::new(), |word| format!("inversion: {word},"));
         let both = |text: &str| ["tets", "hexes"].map(|body| text.replace("BODY", body)).concat();
         let loads = if self.loads {
             both(
@@ -179,7 +188,7 @@ impl Effects {
             "(title: \"effects\", duration: 1, analysis: {analysis},
             bodies: {{ \"tets\": {}, \"hexes\": {} }},
             materials: {{
-                \"tissue\": (density: 1000, {law}, {fibres} {families} {prony} {damping}),
+                \"tissue\": (density: 1000, {law}, {fibres} {families} {prony} {damping} {inversion}),
                 \"plain\": (density: 1200, neo_hookean: Moduli(shear: 3000, bulk: 9000)),
             }},
             constraints: [{moved}],

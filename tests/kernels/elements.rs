@@ -110,6 +110,33 @@ fn inverted_elements_are_found_and_make_no_nan() {
     }
 }
 
+/// Elements that are to be removed when inverted get their step and exert nothing, the same ones both ways.
+#[test]
+fn inverted_elements_are_removed_alike() {
+    for averaged in [false, true] {
+        let effects = Effects { inversion: Some("Remove"), averaged, ..Effects::default() };
+        let Some(mut pair) = run("element_forces", &effects, 3, crush) else { return };
+        pair.identical::<RemovalStep>();
+        let mut gone = 0;
+        for block in entities::<RemovalStep>(pair.host.world_mut()) {
+            let data = pair.before().get::<Block>(block).unwrap().clone();
+            let numbers = 3 * node_count(data.kind);
+            for simulation in [&pair.host, &pair.device] {
+                let world = simulation.world();
+                let force = world.get::<ElementForce>(data.body).unwrap();
+                let steps = world.get::<RemovalStep>(block).unwrap();
+                for row in (0..data.count).filter(|&row| steps[row] != u32::MAX) {
+                    assert_eq!(steps[row], 4, "the step after the third");
+                    gone += 1;
+                    let at = |k| data.force_offset + lane_place(row, numbers, k);
+                    assert!((0..numbers).all(|k| force.get(at(k)) == 0.0), "element {row} still pushes");
+                }
+            }
+        }
+        assert!(gone >= 4, "{gone}");
+    }
+}
+
 /// A node's θ is a mean of up to 24 products, each of θ (|∇u| ≤ h to 16 roundings) and a volume; the sums err by 24 more.
 #[test]
 fn volumes_around_nodes_change_alike() {

@@ -24,8 +24,8 @@ trait Law {
     fn kinematics<R: Real>(gradient: &Mat3<R>) -> Kinematics<R> {
         Kinematics::new(gradient)
     }
-    fn first_stress<R: Real>(gradient: &Mat3<R>, stress: &Sym3<R>) -> Mat3<R> {
-        gradient.plus_identity_times(stress)
+    fn first_stress<R: Real>(gradient: &Mat3<R>, a: [R; 3]) -> Mat3<R> {
+        gradient.plus_identity_times(&Self::stress(&Self::kinematics(gradient), a))
     }
     fn stress<R: Real>(k: &Kinematics<R>, a: [R; 3]) -> Sym3<R>;
     fn energy<R: Real>(k: &Kinematics<R>, a: [R; 3]) -> R;
@@ -52,8 +52,7 @@ fn stress_in_f32<L: Law>(f: DMat3, a: DVec3) -> DMat3 {
 }
 
 fn first_stress<L: Law>(f: DMat3, a: DVec3) -> DMat3 {
-    let h = gradient(f);
-    let first = L::first_stress(&h, &L::stress(&L::kinematics(&h), a.to_array())).0;
+    let first = L::first_stress(&gradient(f), a.to_array()).0;
     DMat3::from_cols(first[0].into(), first[1].into(), first[2].into()).transpose()
 }
 
@@ -198,6 +197,7 @@ laws! {
     linear: samples::Linear;
     st_venant_kirchhoff: samples::StVenantKirchhoff, objective;
     neo_hookean: samples::NeoHookean, objective;
+    stable_neo_hookean: samples::StableNeoHookean, objective;
     mooney_rivlin: samples::MooneyRivlin, objective;
     ogden: samples::Ogden, objective;
     arruda_boyce: samples::ArrudaBoyce, objective;

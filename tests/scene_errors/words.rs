@@ -146,7 +146,7 @@ fn words_that_do_not_fit_are_told_with_those_that_do() {
             r#""tissue": ("#,
             r#""tissue": Stuff("#,
             r"5:19: error: `Stuff` does not belong here | `tissue` is written without a word before the brackets
-5:53: error: the material `tissue` has no elastic law | add for instance neo_hookean: Young(young: 3000, poisson: 0.45) | elastic laws: linear, st_venant_kirchhoff, neo_hookean, mooney_rivlin, ogden, arruda_boyce, law",
+5:53: error: the material `tissue` has no elastic law | add for instance neo_hookean: Young(young: 3000, poisson: 0.45) | elastic laws: linear, st_venant_kirchhoff, neo_hookean, stable_neo_hookean, mooney_rivlin, ogden, arruda_boyce, law",
         ),
         (
             "    loads: [\n",

@@ -257,8 +257,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
             if EFFECTS == ASK && self.law.reproject {
                 isochoric = elastic.without_pressure(&k, isochoric);
             }
-            let stress = isochoric.plus(&elastic.volumetric(&k, pressure));
-            let stress = elastic.first_stress(&state.gradient, &stress);
+            let stress = elastic.first_stress(&state.gradient, &k, &isochoric, pressure);
             E::add_stress(&mut forces, point, &state, &stress);
             worst = worst.max(-k.true_j);
         }

@@ -3,10 +3,12 @@
 mod element_kernel;
 mod law;
 mod volume_kernel;
+mod watch_kernel;
 
 pub use element_kernel::{BlockColumns, run_block, run_block_fast};
 pub use law::BlockLaw;
 pub use volume_kernel::run_volumes;
+pub use watch_kernel::{BlockSums, WatchedColumns, run_watch};
 
 use bevy_ecs::prelude::*;
 use std::sync::Arc;

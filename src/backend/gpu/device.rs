@@ -86,6 +86,12 @@ impl Gpu {
         &self.report
     }
 
+    /// Gives the device up, as when a driver resets it: all that follows is [`GpuError::Lost`]. For trying out what a program
+    /// does then.
+    pub fn destroy(&mut self) {
+        self.device.destroy();
+    }
+
     /// What the device allows.
     pub fn limits(&self) -> GpuLimits {
         let limits = &self.limits;
@@ -185,7 +191,7 @@ mod tests {
         let kernel = Kernel::new("zero", "zero").fragment(Fragment::new("zero.wgsl", text)).bind("mass", buffer);
         let ready = gpu.prepare(&kernel.clone().threads(1)).unwrap();
         gpu.run_once(&[ready]).unwrap();
-        gpu.device.destroy();
+        gpu.destroy();
         assert!(matches!(gpu.wait(), Err(GpuError::Lost(_))));
         assert!(gpu.create("mass", 64, BufferKind::Storage).is_err());
         assert!(gpu.run_once(&[ready]).is_err());

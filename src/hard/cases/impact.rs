@@ -59,12 +59,15 @@ pub fn impact(trial: &mut Trial<'_>) -> Result<(), Error> {
                     trial.stops(&name, ended, &["element"]);
                     break;
                 }
-                let (rest, u) = (simulation.rest_positions("body")?, simulation.displacements("body")?);
-                let depth = |node: usize| (-rest[node].z - u[node].z).max(0.0);
-                let held: f64 = (0..u.len()).map(|node| 0.5 * stiffness * depth(node).powi(2)).sum();
+                let (rest, fields) = (simulation.rest_positions("body")?, simulation.fields("body")?);
+                // energies are those of the middle of the step
+                let half = 0.5 * simulation.time_step();
+                let height = |node: usize| rest[node].z + fields.displacement[node].z - half * fields.velocity[node].z;
+                let depth = |node: usize| (-height(node)).max(0.0);
+                let held: f64 = (0..rest.len()).map(|node| 0.5 * stiffness * depth(node).powi(2)).sum();
                 let e = simulation.energies()?;
                 most = most.max(e.kinetic + e.strain + e.hourglass + held);
-                deepest = (0..u.len()).map(depth).fold(deepest, f64::max);
+                deepest = (0..rest.len()).map(depth).fold(deepest, f64::max);
             }
             if deepest > 0.0 {
                 trial.most(format!("energy over that at the start, {name}"), most / start, 1.01);

@@ -5,6 +5,7 @@ mod compression;
 mod fibres;
 mod impact;
 mod input;
+mod inversion;
 mod long_runs;
 mod mixed;
 mod point;
@@ -52,10 +53,18 @@ pub const CASES: &[Case] = &[
     case!("h02" "corner_load" "corner load on one-point hexahedra",
         "hourglass energy below 10 %; coefficient 0 is warned of; the default does not stiffen S1",
         one_point, bending::corner_load),
+    case!("h05" "release" "release from 100 % stretch, 20 periods (everyday: 5)",
+        "energy within 1 % (f64), 2 % (f32); J > .1", every, inversion::release),
     case!("h06" "twist" "twist by 180, 360 and 720° and back",
         "V/V₀ in [.97, 1.03]; back within 1e-3", every, bending::twist),
     case!("h07" "crushed_cube" "95 % compression, confined and free",
         "the formula for a point within 1 %; back within 1e-3", every, compression::crushed_cube),
+    case!("h08" "through" "node driven through the opposite face and back",
+        "stopped with the element's number, or back within 1e-3: no false rest", every, inversion::through),
+    case!("h09" "scrambled" "scrambled start",
+        "refused with an element's number, or back within 1e-3", every, inversion::deformed_start),
+    case!("h10" "flattened" "flattened start",
+        "refused with an element's number, or back within 1e-3", every, inversion::deformed_start),
     case!("h11" "stiffness_contrast" "stiffness contrast of 1e4 in one bar",
         "the joint moves as two springs in series within 1 %", every, bending::stiffness_contrast),
     case!("h12" "stiff_fibres" "fibres a thousand times stiffer than the rest",

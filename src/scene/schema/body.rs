@@ -33,9 +33,34 @@ pub struct Body {
     /// Angular velocity at the start about the centre of mass (rad/s).
     #[serde(default)]
     pub spin: DVec3,
+    /// How the body is deformed at the start, at rest and let go; nodes keep their place along axes that are held or moved.
+    #[serde(default)]
+    pub start: Option<Start>,
     /// Multiplies the hourglass stiffness of one-point hexahedra; 0 leaves their hourglass modes free.
     #[serde(default = "one")]
     pub hourglass: f64,
+}
+
+/// A deformation that a run starts from.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub enum Start {
+    /// The same everywhere: u = gradient·(X − center). ((0, 0, 0), (0, 0, 0), (0, 0, -1)) flattens along z.
+    Affine {
+        /// Rows of the displacement gradient.
+        gradient: [DVec3; 3],
+        /// What stays in place (m).
+        #[serde(default)]
+        center: DVec3,
+    },
+    /// Each component of each node's displacement anywhere between −amplitude and amplitude, the same in every run.
+    Scrambled {
+        /// The largest displacement along an axis (m).
+        amplitude: f64,
+        /// Another number, another disorder.
+        #[serde(default)]
+        seed: u64,
+    },
 }
 
 /// Elements of a body made of another material.

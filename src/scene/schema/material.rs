@@ -19,6 +19,9 @@ pub struct Material {
     /// The neo-Hookean law, for large strains.
     #[serde(default)]
     pub neo_hookean: Option<Elasticity>,
+    /// The stable neo-Hookean law, defined for every deformation, also of tissue that is turned inside out.
+    #[serde(default)]
+    pub stable_neo_hookean: Option<Elasticity>,
     /// The Mooney-Rivlin law, for large strains.
     #[serde(default)]
     pub mooney_rivlin: Option<MooneyRivlin>,
@@ -43,6 +46,39 @@ pub struct Material {
     /// Mass-proportional damping: rate c of the force -c M v (1/s).
     #[serde(default)]
     pub damping: Option<f64>,
+    /// What becomes of elements that are turned inside out; left out, `Recover` where the material can, else `Stop`.
+    #[serde(default)]
+    pub inversion: Option<Inversion>,
+}
+
+/// What becomes of an element that is turned inside out (J < 0).
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+pub enum Inversion {
+    /// The run ends and says which element it was.
+    Stop,
+    /// The element is removed in the same step, and exerts nothing in it.
+    Remove,
+    /// The element is pushed back by a stress that is defined inside out, too.
+    Recover,
+}
+
+impl Material {
+    /// What keeps its elements from recovering when they are turned inside out; `None` where they can.
+    pub fn cannot_recover_because_of(&self) -> Option<&'static str> {
+        let needs = [
+            ("an elastic law that ends at J = 0", self.stable_neo_hookean.is_none()),
+            ("fibres", self.fibres.is_some()),
+            ("exponential_fibres", self.exponential_fibres.is_some()),
+            ("terms of prony", self.prony.as_ref().is_some_and(|prony| !prony.terms.is_empty())),
+        ];
+        needs.into_iter().find(|(_, there)| *there).map(|(what, _)| what)
+    }
+
+    /// What becomes of its elements that are turned inside out.
+    pub fn inversion(&self) -> Inversion {
+        let left_out = if self.cannot_recover_because_of().is_none() { Inversion::Recover } else { Inversion::Stop };
+        self.inversion.unwrap_or(left_out)
+    }
 }
 
 /// Moduli of an isotropic law, as one of two pairs.

@@ -10,12 +10,12 @@ mod selection;
 pub use crate::mesh::ElementKind;
 pub use accuracy::{Accuracy, AccuracyReference};
 pub use action::{Axis, Constraint, Curve, Load, Removal, Share, When};
-pub use body::{Body, MeshSource, Region};
+pub use body::{Body, MeshSource, Region, Start};
 pub use material::{
-    ArrudaBoyce, Direction, Elasticity, ExponentialFibres, Fibres, Material, MooneyRivlin, Ogden, OgdenTerm, OwnLaw,
-    Prony, PronyTerm, ViscousIntegrator,
+    ArrudaBoyce, Direction, Elasticity, ExponentialFibres, Fibres, Inversion, Material, MooneyRivlin, Ogden, OgdenTerm,
+    OwnLaw, Prony, PronyTerm, ViscousIntegrator,
 };
-pub use scene::{Analysis, Field, Integration, Output, Picture, Scene};
+pub use scene::{Analysis, EnergyGuard, Field, Guard, Guards, Integration, Output, Picture, Scene};
 pub use selection::{Probe, Quantity, Select};
 
 /// The texts of these files: what a field means is told in the words it is documented with.

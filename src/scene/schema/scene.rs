@@ -45,6 +45,9 @@ pub struct Scene {
     /// What is written, and how often.
     #[serde(default)]
     pub output: Output,
+    /// What is looked at during a run, and what ends it.
+    #[serde(default)]
+    pub guards: Guards,
     /// How `sinew render` draws the scene.
     #[serde(default)]
     pub picture: Picture,
@@ -87,8 +90,7 @@ pub struct Integration {
     pub step: Option<f64>,
     /// Share of the stable step that is taken.
     pub safety: f64,
-    /// Take a `step` beyond the stable one all the same. Work is booked then, and the run stops when elements hold more
-    /// energy than was spent on them.
+    /// Take a `step` beyond the stable one all the same. The guards watch it, and cannot be switched off.
     pub beyond_stable_step: bool,
     /// Sum displacements with compensation: three numbers a node more, and f32 keeps the digits that plain sums lose.
     pub compensated: bool,
@@ -108,6 +110,56 @@ pub struct Output {
     pub fields_every: Option<f64>,
     /// Time between rows of `energy.csv` (s). Naming it also books the work of all forces in every step.
     pub energies_every: Option<f64>,
+    /// Time between snapshots (s), from which `sinew run --resume` goes on; none when left out.
+    pub snapshots_every: Option<f64>,
+}
+
+/// What is looked at during a run, and what ends it.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields, default)]
+pub struct Guards {
+    /// Steps between two looks at energies and elements; numbers that are not finite and elements turned inside out are
+    /// looked for in every step.
+    pub every: u64,
+    /// Limits of the balance of energy.
+    pub energy: EnergyGuard,
+    /// Energy in hourglass control of a part that is warned of, as a share of the part's largest elastic energy so far.
+    pub hourglass: f64,
+    /// Guards that do not look.
+    pub off: Vec<Guard>,
+    /// States that are kept in memory, and written when the run breaks down.
+    pub window: u64,
+}
+
+/// Limits of the balance of energy, as shares of the largest energy so far.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields, default)]
+pub struct EnergyGuard {
+    /// What is warned of, made or lost.
+    pub warn: f64,
+    /// What ends the run, made out of nothing.
+    pub stop: f64,
+}
+
+/// A guard that may be switched off.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+pub enum Guard {
+    /// The balance of energy.
+    Energy,
+    /// Energy in hourglass control.
+    Hourglass,
+}
+
+impl Default for Guards {
+    fn default() -> Self {
+        Self { every: 256, energy: EnergyGuard::default(), hourglass: 0.1, off: Vec::new(), window: 3 }
+    }
+}
+
+impl Default for EnergyGuard {
+    fn default() -> Self {
+        Self { warn: 0.01, stop: 0.05 }
+    }
 }
 
 /// How a scene is drawn.

@@ -2,7 +2,7 @@
 
 use super::{Judge, scene, show};
 use crate::scene::limits::PSEUDO_STEPS;
-use crate::scene::schema::{Analysis, Constraint, Quantity, Scene};
+use crate::scene::schema::{Analysis, Constraint, Inversion, Quantity, Scene};
 use glam::DVec3;
 
 pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
@@ -39,6 +39,14 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
             .note("which ones go depends on the way to rest, and pseudo-steps are no way that a body takes")
             .note("leave `removal` out, or use `analysis: Transient`");
     }
+    for (name, material) in &scene_.materials {
+        if material.inversion == Some(Inversion::Remove) {
+            judge
+                .out
+                .error_at(scene("materials").name(name).name("inversion"), "a static analysis cannot remove elements")
+                .note("allowed: Stop, and Recover for stable_neo_hookean");
+        }
+    }
     meaningless(scene_, judge);
     for name in scene_.bodies.keys() {
         let holds = |constraint: &Constraint| {
@@ -59,10 +67,19 @@ fn meaningless(scene_: &Scene, judge: &mut Judge) {
     let mut ignore = |path, what: &str| {
         judge.out.warn_at(&path, format!("a static analysis ignores {what}"));
     };
+    if scene_.output.snapshots_every.is_some() {
+        ignore(
+            scene("output").name("snapshots_every"),
+            "`snapshots_every`: its pseudo-steps are nothing to go on from",
+        );
+    }
     for (name, body) in &scene_.bodies {
         if body.velocity != DVec3::ZERO || body.spin != DVec3::ZERO {
             let field = if body.velocity != DVec3::ZERO { "velocity" } else { "spin" };
             ignore(scene("bodies").name(name).name(field), "how a body moves at the start");
+        }
+        if body.start.is_some() {
+            ignore(scene("bodies").name(name).name("start"), "how a body is deformed at the start");
         }
     }
     if scene_.integration.step.is_some() {

@@ -8,11 +8,12 @@ use crate::scene::syntax::Path;
 const OGDEN_TERMS: usize = 4;
 
 /// Names of the elastic laws that a material has, and of all there are.
-fn laws(material: &Material) -> (Vec<&'static str>, [&'static str; 7]) {
+fn laws(material: &Material) -> (Vec<&'static str>, [&'static str; 8]) {
     let all = [
         ("linear", material.linear.is_some()),
         ("st_venant_kirchhoff", material.st_venant_kirchhoff.is_some()),
         ("neo_hookean", material.neo_hookean.is_some()),
+        ("stable_neo_hookean", material.stable_neo_hookean.is_some()),
         ("mooney_rivlin", material.mooney_rivlin.is_some()),
         ("ogden", material.ogden.is_some()),
         ("arruda_boyce", material.arruda_boyce.is_some()),
@@ -45,6 +46,7 @@ pub(super) fn validate(judge: &mut Judge, path: &Path, name: &str, material: &Ma
         ("linear", material.linear),
         ("st_venant_kirchhoff", material.st_venant_kirchhoff),
         ("neo_hookean", material.neo_hookean),
+        ("stable_neo_hookean", material.stable_neo_hookean),
     ] {
         if let Some(law) = law {
             elasticity(judge, &path.name(word), law);

@@ -5,7 +5,7 @@ use crate::mesh::generators::cells_around;
 use crate::scene::beside::Outside;
 use crate::scene::limits::MOST_REFINEMENT;
 use crate::scene::load::SceneFile;
-use crate::scene::schema::{AccuracyReference, MeshSource, Picture};
+use crate::scene::schema::{AccuracyReference, MeshSource, Picture, Start};
 use crate::scene::suggest::{choice, list};
 use crate::scene::syntax::Path;
 
@@ -23,6 +23,9 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
                 .note("each time makes eight elements of one: 10 times make a billion of it");
         }
         judge.not_negative(&path.name("hourglass"), body.hourglass, "");
+        if let Some(Start::Scrambled { amplitude, .. }) = body.start {
+            judge.not_negative(&path.name("start").name("amplitude"), amplitude, "m");
+        }
         if body.hourglass == 0.0 {
             judge
                 .out

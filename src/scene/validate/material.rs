@@ -1,7 +1,7 @@
 //! Materials: densities, fibres, viscosity; elastic laws have a file of their own.
 
 use super::{Judge, elastic_law, scene, show};
-use crate::scene::schema::{Direction, ExponentialFibres, Material, MeshSource, Prony, PronyTerm, Scene};
+use crate::scene::schema::{Direction, ExponentialFibres, Inversion, Material, MeshSource, Prony, PronyTerm, Scene};
 use crate::scene::syntax::Path;
 use glam::DVec3;
 
@@ -53,6 +53,14 @@ fn validate_material(judge: &mut Judge, path: &Path, name: &str, material: &Mate
     }
     if let Some(damping) = material.damping {
         judge.not_negative(&path.name("damping"), damping, "s⁻¹");
+    }
+    if let (Some(Inversion::Recover), Some(because)) = (material.inversion, material.cannot_recover_because_of()) {
+        let message = format!("the material `{name}` cannot recover from inversion: it has {because}");
+        judge
+            .out
+            .error_at(path.name("inversion"), message)
+            .note("can recover: stable_neo_hookean without fibres, exponential_fibres and terms of prony")
+            .note("allowed for all others: Stop, Remove");
     }
 }
 

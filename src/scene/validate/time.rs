@@ -1,8 +1,11 @@
 //! Durations, steps, intervals and curves.
 
 use super::{Judge, scene, show, with_unit};
-use crate::scene::schema::{Constraint, Curve, Load, Scene, When};
+use crate::scene::schema::{Constraint, Curve, EnergyGuard, Guard, Guards, Load, Scene, When};
 use crate::scene::syntax::Path;
+
+/// More states than are of use after a breakdown.
+const MOST_STATES: u64 = 100;
 
 pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
     judge.above_zero(&scene("duration"), scene_.duration, "s");
@@ -17,19 +20,44 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
             .note("it is the share of the stable step that is taken; 0.9 when left out");
     }
     let path = scene("output");
-    for (field, value) in
-        [("fields_every", scene_.output.fields_every), ("energies_every", scene_.output.energies_every)]
-    {
+    for (field, value) in [
+        ("fields_every", scene_.output.fields_every),
+        ("energies_every", scene_.output.energies_every),
+        ("snapshots_every", scene_.output.snapshots_every),
+    ] {
         if let Some(value) = value {
             every(judge, &path.name(field), value, scene_.duration);
         }
     }
+    guards(scene_, judge);
     for (name, probe) in &scene_.probes {
         if let Some(value) = probe.every {
             every(judge, &scene("probes").name(name).name("every"), value, scene_.duration);
         }
     }
     actions(scene_, judge);
+}
+
+fn guards(scene_: &Scene, judge: &mut Judge) {
+    let (guards, path) = (&scene_.guards, scene("guards"));
+    if guards.every == 0 {
+        judge.must(&path.name("every"), "at least 1", 0).note("it is the number of steps between two looks");
+    }
+    let Guards { energy: EnergyGuard { warn, stop }, hourglass, .. } = *guards;
+    judge.above_zero(&path.name("energy").name("warn"), warn, "");
+    judge.above_zero(&path.name("energy").name("stop"), stop, "");
+    judge.above_zero(&path.name("hourglass"), hourglass, "");
+    if guards.window > MOST_STATES {
+        judge
+            .must(&path.name("window"), &format!("at most {MOST_STATES}"), guards.window)
+            .note("each state takes as much memory as the columns that steps carry on");
+    }
+    if scene_.integration.beyond_stable_step && guards.off.contains(&Guard::Energy) {
+        judge
+            .out
+            .error_at(path.name("off"), "a step beyond the stable one needs the balance of energy")
+            .note("it is what shows that the step was too large; leave `Energy` out of `off`");
+    }
 }
 
 /// A time between two things that happen.

@@ -5,7 +5,7 @@ use crate::backend::user_law::Findings;
 use crate::components::*;
 use crate::materials::{Elastic, ElasticLaw, ExponentialFibre, Fibres, UserLaw};
 use crate::math::LANES;
-use crate::scene::schema::Scene;
+use crate::scene::schema::{Inversion, Scene};
 use bevy_ecs::prelude::*;
 
 /// All blocks, then all bodies.
@@ -95,6 +95,17 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
             turned_on_by: format!("an entry under `removal` on the body {body}"),
         },
     ];
+    match entity.get::<OnInversion>() {
+        None | Some(OnInversion(Inversion::Stop)) => {}
+        Some(OnInversion(policy)) => effects.push(Effect {
+            name: "inversion",
+            on: Some(match policy {
+                Inversion::Remove => "elements turned inside out are removed at once".into(),
+                _ => "elements turned inside out are pushed back by the law".into(),
+            }),
+            turned_on_by: in_material("inversion"),
+        }),
+    }
     if fibres.is_some() || families.is_some() {
         let varying = Effect {
             name: "directions",

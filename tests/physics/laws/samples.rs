@@ -28,8 +28,10 @@ macro_rules! elastic {
             fn kinematics<R: Real>(gradient: &Mat3<R>) -> Kinematics<R> {
                 Self::of(gradient.0[0][0]).kinematics(gradient)
             }
-            fn first_stress<R: Real>(gradient: &Mat3<R>, stress: &Sym3<R>) -> Mat3<R> {
-                Self::of(gradient.0[0][0]).first_stress(gradient, stress)
+            fn first_stress<R: Real>(gradient: &Mat3<R>, _: [R; 3]) -> Mat3<R> {
+                let law = Self::of(gradient.0[0][0]);
+                let k = law.kinematics(gradient);
+                law.first_stress(gradient, &k, &law.isochoric(&k), law.pressure(law.volume_measure(&k)))
             }
             fn stress<R: Real>(k: &Kinematics<R>, _: [R; 3]) -> Sym3<R> {
                 let law = Self::of(k.j);
@@ -58,6 +60,7 @@ elastic! {
     Linear: materials::Linear { shear: SHEAR, bulk: BULK }, SHEAR;
     StVenantKirchhoff: materials::StVenantKirchhoff { shear: SHEAR, bulk: BULK }, SHEAR;
     NeoHookean: materials::NeoHookean { shear: SHEAR, bulk: BULK }, SHEAR;
+    StableNeoHookean: materials::StableNeoHookean { shear: SHEAR, bulk: BULK }, SHEAR;
     MooneyRivlin: materials::MooneyRivlin { c10: 300.0, c01: 200.0, bulk: BULK }, 2.0 * (300.0 + 200.0);
     Ogden: materials::Ogden::new(&OGDEN, BULK), 0.5 * (1400.0 * 1.3 + 3.0 * 5.0 + 30.0 * 2.0);
     ArrudaBoyce: materials::ArrudaBoyce { shear: 600.0, locking_stretch: LOCKING, bulk: BULK },

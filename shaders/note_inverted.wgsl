@@ -1,0 +1,7 @@
+// Elements turned inside out are noted; guards stop the run, or the material recovers.
+@group(0) @binding(0) var<storage, read_write> first_inverted: array<atomic<u32>>;
+
+fn is_removed_inverted(element: u32) -> bool {
+    atomicMin(&first_inverted[0], element);
+    return false;
+}

@@ -1,0 +1,34 @@
+// Work against internal forces (J), summed over sixty-four nodes, for integrate: what the guards compare with the energy that
+// elements hold. SPENT_AT is generated.
+var<private> spent: f32;
+var<workgroup> spent_parts: array<f32, 64>;
+
+// Forces at the beginning of the step along the mean of the steps before and after; the first step counts by half.
+fn spend(before: vec3<f32>, after: vec3<f32>, inner: vec3<f32>) {
+    spent = (0.25 + 0.25 * step.divide) * dot(inner, before + after);
+}
+
+// The same number, in a way that no compiler can look through.
+fn kept(x: f32) -> f32 {
+    return bitcast<f32>(bitcast<u32>(x) ^ step.zero);
+}
+
+// Adds the workgroup's part to its sum and to what rounding has left out of it (Kahan 1965); all invocations must call it.
+fn add_up_spent(local: u32, node: u32) {
+    spent_parts[local] = spent;
+    workgroupBarrier();
+    for (var width = 32u; width > 0u; width /= 2u) {
+        if local < width {
+            spent_parts[local] += spent_parts[local + width];
+        }
+        workgroupBarrier();
+    }
+    if local == 0u && node < nodes.count {
+        let at = SPENT_AT + node / 32u;
+        let before = bitcast<f32>(atomicLoad(&first_non_finite[at]));
+        let part = kept(spent_parts[0] + bitcast<f32>(atomicLoad(&first_non_finite[at + 1u])));
+        let after = kept(before + part);
+        atomicStore(&first_non_finite[at], bitcast<u32>(after));
+        atomicStore(&first_non_finite[at + 1u], bitcast<u32>(part - kept(after - before)));
+    }
+}

@@ -1,0 +1,61 @@
+//! What the guards remember of a run.
+
+use bevy_ecs::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// What the guards have seen so far; part of the state, so that what goes on from a snapshot stops where it would have.
+#[derive(Resource, Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct GuardMemory {
+    /// Looks so far.
+    pub looks: u64,
+    /// The largest energy so far (J): what imbalances are shares of.
+    pub scale: f64,
+    /// The largest imbalance so far, as a share of the scale then; positive where energy was made.
+    pub imbalance: f64,
+    /// The largest elastic energy (J) of each part so far.
+    pub peaks: BTreeMap<String, f64>,
+    /// The largest share of hourglass energy of each part so far.
+    pub hourglass: BTreeMap<String, f64>,
+    /// The smallest J of all looks.
+    pub least_volume_ratio: Option<Seen>,
+    /// The fastest node of all looks (m/s).
+    pub fastest_node: Option<Seen>,
+    /// What has been warned of, each once.
+    pub warnings: Vec<Notice>,
+}
+
+/// Something that was seen, and where and when.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Seen {
+    /// The value.
+    pub value: f64,
+    /// The body.
+    pub body: String,
+    /// The author's number of the node or the element.
+    pub id: u64,
+    /// When (s).
+    pub time: f64,
+}
+
+/// What has been warned of.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Notice {
+    /// The guard: `energy` or `hourglass`.
+    pub criterion: String,
+    /// The part that it is about; all bodies when empty.
+    pub part: String,
+    /// When it was seen first (s).
+    pub time: f64,
+    /// The same in steps.
+    pub step: u64,
+    /// What was seen, as a share.
+    pub value: f64,
+    /// The limit.
+    pub limit: f64,
+    /// All of it in words, and what to change.
+    pub message: String,
+}

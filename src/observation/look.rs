@@ -1,0 +1,157 @@
+//! What the guards look at: energies of parts, the smallest J, the fastest node. On the CPU by vector kernels, on the GPU by
+//! kernels whose sums of sixty-four rows each are brought to the host.
+
+use crate::backend::cpu::{BlockLaw, BlockSums, Cpu, WatchedColumns, run_watch};
+use crate::backend::device::{Device, bring_to_host};
+use crate::backend::kernel::KernelId;
+use crate::components::*;
+use crate::error::Error;
+use crate::evaluation::{BlockView, averages, with_element};
+use crate::math::SimdScalar;
+use bevy_ecs::prelude::*;
+
+/// The kernels that look, on a GPU. A resource.
+#[derive(Resource, Default)]
+pub struct WatchKernels(pub Vec<KernelId>);
+
+/// A look at all bodies, in the middle of the last step.
+#[derive(Clone, Debug, Default)]
+pub struct Look {
+    /// ½ m v² (J).
+    pub kinetic: f64,
+    /// Work against internal forces since the start (J).
+    pub spent: f64,
+    /// The body, row and speed (m/s) of the fastest node.
+    pub fastest: Option<(Entity, u32, f64)>,
+    /// Each block and what its elements come to.
+    pub parts: Vec<(Entity, BlockSums)>,
+}
+
+/// Looks at all bodies.
+///
+/// # Errors
+/// What the GPU says.
+pub fn look(world: &mut World) -> Result<Look, Error> {
+    let kernels = world.get_resource::<WatchKernels>().map(|kernels| kernels.0.clone()).unwrap_or_default();
+    let mut look = Look { spent: spent(world)?, ..Look::default() };
+    if kernels.is_empty() {
+        look_at_nodes(&mut look, world);
+        look_at_elements(&mut look, world);
+        return Ok(look);
+    }
+    if let Some(mut device) = world.get_resource_mut::<Device>() {
+        device.run(&kernels, &[], 0, 1)?;
+    }
+    bring_to_host(world, |_, name| name == NodeSums::NAME || name == ElementSums::NAME)?;
+    add_up_nodes(&mut look, world);
+    for (entity, _, sums) in world.query::<(Entity, &Block, &ElementSums)>().iter(world) {
+        let of_group = |words: &[u32]| {
+            let number = |i: usize| f64::from(f32::from_bits(words[i]));
+            BlockSums {
+                strain: number(0),
+                hourglass: number(1),
+                least_volume_ratio: if words[3] == u32::MAX { f64::INFINITY } else { number(2) },
+                row: words[3],
+            }
+        };
+        look.parts.push((entity, sums.chunks_exact(4).map(of_group).fold(BlockSums::default(), BlockSums::and)));
+    }
+    Ok(look)
+}
+
+/// Work against internal forces (J) of all bodies, as it is booked.
+fn spent(world: &mut World) -> Result<f64, Error> {
+    bring_to_host(world, |_, name| name == FirstNonFinite::NAME || name == Work::NAME)?;
+    let mut sum = 0.0;
+    for (noticed, work) in world.query::<(&FirstNonFinite, Option<&Work>)>().iter(world) {
+        let sums = noticed.get(SPENT_AT..).unwrap_or_default();
+        sum += sums.iter().map(|&bits| f64::from(f32::from_bits(bits))).sum::<f64>();
+        if let Some(work) = work {
+            sum += (0..work.len() / WORK_NUMBERS).map(|row| work.get(WORK_NUMBERS * row + 3)).sum::<f64>();
+        }
+    }
+    Ok(sum)
+}
+
+impl Look {
+    fn add_nodes(&mut self, body: Entity, motion: f64, square: f64, row: u32, rate: f64) {
+        self.kinetic += motion * rate * rate;
+        let speed = square.max(0.0).sqrt() * rate;
+        if self.fastest.is_none_or(|(_, _, fastest)| speed > fastest) {
+            self.fastest = Some((body, row, speed));
+        }
+    }
+}
+
+fn add_up_nodes(look: &mut Look, world: &mut World) {
+    let rate = world.resource::<Clock>().rate();
+    for (body, sums) in world.query::<(Entity, &NodeSums)>().iter(world) {
+        for words in sums.chunks_exact(4) {
+            let number = |i: usize| f64::from(f32::from_bits(words[i]));
+            look.add_nodes(body, number(0), number(1), words[2], rate);
+        }
+    }
+}
+
+fn look_at_nodes(look: &mut Look, world: &mut World) {
+    let rate = world.resource::<Clock>().rate();
+    for (body, mass, step) in world.query::<(Entity, &Mass, &DisplacementStep)>().iter(world) {
+        let (mut motion, mut fastest) = (0.0, (-1.0, u32::MAX));
+        for row in 0..mass.len() {
+            let square = step.vector(row).length_squared();
+            motion += 0.5 * mass.get(row) * square;
+            if square > fastest.0 {
+                fastest = (square, row as u32);
+            }
+        }
+        look.add_nodes(body, motion, fastest.0, fastest.1, rate);
+    }
+}
+
+fn look_at_elements(look: &mut Look, world: &mut World) {
+    let blocks: Vec<(Entity, Entity)> =
+        world.query::<(Entity, &Block)>().iter(world).map(|(entity, block)| (entity, block.body)).collect();
+    let mut middle: Option<(Entity, Displacement)> = None;
+    for (entity, body) in blocks {
+        if middle.as_ref().is_none_or(|(of, _)| *of != body) {
+            middle = middle_of_step(world, body).map(|displacement| (body, displacement));
+        }
+        let Some((_, displacement)) = &middle else { continue };
+        let sums = match displacement.0 {
+            Reals::F32(_) => sums_of::<f32>(world, entity, displacement),
+            Reals::F64(_) => sums_of::<f64>(world, entity, displacement),
+        };
+        look.parts.extend(sums.map(|sums| (entity, sums)));
+    }
+}
+
+/// Displacements in the middle of the last step, in the run's precision.
+fn middle_of_step(world: &World, body: Entity) -> Option<Displacement> {
+    let (u, step) = (world.get::<Displacement>(body)?, world.get::<DisplacementStep>(body)?);
+    Some(Displacement(match (&u.0, &step.0) {
+        (Reals::F32(u), Reals::F32(step)) => Reals::F32(u.iter().zip(step).map(|(u, d)| u - 0.5 * d).collect()),
+        (Reals::F64(u), Reals::F64(step)) => Reals::F64(u.iter().zip(step).map(|(u, d)| u - 0.5 * d).collect()),
+        _ => return None,
+    }))
+}
+
+fn sums_of<T: SimdScalar>(world: &World, entity: Entity, displacement: &Displacement) -> Option<BlockSums> {
+    let (block, cpu) = (world.get::<Block>(entity)?, world.resource::<Cpu>());
+    let means: Vec<T> = match averages(block.kind) {
+        false => Vec::new(),
+        true => {
+            // made afresh, under these displacements
+            let means = BlockView::under(world, entity, &displacement.0)?.nodal_volume_change?;
+            (0..means.len()).map(|node| T::from_f64(means.get(node))).collect()
+        }
+    };
+    let columns = WatchedColumns::<T> {
+        displacement: displacement.slice(),
+        connectivity: world.get::<Connectivity>(entity)?,
+        rest_shape: world.get::<RestShape>(entity)?.slice(),
+        fibre_direction: world.get::<FibreDirection>(entity).map(|f| f.slice()),
+        nodal_volume_change: &means,
+    };
+    let law = world.get::<BlockLaw<f64>>(entity)?.rounded::<T>();
+    Some(with_element!(block.kind, E => run_watch::<E, T>(cpu, &columns, &law, patch_groups(block.kind))))
+}

@@ -1,0 +1,91 @@
+//! Keeping states: snapshots for a program, those that a scene's output asks for, and the last ones before a breakdown.
+
+use super::Simulation;
+use crate::components::{Clock, GuardMemory};
+use crate::error::{Error, Instability, LastGood};
+use crate::observation::{Observer, write_fields};
+use crate::output::Series;
+use crate::snapshot::Snapshot;
+use std::path::Path;
+use std::time::Duration;
+
+/// The series of the last states before a breakdown, in the output folder.
+const LAST_STATES: &str = "last_states";
+
+impl Simulation {
+    /// The present state, to go back to it or to keep it in a file.
+    ///
+    /// # Errors
+    /// That it is a static analysis; what the GPU says.
+    pub fn snapshot(&mut self) -> Result<Snapshot, Error> {
+        Snapshot::take(&mut self.world)
+    }
+
+    /// Goes back, or on, to the state of a snapshot. Steps from there give the same bits as they did, or would have done,
+    /// when it was taken, on the same backend; a snapshot of the CPU in f32 also fits the GPU, whose bits differ.
+    ///
+    /// # Errors
+    /// That the snapshot is of another simulation (then nothing has changed); what the GPU says.
+    pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Error> {
+        snapshot.put(&mut self.world)?;
+        let clock = *self.world.resource::<Clock>();
+        self.began = (clock.step, clock.time());
+        self.elapsed = Duration::ZERO;
+        self.failure = None;
+        let mut observer = self.world.resource_mut::<Observer>();
+        (observer.good_until, observer.looked_at) = (clock.time(), None);
+        observer.window.clear();
+        Ok(())
+    }
+
+    /// What the guards have seen so far: the largest imbalance of energy, hourglass energies, the smallest J, the fastest
+    /// node, and what they warned of.
+    pub fn guards(&self) -> GuardMemory {
+        self.world.get_resource::<GuardMemory>().cloned().unwrap_or_default()
+    }
+
+    /// How the simulation broke down, if it did.
+    pub fn failure(&self) -> Option<&Instability> {
+        self.failure.as_ref()
+    }
+
+    /// Keeps the state at the end of the last step, in a file or in memory, if that is due: not sooner, for systems that
+    /// stand after `observe` belong to the step too.
+    pub(super) fn keep_what_is_due(&mut self) -> Result<(), Error> {
+        let step = self.step_count();
+        let observer = self.world.resource::<Observer>();
+        let (folder, window) = (observer.snapshot_folder(step).map(Path::to_path_buf), observer.keeps_state(step));
+        if folder.is_none() && !window {
+            return Ok(());
+        }
+        let snapshot = Snapshot::take(&mut self.world)?;
+        if let Some(folder) = folder {
+            snapshot.write(&folder.join(snapshot.file_name()))?;
+        }
+        if window {
+            self.world.resource_mut::<Observer>().keep_state(snapshot);
+        }
+        Ok(())
+    }
+
+    /// Writes the last states that passed all guards into the output folder, as fields and as snapshots, and the state in
+    /// which the breakdown was noticed, if all of it can be written. The world keeps that state.
+    pub(super) fn leave_last_states(&mut self, broken: &mut Instability) -> Result<(), Error> {
+        let observer = self.world.resource::<Observer>();
+        let Some(folder) = observer.folder().map(Path::to_path_buf) else { return Ok(()) };
+        let states: Vec<Snapshot> = observer.window.iter().cloned().collect();
+        let Some(good) = states.last() else { return Ok(()) };
+        let found = Snapshot::take(&mut self.world)?;
+        let mut series = Series::named(&folder, LAST_STATES)?;
+        for state in &states {
+            state.put(&mut self.world)?;
+            write_fields(&mut self.world, &mut series)?;
+            state.write(&folder.join(state.file_name()))?;
+        }
+        let (time, step, snapshot) = (good.time(), good.step(), good.file_name());
+        found.put(&mut self.world)?;
+        write_fields(&mut self.world, &mut series)?;
+        broken.last_good = Some(LastGood { time, step, snapshot, series: format!("{LAST_STATES}.pvd") });
+        Ok(())
+    }
+}

@@ -1,0 +1,113 @@
+//! Which columns make up a simulation's state, and how they get into a snapshot and out of it.
+
+use crate::backend::device::{ColumnAccess, all_columns};
+use crate::components::*;
+use bevy_ecs::prelude::*;
+
+/// Columns that steps carry on.
+const STATE: [&str; 14] = [
+    Displacement::NAME,
+    DisplacementStep::NAME,
+    DisplacementCompensation::NAME,
+    Mass::NAME,
+    DampingCoefficient::NAME,
+    InternalForce::NAME,
+    ExternalForce::NAME,
+    Work::NAME,
+    FirstNonFinite::NAME,
+    FirstInverted::NAME,
+    ViscousMemory::NAME,
+    Alive::NAME,
+    RemovalStep::NAME,
+    RemovedEnergy::NAME,
+];
+/// Columns that never change, or are made afresh in every step before they are read.
+const NEVER: [&str; 7] = [
+    Connectivity::NAME,
+    ElementForce::NAME,
+    ElementVolume::NAME,
+    NodalVolumeChange::NAME,
+    MiddleDisplacement::NAME,
+    NodeSums::NAME,
+    ElementSums::NAME,
+];
+
+/// Where a column belongs: a body by its name, or one of its blocks by its place in the body's list.
+#[derive(Clone, Debug, serde::Deserialize, serde::Serialize, PartialEq, Eq, PartialOrd, Ord)]
+#[serde(deny_unknown_fields)]
+pub struct Place {
+    /// The body's name.
+    pub body: String,
+    /// The block's place in the body's list; none: the body itself.
+    pub block: Option<u32>,
+}
+
+/// All bodies by name, each with its blocks.
+pub fn places(world: &mut World) -> Vec<(Place, Entity)> {
+    let mut bodies: Vec<(Label, Entity, Vec<Entity>)> = world
+        .query::<(&Label, Entity, &Authoring)>()
+        .iter(world)
+        .map(|(label, entity, authoring)| (label.clone(), entity, authoring.blocks.clone()))
+        .collect();
+    bodies.sort();
+    let of_body = |(label, entity, blocks): (Label, Entity, Vec<Entity>)| {
+        let place = move |block| Place { body: label.0.clone(), block };
+        let itself = (place(None), entity);
+        std::iter::once(itself).chain(blocks.into_iter().enumerate().map(move |(i, e)| (place(Some(i as u32)), e)))
+    };
+    bodies.into_iter().flat_map(of_body).collect()
+}
+
+/// A column that belongs to the state.
+pub struct StateColumn {
+    /// Where it belongs.
+    pub place: Place,
+    /// The entity there.
+    pub entity: Entity,
+    /// Access to it.
+    pub access: ColumnAccess,
+}
+
+/// The columns of a world's state in a fixed order. `further`: columns that custom systems write.
+pub fn state_columns(world: &mut World, further: &[&'static str]) -> Vec<StateColumn> {
+    let accesses = all_columns();
+    let mut columns = Vec::new();
+    for (place, entity) in places(world) {
+        // elements that are taken away are so in their rest shapes
+        let shapes = world.get::<Alive>(entity).is_some();
+        let wanted =
+            |name: &&'static str| STATE.contains(name) || further.contains(name) || shapes && *name == RestShape::NAME;
+        for access in accesses.iter().filter(|access| wanted(&access.name) && !NEVER.contains(&access.name)) {
+            if (access.bytes)(world, entity).is_some() {
+                columns.push(StateColumn { place: place.clone(), entity, access: *access });
+            }
+        }
+    }
+    columns
+}
+
+/// Faces of removed elements bear no load: the marks of faces follow from the elements'.
+pub fn update_faces(world: &mut World) {
+    let mut loads: Vec<(Entity, Entity)> = Vec::new();
+    for (load, body) in world.query_filtered::<(Entity, &OfBody), Or<(With<Pressure>, With<Traction>)>>().iter(world) {
+        loads.push((load, body.0));
+    }
+    for (load, body) in loads {
+        let Some(blocks) = world.get::<Authoring>(body).map(|authoring| authoring.blocks.clone()) else { continue };
+        let alive: Vec<Option<Vec<u32>>> =
+            blocks.iter().map(|&block| world.get::<Alive>(block).map(|alive| alive.0.clone())).collect();
+        let update = |faces: &mut FaceCorners| {
+            for (mark, &(block, row)) in faces.alive.iter_mut().zip(&faces.elements) {
+                if let Some(Some(alive)) = alive.get(block as usize) {
+                    *mark = alive[row as usize];
+                }
+            }
+        };
+        if let Some(mut pressure) = world.get_mut::<Pressure>(load) {
+            update(&mut pressure.faces);
+        }
+        if let Some(mut traction) = world.get_mut::<Traction>(load) {
+            update(&mut traction.faces);
+        }
+    }
+}

@@ -1,0 +1,248 @@
+//! Snapshots: what goes on from one gives the same bits; what is damaged or foreign is refused with the reason.
+
+use crate::configurations::{Configuration, configurations, scene_of};
+use crate::grids::bits;
+use proptest::prelude::*;
+use sinew::bevy_ecs;
+use sinew::bevy_ecs::prelude::*;
+use sinew::components::{ConstrainedAxes, ExternalForce, Precision};
+use sinew::systems::{Phase, Registry, System};
+use sinew::{BackendChoice, Error, Options, Simulation, Snapshot};
+use std::path::Path;
+
+/// All that has a state: compensated sums, viscous memory of stress and pressure, damping, removal by time and criterion,
+/// booked work, prescribed motion; pressure that asks which faces are left.
+fn scene(elements: &str, further: &str) -> String {
+    format!(
+        "(duration: 100, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3), elements: {elements}),
+            material: \"m\", spin: (1, 2, 3))}},
+        materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 2,
+            prony: (terms: [(alpha: 0.3, tau: 0.05)], volumetric: [(alpha: 0.1, tau: 0.1)]))}},
+        constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0)),
+            Prescribed(on: Plane(normal: (0, 0, 1), at: 0.1), axes: [X], displacement: (0.01, 0, 0), curve: Smooth(end: 0.05))],
+        loads: [Gravity(acceleration: (0, 0, -9.81)), Pressure(on: Surface(normal: (1, 0, 0)), pressure: 200)],
+        removal: [(on: Box(min: (0.06, 0, 0), max: (0.1, 0.1, 0.1)), when: During(start: 0.005, end: 0.06)),
+            (when: StretchAbove(1.6))],
+        integration: (step: 5e-4), output: (energies_every: 0.01) {further})"
+    )
+}
+
+fn all_of(simulation: &mut Simulation) -> (Vec<[u64; 3]>, String, usize) {
+    let (energies, removed) = (simulation.energies().unwrap(), simulation.summary("").unwrap().removed_elements);
+    (bits(simulation, "b"), format!("{energies:?}"), removed)
+}
+
+#[test]
+fn what_goes_on_from_a_snapshot_gives_the_same_bits() {
+    for (run, elements) in configurations().iter().flat_map(|run| ["Tet4NodalPressure", "Hex8"].map(|e| (run, e))) {
+        let text = scene(elements, "");
+        let mut whole = run.start(&text);
+        whole.advance(47).unwrap();
+        let kept = whole.snapshot().unwrap();
+        let before = all_of(&mut whole);
+        whole.advance(60).unwrap();
+        let end = all_of(&mut whole);
+        assert!(end.2 > before.2 && before.2 > 0, "elements must go before and after: {} {}", before.2, end.2);
+        // through a file's bytes, into another simulation
+        let kept = Snapshot::from_bytes(&kept.to_bytes().unwrap()).unwrap();
+        let mut other = run.start(&text);
+        other.restore(&kept).unwrap();
+        assert_eq!((other.step_count(), other.time()), (47, 47.0 * 5e-4));
+        assert!(all_of(&mut other) == before, "{}, {elements}: another state", run.name);
+        other.advance(60).unwrap();
+        assert!(all_of(&mut other) == end, "{}, {elements}: another way on", run.name);
+        // and back in the same one, whose elements have gone since
+        whole.restore(&kept).unwrap();
+        assert!(all_of(&mut whole) == before, "{}, {elements}: no way back", run.name);
+        whole.advance(60).unwrap();
+        assert!(all_of(&mut whole) == end, "{}, {elements}: another way from back there", run.name);
+    }
+}
+
+#[derive(Resource, Clone, serde::Serialize, serde::Deserialize)]
+struct Wind {
+    gusts: u64,
+    strength: f64,
+}
+
+/// Its strength depends on how often it has blown.
+fn blow(mut wind: ResMut<Wind>, mut bodies: Query<(&mut ExternalForce, &mut ConstrainedAxes)>) {
+    wind.gusts += 1;
+    wind.strength = (wind.strength * 1.1 + 0.1) % 0.013;
+    for (mut force, mut axes) in &mut bodies {
+        let last = force.len() - 3;
+        force.set(last, wind.strength);
+        // what no system of the engine writes belongs to the state too
+        axes[0] = (wind.gusts % 7) as u32;
+    }
+}
+
+#[test]
+fn state_of_custom_systems_goes_along_where_they_declare_one() {
+    for run in configurations() {
+        let text = scene("Hex8", "").replace("energies_every: 0.01", "").replace(
+            "integration:",
+            "schedule: [\"boundary\", \"element_forces\", \"gather\", \"gravity\", \"pressure\", \"wind\", \"integrate\",
+             \"element_removal\", \"observe\"], integration:",
+        );
+        let registry = |kept: bool| {
+            let system = System::custom("wind", Phase::Loads, "blows", blow).every(3);
+            Registry::default().with(if kept { system.with_state::<Wind>() } else { system })
+        };
+        let start = |kept: bool| {
+            let file = scene_of(&text, Path::new("."));
+            let mut simulation = Simulation::with_systems(&file, &run.options, &registry(kept)).unwrap();
+            simulation.world_mut().insert_resource(Wind { gusts: 0, strength: 0.01 });
+            simulation
+        };
+        let (mut whole, mut other) = (start(true), start(true));
+        whole.advance(20).unwrap();
+        let kept = whole.snapshot().unwrap();
+        whole.advance(20).unwrap();
+        other.restore(&kept).unwrap();
+        other.advance(20).unwrap();
+        assert!(bits(&mut whole, "b") == bits(&mut other, "b"), "{}", run.name);
+        assert_eq!(other.world().resource::<Wind>().gusts, 14);
+        let refused = start(false).restore(&kept).unwrap_err().to_string();
+        assert!(refused.contains("the state of the systems [wind], here there are []"), "{refused}");
+    }
+}
+
+#[test]
+fn snapshot_of_the_cpu_fits_the_gpu() {
+    let all = configurations();
+    let [_, cpu, gpu] = &all[..] else { return };
+    let text = scene("Hex8", "");
+    let mut whole = cpu.start(&text);
+    whole.advance(30).unwrap();
+    let mut other = gpu.start(&text);
+    other.restore(&whole.snapshot().unwrap()).unwrap();
+    assert_eq!(bits(&mut whole, "b"), bits(&mut other, "b"));
+    whole.advance(30).unwrap();
+    other.advance(30).unwrap();
+    let (a, b) = (whole.displacements("b").unwrap(), other.displacements("b").unwrap());
+    let apart = a.iter().zip(&b).fold(0.0_f64, |worst, (a, b)| worst.max((*a - *b).length()));
+    assert!(apart > 0.0 && apart < 1e-6, "{apart}");
+}
+
+fn cpu(precision: Precision) -> Configuration {
+    let options = Options { backend: BackendChoice::Cpu, precision, threads: 1, ..Options::default() };
+    Configuration { name: "CPU", options }
+}
+
+#[test]
+fn foreign_snapshots_are_refused_with_the_reason() {
+    let (run, text) = (cpu(Precision::F32), scene("Hex8", ""));
+    let mut simulation = run.start(&text);
+    simulation.advance(5).unwrap();
+    let kept = simulation.snapshot().unwrap();
+    let refused = |other: &mut Simulation| {
+        let before = bits(other, "b");
+        let error = other.restore(&kept).unwrap_err();
+        assert!(matches!(error, Error::Snapshot(_)), "{error}");
+        assert!(bits(other, "b") == before && other.step_count() == 0, "it has changed all the same");
+        error.to_string()
+    };
+    let said = refused(&mut cpu(Precision::F64).start(&text));
+    assert!(said.contains("its numbers are F32, here they are F64"), "{said}");
+    let changes = [
+        ("density: 1000", "density: 1001", "materials"),
+        ("pressure: 200", "pressure: 201", "loads"),
+        ("axes: [X]", "axes: [Y]", "constraints"),
+        ("cells: (3, 3, 3)", "cells: (3, 3, 4)", "bodies, meshes"),
+        ("StretchAbove(1.6)", "StretchAbove(1.7)", "removal"),
+        ("step: 5e-4", "step: 4e-4", "integration, materials, time step"),
+    ];
+    for (from, to, part) in changes {
+        assert!(text.contains(from));
+        let said = refused(&mut run.start(&text.replace(from, to)));
+        assert!(said.contains("of another simulation") && said.contains(part), "{from} to {to}: {said}");
+    }
+    // what does not move anything may differ
+    let further =
+        text.replace("duration: 100", "duration: 200").replace("energies_every: 0.01", "energies_every: 0.02");
+    run.start(&further.replace("(duration", "(title: \"longer\", duration")).restore(&kept).unwrap();
+    let still =
+        text.replace("integration:", "analysis: Static(), integration:").replace("removal: [", "probes: {}, //");
+    if let Ok(file) = sinew::SceneFile::from_text("still", &still, Path::new("."), &[])
+        && let Ok(mut still) = Simulation::new(&file, &run.options)
+    {
+        let said = still.snapshot().unwrap_err().to_string();
+        assert!(said.contains("a static analysis has no snapshots"), "{said}");
+    }
+}
+
+fn bytes() -> Vec<u8> {
+    let mut simulation = cpu(Precision::F32).start(&scene("Hex8", ""));
+    simulation.advance(5).unwrap();
+    simulation.snapshot().unwrap().to_bytes().unwrap()
+}
+
+/// With a checksum and a length that fit again: what someone could write who means harm.
+fn sealed(mut bytes: Vec<u8>) -> Vec<u8> {
+    bytes.truncate(bytes.len().saturating_sub(8).max(24));
+    bytes.resize(bytes.len().max(24), 0);
+    let length = bytes.len() as u64 + 8;
+    bytes[16..24].copy_from_slice(&length.to_le_bytes());
+    let check = twox_hash::XxHash64::oneshot(0, &bytes);
+    bytes.extend(check.to_le_bytes());
+    bytes
+}
+
+#[test]
+fn damaged_snapshots_say_what_is_wrong() {
+    let good = bytes();
+    let said = |bytes: &[u8]| Snapshot::from_bytes(bytes).unwrap_err().to_string();
+    assert!(said(b"").contains("too short"));
+    assert!(said(&[0; 64]).contains("does not begin as one"));
+    assert!(said(&good[..good.len() - 1]).contains("cut short"));
+    assert!(said(&[&good[..], b"x"].concat()).contains("added to"));
+    let mut flipped = good.clone();
+    flipped[good.len() / 2] ^= 4;
+    assert!(said(&flipped).contains("damaged"));
+    let mut newer = good.clone();
+    newer[8] = 99;
+    assert!(said(&newer).contains("version 99"));
+    // lengths that lie are found before anything of their size is made
+    let mut head = good.clone();
+    head[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
+    assert!(said(&sealed(head)).contains("longer than the whole"));
+    let text = String::from_utf8_lossy(&good[24..]).into_owned();
+    let column = text.find("\"bytes\":").unwrap() + 24 + 8;
+    let mut huge = good.clone();
+    huge[column] = b'9';
+    assert!(said(&sealed(huge)).contains("columns are not"));
+    assert!(Snapshot::from_bytes(&sealed(good.clone())).unwrap() == Snapshot::from_bytes(&good).unwrap());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
+
+    #[test]
+    fn mutated_snapshots_are_refused_and_never_crash(
+        cut in 0.0..1.0_f64,
+        changes in proptest::collection::vec((0.0..1.0_f64, 1..=255_u8), 1..6),
+        in_front in any::<bool>(),
+        seal in any::<bool>(),
+    ) {
+        static GOOD: std::sync::LazyLock<Vec<u8>> = std::sync::LazyLock::new(bytes);
+        let mut bytes = GOOD.clone();
+        let reach = if in_front { 2000 } else { bytes.len() };
+        for (at, change) in changes {
+            bytes[(at * reach as f64) as usize] ^= change;
+        }
+        if cut < 0.3 {
+            bytes.truncate((cut / 0.3 * bytes.len() as f64) as usize);
+        }
+        if !seal {
+            let same = bytes == *GOOD;
+            prop_assert_eq!(Snapshot::from_bytes(&bytes).is_ok(), same);
+        } else if let Ok(snapshot) = Snapshot::from_bytes(&sealed(bytes)) {
+            // whole by its checksum: it fits, or it is refused; steps from it end well or with an error
+            let mut simulation = cpu(Precision::F32).start(&scene("Hex8", ""));
+            if simulation.restore(&snapshot).is_ok() {
+                let _ = simulation.advance(3);
+            }
+        }
+    }
+}
