@@ -136,7 +136,7 @@ fn reference(bytes: &[u8], path: &Path) {
 }
 
 /// A simulation that snapshots are of.
-pub fn kept() -> Simulation {
+pub fn small() -> Simulation {
     let scene = SceneFile::from_text("small.ron", SMALL, Path::new("."), &[]).unwrap();
     Simulation::new(&scene, &Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() }).unwrap()
 }
@@ -153,7 +153,7 @@ fn snapshot(bytes: &[u8], _: &Path) {
         match Snapshot::from_bytes(bytes) {
             Err(error) => assert!(error.to_string().len() > 10),
             Ok(snapshot) => {
-                let mut simulation = kept();
+                let mut simulation = small();
                 if simulation.restore(&snapshot).is_ok() && steps(&mut simulation).is_ok() {
                     assert!(simulation.time().is_finite());
                 }
