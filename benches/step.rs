@@ -116,8 +116,11 @@ impl<'a> Group<'a> {
     }
 }
 
-/// What the guards of every run cost: blocks of steps with and without them by turns, the best of each, so that other work on
-/// the machine does not count. A block has two looks.
+/// Steps that are timed at once.
+const BLOCK: u64 = 8;
+
+/// What the guards of every run cost: blocks of steps with and without booked work by turns, the best of each, so that other
+/// work on the machine does not count; and a look, of which there is one in 256 steps.
 fn guards() {
     let gpu = std::env::var_os("SINEW_BENCH_GPU").is_some();
     let configurations = [("f32", Precision::F32, gpu), ("f64", Precision::F64, false)];
@@ -134,24 +137,34 @@ fn guards() {
             };
             let none = "guards: (off: [Energy, Hourglass], every: 1000000000),";
             let moved = format!("{prescribed}, ");
-            let mut all = [of(none, ""), of("guards: (every: 1000000000),", ""), of("", ""), of("", &moved)];
-            let mut best = [f64::INFINITY; 4];
-            for _ in 0..6 {
+            let every = "guards: (every: 1000000000),";
+            let mut all = [of(none, ""), of(every, ""), of(none, &moved), of(every, &moved)];
+            let mut best = [f64::INFINITY; 5];
+            // blocks short enough to be left alone by the machine's other work
+            for _ in 0..80 {
                 for (simulation, best) in all.iter_mut().zip(&mut best) {
                     let started = Instant::now();
-                    simulation.advance(512).expect("steps");
-                    *best = best.min(started.elapsed().as_secs_f64() / 512.0);
+                    simulation.advance(BLOCK).expect("steps");
+                    *best = best.min(started.elapsed().as_secs_f64() / BLOCK as f64);
                 }
             }
+            let mut look = f64::INFINITY;
+            for _ in 0..20 {
+                let started = Instant::now();
+                sinew::observation::look(all[1].world_mut()).expect("a look");
+                look = look.min(started.elapsed().as_secs_f64());
+            }
+            best[4] = best[1] + look / 256.0;
             let share = |i: usize| 100.0 * (best[i] / best[0] - 1.0);
             println!(
-                "guards, {kind} {cells}^3 {word}{}: {:.1} us a step without, booking {:+.1} %, all of them {:+.1} %, with \
-                 prescribed nodes {:+.1} %",
+                "guards, {kind} {cells}^3 {word}{}: {:.1} us a step without, booking {:+.1} %, all of them {:+.1} %; booking \
+                 with prescribed nodes {:+.1} %; a look is {:.1} steps",
                 if gpu { " GPU" } else { "" },
                 best[0] * 1e6,
                 share(1),
-                share(2),
-                share(3)
+                share(4),
+                100.0 * (best[3] / best[2] - 1.0),
+                look / best[0]
             );
         }
     }

@@ -1,5 +1,5 @@
 // Where prescribed nodes go, u = A·(X − center) + b; twin of systems/boundary.rs. lost_of is in lost.wgsl, or generated
-// where sums are not compensated.
+// where sums are not compensated; keep_step in kept_step.wgsl, or generated where nothing is booked.
 struct Motion {
     count: u32, // prescribed nodes
     axes: u32, // bits 0, 1, 2: x, y, z
@@ -22,6 +22,7 @@ fn boundary(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroup
         if ((motion.axes >> axis) & 1u) == 1u {
             let at = 3u * rows[i] + axis;
             let goal = dot(step.signals[motion.signal + axis], arm);
+            keep_step(at);
             displacement_step[at] = (goal - displacement[at]) + lost_of(rows[i], axis);
         }
     }

@@ -40,7 +40,7 @@ fn push(node: u32) -> vec3<f32> {
         let constrained = constrained_at(node);
         after = select(add_to_step(node, before, change), before, constrained);
         book_work(node, before, after, constrained, inner, outer);
-        spend(before, after, inner);
+        spend(node, before, after, constrained, inner);
     } else {
         forget_step(node);
     }

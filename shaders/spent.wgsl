@@ -1,11 +1,13 @@
 // Work against internal forces (J), summed over sixty-four nodes, for integrate: what the guards compare with the energy that
-// elements hold. SPENT_AT is generated.
+// elements hold. SPENT_AT and step_before are generated.
 var<private> spent: f32;
 var<workgroup> spent_parts: array<f32, 64>;
 
-// Forces at the beginning of the step along the mean of the steps before and after; the first step counts by half.
-fn spend(before: vec3<f32>, after: vec3<f32>, inner: vec3<f32>) {
-    spent = (0.25 + 0.25 * step.divide) * dot(inner, before + after);
+// Forces at the beginning of the step along the mean of the steps before and after; counted by the
+// time between the middles of both.
+fn spend(node: u32, before: vec3<f32>, after: vec3<f32>, constrained: vec3<bool>, inner: vec3<f32>) {
+    let last = select(before, step_before(node), constrained);
+    spent = 0.5 * step.booked * dot(inner, last + after);
 }
 
 // The same number, in a way that no compiler can look through.

@@ -1,13 +1,13 @@
 // What is the same for all rows of a step; twin of src/backend/step.rs. SIGNALS is generated.
 struct Step {
-    force_factor: f32, // Δt², in the first step half of it, times the gain of a static analysis (s²)
-    half_step: f32, // Δt/2 (s)
+    force_factor: f32, // Δt times the time between the middles of two steps, times the gain of a static analysis (s²)
+    half_step: f32, // half the time between the middles, in the first step Δt/2 (s)
     divide: f32, // 1, in the first step 0
     rate: f32, // 1/Δt (1/s)
     number: u32, // index of the step, from 0; stops at the largest number
     zero: u32, // always 0, which no compiler knows
     relaxation: f32, // a = cΔt/2 of a static analysis
-    pad: u32,
+    booked: f32, // share of a step's work that is booked: the time between the middles over Δt
     signals: array<vec4<f32>, SIGNALS>,
 }
 @group(0) @binding(0) var<uniform> step: Step;

@@ -12,9 +12,9 @@ fn book_work(
 ) {
     let first = 7u * node;
     let kept = vec3<f32>(work[first + 4u], work[first + 5u], work[first + 6u]);
-    // in the middle of each step the balance is exact; the first step is booked by half
+    // in the middle of each step the balance is exact: from middle to middle, in the first step half of it
     let mean = 0.5 * (select(before, kept, constrained) + after);
-    let along = (0.5 + 0.5 * step.divide) * mean;
+    let along = step.booked * mean;
     let lost = coefficient_of(node) * step.rate * mean * along;
     let held = select(vec3<f32>(0.0), (inner - outer) * along + lost, constrained);
     work[first] += dot(outer, along);

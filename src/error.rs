@@ -79,7 +79,7 @@ pub struct Instability {
 /// What ended a run, for programs.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Criterion {
-    /// `not_finite`, `inverted`, `energy`, or `result` for a result that is not finite.
+    /// `not_finite`, `inverted`, `energy`, `step` for a stable step that has gone to nothing, or `result` for a result that is not finite.
     pub name: &'static str,
     /// What was found, where it is a number.
     pub value: Option<f64>,

@@ -43,7 +43,9 @@ pub use serde;
 pub use error::{Error, GpuFailure, Instability, NotConverged};
 pub use scene::SceneFile;
 pub use simulation::explain;
-pub use simulation::{BackendChoice, Equilibrium, Inversions, Options, Simulation, Summary, SystemTime};
+pub use simulation::{
+    BackendChoice, Equilibrium, Inversions, Options, Simulation, Stability, StepHistory, Summary, SystemTime,
+};
 pub use snapshot::Snapshot;
 
 /// The code in the readme compiles and runs.

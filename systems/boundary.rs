@@ -34,17 +34,18 @@ pub fn system() -> System {
 fn boundary(
     signals: Res<Signals>,
     constraints: Query<(&Prescribed, &OfBody)>,
-    mut bodies: Query<(&Displacement, Option<&DisplacementCompensation>, &mut DisplacementStep)>,
+    mut bodies: Query<(&Displacement, Option<&DisplacementCompensation>, &mut DisplacementStep, &mut FirstNonFinite)>,
 ) {
     for (prescribed, body) in &constraints {
-        let Ok((displacement, compensation, mut step)) = bodies.get_mut(body.0) else { continue };
+        let Ok((displacement, compensation, mut step, mut noticed)) = bodies.get_mut(body.0) else { continue };
+        let kept = noticed.get_mut(before_at(displacement.len() / 3)..).unwrap_or_default();
         let rows = &signals.values()[prescribed.signal..prescribed.signal + 3];
         match &mut step.0 {
             Reals::F32(step) => {
-                move_rows(prescribed, rows, displacement.slice(), compensation.map(|c| c.slice()), step)
+                move_rows(prescribed, rows, displacement.slice(), compensation.map(|c| c.slice()), step, kept)
             }
             Reals::F64(step) => {
-                move_rows(prescribed, rows, displacement.slice(), compensation.map(|c| c.slice()), step)
+                move_rows(prescribed, rows, displacement.slice(), compensation.map(|c| c.slice()), step, kept)
             }
         }
     }
@@ -56,6 +57,7 @@ fn move_rows<T: Scalar>(
     displacement: &[T],
     compensation: Option<&[T]>,
     step: &mut [T],
+    kept: &mut [u32],
 ) {
     for (&row, arm) in prescribed.rows.iter().zip(&prescribed.arms) {
         for axis in (0..3).filter(|axis| prescribed.axes >> axis & 1 == 1) {
@@ -63,6 +65,10 @@ fn move_rows<T: Scalar>(
             let place = 3 * row as usize + axis;
             let target = T::from_f64(x * arm.x + y * arm.y + z * arm.z + shift);
             let lost = compensation.map_or(T::default(), |c| c[COMPENSATION_NUMBERS * row as usize + axis]);
+            // for the work that integrate books
+            if let Some(kept) = kept.get_mut(place) {
+                *kept = (step[place].to_f64() as f32).to_bits();
+            }
             step[place] = (target - displacement[place]) + lost;
         }
     }
@@ -102,6 +108,16 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
                 "generated: sums that are not compensated",
                 "fn lost_of(node: u32, axis: u32) -> f32 {\n    return 0.0;\n}\n",
             ))
+        };
+        let count = world.get::<Mass>(*body).map_or(0, |mass| mass.len());
+        let booked = world.get::<FirstNonFinite>(*body).is_some_and(|noticed| noticed.len() > before_at(count));
+        let kernel = if booked {
+            let noticed = buffers.column(*body, FirstNonFinite::NAME);
+            let at = format!("const BEFORE_AT: u32 = {}u;\n", before_at(count));
+            let at = Fragment::new("generated: where steps are kept", at);
+            kernel.fragment(shader!("kept_step")).fragment(at).bind(FirstNonFinite::NAME, noticed)
+        } else {
+            kernel.fragment(Fragment::new("generated: nothing is booked", "fn keep_step(at: u32) {}\n"))
         };
         kernels.push(with_step(kernel, world));
     }

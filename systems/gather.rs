@@ -35,7 +35,8 @@ fn gather(cpu: Res<Cpu>, mut bodies: Query<(&Corners, &ElementForce, &mut Intern
     }
 }
 
-fn sum_corners<T: Scalar>(cpu: &Cpu, corners: &Corners, element_force: &[T], internal: &mut [T]) {
+/// Forces of elements at their corners (N), summed at the nodes.
+pub(crate) fn sum_corners<T: Scalar>(cpu: &Cpu, corners: &Corners, element_force: &[T], internal: &mut [T]) {
     let tasks = internal.chunks_mut(3 * ROWS_A_TASK).enumerate();
     cpu.for_each(tasks, |(task, rows)| {
         for (row, force) in rows.chunks_exact_mut(3).enumerate() {

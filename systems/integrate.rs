@@ -15,7 +15,8 @@ use bevy_ecs::prelude::*;
 ///
 /// The first step starts half way, d ← (1 − a) d + ½Δt² (R − F)/m with d = v₀Δt, so that free fall is exact. Stable iff
 /// ωΔt ≤ 2 for any damping. The classical form with three coefficients loses 2 to 10 % in f32, this one 1e-6; with
-/// [`DisplacementCompensation`] the sum of steps is as good as in f64. Constrained axes take the step that `boundary`
+/// [`DisplacementCompensation`] the sum of steps is as good as in f64. Where Δt changes, d is scaled to the new one
+/// beforehand, and forces act over the mean of both, (Δt + Δt')/2 in place of Δt in the push and in a. Constrained axes take the step that `boundary`
 /// wrote; nodes without mass are parked.
 ///
 /// In a static analysis the same recursion relaxes: the mass is [`FictitiousMass`], a is one number for all nodes, and
@@ -35,15 +36,16 @@ pub fn system() -> System {
 /// What a step multiplies forces and damping with.
 #[derive(Clone, Copy)]
 struct Factors<T> {
-    /// Δt², in the first step half of it, times the gain of a static analysis (s²).
+    /// Δt times the time between the middles of the last and of this step (see [`Clock::between_middles`]), times the gain
+    /// of a static analysis (s²).
     force: T,
-    /// Δt/2 (s).
+    /// Half the time between the middles, in the first step Δt/2 (s).
     half_step: T,
     /// 1, in the first step 0.
     divide: T,
     /// 1/Δt (1/s).
     rate: T,
-    /// Share of a step's work that is booked: 1, in the first step ½.
+    /// Share of a step's work that is booked, the time between the middles over Δt: 1, in the first step ½.
     booked: T,
     /// a of a static analysis, else 0.
     relaxation: T,
@@ -51,14 +53,14 @@ struct Factors<T> {
 
 impl<T: Scalar> Factors<T> {
     fn of(clock: &Clock) -> Self {
-        let (dt, first) = (clock.time_step, clock.step == 0);
+        let (dt, between, first) = (clock.time_step, clock.between_middles(), clock.step == 0);
         let (gain, damping) = clock.relaxation.map_or((1.0, 0.0), |relaxation| (relaxation.gain, relaxation.damping));
         Self {
-            force: T::from_f64(gain * dt * dt * if first { 0.5 } else { 1.0 }),
-            half_step: T::from_f64(0.5 * dt),
+            force: T::from_f64(gain * dt * between),
+            half_step: T::from_f64(0.5 * if first { dt } else { between }),
             divide: T::from_f64(if first { 0.0 } else { 1.0 }),
             rate: T::from_f64(1.0 / dt),
-            booked: T::from_f64(if first { 0.5 } else { 1.0 }),
+            booked: T::from_f64(between / dt),
             relaxation: T::from_f64(damping),
         }
     }
@@ -90,10 +92,14 @@ fn integrate(clock: Res<Clock>, cpu: Res<Cpu>, mut bodies: Query<BodyQuery>) {
                         axes,
                         damping: damping.map(|d| d.slice()),
                         factors: Factors::of(&clock),
+                        kept: &[],
                     };
                     let compensation = compensation.map(|c| c.into_inner().0.slice_mut());
                     let work = work.map(|w| w.into_inner().0.slice_mut());
-                    let spent = first.0.get_mut(SPENT_AT..).unwrap_or_default();
+                    let words = first.0.get_mut(SPENT_AT..).unwrap_or_default();
+                    let sums = words.len().min(before_at(fixed.axes.len()) - SPENT_AT);
+                    let (spent, kept) = words.split_at_mut(sums);
+                    let fixed = Inputs { kept, ..fixed };
                     move_nodes(&cpu, &fixed, u, step, compensation, work, spent)
                 } else {
                     None
@@ -117,6 +123,8 @@ struct Inputs<'a, T> {
     axes: &'a [u32],
     damping: Option<&'a [T]>,
     factors: Factors<T>,
+    /// Bits of the last steps (m) along prescribed axes; none where nothing is moved as told or all work is booked.
+    kept: &'a [u32],
 }
 
 /// Returns the lowest row whose displacement is no longer finite.
@@ -243,8 +251,11 @@ fn move_node<T: Scalar>(inputs: &Inputs<'_, T>, node: usize, sum: &mut Sum<'_, T
         }
         sum.go(i, constrained);
         let step = sum.step[i];
-        // fixed axes have no step; where some are moved as told all the work is booked
-        spent += internal * (before + step);
+        let last = match inputs.kept.get(3 * node + i) {
+            Some(&bits) if constrained => T::from_f64(f64::from(f32::from_bits(bits))),
+            _ => before,
+        };
+        spent += internal * (last + step);
         if let Some(work) = &mut work {
             // forces at the beginning of the step work along the mean of the steps before and after, in the first step
             // along half of it: so the balance of the scheme is exact in the middle of each step
@@ -276,9 +287,12 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let bodies: Vec<_> = query.iter(world).map(|(body, mass, e, d, w)| (body, mass.len() as u32, [e, d, w])).collect();
     let mut kernels = Vec::new();
     for (body, count, optional) in bodies {
-        let relaxed = world.get::<FictitiousMass>(body).is_some();
-        let spent = world.get::<FirstNonFinite>(body).is_some_and(|noticed| noticed.len() > SPENT_AT);
-        let column = |name: &'static str| if relaxed && name == Mass::NAME { FictitiousMass::NAME } else { name };
+        let relaxed = world.get_resource::<Clock>().is_some_and(|clock| clock.relaxation.is_some());
+        let noticed = world.get::<FirstNonFinite>(body).map_or(0, |noticed| noticed.len());
+        let (spent, at) = (noticed > SPENT_AT, before_at(count as usize));
+        let kept = (noticed > at).then_some(at);
+        let fictitious = world.get::<FictitiousMass>(body).is_some();
+        let column = |name: &'static str| if fictitious && name == Mass::NAME { FictitiousMass::NAME } else { name };
         let compensated = world.get::<DisplacementCompensation>(body).is_some();
         let nodes = buffers.uniform("integrate".into(), &Integrate { count }.bytes());
         let mut kernel = |entry: &'static str, columns: &[&'static str]| {
@@ -289,7 +303,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
                 .threads(count);
             let kernel =
                 columns.iter().fold(kernel, |kernel, name| kernel.bind(name, buffers.column(body, column(name))));
-            with_step(with_optional(kernel, optional, compensated, relaxed, spent), world)
+            with_step(with_optional(kernel, optional, compensated, relaxed, (spent, kept)), world)
         };
         let [external, damped, worked] = optional;
         let mut push = vec![Mass::NAME, InternalForce::NAME, ConstrainedAxes::NAME, DisplacementStep::NAME];
@@ -320,7 +334,7 @@ fn with_optional(
     [external, damped, worked]: [bool; 3],
     compensated: bool,
     relaxed: bool,
-    spent: bool,
+    (spent, kept): (bool, Option<usize>),
 ) -> Kernel {
     let mut without = String::new();
     let mut fragments = Vec::new();
@@ -348,9 +362,16 @@ fn with_optional(
     }
     if spent {
         fragments.push(shader!("spent"));
-        without += &format!("const SPENT_AT: u32 = {SPENT_AT}u;\n");
+        without += &format!("const SPENT_AT: u32 = {SPENT_AT}u;\nfn step_before(node: u32) -> vec3<f32> {{\n");
+        without += &match kept {
+            None => "    return vec3<f32>(0.0);\n}\n".to_string(),
+            Some(at) => {
+                let word = |i: usize| format!("bitcast<f32>(atomicLoad(&first_non_finite[{}u + 3u * node]))", at + i);
+                format!("    return vec3<f32>({}, {}, {});\n}}\n", word(0), word(1), word(2))
+            }
+        };
     } else {
-        without += "fn spend(before: vec3<f32>, after: vec3<f32>, inner: vec3<f32>) {}\n\
+        without += "fn spend(node: u32, before: vec3<f32>, after: vec3<f32>, constrained: vec3<bool>, inner: vec3<f32>) {}\n\
                     fn add_up_spent(local: u32, node: u32) {}\n";
     }
     if compensated {

@@ -27,6 +27,8 @@ mod pressure;
 mod registry;
 mod traction;
 
+pub(crate) use gather::sum_corners;
+pub(crate) use nodal_volume::means_of;
 pub(crate) use observe::{add_watch_columns, watch_kernels};
 pub use registry::{DescribeKernels, HostSystem, Phase, Registry, System};
 

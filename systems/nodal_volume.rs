@@ -42,25 +42,40 @@ fn nodal_volume(cpu: Res<Cpu>, mut blocks: Query<BlockQuery>, bodies: Query<&Dis
         let Ok(displacement) = bodies.get(block.body) else { continue };
         match (&mut volumes.0, &mut means.0, rounded) {
             (Reals::F32(volumes), Reals::F32(means), Some(law)) => {
-                means_of(&cpu, block, (connectivity, shape, corners, displacement), law, volumes, means);
+                means_of(
+                    &cpu,
+                    block,
+                    (connectivity, shape.slice(), corners, displacement.slice()),
+                    law,
+                    volumes,
+                    means,
+                );
             }
             (Reals::F64(volumes), Reals::F64(means), _) => {
-                means_of(&cpu, block, (connectivity, shape, corners, displacement), law, volumes, means);
+                means_of(
+                    &cpu,
+                    block,
+                    (connectivity, shape.slice(), corners, displacement.slice()),
+                    law,
+                    volumes,
+                    means,
+                );
             }
             _ => {}
         }
     }
 }
 
-fn means_of<T: SimdScalar>(
+/// θ of all nodes of a block, from displacements of its body's nodes (m).
+pub(crate) fn means_of<T: SimdScalar>(
     cpu: &Cpu,
     block: &Block,
-    (connectivity, shape, corners, displacement): (&Connectivity, &RestShape, &BlockCorners, &Displacement),
+    (connectivity, shape, corners, u): (&Connectivity, &[T], &BlockCorners, &[T]),
     law: &BlockLaw<T>,
     volumes: &mut [T],
     means: &mut [T],
 ) {
-    let (u, shape, groups) = (displacement.slice(), shape.slice(), patch_groups(block.kind));
+    let groups = patch_groups(block.kind);
     run_volumes::<Tet4NodalPressure, T>(cpu, law, u, connectivity, shape, groups, volumes);
     let tasks = means.chunks_mut(ROWS_A_TASK).enumerate();
     cpu.for_each(tasks, |(task, rows)| {

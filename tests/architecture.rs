@@ -64,7 +64,7 @@ fn imports_run_one_way() {
     let inputs = ["mesh", "scene"];
     let data = ["math", "components", "elements", "materials"];
     // what each part may name; itself and `error` (which knows every part's errors) are always allowed
-    let allowed: [(&str, Vec<&str>); 14] = [
+    let allowed: [(&str, Vec<&str>); 15] = [
         ("src/math", vec![]),
         ("src/mesh", vec![]),
         ("src/scene", vec!["mesh"]),
@@ -76,8 +76,12 @@ fn imports_run_one_way() {
         ("src/backend", [&inputs[..], &data, &["evaluation"]].concat()),
         ("src/evaluation", [&inputs[..], &data, &["backend"]].concat()),
         ("src/assembly", [&inputs[..], &data, &["backend", "evaluation", "systems"]].concat()),
-        ("src/observation", [&inputs[..], &data, &["backend", "evaluation", "output"]].concat()),
-        ("systems", [&inputs[..], &data, &["backend", "evaluation", "observation", "assembly"]].concat()),
+        ("src/snapshot", [&inputs[..], &["components", "materials", "backend", "output"]].concat()),
+        ("src/observation", [&inputs[..], &data, &["backend", "evaluation", "output", "snapshot"]].concat()),
+        (
+            "systems",
+            [&inputs[..], &data, &["backend", "evaluation", "observation", "assembly", "output", "snapshot"]].concat(),
+        ),
         ("src/accuracy", [&inputs[..], &["components", "materials", "backend", "assembly", "observation"]].concat()),
     ];
     let parts = [
@@ -88,6 +92,7 @@ fn imports_run_one_way() {
         "elements",
         "components",
         "output",
+        "snapshot",
         "render",
         "backend",
         "evaluation",

@@ -61,7 +61,7 @@ fn scenes_in_the_readme_are_sound() {
     for text in scenes {
         let scene = SceneFile::from_text("README", text, std::path::Path::new("."), &[]);
         let scene = scene.unwrap_or_else(|wrong| panic!("{}", wrong.render(false)));
-        let found = sinew::Simulation::check(&scene, &sinew::systems::Registry::default());
+        let found = Simulation::check(&scene, &sinew::systems::Registry::default());
         assert!(found.is_empty(), "{}", found.render(false));
     }
 }

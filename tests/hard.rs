@@ -33,4 +33,4 @@ macro_rules! cases {
         }
     };
 }
-cases!(h01 h02 h06 h07 h11 h12 h13 h14 h15 h16 h17 h18 h19 h20 h21 h22 h23 h24 h25 h26 h27 h28 h31 h33 h34 h35);
+cases!(h01 h02 h03 h04 h05 h06 h07 h08 h09 h10 h11 h12 h13 h14 h15 h16 h17 h18 h19 h20 h21 h22 h23 h24 h25 h26 h27 h28 h29 h30 h31 h32 h33 h34 h35);

@@ -10,7 +10,7 @@ use sinew::components::Signals;
 use std::collections::BTreeSet;
 
 /// Fragments that belong to no system, element or material by name, and what calls for them.
-const SUPPORT: [(&str, &str); 31] = [
+const SUPPORT: [(&str, &str); 34] = [
     ("alive", "loads on faces of elements that can go"),
     ("block", "columns of element blocks"),
     ("criterion", "removal by criterion"),
@@ -34,6 +34,7 @@ const SUPPORT: [(&str, &str); 31] = [
     ("row", "the row of an invocation"),
     ("step", "what is the same for a whole step"),
     ("tensor", "small tensors"),
+    ("kept_step", "the step that boundary writes over"),
     ("spent", "work against internal forces, in integrate"),
     ("watch_elements", "what the guards look at"),
     ("watch_nodes", "what the guards look at"),

@@ -45,13 +45,13 @@ pub(super) fn insert_node_columns(
     if !scene.loads.is_empty() {
         entity.insert(ExternalForce(vectors()));
     }
-    // pseudo-steps to rest do no work worth booking; where nodes are moved as told only the whole of it tells how much
+    // pseudo-steps to rest do no work worth booking
     let moved = scene.constraints.iter().any(|constraint| matches!(constraint, Constraint::Prescribed { .. }));
     let mut noticed = vec![u32::MAX];
-    if !scene.is_static() && (scene.output.energies_every.is_some() || moved) {
+    if !scene.is_static() && scene.output.energies_every.is_some() {
         entity.insert(Work(Reals::zeros(precision, WORK_NUMBERS * count)));
     } else if !scene.is_static() && !scene.guards.off.contains(&Guard::Energy) {
-        noticed.resize(SPENT_AT + 2 * count.div_ceil(SPENT_ROWS), 0);
+        noticed.resize(before_at(count) + if moved { 3 * count } else { 0 }, 0);
     }
     entity.insert(FirstNonFinite(noticed));
     let used =
@@ -149,7 +149,7 @@ pub fn stiffness(world: &World, material: Entity) -> Stiffness {
 }
 
 /// Gives every block its law, in f64 for looking at it and in the run's precision for its kernel, and its history.
-pub(super) fn insert_laws(precision: Precision, world: &mut World) {
+pub fn insert_laws(precision: Precision, world: &mut World) {
     let clock = *world.resource::<Clock>();
     let entities: Vec<(Entity, Block)> =
         world.query::<(Entity, &Block)>().iter(world).map(|(entity, block)| (entity, block.clone())).collect();

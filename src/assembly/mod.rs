@@ -18,11 +18,13 @@ mod time_step;
 mod user_laws;
 
 pub use body::BodyParts;
+pub use columns::insert_laws;
 pub use meshes::{PlacedMesh, mesh_of};
 pub use observation::steps_of;
 pub use relaxation::load_steps;
+pub use removal::step_of;
 pub use select::Selection;
-pub use time_step::{StableStep, stable_step};
+pub use time_step::{StableStep, StepSetter, author_of, square_frequencies, stable_step};
 
 use crate::components::*;
 use crate::scene::SceneFile;
@@ -80,10 +82,15 @@ pub fn assemble<'a>(
 pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
     removal::spawn(assembly, world, diagnostics);
     observation::spawn(assembly, world, diagnostics);
-    columns::insert_laws(assembly.precision, world);
+    insert_laws(assembly.precision, world);
     columns::start(assembly, world);
     start::deform(assembly, world, diagnostics);
-    if assembly.scene.scene.is_static() {
+    let scene = &assembly.scene.scene;
+    if scene.when_unstable() == schema::WhenUnstable::Remove && !scene.is_static() {
+        let blocks = assembly.bodies.values().flat_map(|body| &body.blocks);
+        blocks.for_each(|&block| removal::insert_columns(assembly.precision, block, world));
+    }
+    if scene.is_static() {
         relaxation::insert_fictitious_masses(assembly, world);
     }
 }

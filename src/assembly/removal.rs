@@ -31,12 +31,12 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         };
         body.blocks.iter().for_each(|&block| insert_columns(assembly.precision, block, world));
         match removal.when {
-            When::At(time) => by_time(body, &marks, world, |_| time / time_step),
+            When::At(time) => by_time(body, &marks, time_step, world, |_| time),
             When::During { start, end } => {
                 let ranks = ranks_from_center(body, &marks);
                 let last = ranks.iter().max().copied().unwrap_or(0).max(1) as f64;
-                by_time(body, &marks, world, |element| {
-                    (start + (end - start) * f64::from(ranks[element]) / last) / time_step
+                by_time(body, &marks, time_step, world, |element| {
+                    start + (end - start) * f64::from(ranks[element]) / last
                 });
             }
             When::StretchAbove(limit) => by_criterion(body, &removal.on, &marks, Measure::Stretch, limit, world),
@@ -53,7 +53,8 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
     }
 }
 
-fn insert_columns(precision: Precision, block: Entity, world: &mut World) {
+/// Gives a block what it needs to lose elements.
+pub(super) fn insert_columns(precision: Precision, block: Entity, world: &mut World) {
     let count = world.get::<Block>(block).map_or(0, |block| block.count);
     let padded = count.div_ceil(LANES) * LANES;
     let mut entity = world.entity_mut(block);
@@ -68,16 +69,29 @@ fn insert_columns(precision: Precision, block: Entity, world: &mut World) {
 }
 
 /// Each marked element goes at the first step that is not earlier than its time.
-fn by_time(body: &BodyParts, marks: &[bool], world: &mut World, steps: impl Fn(usize) -> f64) {
-    for (element, _) in marks.iter().enumerate().filter(|(_, marked)| **marked) {
-        let (block, row) = body.element_rows[element];
-        if let Some(mut column) = world.get_mut::<RemovalStep>(body.blocks[block as usize]) {
-            // a time that is a whole number of steps is met in spite of rounding
-            let step = (steps(element) - 1e-6).ceil().clamp(1.0, f64::from(u32::MAX)) as u32;
-            let place = &mut column[row as usize];
-            *place = step.min(*place);
+fn by_time(body: &BodyParts, marks: &[bool], time_step: f64, world: &mut World, time: impl Fn(usize) -> f64) {
+    for &block in &body.blocks {
+        let count = world.get::<RemovalStep>(block).map_or(0, |column| column.len());
+        if world.get::<RemovalTime>(block).is_none() {
+            world.entity_mut(block).insert(RemovalTime(vec![f64::INFINITY; count]));
         }
     }
+    for (element, _) in marks.iter().enumerate().filter(|(_, marked)| **marked) {
+        let (block, row) = body.element_rows[element];
+        let (block, row, time) = (body.blocks[block as usize], row as usize, time(element));
+        if let Some(mut column) = world.get_mut::<RemovalStep>(block) {
+            column[row] = step_of(time / time_step, 1).min(column[row]);
+        }
+        if let Some(mut times) = world.get_mut::<RemovalTime>(block) {
+            times.0[row] = time.min(times.0[row]);
+        }
+    }
+}
+
+/// The first whole number of steps that is not below a number of them, and at least `least`.
+pub fn step_of(steps: f64, least: u64) -> u32 {
+    // a time that is a whole number of steps is met in spite of rounding
+    (steps - 1e-6).ceil().clamp(least as f64, f64::from(u32::MAX)) as u32
 }
 
 /// For each marked element, how many lie nearer to the marked ones' centroid.

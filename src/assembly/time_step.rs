@@ -1,21 +1,52 @@
-//! The stable step, from the element bound.
+//! The stable step, from the element bound, and the elements that set it.
 
 use super::columns::stiffness;
 use crate::components::*;
 use crate::elements::{Element, MOST_ROWS};
-use crate::evaluation::{lane_place, row_count, with_element};
+use crate::evaluation::{lane_place, rest_volume, row_count, with_element};
 use bevy_ecs::prelude::*;
 use rayon::prelude::*;
+use serde::Serialize;
 
-/// The largest step that the element bound shows to be stable at rest, and the element that sets it.
-#[derive(Clone, Debug)]
+/// How many of the elements that set the step are named.
+pub const NAMED: usize = 10;
+
+/// The largest step that the element bound shows to be stable at rest, and the elements that set it.
+#[derive(Clone, Debug, Serialize)]
 pub struct StableStep {
     /// 2/ω of the stiffest element (s).
     pub time_step: f64,
+    /// The same of a usual element (s): half of the volume is in elements that need no smaller step.
+    pub usual: f64,
+    /// The elements with the smallest bounds, the smallest first: at most [`NAMED`].
+    pub worst: Vec<StepSetter>,
+}
+
+/// An element that sets the step.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct StepSetter {
     /// The body.
     pub body: String,
     /// The element, in the author's numbering.
     pub element: u64,
+    /// 2/ω of its bound (s).
+    pub bound: f64,
+    /// What it costs: how many times longer the step could be if it were a usual element, and all others as well.
+    pub cost: f64,
+    /// How many times longer the step could be without it and those before it in the list.
+    pub gain: f64,
+}
+
+impl StableStep {
+    /// The element that sets the step: its body and the author's number.
+    pub fn culprit(&self) -> (String, u64) {
+        self.worst.first().map_or_else(Default::default, |worst| (worst.body.clone(), worst.element))
+    }
+
+    /// What the worst element costs: see [`StepSetter::cost`].
+    pub fn cost(&self) -> f64 {
+        self.worst.first().map_or(1.0, |worst| worst.cost)
+    }
 }
 
 /// The bound of the largest squared angular frequency (1/s²) of each element of a block, by its row.
@@ -36,28 +67,61 @@ pub(super) fn square_frequency<'a>(
     })
 }
 
-/// Bound of all elements of all bodies; `None` for a world without elements.
+/// Squared frequency bound (1/s²) and volume (m³) of all elements of a block; both 0 of removed ones.
+pub fn square_frequencies(world: &World, entity: Entity) -> Vec<(f64, f64)> {
+    let Some(block) = world.get::<Block>(entity) else { return Vec::new() };
+    let (Some(frequency), Some(shape)) = (square_frequency(world, entity, block), world.get::<RestShape>(entity))
+    else {
+        return Vec::new();
+    };
+    let of_row = |row: usize| {
+        let volume = rest_volume(block.kind, row, shape);
+        if volume > 0.0 { (frequency(row), volume) } else { (0.0, 0.0) }
+    };
+    (0..block.count).into_par_iter().map(of_row).collect()
+}
+
+/// An element, by how quick it is.
+struct Ranked {
+    square: f64,
+    volume: f64,
+    block: Entity,
+    row: usize,
+}
+
+/// Bound of all elements of all bodies that are there; `None` for a world without elements.
 pub fn stable_step(world: &mut World) -> Option<StableStep> {
-    let blocks: Vec<(Entity, Block)> =
-        world.query::<(Entity, &Block)>().iter(world).map(|(entity, block)| (entity, block.clone())).collect();
-    let mut worst: Option<(f64, Entity, usize)> = None;
-    for (entity, block) in blocks {
-        let Some(frequency) = square_frequency(world, entity, &block) else { continue };
-        // the highest frequency; among equals the lowest row, whatever the order of work
-        let higher = |a: (f64, usize), b: (f64, usize)| {
-            if b.0 > a.0 || (b.0 == a.0 && b.1 < a.1) { b } else { a }
-        };
-        let found =
-            (0..block.count).into_par_iter().map(|row| (frequency(row), row)).reduce(|| (0.0, usize::MAX), higher);
-        if worst.is_none_or(|(highest, ..)| found.0 > highest) {
-            worst = Some((found.0, entity, found.1));
-        }
+    let mut blocks: Vec<Entity> = world.query_filtered::<Entity, With<Block>>().iter(world).collect();
+    blocks.sort();
+    let mut all: Vec<Ranked> = Vec::new();
+    for block in blocks {
+        let elements = square_frequencies(world, block).into_iter().enumerate();
+        let there = elements.filter(|(_, (_, volume))| *volume > 0.0);
+        all.extend(there.map(|(row, (square, volume))| Ranked { square, volume, block, row }));
     }
-    let (square, entity, row) = worst?;
-    let body = world.get::<OfBody>(entity)?.0;
+    // the highest frequency first; among equals the lowest row, whatever the order of work
+    all.par_sort_unstable_by(|a, b| b.square.total_cmp(&a.square).then(a.block.cmp(&b.block)).then(a.row.cmp(&b.row)));
+    let half = 0.5 * all.iter().map(|element| element.volume).sum::<f64>();
+    let mut volume = 0.0;
+    let usual = all.iter().find(|element| {
+        volume += element.volume;
+        volume >= half
+    })?;
+    let bound = |element: &Ranked| 2.0 / element.square.sqrt();
+    let (first, usual) = (bound(all.first()?), bound(usual));
+    let named = all.iter().take(NAMED).enumerate().filter_map(|(place, element)| {
+        let (body, number) = author_of(world, element.block, element.row)?;
+        let next = all.get(place + 1).map_or(first, bound);
+        let own = bound(element);
+        Some(StepSetter { body, element: number, bound: own, cost: usual / own, gain: next / first })
+    });
+    Some(StableStep { time_step: first, usual, worst: named.collect() })
+}
+
+/// The body and the author's number of an element.
+pub fn author_of(world: &World, block: Entity, row: usize) -> Option<(String, u64)> {
+    let body = world.get::<OfBody>(block)?.0;
     let authoring = world.get::<Authoring>(body)?;
-    let place = authoring.blocks.iter().position(|&block| block == entity)?;
-    let element = authoring.element_id(place, row);
-    let body = world.get::<Label>(body)?.0.clone();
-    Some(StableStep { time_step: 2.0 / square.sqrt(), body, element })
+    let place = authoring.blocks.iter().position(|&other| other == block)?;
+    Some((world.get::<Label>(body)?.0.clone(), authoring.element_id(place, row)))
 }

@@ -102,18 +102,31 @@ pub struct Device {
     columns: BTreeMap<Key, DeviceColumn>,
     accesses: Vec<ColumnAccess>,
     written: BTreeMap<KernelId, Vec<Key>>,
+    uniforms: BTreeMap<String, Vec<BufferId>>,
     traffic: Traffic,
 }
 
 impl Device {
     /// Takes a GPU for a run; `accesses` are the kinds of columns there are.
     pub fn new(gpu: Gpu, accesses: Vec<ColumnAccess>) -> Self {
-        Self { gpu, columns: BTreeMap::new(), accesses, written: BTreeMap::new(), traffic: Traffic::default() }
+        let (columns, written, uniforms) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
+        Self { gpu, columns, accesses, written, uniforms, traffic: Traffic::default() }
     }
 
     /// The GPU.
     pub fn gpu(&mut self) -> &mut Gpu {
         &mut self.gpu
+    }
+
+    /// Writes a uniform anew, wherever kernels have it under that label; nothing where none has.
+    ///
+    /// # Errors
+    /// What the GPU says.
+    pub fn rewrite_uniform(&mut self, label: &str, bytes: &[u8]) -> Result<(), Error> {
+        for &buffer in self.uniforms.get(label).into_iter().flatten() {
+            self.gpu.upload(buffer, 0, bytes)?;
+        }
+        Ok(())
     }
 
     /// What has travelled so far.
@@ -291,6 +304,8 @@ impl Buffers for Binder<'_> {
     }
 
     fn uniform(&mut self, label: String, bytes: &[u8]) -> BufferId {
-        self.create(&label, bytes, bytes.len(), BufferKind::Uniform)
+        let buffer = self.create(&label, bytes, bytes.len(), BufferKind::Uniform);
+        self.device.uniforms.entry(label).or_default().push(buffer);
+        buffer
     }
 }

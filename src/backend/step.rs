@@ -8,9 +8,10 @@ use bevy_ecs::prelude::*;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Step {
-    /// Δt², in the first step half of it, times the gain of a static analysis (s²).
+    /// Δt times the time between the middles of the last and of this step, which is Δt but in the first step and after a
+    /// change of Δt; times the gain of a static analysis (s²).
     pub force_factor: f32,
-    /// Δt/2 (s).
+    /// Half the time between the middles, in the first step Δt/2 (s).
     pub half_step: f32,
     /// 1, in the first step 0.
     pub divide: f32,
@@ -22,26 +23,26 @@ pub struct Step {
     pub zero: u32,
     /// a = cΔt/2 of a static analysis, else 0.
     pub relaxation: f32,
-    /// Nothing: signals begin on 16 bytes.
-    pub pad: u32,
+    /// Share of a step's work that is booked: the time between the middles over Δt.
+    pub booked: f32,
 }
 
-uniform!(Step { force_factor, half_step, divide, rate, number, zero, relaxation, pad });
+uniform!(Step { force_factor, half_step, divide, rate, number, zero, relaxation, booked });
 
 impl Step {
     /// The step that begins at the clock's time.
     pub fn of(clock: &Clock) -> Self {
-        let (dt, first) = (clock.time_step, clock.step == 0);
+        let (dt, between, first) = (clock.time_step, clock.between_middles(), clock.step == 0);
         let (gain, damping) = clock.relaxation.map_or((1.0, 0.0), |relaxation| (relaxation.gain, relaxation.damping));
         Self {
-            force_factor: (gain * dt * dt * if first { 0.5 } else { 1.0 }) as f32,
-            half_step: (0.5 * dt) as f32,
+            force_factor: (gain * dt * between) as f32,
+            half_step: (0.5 * if first { dt } else { between }) as f32,
             divide: if first { 0.0 } else { 1.0 },
             rate: (1.0 / dt) as f32,
             number: u32::try_from(clock.step).unwrap_or(u32::MAX),
             zero: 0,
             relaxation: damping as f32,
-            pad: 0,
+            booked: (between / dt) as f32,
         }
     }
 }

@@ -34,7 +34,7 @@ pub enum Command {
     Run(RunArguments),
     /// Look for mistakes in a scene, all in one go, without running it
     #[command(after_help = STATUSES)]
-    Check(SceneArguments),
+    Check(CheckArguments),
     /// Show what a scene causes and why: systems, effects, kernels, buffers; and what would turn on what is off
     #[command(after_help = STATUSES)]
     Explain(ExplainArguments),
@@ -86,6 +86,16 @@ impl SceneArguments {
 /// What a scene may ask for.
 pub fn allowed(outside: bool) -> Allowed {
     Allowed { outside, ..Allowed::default() }
+}
+
+/// What `sinew check` is told.
+#[derive(Args)]
+pub struct CheckArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// What is known of a sound scene as JSON: sizes, steps, and the stable step with the elements that set it
+    #[arg(long)]
+    pub json: bool,
 }
 
 /// How to run it.

@@ -1,9 +1,10 @@
 //! `sinew check`: whether a scene is sound.
 
 use super::Outcome;
-use super::arguments::SceneArguments;
-use super::failure::count_of;
+use super::arguments::CheckArguments;
+use super::failure::{Failure, count_of};
 use super::progress;
+use super::stability;
 use super::terminal::{self, Paint};
 use super::wording::{count, counted, quantity};
 use sinew::components::Block;
@@ -12,8 +13,8 @@ use sinew::systems::Registry;
 use sinew::{BackendChoice, Error, Options, Simulation};
 
 /// Shows all that is wrong, and a line of verdict.
-pub fn command(arguments: &SceneArguments) -> Outcome {
-    let scene = arguments.load()?;
+pub fn command(arguments: &CheckArguments) -> Outcome {
+    let scene = arguments.scene.load()?;
     let reading = "reading meshes, looking for mistakes";
     let diagnostics = progress::during(reading, || Simulation::check(&scene, &Registry::default()));
     if diagnostics.has_errors() {
@@ -22,16 +23,34 @@ pub fn command(arguments: &SceneArguments) -> Outcome {
     terminal::aside(&diagnostics.render(Paint::of_stderr().is_on()));
     let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
     let mut simulation = progress::during("building the simulation", || Simulation::new(&scene, &options))?;
+    if arguments.json {
+        let text =
+            serde_json::to_string_pretty(&facts(&mut simulation)?).map_err(|error| Failure::Silent(error.into()))?;
+        return terminal::say(&format!("{text}\n"));
+    }
     let warnings = if diagnostics.is_empty() { String::new() } else { format!(", with {}", count_of(&diagnostics)) };
     terminal::say(&format!("sound{warnings}: {}", verdict(&mut simulation)?))
 }
 
-/// What a sound scene amounts to.
+/// What a sound scene amounts to, for programs.
+fn facts(simulation: &mut Simulation) -> Result<serde_json::Value, Error> {
+    let summary = simulation.summary("not run")?;
+    Ok(serde_json::json!({
+        "nodes": summary.nodes,
+        "elements": summary.elements,
+        "steps": summary.planned_steps,
+        "time_step": summary.time_step,
+        "share_of_limit": summary.share_of_limit,
+        "stability": summary.stability,
+        "added_mass": summary.step_history.map(|history| history.added_mass),
+    }))
+}
+
+/// What a sound scene amounts to, for people.
 fn verdict(simulation: &mut Simulation) -> Result<String, Error> {
     let summary = simulation.summary("not run")?;
     let world = simulation.world_mut();
     let blocks = world.query::<&Block>().iter(world).count() as u64;
-    let (body, element) = &summary.stable_step_element;
     let mut lines = format!(
         "{}, {} in {}; ",
         counted(summary.nodes as u64, "node"),
@@ -40,11 +59,11 @@ fn verdict(simulation: &mut Simulation) -> Result<String, Error> {
     );
     lines += &match &summary.equilibrium {
         None => format!(
-            "{} of {} for {}\nstable step: {}, set by element {element} of {body}\n",
+            "{} of {} for {}\n{}",
             counted(summary.planned_steps, "step"),
             quantity(summary.time_step, "s"),
             quantity(simulation.scene().duration, "s"),
-            quantity(summary.stable_step, "s"),
+            stability::at_start(&summary),
         ),
         Some(sought) => format!(
             "rest under what acts at {}: at most {}, in the first {} of them loads grow\n",

@@ -12,6 +12,7 @@ mod quiet_driver;
 mod render;
 mod report;
 mod run;
+mod stability;
 mod terminal;
 mod wording;
 

@@ -60,6 +60,7 @@ impl Progress {
         match &self.bar {
             Some(bar) => {
                 bar.set_message(at);
+                bar.set_length(all);
                 bar.set_position(done);
             }
             None => terminal::aside(&format!("{:3.0} %  {at}\n", 100.0 * done as f64 / all.max(1) as f64)),

@@ -1,6 +1,7 @@
 //! What a run amounted to, for people.
 
 use super::run::PICTURES;
+use super::stability;
 use super::terminal::Paint;
 use super::wording::{bytes, counted, digits, quantity, speed};
 use sinew::{Equilibrium, SceneFile, Summary};
@@ -16,13 +17,8 @@ pub fn text(summary: &Summary, scene: &SceneFile, folder: &Path, paint: Paint) -
     page.row("backend", format!("{}, {}: {}", summary.backend, summary.precision, summary.backend_because));
     let (nodes, elements) = (counted(summary.nodes as u64, "node"), counted(summary.elements as u64, "element"));
     page.row("meshes", format!("{nodes}, {elements}"));
-    let (body, element) = &summary.stable_step_element;
-    let stable = quantity(summary.stable_step, "s");
     match &summary.equilibrium {
-        None => page.row(
-            "time step",
-            format!("{}; stable up to {stable}, set by element {element} of {body}", quantity(summary.time_step, "s")),
-        ),
+        None => page.rows("time step", stability::of_run(summary)),
         Some(found) => equilibrium(found, &mut page),
     }
     speeds(summary, &mut page);

@@ -118,21 +118,21 @@ fn go_on_from(snapshot: &Snapshot, simulation: &mut Simulation) -> Outcome {
 /// Observes the start and takes all steps.
 fn steps(simulation: &mut Simulation, duration: f64) -> Outcome {
     simulation.observe()?;
-    let all = simulation.planned_steps();
-    let mut progress = Progress::begin(all, duration, simulation.scene().is_static());
+    let mut progress = Progress::begin(simulation.planned_steps(), duration, simulation.scene().is_static());
     let mut chunk = 1;
     let mut advance = || {
-        while !simulation.is_finished() && simulation.step_count() < all {
+        // how many steps there are changes when the step does
+        while !simulation.is_finished() && simulation.step_count() < simulation.planned_steps() {
             if interrupt::is_asked() {
                 return Err(Failure::Interrupted);
             }
             let started = Instant::now();
-            simulation.advance(chunk.min(all - simulation.step_count()))?;
+            simulation.advance_towards_end(chunk)?;
             let share = CHUNK.as_secs_f64() / started.elapsed().as_secs_f64().max(1e-9);
             // at most four times more: a chunk without output says little of one with it
             chunk = ((chunk as f64 * share.clamp(0.1, 4.0)) as u64).clamp(1, 1 << 20);
             match simulation.equilibrium() {
-                None => progress.tell(simulation.step_count(), all, simulation.time()),
+                None => progress.tell(simulation.step_count(), simulation.planned_steps(), simulation.time()),
                 Some(found) => progress.tell_residual(simulation.step_count(), found),
             }
         }

@@ -74,6 +74,15 @@ pub const fn patch_groups(kind: ElementKind) -> usize {
     }
 }
 
+/// Mass that was added to each element so that the step may be as large as it is (kg). Exists where the scene has mass
+/// scaled.
+#[derive(Component, Clone, Debug)]
+pub struct AddedMass(pub Vec<f64>);
+
+/// When each element goes at the latest (s); infinite: never by time. Exists with [`RemovalStep`] where elements go by time.
+#[derive(Component, Clone, Debug)]
+pub struct RemovalTime(pub Vec<f64>);
+
 /// Which elements of a block meet in a node: `elements[starts[i]..starts[i + 1]]` are rows of elements around node row `i`,
 /// ascending. Exists with [`NodalVolumeChange`].
 #[derive(Component, Clone, Debug)]

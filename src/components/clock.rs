@@ -13,15 +13,50 @@ pub struct Clock {
     pub step: u64,
     /// Δt (s).
     pub time_step: f64,
+    /// The step since which Δt is what it is, and the time at its beginning (s).
+    pub since: (u64, f64),
+    /// Δt before that (s).
+    pub before: f64,
     /// How steps lead to rest, in a static analysis.
     pub relaxation: Option<Relaxation>,
 }
 
 impl Clock {
+    /// At the beginning of a motion in steps of Δt (s).
+    pub fn with_step(time_step: f64) -> Self {
+        Self { step: 0, time_step, since: (0, 0.0), before: time_step, relaxation: None }
+    }
+
+    /// Time at the beginning of a step (s), which must not lie before the last change of Δt: the time of the change and so
+    /// many steps, exact however long the run.
+    pub fn time_at(&self, step: u64) -> f64 {
+        self.since.1 + step.saturating_sub(self.since.0) as f64 * self.time_step
+    }
+
+    /// Time from the middle of the last step to the middle of the present one (s), over which forces change velocities:
+    /// Δt, in the first step half of it, and after a change of Δt the mean of both.
+    pub fn between_middles(&self) -> f64 {
+        match self.step {
+            0 => 0.5 * self.time_step,
+            step if step == self.since.0 => 0.5 * (self.before + self.time_step),
+            _ => self.time_step,
+        }
+    }
+
+    /// Takes steps of another length from now on (s).
+    pub fn change_step(&mut self, time_step: f64) {
+        // two changes before a step is taken are one
+        if self.step != self.since.0 || self.step == 0 {
+            self.before = self.time_step;
+        }
+        self.since = (self.step, self.time());
+        self.time_step = time_step;
+    }
+
     /// The present time (s). In a static analysis it grows with the loads up to the scene's duration and stays there.
     pub fn time(&self) -> f64 {
         match &self.relaxation {
-            None => self.step as f64 * self.time_step,
+            None => self.time_at(self.step),
             Some(relaxation) => relaxation.end * relaxation.progress(self.step),
         }
     }

@@ -19,8 +19,9 @@ pub mod nodes;
 mod observation;
 
 pub use block::{
-    Alive, Block, BlockCorners, Connectivity, ElementSums, ElementVolume, FamilyDirection, FibreDirection,
-    FirstInverted, NodalVolumeChange, OnInversion, RemovalStep, RemovedEnergy, RestShape, ViscousMemory, patch_groups,
+    AddedMass, Alive, Block, BlockCorners, Connectivity, ElementSums, ElementVolume, FamilyDirection, FibreDirection,
+    FirstInverted, NodalVolumeChange, OnInversion, RemovalStep, RemovalTime, RemovedEnergy, RestShape, ViscousMemory,
+    patch_groups,
 };
 pub use clock::{Clock, Relaxation, Signal, Signals};
 pub use column::{Column, Precision, Reals};
@@ -32,6 +33,7 @@ pub use nodes::{
     Authoring, COMPENSATION_NUMBERS, ConstrainedAxes, Corners, DampingCoefficient, Displacement,
     DisplacementCompensation, DisplacementStep, ElementForce, ExternalForce, FictitiousMass, FirstNonFinite,
     InternalForce, Mass, MiddleDisplacement, NodeSums, RestPosition, SPENT_AT, SPENT_ROWS, WORK_NUMBERS, Work,
+    before_at,
 };
 pub use observation::{Cadence, Energies, Probe};
 

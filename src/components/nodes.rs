@@ -21,8 +21,9 @@ columns! {
     DisplacementCompensation(Reals) = "displacement_compensation";
     /// Lumped mass (kg), a number a node; 0 parks the node.
     Mass(Reals) = "mass";
-    /// Mass (kg) that makes every element's bound of the stable step the same, for static analyses: the real mass only
-    /// weighs there. A number a node.
+    /// Mass (kg) that resists acceleration in place of the real one, which only weighs then: in static analyses the mass
+    /// that makes every element's bound of the stable step the same, else the real one and what was added to it where a
+    /// scene has mass scaled. A number a node.
     FictitiousMass(Reals) = "fictitious_mass";
     /// Σ c m over a node's elements (kg/s): damping rate times mass. Exists when a material is damped.
     DampingCoefficient(Reals) = "damping_coefficient";
@@ -33,13 +34,14 @@ columns! {
     /// Bits 0, 1, 2: the node does not move freely along x, y, z.
     ConstrainedAxes(Vec<u32>) = "constrained_axes";
     /// Work done on or by a node since the start (J): by loads, against damping, by constraints, by internal forces; then
-    /// the last step along constrained axes (m), which `boundary` writes over: [`WORK_NUMBERS`] a node. Exists in
-    /// motions whose energies are asked for or whose nodes are moved as told.
+    /// the last step along constrained axes (m), which `boundary` writes over: [`WORK_NUMBERS`] a node. Exists when
+    /// energies are asked for.
     Work(Reals) = "work";
     /// What the integrator notices in passing. First the lowest row of a node whose displacement was found not finite;
     /// `u32::MAX`: none. In a motion without [`Work`], from [`SPENT_AT`] on, the work against internal forces since the start: for each
-    /// [`SPENT_ROWS`] nodes, as bits of f32, a sum and what rounding has left out of it (J). One column: kernels may have
-    /// few.
+    /// [`SPENT_ROWS`] nodes, as bits of f32, a sum and what rounding has left out of it (J). With prescribed nodes, from
+    /// [`before_at`] on, a vector a node: bits of the last step (m) along prescribed axes, which `boundary` has written over.
+    /// One column: kernels may have few.
     FirstNonFinite(Vec<u32>) = "first_non_finite";
     /// Displacement in the middle of the last step (m), a vector a node: for the guards on a GPU.
     MiddleDisplacement(Reals) = "middle_displacement";
@@ -58,6 +60,11 @@ pub const SPENT_AT: usize = 4;
 
 /// Nodes that share a sum there.
 pub const SPENT_ROWS: usize = 64;
+
+/// Where the last steps along prescribed axes begin in [`FirstNonFinite`] of a body with so many nodes.
+pub const fn before_at(nodes: usize) -> usize {
+    SPENT_AT + 2 * nodes.div_ceil(SPENT_ROWS)
+}
 
 /// Numbers a node in [`Work`].
 pub const WORK_NUMBERS: usize = 7;

@@ -20,27 +20,54 @@ pub struct Probe {
 /// interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cadence {
+    /// The interval (s).
+    interval: f64,
     /// The interval in steps, at least 1; infinite: never.
     steps: f64,
+    /// A step, and how many intervals had passed by then: from there they are counted.
+    since: (u64, f64),
 }
 
 impl Default for Cadence {
     fn default() -> Self {
-        Self { steps: f64::INFINITY }
+        Self { interval: f64::INFINITY, steps: f64::INFINITY, since: (0, 0.0) }
     }
 }
 
 impl Cadence {
     /// From an interval and the time step (s).
     pub fn new(interval: f64, time_step: f64) -> Self {
-        Self { steps: (interval / time_step).max(1.0) }
+        Self { interval, steps: (interval / time_step).max(1.0), since: (0, 0.0) }
+    }
+
+    /// Goes on with steps of another length (s) from the beginning of `step`.
+    pub fn change_step(&mut self, step: u64, time_step: f64) {
+        if self.steps.is_finite() {
+            self.since = (step, self.passed(step));
+            self.steps = (self.interval / time_step).max(1.0);
+        }
+    }
+
+    /// Counts from a step and the time at its beginning (s), in steps of a length (s).
+    pub fn go_on(&mut self, (step, time): (u64, f64), time_step: f64) {
+        if self.steps.is_finite() {
+            self.since = (step, time / self.interval);
+            self.steps = (self.interval / time_step).max(1.0);
+        }
+    }
+
+    /// How many intervals have passed at the beginning of a step.
+    fn passed(&self, step: u64) -> f64 {
+        self.since.1 + step.saturating_sub(self.since.0) as f64 / self.steps
     }
 
     /// The first step after `step` that is observed.
     pub fn next_after(&self, step: u64) -> u64 {
         // a time that is a whole number of steps is met in spite of rounding
-        let multiple = (step as f64 / self.steps + 1e-9).floor() + 1.0;
-        ((multiple * self.steps - 1e-6).ceil() as u64).max(step + 1)
+        let multiple = (self.passed(step) + 1e-9).floor() + 1.0;
+        let from_there = ((multiple - self.since.1) * self.steps - 1e-6).ceil();
+        // an interval that never passes ends at the largest number
+        self.since.0.saturating_add(from_there as u64).max(step + 1)
     }
 
     /// Whether a step is observed.
@@ -75,6 +102,27 @@ mod tests {
         assert_eq!((due.len(), due[1], due[20]), (21, 31, 609));
         assert!((0..=609).all(|step| cadence.is_due(step) == due.contains(&step)));
         assert_eq!(cadence.count(609), 21);
+    }
+
+    #[test]
+    fn observations_keep_their_times_when_the_step_changes() {
+        let (mut cadence, mut time, mut step) = (Cadence::new(0.05, 0.01), 0.0, 0_u64);
+        let mut times = Vec::new();
+        for (steps, time_step) in [(7, 0.01), (40, 0.003), (30, 0.02)] {
+            cadence.change_step(step, time_step);
+            for _ in 0..steps {
+                (step, time) = (step + 1, time + time_step);
+                if cadence.is_due(step) {
+                    times.push((time, time_step));
+                }
+            }
+        }
+        // each at the first step that is not earlier than its time
+        assert_eq!(times.len(), (time / 0.05 + 1e-9) as usize);
+        for (number, (time, time_step)) in times.iter().enumerate() {
+            let due = 0.05 * (number + 1) as f64;
+            assert!(*time >= due - 1e-9 && time - due < time_step + 1e-9, "{number}: {time}, due {due}");
+        }
     }
 
     #[test]

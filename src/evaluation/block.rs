@@ -65,14 +65,8 @@ impl<'a> BlockView<'a> {
     /// First Piola-Kirchhoff stress (Pa) at a point that the next `element_forces` will find.
     pub fn stress(&self, row: usize, state: &ElementState, point: usize) -> Mat3<f64> {
         let (law, k) = (self.law, &state.points()[point].kinematics);
-        let mut isochoric = law.elastic.isochoric(k);
-        if let Some((fibres, from)) = &law.fibres {
-            isochoric = isochoric.plus(&fibres.isochoric(k, self.direction(row, from)));
-        }
-        for (family, from) in &law.exponential {
-            isochoric = isochoric.plus(&family.isochoric(k, self.direction(row, from)));
-        }
-        let (mut stress, instant) = (isochoric, self.pressure(state, k));
+        let (isochoric, instant) = self.instant(row, state, point);
+        let mut stress = isochoric;
         let mut pressure = instant;
         if let Some(memory) = self.memory {
             let (terms, points) = (law.prony.len(), point_count(state.kind));
@@ -90,6 +84,19 @@ impl<'a> BlockView<'a> {
             }
         }
         law.elastic.first_stress(&state.points()[point].gradient, k, &stress, pressure)
+    }
+
+    /// Isochoric second Piola-Kirchhoff stress and pressure (Pa) at a point before anything has relaxed.
+    pub fn instant(&self, row: usize, state: &ElementState, point: usize) -> (Sym3<f64>, f64) {
+        let (law, k) = (self.law, &state.points()[point].kinematics);
+        let mut isochoric = law.elastic.isochoric(k);
+        if let Some((fibres, from)) = &law.fibres {
+            isochoric = isochoric.plus(&fibres.isochoric(k, self.direction(row, from)));
+        }
+        for (family, from) in &law.exponential {
+            isochoric = isochoric.plus(&family.isochoric(k, self.direction(row, from)));
+        }
+        (isochoric, self.pressure(state, k))
     }
 
     /// Nodal forces (N).

@@ -62,6 +62,11 @@ pub fn averages(kind: ElementKind) -> bool {
     with_element!(kind, E => E::PRESSURE == PressureFrom::Nodes)
 }
 
+/// An element's volume at rest (m³); 0 once it is removed.
+pub fn rest_volume(kind: ElementKind, row: usize, shape: &Reals) -> f64 {
+    shape.get(lane_place(row, row_count(kind), with_element!(kind, E => E::VOLUME_ROW)))
+}
+
 /// Makes an element exert nothing and weigh nothing.
 pub fn extinguish(kind: ElementKind, row: usize, shape: &mut Reals) {
     let numbers = row_count(kind);

@@ -43,13 +43,23 @@ pub fn mass(world: &mut World) -> Result<f64, Error> {
 /// # Errors
 /// What the GPU says.
 pub fn energies(world: &mut World) -> Result<Energies, Error> {
-    let wanted =
-        [Displacement::NAME, DisplacementStep::NAME, Mass::NAME, Work::NAME, RestShape::NAME, RemovedEnergy::NAME];
+    let wanted = [
+        Displacement::NAME,
+        DisplacementStep::NAME,
+        Mass::NAME,
+        FictitiousMass::NAME,
+        Work::NAME,
+        RestShape::NAME,
+        RemovedEnergy::NAME,
+    ];
     bring_to_host(world, |_, name| wanted.contains(&name))?;
     let rate = world.resource::<Clock>().rate();
     let mut sum = Energies::default();
-    let mut bodies = world.query::<(Entity, &Mass, &DisplacementStep, &ConstrainedAxes, Option<&Work>)>();
-    for (_, mass, step, axes, work) in bodies.iter(world) {
+    let mut bodies =
+        world.query::<(Entity, (&Mass, Option<&FictitiousMass>), &DisplacementStep, &ConstrainedAxes, Option<&Work>)>();
+    for (_, (mass, inertia), step, axes, work) in bodies.iter(world) {
+        // what moves is all that resists acceleration
+        let mass = inertia.map_or(&mass.0, |inertia| &inertia.0);
         let kinetic = |row: usize, along: &dyn Fn(usize) -> bool| {
             let v = step.vector(row) * rate;
             let square: f64 = (0..3).filter(|&i| along(i)).map(|i| v[i] * v[i]).sum();

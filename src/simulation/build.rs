@@ -1,13 +1,16 @@
 //! From a scene to a simulation.
 
+use super::beat::Beat;
+use super::follow::Follower;
 use super::frequency::largest_eigenvalue;
 use super::options::{BackendChoice, Chosen, choose};
 use super::outputs;
 use super::parameters::hand_out;
 use super::relax::Relaxing;
 use super::schedule::{Scheduled, check_names, resolve};
+use super::stable_step::{self, Stability};
 use super::{Entry, Facts, Job, Options, Simulation};
-use crate::assembly::{Assembly, StableStep, assemble, assemble_in_time, stable_step};
+use crate::assembly::{Assembly, assemble, assemble_in_time, insert_laws};
 use crate::backend::cpu::Cpu;
 use crate::backend::device::{Device, all_columns};
 use crate::backend::gpu::Gpu;
@@ -41,12 +44,12 @@ impl Simulation {
         let started = Instant::now();
         let mut diagnostics = scene.diagnostics();
         let mut world = World::new();
-        let plan = plan(scene, options.precision, registry, &mut world, &mut diagnostics);
-        let Some(Plan { assembly, clock, stable, steps, schedule }) = plan.filter(|_| !diagnostics.has_errors()) else {
+        let plan = plan(scene, options.precision, options.threads, registry, &mut world, &mut diagnostics);
+        let Some(Plan { assembly, clock, stability, steps, schedule }) = plan.filter(|_| !diagnostics.has_errors())
+        else {
             return Err(diagnostics.into());
         };
         let (nodes, elements) = counts(&assembly);
-        world.insert_resource(Cpu::new(options.threads, elements));
         let observer = observer(scene, &clock, steps, &mut world);
         world.insert_resource(observer);
         let mut hosts: Vec<HostSystem> = schedule.iter().map(|entry| (entry.system.host)()).collect();
@@ -55,10 +58,7 @@ impl Simulation {
             access.push(system.initialize(&mut world));
         }
         add_called_for_columns(&schedule, &access, &assembly, &mut world);
-        let forces = schedule.iter().zip(&mut hosts).filter(|(entry, _)| {
-            !entry.system.custom && (Phase::ElementForces..=Phase::Gather).contains(&entry.system.phase)
-        });
-        let relaxing = relaxing(scene, options.precision, forces.map(|(_, host)| host).collect(), &mut world);
+        let relaxing = relaxing(scene, options.precision, &mut world);
 
         let Chosen { gpu, mut why } = choose(options)?;
         let gpu_name = gpu.as_ref().map(|gpu| gpu.report().name.clone());
@@ -89,7 +89,8 @@ impl Simulation {
                 Some(kernels) => Job::Kernels(kernels),
                 None => {
                     let (reads, writes) = columns_of(access, &world);
-                    Job::Host { system: host, every: scheduled.every, observes: system.observes, reads, writes }
+                    let beat = Beat::new(scheduled.every, scheduled.interval);
+                    Job::Host { system: host, beat, observes: system.observes, reads, writes }
                 }
             };
             let (name, because) = (system.name.clone(), scheduled.because.clone());
@@ -109,7 +110,7 @@ impl Simulation {
             backend,
             why,
             precision: options.precision,
-            stable,
+            stability,
             steps,
             nodes,
             elements,
@@ -117,12 +118,14 @@ impl Simulation {
             setup: started.elapsed(),
             warnings: diagnostics,
         };
+        let follower = Follower::new(&scene.scene, &facts.stability, facts.initial_mass, &mut world);
         Ok(Self {
             world,
             entries,
             scene: scene.scene.clone(),
             facts,
             relaxing,
+            follower,
             elapsed: Duration::ZERO,
             began: (0, 0.0),
             failure: None,
@@ -146,7 +149,7 @@ fn kernels_on(gpu: Gpu, schedule: &[Scheduled<'_>], world: &mut World) -> Result
 struct Plan<'a> {
     assembly: Assembly<'a>,
     clock: Clock,
-    stable: StableStep,
+    stability: Stability,
     steps: u64,
     schedule: Vec<Scheduled<'a>>,
 }
@@ -155,6 +158,7 @@ struct Plan<'a> {
 fn plan<'a>(
     scene: &'a SceneFile,
     precision: Precision,
+    threads: usize,
     registry: &'a Registry,
     world: &mut World,
     diagnostics: &mut Diagnostics,
@@ -162,90 +166,47 @@ fn plan<'a>(
     let assembly = assemble(scene, precision, world, diagnostics);
     check_names(scene.scene.schedule.as_deref().unwrap_or_default(), registry, diagnostics);
     let assembly = assembly?;
-    let (clock, stable, steps) = clock(scene, world, diagnostics)?;
+    world.insert_resource(Cpu::new(threads, counts(&assembly).1));
+    // what is stable depends on the laws, whose history waits for the step
+    world.insert_resource(Clock::with_step(1.0));
+    insert_laws(precision, world);
+    let (clock, stability, steps) = clock(scene, world, diagnostics)?;
     outputs::check(scene, &clock, steps, diagnostics);
     world.insert_resource(clock);
     assemble_in_time(&assembly, world, diagnostics);
     let mut schedule = resolve(scene.scene.schedule.as_deref(), registry, world, diagnostics);
     hand_out(&scene.scene, registry, &mut schedule, world, diagnostics);
-    Some(Plan { assembly, clock, stable, steps, schedule })
+    Some(Plan { assembly, clock, stability, steps, schedule })
 }
 
 /// Checks a scene as far as making its world goes: everything except choosing a backend. All that was found.
 pub(super) fn check(scene: &SceneFile, registry: &Registry) -> Diagnostics {
     let mut diagnostics = scene.diagnostics();
-    plan(scene, Precision::F32, registry, &mut World::new(), &mut diagnostics);
+    plan(scene, Precision::F32, 0, registry, &mut World::new(), &mut diagnostics);
     diagnostics
 }
 
-/// The clock with its step, the stable step, and how many steps the scene lasts.
-fn clock(scene: &SceneFile, world: &mut World, diagnostics: &mut Diagnostics) -> Option<(Clock, StableStep, u64)> {
-    let Some(stable) = stable_step(world) else {
-        diagnostics.error_at("bodies", "there are no elements to simulate");
-        return None;
-    };
-    let (integration, duration) = (&scene.scene.integration, scene.scene.duration);
+/// The clock with its step, what is known of the stable step, and how many steps the scene lasts.
+fn clock(scene: &SceneFile, world: &mut World, diagnostics: &mut Diagnostics) -> Option<(Clock, Stability, u64)> {
     if let Analysis::Static { max_steps, load_steps, .. } = scene.scene.analysis {
+        let bound = stable_step::found_bound(world, diagnostics)?;
         let load_steps = load_steps.unwrap_or_else(|| crate::assembly::load_steps(world));
         let growth = 1.0 / load_steps as f64;
-        let relaxation = Relaxation { end: duration, since: (0, 0.0), growth, damping: 0.0, gain: 1.0 };
-        return Some((
-            Clock { step: 0, time_step: duration * growth, relaxation: Some(relaxation) },
-            stable,
-            max_steps,
-        ));
+        let relaxation = Relaxation { end: scene.scene.duration, since: (0, 0.0), growth, damping: 0.0, gain: 1.0 };
+        let clock = Clock { relaxation: Some(relaxation), ..Clock::with_step(scene.scene.duration * growth) };
+        return Some((clock, Stability::of_rest(bound), max_steps));
     }
-    let limit = stable.time_step;
-    if !(limit.is_finite() && limit > 0.0) {
-        let message = format!(
-            "no stable time step can be found: element {} of {} has a bound of {limit} s",
-            stable.element, stable.body
-        );
-        diagnostics.error_at("materials", message);
-        return None;
-    }
-    let (time_step, steps) = match integration.step {
-        // the scene ends with a whole step
-        None => {
-            let steps = (duration / (integration.safety * limit)).ceil().max(1.0);
-            (duration / steps, steps)
-        }
-        Some(step) => {
-            if step > limit {
-                let message = format!(
-                    "a step of {step} s is beyond the stable one of {limit:.4e} s (set by element {} of {})",
-                    stable.element, stable.body
-                );
-                if integration.beyond_stable_step {
-                    diagnostics.warn_at("integration.step", message);
-                } else {
-                    diagnostics
-                        .error_at("integration.step", message)
-                        .note("leave `step` out to have it found, or insist with beyond_stable_step: true (the bound is rigorous but not sharp)");
-                }
-            }
-            (step, (duration / step).round().max(1.0))
-        }
-    };
-    if steps > 1e15 {
-        diagnostics.error_at(
-            "duration",
-            format!("{duration} s are {steps:.1e} steps of {time_step:.3e} s; at most 1e15 are allowed"),
-        );
-        return None;
-    }
-    Some((Clock { step: 0, time_step, relaxation: None }, stable, steps as u64))
+    let (stability, time_step, steps) = stable_step::choose(scene, world, diagnostics)?;
+    Some((Clock::with_step(time_step), stability, steps))
 }
 
-/// What drives a static analysis; `forces` are the systems that find internal forces.
-fn relaxing(
-    scene: &SceneFile,
-    precision: Precision,
-    forces: Vec<&mut HostSystem>,
-    world: &mut World,
-) -> Option<Relaxing> {
+/// What drives a static analysis.
+fn relaxing(scene: &SceneFile, precision: Precision, world: &mut World) -> Option<Relaxing> {
     let Analysis::Static { tolerance, max_steps, .. } = scene.scene.analysis else { return None };
-    let highest = largest_eigenvalue(forces, world);
+    // in units of the bound of the elements, which the fictitious masses make the same for all
+    let half = 0.5 * world.resource::<Clock>().time_step;
+    let highest = largest_eigenvalue(world, OF_RELAXATION).map_or(1.0, |found| found.at_least * half * half);
+    let highest = if highest > 0.0 && highest < 1.0 { highest } else { 1.0 };
     let load_steps = world.resource_mut::<Clock>().relaxation.as_mut().map_or(0, |relaxation| {
         relaxation.gain = scene.scene.integration.safety.powi(2) / highest;
         (1.0 / relaxation.growth).round() as u64
@@ -254,6 +215,9 @@ fn relaxing(
     let reachable = if precision == Precision::F64 { 1e-6 } else { 1e-5 };
     Some(Relaxing::new(tolerance.unwrap_or(reachable), max_steps, load_steps, world))
 }
+
+/// How well a static analysis knows the largest eigenvalue at rest: some 24 products; its safety is margin enough.
+const OF_RELAXATION: f64 = 0.2;
 
 fn counts(assembly: &Assembly<'_>) -> (usize, usize) {
     let sum = |of: &dyn Fn(&crate::mesh::Mesh) -> usize| assembly.bodies.values().map(|b| of(&b.placed.mesh)).sum();

@@ -1,141 +1,158 @@
-//! The largest frequency of a whole scene at rest: what its pseudo-steps may outdo the bound of the elements by.
+//! The largest frequency of all bodies at the present state, by Lanczos' recursion on M^(−½) K M^(−½).
+//!
+//! What k products show of the largest eigenvalue λ is a Ritz value θ ≤ λ. How much below it may be is known for a start
+//! without preference (Kuczyński & Woźniakowski 1992, theorem 4.2): whatever the matrix,
+//!
+//! P(θ < (1 − ε) λ) ≤ 1.648 √n exp(−(2k − 1) √ε),
+//!
+//! so with a chance of δ of being wrong λ ≤ θ/(1 − ε), √ε = ln(1.648 √n/δ)/(2k − 1). Where the recursion exhausts the
+//! space, θ = λ.
 
+use super::tangent::Tangent;
 use crate::components::*;
-use crate::systems::HostSystem;
 use bevy_ecs::prelude::*;
 
-/// Evaluations of the forces: the largest eigenvalue is found to about a hundredth.
-const EVALUATIONS: usize = 24;
-/// Displacements that forces are made of, as a share of the shortest element edge: small beside what would turn them, and
-/// large beside rounding.
-const AMPLITUDE: f64 = 1e-4;
+/// δ: the chance that a start is so unlucky that the margin is too small.
+const BAD_LUCK: f64 = 1e-6;
+/// What differences of forces may be wrong by, as a share of the eigenvalue.
+const OF_DIFFERENCES: f64 = 1e-5;
+/// The space is exhausted when what is left is so small, as a share of the eigenvalue.
+const EXHAUSTED: f64 = 1e-7;
+/// Vectors are kept, to be orthogonal to rounding, as long as they have so many numbers together (32 MB).
+const MOST_KEPT: usize = 4_000_000;
 
-/// The largest eigenvalue of Δt²/4 M⁻¹K with the fictitious masses M, at rest and without held axes, by Lanczos' recursion;
-/// at most 1, which the bound of the elements says it is. `forces` are the systems that find internal forces; columns
-/// they write are left at rest.
-pub(super) fn largest_eigenvalue(mut forces: Vec<&mut HostSystem>, world: &mut World) -> f64 {
-    let clock = *world.resource::<Clock>();
-    let amplitude = AMPLITUDE * shortest_edge(world);
-    let roots = roots_of_mass(world, 0.5 * clock.time_step);
-    let mut previous = vec![0.0; roots.len()];
-    let mut vector = noise(&roots);
+/// The largest eigenvalue of M⁻¹K.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Largest {
+    /// The Ritz value: never above the eigenvalue (1/s²).
+    pub at_least: f64,
+    /// With the margin: never below it (1/s²).
+    pub at_most: f64,
+}
+
+/// The largest eigenvalue of M⁻¹K at the present state with held axes, known to the share `accuracy`. The columns on the
+/// host must be up to date: see [`Tangent::COLUMNS`]. `None` where nothing can move, or forces are no numbers.
+pub(super) fn largest_eigenvalue(world: &mut World, accuracy: f64) -> Option<Largest> {
+    let bodies = bodies(world);
+    let roots = roots_of_mass(world, &bodies);
+    let free = roots.iter().filter(|&&root| root > 0.0).count();
+    if free == 0 {
+        return None;
+    }
+    let luck = (1.648 * (free as f64).sqrt() / BAD_LUCK).ln();
+    // products that make the margin small enough
+    let enough = (0.5 * (luck / accuracy.sqrt() + 1.0)).ceil() as usize;
+    let mut tangent = Tangent::at_present(world, &bodies)?;
+    let found = lanczos(noise(&roots), enough, |x, image| {
+        let u: Vec<f64> = x.iter().zip(&roots).map(|(x, root)| x * root).collect();
+        tangent.times(&u, image);
+        image.iter_mut().zip(&roots).for_each(|(force, root)| *force *= root);
+    })?;
+    let margin = match found.exhausted {
+        true => 0.0,
+        false => (luck / (2.0 * enough as f64 - 1.0)).powi(2).min(0.99),
+    };
+    let at_most = found.largest / (1.0 - margin) * (1.0 + OF_DIFFERENCES);
+    Some(Largest { at_least: found.largest, at_most })
+}
+
+struct Ritz {
+    largest: f64,
+    exhausted: bool,
+}
+
+/// The largest Ritz value after `products` products; `None` when it is no positive number.
+fn lanczos(start: Vec<f64>, products: usize, mut times: impl FnMut(&[f64], &mut [f64])) -> Option<Ritz> {
+    let size = start.len();
+    let keep = products * size <= MOST_KEPT;
+    let dimensions = start.iter().filter(|&&x| x != 0.0).count();
+    let mut kept: Vec<Vec<f64>> = Vec::new();
+    let (mut previous, mut vector, mut image) = (vec![0.0; size], start, vec![0.0; size]);
     let (mut diagonal, mut beside): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
-    for _ in 0..EVALUATIONS {
-        let length = norm(&vector);
-        if !(length > 0.0 && length.is_finite() && amplitude.is_finite()) {
+    let (mut exhausted, mut scale) = (false, 0.0_f64);
+    for _ in 0..products {
+        let length = dot(&vector, &vector).sqrt();
+        if !length.is_finite() {
+            return None;
+        }
+        if length <= EXHAUSTED * scale || length == 0.0 || diagonal.len() == dimensions {
+            exhausted = keep;
             break;
         }
-        beside.push(length);
-        vector.iter_mut().for_each(|x| *x /= length);
-        let Some(mut image) = image(&vector, &roots, amplitude, &mut forces, world) else { break };
-        let along: f64 = image.iter().zip(&vector).map(|(a, b)| a * b).sum();
-        diagonal.push(along);
-        for i in 0..image.len() {
-            image[i] -= along * vector[i] + if diagonal.len() > 1 { length * previous[i] } else { 0.0 };
+        if !diagonal.is_empty() {
+            beside.push(length);
         }
-        previous = std::mem::replace(&mut vector, image);
+        vector.iter_mut().for_each(|x| *x /= length);
+        times(&vector, &mut image);
+        let along = dot(&image, &vector);
+        let back = if diagonal.is_empty() { 0.0 } else { length };
+        diagonal.push(along);
+        scale = scale.max(along.abs());
+        for i in 0..size {
+            image[i] -= along * vector[i] + back * previous[i];
+        }
+        std::mem::swap(&mut previous, &mut vector);
+        std::mem::swap(&mut vector, &mut image);
+        if keep {
+            kept.push(previous.clone());
+            // twice is enough (Parlett 1980)
+            for _ in 0..2 {
+                for basis in &kept {
+                    let part = dot(basis, &vector);
+                    vector.iter_mut().zip(basis).for_each(|(x, b)| *x -= part * b);
+                }
+            }
+        }
     }
-    set_displacements(&vec![0.0; roots.len()], world);
-    let _ = run(&mut forces, world);
-    let largest = largest_of_tridiagonal(&diagonal, beside.get(1..).unwrap_or(&[]));
-    if largest > 0.0 && largest < 1.0 { largest } else { 1.0 }
-}
-
-/// M^(−½) K M^(−½) x, in units of the factor that is in the roots.
-fn image(
-    x: &[f64],
-    roots: &[f64],
-    amplitude: f64,
-    forces: &mut [&mut HostSystem],
-    world: &mut World,
-) -> Option<Vec<f64>> {
-    let mut u: Vec<f64> = x.iter().zip(roots).map(|(x, root)| x * root).collect();
-    let largest = u.iter().fold(0.0_f64, |largest, u| largest.max(u.abs()));
-    let scale = amplitude / largest;
-    u.iter_mut().for_each(|u| *u *= scale);
-    set_displacements(&u, world);
-    run(forces, world)?;
-    let mut image = Vec::with_capacity(u.len());
-    for body in bodies(world) {
-        let internal = world.get::<InternalForce>(body)?;
-        image.extend((0..internal.len()).map(|i| internal.get(i)));
-    }
-    image.iter_mut().zip(roots).for_each(|(force, root)| *force *= root / scale);
-    Some(image)
-}
-
-fn run(forces: &mut [&mut HostSystem], world: &mut World) -> Option<()> {
-    for system in forces {
-        system.run((), world).ok()?.ok()?;
-    }
-    for mut found in world.query::<&mut FirstInverted>().iter_mut(world) {
-        found[0] = u32::MAX;
-    }
-    Some(())
+    let largest = largest_of_tridiagonal(&diagonal, &beside);
+    (largest.is_finite() && largest > 0.0).then_some(Ritz { largest, exhausted })
 }
 
 /// Bodies in a fixed order.
 fn bodies(world: &mut World) -> Vec<Entity> {
-    let mut bodies: Vec<Entity> = world.query_filtered::<Entity, With<FictitiousMass>>().iter(world).collect();
+    let mut bodies: Vec<Entity> = world.query_filtered::<Entity, With<ConstrainedAxes>>().iter(world).collect();
     bodies.sort();
     bodies
 }
 
-fn set_displacements(u: &[f64], world: &mut World) {
-    let mut from = 0;
-    for body in bodies(world) {
-        let Some(mut column) = world.get_mut::<Displacement>(body) else { continue };
-        let length = column.len();
-        (0..length).for_each(|i| column.set(i, u[from + i]));
-        from += length;
-    }
-}
-
-/// `factor`/√M of every free axis, 0 of held and parked ones.
-fn roots_of_mass(world: &mut World, factor: f64) -> Vec<f64> {
+/// 1/√M of every free axis, 0 of held and parked ones. M is the mass that nodes are moved with.
+fn roots_of_mass(world: &World, bodies: &[Entity]) -> Vec<f64> {
     let mut roots = Vec::new();
-    for body in bodies(world) {
-        let (Some(mass), Some(axes)) = (world.get::<FictitiousMass>(body), world.get::<ConstrainedAxes>(body)) else {
-            continue;
-        };
+    for &body in bodies {
+        let (Some(mass), Some(axes)) = (world.get::<Mass>(body), world.get::<ConstrainedAxes>(body)) else { continue };
+        let inertia = world.get::<FictitiousMass>(body).map_or(&mass.0, |fictitious| &fictitious.0);
         let root = |i: usize| {
-            let free = axes[i / 3] >> (i % 3) & 1 == 0 && mass.get(i / 3) > 0.0;
-            if free { factor / mass.get(i / 3).sqrt() } else { 0.0 }
+            let mass = inertia.get(i / 3);
+            let free = axes[i / 3] >> (i % 3) & 1 == 0 && mass > 0.0;
+            if free { 1.0 / mass.sqrt() } else { 0.0 }
         };
-        roots.extend((0..3 * mass.len()).map(root));
+        roots.extend((0..3 * inertia.len()).map(root));
     }
     roots
 }
 
-/// The shortest distance of two corners of an element (m).
-fn shortest_edge(world: &mut World) -> f64 {
-    let mut shortest = f64::INFINITY;
-    let mut blocks = world.query::<(&Block, &Connectivity)>();
-    for (block, connectivity) in blocks.iter(world) {
-        let Some(rest) = world.get::<RestPosition>(block.body) else { continue };
-        let nodes = crate::evaluation::node_count(block.kind);
-        for row in 0..block.count {
-            let corner = |a: usize| rest.0[connectivity[crate::evaluation::lane_place(row, nodes, a)] as usize];
-            for a in 1..nodes {
-                shortest = (0..a).map(|b| corner(a).distance(corner(b))).fold(shortest, f64::min);
-            }
-        }
-    }
-    shortest
-}
-
-/// A start that has a part of every mode, the same everywhere.
+/// A start that prefers no direction, the same everywhere: independent numbers of a normal distribution (Marsaglia's polar
+/// form of Box & Muller's).
 fn noise(roots: &[f64]) -> Vec<f64> {
     let mut state = 1_u64;
     let mut next = || {
         state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         (state >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     };
-    roots.iter().map(|&root| if root > 0.0 { next() } else { 0.0 }).collect()
+    let mut normal = || {
+        loop {
+            let (a, b): (f64, f64) = (next(), next());
+            let square = a * a + b * b;
+            if square > 0.0 && square < 1.0 {
+                return a * (-2.0 * square.ln() / square).sqrt();
+            }
+        }
+    };
+    roots.iter().map(|&root| if root > 0.0 { normal() } else { 0.0 }).collect()
 }
 
-fn norm(x: &[f64]) -> f64 {
-    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// By bisection: as many eigenvalues are above x as the pivots of T − x that are positive.
@@ -156,4 +173,33 @@ fn largest_of_tridiagonal(diagonal: &[f64], beside: &[f64]) -> f64 {
         if above(middle) { low = middle } else { high = middle }
     }
     high
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ritz_values_reach_the_margin_and_never_pass_the_eigenvalue() {
+        // eigenvalues crowded below the largest: Chebyshev points, where Lanczos' recursion has it hardest
+        let size = 3000;
+        let eigenvalue = |i: usize| 0.5 - 0.5 * (std::f64::consts::PI * (i as f64 + 0.5) / size as f64).cos();
+        let largest = eigenvalue(size - 1);
+        let luck = (1.648 * (size as f64).sqrt() / BAD_LUCK).ln();
+        for products in [20, 40, 80] {
+            let found = lanczos(noise(&vec![1.0; size]), products, |x, image| {
+                (0..size).for_each(|i| image[i] = eigenvalue(i) * x[i]);
+            });
+            let found = found.map_or(0.0, |found| found.largest);
+            let margin = (luck / (2.0 * products as f64 - 1.0)).powi(2);
+            assert!(found <= largest * (1.0 + 1e-12) && found >= (1.0 - margin) * largest, "{products}: {found}");
+        }
+    }
+
+    #[test]
+    fn a_space_that_is_exhausted_gives_the_eigenvalue_itself() {
+        let eigenvalues = [3.0, 1.0, 3.0, 2.0, 0.0];
+        let found = lanczos(noise(&[1.0; 5]), 50, |x, image| (0..5).for_each(|i| image[i] = eigenvalues[i] * x[i]));
+        assert!(found.is_some_and(|found| found.exhausted && (found.largest - 3.0).abs() < 1e-9));
+    }
 }

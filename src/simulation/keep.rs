@@ -18,7 +18,9 @@ impl Simulation {
     /// # Errors
     /// That it is a static analysis; what the GPU says.
     pub fn snapshot(&mut self) -> Result<Snapshot, Error> {
-        Snapshot::take(&mut self.world)
+        let mut snapshot = Snapshot::take(&mut self.world)?;
+        self.note_pace(&mut snapshot);
+        Ok(snapshot)
     }
 
     /// Goes back, or on, to the state of a snapshot. Steps from there give the same bits as they did, or would have done,
@@ -28,6 +30,7 @@ impl Simulation {
     /// That the snapshot is of another simulation (then nothing has changed); what the GPU says.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Error> {
         snapshot.put(&mut self.world)?;
+        self.take_up_pace(snapshot)?;
         let clock = *self.world.resource::<Clock>();
         self.began = (clock.step, clock.time());
         self.elapsed = Duration::ZERO;
@@ -58,7 +61,7 @@ impl Simulation {
         if folder.is_none() && !window {
             return Ok(());
         }
-        let snapshot = Snapshot::take(&mut self.world)?;
+        let snapshot = self.snapshot()?;
         if let Some(folder) = folder {
             snapshot.write(&folder.join(snapshot.file_name()))?;
         }
@@ -75,7 +78,7 @@ impl Simulation {
         let Some(folder) = observer.folder().map(Path::to_path_buf) else { return Ok(()) };
         let states: Vec<Snapshot> = observer.window.iter().cloned().collect();
         let Some(good) = states.last() else { return Ok(()) };
-        let found = Snapshot::take(&mut self.world)?;
+        let found = self.snapshot()?;
         let mut series = Series::named(&folder, LAST_STATES)?;
         for state in &states {
             state.put(&mut self.world)?;

@@ -1,30 +1,42 @@
 //! A scene at work: the world, its schedule, its clock.
 
 mod access;
+mod beat;
 mod build;
 pub mod explain;
+mod follow;
 mod frequency;
+mod growth;
 mod keep;
+mod mass_scaling;
 mod options;
 mod outputs;
+mod pace;
 mod parameters;
+mod policies;
 mod relax;
 mod residual;
 mod run;
 mod schedule;
+mod stable_step;
+mod step_change;
 mod stretch;
 mod summary;
 mod surface;
+mod tangent;
+mod watch;
 
+pub use follow::StepHistory;
 pub use options::{BackendChoice, Options};
 pub use relax::Equilibrium;
+pub use stable_step::Stability;
 pub use summary::{Inversions, Summary, SystemTime};
 
-use crate::assembly::StableStep;
 use crate::backend::kernel::KernelId;
 use crate::scene::Diagnostics;
 use crate::scene::schema::Scene;
 use crate::systems::{HostSystem, Phase};
+use beat::Beat;
 use bevy_ecs::prelude::*;
 use std::time::Duration;
 
@@ -35,6 +47,7 @@ pub struct Simulation {
     scene: Scene,
     facts: Facts,
     relaxing: Option<relax::Relaxing>,
+    follower: Option<follow::Follower>,
     elapsed: Duration,
     /// Step and time (s) from which `elapsed` counts: of the start, or of a snapshot that was gone on from.
     began: (u64, f64),
@@ -53,7 +66,7 @@ struct Entry {
 }
 
 enum Job {
-    Host { system: HostSystem, every: u64, observes: bool, reads: Vec<&'static str>, writes: Vec<&'static str> },
+    Host { system: HostSystem, beat: Beat, observes: bool, reads: Vec<&'static str>, writes: Vec<&'static str> },
     Kernels(Vec<KernelId>),
 }
 
@@ -63,7 +76,7 @@ struct Facts {
     backend: String,
     why: String,
     precision: crate::components::Precision,
-    stable: StableStep,
+    stability: Stability,
     steps: u64,
     nodes: usize,
     elements: usize,

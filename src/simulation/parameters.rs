@@ -67,6 +67,7 @@ pub(super) fn hand_out(
             None => {}
             Some(Value::Number(time)) if time.into_f64() > 0.0 => {
                 entry.every = crate::assembly::steps_of(time.into_f64(), time_step);
+                entry.interval = Some(time.into_f64());
             }
             Some(_) => {
                 complain(format!("`every` of `{name}` is the time between two runs (s), above 0"));

@@ -124,7 +124,7 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn finish(&mut self) -> Result<(), Error> {
-        self.advance(self.planned_steps().saturating_sub(self.step_count()))
+        self.advance_towards_end(u64::MAX)
     }
 
     /// Looks at the residual, and chooses how to go on.

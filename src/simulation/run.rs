@@ -25,10 +25,35 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn advance_to(&mut self, time: f64) -> Result<(), Error> {
-        let time_step = self.world.resource::<Clock>().time_step;
-        // a time that is a whole number of steps is met in spite of rounding
-        let target = (time / time_step - 1e-6).ceil().max(0.0) as u64;
-        self.advance(target.saturating_sub(self.step_count()))
+        loop {
+            self.follow()?;
+            let clock = *self.world.resource::<Clock>();
+            // a time that is a whole number of steps is met in spite of rounding
+            let target = clock.since.0 + ((time - clock.since.1) / clock.time_step - 1e-6).ceil().max(0.0) as u64;
+            let next = target.min(self.next_follow());
+            if next <= clock.step {
+                return Ok(());
+            }
+            self.advance(next - clock.step)?;
+        }
+    }
+
+    /// Takes at most `count` steps, and none beyond the end of the scene.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub fn advance_towards_end(&mut self, count: u64) -> Result<(), Error> {
+        let target = self.step_count().saturating_add(count);
+        while !self.is_finished() && self.step_count() < target {
+            self.follow()?;
+            let end = self.planned_steps().min(target).min(self.next_follow());
+            let left = end.saturating_sub(self.step_count());
+            if left == 0 {
+                break;
+            }
+            self.advance(left)?;
+        }
+        Ok(())
     }
 
     /// Takes `count` steps. On the GPU they go in as few submissions as observations and custom systems allow. A static
@@ -69,7 +94,8 @@ impl Simulation {
 
     fn steps_to(&mut self, target: u64) -> Result<(), Error> {
         while self.step_count() < target && self.relaxing.is_none() {
-            self.some_steps(target)?;
+            self.follow()?;
+            self.some_steps(target.min(self.next_follow()))?;
         }
         while self.step_count() < target
             && let Some(relaxing) = self.relaxing.as_ref().filter(|relaxing| !relaxing.equilibrium.reached)
@@ -102,7 +128,7 @@ impl Simulation {
         let mut signals = self.world.resource_mut::<Signals>();
         match &clock.relaxation {
             Some(relaxation) => signals.approach(relaxation.end, relaxation.share(step + 1)),
-            None => signals.evaluate(step as f64 * clock.time_step, (step + 1) as f64 * clock.time_step),
+            None => signals.evaluate(clock.time_at(step), clock.time_at(step + 1)),
         }
     }
 
@@ -125,17 +151,17 @@ impl Simulation {
     fn device_steps(&mut self, target: u64) -> Result<(), Error> {
         let step = self.step_count();
         let custom_due = |step: u64| {
-            self.entries.iter().any(
-                |entry| matches!(entry.job, Job::Host { every, observes: false, .. } if step.is_multiple_of(every)),
-            )
+            self.entries
+                .iter()
+                .any(|entry| matches!(entry.job, Job::Host { beat, observes: false, .. } if beat.is_due(step)))
         };
         if custom_due(step) {
             return self.device_step_around_hosts(step);
         }
         let mut until = target.min(self.world.resource::<Observer>().next_due(step));
         for entry in &self.entries {
-            if let Job::Host { every, observes: false, .. } = entry.job {
-                until = until.min((step / every + 1) * every);
+            if let Job::Host { beat, observes: false, .. } = entry.job {
+                until = until.min(beat.next_after(step));
             }
         }
         let kernels: Vec<KernelId> = self.entries.iter().flat_map(Entry::kernels).copied().collect();
@@ -172,7 +198,7 @@ impl Simulation {
                 Job::Kernels(kernels) if after => self.run_kernels(&kernels.clone(), step, 1)?,
                 Job::Kernels(kernels) => waiting.extend(kernels),
                 Job::Host { observes: true, .. } => {}
-                Job::Host { every, .. } if !step.is_multiple_of(*every) => {}
+                Job::Host { beat, .. } if !beat.is_due(step) => {}
                 Job::Host { reads, writes, .. } => {
                     let (reads, writes) = (reads.clone(), writes.clone());
                     self.run_kernels(&std::mem::take(&mut waiting), step, 1)?;
@@ -216,8 +242,8 @@ impl Entry {
 
     /// Runs a host system if this is one of its steps.
     fn run_on_host(&mut self, step: u64, world: &mut World) -> Result<(), Error> {
-        let Job::Host { system, every, .. } = &mut self.job else { return Ok(()) };
-        if !step.is_multiple_of(*every) {
+        let Job::Host { system, beat, .. } = &mut self.job else { return Ok(()) };
+        if !beat.is_due(step) {
             return Ok(());
         }
         let started = Instant::now();

@@ -12,6 +12,8 @@ pub struct Scheduled<'a> {
     pub because: String,
     /// Steps between two runs.
     pub every: u64,
+    /// Time between two runs (s), where the scene says so.
+    pub interval: Option<f64>,
 }
 
 /// Looks for mistakes in a scene's schedule that show without its world: names and their order.
@@ -51,13 +53,15 @@ pub fn resolve<'a>(
     let Some(names) = names else {
         let all = registry.systems().iter();
         return all
-            .filter_map(|system| Some(Scheduled { system, because: (system.because)(world)?, every: system.every }))
+            .filter_map(|system| {
+                Some(Scheduled { system, because: (system.because)(world)?, every: system.every, interval: None })
+            })
             .collect();
     };
     let mut schedule: Vec<Scheduled<'a>> = Vec::new();
     for system in names.iter().filter_map(|name| registry.get(name)) {
         let because = (system.because)(world).unwrap_or_else(|| "the scene's schedule names it".into());
-        schedule.push(Scheduled { system, because, every: system.every });
+        schedule.push(Scheduled { system, because, every: system.every, interval: None });
     }
     for system in registry.systems() {
         if let Some(because) = (system.because)(world)

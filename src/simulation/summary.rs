@@ -26,12 +26,18 @@ pub struct Summary {
     pub nodes: usize,
     /// Elements of all bodies at the start.
     pub elements: usize,
-    /// The largest step that the element bound shows to be stable (s).
+    /// The step up to which the run is stable at the start (s), by what `integration.bound` says.
     pub stable_step: f64,
-    /// The element that sets it: body and author's number.
+    /// The stiffest element: body and author's number.
     pub stable_step_element: (String, u64),
-    /// Δt (s).
+    /// What is known of the stable step at the start: the bound, the elements that set it, the true limit.
+    pub stability: super::Stability,
+    /// Δt at the end (s).
     pub time_step: f64,
+    /// The first step over the true limit at the start; `None` in a static analysis.
+    pub share_of_limit: Option<f64>,
+    /// How the step went during the run; `None` in a static analysis.
+    pub step_history: Option<super::StepHistory>,
     /// Steps taken.
     pub steps: u64,
     /// Steps that the scene lasts.
@@ -155,9 +161,12 @@ impl Simulation {
             },
             nodes: facts.nodes,
             elements: facts.elements,
-            stable_step: facts.stable.time_step,
-            stable_step_element: (facts.stable.body.clone(), facts.stable.element),
+            stable_step: facts.stability.stable_step,
+            stable_step_element: facts.stability.bound.culprit(),
+            stability: facts.stability.clone(),
             time_step: self.time_step(),
+            share_of_limit: facts.stability.limit.map(|limit| facts.stability.step / limit),
+            step_history: self.step_history().copied(),
             steps,
             planned_steps: facts.steps,
             resumed_at: (first > 0).then_some(since),

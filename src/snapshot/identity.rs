@@ -2,6 +2,7 @@
 
 use crate::backend::cpu::BlockLaw;
 use crate::components::*;
+use crate::materials::ElasticLaw;
 use crate::scene::schema::Scene;
 use bevy_ecs::prelude::*;
 use serde::Serialize;
@@ -40,6 +41,11 @@ pub fn identity(scene: &Scene, world: &mut World) -> Identity {
         }
         if let Some(law) = entity.get::<BlockLaw<f64>>() {
             laws.write(format!("{law:?}").as_bytes());
+            // of a law of one's own that only names the file
+            if let ElasticLaw::UserLaw(law) = &law.elastic {
+                laws.write(law.parts().text.as_bytes());
+                laws.write(&law.parts().uniform);
+            }
         }
     }
     add("meshes", meshes.finish());

@@ -46,6 +46,8 @@ struct Head {
     columns: Vec<ColumnEntry>,
     guards: GuardMemory,
     systems: BTreeMap<String, Value>,
+    /// How the simulation goes on from here: the simulation's own words.
+    pace: Value,
 }
 
 impl PartialEq for Head {
@@ -110,6 +112,16 @@ impl Snapshot {
         let put = put(self, world, &keeping);
         world.insert_resource(keeping);
         put
+    }
+
+    /// How the simulation goes on from here.
+    pub(crate) fn pace(&self) -> &Value {
+        &self.head.pace
+    }
+
+    /// Sets it.
+    pub(crate) fn set_pace(&mut self, pace: Value) {
+        self.head.pace = pace;
     }
 
     /// The time (s).
@@ -191,6 +203,7 @@ fn take(world: &mut World, keeping: &Keeping, clock: Clock) -> Result<Snapshot, 
         columns: entries,
         guards: world.get_resource::<GuardMemory>().cloned().unwrap_or_default(),
         systems,
+        pace: Value::Null,
     };
     Ok(Snapshot { head, data })
 }

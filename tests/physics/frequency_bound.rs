@@ -36,7 +36,7 @@ fn highest<E: Element>(points: &[DVec3], eta: f64, a: DVec3) -> f64 {
 }
 
 /// Largest eigenvalue of a symmetric matrix.
-fn jacobi(mut a: Vec<Vec<f64>>) -> f64 {
+pub fn jacobi(mut a: Vec<Vec<f64>>) -> f64 {
     let size = a.len();
     for _ in 0..30 {
         for p in 0..size {

@@ -1,8 +1,7 @@
 //! The guards: looks see what energies and fields say, limits end a run and warn, and nothing that is no number is found
 //! late or written.
 
-use crate::configurations::{Configuration, configurations, scene_of};
-use sinew::bevy_ecs;
+use crate::configurations::{configurations, scene_of};
 use sinew::bevy_ecs::prelude::*;
 use sinew::components::*;
 use sinew::observation::{HOST_GUARD_STEPS, look};
@@ -61,10 +60,12 @@ fn looks_see_the_energies_and_the_most_squeezed_element() {
 /// The work that is always booked is the work that is booked in full where energies are asked for.
 #[test]
 fn work_against_internal_forces_is_booked_without_being_asked_for() {
-    for run in configurations() {
+    let moved =
+        "Prescribed(on: Set(\"z1\"), displacement: (0.01, 0, 0.01), rotation: (0, 0, 20), curve: Smooth(end: 0.2)), ";
+    for (run, moved) in configurations().iter().flat_map(|run| ["", moved].map(|moved| (run, moved))) {
         let of = |output: &str| {
             let further = format!(
-                "loads: [Gravity(acceleration: (0, 0, -9.81))], constraints: [Fixed(on: Set(\"z0\"))], {output}"
+                "loads: [Gravity(acceleration: (0, 0, -9.81))], constraints: [{moved} Fixed(on: Set(\"z0\"))], {output}"
             );
             let mut simulation = run.start(&scene("Hex8", "damping: 3,", &further));
             simulation.advance(300).unwrap();
@@ -72,13 +73,12 @@ fn work_against_internal_forces_is_booked_without_being_asked_for() {
             (spent, simulation.energies().unwrap())
         };
         let ((spent, plain), (asked, full)) = (of(""), of("output: (energies_every: 1),"));
-        assert_eq!(
-            (plain.internal_work, full.internal_work.map(|w| (w - asked).abs() < 1e-12 * asked)),
-            (None, Some(true))
-        );
+        assert!(plain.internal_work.is_none() && full.internal_work == Some(asked));
         let error = (spent / asked - 1.0).abs();
         println!("{}: {spent:e} J, {asked:e} J: {error:e}", run.name);
-        assert!(error < run.bound(1e-9, 1e-5), "{}: {spent:e} instead of {asked:e}", run.name);
+        // kept in f32, the steps of prescribed nodes have 1e-7 of their digits
+        let bound = run.bound(if moved.is_empty() { 1e-9 } else { 1e-6 }, 1e-5);
+        assert!(error < bound, "{}: {spent:e} instead of {asked:e}", run.name);
         assert!((full.strain + full.hourglass - asked).abs() < 0.02 * asked, "{full:?}");
     }
 }

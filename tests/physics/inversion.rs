@@ -1,19 +1,19 @@
 //! Tissue under the stable neo-Hookean law squeezed to almost nothing (H07). What is turned inside out, H08 to H10, is in `tests/hard.rs`.
 //!
-//! A cube of .1 m of 2×2×2 cells, damped at 40/s: its slowest motion, of some 15 rad/s, dies in .8 s to 1e-5 of itself. What is
+//! A cube of .1 m, damped at 40/s: its slowest motion, of some 15 rad/s, dies in a second to 1e-6 of itself. What is
 //! farther than 1e-3 of the cube from its place after that is held there by a false equilibrium.
 
 use crate::configurations::{ELEMENTS, configurations, near};
 
 const SIZE: f64 = 0.1;
 
-fn squeezed(elements: &str, sides: &str) -> String {
+fn squeezed(elements: &str, cells: u32, sides: &str) -> String {
     format!(
-        "(duration: 2.2, bodies: {{\"b\": (mesh: Box(size: ({SIZE}, {SIZE}, {SIZE}), cells: (2, 2, 2), elements: {elements}), material: \"m\")}},
+        "(duration: 3, bodies: {{\"b\": (mesh: Box(size: ({SIZE}, {SIZE}, {SIZE}), cells: ({cells}, {cells}, {cells}), elements: {elements}), material: \"m\")}},
         materials: {{\"m\": (density: 1000, damping: 40, stable_neo_hookean: Young(young: 3e3, poisson: 0.45))}},
         constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0), axes: [Z]), Fixed(on: Plane(normal: (1, 0, 0), at: 0), axes: [X]),
         Fixed(on: Plane(normal: (0, 1, 0), at: 0), axes: [Y]), {sides}
-        Prescribed(on: Plane(normal: (0, 0, 1), at: 0.1), axes: [Z], displacement: (0, 0, -0.095), curve: Table([(0, 0), (0.6, 1), (1.1, 1), (1.4, 0)]))],
+        Prescribed(on: Plane(normal: (0, 0, 1), at: 0.1), axes: [Z], displacement: (0, 0, -0.095), curve: Table([(0, 0), (1, 1), (1.5, 1), (2, 0)]))],
         integration: (safety: 0.5))"
     )
 }
@@ -27,7 +27,8 @@ fn confined_stress(stretch: f64) -> f64 {
 }
 
 /// Confined the bound of 1 % is the case's. Free the homogeneous state is not the only one: a block squeezed by more than half
-/// wrinkles, so all that is asked is that it comes back.
+/// wrinkles, so all that is asked is that it comes back. (Of 2×2×2 cells of Tet4 it does not: a corner ends on the wrong side of its
+/// neighbours, with J > 0 in all of them. Nothing here knows that tissue cannot pass through tissue.)
 #[test]
 fn cube_squeezed_by_95_percent_pushes_as_the_law_says_and_comes_back() {
     let sides = "Fixed(on: Plane(normal: (1, 0, 0), at: 0.1), axes: [X]), Fixed(on: Plane(normal: (0, 1, 0), at: 0.1), axes: [Y]),";
@@ -37,8 +38,9 @@ fn cube_squeezed_by_95_percent_pushes_as_the_law_says_and_comes_back() {
             if !confined && run.name.starts_with("GPU") {
                 continue;
             }
-            let mut simulation = run.start(&squeezed(elements, if confined { sides } else { "" }));
-            simulation.advance_to(1.1).unwrap();
+            let mut simulation =
+                run.start(&squeezed(elements, if confined { 2 } else { 3 }, if confined { sides } else { "" }));
+            simulation.advance_to(1.5).unwrap();
             let what = format!("{}, {elements}, {}", run.name, if confined { "confined" } else { "free" });
             if confined {
                 let (rest, forces) =
@@ -47,7 +49,7 @@ fn cube_squeezed_by_95_percent_pushes_as_the_law_says_and_comes_back() {
                 let expected = confined_stress(0.05);
                 near(&what, top / (SIZE * SIZE), expected, expected, 1e-2);
             }
-            simulation.advance_to(2.2).unwrap();
+            simulation.advance_to(3.0).unwrap();
             let apart = simulation.displacements("b").unwrap().iter().map(|u| u.length() / SIZE).fold(0.0, f64::max);
             let inverted = simulation.fields("b").unwrap().volume_ratio.iter().filter(|&&j| j <= 0.0).count();
             println!("{what}: {apart:.1e} of the cube from its place");

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod bars;
+mod changing_step;
 mod clock_and_limit;
 mod columns;
 mod configurations;
@@ -29,6 +30,8 @@ mod random;
 mod removal;
 mod snapshots;
 mod statics;
+mod true_limit;
+mod unstable_elements;
 mod user_laws;
 mod viscosity;
 mod viscous_pressure;

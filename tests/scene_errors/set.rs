@@ -52,7 +52,7 @@ fn mistakes_in_a_set_are_shown_in_the_set() {
         ),
         (
             "integration.saftey=0.5",
-            r"--set:1:13: error: unknown field `saftey` | not a field of Integration | did you mean `safety`? | allowed: step, safety, beyond_stable_step, compensated",
+            r"--set:1:13: error: unknown field `saftey` | not a field of Integration | did you mean `safety`? | allowed: step, safety, bound, when_unstable, beyond_stable_step, compensated",
         ),
         (
             "bodies.cube.material=other",

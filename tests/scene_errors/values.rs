@@ -291,6 +291,11 @@ fn times_and_curves_are_checked() {
         ),
         (
             "duration: 0.5,",
+            "duration: 0.5, integration: (when_unstable: ScaleMass(most: -0.1)),",
+            r"3:65: error: `most` must be above 0 and at most 1, found -0.1 | it is the share of all mass that may be added; 0.05 when left out",
+        ),
+        (
+            "duration: 0.5,",
             "duration: 0.5, output: (fields_every: 0, energies_every: -1),",
             r"3:43: error: `fields_every` must be above 0, found 0 s
 3:62: error: `energies_every` must be above 0, found -1 s",

@@ -83,6 +83,7 @@ pub(super) fn beside() -> Vec<Fragment> {
         shader!("tet4"),
         shader!("tet4_nodal_pressure"),
         shader!("volume_ratio"),
+        shader!("watch_elements"),
     ]
 }
 

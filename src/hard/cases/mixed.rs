@@ -1,9 +1,9 @@
 //! Tetrahedra and hexahedra in one body.
 
 use super::super::Trial;
+use super::cells::vtk;
 use crate::error::Error;
 use glam::{DMat3, DVec3};
-use std::fmt::Write;
 
 const CELLS: usize = 3;
 
@@ -23,68 +23,14 @@ pub fn mixed_patch(trial: &mut Trial<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// Cells of a cube, every other one cut into six tetrahedra, its inner nodes moved: a VTK file.
+/// Cells of a cube, every other one cut into six tetrahedra, its inner nodes moved.
 fn mesh() -> String {
-    let along = CELLS + 1;
-    let node = |x: usize, y: usize, z: usize| x + along * (y + along * z);
-    let mut points = String::new();
-    for z in 0..along {
-        for y in 0..along {
-            for x in 0..along {
-                let inside = [x, y, z].iter().all(|&i| i > 0 && i < CELLS);
-                let moved = |i: usize| {
-                    if inside { 0.2 * ((7 * x + 5 * y + 3 * z + 11 * i) % 5) as f64 / 5.0 - 0.1 } else { 0.0 }
-                };
-                let at = [x, y, z].map(|i| i as f64);
-                let _ = writeln!(
-                    points,
-                    "{} {} {}",
-                    0.01 * (at[0] + moved(0)),
-                    0.01 * (at[1] + moved(1)),
-                    0.01 * (at[2] + moved(2))
-                );
-            }
-        }
-    }
-    let (mut cells, mut kinds, mut count, mut numbers) = (String::new(), String::new(), 0, 0);
-    let mut add = |nodes: &[usize]| {
-        let words: Vec<String> = nodes.iter().map(usize::to_string).collect();
-        let _ = writeln!(cells, "{} {}", nodes.len(), words.join(" "));
-        let _ = writeln!(kinds, "{}", if nodes.len() == 4 { 10 } else { 12 });
-        (count, numbers) = (count + 1, numbers + 1 + nodes.len());
+    let place = |at: [usize; 3]| {
+        let [x, y, z] = at;
+        let inside = at.iter().all(|&i| i > 0 && i < CELLS);
+        let moved =
+            |i: usize| if inside { 0.2 * ((7 * x + 5 * y + 3 * z + 11 * i) % 5) as f64 / 5.0 - 0.1 } else { 0.0 };
+        [0, 1, 2].map(|i| 0.01 * (at[i] as f64 + moved(i)))
     };
-    for cell in 0..CELLS.pow(3) {
-        let (x, y, z) = (cell % CELLS, cell / CELLS % CELLS, cell / CELLS / CELLS);
-        let corner = |a: usize, b: usize, c: usize| node(x + a, y + b, z + c);
-        if (x + y + z) % 2 == 0 {
-            let lower = [corner(0, 0, 0), corner(1, 0, 0), corner(1, 1, 0), corner(0, 1, 0)];
-            let upper = [corner(0, 0, 1), corner(1, 0, 1), corner(1, 1, 1), corner(0, 1, 1)];
-            add(&[lower, upper].concat());
-        } else {
-            // a tetrahedron for each way from one corner to the opposite one along three edges
-            for (order, even) in [
-                ([0, 1, 2], true),
-                ([1, 2, 0], true),
-                ([2, 0, 1], true),
-                ([0, 2, 1], false),
-                ([2, 1, 0], false),
-                ([1, 0, 2], false),
-            ] {
-                let mut at = [0, 0, 0];
-                let mut way = vec![corner(0, 0, 0)];
-                for axis in order {
-                    at[axis] = 1;
-                    way.push(corner(at[0], at[1], at[2]));
-                }
-                if !even {
-                    way.swap(1, 2);
-                }
-                add(&way);
-            }
-        }
-    }
-    let nodes = along.pow(3);
-    format!(
-        "# vtk DataFile Version 3.0\nmixed cells\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS {nodes} double\n{points}CELLS {count} {numbers}\n{cells}CELL_TYPES {count}\n{kinds}"
-    )
+    vtk([CELLS; 3], place, |[x, y, z]| (x + y + z) % 2 == 0)
 }

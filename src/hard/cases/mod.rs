@@ -1,6 +1,7 @@
 //! The cases, by what they are about.
 
 mod bending;
+mod cells;
 mod compression;
 mod fibres;
 mod impact;
@@ -11,6 +12,7 @@ mod mixed;
 mod point;
 mod removal;
 mod shocks;
+mod step;
 mod viscosity;
 
 use super::{Case, Configuration};
@@ -53,6 +55,10 @@ pub const CASES: &[Case] = &[
     case!("h02" "corner_load" "corner load on one-point hexahedra",
         "hourglass energy below 10 %; coefficient 0 is warned of; the default does not stiffen S1",
         one_point, bending::corner_load),
+    case!("h03" "sliver" "one sliver: h/1000, h/1e6, flat, negative volume",
+        "runs with a smaller step; warns with the worst elements; refused with their numbers", every, step::sliver),
+    case!("h04" "sizes" "element sizes 1:1000",
+        "the small element is named, with what it costs", every, step::sizes),
     case!("h05" "release" "release from 100 % stretch, 20 periods (everyday: 5)",
         "energy within 1 % (f64), 2 % (f32); J > .1", every, inversion::release),
     case!("h06" "twist" "twist by 180, 360 and 720° and back",
@@ -101,8 +107,14 @@ pub const CASES: &[Case] = &[
         "refused by name, or found within a few steps with the first node", every, input::not_a_number),
     case!("h28" "bad_numbers" "numbers that cannot be",
         "each refused with its own message", once, input::bad_numbers),
+    case!("h29" "beyond" "Δt = .99, 1.01, 1.1, 2 of the true limit (everyday: 5000 steps)",
+        ".99 runs 1e5 steps; the others are refused, or stopped where insisted on", every, step::beyond),
+    case!("h30" "shrinking_step" "the stable step shrinks during the run",
+        "the step adapts, or the run warns or stops", every, step::shrinks),
     case!("h31" "mixed_patch" "hexahedra and tetrahedra in one body",
         "patch test to 1e-6 (f64), 1e-4 (f32)", every, mixed::mixed_patch),
+    case!("h32" "mass_scaling" "mass scaling",
+        "added mass told, above 5 % warned of; energy balanced", every, step::heavier),
     case!("h33" "nothing_loaded" "nothing loaded for 1e5 steps (everyday: 1e4)",
         "no displacement above 1e-7 of the length", every, long_runs::nothing_loaded),
     case!("h34" "zero_weights" "effects of weight zero against absent ones",

@@ -15,7 +15,9 @@ pub use material::{
     ArrudaBoyce, Direction, Elasticity, ExponentialFibres, Fibres, Inversion, Material, MooneyRivlin, Ogden, OgdenTerm,
     OwnLaw, Prony, PronyTerm, ViscousIntegrator,
 };
-pub use scene::{Analysis, EnergyGuard, Field, Guard, Guards, Integration, Output, Picture, Scene};
+pub use scene::{
+    Analysis, EnergyGuard, Field, Guard, Guards, Integration, Output, Picture, Scene, StepBound, WhenUnstable,
+};
 pub use selection::{Probe, Quantity, Select};
 
 /// The texts of these files: what a field means is told in the words it is documented with.

@@ -90,6 +90,11 @@ pub struct Integration {
     pub step: Option<f64>,
     /// Share of the stable step that is taken.
     pub safety: f64,
+    /// What the stable step is found from.
+    pub bound: StepBound,
+    /// What is done when deformation makes the stable step smaller than the step. `Adapt` when left out; `Watch` where a
+    /// scene insists on a step beyond the stable one.
+    pub when_unstable: Option<WhenUnstable>,
     /// Take a `step` beyond the stable one all the same. The guards watch it, and cannot be switched off.
     pub beyond_stable_step: bool,
     /// Sum displacements with compensation: three numbers a node more, and f32 keeps the digits that plain sums lose.
@@ -98,8 +103,48 @@ pub struct Integration {
 
 impl Default for Integration {
     fn default() -> Self {
-        Self { step: None, safety: 0.9, beyond_stable_step: false, compensated: true }
+        Self {
+            step: None,
+            safety: 0.9,
+            bound: StepBound::default(),
+            when_unstable: None,
+            beyond_stable_step: false,
+            compensated: true,
+        }
     }
+}
+
+/// What the stable step is found from.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
+pub enum StepBound {
+    /// The stiffest element alone: certain, and up to twice smaller than need be.
+    #[default]
+    Elements,
+    /// The highest frequency of all bodies as they are held, by Lanczos' recursion.
+    Iterated,
+}
+
+/// What is done when deformation makes the stable step smaller than the step.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub enum WhenUnstable {
+    /// The step becomes smaller, and larger again when it may.
+    #[default]
+    Adapt,
+    /// The step stays; the run tells, and the guards stop it where it breaks down.
+    Watch,
+    /// Elements that need a smaller step are made heavier, at the start and during the run.
+    ScaleMass {
+        /// Share of the mass that may be added: more is warned of. Without `step` the step is as large as this allows.
+        #[serde(default = "most_added_mass")]
+        most: f64,
+    },
+    /// Elements that need a smaller step are removed.
+    Remove,
+}
+
+fn most_added_mass() -> f64 {
+    0.05
 }
 
 /// What is written, and how often.
@@ -200,6 +245,17 @@ impl Scene {
     pub fn fields_every(&self) -> f64 {
         let whole = if self.is_static() { self.duration } else { self.duration / 20.0 };
         self.output.fields_every.unwrap_or(whole)
+    }
+
+    /// What is done when deformation makes the stable step smaller than the step.
+    pub fn when_unstable(&self) -> WhenUnstable {
+        let insists = self.integration.beyond_stable_step;
+        self.integration.when_unstable.unwrap_or(if insists { WhenUnstable::Watch } else { WhenUnstable::Adapt })
+    }
+
+    /// Whether elements are made heavier.
+    pub fn scales_mass(&self) -> bool {
+        matches!(self.when_unstable(), WhenUnstable::ScaleMass { .. }) && !self.is_static()
     }
 
     /// Whether equilibrium is sought instead of motion.

@@ -1,7 +1,7 @@
 //! Durations, steps, intervals and curves.
 
 use super::{Judge, scene, show, with_unit};
-use crate::scene::schema::{Constraint, Curve, EnergyGuard, Guard, Guards, Load, Scene, When};
+use crate::scene::schema::{Constraint, Curve, EnergyGuard, Guard, Guards, Load, Scene, When, WhenUnstable};
 use crate::scene::syntax::Path;
 
 /// More states than are of use after a breakdown.
@@ -18,6 +18,13 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
         judge
             .must(&path.name("safety"), "above 0 and at most 1", show(safety))
             .note("it is the share of the stable step that is taken; 0.9 when left out");
+    }
+    if let Some(WhenUnstable::ScaleMass { most }) = scene_.integration.when_unstable
+        && (most <= 0.0 || most > 1.0)
+    {
+        judge
+            .must(&path.name("when_unstable").name("most"), "above 0 and at most 1", show(most))
+            .note("it is the share of all mass that may be added; 0.05 when left out");
     }
     let path = scene("output");
     for (field, value) in [

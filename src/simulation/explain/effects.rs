@@ -154,10 +154,10 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> 
         Precision::F32 => "`compensated: true` under `integration`",
         Precision::F64 => "`compensated: true` under `integration`, in f32 only",
     };
-    let booking = scene.output.energies_every.map_or_else(
-        || "a step beyond the stable one is watched by its balance of energy".into(),
-        |every| format!("a row in every {every} s"),
-    );
+    let booking = scene
+        .output
+        .energies_every
+        .map_or_else(|| "energies are asked for".into(), |every| format!("a row in every {every} s"));
     vec![
         Effect {
             name: "external forces",
@@ -182,7 +182,7 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> 
         Effect {
             name: "booking of work",
             on: entity.contains::<Work>().then_some(booking),
-            turned_on_by: "`energies_every` under `output`, or `beyond_stable_step` under `integration`".into(),
+            turned_on_by: "`energies_every` under `output`".into(),
         },
     ]
 }

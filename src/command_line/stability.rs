@@ -1,0 +1,66 @@
+//! The stable step in words: what sets it, what is taken of it, and how it went.
+
+use super::wording::{counted, digits, quantity};
+use sinew::Summary;
+use std::fmt::Write;
+
+/// What is known of it at the start, and the elements that set it, a line each.
+pub fn at_start(summary: &Summary) -> String {
+    let stability = &summary.stability;
+    let mut text = format!("stable step: {}\n", bounds(summary));
+    let _ = writeln!(
+        text,
+        "elements that set it: the usual element is stable up to {} (half of the volume needs no smaller step)",
+        quantity(stability.bound.usual, "s")
+    );
+    for worst in &stability.bound.worst {
+        let _ = writeln!(
+            text,
+            "  element {} of {}: {}, costs {} times the steps; without it and those above {} times the step",
+            worst.element,
+            worst.body,
+            quantity(worst.bound, "s"),
+            digits(worst.cost),
+            digits(worst.gain)
+        );
+    }
+    text
+}
+
+/// Bound, true limit and what is taken of it.
+fn bounds(summary: &Summary) -> String {
+    let (body, element) = &summary.stable_step_element;
+    let stability = &summary.stability;
+    let mut text = format!("{}, set by element {element} of {body}", quantity(stability.bound.time_step, "s"));
+    if let (Some(limit), Some(share)) = (stability.limit, summary.share_of_limit) {
+        let from = if stability.found_from == "iterated" { ", from which it is taken" } else { "" };
+        let _ = write!(text, "; true limit: {}{from}; the step is {} of it", quantity(limit, "s"), digits(share));
+    }
+    text
+}
+
+/// The step of a run, and how it went.
+pub fn of_run(summary: &Summary) -> Vec<String> {
+    let first = quantity(summary.stability.step, "s");
+    let mut lines = vec![format!("{first}; stable up to {}", bounds(summary))];
+    let Some(history) = &summary.step_history else { return lines };
+    if history.changes > 0 {
+        lines.push(format!(
+            "changed {}: smallest {}, largest {}",
+            counted(history.changes, "time"),
+            quantity(history.smallest, "s"),
+            quantity(history.largest, "s")
+        ));
+    }
+    if let Some(time) = history.beyond_since {
+        lines.push(format!("beyond the stable step since t = {}: do not trust what follows", quantity(time, "s")));
+    }
+    if history.added_mass > 0.0 {
+        let added = quantity(history.added_mass * 1e3, "g");
+        lines.push(format!("{added} of mass added for it, {} % of all", digits(100.0 * history.added_share)));
+    }
+    if history.removed > 0 {
+        lines.push(format!("{} removed for it", counted(history.removed, "element")));
+    }
+    lines
+}

@@ -1,0 +1,53 @@
+//! How often a system runs on the host.
+
+use serde::{Deserialize, Serialize};
+
+/// Every so many steps, counted from one of them.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) struct Beat {
+    every: u64,
+    from: u64,
+    /// Time between two runs (s), where it is a time and no number of steps.
+    interval: Option<f64>,
+}
+
+impl Beat {
+    pub fn new(every: u64, interval: Option<f64>) -> Self {
+        Self { every, from: 0, interval }
+    }
+
+    pub fn is_due(&self, step: u64) -> bool {
+        step >= self.from && (step - self.from).is_multiple_of(self.every)
+    }
+
+    /// The first step after `step` in which the system runs.
+    pub fn next_after(&self, step: u64) -> u64 {
+        if step < self.from { self.from } else { self.from + ((step - self.from) / self.every + 1) * self.every }
+    }
+
+    /// Goes on in steps of another length (s) from the beginning of `step`, to the nearest step.
+    pub fn change_step(&mut self, step: u64, before: f64, now: f64) {
+        let Some(interval) = self.interval else { return };
+        let next = if self.is_due(step) { step } else { self.next_after(step) };
+        self.from = step + ((next - step) as f64 * before / now).round() as u64;
+        self.every = crate::assembly::steps_of(interval, now);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_keep_their_times_to_a_step_when_the_step_changes() {
+        let mut beat = Beat::new(10, Some(0.1));
+        assert!((0..25).all(|step| beat.is_due(step) == (step % 10 == 0)));
+        // half way to the run at 0.3 s the steps become half as long
+        beat.change_step(25, 0.01, 0.005);
+        assert_eq!((beat.next_after(25), beat.next_after(35)), (35, 55));
+        assert!(!beat.is_due(30) && beat.is_due(35));
+        let mut steps = Beat::new(3, None);
+        steps.change_step(4, 0.01, 0.001);
+        assert!(steps.is_due(6) && !steps.is_due(5));
+    }
+}

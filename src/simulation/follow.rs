@@ -1,0 +1,284 @@
+//! The stable step followed during the run: a cheap bound every few steps, the highest frequency itself when that comes
+//! close, and what the scene wants done about it.
+
+use super::policies::WORTH;
+use super::stable_step::{ACCURACY, Stability, limits};
+use super::tangent::Tangent;
+use super::watch::{Seen, Watched};
+use super::{Simulation, mass_scaling};
+use crate::backend::device::{bring_to_host, send_to_device};
+use crate::components::*;
+use crate::error::Error;
+use crate::scene::schema::{Scene, StepBound, WhenUnstable};
+use base64::Engine;
+use base64::prelude::BASE64_STANDARD;
+use bevy_ecs::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::time::Instant;
+
+/// Steps between two looks at all elements: at least, and at most; and no more than half of all steps so far, because what
+/// begins smoothly becomes faster.
+const LOOKS: (u64, u64) = (16, 256);
+/// Between two looks strains change by so much, at the present speed: close to the limit, and where the step is half of it
+/// or less.
+const STRAIN: (f64, f64) = (0.05, 0.25);
+/// The highest frequency is found so many times, and once more for so many steps: each costs about a hundred steps. Beyond
+/// that the cheap bound is taken at its word.
+const SHARP_LOOKS: (u64, u64) = (4, 1000);
+/// A step that is so many times the stable one by the cheap bound tells of its limits rather than of the step.
+pub(super) const VAGUE: f64 = 2.0;
+/// Steps between two findings beyond that.
+const REST: u64 = 100;
+/// The highest frequency is found anew for a larger step when the bound of the elements has fallen to this share.
+const RELIEF: f64 = 0.6;
+
+/// How the step went during the run.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct StepHistory {
+    /// How often it was changed.
+    pub changes: u64,
+    /// The smallest step taken (s).
+    pub smallest: f64,
+    /// The largest step taken (s).
+    pub largest: f64,
+    /// How often all elements were looked at.
+    pub looks: u64,
+    /// How often the highest frequency was found during the run.
+    pub sharp_looks: u64,
+    /// What looking took (s).
+    pub seconds: f64,
+    /// When the step was first seen to be beyond the stable one (s), where it stays all the same.
+    pub beyond_since: Option<f64>,
+    /// Mass that was added so that the step could stay (kg).
+    pub added_mass: f64,
+    /// The same as a share of all mass.
+    pub added_share: f64,
+    /// Kinetic energy that mass brought which was added during the run (J).
+    pub added_energy: f64,
+    /// Elements that were removed because they need a smaller step.
+    pub removed: u64,
+}
+
+/// Follows the stable step of a run.
+pub(super) struct Follower {
+    pub policy: WhenUnstable,
+    pub safety: f64,
+    /// The step takes nothing but the bound of the elements for granted: it never grows beyond that.
+    by_elements: bool,
+    /// The scene's own step, which it never grows beyond (s), and its share of the stable one at the start; else 0.
+    own: f64,
+    own_share: f64,
+    pub duration: f64,
+    pub first: f64,
+    pub next: u64,
+    pub watched: Vec<Watched>,
+    /// The highest ω² when it was found last (1/s²), in which step, and what was seen then.
+    pub known: f64,
+    pub known_at: u64,
+    seen: Option<Seen>,
+    /// Whether the step was made smaller on the word of the cheap bound.
+    pub guessed: bool,
+    pub history: StepHistory,
+}
+
+impl Follower {
+    /// `None` where there is no motion.
+    pub fn new(scene: &Scene, stability: &Stability, initial_mass: f64, world: &mut World) -> Option<Self> {
+        let (limit, integration) = (stability.limit?, &scene.integration);
+        let step = world.resource::<Clock>().time_step;
+        let added = if scene.scales_mass() { mass_scaling::weigh(world).mass } else { 0.0 };
+        // a scene's own step may need elements to go before they do harm
+        let next = if step > limit && scene.when_unstable() == WhenUnstable::Remove { 0 } else { LOOKS.0 };
+        Some(Self {
+            policy: scene.when_unstable(),
+            safety: integration.safety,
+            by_elements: integration.bound == StepBound::Elements,
+            own: integration.step.unwrap_or(f64::INFINITY),
+            own_share: integration.step.map_or(0.0, |step| step / limit),
+            duration: scene.duration,
+            first: step,
+            next,
+            watched: Vec::new(),
+            known: square_of(limit),
+            known_at: 0,
+            seen: None,
+            guessed: false,
+            history: StepHistory {
+                smallest: step,
+                largest: step,
+                added_mass: added,
+                added_share: added / initial_mass,
+                beyond_since: (step > limit && scene.when_unstable() == WhenUnstable::Watch).then_some(0.0),
+                ..StepHistory::default()
+            },
+        })
+    }
+
+    /// The share of the stable step beyond which a step counts as too large: half of what was left at the start is used up.
+    pub fn most(&self) -> f64 {
+        0.5 * (1.0 + self.safety.max(self.own_share).min(1.0))
+    }
+
+    /// The largest step that may be taken when so much is stable (s).
+    pub fn wanted(&self, limit: f64, seen: &Seen) -> f64 {
+        let elements = if self.by_elements { self.safety * step_of(seen.at_rest) } else { f64::INFINITY };
+        (self.safety * limit).min(elements).min(self.own)
+    }
+}
+
+/// What has been found so far, for snapshots.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Found {
+    next: u64,
+    known: f64,
+    known_at: u64,
+    seen: Option<Seen>,
+    guessed: bool,
+    history: StepHistory,
+    /// Of each block, as base64 of f32; none before the first look.
+    growths: Vec<String>,
+}
+
+impl Follower {
+    /// What has been found so far.
+    pub fn found(&self) -> Found {
+        let growth = |block: &Watched| {
+            let bytes: Vec<u8> = block.known_growth().iter().flat_map(|growth| growth.to_le_bytes()).collect();
+            BASE64_STANDARD.encode(bytes)
+        };
+        Found {
+            next: self.next,
+            known: self.known,
+            known_at: self.known_at,
+            seen: self.seen,
+            guessed: self.guessed,
+            history: self.history,
+            growths: self.watched.iter().map(growth).collect(),
+        }
+    }
+
+    /// Goes on from what had been found; false where it does not fit the world.
+    pub fn take_up(&mut self, found: Found, world: &mut World) -> bool {
+        self.watched = if found.growths.is_empty() { Vec::new() } else { Watched::all(world) };
+        let growth = |text: &String| {
+            let bytes = BASE64_STANDARD.decode(text).ok()?;
+            Some(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect::<Vec<f32>>())
+        };
+        let growths: Option<Vec<Vec<f32>>> = found.growths.iter().map(growth).collect();
+        let Some(growths) = growths.filter(|growths| growths.len() == self.watched.len()) else { return false };
+        let fits = self.watched.iter_mut().zip(growths).all(|(block, growth)| block.take_known_growth(growth));
+        (self.next, self.known, self.known_at) = (found.next, found.known, found.known_at);
+        (self.seen, self.guessed, self.history) = (found.seen, found.guessed, found.history);
+        fits && self.known.is_finite()
+    }
+}
+
+/// How many elements there were at the last finding.
+fn before_alive(follower: &Follower) -> usize {
+    follower.seen.map_or(usize::MAX, |seen| seen.alive)
+}
+
+/// 2/ω.
+pub(super) fn step_of(square: f64) -> f64 {
+    2.0 / square.sqrt()
+}
+
+/// ω² of a stable step.
+pub(super) fn square_of(step: f64) -> f64 {
+    4.0 / (step * step)
+}
+
+impl Simulation {
+    /// How the step went so far; `None` in a static analysis.
+    pub fn step_history(&self) -> Option<&StepHistory> {
+        self.follower.as_ref().map(|follower| &follower.history)
+    }
+
+    /// The next step before which the stable step is looked at.
+    pub(super) fn next_follow(&self) -> u64 {
+        self.follower.as_ref().map_or(u64::MAX, |follower| follower.next)
+    }
+
+    /// Looks at the stable step if it is time, and does what the scene wants done.
+    pub(super) fn follow(&mut self) -> Result<(), Error> {
+        let step = self.step_count();
+        let Some(mut follower) = self.follower.take_if(|follower| follower.next <= step) else { return Ok(()) };
+        let started = Instant::now();
+        let looked = self.look_with(&mut follower);
+        follower.history.seconds += started.elapsed().as_secs_f64();
+        self.follower = Some(follower);
+        looked
+    }
+
+    fn look_with(&mut self, follower: &mut Follower) -> Result<(), Error> {
+        let moving = [Displacement::NAME, DisplacementStep::NAME, RestShape::NAME];
+        bring_to_host(&mut self.world, |_, name| moving.contains(&name))?;
+        if follower.watched.is_empty() {
+            follower.watched = Watched::all(&mut self.world);
+        }
+        let step = self.step_count();
+        let all = follower.watched.iter().map(|block| block.look(&self.world, follower.known));
+        let mut seen = all.fold(Seen::NOTHING, Seen::and);
+        follower.history.looks += 1;
+        let time_step = self.world.resource::<Clock>().time_step;
+        // far below the limit more may happen unseen
+        let room = follower.most() * step_of(seen.square) / time_step - 1.0;
+        let strain = (STRAIN.1 * room).clamp(STRAIN.0, STRAIN.1);
+        let calm = ((strain / seen.speed) as u64).min(step / 2);
+        follower.next = step + calm.clamp(LOOKS.0, LOOKS.1);
+        if seen.alive < before_alive(follower) && matches!(follower.policy, WhenUnstable::ScaleMass { .. }) {
+            // what was added to removed elements goes with them
+            bring_to_host(&mut self.world, |_, name| [Mass::NAME, FictitiousMass::NAME].contains(&name))?;
+            mass_scaling::weigh(&mut self.world);
+            send_to_device(&mut self.world, |_, name| name == FictitiousMass::NAME)?;
+        }
+        if !seen.speed.is_finite() || seen.alive == 0 {
+            // what is no number is the guards' business
+            return Ok(());
+        }
+        let pressing = time_step > follower.most() * step_of(seen.square);
+        let before = follower.seen.unwrap_or(seen);
+        let relieved = seen.of_elements < RELIEF * before.of_elements || seen.alive < before.alive;
+        let may_grow =
+            follower.policy == WhenUnstable::Adapt && time_step * WORTH < follower.wanted(f64::INFINITY, &seen);
+        let affordable = follower.history.sharp_looks < SHARP_LOOKS.0 + step / SHARP_LOOKS.1;
+        let better = affordable && (pressing || follower.guessed || relieved && may_grow);
+        let worth_it = match follower.policy {
+            // far off the cheap bound says nothing
+            WhenUnstable::Adapt => time_step > VAGUE * step_of(seen.square) && step >= follower.known_at + REST,
+            WhenUnstable::Watch => false,
+            // mass is not added and elements are not removed on its word
+            WhenUnstable::ScaleMass { .. } | WhenUnstable::Remove => true,
+        };
+        if better || pressing && worth_it {
+            bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
+            if let Some(found) = limits(&mut self.world, ACCURACY) {
+                for block in &mut follower.watched {
+                    block.remember(&self.world);
+                }
+                (follower.known, follower.known_at) = (square_of(found.safe), step);
+                seen.square = follower.known;
+                follower.seen = Some(seen);
+                follower.guessed = false;
+                follower.history.sharp_looks += 1;
+            }
+        }
+        follower.seen.get_or_insert(seen);
+        match follower.policy {
+            WhenUnstable::Adapt => self.adapt(follower, &seen, time_step),
+            WhenUnstable::Watch => {
+                if time_step > step_of(follower.known) {
+                    let now = self.time();
+                    follower.history.beyond_since.get_or_insert(now);
+                    // told once; the guards see to the rest
+                    follower.next = u64::MAX;
+                }
+                Ok(())
+            }
+            _ if follower.known_at != step || time_step <= follower.most() * step_of(seen.square) => Ok(()),
+            WhenUnstable::ScaleMass { .. } => self.make_heavier(follower, time_step),
+            WhenUnstable::Remove => self.remove_quickest(follower, &seen),
+        }
+    }
+}

@@ -1,0 +1,238 @@
+//! How much stiffer a law can have become, by how far it is deformed: what makes frequencies rise during a run.
+//!
+//! In total Lagrangian form an element's gradients and volume stay those at rest, so all that can raise its frequencies is
+//! the tangent ∂P/∂F of its law. For a deformation of the size s = max(tr C, tr C⁻¹)/3 the table holds the largest
+//! eigenvalue of ∂P/∂F that was met at smaller or equal sizes among [`samples`], over that at rest: of the whole, of the
+//! volumetric part, and of the isochoric part along changes that keep the volume (across F⁻ᵀ), whichever has grown most.
+//! Elements that average the pressure feel these parts to different shares. Exponential fibres stiffen by so much more that what
+//! they add is computed along their own directions.
+
+use crate::backend::cpu::BlockLaw;
+use crate::components::FamilyDirection;
+use crate::materials::{Elastic, ExponentialFibre};
+use crate::math::Mat3;
+
+/// Stretches that laws are tried at.
+const STRETCHES: usize = 16;
+/// The largest of them.
+const LARGEST_STRETCH: f64 = 5.0;
+/// Components of ∇u are changed by so much for a difference.
+const CHANGE: f64 = 1e-6;
+/// Multiplications by which the largest eigenvalue of a tangent is found, to a per mille where it stands out.
+const MULTIPLICATIONS: usize = 40;
+
+/// Growth of ω² of a law, by the size of the deformation.
+#[derive(Clone, Debug)]
+pub(super) struct Growth {
+    /// Size and growth, both ascending.
+    points: Vec<(f64, f64)>,
+    /// The largest eigenvalue of the isochoric part at rest (Pa).
+    isochoric: f64,
+    /// Exponential fibres, and where they have their directions from.
+    pub families: Vec<(ExponentialFibre<f64>, FamilyDirection<f64>)>,
+    /// Families whose directions differ from element to element, quadratic ones included.
+    pub varying: usize,
+}
+
+/// tr C/3 and tr C⁻¹/3 of a C (xx, yy, zz, xy, yz, xz): 1 at rest.
+pub(super) fn sizes([xx, yy, zz, xy, yz, xz]: [f64; 6]) -> [f64; 2] {
+    let first = xx + yy + zz;
+    let second = xx * yy + yy * zz + zz * xx - xy * xy - yz * yz - xz * xz;
+    let third = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+    let inverse = if third > 0.0 { second / third } else { f64::INFINITY };
+    [first / 3.0, inverse / 3.0]
+}
+
+/// C: xx, yy, zz, xy, yz, xz.
+pub(super) fn right_cauchy_green(gradient: &Mat3<f64>) -> [f64; 6] {
+    let f = with_identity(gradient);
+    let along = |i: usize, j: usize| (0..3).map(|k| f[k][i] * f[k][j]).sum::<f64>();
+    [along(0, 0), along(1, 1), along(2, 2), along(0, 1), along(1, 2), along(0, 2)]
+}
+
+/// F = I + ∇u.
+pub(super) fn with_identity(gradient: &Mat3<f64>) -> [[f64; 3]; 3] {
+    let mut f = gradient.0;
+    (0..3).for_each(|i| f[i][i] += 1.0);
+    f
+}
+
+impl Growth {
+    /// Of a law.
+    pub fn of(law: &BlockLaw<f64>) -> Self {
+        let rest = tangents(law, &[1.0; 3]);
+        let varying = law.varying_families();
+        let mut law = law.clone();
+        let families = std::mem::take(&mut law.exponential);
+        let of_sample = |stretches: [f64; 3]| {
+            let found = tangents(&law, &stretches);
+            let ratio = |i: usize| if rest[i] > 0.0 { found[i] / rest[i] } else { 1.0 };
+            let mut gradient = Mat3::zero(0.0);
+            (0..3).for_each(|i| gradient.0[i][i] = stretches[i] - 1.0);
+            let [first, inverse] = sizes(right_cauchy_green(&gradient));
+            (first.max(inverse), ratio(0).max(ratio(1)).max(ratio(2)))
+        };
+        let mut points: Vec<(f64, f64)> = samples().map(of_sample).collect();
+        points.retain(|(size, growth)| size.is_finite() && growth.is_finite());
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut largest = 1.0_f64;
+        for (_, growth) in &mut points {
+            largest = largest.max(*growth);
+            *growth = largest;
+        }
+        points.insert(0, (1.0, 1.0));
+        Self { points, isochoric: rest[0], families, varying }
+    }
+
+    /// What a family of exponential fibres adds to the growth, for a C and its direction: k₁ e^x (4 (1 + 2x) M + 2Ē) with
+    /// x = k₂Ē² and M = κ_d tr C + (1 − 3κ_d) I₄, which bounds its part of ∂P/∂F, over the isochoric part at rest.
+    pub fn of_family(&self, family: &ExponentialFibre<f64>, c: [f64; 6], [x, y, z]: [f64; 3]) -> f64 {
+        let along = c[0] * x * x + c[1] * y * y + c[2] * z * z + 2.0 * (c[3] * x * y + c[4] * y * z + c[5] * x * z);
+        let trace = c[0] + c[1] + c[2];
+        let measure = family.dispersion * trace + (1.0 - 3.0 * family.dispersion) * along;
+        let strain = (measure - 1.0).max(0.0);
+        let exponent = (family.k2 * strain * strain).min(40.0);
+        let tangent = family.k1 * exponent.exp() * (4.0 * (1.0 + 2.0 * exponent) * measure + 2.0 * strain);
+        // at rest it is part of what growth is measured by
+        ((tangent - 4.0 * family.k1) / self.isochoric).max(0.0)
+    }
+
+    /// Growth of ω² at most without exponential fibres, for a deformation of a size; infinite beyond all that was tried.
+    pub fn at(&self, size: f64) -> f64 {
+        let after = self.points.partition_point(|(s, _)| *s < size);
+        match (after.checked_sub(1).map(|i| self.points[i]), self.points.get(after)) {
+            (Some((s0, g0)), Some(&(s1, g1))) => g0 + (g1 - g0) * (size - s0) / (s1 - s0),
+            (None, _) => 1.0,
+            (Some(_), None) => f64::INFINITY,
+        }
+    }
+}
+
+/// Principal stretches that are tried: of constant volume pulled, squeezed and sheared, along the fibres and across, and of
+/// one direction alone.
+fn samples() -> impl Iterator<Item = [f64; 3]> {
+    (1..=STRETCHES).flat_map(|k| {
+        let s = LARGEST_STRETCH.powf(k as f64 / STRETCHES as f64);
+        let (r, root) = (1.0 / s, s.sqrt());
+        let thin = 1.0 / root;
+        [
+            [s, thin, thin],
+            [thin, s, thin],
+            [r, root, root],
+            [root, r, root],
+            [s, r, 1.0],
+            [r, s, 1.0],
+            [1.0, s, r],
+            [r, 1.0, 1.0],
+            [1.0, r, 1.0],
+        ]
+    })
+}
+
+/// The largest eigenvalues (Pa) of ∂P/∂F for F with these diagonals and fibres along x: of the isochoric stress along changes
+/// that keep the volume, of the volumetric stress, and of both together.
+fn tangents(law: &BlockLaw<f64>, stretches: &[f64; 3]) -> [f64; 3] {
+    let mut gradient = Mat3::zero(0.0);
+    (0..3).for_each(|i| gradient.0[i][i] = stretches[i] - 1.0);
+    let stresses = |gradient: &Mat3<f64>| {
+        let k = law.elastic.kinematics(gradient);
+        let mut isochoric = law.elastic.isochoric(&k);
+        let along = [1.0, 0.0, 0.0];
+        if let Some((fibres, _)) = &law.fibres {
+            isochoric = isochoric.plus(&fibres.isochoric(&k, along));
+        }
+        for (family, _) in &law.exponential {
+            isochoric = isochoric.plus(&family.isochoric(&k, along));
+        }
+        let pressure = law.elastic.pressure(law.elastic.volume_measure(&k));
+        let without = law.elastic.first_stress(gradient, &k, &isochoric, 0.0);
+        let mut volumetric = law.elastic.first_stress(gradient, &k, &isochoric, pressure);
+        for (row, less) in volumetric.0.iter_mut().zip(&without.0) {
+            row.iter_mut().zip(less).for_each(|(x, less)| *x -= less);
+        }
+        [without, volumetric]
+    };
+    let before = stresses(&gradient);
+    let mut tangents = [[[0.0; 9]; 9]; 2];
+    for column in 0..9 {
+        let mut moved = gradient;
+        moved.0[column / 3][column % 3] += CHANGE;
+        let after = stresses(&moved);
+        for part in 0..2 {
+            for row in 0..9 {
+                let [a, b] = [&after, &before].map(|all| all[part].0[row / 3][row % 3]);
+                tangents[part][row][column] = (a - b) / CHANGE;
+            }
+        }
+    }
+    let [isochoric, volumetric] = tangents;
+    let whole: [[f64; 9]; 9] = std::array::from_fn(|i| std::array::from_fn(|j| isochoric[i][j] + volumetric[i][j]));
+    let keeping = across(&isochoric, stretches);
+    [largest_eigenvalue(&keeping), largest_eigenvalue(&volumetric), largest_eigenvalue(&whole)]
+}
+
+/// A tangent along changes of F across F⁻ᵀ: (1 − n nᵀ) A (1 − n nᵀ).
+fn across(a: &[[f64; 9]; 9], stretches: &[f64; 3]) -> [[f64; 9]; 9] {
+    let mut n = [0.0; 9];
+    (0..3).for_each(|i| n[4 * i] = 1.0 / stretches[i]);
+    let length = n.iter().map(|n| n * n).sum::<f64>().sqrt();
+    let onto: [[f64; 9]; 9] =
+        std::array::from_fn(|i| std::array::from_fn(|j| f64::from(u8::from(i == j)) - n[i] * n[j] / (length * length)));
+    let times = |x: &[[f64; 9]; 9], y: &[[f64; 9]; 9]| -> [[f64; 9]; 9] {
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..9).map(|k| x[i][k] * y[k][j]).sum()))
+    };
+    times(&times(&onto, a), &onto)
+}
+
+/// The largest magnitude of an eigenvalue, by the power method.
+fn largest_eigenvalue(a: &[[f64; 9]; 9]) -> f64 {
+    // a start that has a part of every symmetric and skew pattern
+    let mut x: [f64; 9] = std::array::from_fn(|i| 1.0 + 0.37 * (i as f64 * 1.7).sin());
+    let mut length = 0.0;
+    for _ in 0..MULTIPLICATIONS {
+        let y: [f64; 9] = std::array::from_fn(|i| (0..9).map(|j| a[i][j] * x[j]).sum());
+        length = y.iter().map(|y| y * y).sum::<f64>().sqrt();
+        if !(length > 0.0 && length.is_finite()) {
+            return length;
+        }
+        x = y.map(|y| y / length);
+    }
+    length
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::materials::{ElasticLaw, Linear, NeoHookean};
+
+    fn law(elastic: ElasticLaw<f64>) -> BlockLaw<f64> {
+        BlockLaw { elastic, fibres: None, exponential: vec![], prony: vec![], volumetric: vec![], reproject: false }
+    }
+
+    #[test]
+    fn a_linear_law_never_stiffens_and_a_neo_hookean_one_with_the_size_of_the_deformation() {
+        let linear = Growth::of(&law(ElasticLaw::Linear(Linear { shear: 1e3, bulk: 1e4 })));
+        assert!((linear.at(4.0) - 1.0).abs() < 1e-6);
+        let soft = Growth::of(&law(ElasticLaw::NeoHookean(NeoHookean { shear: 1e3, bulk: 1e5 })));
+        // at constant volume the volumetric part is κ tr C⁻¹, 3κ at rest: the size itself; isochoric parts and changes of
+        // volume add to it
+        for size in [1.5_f64, 3.0, 6.0] {
+            let growth = soft.at(size);
+            println!("{size}: {growth}");
+            assert!(growth > 0.9 * size && growth < 4.0 * size, "{size}: {growth}");
+        }
+        assert!(soft.at(1e3).is_infinite());
+    }
+
+    #[test]
+    fn exponential_fibres_stiffen_much_more() {
+        let mut fibrous = law(ElasticLaw::NeoHookean(NeoHookean { shear: 1e3, bulk: 1e5 }));
+        let family = ExponentialFibre { k1: 1e3, k2: 10.0, dispersion: 0.0, tension_only: 1.0 };
+        fibrous.exponential.push((family, FamilyDirection::Uniform([1.0, 0.0, 0.0])));
+        let growth = Growth::of(&fibrous);
+        let c = [2.25, 1.0 / 1.5, 1.0 / 1.5, 0.0, 0.0, 0.0];
+        assert!(growth.of_family(&family, c, [1.0, 0.0, 0.0]) > 1e4);
+        assert_eq!(growth.of_family(&family, c, [0.0, 1.0, 0.0]), 0.0);
+        assert_eq!(growth.of_family(&family, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0]), 0.0);
+    }
+}

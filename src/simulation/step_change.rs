@@ -1,0 +1,198 @@
+//! Going on with steps of another length: everything that counts in steps follows.
+
+use super::{Job, Simulation};
+use crate::assembly::step_of;
+use crate::backend::cpu::BlockLaw;
+use crate::backend::device::{Device, bring_to_host, send_to_device};
+use crate::backend::kernel::Uniform;
+use crate::components::*;
+use crate::error::Error;
+use crate::evaluation::{BlockView, lane_place, point_count};
+use crate::materials::PronyTerm;
+use crate::observation::Observer;
+use bevy_ecs::prelude::*;
+
+/// What a change reads or writes.
+const COLUMNS: [&str; 9] = [
+    FirstNonFinite::NAME,
+    Displacement::NAME,
+    DisplacementStep::NAME,
+    DisplacementCompensation::NAME,
+    Work::NAME,
+    RestShape::NAME,
+    ViscousMemory::NAME,
+    Alive::NAME,
+    RemovalStep::NAME,
+];
+
+/// What it writes.
+const WRITTEN: [&str; 6] = [
+    DisplacementStep::NAME,
+    DisplacementCompensation::NAME,
+    Work::NAME,
+    FirstNonFinite::NAME,
+    ViscousMemory::NAME,
+    RemovalStep::NAME,
+];
+
+impl Simulation {
+    /// Takes steps of another length (s) from the present one on, whatever is stable; the scene ends with the last whole
+    /// step in its duration.
+    ///
+    /// # Errors
+    /// A step that is no positive number; a static analysis, whose steps are no motion; what the GPU says.
+    pub fn set_time_step(&mut self, time_step: f64) -> Result<(), Error> {
+        let clock = *self.world.resource::<Clock>();
+        if !(time_step.is_finite() && time_step > 0.0) || clock.relaxation.is_some() {
+            return Err(Error::Options(format!("{time_step} s is no step that this simulation can take")));
+        }
+        let left = ((self.scene.duration - clock.time()) / time_step).round().max(0.0);
+        self.change_step(time_step, clock.step + left as u64)
+    }
+
+    /// Takes steps of another length (s) from the present step on.
+    ///
+    /// Velocities stay: the column of steps is scaled. The clock counts from here, and outputs, removal by time, custom
+    /// systems and the history of viscous materials go on at their times.
+    pub(super) fn change_step(&mut self, time_step: f64, last_step: u64) -> Result<(), Error> {
+        let world = &mut self.world;
+        bring_to_host(world, |_, name| COLUMNS.contains(&name))?;
+        let before = *world.resource::<Clock>();
+        world.resource_mut::<Clock>().change_step(time_step);
+        let now = *world.resource::<Clock>();
+        scale_steps(world, now.time_step / before.time_step);
+        relax_on(world, &now)?;
+        remove_in_time(world, &now);
+        world.resource_mut::<Observer>().change_step(&now, last_step);
+        for entry in &mut self.entries {
+            if let Job::Host { beat, .. } = &mut entry.job {
+                beat.change_step(now.step, before.time_step, now.time_step);
+            }
+        }
+        self.facts.steps = last_step;
+        send_to_device(world, |_, name| WRITTEN.contains(&name))
+    }
+}
+
+/// Velocities are kept: steps, what rounding left out of them, and the last steps along constrained axes.
+fn scale_steps(world: &mut World, factor: f64) {
+    let scale = |column: &mut Reals, i: usize| column.set(i, factor * column.get(i));
+    type Steps<'a> = (
+        &'a mut DisplacementStep,
+        Option<&'a mut DisplacementCompensation>,
+        Option<&'a mut Work>,
+        &'a mut FirstNonFinite,
+    );
+    for (mut step, lost, work, mut noticed) in world.query::<Steps>().iter_mut(world) {
+        let nodes = step.len() / 3;
+        (0..3 * nodes).for_each(|i| scale(&mut step, i));
+        if let Some(mut lost) = lost {
+            // after the displacement's three numbers those of the step
+            (0..nodes).flat_map(|node| (3..6).map(move |i| COMPENSATION_NUMBERS * node + i)).for_each(|i| {
+                scale(&mut lost, i);
+            });
+        }
+        for bits in noticed.get_mut(before_at(nodes)..).unwrap_or_default() {
+            *bits = ((factor * f64::from(f32::from_bits(*bits))) as f32).to_bits();
+        }
+        if let Some(mut work) = work {
+            (0..nodes).flat_map(|node| (4..7).map(move |i| WORK_NUMBERS * node + i)).for_each(|i| scale(&mut work, i));
+        }
+    }
+}
+
+/// The recursions of viscous materials take the coefficients of the new step. The memory of the exact one, H − φS, holds a
+/// coefficient of the old step too: what it stands for stays the same.
+fn relax_on(world: &mut World, clock: &Clock) -> Result<(), Error> {
+    for (entity, [terms, volumetric]) in coefficients(world, clock) {
+        let Some(law) = world.get::<BlockLaw<f64>>(entity) else { continue };
+        let change = |(now, before): (&PronyTerm<f64>, &PronyTerm<f64>)| now.aim - before.aim;
+        let changes = [
+            terms.iter().zip(&law.prony).map(change).collect::<Vec<f64>>(),
+            volumetric.iter().zip(&law.volumetric).map(change).collect(),
+        ];
+        let moved = moved_memory(world, entity, &changes);
+        if let (Some(moved), Some(mut memory)) = (moved, world.get_mut::<ViscousMemory>(entity)) {
+            moved.into_iter().for_each(|(place, by)| {
+                let value = memory.get(place) + by;
+                memory.set(place, value);
+            });
+        }
+        take_coefficients(world, entity, terms, volumetric)?;
+    }
+    Ok(())
+}
+
+/// The same where memories already belong to the step, as those of a snapshot do.
+pub(super) fn relax_as(world: &mut World, clock: &Clock) -> Result<(), Error> {
+    for (entity, [terms, volumetric]) in coefficients(world, clock) {
+        take_coefficients(world, entity, terms, volumetric)?;
+    }
+    Ok(())
+}
+
+/// Viscous blocks, with the coefficients of their terms and of their volumetric terms for a step.
+fn coefficients(world: &mut World, clock: &Clock) -> Vec<(Entity, [Vec<PronyTerm<f64>>; 2])> {
+    let blocks: Vec<Entity> = world.query_filtered::<Entity, With<ViscousMemory>>().iter(world).collect();
+    let of_block = |entity: Entity| {
+        let material = world.get::<Block>(entity)?.material;
+        Some((entity, world.get::<Prony>(material)?.coefficients(clock)))
+    };
+    blocks.into_iter().filter_map(of_block).collect()
+}
+
+fn take_coefficients(
+    world: &mut World,
+    entity: Entity,
+    terms: Vec<PronyTerm<f64>>,
+    volumetric: Vec<PronyTerm<f64>>,
+) -> Result<(), Error> {
+    let Some(mut law) = world.get::<BlockLaw<f64>>(entity).cloned() else { return Ok(()) };
+    (law.prony, law.volumetric) = (terms, volumetric);
+    let label = world.get::<Label>(entity).map(|label| label.0.clone()).unwrap_or_default();
+    let rounded = law.rounded::<f32>();
+    let bytes: Vec<u8> = rounded.prony.iter().chain(&rounded.volumetric).flat_map(Uniform::bytes).collect();
+    if let Some(mut device) = world.get_resource_mut::<Device>() {
+        device.rewrite_uniform(&format!("prony of {label}"), &bytes)?;
+    }
+    let mut entity = world.entity_mut(entity);
+    if entity.contains::<BlockLaw<f32>>() {
+        entity.insert(rounded);
+    }
+    entity.insert(law);
+    Ok(())
+}
+
+/// Places in a block's memory, and what is added there: the change of the coefficient times the present stress.
+fn moved_memory(world: &World, entity: Entity, [terms, volumetric]: &[Vec<f64>; 2]) -> Option<Vec<(usize, f64)>> {
+    let view = BlockView::now(world, entity)?;
+    let points = point_count(view.block.kind);
+    let numbers = view.law.memory_numbers(points);
+    let mut moved = Vec::new();
+    for row in 0..view.block.count {
+        let state = view.element(row);
+        let mut pressure = 0.0;
+        for point in 0..points {
+            let (isochoric, instant) = view.instant(row, &state, point);
+            pressure = instant;
+            for (number, change) in terms.iter().enumerate() {
+                let first = 6 * (point * terms.len() + number);
+                moved.extend((0..6).map(|i| (lane_place(row, numbers, first + i), change * isochoric.0[i])));
+            }
+        }
+        for (number, change) in volumetric.iter().enumerate() {
+            moved.push((lane_place(row, numbers, 6 * terms.len() * points + number), change * pressure));
+        }
+    }
+    Some(moved)
+}
+
+/// What is still to go by time goes at the step that its time is now.
+fn remove_in_time(world: &mut World, clock: &Clock) {
+    for (times, alive, mut steps) in world.query::<(&RemovalTime, &Alive, &mut RemovalStep)>().iter_mut(world) {
+        for row in (0..times.0.len()).filter(|&row| alive[row] == 1 && times.0[row].is_finite()) {
+            let from_here = (times.0[row] - clock.since.1) / clock.time_step;
+            steps[row] = step_of(clock.step as f64 + from_here, clock.step + 1);
+        }
+    }
+}

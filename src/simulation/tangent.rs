@@ -1,0 +1,185 @@
+//! Internal forces of all bodies in f64, whatever the run's precision and wherever it runs, and by their differences the
+//! tangent stiffness at the present state. Reads the world only.
+
+use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, run_block};
+use crate::components::*;
+use crate::evaluation::{lane_place, node_count, with_element};
+use crate::math::LANES;
+use crate::systems::{means_of, sum_corners};
+use bevy_ecs::prelude::*;
+use std::borrow::Cow;
+
+/// How far displacements are changed for a difference, as a share of the height of the flattest element: curvature of the
+/// law is then below 1e-6 of its slope, and rounding in f64 as well.
+const CHANGE: f64 = 1e-7;
+
+/// Internal forces of all bodies as a function of all displacements, bodies one after the other.
+pub(super) struct Tangent<'w> {
+    cpu: &'w Cpu,
+    bodies: Vec<BodyForces<'w>>,
+    /// The present displacements (m), and the forces they make (N).
+    present: (Vec<f64>, Vec<f64>),
+    change: f64,
+}
+
+struct BodyForces<'w> {
+    corners: &'w Corners,
+    element_force: Vec<f64>,
+    /// Where the body's part of all numbers begins, and how many it has.
+    from: usize,
+    length: usize,
+    blocks: Vec<BlockForces<'w>>,
+}
+
+struct BlockForces<'w> {
+    block: &'w Block,
+    connectivity: &'w Connectivity,
+    corners: Option<&'w BlockCorners>,
+    shape: Cow<'w, [f64]>,
+    fibres: Option<Cow<'w, [f64]>>,
+    law: BlockLaw<f64>,
+    memory: Vec<f64>,
+    volumes: Vec<f64>,
+    means: Vec<f64>,
+}
+
+impl<'w> Tangent<'w> {
+    /// At the present displacements. The host's columns must be up to date: see [`Tangent::COLUMNS`].
+    pub fn at_present(world: &'w World, bodies: &[Entity]) -> Option<Self> {
+        let mut all = Vec::new();
+        let mut u = Vec::new();
+        for &body in bodies {
+            let displacement = world.get::<Displacement>(body)?;
+            let blocks = &world.get::<Authoring>(body)?.blocks;
+            let blocks = blocks.iter().map(|&block| BlockForces::of(world, block)).collect::<Option<Vec<_>>>()?;
+            let (corners, forces) = (world.get::<Corners>(body)?, world.get::<ElementForce>(body)?.len());
+            let (from, length) = (u.len(), displacement.len());
+            all.push(BodyForces { corners, element_force: vec![0.0; forces], from, length, blocks });
+            u.extend((0..length).map(|i| displacement.get(i)));
+        }
+        let mut tangent = Self {
+            cpu: world.resource::<Cpu>(),
+            bodies: all,
+            present: (Vec::new(), Vec::new()),
+            change: CHANGE * least_height(world, bodies),
+        };
+        let mut forces = vec![0.0; u.len()];
+        tangent.forces(&u, &mut forces);
+        tangent.present = (u, forces);
+        (tangent.change.is_finite() && tangent.change > 0.0).then_some(tangent)
+    }
+
+    /// What [`Tangent::at_present`] reads that a run changes.
+    pub const COLUMNS: [&'static str; 5] =
+        [Displacement::NAME, RestShape::NAME, ViscousMemory::NAME, Mass::NAME, FictitiousMass::NAME];
+
+    /// K x (N) for displacements x, of any length: (F(u + hx) − F(u))/h.
+    pub fn times(&mut self, x: &[f64], image: &mut [f64]) {
+        let largest = x.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+        if largest == 0.0 {
+            image.fill(0.0);
+            return;
+        }
+        let h = self.change / largest;
+        let moved: Vec<f64> = self.present.0.iter().zip(x).map(|(u, x)| u + h * x).collect();
+        self.forces(&moved, image);
+        image.iter_mut().zip(&self.present.1).for_each(|(force, before)| *force = (*force - before) / h);
+    }
+
+    /// Internal forces (N) under displacements (m).
+    fn forces(&mut self, u: &[f64], forces: &mut [f64]) {
+        for body in &mut self.bodies {
+            let own = body.from..body.from + body.length;
+            for block in &mut body.blocks {
+                block.forces(self.cpu, &u[own.clone()], &mut body.element_force);
+            }
+            sum_corners(self.cpu, body.corners, &body.element_force, &mut forces[own]);
+        }
+    }
+}
+
+impl<'w> BlockForces<'w> {
+    fn of(world: &'w World, entity: Entity) -> Option<Self> {
+        let block = world.get::<Block>(entity)?;
+        let memory = world.get::<ViscousMemory>(entity);
+        let corners = world.get::<BlockCorners>(entity);
+        Some(Self {
+            block,
+            connectivity: world.get::<Connectivity>(entity)?,
+            corners,
+            shape: widened(&world.get::<RestShape>(entity)?.0),
+            fibres: world.get::<FibreDirection>(entity).map(|f| widened(&f.0)),
+            law: at_an_instant(world.get::<BlockLaw<f64>>(entity)?),
+            memory: memory.map_or(Vec::new(), |memory| widened(&memory.0).into_owned()),
+            volumes: world.get::<ElementVolume>(entity).map_or(Vec::new(), |v| vec![0.0; v.len()]),
+            means: world.get::<NodalVolumeChange>(entity).map_or(Vec::new(), |v| vec![0.0; v.len()]),
+        })
+    }
+
+    fn forces(&mut self, cpu: &Cpu, u: &[f64], element_force: &mut [f64]) {
+        let block = self.block;
+        if let Some(corners) = self.corners {
+            let read = (self.connectivity, &*self.shape, corners, u);
+            means_of(cpu, block, read, &self.law, &mut self.volumes, &mut self.means);
+        }
+        let length = block.count.div_ceil(LANES) * LANES * 3 * node_count(block.kind);
+        let columns = BlockColumns {
+            displacement: u,
+            connectivity: self.connectivity,
+            rest_shape: &self.shape,
+            fibre_direction: self.fibres.as_deref(),
+            nodal_volume_change: &self.means,
+            memory: &mut self.memory,
+            force: &mut element_force[block.force_offset..block.force_offset + length],
+        };
+        with_element!(block.kind, E => run_block::<E, f64>(cpu, columns, &self.law, patch_groups(block.kind)));
+    }
+}
+
+/// A law as it answers to what is sudden: stresses relaxed so far are there, nothing relaxes further, and fibres that could
+/// be pulled taut at any moment push back as well.
+fn at_an_instant(law: &BlockLaw<f64>) -> BlockLaw<f64> {
+    let mut law = law.clone();
+    // a term without a rate is relaxed for good: that of a static analysis
+    for term in law.prony.iter_mut().chain(&mut law.volumetric).filter(|term| term.rate > 0.0) {
+        (term.stress, term.rate) = (0.0, 0.0);
+    }
+    law.fibres.iter_mut().for_each(|(fibres, _)| fibres.tension_only = 0.0);
+    law.exponential.iter_mut().for_each(|(family, _)| family.tension_only = 0.0);
+    law
+}
+
+fn widened(reals: &Reals) -> Cow<'_, [f64]> {
+    match reals {
+        Reals::F64(values) => Cow::Borrowed(values),
+        Reals::F32(values) => Cow::Owned(values.iter().map(|&value| f64::from(value)).collect()),
+    }
+}
+
+/// About the height (m) of the flattest element: its volume at rest over the square of its longest edge.
+fn least_height(world: &World, bodies: &[Entity]) -> f64 {
+    let mut least = f64::INFINITY;
+    for &body in bodies {
+        let (Some(authoring), Some(rest)) = (world.get::<Authoring>(body), world.get::<RestPosition>(body)) else {
+            continue;
+        };
+        for &entity in &authoring.blocks {
+            let (Some(block), Some(connectivity), Some(shape)) =
+                (world.get::<Block>(entity), world.get::<Connectivity>(entity), world.get::<RestShape>(entity))
+            else {
+                continue;
+            };
+            let nodes = node_count(block.kind);
+            for row in 0..block.count {
+                let corner = |a: usize| rest.0[connectivity[lane_place(row, nodes, a)] as usize];
+                let pairs = (1..nodes).flat_map(|a| (0..a).map(move |b| (a, b)));
+                let longest = pairs.map(|(a, b)| corner(a).distance_squared(corner(b))).fold(0.0, f64::max);
+                let volume = crate::evaluation::rest_volume(block.kind, row, shape);
+                if volume > 0.0 {
+                    least = least.min(volume / longest);
+                }
+            }
+        }
+    }
+    least
+}

@@ -1,0 +1,168 @@
+//! Steps that change during a run (H30): what is kept, and that they change in time.
+
+use crate::configurations::{configurations, near};
+use sinew::components::{Clock, Energies};
+use sinew::{Error, Simulation};
+
+/// A bar that a smooth motion squeezes flat, so that its frequencies rise.
+fn squeezed(integration: &str, to: f64, elements: &str) -> String {
+    format!(
+        r#"(duration: 2, bodies: {{"b": (mesh: Box(size: (0.04, 0.04, 0.04), cells: (2, 2, 2), elements: {elements}), material: "m")}},
+        materials: {{"m": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 40)}},
+        constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0), axes: [Z]),
+            Prescribed(on: Plane(normal: (0, 0, 1), at: 0.04), axes: [Z], displacement: (0, 0, {}), curve: Smooth(end: 1.5))],
+        probes: {{"top": (what: Displacement, on: Plane(normal: (0, 0, 1), at: 0.04), every: 0.25)}},
+        integration: ({integration}), output: (energies_every: 0.5))"#,
+        0.04 * (to - 1.0)
+    )
+}
+
+#[test]
+fn step_adapts_where_tissue_is_squeezed_and_the_run_ends_in_time() {
+    for run in configurations() {
+        let text = squeezed("bound: Iterated, when_unstable: Adapt", 0.3, "Hex8");
+        let mut simulation = run.start(&text);
+        let (planned, first) = (simulation.planned_steps(), simulation.time_step());
+        simulation.finish().unwrap();
+        let history = *simulation.step_history().unwrap();
+        println!("{}: {planned} steps planned, {} taken, {history:?}", run.name, simulation.step_count());
+        // frequencies rise by about the inverse of the least stretch
+        assert!(history.changes > 2 && history.smallest < 0.6 * first, "{history:?}");
+        near("the end", simulation.time(), 2.0, 2.0, 1e-12);
+        let limit = simulation.stable_limit().unwrap().unwrap();
+        assert!(simulation.time_step() <= 0.96 * limit, "{} of {limit}", simulation.time_step());
+        let summary = simulation.summary("finished").unwrap();
+        let seen = &summary.probes["top"];
+        near("the last look", seen.0, 2.0, 2.0, 1e-12);
+        near("the squeezed height", seen.1[2], -0.028, 0.028, run.bound(1e-12, 1e-5));
+    }
+}
+
+#[test]
+fn the_same_step_all_along_becomes_unstable_there() {
+    let run = &configurations()[0];
+    // above the limit of the squeezed state, below that at rest
+    let mut simulation = run.start(&squeezed("bound: Iterated, safety: 0.97, when_unstable: Watch", 0.3, "Hex8"));
+    let ended = simulation.finish();
+    let history = *simulation.step_history().unwrap();
+    println!("{ended:?}, {history:?}");
+    assert!(history.changes == 0);
+    let since = history.beyond_since.unwrap();
+    // the run tells before it breaks down, if it does
+    match ended {
+        Err(Error::Unstable(found)) => assert!(since < found.time, "{since}, {found}"),
+        other => other.unwrap(),
+    }
+}
+
+/// Free vibration of a block whose step is changed by hand every few steps.
+fn vibrating(steps: &[f64]) -> (Simulation, Energies) {
+    let text = r#"(duration: 1, bodies: {"b": (mesh: Box(size: (0.1, 0.02, 0.02), cells: (6, 1, 1), elements: Hex8), material: "m", spin: (1, 2, 3))},
+        materials: {"m": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.3))},
+        loads: [Gravity(acceleration: (0, 0, -1))], integration: (step: 1e-3), output: (energies_every: 1))"#;
+    let mut simulation = configurations()[0].start(text);
+    for (number, &time_step) in steps.iter().enumerate() {
+        if number > 0 {
+            simulation.set_time_step(time_step).unwrap();
+        }
+        simulation.advance(50).unwrap();
+    }
+    let energies = simulation.energies().unwrap();
+    (simulation, energies)
+}
+
+#[test]
+fn energy_and_momentum_are_booked_across_changes_of_the_step() {
+    let steps = [1e-3, 4e-4, 9e-4, 2e-4, 1e-3, 5e-4, 7e-4, 3e-4];
+    let (mut simulation, energies) = vibrating(&steps);
+    let start = 0.5 * simulation.masses("b").unwrap().iter().sum::<f64>() * 1e-3;
+    let scale = energies.kinetic + energies.strain + energies.load_work.unwrap().abs();
+    let kept = energies.kinetic + energies.strain + energies.hourglass - energies.load_work.unwrap();
+    let (_, before) = vibrating(&[1e-3]);
+    let first = before.kinetic + before.strain + before.hourglass - before.load_work.unwrap();
+    println!("{kept:e} J of {first:e} J, scale {scale:e} J, {start:e}");
+    // each change books the work of the forces to second order in the step
+    near("energy", kept, first, scale, 2e-3);
+    let time: f64 = steps.iter().map(|step| 50.0 * step).sum();
+    near("time", simulation.time(), time, time, 1e-14);
+    // a body in free fall: its centre falls by ½ g t² whatever the steps
+    let masses = simulation.masses("b").unwrap();
+    let u = simulation.displacements("b").unwrap();
+    let total: f64 = masses.iter().sum();
+    let fallen: f64 = u.iter().zip(&masses).map(|(u, m)| u.z * m).sum::<f64>() / total;
+    near("fall", fallen, -0.5 * time * time, 0.5 * time * time, 1e-9);
+}
+
+#[test]
+fn with_a_fixed_step_time_is_the_number_of_steps_times_the_step() {
+    let mut clock = Clock::with_step(1e-4);
+    clock.step = 10_000_000;
+    assert_eq!(clock.time(), 10_000_000.0 * 1e-4);
+    clock.change_step(3e-5);
+    clock.step += 5_000_000;
+    assert_eq!(clock.time(), 1000.0 + 5_000_000.0 * 3e-5);
+}
+
+#[test]
+fn a_scene_that_stays_stable_keeps_its_step_and_its_bits() {
+    let end = |policy: &str| {
+        let mut simulation = configurations()[1].start(&squeezed(policy, 0.95, "Tet4"));
+        simulation.advance(600).unwrap();
+        assert_eq!(simulation.step_history().unwrap().changes, 0);
+        simulation.displacements("b").unwrap()
+    };
+    assert_eq!(end("when_unstable: Adapt"), end("when_unstable: Watch"));
+}
+
+/// A sheared viscous block that is held: the step is changed while its stress relaxes.
+#[test]
+fn relaxed_stress_goes_on_across_changes_of_the_step() {
+    let text = r#"(duration: 2, bodies: {"b": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (1, 1, 1), elements: Hex8MeanDilatation), material: "m")},
+        materials: {"m": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45),
+            prony: (terms: [(alpha: 0.3, tau: 0.1), (alpha: 0.2, tau: 1)], volumetric: [(alpha: 0.2, tau: 0.3)]))},
+        constraints: [Prescribed(on: All, gradient: ((0.1, 0.2, 0), (0, 0, 0), (0, 0, 0)), curve: Smooth(end: 0.2))],
+        integration: (when_unstable: Watch))"#;
+    for run in configurations() {
+        let force = |simulation: &mut Simulation| simulation.internal_forces("b").unwrap()[0];
+        let (mut changed, mut even) = (run.start(text), run.start(text));
+        let first = even.time_step();
+        for (number, factor) in [0.2, 0.7, 0.1, 1.0].iter().enumerate() {
+            changed.advance_to(0.15 * (number + 1) as f64).unwrap();
+            let before = force(&mut changed);
+            changed.set_time_step(factor * first).unwrap();
+            let after = force(&mut changed);
+            near("the force", (after - before).length(), 0.0, before.length(), run.bound(1e-12, 2e-6));
+        }
+        changed.advance_to(1.5).unwrap();
+        even.advance_to(1.5).unwrap();
+        let (a, b) = (force(&mut changed), force(&mut even));
+        // both recursions are of second order in Δt/τ, which is at most 0.03 here
+        near("the end", (a - b).length(), 0.0, b.length(), 1e-3);
+    }
+}
+
+#[test]
+fn what_goes_by_time_and_what_is_observed_keeps_its_times() {
+    let text = r#"(duration: 0.4, bodies: {"b": (mesh: Box(size: (0.1, 0.02, 0.02), cells: (6, 1, 1), elements: Hex8), material: "m")},
+        materials: {"m": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.3))},
+        removal: [(on: Box(min: (0, 0, 0), max: (0.01, 0.02, 0.02)), when: At(0.1))],
+        probes: {"end": (what: Position, on: Plane(normal: (1, 0, 0), at: 0.1), every: 0.04)},
+        integration: (step: 1e-3, when_unstable: Watch))"#;
+    for run in configurations() {
+        let mut simulation = run.start(text);
+        let mass = |simulation: &mut Simulation| simulation.masses("b").unwrap().iter().sum::<f64>();
+        let whole = mass(&mut simulation);
+        simulation.advance(51).unwrap();
+        simulation.set_time_step(3e-4).unwrap();
+        simulation.advance_to(0.0999).unwrap();
+        near("mass before", mass(&mut simulation), whole, whole, 1e-6);
+        simulation.advance_to(0.1005).unwrap();
+        near("mass after", mass(&mut simulation), whole * 5.0 / 6.0, whole, 1e-6);
+        simulation.advance_to(0.1206).unwrap();
+        let summary = simulation.summary("").unwrap();
+        let seen = summary.probes["end"].0;
+        assert!((0.12 - 1e-9..0.1204).contains(&seen), "{}: seen at {seen}", run.name);
+        simulation.finish().unwrap();
+        assert!((simulation.time() - 0.4).abs() <= 0.5 * 3e-4, "{}", simulation.time());
+    }
+}
