@@ -6,6 +6,9 @@ use glam::DVec3;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+/// No result is larger, and squares of numbers must stay numbers.
+const LARGEST: f64 = 1e100;
+
 /// Reads tables, or all tables of output folders, as a reference for looks at `looks` times from 0 to `duration` (s); with 0
 /// looks only the end counts, whenever that was.
 ///
@@ -90,7 +93,11 @@ impl Table {
             let record = record.map_err(|error| wrong(error.to_string()))?;
             let numbers: Option<Vec<f64>> =
                 record.iter().map(|cell| cell.trim().parse().ok().filter(|number: &f64| number.is_finite())).collect();
-            rows.push(numbers.ok_or_else(|| wrong(format!("row {} has something else than numbers", number + 1)))?);
+            let row = numbers.ok_or_else(|| wrong(format!("row {} has something else than numbers", number + 1)))?;
+            if let Some(large) = row.iter().find(|value| value.abs() > LARGEST) {
+                return Err(wrong(format!("row {} has {large:e}; numbers up to {LARGEST:e} are allowed", number + 1)));
+            }
+            rows.push(row);
         }
         if rows.is_empty() {
             return Err(wrong("the table has no rows".into()));

@@ -24,9 +24,9 @@ pub const MOST_REFINEMENT: u32 = 9;
 /// Elements of all bodies together, after `refine`. Element forces are addressed by 32 bits: 24 numbers a hexahedron.
 pub const ELEMENTS: u64 = 100_000_000;
 /// VTU files of a run.
-pub const FRAMES: u64 = 100_000;
+pub const FRAMES: u64 = 1_000_000;
 /// Rows of each table of a run.
-pub const ROWS: u64 = 10_000_000;
+pub const ROWS: u64 = 100_000_000;
 /// Pseudo-steps of a static analysis.
 pub const PSEUDO_STEPS: u64 = 1_000_000_000;
 /// Bytes of a law of one's own.

@@ -35,6 +35,22 @@ fn a_broken_mesh_ends_with_2_and_names_the_file() {
 }
 
 #[test]
+fn files_outside_the_folder_of_a_scene_are_read_where_that_is_allowed() {
+    let scene =
+        SCENE.replace("Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3), elements: Hex8)", "File(path: \"../m.msh\")");
+    let place = Place::new();
+    fs::create_dir(place.path("inner")).unwrap();
+    fs::write(place.path("inner/block.ron"), scene).unwrap();
+    fs::write(place.path("m.msh"), "no mesh").unwrap();
+    for command in ["run", "check", "explain", "render", "accuracy"] {
+        place.sinew(&[command, "inner/block.ron"]).wants(2, &["`../m.msh` lies outside", "--allow-outside"]);
+        // allowed, it is read, and refused for what it is
+        let read = place.sinew(&[command, "inner/block.ron", "--allow-outside"]);
+        read.wants(2, &["m.msh", "does not begin as a .msh file does"]);
+    }
+}
+
+#[test]
 fn wrong_options_end_with_2() {
     let place = Place::new();
     place.sinew(&["run"]).wants(2, &["SCENE"]);

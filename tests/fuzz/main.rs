@@ -27,7 +27,7 @@ use std::time::Duration;
 use targets::{TARGETS, Target};
 
 /// Inputs of the everyday test.
-const EVERYDAY: usize = 10_000;
+const EVERYDAY: usize = 6_000;
 /// What takes so long hangs (s): sound inputs of this size take milliseconds.
 const HANGS: u64 = 120;
 

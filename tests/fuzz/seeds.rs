@@ -1,6 +1,6 @@
 //! Sound files that mutants are made of, and the kept ones that broke something once.
 
-use crate::targets::SMALL;
+use crate::targets::{SMALL, small};
 use crate::{samples, samples_vtk};
 use std::path::{Path, PathBuf};
 
@@ -30,6 +30,13 @@ pub fn of(target: &str) -> (Vec<Vec<u8>>, Vec<Vec<u8>>) {
             all.extend(samples::all().into_iter().map(|(_, bytes)| bytes));
             let text = samples_vtk::packings().into_iter().next().map(samples_vtk::vtu);
             all.extend(text);
+        }
+        "snapshots" => {
+            let mut simulation = small();
+            for _ in 0..2 {
+                all.push(simulation.snapshot().unwrap().to_bytes().unwrap());
+                simulation.advance(20).unwrap();
+            }
         }
         "laws" => {
             let files = files(&root().join("examples"));

@@ -4,7 +4,7 @@
 use sinew::mesh::{Mesh, vtu};
 use sinew::scene::{Allowed, Diagnostics, SceneFile};
 use sinew::systems::Registry;
-use sinew::{BackendChoice, Error, Options, Simulation};
+use sinew::{BackendChoice, Error, Options, Simulation, Snapshot};
 use std::path::Path;
 
 /// What scenes are allowed here: what they ask for beyond is refused, and what they get takes no time.
@@ -25,12 +25,13 @@ pub struct Target {
 }
 
 /// All of them.
-pub const TARGETS: [Target; 6] = [
-    Target { name: "scenes", file: "scene.ron", share: 34, memory: (64 << 20, 512), attempt: scene },
+pub const TARGETS: [Target; 7] = [
+    Target { name: "scenes", file: "scene.ron", share: 30, memory: (64 << 20, 512), attempt: scene },
     Target { name: "sets", file: "sets.txt", share: 15, memory: (64 << 20, 512), attempt: sets },
     Target { name: "meshes", file: "mesh.vtu", share: 35, memory: (64 << 20, 512), attempt: mesh },
     Target { name: "laws", file: "law.wgsl", share: 5, memory: (64 << 20, 4096), attempt: law },
     Target { name: "references", file: "probe_tip.csv", share: 7, memory: (64 << 20, 512), attempt: reference },
+    Target { name: "snapshots", file: "a.sinew", share: 4, memory: (64 << 20, 512), attempt: snapshot },
     Target { name: "runs", file: "scene.ron", share: 4, memory: (256 << 20, 512), attempt: run },
 ];
 
@@ -129,6 +130,33 @@ fn reference(bytes: &[u8], path: &Path) {
                 let finite =
                     |entry: &sinew::accuracy::reference::Entry| entry.values.iter().all(|value| value.is_finite());
                 assert!(found.entries.values().all(finite), "a reference that is no number");
+            }
+        }
+    }
+}
+
+/// A simulation that snapshots are of.
+pub fn small() -> Simulation {
+    let scene = SceneFile::from_text("small.ron", SMALL, Path::new("."), &[]).unwrap();
+    Simulation::new(&scene, &Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() }).unwrap()
+}
+
+/// Snapshots, as they are and with a length and a checksum that fit.
+fn snapshot(bytes: &[u8], _: &Path) {
+    let mut sealed = bytes.to_vec();
+    if let Some(content) = bytes.len().checked_sub(8).filter(|&end| end >= 24) {
+        sealed[16..24].copy_from_slice(&(bytes.len() as u64).to_le_bytes());
+        let check = twox_hash::XxHash64::oneshot(0, &sealed[..content]);
+        sealed[content..].copy_from_slice(&check.to_le_bytes());
+    }
+    for bytes in [bytes, &sealed] {
+        match Snapshot::from_bytes(bytes) {
+            Err(error) => assert!(error.to_string().len() > 10),
+            Ok(snapshot) => {
+                let mut simulation = small();
+                if simulation.restore(&snapshot).is_ok() && steps(&mut simulation).is_ok() {
+                    assert!(simulation.time().is_finite());
+                }
             }
         }
     }

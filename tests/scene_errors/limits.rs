@@ -158,7 +158,7 @@ fn outputs_without_end_are_refused() {
     };
     // 0.5 s are 800 steps: outputs in each of them are no trouble, however often they are asked for
     assert_eq!(told("output.fields_every=1e-9"), "");
-    let small = "integration.step=1e-8";
+    let small = "integration.step=1e-9";
     let many = |sets: &[&str]| {
         let sets: Vec<String> = sets.iter().map(|set| set.to_string()).collect();
         let scene = SceneFile::from_text("a.ron", GOOD, Path::new(""), &sets).unwrap();
@@ -166,13 +166,13 @@ fn outputs_without_end_are_refused() {
     };
     let told = many(&[small, "output.fields_every=1e-9"]);
     assert!(
-        told.contains("a run would write 50000001 VTU files") && told.contains("at most 100000 are allowed"),
+        told.contains("a run would write 500000001 VTU files") && told.contains("at most 1000000 are allowed"),
         "{told}"
     );
-    let told = many(&[small, "output.energies_every=1e-8", "probes.tip.every=1e-8"]);
-    assert!(told.contains("50000001 rows of energies") && told.contains("50000001 rows of a probe"), "{told}");
-    assert!(told.contains("at most 10000000 are allowed"), "{told}");
-    assert_eq!(many(&[small, "output.energies_every=1e-7"]), "");
+    let told = many(&[small, "output.energies_every=1e-9", "probes.tip.every=1e-9"]);
+    assert!(told.contains("500000001 rows of energies") && told.contains("500000001 rows of a probe"), "{told}");
+    assert!(told.contains("at most 100000000 are allowed"), "{told}");
+    assert_eq!(many(&[small, "output.energies_every=1e-8"]), "");
     let told = many(&["analysis=Static(max_steps: 1000000001)"]);
     assert!(told.contains("`max_steps` must be at most 1000000000, found 1000000001"), "{told}");
 }

@@ -59,7 +59,6 @@ impl Law {
         }
         (across, self.stress([stretch, across, across], 0))
     }
-    }
 }
 
 #[cfg(test)]
