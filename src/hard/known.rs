@@ -38,6 +38,12 @@ pub const SHORTFALLS: &[Shortfall] = &[
         why: "bent tetrahedra stay stiff: with three and with four of them across deflections differ by 12 %",
     },
     Shortfall {
+        case: "h07",
+        on: Configuration::is_tets,
+        verdict: Verdict::FailedHonestly,
+        why: "a free cell of tetrahedra at a twentieth of its height is not symmetric, and tangles when it is let go; confined it passes",
+    },
+    Shortfall {
         case: "h27",
         on: |c| c.is_gpu() && !c.is_tets(),
         verdict: Verdict::Failed,

@@ -77,7 +77,7 @@ fn change(rng: &mut Rng, bytes: &mut Vec<u8>, corpus: &[Vec<u8>]) {
             let (from, to) = stretch(rng, other.len());
             bytes.splice(start..end, other[from..to].iter().copied());
         }
-        7 | 8 | 9 => replace_number(rng, bytes),
+        7..=9 => replace_number(rng, bytes),
         10 => words(rng, bytes, |rng, words, places| {
             let (a, b) = (*rng.choice(places)?, *rng.choice(places)?);
             words.swap(a, b);

@@ -91,11 +91,15 @@ fn cube_pulled_through_itself_recovers_is_lost_or_stops_the_run_as_its_material_
 
         let mut simulation = run.start(&standing(elements, &format!("{usual}Stop"), "", PULLED, 0.4));
         let error = simulation.advance_to(1.2).unwrap_err().to_string();
-        assert!(error.contains("is turned inside out"), "{what}: {error}");
+        // or the step has gone to nothing on the way there
+        let honest = ["is turned inside out", "the stable step has shrunk"];
+        assert!(honest.iter().any(|words| error.contains(words)), "{what}: {error}");
 
         // what stiffens without bound before it goes needs small steps; software devices are slow
         if !run.name.starts_with("GPU") {
-            let mut simulation = run.start(&standing(elements, &format!("{usual}Remove"), "", PULLED, 0.1));
+            // and on its way through J = 0 makes energy, which the guards would end the run for
+            let scene = standing(elements, &format!("{usual}Remove"), "", PULLED, 0.1);
+            let mut simulation = run.start(&scene.replacen('(', "(guards: (off: [Energy]), ", 1));
             simulation.advance_to(1.2).unwrap_or_else(|error| panic!("{what}: {error}"));
             let summary = simulation.summary("finished").unwrap();
             println!("{what}: {} elements removed", summary.removed_elements);

@@ -21,7 +21,10 @@ fn column(thin: f64, more: &str) -> String {
     mesh += "$EndElements\n";
     let folder = std::env::temp_dir().join(format!("sinew-thin-{thin}"));
     std::fs::create_dir_all(&folder).unwrap();
-    std::fs::write(folder.join("thin.msh"), mesh).unwrap();
+    // tests that run beside each other write the same file: nobody may read half of it
+    let own = folder.join(format!("{:?}", std::thread::current().id()));
+    std::fs::write(&own, mesh).unwrap();
+    std::fs::rename(own, folder.join("thin.msh")).unwrap();
     format!(
         r#"(duration: 0.2, bodies: {{"b": (mesh: File(path: "thin.msh"), material: "m")}},
         materials: {{"m": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.3))}},

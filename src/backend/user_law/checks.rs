@@ -131,7 +131,7 @@ impl Trial<'_> {
         let shear = shears.iter().sum::<f64>() / 3.0;
         let scale = shear.abs() + bulk.abs();
         for (function, name, modulus) in [(0, "shear", shear), (1, "bulk", bulk)] {
-            if !(modulus > 1e-12 * scale) {
+            if modulus.is_nan() || modulus <= 1e-12 * scale {
                 let message = format!("the {name} modulus at small strains is {modulus:.4} Pa: it must be above 0");
                 return Err(vec![self.about(function, message).note(match function {
                     0 => "2 μ is what the stress grows by with the shear strain at rest",

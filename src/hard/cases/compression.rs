@@ -44,8 +44,9 @@ fn checkerboard(fields: &BodyFields, cells: usize, tets: bool) -> f64 {
         let stresses = &fields.stress[cell * a_cell..(cell + 1) * a_cell];
         -stresses.iter().map(|s| s[0] + s[1] + s[2]).sum::<f64>() / (3 * a_cell) as f64
     };
-    let sign =
-        |cell: usize| if (cell % cells + cell / cells % cells + cell / cells / cells) % 2 == 0 { 1.0 } else { -1.0 };
+    let sign = |cell: usize| {
+        if (cell % cells + cell / cells % cells + cell / cells / cells).is_multiple_of(2) { 1.0 } else { -1.0 }
+    };
     let count = cells.pow(3);
     let mean: f64 = (0..count).map(pressure).sum();
     (0..count).map(|cell| sign(cell) * pressure(cell)).sum::<f64>().abs() / mean.abs()

@@ -47,7 +47,8 @@ impl Law {
 
     /// The stretch across, by bisection, and the stress (Pa).
     pub fn free_with_sides(&self, stretch: f64) -> (f64, f64) {
-        let (mut low, mut high) = (0.05, 20.0_f64);
+        // what is pressed gets wider; there are other roots
+        let (mut low, mut high) = if stretch < 1.0 { (1.0, 20.0_f64) } else { (0.05, 1.0) };
         for _ in 0..200 {
             let middle = (low * high).sqrt();
             if self.stress([stretch, middle, middle], 1) < 0.0 { low = middle } else { high = middle }
