@@ -29,7 +29,7 @@ mod traction;
 
 pub(crate) use gather::sum_corners;
 pub(crate) use nodal_volume::means_of;
-pub(crate) use observe::{add_watch_columns, watch_kernels};
+pub use observe::{add_watch_columns, watch_kernels};
 pub use registry::{DescribeKernels, HostSystem, Phase, Registry, System};
 
 /// The built-in systems, in the order of a step.

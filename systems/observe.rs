@@ -49,7 +49,7 @@ uniform!(WatchedNodes { count });
 const ROWS_A_SUM: usize = 64;
 
 /// Gives bodies and blocks the columns that the guards' kernels write.
-pub(crate) fn add_watch_columns(world: &mut World) {
+pub fn add_watch_columns(world: &mut World) {
     let bodies: Vec<(Entity, usize)> =
         world.query::<(Entity, &Mass)>().iter(world).map(|(e, m)| (e, m.len())).collect();
     for (body, count) in bodies {
@@ -64,7 +64,7 @@ pub(crate) fn add_watch_columns(world: &mut World) {
 }
 
 /// What the guards look at, summed on the device: nodes, then elements in the middle of the last step.
-pub(crate) fn watch_kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+pub fn watch_kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let bodies: Vec<(Entity, usize)> =
         world.query::<(Entity, &Mass)>().iter(world).map(|(e, m)| (e, m.len())).collect();
     let mut kernels = Vec::new();

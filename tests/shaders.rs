@@ -51,6 +51,12 @@ fn kernels(effects: &Effects) -> Vec<(String, Kernel)> {
     all_kernels(effects.simulation(BackendChoice::Cpu).world_mut()).0
 }
 
+/// With those of the guards.
+fn all(effects: &Effects) -> Vec<(String, Kernel)> {
+    let watch = kernel_worlds::watch_kernels(effects.simulation(BackendChoice::Cpu).world_mut());
+    kernels(effects).into_iter().chain(watch).collect()
+}
+
 fn members(layout: &Layout) -> Vec<(String, u32, u32)> {
     layout.members.iter().map(|&(name, offset, size)| (name.to_owned(), offset as u32, size as u32)).collect()
 }
@@ -58,7 +64,7 @@ fn members(layout: &Layout) -> Vec<(String, u32, u32)> {
 #[test]
 fn every_combination_of_effects_composes_with_at_most_eight_storage_buffers() {
     for effects in Effects::combinations() {
-        for (system, kernel) in kernels(&effects) {
+        for (system, kernel) in all(&effects) {
             let composed = compose(&kernel.fragments).unwrap_or_else(|e| panic!("{}: {e}", kernel.label));
             let entry = composed.entry(kernel.entry).unwrap_or_else(|| panic!("{}: no {}", kernel.label, kernel.entry));
             assert_eq!(entry.workgroup_size, [64, 1, 1], "{}", kernel.label);
@@ -71,7 +77,7 @@ fn every_combination_of_effects_composes_with_at_most_eight_storage_buffers() {
 #[test]
 fn every_variable_in_use_has_a_buffer_and_every_buffer_is_in_use() {
     for effects in Effects::combinations() {
-        for (_, kernel) in kernels(&effects) {
+        for (_, kernel) in all(&effects) {
             let composed = compose(&kernel.fragments).unwrap();
             let entry = composed.entry(kernel.entry).unwrap();
             let names = entry.uses.iter().map(|i| composed.bindings[*i].name.as_str());
@@ -218,7 +224,7 @@ fn all_fragments_of_the_folder_are_in_use() {
     // the guards' own kernels, which look now and then
     used.extend(["watch_elements.wgsl".to_owned(), "watch_nodes.wgsl".to_owned()]);
     for effects in Effects::combinations() {
-        for (_, kernel) in kernels(&effects) {
+        for (_, kernel) in all(&effects) {
             used.extend(kernel.fragments.iter().filter_map(|f| f.path.strip_prefix("shaders/").map(str::to_owned)));
         }
     }

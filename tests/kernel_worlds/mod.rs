@@ -255,6 +255,13 @@ pub fn all_kernels(world: &mut World) -> (Vec<(String, Kernel)>, Described) {
     (all, described)
 }
 
+/// The kernels of the guards, which run beside the step.
+pub fn watch_kernels(world: &mut World) -> Vec<(String, Kernel)> {
+    sinew::systems::add_watch_columns(world);
+    let kernels = sinew::systems::watch_kernels(world, &mut Described::default());
+    kernels.into_iter().map(|kernel| ("observe".to_string(), kernel)).collect()
+}
+
 /// A small generator of numbers between −1 and 1, the same everywhere.
 pub struct Noise(pub u64);
 
