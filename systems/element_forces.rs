@@ -28,13 +28,8 @@ pub fn system() -> System {
 }
 
 /// What a run does not change of a block, but by removing elements.
-type Fixed<'a> = (
-    &'a Connectivity,
-    &'a RestShape,
-    Option<&'a FibreDirection>,
-    Option<&'a NodalVolumeChange>,
-    Option<&'a Patches>,
-);
+type Fixed<'a> =
+    (&'a Connectivity, &'a RestShape, Option<&'a FibreDirection>, Option<&'a NodalVolumeChange>, Option<&'a Patches>);
 
 type BlockQuery<'a> = (
     &'a Block,
@@ -55,7 +50,8 @@ fn element_forces(
 ) {
     for (authoring, displacement, mut force) in &mut bodies {
         for &entity in &authoring.blocks {
-            let Ok((block, columns, memory, law, rounded, mut inverted, policy, removal)) = blocks.get_mut(entity) else {
+            let Ok((block, columns, memory, law, rounded, mut inverted, policy, removal)) = blocks.get_mut(entity)
+            else {
                 continue;
             };
             let (connectivity, shape, ..) = columns;

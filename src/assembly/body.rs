@@ -125,13 +125,7 @@ struct BlockBuilder<'a> {
 }
 
 impl BlockBuilder<'_> {
-    fn spawn(
-        &self,
-        world: &mut World,
-        body: Entity,
-        name: &str,
-        diagnostics: &mut Diagnostics,
-    ) -> Entity {
+    fn spawn(&self, world: &mut World, body: Entity, name: &str, diagnostics: &mut Diagnostics) -> Entity {
         let law = ElasticLaw::of(world.entity(self.material));
         let young = law.map_or(0.0, |law| young(law.small_strain_moduli()));
         let hourglass = self.assembly.scene.scene.bodies[name].hourglass;

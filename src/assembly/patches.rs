@@ -45,7 +45,9 @@ pub fn insert_forces(scheme: Scheme, body: Entity, world: &mut World) {
     let mut places: Vec<(u32, u32)> = Vec::new();
     let mut length = 0;
     for entity in blocks {
-        let Some((kind, elements)) = world.get::<Block>(entity).map(|block| (block.kind, block.count)) else { continue };
+        let Some((kind, elements)) = world.get::<Block>(entity).map(|block| (block.kind, block.count)) else {
+            continue;
+        };
         let Some(connectivity) = world.get::<Connectivity>(entity) else { continue };
         let offset = length;
         match scheme {

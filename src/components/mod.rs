@@ -36,8 +36,8 @@ pub use nodes::{
     InternalForce, Mass, MiddleDisplacement, NodeSums, RestPosition, SPENT_AT, SPENT_ROWS, WORK_NUMBERS, Work,
     before_at,
 };
-pub use patches::{Patches, Scheme};
 pub use observation::{Cadence, Energies, Probe};
+pub use patches::{Patches, Scheme};
 
 use bevy_ecs::prelude::*;
 

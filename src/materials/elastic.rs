@@ -1,7 +1,8 @@
 //! What an elastic law is, and the list of those there are.
 
 use super::{
-    ArrudaBoyce, Fibres, Kinematics, Linear, MooneyRivlin, NeoHookean, Ogden, StVenantKirchhoff, StableNeoHookean, UserLaw,
+    ArrudaBoyce, Fibres, Kinematics, Linear, MooneyRivlin, NeoHookean, Ogden, StVenantKirchhoff, StableNeoHookean,
+    UserLaw,
 };
 use crate::math::{Mat3, Real, Sym3, dot_plus};
 

@@ -8,6 +8,7 @@ mod rows;
 mod simd;
 mod tensor;
 
+pub(crate) use real::refine_inverse_cbrt;
 pub use real::{Real, Scalar, Task};
 pub use rows::{Rows, Scratch};
 pub use simd::{F32s, F64s, LANES, SimdScalar};

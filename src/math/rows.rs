@@ -1,9 +1,9 @@
 //! Rows of four numbers at hand in a core's cache, and registers filled from them and added to them: one row a lane.
 
 use super::SimdScalar;
+use pulp::Simd;
 #[cfg(target_arch = "x86_64")]
 use pulp::x86::{V3, V4};
-use pulp::Simd;
 
 /// As many rows as a `u16` can name, so that no index is ever out of bounds. Only those in use are ever touched.
 pub const MOST_ROWS_AT_HAND: usize = 1 << 16;

@@ -187,7 +187,12 @@ macro_rules! vector {
             #[inline(always)]
             fn load_rows<S: Simd>(simd: S, rows: &Rows<Self>, at: &[u16]) -> [$name<S>; 4] {
                 let [x, y, z, more] = $load_rows(simd, rows, &at[..S::$lanes]);
-                [$name { simd, value: x }, $name { simd, value: y }, $name { simd, value: z }, $name { simd, value: more }]
+                [
+                    $name { simd, value: x },
+                    $name { simd, value: y },
+                    $name { simd, value: z },
+                    $name { simd, value: more },
+                ]
             }
             #[inline(always)]
             fn add_to_rows<S: Simd>(simd: S, rows: &mut Rows<Self>, at: &[u16], [x, y, z]: [$name<S>; 3]) {

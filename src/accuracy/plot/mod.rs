@@ -1,10 +1,10 @@
 //! The work-precision plot: error against wall time per simulated second, both logarithmic, as SVG and as PNG.
 
-mod axis;
+pub(crate) mod axis;
 mod labels;
 mod legend;
 mod picture;
-mod svg;
+pub(crate) mod svg;
 
 pub use labels::{Area, Spot, place};
 pub use picture::{PlotError, png};

@@ -261,7 +261,8 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         let Some(at_hand) = &self.at_hand else { return };
         for (row, &node) in scratch.read.iter_mut().zip(at_hand.nodes) {
             let u = &self.displacement[3 * node as usize..3 * node as usize + 3];
-            let theta = if E::PRESSURE == PressureFrom::Nodes { self.nodal_volume_change[node as usize] } else { T::default() };
+            let theta =
+                if E::PRESSURE == PressureFrom::Nodes { self.nodal_volume_change[node as usize] } else { T::default() };
             *row = [u[0], u[1], u[2], theta];
         }
         scratch.sums[..at_hand.nodes.len()].fill([T::default(); 4]);

@@ -2,11 +2,13 @@
 
 mod element_kernel;
 mod law;
+mod node_kernel;
 mod volume_kernel;
 mod watch_kernel;
 
 pub use element_kernel::{BlockColumns, run_block, run_block_fast};
 pub use law::BlockLaw;
+pub use node_kernel::{Factors, NodeColumns, move_nodes};
 pub use volume_kernel::run_volumes;
 pub use watch_kernel::{BlockSums, WatchedColumns, run_watch};
 
