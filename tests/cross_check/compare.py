@@ -56,7 +56,7 @@ def run(sinew, scene, sets, precision="f64"):
     """Runs a scene; its summary, or None and why not."""
     with tempfile.TemporaryDirectory() as folder:
         command = [sinew, "run", str(ROOT / "scenes" / "accuracy" / f"{scene}.ron"), "--backend", "cpu",
-                   "--precision", precision, "--out", f"{folder}/out"]
+                   "--threads", "1", "--precision", precision, "--out", f"{folder}/out"]
         for value in sets:
             command += ["--set", value]
         try:
