@@ -105,13 +105,11 @@ fn better(rows: &[(&Row, Error, f64)]) -> Option<String> {
         row.on_front && *t < 0.7 * time && error.error <= written.error && (error.is_clear() || written.is_clear())
     });
     let (row, error, t) = better.min_by(|a, b| a.2.total_cmp(&b.2))?;
-    Some(format!(
-        "The scene as written costs more than it must: {} errs less ({} instead of {}) in {} of its time.",
-        row.label,
-        told(error),
-        told(written),
-        percent(t / time)
-    ))
+    let (error, written) = (told(error), told(written));
+    let compared =
+        if error == written { format!("the same ({error})") } else { format!("less ({error} instead of {written})") };
+    let share = percent(t / time);
+    Some(format!("The scene as written costs more than it must: {} errs {compared} in {share} of its time.", row.label))
 }
 
 /// An error in words; what the reference cannot tell from none is said to be below a bound.
