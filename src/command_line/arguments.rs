@@ -3,7 +3,7 @@
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::Vec3;
 use sinew::backend::gpu::Choice;
-use sinew::components::Precision;
+use sinew::components::{Precision, Scheme};
 use sinew::scene::{Allowed, Diagnostics};
 use sinew::{BackendChoice, Options, SceneFile};
 use std::path::{Path, PathBuf};
@@ -113,6 +113,9 @@ pub struct HowArguments {
     /// CPU threads; 0 is one a core, or a single one for small bodies. Results are the same for any number
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub threads: u16,
+    /// How element forces are summed on the CPU: patch by patch in cache, or in two passes over memory, to compare with
+    #[arg(long, value_enum, default_value_t = SchemeName::Patches)]
+    pub scheme: SchemeName,
 }
 
 #[derive(Args)]
@@ -173,7 +176,7 @@ impl AccuracyArguments {
     pub fn options(&self) -> Options {
         let backend = if self.backend == BackendName::Gpu { BackendName::Gpu } else { BackendName::Cpu };
         let (gpu, precision, threads) = (self.gpu.clone(), self.precision, self.threads);
-        HowArguments { backend, gpu, precision, threads }.options()
+        HowArguments { backend, gpu, precision, threads, scheme: SchemeName::Patches }.options()
     }
 }
 
@@ -250,6 +253,12 @@ pub enum PrecisionName {
     F64,
 }
 
+#[derive(Clone, Copy, ValueEnum)]
+pub enum SchemeName {
+    Patches,
+    TwoPass,
+}
+
 impl HowArguments {
     /// What the library calls it.
     pub fn options(&self) -> Options {
@@ -265,6 +274,10 @@ impl HowArguments {
             },
             threads: self.threads.into(),
             gpu: Choice::parse(&self.gpu),
+            scheme: match self.scheme {
+                SchemeName::Patches => Scheme::Patches,
+                SchemeName::TwoPass => Scheme::TwoPass,
+            },
         }
     }
 }

@@ -1,7 +1,7 @@
 //! How to run a scene: what is not the scene's business.
 
 use crate::backend::gpu::{Choice, Gpu, NoGpu};
-use crate::components::Precision;
+use crate::components::{Precision, Scheme};
 use crate::error::Error;
 
 /// Where to run.
@@ -27,6 +27,8 @@ pub struct Options {
     pub threads: usize,
     /// Which GPU, when there are several.
     pub gpu: Choice,
+    /// How element forces are summed.
+    pub scheme: Scheme,
 }
 
 /// What was chosen, and why.

@@ -3,9 +3,10 @@
 mod effects;
 
 use super::{BlockLaw, Cpu};
+use crate::components::Patches;
 use crate::elements::{Element, MOST_NODES, PressureFrom};
 use crate::materials::{Elastic, ElasticLaw, Kinematics};
-use crate::math::{LANES, Real, SimdScalar, Sym3};
+use crate::math::{LANES, Mat3, Real, Scratch, SimdScalar, Sym3};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -26,6 +27,10 @@ pub struct BlockColumns<'a, T> {
     pub memory: &'a mut [T],
     /// The block's part of the element forces (N).
     pub force: &'a mut [T],
+    /// Where they are summed; `None` in the scheme of two passes.
+    pub patches: Option<&'a Patches>,
+    /// Whether elements with J < 0 exert nothing.
+    pub inverted_go: bool,
 }
 
 /// Fills in the forces of a block and carries its viscous history on by one step. Says whether an element has J < 0.
@@ -83,29 +88,69 @@ impl<E: Element, T: SimdScalar> Block<'_, E, T> {
         let patch = groups_a_patch * LANES;
         let memory_an_element = law.memory_numbers(E::POINTS);
         let varying = law.varying_families();
-        let patches = columns.force.chunks_mut(patch * 3 * E::NODES).enumerate();
         // without viscosity there is no memory to hand out
         let mut memories = columns.memory.chunks_mut((patch * memory_an_element).max(1));
-        let tasks = patches.map(move |(index, force)| Patch::<E, T, L, EFFECTS> {
+        let tasks = parts(columns.force, columns.patches, patch * 3 * E::NODES, patch * E::NODES);
+        let tasks = tasks.into_iter().enumerate().map(move |(index, (force, at_hand))| Patch::<E, T, L, EFFECTS> {
             displacement: columns.displacement,
             nodal_volume_change: columns.nodal_volume_change,
-            connectivity: &columns.connectivity[index * patch * E::NODES..],
-            rest_shape: &columns.rest_shape[index * patch * E::ROWS..],
+            connectivity: part(columns.connectivity, index, patch * E::NODES),
+            rest_shape: part(columns.rest_shape, index, patch * E::ROWS),
             fibre_direction: columns.fibre_direction.map(|all| &all[index * patch * 3 * varying..]),
             varying,
             memory: memories.next().unwrap_or_default(),
             force,
+            at_hand,
+            inverted_go: columns.inverted_go,
             elastic,
             law,
             element,
         });
         cpu.for_each(tasks, |patch| {
-            if cpu.arch().dispatch(patch) {
+            let found = T::with_scratch(|scratch| {
+                let task = OfPatch { patch, scratch };
+                if EFFECTS == ASK { cpu.dispatch(task) } else { cpu.dispatch_widest(task) }
+            });
+            if found {
                 inverted.store(true, Ordering::Relaxed);
             }
         });
         inverted.into_inner()
     }
+}
+
+/// The element forces (N) of each patch, and its nodes where it sums them: rows of the body, and those of its corners.
+fn parts<'a, T>(
+    mut force: &'a mut [T],
+    patches: Option<&'a Patches>,
+    forces_a_patch: usize,
+    corners_a_patch: usize,
+) -> Vec<(&'a mut [T], Option<AtHand<'a>>)> {
+    let Some(patches) = patches else {
+        return force.chunks_mut(forces_a_patch).map(|force| (force, None)).collect();
+    };
+    let corners = patches.connectivity.chunks(corners_a_patch);
+    let nodes = patches.starts.windows(2).map(|ends| &patches.nodes[ends[0] as usize..ends[1] as usize]);
+    let mut parts = Vec::with_capacity(patches.count());
+    for (nodes, corners) in nodes.zip(corners) {
+        let (own, others) = force.split_at_mut(3 * nodes.len());
+        parts.push((own, Some(AtHand { nodes, corners })));
+        force = others;
+    }
+    parts
+}
+
+/// A patch's part of a column, where each patch but the last has as much.
+fn part<X>(column: &[X], index: usize, length: usize) -> &[X] {
+    &column[index * length..column.len().min((index + 1) * length)]
+}
+
+/// A patch's nodes, to have at hand.
+struct AtHand<'a> {
+    /// Rows of the body.
+    nodes: &'a [u32],
+    /// Which of them each corner is.
+    corners: &'a [u16],
 }
 
 struct Patch<'a, E, T: SimdScalar, L, const EFFECTS: u8> {
@@ -117,26 +162,35 @@ struct Patch<'a, E, T: SimdScalar, L, const EFFECTS: u8> {
     varying: usize,
     memory: &'a mut [T],
     force: &'a mut [T],
+    at_hand: Option<AtHand<'a>>,
+    inverted_go: bool,
     elastic: &'a L,
     law: &'a BlockLaw<T>,
     element: PhantomData<E>,
 }
 
-impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd for Patch<'_, E, T, L, EFFECTS> {
+/// A patch and where to compute it.
+struct OfPatch<'a, 's, E, T: SimdScalar, L, const EFFECTS: u8> {
+    patch: Patch<'a, E, T, L, EFFECTS>,
+    scratch: &'s mut Scratch<T>,
+}
+
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd for OfPatch<'_, '_, E, T, L, EFFECTS> {
     type Output = bool;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(mut self, simd: S) -> bool {
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
+        let Self { mut patch, scratch } = self;
+        patch.bring(scratch);
         let mut worst = T::splat(simd, T::default());
-        for group in 0..self.force.len() / (LANES * 3 * E::NODES) {
-            let nodes = &self.connectivity[group * E::NODES * LANES..(group + 1) * E::NODES * LANES];
-            let displacements = group_vectors::<E, T>(nodes, self.displacement);
+        for group in 0..patch.connectivity.len() / (LANES * E::NODES) {
             let mut at = 0;
             while at < LANES {
-                worst = worst.max(self.part_of_group(simd, group, at, &displacements));
+                worst = worst.max(patch.part_of_group(simd, group, at, scratch));
                 at += T::width::<S>();
             }
         }
+        patch.bring_back(scratch);
         let mut lanes = [T::default(); LANES];
         T::store(worst, &mut lanes);
         lanes.iter().any(|&v| v > T::default())
@@ -201,28 +255,45 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         if EFFECTS == ASK { !self.law.prony.is_empty() } else { EFFECTS & VISCOSITY != 0 }
     }
 
+    /// Displacements of the patch's nodes, and θ where elements take their pressure from it, to hand; no forces yet.
+    #[inline(always)]
+    fn bring(&self, scratch: &mut Scratch<T>) {
+        let Some(at_hand) = &self.at_hand else { return };
+        for (row, &node) in scratch.read.iter_mut().zip(at_hand.nodes) {
+            let u = &self.displacement[3 * node as usize..3 * node as usize + 3];
+            let theta = if E::PRESSURE == PressureFrom::Nodes { self.nodal_volume_change[node as usize] } else { T::default() };
+            *row = [u[0], u[1], u[2], theta];
+        }
+        scratch.sums[..at_hand.nodes.len()].fill([T::default(); 4]);
+    }
+
+    /// The sums of forces from at hand.
+    #[inline(always)]
+    fn bring_back(&mut self, scratch: &Scratch<T>) {
+        if self.at_hand.is_some() {
+            for (force, sum) in self.force.chunks_exact_mut(3).zip(&*scratch.sums) {
+                force.copy_from_slice(&sum[..3]);
+            }
+        }
+    }
+
     /// One register full of elements, from lane `at` on. Returns −J V, positive for inverted elements.
     #[inline(always)]
-    fn part_of_group<S: Simd>(
-        &mut self,
-        simd: S,
-        group: usize,
-        at: usize,
-        displacements: &[[[T; LANES]; 3]; MOST_NODES],
-    ) -> T::Vector<S> {
+    fn part_of_group<S: Simd>(&mut self, simd: S, group: usize, at: usize, scratch: &mut Scratch<T>) -> T::Vector<S> {
         let elastic = self.elastic.map(
             #[inline(always)]
             |number: T| T::splat(simd, number),
         );
         let zero = T::splat(simd, T::default());
-        let u = E::prepare(&corner_registers::<E, T, S>(simd, displacements, at));
+        let (displacements, theta) = self.at_corners(simd, &elastic, group, at, scratch);
+        let u = E::prepare(&displacements);
         let rest_shape = &self.rest_shape[group * E::ROWS * LANES..(group + 1) * E::ROWS * LANES];
         let shared = match E::PRESSURE {
             PressureFrom::Point => zero,
             PressureFrom::MeanOverPoints => {
                 elastic.pressure(mean_volume_change::<E, T, L, S>(simd, &elastic, &u, rest_shape, at))
             }
-            PressureFrom::Nodes => self.mean_of_nodes(simd, &elastic, group, at),
+            PressureFrom::Nodes => theta,
         };
         let mut forces = E::no_forces(zero);
         let mut worst = zero.constant(f64::MIN);
@@ -233,59 +304,146 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
                 #[inline(always)]
                 |row: usize| T::load(simd, &rest_shape[row * LANES + at..]),
             );
-            let k = elastic.kinematics(&state.gradient);
-            let mut pressure = match E::PRESSURE {
-                PressureFrom::Point => elastic.pressure(elastic.volume_measure(&k)),
-                _ => shared,
-            };
-            if EFFECTS == ASK && !self.law.volumetric.is_empty() {
-                pressure = self.relax_pressure(simd, group, at, point, pressure);
-            }
-            let mut isochoric = match EFFECTS {
-                ASK => simd.vectorize(Isochoric { elastic: &elastic, k: &k }),
-                _ => elastic.isochoric(&k),
-            };
-            if self.has_fibres() {
-                isochoric = isochoric.plus(&self.fibre_stress(simd, group, at, &k));
-            }
-            if EFFECTS == ASK && !self.law.exponential.is_empty() {
-                isochoric = isochoric.plus(&self.exponential_stress(simd, group, at, &k));
-            }
-            if self.has_viscosity() {
-                isochoric = self.relax(simd, group, at, point, isochoric);
-            }
-            if EFFECTS == ASK && self.law.reproject {
-                isochoric = elastic.without_pressure(&k, isochoric);
-            }
-            let stress = elastic.first_stress(&state.gradient, &k, &isochoric, pressure);
+            let (stress, j) = self.stress(simd, &elastic, group, at, point, &state.gradient, shared);
             E::add_stress(&mut forces, point, &state, &stress);
-            worst = worst.max(-k.true_j);
+            worst = worst.max(-j);
         }
-        let out = &mut self.force[group * 3 * E::NODES * LANES..(group + 1) * 3 * E::NODES * LANES];
+        let worst = worst * T::load(simd, &rest_shape[E::VOLUME_ROW * LANES + at..]);
+        let mut out = [[zero; 3]; MOST_NODES];
         E::store_forces(
             &u,
             &forces,
             #[inline(always)]
             |row: usize| T::load(simd, &rest_shape[row * LANES + at..]),
             #[inline(always)]
-            |corner: usize, i: usize, force| T::store(force, &mut out[(3 * corner + i) * LANES + at..]),
+            |corner: usize, i: usize, force| out[corner][i] = force,
         );
-        worst * T::load(simd, &rest_shape[E::VOLUME_ROW * LANES + at..])
+        if self.inverted_go {
+            for corner in 0..E::NODES {
+                for i in 0..3 {
+                    out[corner][i] = worst.if_positive(zero, out[corner][i]);
+                }
+            }
+        }
+        self.give(simd, group, at, scratch, &out);
+        worst
     }
 
-    /// Mean of the pressures (Pa) at the nodes.
+    /// Displacements of the corners (m), and the mean of the pressures (Pa) there for elements that take it.
     #[inline(always)]
-    fn mean_of_nodes<S: Simd>(&self, simd: S, elastic: &L::Of<T::Vector<S>>, group: usize, at: usize) -> T::Vector<S> {
-        let nodes = &self.connectivity[group * E::NODES * LANES..(group + 1) * E::NODES * LANES];
-        let mut sum = T::splat(simd, T::default());
+    fn at_corners<S: Simd>(
+        &self,
+        simd: S,
+        elastic: &L::Of<T::Vector<S>>,
+        group: usize,
+        at: usize,
+        scratch: &Scratch<T>,
+    ) -> ([[T::Vector<S>; 3]; MOST_NODES], T::Vector<S>) {
+        let zero = T::splat(simd, T::default());
+        let mut u = [[zero; 3]; MOST_NODES];
+        let mut pressure = zero;
         for corner in 0..E::NODES {
-            let mut lanes = [T::default(); LANES];
-            for lane in 0..T::width::<S>() {
-                lanes[lane] = self.nodal_volume_change[nodes[corner * LANES + at + lane] as usize];
+            let first = (group * E::NODES + corner) * LANES + at;
+            let theta;
+            match &self.at_hand {
+                Some(at_hand) => {
+                    let [x, y, z, more] = T::load_rows(simd, &scratch.read, &at_hand.corners[first..]);
+                    (u[corner], theta) = ([x, y, z], more);
+                }
+                None => (u[corner], theta) = self.from_columns(simd, &self.connectivity[first..]),
             }
-            sum += elastic.pressure(T::load(simd, &lanes));
+            if E::PRESSURE == PressureFrom::Nodes {
+                pressure += elastic.pressure(theta);
+            }
         }
-        sum * sum.constant(1.0 / E::NODES as f64)
+        (u, pressure * zero.constant(1.0 / E::NODES as f64))
+    }
+
+    /// Displacements (m) and θ of a register full of nodes.
+    #[inline(always)]
+    fn from_columns<S: Simd>(&self, simd: S, nodes: &[u32]) -> ([T::Vector<S>; 3], T::Vector<S>) {
+        let mut lanes = [[T::default(); LANES]; 4];
+        for lane in 0..T::width::<S>() {
+            let node = nodes[lane] as usize;
+            let u = &self.displacement[3 * node..3 * node + 3];
+            for i in 0..3 {
+                lanes[i][lane] = u[i];
+            }
+            if E::PRESSURE == PressureFrom::Nodes {
+                lanes[3][lane] = self.nodal_volume_change[node];
+            }
+        }
+        let [x, y, z, theta] = &lanes;
+        ([T::load(simd, x), T::load(simd, y), T::load(simd, z)], T::load(simd, theta))
+    }
+
+    /// Forces on corners (N) to where they are summed.
+    #[inline(always)]
+    fn give<S: Simd>(
+        &mut self,
+        simd: S,
+        group: usize,
+        at: usize,
+        scratch: &mut Scratch<T>,
+        forces: &[[T::Vector<S>; 3]; MOST_NODES],
+    ) {
+        for corner in 0..E::NODES {
+            let first = (group * E::NODES + corner) * LANES;
+            match &self.at_hand {
+                Some(at_hand) => {
+                    T::add_to_rows(simd, &mut scratch.sums, &at_hand.corners[first + at..], forces[corner]);
+                }
+                None => {
+                    for i in 0..3 {
+                        T::store(forces[corner][i], &mut self.force[3 * first + i * LANES + at..]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// First Piola-Kirchhoff stress (Pa) at a point, and J there.
+    #[inline(always)]
+    fn stress<S: Simd>(
+        &mut self,
+        simd: S,
+        elastic: &L::Of<T::Vector<S>>,
+        group: usize,
+        at: usize,
+        point: usize,
+        gradient: &Mat3<T::Vector<S>>,
+        shared: T::Vector<S>,
+    ) -> (Mat3<T::Vector<S>>, T::Vector<S>) {
+        if EFFECTS == 0 || EFFECTS == FIBRES {
+            let pressure = (E::PRESSURE != PressureFrom::Point).then_some(shared);
+            let fibres = if EFFECTS == FIBRES { self.fibres_at(simd, group, at) } else { None };
+            return elastic.stress_at_once(gradient, pressure, fibres);
+        }
+        let k = elastic.kinematics(gradient);
+        let mut pressure = match E::PRESSURE {
+            PressureFrom::Point => elastic.pressure(elastic.volume_measure(&k)),
+            _ => shared,
+        };
+        if EFFECTS == ASK && !self.law.volumetric.is_empty() {
+            pressure = self.relax_pressure(simd, group, at, point, pressure);
+        }
+        let mut isochoric = match EFFECTS {
+            ASK => simd.vectorize(Isochoric { elastic, k: &k }),
+            _ => elastic.isochoric(&k),
+        };
+        if self.has_fibres() {
+            isochoric = isochoric.plus(&self.fibre_stress(simd, group, at, &k));
+        }
+        if EFFECTS == ASK && !self.law.exponential.is_empty() {
+            isochoric = isochoric.plus(&self.exponential_stress(simd, group, at, &k));
+        }
+        if self.has_viscosity() {
+            isochoric = self.relax(simd, group, at, point, isochoric);
+        }
+        if EFFECTS == ASK && self.law.reproject {
+            isochoric = elastic.without_pressure(&k, isochoric);
+        }
+        (elastic.first_stress(gradient, &k, &isochoric, pressure), k.true_j)
     }
 }
 
