@@ -37,30 +37,6 @@ pub const SHORTFALLS: &[Shortfall] = &[
         verdict: Verdict::Failed,
         why: "bent tetrahedra stay stiff: with three and with four of them across deflections differ by 12 %",
     },
-    Shortfall {
-        case: "h07",
-        on: Configuration::is_tets,
-        verdict: Verdict::FailedHonestly,
-        why: "a free cell of tetrahedra at a twentieth of its height is not symmetric, and tangles when it is let go; confined it passes",
-    },
-    Shortfall {
-        case: "h07",
-        on: |c| !c.is_tets(),
-        verdict: Verdict::Failed,
-        why: "confined it passes; a single free cell pushes as the formula says, and does not come back when it is let go: not understood yet",
-    },
-    Shortfall {
-        case: "h30",
-        on: |_| true,
-        verdict: Verdict::Failed,
-        why: "the step adapts and energy stays balanced; who only watches is not told, for the true limit, 1.4 times the bound, is not passed at 45 %: the gate asks too early",
-    },
-    Shortfall {
-        case: "h27",
-        on: |c| c.is_gpu() && !c.is_tets(),
-        verdict: Verdict::Failed,
-        why: "a GPU's kernels note the lowest node that was found in any step since the last look, not the first in time: a neighbour may be named",
-    },
 ];
 
 /// What is known of a case in a configuration.
