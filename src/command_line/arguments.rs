@@ -265,6 +265,7 @@ impl HowArguments {
             },
             threads: self.threads.into(),
             gpu: Choice::parse(&self.gpu),
+            ..Options::default()
         }
     }
 }

@@ -2,6 +2,7 @@
 //! close, and what the scene wants done about it.
 
 use super::policies::WORTH;
+use super::rounding::warn_of_rounding;
 use super::stable_step::{ACCURACY, Stability, limits};
 use super::tangent::Tangent;
 use super::watch::{Seen, Watched};
@@ -20,8 +21,8 @@ use std::time::Instant;
 /// begins smoothly becomes faster.
 const LOOKS: (u64, u64) = (16, 256);
 /// Between two looks strains change by so much, at the present speed: close to the limit, and where the step is half of it
-/// or less.
-const STRAIN: (f64, f64) = (0.05, 0.25);
+/// or less. The stable step of what is squeezed shrinks twice as fast as it, and a twentieth is left when it counts as close.
+const STRAIN: (f64, f64) = (0.01, 0.25);
 /// No more than that between two looks, however close they come: what falls flat must not pass through zero unseen.
 const MOST_STRAIN: f64 = 0.5;
 /// The highest frequency is found so many times, and once more for so many steps: each costs about a hundred steps. Beyond
@@ -223,12 +224,14 @@ impl Simulation {
         let all = follower.watched.iter().map(|block| block.look(&self.world, follower.known));
         let mut seen = all.fold(Seen::NOTHING, Seen::and);
         follower.history.looks += 1;
+        warn_of_rounding(&follower.watched, &mut self.world);
         let time_step = self.world.resource::<Clock>().time_step;
         // far below the limit more may happen unseen
         let room = follower.most() * step_of(seen.square) / time_step - 1.0;
         let strain = (STRAIN.1 * room).clamp(STRAIN.0, STRAIN.1);
         let calm = ((strain / seen.speed) as u64).min(step / 2);
-        let least = ((MOST_STRAIN / seen.speed) as u64).clamp(1, LOOKS.0);
+        // what is no number, or inside out, has no speed
+        let least = if seen.speed.is_finite() { ((MOST_STRAIN / seen.speed) as u64).clamp(1, LOOKS.0) } else { LOOKS.0 };
         follower.next = step + calm.clamp(least, LOOKS.1);
         if seen.alive < before_alive(follower) && matches!(follower.policy, WhenUnstable::ScaleMass { .. }) {
             // what was added to removed elements goes with them

@@ -19,9 +19,9 @@ impl Simulation {
     /// Makes the step smaller where it must be, and larger where that is worth while.
     pub(super) fn adapt(&mut self, follower: &mut Follower, seen: &Seen, time_step: f64) -> Result<(), Error> {
         let known_now = follower.known_at == self.step_count();
-        // far off the cheap bound may say anything: until the true limit is found, a step about half as large has to do
+        // far off the cheap bound may say anything: until the true limit is found, a quarter of the last has to do
         let bound = step_of(seen.square);
-        let limit = if known_now { bound } else { bound.max(time_step / VAGUE) };
+        let limit = if known_now { bound } else { bound.max(step_of(follower.known) / (VAGUE * VAGUE)) };
         let wanted = follower.wanted(limit, seen);
         let smaller = time_step > follower.most() * limit;
         if !(smaller || known_now && wanted > WORTH * time_step) {

@@ -53,6 +53,15 @@ pub struct GpuLimits {
     pub time_stamps: bool,
 }
 
+/// Less than a device allows, as on a smaller one: for trying out what a program does there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SmallerLimits {
+    /// Bytes of one storage binding.
+    pub storage_binding: Option<u64>,
+    /// Workgroups in one dimension of a dispatch.
+    pub workgroups: Option<u32>,
+}
+
 impl Gpu {
     /// Opens a device with all the limits it offers.
     ///
@@ -90,6 +99,16 @@ impl Gpu {
     /// does then.
     pub fn destroy(&mut self) {
         self.device.destroy();
+    }
+
+    /// Keeps to less than the device allows.
+    pub fn keep_to(&mut self, smaller: SmallerLimits) {
+        let (binding, groups) = (
+            &mut self.limits.max_storage_buffer_binding_size,
+            &mut self.limits.max_compute_workgroups_per_dimension,
+        );
+        *binding = smaller.storage_binding.map_or(*binding, |bytes| bytes.min(*binding));
+        *groups = smaller.workgroups.map_or(*groups, |most| most.min(*groups));
     }
 
     /// What the device allows.
@@ -199,6 +218,19 @@ mod tests {
         assert!(gpu.download(&[buffer]).is_err());
         assert!(gpu.prepare(&kernel.threads(2)).is_err());
         assert!(gpu.time_kernels(true).is_err());
+    }
+
+    #[test]
+    fn memory_that_is_full_is_an_error_and_the_device_lives_on() {
+        let Some(mut gpu) = gpu_or_reason() else { return };
+        let kept = gpu.create("mass", 64, BufferKind::Storage).unwrap();
+        // as wgpu reports it: no driver can be asked to run out of memory here
+        gpu.inbox.put(Event::OutOfMemory);
+        let error = gpu.check_memory("element force", 4096).unwrap_err();
+        assert!(matches!(&error, GpuError::OutOfMemory { bytes: 4096, used: 64, .. }), "{error}");
+        assert!(error.to_string().contains("`element force` of 4096 bytes"), "{error}");
+        gpu.upload(kept, 0, &[1; 64]).unwrap();
+        assert_eq!(gpu.download(&[kept]).unwrap()[0], [1; 64]);
     }
 
     #[test]

@@ -96,6 +96,16 @@ pub fn far_away(trial: &mut Trial<'_>) -> Result<(), Error> {
     }
     let difference = swings[0].iter().zip(&swings[1]).fold(0.0_f64, |worst, (a, b)| worst.max((*a - *b).length()));
     trial.most("difference of displacements", difference / largest(&swings[1]), 1e-5);
+    // it flies 1e4 m: f64 keeps its strains, f32 says that it does not
+    let free = ["constraints=[]", "loads=[]", "bodies.body.translate=(0, 0, 0)", "bodies.body.velocity=(5e4, 0, 0)"];
+    let mut flies = trial.start(&free.map(String::from))?;
+    flies.finish()?;
+    let warned = flies.guards().warnings.iter().any(|notice| notice.criterion == "rounding");
+    trial.holds("strains rounded in flight are warned of, in f32 alone", warned != trial.configuration.is_f64());
+    if trial.configuration.is_f64() {
+        let strained = flies.fields("body")?.volume_ratio.iter().fold(0.0_f64, |largest, j| largest.max((j - 1.0).abs()));
+        trial.most("change of volume after 1e4 m", strained, 1e-4);
+    }
     Ok(())
 }
 
