@@ -139,7 +139,8 @@ fn a_gpu_lost_in_a_run_leaves_what_was_observed_before() {
     let text = error.to_string();
     let sinew::Error::GpuFailed(failure) = error else { panic!("{text}") };
     assert!(matches!(failure.reason, GpuError::Lost(_)), "{text}");
-    assert!((failure.good_until - 0.5).abs() < 0.1 && failure.time >= 0.59, "{text}");
+    // looked at in every step, of a ninth of a second each
+    assert!((0.49..0.7).contains(&failure.good_until) && failure.time >= 0.59, "{text}");
     assert!(text.contains("the GPU was lost") && text.contains("s are kept"), "{text}");
     // the last state that was on the host can be gone on from, on the CPU
     let name = failure.snapshot.clone().unwrap();
@@ -148,7 +149,7 @@ fn a_gpu_lost_in_a_run_leaves_what_was_observed_before() {
     let cpu = sinew::Options { backend: sinew::BackendChoice::Cpu, ..sinew::Options::default() };
     let mut rest = sinew::Simulation::new(&scene, &cpu).unwrap();
     rest.restore(&kept).unwrap();
-    assert!(rest.time() > 0.0 && rest.time() < 0.61, "{}", rest.time());
+    assert!(rest.time() > 0.0 && rest.time() < 0.7, "{}", rest.time());
     rest.finish().unwrap();
     // again and again the same, never a panic
     assert!(matches!(simulation.step(), Err(sinew::Error::GpuFailed(_))));
@@ -168,10 +169,10 @@ fn smaller(limits: SmallerLimits, gpu: &str, backend: sinew::BackendChoice) -> R
     let scene = r#"(duration: 1, bodies: {"b": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (5, 5, 5), elements: Tet4NodalPressure), material: "m"),
             "c": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (8, 8, 8), elements: Hex8), material: "m", translate: (1, 0, 0))},
         materials: {"m": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), prony: (terms: [(alpha: 0.3, tau: 0.1)]))},
-        constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0)),
-            Prescribed(on: Plane(normal: (0, 0, 1), at: 0.1), axes: [X], displacement: (0.01, 0, 0), curve: Smooth(end: 0.05))],
-        loads: [Gravity(acceleration: (0, 0, -9.81)), Pressure(on: Surface(normal: (1, 0, 0)), pressure: 200)],
-        removal: [(on: Box(min: (0.06, 0, 0), max: (0.1, 0.1, 0.1)), when: At(0.005))], integration: (step: 5e-4), guards: (every: 8))"#;
+        constraints: [Fixed(body: "b", on: Plane(normal: (0, 0, 1), at: 0)),
+            Prescribed(body: "b", on: Plane(normal: (0, 0, 1), at: 0.1), axes: [X], displacement: (0.01, 0, 0), curve: Smooth(end: 0.05))],
+        loads: [Gravity(acceleration: (0, 0, -9.81)), Pressure(body: "b", on: Surface(normal: (1, 0, 0)), pressure: 200)],
+        removal: [(body: "b", on: Box(min: (0.06, 0, 0), max: (0.1, 0.1, 0.1)), when: At(0.005))], integration: (step: 5e-4), guards: (every: 8))"#;
     let scene = sinew::SceneFile::from_text("smaller.ron", scene, std::path::Path::new("."), &[]).unwrap();
     let gpu = sinew::backend::gpu::Choice::Named(gpu.into());
     sinew::Simulation::new(&scene, &sinew::Options { backend, gpu, gpu_limits: limits, ..sinew::Options::default() })

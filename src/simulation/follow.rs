@@ -211,7 +211,7 @@ impl Simulation {
         let looked = self.look_with(&mut follower);
         follower.history.seconds += started.elapsed().as_secs_f64();
         self.follower = Some(follower);
-        looked
+        looked.map_err(|error| self.note(error))
     }
 
     fn look_with(&mut self, follower: &mut Follower) -> Result<(), Error> {

@@ -71,7 +71,7 @@ impl Simulation {
             None => self.steps_to(target),
         };
         self.elapsed += started.elapsed();
-        result.map_err(|error| self.note(self.with_what_is_kept(error)))
+        result.map_err(|error| self.note(error))
     }
 
     /// Says of a GPU that failed how far the run came.
@@ -83,8 +83,8 @@ impl Simulation {
     }
 
     /// Notes how the simulation broke down, and leaves the last states where files are written.
-    fn note(&mut self, error: Error) -> Error {
-        let Error::Unstable(mut broken) = error else { return error };
+    pub(super) fn note(&mut self, error: Error) -> Error {
+        let Error::Unstable(mut broken) = error else { return self.with_what_is_kept(error) };
         if self.failure.is_none() && self.relaxing.is_none() {
             // what cannot be written now must not hide why the run ended
             let _ = self.leave_last_states(&mut broken);

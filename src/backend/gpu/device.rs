@@ -145,6 +145,9 @@ impl Gpu {
             Ok(_) => Ok(()),
             Err(PollError::Timeout) => Err(GpuError::TimedOut(PATIENCE.as_secs())),
             Err(other) => {
+                // what a lost device was handed was never submitted, and it says so when it is asked without a number only
+                let _ = self.device.poll(PollType::Poll);
+                self.check("waiting for the GPU")?;
                 Err(GpuError::Device { during: "waiting for the GPU".to_owned(), message: other.to_string() })
             }
         }
