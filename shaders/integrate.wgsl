@@ -60,7 +60,10 @@ fn move_on(node: u32, d: vec3<f32>) {
     // an exponent of all ones: infinite, or no number; comparisons of floats might be optimized away
     let exponent = vec3<u32>(0x7f800000u);
     if any((bitcast<vec3<u32>>(u) & exponent) == exponent) {
-        atomicMin(&first_non_finite[0], node);
+        // the lowest node of the first step in which there is one: later steps find an earlier one noted
+        if atomicMin(&first_non_finite[1], step.number) >= step.number {
+            atomicMin(&first_non_finite[0], node);
+        }
     }
 }
 

@@ -42,7 +42,7 @@ pub enum Error {
 #[derive(Clone, Debug, thiserror::Error)]
 #[error(
     "the GPU failed after t = {good_until} s, before t = {time} s (step {step}): {reason}. Outputs up to t = {good_until} s are \
-     kept. The CPU takes every scene: --backend cpu"
+     kept. The CPU takes every scene: --backend cpu{}", from_snapshot(.snapshot)
 )]
 pub struct GpuFailure {
     /// What the GPU says.
@@ -53,6 +53,12 @@ pub struct GpuFailure {
     pub step: u64,
     /// The last observation before (s).
     pub good_until: f64,
+    /// The snapshot that was written of the last state kept in memory, where files are written: a file in the output folder.
+    pub snapshot: Option<String>,
+}
+
+fn from_snapshot(snapshot: &Option<String>) -> String {
+    snapshot.as_ref().map(|file| format!(", and goes on from there with --resume {file}")).unwrap_or_default()
 }
 
 /// Where and how a simulation broke down.

@@ -6,7 +6,7 @@ use crate::backend::Buffers;
 use crate::backend::block_kernel::BlockKernels;
 use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, run_block, run_block_fast};
 use crate::backend::kernel::Kernel;
-use crate::backend::step::with_step;
+use crate::backend::step::{step_number, with_step};
 use crate::components::*;
 use crate::evaluation::{ElementState, node_count, with_element};
 use crate::math::SimdScalar;
@@ -80,6 +80,7 @@ fn element_forces(
                 // rounding may hide from f64 what the kernel saw
                 _ if inverted[0] == u32::MAX => {
                     inverted[0] = (0..block.count).find(is_inverted).map_or(0, |row| row as u32);
+                    inverted[1] = step_number(&clock);
                 }
                 _ => {}
             }
@@ -130,17 +131,14 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
             .bind(RestShape::NAME, buffers.column(block.entity, RestShape::NAME))
             .bind(ElementForce::NAME, buffers.column(block.block.body, ElementForce::NAME));
         let kernel = match world.get::<OnInversion>(block.entity) {
-            Some(OnInversion(Inversion::Remove)) => with_step(
-                kernel
-                    .fragment(shader!("remove_inverted"))
-                    .bind(RemovalStep::NAME, buffers.column(block.entity, RemovalStep::NAME)),
-                world,
-            ),
+            Some(OnInversion(Inversion::Remove)) => kernel
+                .fragment(shader!("remove_inverted"))
+                .bind(RemovalStep::NAME, buffers.column(block.entity, RemovalStep::NAME)),
             _ => kernel
                 .fragment(shader!("note_inverted"))
                 .bind(FirstInverted::NAME, buffers.column(block.entity, FirstInverted::NAME)),
         };
-        kernels.push(block.with_stress(kernel, buffers));
+        kernels.push(block.with_stress(with_step(kernel, world), buffers));
     }
     kernels
 }

@@ -4,7 +4,7 @@ use super::registry::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, Factors, NodeColumns, move_nodes};
 use crate::backend::kernel::{Fragment, Kernel, Uniform, WEBGPU_STORAGE_BUFFERS, uniform};
-use crate::backend::step::with_step;
+use crate::backend::step::{step_number, with_step};
 use crate::components::*;
 use crate::shader;
 use bevy_ecs::prelude::*;
@@ -77,7 +77,7 @@ fn integrate(clock: Res<Clock>, cpu: Res<Cpu>, mut bodies: Query<BodyQuery>) {
             Reals::F64(_) => run!(F64),
         };
         if let (Some(bad), u32::MAX) = (bad, first[0]) {
-            first[0] = bad;
+            (first[0], first[1]) = (bad, step_number(&clock));
         }
     }
 }

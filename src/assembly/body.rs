@@ -149,7 +149,7 @@ impl BlockBuilder<'_> {
             block,
             Connectivity(connectivity.clone()),
             RestShape(self.rest_shapes(hourglass * young)),
-            FirstInverted(vec![u32::MAX]),
+            FirstInverted(vec![u32::MAX; 2]),
             OnInversion(material.inversion()),
         ));
         if averages(self.kind) {

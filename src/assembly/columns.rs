@@ -45,7 +45,7 @@ pub(super) fn insert_node_columns(
     }
     // pseudo-steps to rest do no work worth booking
     let moved = scene.constraints.iter().any(|constraint| matches!(constraint, Constraint::Prescribed { .. }));
-    let mut noticed = vec![u32::MAX];
+    let mut noticed = vec![u32::MAX; 2];
     if !scene.is_static() && scene.output.energies_every.is_some() {
         entity.insert(Work(Reals::zeros(precision, WORK_NUMBERS * count)));
     } else if !scene.is_static() && !scene.guards.off.contains(&Guard::Energy) {

@@ -39,12 +39,17 @@ impl Step {
             half_step: (0.5 * if first { dt } else { between }) as f32,
             divide: if first { 0.0 } else { 1.0 },
             rate: (1.0 / dt) as f32,
-            number: u32::try_from(clock.step).unwrap_or(u32::MAX),
+            number: step_number(clock),
             zero: 0,
             relaxation: damping as f32,
             booked: (between / dt) as f32,
         }
     }
+}
+
+/// Index of the clock's step as kernels and what they note have it: it stops at the largest number.
+pub(crate) fn step_number(clock: &Clock) -> u32 {
+    u32::try_from(clock.step).unwrap_or(u32::MAX)
 }
 
 /// Slots for signals in the record: WGSL has no arrays of none.

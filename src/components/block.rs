@@ -63,8 +63,8 @@ columns! {
     /// What each 64 elements come to, four words each: bits of the elastic and the hourglass energy (J) and of the smallest
     /// J, and its row. For the guards on a GPU.
     ElementSums(Vec<u32>) = "element_sums";
-    /// One number: the lowest row of an element found with J < 0, by the kernel itself in every step; `u32::MAX`: none. Elements
-    /// that are removed for it ([`OnInversion`]) are not noted here.
+    /// Two numbers: the lowest row of an element found with J < 0, by the kernel itself in every step, and the step in which it
+    /// was: the first in which there was one; `u32::MAX`: none. Elements that are removed for it ([`OnInversion`]) are not noted here.
     FirstInverted(Vec<u32>) = "first_inverted";
 }
 

@@ -37,8 +37,8 @@ columns! {
     /// the last step along constrained axes (m), which `boundary` writes over: [`WORK_NUMBERS`] a node. Exists when
     /// energies are asked for.
     Work(Reals) = "work";
-    /// What the integrator notices in passing. First the lowest row of a node whose displacement was found not finite;
-    /// `u32::MAX`: none. In a motion without [`Work`], from [`SPENT_AT`] on, the work against internal forces since the start: for each
+    /// What the integrator notices in passing. First the lowest row of a node whose displacement was found not finite, and the
+    /// step in which it was: the first in which there was one; `u32::MAX`: none. In a motion without [`Work`], from [`SPENT_AT`] on, the work against internal forces since the start: for each
     /// [`SPENT_ROWS`] nodes, as bits of f32, a sum and what rounding has left out of it (J). With prescribed nodes, from
     /// [`before_at`] on, a vector a node: bits of the last step (m) along prescribed axes, which `boundary` has written over.
     /// One column: kernels may have few.

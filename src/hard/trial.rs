@@ -79,6 +79,11 @@ impl<'a> Trial<'a> {
         Simulation::new(&scene, &self.configuration.options)
     }
 
+    /// Whether as much as possible is to be tried: in full, and in f64, which is quick and exact.
+    pub fn is_thorough(&self) -> bool {
+        self.full || self.configuration.is_f64()
+    }
+
     /// One of two numbers: the first in f64, the second in f32.
     pub fn bound(&self, f64: f64, f32: f64) -> f64 {
         if self.configuration.is_f64() { f64 } else { f32 }

@@ -33,15 +33,14 @@ impl Watched {
     /// As [`Simulation::advance`].
     pub fn run(simulation: &mut Simulation) -> Result<Self, Error> {
         let mut watched = Self::begin(simulation)?;
-        let (first, all) = (simulation.step_count(), simulation.planned_steps());
-        for look in 1..=LOOKS {
-            let target = first + (all - first) * look / LOOKS;
-            simulation.advance(target.saturating_sub(simulation.step_count()))?;
+        for looks_left in (1..=LOOKS).rev() {
+            // how many steps are left changes with their length
+            let left = simulation.planned_steps().saturating_sub(simulation.step_count());
+            simulation.advance_towards_end(left.div_ceil(looks_left))?;
             watched.look(simulation)?;
-            if simulation.is_finished() {
-                break;
-            }
         }
+        simulation.finish()?;
+        watched.look(simulation)?;
         Ok(watched)
     }
 

@@ -2,6 +2,7 @@
 //! close, and what the scene wants done about it.
 
 use super::policies::WORTH;
+use super::rounding::warn_of_rounding;
 use super::stable_step::{ACCURACY, Stability, limits};
 use super::tangent::Tangent;
 use super::watch::{Seen, Watched};
@@ -20,14 +21,16 @@ use std::time::Instant;
 /// begins smoothly becomes faster.
 const LOOKS: (u64, u64) = (16, 256);
 /// Between two looks strains change by so much, at the present speed: close to the limit, and where the step is half of it
-/// or less.
-const STRAIN: (f64, f64) = (0.05, 0.25);
+/// or less. The stable step of what is squeezed shrinks twice as fast as it, and a twentieth is left when it counts as close.
+const STRAIN: (f64, f64) = (0.01, 0.25);
+/// No more than that between two looks, however close they come: what falls flat must not pass through zero unseen.
+const MOST_STRAIN: f64 = 0.5;
 /// The highest frequency is found so many times, and once more for so many steps: each costs about a hundred steps. Beyond
 /// that the cheap bound is taken at its word.
 const SHARP_LOOKS: (u64, u64) = (4, 1000);
 /// A step that is so many times the stable one by the cheap bound tells of its limits rather than of the step.
 pub(super) const VAGUE: f64 = 2.0;
-/// Steps between two findings beyond that.
+/// Steps between two findings beyond that, where the cheap bound is as far off or has made the step as much smaller.
 const REST: u64 = 100;
 /// The highest frequency is found anew for a larger step when the bound of the elements has fallen to this share.
 const RELIEF: f64 = 0.6;
@@ -208,7 +211,7 @@ impl Simulation {
         let looked = self.look_with(&mut follower);
         follower.history.seconds += started.elapsed().as_secs_f64();
         self.follower = Some(follower);
-        looked
+        looked.map_err(|error| self.note(error))
     }
 
     fn look_with(&mut self, follower: &mut Follower) -> Result<(), Error> {
@@ -221,12 +224,15 @@ impl Simulation {
         let all = follower.watched.iter().map(|block| block.look(&self.world, follower.known));
         let mut seen = all.fold(Seen::NOTHING, Seen::and);
         follower.history.looks += 1;
+        warn_of_rounding(&follower.watched, &mut self.world);
         let time_step = self.world.resource::<Clock>().time_step;
         // far below the limit more may happen unseen
         let room = follower.most() * step_of(seen.square) / time_step - 1.0;
         let strain = (STRAIN.1 * room).clamp(STRAIN.0, STRAIN.1);
         let calm = ((strain / seen.speed) as u64).min(step / 2);
-        follower.next = step + calm.clamp(LOOKS.0, LOOKS.1);
+        // what is no number, or inside out, has no speed
+        let least = if seen.speed.is_finite() { ((MOST_STRAIN / seen.speed) as u64).clamp(1, LOOKS.0) } else { LOOKS.0 };
+        follower.next = step + calm.clamp(least, LOOKS.1);
         if seen.alive < before_alive(follower) && matches!(follower.policy, WhenUnstable::ScaleMass { .. }) {
             // what was added to removed elements goes with them
             bring_to_host(&mut self.world, |_, name| [Mass::NAME, FictitiousMass::NAME].contains(&name))?;
@@ -245,13 +251,16 @@ impl Simulation {
         let affordable = follower.history.sharp_looks < SHARP_LOOKS.0 + step / SHARP_LOOKS.1;
         let better = affordable && (pressing || follower.guessed || relieved && may_grow);
         let worth_it = match follower.policy {
-            // far off the cheap bound says nothing
-            WhenUnstable::Adapt => time_step > VAGUE * step_of(seen.square) && step >= follower.known_at + REST,
+            // far off the cheap bound says nothing, and steps made small on its word cost more than the finding
+            WhenUnstable::Adapt => {
+                let made_small = follower.guessed && VAGUE * time_step < step_of(follower.known);
+                (made_small || time_step > VAGUE * step_of(seen.square)) && step >= follower.known_at + REST
+            }
             WhenUnstable::Watch => false,
             // mass is not added and elements are not removed on its word
-            WhenUnstable::ScaleMass { .. } | WhenUnstable::Remove => true,
+            WhenUnstable::ScaleMass { .. } | WhenUnstable::Remove => pressing,
         };
-        if better || pressing && worth_it {
+        if better || worth_it {
             bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
             if let Some(found) = limits(&mut self.world, ACCURACY) {
                 for block in &mut follower.watched {

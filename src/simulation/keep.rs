@@ -91,4 +91,14 @@ impl Simulation {
         broken.last_good = Some(LastGood { time, step, snapshot, series: format!("{LAST_STATES}.pvd") });
         Ok(())
     }
+
+    /// Writes the last state kept in memory into the output folder: what a GPU that failed has left. Its name, if there is one and it can
+    /// be written.
+    pub(super) fn leave_last_snapshot(&self) -> Option<String> {
+        let observer = self.world.get_resource::<Observer>()?;
+        let (folder, state) = (observer.folder()?, observer.window.back()?);
+        let name = state.file_name();
+        state.write(&folder.join(&name)).ok()?;
+        Some(name)
+    }
 }

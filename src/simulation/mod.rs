@@ -16,6 +16,7 @@ mod parameters;
 mod policies;
 mod relax;
 mod residual;
+mod rounding;
 mod run;
 mod schedule;
 mod stable_step;

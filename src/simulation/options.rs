@@ -1,6 +1,6 @@
 //! How to run a scene: what is not the scene's business.
 
-use crate::backend::gpu::{Choice, Gpu, NoGpu};
+use crate::backend::gpu::{Choice, Gpu, NoGpu, SmallerLimits};
 use crate::components::{Precision, Scheme};
 use crate::error::Error;
 
@@ -29,6 +29,8 @@ pub struct Options {
     pub gpu: Choice,
     /// How element forces are summed.
     pub scheme: Scheme,
+    /// Less than that GPU allows, for trying out what becomes of a scene on a smaller one.
+    pub gpu_limits: SmallerLimits,
 }
 
 /// What was chosen, and why.
@@ -40,20 +42,25 @@ pub(super) struct Chosen {
 /// Chooses the backend.
 pub(super) fn choose(options: &Options) -> Result<Chosen, Error> {
     let cpu = |why: String| Ok(Chosen { gpu: None, why });
+    let open = |choice: &Choice| {
+        let mut gpu = Gpu::open(choice)?;
+        gpu.keep_to(options.gpu_limits);
+        Ok(gpu)
+    };
     match (options.backend, options.precision) {
         (BackendChoice::Cpu, _) => cpu("asked for".into()),
         (BackendChoice::Gpu, Precision::F64) => {
             Err(Error::Options("the GPU computes in f32 only: use --precision f32, or --backend cpu for f64".into()))
         }
         (BackendChoice::Gpu, Precision::F32) => {
-            let gpu = Gpu::open(&options.gpu)?;
+            let gpu = open(&options.gpu)?;
             let why = format!("asked for; {}", gpu.report());
             Ok(Chosen { gpu: Some(gpu), why })
         }
         (BackendChoice::Auto, Precision::F64) => cpu("f64 runs on the CPU only".into()),
         (BackendChoice::Auto, Precision::F32) => {
             let wanted = if options.gpu == Choice::Best { Choice::Hardware } else { options.gpu.clone() };
-            match Gpu::open(&wanted) {
+            match open(&wanted) {
                 Ok(gpu) => {
                     let why = format!("a hardware GPU is there: {}", gpu.report());
                     Ok(Chosen { gpu: Some(gpu), why })

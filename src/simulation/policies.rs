@@ -18,12 +18,12 @@ const LEAST: f64 = 1e-4;
 impl Simulation {
     /// Makes the step smaller where it must be, and larger where that is worth while.
     pub(super) fn adapt(&mut self, follower: &mut Follower, seen: &Seen, time_step: f64) -> Result<(), Error> {
-        let limit = step_of(seen.square);
-        let wanted = follower.wanted(limit, seen);
         let known_now = follower.known_at == self.step_count();
-        // of what the cheap bound was not made for it may say anything: until the true limit is found the step stays
-        let sure = known_now || time_step <= VAGUE * limit;
-        let smaller = sure && time_step > follower.most() * limit;
+        // far off the cheap bound may say anything: until the true limit is found, a quarter of the last has to do
+        let bound = step_of(seen.square);
+        let limit = if known_now { bound } else { bound.max(step_of(follower.known) / (VAGUE * VAGUE)) };
+        let wanted = follower.wanted(limit, seen);
+        let smaller = time_step > follower.most() * limit;
         if !(smaller || known_now && wanted > WORTH * time_step) {
             return Ok(());
         }

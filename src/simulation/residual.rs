@@ -112,11 +112,11 @@ impl State {
                 step.bytes_mut().fill(0);
             }
             if let Some(mut found) = entity.get_mut::<FirstNonFinite>() {
-                found[0] = u32::MAX;
+                found[..2].fill(u32::MAX);
             }
         }
         for mut found in world.query::<&mut FirstInverted>().iter_mut(world) {
-            found[0] = u32::MAX;
+            found[..2].fill(u32::MAX);
         }
     }
 

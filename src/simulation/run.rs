@@ -71,19 +71,20 @@ impl Simulation {
             None => self.steps_to(target),
         };
         self.elapsed += started.elapsed();
-        result.map_err(|error| self.note(self.with_what_is_kept(error)))
+        result.map_err(|error| self.note(error))
     }
 
     /// Says of a GPU that failed how far the run came.
     fn with_what_is_kept(&self, error: Error) -> Error {
         let Error::Gpu(reason) = error else { return error };
         let good_until = self.world.get_resource::<Observer>().map_or(0.0, |observer| observer.good_until);
-        Error::GpuFailed(Box::new(GpuFailure { reason, time: self.time(), step: self.step_count(), good_until }))
+        let snapshot = self.leave_last_snapshot();
+        Error::GpuFailed(Box::new(GpuFailure { reason, time: self.time(), step: self.step_count(), good_until, snapshot }))
     }
 
     /// Notes how the simulation broke down, and leaves the last states where files are written.
-    fn note(&mut self, error: Error) -> Error {
-        let Error::Unstable(mut broken) = error else { return error };
+    pub(super) fn note(&mut self, error: Error) -> Error {
+        let Error::Unstable(mut broken) = error else { return self.with_what_is_kept(error) };
         if self.failure.is_none() && self.relaxing.is_none() {
             // what cannot be written now must not hide why the run ended
             let _ = self.leave_last_states(&mut broken);

@@ -6,7 +6,7 @@ use crate::assembly::square_frequencies;
 use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK};
 use crate::components::*;
 use crate::elements::{Element, MOST_NODES};
-use crate::evaluation::{lane_place, with_element};
+use crate::evaluation::{lane_place, node_count, with_element};
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 
@@ -16,6 +16,8 @@ pub(super) struct Watched {
     growth: Growth,
     /// Of each element the bound of ω² at rest (1/s²).
     pub squares: Vec<f64>,
+    /// The shortest distance between two nodes of an element at rest (m).
+    pub shortest_edge: f64,
     /// The growth of ω² when the frequency of all was found last.
     known_growth: Vec<f32>,
 }
@@ -58,7 +60,8 @@ impl Watched {
         blocks.sort();
         let watched = |&entity: &Entity| {
             let growth = Growth::of(world.get::<BlockLaw<f64>>(entity)?);
-            let mut watched = Self { entity, growth, squares: Vec::new(), known_growth: Vec::new() };
+            let shortest_edge = shortest_edge(world, entity)?;
+            let mut watched = Self { entity, growth, squares: Vec::new(), shortest_edge, known_growth: Vec::new() };
             watched.weigh(world);
             watched.known_growth = vec![1.0; watched.squares.len()];
             Some(watched)
@@ -134,6 +137,19 @@ impl Watched {
         })();
         found.unwrap_or_default()
     }
+}
+
+/// The shortest distance between two nodes of an element of a block at rest (m).
+fn shortest_edge(world: &World, entity: Entity) -> Option<f64> {
+    let (block, connectivity) = (world.get::<Block>(entity)?, world.get::<Connectivity>(entity)?);
+    let rest = &world.get::<RestPosition>(block.body)?.0;
+    let nodes = node_count(block.kind);
+    let place = |row: usize, a: usize| rest[connectivity[lane_place(row, nodes, a)] as usize];
+    let pairs = (1..nodes).flat_map(|a| (0..a).map(move |b| (a, b)));
+    let of_element = |row: usize| {
+        pairs.clone().fold(f64::INFINITY, |least, (a, b)| least.min(place(row, a).distance_squared(place(row, b))))
+    };
+    Some((0..block.count).map(of_element).fold(f64::INFINITY, f64::min).sqrt())
 }
 
 struct Elements<'a, T> {

@@ -1,8 +1,9 @@
 //! Steps that change during a run (H30): what is kept, and that they change in time.
 
 use crate::configurations::{configurations, near};
+use crate::grids::bits;
 use sinew::components::{Clock, Energies};
-use sinew::{Error, Simulation};
+use sinew::{Error, Simulation, Snapshot};
 
 /// A bar that a smooth motion squeezes flat, so that its frequencies rise.
 fn squeezed(integration: &str, to: f64, elements: &str) -> String {
@@ -35,6 +36,35 @@ fn step_adapts_where_tissue_is_squeezed_and_the_run_ends_in_time() {
         let seen = &summary.probes["top"];
         near("the last look", seen.0, 2.0, 2.0, 1e-12);
         near("the squeezed height", seen.1[2], -0.028, 0.028, run.bound(1e-12, 1e-5));
+    }
+}
+
+/// The step, where it began, how it went: all that a run goes on with beside its columns.
+fn pace_of(simulation: &mut Simulation) -> String {
+    let history = *simulation.step_history().unwrap();
+    let taken = (history.changes, history.smallest, history.largest, history.looks, history.sharp_looks);
+    let clock = (simulation.step_count(), simulation.time(), simulation.time_step(), simulation.planned_steps());
+    format!("{clock:?} {taken:?} {:?}", simulation.energies().unwrap())
+}
+
+#[test]
+fn what_goes_on_after_the_step_has_changed_gives_the_same_bits() {
+    for run in configurations() {
+        let text = squeezed("bound: Iterated, when_unstable: Adapt", 0.4, "Hex8");
+        let mut whole = run.start(&text);
+        whole.advance_to(1.0).unwrap();
+        let before = whole.step_history().unwrap().changes;
+        let kept = Snapshot::from_bytes(&whole.snapshot().unwrap().to_bytes().unwrap()).unwrap();
+        let (then, place) = (pace_of(&mut whole), bits(&mut whole, "b"));
+        whole.finish().unwrap();
+        let after = whole.step_history().unwrap().changes;
+        assert!(before > 0 && after > before, "the step must change before and after: {before} {after}");
+        let mut other = run.start(&text);
+        other.restore(&kept).unwrap();
+        assert!(pace_of(&mut other) == then && bits(&mut other, "b") == place, "{}: another state", run.name);
+        other.finish().unwrap();
+        assert_eq!(pace_of(&mut other), pace_of(&mut whole), "{}: another pace", run.name);
+        assert!(bits(&mut other, "b") == bits(&mut whole, "b"), "{}: another way on", run.name);
     }
 }
 
@@ -164,5 +194,27 @@ fn what_goes_by_time_and_what_is_observed_keeps_its_times() {
         assert!((0.12 - 1e-9..0.1204).contains(&seen), "{}: seen at {seen}", run.name);
         simulation.finish().unwrap();
         assert!((simulation.time() - 0.4).abs() <= 0.5 * 3e-4, "{}", simulation.time());
+    }
+}
+
+/// Tetrahedra between walls, squeezed to .3: the stable step shrinks by a tenth while strains change by a twentieth, and what was found
+/// to be stable by a twentieth was not any more when it was looked at again.
+#[test]
+fn a_step_close_to_the_limit_is_looked_at_before_it_is_beyond_it() {
+    for run in configurations() {
+        for elements in ["Tet4", "Tet4NodalPressure"] {
+            let text = squeezed("when_unstable: Adapt", 0.28, elements).replace("constraints: [", "constraints: [Fixed(on: All, axes: [X, Y]), ");
+            let text = text.replace("poisson: 0.45", "poisson: 0.3").replace("cells: (2, 2, 2)", "cells: (3, 3, 3)");
+            let mut simulation = run.start(&text);
+            let first = simulation.time_step();
+            let mut least = f64::INFINITY;
+            for look in 1..=40 {
+                simulation.advance_to(0.04 * f64::from(look)).unwrap();
+                // 3 % is how far the limit may be underestimated
+                least = least.min(simulation.stable_limit().unwrap().unwrap() / 0.97 / simulation.time_step());
+            }
+            println!("{}, {elements}: limit over step at least {least}, {:?}", run.name, simulation.step_history());
+            assert!(least > 1.0 && simulation.time_step() < 0.9 * first, "{least}");
+        }
     }
 }

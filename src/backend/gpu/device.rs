@@ -53,6 +53,15 @@ pub struct GpuLimits {
     pub time_stamps: bool,
 }
 
+/// Less than a device allows, as on a smaller one: for trying out what a program does there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SmallerLimits {
+    /// Bytes of one storage binding.
+    pub storage_binding: Option<u64>,
+    /// Workgroups in one dimension of a dispatch.
+    pub workgroups: Option<u32>,
+}
+
 impl Gpu {
     /// Opens a device with all the limits it offers.
     ///
@@ -92,6 +101,16 @@ impl Gpu {
         self.device.destroy();
     }
 
+    /// Keeps to less than the device allows.
+    pub fn keep_to(&mut self, smaller: SmallerLimits) {
+        let (binding, groups) = (
+            &mut self.limits.max_storage_buffer_binding_size,
+            &mut self.limits.max_compute_workgroups_per_dimension,
+        );
+        *binding = smaller.storage_binding.map_or(*binding, |bytes| bytes.min(*binding));
+        *groups = smaller.workgroups.map_or(*groups, |most| most.min(*groups));
+    }
+
     /// What the device allows.
     pub fn limits(&self) -> GpuLimits {
         let limits = &self.limits;
@@ -126,6 +145,9 @@ impl Gpu {
             Ok(_) => Ok(()),
             Err(PollError::Timeout) => Err(GpuError::TimedOut(PATIENCE.as_secs())),
             Err(other) => {
+                // what a lost device was handed was never submitted, and it says so when it is asked without a number only
+                let _ = self.device.poll(PollType::Poll);
+                self.check("waiting for the GPU")?;
                 Err(GpuError::Device { during: "waiting for the GPU".to_owned(), message: other.to_string() })
             }
         }
@@ -199,6 +221,19 @@ mod tests {
         assert!(gpu.download(&[buffer]).is_err());
         assert!(gpu.prepare(&kernel.threads(2)).is_err());
         assert!(gpu.time_kernels(true).is_err());
+    }
+
+    #[test]
+    fn memory_that_is_full_is_an_error_and_the_device_lives_on() {
+        let Some(mut gpu) = gpu_or_reason() else { return };
+        let kept = gpu.create("mass", 64, BufferKind::Storage).unwrap();
+        // as wgpu reports it: no driver can be asked to run out of memory here
+        gpu.inbox.put(Event::OutOfMemory);
+        let error = gpu.check_memory("element force", 4096).unwrap_err();
+        assert!(matches!(&error, GpuError::OutOfMemory { bytes: 4096, used: 64, .. }), "{error}");
+        assert!(error.to_string().contains("`element force` of 4096 bytes"), "{error}");
+        gpu.upload(kept, 0, &[1; 64]).unwrap();
+        assert_eq!(gpu.download(&[kept]).unwrap()[0], [1; 64]);
     }
 
     #[test]

@@ -148,7 +148,7 @@ impl Inbox {
         let inbox = Self::default();
         let errors = inbox.clone();
         device.on_uncaptured_error(Arc::new(move |error| {
-            errors.open().errors.push(match error {
+            errors.put(match error {
                 wgpu::Error::OutOfMemory { .. } => Event::OutOfMemory,
                 other => Event::Other(other.to_string()),
             });
@@ -156,6 +156,11 @@ impl Inbox {
         let lost = inbox.clone();
         device.set_device_lost_callback(move |_, text| lost.open().lost = Some(text));
         inbox
+    }
+
+    /// Leaves something that went wrong.
+    pub(super) fn put(&self, event: Event) {
+        self.open().errors.push(event);
     }
 
     fn open(&self) -> MutexGuard<'_, Letters> {

@@ -30,7 +30,7 @@ mod timing;
 
 pub use adapter::{AdapterReport, Choice};
 pub use buffers::{BufferKind, Memory};
-pub use device::{Gpu, GpuLimits};
+pub use device::{Gpu, GpuLimits, SmallerLimits};
 pub use error::{GpuError, NoGpu};
 pub use testing::gpu_or_reason;
 pub use timing::KernelTime;

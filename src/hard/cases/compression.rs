@@ -4,26 +4,31 @@ use super::super::Trial;
 use super::point::Law;
 use crate::error::Error;
 use crate::observation::BodyFields;
+use crate::simulation::Simulation;
 
 const SHEAR: f64 = 1e4;
 
 /// H01.
 pub fn squeezed_cube(trial: &mut Trial<'_>) -> Result<(), Error> {
-    let all = trial.full || trial.configuration.is_f64();
-    let ratios: &[f64] = if all { &[0.49, 0.499, 0.4999] } else { &[0.49] };
+    let compared = trial.is_thorough();
+    let ratios: &[f64] = if compared { &[0.49, 0.499, 0.4999] } else { &[0.49] };
     let mut steps = Vec::new();
     for &poisson in ratios {
         let bulk = 2.0 * SHEAR * (1.0 + poisson) / (3.0 * (1.0 - 2.0 * poisson));
         let sets = vec![format!("materials.tissue.neo_hookean=Moduli(shear: {SHEAR}, bulk: {bulk})")];
         let mut simulation = trial.start(&sets)?;
         steps.push(simulation.time_step() * bulk.sqrt());
+        // everyday one of them is squeezed
+        if !trial.full && compared && poisson != 0.499 {
+            continue;
+        }
         trial.run(&mut simulation, 0.01)?;
         let locks = matches!(trial.configuration.elements_name(), "Tet4");
         if !locks {
             let checkered = checkerboard(&simulation.fields("body")?, 6, trial.configuration.is_tets());
             trial.most(format!("checkerboard of pressures at ν {poisson}"), checkered, 0.05);
         }
-        if !locks && all {
+        if !locks && compared {
             let force = simulation.probe("plate")?[2];
             let mut finer = sets.clone();
             finer.push("bodies.body.mesh.cells=(9, 9, 9)".into());
@@ -54,21 +59,39 @@ fn checkerboard(fields: &BodyFields, cells: usize, tets: bool) -> f64 {
 
 /// H07.
 pub fn crushed_cube(trial: &mut Trial<'_>) -> Result<(), Error> {
-    let law = Law::young(3000.0, 0.45);
     let area = 0.1 * 0.1;
-    // steps for elements that are a twentieth as high; free, a block of several cells would wrinkle
-    let small = "integration.safety=0.04".to_string();
+    // steps small enough for what falls flat; free, a block of several cells would wrinkle
+    let small = "integration.safety=0.2".to_string();
     let free = "constraints[1]=Fixed(on: Set(\"x0\"), axes: [X])".to_string();
     let one_cell = "bodies.body.mesh.cells=(1, 1, 1)".to_string();
+    let law = Law::young(3000.0, 0.49);
+    let pressed_free = vec![small.clone(), free, one_cell];
     for (name, sets, stress) in
-        [("confined", vec![small.clone()], law.confined(0.05)), ("free", vec![small, free, one_cell], law.free(0.05))]
+        [("confined", vec![small], law.confined(0.05)), ("free", pressed_free.clone(), law.free(0.05))]
     {
         let mut simulation = trial.start(&sets)?;
-        simulation.advance_to(0.8)?;
+        simulation.advance_to(1.2)?;
         trial.near(format!("force, {name}"), simulation.probe("plate")?[2], stress * area, 0.01);
-        simulation.finish()?;
-        let left = simulation.displacements("body")?.iter().fold(0.0_f64, |largest, u| largest.max(u.length()));
-        trial.most(format!("what stays of the displacement, {name}"), left / 0.1, 1e-3);
+        let back = come_back(&mut simulation)?;
+        trial.most(format!("what stays of the displacement, {name}"), back, 1e-3);
+    }
+    // at a Poisson's ratio of .45 the law lets a free point give way at .106 of its height: there the equilibrium beside rest ends, and the
+    // only one left is a point without volume. It may spring back or be given up, but not rest elsewhere
+    let soft = [pressed_free, vec!["materials.tissue.neo_hookean=Young(young: 3000, poisson: 0.45)".into()]].concat();
+    if !trial.is_thorough() {
+        return Ok(());
+    }
+    let mut gives_way = trial.start(&soft)?;
+    match come_back(&mut gives_way) {
+        Ok(back) => trial.most("what stays of the displacement of what gave way", back, 1e-3),
+        Err(error) => trial.stops("what gives way", Err(error), &["element"]),
     }
     Ok(())
+}
+
+/// Takes the steps that are left; the largest displacement then, in lengths.
+fn come_back(simulation: &mut Simulation) -> Result<f64, Error> {
+    simulation.finish()?;
+    let displacements = simulation.displacements("body")?;
+    Ok(displacements.iter().fold(0.0_f64, |largest, u| largest.max(u.length())) / 0.1)
 }

@@ -16,7 +16,8 @@ fn left(simulation: &mut Simulation, length: f64) -> Result<f64, Error> {
 
 /// H05.
 pub fn release(trial: &mut Trial<'_>) -> Result<(), Error> {
-    let sets = if trial.full { vec![] } else { vec!["duration=0.5".into()] };
+    let short = if trial.is_thorough() { "duration=0.5" } else { "duration=0.3" };
+    let sets = if trial.full { vec![] } else { vec![short.into()] };
     let mut simulation = trial.start(&sets)?;
     trial.run(&mut simulation, 0.1)?;
     Ok(())
@@ -44,7 +45,8 @@ pub fn through(trial: &mut Trial<'_>) -> Result<(), Error> {
 pub fn deformed_start(trial: &mut Trial<'_>) -> Result<(), Error> {
     let made = trial.start(&[ENDS.into()]);
     trial.refused("a law that ends at J = 0", made, &["element"]);
-    let mut simulation = trial.start(&[])?;
+    let sets = if trial.is_thorough() { vec![] } else { vec!["duration=1.5".into()] };
+    let mut simulation = trial.start(&sets)?;
     simulation.finish()?;
     let stays = left(&mut simulation, 0.04)?;
     trial.most("what stays of the displacement", stays, 1e-3);

@@ -61,7 +61,11 @@ pub fn beyond(trial: &mut Trial<'_>) -> Result<(), Error> {
     let limit = trial.start(&[])?.stable_limit()?.unwrap_or(0.0);
     let step = |factor: f64| format!("integration.step={:e}", factor * limit);
     let mut below = trial.start(&[step(0.99)])?;
-    let steps = if trial.full { 100_000 } else { 5_000 };
+    let steps = match (trial.full, trial.configuration.is_gpu()) {
+        (true, _) => 100_000,
+        (_, true) => 2_000,
+        _ => 5_000,
+    };
     let ended = below.advance(steps);
     let largest = below
         .displacements("body")?
