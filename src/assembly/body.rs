@@ -3,6 +3,7 @@
 use super::columns::block_corners;
 use super::fibres::Members;
 use super::locality::{element_order, node_rows};
+use super::material::called_for;
 use super::patches::{insert_forces, strided};
 use super::{Assembly, PlacedMesh, select};
 use crate::components::*;
@@ -131,7 +132,7 @@ impl BlockBuilder<'_> {
         let hourglass = self.assembly.scene.scene.bodies[name].hourglass;
         let material_name = world.get::<Label>(self.material).map(|label| label.0.clone()).unwrap_or_default();
         let members = Members { mesh: self.mesh, elements: self.elements, body: name, material: &material_name };
-        let material = &self.assembly.scene.scene.materials[&material_name];
+        let material = &called_for(&self.assembly.scene.scene.materials[&material_name]);
         let (fibre_directions, varying) = members.directions(material, self.assembly.precision, diagnostics);
         let block = Block {
             body,

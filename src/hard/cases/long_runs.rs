@@ -107,7 +107,8 @@ pub fn far_away(trial: &mut Trial<'_>) -> Result<(), Error> {
     let warned = flies.guards().warnings.iter().any(|notice| notice.criterion == "rounding");
     trial.holds("strains rounded in flight are warned of, in f32 alone", warned != trial.configuration.is_f64());
     if trial.configuration.is_f64() {
-        let strained = flies.fields("body")?.volume_ratio.iter().fold(0.0_f64, |largest, j| largest.max((j - 1.0).abs()));
+        let strained =
+            flies.fields("body")?.volume_ratio.iter().fold(0.0_f64, |largest, j| largest.max((j - 1.0).abs()));
         trial.most("change of volume after 1e4 m", strained, 1e-4);
     }
     Ok(())
