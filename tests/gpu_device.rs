@@ -192,7 +192,8 @@ fn a_scene_in_dispatches_of_two_dimensions_gives_the_same_bits() {
     };
     // 750 tetrahedra are 12 workgroups of 64, 729 nodes as many: rows of 5, the last of them partly filled
     assert!(end(None) == end(Some(5)), "other bits in two dimensions");
-    let refused = smaller(SmallerLimits { workgroups: Some(3), ..SmallerLimits::default() }, &name, sinew::BackendChoice::Gpu);
+    let refused =
+        smaller(SmallerLimits { workgroups: Some(3), ..SmallerLimits::default() }, &name, sinew::BackendChoice::Gpu);
     let Err(sinew::Error::Gpu(GpuError::OverLimit { wanted, limit: 3, limit_name, .. })) = refused else {
         panic!("{:?}", refused.err())
     };
@@ -212,6 +213,8 @@ fn a_scene_that_a_gpu_has_no_room_for_is_refused_or_runs_on_the_cpu() {
     let mut simulation = smaller(limits, &name, sinew::BackendChoice::Auto).unwrap();
     let summary = simulation.summary("").unwrap();
     assert!(summary.backend.starts_with("CPU"), "{}", summary.backend);
-    assert!(summary.backend_because.contains("the GPU cannot take this scene") && summary.backend_because.contains("36000"));
+    assert!(
+        summary.backend_because.contains("the GPU cannot take this scene") && summary.backend_because.contains("36000")
+    );
     simulation.advance(24).unwrap();
 }

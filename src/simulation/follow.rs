@@ -231,7 +231,8 @@ impl Simulation {
         let strain = (STRAIN.1 * room).clamp(STRAIN.0, STRAIN.1);
         let calm = ((strain / seen.speed) as u64).min(step / 2);
         // what is no number, or inside out, has no speed
-        let least = if seen.speed.is_finite() { ((MOST_STRAIN / seen.speed) as u64).clamp(1, LOOKS.0) } else { LOOKS.0 };
+        let least =
+            if seen.speed.is_finite() { ((MOST_STRAIN / seen.speed) as u64).clamp(1, LOOKS.0) } else { LOOKS.0 };
         follower.next = step + calm.clamp(least, LOOKS.1);
         if seen.alive < before_alive(follower) && matches!(follower.policy, WhenUnstable::ScaleMass { .. }) {
             // what was added to removed elements goes with them

@@ -79,7 +79,13 @@ impl Simulation {
         let Error::Gpu(reason) = error else { return error };
         let good_until = self.world.get_resource::<Observer>().map_or(0.0, |observer| observer.good_until);
         let snapshot = self.leave_last_snapshot();
-        Error::GpuFailed(Box::new(GpuFailure { reason, time: self.time(), step: self.step_count(), good_until, snapshot }))
+        Error::GpuFailed(Box::new(GpuFailure {
+            reason,
+            time: self.time(),
+            step: self.step_count(),
+            good_until,
+            snapshot,
+        }))
     }
 
     /// Notes how the simulation broke down, and leaves the last states where files are written.

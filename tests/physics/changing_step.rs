@@ -203,7 +203,8 @@ fn what_goes_by_time_and_what_is_observed_keeps_its_times() {
 fn a_step_close_to_the_limit_is_looked_at_before_it_is_beyond_it() {
     for run in configurations() {
         for elements in ["Tet4", "Tet4NodalPressure"] {
-            let text = squeezed("when_unstable: Adapt", 0.28, elements).replace("constraints: [", "constraints: [Fixed(on: All, axes: [X, Y]), ");
+            let text = squeezed("when_unstable: Adapt", 0.28, elements)
+                .replace("constraints: [", "constraints: [Fixed(on: All, axes: [X, Y]), ");
             let text = text.replace("poisson: 0.45", "poisson: 0.3").replace("cells: (2, 2, 2)", "cells: (3, 3, 3)");
             let mut simulation = run.start(&text);
             let first = simulation.time_step();

@@ -70,7 +70,8 @@ fn a_body_that_flies_far_in_f32_is_warned_of() {
     for run in configurations() {
         for (velocity, far) in [(10.0, false), (1e5, true)] {
             let simulation = ringing(&run, "Tet4", velocity);
-            let warned: Vec<_> = simulation.guards().warnings.into_iter().filter(|w| w.criterion == "rounding").collect();
+            let warned: Vec<_> =
+                simulation.guards().warnings.into_iter().filter(|w| w.criterion == "rounding").collect();
             let wanted = usize::from(far && run.options.precision == Precision::F32);
             assert_eq!(warned.len(), wanted, "{}, {velocity} m/s: {warned:?}", run.name);
             for notice in warned {

@@ -103,10 +103,8 @@ impl Gpu {
 
     /// Keeps to less than the device allows.
     pub fn keep_to(&mut self, smaller: SmallerLimits) {
-        let (binding, groups) = (
-            &mut self.limits.max_storage_buffer_binding_size,
-            &mut self.limits.max_compute_workgroups_per_dimension,
-        );
+        let (binding, groups) =
+            (&mut self.limits.max_storage_buffer_binding_size, &mut self.limits.max_compute_workgroups_per_dimension);
         *binding = smaller.storage_binding.map_or(*binding, |bytes| bytes.min(*binding));
         *groups = smaller.workgroups.map_or(*groups, |most| most.min(*groups));
     }

@@ -25,7 +25,11 @@ pub fn denormals(trial: &mut Trial<'_>) -> Result<(), Error> {
 
 /// H21.
 pub fn long_run(trial: &mut Trial<'_>) -> Result<(), Error> {
-    let steps: u64 = if trial.full { 10_000_000 } else { 100_000 };
+    let steps: u64 = match (trial.full, trial.configuration.is_gpu()) {
+        (true, _) => 10_000_000,
+        (_, true) => 30_000,
+        _ => 100_000,
+    };
     // a look at a GPU costs a download
     let every = if trial.configuration.is_gpu() { 6 } else { 1 };
     let mut simulation = trial.start(&[])?;
@@ -107,7 +111,8 @@ pub fn far_away(trial: &mut Trial<'_>) -> Result<(), Error> {
     let warned = flies.guards().warnings.iter().any(|notice| notice.criterion == "rounding");
     trial.holds("strains rounded in flight are warned of, in f32 alone", warned != trial.configuration.is_f64());
     if trial.configuration.is_f64() {
-        let strained = flies.fields("body")?.volume_ratio.iter().fold(0.0_f64, |largest, j| largest.max((j - 1.0).abs()));
+        let strained =
+            flies.fields("body")?.volume_ratio.iter().fold(0.0_f64, |largest, j| largest.max((j - 1.0).abs()));
         trial.most("change of volume after 1e4 m", strained, 1e-4);
     }
     Ok(())
