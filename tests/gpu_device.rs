@@ -166,7 +166,7 @@ fn a_gpu_lost_in_a_run_leaves_what_was_observed_before() {
 fn smaller(limits: SmallerLimits, gpu: &str, backend: sinew::BackendChoice) -> Result<sinew::Simulation, sinew::Error> {
     // all kinds of kernels: elements, averaged pressure, gather, loads on nodes and faces, removal, guards
     let scene = r#"(duration: 1, bodies: {"b": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (5, 5, 5), elements: Tet4NodalPressure), material: "m"),
-            "c": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (8, 8, 8), elements: Hex8), material: "m", translate: (1, 0, 0))},
+            "c": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (9, 9, 9), elements: Hex8), material: "m", translate: (1, 0, 0))},
         materials: {"m": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), prony: (terms: [(alpha: 0.3, tau: 0.1)]))},
         constraints: [Fixed(body: "b", on: Plane(normal: (0, 0, 1), at: 0)),
             Prescribed(body: "b", on: Plane(normal: (0, 0, 1), at: 0.1), axes: [X], displacement: (0.01, 0, 0), curve: Smooth(end: 0.05))],
@@ -189,14 +189,14 @@ fn a_scene_in_dispatches_of_two_dimensions_gives_the_same_bits() {
         let bodies = ["b", "c"].map(|body| simulation.displacements(body).unwrap());
         (bodies, format!("{:?} {:?}", simulation.energies().unwrap(), simulation.guards()))
     };
-    // 750 tetrahedra are 12 workgroups of 64, 729 nodes as many: rows of 5, the last of them partly filled
-    assert!(end(None) == end(Some(5)), "other bits in two dimensions");
+    // a thousand nodes are 16 workgroups of 64: three rows of 6, the last of them partly filled
+    assert!(end(None) == end(Some(7)), "other bits in two dimensions");
     let refused =
         smaller(SmallerLimits { workgroups: Some(3), ..SmallerLimits::default() }, &name, sinew::BackendChoice::Gpu);
     let Err(sinew::Error::Gpu(GpuError::OverLimit { wanted, limit: 3, limit_name, .. })) = refused else {
         panic!("{:?}", refused.err())
     };
-    assert!(wanted == 4 && limit_name == "maxComputeWorkgroupsPerDimension", "{wanted} {limit_name}");
+    assert!(wanted > 3 && limit_name == "maxComputeWorkgroupsPerDimension", "{wanted} {limit_name}");
 }
 
 #[test]
