@@ -117,7 +117,7 @@ fn kernels_are_timed_where_the_device_has_a_clock() {
 fn a_gpu_lost_in_a_run_leaves_what_was_observed_before() {
     let scene = r#"(duration: 1, bodies: {"b": (mesh: Box(size: (1, 1, 1), cells: (1, 1, 1)), material: "m")},
         materials: {"m": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))},
-        loads: [Gravity(acceleration: (0, 0, -1))], guards: (every: 1),
+        loads: [Gravity(acceleration: (0, 0, -1))], integration: (step: 1e-2), guards: (every: 1),
         output: (fields_every: 0.25, energies_every: 0.25))"#;
     let scene = sinew::SceneFile::from_text("lost.ron", scene, std::path::Path::new("."), &[]).unwrap();
     let options = sinew::Options {
@@ -139,8 +139,7 @@ fn a_gpu_lost_in_a_run_leaves_what_was_observed_before() {
     let text = error.to_string();
     let sinew::Error::GpuFailed(failure) = error else { panic!("{text}") };
     assert!(matches!(failure.reason, GpuError::Lost(_)), "{text}");
-    // looked at in every step, of a ninth of a second each
-    assert!((0.49..0.7).contains(&failure.good_until) && failure.time >= 0.59, "{text}");
+    assert!((0.49..0.62).contains(&failure.good_until) && failure.time >= 0.59, "{text}");
     assert!(text.contains("the GPU was lost") && text.contains("s are kept"), "{text}");
     // the last state that was on the host can be gone on from, on the CPU
     let name = failure.snapshot.clone().unwrap();
@@ -149,7 +148,7 @@ fn a_gpu_lost_in_a_run_leaves_what_was_observed_before() {
     let cpu = sinew::Options { backend: sinew::BackendChoice::Cpu, ..sinew::Options::default() };
     let mut rest = sinew::Simulation::new(&scene, &cpu).unwrap();
     rest.restore(&kept).unwrap();
-    assert!(rest.time() > 0.0 && rest.time() < 0.7, "{}", rest.time());
+    assert!(rest.time() > 0.0 && rest.time() < 0.61, "{}", rest.time());
     rest.finish().unwrap();
     // again and again the same, never a panic
     assert!(matches!(simulation.step(), Err(sinew::Error::GpuFailed(_))));
@@ -167,7 +166,7 @@ fn a_gpu_lost_in_a_run_leaves_what_was_observed_before() {
 fn smaller(limits: SmallerLimits, gpu: &str, backend: sinew::BackendChoice) -> Result<sinew::Simulation, sinew::Error> {
     // all kinds of kernels: elements, averaged pressure, gather, loads on nodes and faces, removal, guards
     let scene = r#"(duration: 1, bodies: {"b": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (5, 5, 5), elements: Tet4NodalPressure), material: "m"),
-            "c": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (8, 8, 8), elements: Hex8), material: "m", translate: (1, 0, 0))},
+            "c": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (9, 9, 9), elements: Hex8), material: "m", translate: (1, 0, 0))},
         materials: {"m": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), prony: (terms: [(alpha: 0.3, tau: 0.1)]))},
         constraints: [Fixed(body: "b", on: Plane(normal: (0, 0, 1), at: 0)),
             Prescribed(body: "b", on: Plane(normal: (0, 0, 1), at: 0.1), axes: [X], displacement: (0.01, 0, 0), curve: Smooth(end: 0.05))],
@@ -190,14 +189,14 @@ fn a_scene_in_dispatches_of_two_dimensions_gives_the_same_bits() {
         let bodies = ["b", "c"].map(|body| simulation.displacements(body).unwrap());
         (bodies, format!("{:?} {:?}", simulation.energies().unwrap(), simulation.guards()))
     };
-    // 750 tetrahedra are 12 workgroups of 64, 729 nodes as many: rows of 5, the last of them partly filled
-    assert!(end(None) == end(Some(5)), "other bits in two dimensions");
+    // a thousand nodes are 16 workgroups of 64: three rows of 6, the last of them partly filled
+    assert!(end(None) == end(Some(7)), "other bits in two dimensions");
     let refused =
         smaller(SmallerLimits { workgroups: Some(3), ..SmallerLimits::default() }, &name, sinew::BackendChoice::Gpu);
     let Err(sinew::Error::Gpu(GpuError::OverLimit { wanted, limit: 3, limit_name, .. })) = refused else {
         panic!("{:?}", refused.err())
     };
-    assert!(wanted == 4 && limit_name == "maxComputeWorkgroupsPerDimension", "{wanted} {limit_name}");
+    assert!(wanted > 3 && limit_name == "maxComputeWorkgroupsPerDimension", "{wanted} {limit_name}");
 }
 
 #[test]

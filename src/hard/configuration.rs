@@ -43,6 +43,11 @@ impl Configuration {
         self.options.precision == Precision::F64
     }
 
+    /// Whether small bodies take the least time there: the CPU in f32.
+    pub fn is_quickest(&self) -> bool {
+        !self.is_f64() && !self.is_gpu()
+    }
+
     /// Whether elements are tetrahedra.
     pub fn is_tets(&self) -> bool {
         matches!(self.elements, ElementKind::Tet4 | ElementKind::Tet4NodalPressure)

@@ -25,17 +25,37 @@ pub const SHORTFALLS: &[Shortfall] = &[
         why: "the hourglass stiffness is that of bending, and a load on one node bends: .6 of the strain energy on every mesh and at every Poisson's ratio; it is warned of, and Hex8MeanDilatation has no such energy",
     },
     Shortfall {
-        // the finer meshes are for f64 alone in the everyday size
+        // everyday, finer meshes are tried in one configuration alone
         case: "h01",
-        on: |c, full| c.elements == ElementKind::Tet4NodalPressure && (full || c.is_f64()),
+        on: |c, full| c.elements == ElementKind::Tet4NodalPressure && (full || c.is_quickest()),
         verdict: Verdict::Failed,
         why: "averaged pressure takes the volumetric locking away, but bent tetrahedra stay stiff: 6³ and 9³ cells differ by 7 to 14 %",
     },
     Shortfall {
+        // twenty periods are in full only
+        case: "h05",
+        on: |c, full| full && c.is_f64() && c.elements == ElementKind::Tet4NodalPressure,
+        verdict: Verdict::Failed,
+        why: "motion without damping becomes disorderly, and squeezes cells to an eighth, where this law holds little against collapse: 4.4 % of the energy came from nothing; warned of",
+    },
+    Shortfall {
+        case: "h05",
+        on: |c, full| full && c.is_f64() && c.elements == ElementKind::Hex8MeanDilatation,
+        verdict: Verdict::FailedHonestly,
+        why: "motion without damping becomes disorderly, and squeezes cells to nothing, where this law holds little against collapse",
+    },
+    Shortfall {
         case: "h35",
-        on: |c, full| c.elements == ElementKind::Tet4NodalPressure && (full || c.is_f64()),
+        on: |c, full| c.elements == ElementKind::Tet4NodalPressure && (full || c.is_quickest()),
         verdict: Verdict::Failed,
         why: "bent tetrahedra stay stiff: with three and with four of them across deflections differ by 12 %",
+    },
+    Shortfall {
+        // timed in full only
+        case: "h34",
+        on: |_, full| full,
+        verdict: Verdict::Failed,
+        why: "the bits are the same, but fibres, terms and loads of weight zero are computed as any: a step takes 1.5 to 2.1 times as long",
     },
 ];
 

@@ -79,9 +79,9 @@ impl<'a> Trial<'a> {
         Simulation::new(&scene, &self.configuration.options)
     }
 
-    /// Whether as much as possible is to be tried: in full, and in f64, which is quick and exact.
+    /// Whether all is to be tried that the case knows, finer meshes too: in full, and where that is quickest.
     pub fn is_thorough(&self) -> bool {
-        self.full || self.configuration.is_f64()
+        self.full || self.configuration.is_quickest()
     }
 
     /// One of two numbers: the first in f64, the second in f32.

@@ -12,6 +12,8 @@ use bevy_ecs::prelude::*;
 /// What leads to a breakdown when the scene insists on a step beyond the stable one.
 const STEP_TOO_LARGE: &str = "a time step beyond the stable one (leave `step` out to have it found)";
 const JUMP: &str = "a prescribed motion that jumps (use a ramp: `curve: Smooth(end: ...)` or `Ramp(end: ...)`)";
+const INVERTED: &str = "a load or motion too large or too sudden for the mesh (use a ramp, a finer mesh, or say by `inversion` of the \
+                        material what becomes of such elements), or a time step that is too large (lower integration.safety)";
 /// Parts that hold less than this share of all energy are not asked for their hourglass energy.
 const WORTH_LOOKING: f64 = 1e-3;
 
@@ -49,18 +51,32 @@ pub(super) fn find(world: &mut World, good_until: f64, watch: &Watch) -> Result<
             && policy != Some(&OnInversion(Inversion::Recover))
             && let Some(authoring) = world.get::<Authoring>(block.body)
         {
-            let place = authoring.blocks.iter().position(|&b| b == entity).unwrap_or(0);
-            let element = authoring.element_id(place, inverted[0] as usize);
-            let what = format!("element {element} is turned inside out (J < 0)");
-            let cause = "a load or motion too large or too sudden for the mesh (use a ramp, a finer mesh, or say by \
-                         `inversion` of the material what becomes of such elements), or a time step that is too large (lower integration.safety)";
-            let criterion = Criterion { limit: Some(0.0), element: Some(element), ..Criterion::of("inverted") };
-            found = Some((block.body, what, cause, criterion));
+            let (what, criterion) = turned_inside_out(authoring, entity, inverted[0] as usize);
+            found = Some((block.body, what, INVERTED, criterion));
         }
     }
     let Some((body, what, cause, criterion)) = found else { return Ok(None) };
     let body = label(world, body);
     Ok(Some(instability(world, watch, body, what, cause, criterion, good_until)))
+}
+
+/// That an element is turned inside out.
+fn turned_inside_out(authoring: &Authoring, block: Entity, row: usize) -> (String, Criterion) {
+    let place = authoring.blocks.iter().position(|&b| b == block).unwrap_or(0);
+    let element = authoring.element_id(place, row);
+    let criterion = Criterion { limit: Some(0.0), element: Some(element), ..Criterion::of("inverted") };
+    (format!("element {element} is turned inside out (J < 0)"), criterion)
+}
+
+/// The body, and the same, where a look shows it of elements that must not: kernels see it a step later.
+fn seen_inside_out(seen: &Look, world: &World) -> Option<(String, String, Criterion)> {
+    seen.parts.iter().find_map(|(entity, sums)| {
+        let ends =
+            world.get::<OnInversion>(*entity) == Some(&OnInversion(Inversion::Stop)) && sums.least_volume_ratio < 0.0;
+        let body = world.get::<Block>(*entity).filter(|_| ends)?.body;
+        let (what, criterion) = turned_inside_out(world.get::<Authoring>(body)?, *entity, sums.row as usize);
+        Some((label(world, body), what, criterion))
+    })
 }
 
 /// Looks at energies and elements. Warns of what passes a limit, each once, and ends the run where elements hold more energy
@@ -79,6 +95,9 @@ pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch) -> Result
     let (made, held) = made;
     if made <= stop * scale || watch.foreign || scale <= world.resource::<GuardMemory>().floor {
         return Ok(());
+    }
+    if let Some((body, what, criterion)) = seen_inside_out(&seen, world) {
+        return Err(Error::Unstable(Box::new(instability(world, watch, body, what, INVERTED, criterion, good_until))));
     }
     let mut bodies: Vec<String> =
         world.query_filtered::<&Label, With<Authoring>>().iter(world).map(|label| label.0.clone()).collect();

@@ -231,6 +231,28 @@ fn a_jump_of_all_the_length_ends_the_run_and_asks_for_a_ramp() {
     }
 }
 
+/// The ends of a bar are pushed through their cells within one look, one after the other: the first is named, whichever has
+/// the lower number.
+#[test]
+fn the_first_element_that_turns_inside_out_is_named() {
+    for run in configurations() {
+        for (first, [near, far]) in [(0, [0.0, 0.01]), (3, [0.01, 0.0])] {
+            let mut simulation = run.start(&format!(
+                "(duration: 1, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.025, 0.025), cells: (4, 1, 1), elements: Hex8), material: \"m\")}},
+                materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
+                constraints: [Fixed(on: Box(min: (0.01, 0, 0), max: (0.09, 1, 1))),
+                    Prescribed(on: Set(\"x0\"), displacement: (0.05, 0, 0), curve: Ramp(start: {near}, end: {})),
+                    Prescribed(on: Set(\"x1\"), displacement: (-0.05, 0, 0), curve: Ramp(start: {far}, end: {}))],
+                integration: (step: 1e-3, when_unstable: Watch), guards: (off: [Energy]))",
+                near + 0.01,
+                far + 0.01
+            ));
+            let broken = broken(simulation.finish());
+            assert_eq!(broken.criterion.element, Some(first), "{}: {broken}", run.name);
+        }
+    }
+}
+
 #[test]
 fn hourglass_energy_of_a_part_is_warned_of_once() {
     for run in configurations() {

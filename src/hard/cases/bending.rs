@@ -38,9 +38,13 @@ pub fn twist(trial: &mut Trial<'_>) -> Result<(), Error> {
     };
     for &angle in angles {
         let mut sets = vec![format!("constraints[1].rotation=(0, 0, {angle})")];
-        if !trial.full || angle > 360.0 {
-            sets.push(format!("bodies.body.mesh.cells={}", if trial.full { "(6, 6, 24)" } else { "(3, 3, 12)" }));
-        }
+        let cells = match (trial.full, trial.configuration.is_tets()) {
+            (false, _) => "(3, 3, 12)",
+            (true, _) if angle <= 360.0 => "(4, 4, 16)",
+            (true, true) => "(6, 6, 24)",
+            (true, false) => "(8, 8, 32)",
+        };
+        sets.push(format!("bodies.body.mesh.cells={cells}"));
         let mut simulation = trial.start(&sets)?;
         let watched = trial.run(&mut simulation, 0.0)?;
         trial.least(format!("least volume at {angle}°"), watched.volume[0], 0.97);
@@ -89,7 +93,7 @@ pub fn thin_slab(trial: &mut Trial<'_>) -> Result<(), Error> {
 /// H35.
 pub fn buckling(trial: &mut Trial<'_>) -> Result<(), Error> {
     let mut deflections = Vec::new();
-    let meshes = if trial.is_thorough() { &["(3, 3, 40)", "(4, 4, 54)"][..] } else { &["(3, 3, 40)"][..] };
+    let meshes = if trial.is_thorough() { &["(3, 3, 40)", "(4, 4, 54)"][..] } else { &["(2, 2, 26)"][..] };
     for cells in meshes {
         let mut simulation = trial.start(&[format!("bodies.body.mesh.cells={cells}")])?;
         simulation.finish()?;

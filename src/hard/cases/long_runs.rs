@@ -25,7 +25,11 @@ pub fn denormals(trial: &mut Trial<'_>) -> Result<(), Error> {
 
 /// H21.
 pub fn long_run(trial: &mut Trial<'_>) -> Result<(), Error> {
-    let steps: u64 = if trial.full { 10_000_000 } else { 100_000 };
+    let steps: u64 = match (trial.full, trial.configuration.is_gpu()) {
+        (true, _) => 10_000_000,
+        (_, true) => 30_000,
+        _ => 100_000,
+    };
     // a look at a GPU costs a download
     let every = if trial.configuration.is_gpu() { 6 } else { 1 };
     let mut simulation = trial.start(&[])?;
