@@ -3,8 +3,8 @@
 //! ```text
 //! boundary         Prescribed                   -> DisplacementStep of constrained axes   per node
 //! nodal_volume     Displacement, RestShape      -> NodalVolumeChange                      per element, per node
-//! element_forces   Displacement, RestShape, law -> ElementForce                           per element
-//! gather           ElementForce, Corners        -> InternalForce (ExternalForce: zero)    per node, fixed order
+//! element_forces   Displacement, RestShape, law -> ElementForce                           per element, patch by patch
+//! gather           ElementForce, Corners        -> InternalForce (ExternalForce: zero)    per node, over its patches, in a fixed order
 //! gravity          Mass                         -> ExternalForce                          per node
 //! nodal_force                                   -> ExternalForce                          per loaded node
 //! pressure         Displacement                 -> ExternalForce                          per loaded node

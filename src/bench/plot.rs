@@ -43,9 +43,11 @@ pub fn svg(record: &Record) -> String {
             .map(|row| (x.at(row.elements as f64), y.at(row.ns_per_element_step)))
             .collect();
         svg.path(&of, colour, 2.0, 1.0);
-        of.iter().for_each(|&at| svg.circle(at, 4.0, colour, true));
+        let filled = place < COLOURS.len();
+        of.iter().for_each(|&at| svg.circle(at, 4.5, colour, filled));
         let down = FRAME[1] + 10.0 + 20.0 * place as f64;
         svg.line((FRAME[2] + 16.0, down), (FRAME[2] + 40.0, down), colour, 3.0, "");
+        svg.circle((FRAME[2] + 28.0, down), 4.5, colour, filled);
         svg.text((FRAME[2] + 46.0, down + 4.5), wanted, 13.0, "#2c323a", "start");
     }
     svg.text((0.5 * (FRAME[0] + FRAME[2]), FRAME[3] + 46.0), "elements", 15.0, "#2c323a", "middle");
