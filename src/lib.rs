@@ -18,6 +18,7 @@
 pub mod accuracy;
 pub mod assembly;
 pub mod backend;
+pub mod bench;
 pub mod components;
 pub mod elements;
 mod error;

@@ -8,8 +8,8 @@ use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, run_block, run_block_fast
 use crate::backend::kernel::Kernel;
 use crate::backend::step::{step_number, with_step};
 use crate::components::*;
-use crate::evaluation::{ElementState, lane_place, node_count, with_element};
-use crate::math::{LANES, SimdScalar};
+use crate::evaluation::{ElementState, node_count, with_element};
+use crate::math::SimdScalar;
 use crate::scene::schema::Inversion;
 use crate::shader;
 use bevy_ecs::prelude::*;
@@ -27,12 +27,13 @@ pub fn system() -> System {
     .on_device(kernels)
 }
 
+/// What a run does not change of a block, but by removing elements.
+type Fixed<'a> =
+    (&'a Connectivity, &'a RestShape, Option<&'a FibreDirection>, Option<&'a NodalVolumeChange>, Option<&'a Patches>);
+
 type BlockQuery<'a> = (
     &'a Block,
-    &'a Connectivity,
-    &'a RestShape,
-    Option<&'a FibreDirection>,
-    Option<&'a NodalVolumeChange>,
+    Fixed<'a>,
     Option<&'a mut ViscousMemory>,
     &'a BlockLaw<f64>,
     Option<&'a BlockLaw<f32>>,
@@ -49,21 +50,21 @@ fn element_forces(
 ) {
     for (authoring, displacement, mut force) in &mut bodies {
         for &entity in &authoring.blocks {
-            let Ok((block, connectivity, shape, fibres, means, memory, law, rounded, mut inverted, policy, removal)) =
-                blocks.get_mut(entity)
+            let Ok((block, columns, memory, law, rounded, mut inverted, policy, removal)) = blocks.get_mut(entity)
             else {
                 continue;
             };
+            let (connectivity, shape, ..) = columns;
             let memory = memory.map(|m| &mut m.into_inner().0);
-            let columns = (connectivity, shape, fibres, means, memory, displacement);
+            let go = policy.is_some_and(|policy| policy.0 == Inversion::Remove);
             let patch = patch_groups(block.kind);
             let found = match (&mut force.0, rounded) {
                 (Reals::F32(force), Some(law)) => {
-                    let columns = of_kernel(block, columns, force);
+                    let columns = of_kernel(block, columns, memory, displacement, go, force);
                     with_element!(block.kind, E => run_block_fast::<E>(&cpu, columns, law, patch))
                 }
                 (Reals::F64(force), _) => {
-                    let columns = of_kernel(block, columns, force);
+                    let columns = of_kernel(block, columns, memory, displacement, go, force);
                     with_element!(block.kind, E => run_block::<E, f64>(&cpu, columns, law, patch))
                 }
                 (Reals::F32(_), None) => false,
@@ -74,7 +75,7 @@ fn element_forces(
                 _ if !found => {}
                 (Some(OnInversion(Inversion::Remove)), Some(mut removal)) => {
                     let gone = (0..block.count).filter(is_inverted);
-                    gone.for_each(|row| remove(row, block, clock.step + 1, &mut removal, &mut force));
+                    gone.for_each(|row| remove(row, clock.step + 1, &mut removal));
                 }
                 // rounding may hide from f64 what the kernel saw
                 _ if inverted[0] == u32::MAX => {
@@ -87,22 +88,15 @@ fn element_forces(
     }
 }
 
-type Columns<'a> = (
-    &'a Connectivity,
-    &'a RestShape,
-    Option<&'a FibreDirection>,
-    Option<&'a NodalVolumeChange>,
-    Option<&'a mut Reals>,
-    &'a Displacement,
-);
-
 /// The columns as the kernel takes them.
 fn of_kernel<'a, T: SimdScalar>(
     block: &Block,
-    (connectivity, shape, fibres, means, memory, displacement): Columns<'a>,
+    (connectivity, shape, fibres, means, patches): Fixed<'a>,
+    memory: Option<&'a mut Reals>,
+    displacement: &'a Displacement,
+    inverted_go: bool,
     force: &'a mut [T],
 ) -> BlockColumns<'a, T> {
-    let length = block.count.div_ceil(LANES) * LANES * 3 * node_count(block.kind);
     BlockColumns {
         displacement: displacement.slice(),
         connectivity,
@@ -110,15 +104,15 @@ fn of_kernel<'a, T: SimdScalar>(
         fibre_direction: fibres.map(|f| f.slice()),
         nodal_volume_change: means.map_or(&[], |means| means.slice()),
         memory: memory.map_or(&mut [], |m| m.slice_mut()),
-        force: &mut force[block.force_offset..block.force_offset + length],
+        force: &mut force[block.force_offset..block.force_offset + block.force_length],
+        patches,
+        inverted_go,
     }
 }
 
-/// An element exerts nothing any more and goes before `step`.
-fn remove(row: usize, block: &Block, step: u64, removal: &mut RemovalStep, force: &mut ElementForce) {
+/// An element, which exerts nothing any more, goes before `step`.
+fn remove(row: usize, step: u64, removal: &mut RemovalStep) {
     removal[row] = removal[row].min(u32::try_from(step).unwrap_or(u32::MAX));
-    let numbers = 3 * node_count(block.kind);
-    (0..numbers).for_each(|k| force.set(block.force_offset + lane_place(row, numbers, k), 0.0));
 }
 
 /// One kernel for each block, of the fragments that its element type and its material call for.

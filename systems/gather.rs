@@ -37,15 +37,28 @@ fn gather(cpu: Res<Cpu>, mut bodies: Query<(&Corners, &ElementForce, &mut Intern
 
 /// Forces of elements at their corners (N), summed at the nodes.
 pub(crate) fn sum_corners<T: Scalar>(cpu: &Cpu, corners: &Corners, element_force: &[T], internal: &mut [T]) {
+    if corners.stride == 1 {
+        sum_at_stride::<T, 1>(cpu, corners, element_force, internal);
+    } else {
+        sum_at_stride::<T, LANES>(cpu, corners, element_force, internal);
+    }
+}
+
+fn sum_at_stride<T: Scalar, const STRIDE: usize>(
+    cpu: &Cpu,
+    corners: &Corners,
+    element_force: &[T],
+    internal: &mut [T],
+) {
     let tasks = internal.chunks_mut(3 * ROWS_A_TASK).enumerate();
     cpu.for_each(tasks, |(task, rows)| {
         for (row, force) in rows.chunks_exact_mut(3).enumerate() {
             let node = task * ROWS_A_TASK + row;
             let mut sum = [T::default(); 3];
             for &corner in &corners.corners[corners.starts[node] as usize..corners.starts[node + 1] as usize] {
-                let from = &element_force[corner as usize..corner as usize + 2 * LANES + 1];
+                let from = &element_force[corner as usize..corner as usize + 2 * STRIDE + 1];
                 for i in 0..3 {
-                    sum[i] += from[i * LANES];
+                    sum[i] += from[i * STRIDE];
                 }
             }
             force.copy_from_slice(&sum);

@@ -2,11 +2,10 @@
 
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::{Cpu, ROWS_A_TASK};
+use crate::backend::cpu::{Cpu, Factors, NodeColumns, move_nodes};
 use crate::backend::kernel::{Fragment, Kernel, Uniform, WEBGPU_STORAGE_BUFFERS, uniform};
 use crate::backend::step::{step_number, with_step};
 use crate::components::*;
-use crate::math::Scalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
 
@@ -33,39 +32,6 @@ pub fn system() -> System {
     .on_device(kernels)
 }
 
-/// What a step multiplies forces and damping with.
-#[derive(Clone, Copy)]
-struct Factors<T> {
-    /// Δt times the time between the middles of the last and of this step (see [`Clock::between_middles`]), times the gain
-    /// of a static analysis (s²).
-    force: T,
-    /// Half the time between the middles, in the first step Δt/2 (s).
-    half_step: T,
-    /// 1, in the first step 0.
-    divide: T,
-    /// 1/Δt (1/s).
-    rate: T,
-    /// Share of a step's work that is booked, the time between the middles over Δt: 1, in the first step ½.
-    booked: T,
-    /// a of a static analysis, else 0.
-    relaxation: T,
-}
-
-impl<T: Scalar> Factors<T> {
-    fn of(clock: &Clock) -> Self {
-        let (dt, between, first) = (clock.time_step, clock.between_middles(), clock.step == 0);
-        let (gain, damping) = clock.relaxation.map_or((1.0, 0.0), |relaxation| (relaxation.gain, relaxation.damping));
-        Self {
-            force: T::from_f64(gain * dt * between),
-            half_step: T::from_f64(0.5 * if first { dt } else { between }),
-            divide: T::from_f64(if first { 0.0 } else { 1.0 }),
-            rate: T::from_f64(1.0 / dt),
-            booked: T::from_f64(between / dt),
-            relaxation: T::from_f64(damping),
-        }
-    }
-}
-
 type BodyQuery<'a> = (
     (&'a Mass, Option<&'a FictitiousMass>),
     &'a InternalForce,
@@ -85,7 +51,7 @@ fn integrate(clock: Res<Clock>, cpu: Res<Cpu>, mut bodies: Query<BodyQuery>) {
         macro_rules! run {
             ($variant:ident) => {
                 if let (Reals::$variant(u), Reals::$variant(step)) = (&mut u.0, &mut step.0) {
-                    let fixed = Inputs {
+                    let fixed = NodeColumns {
                         mass: mass.slice(),
                         internal: internal.slice(),
                         external: external.map(|e| e.slice()),
@@ -99,7 +65,7 @@ fn integrate(clock: Res<Clock>, cpu: Res<Cpu>, mut bodies: Query<BodyQuery>) {
                     let words = first.0.get_mut(SPENT_AT..).unwrap_or_default();
                     let sums = words.len().min(before_at(fixed.axes.len()) - SPENT_AT);
                     let (spent, kept) = words.split_at_mut(sums);
-                    let fixed = Inputs { kept, ..fixed };
+                    let fixed = NodeColumns { kept, ..fixed };
                     move_nodes(&cpu, &fixed, u, step, compensation, work, spent)
                 } else {
                     None
@@ -114,164 +80,6 @@ fn integrate(clock: Res<Clock>, cpu: Res<Cpu>, mut bodies: Query<BodyQuery>) {
             (first[0], first[1]) = (bad, step_number(&clock));
         }
     }
-}
-
-struct Inputs<'a, T> {
-    mass: &'a [T],
-    internal: &'a [T],
-    external: Option<&'a [T]>,
-    axes: &'a [u32],
-    damping: Option<&'a [T]>,
-    factors: Factors<T>,
-    /// Bits of the last steps (m) along prescribed axes; none where nothing is moved as told or all work is booked.
-    kept: &'a [u32],
-}
-
-/// Returns the lowest row whose displacement is no longer finite.
-fn move_nodes<T: Scalar>(
-    cpu: &Cpu,
-    inputs: &Inputs<'_, T>,
-    u: &mut [T],
-    step: &mut [T],
-    compensation: Option<&mut [T]>,
-    work: Option<&mut [T]>,
-    spent: &mut [u32],
-) -> Option<u32> {
-    let bad = std::sync::atomic::AtomicU32::new(u32::MAX);
-    let mut compensations = compensation.map(|c| c.chunks_mut(COMPENSATION_NUMBERS * ROWS_A_TASK));
-    let mut works = work.map(|w| w.chunks_mut(WORK_NUMBERS * ROWS_A_TASK));
-    // none where the whole work is booked
-    let mut sums = spent.chunks_mut(2 * ROWS_A_TASK / SPENT_ROWS);
-    let tasks = u.chunks_mut(3 * ROWS_A_TASK).zip(step.chunks_mut(3 * ROWS_A_TASK)).enumerate().map(|(task, rows)| {
-        (
-            task * ROWS_A_TASK,
-            rows,
-            compensations.as_mut().and_then(Iterator::next),
-            works.as_mut().and_then(Iterator::next),
-            sums.next().unwrap_or_default(),
-        )
-    });
-    cpu.for_each(tasks, |(first, (u, step), mut compensation, mut work, sums)| {
-        let (mut spent, rows) = (0.0, u.len() / 3);
-        for row in 0..rows {
-            let at = 3 * row..3 * row + 3;
-            let lost = COMPENSATION_NUMBERS * row..COMPENSATION_NUMBERS * (row + 1);
-            let lost = compensation.as_mut().map(|c| &mut c[lost]);
-            let mut sum = Sum { u: &mut u[at.clone()], step: &mut step[at], lost };
-            let work = work.as_mut().map(|w| &mut w[WORK_NUMBERS * row..WORK_NUMBERS * (row + 1)]);
-            spent += move_node(inputs, first + row, &mut sum, work);
-            if (row + 1).is_multiple_of(SPENT_ROWS) || row + 1 == rows {
-                add_to_sum(sums.get_mut(2 * (row / SPENT_ROWS)..), std::mem::take(&mut spent));
-            }
-            // what is not finite in one component is not finite in the sum
-            if !(sum.u[0] + sum.u[1] + sum.u[2]).to_f64().is_finite() {
-                bad.fetch_min((first + row) as u32, std::sync::atomic::Ordering::Relaxed);
-            }
-        }
-    });
-    Some(bad.into_inner()).filter(|&row| row != u32::MAX)
-}
-
-/// A displacement and its step, summed with what rounding left out of both.
-struct Sum<'a, T> {
-    u: &'a mut [T],
-    step: &'a mut [T],
-    lost: Option<&'a mut [T]>,
-}
-
-impl<T: Scalar> Sum<'_, T> {
-    /// Makes the step longer. At a small Δt the change has few digits in common with the step, and is lost without
-    /// compensation.
-    #[inline(always)]
-    fn push(&mut self, i: usize, change: T) {
-        match &mut self.lost {
-            None => self.step[i] += change,
-            Some(lost) => compensated_add(&mut self.step[i], &mut lost[3 + i], change),
-        }
-    }
-
-    /// Takes the step.
-    #[inline(always)]
-    fn go(&mut self, i: usize, constrained: bool) {
-        match &mut self.lost {
-            None => self.u[i] += self.step[i],
-            Some(lost) => {
-                // what boundary wrote is the whole of a constrained step
-                if constrained {
-                    lost[3 + i] = T::default();
-                }
-                let exact = self.step[i] - lost[3 + i];
-                compensated_add(&mut self.u[i], &mut lost[i], exact);
-            }
-        }
-    }
-}
-
-/// sum += change, where `lost` is what rounding has made of the sum too much (Kahan 1965).
-#[inline(always)]
-fn compensated_add<T: Scalar>(sum: &mut T, lost: &mut T, change: T) {
-    let exact = change - *lost;
-    let rounded = *sum + exact;
-    *lost = (rounded - *sum) - exact;
-    *sum = rounded;
-}
-
-/// Adds to a number that is kept as two of f32, as bits.
-fn add_to_sum(sum: Option<&mut [u32]>, part: f64) {
-    let Some([high, low, ..]) = sum else { return };
-    let total = f64::from(f32::from_bits(*high)) + f64::from(f32::from_bits(*low)) + part;
-    let rounded = total as f32;
-    *high = rounded.to_bits();
-    *low = ((total - f64::from(rounded)) as f32).to_bits();
-}
-
-/// Returns the work against internal forces (J).
-#[inline(always)]
-fn move_node<T: Scalar>(inputs: &Inputs<'_, T>, node: usize, sum: &mut Sum<'_, T>, mut work: Option<&mut [T]>) -> f64 {
-    let (zero, one) = (T::default(), T::from_f64(1.0));
-    let Factors { force: force_factor, half_step, divide, rate, booked, relaxation } = inputs.factors;
-    let (mass, axes) = (inputs.mass[node], inputs.axes[node]);
-    if mass <= zero {
-        sum.step.fill(zero);
-        return 0.0;
-    }
-    let per_mass = one / mass;
-    let coefficient = inputs.damping.map_or(zero, |c| c[node]);
-    let a = coefficient * half_step * per_mass + relaxation;
-    let shrink = if a > zero { one / (one + divide * a) } else { one };
-    let mut spent = zero;
-    for i in 0..3 {
-        let internal = inputs.internal[3 * node + i];
-        let external = inputs.external.map_or(zero, |r| r[3 * node + i]);
-        let constrained = axes >> i & 1 == 1;
-        let before = sum.step[i];
-        if !constrained {
-            let pushed = force_factor * ((external - internal) * per_mass);
-            sum.push(i, (pushed - (one + divide) * a * before) * shrink);
-        }
-        sum.go(i, constrained);
-        let step = sum.step[i];
-        let last = match inputs.kept.get(3 * node + i) {
-            Some(&bits) if constrained => T::from_f64(f64::from(f32::from_bits(bits))),
-            _ => before,
-        };
-        spent += internal * (last + step);
-        if let Some(work) = &mut work {
-            // forces at the beginning of the step work along the mean of the steps before and after, in the first step
-            // along half of it: so the balance of the scheme is exact in the middle of each step
-            let before = if constrained { std::mem::replace(&mut work[4 + i], step) } else { before };
-            let mean = T::from_f64(0.5) * (before + step);
-            let along = booked * mean;
-            let lost = coefficient * rate * mean * along;
-            work[0] += external * along;
-            work[1] += lost;
-            work[3] += internal * along;
-            if constrained {
-                work[2] += (internal - external) * along + lost;
-            }
-        }
-    }
-    0.5 * (booked * spent).to_f64()
 }
 
 #[derive(Clone, Copy, Debug)]

@@ -62,7 +62,7 @@ fn price(row: &Row, time: f64) -> String {
     format!("{}{}", seconds(time), if timed { " a second" } else { "" })
 }
 
-/// Where to spend: on the part of the error that is largest.
+/// Where to spend: on the part of the error that is largest. Parts that are not known are not spoken of.
 fn spending(split: &Split) -> Option<String> {
     let (space, time, round_off) = (split.space?, split.time.unwrap_or(0.0), split.round_off.unwrap_or(0.0));
     let model = split.model.unwrap_or(0.0);
@@ -78,7 +78,8 @@ fn spending(split: &Split) -> Option<String> {
             percent(model)
         ));
     }
-    let parts = [("the mesh", space), ("the step", time), ("the number type", round_off)];
+    let known = [("the mesh", split.space), ("the step", split.time), ("the number type", split.round_off)];
+    let parts: Vec<(&str, f64)> = known.into_iter().filter_map(|(what, part)| Some((what, part?))).collect();
     let (place, &(what, largest)) = parts.iter().enumerate().max_by(|a, b| a.1.1.total_cmp(&b.1.1))?;
     if largest <= 0.0 {
         return None;
@@ -88,7 +89,8 @@ fn spending(split: &Split) -> Option<String> {
     let also: Vec<&str> = others.iter().filter(|(_, part)| *part > COUNTS * largest).map(|(what, _)| *what).collect();
     let not: Vec<&str> = others.iter().filter(|(_, part)| *part <= COUNTS * largest).map(|(what, _)| *what).collect();
     let advice = match (also.is_empty(), not.is_empty()) {
-        (true, _) => format!("Spend on {what}, not on {}", not.join(" or ")),
+        (true, true) => format!("Spend on {what}"),
+        (true, false) => format!("Spend on {what}, not on {}", not.join(" or ")),
         (false, true) => format!("Spend on {what}, and on {} too", also.join(" and ")),
         (false, false) => format!("Spend on {what} and on {}, not on {}", also.join(" and "), not.join(" or ")),
     };
@@ -103,13 +105,11 @@ fn better(rows: &[(&Row, Error, f64)]) -> Option<String> {
         row.on_front && *t < 0.7 * time && error.error <= written.error && (error.is_clear() || written.is_clear())
     });
     let (row, error, t) = better.min_by(|a, b| a.2.total_cmp(&b.2))?;
-    Some(format!(
-        "The scene as written costs more than it must: {} errs less ({} instead of {}) in {} of its time.",
-        row.label,
-        told(error),
-        told(written),
-        percent(t / time)
-    ))
+    let (error, written) = (told(error), told(written));
+    let compared =
+        if error == written { format!("the same ({error})") } else { format!("less ({error} instead of {written})") };
+    let share = percent(t / time);
+    Some(format!("The scene as written costs more than it must: {} errs {compared} in {share} of its time.", row.label))
 }
 
 /// An error in words; what the reference cannot tell from none is said to be below a bound.

@@ -1,7 +1,7 @@
 //! Tables of an earlier run as a reference: `probe_NAME.csv`, `nodes.csv`, `nodes_BODY.csv`.
 
 use super::points::PointReference;
-use super::reference::{Entry, Reference, Source};
+use super::reference::{EXACTLY, Entry, Reference, Source};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -29,7 +29,7 @@ pub fn read(paths: &[PathBuf], duration: f64, looks: u64) -> Result<Reference, S
     files.sort();
     let mut reference = Reference {
         source: Source::Files,
-        told: format!("{}, taken for exact", shown(paths)),
+        told: format!("{}{EXACTLY}", shown(paths)),
         entries: BTreeMap::new(),
         field: None,
         points: None,

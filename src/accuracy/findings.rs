@@ -214,11 +214,12 @@ impl Facts<'_> {
         let rows = self.meshes(&self.rows[written].configuration.element_name());
         let [.., a, b, c] = rows[..] else { return None };
         let error = |row: usize| self.rows[row].errors.get(self.judged_by).map(|error| error.error);
+        let reference = self.rows[c].errors.get(self.judged_by).map_or(0.0, |error| error.uncertainty);
         let sizes = [a, b, c].map(|row| self.size(row));
         let errors = [error(a)?, error(b)?, error(c)?];
         let limit = extrapolate(sizes, [&errors[..1], &errors[1..2], &errors[2..]], |value| value[0].abs());
         let left = limit.values.first().copied()?;
-        (left > CLEARLY * limit.uncertainty).then_some(left)
+        (left > CLEARLY * (limit.uncertainty + reference)).then_some(left)
     }
 
     /// Whether the error stays where it is on finer meshes, though neither step nor rounding make it.

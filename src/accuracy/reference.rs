@@ -11,6 +11,9 @@ use std::collections::BTreeMap;
 /// Names of what is measured of the displacement field: at the end, over time, and its largest distance at the end.
 pub const FIELD: [&str; 3] = ["displacement", "displacement.over_time", "displacement.largest"];
 
+/// What is said of a reference that knows no uncertainty.
+pub const EXACTLY: &str = ", taken for exact";
+
 /// An error is told from the reference's own when it is so many times larger.
 pub const CLEARLY: f64 = 3.0;
 
@@ -90,8 +93,21 @@ impl Reference {
             (name.clone(), entry)
         };
         let entries = values.iter().map(entry).collect();
-        let told = "values that the scene names, taken for exact".to_string();
+        let told = format!("values that the scene names{EXACTLY}");
         Self { source: Source::Values, told, entries, field: None, points: None }
+    }
+
+    /// The same, if quantities may themselves be off by so much (in their units).
+    pub fn off_by(mut self, uncertainty: &BTreeMap<String, f64>) -> Self {
+        for (name, entry) in &mut self.entries {
+            entry.uncertainty = entry.uncertainty.max(uncertainty.get(name).copied().unwrap_or(0.0));
+        }
+        if !uncertainty.is_empty()
+            && let Some(told) = self.told.strip_suffix(EXACTLY)
+        {
+            self.told = told.to_string();
+        }
+        self
     }
 
     /// From solutions on three meshes with cells of `sizes`, descending; `nested`: nodes of each are nodes of the next.

@@ -66,6 +66,7 @@ fn ratio(value: f64) -> String {
 /// The parts of the error, in words.
 pub fn split(study: &Study) -> Vec<(&'static str, String)> {
     let split = &study.findings.split;
+    let at_rest = study.rows.iter().filter_map(Row::measured).any(|measured| measured.simulated.is_none());
     let parts = [
         ("space", split.space),
         ("time", split.time),
@@ -76,15 +77,16 @@ pub fn split(study: &Study) -> Vec<(&'static str, String)> {
     let mut lines: Vec<(&'static str, String)> = Vec::new();
     for (name, part) in parts {
         let bound = if name == "space" && split.space_is_a_bound { "below " } else { "" };
-        lines
-            .push((name, part.map_or_else(|| unknown(name, study.source), |part| format!("{bound}{}", percent(part)))));
+        let told = |part| format!("{bound}{}", percent(part));
+        lines.push((name, part.map_or_else(|| unknown(name, study.source, at_rest), told)));
     }
     lines
 }
 
 /// Why a part of the error has no number.
-fn unknown(part: &str, source: Source) -> String {
+fn unknown(part: &str, source: Source, at_rest: bool) -> String {
     match (part, source) {
+        ("time", _) if at_rest => "none: what is sought is at rest",
         ("model", Source::SelfMade) => "not seen: the reference shares it",
         ("model", Source::Values | Source::Files) => "none that can be told",
         ("hourglass", _) => "not varied",

@@ -3,6 +3,8 @@
 use super::columns::block_corners;
 use super::fibres::Members;
 use super::locality::{element_order, node_rows};
+use super::material::called_for;
+use super::patches::{insert_forces, strided};
 use super::{Assembly, PlacedMesh, select};
 use crate::components::*;
 use crate::elements::{Element, MOST_ROWS};
@@ -60,19 +62,19 @@ pub(super) fn spawn(
         members.into_iter().map(|(key, elements)| (key, element_order(mesh, elements))).collect();
     let ordered = members.iter().flat_map(|(_, elements)| elements.iter().map(|&e| mesh.element(e as usize)));
     let node_rows = node_rows(mesh.points.len(), ordered);
+    let members: Vec<((ElementKind, &str), Vec<u32>)> =
+        members.into_iter().map(|(key, elements)| (key, strided(elements, key.0))).collect();
 
     let body = world.spawn(Label(name.to_string())).id();
     let mut element_rows = vec![(0, 0); mesh.element_count()];
     let mut blocks = Vec::new();
-    let mut force_length = 0;
     for (place, ((kind, material), elements)) in members.iter().enumerate() {
         for (row, &element) in elements.iter().enumerate() {
             element_rows[element as usize] = (place as u32, row as u32);
         }
         let (kind, material) = (*kind, assembly.materials[*material]);
         let builder = BlockBuilder { assembly, mesh, node_rows: &node_rows, kind, material, elements };
-        blocks.push(builder.spawn(world, body, force_length, name, diagnostics));
-        force_length += elements.len().div_ceil(LANES) * LANES * 3 * node_count(kind);
+        blocks.push(builder.spawn(world, body, name, diagnostics));
     }
     let authoring = Authoring {
         node_rows: node_rows.clone(),
@@ -83,8 +85,9 @@ pub(super) fn spawn(
         hexes: mesh.hexes.clone(),
         blocks: blocks.clone(),
     };
-    super::columns::insert_node_columns(assembly, name, mesh, &node_rows, &authoring, force_length, world, body);
+    super::columns::insert_node_columns(assembly, name, mesh, &node_rows, &authoring, world, body);
     world.entity_mut(body).insert(authoring);
+    insert_forces(assembly.scheme, body, world);
     Some(BodyParts { entity: body, placed, node_rows, element_rows, blocks })
 }
 
@@ -123,27 +126,21 @@ struct BlockBuilder<'a> {
 }
 
 impl BlockBuilder<'_> {
-    fn spawn(
-        &self,
-        world: &mut World,
-        body: Entity,
-        force_offset: usize,
-        name: &str,
-        diagnostics: &mut Diagnostics,
-    ) -> Entity {
+    fn spawn(&self, world: &mut World, body: Entity, name: &str, diagnostics: &mut Diagnostics) -> Entity {
         let law = ElasticLaw::of(world.entity(self.material));
         let young = law.map_or(0.0, |law| young(law.small_strain_moduli()));
         let hourglass = self.assembly.scene.scene.bodies[name].hourglass;
         let material_name = world.get::<Label>(self.material).map(|label| label.0.clone()).unwrap_or_default();
         let members = Members { mesh: self.mesh, elements: self.elements, body: name, material: &material_name };
-        let material = &self.assembly.scene.scene.materials[&material_name];
+        let material = &called_for(&self.assembly.scene.scene.materials[&material_name]);
         let (fibre_directions, varying) = members.directions(material, self.assembly.precision, diagnostics);
         let block = Block {
             body,
             material: self.material,
             kind: self.kind,
             count: self.elements.len(),
-            force_offset,
+            force_offset: 0,
+            force_length: 0,
             fibre_directions,
         };
         let connectivity = self.connectivity();

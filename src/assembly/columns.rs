@@ -12,14 +12,13 @@ use crate::scene::schema::{Constraint, Guard};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
-/// Rest positions, masses, the gather's map and the columns of motion. Optional columns come with what calls for them.
+/// Rest positions, masses and the columns of motion. Optional columns come with what calls for them.
 pub(super) fn insert_node_columns(
     assembly: &Assembly<'_>,
     name: &str,
     mesh: &Mesh,
     node_rows: &[u32],
     authoring: &Authoring,
-    force_length: usize,
     world: &mut World,
     body: Entity,
 ) {
@@ -36,7 +35,6 @@ pub(super) fn insert_node_columns(
         Displacement(vectors()),
         DisplacementStep(vectors()),
         InternalForce(vectors()),
-        ElementForce(Reals::zeros(precision, force_length)),
         ConstrainedAxes(vec![0; count]),
     ));
     if scene.integration.compensated && precision == Precision::F32 {
@@ -57,8 +55,6 @@ pub(super) fn insert_node_columns(
     let used =
         std::iter::once(&scene.bodies[name].material).chain(scene.bodies[name].regions.iter().map(|r| &r.material));
     let damped = used.into_iter().any(|material| scene.materials[material].damping.is_some());
-    let corners = corners(&authoring.blocks, count, world);
-    world.entity_mut(body).insert(corners);
     let (mass, damping) = nodal_masses(&authoring.blocks, count, world);
     let mut entity = world.entity_mut(body);
     entity.insert(Mass(Reals::from_f64(precision, mass.into_iter())));
@@ -76,32 +72,6 @@ fn blocks<'a>(
     entities.iter().filter_map(|&entity| {
         Some((world.get::<Block>(entity)?, world.get::<Connectivity>(entity)?, world.get::<RestShape>(entity)?))
     })
-}
-
-fn corners(entities: &[Entity], count: usize, world: &World) -> Corners {
-    let mut starts = vec![0_u32; count + 1];
-    let each = |visit: &mut dyn FnMut(u32, usize)| {
-        for (block, connectivity, _) in blocks(entities, world) {
-            let nodes = node_count(block.kind);
-            for row in 0..block.count {
-                for corner in 0..nodes {
-                    let place = block.force_offset + lane_place(row, 3 * nodes, 3 * corner);
-                    visit(connectivity[lane_place(row, nodes, corner)], place);
-                }
-            }
-        }
-    };
-    each(&mut |node, _| starts[node as usize + 1] += 1);
-    for node in 0..count {
-        starts[node + 1] += starts[node];
-    }
-    let mut next = starts.clone();
-    let mut corners = vec![0; starts[count] as usize];
-    each(&mut |node, place| {
-        corners[next[node as usize] as usize] = place as u32;
-        next[node as usize] += 1;
-    });
-    Corners { starts, corners }
 }
 
 /// Which elements of a block meet in each of a body's nodes.

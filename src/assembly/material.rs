@@ -17,6 +17,7 @@ pub(super) fn spawn(
 ) -> BTreeMap<String, Entity> {
     let mut spawned = BTreeMap::new();
     for (name, material) in &scene.materials {
+        let material = &called_for(material);
         let mut entity = world.spawn((Label(name.clone()), Density(material.density)));
         insert_elastic_law(&mut entity, material);
         if let Some(user_laws::Read { law, findings, .. }) = laws.remove(name) {
@@ -49,6 +50,23 @@ pub(super) fn spawn(
         spawned.insert(name.clone(), entity.id());
     }
     spawned
+}
+
+/// A material without the effects that have no weight: they cost nothing, and change nothing to the last bit.
+pub(super) fn called_for(material: &Material) -> Material {
+    let mut material = material.clone();
+    material.fibres = material.fibres.filter(|fibres| fibres.eta != 0.0);
+    if let Some(families) = &mut material.exponential_fibres {
+        families.retain(|family| family.k1 != 0.0);
+    }
+    material.exponential_fibres = material.exponential_fibres.filter(|families| !families.is_empty());
+    if let Some(prony) = &mut material.prony {
+        prony.terms.retain(|term| term.alpha != 0.0);
+        prony.volumetric.retain(|term| term.alpha != 0.0);
+    }
+    material.prony = material.prony.filter(|prony| !(prony.terms.is_empty() && prony.volumetric.is_empty()));
+    material.damping = material.damping.filter(|&rate| rate != 0.0);
+    material
 }
 
 fn number(yes: bool) -> f64 {

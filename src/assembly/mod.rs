@@ -10,6 +10,7 @@ mod locality;
 mod material;
 mod meshes;
 mod observation;
+mod patches;
 mod relaxation;
 mod removal;
 mod select;
@@ -21,6 +22,7 @@ pub use body::BodyParts;
 pub use columns::insert_laws;
 pub use meshes::{PlacedMesh, mesh_of};
 pub use observation::steps_of;
+pub use patches::insert_forces;
 pub use relaxation::load_steps;
 pub use removal::step_of;
 pub use select::Selection;
@@ -39,6 +41,8 @@ pub struct Assembly<'a> {
     pub scene: &'a SceneFile,
     /// The run's precision.
     pub precision: Precision,
+    /// How element forces are summed.
+    pub scheme: Scheme,
     /// The bodies' meshes in the author's numbering, by name.
     pub bodies: BTreeMap<String, BodyParts>,
     /// The materials, by name.
@@ -50,6 +54,7 @@ pub struct Assembly<'a> {
 pub fn assemble<'a>(
     scene: &'a SceneFile,
     precision: Precision,
+    scheme: Scheme,
     world: &mut World,
     diagnostics: &mut Diagnostics,
 ) -> Option<Assembly<'a>> {
@@ -63,7 +68,7 @@ pub fn assemble<'a>(
     }
     let materials = material::spawn(&scene.scene, &mut laws, world);
     world.insert_resource(Signals::default());
-    let mut assembly = Assembly { scene, precision, bodies: BTreeMap::new(), materials };
+    let mut assembly = Assembly { scene, precision, scheme, bodies: BTreeMap::new(), materials };
     for (name, mesh) in meshes {
         if let Some(parts) = body::spawn(&assembly, &name, mesh, world, diagnostics) {
             assembly.bodies.insert(name, parts);

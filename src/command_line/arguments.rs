@@ -3,7 +3,7 @@
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::Vec3;
 use sinew::backend::gpu::Choice;
-use sinew::components::Precision;
+use sinew::components::{Precision, Scheme};
 use sinew::scene::{Allowed, Diagnostics};
 use sinew::{BackendChoice, Options, SceneFile};
 use std::path::{Path, PathBuf};
@@ -47,6 +47,9 @@ pub enum Command {
     /// Run the hard cases: what must stay stable, or fail honestly
     #[command(after_help = STATUSES)]
     Hard(HardArguments),
+    /// Measure what a step costs: sizes, elements, effects, backends, threads, schemes
+    #[command(after_help = STATUSES)]
+    Bench(BenchArguments),
 }
 
 impl Command {
@@ -58,6 +61,7 @@ impl Command {
             Command::Render(_) => true,
             Command::Accuracy(arguments) => arguments.backend != BackendName::Cpu,
             Command::Hard(arguments) => arguments.backend != BackendName::Cpu,
+            Command::Bench(arguments) => arguments.backends.contains(&"gpu".to_string()),
             Command::Check(_) => false,
         }
     }
@@ -113,6 +117,9 @@ pub struct HowArguments {
     /// CPU threads; 0 is one a core, or a single one for small bodies. Results are the same for any number
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub threads: u16,
+    /// How element forces are summed on the CPU: patch by patch in cache, or in two passes over memory, to compare with
+    #[arg(long, value_enum, default_value_t = SchemeName::Patches)]
+    pub scheme: SchemeName,
 }
 
 #[derive(Args)]
@@ -173,7 +180,7 @@ impl AccuracyArguments {
     pub fn options(&self) -> Options {
         let backend = if self.backend == BackendName::Gpu { BackendName::Gpu } else { BackendName::Cpu };
         let (gpu, precision, threads) = (self.gpu.clone(), self.precision, self.threads);
-        HowArguments { backend, gpu, precision, threads }.options()
+        HowArguments { backend, gpu, precision, threads, scheme: SchemeName::Patches }.options()
     }
 }
 
@@ -191,6 +198,40 @@ pub struct HardArguments {
     /// A folder for hard.md, hard.csv and hard.json
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+}
+
+#[derive(Args)]
+pub struct BenchArguments {
+    /// Cells along each edge of the cubes
+    #[arg(long, value_name = "N,..", value_delimiter = ',', default_values_t = [10, 20, 30], value_parser = clap::value_parser!(u32).range(1..=200))]
+    pub cells: Vec<u32>,
+    /// Element types
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["tet4".to_string(), "hex8".to_string()], value_parser = ["tet4", "tet4-nodal-pressure", "hex8", "hex8-mean-dilatation"])]
+    pub elements: Vec<String>,
+    /// Effects beside neo-Hookean elasticity
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["none".to_string(), "fibres-viscosity".to_string()], value_parser = ["none", "fibres", "viscosity", "fibres-viscosity"])]
+    pub effects: Vec<String>,
+    /// Where
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["cpu".to_string()], value_parser = ["cpu", "gpu"])]
+    pub backends: Vec<String>,
+    /// Number types; GPUs have f32 only
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["f32".to_string()], value_parser = ["f32", "f64"])]
+    pub precisions: Vec<String>,
+    /// CPU threads [default: 1 and one a core]
+    #[arg(long, value_name = "N,..", value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub threads: Vec<u16>,
+    /// How element forces are summed
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["patches".to_string(), "two-pass".to_string()], value_parser = ["patches", "two-pass"])]
+    pub schemes: Vec<String>,
+    /// Seconds for each case
+    #[arg(long, value_name = "S", default_value_t = 0.5)]
+    pub seconds: f64,
+    /// A folder for bench.csv, bench.json, bench.md, bench.svg and bench.png
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// An earlier bench.json: cases that take over a tenth longer now are told, and the status is 1
+    #[arg(long, value_name = "FILE")]
+    pub compare: Option<PathBuf>,
 }
 
 #[derive(Args)]
@@ -250,6 +291,12 @@ pub enum PrecisionName {
     F64,
 }
 
+#[derive(Clone, Copy, ValueEnum)]
+pub enum SchemeName {
+    Patches,
+    TwoPass,
+}
+
 impl HowArguments {
     /// What the library calls it.
     pub fn options(&self) -> Options {
@@ -265,6 +312,10 @@ impl HowArguments {
             },
             threads: self.threads.into(),
             gpu: Choice::parse(&self.gpu),
+            scheme: match self.scheme {
+                SchemeName::Patches => Scheme::Patches,
+                SchemeName::TwoPass => Scheme::TwoPass,
+            },
             ..Options::default()
         }
     }

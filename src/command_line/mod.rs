@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod arguments;
+mod bench;
 mod check;
 mod explain;
 mod failure;
@@ -34,6 +35,7 @@ pub fn main() -> ExitCode {
         Command::Render(arguments) => render::command(&arguments),
         Command::Accuracy(arguments) => accuracy::command(&arguments),
         Command::Hard(arguments) => hard::command(&arguments),
+        Command::Bench(arguments) => bench::command(&arguments),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

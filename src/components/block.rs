@@ -20,6 +20,8 @@ pub struct Block {
     pub count: usize,
     /// Where the block's part of the body's [`ElementForce`](super::ElementForce) begins.
     pub force_offset: usize,
+    /// How many numbers it has there.
+    pub force_length: usize,
     /// Of each family of fibres its direction: first that of `fibres`, then those of `exponential_fibres`.
     pub fibre_directions: Vec<FamilyDirection<f64>>,
 }

@@ -52,6 +52,14 @@ impl Reals {
         }
     }
 
+    /// The number type.
+    pub fn precision(&self) -> Precision {
+        match self {
+            Reals::F32(_) => Precision::F32,
+            Reals::F64(_) => Precision::F64,
+        }
+    }
+
     /// How many numbers.
     pub fn len(&self) -> usize {
         either!(self, v => v.len())

@@ -3,7 +3,7 @@
 //! | entity | components |
 //! |---|---|
 //! | body | node columns ([`nodes`]), [`Corners`], [`ElementForce`], [`Authoring`] |
-//! | element block: one element type, one material, one body | [`Block`], [`Connectivity`], [`RestShape`] and, where called for, [`FibreDirection`], [`ViscousMemory`], [`NodalVolumeChange`], [`Alive`], [`RemovalStep`] |
+//! | element block: one element type, one material, one body | [`Block`], [`Connectivity`], [`Patches`], [`RestShape`] and, where called for, [`FibreDirection`], [`ViscousMemory`], [`NodalVolumeChange`], [`Alive`], [`RemovalStep`] |
 //! | material | [`Density`], an [elastic law](crate::materials::ElasticLaw), [`Fibres`](crate::materials::Fibres), [`ExponentialFibres`], [`Prony`], [`Damping`]: an effect exists when its component does |
 //! | constraint, load, removal | [`Fixed`], [`Prescribed`], [`Gravity`], [`NodalForce`], [`Pressure`], [`Traction`], [`RemovalCriterion`] with the rows they act on |
 //! | probe | [`Probe`] |
@@ -17,6 +17,7 @@ mod load;
 mod material;
 pub mod nodes;
 mod observation;
+mod patches;
 
 pub use block::{
     AddedMass, Alive, Block, BlockCorners, Connectivity, ElementSums, ElementVolume, FamilyDirection, FibreDirection,
@@ -36,6 +37,7 @@ pub use nodes::{
     before_at,
 };
 pub use observation::{Cadence, Energies, Probe};
+pub use patches::{Patches, Scheme};
 
 use bevy_ecs::prelude::*;
 

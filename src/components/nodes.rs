@@ -70,13 +70,15 @@ pub const fn before_at(nodes: usize) -> usize {
 pub const WORK_NUMBERS: usize = 7;
 
 /// Which corners of elements meet in a node: the gather's map, in compressed rows. `corners[starts[i]..starts[i + 1]]` are
-/// places in [`ElementForce`] of the x component; y and z follow [`LANES`](crate::math::LANES) and twice that later.
+/// places in [`ElementForce`] of the x component; y and z follow `stride` and twice that later.
 #[derive(Component, Clone, Debug)]
 pub struct Corners {
     /// One more than nodes.
     pub starts: Vec<u32>,
-    /// Four a tetrahedron, eight a hexahedron.
+    /// One for each patch that has the node; in the scheme of two passes four a tetrahedron, eight a hexahedron.
     pub corners: Vec<u32>,
+    /// From component to component.
+    pub stride: usize,
 }
 
 /// How the author numbers and orders what the engine has renumbered.

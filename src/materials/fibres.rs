@@ -1,7 +1,7 @@
 //! One family of fibres: transverse isotropy.
 
 use super::Kinematics;
-use crate::math::{Real, Sym3};
+use crate::math::{Real, Sym3, dot, dot_plus};
 use bevy_ecs::component::Component;
 
 /// Ψ = η/2 (Ī₄ − 1)² with Ī₄ = J^(−2/3) a·C a (Comas et al. 2008, eq. 2; its WGSL twin is `shaders/fibres.wgsl`).
@@ -46,6 +46,18 @@ impl<R: Real> Fibres<R> {
         let factor = self.eta.constant(2.0) * self.eta * self.pulling(change) * k.j_m23;
         let spherical = self.eta.constant(-1.0 / 3.0) * i4 / (k.j * k.j);
         Sym3::square_of(a).plus(&k.adjugate_c.scaled(spherical)).scaled(factor)
+    }
+
+    /// s = 2η(Ī₄ − 1)J^(−2/3) (Pa), F a and I₄, straight from ∇u, J − 1 and J^(−2/3).
+    #[inline(always)]
+    pub(super) fn pull(&self, gradient: &[[R; 3]; 3], a: [R; 3], volume_change: R, j_m23: R) -> (R, [R; 3], R) {
+        let (one, two) = (self.eta.constant(1.0), self.eta.constant(2.0));
+        let ha = [dot(gradient[0], a), dot(gradient[1], a), dot(gradient[2], a)];
+        let i4_change = dot_plus(ha, ha, two * dot(a, ha));
+        let w = super::kinematics::j_m23_change(volume_change, j_m23);
+        let change = i4_change + w + w * i4_change;
+        let pull = two * self.eta * self.pulling(change) * j_m23;
+        (pull, [a[0] + ha[0], a[1] + ha[1], a[2] + ha[2]], one + i4_change)
     }
 
     /// Strain energy per rest volume (J/m³).

@@ -79,13 +79,7 @@ impl<R: Real> Kinematics<R> {
     /// J^(−2/3) − 1, exact to rounding for small strains.
     #[inline(always)]
     pub fn j_m23_change(&self) -> R {
-        let (two, three) = (self.j.constant(2.0), self.j.constant(3.0));
-        // w = J^(−2/3) − 1 solves (1+w)³ J² = 1: one Newton step on the expanded form brings back the lost digits
-        let w = self.j_m23 - self.j.constant(1.0);
-        let cube = w * (three + w * (three + w));
-        let square = self.volume_change * (two + self.volume_change);
-        let residual = cube + square + cube * square;
-        w - residual * self.j_m23 * self.j.constant(1.0 / 3.0)
+        j_m23_change(self.volume_change, self.j_m23)
     }
 
     /// C⁻¹ m for a symmetric m with the eigenvectors of C.
@@ -109,6 +103,18 @@ impl<R: Real> Kinematics<R> {
         let pressing = s.trace() + self.j.constant(2.0) * s.contracted(&self.green_strain);
         s.plus(&self.adjugate_c.scaled(pressing * self.j.constant(-1.0 / 3.0) / (self.j * self.j)))
     }
+}
+
+/// J^(−2/3) − 1 from J − 1 and J^(−2/3).
+#[inline(always)]
+pub(super) fn j_m23_change<R: Real>(volume_change: R, j_m23: R) -> R {
+    let (one, two, three) = (j_m23.constant(1.0), j_m23.constant(2.0), j_m23.constant(3.0));
+    // w = J^(−2/3) − 1 solves (1+w)³ J² = 1: one Newton step on the expanded form brings back the lost digits
+    let w = j_m23 - one;
+    let cube = w * (three + w * (three + w));
+    let square = volume_change * (two + volume_change);
+    let residual = cube + square + cube * square;
+    w - residual * j_m23 * j_m23.constant(1.0 / 3.0)
 }
 
 /// J − 1 = first + second + third invariant of ∇u.

@@ -1,7 +1,7 @@
 //! The neo-Hookean law in isochoric and volumetric parts.
 
-use super::{Elastic, Kinematics};
-use crate::math::{Real, Sym3};
+use super::{Elastic, Fibres, J_FLOOR, Kinematics};
+use crate::math::{Mat3, Real, Sym3, dot, dot_plus, minor};
 use bevy_ecs::component::Component;
 
 /// Ψ_iso = μ/2 (Ī₁ − 3), Ψ_vol = κ/2 (J − 1)² (Comas et al. 2008, eq. 2; its WGSL twin is `shaders/neo_hookean.wgsl`).
@@ -33,6 +33,77 @@ impl<R: Real> Elastic<R> for NeoHookean<R> {
         let deviator = Sym3([e[0] - mean, e[1] - mean, e[2] - mean, e[3], e[4], e[5]]);
         let factor = self.shear.constant(2.0) * self.shear * k.j_m23 / (k.j * k.j);
         k.adjugate_c.times_coaxial(&deviator).scaled(factor)
+    }
+
+    /// With H = ∇u and cof F = I + K, K = tr H I − Hᵀ + cof H: P = μ' F − q cof F + s (F a)⊗a, where μ' = μJ^(−2/3),
+    /// s = 2η(Ī₄ − 1)J^(−2/3) and q = (μ' tr C + s I₄)/(3J) − p. Terms of the size of μ cancel: what is left is written out, with
+    /// H + Hᵀ first, so that small strains keep their digits. A third less work than by way of S.
+    #[inline(always)]
+    fn stress_at_once(
+        &self,
+        gradient: &Mat3<R>,
+        pressure: Option<R>,
+        fibres: Option<(Fibres<R>, [R; 3])>,
+    ) -> (Mat3<R>, R) {
+        let h = &gradient.0;
+        let (one, two, three) = (self.shear.constant(1.0), self.shear.constant(2.0), self.shear.constant(3.0));
+        let cofactor = [
+            [
+                minor(h[1][1], h[1][2], h[2][1], h[2][2]),
+                minor(h[1][2], h[1][0], h[2][2], h[2][0]),
+                minor(h[1][0], h[1][1], h[2][0], h[2][1]),
+            ],
+            [
+                minor(h[0][2], h[0][1], h[2][2], h[2][1]),
+                minor(h[0][0], h[0][2], h[2][0], h[2][2]),
+                minor(h[0][1], h[0][0], h[2][1], h[2][0]),
+            ],
+            [
+                minor(h[0][1], h[0][2], h[1][1], h[1][2]),
+                minor(h[0][2], h[0][0], h[1][2], h[1][0]),
+                minor(h[0][0], h[0][1], h[1][0], h[1][1]),
+            ],
+        ];
+        let trace = h[0][0] + h[1][1] + h[2][2];
+        let change = trace + (cofactor[0][0] + cofactor[1][1] + cofactor[2][2]) + dot(h[0], cofactor[0]);
+        let true_j = one + change;
+        let change = change.max(one.constant(J_FLOOR - 1.0));
+        let j = one + change;
+        let j_m13 = j.inverse_cbrt();
+        let j_m23 = j_m13 * j_m13;
+        // 1/J, where a division would take as long as all of the rest
+        let third_per_j = j_m23 * j_m13 * one.constant(1.0 / 3.0);
+        let shear = self.shear * j_m23;
+        // tr C − 3
+        let longer = dot_plus(h[0], h[0], dot_plus(h[1], h[1], dot_plus(h[2], h[2], two * trace)));
+        let pressure = match pressure {
+            Some(pressure) => pressure,
+            None => self.bulk * change,
+        };
+        // μ' − q
+        let mut difference = (shear * third_per_j).mul_add(three.mul_add(change, -longer), pressure);
+        let mut pulled = None;
+        if let Some((fibres, a)) = fibres {
+            let (pull, fa, i4) = fibres.pull(h, a, change, j_m23);
+            difference -= pull * i4 * third_per_j;
+            pulled = Some((pull, fa, a));
+        }
+        let q = shear - difference;
+        let mut stress = Mat3::zero(one);
+        let diagonal = difference - q * trace;
+        for i in 0..3 {
+            for k in 0..3 {
+                let symmetric = (h[i][k] + h[k][i]) - cofactor[i][k];
+                let entry = q.mul_add(symmetric, difference * h[i][k]);
+                stress.0[i][k] = if i == k { entry + diagonal } else { entry };
+            }
+        }
+        if let Some((pull, fa, a)) = pulled {
+            for i in 0..3 {
+                stress.add_to_row(i, pull * fa[i], a);
+            }
+        }
+        (stress, true_j)
     }
 
     /// κ(J − 1).

@@ -4,9 +4,12 @@
 mod eigen;
 mod elementary;
 mod real;
+mod rows;
 mod simd;
 mod tensor;
 
+pub(crate) use real::refine_inverse_cbrt;
 pub use real::{Real, Scalar, Task};
+pub use rows::{Rows, Scratch};
 pub use simd::{F32s, F64s, LANES, SimdScalar};
 pub use tensor::{Mat3, Sym3, dot, dot_plus, minor};

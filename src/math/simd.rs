@@ -3,8 +3,10 @@
 use super::real::{
     GUESS_F32, GUESS_F64, ONE_F32, ONE_F64, ROOT_HALF_F32, ROOT_HALF_F64, STEPS_F32, STEPS_F64, refine_inverse_cbrt,
 };
+use super::rows::{Rows, Scratch, add_f32s, add_f64s, load_f32s, load_f64s};
 use super::{Real, Scalar, Task};
 use pulp::{Simd, WithSimd};
+use std::cell::RefCell;
 use std::fmt::{Debug, Formatter, Result};
 use std::marker::PhantomData;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -36,12 +38,18 @@ pub trait SimdScalar: Scalar {
     fn store<S: Simd>(vector: Self::Vector<S>, to: &mut [Self]);
     /// The same number in all places.
     fn splat<S: Simd>(simd: S, value: Self) -> Self::Vector<S>;
+    /// The four columns of rows, a row a lane.
+    fn load_rows<S: Simd>(simd: S, rows: &Rows<Self>, at: &[u16]) -> [Self::Vector<S>; 4];
+    /// Adds vectors to rows, one lane after the other.
+    fn add_to_rows<S: Simd>(simd: S, rows: &mut Rows<Self>, at: &[u16], vectors: [Self::Vector<S>; 3]);
+    /// Lends the thread's rows to a task, which must not ask for them again.
+    fn with_scratch<O>(task: impl FnOnce(&mut Scratch<Self>) -> O) -> O;
 }
 
 macro_rules! vector {
     ($name:ident, $scalar:ty, $raw:ident, $lanes:ident, $load:ident, $store:ident, $splat:ident, $add:ident, $sub:ident,
      $mul:ident, $div:ident, $neg:ident, $max:ident, $mul_add:ident, $guess:ident, $steps:expr, $min:ident, $sqrt:ident,
-     $above:ident, $select:ident, $to_bits:ident, $from_bits:ident, $power:ident, $split:ident) => {
+     $above:ident, $select:ident, $to_bits:ident, $from_bits:ident, $power:ident, $split:ident, $load_rows:ident, $add_rows:ident) => {
         #[doc = concat!("A register of `", stringify!($scalar), "`.")]
         #[derive(Clone, Copy)]
         pub struct $name<S: Simd> {
@@ -176,6 +184,26 @@ macro_rules! vector {
             fn splat<S: Simd>(simd: S, value: Self) -> $name<S> {
                 $name { simd, value: simd.$splat(value) }
             }
+            #[inline(always)]
+            fn load_rows<S: Simd>(simd: S, rows: &Rows<Self>, at: &[u16]) -> [$name<S>; 4] {
+                let [x, y, z, more] = $load_rows(simd, rows, &at[..S::$lanes]);
+                [
+                    $name { simd, value: x },
+                    $name { simd, value: y },
+                    $name { simd, value: z },
+                    $name { simd, value: more },
+                ]
+            }
+            #[inline(always)]
+            fn add_to_rows<S: Simd>(simd: S, rows: &mut Rows<Self>, at: &[u16], [x, y, z]: [$name<S>; 3]) {
+                $add_rows(simd, rows, &at[..S::$lanes], [x.value, y.value, z.value]);
+            }
+            fn with_scratch<O>(task: impl FnOnce(&mut Scratch<Self>) -> O) -> O {
+                thread_local! {
+                    static SCRATCH: RefCell<Scratch<$scalar>> = RefCell::default();
+                }
+                SCRATCH.with_borrow_mut(task)
+            }
         }
     };
 }
@@ -262,7 +290,9 @@ vector!(
     transmute_u32s_f32s,
     transmute_f32s_u32s,
     power_f32s,
-    split_f32s
+    split_f32s,
+    load_f32s,
+    add_f32s
 );
 vector!(
     F64s,
@@ -288,5 +318,7 @@ vector!(
     transmute_u64s_f64s,
     transmute_f64s_u64s,
     power_f64s,
-    split_f64s
+    split_f64s,
+    load_f64s,
+    add_f64s
 );

@@ -44,7 +44,7 @@ impl Simulation {
         let started = Instant::now();
         let mut diagnostics = scene.diagnostics();
         let mut world = World::new();
-        let plan = plan(scene, options.precision, options.threads, registry, &mut world, &mut diagnostics);
+        let plan = plan(scene, options, registry, &mut world, &mut diagnostics);
         let Some(Plan { assembly, clock, stability, steps, schedule }) = plan.filter(|_| !diagnostics.has_errors())
         else {
             return Err(diagnostics.into());
@@ -61,6 +61,9 @@ impl Simulation {
         let relaxing = relaxing(scene, options.precision, &mut world);
 
         let Chosen { gpu, mut why } = choose(options)?;
+        if gpu.is_some() {
+            sum_forces(Scheme::TwoPass, &mut world);
+        }
         let gpu_name = gpu.as_ref().map(|gpu| gpu.report().name.clone());
         let prepared = match gpu {
             None => None,
@@ -71,6 +74,7 @@ impl Simulation {
                     why = format!("the GPU cannot take this scene: {reason}");
                     world.remove_resource::<Device>();
                     world.remove_resource::<WatchKernels>();
+                    sum_forces(options.scheme, &mut world);
                     None
                 }
                 Err(error) => return Err(error),
@@ -136,6 +140,12 @@ impl Simulation {
     }
 }
 
+/// Makes room for the element forces of all bodies, in another scheme than before.
+fn sum_forces(scheme: Scheme, world: &mut World) {
+    let bodies: Vec<Entity> = world.query_filtered::<Entity, With<ElementForce>>().iter(world).collect();
+    bodies.into_iter().for_each(|body| crate::assembly::insert_forces(scheme, body, world));
+}
+
 /// Takes a GPU for the run and makes the kernels of all systems ready that have some.
 fn kernels_on(gpu: Gpu, schedule: &[Scheduled<'_>], world: &mut World) -> Result<Vec<Option<Vec<KernelId>>>, Error> {
     world.insert_resource(Device::new(gpu, all_columns()));
@@ -160,19 +170,18 @@ struct Plan<'a> {
 /// Makes a scene's world and its schedule. All mistakes that can be found go to `diagnostics`.
 fn plan<'a>(
     scene: &'a SceneFile,
-    precision: Precision,
-    threads: usize,
+    options: &Options,
     registry: &'a Registry,
     world: &mut World,
     diagnostics: &mut Diagnostics,
 ) -> Option<Plan<'a>> {
-    let assembly = assemble(scene, precision, world, diagnostics);
+    let assembly = assemble(scene, options.precision, options.scheme, world, diagnostics);
     check_names(scene.scene.schedule.as_deref().unwrap_or_default(), registry, diagnostics);
     let assembly = assembly?;
-    world.insert_resource(Cpu::new(threads, counts(&assembly).1));
+    world.insert_resource(Cpu::new(options.threads, counts(&assembly).1));
     // what is stable depends on the laws, whose history waits for the step
     world.insert_resource(Clock::with_step(1.0));
-    insert_laws(precision, world);
+    insert_laws(options.precision, world);
     let (clock, stability, steps) = clock(scene, world, diagnostics)?;
     outputs::check(scene, &clock, steps, diagnostics);
     world.insert_resource(clock);
@@ -185,7 +194,7 @@ fn plan<'a>(
 /// Checks a scene as far as making its world goes: everything except choosing a backend. All that was found.
 pub(super) fn check(scene: &SceneFile, registry: &Registry) -> Diagnostics {
     let mut diagnostics = scene.diagnostics();
-    plan(scene, Precision::F32, 0, registry, &mut World::new(), &mut diagnostics);
+    plan(scene, &Options::default(), registry, &mut World::new(), &mut diagnostics);
     diagnostics
 }
 

@@ -1,7 +1,7 @@
 //! How to run a scene: what is not the scene's business.
 
 use crate::backend::gpu::{Choice, Gpu, NoGpu, SmallerLimits};
-use crate::components::Precision;
+use crate::components::{Precision, Scheme};
 use crate::error::Error;
 
 /// Where to run.
@@ -27,6 +27,8 @@ pub struct Options {
     pub threads: usize,
     /// Which GPU, when there are several.
     pub gpu: Choice,
+    /// How element forces are summed.
+    pub scheme: Scheme,
     /// Less than that GPU allows, for trying out what becomes of a scene on a smaller one.
     pub gpu_limits: SmallerLimits,
 }

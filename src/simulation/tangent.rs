@@ -4,7 +4,6 @@
 use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, run_block};
 use crate::components::*;
 use crate::evaluation::{lane_place, node_count, with_element};
-use crate::math::LANES;
 use crate::systems::{means_of, sum_corners};
 use bevy_ecs::prelude::*;
 use std::borrow::Cow;
@@ -34,6 +33,7 @@ struct BodyForces<'w> {
 struct BlockForces<'w> {
     block: &'w Block,
     connectivity: &'w Connectivity,
+    patches: Option<&'w Patches>,
     corners: Option<&'w BlockCorners>,
     shape: Cow<'w, [f64]>,
     fibres: Option<Cow<'w, [f64]>>,
@@ -106,6 +106,7 @@ impl<'w> BlockForces<'w> {
         Some(Self {
             block,
             connectivity: world.get::<Connectivity>(entity)?,
+            patches: world.get::<Patches>(entity),
             corners,
             shape: widened(&world.get::<RestShape>(entity)?.0),
             fibres: world.get::<FibreDirection>(entity).map(|f| widened(&f.0)),
@@ -122,7 +123,6 @@ impl<'w> BlockForces<'w> {
             let read = (self.connectivity, &*self.shape, corners, u);
             means_of(cpu, block, read, &self.law, &mut self.volumes, &mut self.means);
         }
-        let length = block.count.div_ceil(LANES) * LANES * 3 * node_count(block.kind);
         let columns = BlockColumns {
             displacement: u,
             connectivity: self.connectivity,
@@ -130,7 +130,9 @@ impl<'w> BlockForces<'w> {
             fibre_direction: self.fibres.as_deref(),
             nodal_volume_change: &self.means,
             memory: &mut self.memory,
-            force: &mut element_force[block.force_offset..block.force_offset + length],
+            force: &mut element_force[block.force_offset..block.force_offset + block.force_length],
+            patches: self.patches,
+            inverted_go: false,
         };
         with_element!(block.kind, E => run_block::<E, f64>(cpu, columns, &self.law, patch_groups(block.kind)));
     }

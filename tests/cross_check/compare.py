@@ -56,7 +56,7 @@ def run(sinew, scene, sets, precision="f64"):
     """Runs a scene; its summary, or None and why not."""
     with tempfile.TemporaryDirectory() as folder:
         command = [sinew, "run", str(ROOT / "scenes" / "accuracy" / f"{scene}.ron"), "--backend", "cpu",
-                   "--precision", precision, "--out", f"{folder}/out"]
+                   "--threads", "1", "--precision", precision, "--out", f"{folder}/out"]
         for value in sets:
             command += ["--set", value]
         try:
@@ -90,6 +90,11 @@ def study(sinew, problem, references):
                 yield row
 
 
+def seconds(value):
+    """Two digits, or whole seconds."""
+    return f"{value:.0f} s" if value >= 10 else f"{value:.2g} s"
+
+
 def table(rows):
     """A Markdown table of errors: elements down, meshes across."""
     meshes = list(dict.fromkeys(row["cells"] for row in rows))
@@ -99,7 +104,7 @@ def table(rows):
         for mesh in meshes:
             row = next(row for row in rows if row["elements"] == elements and row["cells"] == mesh)
             done = row.get("error") not in (None, "")
-            cells.append(f"{100 * float(row['error']):+.2f} % ({float(row['seconds']):.2g} s)" if done else "no result")
+            cells.append(f"{100 * float(row['error']):+.2f} % ({seconds(float(row['seconds']))})" if done else "no result")
         text += f"| `{elements}` | " + " | ".join(cells) + " |\n"
     return text
 

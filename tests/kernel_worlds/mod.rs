@@ -210,7 +210,7 @@ impl Effects {
             Ok(scene) => scene,
             Err(problem) => panic!("{}", problem.render(false)),
         };
-        let options = Options { backend, gpu: gpu_choice(), ..Options::default() };
+        let options = Options { backend, gpu: gpu_choice(), scheme: Scheme::TwoPass, ..Options::default() };
         Simulation::new(&scene, &options).unwrap_or_else(|error| panic!("{error}\n{text}"))
     }
 }

@@ -7,7 +7,7 @@ use crate::configurations::{Configuration, configurations};
 use crate::grids::{Grid, bits, grid};
 use crate::random::Random;
 use glam::DVec3;
-use sinew::components::Precision;
+use sinew::components::{Precision, Scheme};
 use sinew::mesh::ElementKind;
 use sinew::{BackendChoice, Options, Simulation};
 use std::path::Path;
@@ -92,6 +92,25 @@ fn gpu_gives_the_same_bits_from_run_to_run() {
 fn largest_difference(a: &[DVec3], b: &[DVec3]) -> f64 {
     let largest = a.iter().fold(0.0_f64, |largest, u| largest.max(u.length()));
     a.iter().zip(b).fold(0.0_f64, |worst, (a, b)| worst.max((*a - *b).length())) / largest
+}
+
+/// Sums patch by patch and over all corners differ in their order only; bounds as for a shuffled mesh.
+#[test]
+fn both_schemes_move_alike() {
+    let (folder, mesh) = (tempfile::tempdir().unwrap(), mesh(8));
+    for (precision, bound) in [(Precision::F64, 1e-12), (Precision::F32, 1e-4)] {
+        for effects in [Effects::Laws, Effects::All, Effects::Means] {
+            let [patches, two_pass] = [Scheme::Patches, Scheme::TwoPass].map(|scheme| {
+                let options = Options { backend: BackendChoice::Cpu, precision, scheme, ..Options::default() };
+                let mut simulation = start(&mesh, &Configuration { name: "CPU", options }, effects, folder.path());
+                simulation.advance(60).unwrap();
+                simulation.displacements("b").unwrap()
+            });
+            let error = largest_difference(&patches, &two_pass);
+            println!("{precision:?}: {error:.1e}");
+            assert!(error < bound && patches != two_pass, "{precision:?}: {error:e}");
+        }
+    }
 }
 
 #[test]

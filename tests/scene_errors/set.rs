@@ -61,6 +61,10 @@ fn mistakes_in_a_set_are_shown_in_the_set() {
         ),
         ("materials.tissue.density=-1", r"--set:1:26: error: `density` must be above 0, found -1 kg/m³"),
         (
+            "accuracy.uncertainty={\"tip.uz\": 0.1}",
+            r"--set:1:33: error: a reference that is made knows its own uncertainty; this is for `Values` and `Files`",
+        ),
+        (
             "removal[0].when=At(1)",
             r"error: --set removal[0].when=At(1): a list that is not in the scene cannot be changed item by item",
         ),

@@ -14,6 +14,9 @@ const CALIBRATION: f64 = 0.04;
 /// Elements of the scene that are enough to predict with.
 const ENOUGH: f64 = 3000.0;
 
+/// Steps of a search for equilibrium that are timed at once: it looks at itself that often.
+const BETWEEN_LOOKS: u64 = 40;
+
 /// What a few steps of a configuration have shown.
 #[derive(Clone, Copy, Debug)]
 pub struct Calibration {
@@ -106,8 +109,36 @@ impl Engine<'_> {
         simulation.energies().map_err(refusal)?;
         let look = started.elapsed().as_secs_f64();
         let (elements, setup) = (summary.elements as f64, summary.setup_seconds);
-        let calibration = Calibration { mesh, elements, step, steps: all_steps, setup, seconds_a_step, look };
+        let mut calibration = Calibration { mesh, elements, step, steps: all_steps, setup, seconds_a_step, look };
+        if scene.scene.is_static() {
+            calibration = self.priced_by_elements(&kind, calibration).unwrap_or(calibration);
+        }
         self.known.push((kind, calibration));
         Ok(calibration)
+    }
+
+    /// What a search for equilibrium has shown on the coarsest mesh, with times from the largest that is quickly made: of a
+    /// handful of elements a step costs what it would cost without any, and many of them would seem dearer than they are.
+    /// `None` where there is no such mesh, or it breaks down so soon.
+    fn priced_by_elements(&self, kind: &Configuration, known: Calibration) -> Option<Calibration> {
+        let times = |factor: &Factor| (factor.value() / known.mesh.value()).powi(3);
+        let enough = |factor: &Factor| known.elements * times(factor) <= ENOUGH;
+        let mesh = self.meshes().into_iter().filter(enough).fold(known.mesh, Factor::max);
+        if mesh == known.mesh {
+            return None;
+        }
+        let larger = Configuration { mesh, ..kind.clone() };
+        let mut simulation = Simulation::new(&variant(self.file, &larger, None), &self.options(&larger)).ok()?;
+        let setup = simulation.summary("calibration").ok()?.setup_seconds;
+        let mut taken = 0.0;
+        while taken < CALIBRATION && simulation.step_count() < known.steps && !simulation.is_finished() {
+            taken += march::timed(&mut simulation, BETWEEN_LOOKS).ok()?;
+        }
+        let seconds_a_step = taken / simulation.step_count().max(1) as f64;
+        let started = Instant::now();
+        simulation.energies().ok()?;
+        let look = started.elapsed().as_secs_f64();
+        let share = 1.0 / times(&mesh);
+        Some(Calibration { setup: share * setup, seconds_a_step: share * seconds_a_step, look: share * look, ..known })
     }
 }

@@ -1,10 +1,10 @@
 //! The work-precision plot: error against wall time per simulated second, both logarithmic, as SVG and as PNG.
 
-mod axis;
+pub(crate) mod axis;
 mod labels;
 mod legend;
 mod picture;
-mod svg;
+pub(crate) mod svg;
 
 pub use labels::{Area, Spot, place};
 pub use picture::{PlotError, png};
@@ -49,10 +49,11 @@ pub fn svg(study: &Study, title: &str) -> String {
     grid(&mut svg, &x, &y);
     zone(&mut svg, study, &y);
     lines(&mut svg, study, &points, &x, &y, real);
-    marks(&mut svg, &points, &x, &y);
+    let words = target_words(study, &points, &x, &y).map(|(_, area)| area);
+    marks(&mut svg, &points, &x, &y, words);
     let unit = if timed { "wall time per simulated second" } else { "wall time" };
     svg.text((0.5 * (FRAME[0] + FRAME[2]), FRAME[3] + 46.0), unit, 15.0, INK, "middle");
-    svg.turned((30.0, 0.5 * (FRAME[1] + FRAME[3])), &format!("relative error of {}", study.judged_by), 15.0, INK);
+    svg.turned((16.0, 0.5 * (FRAME[1] + FRAME[3])), &format!("relative error of {}", study.judged_by), 15.0, INK);
     svg.text((FRAME[0], 36.0), &format!("What accuracy costs: {title}"), 21.0, INK, "start");
     let advice = study.findings.advice.first().map_or("", String::as_str);
     svg.text((FRAME[0], 62.0), &shortened(advice, 118), 14.0, FAINT, "start");
@@ -121,10 +122,10 @@ fn lines(svg: &mut Svg, study: &Study, points: &[Point<'_>], x: &Axis, y: &Axis,
         svg.line((x.at(real), FRAME[1]), (x.at(real), FRAME[3]), "#b0453a", 1.6, "7 4");
         svg.text((x.at(real) + 5.0, FRAME[1] + 15.0), "real time", 12.5, "#b0453a", "start");
     }
-    if y.contains(study.target) {
+    if let Some((text, area)) = target_words(study, points, x, y) {
         let at = y.at(study.target);
         svg.line((FRAME[0], at), (FRAME[2], at), "#5b8c5a", 1.4, "2 4");
-        svg.text((FRAME[0] + 6.0, at - 5.0), &format!("target {}", percent(study.target)), 12.5, "#5b8c5a", "start");
+        svg.text((area[0], at - 5.0), &text, 12.5, "#5b8c5a", "start");
     }
     let mut best: Vec<(f64, f64)> =
         points.iter().filter(|point| point.row.on_front).map(|point| (x.at(point.time), y.at(point.error))).collect();
@@ -145,6 +146,22 @@ fn lines(svg: &mut Svg, study: &Study, points: &[Point<'_>], x: &Axis, y: &Axis,
     }
 }
 
+/// The words on the target and where they stand: at the left end of its line, or at the right one where a point is in the way.
+/// `None` where the target is outside the plot.
+fn target_words(study: &Study, points: &[Point<'_>], x: &Axis, y: &Axis) -> Option<(String, Area)> {
+    let text = format!("target {}", percent(study.target));
+    let (wide, base) = (labels::width(&text), y.at(study.target) - 5.0);
+    let area = |left: f64| [left, base - labels::LETTERS, left + wide, base + 3.0];
+    let free = |area: &Area| {
+        points.iter().map(|point| (x.at(point.time), y.at(point.error))).all(|(across, down)| {
+            across < area[0] - 12.0 || across > area[2] + 12.0 || down < area[1] - 12.0 || down > area[3] + 12.0
+        })
+    };
+    let places = [area(FRAME[0] + 6.0), area(FRAME[2] - 6.0 - wide)];
+    let chosen = places.into_iter().find(free).unwrap_or(places[0]);
+    y.contains(study.target).then_some((text, chosen))
+}
+
 fn on_ladder(point: &Point<'_>, element: &str) -> bool {
     is_mesh(point.row) && point.row.configuration.element_name() == element
 }
@@ -153,7 +170,8 @@ fn is_mesh(row: &Row) -> bool {
     matches!(row.varied, Varied::Mesh | Varied::Nothing)
 }
 
-fn marks(svg: &mut Svg, points: &[Point<'_>], x: &Axis, y: &Axis) {
+/// Points and their names; `words`: where something is written already.
+fn marks(svg: &mut Svg, points: &[Point<'_>], x: &Axis, y: &Axis, words: Option<Area>) {
     let at = |point: &Point<'_>| (x.at(point.time), y.at(point.error));
     for point in points.iter().filter(|point| !is_mesh(point.row)) {
         let colour = if point.row.varied.is_ranked() { OTHER } else { LAW };
@@ -180,7 +198,8 @@ fn marks(svg: &mut Svg, points: &[Point<'_>], x: &Axis, y: &Axis) {
         let (x, y) = at(point);
         [x - 7.0, y - 7.0, x + 7.0, y + 7.0]
     });
-    let spots = place(&wanted, taken.collect(), [FRAME[0] + 2.0, FRAME[1] + 20.0, FRAME[2] - 2.0, FRAME[3] - 2.0]);
+    let spots =
+        place(&wanted, taken.chain(words).collect(), [FRAME[0] + 2.0, FRAME[1] + 20.0, FRAME[2] - 2.0, FRAME[3] - 2.0]);
     for ((point, name), spot) in order.iter().zip(&names).zip(spots) {
         let Some(spot) = spot else { continue };
         let ink = match point.row.varied {

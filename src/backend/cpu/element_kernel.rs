@@ -1,11 +1,14 @@
 //! Forces of all elements of a block, a register full at a time.
 
+mod at_hand;
 mod effects;
 
 use super::{BlockLaw, Cpu};
+use crate::components::Patches;
 use crate::elements::{Element, MOST_NODES, PressureFrom};
 use crate::materials::{Elastic, ElasticLaw, Kinematics};
-use crate::math::{LANES, Real, SimdScalar, Sym3};
+use crate::math::{LANES, Mat3, Real, Scratch, SimdScalar, Sym3};
+use at_hand::{AtHand, part, parts};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -26,6 +29,10 @@ pub struct BlockColumns<'a, T> {
     pub memory: &'a mut [T],
     /// The block's part of the element forces (N).
     pub force: &'a mut [T],
+    /// Where they are summed; `None` in the scheme of two passes.
+    pub patches: Option<&'a Patches>,
+    /// Whether elements with J < 0 exert nothing.
+    pub inverted_go: bool,
 }
 
 /// Fills in the forces of a block and carries its viscous history on by one step. Says whether an element has J < 0.
@@ -83,24 +90,30 @@ impl<E: Element, T: SimdScalar> Block<'_, E, T> {
         let patch = groups_a_patch * LANES;
         let memory_an_element = law.memory_numbers(E::POINTS);
         let varying = law.varying_families();
-        let patches = columns.force.chunks_mut(patch * 3 * E::NODES).enumerate();
         // without viscosity there is no memory to hand out
         let mut memories = columns.memory.chunks_mut((patch * memory_an_element).max(1));
-        let tasks = patches.map(move |(index, force)| Patch::<E, T, L, EFFECTS> {
+        let tasks = parts(columns.force, columns.patches, patch * 3 * E::NODES, patch * E::NODES);
+        let tasks = tasks.into_iter().enumerate().map(move |(index, (force, at_hand))| Patch::<E, T, L, EFFECTS> {
             displacement: columns.displacement,
             nodal_volume_change: columns.nodal_volume_change,
-            connectivity: &columns.connectivity[index * patch * E::NODES..],
-            rest_shape: &columns.rest_shape[index * patch * E::ROWS..],
+            connectivity: part(columns.connectivity, index, patch * E::NODES),
+            rest_shape: part(columns.rest_shape, index, patch * E::ROWS),
             fibre_direction: columns.fibre_direction.map(|all| &all[index * patch * 3 * varying..]),
             varying,
             memory: memories.next().unwrap_or_default(),
             force,
+            at_hand,
+            inverted_go: columns.inverted_go,
             elastic,
             law,
             element,
         });
         cpu.for_each(tasks, |patch| {
-            if cpu.arch().dispatch(patch) {
+            let found = T::with_scratch(|scratch| {
+                let task = OfPatch { patch, scratch };
+                if EFFECTS == ASK { cpu.dispatch(task) } else { cpu.dispatch_widest(task) }
+            });
+            if found {
                 inverted.store(true, Ordering::Relaxed);
             }
         });
@@ -117,26 +130,35 @@ struct Patch<'a, E, T: SimdScalar, L, const EFFECTS: u8> {
     varying: usize,
     memory: &'a mut [T],
     force: &'a mut [T],
+    at_hand: Option<AtHand<'a>>,
+    inverted_go: bool,
     elastic: &'a L,
     law: &'a BlockLaw<T>,
     element: PhantomData<E>,
 }
 
-impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd for Patch<'_, E, T, L, EFFECTS> {
+/// A patch and where to compute it.
+struct OfPatch<'a, 's, E, T: SimdScalar, L, const EFFECTS: u8> {
+    patch: Patch<'a, E, T, L, EFFECTS>,
+    scratch: &'s mut Scratch<T>,
+}
+
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd for OfPatch<'_, '_, E, T, L, EFFECTS> {
     type Output = bool;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(mut self, simd: S) -> bool {
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
+        let Self { mut patch, scratch } = self;
+        patch.bring(scratch);
         let mut worst = T::splat(simd, T::default());
-        for group in 0..self.force.len() / (LANES * 3 * E::NODES) {
-            let nodes = &self.connectivity[group * E::NODES * LANES..(group + 1) * E::NODES * LANES];
-            let displacements = group_vectors::<E, T>(nodes, self.displacement);
+        for group in 0..patch.connectivity.len() / (LANES * E::NODES) {
             let mut at = 0;
             while at < LANES {
-                worst = worst.max(self.part_of_group(simd, group, at, &displacements));
+                worst = worst.max(patch.part_of_group(simd, group, at, scratch));
                 at += T::width::<S>();
             }
         }
+        patch.bring_back(scratch);
         let mut lanes = [T::default(); LANES];
         T::store(worst, &mut lanes);
         lanes.iter().any(|&v| v > T::default())
@@ -203,26 +225,21 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
 
     /// One register full of elements, from lane `at` on. Returns −J V, positive for inverted elements.
     #[inline(always)]
-    fn part_of_group<S: Simd>(
-        &mut self,
-        simd: S,
-        group: usize,
-        at: usize,
-        displacements: &[[[T; LANES]; 3]; MOST_NODES],
-    ) -> T::Vector<S> {
+    fn part_of_group<S: Simd>(&mut self, simd: S, group: usize, at: usize, scratch: &mut Scratch<T>) -> T::Vector<S> {
         let elastic = self.elastic.map(
             #[inline(always)]
             |number: T| T::splat(simd, number),
         );
         let zero = T::splat(simd, T::default());
-        let u = E::prepare(&corner_registers::<E, T, S>(simd, displacements, at));
+        let (displacements, theta) = self.at_corners(simd, &elastic, group, at, scratch);
+        let u = E::prepare(&displacements);
         let rest_shape = &self.rest_shape[group * E::ROWS * LANES..(group + 1) * E::ROWS * LANES];
         let shared = match E::PRESSURE {
             PressureFrom::Point => zero,
             PressureFrom::MeanOverPoints => {
                 elastic.pressure(mean_volume_change::<E, T, L, S>(simd, &elastic, &u, rest_shape, at))
             }
-            PressureFrom::Nodes => self.mean_of_nodes(simd, &elastic, group, at),
+            PressureFrom::Nodes => theta,
         };
         let mut forces = E::no_forces(zero);
         let mut worst = zero.constant(f64::MIN);
@@ -233,59 +250,73 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
                 #[inline(always)]
                 |row: usize| T::load(simd, &rest_shape[row * LANES + at..]),
             );
-            let k = elastic.kinematics(&state.gradient);
-            let mut pressure = match E::PRESSURE {
-                PressureFrom::Point => elastic.pressure(elastic.volume_measure(&k)),
-                _ => shared,
-            };
-            if EFFECTS == ASK && !self.law.volumetric.is_empty() {
-                pressure = self.relax_pressure(simd, group, at, point, pressure);
-            }
-            let mut isochoric = match EFFECTS {
-                ASK => simd.vectorize(Isochoric { elastic: &elastic, k: &k }),
-                _ => elastic.isochoric(&k),
-            };
-            if self.has_fibres() {
-                isochoric = isochoric.plus(&self.fibre_stress(simd, group, at, &k));
-            }
-            if EFFECTS == ASK && !self.law.exponential.is_empty() {
-                isochoric = isochoric.plus(&self.exponential_stress(simd, group, at, &k));
-            }
-            if self.has_viscosity() {
-                isochoric = self.relax(simd, group, at, point, isochoric);
-            }
-            if EFFECTS == ASK && self.law.reproject {
-                isochoric = elastic.without_pressure(&k, isochoric);
-            }
-            let stress = elastic.first_stress(&state.gradient, &k, &isochoric, pressure);
+            let (stress, j) = self.stress(simd, &elastic, group, at, point, &state.gradient, shared);
             E::add_stress(&mut forces, point, &state, &stress);
-            worst = worst.max(-k.true_j);
+            worst = worst.max(-j);
         }
-        let out = &mut self.force[group * 3 * E::NODES * LANES..(group + 1) * 3 * E::NODES * LANES];
+        let worst = worst * T::load(simd, &rest_shape[E::VOLUME_ROW * LANES + at..]);
+        let mut out = [[zero; 3]; MOST_NODES];
         E::store_forces(
             &u,
             &forces,
             #[inline(always)]
             |row: usize| T::load(simd, &rest_shape[row * LANES + at..]),
             #[inline(always)]
-            |corner: usize, i: usize, force| T::store(force, &mut out[(3 * corner + i) * LANES + at..]),
+            |corner: usize, i: usize, force| out[corner][i] = force,
         );
-        worst * T::load(simd, &rest_shape[E::VOLUME_ROW * LANES + at..])
+        if self.inverted_go {
+            for corner in 0..E::NODES {
+                for i in 0..3 {
+                    out[corner][i] = worst.if_positive(zero, out[corner][i]);
+                }
+            }
+        }
+        self.give(simd, group, at, scratch, &out);
+        worst
     }
 
-    /// Mean of the pressures (Pa) at the nodes.
+    /// First Piola-Kirchhoff stress (Pa) at a point, and J there.
     #[inline(always)]
-    fn mean_of_nodes<S: Simd>(&self, simd: S, elastic: &L::Of<T::Vector<S>>, group: usize, at: usize) -> T::Vector<S> {
-        let nodes = &self.connectivity[group * E::NODES * LANES..(group + 1) * E::NODES * LANES];
-        let mut sum = T::splat(simd, T::default());
-        for corner in 0..E::NODES {
-            let mut lanes = [T::default(); LANES];
-            for lane in 0..T::width::<S>() {
-                lanes[lane] = self.nodal_volume_change[nodes[corner * LANES + at + lane] as usize];
-            }
-            sum += elastic.pressure(T::load(simd, &lanes));
+    fn stress<S: Simd>(
+        &mut self,
+        simd: S,
+        elastic: &L::Of<T::Vector<S>>,
+        group: usize,
+        at: usize,
+        point: usize,
+        gradient: &Mat3<T::Vector<S>>,
+        shared: T::Vector<S>,
+    ) -> (Mat3<T::Vector<S>>, T::Vector<S>) {
+        if EFFECTS == 0 || EFFECTS == FIBRES {
+            let pressure = (E::PRESSURE != PressureFrom::Point).then_some(shared);
+            let fibres = if EFFECTS == FIBRES { self.fibres_at(simd, group, at) } else { None };
+            return elastic.stress_at_once(gradient, pressure, fibres);
         }
-        sum * sum.constant(1.0 / E::NODES as f64)
+        let k = elastic.kinematics(gradient);
+        let mut pressure = match E::PRESSURE {
+            PressureFrom::Point => elastic.pressure(elastic.volume_measure(&k)),
+            _ => shared,
+        };
+        if EFFECTS == ASK && !self.law.volumetric.is_empty() {
+            pressure = self.relax_pressure(simd, group, at, point, pressure);
+        }
+        let mut isochoric = match EFFECTS {
+            ASK => simd.vectorize(Isochoric { elastic, k: &k }),
+            _ => elastic.isochoric(&k),
+        };
+        if self.has_fibres() {
+            isochoric = isochoric.plus(&self.fibre_stress(simd, group, at, &k));
+        }
+        if EFFECTS == ASK && !self.law.exponential.is_empty() {
+            isochoric = isochoric.plus(&self.exponential_stress(simd, group, at, &k));
+        }
+        if self.has_viscosity() {
+            isochoric = self.relax(simd, group, at, point, isochoric);
+        }
+        if EFFECTS == ASK && self.law.reproject {
+            isochoric = elastic.without_pressure(&k, isochoric);
+        }
+        (elastic.first_stress(gradient, &k, &isochoric, pressure), k.true_j)
     }
 }
 

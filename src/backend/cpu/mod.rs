@@ -2,11 +2,13 @@
 
 mod element_kernel;
 mod law;
+mod node_kernel;
 mod volume_kernel;
 mod watch_kernel;
 
 pub use element_kernel::{BlockColumns, run_block, run_block_fast};
 pub use law::BlockLaw;
+pub use node_kernel::{Factors, NodeColumns, move_nodes};
 pub use volume_kernel::run_volumes;
 pub use watch_kernel::{BlockSums, WatchedColumns, run_watch};
 
@@ -71,8 +73,19 @@ impl Cpu {
         format!("CPU ({} thread{plural}, {})", self.threads, self.instruction_set())
     }
 
-    pub(crate) fn arch(&self) -> pulp::Arch {
-        self.arch
+    /// Runs a task with the machine's vector registers, of 256 bits where it has wider ones too: most kernels are not worth
+    /// their code a third time.
+    pub(crate) fn dispatch<O: pulp::WithSimd>(&self, task: O) -> O::Output {
+        match self.arch {
+            #[cfg(target_arch = "x86_64")]
+            pulp::Arch::V4(simd) => pulp::Arch::V3(*simd).dispatch(task),
+            arch => arch.dispatch(task),
+        }
+    }
+
+    /// Runs a task with the widest registers that the machine has.
+    pub(crate) fn dispatch_widest<O: pulp::WithSimd>(&self, task: O) -> O::Output {
+        self.arch.dispatch(task)
     }
 
     /// Results of `task` for 0 to `count` − 1, in order.

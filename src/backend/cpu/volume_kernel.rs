@@ -27,7 +27,7 @@ pub fn run_volumes<E: Element, T: SimdScalar>(
         volumes,
         element: PhantomData,
     });
-    cpu.for_each(tasks, |patch| cpu.arch().dispatch(patch));
+    cpu.for_each(tasks, |patch| cpu.dispatch(patch));
 }
 
 struct Patch<'a, E, T: SimdScalar> {

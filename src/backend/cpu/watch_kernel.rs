@@ -63,7 +63,7 @@ pub fn run_watch<E: Element, T: SimdScalar>(
     let task = |index: usize| {
         let first = index * groups_a_patch;
         let groups = first..groups.min(first + groups_a_patch);
-        cpu.arch().dispatch(Patch::<E, T> { columns, law, groups, element: PhantomData })
+        cpu.dispatch(Patch::<E, T> { columns, law, groups, element: PhantomData })
     };
     let sums = cpu.map(groups.div_ceil(groups_a_patch), task);
     sums.into_iter().fold(BlockSums::default(), BlockSums::and)

@@ -89,6 +89,10 @@ fn settings(arguments: &AccuracyArguments, file: &SceneFile, engine: &mut Engine
         let looks = engine.looks().map_err(failure)?;
         reference = Some(files::read(&paths, file.scene.duration, looks).map_err(Failure::Options)?);
     }
+    // what is named on the command line is not what the scene speaks of
+    if arguments.reference.is_empty() {
+        reference = reference.map(|reference| reference.off_by(&wanted.uncertainty));
+    }
     Ok(Settings {
         budget: arguments.budget,
         target: arguments.target.or(wanted.target).unwrap_or(TARGET),

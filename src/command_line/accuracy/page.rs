@@ -21,7 +21,9 @@ pub fn text(study: &Study, title: &str, folder: &Path, paint: Paint) -> String {
     text += &format!("error      as written: {}\n", parts.join(", "));
     let orders = &study.findings.orders;
     if !orders.is_empty() {
-        let orders: Vec<String> = orders.iter().map(|order| format!("{} {:.2}", order.of, order.order)).collect();
+        let few = |rows: usize| if rows < 3 { " (of two meshes only)" } else { "" };
+        let orders: Vec<String> =
+            orders.iter().map(|order| format!("{} {:.2}{}", order.of, order.order, few(order.rows))).collect();
         text += &format!("order      {}\n", orders.join(", "));
     }
     for (number, effect) in study.findings.effects.iter().enumerate() {

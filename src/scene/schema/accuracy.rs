@@ -9,6 +9,8 @@ use std::collections::BTreeMap;
 pub struct Accuracy {
     /// What errors are measured against.
     pub reference: AccuracyReference,
+    /// How far `Values` and tables of `Files` may themselves be off, by quantity (in its SI unit); 0 for those left out.
+    pub uncertainty: BTreeMap<String, f64>,
     /// The quantity that configurations are judged by; left out: the displacement field, or the first that has a reference.
     pub judged_by: Option<String>,
     /// The error that is good enough, relative; 0.01 when left out.

@@ -49,6 +49,20 @@ fn accuracy(file: &SceneFile, judge: &mut Judge) {
     if let Some(target) = wanted.target {
         judge.above_zero(&path.name("target"), target, "");
     }
+    for (quantity, &size) in &wanted.uncertainty {
+        let own = path.name("uncertainty").name(quantity);
+        judge.not_negative(&own, size, "");
+        let message = match &wanted.reference {
+            AccuracyReference::SelfMade => {
+                "a reference that is made knows its own uncertainty; this is for `Values` and `Files`"
+            }
+            AccuracyReference::Values(values) if !values.contains_key(quantity) => {
+                "`reference` has no value of that name"
+            }
+            _ => continue,
+        };
+        judge.out.error_at(own, message);
+    }
     if let AccuracyReference::Files(files) = &wanted.reference {
         for (i, name) in files.iter().enumerate() {
             if let Err(outside) = file.file(name) {

@@ -4,7 +4,7 @@ use super::Buffer;
 use crate::backend::Buffers;
 use crate::backend::device::all_columns;
 use crate::backend::kernel::BufferId;
-use crate::components::{Corners, Label, RestPosition};
+use crate::components::{Corners, Label, Patches, RestPosition};
 use bevy_ecs::prelude::*;
 use std::collections::BTreeMap;
 
@@ -64,6 +64,11 @@ pub fn host_columns(sizes: &Sizes, world: &mut World) -> Vec<Buffer> {
         columns.push(column(entity, "rest_position", size_of_val(rest.0.as_slice()) as u64));
         let map = size_of_val(corners.starts.as_slice()) + size_of_val(corners.corners.as_slice());
         columns.push(column(entity, "corners", map as u64));
+    }
+    for (entity, patches) in world.query::<(Entity, &Patches)>().iter(world) {
+        let nodes = size_of_val(patches.starts.as_slice()) + size_of_val(patches.nodes.as_slice());
+        let bytes = nodes + size_of_val(patches.connectivity.as_slice());
+        columns.push(column(entity, "patches", bytes as u64));
     }
     columns.sort_by(|a, b| a.of.cmp(&b.of).then(b.bytes.cmp(&a.bytes)).then(a.name.cmp(&b.name)));
     columns

@@ -3,7 +3,7 @@
 use super::Patch;
 use crate::components::FamilyDirection;
 use crate::elements::Element;
-use crate::materials::{Elastic, ExponentialFibre, Kinematics};
+use crate::materials::{Elastic, ExponentialFibre, Fibres, Kinematics};
 use crate::math::{LANES, Real, SimdScalar, Sym3};
 use pulp::{Simd, WithSimd};
 
@@ -17,14 +17,26 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         at: usize,
         k: &Kinematics<T::Vector<S>>,
     ) -> Sym3<T::Vector<S>> {
-        let Some((fibres, direction)) = &self.law.fibres else {
-            return Sym3([T::splat(simd, T::default()); 6]);
-        };
+        match self.fibres_at(simd, group, at) {
+            Some((fibres, direction)) => fibres.isochoric(k, direction),
+            None => Sym3([T::splat(simd, T::default()); 6]),
+        }
+    }
+
+    /// The fibres and their unit vectors.
+    #[inline(always)]
+    pub(super) fn fibres_at<S: Simd>(
+        &self,
+        simd: S,
+        group: usize,
+        at: usize,
+    ) -> Option<(Fibres<T::Vector<S>>, [T::Vector<S>; 3])> {
+        let (fibres, direction) = self.law.fibres.as_ref()?;
         let fibres = fibres.map(
             #[inline(always)]
             |number: T| T::splat(simd, number),
         );
-        fibres.isochoric(k, self.direction(simd, group, at, direction))
+        Some((fibres, self.direction(simd, group, at, direction)))
     }
 
     /// Of all families that stiffen exponentially.

@@ -1,0 +1,123 @@
+//! Cutting blocks into patches, and where element forces stand.
+
+use crate::components::*;
+use crate::evaluation::{lane_place, node_count};
+use crate::math::LANES;
+use crate::mesh::ElementKind;
+use bevy_ecs::prelude::*;
+
+/// Neighbours of a block, patch by patch, in the order in which they are stored: the lanes of a group come from all over
+/// the patch, so that they seldom share a node and need not wait for each other's sums.
+pub fn strided(mut elements: Vec<u32>, kind: ElementKind) -> Vec<u32> {
+    for patch in elements.chunks_mut(patch_groups(kind) * LANES) {
+        let groups = patch.len().div_ceil(LANES);
+        let mut order: Vec<usize> = (0..patch.len()).collect();
+        order.sort_by_key(|&place| (place % groups, place / groups));
+        let strided: Vec<u32> = order.into_iter().map(|place| patch[place]).collect();
+        patch.copy_from_slice(&strided);
+    }
+    elements
+}
+
+/// The patches of a block's elements.
+pub fn cut(kind: ElementKind, connectivity: &[u32]) -> Patches {
+    let corners_a_patch = patch_groups(kind) * LANES * node_count(kind);
+    let mut patches = Patches { starts: vec![0], ..Patches::default() };
+    for corners in connectivity.chunks(corners_a_patch) {
+        let mut nodes = corners.to_vec();
+        nodes.sort_unstable();
+        nodes.dedup();
+        // at most 4096 of them: there are no more corners
+        let place = |node: &u32| nodes.partition_point(|other| other < node) as u16;
+        patches.connectivity.extend(corners.iter().map(place));
+        patches.nodes.extend(&nodes);
+        patches.starts.push(patches.nodes.len() as u32);
+    }
+    patches
+}
+
+/// Gives a body its element forces, the gather's map and each block its place among the forces, as a scheme has them. It may
+/// be called again for another scheme.
+pub fn insert_forces(scheme: Scheme, body: Entity, world: &mut World) {
+    let Some(count) = world.get::<RestPosition>(body).map(|rest| rest.0.len()) else { return };
+    let Some(blocks) = world.get::<Authoring>(body).map(|authoring| authoring.blocks.clone()) else { return };
+    let precision = world.get::<Displacement>(body).map_or(Precision::F64, |u| u.precision());
+    let mut places: Vec<(u32, u32)> = Vec::new();
+    let mut length = 0;
+    for entity in blocks {
+        let Some((kind, elements)) = world.get::<Block>(entity).map(|block| (block.kind, block.count)) else {
+            continue;
+        };
+        let Some(connectivity) = world.get::<Connectivity>(entity) else { continue };
+        let offset = length;
+        match scheme {
+            Scheme::Patches => {
+                let patches = cut(kind, connectivity);
+                places.extend(patches.nodes.iter().zip(0..).map(|(&node, slot)| (node, offset as u32 + 3 * slot)));
+                length += 3 * patches.nodes.len();
+                world.entity_mut(entity).insert(patches);
+            }
+            Scheme::TwoPass => {
+                let nodes = node_count(kind);
+                for row in 0..elements {
+                    for corner in 0..nodes {
+                        let place = offset + lane_place(row, 3 * nodes, 3 * corner);
+                        places.push((connectivity[lane_place(row, nodes, corner)], place as u32));
+                    }
+                }
+                length += elements.div_ceil(LANES) * LANES * 3 * nodes;
+                world.entity_mut(entity).remove::<Patches>();
+            }
+        }
+        if let Some(mut block) = world.get_mut::<Block>(entity) {
+            (block.force_offset, block.force_length) = (offset, length - offset);
+        }
+    }
+    let stride = if scheme == Scheme::Patches { 1 } else { LANES };
+    let corners = corners(count, &places, stride);
+    world.entity_mut(body).insert((corners, ElementForce(Reals::zeros(precision, length))));
+}
+
+/// By node what is told by place.
+fn corners(nodes: usize, places: &[(u32, u32)], stride: usize) -> Corners {
+    let mut starts = vec![0_u32; nodes + 1];
+    places.iter().for_each(|&(node, _)| starts[node as usize + 1] += 1);
+    (0..nodes).for_each(|node| starts[node + 1] += starts[node]);
+    let mut next = starts.clone();
+    let mut corners = vec![0; places.len()];
+    for &(node, place) in places {
+        corners[next[node as usize] as usize] = place;
+        next[node as usize] += 1;
+    }
+    Corners { starts, corners, stride }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strided_patches_hold_the_same_elements() {
+        for count in [1, 15, 16, 17, 1000, 1024, 1025, 3000] {
+            let elements: Vec<u32> = (0..count).collect();
+            let mut strided = strided(elements.clone(), ElementKind::Tet4);
+            if count >= 1024 {
+                assert_eq!(strided[1] - strided[0], 64, "lanes come from all over the patch");
+            }
+            assert!(strided.chunks(1024).zip(elements.chunks(1024)).all(|(a, b)| a.iter().min() == b.iter().min()));
+            strided.sort_unstable();
+            assert_eq!(strided, elements);
+        }
+    }
+
+    #[test]
+    fn each_corner_finds_its_node() {
+        let connectivity: Vec<u32> = (0..4 * 1040).map(|i| i * 7919 % 501).collect();
+        let patches = cut(ElementKind::Tet4, &connectivity);
+        assert_eq!(patches.count(), 2);
+        for (place, &node) in connectivity.iter().enumerate() {
+            let first = patches.starts[place / 4096] as usize;
+            assert_eq!(patches.nodes[first + patches.connectivity[place] as usize], node);
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! What a patch has at hand: its nodes' displacements, and the sums of its forces.
+
+use super::Patch;
+use crate::components::Patches;
+use crate::elements::{Element, MOST_NODES, PressureFrom};
+use crate::materials::Elastic;
+use crate::math::{LANES, Real, Scratch, SimdScalar};
+use pulp::Simd;
+
+/// The element forces (N) of each patch, and its nodes where it sums them: rows of the body, and those of its corners.
+pub(super) fn parts<'a, T>(
+    mut force: &'a mut [T],
+    patches: Option<&'a Patches>,
+    forces_a_patch: usize,
+    corners_a_patch: usize,
+) -> Vec<(&'a mut [T], Option<AtHand<'a>>)> {
+    let Some(patches) = patches else {
+        return force.chunks_mut(forces_a_patch).map(|force| (force, None)).collect();
+    };
+    let corners = patches.connectivity.chunks(corners_a_patch);
+    let nodes = patches.starts.windows(2).map(|ends| &patches.nodes[ends[0] as usize..ends[1] as usize]);
+    let mut parts = Vec::with_capacity(patches.count());
+    for (nodes, corners) in nodes.zip(corners) {
+        let (own, others) = force.split_at_mut(3 * nodes.len());
+        parts.push((own, Some(AtHand { nodes, corners })));
+        force = others;
+    }
+    parts
+}
+
+/// A patch's part of a column, where each patch but the last has as much.
+pub(super) fn part<X>(column: &[X], index: usize, length: usize) -> &[X] {
+    &column[index * length..column.len().min((index + 1) * length)]
+}
+
+/// A patch's nodes, to have at hand.
+pub(super) struct AtHand<'a> {
+    /// Rows of the body.
+    pub(super) nodes: &'a [u32],
+    /// Which of them each corner is.
+    pub(super) corners: &'a [u16],
+}
+
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
+    /// Displacements of the patch's nodes, and θ where elements take their pressure from it, to hand; no forces yet.
+    #[inline(always)]
+    pub(super) fn bring(&self, scratch: &mut Scratch<T>) {
+        let Some(at_hand) = &self.at_hand else { return };
+        for (row, &node) in scratch.read.iter_mut().zip(at_hand.nodes) {
+            let u = &self.displacement[3 * node as usize..3 * node as usize + 3];
+            let theta =
+                if E::PRESSURE == PressureFrom::Nodes { self.nodal_volume_change[node as usize] } else { T::default() };
+            *row = [u[0], u[1], u[2], theta];
+        }
+        scratch.sums[..at_hand.nodes.len()].fill([T::default(); 4]);
+    }
+
+    /// The sums of forces from at hand.
+    #[inline(always)]
+    pub(super) fn bring_back(&mut self, scratch: &Scratch<T>) {
+        if self.at_hand.is_some() {
+            for (force, sum) in self.force.chunks_exact_mut(3).zip(&*scratch.sums) {
+                force.copy_from_slice(&sum[..3]);
+            }
+        }
+    }
+
+    /// Displacements of the corners (m), and the mean of the pressures (Pa) there for elements that take it.
+    #[inline(always)]
+    pub(super) fn at_corners<S: Simd>(
+        &self,
+        simd: S,
+        elastic: &L::Of<T::Vector<S>>,
+        group: usize,
+        at: usize,
+        scratch: &Scratch<T>,
+    ) -> ([[T::Vector<S>; 3]; MOST_NODES], T::Vector<S>) {
+        let zero = T::splat(simd, T::default());
+        let mut u = [[zero; 3]; MOST_NODES];
+        let mut pressure = zero;
+        for corner in 0..E::NODES {
+            let first = (group * E::NODES + corner) * LANES + at;
+            let theta;
+            match &self.at_hand {
+                Some(at_hand) => {
+                    let [x, y, z, more] = T::load_rows(simd, &scratch.read, &at_hand.corners[first..]);
+                    (u[corner], theta) = ([x, y, z], more);
+                }
+                None => (u[corner], theta) = self.from_columns(simd, &self.connectivity[first..]),
+            }
+            if E::PRESSURE == PressureFrom::Nodes {
+                pressure += elastic.pressure(theta);
+            }
+        }
+        (u, pressure * zero.constant(1.0 / E::NODES as f64))
+    }
+
+    /// Displacements (m) and θ of a register full of nodes.
+    #[inline(always)]
+    fn from_columns<S: Simd>(&self, simd: S, nodes: &[u32]) -> ([T::Vector<S>; 3], T::Vector<S>) {
+        let mut lanes = [[T::default(); LANES]; 4];
+        for lane in 0..T::width::<S>() {
+            let node = nodes[lane] as usize;
+            let u = &self.displacement[3 * node..3 * node + 3];
+            for i in 0..3 {
+                lanes[i][lane] = u[i];
+            }
+            if E::PRESSURE == PressureFrom::Nodes {
+                lanes[3][lane] = self.nodal_volume_change[node];
+            }
+        }
+        let [x, y, z, theta] = &lanes;
+        ([T::load(simd, x), T::load(simd, y), T::load(simd, z)], T::load(simd, theta))
+    }
+
+    /// Forces on corners (N) to where they are summed.
+    #[inline(always)]
+    pub(super) fn give<S: Simd>(
+        &mut self,
+        simd: S,
+        group: usize,
+        at: usize,
+        scratch: &mut Scratch<T>,
+        forces: &[[T::Vector<S>; 3]; MOST_NODES],
+    ) {
+        for corner in 0..E::NODES {
+            let first = (group * E::NODES + corner) * LANES;
+            match &self.at_hand {
+                Some(at_hand) => {
+                    T::add_to_rows(simd, &mut scratch.sums, &at_hand.corners[first + at..], forces[corner]);
+                }
+                None => {
+                    for i in 0..3 {
+                        T::store(forces[corner][i], &mut self.force[3 * first + i * LANES + at..]);
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,38 @@
+//! What is the same for all nodes in a step.
+
+use crate::components::Clock;
+use crate::math::Scalar;
+
+/// What a step multiplies forces and damping with.
+#[derive(Clone, Copy)]
+pub struct Factors<T> {
+    /// Δt times the time between the middles of the last and of this step (see [`Clock::between_middles`]), times the gain
+    /// of a static analysis (s²).
+    pub(super) force: T,
+    /// Half the time between the middles, in the first step Δt/2 (s).
+    pub(super) half_step: T,
+    /// 1, in the first step 0.
+    pub(super) divide: T,
+    /// 1/Δt (1/s).
+    pub(super) rate: T,
+    /// Share of a step's work that is booked, the time between the middles over Δt: 1, in the first step ½.
+    pub(super) booked: T,
+    /// a of a static analysis, else 0.
+    pub(super) relaxation: T,
+}
+
+impl<T: Scalar> Factors<T> {
+    /// In the step that begins at the clock's time.
+    pub fn of(clock: &Clock) -> Self {
+        let (dt, between, first) = (clock.time_step, clock.between_middles(), clock.step == 0);
+        let (gain, damping) = clock.relaxation.map_or((1.0, 0.0), |relaxation| (relaxation.gain, relaxation.damping));
+        Self {
+            force: T::from_f64(gain * dt * between),
+            half_step: T::from_f64(0.5 * if first { dt } else { between }),
+            divide: T::from_f64(if first { 0.0 } else { 1.0 }),
+            rate: T::from_f64(1.0 / dt),
+            booked: T::from_f64(between / dt),
+            relaxation: T::from_f64(damping),
+        }
+    }
+}

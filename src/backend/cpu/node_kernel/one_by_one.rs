@@ -1,0 +1,111 @@
+//! One node after the other: those at the end of a column, those without mass, those whose work is booked.
+
+use super::{Factors, NodeColumns};
+use crate::math::Scalar;
+
+/// A displacement and its step, summed with what rounding left out of both.
+pub(super) struct Sum<'a, T> {
+    pub(super) u: &'a mut [T],
+    pub(super) step: &'a mut [T],
+    pub(super) lost: Option<&'a mut [T]>,
+}
+
+impl<T: Scalar> Sum<'_, T> {
+    /// Makes the step longer. At a small Δt the change has few digits in common with the step, and is lost without
+    /// compensation.
+    #[inline(always)]
+    fn push(&mut self, i: usize, change: T) {
+        match &mut self.lost {
+            None => self.step[i] += change,
+            Some(lost) => compensated_add(&mut self.step[i], &mut lost[3 + i], change),
+        }
+    }
+
+    /// Takes the step.
+    #[inline(always)]
+    fn go(&mut self, i: usize, constrained: bool) {
+        match &mut self.lost {
+            None => self.u[i] += self.step[i],
+            Some(lost) => {
+                // what boundary wrote is the whole of a constrained step
+                if constrained {
+                    lost[3 + i] = T::default();
+                }
+                let exact = self.step[i] - lost[3 + i];
+                compensated_add(&mut self.u[i], &mut lost[i], exact);
+            }
+        }
+    }
+}
+
+/// sum += change, where `lost` is what rounding has made of the sum too much (Kahan 1965).
+#[inline(always)]
+fn compensated_add<T: Scalar>(sum: &mut T, lost: &mut T, change: T) {
+    let exact = change - *lost;
+    let rounded = *sum + exact;
+    *lost = (rounded - *sum) - exact;
+    *sum = rounded;
+}
+
+/// Adds to a number that is kept as two of f32, as bits.
+pub(super) fn add_to_sum(sum: Option<&mut [u32]>, part: f64) {
+    let Some([high, low, ..]) = sum else { return };
+    let total = f64::from(f32::from_bits(*high)) + f64::from(f32::from_bits(*low)) + part;
+    let rounded = total as f32;
+    *high = rounded.to_bits();
+    *low = ((total - f64::from(rounded)) as f32).to_bits();
+}
+
+/// Returns the work against internal forces (J).
+#[inline(always)]
+pub(super) fn move_node<T: Scalar>(
+    inputs: &NodeColumns<'_, T>,
+    node: usize,
+    sum: &mut Sum<'_, T>,
+    mut work: Option<&mut [T]>,
+) -> f64 {
+    let (zero, one) = (T::default(), T::from_f64(1.0));
+    let Factors { force: force_factor, half_step, divide, rate, booked, relaxation } = inputs.factors;
+    let (mass, axes) = (inputs.mass[node], inputs.axes[node]);
+    if mass <= zero {
+        sum.step.fill(zero);
+        return 0.0;
+    }
+    let per_mass = one / mass;
+    let coefficient = inputs.damping.map_or(zero, |c| c[node]);
+    let a = coefficient * half_step * per_mass + relaxation;
+    let shrink = if a > zero { one / (one + divide * a) } else { one };
+    let mut spent = zero;
+    for i in 0..3 {
+        let internal = inputs.internal[3 * node + i];
+        let external = inputs.external.map_or(zero, |r| r[3 * node + i]);
+        let constrained = axes >> i & 1 == 1;
+        let before = sum.step[i];
+        if !constrained {
+            let pushed = force_factor * ((external - internal) * per_mass);
+            sum.push(i, (pushed - (one + divide) * a * before) * shrink);
+        }
+        sum.go(i, constrained);
+        let step = sum.step[i];
+        let last = match inputs.kept.get(3 * node + i) {
+            Some(&bits) if constrained => T::from_f64(f64::from(f32::from_bits(bits))),
+            _ => before,
+        };
+        spent += internal * (last + step);
+        if let Some(work) = &mut work {
+            // forces at the beginning of the step work along the mean of the steps before and after, in the first step
+            // along half of it: so the balance of the scheme is exact in the middle of each step
+            let before = if constrained { std::mem::replace(&mut work[4 + i], step) } else { before };
+            let mean = T::from_f64(0.5) * (before + step);
+            let along = booked * mean;
+            let lost = coefficient * rate * mean * along;
+            work[0] += external * along;
+            work[1] += lost;
+            work[3] += internal * along;
+            if constrained {
+                work[2] += (internal - external) * along + lost;
+            }
+        }
+    }
+    0.5 * (booked * spent).to_f64()
+}

@@ -1,0 +1,164 @@
+//! What is measured: cubes under gravity, held at the bottom.
+
+use crate::components::{Precision, Scheme};
+use crate::error::Error;
+use crate::mesh::ElementKind;
+use crate::scene::SceneFile;
+use crate::simulation::{BackendChoice, Options};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// Effects beside neo-Hookean elasticity.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[serde(rename_all = "kebab-case")]
+pub enum Effects {
+    /// None.
+    None,
+    /// Transverse isotropy.
+    Fibres,
+    /// One Prony term.
+    Viscosity,
+    /// Both: the paper's material.
+    FibresViscosity,
+}
+
+/// One case.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+pub struct Case {
+    /// The element type.
+    pub element: ElementKind,
+    /// Effects.
+    pub effects: Effects,
+    /// `cpu` or `gpu`.
+    pub backend: String,
+    /// `f32` or `f64`.
+    pub precision: String,
+    /// CPU threads.
+    pub threads: usize,
+    /// `patches` or `two-pass`.
+    pub scheme: String,
+    /// Cells along each edge.
+    pub cells: u32,
+}
+
+/// All cases of a benchmark: every combination.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Cells along each edge.
+    pub cells: Vec<u32>,
+    /// Element types.
+    pub elements: Vec<ElementKind>,
+    /// Effects.
+    pub effects: Vec<Effects>,
+    /// `cpu`, `gpu`.
+    pub backends: Vec<String>,
+    /// `f32`, `f64`.
+    pub precisions: Vec<String>,
+    /// CPU threads.
+    pub threads: Vec<usize>,
+    /// `patches`, `two-pass`.
+    pub schemes: Vec<String>,
+}
+
+impl Plan {
+    /// Groups of cases of the same cube, to be timed by turns.
+    pub fn groups(&self) -> Vec<Vec<Case>> {
+        let mut groups = Vec::new();
+        for &cells in &self.cells {
+            for &element in &self.elements {
+                let mut group = Vec::new();
+                for &effects in &self.effects {
+                    for backend in &self.backends {
+                        let gpu = backend == "gpu";
+                        for precision in self.precisions.iter().filter(|precision| !gpu || *precision == "f32") {
+                            for &threads in if gpu { &[1][..] } else { &self.threads } {
+                                for scheme in self.schemes.iter().filter(|scheme| !gpu || *scheme == "two-pass") {
+                                    group.push(Case {
+                                        element,
+                                        effects,
+                                        backend: backend.clone(),
+                                        precision: precision.clone(),
+                                        threads,
+                                        scheme: scheme.clone(),
+                                        cells,
+                                    });
+                                }
+                            }
+                        }
+                    }
+                }
+                groups.push(group);
+            }
+        }
+        groups.retain(|group: &Vec<Case>| !group.is_empty());
+        groups
+    }
+}
+
+/// How many elements fill a cell of a cube.
+pub fn elements_a_cell(element: ElementKind) -> u64 {
+    match element {
+        ElementKind::Tet4 | ElementKind::Tet4NodalPressure => 6,
+        ElementKind::Hex8 | ElementKind::Hex8MeanDilatation => 1,
+    }
+}
+
+impl Effects {
+    /// As in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Effects::None => "none",
+            Effects::Fibres => "fibres",
+            Effects::Viscosity => "viscosity",
+            Effects::FibresViscosity => "fibres-viscosity",
+        }
+    }
+}
+
+impl Case {
+    /// Whether it runs on a GPU.
+    pub fn is_gpu(&self) -> bool {
+        self.backend == "gpu"
+    }
+
+    /// The same in the plain scheme of two passes.
+    pub fn two_pass(&self) -> Self {
+        Self { scheme: "two-pass".into(), ..self.clone() }
+    }
+
+    /// Its scene.
+    ///
+    /// # Errors
+    /// None is known: it is the program's own text.
+    pub fn scene(&self) -> Result<SceneFile, Error> {
+        let fibres = "fibres: (eta: 2000, direction: Along(1, 0, 0)),";
+        let viscosity = "prony: (terms: [(alpha: 0.5, tau: 0.58)]),";
+        let effects = match self.effects {
+            Effects::None => String::new(),
+            Effects::Fibres => fibres.into(),
+            Effects::Viscosity => viscosity.into(),
+            Effects::FibresViscosity => format!("{fibres} {viscosity}"),
+        };
+        let (cells, element) = (self.cells, self.element);
+        let text = format!(
+            "(duration: 1e6,
+              bodies: {{\"cube\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: ({cells}, {cells}, {cells}), elements: {element:?}),
+                                   material: \"tissue\")}},
+              materials: {{\"tissue\": (density: 1000, neo_hookean: Young(young: 3000, poisson: 0.45), {effects})}},
+              constraints: [Fixed(on: Set(\"z0\"))],
+              loads: [Gravity(acceleration: (0, 0, -2))])"
+        );
+        SceneFile::from_text("cube", &text, Path::new("."), &[]).map_err(Error::from)
+    }
+
+    /// How it runs.
+    pub fn options(&self) -> Options {
+        Options {
+            backend: if self.is_gpu() { BackendChoice::Gpu } else { BackendChoice::Cpu },
+            precision: if self.precision == "f64" { Precision::F64 } else { Precision::F32 },
+            threads: self.threads,
+            scheme: if self.scheme == "patches" { Scheme::Patches } else { Scheme::TwoPass },
+            ..Options::default()
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! The model of cost: arithmetic counted by numbers that count, bytes from the columns.
+
+use super::{Case, Effects};
+use crate::components::patch_groups;
+use crate::elements::{Element, MOST_NODES, PressureFrom};
+use crate::evaluation::{node_count, row_count, with_element};
+use crate::materials::{Elastic, Fibres, NeoHookean, PronyTerm};
+use crate::math::{LANES, Real, Task, refine_inverse_cbrt};
+use std::cell::Cell;
+use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// What an element and step takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// Floating-point operations of the element kernel; a multiply-add is two.
+    pub flops: f64,
+    /// Bytes, with each column moved once and nodes counted where they are shared out.
+    pub bytes: f64,
+}
+
+/// The model for a case with so many elements and nodes.
+pub fn cost(case: &Case, elements: u64, nodes: u64) -> Cost {
+    let (kind, number) = (case.element, if case.precision == "f64" { 8.0 } else { 4.0 });
+    let a_node = nodes as f64 / elements as f64;
+    let viscous = matches!(case.effects, Effects::Viscosity | Effects::FibresViscosity);
+    let points = with_element!(kind, E => E::POINTS) as f64;
+    let history = if viscous { 2.0 * 6.0 * points * number } else { 0.0 };
+    // steps, displacements and their lost digits read and written; forces and loads written and read, loads also cleared
+    let compensated = if case.precision == "f64" { 0.0 } else { 12.0 };
+    let of_node = (12.0 + compensated + 6.0 + 9.0 + 2.0) * number + 4.0;
+    let corners = node_count(kind) as f64;
+    let forces = if case.scheme == "patches" {
+        // nodes of a patch: those of a cube of so many elements
+        let cells = (patch_groups(kind) * LANES) as f64 / super::elements_a_cell(kind) as f64;
+        let shared = (1.0 + 1.0 / cells.cbrt()).powi(3) * a_node;
+        2.0 * corners + shared * (4.0 + 4.0 + 3.0 * number + 2.0 * 3.0 * number)
+    } else {
+        4.0 * corners + corners * (4.0 + 2.0 * 3.0 * number) + a_node * 3.0 * number
+    };
+    let shape = row_count(kind) as f64 * number;
+    Cost {
+        flops: with_element!(kind, E => flops::<E>(case.effects)),
+        bytes: shape + history + forces + a_node * of_node,
+    }
+}
+
+thread_local! {
+    static COUNT: Cell<u64> = const { Cell::new(0) };
+}
+
+/// A number that counts what is done with it.
+#[derive(Clone, Copy, Debug)]
+struct Counted(f64);
+
+fn counted(operations: u64, value: f64) -> Counted {
+    COUNT.set(COUNT.get() + operations);
+    Counted(value)
+}
+
+macro_rules! operators {
+    ($($name:ident $function:ident $sign:tt),*) => {
+        $(impl $name for Counted {
+            type Output = Self;
+            fn $function(self, other: Self) -> Self {
+                counted(1, self.0 $sign other.0)
+            }
+        })*
+    };
+}
+operators!(Add add +, Sub sub -, Mul mul *, Div div /);
+
+impl Neg for Counted {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Counted(-self.0)
+    }
+}
+impl AddAssign for Counted {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+impl SubAssign for Counted {
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl Real for Counted {
+    const EPSILON: f64 = f64::EPSILON;
+
+    fn constant(self, value: f64) -> Self {
+        Counted(value)
+    }
+    fn mul_add(self, factor: Self, summand: Self) -> Self {
+        counted(2, self.0 * factor.0 + summand.0)
+    }
+    fn max(self, other: Self) -> Self {
+        counted(1, self.0.max(other.0))
+    }
+    fn min(self, other: Self) -> Self {
+        counted(1, self.0.min(other.0))
+    }
+    fn inverse_cbrt(self) -> Self {
+        // as in f32
+        refine_inverse_cbrt(self, Counted(1.0 / self.0.cbrt()), 3)
+    }
+    fn sqrt(self) -> Self {
+        counted(1, self.0.sqrt())
+    }
+    fn if_positive(self, then: Self, otherwise: Self) -> Self {
+        if counted(1, self.0).0 > 0.0 { then } else { otherwise }
+    }
+    fn power_of_two(self) -> Self {
+        counted(1, self.0.exp2())
+    }
+    fn mantissa_and_exponent(self) -> (Self, Self) {
+        let exponent = self.0.log2().round();
+        (counted(1, self.0 / exponent.exp2()), counted(1, exponent))
+    }
+    fn apart<T: Task<Self>>(self, task: T) -> T::Output {
+        task.run()
+    }
+}
+
+/// Operations of one element, by doing them.
+fn flops<E: Element>(effects: Effects) -> f64 {
+    let zero = Counted(0.0);
+    let points: Vec<glam::DVec3> = match E::NODES {
+        4 => vec![glam::DVec3::ZERO, glam::DVec3::X, glam::DVec3::Y, glam::DVec3::Z],
+        _ => [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
+            .map(|(x, y, z)| glam::DVec3::new(f64::from(x), f64::from(y), f64::from(z)))
+            .to_vec(),
+    };
+    let shape = E::rest_shape(&points, 3000.0);
+    let shape = |row: usize| Counted(shape[row]);
+    let law = NeoHookean { shear: Counted(1034.0), bulk: Counted(1e4) };
+    let fibres = (Fibres { eta: Counted(2000.0), tension_only: zero }, [Counted(1.0), zero, zero]);
+    let term = PronyTerm { stress: Counted(1e-4), memory: Counted(-0.5), rate: Counted(1e-3), aim: Counted(-1.0) };
+    let viscous = matches!(effects, Effects::Viscosity | Effects::FibresViscosity);
+    let fibred = matches!(effects, Effects::Fibres | Effects::FibresViscosity);
+    COUNT.set(0);
+    let u = E::prepare(&[[Counted(1e-3); 3]; MOST_NODES]);
+    let mut shared = None;
+    if E::PRESSURE != PressureFrom::Point {
+        let mut sum = zero;
+        for point in 0..E::POINTS {
+            let state = E::at_point(&u, point, shape);
+            let k = law.kinematics(&state.gradient);
+            sum = state.volume.mul_add(law.volume_measure(&k), sum);
+        }
+        shared = Some(law.pressure(sum));
+    }
+    let mut forces = E::no_forces(zero);
+    for point in 0..E::POINTS {
+        let state = E::at_point(&u, point, shape);
+        let stress = if viscous {
+            let k = law.kinematics(&state.gradient);
+            let mut isochoric = law.isochoric(&k);
+            if fibred {
+                isochoric = isochoric.plus(&fibres.0.isochoric(&k, fibres.1));
+            }
+            let memory = isochoric;
+            let relaxed = isochoric.plus(&term.relaxed(&isochoric, &memory));
+            let _ = term.carried_on(&isochoric, &memory);
+            let pressure = shared.unwrap_or_else(|| law.pressure(law.volume_measure(&k)));
+            law.first_stress(&state.gradient, &k, &relaxed, pressure)
+        } else {
+            law.stress_at_once(&state.gradient, shared, fibred.then_some(fibres)).0
+        };
+        E::add_stress(&mut forces, point, &state, &stress);
+    }
+    // and their sums at the nodes
+    E::store_forces(&u, &forces, shape, |_, _, force| {
+        let _ = force + zero;
+    });
+    COUNT.get() as f64
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::ElementKind;
+
+    #[test]
+    fn arithmetic_is_that_of_the_elements_and_more_with_effects() {
+        let case = |element, effects| Case {
+            element,
+            effects,
+            backend: "cpu".into(),
+            precision: "f32".into(),
+            threads: 1,
+            scheme: "patches".into(),
+            cells: 20,
+        };
+        let tet = cost(&case(ElementKind::Tet4, Effects::None), 48_000, 9261);
+        // ∇u 9·3·2, forces 9·3·2, sums 12 and differences 9 are 129; the law comes on top
+        assert!((180.0..300.0).contains(&tet.flops), "{tet:?}");
+        let all = cost(&case(ElementKind::Tet4, Effects::FibresViscosity), 48_000, 9261);
+        assert!(all.flops > tet.flops + 50.0 && all.bytes == tet.bytes + 48.0, "{all:?}");
+        let hex = cost(&case(ElementKind::Hex8, Effects::None), 8_000, 9261);
+        assert!(hex.flops > tet.flops && hex.bytes > tet.bytes, "{hex:?}");
+    }
+}

@@ -1,0 +1,34 @@
+//! Patches: neighbouring elements whose nodes fit into a core's cache or a GPU workgroup's memory.
+
+use bevy_ecs::prelude::*;
+
+/// How the forces of elements are summed at the nodes. Results differ by rounding only.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Scheme {
+    /// Patch by patch in cache, then over the patches that share a node: a tenth to a third of the traffic with memory.
+    #[default]
+    Patches,
+    /// Every element writes the forces on its corners, every node sums them: the paper's two kernels. To compare with, and
+    /// what GPUs run.
+    TwoPass,
+}
+
+/// The nodes of each of a block's patches, which are [`patch_groups`](super::patch_groups) groups of elements one after the
+/// other. A patch's forces are summed at its own nodes, and [`ElementForce`](super::ElementForce) has a vector for each of
+/// them; what patches share is summed by the gather.
+#[derive(Component, Clone, Debug, Default)]
+pub struct Patches {
+    /// Where each patch's nodes begin; one number more than patches.
+    pub starts: Vec<u32>,
+    /// Rows of the body's node columns, ascending in each patch.
+    pub nodes: Vec<u32>,
+    /// Elements' corners as places among their patch's nodes; laid out as [`Connectivity`](super::Connectivity).
+    pub connectivity: Vec<u16>,
+}
+
+impl Patches {
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.starts.len().saturating_sub(1)
+    }
+}
