@@ -169,7 +169,8 @@ impl<T: SimdScalar> Rows<'_, T> {
             }
             T::store(after, &mut step[at..]);
             T::store(new, &mut u[at..]);
-            astray += new - new;
+            // what is no number stays none
+            astray += new * zero;
             T::store(inner * (before + after), &mut work[at..]);
             at += T::width::<S>();
         }

@@ -7,6 +7,9 @@ use crate::materials::Elastic;
 use crate::math::{LANES, Real, Scratch, SimdScalar};
 use pulp::Simd;
 
+/// A vector at each corner.
+pub(super) type AtNodes<R> = [[R; 3]; MOST_NODES];
+
 /// The element forces (N) of each patch, and its nodes where it sums them: rows of the body, and those of its corners.
 pub(super) fn parts<'a, T>(
     mut force: &'a mut [T],
@@ -74,7 +77,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         group: usize,
         at: usize,
         scratch: &Scratch<T>,
-    ) -> ([[T::Vector<S>; 3]; MOST_NODES], T::Vector<S>) {
+    ) -> (AtNodes<T::Vector<S>>, T::Vector<S>) {
         let zero = T::splat(simd, T::default());
         let mut u = [[zero; 3]; MOST_NODES];
         let mut pressure = zero;
@@ -86,7 +89,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
                     let [x, y, z, more] = T::load_rows(simd, &scratch.read, &at_hand.corners[first..]);
                     (u[corner], theta) = ([x, y, z], more);
                 }
-                None => (u[corner], theta) = self.from_columns(simd, &self.connectivity[first..]),
+                None => (u[corner], theta) = self.read_columns(simd, &self.connectivity[first..]),
             }
             if E::PRESSURE == PressureFrom::Nodes {
                 pressure += elastic.pressure(theta);
@@ -97,7 +100,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
 
     /// Displacements (m) and θ of a register full of nodes.
     #[inline(always)]
-    fn from_columns<S: Simd>(&self, simd: S, nodes: &[u32]) -> ([T::Vector<S>; 3], T::Vector<S>) {
+    fn read_columns<S: Simd>(&self, simd: S, nodes: &[u32]) -> ([T::Vector<S>; 3], T::Vector<S>) {
         let mut lanes = [[T::default(); LANES]; 4];
         for lane in 0..T::width::<S>() {
             let node = nodes[lane] as usize;
@@ -121,7 +124,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         group: usize,
         at: usize,
         scratch: &mut Scratch<T>,
-        forces: &[[T::Vector<S>; 3]; MOST_NODES],
+        forces: &AtNodes<T::Vector<S>>,
     ) {
         for corner in 0..E::NODES {
             let first = (group * E::NODES + corner) * LANES;

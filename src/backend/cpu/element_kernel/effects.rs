@@ -7,6 +7,9 @@ use crate::materials::{Elastic, ExponentialFibre, Fibres, Kinematics};
 use crate::math::{LANES, Real, SimdScalar, Sym3};
 use pulp::{Simd, WithSimd};
 
+/// Fibres and their unit vectors at rest.
+type FibresAlong<R> = (Fibres<R>, [R; 3]);
+
 impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
     /// S of the fibres (Pa).
     #[inline(always)]
@@ -30,7 +33,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         simd: S,
         group: usize,
         at: usize,
-    ) -> Option<(Fibres<T::Vector<S>>, [T::Vector<S>; 3])> {
+    ) -> Option<FibresAlong<T::Vector<S>>> {
         let (fibres, direction) = self.law.fibres.as_ref()?;
         let fibres = fibres.map(
             #[inline(always)]
