@@ -40,7 +40,7 @@ pub(super) fn insert_node_columns(
     if scene.integration.compensated && precision == Precision::F32 {
         entity.insert(DisplacementCompensation(Reals::zeros(precision, COMPENSATION_NUMBERS * count)));
     }
-    if !scene.loads.is_empty() {
+    if scene.loads.iter().any(super::loads::has_weight) {
         entity.insert(ExternalForce(vectors()));
     }
     // pseudo-steps to rest do no work worth booking

@@ -7,12 +7,15 @@ use crate::scene::schema::{Load, Select, Share};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
-/// Spawns all loads.
+/// Spawns all loads. Those of no weight are looked at like the others, and pruned: they cost nothing.
 pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
     for (number, load) in assembly.scene.scene.loads.iter().enumerate() {
         let path = format!("loads[{number}].on");
         match load {
             Load::Gravity { body, acceleration, curve } => {
+                if !has_weight(load) {
+                    continue;
+                }
                 let signal = Signal::Load { curve: curve.clone(), amplitude: *acceleration };
                 let signal = world.resource_mut::<Signals>().add(signal);
                 let named = body.as_ref().and_then(|name| assembly.bodies.get(name));
@@ -25,6 +28,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
                 let Some(body) = assembly.body(body) else { continue };
                 let Some(picked) = assembly.pick(body, on, &path, diagnostics) else { continue };
                 match picked.nodes(&body.placed) {
+                    Ok(_) if !has_weight(load) => {}
                     Ok(marks) => {
                         let rows = body.rows_of(&marks);
                         let parts = if *share == Share::Total { rows.len() as f64 } else { 1.0 };
@@ -39,17 +43,33 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             }
             Load::Pressure { body, on, pressure, curve } => {
                 let Some((body, faces)) = loaded_faces(assembly, body, on, &path, diagnostics) else { continue };
+                if !has_weight(load) {
+                    continue;
+                }
                 let signal = Signal::Load { curve: curve.clone(), amplitude: DVec3::X * *pressure };
                 let signal = world.resource_mut::<Signals>().add(signal);
                 world.spawn((Pressure { faces, signal }, OfBody(body)));
             }
             Load::Traction { body, on, traction, curve } => {
                 let Some((body, faces)) = loaded_faces(assembly, body, on, &path, diagnostics) else { continue };
+                if !has_weight(load) {
+                    continue;
+                }
                 let signal = Signal::Load { curve: curve.clone(), amplitude: *traction };
                 let signal = world.resource_mut::<Signals>().add(signal);
                 world.spawn((Traction { faces, signal }, OfBody(body)));
             }
         }
+    }
+}
+
+/// Whether a load ever pushes.
+pub(super) fn has_weight(load: &Load) -> bool {
+    match load {
+        Load::Gravity { acceleration: vector, .. }
+        | Load::NodalForce { force: vector, .. }
+        | Load::Traction { traction: vector, .. } => *vector != DVec3::ZERO,
+        Load::Pressure { pressure, .. } => *pressure != 0.0,
     }
 }
 

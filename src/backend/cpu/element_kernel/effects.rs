@@ -28,12 +28,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
 
     /// The fibres and their unit vectors.
     #[inline(always)]
-    pub(super) fn fibres_at<S: Simd>(
-        &self,
-        simd: S,
-        group: usize,
-        at: usize,
-    ) -> Option<FibresAlong<T::Vector<S>>> {
+    pub(super) fn fibres_at<S: Simd>(&self, simd: S, group: usize, at: usize) -> Option<FibresAlong<T::Vector<S>>> {
         let (fibres, direction) = self.law.fibres.as_ref()?;
         let fibres = fibres.map(
             #[inline(always)]
