@@ -37,13 +37,6 @@ pub const SHORTFALLS: &[Shortfall] = &[
         verdict: Verdict::Failed,
         why: "bent tetrahedra stay stiff: with three and with four of them across deflections differ by 12 %",
     },
-    Shortfall {
-        // timed in full only
-        case: "h34",
-        on: |_, full| full,
-        verdict: Verdict::Failed,
-        why: "the bits are the same, but loads of weight zero are worked out as any: of a step of 32 cells the zero pressure alone takes half, and it takes 1.5 to 2.7 times as long",
-    },
 ];
 
 /// What is known of a case in a configuration, in full or in the size for everyday.

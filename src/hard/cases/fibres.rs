@@ -47,7 +47,13 @@ pub fn zero_weights(trial: &mut Trial<'_>) -> Result<(), Error> {
     let (a, b) = (with.displacements("body")?, without.displacements("body")?);
     trial.holds("the same bits as without", a == b && with.time_step() == without.time_step());
     if trial.full {
-        trial.most("step time with over without", fastest_step(&mut with)? / fastest_step(&mut without)?, 1.03);
+        // by turns, for other work on the machine comes and goes
+        let (mut first, mut second) = (f64::INFINITY, f64::INFINITY);
+        for _ in 0..20 {
+            first = first.min(fastest_step(&mut with)?);
+            second = second.min(fastest_step(&mut without)?);
+        }
+        trial.most("step time with over without", first / second, 1.03);
     }
     Ok(())
 }
