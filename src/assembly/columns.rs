@@ -54,7 +54,7 @@ pub(super) fn insert_node_columns(
     entity.insert(FirstNonFinite(noticed));
     let used =
         std::iter::once(&scene.bodies[name].material).chain(scene.bodies[name].regions.iter().map(|r| &r.material));
-    let damped = used.into_iter().any(|material| scene.materials[material].damping.is_some());
+    let damped = used.into_iter().any(|material| scene.materials[material].damping.is_some_and(|rate| rate != 0.0));
     let (mass, damping) = nodal_masses(&authoring.blocks, count, world);
     let mut entity = world.entity_mut(body);
     entity.insert(Mass(Reals::from_f64(precision, mass.into_iter())));
