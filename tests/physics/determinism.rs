@@ -94,6 +94,26 @@ fn largest_difference(a: &[DVec3], b: &[DVec3]) -> f64 {
     a.iter().zip(b).fold(0.0_f64, |worst, (a, b)| worst.max((*a - *b).length())) / largest
 }
 
+/// Nodes whose work is booked are moved one after the other, others a register full at a time.
+#[test]
+fn booking_work_changes_no_bit() {
+    let (folder, mesh) = (tempfile::tempdir().unwrap(), mesh(6));
+    mesh.write(&folder.path().join("mesh.vtk"));
+    for precision in [Precision::F64, Precision::F32] {
+        let [booked, plain] = [true, false].map(|booked| {
+            let text = scene(Effects::Laws);
+            let text = if booked { text } else { text.replace("output: (energies_every: 0.1)", "output: ()") };
+            let options = Options { backend: BackendChoice::Cpu, precision, ..Options::default() };
+            let mut simulation = Configuration { name: "CPU", options }.start_in(&text, folder.path());
+            simulation.advance(60).unwrap();
+            let known = simulation.energies().unwrap().internal_work.is_some();
+            assert_eq!(known, booked, "work must be booked in one of them only");
+            bits(&mut simulation, "b")
+        });
+        assert!(booked == plain, "{precision:?}");
+    }
+}
+
 /// Sums patch by patch and over all corners differ in their order only; bounds as for a shuffled mesh.
 #[test]
 fn both_schemes_move_alike() {
