@@ -1,5 +1,5 @@
 // Sums element forces at the nodes in a fixed order; twin of systems/gather.rs. clear_loads is in loads.wgsl, or
-// generated where there are none.
+// generated where there are none. STRIDE is generated.
 struct Gather {
     count: u32, // nodes
 }
@@ -18,7 +18,7 @@ fn gather(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups)
     var sum = vec3<f32>(0.0);
     for (var i = starts[node]; i < starts[node + 1u]; i++) {
         let at = corners[i];
-        sum += vec3<f32>(element_force[at], element_force[at + LANES], element_force[at + 2u * LANES]);
+        sum += vec3<f32>(element_force[at], element_force[at + STRIDE], element_force[at + 2u * STRIDE]);
     }
     internal_force[3u * node] = sum.x;
     internal_force[3u * node + 1u] = sum.y;

@@ -86,7 +86,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
         let kernel = Kernel::new("gather", "gather")
             .fragment(shader!("gather"))
             .fragment(shader!("row"))
-            .fragment(Fragment::new("generated: lanes", format!("const LANES: u32 = {LANES}u;\n")))
+            .fragment(Fragment::new("generated: stride", format!("const STRIDE: u32 = {}u;\n", corners.stride)))
             .bind_uniform::<Gather>("nodes", buffers.uniform("gather".into(), &nodes.bytes()))
             .bind("starts", buffers.constants("starts of corners".into(), bytemuck::cast_slice(&corners.starts)))
             .bind("corners", buffers.constants("corners".into(), bytemuck::cast_slice(&corners.corners)))

@@ -7,6 +7,7 @@ pub(crate) mod face_kernel;
 pub mod gpu;
 pub mod kernel;
 mod law_kernel;
+pub mod patch_lists;
 pub mod step;
 pub mod user_law;
 

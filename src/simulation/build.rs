@@ -15,6 +15,7 @@ use crate::backend::cpu::Cpu;
 use crate::backend::device::{Device, all_columns};
 use crate::backend::gpu::Gpu;
 use crate::backend::kernel::KernelId;
+use crate::backend::patch_lists::pack;
 use crate::components::*;
 use crate::error::Error;
 use crate::observation::{Observer, Watch, WatchKernels};
@@ -62,7 +63,7 @@ impl Simulation {
 
         let Chosen { gpu, mut why } = choose(options)?;
         if gpu.is_some() {
-            sum_forces(Scheme::TwoPass, &mut world);
+            why += &fit_workgroups(&mut world);
         }
         let gpu_name = gpu.as_ref().map(|gpu| gpu.report().name.clone());
         let prepared = match gpu {
@@ -144,6 +145,24 @@ impl Simulation {
 fn sum_forces(scheme: Scheme, world: &mut World) {
     let bodies: Vec<Entity> = world.query_filtered::<Entity, With<ElementForce>>().iter(world).collect();
     bodies.into_iter().for_each(|body| crate::assembly::insert_forces(scheme, body, world));
+}
+
+/// Sums the forces of bodies in two passes whose patches no workgroup can sum. Says of which and why.
+fn fit_workgroups(world: &mut World) -> String {
+    let blocks: Vec<(Entity, String)> = world
+        .query::<(&Block, &Patches)>()
+        .iter(world)
+        .filter_map(|(block, patches)| Some((block.body, pack(block, patches).err()?)))
+        .collect();
+    let mut said = String::new();
+    for (body, reason) in blocks {
+        let name = world.get::<Label>(body).map_or_else(String::new, |label| label.0.clone());
+        if !said.contains(&format!("of `{name}`")) {
+            said += &format!("; forces of `{name}` are summed in two passes: {reason}");
+            crate::assembly::insert_forces(Scheme::TwoPass, body, world);
+        }
+    }
+    said
 }
 
 /// Takes a GPU for the run and makes the kernels of all systems ready that have some.
