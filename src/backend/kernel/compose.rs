@@ -73,9 +73,10 @@ pub fn compose(fragments: &[Fragment]) -> Result<Composed, KernelError> {
     for (index, point) in module.entry_points.iter().enumerate().filter(|(_, p)| p.stage == ShaderStage::Compute) {
         let used = info.get_entry_point(index);
         let uses = (0..handles.len()).filter(|i| !used[handles[*i]].is_empty()).collect();
-        let shared = module.global_variables.iter().filter(|(handle, variable)| {
-            variable.space == AddressSpace::WorkGroup && !used[*handle].is_empty()
-        });
+        let shared = module
+            .global_variables
+            .iter()
+            .filter(|(handle, variable)| variable.space == AddressSpace::WorkGroup && !used[*handle].is_empty());
         entries.push(Entry {
             name: point.name.clone(),
             workgroup_size: point.workgroup_size,
