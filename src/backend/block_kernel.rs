@@ -163,7 +163,7 @@ impl BlockKernels {
             })
             .fragment(elastic.fragment);
         kernel.fragments.extend(ground(&self.law.elastic));
-        kernel.layouts.extend(elastic.layout.map(|layout| ("elastic", layout)));
+        kernel.layouts.extend(elastic.layout.map(|layout| ("elastic".into(), layout)));
         kernel
     }
 
