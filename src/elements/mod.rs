@@ -18,7 +18,7 @@ use glam::DVec3;
 /// Nodes of the element type that has most.
 pub const MOST_NODES: usize = 8;
 /// Rest-shape numbers of the element type that has most.
-pub const MOST_ROWS: usize = 35;
+pub const MOST_ROWS: usize = 32;
 /// Integration points of the element type that has most.
 pub const MOST_POINTS: usize = 8;
 

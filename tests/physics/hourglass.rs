@@ -16,11 +16,12 @@ type Nodal = [[f64; 3]; MOST_NODES];
 /// Hourglass forces alone: without stress there is nothing else.
 fn control(points: &[DVec3], u: &Nodal) -> (Nodal, f64) {
     let shape = Hex8::rest_shape(points, YOUNG);
-    let gradient = Hex8::at_point(u, 0, |k| shape[k]).gradient;
+    let u = Hex8::prepare(u);
+    let gradient = Hex8::at_point(&u, 0, |k| shape[k]).gradient;
     let mut forces = [[0.0; 3]; MOST_NODES];
     let sums = [gradient, Mat3([[0.0; 3]; 3])];
-    Hex8::store_forces(u, &sums, |k| shape[k], |corner, i, force| forces[corner][i] = force);
-    (forces, Hex8::hourglass_energy(u, &gradient, |k| shape[k]))
+    Hex8::store_forces(&u, &sums, |k| shape[k], |corner, i, force| forces[corner][i] = force);
+    (forces, Hex8::hourglass_energy(&u, &gradient, |k| shape[k]))
 }
 
 fn largest(forces: &Nodal) -> f64 {
@@ -83,7 +84,7 @@ impl Cantilever {
         for (i, j, k) in (0..10 * n).flat_map(|i| (0..n).flat_map(move |j| (0..n).map(move |k| (i, j, k)))) {
             let nodes = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
                 .map(|(x, y, z)| self.node(i + x, j + y, k + z));
-            let local = nodes.map(|node| u[node]);
+            let local = Hex8::prepare(&nodes.map(|node| u[node]));
             let gradient = Hex8::at_point(&local, 0, |k| self.shape[k]).gradient;
             let h = gradient.0;
             let pressure = self.lambda * (h[0][0] + h[1][1] + h[2][2]);

@@ -260,17 +260,15 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
             &u,
             &forces,
             #[inline(always)]
-            |row: usize| T::load(simd, &rest_shape[row * LANES + at..]),
+            |row: usize| {
+                let number = T::load(simd, &rest_shape[row * LANES + at..]);
+                // forces are proportional to these
+                let scales = row == E::FORCE_ROW.unwrap_or(E::VOLUME_ROW) || row == E::VOLUME_ROW;
+                if scales && self.inverted_go { worst.if_positive(zero, number) } else { number }
+            },
             #[inline(always)]
             |corner: usize, i: usize, force| out[corner][i] = force,
         );
-        if self.inverted_go {
-            for corner in 0..E::NODES {
-                for i in 0..3 {
-                    out[corner][i] = worst.if_positive(zero, out[corner][i]);
-                }
-            }
-        }
         self.give(simd, group, at, scratch, &out);
         worst
     }
