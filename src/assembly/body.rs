@@ -134,6 +134,7 @@ impl BlockBuilder<'_> {
         let members = Members { mesh: self.mesh, elements: self.elements, body: name, material: &material_name };
         let material = &called_for(&self.assembly.scene.scene.materials[&material_name]);
         let (fibre_directions, varying) = members.directions(material, self.assembly.precision, diagnostics);
+        let (shapes, simple) = self.rest_shapes(hourglass * young);
         let block = Block {
             body,
             material: self.material,
@@ -141,6 +142,7 @@ impl BlockBuilder<'_> {
             count: self.elements.len(),
             force_offset: 0,
             force_length: 0,
+            simple,
             fibre_directions,
         };
         let connectivity = self.connectivity();
@@ -149,7 +151,7 @@ impl BlockBuilder<'_> {
             OfBody(body),
             block,
             Connectivity(connectivity.clone()),
-            RestShape(self.rest_shapes(hourglass * young)),
+            RestShape(shapes),
             FirstInverted(vec![u32::MAX; 2]),
             OnInversion(material.inversion()),
         ));
@@ -185,7 +187,9 @@ impl BlockBuilder<'_> {
         connectivity
     }
 
-    fn rest_shapes(&self, young: f64) -> Reals {
+    /// Rest shapes, and whether all are simple.
+    fn rest_shapes(&self, young: f64) -> (Reals, bool) {
+        let mut simple = true;
         let numbers = row_count(self.kind);
         let mut shapes = Reals::zeros(self.assembly.precision, self.padded() * numbers);
         for row in 0..self.padded() {
@@ -197,6 +201,7 @@ impl BlockBuilder<'_> {
                 *point = self.mesh.points[node as usize];
             }
             let shape: [f64; MOST_ROWS] = with_element!(self.kind, E => E::rest_shape(&points[..nodes.len()], young));
+            simple &= with_element!(self.kind, E => E::is_simple(&shape));
             for k in 0..numbers {
                 shapes.set(lane_place(row, numbers, k), shape[k]);
             }
@@ -204,7 +209,7 @@ impl BlockBuilder<'_> {
                 extinguish(self.kind, row, &mut shapes);
             }
         }
-        shapes
+        (shapes, simple)
     }
 }
 

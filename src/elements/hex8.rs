@@ -17,7 +17,12 @@ use glam::{DMat3, DVec3};
 /// γ is never stored: with h_m = XᵀΓ_m, q_m = Γ_m·u − ∇u h_m, and its force folds into the stress.
 /// Rest shape: β of the six modes (rows 0 to 17), volume (18), k (N/m, 19), h_m (20 to 31).
 #[derive(Clone, Copy, Debug)]
-pub struct Hex8;
+pub struct Hexahedron<const SLOPES: usize>;
+
+/// Of any shape.
+pub type Hex8 = Hexahedron<6>;
+/// A parallelepiped: six of its modes' gradients and arms are zero, and not even read.
+pub type Parallelepiped = Hexahedron<3>;
 
 pub(super) const NODE_SIGNS: [[f64; 3]; 8] = [
     [-1.0, -1.0, -1.0],
@@ -75,8 +80,7 @@ pub(super) fn mode_sign(mode: usize, a: usize) -> f64 {
     if mode < 3 { NODE_SIGNS[a][mode] } else { hourglass_sign(mode - 3, a) }
 }
 
-/// Modes that mean gradients have, and all.
-const SLOPES: usize = 6;
+/// How many modes there are.
 pub(super) const MODES: usize = 7;
 /// First row of the h_m.
 const ARMS: usize = 20;
@@ -113,11 +117,12 @@ pub(super) fn spread<R: Real>([x, y, z, yz, zx, xy, xyz]: [R; MODES]) -> [R; MOS
     ]
 }
 
-impl Element for Hex8 {
+impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
     const NAME: &'static str = "hex8";
     const NODES: usize = 8;
     const POINTS: usize = 1;
     const ROWS: usize = 32;
+    const ROWS_READ: usize = if SLOPES == 3 { 11 } else { 32 };
     const VOLUME_ROW: usize = 18;
     const FORCE_ROW: Option<usize> = Some(19);
     const PRESSURE: PressureFrom = PressureFrom::Point;
@@ -125,17 +130,29 @@ impl Element for Hex8 {
     fn rest_shape(points: &[DVec3], young: f64) -> [f64; MOST_ROWS] {
         let (volume, b) = mean_gradients(points);
         let mut shape = [0.0; MOST_ROWS];
-        for mode in 0..SLOPES {
+        shape[18] = volume;
+        shape[19] = young * volume * b.iter().map(|b| b.length_squared()).sum::<f64>() / 72.0;
+        let arms =
+            [0, 1, 2, 3].map(|m| -> DVec3 { (0..8).map(|a| (points[a] - points[0]) * hourglass_sign(m, a)).sum() });
+        // as far as its corners' coordinates, rounded as they are, can tell
+        let farthest = points.iter().fold(0.0_f64, |farthest, x| farthest.max(x.abs().max_element()));
+        let parallelepiped = arms.iter().all(|h| h.abs().max_element() <= 32.0 * f64::EPSILON * farthest);
+        for mode in 0..if parallelepiped { 3 } else { 6 } {
             let slope: DVec3 = (0..8).map(|a| b[a] * (mode_sign(mode, a) / 8.0)).sum();
             shape[3 * mode..3 * mode + 3].copy_from_slice(&slope.to_array());
         }
-        shape[18] = volume;
-        shape[19] = young * volume * b.iter().map(|b| b.length_squared()).sum::<f64>() / 72.0;
-        for m in 0..4 {
-            let h: DVec3 = (0..8).map(|a| (points[a] - points[0]) * hourglass_sign(m, a)).sum();
-            shape[ARMS + 3 * m..ARMS + 3 * m + 3].copy_from_slice(&h.to_array());
+        if !parallelepiped {
+            for m in 0..4 {
+                shape[ARMS + 3 * m..ARMS + 3 * m + 3].copy_from_slice(&arms[m].to_array());
+            }
         }
         shape
+    }
+
+    type Simple = Parallelepiped;
+
+    fn is_simple(shape: &[f64; MOST_ROWS]) -> bool {
+        shape[9..18].iter().chain(&shape[ARMS..]).all(|&number| number == 0.0)
     }
 
     /// Modes of each component of u (m).
@@ -182,6 +199,10 @@ impl Element for Hex8 {
         for i in 0..3 {
             let mut forces = [stiffness; MODES];
             for m in 0..4 {
+                if SLOPES == 3 {
+                    forces[3 + m] = u[i][3 + m] * stiffness;
+                    continue;
+                }
                 let arm = vector(&shape, ARMS + 3 * m);
                 let q = (u[i][3 + m] - dot(gradient.0[i], arm)) * stiffness;
                 folded.add_to_row(i, -q, arm);
@@ -213,7 +234,7 @@ impl Element for Hex8 {
 
     fn frequency_bound(shape: &[f64; MOST_ROWS], stiffness: &Stiffness) -> f64 {
         let slope = |mode: usize, a: usize| DVec3::from_slice(&shape[3 * mode..]) * mode_sign(mode, a);
-        let b: [DVec3; 8] = std::array::from_fn(|a| (0..SLOPES).map(|mode| slope(mode, a)).sum());
+        let b: [DVec3; 8] = std::array::from_fn(|a| (0..6).map(|mode| slope(mode, a)).sum());
         let (trace, largest) = gradient_measure(b.into_iter());
         let material = 8.0 / stiffness.density * (stiffness.lambda * trace + stiffness.deviatoric * largest);
 

@@ -49,6 +49,7 @@ impl Element for Hex8MeanDilatation {
     const FORCE_ROW: Option<usize> = Some(22);
     const PRESSURE: PressureFrom = PressureFrom::MeanOverPoints;
 
+    type Simple = Self;
     /// Mode coefficients of each component.
     type Prepared<R: Real> = [[R; 7]; 3];
     /// Forces on the mode coefficients of each component.
