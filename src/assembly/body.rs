@@ -159,6 +159,7 @@ impl BlockBuilder<'_> {
         let members = Members { mesh: self.mesh, elements: self.elements, body: name, material: &material_name };
         let material = &called_for(&self.assembly.scene.scene.materials[&material_name]);
         let (fibre_directions, varying) = members.directions(material, self.assembly.precision, diagnostics);
+        let (shapes, simple) = self.rest_shapes(hourglass * young);
         let block = Block {
             body,
             material: self.material,
@@ -166,6 +167,7 @@ impl BlockBuilder<'_> {
             count: self.elements.len(),
             force_offset: 0,
             force_length: 0,
+            simple,
             fibre_directions,
         };
         let connectivity = self.connectivity();
@@ -174,7 +176,7 @@ impl BlockBuilder<'_> {
             OfBody(body),
             block,
             Connectivity(connectivity.clone()),
-            RestShape(self.rest_shapes(hourglass * young)),
+            RestShape(shapes),
             FirstInverted(vec![u32::MAX; 2]),
             OnInversion(material.inversion()),
         ));
@@ -210,7 +212,9 @@ impl BlockBuilder<'_> {
         connectivity
     }
 
-    fn rest_shapes(&self, young: f64) -> Reals {
+    /// Rest shapes, and whether all are simple.
+    fn rest_shapes(&self, young: f64) -> (Reals, bool) {
+        let mut simple = true;
         let numbers = row_count(self.kind);
         let mut shapes = Reals::zeros(self.assembly.precision, self.padded() * numbers);
         for row in 0..self.padded() {
@@ -222,6 +226,7 @@ impl BlockBuilder<'_> {
                 *point = self.mesh.points[node as usize];
             }
             let shape: [f64; MOST_ROWS] = with_element!(self.kind, E => E::rest_shape(&points[..nodes.len()], young));
+            simple &= with_element!(self.kind, E => E::is_simple(&shape));
             for k in 0..numbers {
                 shapes.set(lane_place(row, numbers, k), shape[k]);
             }
@@ -229,7 +234,7 @@ impl BlockBuilder<'_> {
                 extinguish(self.kind, row, &mut shapes);
             }
         }
-        shapes
+        (shapes, simple)
     }
 }
 
