@@ -7,11 +7,17 @@ use bevy_ecs::prelude::World;
 use kernel_worlds::{AROUND, Described, Effects, OF_NODES, all_kernels, shared_kernels};
 use sinew::BackendChoice;
 use sinew::backend::kernel::{BindingKind, Kernel, Layout, Uniform, WEBGPU_STORAGE_BUFFERS, compose};
-use sinew::components::Signals;
+use sinew::backend::patch_lists::WEBGPU_WORKGROUP_MEMORY;
+use sinew::components::{Scheme, Signals};
 use std::collections::BTreeSet;
 
 /// Fragments that belong to no system, element or material by name, and what calls for them.
-const SUPPORT: [(&str, &str); 37] = [
+const SUPPORT: [(&str, &str); 42] = [
+    ("corner", "corners of elements, in columns"),
+    ("corner_volume", "the same for averaged nodal pressure"),
+    ("patch_volume", "averaged nodal pressure, in patches"),
+    ("patches", "forces summed patch by patch"),
+    ("two_pass", "forces summed in two passes"),
     ("alive", "loads on faces of elements that can go"),
     ("block", "columns of element blocks"),
     ("criterion", "removal by criterion"),
@@ -116,7 +122,10 @@ fn every_combination_of_effects_composes_with_at_most_eight_storage_buffers() {
         for (system, kernel) in all(&effects) {
             let composed = compose(&kernel.fragments).unwrap_or_else(|e| panic!("{}: {e}", kernel.label));
             let entry = composed.entry(kernel.entry).unwrap_or_else(|| panic!("{}: no {}", kernel.label, kernel.entry));
-            assert_eq!(entry.workgroup_size, [64, 1, 1], "{}", kernel.label);
+            let patches = kernel.fragments.iter().any(|fragment| fragment.path == "shaders/patches.wgsl");
+            assert_eq!(entry.workgroup_size, [if patches { 128 } else { 64 }, 1, 1], "{}", kernel.label);
+            assert!(entry.workgroup_memory as usize <= WEBGPU_WORKGROUP_MEMORY, "{}", kernel.label);
+            assert!(!patches || entry.workgroup_memory > 0, "{}", kernel.label);
             let storage = composed.storage_buffers(entry);
             let most = if system == LARGER_DEVICE { 64 } else { WEBGPU_STORAGE_BUFFERS };
             assert!(storage <= most, "{} of {system}: {storage} of {effects:?}", kernel.label);
@@ -202,6 +211,7 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
         "neo_hookean",
         "node_pass",
         "note_inverted",
+        "patches",
         "point",
         "point_pressure",
         "row",
@@ -213,7 +223,8 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
     ];
     assert_eq!(files, expected.map(|stem| format!("{stem}.wgsl")).iter().map(String::as_str).collect());
     let without = buffers(&Effects::default());
-    let cases: [(Effects, &[&str], &[&str]); 9] = [
+    let cases: [(Effects, &[&str], &[&str]); 10] = [
+        (Effects { scheme: Scheme::TwoPass, ..Effects::default() }, &["two_pass", "corner"], &["connectivity"]),
         (Effects { inversion: Some("Remove"), ..Effects::default() }, &["remove_inverted"], &["removal_step"]),
         (Effects { fibres: Some(AROUND), ..Effects::default() }, &["fibres", "fibres_field"], &["fibre_direction"]),
         (Effects { prony: 1, ..Effects::default() }, &["prony"], &["viscous_memory"]),
@@ -231,7 +242,7 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
         (Effects { energies: true, ..Effects::default() }, &["work"], &["work"]),
         (
             Effects { averaged: true, ..Effects::default() },
-            &["nodal_volume", "nodal_mean", "tet4_nodal_pressure", "hex8_mean_dilatation"],
+            &["nodal_volume", "nodal_mean", "tet4_nodal_pressure", "patch_volume", "hex8_mean_dilatation"],
             &["nodal_volume_change", "element_volume"],
         ),
         (Effects { removal: true, ..Effects::default() }, &["element_removal", "criterion", "node_mass"], &["alive"]),

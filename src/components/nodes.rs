@@ -47,7 +47,8 @@ columns! {
     MiddleDisplacement(Reals) = "middle_displacement";
     /// What each 64 nodes come to, four words each: bits of ½ m d² (kg m²) and of the longest step's square (m²), its row.
     NodeSums(Vec<u32>) = "node_sums";
-    /// Forces of all elements on their corners (N), all blocks of the body one after the other: in each group of
+    /// Forces of all elements (N), all blocks of the body one after the other: a vector for each node of each patch
+    /// ([`Patches`](super::Patches)); in the scheme of two passes those on corners, in each group of
     /// [`LANES`](crate::math::LANES) elements by corner, component, element.
     ElementForce(Reals) = "element_force";
 }
