@@ -12,7 +12,7 @@ use bevy_ecs::prelude::*;
 
 /// Adds −p ∫ N_a n dA over the deformed faces, exact for triangles and for bilinear quadrilaterals.
 ///
-/// Each loaded node goes through its own faces in a fixed order. A face of a removed element bears no load, and the
+/// Each loaded node sums what its own faces bring, in a fixed order. A face of a removed element bears no load, and the
 /// surface that removal uncovers is not loaded.
 pub fn system() -> System {
     System::built_in(
@@ -26,35 +26,55 @@ pub fn system() -> System {
     .on_device(kernels)
 }
 
+/// Area vectors of each face's corners (m²), kept from step to step for their memory only.
+#[derive(Default)]
+struct CornerAreas {
+    f32: Vec<[[f32; 3]; 4]>,
+    f64: Vec<[[f64; 3]; 4]>,
+}
+
 fn pressure(
     signals: Res<Signals>,
     loads: Query<(&Pressure, &OfBody)>,
     mut bodies: Query<(&RestPosition, &Displacement, &mut ExternalForce)>,
+    mut areas: Local<CornerAreas>,
 ) {
     for (load, body) in &loads {
         let Ok((rest, displacement, mut external)) = bodies.get_mut(body.0) else { continue };
         let pressure = signals.values()[load.signal][0];
+        let faces = &load.faces;
         match &mut external.0 {
-            Reals::F32(external) => push(&load.faces, pressure, rest, displacement.slice(), external),
-            Reals::F64(external) => push(&load.faces, pressure, rest, displacement.slice(), external),
+            Reals::F32(external) => push(faces, pressure, rest, displacement.slice(), &mut areas.f32, external),
+            Reals::F64(external) => push(faces, pressure, rest, displacement.slice(), &mut areas.f64, external),
         }
     }
 }
 
-fn push<T: Scalar>(faces: &FaceCorners, pressure: f64, rest: &RestPosition, displacement: &[T], external: &mut [T]) {
+fn push<T: Scalar>(
+    faces: &FaceCorners,
+    pressure: f64,
+    rest: &RestPosition,
+    displacement: &[T],
+    areas: &mut Vec<[[T; 3]; 4]>,
+    external: &mut [T],
+) {
+    // each face once: its corners share most of the work
+    areas.clear();
+    areas.extend(faces.faces.iter().zip(&faces.alive).map(|(face, &alive)| {
+        if alive == 0 {
+            return [[T::default(); 3]; 4];
+        }
+        let points = face.map(|node| {
+            let (node, x) = (node as usize, rest.0[node as usize].to_array());
+            [0, 1, 2].map(|i| T::from_f64(x[i]) + displacement[3 * node + i])
+        });
+        if face[2] == face[3] { [face_area_at(&points, 0); 4] } else { [0, 1, 2, 3].map(|a| face_area_at(&points, a)) }
+    }));
     let pressure = T::from_f64(pressure);
     for (i, &row) in faces.rows.iter().enumerate() {
         let mut sum = [T::default(); 3];
         for &corner in &faces.corners[faces.starts[i] as usize..faces.starts[i + 1] as usize] {
-            let face = corner as usize / 4;
-            if faces.alive[face] == 0 {
-                continue;
-            }
-            let points = faces.faces[face].map(|node| {
-                let (node, x) = (node as usize, rest.0[node as usize].to_array());
-                [0, 1, 2].map(|i| T::from_f64(x[i]) + displacement[3 * node + i])
-            });
-            let area = face_area_at(&points, corner as usize % 4);
+            let area = areas[corner as usize / 4][corner as usize % 4];
             for i in 0..3 {
                 sum[i] += area[i];
             }

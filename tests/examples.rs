@@ -6,12 +6,23 @@
 mod custom_system;
 #[path = "../examples/embed.rs"]
 mod embed;
+#[path = "../examples/latency.rs"]
+mod latency;
 
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
 
 #[test]
 fn embed_runs() {
     embed::main().unwrap();
+}
+
+/// The stiffness of the whole tool in contact is some N/m, and it goes 0.5 mm deep.
+#[test]
+fn a_touched_lens_pushes_back() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/lens_pressed.ron");
+    let sets: Vec<String> = latency::TOUCHED.iter().map(|set| set.to_string()).collect();
+    let felt = latency::run(&SceneFile::load(path, &sets).unwrap(), 1, 0.12).unwrap();
+    assert!(felt > 1e-5 && felt < 1e-2, "{felt} N");
 }
 
 #[test]

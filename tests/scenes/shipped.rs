@@ -8,7 +8,7 @@ use sinew::systems::Registry;
 use sinew::{BackendChoice, Options, Simulation};
 
 /// The scenes, and what makes each of them short and coarse.
-const SCENES: [(&str, &[&str]); 5] = [
+const SCENES: [(&str, &[&str]); 6] = [
     ("cube_under_gravity", &["bodies.cube.mesh.cells=(5, 5, 5)", "duration=0.3"]),
     ("stretched_bar", &["bodies.bar.mesh.cells=(20, 2, 2)", "duration=0.5"]),
     ("twisted_column", &["bodies.column.mesh.cells=(4, 4, 16)", "duration=1.2"]),
@@ -16,6 +16,7 @@ const SCENES: [(&str, &[&str]); 5] = [
         "lens_tets",
         &["duration=0.05", "loads[0].curve=Smooth(end: 0.01)", "removal[0].when=During(start: 0.01, end: 0.04)"],
     ),
+    ("lens_pressed", &["duration=0.03"]),
     (
         "lens_hexes",
         &[
