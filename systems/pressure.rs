@@ -3,8 +3,8 @@
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::face_kernel::{FaceLoad, face_loads};
-use crate::backend::kernel::{Kernel, Uniform, uniform};
-use crate::backend::step::with_step;
+use crate::backend::kernel::{Uniform, uniform};
+use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
 use crate::math::Scalar;
 use crate::shader;
@@ -23,7 +23,7 @@ pub fn system() -> System {
         |world| super::registry::count::<Pressure>(world, "pressure", "pressures"),
         pressure,
     )
-    .on_device(kernels)
+    .on_nodes(stages)
 }
 
 /// Area vectors of each face's corners (m²), kept from step to step for their memory only.
@@ -108,16 +108,15 @@ fn cross<T: Scalar>(a: [T; 3], b: [T; 3]) -> [T; 3] {
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 struct PressureLoad {
-    count: u32,
     signal: u32,
 }
-uniform!(PressureLoad { count, signal });
+uniform!(PressureLoad { signal });
 
-/// One kernel for each load; where elements can go, one for each block behind its faces.
-fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+/// One stage for each load; where elements can go, one for each block behind its faces.
+fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
     let loads: Vec<(Pressure, Entity)> =
         world.query::<(&Pressure, &OfBody)>().iter(world).map(|(load, body)| (load.clone(), body.0)).collect();
-    let mut kernels = Vec::new();
+    let mut stages = Vec::new();
     for (pressure, body) in loads {
         for FaceLoad { faces, alive } in face_loads(&pressure.faces, body, world) {
             let Some(rest) = world.get::<RestPosition>(body) else { continue };
@@ -125,24 +124,22 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
             let nodes: Vec<[u32; 5]> = faces.faces.iter().zip(&faces.elements).map(face).collect();
             let points: Vec<[f32; 3]> =
                 faces.faces.iter().flatten().map(|&node| rest.0[node as usize].as_vec3().to_array()).collect();
-            let load = PressureLoad { count: faces.rows.len() as u32, signal: pressure.signal as u32 };
-            let kernel = Kernel::new("pressure", "pressure")
-                .fragment(shader!("pressure"))
-                .fragment(shader!("loads"))
-                .fragment(shader!("row"))
+            let load = PressureLoad { signal: pressure.signal as u32 };
+            let stage = NodeStage::new("pressure", "pressure", body, rows_of(body, world), shader!("pressure"))
                 .bind_uniform::<PressureLoad>("load", buffers.uniform("pressure".into(), &load.bytes()))
                 .bind("rows", buffers.constants("rows of pressure".into(), bytemuck::cast_slice(&faces.rows)))
                 .bind("starts", buffers.constants("starts of pressure".into(), bytemuck::cast_slice(&faces.starts)))
                 .bind("corners", buffers.constants("corners of pressure".into(), bytemuck::cast_slice(&faces.corners)))
                 .bind("faces", buffers.constants("faces of pressure".into(), bytemuck::cast_slice(&nodes)))
                 .bind("face_points", buffers.constants("points of pressure".into(), bytemuck::cast_slice(&points)))
-                .bind(Displacement::NAME, buffers.column(body, Displacement::NAME))
-                .bind(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME))
-                .threads(load.count);
-            kernels.push(with_step(FaceLoad::with_alive(alive, kernel, buffers), world));
+                .column(Displacement::NAME, buffers.column(body, Displacement::NAME))
+                .reads_elsewhere(Displacement::NAME)
+                .column(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME))
+                .of_rows(faces.rows);
+            stages.push(FaceLoad::with_alive(alive, stage, buffers).with_step(world).loaded(true));
         }
     }
-    kernels
+    stages
 }
 
 #[cfg(test)]

@@ -122,7 +122,7 @@ impl BlockKernels {
             .fragment(elastic.fragment)
             .bind("displacement", self.columns[0]);
         kernel.fragments.extend(ground(&self.law.elastic));
-        kernel.layouts.extend(elastic.layout.map(|layout| ("elastic", layout)));
+        kernel.layouts.extend(elastic.layout.map(|layout| ("elastic".into(), layout)));
         kernel
     }
 

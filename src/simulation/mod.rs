@@ -6,6 +6,7 @@ mod build;
 pub mod explain;
 mod follow;
 mod frequency;
+mod fuse;
 mod growth;
 mod keep;
 mod mass_scaling;
@@ -56,14 +57,22 @@ pub struct Simulation {
     failure: Option<crate::error::Instability>,
 }
 
-/// A system of the running schedule.
+/// A system of the running schedule, or several that share a pass over the nodes.
 struct Entry {
     name: String,
+    /// Of the last of them.
     phase: Phase,
-    because: String,
+    systems: Vec<Member>,
     job: Job,
     time: Duration,
     runs: u64,
+}
+
+/// A system of an entry.
+struct Member {
+    name: String,
+    phase: Phase,
+    because: String,
 }
 
 enum Job {

@@ -3,9 +3,10 @@
 
 use bevy_ecs::prelude::*;
 use sinew::backend::Buffers;
-use sinew::backend::kernel::{BufferId, Kernel};
+use sinew::backend::kernel::{BufferId, Kernel, WEBGPU_STORAGE_BUFFERS};
+use sinew::backend::node_stage::node_kernels;
 use sinew::components::*;
-use sinew::systems::Registry;
+use sinew::systems::{OnDevice, Registry};
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
 
 /// What a scene calls for.
@@ -221,13 +222,24 @@ pub fn gpu_choice() -> sinew::backend::gpu::Choice {
 }
 
 /// Hands out no buffers, but remembers the bytes of uniforms.
-#[derive(Default)]
 pub struct Described {
+    /// Storage buffers a kernel may use.
+    pub most: usize,
     pub uniforms: Vec<(String, usize)>,
     pub columns: Vec<(Entity, &'static str)>,
 }
 
+impl Default for Described {
+    /// As on the smallest device.
+    fn default() -> Self {
+        Self { most: WEBGPU_STORAGE_BUFFERS, uniforms: Vec::new(), columns: Vec::new() }
+    }
+}
+
 impl Buffers for Described {
+    fn storage_buffers(&self) -> usize {
+        self.most
+    }
     fn column(&mut self, entity: Entity, name: &'static str) -> BufferId {
         if !self.columns.contains(&(entity, name)) {
             self.columns.push((entity, name));
@@ -248,11 +260,28 @@ pub fn all_kernels(world: &mut World) -> (Vec<(String, Kernel)>, Described) {
     let mut described = Described::default();
     let mut all = Vec::new();
     for system in Registry::default().systems() {
-        if let (Some(_), Some(kernels)) = ((system.because)(world), system.kernels) {
-            all.extend(kernels(world, &mut described).into_iter().map(|kernel| (system.name.clone(), kernel)));
+        if (system.because)(world).is_some() {
+            let kernels = system.device.kernels(world, &mut described);
+            all.extend(kernels.into_iter().map(|kernel| (system.name.clone(), kernel)));
         }
     }
     (all, described)
+}
+
+/// Systems that work node by node, in an order in which they can share kernels.
+pub const OF_NODES: [&str; 7] = ["gather", "gravity", "nodal_force", "traction", "pressure", "boundary", "integrate"];
+
+/// Kernels of systems of nodes that share them.
+pub fn shared_kernels(systems: &[&str], world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+    let registry = Registry::default();
+    let mut stages = Vec::new();
+    for system in systems.iter().filter_map(|name| registry.get(name)) {
+        match ((system.because)(world), system.device) {
+            (Some(_), OnDevice::Stages(describe)) => stages.extend(describe(world, buffers)),
+            (_, device) => assert!(!matches!(device, OnDevice::Kernels(_)), "{}", system.name),
+        }
+    }
+    node_kernels(stages, true, buffers)
 }
 
 /// The kernels of the guards, which run beside the step.

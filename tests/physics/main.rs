@@ -23,6 +23,7 @@ mod loads;
 mod locking;
 mod manufactured;
 mod motions;
+mod one_pass;
 mod points;
 mod precision;
 mod programs;

@@ -222,7 +222,7 @@ fn no_alias(gpu: &Gpu, kernel: &Kernel, composed: &Composed, entry: &Entry, bind
 /// Every variable in use has a buffer and every buffer a variable, once.
 fn match_names(kernel: &Kernel, composed: &Composed, entry: &Entry) -> Result<(), KernelError> {
     let used: Vec<_> = entry.uses.iter().map(|i| composed.bindings[*i].name.clone()).collect();
-    let given: Vec<_> = kernel.bindings.iter().map(|(name, _)| (*name).to_owned()).collect();
+    let given: Vec<_> = kernel.bindings.iter().map(|(name, _)| name.clone().into_owned()).collect();
     let without_buffer: Vec<_> =
         used.iter().filter(|name| *name != STEP_VARIABLE && !given.contains(name)).cloned().collect();
     let mut without_variable = Vec::new();

@@ -56,29 +56,54 @@ pub(super) fn add_to_sum(sum: Option<&mut [u32]>, part: f64) {
     *low = ((total - f64::from(rounded)) as f32).to_bits();
 }
 
+/// What moves one node.
+pub(super) struct OneNode<T> {
+    mass: T,
+    axes: u32,
+    damping: T,
+    internal: [T; 3],
+    external: [T; 3],
+    /// Bits of the last step (m), which prescribed axes need.
+    kept: Option<[u32; 3]>,
+}
+
+impl<T: Scalar> OneNode<T> {
+    pub(super) fn of(columns: &NodeColumns<'_, T>, row: usize) -> Self {
+        let three = |all: &[T]| [0, 1, 2].map(|i| all[3 * row + i]);
+        Self {
+            mass: columns.mass[row],
+            axes: columns.axes[row],
+            damping: columns.damping.map_or(T::default(), |all| all[row]),
+            internal: three(columns.internal),
+            external: columns.external.map_or([T::default(); 3], three),
+            kept: columns.kept.get(3 * row..3 * row + 3).map(|bits| [bits[0], bits[1], bits[2]]),
+        }
+    }
+}
+
 /// Returns the work against internal forces (J).
 #[inline(always)]
 pub(super) fn move_node<T: Scalar>(
-    inputs: &NodeColumns<'_, T>,
-    node: usize,
+    node: &OneNode<T>,
+    factors: &Factors<T>,
     sum: &mut Sum<'_, T>,
     mut work: Option<&mut [T]>,
 ) -> f64 {
     let (zero, one) = (T::default(), T::from_f64(1.0));
-    let Factors { force: force_factor, half_step, divide, rate, booked, relaxation } = inputs.factors;
-    let (mass, axes) = (inputs.mass[node], inputs.axes[node]);
+    let Factors { force: force_factor, half_step, divide, rate, booked, relaxation } = *factors;
+    let (mass, axes) = (node.mass, node.axes);
     if mass <= zero {
         sum.step.fill(zero);
         return 0.0;
     }
     let per_mass = one / mass;
-    let coefficient = inputs.damping.map_or(zero, |c| c[node]);
+    let coefficient = node.damping;
     let a = coefficient * half_step * per_mass + relaxation;
     let shrink = if a > zero { one / (one + divide * a) } else { one };
     let mut spent = zero;
     for i in 0..3 {
-        let internal = inputs.internal[3 * node + i];
-        let external = inputs.external.map_or(zero, |r| r[3 * node + i]);
+        let internal = node.internal[i];
+        let external = node.external[i];
         let constrained = axes >> i & 1 == 1;
         let before = sum.step[i];
         if !constrained {
@@ -87,8 +112,8 @@ pub(super) fn move_node<T: Scalar>(
         }
         sum.go(i, constrained);
         let step = sum.step[i];
-        let last = match inputs.kept.get(3 * node + i) {
-            Some(&bits) if constrained => T::from_f64(f64::from(f32::from_bits(bits))),
+        let last = match node.kept {
+            Some(bits) if constrained => T::from_f64(f64::from(f32::from_bits(bits[i]))),
             _ => before,
         };
         spent += internal * (last + step);
