@@ -68,7 +68,7 @@ fn push<T: Scalar>(
             let (node, x) = (node as usize, rest.0[node as usize].to_array());
             [0, 1, 2].map(|i| T::from_f64(x[i]) + displacement[3 * node + i])
         });
-        if face[2] == face[3] { [face_area_at(&points, 0); 4] } else { [0, 1, 2, 3].map(|a| face_area_at(&points, a)) }
+        corner_areas(&points)
     }));
     let pressure = T::from_f64(pressure);
     for (i, &row) in faces.rows.iter().enumerate() {
@@ -85,20 +85,23 @@ fn push<T: Scalar>(
     }
 }
 
-/// ∫ N_a n dA over a face: the area vector that falls to corner `a`. A triangle repeats its last node.
+/// ∫ N_a n dA over a face: the area vector that falls to each corner. A triangle repeats its last node.
 ///
 /// For a bilinear quadrilateral the integral of N_a (x_ξ × x_η) is exact in closed form: with e and d the edges and
 /// diagonals, ¼ of the whole area vector plus what the corner's own corner area exceeds the mean by, a third of it.
-fn face_area_at<T: Scalar>(points: &[[T; 3]; 4], a: usize) -> [T; 3] {
+#[inline]
+fn corner_areas<T: Scalar>(points: &[[T; 3]; 4]) -> [[T; 3]; 4] {
     let edge = |from: usize, to: usize| [0, 1, 2].map(|i| points[to][i] - points[from][i]);
     let constant = |value: f64| T::from_f64(value);
     if points[2] == points[3] {
-        return cross(edge(0, 1), edge(0, 2)).map(|x| x * constant(1.0 / 6.0));
+        return [cross(edge(0, 1), edge(0, 2)).map(|x| x * constant(1.0 / 6.0)); 4];
     }
-    let diagonals = cross(edge(0, 2), edge(1, 3));
-    let own = cross(edge(a, (a + 1) % 4), edge(a, (a + 3) % 4));
-    let opposite = cross(edge((a + 2) % 4, (a + 3) % 4), edge((a + 2) % 4, (a + 1) % 4));
-    [0, 1, 2].map(|i| diagonals[i] * constant(0.125) + (own[i] - opposite[i]) * constant(1.0 / 24.0))
+    let diagonals = cross(edge(0, 2), edge(1, 3)).map(|x| x * constant(0.125));
+    let own = [0, 1, 2, 3].map(|a| cross(edge(a, (a + 1) % 4), edge(a, (a + 3) % 4)));
+    [0, 1, 2, 3].map(|a: usize| {
+        let opposite = own[(a + 2) % 4];
+        [0, 1, 2].map(|i| diagonals[i] + (own[a][i] - opposite[i]) * constant(1.0 / 24.0))
+    })
 }
 
 fn cross<T: Scalar>(a: [T; 3], b: [T; 3]) -> [T; 3] {
@@ -166,7 +169,7 @@ mod tests {
                 let normal = cross(by_x, by_y);
                 (0..3).for_each(|i| exact[i] += weight * normal[i]);
             }
-            let found = face_area_at(&points, a);
+            let found = corner_areas(&points)[a];
             for i in 0..3 {
                 assert!((found[i] - exact[i]).abs() < 1e-14, "corner {a}: {found:?} instead of {exact:?}");
             }
