@@ -17,6 +17,7 @@ const SCENES: [(&str, &[&str]); 6] = [
         "lens_tets",
         &["duration=0.05", "loads[0].curve=Smooth(end: 0.01)", "removal[0].when=During(start: 0.01, end: 0.04)"],
     ),
+    ("lens_pressed", &["duration=0.03"]),
     (
         "lens_hexes",
         &[
