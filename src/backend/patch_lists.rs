@@ -158,7 +158,7 @@ mod tests {
         }
         let (body, material) = (Entity::PLACEHOLDER, Entity::PLACEHOLDER);
         let (force_offset, force_length, fibre_directions) = (0, 0, Vec::new());
-        (Block { body, material, kind, count, force_offset, force_length, fibre_directions }, patches)
+        (Block { body, material, kind, count, force_offset, force_length, fibre_directions, simple: false }, patches)
     }
 
     /// Goes through the lists as `patches.wgsl` does.
