@@ -1,7 +1,6 @@
 // Where prescribed nodes go, u = A·(X − center) + b; twin of systems/boundary.rs. lost_of is in lost.wgsl, or generated
 // where sums are not compensated; keep_step in kept_step.wgsl, or generated where nothing is booked.
 struct Motion {
-    count: u32, // prescribed nodes
     axes: u32, // bits 0, 1, 2: x, y, z
     signal: u32, // first of three slots: rows of A, with b's component
 }
@@ -11,12 +10,7 @@ struct Motion {
 @group(0) @binding(3) var<storage, read> displacement: array<f32>;
 @group(0) @binding(4) var<storage, read_write> displacement_step: array<f32>;
 
-@compute @workgroup_size(64)
-fn boundary(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let i = row(id, groups);
-    if i >= motion.count {
-        return;
-    }
+fn boundary(i: u32) {
     let arm = vec4<f32>(arms[3u * i], arms[3u * i + 1u], arms[3u * i + 2u], 1.0);
     for (var axis = 0u; axis < 3u; axis++) {
         if ((motion.axes >> axis) & 1u) == 1u {

@@ -1,11 +1,6 @@
 // Central differences in velocity form; twin of systems/integrate.rs. What a body has no column for is a line generated in
-// place of a fragment: external_force_of, damped, coefficient_of, book_work, spend, add_up_spent, add_to_step, add_step, forget_step.
-struct Integrate {
-    count: u32, // nodes
-}
-@group(0) @binding(0) var<uniform> nodes: Integrate;
+// place of a fragment: damped, coefficient_of, book_work, spend, add_up_spent, add_to_step, add_step, forget_step.
 @group(0) @binding(1) var<storage, read> mass: array<f32>; // fictitious in a static analysis
-@group(0) @binding(2) var<storage, read> internal_force: array<f32>;
 @group(0) @binding(3) var<storage, read> constrained_axes: array<u32>;
 @group(0) @binding(4) var<storage, read_write> displacement: array<f32>;
 @group(0) @binding(5) var<storage, read_write> displacement_step: array<f32>;
@@ -30,12 +25,12 @@ fn is_parked(node: u32) -> bool {
 // The node's next step (m); constrained axes keep what boundary wrote, nodes without mass are parked.
 fn push(node: u32) -> vec3<f32> {
     let at = 3u * node;
+    let inner = internal_force_of(node);
+    let outer = external_force_of(node);
     var after = vec3<f32>(0.0);
     if !is_parked(node) {
         let per_mass = 1.0 / mass[node];
         let before = step_of(node);
-        let inner = vec3<f32>(internal_force[at], internal_force[at + 1u], internal_force[at + 2u]);
-        let outer = external_force_of(node);
         let change = damped(node, before, step.force_factor * ((outer - inner) * per_mass), per_mass);
         let constrained = constrained_at(node);
         after = select(add_to_step(node, before, change), before, constrained);
@@ -67,37 +62,15 @@ fn move_on(node: u32, d: vec3<f32>) {
     }
 }
 
-@compute @workgroup_size(64)
-fn integrate(
-    @builtin(global_invocation_id) id: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let node = row(id, groups);
-    if node < nodes.count {
-        move_on(node, push(node));
-    }
-    add_up_spent(local, node);
+fn integrate(node: u32) {
+    move_on(node, push(node));
 }
 
-// The same in two kernels, for bodies with more columns than a kernel may have buffers.
-@compute @workgroup_size(64)
-fn integrate_push(
-    @builtin(global_invocation_id) id: vec3<u32>,
-    @builtin(num_workgroups) groups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let node = row(id, groups);
-    if node < nodes.count {
-        push(node);
-    }
-    add_up_spent(local, node);
+// The same in two, for bodies with more columns than a kernel may have buffers.
+fn integrate_push(node: u32) {
+    push(node);
 }
 
-@compute @workgroup_size(64)
-fn integrate_move(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let node = row(id, groups);
-    if node < nodes.count {
-        move_on(node, step_of(node));
-    }
+fn integrate_move(node: u32) {
+    move_on(node, step_of(node));
 }

@@ -1,7 +1,6 @@
 // A pressure that follows the surface; twin of systems/pressure.rs. bears is in alive.wgsl, or generated where no element
 // ever goes.
 struct PressureLoad {
-    count: u32, // loaded nodes
     signal: u32, // slot of the pressure (Pa)
 }
 @group(0) @binding(0) var<uniform> load: PressureLoad;
@@ -36,12 +35,7 @@ fn face_area_at(face: u32, a: u32) -> vec3<f32> {
     return diagonals * 0.125 + (own - across) * (1.0 / 24.0);
 }
 
-@compute @workgroup_size(64)
-fn pressure(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
-    let i = row(id, groups);
-    if i >= load.count {
-        return;
-    }
+fn pressure(i: u32) {
     var area = vec3<f32>(0.0);
     for (var at = starts[i]; at < starts[i + 1u]; at++) {
         let face = corners[at] / 4u;

@@ -25,7 +25,7 @@ fn add_up_spent(local: u32, node: u32) {
         }
         workgroupBarrier();
     }
-    if local == 0u && node < nodes.count {
+    if local == 0u && node < pass_rows.count {
         let at = SPENT_AT + node / 32u;
         let before = bitcast<f32>(atomicLoad(&first_non_finite[at]));
         let part = kept(spent_parts[0] + bitcast<f32>(atomicLoad(&first_non_finite[at + 1u])));

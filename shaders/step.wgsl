@@ -8,6 +8,10 @@ struct Step {
     zero: u32, // always 0, which no compiler knows
     relaxation: f32, // a = cΔt/2 of a static analysis
     booked: f32, // share of a step's work that is booked: the time between the middles over Δt
+    observed: u32, // 1 in steps after which somebody may look at forces
+    reserved_0: u32,
+    reserved_1: u32,
+    reserved_2: u32,
     signals: array<vec4<f32>, SIGNALS>,
 }
 @group(0) @binding(0) var<uniform> step: Step;

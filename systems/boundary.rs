@@ -1,9 +1,10 @@
 //! `boundary`: where constrained nodes go in this step. `shaders/boundary.wgsl` is its twin.
 
+use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::kernel::{Fragment, Kernel, Uniform, uniform};
-use crate::backend::step::with_step;
+use crate::backend::kernel::{Fragment, Uniform, uniform};
+use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
 use crate::math::Scalar;
 use crate::shader;
@@ -28,7 +29,7 @@ pub fn system() -> System {
         },
         boundary,
     )
-    .on_device(kernels)
+    .on_nodes(stages)
 }
 
 fn boundary(
@@ -42,29 +43,33 @@ fn boundary(
         let rows = &signals.values()[prescribed.signal..prescribed.signal + 3];
         match &mut step.0 {
             Reals::F32(step) => {
-                move_rows(prescribed, rows, displacement.slice(), compensation.map(|c| c.slice()), step, kept)
+                move_rows(prescribed, rows, 0, displacement.slice(), compensation.map(|c| c.slice()), step, kept)
             }
             Reals::F64(step) => {
-                move_rows(prescribed, rows, displacement.slice(), compensation.map(|c| c.slice()), step, kept)
+                move_rows(prescribed, rows, 0, displacement.slice(), compensation.map(|c| c.slice()), step, kept)
             }
         }
     }
 }
 
-fn move_rows<T: Scalar>(
+/// Where those nodes from row `first` on go that the columns have.
+pub(super) fn move_rows<T: Scalar>(
     prescribed: &Prescribed,
     motion: &[[f64; 4]],
+    first: usize,
     displacement: &[T],
     compensation: Option<&[T]>,
     step: &mut [T],
     kept: &mut [u32],
 ) {
-    for (&row, arm) in prescribed.rows.iter().zip(&prescribed.arms) {
+    let own = places_within(&prescribed.rows, first, step.len() / 3);
+    for (&row, arm) in prescribed.rows[own.clone()].iter().zip(&prescribed.arms[own]) {
+        let row = row as usize - first;
         for axis in (0..3).filter(|axis| prescribed.axes >> axis & 1 == 1) {
             let [x, y, z, shift] = motion[axis];
-            let place = 3 * row as usize + axis;
+            let place = 3 * row + axis;
             let target = T::from_f64(x * arm.x + y * arm.y + z * arm.z + shift);
-            let lost = compensation.map_or(T::default(), |c| c[COMPENSATION_NUMBERS * row as usize + axis]);
+            let lost = compensation.map_or(T::default(), |c| c[place]);
             // for the work that integrate books
             if let Some(kept) = kept.get_mut(place) {
                 *kept = (step[place].to_f64() as f32).to_bits();
@@ -77,49 +82,46 @@ fn move_rows<T: Scalar>(
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 struct Motion {
-    count: u32,
     axes: u32,
     signal: u32,
 }
-uniform!(Motion { count, axes, signal });
+uniform!(Motion { axes, signal });
 
-/// One kernel for each prescribed set.
-fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+/// One stage for each prescribed set.
+fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
     let sets: Vec<(Prescribed, Entity)> =
         world.query::<(&Prescribed, &OfBody)>().iter(world).map(|(set, body)| (set.clone(), body.0)).collect();
-    let mut kernels = Vec::new();
-    for (set, body) in &sets {
-        let motion = Motion { count: set.rows.len() as u32, axes: set.axes, signal: set.signal as u32 };
+    let mut stages = Vec::new();
+    for (set, body) in sets {
+        let motion = Motion { axes: set.axes, signal: set.signal as u32 };
         let arms: Vec<[f32; 3]> = set.arms.iter().map(|arm| arm.as_vec3().to_array()).collect();
-        let kernel = Kernel::new("boundary", "boundary")
-            .fragment(shader!("boundary"))
-            .fragment(shader!("row"))
+        let nodes = rows_of(body, world);
+        let mut stage = NodeStage::new("boundary", "boundary", body, nodes, shader!("boundary"))
             .bind_uniform::<Motion>("motion", buffers.uniform("boundary".into(), &motion.bytes()))
             .bind("rows", buffers.constants("rows of boundary".into(), bytemuck::cast_slice(&set.rows)))
             .bind("arms", buffers.constants("arms of boundary".into(), bytemuck::cast_slice(&arms)))
-            .bind(Displacement::NAME, buffers.column(*body, Displacement::NAME))
-            .bind(DisplacementStep::NAME, buffers.column(*body, DisplacementStep::NAME))
-            .threads(motion.count);
-        let kernel = if world.get::<DisplacementCompensation>(*body).is_some() {
-            let lost = buffers.column(*body, DisplacementCompensation::NAME);
-            kernel.fragment(shader!("lost")).bind(DisplacementCompensation::NAME, lost)
+            .column(Displacement::NAME, buffers.column(body, Displacement::NAME))
+            .column(DisplacementStep::NAME, buffers.column(body, DisplacementStep::NAME))
+            .of_rows(set.rows);
+        stage = if world.get::<DisplacementCompensation>(body).is_some() {
+            let lost = buffers.column(body, DisplacementCompensation::NAME);
+            stage.shared(shader!("lost")).column(DisplacementCompensation::NAME, lost)
         } else {
-            kernel.fragment(Fragment::new(
+            stage.shared(Fragment::new(
                 "generated: sums that are not compensated",
                 "fn lost_of(node: u32, axis: u32) -> f32 {\n    return 0.0;\n}\n",
             ))
         };
-        let count = world.get::<Mass>(*body).map_or(0, |mass| mass.len());
-        let booked = world.get::<FirstNonFinite>(*body).is_some_and(|noticed| noticed.len() > before_at(count));
-        let kernel = if booked {
-            let noticed = buffers.column(*body, FirstNonFinite::NAME);
-            let at = format!("const BEFORE_AT: u32 = {}u;\n", before_at(count));
-            let at = Fragment::new("generated: where steps are kept", at);
-            kernel.fragment(shader!("kept_step")).fragment(at).bind(FirstNonFinite::NAME, noticed)
+        let at = before_at(nodes as usize);
+        let booked = world.get::<FirstNonFinite>(body).is_some_and(|noticed| noticed.len() > at);
+        stage = if booked {
+            let noticed = buffers.column(body, FirstNonFinite::NAME);
+            let at = Fragment::new("generated: where steps are kept", format!("const BEFORE_AT: u32 = {at}u;\n"));
+            stage.shared(shader!("kept_step")).shared(at).column(FirstNonFinite::NAME, noticed)
         } else {
-            kernel.fragment(Fragment::new("generated: nothing is booked", "fn keep_step(at: u32) {}\n"))
+            stage.shared(Fragment::new("generated: nothing is booked", "fn keep_step(at: u32) {}\n"))
         };
-        kernels.push(with_step(kernel, world));
+        stages.push(stage.with_step(world));
     }
-    kernels
+    stages
 }

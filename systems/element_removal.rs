@@ -251,7 +251,7 @@ fn criterion_kernel(block: &BlockKernels, criteria: &[&RemovalCriterion], buffer
         .bind("limits", limits)
         .bind("criteria", bits);
     let columns = [RestShape::NAME, Alive::NAME, RemovalStep::NAME];
-    let kernel = columns.iter().fold(kernel, |k, name| k.bind(name, buffers.column(block.entity, name)));
+    let kernel = columns.iter().fold(kernel, |k, &name| k.bind(name, buffers.column(block.entity, name)));
     block.with_energy(kernel, buffers)
 }
 
@@ -266,7 +266,7 @@ fn motion_kernel(block: &BlockKernels, world: &World, buffers: &mut dyn Buffers)
         .fragment(shader!("due"))
         .bind_uniform::<Removal>("removal", buffers.uniform("element_removal".into(), &removal.bytes()))
         .bind(DisplacementStep::NAME, buffers.column(block.block.body, DisplacementStep::NAME));
-    REMOVED.iter().fold(kernel, |k, name| k.bind(name, buffers.column(block.entity, name)))
+    REMOVED.iter().fold(kernel, |k, &name| k.bind(name, buffers.column(block.entity, name)))
 }
 
 fn removal_kernel(block: &BlockKernels, buffers: &mut dyn Buffers) -> Kernel {
@@ -280,7 +280,7 @@ fn removal_kernel(block: &BlockKernels, buffers: &mut dyn Buffers) -> Kernel {
         .fragment(shader!("element_removal"))
         .fragment(shader!("due"))
         .fragment(block.generated("extinction", text + "}\n"));
-    let kernel = REMOVED.iter().fold(kernel, |k, name| k.bind(name, buffers.column(block.entity, name)));
+    let kernel = REMOVED.iter().fold(kernel, |k, &name| k.bind(name, buffers.column(block.entity, name)));
     block.with_energy(kernel, buffers)
 }
 

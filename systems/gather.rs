@@ -3,7 +3,8 @@
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, ROWS_A_TASK};
-use crate::backend::kernel::{Fragment, Kernel, Uniform, uniform};
+use crate::backend::kernel::Fragment;
+use crate::backend::node_stage::NodeStage;
 use crate::components::*;
 use crate::math::{LANES, Scalar};
 use crate::shader;
@@ -20,7 +21,7 @@ pub fn system() -> System {
         |world| super::registry::count::<Corners>(world, "body with elements", "bodies with elements"),
         gather,
     )
-    .on_device(kernels)
+    .on_nodes(stages)
 }
 
 fn gather(cpu: Res<Cpu>, mut bodies: Query<(&Corners, &ElementForce, &mut InternalForce, Option<&mut ExternalForce>)>) {
@@ -37,68 +38,61 @@ fn gather(cpu: Res<Cpu>, mut bodies: Query<(&Corners, &ElementForce, &mut Intern
 
 /// Forces of elements at their corners (N), summed at the nodes.
 pub(crate) fn sum_corners<T: Scalar>(cpu: &Cpu, corners: &Corners, element_force: &[T], internal: &mut [T]) {
+    let tasks = internal.chunks_mut(3 * ROWS_A_TASK).enumerate();
+    cpu.for_each(tasks, |(task, rows)| sum_at(corners, element_force, task * ROWS_A_TASK, rows));
+}
+
+/// The sums of the nodes from row `first` on that a column has.
+pub(super) fn sum_at<T: Scalar>(corners: &Corners, element_force: &[T], first: usize, internal: &mut [T]) {
     if corners.stride == 1 {
-        sum_at_stride::<T, 1>(cpu, corners, element_force, internal);
+        sum_at_stride::<T, 1>(corners, element_force, first, internal);
     } else {
-        sum_at_stride::<T, LANES>(cpu, corners, element_force, internal);
+        sum_at_stride::<T, LANES>(corners, element_force, first, internal);
     }
 }
 
 fn sum_at_stride<T: Scalar, const STRIDE: usize>(
-    cpu: &Cpu,
     corners: &Corners,
     element_force: &[T],
+    first: usize,
     internal: &mut [T],
 ) {
-    let tasks = internal.chunks_mut(3 * ROWS_A_TASK).enumerate();
-    cpu.for_each(tasks, |(task, rows)| {
-        for (row, force) in rows.chunks_exact_mut(3).enumerate() {
-            let node = task * ROWS_A_TASK + row;
-            let mut sum = [T::default(); 3];
-            for &corner in &corners.corners[corners.starts[node] as usize..corners.starts[node + 1] as usize] {
-                let from = &element_force[corner as usize..corner as usize + 2 * STRIDE + 1];
-                for i in 0..3 {
-                    sum[i] += from[i * STRIDE];
-                }
+    let rows = internal.len() / 3;
+    let ends = corners.starts[first..=first + rows].windows(2);
+    for (force, ends) in internal.chunks_exact_mut(3).zip(ends) {
+        let mut sum = [T::default(); 3];
+        for &corner in &corners.corners[ends[0] as usize..ends[1] as usize] {
+            let from = &element_force[corner as usize..corner as usize + 2 * STRIDE + 1];
+            for i in 0..3 {
+                sum[i] += from[i * STRIDE];
             }
-            force.copy_from_slice(&sum);
         }
-    });
+        force.copy_from_slice(&sum);
+    }
 }
 
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-struct Gather {
-    count: u32,
-}
-uniform!(Gather { count });
-
-/// One kernel for each body.
-fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+/// One stage for each body.
+fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
     let bodies: Vec<(Entity, Corners, bool)> = world
         .query::<(Entity, &Corners, Option<&ExternalForce>)>()
         .iter(world)
         .map(|(body, corners, external)| (body, corners.clone(), external.is_some()))
         .collect();
-    let mut kernels = Vec::new();
+    let mut stages = Vec::new();
     for (body, corners, loaded) in bodies {
-        let nodes = Gather { count: corners.starts.len().saturating_sub(1) as u32 };
-        let kernel = Kernel::new("gather", "gather")
-            .fragment(shader!("gather"))
-            .fragment(shader!("row"))
-            .fragment(Fragment::new("generated: lanes", format!("const LANES: u32 = {LANES}u;\n")))
-            .bind_uniform::<Gather>("nodes", buffers.uniform("gather".into(), &nodes.bytes()))
+        let nodes = corners.starts.len().saturating_sub(1) as u32;
+        let stage = NodeStage::new("gather", "gather", body, nodes, shader!("gather"))
+            .own(Fragment::new("generated: stride", format!("const STRIDE: u32 = {}u;\n", corners.stride)))
             .bind("starts", buffers.constants("starts of corners".into(), bytemuck::cast_slice(&corners.starts)))
             .bind("corners", buffers.constants("corners".into(), bytemuck::cast_slice(&corners.corners)))
-            .bind(ElementForce::NAME, buffers.column(body, ElementForce::NAME))
-            .bind(InternalForce::NAME, buffers.column(body, InternalForce::NAME))
-            .threads(nodes.count);
-        kernels.push(if loaded {
-            let external = buffers.column(body, ExternalForce::NAME);
-            kernel.fragment(shader!("loads")).bind(ExternalForce::NAME, external)
-        } else {
-            kernel.fragment(Fragment::new("generated: no loads", "fn clear_loads(node: u32) {}\n"))
+            .column(ElementForce::NAME, buffers.column(body, ElementForce::NAME))
+            .column(InternalForce::NAME, buffers.column(body, InternalForce::NAME))
+            .with_step(world)
+            .loaded(loaded);
+        stages.push(match loaded {
+            true => stage.column(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME)),
+            false => stage,
         });
     }
-    kernels
+    stages
 }

@@ -2,8 +2,8 @@
 
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::kernel::{Kernel, Uniform, uniform};
-use crate::backend::step::with_step;
+use crate::backend::kernel::{Uniform, uniform};
+use crate::backend::node_stage::NodeStage;
 use crate::components::*;
 use crate::math::Scalar;
 use crate::shader;
@@ -19,7 +19,7 @@ pub fn system() -> System {
         |world| super::registry::count::<Gravity>(world, "gravity load", "gravity loads"),
         gravity,
     )
-    .on_device(kernels)
+    .on_nodes(stages)
 }
 
 fn gravity(signals: Res<Signals>, loads: Query<(&Gravity, &OfBody)>, mut bodies: Query<(&Mass, &mut ExternalForce)>) {
@@ -33,7 +33,8 @@ fn gravity(signals: Res<Signals>, loads: Query<(&Gravity, &OfBody)>, mut bodies:
     }
 }
 
-fn pull<T: Scalar>(mass: &[T], acceleration: [f64; 4], external: &mut [T]) {
+/// Pulls at all nodes that the columns have.
+pub(super) fn pull<T: Scalar>(mass: &[T], acceleration: [f64; 4], external: &mut [T]) {
     let acceleration = [0, 1, 2].map(|i| T::from_f64(acceleration[i]));
     for (force, &mass) in external.chunks_exact_mut(3).zip(mass) {
         for i in 0..3 {
@@ -45,28 +46,23 @@ fn pull<T: Scalar>(mass: &[T], acceleration: [f64; 4], external: &mut [T]) {
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 struct GravityLoad {
-    count: u32,
     signal: u32,
 }
-uniform!(GravityLoad { count, signal });
+uniform!(GravityLoad { signal });
 
-/// One kernel for each load.
-fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+/// One stage for each load.
+fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
     let loads: Vec<(usize, Entity)> =
         world.query::<(&Gravity, &OfBody)>().iter(world).map(|(load, body)| (load.signal, body.0)).collect();
-    let mut kernels = Vec::new();
+    let mut stages = Vec::new();
     for (signal, body) in loads {
         let count = world.get::<Mass>(body).map_or(0, |mass| mass.len()) as u32;
-        let load = GravityLoad { count, signal: signal as u32 };
-        let kernel = Kernel::new("gravity", "gravity")
-            .fragment(shader!("gravity"))
-            .fragment(shader!("loads"))
-            .fragment(shader!("row"))
+        let load = GravityLoad { signal: signal as u32 };
+        let stage = NodeStage::new("gravity", "gravity", body, count, shader!("gravity"))
             .bind_uniform::<GravityLoad>("load", buffers.uniform("gravity".into(), &load.bytes()))
-            .bind(Mass::NAME, buffers.column(body, Mass::NAME))
-            .bind(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME))
-            .threads(count);
-        kernels.push(with_step(kernel, world));
+            .column(Mass::NAME, buffers.column(body, Mass::NAME))
+            .column(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME));
+        stages.push(stage.with_step(world).loaded(true));
     }
-    kernels
+    stages
 }

@@ -22,6 +22,7 @@ mod gravity;
 mod integrate;
 mod nodal_force;
 mod nodal_volume;
+mod node_pass;
 mod observe;
 mod pressure;
 mod registry;
@@ -29,8 +30,15 @@ mod traction;
 
 pub(crate) use gather::sum_corners;
 pub(crate) use nodal_volume::means_of;
+pub(crate) use node_pass::{is_a_pass, node_pass};
 pub use observe::{add_watch_columns, watch_kernels};
-pub use registry::{DescribeKernels, HostSystem, Phase, Registry, System};
+pub use registry::{DescribeKernels, HostSystem, OnDevice, Phase, Registry, System};
+
+/// Places in `rows`, which ascend, of those among `count` from row `first` on.
+fn places_within(rows: &[u32], first: usize, count: usize) -> std::ops::Range<usize> {
+    let place = |bound: usize| rows.partition_point(|&row| (row as usize) < bound);
+    place(first)..place(first + count)
+}
 
 /// The built-in systems, in the order of a step.
 pub fn standard() -> Vec<System> {

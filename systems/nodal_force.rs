@@ -1,9 +1,10 @@
 //! `nodal_force`: forces on chosen nodes. `shaders/nodal_force.wgsl` is its twin.
 
+use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::kernel::{Kernel, Uniform, uniform};
-use crate::backend::step::with_step;
+use crate::backend::kernel::{Fragment, Uniform, uniform};
+use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
 use crate::math::Scalar;
 use crate::shader;
@@ -19,7 +20,7 @@ pub fn system() -> System {
         |world| super::registry::count::<NodalForce>(world, "nodal force", "nodal forces"),
         nodal_force,
     )
-    .on_device(kernels)
+    .on_nodes(stages)
 }
 
 fn nodal_force(
@@ -31,16 +32,21 @@ fn nodal_force(
         let Ok((mass, mut external)) = bodies.get_mut(body.0) else { continue };
         let force = signals.values()[load.signal];
         match &mut external.0 {
-            Reals::F32(external) => push(&load.rows, force, mass.slice(), external),
-            Reals::F64(external) => push(&load.rows, force, mass.slice(), external),
+            Reals::F32(external) => push(load, force, 0, mass.slice(), external),
+            Reals::F64(external) => push(load, force, 0, mass.slice(), external),
         }
     }
 }
 
-fn push<T: Scalar>(rows: &[u32], force: [f64; 4], mass: &[T], external: &mut [T]) {
-    for row in rows.iter().map(|&row| row as usize).filter(|&row| mass[row] > T::default()) {
-        for i in 0..3 {
-            external[3 * row + i] += T::from_f64(force[i]);
+/// Pushes those nodes from row `first` on that the columns have.
+pub(super) fn push<T: Scalar>(load: &NodalForce, force: [f64; 4], first: usize, mass: &[T], external: &mut [T]) {
+    for place in places_within(&load.rows, first, mass.len()) {
+        let row = load.rows[place] as usize - first;
+        if mass[row] > T::default() {
+            let factor = T::from_f64(load.factors.get(place).copied().unwrap_or(1.0));
+            for i in 0..3 {
+                external[3 * row + i] += factor * T::from_f64(force[i]);
+            }
         }
     }
 }
@@ -48,28 +54,32 @@ fn push<T: Scalar>(rows: &[u32], force: [f64; 4], mass: &[T], external: &mut [T]
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 struct NodalLoad {
-    count: u32,
     signal: u32,
 }
-uniform!(NodalLoad { count, signal });
+uniform!(NodalLoad { signal });
 
-/// One kernel for each load.
-fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+/// One stage for each load.
+fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
     let loads: Vec<(NodalForce, Entity)> =
         world.query::<(&NodalForce, &OfBody)>().iter(world).map(|(load, body)| (load.clone(), body.0)).collect();
-    let mut kernels = Vec::new();
+    let mut stages = Vec::new();
     for (force, body) in loads {
-        let load = NodalLoad { count: force.rows.len() as u32, signal: force.signal as u32 };
-        let kernel = Kernel::new("nodal_force", "nodal_force")
-            .fragment(shader!("nodal_force"))
-            .fragment(shader!("loads"))
-            .fragment(shader!("row"))
+        let load = NodalLoad { signal: force.signal as u32 };
+        let stage = NodeStage::new("nodal_force", "nodal_force", body, rows_of(body, world), shader!("nodal_force"))
             .bind_uniform::<NodalLoad>("load", buffers.uniform("nodal_force".into(), &load.bytes()))
             .bind("rows", buffers.constants("rows of nodal_force".into(), bytemuck::cast_slice(&force.rows)))
-            .bind(Mass::NAME, buffers.column(body, Mass::NAME))
-            .bind(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME))
-            .threads(load.count);
-        kernels.push(with_step(kernel, world));
+            .column(Mass::NAME, buffers.column(body, Mass::NAME))
+            .column(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME))
+            .of_rows(force.rows);
+        let stage = if force.factors.is_empty() {
+            let text = "fn factor_of(i: u32) -> f32 {\n    return 1.0;\n}\n";
+            stage.own(Fragment::new("generated: the same force on all nodes", text))
+        } else {
+            let factors: Vec<f32> = force.factors.iter().map(|&factor| factor as f32).collect();
+            let factors = buffers.constants("factors of nodal_force".into(), bytemuck::cast_slice(&factors));
+            stage.own(shader!("force_factor")).bind("factors", factors)
+        };
+        stages.push(stage.with_step(world).loaded(true));
     }
-    kernels
+    stages
 }

@@ -2,7 +2,7 @@
 //! [`Observer`](crate::observation::Observer). On a GPU the guards have kernels, `shaders/watch_nodes.wgsl` and
 //! `shaders/watch_elements.wgsl`, that run when they are due only.
 
-use super::registry::{Phase, System};
+use super::registry::{OnDevice, Phase, System};
 use crate::backend::Buffers;
 use crate::backend::block_kernel::BlockKernels;
 use crate::backend::kernel::{Kernel, Uniform, uniform};
@@ -21,7 +21,7 @@ pub fn system() -> System {
         called_for_by: "every scene",
         because: |_| Some("guards look for inverted elements and lost numbers".into()),
         host: Box::new(|| Box::new(IntoSystem::into_system(observe))),
-        kernels: None,
+        device: OnDevice::None,
         observes: true,
         every: 1,
         custom: false,
@@ -77,7 +77,7 @@ pub fn watch_kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel
             .threads(nodes.count);
         let columns =
             [Mass::NAME, Displacement::NAME, DisplacementStep::NAME, MiddleDisplacement::NAME, NodeSums::NAME];
-        kernels.push(columns.iter().fold(kernel, |kernel, name| kernel.bind(name, buffers.column(body, name))));
+        kernels.push(columns.iter().fold(kernel, |kernel, &name| kernel.bind(name, buffers.column(body, name))));
     }
     let means = super::nodal_volume::kernels(world, buffers);
     kernels.extend(means.into_iter().map(|kernel| in_the_middle(kernel, world, buffers)));

@@ -2,6 +2,7 @@
 
 use crate::backend::Buffers;
 use crate::backend::kernel::Kernel;
+use crate::backend::node_stage::{DescribeStages, node_kernels};
 use crate::error::Error;
 use crate::snapshot::StateAccess;
 use bevy_ecs::prelude::*;
@@ -34,6 +35,33 @@ pub type HostSystem = Box<dyn bevy_ecs::system::System<In = (), Out = Result<(),
 /// Describes the kernels of a system for a world, bound to buffers.
 pub type DescribeKernels = fn(&mut World, &mut dyn Buffers) -> Vec<Kernel>;
 
+/// What a system does on a GPU.
+#[derive(Clone, Copy, Debug)]
+pub enum OnDevice {
+    /// Nothing: it runs on the host.
+    None,
+    /// Kernels of its own.
+    Kernels(DescribeKernels),
+    /// Something to each node, in kernels that it may share with its neighbours in the step.
+    Stages(DescribeStages),
+}
+
+impl OnDevice {
+    /// Whether there is anything.
+    pub fn is_some(&self) -> bool {
+        !matches!(self, OnDevice::None)
+    }
+
+    /// The kernels of one system by itself.
+    pub fn kernels(&self, world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+        match self {
+            OnDevice::None => Vec::new(),
+            OnDevice::Kernels(kernels) => kernels(world, buffers),
+            OnDevice::Stages(stages) => node_kernels(stages(world, buffers), false, buffers),
+        }
+    }
+}
+
 /// One system of the step.
 pub struct System {
     /// Its name in scenes, reports and (with `.rs` and `.wgsl`) its files.
@@ -48,8 +76,8 @@ pub struct System {
     pub because: fn(&mut World) -> Option<String>,
     /// Makes the system that runs on the host.
     pub host: Box<dyn Fn() -> HostSystem + Send + Sync>,
-    /// Describes the kernels that do the same on a GPU; `None` for systems that only run on the host.
-    pub kernels: Option<DescribeKernels>,
+    /// Describes the kernels that do the same on a GPU.
+    pub device: OnDevice,
     /// Whether it fetches what it reads from the device by itself, and says when it next has to run.
     pub(crate) observes: bool,
     /// Steps between two runs (host systems only).
@@ -84,7 +112,7 @@ impl System {
             called_for_by: "its name in the scene's `schedule`",
             because: |_| None,
             host: Box::new(move || Box::new(IntoSystem::into_system(system.clone().map(Ok)))),
-            kernels: None,
+            device: OnDevice::None,
             observes: false,
             every: 1,
             custom: true,
@@ -150,7 +178,13 @@ impl System {
 
     /// With its kernels.
     pub(crate) fn on_device(mut self, kernels: DescribeKernels) -> Self {
-        self.kernels = Some(kernels);
+        self.device = OnDevice::Kernels(kernels);
+        self
+    }
+
+    /// With what it does to nodes, in kernels that neighbours may share.
+    pub(crate) fn on_nodes(mut self, stages: DescribeStages) -> Self {
+        self.device = OnDevice::Stages(stages);
         self
     }
 }

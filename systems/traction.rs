@@ -1,10 +1,11 @@
 //! `traction`: dead loads on the surface. `shaders/traction.wgsl` is its twin.
 
+use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::face_kernel::{FaceLoad, face_loads};
-use crate::backend::kernel::{Kernel, Uniform, uniform};
-use crate::backend::step::with_step;
+use crate::backend::kernel::{Uniform, uniform};
+use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
 use crate::math::Scalar;
 use crate::shader;
@@ -20,7 +21,7 @@ pub fn system() -> System {
         |world| super::registry::count::<Traction>(world, "traction", "tractions"),
         traction,
     )
-    .on_device(kernels)
+    .on_nodes(stages)
 }
 
 fn traction(signals: Res<Signals>, loads: Query<(&Traction, &OfBody)>, mut bodies: Query<&mut ExternalForce>) {
@@ -28,15 +29,16 @@ fn traction(signals: Res<Signals>, loads: Query<(&Traction, &OfBody)>, mut bodie
         let Ok(mut external) = bodies.get_mut(body.0) else { continue };
         let traction = signals.values()[load.signal];
         match &mut external.0 {
-            Reals::F32(external) => pull(&load.faces, traction, external),
-            Reals::F64(external) => pull(&load.faces, traction, external),
+            Reals::F32(external) => pull(&load.faces, traction, 0, external),
+            Reals::F64(external) => pull(&load.faces, traction, 0, external),
         }
     }
 }
 
-fn pull<T: Scalar>(faces: &FaceCorners, traction: [f64; 4], external: &mut [T]) {
+/// Pulls at the nodes from row `first` on that a column has.
+pub(super) fn pull<T: Scalar>(faces: &FaceCorners, traction: [f64; 4], first: usize, external: &mut [T]) {
     let traction = [0, 1, 2].map(|i| T::from_f64(traction[i]));
-    for (i, &row) in faces.rows.iter().enumerate() {
+    for i in places_within(&faces.rows, first, external.len() / 3) {
         let mut area = T::default();
         for &corner in &faces.corners[faces.starts[i] as usize..faces.starts[i + 1] as usize] {
             let (face, corner) = (corner as usize / 4, corner as usize % 4);
@@ -44,8 +46,9 @@ fn pull<T: Scalar>(faces: &FaceCorners, traction: [f64; 4], external: &mut [T]) 
                 area += T::from_f64(faces.areas[face][corner]);
             }
         }
-        for i in 0..3 {
-            external[3 * row as usize + i] += traction[i] * area;
+        let at = 3 * (faces.rows[i] as usize - first);
+        for (force, traction) in external[at..at + 3].iter_mut().zip(traction) {
+            *force += traction * area;
         }
     }
 }
@@ -53,36 +56,32 @@ fn pull<T: Scalar>(faces: &FaceCorners, traction: [f64; 4], external: &mut [T]) 
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 struct TractionLoad {
-    count: u32,
     signal: u32,
 }
-uniform!(TractionLoad { count, signal });
+uniform!(TractionLoad { signal });
 
-/// One kernel for each load; where elements can go, one for each block behind its faces.
-fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+/// One stage for each load; where elements can go, one for each block behind its faces.
+fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
     let loads: Vec<(Traction, Entity)> =
         world.query::<(&Traction, &OfBody)>().iter(world).map(|(load, body)| (load.clone(), body.0)).collect();
-    let mut kernels = Vec::new();
+    let mut stages = Vec::new();
     for (traction, body) in loads {
         for FaceLoad { faces, alive } in face_loads(&traction.faces, body, world) {
             let place = |corner: &u32| (*corner as usize / 4, *corner as usize % 4);
             let areas: Vec<f32> =
                 faces.corners.iter().map(place).map(|(face, corner)| faces.areas[face][corner] as f32).collect();
             let behind: Vec<u32> = faces.corners.iter().map(place).map(|(face, _)| faces.elements[face].1).collect();
-            let load = TractionLoad { count: faces.rows.len() as u32, signal: traction.signal as u32 };
-            let kernel = Kernel::new("traction", "traction")
-                .fragment(shader!("traction"))
-                .fragment(shader!("loads"))
-                .fragment(shader!("row"))
+            let load = TractionLoad { signal: traction.signal as u32 };
+            let stage = NodeStage::new("traction", "traction", body, rows_of(body, world), shader!("traction"))
                 .bind_uniform::<TractionLoad>("load", buffers.uniform("traction".into(), &load.bytes()))
                 .bind("rows", buffers.constants("rows of traction".into(), bytemuck::cast_slice(&faces.rows)))
                 .bind("starts", buffers.constants("starts of traction".into(), bytemuck::cast_slice(&faces.starts)))
                 .bind("areas", buffers.constants("areas of traction".into(), bytemuck::cast_slice(&areas)))
                 .bind("behind", buffers.constants("elements of traction".into(), bytemuck::cast_slice(&behind)))
-                .bind(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME))
-                .threads(load.count);
-            kernels.push(with_step(FaceLoad::with_alive(alive, kernel, buffers), world));
+                .column(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME))
+                .of_rows(faces.rows);
+            stages.push(FaceLoad::with_alive(alive, stage, buffers).with_step(world).loaded(true));
         }
     }
-    kernels
+    stages
 }

@@ -3,14 +3,21 @@
 
 mod kernel_worlds;
 
-use kernel_worlds::{AROUND, Effects, all_kernels};
+use bevy_ecs::prelude::World;
+use kernel_worlds::{AROUND, Described, Effects, OF_NODES, all_kernels, shared_kernels};
 use sinew::BackendChoice;
 use sinew::backend::kernel::{BindingKind, Kernel, Layout, Uniform, WEBGPU_STORAGE_BUFFERS, compose};
-use sinew::components::Signals;
+use sinew::backend::patch_lists::WEBGPU_WORKGROUP_MEMORY;
+use sinew::components::{Scheme, Signals};
 use std::collections::BTreeSet;
 
 /// Fragments that belong to no system, element or material by name, and what calls for them.
-const SUPPORT: [(&str, &str); 34] = [
+const SUPPORT: [(&str, &str); 42] = [
+    ("corner", "corners of elements, in columns"),
+    ("corner_volume", "the same for averaged nodal pressure"),
+    ("patch_volume", "averaged nodal pressure, in patches"),
+    ("patches", "forces summed patch by patch"),
+    ("two_pass", "forces summed in two passes"),
     ("alive", "loads on faces of elements that can go"),
     ("block", "columns of element blocks"),
     ("criterion", "removal by criterion"),
@@ -23,10 +30,13 @@ const SUPPORT: [(&str, &str); 34] = [
     ("eigen", "principal stretches, in laws"),
     ("elementary", "exponential and logarithm, in laws"),
     ("energy", "elastic energy, where elements can go"),
-    ("external_force", "loads, in integrate"),
+    ("force_factor", "forces that differ from copy to copy"),
+    ("external_force", "sums of loads, between kernels"),
+    ("external_force_at_hand", "sums of loads, within one"),
+    ("internal_force", "forces of elements, between kernels"),
+    ("internal_force_at_hand", "forces of elements, within one"),
     ("fibres_field", "fibres of differing directions"),
     ("fibres_uniform", "fibres of one direction"),
-    ("loads", "what loads add to"),
     ("lost", "compensated sums, in boundary"),
     ("node_damping", "damping, where elements can go"),
     ("node_mass", "mass, where elements can go"),
@@ -51,10 +61,55 @@ fn kernels(effects: &Effects) -> Vec<(String, Kernel)> {
     all_kernels(effects.simulation(BackendChoice::Cpu).world_mut()).0
 }
 
-/// With those of the guards.
+/// With those that systems of nodes share, and those of the guards.
 fn all(effects: &Effects) -> Vec<(String, Kernel)> {
-    let watch = kernel_worlds::watch_kernels(effects.simulation(BackendChoice::Cpu).world_mut());
-    kernels(effects).into_iter().chain(watch).collect()
+    let mut simulation = effects.simulation(BackendChoice::Cpu);
+    let world = simulation.world_mut();
+    let (mut all, _) = all_kernels(world);
+    let without: Vec<&str> = OF_NODES.into_iter().filter(|system| *system != "pressure").collect();
+    for systems in [&OF_NODES[..], &without] {
+        let small = sharing(systems, world, WEBGPU_STORAGE_BUFFERS);
+        all.extend(small.into_iter().map(|kernel| (kernel.label.clone(), kernel)));
+        all.extend(sharing(systems, world, 64).into_iter().map(|kernel| (LARGER_DEVICE.to_owned(), kernel)));
+    }
+    all.extend(kernel_worlds::watch_kernels(world));
+    // one of each kind is enough
+    let mut seen: Vec<Vec<String>> = Vec::new();
+    all.retain(|(_, kernel)| {
+        let texts: Vec<String> = kernel.fragments.iter().map(|fragment| fragment.text.to_string()).collect();
+        let fresh = !seen.contains(&texts);
+        if fresh {
+            seen.push(texts);
+        }
+        fresh
+    });
+    all
+}
+
+/// In place of the system's name: put together for a device that allows more buffers than the smallest.
+const LARGER_DEVICE: &str = "larger device";
+
+/// The kernels that systems of nodes share where a kernel may have so many storage buffers.
+fn sharing(systems: &[&str], world: &mut World, most: usize) -> Vec<Kernel> {
+    shared_kernels(systems, world, &mut Described { most, ..Described::default() })
+}
+
+/// Systems of nodes share as few kernels as can be: on a device that allows enough buffers one for each body, but for
+/// pressure, which looks at the displacements of its neighbours before any of them moves.
+#[test]
+fn systems_of_nodes_share_kernels() {
+    let labels = |effects: &Effects, most: usize| -> Vec<String> {
+        let mut simulation = effects.simulation(BackendChoice::Cpu);
+        sharing(&OF_NODES, simulation.world_mut(), most).into_iter().map(|kernel| kernel.label).collect()
+    };
+    assert_eq!(labels(&Effects::default(), 64), ["gather + integrate"; 2]);
+    let moved = Effects { moved: true, compensated: true, damping: true, ..Effects::default() };
+    assert_eq!(labels(&moved, 64), ["gather + boundary + integrate"; 2]);
+    let loads = Effects { loads: true, ..moved.clone() };
+    let two = ["gather + gravity + nodal_force + traction + pressure + boundary", "integrate"];
+    assert_eq!(labels(&loads, 64), [two, two].concat());
+    let few = labels(&moved, WEBGPU_STORAGE_BUFFERS);
+    assert!(few.len() > 2 && few.iter().all(|label| label != "gather + boundary + integrate"), "{few:?}");
 }
 
 fn members(layout: &Layout) -> Vec<(String, u32, u32)> {
@@ -67,9 +122,13 @@ fn every_combination_of_effects_composes_with_at_most_eight_storage_buffers() {
         for (system, kernel) in all(&effects) {
             let composed = compose(&kernel.fragments).unwrap_or_else(|e| panic!("{}: {e}", kernel.label));
             let entry = composed.entry(kernel.entry).unwrap_or_else(|| panic!("{}: no {}", kernel.label, kernel.entry));
-            assert_eq!(entry.workgroup_size, [64, 1, 1], "{}", kernel.label);
+            let patches = kernel.fragments.iter().any(|fragment| fragment.path == "shaders/patches.wgsl");
+            assert_eq!(entry.workgroup_size, [if patches { 128 } else { 64 }, 1, 1], "{}", kernel.label);
+            assert!(entry.workgroup_memory as usize <= WEBGPU_WORKGROUP_MEMORY, "{}", kernel.label);
+            assert!(!patches || entry.workgroup_memory > 0, "{}", kernel.label);
             let storage = composed.storage_buffers(entry);
-            assert!(storage <= WEBGPU_STORAGE_BUFFERS, "{} of {system}: {storage} of {effects:?}", kernel.label);
+            let most = if system == LARGER_DEVICE { 64 } else { WEBGPU_STORAGE_BUFFERS };
+            assert!(storage <= most, "{} of {system}: {storage} of {effects:?}", kernel.label);
         }
     }
 }
@@ -82,7 +141,7 @@ fn every_variable_in_use_has_a_buffer_and_every_buffer_is_in_use() {
             let entry = composed.entry(kernel.entry).unwrap();
             let names = entry.uses.iter().map(|i| composed.bindings[*i].name.as_str());
             let used: BTreeSet<_> = names.filter(|name| *name != "step").collect();
-            let given: BTreeSet<_> = kernel.bindings.iter().map(|(name, _)| *name).collect();
+            let given: BTreeSet<_> = kernel.bindings.iter().map(|(name, _)| name.as_ref()).collect();
             assert_eq!(used, given, "{} of {effects:?}", kernel.label);
         }
     }
@@ -135,8 +194,8 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
     let fragments = |effects: &Effects| -> BTreeSet<String> {
         kernels(effects).iter().flat_map(|(_, k)| k.fragments.iter().map(|f| f.path.clone())).collect()
     };
-    let buffers = |effects: &Effects| -> BTreeSet<&str> {
-        kernels(effects).iter().flat_map(|(_, k)| k.bindings.iter().map(|(name, _)| *name)).collect()
+    let buffers = |effects: &Effects| -> BTreeSet<String> {
+        kernels(effects).iter().flat_map(|(_, k)| k.bindings.iter().map(|(name, _)| name.to_string())).collect()
     };
     let plain = fragments(&Effects::default());
     let files: BTreeSet<&str> = plain.iter().filter_map(|p| p.strip_prefix("shaders/")).collect();
@@ -147,9 +206,12 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
         "gather",
         "hex8",
         "integrate",
+        "internal_force",
         "kinematics",
         "neo_hookean",
+        "node_pass",
         "note_inverted",
+        "patches",
         "point",
         "point_pressure",
         "row",
@@ -161,7 +223,8 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
     ];
     assert_eq!(files, expected.map(|stem| format!("{stem}.wgsl")).iter().map(String::as_str).collect());
     let without = buffers(&Effects::default());
-    let cases: [(Effects, &[&str], &[&str]); 9] = [
+    let cases: [(Effects, &[&str], &[&str]); 10] = [
+        (Effects { scheme: Scheme::TwoPass, ..Effects::default() }, &["two_pass", "corner"], &["connectivity"]),
         (Effects { inversion: Some("Remove"), ..Effects::default() }, &["remove_inverted"], &["removal_step"]),
         (Effects { fibres: Some(AROUND), ..Effects::default() }, &["fibres", "fibres_field"], &["fibre_direction"]),
         (Effects { prony: 1, ..Effects::default() }, &["prony"], &["viscous_memory"]),
@@ -179,7 +242,7 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
         (Effects { energies: true, ..Effects::default() }, &["work"], &["work"]),
         (
             Effects { averaged: true, ..Effects::default() },
-            &["nodal_volume", "nodal_mean", "tet4_nodal_pressure", "hex8_mean_dilatation"],
+            &["nodal_volume", "nodal_mean", "tet4_nodal_pressure", "patch_volume", "hex8_mean_dilatation"],
             &["nodal_volume_change", "element_volume"],
         ),
         (Effects { removal: true, ..Effects::default() }, &["element_removal", "criterion", "node_mass"], &["alive"]),
@@ -191,7 +254,7 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
             assert!(some.contains(&path) && !plain.contains(&path), "{path} of {effects:?}");
         }
         for name in names {
-            assert!(bound.contains(name) && !without.contains(name), "{name} of {effects:?}");
+            assert!(bound.contains(*name) && !without.contains(*name), "{name} of {effects:?}");
         }
     }
 }

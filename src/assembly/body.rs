@@ -23,6 +23,8 @@ pub struct BodyParts {
     pub entity: Entity,
     /// Its mesh.
     pub placed: PlacedMesh,
+    /// How many copies of one mesh that is.
+    pub copies: usize,
     /// For each of the author's nodes its row.
     pub node_rows: Vec<u32>,
     /// For each of the author's elements its block's place in `blocks` and its row there.
@@ -38,6 +40,20 @@ impl BodyParts {
             marked.iter().zip(&self.node_rows).filter(|(marked, _)| **marked).map(|(_, &row)| row).collect();
         rows.sort_unstable();
         rows
+    }
+
+    /// For each of some rows a number that goes evenly from the first copy's to the last one's.
+    pub fn copy_factors(&self, rows: &[u32], (first, last): (f64, f64)) -> Vec<f64> {
+        let steps = (self.copies.max(2) - 1) as f64;
+        self.copies_of(rows).into_iter().map(|copy| first + (last - first) * copy as f64 / steps).collect()
+    }
+
+    /// For each of some rows which copy it belongs to.
+    pub fn copies_of(&self, rows: &[u32]) -> Vec<usize> {
+        let nodes = (self.node_rows.len() / self.copies.max(1)).max(1);
+        let mut copy_of = vec![0; self.node_rows.len()];
+        self.node_rows.iter().enumerate().for_each(|(node, &row)| copy_of[row as usize] = node / nodes);
+        rows.iter().map(|&row| copy_of[row as usize]).collect()
     }
 }
 
@@ -58,8 +74,9 @@ pub(super) fn spawn(
         let kind = if element < mesh.tets.len() { tets } else { hexes };
         members.entry((kind, material)).or_default().push(element as u32);
     }
+    let copies = assembly.scene.scene.bodies[name].copies as usize;
     let members: Vec<((ElementKind, &str), Vec<u32>)> =
-        members.into_iter().map(|(key, elements)| (key, element_order(mesh, elements))).collect();
+        members.into_iter().map(|(key, elements)| (key, in_order(mesh, elements, copies))).collect();
     let ordered = members.iter().flat_map(|(_, elements)| elements.iter().map(|&e| mesh.element(e as usize)));
     let node_rows = node_rows(mesh.points.len(), ordered);
     let members: Vec<((ElementKind, &str), Vec<u32>)> =
@@ -88,7 +105,15 @@ pub(super) fn spawn(
     super::columns::insert_node_columns(assembly, name, mesh, &node_rows, &authoring, world, body);
     world.entity_mut(body).insert(authoring);
     insert_forces(assembly.scheme, body, world);
-    Some(BodyParts { entity: body, placed, node_rows, element_rows, blocks })
+    Some(BodyParts { entity: body, placed, copies, node_rows, element_rows, blocks })
+}
+
+/// Elements of a block with neighbours together, copy by copy: copies may stand in the same place.
+fn in_order(mesh: &Mesh, elements: Vec<u32>, copies: usize) -> Vec<u32> {
+    let points = mesh.points.len().div_ceil(copies.max(1)).max(1);
+    let copy_of = |element: &u32| mesh.element(*element as usize)[0] as usize / points;
+    // ascending, but tetrahedra of all copies stand before hexahedra
+    elements.chunk_by(|a, b| copy_of(a) == copy_of(b)).flat_map(|own| element_order(mesh, own.to_vec())).collect()
 }
 
 /// The name of each element's material.

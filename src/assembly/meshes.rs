@@ -29,11 +29,18 @@ impl PlacedMesh {
     }
 }
 
-/// Makes or reads the mesh of a body of `scene` and places it.
+/// Makes or reads the mesh of a body of `scene`, with all its copies, and places it.
 ///
 /// # Errors
 /// What is wrong with the file or the parameters; more elements than the scene is allowed.
 pub fn mesh_of(body: &Body, scene: &SceneFile) -> Result<Mesh, MeshError> {
+    let mut mesh = one_copy_of(body, scene)?;
+    mesh.repeat(body.copies, body.apart);
+    Ok(mesh)
+}
+
+/// The same without copies.
+fn one_copy_of(body: &Body, scene: &SceneFile) -> Result<Mesh, MeshError> {
     let mut mesh = match &body.mesh {
         MeshSource::File { path, flip_inverted, .. } => Mesh::read(mesh_file(scene, path)?, *flip_inverted)?,
         MeshSource::Box { size, cells, elements } => generators::box_mesh(*size, *cells, *elements)?,
@@ -51,7 +58,8 @@ pub fn mesh_of(body: &Body, scene: &SceneFile) -> Result<Mesh, MeshError> {
             generators::lens_mesh(*diameter, *thickness, *across, *through, *elements)?
         }
     };
-    let elements = (mesh.element_count() as u64).saturating_mul(8_u64.saturating_pow(body.refine));
+    let cells = 8_u64.saturating_pow(body.refine).saturating_mul(body.copies.into());
+    let elements = (mesh.element_count() as u64).saturating_mul(cells);
     if elements > scene.allowed.elements {
         return Err(too_many(elements, scene));
     }
@@ -82,12 +90,12 @@ pub(super) fn meshes(scene: &SceneFile, diagnostics: &mut Diagnostics) -> Vec<(S
         if diagnostics.has_error_in(path.as_str()) {
             continue;
         }
-        match mesh_of(body, scene) {
+        match one_copy_of(body, scene) {
             Err(error) => {
                 diagnostics.error_at(path.as_str(), error.to_string());
             }
-            Ok(mesh) => {
-                all += mesh.element_count() as u64;
+            Ok(mut mesh) => {
+                all += (mesh.element_count() as u64).saturating_mul(body.copies.into());
                 if all > scene.allowed.elements {
                     diagnostics.error_at(path.as_str(), too_many(all, scene).to_string());
                     break;
@@ -102,6 +110,7 @@ pub(super) fn meshes(scene: &SceneFile, diagnostics: &mut Diagnostics) -> Vec<(S
                 for note in &mesh.notes {
                     diagnostics.warn_at(path.as_str(), format!("the mesh of {name}: {note}"));
                 }
+                mesh.repeat(body.copies, body.apart);
                 meshes.push((name.clone(), PlacedMesh { mesh, surface: OnceLock::new() }));
             }
         }

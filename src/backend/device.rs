@@ -134,13 +134,13 @@ impl Device {
         self.traffic
     }
 
-    /// Makes a system's kernels ready. `describe` is the system's own description of them.
+    /// Makes a system's kernels ready. `describe` is the systems' own description of them.
     ///
     /// # Errors
     /// Kernels that do not compile, and buffers that the device does not hold.
     pub fn prepare(
         world: &mut World,
-        describe: fn(&mut World, &mut dyn Buffers) -> Vec<Kernel>,
+        describe: impl FnOnce(&mut World, &mut dyn Buffers) -> Vec<Kernel>,
     ) -> Result<Vec<KernelId>, Error> {
         let Some(mut device) = world.remove_resource::<Device>() else { return Ok(Vec::new()) };
         let result = device.prepare_in(world, describe);
@@ -151,7 +151,7 @@ impl Device {
     fn prepare_in(
         &mut self,
         world: &mut World,
-        describe: fn(&mut World, &mut dyn Buffers) -> Vec<Kernel>,
+        describe: impl FnOnce(&mut World, &mut dyn Buffers) -> Vec<Kernel>,
     ) -> Result<Vec<KernelId>, Error> {
         let mut sizes = BTreeMap::new();
         let entities: Vec<Entity> = world.query::<EntityRef>().iter(world).map(|entity| entity.id()).collect();
@@ -297,6 +297,10 @@ impl Buffers for Binder<'_> {
         self.device.columns.insert((entity, name), DeviceColumn { buffer, truth: Truth::Host, access });
         self.fresh.push((entity, name));
         buffer
+    }
+
+    fn storage_buffers(&self) -> usize {
+        self.device.gpu.limits().storage_buffers as usize
     }
 
     fn constants(&mut self, label: String, bytes: &[u8]) -> BufferId {

@@ -1,7 +1,8 @@
 //! Faces as the kernels of loads on the surface see them.
 
 use super::Buffers;
-use super::kernel::{BufferId, Fragment, Kernel};
+use super::kernel::{BufferId, Fragment};
+use super::node_stage::NodeStage;
 use crate::components::{Alive, Authoring, Column, FaceCorners};
 use crate::shader;
 use bevy_ecs::prelude::*;
@@ -42,14 +43,14 @@ fn faces_behind(faces: &FaceCorners, block: u32) -> FaceCorners {
 }
 
 impl FaceLoad {
-    /// Adds what tells a kernel which elements are there.
-    pub fn with_alive(alive: Option<Entity>, kernel: Kernel, buffers: &mut dyn Buffers) -> Kernel {
+    /// Adds what tells a stage which elements are there.
+    pub fn with_alive(alive: Option<Entity>, stage: NodeStage, buffers: &mut dyn Buffers) -> NodeStage {
         match alive {
             Some(block) => {
                 let alive: BufferId = buffers.column(block, Alive::NAME);
-                kernel.fragment(shader!("alive")).bind(Alive::NAME, alive)
+                stage.own(shader!("alive")).bind(Alive::NAME, alive)
             }
-            None => kernel.fragment(Fragment::new(
+            None => stage.own(Fragment::new(
                 "generated: no element ever goes",
                 "fn bears(element: u32) -> bool {\n    return true;\n}\n",
             )),

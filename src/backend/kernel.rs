@@ -25,6 +25,9 @@ pub const STEP_VARIABLE: &str = "step";
 /// Storage buffers a kernel may use on every WebGPU device (`maxStorageBuffersPerShaderStage`).
 pub const WEBGPU_STORAGE_BUFFERS: usize = 8;
 
+/// Storage buffers a kernel may use on every desktop GPU: what is assumed where kernels are described without one.
+pub const DESKTOP_STORAGE_BUFFERS: usize = 16;
+
 /// A piece of WGSL: one file, or text generated under a file's name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fragment {
@@ -75,9 +78,9 @@ pub struct Kernel {
     /// The WGSL, in any order: WGSL declarations are order-free.
     pub fragments: Vec<Fragment>,
     /// (WGSL variable, buffer). Every variable the entry point uses needs one, [`STEP_VARIABLE`] excepted.
-    pub bindings: Vec<(&'static str, BufferId)>,
+    pub bindings: Vec<(Cow<'static, str>, BufferId)>,
     /// Structs of its uniforms as Rust sees them, by WGSL variable: what tests compare with the WGSL.
-    pub layouts: Vec<(&'static str, Layout)>,
+    pub layouts: Vec<(Cow<'static, str>, Layout)>,
     /// Invocations wanted; rounded up to whole workgroups, so that the kernel checks its bound. 0 dispatches nothing.
     pub threads: u32,
 }
@@ -102,14 +105,14 @@ impl Kernel {
     }
 
     /// Gives a WGSL variable its buffer.
-    pub fn bind(mut self, variable: &'static str, buffer: BufferId) -> Self {
-        self.bindings.push((variable, buffer));
+    pub fn bind(mut self, variable: impl Into<Cow<'static, str>>, buffer: BufferId) -> Self {
+        self.bindings.push((variable.into(), buffer));
         self
     }
 
     /// Gives a `var<uniform>` the buffer that holds a struct, or several.
     pub fn bind_uniform<U: Uniform>(mut self, variable: &'static str, buffer: BufferId) -> Self {
-        self.layouts.push((variable, U::LAYOUT));
+        self.layouts.push((variable.into(), U::LAYOUT));
         self.bind(variable, buffer)
     }
 

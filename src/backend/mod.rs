@@ -7,6 +7,8 @@ pub(crate) mod face_kernel;
 pub mod gpu;
 pub mod kernel;
 mod law_kernel;
+pub mod node_stage;
+pub mod patch_lists;
 pub mod step;
 pub mod user_law;
 
@@ -19,6 +21,10 @@ pub trait Buffers {
     fn column(&mut self, entity: Entity, name: &'static str) -> BufferId;
     /// A read-only storage buffer of constants.
     fn constants(&mut self, label: String, bytes: &[u8]) -> BufferId;
+    /// How many storage buffers a kernel may use.
+    fn storage_buffers(&self) -> usize {
+        kernel::DESKTOP_STORAGE_BUFFERS
+    }
     /// A uniform buffer of parameters.
     fn uniform(&mut self, label: String, bytes: &[u8]) -> BufferId;
 }

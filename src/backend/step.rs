@@ -25,9 +25,30 @@ pub struct Step {
     pub relaxation: f32,
     /// Share of a step's work that is booked: the time between the middles over Δt.
     pub booked: f32,
+    /// 1 in steps after which somebody may look at forces, else 0: kernels need not leave them in memory.
+    pub observed: u32,
+    /// Unused: slots for signals begin at a multiple of 16 bytes.
+    pub reserved_0: u32,
+    /// Unused.
+    pub reserved_1: u32,
+    /// Unused.
+    pub reserved_2: u32,
 }
 
-uniform!(Step { force_factor, half_step, divide, rate, number, zero, relaxation, booked });
+uniform!(Step {
+    force_factor,
+    half_step,
+    divide,
+    rate,
+    number,
+    zero,
+    relaxation,
+    booked,
+    observed,
+    reserved_0,
+    reserved_1,
+    reserved_2
+});
 
 impl Step {
     /// The step that begins at the clock's time.
@@ -43,6 +64,10 @@ impl Step {
             zero: 0,
             relaxation: damping as f32,
             booked: (between / dt) as f32,
+            observed: 1,
+            reserved_0: 0,
+            reserved_1: 0,
+            reserved_2: 0,
         }
     }
 }
@@ -57,9 +82,10 @@ fn slots(signals: &Signals) -> usize {
     signals.values().len().max(1)
 }
 
-/// One step's record for the device; the signals must have been evaluated for the step.
-pub fn record(clock: &Clock, signals: &Signals) -> Vec<u8> {
-    let mut bytes = Step::of(clock).bytes();
+/// One step's record for the device; the signals must have been evaluated for the step. `observed`: whether somebody may look
+/// at forces after it.
+pub fn record(clock: &Clock, signals: &Signals, observed: bool) -> Vec<u8> {
+    let mut bytes = Step { observed: observed.into(), ..Step::of(clock) }.bytes();
     for slot in signals.values() {
         bytes.extend_from_slice(bytemuck::bytes_of(&slot.map(|value| value as f32)));
     }
@@ -74,7 +100,12 @@ pub fn record_size(signals: &Signals) -> usize {
 
 /// Adds to a kernel the fragments that declare `step` for a world's signals.
 pub(crate) fn with_step(kernel: Kernel, world: &World) -> Kernel {
+    step_fragments(world).into_iter().fold(kernel, Kernel::fragment)
+}
+
+/// The fragments that declare `step` for a world's signals.
+pub(crate) fn step_fragments(world: &World) -> [Fragment; 2] {
     let slots = world.get_resource::<Signals>().map_or(1, slots);
     let signals = Fragment::new("generated: signals of the scene", format!("const SIGNALS: u32 = {slots}u;\n"));
-    kernel.fragment(crate::shader!("step")).fragment(signals)
+    [crate::shader!("step"), signals]
 }

@@ -1,6 +1,7 @@
 //! The model of cost: arithmetic counted by numbers that count, bytes from the columns.
 
 use super::{Case, Effects};
+use crate::backend::patch_lists::patch_batches;
 use crate::components::patch_groups;
 use crate::elements::{Element, MOST_NODES, PressureFrom};
 use crate::evaluation::{node_count, row_count, with_element};
@@ -33,7 +34,10 @@ pub fn cost(case: &Case, elements: u64, nodes: u64) -> Cost {
         // nodes of a patch: those of a cube of so many elements
         let cells = (patch_groups(kind) * LANES) as f64 / super::elements_a_cell(kind) as f64;
         let shared = (1.0 + 1.0 / cells.cbrt()).powi(3) * a_node;
-        2.0 * corners + shared * (4.0 + 4.0 + 3.0 * number + 2.0 * 3.0 * number)
+        // on a GPU a byte a corner of each batch says how often corners take turns
+        let batches = if case.is_gpu() { patch_batches(kind) as f64 } else { 0.0 };
+        let turns = batches * corners / (patch_groups(kind) * LANES) as f64;
+        2.0 * corners + turns + shared * (4.0 + 4.0 + 3.0 * number + 2.0 * 3.0 * number)
     } else {
         4.0 * corners + corners * (4.0 + 2.0 * 3.0 * number) + a_node * 3.0 * number
     };

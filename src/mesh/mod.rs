@@ -10,6 +10,7 @@ pub mod measure;
 mod placement;
 mod read;
 mod refine;
+mod repeat;
 pub mod soundness;
 mod surface;
 mod vtk;

@@ -21,6 +21,9 @@ pub const TERMS: usize = 100;
 pub const NAME_LETTERS: usize = 100;
 /// Times that a mesh is refined: each makes eight elements of one, ten a billion.
 pub const MOST_REFINEMENT: u32 = 9;
+
+/// Copies of a mesh.
+pub const MOST_COPIES: u32 = 100_000;
 /// Elements of all bodies together, after `refine`. Element forces are addressed by 32 bits: 24 numbers a hexahedron.
 pub const ELEMENTS: u64 = 100_000_000;
 /// VTU files of a run.

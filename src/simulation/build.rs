@@ -3,25 +3,29 @@
 use super::beat::Beat;
 use super::follow::Follower;
 use super::frequency::largest_eigenvalue;
+use super::fuse::groups;
 use super::options::{BackendChoice, Chosen, choose};
 use super::outputs;
 use super::parameters::hand_out;
 use super::relax::Relaxing;
 use super::schedule::{Scheduled, check_names, resolve};
+use super::scheme::{fit_workgroups, sum_forces};
 use super::stable_step::{self, Stability};
-use super::{Entry, Facts, Job, Options, Simulation};
+use super::{Entry, Facts, Job, Member, Options, Simulation};
 use crate::assembly::{Assembly, assemble, assemble_in_time, insert_laws};
+use crate::backend::Buffers;
 use crate::backend::cpu::Cpu;
 use crate::backend::device::{Device, all_columns};
 use crate::backend::gpu::Gpu;
 use crate::backend::kernel::KernelId;
+use crate::backend::node_stage::{NodeStage, node_kernels};
 use crate::components::*;
 use crate::error::Error;
 use crate::observation::{Observer, Watch, WatchKernels};
 use crate::scene::schema::Analysis;
 use crate::scene::{Diagnostics, SceneFile};
 use crate::snapshot::{Keeping, identity};
-use crate::systems::{HostSystem, Phase, Registry};
+use crate::systems::{HostSystem, OnDevice, Phase, Registry, System, node_pass};
 use bevy_ecs::component::ComponentId;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemAccess;
@@ -62,44 +66,39 @@ impl Simulation {
 
         let Chosen { gpu, mut why } = choose(options)?;
         if gpu.is_some() {
-            sum_forces(Scheme::TwoPass, &mut world);
+            why += &fit_workgroups(&mut world);
         }
         let gpu_name = gpu.as_ref().map(|gpu| gpu.report().name.clone());
         let prepared = match gpu {
             None => None,
-            Some(gpu) => match kernels_on(gpu, &schedule, &mut world) {
-                Ok(kernels) => Some(kernels),
-                // a GPU that was not asked for need not be up to the scene
-                Err(Error::Gpu(reason)) if options.backend == BackendChoice::Auto => {
-                    why = format!("the GPU cannot take this scene: {reason}");
-                    world.remove_resource::<Device>();
-                    world.remove_resource::<WatchKernels>();
-                    sum_forces(options.scheme, &mut world);
-                    None
+            Some(gpu) => {
+                match kernels_on(gpu, &schedule, groups(&schedule, &access, scene.scene.fuse, true), &mut world) {
+                    Ok(kernels) => Some(kernels),
+                    // a GPU that was not asked for need not be up to the scene
+                    Err(Error::Gpu(reason)) if options.backend == BackendChoice::Auto => {
+                        why = format!("the GPU cannot take this scene: {reason}");
+                        world.remove_resource::<Device>();
+                        world.remove_resource::<WatchKernels>();
+                        sum_forces(options.scheme, &mut world);
+                        None
+                    }
+                    Err(error) => return Err(error),
                 }
-                Err(error) => return Err(error),
-            },
+            }
         };
         let on_gpu = prepared.is_some();
         let backend = match gpu_name.filter(|_| on_gpu) {
             Some(name) => format!("GPU ({name})"),
             None => world.resource::<Cpu>().describe(),
         };
-        let mut kernels = prepared.unwrap_or_default().into_iter();
-        let mut entries = Vec::new();
-        for ((scheduled, host), access) in schedule.iter().zip(hosts).zip(&access) {
-            let system = scheduled.system;
-            let job = match kernels.next().flatten() {
-                Some(kernels) => Job::Kernels(kernels),
-                None => {
-                    let (reads, writes) = columns_of(access, &world);
-                    let beat = Beat::new(scheduled.every, scheduled.interval);
-                    Job::Host { system: host, beat, observes: system.observes, reads, writes }
-                }
-            };
-            let (name, because) = (system.name.clone(), scheduled.because.clone());
-            entries.push(Entry { name, phase: system.phase, because, job, time: Duration::ZERO, runs: 0 });
-        }
+        let entries = match prepared {
+            Some(kernels) => entries(&schedule, hosts, &access, kernels, &mut world),
+            None => {
+                let groups = groups(&schedule, &access, scene.scene.fuse, false);
+                let none = groups.into_iter().map(|group| (group, None)).collect();
+                entries(&schedule, hosts, &access, none, &mut world)
+            }
+        };
         let keeping = keeping(scene, options.precision, &schedule, &access, &mut world);
         // who writes more than loads makes energy
         let external = ExternalForce::NAME;
@@ -140,22 +139,90 @@ impl Simulation {
     }
 }
 
-/// Makes room for the element forces of all bodies, in another scheme than before.
-fn sum_forces(scheme: Scheme, world: &mut World) {
-    let bodies: Vec<Entity> = world.query_filtered::<Entity, With<ElementForce>>().iter(world).collect();
-    bodies.into_iter().for_each(|body| crate::assembly::insert_forces(scheme, body, world));
-}
-
 /// Takes a GPU for the run and makes the kernels of all systems ready that have some.
-fn kernels_on(gpu: Gpu, schedule: &[Scheduled<'_>], world: &mut World) -> Result<Vec<Option<Vec<KernelId>>>, Error> {
+fn kernels_on(
+    gpu: Gpu,
+    schedule: &[Scheduled<'_>],
+    groups: Vec<Vec<usize>>,
+    world: &mut World,
+) -> Result<Vec<Group>, Error> {
     world.insert_resource(Device::new(gpu, all_columns()));
     if world.resource::<Clock>().relaxation.is_none() {
         crate::systems::add_watch_columns(world);
         let watch = Device::prepare(world, crate::systems::watch_kernels)?;
         world.insert_resource(WatchKernels(watch));
     }
-    let kernels = schedule.iter().map(|entry| entry.system.kernels);
-    kernels.map(|describe| describe.map(|describe| Device::prepare(world, describe)).transpose()).collect()
+    let kernels = groups.into_iter().map(|group| {
+        let kernels = match schedule[group[0]].system.device {
+            OnDevice::None => None,
+            OnDevice::Kernels(describe) => Some(Device::prepare(world, describe)?),
+            OnDevice::Stages(_) => Some(Device::prepare(world, |world, buffers| {
+                let fused = group.len() > 1;
+                node_kernels(
+                    stages_of(group.iter().map(|&place| schedule[place].system), world, buffers),
+                    fused,
+                    buffers,
+                )
+            })?),
+        };
+        Ok((group, kernels))
+    });
+    kernels.collect()
+}
+
+/// What several systems do to nodes, in their order.
+pub(super) fn stages_of<'a>(
+    systems: impl Iterator<Item = &'a System>,
+    world: &mut World,
+    buffers: &mut dyn Buffers,
+) -> Vec<NodeStage> {
+    let mut stages = Vec::new();
+    for system in systems {
+        if let OnDevice::Stages(describe) = system.device {
+            stages.extend(describe(world, buffers));
+        }
+    }
+    stages
+}
+
+/// Places of scheduled systems that share an entry, with their kernels where they have some.
+type Group = (Vec<usize>, Option<Vec<KernelId>>);
+
+/// The running schedule.
+fn entries(
+    schedule: &[Scheduled<'_>],
+    hosts: Vec<HostSystem>,
+    access: &[SystemAccess],
+    groups: Vec<Group>,
+    world: &mut World,
+) -> Vec<Entry> {
+    let mut hosts: Vec<Option<HostSystem>> = hosts.into_iter().map(Some).collect();
+    let mut entries = Vec::new();
+    for (group, kernels) in groups {
+        let member = |&place: &usize| {
+            let Scheduled { system, because, .. } = &schedule[place];
+            Member { name: system.name.clone(), phase: system.phase, because: because.clone() }
+        };
+        let systems: Vec<Member> = group.iter().map(member).collect();
+        let names: Vec<String> = systems.iter().map(|system| system.name.clone()).collect();
+        let first = &schedule[group[0]];
+        let job = match (kernels, hosts[group[0]].take()) {
+            (Some(kernels), _) => Job::Kernels(kernels),
+            (None, Some(host)) if group.len() == 1 => {
+                let (reads, writes) = columns_of(&access[group[0]], world);
+                let beat = Beat::new(first.every, first.interval);
+                Job::Host { system: host, beat, observes: first.system.observes, reads, writes }
+            }
+            (None, _) => {
+                let mut system = node_pass(names.clone());
+                let (reads, writes) = columns_of(&system.initialize(world), world);
+                Job::Host { system, beat: Beat::new(1, None), observes: false, reads, writes }
+            }
+        };
+        let phase = systems.iter().map(|system| system.phase).max().unwrap_or(first.system.phase);
+        entries.push(Entry { name: names.join(" + "), phase, systems, job, time: Duration::ZERO, runs: 0 });
+    }
+    entries
 }
 
 /// What a scene comes to before a backend is chosen.
@@ -263,7 +330,7 @@ fn add_called_for_columns(
 ) {
     let Some(external) = world.component_id::<ExternalForce>() else { return };
     let custom =
-        schedule.iter().zip(access).filter(|(entry, _)| entry.system.kernels.is_none() && !entry.system.observes);
+        schedule.iter().zip(access).filter(|(entry, _)| !entry.system.device.is_some() && !entry.system.observes);
     if custom.into_iter().any(|(_, access)| writes(access, external)) {
         for body in assembly.bodies.values() {
             let length = world.get::<Displacement>(body.entity).map_or(0, |u| u.len());

@@ -6,7 +6,7 @@ mod effects;
 mod kernels;
 mod page;
 
-use super::{Entry, Job, Simulation};
+use super::{Entry, Job, Member, Simulation};
 use crate::components::Precision;
 use crate::error::Error;
 use crate::systems::{Registry, System};
@@ -65,6 +65,8 @@ pub struct SystemInUse {
     pub on: &'static str,
     /// How many kernels it has on the device; one whose work is done beforehand needs none.
     pub kernels: usize,
+    /// Systems that share its pass over the nodes.
+    pub shares_with: Vec<String>,
     /// Steps between two runs.
     pub every: u64,
     /// What travels for it in each of its runs; for host systems between a GPU's.
@@ -132,6 +134,10 @@ pub struct KernelInUse {
     pub threads: u32,
     /// Invocations of a workgroup.
     pub workgroup: u32,
+    /// Bytes of memory that a workgroup shares.
+    pub workgroup_memory: u32,
+    /// Storage buffers; every WebGPU device allows 8.
+    pub storage_buffers: usize,
     /// The pieces it is put together from.
     pub fragments: Vec<Piece>,
     /// Lines of all pieces.
@@ -197,7 +203,8 @@ impl Simulation {
 
     fn explain_for(&mut self, registry: &Registry, on_gpu: bool) -> Result<Explanation, Error> {
         let sizes = Sizes::of(&mut self.world);
-        let in_use = |name: &str| self.entries.iter().any(|entry| entry.name == name);
+        let in_use =
+            |name: &str| self.entries.iter().flat_map(|entry| &entry.systems).any(|system| system.name == name);
         let off = registry.systems().iter().filter(|system| !in_use(&system.name));
         let systems_off = off.map(|system| SystemOff {
             name: system.name.clone(),
@@ -205,14 +212,22 @@ impl Simulation {
             turned_on_by: system.called_for_by.into(),
         });
         let systems_off = systems_off.collect();
-        let known = |entry: &Entry| registry.get(&entry.name);
-        let mut systems: Vec<SystemInUse> =
-            self.entries.iter().map(|entry| system_in_use(entry, known(entry), on_gpu, &sizes)).collect();
-        let scheduled: Vec<&System> = self.entries.iter().filter_map(known).collect();
-        let (kernels, buffers) =
-            if on_gpu { kernels::describe(&scheduled, &sizes, &mut self.world)? } else { Default::default() };
+        let mut systems: Vec<SystemInUse> = Vec::new();
+        for entry in &self.entries {
+            let in_use = |member: &Member| system_in_use(entry, member, registry.get(&member.name), on_gpu, &sizes);
+            systems.extend(entry.systems.iter().map(in_use));
+        }
+        let (kernels, buffers) = match on_gpu {
+            true => {
+                let names = self.entries.iter().flat_map(|entry| &entry.systems).map(|system| system.name.as_str());
+                let scheduled: Vec<&System> = names.filter_map(|name| registry.get(name)).collect();
+                kernels::describe(&scheduled, self.scene.fuse, &sizes, &mut self.world)?
+            }
+            false => Default::default(),
+        };
         for system in &mut systems {
-            system.kernels = kernels.iter().filter(|kernel| kernel.system == system.name).count();
+            let own = kernels.iter().filter(|kernel| kernel.system.split(" + ").any(|name| name == system.name));
+            system.kernels = own.count();
         }
         let columns = host_columns(&sizes, &mut self.world);
         let total = |buffers: &[Buffer]| buffers.iter().map(|buffer| buffer.bytes).sum::<u64>();
@@ -242,8 +257,8 @@ impl Simulation {
     }
 }
 
-fn system_in_use(entry: &Entry, system: Option<&System>, on_gpu: bool, sizes: &Sizes) -> SystemInUse {
-    let on_device = on_gpu && system.is_some_and(|system| system.kernels.is_some());
+fn system_in_use(entry: &Entry, member: &Member, system: Option<&System>, on_gpu: bool, sizes: &Sizes) -> SystemInUse {
+    let on_device = on_gpu && system.is_some_and(|system| system.device.is_some());
     let travels = match &entry.job {
         Job::Host { reads, writes, observes: false, .. } if on_gpu && !on_device => {
             let (mut brought, sent) = (sizes.existing(reads), sizes.existing(writes));
@@ -254,10 +269,11 @@ fn system_in_use(entry: &Entry, system: Option<&System>, on_gpu: bool, sizes: &S
         _ => None,
     };
     SystemInUse {
-        name: entry.name.clone(),
-        phase: format!("{:?}", entry.phase),
+        name: member.name.clone(),
+        phase: format!("{:?}", member.phase),
         does: system.map_or_else(String::new, |system| system.does.clone()),
-        because: entry.because.clone(),
+        because: member.because.clone(),
+        shares_with: entry.systems.iter().map(|other| other.name.clone()).filter(|name| *name != member.name).collect(),
         on: if on_device { "device" } else { "host" },
         kernels: 0,
         every: system.map_or(1, |system| system.every),

@@ -6,6 +6,7 @@ mod build;
 pub mod explain;
 mod follow;
 mod frequency;
+mod fuse;
 mod growth;
 mod keep;
 mod mass_scaling;
@@ -19,6 +20,7 @@ mod residual;
 mod rounding;
 mod run;
 mod schedule;
+mod scheme;
 mod stable_step;
 mod step_change;
 mod stretch;
@@ -56,14 +58,22 @@ pub struct Simulation {
     failure: Option<crate::error::Instability>,
 }
 
-/// A system of the running schedule.
+/// A system of the running schedule, or several that share a pass over the nodes.
 struct Entry {
     name: String,
+    /// Of the last of them.
     phase: Phase,
-    because: String,
+    systems: Vec<Member>,
     job: Job,
     time: Duration,
     runs: u64,
+}
+
+/// A system of an entry.
+struct Member {
+    name: String,
+    phase: Phase,
+    because: String,
 }
 
 enum Job {

@@ -232,7 +232,11 @@ impl Simulation {
         for step in first..first + count {
             clock.step = step;
             self.evaluate_signals(step);
-            records.extend(crate::backend::step::record(&clock, self.world.resource::<Signals>()));
+            records.extend(crate::backend::step::record(
+                &clock,
+                self.world.resource::<Signals>(),
+                step + 1 == first + count,
+            ));
         }
         let size = records.len() / count as usize;
         self.world.resource_mut::<Device>().run(kernels, &records, size, count as u32)

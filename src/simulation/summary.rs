@@ -193,7 +193,8 @@ impl Simulation {
 }
 
 fn system_time(entry: &super::Entry, on_gpu: bool) -> SystemTime {
-    let (name, because) = (entry.name.clone(), entry.because.clone());
+    let because: Vec<&str> = entry.systems.iter().map(|system| system.because.as_str()).collect();
+    let (name, because) = (entry.name.clone(), because.join("; "));
     match &entry.job {
         Job::Kernels(_) => {
             let none = Vec::new;

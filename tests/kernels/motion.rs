@@ -1,7 +1,7 @@
 //! `boundary`, `integrate`, and whole runs.
 
 use super::kernel_worlds::Effects;
-use super::pair::{Pair, UNIT, entities, run, run_kernels};
+use super::pair::{Pair, UNIT, entities, run, run_all, run_kernels};
 use bevy_ecs::prelude::*;
 use sinew::BackendChoice;
 use sinew::backend::gpu::gpu_or_reason;
@@ -35,7 +35,7 @@ fn nodes_move_the_same_way() {
         let effects = Effects { damping, loads, compensated, energies, moved: true, ..Effects::default() };
         for step in [0, 3] {
             let Some(mut pair) = run("integrate", &effects, step, |_| {}) else { return };
-            compare_motion(&mut pair, &effects);
+            compare_motion(&mut pair, &effects, 0.0);
         }
     }
 }
@@ -51,12 +51,35 @@ fn nodes_relax_the_same_way() {
                 (relaxation.damping, relaxation.gain) = (0.3, 1.7);
             };
             let Some(mut pair) = run("integrate", &effects, step, damped) else { return };
-            compare_motion(&mut pair, &effects);
+            compare_motion(&mut pair, &effects, 0.0);
         }
     }
 }
 
-fn compare_motion(pair: &mut Pair, effects: &Effects) {
+/// As one after the other: kernels that several systems share give what the systems give by themselves on the host.
+#[test]
+fn systems_that_share_kernels_move_nodes_the_same_way() {
+    for bits in 0..16 {
+        let bit = |i: u32| bits >> i & 1 == 1;
+        let (damping, loads, compensated, energies) = (bit(0), bit(1), bit(2), bit(3));
+        let effects = Effects { damping, loads, compensated, energies, moved: true, ..Effects::default() };
+        // displacements that pressure reads are compared in tests of whole runs: here loads are exact sums
+        let systems = ["gather", "gravity", "nodal_force", "traction", "boundary", "integrate"];
+        for step in [0, 3] {
+            let Some(mut pair) = run_all(&systems, &effects, step, |_| {}) else { return };
+            // eight corners of 0.01 N, in the same order
+            pair.agree::<InternalForce>(|_, _, _| 50.0 * UNIT * 0.01);
+            if loads {
+                pair.agree::<ExternalForce>(|_, _, _| 8.0 * UNIT * 0.05);
+            }
+            // as in the test of boundary alone
+            compare_motion(&mut pair, &effects, 10.0 * UNIT * 0.1);
+        }
+    }
+}
+
+/// `prescribed`: by how much steps along constrained axes may differ (m).
+fn compare_motion(pair: &mut Pair, effects: &Effects, prescribed: f64) {
     // d ← ((1 − a) d + Δt² (R − F)/m)/(1 + a): twelve roundings of the old step, the push and the new step
     let step_bound = |pair: &Pair, body: Entity, i: usize| {
         let dt = pair.before().resource::<Clock>().time_step;
@@ -64,7 +87,8 @@ fn compare_motion(pair: &mut Pair, effects: &Effects) {
         let mass = fictitious.unwrap_or_else(|| pair.before().get::<Mass>(body).unwrap().get(i / 3));
         let old = pair.before().get::<DisplacementStep>(body).unwrap().get(i).abs();
         let push = if mass > 0.0 { dt * dt * 0.02 / mass } else { 0.0 };
-        12.0 * UNIT * (old + push)
+        let constrained = pair.before().get::<ConstrainedAxes>(body).unwrap()[i / 3] >> (i % 3) & 1 == 1;
+        12.0 * UNIT * (old + push) + if constrained { prescribed } else { 0.0 }
     };
     pair.agree::<DisplacementStep>(step_bound);
     let at = |pair: &Pair, body: Entity, i: usize| pair.before().get::<Displacement>(body).unwrap().get(i).abs();
@@ -76,7 +100,7 @@ fn compare_motion(pair: &mut Pair, effects: &Effects) {
                 // u less what was lost is the exact sum, but for the rounding of what was lost
                 let sum = |world: &World| {
                     let lost = world.get::<DisplacementCompensation>(body).unwrap();
-                    let lost = lost.get(COMPENSATION_NUMBERS * (i / 3) + i % 3);
+                    let lost = lost.get(i);
                     (world.get::<Displacement>(body).unwrap().get(i) - lost, lost)
                 };
                 let ((host, lost), (device, _)) = (sum(pair.host()), sum(pair.device.world()));
@@ -97,7 +121,9 @@ fn compare_motion(pair: &mut Pair, effects: &Effects) {
             let steps: f64 =
                 (0..3).map(|axis| moved(pair.before(), axis) + kept(axis) + moved(pair.host(), axis)).sum();
             // forces under 0.01 N along the steps, six products and their sums, each step with its own twelve roundings
-            24.0 * UNIT * (old + 0.02 * steps + damping / dt * steps * steps)
+            let held = pair.before().get::<ConstrainedAxes>(body).unwrap()[node] != 0;
+            let prescribed = if held { prescribed * (1.0 + damping / dt * steps) } else { 0.0 };
+            24.0 * UNIT * (old + 0.02 * steps + damping / dt * steps * steps) + prescribed
         });
     }
     compare_noticed(pair);
@@ -183,8 +209,8 @@ fn compensated_sums_keep_what_f32_would_lose() {
     const TIMES: u32 = 20_000;
     let exact = f64::from(0.01_f32) + f64::from(TIMES) * f64::from(step);
     let plain = (0..TIMES).fold(0.01_f32, |u, _| u + step);
-    let registry = Registry::default();
-    run_kernels(gpu, world, registry.get("integrate").unwrap().kernels.unwrap(), TIMES);
+    let integrate = Registry::default().get("integrate").unwrap().device;
+    run_kernels(gpu, world, |world, buffers| integrate.kernels(world, buffers), TIMES);
     // the plain sum rounds every step by up to half an ulp of u: a step of 1.3 ulp becomes one of 1 ulp
     assert!((f64::from(plain) / exact - 1.0).abs() > 1e-4);
     for body in bodies {

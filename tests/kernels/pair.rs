@@ -1,6 +1,6 @@
 //! One system run both ways, and how to compare what it made.
 
-use super::kernel_worlds::{Effects, randomize};
+use super::kernel_worlds::{Effects, randomize, shared_kernels};
 use bevy_ecs::prelude::*;
 use sinew::BackendChoice;
 use sinew::backend::device::{Device, all_columns, bring_to_host};
@@ -20,6 +20,11 @@ pub struct Pair {
 
 /// Runs one system on random fields both ways, in the step of that number; `change` makes the fields special.
 pub fn run(system: &str, effects: &Effects, step: u64, change: impl Fn(&mut World)) -> Option<Pair> {
+    run_all(&[system], effects, step, change)
+}
+
+/// The same with several systems of nodes, which share kernels on the GPU; those that the scene does not call for are left out.
+pub fn run_all(systems: &[&str], effects: &Effects, step: u64, change: impl Fn(&mut World)) -> Option<Pair> {
     let gpu = gpu_or_reason()?;
     let world = || {
         let mut simulation = effects.simulation(BackendChoice::Cpu);
@@ -34,26 +39,36 @@ pub fn run(system: &str, effects: &Effects, step: u64, change: impl Fn(&mut Worl
     };
     let (before, mut host, mut device) = (world(), world(), world());
     let registry = Registry::default();
-    let system = registry.get(system).unwrap();
-    let on_host = host.world_mut();
-    if system.phase > sinew::systems::Phase::Integrate {
-        on_host.resource_mut::<Clock>().step += 1;
+    for system in systems.iter().map(|name| registry.get(name).unwrap()) {
+        let on_host = host.world_mut();
+        if systems.len() > 1 && (system.because)(on_host).is_none() {
+            continue;
+        }
+        if system.phase > sinew::systems::Phase::Integrate {
+            on_host.resource_mut::<Clock>().step += 1;
+        }
+        let mut body = (system.host)();
+        body.initialize(on_host);
+        body.run((), on_host).unwrap().unwrap();
     }
-    let mut body = (system.host)();
-    body.initialize(on_host);
-    body.run((), on_host).unwrap().unwrap();
-
-    run_kernels(gpu, device.world_mut(), system.kernels.unwrap(), 1);
+    let describe = |world: &mut World, buffers: &mut dyn sinew::backend::Buffers| match systems {
+        [one] => registry.get(one).unwrap().device.kernels(world, buffers),
+        several => shared_kernels(several, world, buffers),
+    };
+    run_kernels(gpu, device.world_mut(), describe, 1);
     Some(Pair { before, host, device })
 }
 
-pub type Describe = fn(&mut World, &mut dyn sinew::backend::Buffers) -> Vec<sinew::backend::kernel::Kernel>;
-
-pub fn run_kernels(gpu: Gpu, world: &mut World, describe: Describe, times: u32) {
+pub fn run_kernels(
+    gpu: Gpu,
+    world: &mut World,
+    describe: impl FnOnce(&mut World, &mut dyn sinew::backend::Buffers) -> Vec<sinew::backend::kernel::Kernel>,
+    times: u32,
+) {
     world.insert_resource(Device::new(gpu, all_columns()));
     let kernels = Device::prepare(world, describe).unwrap_or_else(|error| panic!("{error}"));
     assert!(!kernels.is_empty());
-    let record = sinew::backend::step::record(world.resource::<Clock>(), world.resource::<Signals>());
+    let record = sinew::backend::step::record(world.resource::<Clock>(), world.resource::<Signals>(), true);
     let records = record.repeat(times as usize);
     world.resource_mut::<Device>().run(&kernels, &records, record.len(), times).unwrap();
     bring_to_host(world, |_, _| true).unwrap();

@@ -27,6 +27,12 @@ pub struct Body {
     /// Moves the mesh (m), after scale and rotation.
     #[serde(default)]
     pub translate: DVec3,
+    /// How many copies of the mesh there are, which share nothing: many small bodies at the cost of one large one.
+    #[serde(default = "single")]
+    pub copies: u32,
+    /// How far each copy stands from the one before (m); they may stand in the same place.
+    #[serde(default)]
+    pub apart: DVec3,
     /// Velocity at the start (m/s).
     #[serde(default)]
     pub velocity: DVec3,
@@ -39,6 +45,10 @@ pub struct Body {
     /// Multiplies the hourglass stiffness of one-point hexahedra; 0 leaves their hourglass modes free.
     #[serde(default = "one")]
     pub hourglass: f64,
+}
+
+fn single() -> u32 {
+    1
 }
 
 /// A deformation that a run starts from.

@@ -39,6 +39,9 @@ pub struct Scene {
     /// Systems in the order they run in each step; left out, it is derived from what the scene contains.
     #[serde(default)]
     pub schedule: Option<Vec<String>>,
+    /// Whether neighbouring systems that work node by node share a pass over the nodes.
+    #[serde(default = "yes")]
+    pub fuse: bool,
     /// Parameters of custom systems, by the system's name.
     #[serde(default)]
     pub parameters: BTreeMap<String, ron::Value>,
@@ -54,6 +57,10 @@ pub struct Scene {
     /// What `sinew accuracy` measures the scene against.
     #[serde(default)]
     pub accuracy: Accuracy,
+}
+
+fn yes() -> bool {
+    true
 }
 
 /// What is sought.

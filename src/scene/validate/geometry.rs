@@ -3,7 +3,7 @@
 use super::{Judge, scene, select};
 use crate::mesh::generators::cells_around;
 use crate::scene::beside::Outside;
-use crate::scene::limits::MOST_REFINEMENT;
+use crate::scene::limits::{MOST_COPIES, MOST_REFINEMENT};
 use crate::scene::load::SceneFile;
 use crate::scene::schema::{AccuracyReference, MeshSource, Picture, Start};
 use crate::scene::suggest::{choice, list};
@@ -21,6 +21,9 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
             judge
                 .must(&path.name("refine"), &format!("at most {MOST_REFINEMENT}"), body.refine)
                 .note("each time makes eight elements of one: 10 times make a billion of it");
+        }
+        if body.copies == 0 || body.copies > MOST_COPIES {
+            judge.must(&path.name("copies"), &format!("between 1 and {MOST_COPIES}"), body.copies);
         }
         judge.not_negative(&path.name("hourglass"), body.hourglass, "");
         if let Some(Start::Scrambled { amplitude, .. }) = body.start {

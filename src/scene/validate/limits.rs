@@ -76,11 +76,12 @@ pub(super) fn elements(file: &SceneFile, judge: &mut Judge) {
     for (name, body) in &file.scene.bodies {
         let Some((field, cells)) = cells(&body.mesh) else { continue };
         let each = if body.mesh.element_kinds().0.is_tetrahedron() { 6 } else { 1 };
-        let made = cells * each * 8_u128.pow(body.refine.min(MOST_REFINEMENT));
+        let made = cells * each * 8_u128.pow(body.refine.min(MOST_REFINEMENT)) * u128::from(body.copies);
         all += made;
         if all > u128::from(most) {
             let refined = if body.refine > 0 { format!(", refined {} times", body.refine) } else { String::new() };
-            let message = format!("the mesh would have {made} elements: {cells} cells{refined}");
+            let copied = if body.copies > 1 { format!(", {} copies", body.copies) } else { String::new() };
+            let message = format!("the mesh would have {made} elements: {cells} cells{refined}{copied}");
             let others = if all > made { format!(", {all} with the bodies before") } else { String::new() };
             judge
                 .out

@@ -4,21 +4,35 @@ use super::buffers::{Counter, Sizes};
 use super::{Bound, Buffer, KernelInUse, Piece};
 use crate::backend::gpu::GpuError;
 use crate::backend::kernel::{BindingKind, Kernel, compose};
+use crate::backend::node_stage::node_kernels;
 use crate::error::Error;
-use crate::systems::System;
+use crate::simulation::build::stages_of;
+use crate::systems::{OnDevice, System};
 use bevy_ecs::prelude::*;
 
-/// The kernels of all systems, and the buffers that they bind.
+/// The kernels of all systems, which stand in their order, and the buffers that they bind.
 pub fn describe(
     systems: &[&System],
+    fuse: bool,
     sizes: &Sizes,
     world: &mut World,
 ) -> Result<(Vec<KernelInUse>, Vec<Buffer>), Error> {
     let mut counter = Counter::new(sizes);
     let mut described = Vec::new();
-    for system in systems {
-        let Some(kernels) = system.kernels else { continue };
-        for kernel in kernels(world, &mut counter) {
+    let mut nodes: Vec<&System> = Vec::new();
+    // one more time round, for what is left of systems of nodes at the end
+    for system in systems.iter().map(Some).chain([None]) {
+        let of_nodes = system.filter(|system| matches!(system.device, OnDevice::Stages(_)) && fuse);
+        if let Some(system) = of_nodes {
+            nodes.push(system);
+            continue;
+        }
+        let stages = stages_of(nodes.drain(..), world, &mut counter);
+        for kernel in node_kernels(stages, true, &mut counter) {
+            described.push(in_use(&kernel.label, &kernel, &counter)?);
+        }
+        let Some(system) = system else { break };
+        for kernel in system.device.kernels(world, &mut counter) {
             described.push(in_use(&system.name, &kernel, &counter)?);
         }
     }
@@ -37,7 +51,7 @@ fn in_use(system: &str, kernel: &Kernel, counter: &Counter<'_>) -> Result<Kernel
         let buffer = counter.get(*id);
         Bound {
             variable: (*variable).to_string(),
-            access: match composed.binding(variable).map(|binding| binding.kind) {
+            access: match composed.binding(variable.as_ref()).map(|binding| binding.kind) {
                 Some(BindingKind::ReadWrite) => "read_write",
                 Some(BindingKind::Read) => "read",
                 Some(BindingKind::Uniform) | None => "uniform",
@@ -52,6 +66,8 @@ fn in_use(system: &str, kernel: &Kernel, counter: &Counter<'_>) -> Result<Kernel
         entry: kernel.entry,
         threads: kernel.threads,
         workgroup: entry.map_or(1, |entry| entry.workgroup_size.iter().product()),
+        workgroup_memory: entry.map_or(0, |entry| entry.workgroup_memory),
+        storage_buffers: entry.map_or(0, |entry| composed.storage_buffers(entry)),
         lines: fragments.iter().map(|piece| piece.lines).sum(),
         bindings: bindings.collect(),
         fragments,

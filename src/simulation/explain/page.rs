@@ -40,6 +40,9 @@ fn write_system(system: &SystemInUse, on_gpu: bool, f: &mut Formatter<'_>) -> Re
         (true, ..) => ", on the host".to_string(),
     };
     writeln!(f, "  {:16}  because: {}{place}{every}", "", system.because)?;
+    if !system.shares_with.is_empty() {
+        writeln!(f, "  {:16}  in one pass over the nodes with {}", "", system.shares_with.join(", "))?;
+    }
     let Some(travels) = &system.travels else { return Ok(()) };
     let list = |names: &[&str], bytes: u64| match names {
         [] => "nothing".to_string(),
@@ -66,8 +69,13 @@ fn write_part(part: &Part, f: &mut Formatter<'_>) -> Result {
 fn write_kernel(kernel: &KernelInUse, f: &mut Formatter<'_>) -> Result {
     let workgroups = kernel.threads.div_ceil(kernel.workgroup.max(1));
     writeln!(f, "\nKernel {} (system {})", kernel.label, kernel.system)?;
-    let KernelInUse { entry, threads, workgroup, lines, .. } = kernel;
-    writeln!(f, "  fn {entry}: {threads} invocations in {workgroups} workgroups of {workgroup}; {lines} lines of")?;
+    let KernelInUse { entry, threads, workgroup, workgroup_memory, storage_buffers, lines, .. } = kernel;
+    let shared = match workgroup_memory {
+        0 => String::new(),
+        bytes => format!(", which share {bytes} bytes"),
+    };
+    writeln!(f, "  fn {entry}: {threads} invocations in {workgroups} workgroups of {workgroup}{shared};")?;
+    writeln!(f, "  {storage_buffers} storage buffers; {lines} lines of")?;
     for piece in &kernel.fragments {
         writeln!(f, "    {:>4}  {}", piece.lines, piece.path)?;
     }

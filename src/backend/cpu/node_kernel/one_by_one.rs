@@ -7,7 +7,8 @@ use crate::math::Scalar;
 pub(super) struct Sum<'a, T> {
     pub(super) u: &'a mut [T],
     pub(super) step: &'a mut [T],
-    pub(super) lost: Option<&'a mut [T]>,
+    /// Of the displacement, and of the step.
+    pub(super) lost: Option<[&'a mut [T]; 2]>,
 }
 
 impl<T: Scalar> Sum<'_, T> {
@@ -17,7 +18,7 @@ impl<T: Scalar> Sum<'_, T> {
     fn push(&mut self, i: usize, change: T) {
         match &mut self.lost {
             None => self.step[i] += change,
-            Some(lost) => compensated_add(&mut self.step[i], &mut lost[3 + i], change),
+            Some([_, lost]) => compensated_add(&mut self.step[i], &mut lost[i], change),
         }
     }
 
@@ -26,13 +27,13 @@ impl<T: Scalar> Sum<'_, T> {
     fn go(&mut self, i: usize, constrained: bool) {
         match &mut self.lost {
             None => self.u[i] += self.step[i],
-            Some(lost) => {
+            Some([of_u, of_step]) => {
                 // what boundary wrote is the whole of a constrained step
                 if constrained {
-                    lost[3 + i] = T::default();
+                    of_step[i] = T::default();
                 }
-                let exact = self.step[i] - lost[3 + i];
-                compensated_add(&mut self.u[i], &mut lost[i], exact);
+                let exact = self.step[i] - of_step[i];
+                compensated_add(&mut self.u[i], &mut of_u[i], exact);
             }
         }
     }
@@ -56,29 +57,54 @@ pub(super) fn add_to_sum(sum: Option<&mut [u32]>, part: f64) {
     *low = ((total - f64::from(rounded)) as f32).to_bits();
 }
 
+/// What moves one node.
+pub(super) struct OneNode<T> {
+    mass: T,
+    axes: u32,
+    damping: T,
+    internal: [T; 3],
+    external: [T; 3],
+    /// Bits of the last step (m), which prescribed axes need.
+    kept: Option<[u32; 3]>,
+}
+
+impl<T: Scalar> OneNode<T> {
+    pub(super) fn of(columns: &NodeColumns<'_, T>, row: usize) -> Self {
+        let three = |all: &[T]| [0, 1, 2].map(|i| all[3 * row + i]);
+        Self {
+            mass: columns.mass[row],
+            axes: columns.axes[row],
+            damping: columns.damping.map_or(T::default(), |all| all[row]),
+            internal: three(columns.internal),
+            external: columns.external.map_or([T::default(); 3], three),
+            kept: columns.kept.get(3 * row..3 * row + 3).map(|bits| [bits[0], bits[1], bits[2]]),
+        }
+    }
+}
+
 /// Returns the work against internal forces (J).
 #[inline(always)]
 pub(super) fn move_node<T: Scalar>(
-    inputs: &NodeColumns<'_, T>,
-    node: usize,
+    node: &OneNode<T>,
+    factors: &Factors<T>,
     sum: &mut Sum<'_, T>,
     mut work: Option<&mut [T]>,
 ) -> f64 {
     let (zero, one) = (T::default(), T::from_f64(1.0));
-    let Factors { force: force_factor, half_step, divide, rate, booked, relaxation } = inputs.factors;
-    let (mass, axes) = (inputs.mass[node], inputs.axes[node]);
+    let Factors { force: force_factor, half_step, divide, rate, booked, relaxation } = *factors;
+    let (mass, axes) = (node.mass, node.axes);
     if mass <= zero {
         sum.step.fill(zero);
         return 0.0;
     }
     let per_mass = one / mass;
-    let coefficient = inputs.damping.map_or(zero, |c| c[node]);
+    let coefficient = node.damping;
     let a = coefficient * half_step * per_mass + relaxation;
     let shrink = if a > zero { one / (one + divide * a) } else { one };
     let mut spent = zero;
     for i in 0..3 {
-        let internal = inputs.internal[3 * node + i];
-        let external = inputs.external.map_or(zero, |r| r[3 * node + i]);
+        let internal = node.internal[i];
+        let external = node.external[i];
         let constrained = axes >> i & 1 == 1;
         let before = sum.step[i];
         if !constrained {
@@ -87,8 +113,8 @@ pub(super) fn move_node<T: Scalar>(
         }
         sum.go(i, constrained);
         let step = sum.step[i];
-        let last = match inputs.kept.get(3 * node + i) {
-            Some(&bits) if constrained => T::from_f64(f64::from(f32::from_bits(bits))),
+        let last = match node.kept {
+            Some(bits) if constrained => T::from_f64(f64::from(f32::from_bits(bits[i]))),
             _ => before,
         };
         spent += internal * (last + step);

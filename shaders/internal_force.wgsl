@@ -1,0 +1,12 @@
+// Forces of deformed elements at the nodes (N), between kernels.
+@group(0) @binding(0) var<storage, read_write> internal_force: array<f32>;
+
+fn set_internal_force(node: u32, force: vec3<f32>) {
+    internal_force[3u * node] = force.x;
+    internal_force[3u * node + 1u] = force.y;
+    internal_force[3u * node + 2u] = force.z;
+}
+
+fn internal_force_of(node: u32) -> vec3<f32> {
+    return vec3<f32>(internal_force[3u * node], internal_force[3u * node + 1u], internal_force[3u * node + 2u]);
+}

@@ -1,0 +1,61 @@
+//! Which neighbours of a schedule share one pass over the nodes.
+
+use super::schedule::Scheduled;
+use crate::systems::{OnDevice, Phase, is_a_pass};
+use bevy_ecs::system::SystemAccess;
+
+/// The places of the scheduled systems in the order in which they run, those together that share a pass. Without `fuse`
+/// each by itself.
+///
+/// A system that says where constrained nodes go may wait until just before the nodes move, where nothing in between
+/// touches what it reads and writes: that is known of all systems, one's own too, from their queries.
+pub fn groups(schedule: &[Scheduled<'_>], access: &[SystemAccess], fuse: bool, on_gpu: bool) -> Vec<Vec<usize>> {
+    let mut order: Vec<usize> = (0..schedule.len()).collect();
+    if !fuse {
+        return order.into_iter().map(|place| vec![place]).collect();
+    }
+    for place in (0..schedule.len()).filter(|&place| schedule[place].system.phase == Phase::Boundary).rev() {
+        put_off(place, &mut order, schedule, access);
+    }
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for place in order {
+        match groups.last_mut().filter(|group| is_of_nodes(schedule, place) && is_of_nodes(schedule, group[0])) {
+            Some(group) => group.push(place),
+            None => groups.push(vec![place]),
+        }
+    }
+    let names = |group: &[usize]| -> Vec<&str> { group.iter().map(|&i| schedule[i].system.name.as_str()).collect() };
+    let kept = |group: Vec<usize>| match on_gpu || is_a_pass(&names(&group)) {
+        true => vec![group],
+        false => group.into_iter().map(|place| vec![place]).collect(),
+    };
+    groups.into_iter().flat_map(kept).collect()
+}
+
+/// Whether the engine's own system of that place works node by node, in every step.
+fn is_of_nodes(schedule: &[Scheduled<'_>], place: usize) -> bool {
+    let Scheduled { system, every, .. } = &schedule[place];
+    matches!(system.device, OnDevice::Stages(_)) && !system.custom && *every == 1
+}
+
+/// Moves a system on to just before the first that it must not be exchanged with, if that one works node by node too.
+fn put_off(place: usize, order: &mut Vec<usize>, schedule: &[Scheduled<'_>], access: &[SystemAccess]) {
+    let Some(from) = order.iter().position(|&other| other == place) else { return };
+    let blocks = |&other: &usize| !may_be_exchanged(&access[place], &access[other]);
+    let Some(steps) = order[from + 1..].iter().position(blocks) else { return };
+    let to = from + 1 + steps;
+    if is_of_nodes(schedule, place) && is_of_nodes(schedule, order[to]) {
+        order[from..to].rotate_left(1);
+    }
+}
+
+/// Whether neither writes what the other touches.
+fn may_be_exchanged(one: &SystemAccess, other: &SystemAccess) -> bool {
+    match (one, other) {
+        (SystemAccess::None, _) | (_, SystemAccess::None) => true,
+        (SystemAccess::Shared(one), SystemAccess::Shared(other)) => {
+            one.combined_access().is_compatible(other.combined_access())
+        }
+        _ => false,
+    }
+}

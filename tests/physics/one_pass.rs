@@ -1,0 +1,112 @@
+//! Systems that share a pass over the nodes give what they give by themselves: on the CPU the same bits; on a GPU, where
+//! compilers may round sums otherwise, 1e-5 of the displacement after 200 steps.
+
+use crate::configurations::{Configuration, configurations};
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+use sinew::components::{DisplacementStep, ExternalForce};
+use sinew::systems::{Phase, Registry, System};
+use sinew::{BackendChoice, Options, SceneFile, Simulation};
+use std::path::Path;
+
+fn scene(more: &str, loads: &str, fuse: bool) -> String {
+    format!(
+        "(duration: 10, bodies: {{
+            \"a\": (mesh: Box(size: (1, 1, 1), cells: (3, 3, 3), elements: Tet4), material: \"m\"),
+            \"b\": (mesh: Box(size: (1, 1, 1), cells: (3, 3, 3), elements: Hex8), material: \"m\", translate: (2, 0, 0))}},
+        materials: {{\"m\": (density: 1000, damping: 0.5, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
+        constraints: [
+            Fixed(body: \"a\", on: Plane(normal: (0, 0, 1), at: 0)),
+            Prescribed(body: \"a\", on: Plane(normal: (0, 0, 1), at: 1), axes: [Z], displacement: (0, 0, -0.1), curve: Smooth(end: 1)),
+            Prescribed(body: \"b\", on: Plane(normal: (0, 0, 1), at: 0), rotation: (0, 0, 20), curve: Smooth(end: 1))],
+        loads: [Gravity(acceleration: (0, 1, -9.81)), {loads}
+            NodalForce(body: \"a\", on: Plane(normal: (1, 0, 0), at: 1), force: (0.5, 0, 0)),
+            NodalForce(body: \"a\", on: Plane(normal: (0, 1, 0), at: 1), force: (0, 0.7, 0)),
+            Traction(body: \"b\", on: Surface(normal: (1, 0, 0)), traction: (30, 20, 10))],
+        integration: (step: 0.002), fuse: {fuse}, {more})"
+    )
+}
+
+const PRESSURE: &str = "Pressure(body: \"b\", on: Surface(normal: (0, 0, 1)), pressure: 100),";
+
+fn end(run: &Configuration, text: &str) -> Vec<DVec3> {
+    let mut simulation = run.start_in(text, Path::new("."));
+    simulation.advance(200).unwrap_or_else(|error| panic!("{error}"));
+    let bodies = ["a", "b"].map(|body| {
+        let entity = simulation.body(body).unwrap();
+        let mut all = simulation.displacements(body).unwrap();
+        sinew::backend::device::bring_to_host(simulation.world_mut(), |_, _| true).unwrap();
+        all.extend(simulation.world().get::<ExternalForce>(entity).unwrap().vectors().map(|force| 1e-3 * force));
+        all
+    });
+    bodies.concat()
+}
+
+#[test]
+fn a_shared_pass_changes_nothing() {
+    for (more, loads) in [("", ""), ("output: (energies_every: 0.1)", ""), ("", PRESSURE)] {
+        for run in configurations() {
+            let (shared, apart) = (end(&run, &scene(more, loads, true)), end(&run, &scene(more, loads, false)));
+            if run.options.backend == BackendChoice::Gpu {
+                let largest = apart.iter().map(|u| u.length()).fold(0.0, f64::max);
+                let off = shared.iter().zip(&apart).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+                assert!(off <= 1e-5 * largest, "{}: {off:e} of {largest:e}", run.name);
+            } else {
+                assert_eq!(shared, apart, "{} {loads}", run.name);
+            }
+        }
+    }
+}
+
+fn who_shares(text: &str, registry: &Registry) -> Vec<(String, Vec<String>)> {
+    let scene =
+        SceneFile::from_text("pass.ron", text, Path::new("."), &[]).unwrap_or_else(|e| panic!("{}", e.render(false)));
+    let options = Options { backend: BackendChoice::Cpu, ..Options::default() };
+    let mut simulation = Simulation::with_systems(&scene, &options, registry).unwrap_or_else(|e| panic!("{e}"));
+    let explained = simulation.explain(registry).unwrap();
+    explained.systems.into_iter().map(|system| (system.name, system.shares_with)).collect()
+}
+
+fn shares(text: &str, registry: &Registry, one: &str, other: &str) -> bool {
+    let all = who_shares(text, registry);
+    let (_, with) = all.iter().find(|(name, _)| name == one).unwrap();
+    with.iter().any(|name| name == other)
+}
+
+/// Boundary waits for the nodes to move, unless somebody in between looks at the steps it writes.
+#[test]
+fn who_shares_a_pass_is_told_and_what_must_stay_apart_does() {
+    fn looks(steps: Query<&DisplacementStep>) {
+        let _ = steps.iter().count();
+    }
+    fn pushes(mut forces: Query<&mut ExternalForce>) {
+        let _ = forces.iter_mut().count();
+    }
+    let registry = Registry::default()
+        .with(System::custom("looks", Phase::ElementForces, "looks at steps", looks))
+        .with(System::custom("pushes", Phase::Loads, "pushes", pushes));
+    let plain = scene("", "", true);
+    assert!(shares(&plain, &registry, "boundary", "integrate") && shares(&plain, &registry, "gravity", "gather"));
+    assert!(!shares(&scene("", "", false), &registry, "gravity", "gather"));
+    assert!(!shares(&scene("", PRESSURE, true), &registry, "gather", "integrate"));
+    let with = |own: [&str; 2]| {
+        let all = [
+            "boundary",
+            own[0],
+            "element_forces",
+            "gather",
+            "gravity",
+            own[1],
+            "nodal_force",
+            "traction",
+            "integrate",
+            "observe",
+        ];
+        let names: Vec<String> = all.iter().filter(|name| !name.is_empty()).map(|name| format!("\"{name}\"")).collect();
+        scene(&format!("schedule: [{}]", names.join(", ")), "", true)
+    };
+    assert!(shares(&with(["", ""]), &registry, "boundary", "integrate"));
+    assert!(!shares(&with(["looks", ""]), &registry, "boundary", "integrate"));
+    assert!(shares(&with(["looks", ""]), &registry, "gravity", "integrate"));
+    assert!(!shares(&with(["", "pushes"]), &registry, "gravity", "integrate"));
+}
