@@ -15,7 +15,8 @@ use glam::{DMat3, DVec3};
 /// on the mode ξηζ of its corners. The sums Γ·u that hourglass control needs come with ∇u = Σ_m (Σ_a s_ma u_a) ⊗ β_m.
 ///
 /// γ is never stored: with h_m = XᵀΓ_m, q_m = Γ_m·u − ∇u h_m, and its force folds into the stress.
-/// Rest shape: β of the six modes (rows 0 to 17), volume (18), k (N/m, 19), h_m (20 to 31).
+/// Rest shape: β of the six modes (rows 0 to 17), volume (18), k (N/m, 19), h_m (20 to 31). In a parallelepiped the last three β
+/// and all h_m are zero: `SLOPES`, how many β are made use of, is 6 or 3.
 #[derive(Clone, Copy, Debug)]
 pub struct Hexahedron<const SLOPES: usize>;
 
