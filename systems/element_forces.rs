@@ -102,6 +102,7 @@ fn of_kernel<'a, T: SimdScalar>(
         displacement: displacement.slice(),
         connectivity,
         rest_shape: shape.slice(),
+        simple: block.simple,
         fibre_direction: fibres.map(|f| f.slice()),
         nodal_volume_change: means.map_or(&[], |means| means.slice()),
         memory: memory.map_or(&mut [], |m| m.slice_mut()),

@@ -12,7 +12,7 @@ use bevy_ecs::prelude::*;
 
 /// Adds −p ∫ N_a n dA over the deformed faces, exact for triangles and for bilinear quadrilaterals.
 ///
-/// Each loaded node goes through its own faces in a fixed order. A face of a removed element bears no load, and the
+/// Each loaded node sums what its own faces bring, in a fixed order. A face of a removed element bears no load, and the
 /// surface that removal uncovers is not loaded.
 pub fn system() -> System {
     System::built_in(
@@ -26,35 +26,55 @@ pub fn system() -> System {
     .on_nodes(stages)
 }
 
+/// Area vectors of each face's corners (m²), kept from step to step for their memory only.
+#[derive(Default)]
+struct CornerAreas {
+    f32: Vec<[[f32; 3]; 4]>,
+    f64: Vec<[[f64; 3]; 4]>,
+}
+
 fn pressure(
     signals: Res<Signals>,
     loads: Query<(&Pressure, &OfBody)>,
     mut bodies: Query<(&RestPosition, &Displacement, &mut ExternalForce)>,
+    mut areas: Local<CornerAreas>,
 ) {
     for (load, body) in &loads {
         let Ok((rest, displacement, mut external)) = bodies.get_mut(body.0) else { continue };
         let pressure = signals.values()[load.signal][0];
+        let faces = &load.faces;
         match &mut external.0 {
-            Reals::F32(external) => push(&load.faces, pressure, rest, displacement.slice(), external),
-            Reals::F64(external) => push(&load.faces, pressure, rest, displacement.slice(), external),
+            Reals::F32(external) => push(faces, pressure, rest, displacement.slice(), &mut areas.f32, external),
+            Reals::F64(external) => push(faces, pressure, rest, displacement.slice(), &mut areas.f64, external),
         }
     }
 }
 
-fn push<T: Scalar>(faces: &FaceCorners, pressure: f64, rest: &RestPosition, displacement: &[T], external: &mut [T]) {
+fn push<T: Scalar>(
+    faces: &FaceCorners,
+    pressure: f64,
+    rest: &RestPosition,
+    displacement: &[T],
+    areas: &mut Vec<[[T; 3]; 4]>,
+    external: &mut [T],
+) {
+    // each face once: its corners share most of the work
+    areas.clear();
+    areas.extend(faces.faces.iter().zip(&faces.alive).map(|(face, &alive)| {
+        if alive == 0 {
+            return [[T::default(); 3]; 4];
+        }
+        let points = face.map(|node| {
+            let (node, x) = (node as usize, rest.0[node as usize].to_array());
+            [0, 1, 2].map(|i| T::from_f64(x[i]) + displacement[3 * node + i])
+        });
+        corner_areas(&points)
+    }));
     let pressure = T::from_f64(pressure);
     for (i, &row) in faces.rows.iter().enumerate() {
         let mut sum = [T::default(); 3];
         for &corner in &faces.corners[faces.starts[i] as usize..faces.starts[i + 1] as usize] {
-            let face = corner as usize / 4;
-            if faces.alive[face] == 0 {
-                continue;
-            }
-            let points = faces.faces[face].map(|node| {
-                let (node, x) = (node as usize, rest.0[node as usize].to_array());
-                [0, 1, 2].map(|i| T::from_f64(x[i]) + displacement[3 * node + i])
-            });
-            let area = face_area_at(&points, corner as usize % 4);
+            let area = areas[corner as usize / 4][corner as usize % 4];
             for i in 0..3 {
                 sum[i] += area[i];
             }
@@ -65,20 +85,23 @@ fn push<T: Scalar>(faces: &FaceCorners, pressure: f64, rest: &RestPosition, disp
     }
 }
 
-/// ∫ N_a n dA over a face: the area vector that falls to corner `a`. A triangle repeats its last node.
+/// ∫ N_a n dA over a face: the area vector that falls to each corner. A triangle repeats its last node.
 ///
 /// For a bilinear quadrilateral the integral of N_a (x_ξ × x_η) is exact in closed form: with e and d the edges and
 /// diagonals, ¼ of the whole area vector plus what the corner's own corner area exceeds the mean by, a third of it.
-fn face_area_at<T: Scalar>(points: &[[T; 3]; 4], a: usize) -> [T; 3] {
+#[inline]
+fn corner_areas<T: Scalar>(points: &[[T; 3]; 4]) -> [[T; 3]; 4] {
     let edge = |from: usize, to: usize| [0, 1, 2].map(|i| points[to][i] - points[from][i]);
     let constant = |value: f64| T::from_f64(value);
     if points[2] == points[3] {
-        return cross(edge(0, 1), edge(0, 2)).map(|x| x * constant(1.0 / 6.0));
+        return [cross(edge(0, 1), edge(0, 2)).map(|x| x * constant(1.0 / 6.0)); 4];
     }
-    let diagonals = cross(edge(0, 2), edge(1, 3));
-    let own = cross(edge(a, (a + 1) % 4), edge(a, (a + 3) % 4));
-    let opposite = cross(edge((a + 2) % 4, (a + 3) % 4), edge((a + 2) % 4, (a + 1) % 4));
-    [0, 1, 2].map(|i| diagonals[i] * constant(0.125) + (own[i] - opposite[i]) * constant(1.0 / 24.0))
+    let diagonals = cross(edge(0, 2), edge(1, 3)).map(|x| x * constant(0.125));
+    let own = [0, 1, 2, 3].map(|a| cross(edge(a, (a + 1) % 4), edge(a, (a + 3) % 4)));
+    [0, 1, 2, 3].map(|a: usize| {
+        let opposite = own[(a + 2) % 4];
+        [0, 1, 2].map(|i| diagonals[i] + (own[a][i] - opposite[i]) * constant(1.0 / 24.0))
+    })
 }
 
 fn cross<T: Scalar>(a: [T; 3], b: [T; 3]) -> [T; 3] {
@@ -146,7 +169,7 @@ mod tests {
                 let normal = cross(by_x, by_y);
                 (0..3).for_each(|i| exact[i] += weight * normal[i]);
             }
-            let found = face_area_at(&points, a);
+            let found = corner_areas(&points)[a];
             for i in 0..3 {
                 assert!((found[i] - exact[i]).abs() < 1e-14, "corner {a}: {found:?} instead of {exact:?}");
             }

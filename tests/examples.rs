@@ -6,12 +6,23 @@
 mod custom_system;
 #[path = "../examples/embed.rs"]
 mod embed;
+#[path = "../examples/latency.rs"]
+mod latency;
 
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
 
 #[test]
 fn embed_runs() {
     embed::main().unwrap();
+}
+
+/// The stiffness of the whole tool in contact is some N/m, and it goes 0.5 mm deep.
+#[test]
+fn a_touched_lens_pushes_back() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/lens_pressed.ron");
+    let sets: Vec<String> = latency::TOUCHED.iter().map(|set| set.to_string()).collect();
+    let felt = latency::run(&SceneFile::load(path, &sets).unwrap(), 1, 0.12).unwrap();
+    assert!(felt > 1e-5 && felt < 1e-2, "{felt} N");
 }
 
 #[test]
@@ -70,7 +81,9 @@ fn scenes_in_the_readme_are_sound() {
 #[test]
 fn links_and_paths_in_the_guides_lead_somewhere() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-    for guide in ["README.md", "docs/physics.md", "docs/systems.md", "docs/laws.md", "docs/scene.md"] {
+    for guide in
+        ["README.md", "docs/physics.md", "docs/systems.md", "docs/laws.md", "docs/scene.md", "docs/real_time.md"]
+    {
         let text = std::fs::read_to_string(root.join(guide)).unwrap();
         let folder = root.join(guide).parent().unwrap().to_path_buf();
         for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {

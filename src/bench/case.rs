@@ -39,6 +39,14 @@ pub struct Case {
     pub scheme: String,
     /// Cells along each edge.
     pub cells: u32,
+    /// Whether neighbouring systems share a kernel or loop where they can.
+    #[serde(default = "yes")]
+    pub fuse: bool,
+}
+
+/// Records of before had no word for it.
+fn yes() -> bool {
+    true
 }
 
 /// All cases of a benchmark: every combination.
@@ -58,6 +66,8 @@ pub struct Plan {
     pub threads: Vec<usize>,
     /// `patches`, `two-pass`.
     pub schemes: Vec<String>,
+    /// Whether systems share kernels, both for what that gains.
+    pub fuse: Vec<bool>,
 }
 
 impl Plan {
@@ -73,7 +83,7 @@ impl Plan {
                         for precision in self.precisions.iter().filter(|precision| !gpu || *precision == "f32") {
                             for &threads in if gpu { &[1][..] } else { &self.threads } {
                                 for scheme in &self.schemes {
-                                    group.push(Case {
+                                    group.extend(self.fuse.iter().map(|&fuse| Case {
                                         element,
                                         effects,
                                         backend: backend.clone(),
@@ -81,7 +91,8 @@ impl Plan {
                                         threads,
                                         scheme: scheme.clone(),
                                         cells,
-                                    });
+                                        fuse,
+                                    }));
                                 }
                             }
                         }
@@ -121,6 +132,11 @@ impl Case {
         self.backend == "gpu"
     }
 
+    /// The same with every system apart.
+    pub fn split(&self) -> Self {
+        Self { fuse: false, ..self.clone() }
+    }
+
     /// The same in the plain scheme of two passes.
     pub fn two_pass(&self) -> Self {
         Self { scheme: "two-pass".into(), ..self.clone() }
@@ -140,8 +156,9 @@ impl Case {
             Effects::FibresViscosity => format!("{fibres} {viscosity}"),
         };
         let (cells, element) = (self.cells, self.element);
+        let fuse = if self.fuse { "" } else { "fuse: false," };
         let text = format!(
-            "(duration: 1e6,
+            "(duration: 1e6, {fuse}
               bodies: {{\"cube\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: ({cells}, {cells}, {cells}), elements: {element:?}),
                                    material: \"tissue\")}},
               materials: {{\"tissue\": (density: 1000, neo_hookean: Young(young: 3000, poisson: 0.45), {effects})}},

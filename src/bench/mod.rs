@@ -4,8 +4,10 @@
 mod case;
 mod compare;
 mod cost;
+mod gpu;
 mod machine;
 mod plot;
+mod ratios;
 mod tables;
 
 pub use case::{Case, Effects, Plan, elements_a_cell};
@@ -13,6 +15,7 @@ pub use compare::{Change, compare};
 pub use cost::{Cost, cost};
 pub use machine::{Machine, memory_peak};
 pub use plot::svg;
+pub use ratios::{cpu_to_gpu, split_to_fused};
 pub use tables::{csv, line, markdown};
 
 use crate::error::Error;
@@ -52,6 +55,12 @@ pub struct Row {
     /// Largest memory of the process while the case ran (bytes), where the system tells; all cases of a group are in memory
     /// together.
     pub memory_peak: Option<u64>,
+    /// The GPU it ran on, if it did.
+    #[serde(default)]
+    pub adapter: Option<String>,
+    /// Time of all kernels of a step on the GPU's own clock, over elements (ns); each in a pass of its own, as clocks want it.
+    #[serde(default)]
+    pub gpu_ns: Option<f64>,
 }
 
 /// A benchmark as it is kept.
@@ -76,13 +85,13 @@ pub fn measure(group: &[Case], seconds: f64, machine: &[Machine]) -> Result<Vec<
     for case in group {
         let started = Instant::now();
         let mut simulation = Simulation::new(&case.scene()?, &case.options())?;
-        simulation.advance(1)?;
+        gpu::advance(&mut simulation, 1)?;
         made.push((simulation, started.elapsed().as_secs_f64(), Vec::new(), 1_u64));
     }
     // blocks of some milliseconds: short enough to be left alone, long enough to be timed
     for (simulation, _, _, block) in &mut made {
         let started = Instant::now();
-        simulation.advance(3)?;
+        gpu::advance(simulation, 3)?;
         let step = started.elapsed().as_secs_f64() / 3.0;
         *block = (0.005 / step).clamp(1.0, 512.0) as u64;
     }
@@ -91,15 +100,15 @@ pub fn measure(group: &[Case], seconds: f64, machine: &[Machine]) -> Result<Vec<
     while began.elapsed().as_secs_f64() < budget || made[0].2.len() < LEAST_BLOCKS {
         for (simulation, _, times, block) in &mut made {
             // the others have had the caches
-            simulation.advance(1)?;
+            gpu::advance(simulation, 1)?;
             let started = Instant::now();
-            simulation.advance(*block)?;
+            gpu::advance(simulation, *block)?;
             times.push(started.elapsed().as_secs_f64() / *block as f64);
         }
     }
     let memory_peak = memory_peak();
     let mut rows = Vec::new();
-    for (case, (_, setup_s, mut times, _)) in group.iter().zip(made) {
+    for (case, (mut simulation, setup_s, mut times, block)) in group.iter().zip(made) {
         times.sort_by(f64::total_cmp);
         let cells = u64::from(case.cells);
         let (elements, nodes) = (cells.pow(3) * elements_a_cell(case.element), (cells + 1).pow(3));
@@ -121,6 +130,8 @@ pub fn measure(group: &[Case], seconds: f64, machine: &[Machine]) -> Result<Vec<
             peak_share: of.map(|machine| cost.flops / per_element / machine.flops_per_s),
             setup_s,
             memory_peak,
+            adapter: gpu::adapter(&mut simulation),
+            gpu_ns: gpu::kernel_seconds(&mut simulation, block.min(32))?.map(nanoseconds),
         });
     }
     let best = |rows: &[Row], case: &Case| rows.iter().find(|row| row.case == *case).map(|row| row.ns_per_element_step);

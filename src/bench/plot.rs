@@ -5,7 +5,8 @@ use crate::accuracy::plot::axis::Axis;
 use crate::accuracy::plot::svg::Svg;
 
 const FRAME: [f64; 4] = [84.0, 64.0, 800.0, 560.0];
-const COLOURS: [&str; 8] = ["#2f6db5", "#c2553d", "#3f8f5b", "#8a63a8", "#c78a1f", "#4a9aa8", "#8a5a44", "#6b7480"];
+pub(super) const COLOURS: [&str; 8] =
+    ["#2f6db5", "#c2553d", "#3f8f5b", "#8a63a8", "#c78a1f", "#4a9aa8", "#8a5a44", "#6b7480"];
 
 /// Lines of the same configuration over sizes.
 pub fn svg(record: &Record) -> String {
@@ -58,10 +59,11 @@ pub fn svg(record: &Record) -> String {
 
 fn name(case: &Case) -> String {
     let on = if case.is_gpu() { "GPU".to_string() } else { format!("{} × {}", case.threads, case.precision) };
-    format!("{:?}, {}, {on}, {}", case.element, case.effects.name(), case.scheme)
+    let split = if case.fuse { "" } else { ", split" };
+    format!("{:?}, {}, {on}, {}{split}", case.element, case.effects.name(), case.scheme)
 }
 
-fn count(value: f64) -> String {
+pub(super) fn count(value: f64) -> String {
     match value {
         v if v >= 1e6 => format!("{} M", v * 1e-6),
         v if v >= 1e3 => format!("{} k", v * 1e-3),

@@ -26,6 +26,9 @@ pub fn csv(record: &Record) -> String {
         "peak_share",
         "setup_s",
         "memory_peak",
+        "fuse",
+        "gpu_ns",
+        "adapter",
     ]);
     let optional = |number: Option<f64>| number.map(|number| number.to_string()).unwrap_or_default();
     for row in &record.rows {
@@ -50,6 +53,9 @@ pub fn csv(record: &Record) -> String {
             optional(row.peak_share),
             row.setup_s.to_string(),
             row.memory_peak.map(|bytes| bytes.to_string()).unwrap_or_default(),
+            if case.fuse { "on" } else { "off" }.into(),
+            optional(row.gpu_ns),
+            row.adapter.clone().unwrap_or_default(),
         ]);
     }
     writer.into_inner().map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).unwrap_or_default()
@@ -68,6 +74,9 @@ pub fn markdown(record: &Record) -> String {
             machine.flops_per_s * 1e-9
         );
     }
+    let mut adapters: Vec<&String> = record.rows.iter().filter_map(|row| row.adapter.as_ref()).collect();
+    adapters.dedup();
+    adapters.iter().for_each(|adapter| text += &format!("GPU: {adapter}\n"));
     text += "\n| element | effects | on | scheme | cells | ns an element and step | median | M elements/s | against two passes | bytes | of bandwidth | flop | of peak |\n\
              |---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
     for row in &record.rows {
@@ -83,12 +92,12 @@ pub fn line(row: &Row) -> String {
         "gpu" => "GPU".to_string(),
         _ => format!("{} × {}", case.threads, case.precision),
     };
+    let scheme = if case.fuse { case.scheme.clone() } else { format!("{}, split", case.scheme) };
     let percent = |share: Option<f64>| share.map_or("".into(), |share| format!("{:.0} %", 100.0 * share));
     format!(
-        "| {:?} | {} | {on} | {} | {} | {:.2} | {:.2} | {:.1} | {} | {:.0} | {} | {:.0} | {} |\n",
+        "| {:?} | {} | {on} | {scheme} | {} | {:.2} | {:.2} | {:.1} | {} | {:.0} | {} | {:.0} | {} |\n",
         case.element,
         case.effects.name(),
-        case.scheme,
         case.cells,
         row.ns_per_element_step,
         row.median_ns,

@@ -223,10 +223,13 @@ pub struct BenchArguments {
     /// How element forces are summed
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["patches".to_string(), "two-pass".to_string()], value_parser = ["patches", "two-pass"])]
     pub schemes: Vec<String>,
+    /// Whether systems share kernels and loops where they can, or are kept apart
+    #[arg(long, value_name = "WORD,..", value_delimiter = ',', default_values_t = ["on".to_string()], value_parser = ["on", "off"])]
+    pub fuse: Vec<String>,
     /// Seconds for each case
     #[arg(long, value_name = "S", default_value_t = 0.5)]
     pub seconds: f64,
-    /// A folder for bench.csv, bench.json, bench.md, bench.svg and bench.png
+    /// A folder for bench.csv, bench.json, bench.md and the plots
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// An earlier bench.json: cases that take over a tenth longer now are told, and the status is 1

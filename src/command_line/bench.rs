@@ -4,7 +4,9 @@ use super::arguments::BenchArguments;
 use super::failure::Failure;
 use super::{Outcome, interrupt, terminal};
 use sinew::accuracy::plot::png;
-use sinew::bench::{Effects, Machine, Plan, Record, compare, csv, line, markdown, measure, svg};
+use sinew::bench::{
+    Effects, Machine, Plan, Record, compare, cpu_to_gpu, csv, line, markdown, measure, split_to_fused, svg,
+};
 use sinew::mesh::ElementKind;
 use sinew::output::{Folder, OutputError, replace, summary};
 use std::io::Write;
@@ -89,6 +91,7 @@ fn plan(arguments: &BenchArguments) -> Plan {
         precisions: arguments.precisions.clone(),
         threads,
         schemes: arguments.schemes.clone(),
+        fuse: arguments.fuse.iter().map(|word| word == "on").collect(),
     }
 }
 
@@ -100,18 +103,18 @@ fn read(path: &Path) -> Result<Record, Failure> {
 
 fn write(path: &Path, record: &Record) -> Outcome {
     let mut folder = Folder::create(path)?;
-    let picture = svg(record);
-    let image = png(&picture, 1.5).map_err(Failure::Plot)?;
-    let (table, page) = (csv(record), markdown(record));
-    let files: [(&str, &[u8]); 4] = [
-        ("bench.csv", table.as_bytes()),
-        ("bench.md", page.as_bytes()),
-        ("bench.svg", picture.as_bytes()),
-        ("bench.png", &image),
-    ];
-    for (name, bytes) in files {
+    let mut put = |name: &str, bytes: &[u8]| -> Outcome {
         let path = folder.claim(name)?;
         replace(&path, |file| file.write_all(bytes).map_err(OutputError::system("write", &path)))?;
+        Ok(())
+    };
+    put("bench.csv", csv(record).as_bytes())?;
+    put("bench.md", markdown(record).as_bytes())?;
+    let plots = [("bench", Some(svg(record))), ("cpu_to_gpu", cpu_to_gpu(record)), ("fused", split_to_fused(record))];
+    for (name, plot) in plots {
+        let Some(plot) = plot else { continue };
+        put(&format!("{name}.svg"), plot.as_bytes())?;
+        put(&format!("{name}.png"), &png(&plot, 1.5).map_err(Failure::Plot)?)?;
     }
     summary::write(&folder.claim("bench.json")?, record)?;
     Ok(())

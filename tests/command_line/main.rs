@@ -3,6 +3,7 @@
 
 mod sinew;
 
+mod benches;
 mod ends;
 mod explains;
 mod interrupted;

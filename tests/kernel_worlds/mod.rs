@@ -20,6 +20,8 @@ pub struct Effects {
     pub damping: bool,
     pub loads: bool,
     pub moved: bool,
+    /// Two copies of each body, with loads that differ.
+    pub copies: bool,
     pub compensated: bool,
     pub energies: bool,
     pub removal: bool,
@@ -70,6 +72,7 @@ impl Effects {
             damping: true,
             loads: true,
             moved: true,
+            copies: false,
             compensated: true,
             energies: true,
             removal: true,
@@ -129,6 +132,7 @@ impl Effects {
             all.push(plain);
         }
         all.push(Self::all());
+        all.push(Self { copies: true, loads: true, ..Self::default() });
         all.push(Self { averaged: true, ..Self::default() });
         all.push(Self { averaged: true, ..Self::all() });
         all
@@ -153,11 +157,17 @@ impl Effects {
         let families = self.families.map_or(String::new(), |families| format!("exponential_fibres: {families},"));
         let damping = if self.damping { "damping: 20," } else { "" };
         let inversion = self.inversion.map_or(String::new(), |word| format!("inversion: {word},"));
-        let both = |text: &str| ["tets", "hexes"].map(|body| text.replace("BODY", body)).concat();
+        let (copies, per_copy) = match self.copies {
+            true => ("copies: 2, apart: (0.001, 0, 0),", "per_copy: (0.5, -2),"),
+            false => ("", ""),
+        };
+        let both = |text: &str| {
+            ["tets", "hexes"].map(|body| text.replace("BODY", body).replace("PER_COPY", per_copy)).concat()
+        };
         let loads = if self.loads {
             both(
                 "Gravity(body: \"BODY\", acceleration: (1, -2, -9.81)),
-                 NodalForce(body: \"BODY\", on: Sphere(center: (0, 0, 0.05), radius: 0.03), force: (0.001, 0.002, -0.003)),
+                 NodalForce(body: \"BODY\", on: Sphere(center: (0, 0, 0.05), radius: 0.03), PER_COPY force: (0.001, 0.002, -0.003)),
                  Pressure(body: \"BODY\", on: All, pressure: 120),
                  Traction(body: \"BODY\", on: Surface(normal: (0, 0, 1), within: 70), traction: (5, -7, 11)),",
             )
@@ -189,7 +199,7 @@ impl Effects {
         let analysis = if self.at_rest { "Static()" } else { "Transient" };
         let body = |kind: &str| {
             format!(
-                "(mesh: Ellipsoid(radii: (0.05, 0.04, 0.06), across: 6, elements: {kind}), material: \"tissue\",
+                "(mesh: Ellipsoid(radii: (0.05, 0.04, 0.06), across: 6, elements: {kind}), material: \"tissue\", {copies}
                   regions: [(on: Box(min: (0, -1, -1), max: (1, 1, 1)), material: \"plain\")])"
             )
         };

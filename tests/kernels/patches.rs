@@ -24,7 +24,7 @@ fn block(kind: ElementKind, count: usize, of: impl Fn(usize) -> usize) -> (Block
     }
     let (body, material) = (Entity::PLACEHOLDER, Entity::PLACEHOLDER);
     let (force_offset, force_length, fibre_directions) = (0, 0, Vec::new());
-    (Block { body, material, kind, count, force_offset, force_length, fibre_directions }, patches)
+    (Block { body, material, kind, count, force_offset, force_length, fibre_directions, simple: false }, patches)
 }
 
 /// Goes through the lists as `patches.wgsl` does.

@@ -1,0 +1,96 @@
+//! `sinew bench`, and the figures drawn from what it measured. Times are not asserted: machines are busy.
+
+use crate::sinew::Place;
+use sinew::bench::{Case, Effects, Record, Row, cpu_to_gpu, split_to_fused, svg};
+use sinew::mesh::ElementKind;
+
+#[test]
+fn a_benchmark_leaves_a_row_a_case_with_the_columns_that_are_told() {
+    let place = Place::new();
+    let asked = ["bench", "--cells", "3", "--elements", "tet4,hex8", "--effects", "none", "--seconds", "0.01"];
+    place.done(&[&asked[..], &["--threads", "1", "--schemes", "patches", "--out", "out/bench"]].concat());
+    let table = place.read("out/bench/bench.csv");
+    let mut lines = table.lines();
+    let columns: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let told = include_str!("../../docs/command_line.md").split("## sinew bench").nth(1).unwrap();
+    for column in &columns {
+        assert!(told.contains(column), "docs/command_line.md does not tell of the column {column}");
+    }
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    let cell = |row: usize, name: &str| rows[row][columns.iter().position(|column| *column == name).unwrap()];
+    assert_eq!(rows.len(), 2);
+    assert_eq!((cell(0, "element"), cell(0, "elements"), cell(0, "cells")), ("Tet4", "162", "3"));
+    assert_eq!((cell(1, "element"), cell(1, "elements"), cell(1, "fuse")), ("Hex8", "27", "on"));
+    for name in ["ns_per_element_step", "median_ns", "updates_per_s", "setup_s", "bytes", "flops"] {
+        assert!(cell(0, name).parse::<f64>().unwrap() > 0.0, "{name}");
+    }
+    // nothing to set against each other
+    assert!(place.path("out/bench/bench.png").exists() && !place.path("out/bench/cpu_to_gpu.svg").exists());
+}
+
+#[test]
+fn records_of_before_there_was_a_choice_can_be_compared_with() {
+    let place = Place::new();
+    let asked = ["bench", "--cells", "2", "--elements", "tet4", "--effects", "none", "--seconds", "0.01"];
+    let asked = [&asked[..], &["--threads", "1", "--schemes", "patches"]].concat();
+    place.done(&[&asked[..], &["--out", "out/bench"]].concat());
+    let record = place.read("out/bench/bench.json");
+    let old: String =
+        record.lines().filter(|line| !line.contains("\"fuse\"")).map(|line| format!("{line}\n")).collect();
+    assert_ne!(record, old);
+    std::fs::write(place.path("old.json"), old).unwrap();
+    // slower or not: the case is found again
+    let said = place.sinew(&[&asked[..], &["--compare", "old.json"]].concat());
+    assert!(said.said.contains("times as long: Tet4, none, cpu 1 × f32, patches, 2 cells"), "{}", said.said);
+}
+
+fn row(backend: &str, cells: u32, fuse: bool, ns: f64, gpu_ns: Option<f64>, adapter: Option<&str>) -> Row {
+    let case = Case {
+        element: ElementKind::Hex8,
+        effects: Effects::FibresViscosity,
+        backend: backend.into(),
+        precision: "f32".into(),
+        threads: 1,
+        scheme: "two-pass".into(),
+        cells,
+        fuse,
+    };
+    Row {
+        case,
+        elements: u64::from(cells).pow(3),
+        nodes: u64::from(cells + 1).pow(3),
+        ns_per_element_step: ns,
+        median_ns: ns,
+        updates_per_s: 1e9 / ns,
+        two_pass_ratio: None,
+        flops: 1.0,
+        bytes: 1.0,
+        bandwidth_share: None,
+        peak_share: None,
+        setup_s: 1.0,
+        memory_peak: None,
+        adapter: adapter.map(str::to_string),
+        gpu_ns,
+    }
+}
+
+#[test]
+fn figures_name_the_device_and_say_so_where_it_is_a_program() {
+    let software = Some("llvmpipe (software, Vulkan, Mesa)");
+    let rows = [10, 20]
+        .iter()
+        .flat_map(|&n| [row("cpu", n, true, 40.0, None, None), row("gpu", n, true, 80.0, Some(70.0), software)])
+        .collect();
+    let mut record = Record { machine: Vec::new(), rows };
+    let figure = cpu_to_gpu(&record).unwrap();
+    assert!(figure.contains("llvmpipe") && figure.contains("A PROGRAM ON THE CPU"), "{figure}");
+    assert!(figure.contains("Hex8, fibres-viscosity: 1 × f32 two-pass / GPU two-pass"), "{figure}");
+    assert!(split_to_fused(&record).is_none(), "nothing was kept apart");
+
+    record.rows.push(row("gpu", 10, false, 88.0, Some(73.5), Some("Some card (discrete, Vulkan, driver)")));
+    record.rows.retain(|row| row.case.is_gpu());
+    assert!(cpu_to_gpu(&record).is_none(), "there is no CPU to compare with");
+    let figure = split_to_fused(&record).unwrap();
+    assert!(figure.contains("GPU, two-pass, whole step") && figure.contains("GPU, two-pass, kernels"), "{figure}");
+    assert!(svg(&record).contains("two-pass, split"), "both are lines of their own");
+}
