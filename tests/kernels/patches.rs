@@ -78,7 +78,7 @@ fn patches_that_no_workgroup_can_sum_are_refused() {
     let (tets, patches) = block(ElementKind::Tet4, 144, |i| i);
     assert!(pack(&tets, &patches).is_ok());
     // corner 0 of all is the same node
-    let fan = |i: usize| if i / LANES % 4 == 0 { 0 } else { 1 + i % 400 };
+    let fan = |i: usize| if (i / LANES).is_multiple_of(4) { 0 } else { 1 + i % 400 };
     let (tets, patches) = block(ElementKind::Tet4, 65, fan);
     let refused = pack(&tets, &patches).err().unwrap();
     assert_eq!(refused, "65 of 128 neighbouring elements have the same corner in common, and 64 may");
