@@ -4,18 +4,10 @@ struct Block {
     force_offset: u32, // where the block's forces begin
 }
 @group(0) @binding(0) var<uniform> block: Block;
-@group(0) @binding(1) var<storage, read> displacement: array<f32>;
-@group(0) @binding(2) var<storage, read> connectivity: array<u32>;
 
 // Place of number k of `numbers` of an element.
 fn place(element: u32, numbers: u32, k: u32) -> u32 {
     return (element / LANES * numbers + k) * LANES + element % LANES;
-}
-
-// Displacement (m) of an element's corner.
-fn corner_displacement(element: u32, corner: u32) -> vec3<f32> {
-    let at = 3u * connectivity[place(element, NODES, corner)];
-    return vec3<f32>(displacement[at], displacement[at + 1u], displacement[at + 2u]);
 }
 
 // Three numbers of an element's rest shape, from row k on.

@@ -1,10 +1,15 @@
 // Compensated sums (Kahan 1965), for integrate: what rounding leaves out of a displacement or of its step goes into the next.
-// Six numbers a node: what the displacement, then what the step has too much of.
+// What displacements have too much of, a vector a node, then what steps have.
 @group(0) @binding(0) var<storage, read_write> displacement_compensation: array<f32>;
 
 // The same number, in a way that no compiler can look through: else (u + d) − u becomes d, and nothing is compensated.
 fn rounded(x: vec3<f32>) -> vec3<f32> {
     return bitcast<vec3<f32>>(bitcast<vec3<u32>>(x) ^ vec3<u32>(step.zero));
+}
+
+// Where what a step has too much of stands.
+fn of_step(node: u32) -> u32 {
+    return 3u * (pass_rows.count + node);
 }
 
 fn lost_at(at: u32) -> vec3<f32> {
@@ -27,18 +32,18 @@ fn compensated_add(at: u32, sum: vec3<f32>, change: vec3<f32>) -> vec3<f32> {
 
 // The longer step.
 fn add_to_step(node: u32, before: vec3<f32>, change: vec3<f32>) -> vec3<f32> {
-    return compensated_add(6u * node + 3u, before, change);
+    return compensated_add(of_step(node), before, change);
 }
 
 // A parked node has no step, and nothing of it is left out.
 fn forget_step(node: u32) {
-    displacement_compensation[6u * node + 3u] = 0.0;
-    displacement_compensation[6u * node + 4u] = 0.0;
-    displacement_compensation[6u * node + 5u] = 0.0;
+    displacement_compensation[of_step(node)] = 0.0;
+    displacement_compensation[of_step(node) + 1u] = 0.0;
+    displacement_compensation[of_step(node) + 2u] = 0.0;
 }
 
 // The displacement after the step; what boundary wrote is the whole of a constrained one.
 fn add_step(node: u32, u: vec3<f32>, d: vec3<f32>, constrained: vec3<bool>) -> vec3<f32> {
-    let lost = select(lost_at(6u * node + 3u), vec3<f32>(0.0), constrained);
-    return compensated_add(6u * node, u, d - lost);
+    let lost = select(lost_at(of_step(node)), vec3<f32>(0.0), constrained);
+    return compensated_add(3u * node, u, d - lost);
 }

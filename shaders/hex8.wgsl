@@ -1,44 +1,57 @@
 // The eight-node hexahedron with one integration point and hourglass control; twin of src/elements/hex8.rs.
+// Modes: signs of the nodes along x, y, z, and the products of those.
 struct Element {
-    // displacements of nodes 1 to 7 less that of node 0 (m)
-    u1: vec3<f32>,
-    u2: vec3<f32>,
-    u3: vec3<f32>,
-    u4: vec3<f32>,
-    u5: vec3<f32>,
-    u6: vec3<f32>,
-    u7: vec3<f32>,
-    // mean gradients of nodes 1 to 7 (1/m)
-    b1: vec3<f32>,
-    b2: vec3<f32>,
-    b3: vec3<f32>,
-    b4: vec3<f32>,
-    b5: vec3<f32>,
-    b6: vec3<f32>,
-    b7: vec3<f32>,
+    // displacements, each times its node's sign (m)
+    x: vec3<f32>,
+    y: vec3<f32>,
+    z: vec3<f32>,
+    yz: vec3<f32>,
+    zx: vec3<f32>,
+    xy: vec3<f32>,
+    xyz: vec3<f32>,
+    // the mean gradients' parts in the modes (1/m); they have none in the last
+    slope_x: vec3<f32>,
+    slope_y: vec3<f32>,
+    slope_z: vec3<f32>,
+    slope_yz: vec3<f32>,
+    slope_zx: vec3<f32>,
+    slope_xy: vec3<f32>,
     volume: f32, // m³
 }
 
-const HOURGLASS_STIFFNESS: u32 = 22u;
-const HOURGLASS_ARMS: u32 = 23u;
+const HOURGLASS_STIFFNESS: u32 = 19u;
+const HOURGLASS_ARMS: u32 = 20u;
 
 fn element_of(row: u32) -> Element {
     let u0 = corner_displacement(row, 0u);
+    let u1 = corner_displacement(row, 1u);
+    let u2 = corner_displacement(row, 2u);
+    let u3 = corner_displacement(row, 3u);
+    let u4 = corner_displacement(row, 4u);
+    let u5 = corner_displacement(row, 5u);
+    let u6 = corner_displacement(row, 6u);
+    let u7 = corner_displacement(row, 7u);
+    // from differences along edges, so that a common displacement drops out before it can round
+    let x0 = u1 - u0;
+    let x1 = u2 - u3;
+    let x2 = u5 - u4;
+    let x3 = u6 - u7;
+    let y_below = (u3 - u0) + (u2 - u1);
+    let y_above = (u7 - u4) + (u6 - u5);
     return Element(
-        corner_displacement(row, 1u) - u0,
-        corner_displacement(row, 2u) - u0,
-        corner_displacement(row, 3u) - u0,
-        corner_displacement(row, 4u) - u0,
-        corner_displacement(row, 5u) - u0,
-        corner_displacement(row, 6u) - u0,
-        corner_displacement(row, 7u) - u0,
+        (x0 + x1) + (x2 + x3),
+        y_below + y_above,
+        ((u4 - u0) + (u5 - u1)) + ((u6 - u2) + (u7 - u3)),
+        y_above - y_below,
+        (x2 + x3) - (x0 + x1),
+        (x1 - x0) + (x3 - x2),
+        (x3 - x2) - (x1 - x0),
         shape_vector(row, 0u),
         shape_vector(row, 3u),
         shape_vector(row, 6u),
         shape_vector(row, 9u),
         shape_vector(row, 12u),
         shape_vector(row, 15u),
-        shape_vector(row, 18u),
         rest_shape[place(row, ROWS, VOLUME_ROW)],
     );
 }
@@ -49,13 +62,12 @@ struct Forces {
 }
 
 fn at_point(e: Element, point: u32) -> PointState {
-    var h = mat3x3<f32>(e.u1.x * e.b1, e.u1.y * e.b1, e.u1.z * e.b1);
-    h = plus_outer(h, e.u2, e.b2);
-    h = plus_outer(h, e.u3, e.b3);
-    h = plus_outer(h, e.u4, e.b4);
-    h = plus_outer(h, e.u5, e.b5);
-    h = plus_outer(h, e.u6, e.b6);
-    h = plus_outer(h, e.u7, e.b7);
+    var h = mat3x3<f32>(e.x.x * e.slope_x, e.x.y * e.slope_x, e.x.z * e.slope_x);
+    h = plus_outer(h, e.y, e.slope_y);
+    h = plus_outer(h, e.z, e.slope_z);
+    h = plus_outer(h, e.yz, e.slope_yz);
+    h = plus_outer(h, e.zx, e.slope_zx);
+    h = plus_outer(h, e.xy, e.slope_xy);
     return PointState(h, h, e.volume);
 }
 
@@ -68,13 +80,13 @@ fn hourglass_arm(row: u32, m: u32) -> vec3<f32> {
     return shape_vector(row, HOURGLASS_ARMS + 3u * m);
 }
 
-// The four hourglass displacements q_m = Γ_m·u − ∇u h_m (m). The signs are those of ηζ, ζξ, ξη, ξηζ at nodes 1 to 7.
+// The four hourglass displacements q_m = Γ_m·u − ∇u h_m (m), of the modes yz, zx, xy, xyz.
 fn hourglass_displacements(row: u32, e: Element, h: mat3x3<f32>) -> array<vec3<f32>, 4> {
     return array<vec3<f32>, 4>(
-        e.u1 - e.u2 - e.u3 - e.u4 - e.u5 + e.u6 + e.u7 - times_vector(h, hourglass_arm(row, 0u)),
-        -e.u1 - e.u2 + e.u3 - e.u4 + e.u5 + e.u6 - e.u7 - times_vector(h, hourglass_arm(row, 1u)),
-        -e.u1 + e.u2 - e.u3 + e.u4 - e.u5 + e.u6 - e.u7 - times_vector(h, hourglass_arm(row, 2u)),
-        e.u1 - e.u2 + e.u3 + e.u4 - e.u5 + e.u6 - e.u7 - times_vector(h, hourglass_arm(row, 3u)),
+        e.yz - times_vector(h, hourglass_arm(row, 0u)),
+        e.zx - times_vector(h, hourglass_arm(row, 1u)),
+        e.xy - times_vector(h, hourglass_arm(row, 2u)),
+        e.xyz - times_vector(h, hourglass_arm(row, 3u)),
     );
 }
 
@@ -91,14 +103,31 @@ fn corner_forces(row: u32, e: Element, forces: Forces) -> array<vec3<f32>, NODES
     folded = plus_outer(folded, -q, hourglass_arm(row, 1u));
     folded = plus_outer(folded, -r, hourglass_arm(row, 2u));
     folded = plus_outer(folded, -s, hourglass_arm(row, 3u));
-    let f1 = p - q - r + s + times_vector(folded, e.b1);
-    let f2 = -p - q + r - s + times_vector(folded, e.b2);
-    let f3 = -p + q - r + s + times_vector(folded, e.b3);
-    let f4 = -p - q + r + s + times_vector(folded, e.b4);
-    let f5 = -p + q - r - s + times_vector(folded, e.b5);
-    let f6 = p + q + r + s + times_vector(folded, e.b6);
-    let f7 = p - q - r - s + times_vector(folded, e.b7);
-    return array<vec3<f32>, NODES>(-f1 - f2 - f3 - f4 - f5 - f6 - f7, f1, f2, f3, f4, f5, f6, f7);
+    // what is odd in (x, y, z), and what is even, has its counterpart at the opposite node
+    let x = times_vector(folded, e.slope_x);
+    let y = times_vector(folded, e.slope_y);
+    let z = times_vector(folded, e.slope_z);
+    let yz = p + times_vector(folded, e.slope_yz);
+    let zx = q + times_vector(folded, e.slope_zx);
+    let xy = r + times_vector(folded, e.slope_xy);
+    let odd_1 = (x - y) - (z - s);
+    let odd_3 = (y - x) - (z - s);
+    let odd_4 = (z + s) - (x + y);
+    let odd_6 = (x + y) + (z + s);
+    let even_1 = (yz - zx) - xy;
+    let even_3 = (zx - yz) - xy;
+    let even_4 = xy - (yz + zx);
+    let even_6 = (yz + zx) + xy;
+    return array<vec3<f32>, NODES>(
+        even_6 - odd_6,
+        even_1 + odd_1,
+        even_4 - odd_4,
+        even_3 + odd_3,
+        even_4 + odd_4,
+        even_3 - odd_3,
+        even_6 + odd_6,
+        even_1 - odd_1,
+    );
 }
 
 // J

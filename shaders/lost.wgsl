@@ -2,5 +2,5 @@
 @group(0) @binding(0) var<storage, read> displacement_compensation: array<f32>;
 
 fn lost_of(node: u32, axis: u32) -> f32 {
-    return displacement_compensation[6u * node + axis];
+    return displacement_compensation[3u * node + axis];
 }

@@ -1,4 +1,5 @@
-// A force on chosen nodes that have mass; twin of systems/nodal_force.rs.
+// A force on chosen nodes that have mass; twin of systems/nodal_force.rs. factor_of is in
+// force_factor.wgsl, or generated where all nodes get the same.
 struct NodalLoad {
     signal: u32, // slot of the force (N)
 }
@@ -8,6 +9,6 @@ struct NodalLoad {
 
 fn nodal_force(i: u32) {
     if mass[rows[i]] > 0.0 {
-        add_load(rows[i], step.signals[load.signal].xyz);
+        add_load(rows[i], factor_of(i) * step.signals[load.signal].xyz);
     }
 }

@@ -1,9 +1,5 @@
 // Pressure (Pa) of tetrahedra with averaged nodal pressure; twin of src/elements/tet4_nodal_pressure.rs.
-@group(0) @binding(0) var<storage, read> nodal_volume_change: array<f32>;
-
-fn corner_volume_change(element: u32, corner: u32) -> f32 {
-    return nodal_volume_change[connectivity[place(element, NODES, corner)]];
-}
+// corner_volume_change is in corner_volume.wgsl or patch_volume.wgsl.
 
 fn mean_pressure(element: u32, e: Element) -> f32 {
     var sum = 0.0;

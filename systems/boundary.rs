@@ -69,7 +69,7 @@ pub(super) fn move_rows<T: Scalar>(
             let [x, y, z, shift] = motion[axis];
             let place = 3 * row + axis;
             let target = T::from_f64(x * arm.x + y * arm.y + z * arm.z + shift);
-            let lost = compensation.map_or(T::default(), |c| c[COMPENSATION_NUMBERS * row + axis]);
+            let lost = compensation.map_or(T::default(), |c| c[place]);
             // for the work that integrate books
             if let Some(kept) = kept.get_mut(place) {
                 *kept = (step[place].to_f64() as f32).to_bits();

@@ -1,11 +1,12 @@
 //! `element_forces`: what deformed elements exert on their corners. The kernel is put together from
-//! `shaders/element_forces.wgsl`, the element's file, and one file an effect of the material.
+//! `shaders/element_forces.wgsl`, the element's file, one file an effect of the material, and `patches.wgsl` or `two_pass.wgsl`.
 
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::block_kernel::BlockKernels;
+use crate::backend::block_kernel::{BlockKernels, CornersAt};
 use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, run_block, run_block_fast};
 use crate::backend::kernel::Kernel;
+use crate::backend::patch_lists::pack;
 use crate::backend::step::{step_number, with_step};
 use crate::components::*;
 use crate::evaluation::{ElementState, node_count, with_element};
@@ -101,6 +102,7 @@ fn of_kernel<'a, T: SimdScalar>(
         displacement: displacement.slice(),
         connectivity,
         rest_shape: shape.slice(),
+        simple: block.simple,
         fibre_direction: fibres.map(|f| f.slice()),
         nodal_volume_change: means.map_or(&[], |means| means.slice()),
         memory: memory.map_or(&mut [], |m| m.slice_mut()),
@@ -115,19 +117,18 @@ fn remove(row: usize, step: u64, removal: &mut RemovalStep) {
     removal[row] = removal[row].min(u32::try_from(step).unwrap_or(u32::MAX));
 }
 
-/// One kernel for each block, of the fragments that its element type and its material call for.
+/// One kernel for each block, of the fragments that its element type, its material and the scheme call for.
 fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let mut kernels = Vec::new();
     for block in BlockKernels::of_world(world, buffers) {
-        let nodes = node_count(block.block.kind);
-        let mut text = String::from("fn write_forces(element: u32, forces: array<vec3<f32>, NODES>) {\n");
-        for corner in 0..nodes {
-            text += &format!("    write_force(element, {corner}u, forces[{corner}]);\n");
-        }
-        let kernel = block
-            .kernel("element_forces")
+        // patches that no workgroup can sum are not there in a run on a GPU
+        let packed = world.get::<Patches>(block.entity).and_then(|patches| pack(&block.block, patches).ok());
+        let (kernel, corners) = match packed {
+            Some(packed) => (block.patch_kernel("element_forces", &packed, buffers), CornersAt::Patch),
+            None => (two_pass(&block), CornersAt::Columns),
+        };
+        let kernel = kernel
             .fragment(shader!("element_forces"))
-            .fragment(block.generated("corners", text + "}\n"))
             .bind(RestShape::NAME, buffers.column(block.entity, RestShape::NAME))
             .bind(ElementForce::NAME, buffers.column(block.block.body, ElementForce::NAME));
         let kernel = match world.get::<OnInversion>(block.entity) {
@@ -138,7 +139,16 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
                 .fragment(shader!("note_inverted"))
                 .bind(FirstInverted::NAME, buffers.column(block.entity, FirstInverted::NAME)),
         };
-        kernels.push(block.with_stress(with_step(kernel, world), buffers));
+        kernels.push(block.with_stress(with_step(kernel, world), corners, buffers));
     }
     kernels
+}
+
+fn two_pass(block: &BlockKernels) -> Kernel {
+    let mut text = String::from("fn write_forces(element: u32, forces: array<vec3<f32>, NODES>) {\n");
+    for corner in 0..node_count(block.block.kind) {
+        text += &format!("    write_force(element, {corner}u, forces[{corner}]);\n");
+    }
+    let generated = block.generated("corners", text + "}\n");
+    block.kernel("element_forces").fragment(shader!("two_pass")).fragment(generated)
 }

@@ -82,7 +82,7 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
     for (body, corners, loaded) in bodies {
         let nodes = corners.starts.len().saturating_sub(1) as u32;
         let stage = NodeStage::new("gather", "gather", body, nodes, shader!("gather"))
-            .own(Fragment::new("generated: lanes", format!("const LANES: u32 = {LANES}u;\n")))
+            .own(Fragment::new("generated: stride", format!("const STRIDE: u32 = {}u;\n", corners.stride)))
             .bind("starts", buffers.constants("starts of corners".into(), bytemuck::cast_slice(&corners.starts)))
             .bind("corners", buffers.constants("corners".into(), bytemuck::cast_slice(&corners.corners)))
             .column(ElementForce::NAME, buffers.column(body, ElementForce::NAME))

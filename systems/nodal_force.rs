@@ -3,7 +3,7 @@
 use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::kernel::{Uniform, uniform};
+use crate::backend::kernel::{Fragment, Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
 use crate::math::Scalar;
@@ -32,18 +32,21 @@ fn nodal_force(
         let Ok((mass, mut external)) = bodies.get_mut(body.0) else { continue };
         let force = signals.values()[load.signal];
         match &mut external.0 {
-            Reals::F32(external) => push(&load.rows, force, 0, mass.slice(), external),
-            Reals::F64(external) => push(&load.rows, force, 0, mass.slice(), external),
+            Reals::F32(external) => push(load, force, 0, mass.slice(), external),
+            Reals::F64(external) => push(load, force, 0, mass.slice(), external),
         }
     }
 }
 
 /// Pushes those nodes from row `first` on that the columns have.
-pub(super) fn push<T: Scalar>(rows: &[u32], force: [f64; 4], first: usize, mass: &[T], external: &mut [T]) {
-    let own = &rows[places_within(rows, first, mass.len())];
-    for row in own.iter().map(|&row| row as usize - first).filter(|&row| mass[row] > T::default()) {
-        for i in 0..3 {
-            external[3 * row + i] += T::from_f64(force[i]);
+pub(super) fn push<T: Scalar>(load: &NodalForce, force: [f64; 4], first: usize, mass: &[T], external: &mut [T]) {
+    for place in places_within(&load.rows, first, mass.len()) {
+        let row = load.rows[place] as usize - first;
+        if mass[row] > T::default() {
+            let factor = T::from_f64(load.factors.get(place).copied().unwrap_or(1.0));
+            for i in 0..3 {
+                external[3 * row + i] += factor * T::from_f64(force[i]);
+            }
         }
     }
 }
@@ -68,6 +71,14 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
             .column(Mass::NAME, buffers.column(body, Mass::NAME))
             .column(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME))
             .of_rows(force.rows);
+        let stage = if force.factors.is_empty() {
+            let text = "fn factor_of(i: u32) -> f32 {\n    return 1.0;\n}\n";
+            stage.own(Fragment::new("generated: the same force on all nodes", text))
+        } else {
+            let factors: Vec<f32> = force.factors.iter().map(|&factor| factor as f32).collect();
+            let factors = buffers.constants("factors of nodal_force".into(), bytemuck::cast_slice(&factors));
+            stage.own(shader!("force_factor")).bind("factors", factors)
+        };
         stages.push(stage.with_step(world).loaded(true));
     }
     stages

@@ -43,7 +43,8 @@ pub(super) struct Rows<'a, T> {
     pub damping: Option<&'a [T]>,
     pub u: &'a mut [T],
     pub step: &'a mut [T],
-    pub compensation: Option<&'a mut [T]>,
+    /// Of displacements, and of steps.
+    pub compensation: Option<[&'a mut [T]; 2]>,
     pub work: Option<&'a mut [T]>,
     pub sums: &'a mut [u32],
     pub kept: &'a mut [u32],
@@ -57,7 +58,11 @@ impl<'a, T> Rows<'a, T> {
         let internal = self.internal.split_at_mut(3 * at);
         let external = self.external.map(|all| all.split_at_mut(3 * at)).unzip();
         let (u, step) = (self.u.split_at_mut(3 * at), self.step.split_at_mut(3 * at));
-        let compensation = self.compensation.map(|all| all.split_at_mut(COMPENSATION_NUMBERS * at)).unzip();
+        let compensation = self.compensation.map(|[of_u, of_step]| {
+            let (of_u, of_step) = (of_u.split_at_mut(3 * at), of_step.split_at_mut(3 * at));
+            ([of_u.0, of_step.0], [of_u.1, of_step.1])
+        });
+        let compensation = compensation.unzip();
         let work = self.work.map(|all| all.split_at_mut(WORK_NUMBERS * at)).unzip();
         let sums = self.sums.split_at_mut(self.sums.len().min(2 * at / SPENT_ROWS));
         let kept = self.kept.split_at_mut(self.kept.len().min(3 * at));
@@ -126,7 +131,7 @@ pub(super) fn pass_over(cpu: &Cpu, clock: &Clock, columns: BodyColumnsItem<'_, '
                 damping: damping.map(|d| d.slice()),
                 u: $u,
                 step: $step,
-                compensation: compensation.map(|c| c.0.slice_mut()),
+                compensation: compensation.map(|c| c.0.slice_mut().split_at_mut(3 * nodes).into()),
                 work: work.map(|w| w.0.slice_mut()),
                 sums,
                 kept,
@@ -211,14 +216,22 @@ impl OnRows for Before<'_> {
                 match load {
                     RowLoad::Gravity(acceleration) => gravity::pull(rows.mass, *acceleration, external),
                     RowLoad::NodalForce(load, force) => {
-                        nodal_force::push(&load.rows, *force, first, rows.mass, external);
+                        nodal_force::push(load, *force, first, rows.mass, external);
                     }
                     RowLoad::Traction(load, traction) => traction::pull(&load.faces, *traction, first, external),
                 }
             }
         }
         for (set, motion) in &self.motions {
-            boundary::move_rows(set, motion, first, rows.u, rows.compensation.as_deref(), rows.step, rows.kept);
+            boundary::move_rows(
+                set,
+                motion,
+                first,
+                rows.u,
+                rows.compensation.as_ref().map(|[of_u, _]| &**of_u),
+                rows.step,
+                rows.kept,
+            );
         }
     }
 }

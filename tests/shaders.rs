@@ -3,14 +3,21 @@
 
 mod kernel_worlds;
 
+use bevy_ecs::prelude::World;
 use kernel_worlds::{AROUND, Described, Effects, OF_NODES, all_kernels, shared_kernels};
 use sinew::BackendChoice;
 use sinew::backend::kernel::{BindingKind, Kernel, Layout, Uniform, WEBGPU_STORAGE_BUFFERS, compose};
-use sinew::components::Signals;
+use sinew::backend::patch_lists::WEBGPU_WORKGROUP_MEMORY;
+use sinew::components::{Scheme, Signals};
 use std::collections::BTreeSet;
 
 /// Fragments that belong to no system, element or material by name, and what calls for them.
-const SUPPORT: [(&str, &str); 36] = [
+const SUPPORT: [(&str, &str); 42] = [
+    ("corner", "corners of elements, in columns"),
+    ("corner_volume", "the same for averaged nodal pressure"),
+    ("patch_volume", "averaged nodal pressure, in patches"),
+    ("patches", "forces summed patch by patch"),
+    ("two_pass", "forces summed in two passes"),
     ("alive", "loads on faces of elements that can go"),
     ("block", "columns of element blocks"),
     ("criterion", "removal by criterion"),
@@ -23,6 +30,7 @@ const SUPPORT: [(&str, &str); 36] = [
     ("eigen", "principal stretches, in laws"),
     ("elementary", "exponential and logarithm, in laws"),
     ("energy", "elastic energy, where elements can go"),
+    ("force_factor", "forces that differ from copy to copy"),
     ("external_force", "sums of loads, between kernels"),
     ("external_force_at_hand", "sums of loads, within one"),
     ("internal_force", "forces of elements, between kernels"),
@@ -53,28 +61,37 @@ fn kernels(effects: &Effects) -> Vec<(String, Kernel)> {
     all_kernels(effects.simulation(BackendChoice::Cpu).world_mut()).0
 }
 
-/// With those of the guards, and those that systems of nodes share.
+/// With those that systems of nodes share, and those of the guards.
 fn all(effects: &Effects) -> Vec<(String, Kernel)> {
     let mut simulation = effects.simulation(BackendChoice::Cpu);
-    let small = shared(effects, WEBGPU_STORAGE_BUFFERS).into_iter().map(|kernel| (kernel.label.clone(), kernel));
-    let large = shared(effects, 64).into_iter().map(|kernel| (LARGER_DEVICE.to_owned(), kernel));
-    let shared: Vec<_> = small.chain(large).collect();
-    let watch = kernel_worlds::watch_kernels(simulation.world_mut());
-    kernels(effects).into_iter().chain(watch).chain(shared).collect()
+    let world = simulation.world_mut();
+    let (mut all, _) = all_kernels(world);
+    let without: Vec<&str> = OF_NODES.into_iter().filter(|system| *system != "pressure").collect();
+    for systems in [&OF_NODES[..], &without] {
+        let small = sharing(systems, world, WEBGPU_STORAGE_BUFFERS);
+        all.extend(small.into_iter().map(|kernel| (kernel.label.clone(), kernel)));
+        all.extend(sharing(systems, world, 64).into_iter().map(|kernel| (LARGER_DEVICE.to_owned(), kernel)));
+    }
+    all.extend(kernel_worlds::watch_kernels(world));
+    // one of each kind is enough
+    let mut seen: Vec<Vec<String>> = Vec::new();
+    all.retain(|(_, kernel)| {
+        let texts: Vec<String> = kernel.fragments.iter().map(|fragment| fragment.text.to_string()).collect();
+        let fresh = !seen.contains(&texts);
+        if fresh {
+            seen.push(texts);
+        }
+        fresh
+    });
+    all
 }
 
 /// In place of the system's name: put together for a device that allows more buffers than the smallest.
 const LARGER_DEVICE: &str = "larger device";
 
-/// The kernels that systems of nodes share where a kernel may have so many storage buffers; with pressures, and without.
-fn shared(effects: &Effects, most: usize) -> Vec<Kernel> {
-    let without: Vec<&str> = OF_NODES.into_iter().filter(|system| *system != "pressure").collect();
-    [&OF_NODES[..], &without].into_iter().flat_map(|systems| sharing(systems, effects, most)).collect()
-}
-
-fn sharing(systems: &[&str], effects: &Effects, most: usize) -> Vec<Kernel> {
-    let mut buffers = Described { most, ..Described::default() };
-    shared_kernels(systems, effects.simulation(BackendChoice::Cpu).world_mut(), &mut buffers)
+/// The kernels that systems of nodes share where a kernel may have so many storage buffers.
+fn sharing(systems: &[&str], world: &mut World, most: usize) -> Vec<Kernel> {
+    shared_kernels(systems, world, &mut Described { most, ..Described::default() })
 }
 
 /// Systems of nodes share as few kernels as can be: on a device that allows enough buffers one for each body, but for
@@ -82,7 +99,8 @@ fn sharing(systems: &[&str], effects: &Effects, most: usize) -> Vec<Kernel> {
 #[test]
 fn systems_of_nodes_share_kernels() {
     let labels = |effects: &Effects, most: usize| -> Vec<String> {
-        sharing(&OF_NODES, effects, most).into_iter().map(|kernel| kernel.label).collect()
+        let mut simulation = effects.simulation(BackendChoice::Cpu);
+        sharing(&OF_NODES, simulation.world_mut(), most).into_iter().map(|kernel| kernel.label).collect()
     };
     assert_eq!(labels(&Effects::default(), 64), ["gather + integrate"; 2]);
     let moved = Effects { moved: true, compensated: true, damping: true, ..Effects::default() };
@@ -104,7 +122,10 @@ fn every_combination_of_effects_composes_with_at_most_eight_storage_buffers() {
         for (system, kernel) in all(&effects) {
             let composed = compose(&kernel.fragments).unwrap_or_else(|e| panic!("{}: {e}", kernel.label));
             let entry = composed.entry(kernel.entry).unwrap_or_else(|| panic!("{}: no {}", kernel.label, kernel.entry));
-            assert_eq!(entry.workgroup_size, [64, 1, 1], "{}", kernel.label);
+            let patches = kernel.fragments.iter().any(|fragment| fragment.path == "shaders/patches.wgsl");
+            assert_eq!(entry.workgroup_size, [if patches { 128 } else { 64 }, 1, 1], "{}", kernel.label);
+            assert!(entry.workgroup_memory as usize <= WEBGPU_WORKGROUP_MEMORY, "{}", kernel.label);
+            assert!(!patches || entry.workgroup_memory > 0, "{}", kernel.label);
             let storage = composed.storage_buffers(entry);
             let most = if system == LARGER_DEVICE { 64 } else { WEBGPU_STORAGE_BUFFERS };
             assert!(storage <= most, "{} of {system}: {storage} of {effects:?}", kernel.label);
@@ -190,6 +211,7 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
         "neo_hookean",
         "node_pass",
         "note_inverted",
+        "patches",
         "point",
         "point_pressure",
         "row",
@@ -201,7 +223,8 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
     ];
     assert_eq!(files, expected.map(|stem| format!("{stem}.wgsl")).iter().map(String::as_str).collect());
     let without = buffers(&Effects::default());
-    let cases: [(Effects, &[&str], &[&str]); 9] = [
+    let cases: [(Effects, &[&str], &[&str]); 10] = [
+        (Effects { scheme: Scheme::TwoPass, ..Effects::default() }, &["two_pass", "corner"], &["connectivity"]),
         (Effects { inversion: Some("Remove"), ..Effects::default() }, &["remove_inverted"], &["removal_step"]),
         (Effects { fibres: Some(AROUND), ..Effects::default() }, &["fibres", "fibres_field"], &["fibre_direction"]),
         (Effects { prony: 1, ..Effects::default() }, &["prony"], &["viscous_memory"]),
@@ -219,7 +242,7 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
         (Effects { energies: true, ..Effects::default() }, &["work"], &["work"]),
         (
             Effects { averaged: true, ..Effects::default() },
-            &["nodal_volume", "nodal_mean", "tet4_nodal_pressure", "hex8_mean_dilatation"],
+            &["nodal_volume", "nodal_mean", "tet4_nodal_pressure", "patch_volume", "hex8_mean_dilatation"],
             &["nodal_volume_change", "element_volume"],
         ),
         (Effects { removal: true, ..Effects::default() }, &["element_removal", "criterion", "node_mass"], &["alive"]),

@@ -23,6 +23,8 @@ pub struct BodyParts {
     pub entity: Entity,
     /// Its mesh.
     pub placed: PlacedMesh,
+    /// How many copies of one mesh that is.
+    pub copies: usize,
     /// For each of the author's nodes its row.
     pub node_rows: Vec<u32>,
     /// For each of the author's elements its block's place in `blocks` and its row there.
@@ -38,6 +40,20 @@ impl BodyParts {
             marked.iter().zip(&self.node_rows).filter(|(marked, _)| **marked).map(|(_, &row)| row).collect();
         rows.sort_unstable();
         rows
+    }
+
+    /// For each of some rows a number that goes evenly from the first copy's to the last one's.
+    pub fn copy_factors(&self, rows: &[u32], (first, last): (f64, f64)) -> Vec<f64> {
+        let steps = (self.copies.max(2) - 1) as f64;
+        self.copies_of(rows).into_iter().map(|copy| first + (last - first) * copy as f64 / steps).collect()
+    }
+
+    /// For each of some rows which copy it belongs to.
+    pub fn copies_of(&self, rows: &[u32]) -> Vec<usize> {
+        let nodes = (self.node_rows.len() / self.copies.max(1)).max(1);
+        let mut copy_of = vec![0; self.node_rows.len()];
+        self.node_rows.iter().enumerate().for_each(|(node, &row)| copy_of[row as usize] = node / nodes);
+        rows.iter().map(|&row| copy_of[row as usize]).collect()
     }
 }
 
@@ -89,7 +105,7 @@ pub(super) fn spawn(
     super::columns::insert_node_columns(assembly, name, mesh, &node_rows, &authoring, world, body);
     world.entity_mut(body).insert(authoring);
     insert_forces(assembly.scheme, body, world);
-    Some(BodyParts { entity: body, placed, node_rows, element_rows, blocks })
+    Some(BodyParts { entity: body, placed, copies, node_rows, element_rows, blocks })
 }
 
 /// Elements of a block with neighbours together, copy by copy: copies may stand in the same place.
@@ -143,6 +159,7 @@ impl BlockBuilder<'_> {
         let members = Members { mesh: self.mesh, elements: self.elements, body: name, material: &material_name };
         let material = &called_for(&self.assembly.scene.scene.materials[&material_name]);
         let (fibre_directions, varying) = members.directions(material, self.assembly.precision, diagnostics);
+        let (shapes, simple) = self.rest_shapes(hourglass * young);
         let block = Block {
             body,
             material: self.material,
@@ -150,6 +167,7 @@ impl BlockBuilder<'_> {
             count: self.elements.len(),
             force_offset: 0,
             force_length: 0,
+            simple,
             fibre_directions,
         };
         let connectivity = self.connectivity();
@@ -158,7 +176,7 @@ impl BlockBuilder<'_> {
             OfBody(body),
             block,
             Connectivity(connectivity.clone()),
-            RestShape(self.rest_shapes(hourglass * young)),
+            RestShape(shapes),
             FirstInverted(vec![u32::MAX; 2]),
             OnInversion(material.inversion()),
         ));
@@ -194,7 +212,9 @@ impl BlockBuilder<'_> {
         connectivity
     }
 
-    fn rest_shapes(&self, young: f64) -> Reals {
+    /// Rest shapes, and whether all are simple.
+    fn rest_shapes(&self, young: f64) -> (Reals, bool) {
+        let mut simple = true;
         let numbers = row_count(self.kind);
         let mut shapes = Reals::zeros(self.assembly.precision, self.padded() * numbers);
         for row in 0..self.padded() {
@@ -206,6 +226,7 @@ impl BlockBuilder<'_> {
                 *point = self.mesh.points[node as usize];
             }
             let shape: [f64; MOST_ROWS] = with_element!(self.kind, E => E::rest_shape(&points[..nodes.len()], young));
+            simple &= with_element!(self.kind, E => E::is_simple(&shape));
             for k in 0..numbers {
                 shapes.set(lane_place(row, numbers, k), shape[k]);
             }
@@ -213,7 +234,7 @@ impl BlockBuilder<'_> {
                 extinguish(self.kind, row, &mut shapes);
             }
         }
-        shapes
+        (shapes, simple)
     }
 }
 

@@ -38,7 +38,7 @@ pub(super) fn insert_node_columns(
         ConstrainedAxes(vec![0; count]),
     ));
     if scene.integration.compensated && precision == Precision::F32 {
-        entity.insert(DisplacementCompensation(Reals::zeros(precision, COMPENSATION_NUMBERS * count)));
+        entity.insert(DisplacementCompensation(Reals::zeros(precision, 6 * count)));
     }
     if scene.loads.iter().any(super::loads::has_weight) {
         entity.insert(ExternalForce(vectors()));

@@ -6,6 +6,7 @@ use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Load, Select, Share};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+use std::collections::BTreeSet;
 
 /// Spawns all loads. Those of no weight are looked at like the others, and pruned: they cost nothing.
 pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
@@ -24,17 +25,20 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
                     world.spawn((Gravity { signal }, OfBody(body.entity)));
                 }
             }
-            Load::NodalForce { body, on, force, share, curve } => {
+            Load::NodalForce { body, on, force, share, per_copy, curve } => {
                 let Some(body) = assembly.body(body) else { continue };
                 let Some(picked) = assembly.pick(body, on, &path, diagnostics) else { continue };
                 match picked.nodes(&body.placed) {
                     Ok(_) if !has_weight(load) => {}
                     Ok(marks) => {
                         let rows = body.rows_of(&marks);
-                        let parts = if *share == Share::Total { rows.len() as f64 } else { 1.0 };
+                        let factors = per_copy.map_or(Vec::new(), |ends| body.copy_factors(&rows, ends));
+                        let touched: BTreeSet<usize> = body.copies_of(&rows).into_iter().collect();
+                        let each = rows.len() as f64 / touched.len().max(1) as f64;
+                        let parts = if *share == Share::Total { each } else { 1.0 };
                         let signal = Signal::Load { curve: curve.clone(), amplitude: *force / parts };
                         let signal = world.resource_mut::<Signals>().add(signal);
-                        world.spawn((NodalForce { rows, signal }, OfBody(body.entity)));
+                        world.spawn((NodalForce { rows, factors, signal }, OfBody(body.entity)));
                     }
                     Err(problem) => {
                         diagnostics.error_at(path.as_str(), problem.message).notes(problem.notes);

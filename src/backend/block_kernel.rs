@@ -4,11 +4,12 @@ use super::Buffers;
 use super::cpu::BlockLaw;
 use super::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};
 use super::law_kernel::{ElasticPart, ExponentialFamily, family_directions, ground};
+use super::patch_lists::{BATCH_GROUPS, PLACE_BITS, PackedPatches, PatchLists, patch_batches};
 use crate::components::{
     self, Column, Connectivity, Displacement, FamilyDirection, FibreDirection, Label, NodalVolumeChange, ViscousMemory,
 };
 use crate::elements::{Element, PressureFrom};
-use crate::evaluation::with_element;
+use crate::evaluation::{node_count, with_element};
 use crate::materials::{Fibres, J_FLOOR, PronyTerm};
 use crate::math::LANES;
 use crate::mesh::ElementKind;
@@ -33,6 +34,15 @@ struct UniformDirection {
     z: f32,
 }
 uniform!(UniformDirection { x, y, z });
+
+/// Where a kernel has what it knows of elements' corners.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum CornersAt {
+    /// In the columns of the body.
+    Columns,
+    /// In workgroup memory, of a patch's nodes.
+    Patch,
+}
 
 /// Makes kernels of one block, all on the same uniform buffers.
 pub(crate) struct BlockKernels {
@@ -108,9 +118,41 @@ impl BlockKernels {
     /// A kernel with the block's element type, strain measures and laws of stress and energy without history; a thread for
     /// each element.
     pub fn kernel(&self, entry: &'static str) -> Kernel {
+        self.with_law(self.of_columns(entry)).bind("displacement", self.columns[0])
+    }
+
+    /// The same with a workgroup for each patch, which has its nodes at hand.
+    pub fn patch_kernel(&self, entry: &'static str, packed: &PackedPatches, buffers: &mut dyn Buffers) -> Kernel {
+        let kind = self.block.kind;
+        let batch = BATCH_GROUPS * LANES;
+        let constants = format!(
+            "const BATCH: u32 = {batch}u;\nconst BATCH_GROUPS: u32 = {BATCH_GROUPS}u;\nconst PATCH_GROUPS: u32 = {}u;\n\
+             const PATCH_BATCHES: u32 = {}u;\nconst PATCH_NODES: u32 = {}u;\nconst PLACE_BITS: u32 = {PLACE_BITS}u;\n",
+            components::patch_groups(kind),
+            patch_batches(kind),
+            packed.room,
+        );
+        let mut calls = String::from(
+            "fn add_forces(element: u32, is_there: bool, batch: u32, forces: array<vec3<f32>, NODES>) {\n",
+        );
+        for corner in 0..node_count(kind) {
+            calls += &format!("    add_force(element, is_there, batch, {corner}u, forces[{corner}]);\n");
+        }
+        let lists = buffers.uniform(format!("patches of {}", self.label), &packed.lists.bytes());
+        let words = buffers.constants(format!("patch_lists of {}", self.label), bytemuck::cast_slice(&packed.words));
+        let threads = packed.count() * batch;
+        self.with_law(self.of_block(entry))
+            .fragment(shader!("patches"))
+            .fragment(self.generated("patches", constants + &calls + "}\n"))
+            .bind_uniform::<PatchLists>("patches", lists)
+            .bind("patch_lists", words)
+            .bind("displacement", self.columns[0])
+            .threads(u32::try_from(threads).unwrap_or(u32::MAX))
+    }
+
+    fn with_law(&self, kernel: Kernel) -> Kernel {
         let elastic = ElasticPart::of(&self.law.elastic);
-        let mut kernel = self
-            .of_columns(entry)
+        let mut kernel = kernel
             .fragment(shader!("tensor"))
             .fragment(shader!("kinematics"))
             .fragment(shader!("point"))
@@ -119,8 +161,7 @@ impl BlockKernels {
                 ElementKind::Hex8 => shader!("hex8"),
                 ElementKind::Hex8MeanDilatation => shader!("hex8_mean_dilatation"),
             })
-            .fragment(elastic.fragment)
-            .bind("displacement", self.columns[0]);
+            .fragment(elastic.fragment);
         kernel.fragments.extend(ground(&self.law.elastic));
         kernel.layouts.extend(elastic.layout.map(|layout| ("elastic".into(), layout)));
         kernel
@@ -128,13 +169,18 @@ impl BlockKernels {
 
     /// A kernel that knows the block's layout only; a thread for each element.
     pub fn of_columns(&self, entry: &'static str) -> Kernel {
+        self.of_block(entry)
+            .fragment(shader!("corner"))
+            .bind("connectivity", self.columns[1])
+            .threads(self.block.count as u32)
+    }
+
+    fn of_block(&self, entry: &'static str) -> Kernel {
         Kernel::new(format!("{entry} of {}", self.label), entry)
             .fragment(shader!("row"))
             .fragment(shader!("block"))
             .fragment(self.generated("constants", self.constants()))
             .bind_uniform::<Block>("block", self.parameters)
-            .bind("connectivity", self.columns[1])
-            .threads(self.block.count as u32)
     }
 
     /// Adds the parameters of the elastic law, if it has any.
@@ -146,13 +192,25 @@ impl BlockKernels {
     }
 
     /// Adds where the element type's pressure comes from.
-    fn with_pressure(&self, kernel: Kernel, buffers: &mut dyn Buffers) -> Kernel {
-        match with_element!(self.block.kind, E => E::PRESSURE) {
+    fn with_pressure(&self, kernel: Kernel, at: CornersAt, buffers: &mut dyn Buffers) -> Kernel {
+        let from = with_element!(self.block.kind, E => E::PRESSURE);
+        let kernel = match (at, from) {
+            (CornersAt::Columns, _) | (_, PressureFrom::Nodes) => kernel,
+            (CornersAt::Patch, _) => {
+                let none = "fn bring_volume_change(local_node: u32, node: u32) {}\n";
+                kernel.fragment(Fragment::new("generated: no volume change of nodes", none))
+            }
+        };
+        match from {
             PressureFrom::Point => kernel.fragment(shader!("point_pressure")),
             // comes with the element type
             PressureFrom::MeanOverPoints => kernel,
             PressureFrom::Nodes => kernel
                 .fragment(shader!("tet4_nodal_pressure"))
+                .fragment(match at {
+                    CornersAt::Columns => shader!("corner_volume"),
+                    CornersAt::Patch => shader!("patch_volume"),
+                })
                 .bind(NodalVolumeChange::NAME, buffers.column(self.entity, NodalVolumeChange::NAME)),
         }
     }
@@ -195,7 +253,7 @@ impl BlockKernels {
     }
 
     /// Adds the stress of the material, which carries its history on by a step.
-    pub fn with_stress(&self, kernel: Kernel, buffers: &mut dyn Buffers) -> Kernel {
+    pub fn with_stress(&self, kernel: Kernel, at: CornersAt, buffers: &mut dyn Buffers) -> Kernel {
         let law = &self.law;
         let (terms, volumetric) = (law.prony.len(), law.volumetric.len());
         let lines = [
@@ -217,7 +275,7 @@ impl BlockKernels {
             text += &format!("const TERMS: u32 = {terms}u;\nconst VOLUMETRIC_TERMS: u32 = {volumetric}u;\n");
         }
         let kernel = self.with_fibres(self.with_parameters(kernel));
-        let kernel = self.with_pressure(kernel, buffers).fragment(self.generated("stress", text));
+        let kernel = self.with_pressure(kernel, at, buffers).fragment(self.generated("stress", text));
         if terms + volumetric == 0 {
             return kernel;
         }
@@ -238,7 +296,7 @@ impl BlockKernels {
         let energies: Vec<&str> = energies.into_iter().flatten().collect();
         let sum = if energies.is_empty() { "0.0".into() } else { energies.join(" + ") };
         let text = format!("fn fibres_energy_at(element: u32, k: Kinematics) -> f32 {{\n    return {sum};\n}}\n");
-        self.with_pressure(self.with_fibres(self.with_parameters(kernel)), buffers)
+        self.with_pressure(self.with_fibres(self.with_parameters(kernel)), CornersAt::Columns, buffers)
             .fragment(shader!("energy"))
             .fragment(self.generated("energy", text))
     }

@@ -8,6 +8,7 @@ pub mod gpu;
 pub mod kernel;
 mod law_kernel;
 pub mod node_stage;
+pub mod patch_lists;
 pub mod step;
 pub mod user_law;
 

@@ -82,7 +82,7 @@ impl Plan {
                         let gpu = backend == "gpu";
                         for precision in self.precisions.iter().filter(|precision| !gpu || *precision == "f32") {
                             for &threads in if gpu { &[1][..] } else { &self.threads } {
-                                for scheme in self.schemes.iter().filter(|scheme| !gpu || *scheme == "two-pass") {
+                                for scheme in &self.schemes {
                                     group.extend(self.fuse.iter().map(|&fuse| Case {
                                         element,
                                         effects,

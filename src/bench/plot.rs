@@ -5,7 +5,8 @@ use crate::accuracy::plot::axis::Axis;
 use crate::accuracy::plot::svg::Svg;
 
 const FRAME: [f64; 4] = [84.0, 64.0, 800.0, 560.0];
-pub(super) const COLOURS: [&str; 8] = ["#2f6db5", "#c2553d", "#3f8f5b", "#8a63a8", "#c78a1f", "#4a9aa8", "#8a5a44", "#6b7480"];
+pub(super) const COLOURS: [&str; 8] =
+    ["#2f6db5", "#c2553d", "#3f8f5b", "#8a63a8", "#c78a1f", "#4a9aa8", "#8a5a44", "#6b7480"];
 
 /// Lines of the same configuration over sizes.
 pub fn svg(record: &Record) -> String {

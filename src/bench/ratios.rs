@@ -63,7 +63,8 @@ pub fn split_to_fused(record: &Record) -> Option<String> {
 
 /// What was measured on; nobody is to take a program for a device.
 fn devices(record: &Record) -> String {
-    let mut names: Vec<String> = record.machine.first().map(|m| format!("CPU: {}", m.instructions)).into_iter().collect();
+    let mut names: Vec<String> =
+        record.machine.first().map(|m| format!("CPU: {}", m.instructions)).into_iter().collect();
     for adapter in record.rows.iter().filter_map(|row| row.adapter.as_ref()) {
         let software = if adapter.contains("software") { ": A PROGRAM ON THE CPU, no measure of GPUs" } else { "" };
         let name = format!("GPU: {adapter}{software}");

@@ -117,7 +117,7 @@ pub struct HowArguments {
     /// CPU threads; 0 is one a core, or a single one for small bodies. Results are the same for any number
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub threads: u16,
-    /// How element forces are summed on the CPU: patch by patch in cache, or in two passes over memory, to compare with
+    /// How element forces are summed: patch by patch in cache or a GPU's workgroup memory, or in two passes over memory, to compare with
     #[arg(long, value_enum, default_value_t = SchemeName::Patches)]
     pub scheme: SchemeName,
 }

@@ -14,6 +14,8 @@ pub struct Gravity {
 pub struct NodalForce {
     /// Rows of the body's node columns, ascending.
     pub rows: Vec<u32>,
+    /// What the force is multiplied with at each row; empty: 1 at all.
+    pub factors: Vec<f64>,
     /// Slot in [`Signals`](super::Signals).
     pub signal: usize,
 }

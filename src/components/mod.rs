@@ -31,10 +31,9 @@ pub use guard::{GuardMemory, Notice, Seen};
 pub use load::{FaceCorners, Gravity, NodalForce, Pressure, Traction};
 pub use material::{Damping, Density, ExponentialFibres, Prony};
 pub use nodes::{
-    Authoring, COMPENSATION_NUMBERS, ConstrainedAxes, Corners, DampingCoefficient, Displacement,
-    DisplacementCompensation, DisplacementStep, ElementForce, ExternalForce, FictitiousMass, FirstNonFinite,
-    InternalForce, Mass, MiddleDisplacement, NodeSums, RestPosition, SPENT_AT, SPENT_ROWS, WORK_NUMBERS, Work,
-    before_at,
+    Authoring, ConstrainedAxes, Corners, DampingCoefficient, Displacement, DisplacementCompensation, DisplacementStep,
+    ElementForce, ExternalForce, FictitiousMass, FirstNonFinite, InternalForce, Mass, MiddleDisplacement, NodeSums,
+    RestPosition, SPENT_AT, SPENT_ROWS, WORK_NUMBERS, Work, before_at,
 };
 pub use observation::{Cadence, Energies, Probe};
 pub use patches::{Patches, Scheme};

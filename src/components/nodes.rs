@@ -16,8 +16,8 @@ columns! {
     /// Displacement of the last step, u_n − u_{n−1} (m), a vector a node: velocity in the middle of the step times Δt.
     /// On constrained axes `boundary` writes the step to come here.
     DisplacementStep(Reals) = "displacement_step";
-    /// What rounding has made of the displacement and of its step too much (m), a vector each: [`COMPENSATION_NUMBERS`] a
-    /// node. Exists in f32 where sums are compensated.
+    /// What rounding has made of the displacements too much (m), a vector a node, and then what of their steps, likewise.
+    /// Exists in f32 where sums are compensated.
     DisplacementCompensation(Reals) = "displacement_compensation";
     /// Lumped mass (kg), a number a node; 0 parks the node.
     Mass(Reals) = "mass";
@@ -47,13 +47,11 @@ columns! {
     MiddleDisplacement(Reals) = "middle_displacement";
     /// What each 64 nodes come to, four words each: bits of ½ m d² (kg m²) and of the longest step's square (m²), its row.
     NodeSums(Vec<u32>) = "node_sums";
-    /// Forces of all elements on their corners (N), all blocks of the body one after the other: in each group of
+    /// Forces of all elements (N), all blocks of the body one after the other: a vector for each node of each patch
+    /// ([`Patches`](super::Patches)); in the scheme of two passes those on corners, in each group of
     /// [`LANES`](crate::math::LANES) elements by corner, component, element.
     ElementForce(Reals) = "element_force";
 }
-
-/// Numbers a node in [`DisplacementCompensation`].
-pub const COMPENSATION_NUMBERS: usize = 6;
 
 /// Where sums of work begin in [`FirstNonFinite`].
 pub const SPENT_AT: usize = 4;

@@ -5,11 +5,11 @@ use bevy_ecs::prelude::*;
 /// How the forces of elements are summed at the nodes. Results differ by rounding only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scheme {
-    /// Patch by patch in cache, then over the patches that share a node: a tenth to a third of the traffic with memory.
+    /// Patch by patch in cache or in a workgroup's memory, then over the patches that share a node: a tenth to a third of the traffic with memory.
     #[default]
     Patches,
     /// Every element writes the forces on its corners, every node sums them: the paper's two kernels. To compare with, and
-    /// what GPUs run.
+    /// what a GPU runs of a mesh whose patches do not fit a workgroup.
     TwoPass,
 }
 

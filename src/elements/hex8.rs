@@ -10,11 +10,20 @@ use glam::{DMat3, DVec3};
 /// f_a = V P b_a + k Σ_m γ_ma q_m with q_m = Σ_a γ_ma u_a and γ_m = Γ_m − b·(XᵀΓ_m): no force for any homogeneous F, and
 /// objective. Its scale k = E V Σ(b·b)/72 matches pure bending at every Poisson's ratio; the usual λ + 2μ locks as ν → ½.
 ///
+/// Displacements are taken apart into seven modes: the signs ξ, η, ζ of the nodes and the four Γ, ηζ, ζξ, ξη and ξηζ. So are the
+/// mean gradients, b_a = Σ_m s_ma β_m, which need six of them: V b_a = ∂V/∂X_a, and a hexahedron's volume does not depend
+/// on the mode ξηζ of its corners. The sums Γ·u that hourglass control needs come with ∇u = Σ_m (Σ_a s_ma u_a) ⊗ β_m.
+///
 /// γ is never stored: with h_m = XᵀΓ_m, q_m = Γ_m·u − ∇u h_m, and its force folds into the stress.
-/// Rest shape: b of nodes 1 to 7 (rows 0 to 20; node 0 has their negative sum), volume (21), k (N/m, 22),
-/// h_m (23 to 34).
+/// Rest shape: β of the six modes (rows 0 to 17), volume (18), k (N/m, 19), h_m (20 to 31). In a parallelepiped the last three β
+/// and all h_m are zero: `SLOPES`, how many β are made use of, is 6 or 3.
 #[derive(Clone, Copy, Debug)]
-pub struct Hex8;
+pub struct Hexahedron<const SLOPES: usize>;
+
+/// Of any shape.
+pub type Hex8 = Hexahedron<6>;
+/// A parallelepiped: six of its modes' gradients and arms are zero, and not even read.
+pub type Parallelepiped = Hexahedron<3>;
 
 pub(super) const NODE_SIGNS: [[f64; 3]; 8] = [
     [-1.0, -1.0, -1.0],
@@ -67,88 +76,103 @@ pub(super) fn natural_gradients(at: [f64; 3]) -> [DVec3; 8] {
     })
 }
 
-/// Σ_a Γ_ma u_a of the four modes, for one component of u: from differences along edges, so that a common displacement
-/// drops out before it can round.
-#[inline(always)]
-fn hourglass_sums<R: Real>(u: &[[R; 3]; MOST_NODES], i: usize) -> [R; 4] {
-    let (x0, x1, x2, x3) = (u[1][i] - u[0][i], u[2][i] - u[3][i], u[5][i] - u[4][i], u[6][i] - u[7][i]);
-    let below = (u[3][i] - u[0][i]) + (u[2][i] - u[1][i]);
-    let above = (u[7][i] - u[4][i]) + (u[6][i] - u[5][i]);
-    let (low, high) = (x1 - x0, x3 - x2);
-    [above - below, (x2 + x3) - (x0 + x1), low + high, high - low]
+/// Sign of a mode at node a: ξ, η, ζ, then the Γ.
+pub(super) fn mode_sign(mode: usize, a: usize) -> f64 {
+    if mode < 3 { NODE_SIGNS[a][mode] } else { hourglass_sign(mode - 3, a) }
 }
 
-/// Σ_m Γ_ma q_m of the eight nodes.
+/// How many modes there are.
+pub(super) const MODES: usize = 7;
+/// First row of the h_m.
+const ARMS: usize = 20;
+
+/// Σ_a s_ma u_a of the modes, for one component of u: from differences along edges, so that a common displacement drops
+/// out before it can round.
 #[inline(always)]
-fn hourglass_spread<R: Real>(q: [R; 4]) -> [R; 8] {
-    let (sum, difference) = (q[0] + q[1], q[0] - q[1]);
-    let (low, high) = (q[2] - q[3], q[2] + q[3]);
+pub(super) fn modes<R: Real>(u: &[[R; 3]; MOST_NODES], i: usize) -> [R; MODES] {
+    let (x0, x1, x2, x3) = (u[1][i] - u[0][i], u[2][i] - u[3][i], u[5][i] - u[4][i], u[6][i] - u[7][i]);
+    let y_below = (u[3][i] - u[0][i]) + (u[2][i] - u[1][i]);
+    let y_above = (u[7][i] - u[4][i]) + (u[6][i] - u[5][i]);
+    let z = ((u[4][i] - u[0][i]) + (u[5][i] - u[1][i])) + ((u[6][i] - u[2][i]) + (u[7][i] - u[3][i]));
+    let (x_below, x_above) = (x0 + x1, x2 + x3);
+    let (low, high) = (x1 - x0, x3 - x2);
+    [x_below + x_above, y_below + y_above, z, y_above - y_below, x_above - x_below, low + high, high - low]
+}
+
+/// Σ_m s_ma f_m of the eight nodes: what is odd in (ξ, η, ζ) has the other sign at the opposite node.
+#[inline(always)]
+pub(super) fn spread<R: Real>([x, y, z, yz, zx, xy, xyz]: [R; MODES]) -> [R; MOST_NODES] {
+    let (s, d, p, m) = (x + y, x - y, z + xyz, z - xyz);
+    let (odd_1, odd_3, odd_4, odd_6) = (d - m, -(d + m), p - s, s + p);
+    let (s, d) = (yz + zx, yz - zx);
+    let (even_1, even_3, even_4, even_6) = (d - xy, -(d + xy), xy - s, s + xy);
     [
-        low + sum,
-        difference - low,
-        low - sum,
-        -(difference + low),
-        high - sum,
-        -(difference + high),
-        high + sum,
-        difference - high,
+        even_6 - odd_6,
+        even_1 + odd_1,
+        even_4 - odd_4,
+        even_3 + odd_3,
+        even_4 + odd_4,
+        even_3 - odd_3,
+        even_6 + odd_6,
+        even_1 - odd_1,
     ]
 }
 
-/// q_m = Σ_a γ_ma u_a of the four modes, for one component of u.
-#[inline(always)]
-fn hourglass_displacements<R: Real>(
-    u: &[[R; 3]; MOST_NODES],
-    i: usize,
-    gradient: &Mat3<R>,
-    shape: &impl Fn(usize) -> R,
-) -> [R; 4] {
-    let mut q = hourglass_sums(u, i);
-    for m in 0..4 {
-        q[m] -= dot(gradient.0[i], vector(shape, 23 + 3 * m));
-    }
-    q
-}
-
-impl Element for Hex8 {
+impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
     const NAME: &'static str = "hex8";
     const NODES: usize = 8;
     const POINTS: usize = 1;
-    const ROWS: usize = 35;
-    const VOLUME_ROW: usize = 21;
-    const FORCE_ROW: Option<usize> = Some(22);
+    const ROWS: usize = 32;
+    const ROWS_READ: usize = if SLOPES == 3 { 11 } else { 32 };
+    const VOLUME_ROW: usize = 18;
+    const FORCE_ROW: Option<usize> = Some(19);
     const PRESSURE: PressureFrom = PressureFrom::Point;
 
     fn rest_shape(points: &[DVec3], young: f64) -> [f64; MOST_ROWS] {
         let (volume, b) = mean_gradients(points);
         let mut shape = [0.0; MOST_ROWS];
-        for a in 1..8 {
-            shape[3 * (a - 1)..3 * a].copy_from_slice(&b[a].to_array());
+        shape[18] = volume;
+        shape[19] = young * volume * b.iter().map(|b| b.length_squared()).sum::<f64>() / 72.0;
+        let arms =
+            [0, 1, 2, 3].map(|m| -> DVec3 { (0..8).map(|a| (points[a] - points[0]) * hourglass_sign(m, a)).sum() });
+        // as far as its corners' coordinates, rounded as they are, can tell
+        let farthest = points.iter().fold(0.0_f64, |farthest, x| farthest.max(x.abs().max_element()));
+        let parallelepiped = arms.iter().all(|h| h.abs().max_element() <= 32.0 * f64::EPSILON * farthest);
+        for mode in 0..if parallelepiped { 3 } else { 6 } {
+            let slope: DVec3 = (0..8).map(|a| b[a] * (mode_sign(mode, a) / 8.0)).sum();
+            shape[3 * mode..3 * mode + 3].copy_from_slice(&slope.to_array());
         }
-        shape[21] = volume;
-        shape[22] = young * volume * b.iter().map(|b| b.length_squared()).sum::<f64>() / 72.0;
-        for m in 0..4 {
-            let h: DVec3 = (0..8).map(|a| (points[a] - points[0]) * hourglass_sign(m, a)).sum();
-            shape[23 + 3 * m..26 + 3 * m].copy_from_slice(&h.to_array());
+        if !parallelepiped {
+            for m in 0..4 {
+                shape[ARMS + 3 * m..ARMS + 3 * m + 3].copy_from_slice(&arms[m].to_array());
+            }
         }
         shape
     }
 
-    type Prepared<R: Real> = [[R; 3]; MOST_NODES];
+    type Simple = Parallelepiped;
+
+    fn is_simple(shape: &[f64; MOST_ROWS]) -> bool {
+        shape[9..18].iter().chain(&shape[ARMS..]).all(|&number| number == 0.0)
+    }
+
+    /// Modes of each component of u (m).
+    type Prepared<R: Real> = [[R; MODES]; 3];
     /// ∇u and the stress.
     type Forces<R: Real> = [Mat3<R>; 2];
 
     #[inline(always)]
-    fn prepare<R: Real>(u: &[[R; 3]; MOST_NODES]) -> [[R; 3]; MOST_NODES] {
-        *u
+    fn prepare<R: Real>(u: &[[R; 3]; MOST_NODES]) -> [[R; MODES]; 3] {
+        [modes(u, 0), modes(u, 1), modes(u, 2)]
     }
 
     #[inline(always)]
-    fn at_point<R: Real>(u: &[[R; 3]; MOST_NODES], _point: usize, shape: impl Fn(usize) -> R) -> PointState<R> {
+    fn at_point<R: Real>(u: &[[R; MODES]; 3], _point: usize, shape: impl Fn(usize) -> R) -> PointState<R> {
         let mut gradient = Mat3::zero(u[0][0]);
-        for i in 0..3 {
-            for a in 1..8 {
-                gradient.add_to_row(i, u[a][i] - u[0][i], vector(&shape, 3 * (a - 1)));
+        for mode in 0..SLOPES {
+            let slope = vector(&shape, 3 * mode);
+            for i in 0..3 {
+                gradient.add_to_row(i, u[i][mode], slope);
             }
         }
         PointState { gradient, adjugate: gradient, volume: shape(Self::VOLUME_ROW) }
@@ -166,51 +190,56 @@ impl Element for Hex8 {
 
     #[inline(always)]
     fn store_forces<R: Real>(
-        u: &[[R; 3]; MOST_NODES],
+        u: &[[R; MODES]; 3],
         [gradient, stress]: &[Mat3<R>; 2],
         shape: impl Fn(usize) -> R,
         mut store: impl FnMut(usize, usize, R),
     ) {
-        let mut folded = stress.scaled(shape(21));
-        let stiffness = shape(22);
+        let mut folded = stress.scaled(shape(Self::VOLUME_ROW));
+        let stiffness = shape(19);
         for i in 0..3 {
-            let mut q = hourglass_displacements(u, i, gradient, &shape);
+            let mut forces = [stiffness; MODES];
             for m in 0..4 {
-                q[m] = q[m] * stiffness;
-                folded.add_to_row(i, -q[m], vector(&shape, 23 + 3 * m));
+                if SLOPES == 3 {
+                    forces[3 + m] = u[i][3 + m] * stiffness;
+                    continue;
+                }
+                let arm = vector(&shape, ARMS + 3 * m);
+                let q = (u[i][3 + m] - dot(gradient.0[i], arm)) * stiffness;
+                folded.add_to_row(i, -q, arm);
+                forces[3 + m] = q;
             }
-            let hourglass = hourglass_spread(q);
-            let mut sum = u[0][0].constant(0.0);
-            for a in 1..8 {
-                let force = dot_plus(folded.0[i], vector(&shape, 3 * (a - 1)), hourglass[a]);
-                sum += force;
-                store(a, i, force);
+            for mode in 0..SLOPES {
+                let slope = vector(&shape, 3 * mode);
+                let row = folded.0[i];
+                forces[mode] = if mode < 3 { dot(row, slope) } else { dot_plus(row, slope, forces[mode]) };
             }
-            store(0, i, -sum);
+            let forces = spread(forces);
+            for a in 0..8 {
+                store(a, i, forces[a]);
+            }
         }
     }
 
     #[inline(always)]
-    fn hourglass_energy<R: Real>(u: &[[R; 3]; MOST_NODES], gradient: &Mat3<R>, shape: impl Fn(usize) -> R) -> R {
+    fn hourglass_energy<R: Real>(u: &[[R; MODES]; 3], gradient: &Mat3<R>, shape: impl Fn(usize) -> R) -> R {
         let mut sum = u[0][0].constant(0.0);
         for i in 0..3 {
-            for q in hourglass_displacements(u, i, gradient, &shape) {
+            for m in 0..4 {
+                let q = u[i][3 + m] - dot(gradient.0[i], vector(&shape, ARMS + 3 * m));
                 sum += q * q;
             }
         }
-        sum * shape(22) * sum.constant(0.5)
+        sum * shape(19) * sum.constant(0.5)
     }
 
     fn frequency_bound(shape: &[f64; MOST_ROWS], stiffness: &Stiffness) -> f64 {
-        let mut b = [DVec3::ZERO; 8];
-        for a in 1..8 {
-            b[a] = DVec3::from_slice(&shape[3 * (a - 1)..]);
-            b[0] -= b[a];
-        }
+        let slope = |mode: usize, a: usize| DVec3::from_slice(&shape[3 * mode..]) * mode_sign(mode, a);
+        let b: [DVec3; 8] = std::array::from_fn(|a| (0..6).map(|mode| slope(mode, a)).sum());
         let (trace, largest) = gradient_measure(b.into_iter());
         let material = 8.0 / stiffness.density * (stiffness.lambda * trace + stiffness.deviatoric * largest);
 
-        let gamma = |m: usize, a: usize| hourglass_sign(m, a) - b[a].dot(DVec3::from_slice(&shape[23 + 3 * m..]));
+        let gamma = |m: usize, a: usize| hourglass_sign(m, a) - b[a].dot(DVec3::from_slice(&shape[ARMS + 3 * m..]));
         let square: f64 = (0..4).flat_map(|m| (0..8).map(move |a| (m, a))).map(|(m, a)| gamma(m, a).powi(2)).sum();
         // the largest eigenvalue of Σ γ γᵀ is below its trace, and is the trace's quarter when the four are orthogonal and
         // equally long, as in every parallelepiped
@@ -221,7 +250,7 @@ impl Element for Hex8 {
             largest_row = largest_row.max(row);
             overlap = overlap.max((0..8).map(|a| b[a] * gamma(m, a)).sum::<DVec3>().length());
         }
-        let hourglass = shape[22] * largest_row.min(square) / (stiffness.density * shape[21] / 8.0);
+        let hourglass = shape[19] * largest_row.min(square) / (stiffness.density * shape[18] / 8.0);
         // modes of both kinds are orthogonal in a parallelepiped: then the larger counts, else their sum
         if overlap < 1e-9 * trace.sqrt() { material.max(hourglass) } else { material + hourglass }
     }

@@ -1,6 +1,6 @@
 //! The eight-node hexahedron with eight integration points and one mean dilatation.
 
-use super::hex8::{NODE_SIGNS, natural_gradients};
+use super::hex8::{MODES, NODE_SIGNS, mode_sign, modes, natural_gradients, spread};
 use super::{Element, MOST_NODES, MOST_ROWS, PointState, PressureFrom, Stiffness, gradient_measure, vector};
 use crate::math::{Mat3, Real, dot, minor};
 use glam::{DMat3, DVec3};
@@ -15,49 +15,14 @@ use glam::{DMat3, DVec3};
 #[derive(Clone, Copy, Debug)]
 pub struct Hex8MeanDilatation;
 
-/// Values of the seven modes at node or point `a` of the cube with corners ±1.
-fn mode_values(a: usize) -> [f64; 7] {
-    let [x, y, z] = NODE_SIGNS[a];
-    [x, y, z, y * z, z * x, x * y, x * y * z]
-}
-
-/// Coefficients of the seven modes from nodal values of one component: differences along edges first.
+/// Coefficients of the seven modes from nodal values of one component.
 #[inline(always)]
-fn mode_coefficients<R: Real>(u: &[[R; 3]; MOST_NODES], i: usize) -> [R; 7] {
-    let eighth = u[0][0].constant(0.125);
-    let (x0, x1, x2, x3) = (u[1][i] - u[0][i], u[2][i] - u[3][i], u[5][i] - u[4][i], u[6][i] - u[7][i]);
-    let below = (u[3][i] - u[0][i]) + (u[2][i] - u[1][i]);
-    let above = (u[7][i] - u[4][i]) + (u[6][i] - u[5][i]);
-    let upright = (u[4][i] - u[0][i]) + (u[5][i] - u[1][i]) + (u[6][i] - u[2][i]) + (u[7][i] - u[3][i]);
-    let (low, high) = (x1 - x0, x3 - x2);
-    [
-        ((x0 + x1) + (x2 + x3)) * eighth,
-        (below + above) * eighth,
-        upright * eighth,
-        (above - below) * eighth,
-        ((x2 + x3) - (x0 + x1)) * eighth,
-        (low + high) * eighth,
-        (high - low) * eighth,
-    ]
-}
-
-/// Σ_m φ_m(a) f_m / 8 at nodes 1 to 7 (node 0 has the negative sum of the others).
-#[inline(always)]
-fn spread<R: Real>(f: [R; 7]) -> [R; 8] {
-    let eighth = f[0].constant(0.125);
-    let mut at_nodes = [eighth; 8];
-    for a in 0..8 {
-        let sign = NODE_SIGNS[a];
-        let mut sum = if sign[0] > 0.0 { f[0] } else { -f[0] };
-        sum = if sign[1] > 0.0 { sum + f[1] } else { sum - f[1] };
-        sum = if sign[2] > 0.0 { sum + f[2] } else { sum - f[2] };
-        sum = if sign[1] * sign[2] > 0.0 { sum + f[3] } else { sum - f[3] };
-        sum = if sign[2] * sign[0] > 0.0 { sum + f[4] } else { sum - f[4] };
-        sum = if sign[0] * sign[1] > 0.0 { sum + f[5] } else { sum - f[5] };
-        sum = if sign[0] * sign[1] * sign[2] > 0.0 { sum + f[6] } else { sum - f[6] };
-        at_nodes[a] = sum * eighth;
+fn mode_coefficients<R: Real>(u: &[[R; 3]; MOST_NODES], i: usize) -> [R; MODES] {
+    let mut coefficients = modes(u, i);
+    for m in 0..MODES {
+        coefficients[m] = coefficients[m] * u[0][0].constant(0.125);
     }
-    at_nodes
+    coefficients
 }
 
 /// 1/√3, where Gauss points are.
@@ -84,6 +49,7 @@ impl Element for Hex8MeanDilatation {
     const FORCE_ROW: Option<usize> = Some(22);
     const PRESSURE: PressureFrom = PressureFrom::MeanOverPoints;
 
+    type Simple = Self;
     /// Mode coefficients of each component.
     type Prepared<R: Real> = [[R; 7]; 3];
     /// Forces on the mode coefficients of each component.
@@ -173,16 +139,12 @@ impl Element for Hex8MeanDilatation {
         shape: impl Fn(usize) -> R,
         mut store: impl FnMut(usize, usize, R),
     ) {
-        let there = shape(22);
+        let share = shape(22) * u[0][0].constant(0.125);
         for i in 0..3 {
             let at_nodes = spread(forces[i]);
-            let mut sum = u[0][0].constant(0.0);
-            for a in 1..8 {
-                let force = at_nodes[a] * there;
-                sum += force;
-                store(a, i, force);
+            for a in 0..8 {
+                store(a, i, at_nodes[a] * share);
             }
-            store(0, i, -sum);
         }
     }
 
@@ -194,9 +156,8 @@ impl Element for Hex8MeanDilatation {
     /// With b the mean gradients and L_ab = Σ_q V_q ∇N_a·∇N_b: ω² ≤ (8/ρ)(λ Σ b·b + 2μ' λ_max(L)/V), since
     /// V U(θ̄) needs b only and |sym ∇u| ≤ |∇u|.
     fn frequency_bound(shape: &[f64; MOST_ROWS], stiffness: &Stiffness) -> f64 {
-        let position = |a: usize| -> DVec3 {
-            mode_values(a).iter().enumerate().map(|(m, value)| DVec3::from_slice(&shape[3 * m..]) * *value).sum()
-        };
+        let position =
+            |a: usize| -> DVec3 { (0..MODES).map(|m| DVec3::from_slice(&shape[3 * m..]) * mode_sign(m, a)).sum() };
         let points = [0, 1, 2, 3, 4, 5, 6, 7].map(position);
         let mut mean = [DVec3::ZERO; 8];
         let (mut volume, mut laplacian) = (0.0, [[0.0; 8]; 8]);

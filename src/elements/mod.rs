@@ -7,7 +7,7 @@ mod hex8_mean_dilatation;
 mod tet4;
 mod tet4_nodal_pressure;
 
-pub use hex8::Hex8;
+pub use hex8::{Hex8, Hexahedron, Parallelepiped};
 pub use hex8_mean_dilatation::Hex8MeanDilatation;
 pub use tet4::Tet4;
 pub use tet4_nodal_pressure::Tet4NodalPressure;
@@ -18,7 +18,7 @@ use glam::DVec3;
 /// Nodes of the element type that has most.
 pub const MOST_NODES: usize = 8;
 /// Rest-shape numbers of the element type that has most.
-pub const MOST_ROWS: usize = 35;
+pub const MOST_ROWS: usize = 32;
 /// Integration points of the element type that has most.
 pub const MOST_POINTS: usize = 8;
 
@@ -39,6 +39,8 @@ pub trait Element: Copy + Send + Sync + 'static {
     const POINTS: usize;
     /// How many numbers describe the rest shape.
     const ROWS: usize;
+    /// How many of them the element's kernel reads.
+    const ROWS_READ: usize = Self::ROWS;
     /// Which of them is the volume.
     const VOLUME_ROW: usize;
     /// Which further number forces are proportional to, if any.
@@ -46,6 +48,8 @@ pub trait Element: Copy + Send + Sync + 'static {
     /// Where the pressure comes from.
     const PRESSURE: PressureFrom;
 
+    /// The same element where it [is simple](Element::is_simple): it reads fewer rows of the same rest shape.
+    type Simple: Element;
     /// What all points need of the displacements.
     type Prepared<R: Real>: Copy;
     /// What stresses add up to before it is spread over the corners.
@@ -54,6 +58,11 @@ pub trait Element: Copy + Send + Sync + 'static {
     /// The rest shape from the nodes' rest positions (m); `young` is the small-strain Young's modulus (Pa) that hourglass
     /// control is scaled by.
     fn rest_shape(points: &[DVec3], young: f64) -> [f64; MOST_ROWS];
+
+    /// Whether the rows that [`Simple`](Element::Simple) does not read are zero.
+    fn is_simple(_shape: &[f64; MOST_ROWS]) -> bool {
+        false
+    }
 
     /// Makes nodal displacements (m) ready.
     fn prepare<R: Real>(u: &[[R; 3]; MOST_NODES]) -> Self::Prepared<R>;

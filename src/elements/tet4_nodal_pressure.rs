@@ -22,6 +22,7 @@ impl Element for Tet4NodalPressure {
     const FORCE_ROW: Option<usize> = Tet4::FORCE_ROW;
     const PRESSURE: PressureFrom = PressureFrom::Nodes;
 
+    type Simple = Self;
     type Prepared<R: Real> = <Tet4 as Element>::Prepared<R>;
     type Forces<R: Real> = <Tet4 as Element>::Forces<R>;
 

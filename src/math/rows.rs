@@ -15,7 +15,7 @@ pub type Rows<T> = [[T; 4]; MOST_ROWS_AT_HAND];
 pub struct Scratch<T: SimdScalar> {
     /// Read: displacements.
     pub read: Box<Rows<T>>,
-    /// Added to: forces.
+    /// Added to: forces. The fourth number of a row has no meaning.
     pub sums: Box<Rows<T>>,
 }
 
@@ -161,14 +161,13 @@ mod x86 {
     #[inline(always)]
     pub fn add_512(v4: V4, rows: &mut Rows<f32>, at: &[u16; 16], [x, y, z]: [__m512; 3]) {
         let v = v4.avx512f;
-        let none = v._mm512_setzero_ps();
-        let (low_xy, high_xy) = (v._mm512_unpacklo_ps(x, y), v._mm512_unpackhi_ps(x, y));
-        let (low_z, high_z) = (v._mm512_unpacklo_ps(z, none), v._mm512_unpackhi_ps(z, none));
+        // the fourth number of a sum is never read: anything may come there
+        let (low, high) = (v._mm512_unpacklo_ps(x, y), v._mm512_unpackhi_ps(x, y));
         let lanes = [
-            v._mm512_shuffle_ps::<0x44>(low_xy, low_z),
-            v._mm512_shuffle_ps::<0xee>(low_xy, low_z),
-            v._mm512_shuffle_ps::<0x44>(high_xy, high_z),
-            v._mm512_shuffle_ps::<0xee>(high_xy, high_z),
+            v._mm512_shuffle_ps::<0x04>(low, z),
+            v._mm512_shuffle_ps::<0x1e>(low, z),
+            v._mm512_shuffle_ps::<0x24>(high, z),
+            v._mm512_shuffle_ps::<0x3e>(high, z),
         ];
         for lane in 0..4 {
             add!(v4.sse, rows, at, lane, v._mm512_castps512_ps128(lanes[lane]));
@@ -201,14 +200,13 @@ mod x86 {
     #[inline(always)]
     pub fn add_256(v3: V3, rows: &mut Rows<f32>, at: &[u16; 8], [x, y, z]: [__m256; 3]) {
         let v = v3.avx;
-        let none = v._mm256_setzero_ps();
-        let (low_xy, high_xy) = (v._mm256_unpacklo_ps(x, y), v._mm256_unpackhi_ps(x, y));
-        let (low_z, high_z) = (v._mm256_unpacklo_ps(z, none), v._mm256_unpackhi_ps(z, none));
+        // the fourth number of a sum is never read: anything may come there
+        let (low, high) = (v._mm256_unpacklo_ps(x, y), v._mm256_unpackhi_ps(x, y));
         let lanes = [
-            v._mm256_shuffle_ps::<0x44>(low_xy, low_z),
-            v._mm256_shuffle_ps::<0xee>(low_xy, low_z),
-            v._mm256_shuffle_ps::<0x44>(high_xy, high_z),
-            v._mm256_shuffle_ps::<0xee>(high_xy, high_z),
+            v._mm256_shuffle_ps::<0x04>(low, z),
+            v._mm256_shuffle_ps::<0x1e>(low, z),
+            v._mm256_shuffle_ps::<0x24>(high, z),
+            v._mm256_shuffle_ps::<0x3e>(high, z),
         ];
         for lane in 0..4 {
             add!(v3.sse, rows, at, lane, v._mm256_castps256_ps128(lanes[lane]));

@@ -9,6 +9,7 @@ use super::outputs;
 use super::parameters::hand_out;
 use super::relax::Relaxing;
 use super::schedule::{Scheduled, check_names, resolve};
+use super::scheme::{fit_workgroups, sum_forces};
 use super::stable_step::{self, Stability};
 use super::{Entry, Facts, Job, Member, Options, Simulation};
 use crate::assembly::{Assembly, assemble, assemble_in_time, insert_laws};
@@ -65,7 +66,7 @@ impl Simulation {
 
         let Chosen { gpu, mut why } = choose(options)?;
         if gpu.is_some() {
-            sum_forces(Scheme::TwoPass, &mut world);
+            why += &fit_workgroups(&mut world);
         }
         let gpu_name = gpu.as_ref().map(|gpu| gpu.report().name.clone());
         let prepared = match gpu {
@@ -136,12 +137,6 @@ impl Simulation {
             failure: None,
         })
     }
-}
-
-/// Makes room for the element forces of all bodies, in another scheme than before.
-fn sum_forces(scheme: Scheme, world: &mut World) {
-    let bodies: Vec<Entity> = world.query_filtered::<Entity, With<ElementForce>>().iter(world).collect();
-    bodies.into_iter().for_each(|body| crate::assembly::insert_forces(scheme, body, world));
 }
 
 /// Takes a GPU for the run and makes the kernels of all systems ready that have some.

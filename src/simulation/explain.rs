@@ -134,6 +134,10 @@ pub struct KernelInUse {
     pub threads: u32,
     /// Invocations of a workgroup.
     pub workgroup: u32,
+    /// Bytes of memory that a workgroup shares.
+    pub workgroup_memory: u32,
+    /// Storage buffers; every WebGPU device allows 8.
+    pub storage_buffers: usize,
     /// The pieces it is put together from.
     pub fragments: Vec<Piece>,
     /// Lines of all pieces.

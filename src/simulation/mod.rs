@@ -20,6 +20,7 @@ mod residual;
 mod rounding;
 mod run;
 mod schedule;
+mod scheme;
 mod stable_step;
 mod step_change;
 mod stretch;

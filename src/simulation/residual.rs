@@ -66,7 +66,7 @@ impl State {
             .map(|(entity, u, step, lost, internal, external)| {
                 let all = 0..u.len();
                 let load = |i: usize| external.map_or(0.0, |external| external.get(i));
-                let lost_of = |i: usize| lost.map_or(0.0, |lost| lost.get(COMPENSATION_NUMBERS * (i / 3) + i % 3));
+                let lost_of = |i: usize| lost.map_or(0.0, |lost| lost.get(i));
                 let exact = |i: usize| u.get(i) - lost_of(i);
                 Body {
                     entity,
@@ -105,8 +105,7 @@ impl State {
             if let (Some(mut lost), Some(before)) = (entity.get_mut::<DisplacementCompensation>(), &body.compensation) {
                 lost.0.clone_from(before);
                 // at rest the step is exact
-                let steps = (0..lost.len()).filter(|i| i % COMPENSATION_NUMBERS >= 3).collect::<Vec<_>>();
-                steps.into_iter().for_each(|i| lost.set(i, 0.0));
+                (lost.len() / 2..lost.len()).for_each(|i| lost.set(i, 0.0));
             }
             if let Some(mut step) = entity.get_mut::<DisplacementStep>() {
                 step.bytes_mut().fill(0);

@@ -87,10 +87,8 @@ fn scale_steps(world: &mut World, factor: f64) {
         let nodes = step.len() / 3;
         (0..3 * nodes).for_each(|i| scale(&mut step, i));
         if let Some(mut lost) = lost {
-            // after the displacement's three numbers those of the step
-            (0..nodes).flat_map(|node| (3..6).map(move |i| COMPENSATION_NUMBERS * node + i)).for_each(|i| {
-                scale(&mut lost, i);
-            });
+            // after those of the displacements those of the steps
+            (3 * nodes..6 * nodes).for_each(|i| scale(&mut lost, i));
         }
         for bits in noticed.get_mut(before_at(nodes)..).unwrap_or_default() {
             *bits = ((factor * f64::from(f32::from_bits(*bits))) as f32).to_bits();

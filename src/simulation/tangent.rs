@@ -127,6 +127,7 @@ impl<'w> BlockForces<'w> {
             displacement: u,
             connectivity: self.connectivity,
             rest_shape: &self.shape,
+            simple: block.simple,
             fibre_direction: self.fibres.as_deref(),
             nodal_volume_change: &self.means,
             memory: &mut self.memory,

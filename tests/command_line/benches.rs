@@ -35,7 +35,8 @@ fn records_of_before_there_was_a_choice_can_be_compared_with() {
     let asked = [&asked[..], &["--threads", "1", "--schemes", "patches"]].concat();
     place.done(&[&asked[..], &["--out", "out/bench"]].concat());
     let record = place.read("out/bench/bench.json");
-    let old: String = record.lines().filter(|line| !line.contains("\"fuse\"")).map(|line| format!("{line}\n")).collect();
+    let old: String =
+        record.lines().filter(|line| !line.contains("\"fuse\"")).map(|line| format!("{line}\n")).collect();
     assert_ne!(record, old);
     std::fs::write(place.path("old.json"), old).unwrap();
     // slower or not: the case is found again

@@ -20,6 +20,8 @@ pub struct Effects {
     pub damping: bool,
     pub loads: bool,
     pub moved: bool,
+    /// Two copies of each body, with loads that differ.
+    pub copies: bool,
     pub compensated: bool,
     pub energies: bool,
     pub removal: bool,
@@ -38,6 +40,8 @@ pub struct Effects {
     pub reproject: bool,
     /// What becomes of inverted elements, as RON writes it.
     pub inversion: Option<&'static str>,
+    /// How element forces are summed.
+    pub scheme: Scheme,
 }
 
 pub const LAWS: [&str; 7] = [
@@ -68,6 +72,7 @@ impl Effects {
             damping: true,
             loads: true,
             moved: true,
+            copies: false,
             compensated: true,
             energies: true,
             removal: true,
@@ -79,6 +84,7 @@ impl Effects {
             volumetric: true,
             reproject: true,
             inversion: None,
+            scheme: Scheme::Patches,
         }
     }
 
@@ -120,7 +126,13 @@ impl Effects {
             all.push(Self { inversion: Some("Remove"), averaged, removal: true, ..Self::default() });
         }
         all.push(Self { inversion: Some("Remove"), prony: 1, fibres: Some(AROUND), averaged: true, ..Self::default() });
+        for averaged in [false, true] {
+            let plain = Self { scheme: Scheme::TwoPass, averaged, ..Self::default() };
+            all.push(Self { fibres: Some(AROUND), prony: 1, removal: true, ..plain.clone() });
+            all.push(plain);
+        }
         all.push(Self::all());
+        all.push(Self { copies: true, loads: true, ..Self::default() });
         all.push(Self { averaged: true, ..Self::default() });
         all.push(Self { averaged: true, ..Self::all() });
         all
@@ -145,11 +157,17 @@ impl Effects {
         let families = self.families.map_or(String::new(), |families| format!("exponential_fibres: {families},"));
         let damping = if self.damping { "damping: 20," } else { "" };
         let inversion = self.inversion.map_or(String::new(), |word| format!("inversion: {word},"));
-        let both = |text: &str| ["tets", "hexes"].map(|body| text.replace("BODY", body)).concat();
+        let (copies, per_copy) = match self.copies {
+            true => ("copies: 2, apart: (0.001, 0, 0),", "per_copy: (0.5, -2),"),
+            false => ("", ""),
+        };
+        let both = |text: &str| {
+            ["tets", "hexes"].map(|body| text.replace("BODY", body).replace("PER_COPY", per_copy)).concat()
+        };
         let loads = if self.loads {
             both(
                 "Gravity(body: \"BODY\", acceleration: (1, -2, -9.81)),
-                 NodalForce(body: \"BODY\", on: Sphere(center: (0, 0, 0.05), radius: 0.03), force: (0.001, 0.002, -0.003)),
+                 NodalForce(body: \"BODY\", on: Sphere(center: (0, 0, 0.05), radius: 0.03), PER_COPY force: (0.001, 0.002, -0.003)),
                  Pressure(body: \"BODY\", on: All, pressure: 120),
                  Traction(body: \"BODY\", on: Surface(normal: (0, 0, 1), within: 70), traction: (5, -7, 11)),",
             )
@@ -181,7 +199,7 @@ impl Effects {
         let analysis = if self.at_rest { "Static()" } else { "Transient" };
         let body = |kind: &str| {
             format!(
-                "(mesh: Ellipsoid(radii: (0.05, 0.04, 0.06), across: 6, elements: {kind}), material: \"tissue\",
+                "(mesh: Ellipsoid(radii: (0.05, 0.04, 0.06), across: 6, elements: {kind}), material: \"tissue\", {copies}
                   regions: [(on: Box(min: (0, -1, -1), max: (1, 1, 1)), material: \"plain\")])"
             )
         };
@@ -211,7 +229,7 @@ impl Effects {
             Ok(scene) => scene,
             Err(problem) => panic!("{}", problem.render(false)),
         };
-        let options = Options { backend, gpu: gpu_choice(), scheme: Scheme::TwoPass, ..Options::default() };
+        let options = Options { backend, gpu: gpu_choice(), scheme: self.scheme, ..Options::default() };
         Simulation::new(&scene, &options).unwrap_or_else(|error| panic!("{error}\n{text}"))
     }
 }
@@ -305,6 +323,12 @@ impl Noise {
     }
 }
 
+/// Numbers of a body's element forces in the scheme of two passes.
+fn two_pass_length(world: &World, body: Entity) -> usize {
+    let blocks = world.get::<Authoring>(body).unwrap().blocks.iter().map(|&block| world.get::<Block>(block).unwrap());
+    blocks.map(|block| block.count.div_ceil(16) * 16 * 3 * sinew::evaluation::node_count(block.kind)).sum()
+}
+
 /// Fills every column that changes with noise: displacements of a tenth of an element, plausible forces and histories.
 pub fn randomize(world: &mut World, seed: u64) {
     let mut noise = Noise(seed);
@@ -322,9 +346,14 @@ pub fn randomize(world: &mut World, seed: u64) {
         }
         fill!(
             Displacement: 0.1 * SPACING, DisplacementStep: 1e-5, DisplacementCompensation: 1e-11,
-            InternalForce: 0.01, ExternalForce: 0.01, ElementForce: 0.01, ViscousMemory: 200.0, Work: 1e-6,
-            ElementVolume: 1e-6, NodalVolumeChange: 0.05
+            InternalForce: 0.01, ExternalForce: 0.01
         );
+        // whose length depends on the scheme: all else is the same in both
+        if let Some(mut column) = world.get_mut::<ElementForce>(entity) {
+            Noise(noise.0).fill(&mut column.0, 0.01);
+            (0..two_pass_length(world, entity)).for_each(|_| _ = noise.next());
+        }
+        fill!(ViscousMemory: 200.0, Work: 1e-6, ElementVolume: 1e-6, NodalVolumeChange: 0.05);
         // parked nodes, and axes held without a load
         if let Some(mut mass) = world.get_mut::<Mass>(entity) {
             mass.set(3, 0.0);

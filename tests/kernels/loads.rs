@@ -18,10 +18,10 @@ fn nodes_gather_the_same_bits() {
 
 #[test]
 fn loads_add_the_same_forces() {
-    for removal in [false, true] {
+    for (removal, copies) in [(false, false), (true, false), (false, true)] {
         // with removal: some elements behind the faces are gone
-        let effects = Effects { loads: true, removal, ..Effects::default() };
-        for (system, factors) in [("gravity", 2.0), ("nodal_force", 2.0), ("pressure", 60.0), ("traction", 20.0)] {
+        let effects = Effects { loads: true, removal, copies, ..Effects::default() };
+        for (system, factors) in [("gravity", 2.0), ("nodal_force", 3.0), ("pressure", 60.0), ("traction", 20.0)] {
             let Some(mut pair) = run(system, &effects, 3, remove_some) else { return };
             // 0.01 N were there; a load on a node adds less than 0.05 N, of a pressure by products of edges and sums of
             // up to eight faces

@@ -100,7 +100,7 @@ fn compare_motion(pair: &mut Pair, effects: &Effects, prescribed: f64) {
                 // u less what was lost is the exact sum, but for the rounding of what was lost
                 let sum = |world: &World| {
                     let lost = world.get::<DisplacementCompensation>(body).unwrap();
-                    let lost = lost.get(COMPENSATION_NUMBERS * (i / 3) + i % 3);
+                    let lost = lost.get(i);
                     (world.get::<Displacement>(body).unwrap().get(i) - lost, lost)
                 };
                 let ((host, lost), (device, _)) = (sum(pair.host()), sum(pair.device.world()));

@@ -76,7 +76,7 @@ fn bits_are_the_same_from_run_to_run_and_for_any_number_of_threads() {
 
 #[test]
 fn gpu_gives_the_same_bits_from_run_to_run() {
-    let (folder, mesh) = (tempfile::tempdir().unwrap(), mesh(4));
+    let (folder, mesh) = (tempfile::tempdir().unwrap(), mesh(8));
     for run in configurations().iter().filter(|run| run.options.backend == BackendChoice::Gpu) {
         for effects in [Effects::All, Effects::Means] {
             let of = || {
@@ -118,17 +118,52 @@ fn booking_work_changes_no_bit() {
 #[test]
 fn both_schemes_move_alike() {
     let (folder, mesh) = (tempfile::tempdir().unwrap(), mesh(8));
-    for (precision, bound) in [(Precision::F64, 1e-12), (Precision::F32, 1e-4)] {
+    for run in configurations() {
         for effects in [Effects::Laws, Effects::All, Effects::Means] {
             let [patches, two_pass] = [Scheme::Patches, Scheme::TwoPass].map(|scheme| {
-                let options = Options { backend: BackendChoice::Cpu, precision, scheme, ..Options::default() };
-                let mut simulation = start(&mesh, &Configuration { name: "CPU", options }, effects, folder.path());
+                let options = Options { scheme, ..run.options.clone() };
+                let mut simulation = start(&mesh, &Configuration { options, ..run }, effects, folder.path());
                 simulation.advance(60).unwrap();
                 simulation.displacements("b").unwrap()
             });
             let error = largest_difference(&patches, &two_pass);
-            println!("{precision:?}: {error:.1e}");
-            assert!(error < bound && patches != two_pass, "{precision:?}: {error:e}");
+            println!("{}: {error:.1e}", run.name);
+            assert!(error < run.bound(1e-12, 1e-4) && patches != two_pass, "{}: {error:e}", run.name);
+        }
+    }
+}
+
+/// Tetrahedra that share no node: more nodes than a workgroup has room for. The others move by patches.
+#[test]
+fn patches_of_too_many_nodes_are_summed_in_two_passes_on_a_gpu() {
+    let (folder, whole) = (tempfile::tempdir().unwrap(), grid([3, 3, 6], |_| ElementKind::Tet4));
+    let mut apart = Grid { points: Vec::new(), elements: Vec::new(), interior: Vec::new() };
+    for element in &whole.elements {
+        let first = apart.points.len();
+        apart.points.extend(element.iter().map(|&node| whole.points[node]));
+        apart.elements.push((first..first + 4).collect());
+    }
+    apart.write(&folder.path().join("mesh.vtk"));
+    let scene = "(duration: 1, materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))},
+        bodies: {\"apart\": (mesh: File(path: \"mesh.vtk\"), material: \"m\", spin: (1, 2, 3)),
+            \"b\": (mesh: Box(size: (1, 1, 1), cells: (2, 2, 2)), material: \"m\", spin: (3, 2, 1))},
+        integration: (step: 0.004))";
+    let ends: Vec<[Vec<DVec3>; 2]> = configurations()
+        .iter()
+        .map(|run| {
+            let mut simulation = run.start_in(scene, folder.path());
+            let why = simulation.summary("").unwrap().backend_because;
+            let gpu = run.options.backend == BackendChoice::Gpu;
+            let said = "forces of `apart` are summed in two passes: a patch has 1296 nodes, and 640 fit";
+            assert!(why.contains(said) == gpu && !why.contains("`b`"), "{why}");
+            simulation.advance(40).unwrap();
+            ["apart", "b"].map(|body| simulation.displacements(body).unwrap())
+        })
+        .collect();
+    for end in &ends[1..] {
+        for (body, exact) in end.iter().zip(&ends[0]) {
+            let error = largest_difference(exact, body);
+            assert!(error < 1e-4, "{error:e}");
         }
     }
 }

@@ -9,6 +9,7 @@ mod clock_and_limit;
 mod columns;
 mod configurations;
 mod conservation;
+mod copies;
 mod determinism;
 mod elements;
 mod equilibrium;

@@ -111,6 +111,12 @@ fn elements_are_counted_before_they_are_made() {
     let told = brief(&refined, &[]);
     let expected = "the mesh would have 8589934592 elements: 64 cells, refined 9 times";
     assert!(told.contains(expected), "{told}");
+    let copied = with(cells, cells).replace("material: \"tissue\",", "material: \"tissue\", copies: 100000,");
+    let copied = copied.replace("cells: (4, 4, 4)", "cells: (40, 40, 40)");
+    let told = brief(&copied, &[]);
+    assert!(told.contains("would have 6400000000 elements: 64000 cells, 100000 copies"), "{told}");
+    let none = with(cells, cells).replace("material: \"tissue\",", "material: \"tissue\", copies: 0,");
+    assert!(brief(&none, &[]).contains("between 1 and 100000"), "{}", brief(&none, &[]));
 }
 
 fn allowing(text: &str, elements: u64) -> Result<Simulation, Error> {

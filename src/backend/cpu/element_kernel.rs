@@ -6,7 +6,7 @@ mod effects;
 use super::{BlockLaw, Cpu};
 use crate::components::Patches;
 use crate::elements::{Element, MOST_NODES, PressureFrom};
-use crate::materials::{Elastic, ElasticLaw, Kinematics};
+use crate::materials::{Elastic, ElasticLaw, Kinematics, NeoHookean};
 use crate::math::{LANES, Mat3, Real, Scratch, SimdScalar, Sym3};
 use at_hand::{AtHand, part, parts};
 use pulp::{Simd, WithSimd};
@@ -21,6 +21,8 @@ pub struct BlockColumns<'a, T> {
     pub connectivity: &'a [u32],
     /// Rest shapes.
     pub rest_shape: &'a [T],
+    /// Whether every element [is simple](Element::is_simple).
+    pub simple: bool,
     /// Fibre directions, where they differ.
     pub fibre_direction: Option<&'a [T]>,
     /// θ of each node of the body; empty for elements that do not need it.
@@ -59,14 +61,14 @@ pub fn run_block_fast<E: Element>(
         return run_block::<E, f32>(cpu, columns, law, groups_a_patch);
     };
     let plain = law.exponential.is_empty() && law.volumetric.is_empty() && !law.reproject;
-    let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
-    match (law.fibres.is_some(), !law.prony.is_empty()) {
-        _ if !plain => block.run::<_, ASK>(&law.elastic),
-        (false, false) => block.run::<_, 0>(elastic),
-        (true, false) => block.run::<_, FIBRES>(elastic),
-        (false, true) => block.run::<_, VISCOSITY>(elastic),
-        (true, true) => block.run::<_, { FIBRES | VISCOSITY }>(elastic),
+    if !plain {
+        return run_block::<E, f32>(cpu, columns, law, groups_a_patch);
     }
+    if columns.simple {
+        let block = Block::<E::Simple, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
+        return block.run_neo_hookean(elastic);
+    }
+    Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData }.run_neo_hookean(elastic)
 }
 
 /// Effects of a kernel, as bits.
@@ -81,6 +83,17 @@ struct Block<'a, E, T: SimdScalar> {
     law: &'a BlockLaw<T>,
     groups_a_patch: usize,
     element: PhantomData<E>,
+}
+
+impl<E: Element> Block<'_, E, f32> {
+    fn run_neo_hookean(self, elastic: &NeoHookean<f32>) -> bool {
+        match (self.law.fibres.is_some(), !self.law.prony.is_empty()) {
+            (false, false) => self.run::<_, 0>(elastic),
+            (true, false) => self.run::<_, FIBRES>(elastic),
+            (false, true) => self.run::<_, VISCOSITY>(elastic),
+            (true, true) => self.run::<_, { FIBRES | VISCOSITY }>(elastic),
+        }
+    }
 }
 
 impl<E: Element, T: SimdScalar> Block<'_, E, T> {
@@ -260,17 +273,15 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
             &u,
             &forces,
             #[inline(always)]
-            |row: usize| T::load(simd, &rest_shape[row * LANES + at..]),
+            |row: usize| {
+                let number = T::load(simd, &rest_shape[row * LANES + at..]);
+                // forces are proportional to these
+                let scales = row == E::FORCE_ROW.unwrap_or(E::VOLUME_ROW) || row == E::VOLUME_ROW;
+                if scales && self.inverted_go { worst.if_positive(zero, number) } else { number }
+            },
             #[inline(always)]
             |corner: usize, i: usize, force| out[corner][i] = force,
         );
-        if self.inverted_go {
-            for corner in 0..E::NODES {
-                for i in 0..3 {
-                    out[corner][i] = worst.if_positive(zero, out[corner][i]);
-                }
-            }
-        }
         self.give(simd, group, at, scratch, &out);
         worst
     }

@@ -6,7 +6,7 @@ mod one_by_one;
 pub use factors::Factors;
 
 use super::Cpu;
-use crate::components::{COMPENSATION_NUMBERS, SPENT_ROWS, WORK_NUMBERS};
+use crate::components::{SPENT_ROWS, WORK_NUMBERS};
 use crate::math::{LANES, Real, SimdScalar};
 use one_by_one::{OneNode, Sum, add_to_sum, move_node};
 use pulp::{Simd, WithSimd};
@@ -29,8 +29,8 @@ pub struct NodeColumns<'a, T> {
     pub u: &'a mut [T],
     /// Steps (m).
     pub step: &'a mut [T],
-    /// What rounding left out of both.
-    pub compensation: Option<&'a mut [T]>,
+    /// What rounding left out of displacements, and of steps.
+    pub compensation: Option<[&'a mut [T]; 2]>,
     /// Work booked.
     pub work: Option<&'a mut [T]>,
     /// Work against internal forces, of every so many nodes; none where the whole work is booked.
@@ -83,10 +83,10 @@ impl<T: SimdScalar> Rows<'_, T> {
         let (mut spent, mut finite) = (0.0, true);
         for row in from..to {
             let at = 3 * row..3 * row + 3;
-            let lost = COMPENSATION_NUMBERS * row..COMPENSATION_NUMBERS * (row + 1);
             let columns = &mut self.columns;
             let node = OneNode::of(columns, row);
-            let lost = columns.compensation.as_mut().map(|c| &mut c[lost]);
+            let lost = columns.compensation.as_mut();
+            let lost = lost.map(|[of_u, of_step]| [&mut of_u[at.clone()], &mut of_step[at.clone()]]);
             let mut sum = Sum { u: &mut columns.u[at.clone()], step: &mut columns.step[at], lost };
             let work = columns.work.as_mut().map(|w| &mut w[WORK_NUMBERS * row..WORK_NUMBERS * (row + 1)]);
             spent += move_node(&node, self.factors, &mut sum, work);
@@ -106,13 +106,10 @@ impl<T: SimdScalar> Rows<'_, T> {
         let internal = &columns.internal[numbers.clone()];
         let external = columns.external.map(|all| &all[numbers.clone()]);
         let u = &mut columns.u[numbers.clone()];
-        let step = &mut columns.step[numbers];
+        let step = &mut columns.step[numbers.clone()];
         let mut work = [T::default(); NUMBERS];
-        let mut lost = columns.compensation.as_mut().map(|all| {
-            let own = &mut all[COMPENSATION_NUMBERS * from..COMPENSATION_NUMBERS * (from + SPENT_ROWS)];
-            let apart = apart(own);
-            (own, apart)
-        });
+        let lost = columns.compensation.as_mut();
+        let mut lost = lost.map(|[of_u, of_step]| [&mut of_u[numbers.clone()], &mut of_step[numbers.clone()]]);
         let zero = T::splat(simd, T::default());
         let force = T::splat(simd, self.factors.force);
         let mut astray = zero;
@@ -136,7 +133,7 @@ impl<T: SimdScalar> Rows<'_, T> {
                     after = free.if_positive(before + change, before);
                     new = old + after;
                 }
-                Some((_, [of_u, of_step])) => {
+                Some([of_u, of_step]) => {
                     let exact = change - T::load(simd, &of_step[at..]);
                     let rounded = before + exact;
                     let left = free.if_positive((rounded - before) - exact, zero);
@@ -153,9 +150,6 @@ impl<T: SimdScalar> Rows<'_, T> {
             astray += new * zero;
             T::store(inner * (before + after), &mut work[at..]);
             at += T::width::<S>();
-        }
-        if let Some((own, apart)) = lost {
-            together(own, &apart);
         }
         let mut lanes = [T::default(); LANES];
         T::store(astray, &mut lanes);
@@ -239,26 +233,4 @@ struct Nodes<T> {
     /// 1, or 0 along constrained axes.
     free: [T; NUMBERS],
     damped: bool,
-}
-
-/// What rounding left out of displacements, and of steps.
-#[inline(always)]
-fn apart<T: SimdScalar>(lost: &[T]) -> [[T; NUMBERS]; 2] {
-    let mut apart = [[T::default(); NUMBERS]; 2];
-    let [of_u, of_step] = &mut apart;
-    let nodes = lost.chunks_exact(COMPENSATION_NUMBERS);
-    for ((node, u), step) in nodes.zip(of_u.chunks_exact_mut(3)).zip(of_step.chunks_exact_mut(3)) {
-        u.copy_from_slice(&node[..3]);
-        step.copy_from_slice(&node[3..]);
-    }
-    apart
-}
-
-#[inline(always)]
-fn together<T: SimdScalar>(lost: &mut [T], [of_u, of_step]: &[[T; NUMBERS]; 2]) {
-    let nodes = lost.chunks_exact_mut(COMPENSATION_NUMBERS);
-    for ((node, u), step) in nodes.zip(of_u.chunks_exact(3)).zip(of_step.chunks_exact(3)) {
-        node[..3].copy_from_slice(u);
-        node[3..].copy_from_slice(step);
-    }
 }

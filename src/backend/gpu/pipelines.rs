@@ -7,7 +7,8 @@ use std::sync::Arc;
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindGroupLayoutDescriptor, BindGroupLayoutEntry,
     BindingResource, BindingType, BufferBinding, BufferBindingType, ComputePipeline, ComputePipelineDescriptor,
-    PipelineLayoutDescriptor, ShaderModule, ShaderModuleDescriptor, ShaderSource, ShaderStages,
+    PipelineCompilationOptions, PipelineLayoutDescriptor, ShaderModule, ShaderModuleDescriptor, ShaderSource,
+    ShaderStages,
 };
 
 use super::{BufferKind, Gpu, GpuError};
@@ -60,6 +61,9 @@ impl Gpu {
         let storage = composed.storage_buffers(entry) as u64;
         let limit = u64::from(self.limits.max_storage_buffers_per_shader_stage);
         self.within(&kernel.label, storage, limit, "storage buffers", "maxStorageBuffersPerShaderStage")?;
+        let memory = u64::from(self.limits.max_compute_workgroup_storage_size);
+        let wanted = u64::from(entry.workgroup_memory);
+        self.within(&kernel.label, wanted, memory, "bytes of workgroup memory", "maxComputeWorkgroupStorageSize")?;
         let workgroup = entry.workgroup_size.iter().product::<u32>().max(1);
         let groups = self.groups(&kernel.label, kernel.threads, workgroup)?;
         let (pipeline, layout) = self.pipeline(kernel, key, &module, entry)?;
@@ -122,7 +126,11 @@ impl Gpu {
             layout: Some(&pipeline_layout),
             module: &module.shader,
             entry_point: Some(kernel.entry),
-            compilation_options: Default::default(),
+            // kernels write workgroup memory before they read it
+            compilation_options: PipelineCompilationOptions {
+                zero_initialize_workgroup_memory: false,
+                ..Default::default()
+            },
             cache: None,
         });
         self.check(&format!("the pipeline of kernel `{}` (`{}` in {})", kernel.label, kernel.entry, kernel.paths()))?;

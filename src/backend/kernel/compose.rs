@@ -2,7 +2,7 @@
 
 use naga::proc::Layouter;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
-use naga::{Module, ResourceBinding, ShaderStage};
+use naga::{AddressSpace, Module, ResourceBinding, ShaderStage};
 
 use super::diagnose::Sources;
 use super::reflect::{binding, members, type_name};
@@ -15,6 +15,8 @@ pub struct Entry {
     pub name: String,
     /// Invocations of a workgroup in x, y and z.
     pub workgroup_size: [u32; 3],
+    /// Bytes of workgroup memory it uses.
+    pub workgroup_memory: u32,
     /// Buffer variables it uses, itself or through the functions it calls: indices into [`Composed::bindings`].
     pub uses: Vec<usize>,
 }
@@ -71,7 +73,16 @@ pub fn compose(fragments: &[Fragment]) -> Result<Composed, KernelError> {
     for (index, point) in module.entry_points.iter().enumerate().filter(|(_, p)| p.stage == ShaderStage::Compute) {
         let used = info.get_entry_point(index);
         let uses = (0..handles.len()).filter(|i| !used[handles[*i]].is_empty()).collect();
-        entries.push(Entry { name: point.name.clone(), workgroup_size: point.workgroup_size, uses });
+        let shared = module
+            .global_variables
+            .iter()
+            .filter(|(handle, variable)| variable.space == AddressSpace::WorkGroup && !used[*handle].is_empty());
+        entries.push(Entry {
+            name: point.name.clone(),
+            workgroup_size: point.workgroup_size,
+            workgroup_memory: shared.map(|(_, variable)| layouts[variable.ty].size).sum(),
+            uses,
+        });
     }
     let structs = module.types.iter().filter_map(|(handle, ty)| {
         let members = members(&module, &layouts, &ty.inner)?;

@@ -24,6 +24,17 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
         let path = scene("loads").index(i).name("on");
         match load {
             Load::Gravity { .. } => {}
+            Load::NodalForce { body, on, per_copy, .. } if per_copy.is_some() => {
+                let bodies = &scene_.bodies;
+                let named = body.as_ref().map_or(bodies.values().next(), |name| bodies.get(name));
+                if named.is_some_and(|body| body.copies < 2) {
+                    judge
+                        .out
+                        .error_at(scene("loads").index(i).name("per_copy"), "the body has one copy only")
+                        .note("give the body `copies`, or leave `per_copy` out");
+                }
+                select::validate(judge, &path, on);
+            }
             Load::NodalForce { on, .. } | Load::Pressure { on, .. } | Load::Traction { on, .. } => {
                 select::validate(judge, &path, on);
             }

@@ -66,6 +66,8 @@ fn in_use(system: &str, kernel: &Kernel, counter: &Counter<'_>) -> Result<Kernel
         entry: kernel.entry,
         threads: kernel.threads,
         workgroup: entry.map_or(1, |entry| entry.workgroup_size.iter().product()),
+        workgroup_memory: entry.map_or(0, |entry| entry.workgroup_memory),
+        storage_buffers: entry.map_or(0, |entry| composed.storage_buffers(entry)),
         lines: fragments.iter().map(|piece| piece.lines).sum(),
         bindings: bindings.collect(),
         fragments,

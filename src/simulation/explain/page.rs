@@ -69,8 +69,13 @@ fn write_part(part: &Part, f: &mut Formatter<'_>) -> Result {
 fn write_kernel(kernel: &KernelInUse, f: &mut Formatter<'_>) -> Result {
     let workgroups = kernel.threads.div_ceil(kernel.workgroup.max(1));
     writeln!(f, "\nKernel {} (system {})", kernel.label, kernel.system)?;
-    let KernelInUse { entry, threads, workgroup, lines, .. } = kernel;
-    writeln!(f, "  fn {entry}: {threads} invocations in {workgroups} workgroups of {workgroup}; {lines} lines of")?;
+    let KernelInUse { entry, threads, workgroup, workgroup_memory, storage_buffers, lines, .. } = kernel;
+    let shared = match workgroup_memory {
+        0 => String::new(),
+        bytes => format!(", which share {bytes} bytes"),
+    };
+    writeln!(f, "  fn {entry}: {threads} invocations in {workgroups} workgroups of {workgroup}{shared};")?;
+    writeln!(f, "  {storage_buffers} storage buffers; {lines} lines of")?;
     for piece in &kernel.fragments {
         writeln!(f, "    {:>4}  {}", piece.lines, piece.path)?;
     }

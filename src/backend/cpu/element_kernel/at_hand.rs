@@ -79,23 +79,36 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         scratch: &Scratch<T>,
     ) -> (AtNodes<T::Vector<S>>, T::Vector<S>) {
         let zero = T::splat(simd, T::default());
-        let mut u = [[zero; 3]; MOST_NODES];
         let mut pressure = zero;
-        for corner in 0..E::NODES {
-            let first = (group * E::NODES + corner) * LANES + at;
-            let theta;
-            match &self.at_hand {
-                Some(at_hand) => {
-                    let [x, y, z, more] = T::load_rows(simd, &scratch.read, &at_hand.corners[first..]);
-                    (u[corner], theta) = ([x, y, z], more);
+        // written out, not a loop: what a loop fills compilers leave in memory
+        macro_rules! corner {
+            ($corner:literal) => {
+                if $corner < E::NODES {
+                    let first = (group * E::NODES + $corner) * LANES + at;
+                    let (u, theta) = self.at_corner(simd, first, scratch);
+                    if E::PRESSURE == PressureFrom::Nodes {
+                        pressure += elastic.pressure(theta);
+                    }
+                    u
+                } else {
+                    [zero; 3]
                 }
-                None => (u[corner], theta) = self.read_columns(simd, &self.connectivity[first..]),
-            }
-            if E::PRESSURE == PressureFrom::Nodes {
-                pressure += elastic.pressure(theta);
-            }
+            };
         }
+        let u = [corner!(0), corner!(1), corner!(2), corner!(3), corner!(4), corner!(5), corner!(6), corner!(7)];
         (u, pressure * zero.constant(1.0 / E::NODES as f64))
+    }
+
+    /// Displacements (m) and θ of a corner of a register full of elements, `first` in the connectivity.
+    #[inline(always)]
+    fn at_corner<S: Simd>(&self, simd: S, first: usize, scratch: &Scratch<T>) -> ([T::Vector<S>; 3], T::Vector<S>) {
+        match &self.at_hand {
+            Some(at_hand) => {
+                let [x, y, z, theta] = T::load_rows(simd, &scratch.read, &at_hand.corners[first..]);
+                ([x, y, z], theta)
+            }
+            None => self.read_columns(simd, &self.connectivity[first..]),
+        }
     }
 
     /// Displacements (m) and θ of a register full of nodes.
@@ -126,16 +139,32 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         scratch: &mut Scratch<T>,
         forces: &AtNodes<T::Vector<S>>,
     ) {
-        for corner in 0..E::NODES {
-            let first = (group * E::NODES + corner) * LANES;
-            match &self.at_hand {
-                Some(at_hand) => {
-                    T::add_to_rows(simd, &mut scratch.sums, &at_hand.corners[first + at..], forces[corner]);
-                }
-                None => {
-                    for i in 0..3 {
-                        T::store(forces[corner][i], &mut self.force[3 * first + i * LANES + at..]);
-                    }
+        macro_rules! give {
+            ($($corner:literal)*) => {
+                $(if $corner < E::NODES {
+                    let first = (group * E::NODES + $corner) * LANES;
+                    self.give_corner(simd, first, at, scratch, forces[$corner]);
+                })*
+            };
+        }
+        give!(0 1 2 3 4 5 6 7);
+    }
+
+    /// The force on a corner of a register full of elements, `first` in the connectivity.
+    #[inline(always)]
+    fn give_corner<S: Simd>(
+        &mut self,
+        simd: S,
+        first: usize,
+        at: usize,
+        scratch: &mut Scratch<T>,
+        force: [T::Vector<S>; 3],
+    ) {
+        match &self.at_hand {
+            Some(at_hand) => T::add_to_rows(simd, &mut scratch.sums, &at_hand.corners[first + at..], force),
+            None => {
+                for i in 0..3 {
+                    T::store(force[i], &mut self.force[3 * first + i * LANES + at..]);
                 }
             }
         }

@@ -7,7 +7,8 @@ use crate::math::Scalar;
 pub(super) struct Sum<'a, T> {
     pub(super) u: &'a mut [T],
     pub(super) step: &'a mut [T],
-    pub(super) lost: Option<&'a mut [T]>,
+    /// Of the displacement, and of the step.
+    pub(super) lost: Option<[&'a mut [T]; 2]>,
 }
 
 impl<T: Scalar> Sum<'_, T> {
@@ -17,7 +18,7 @@ impl<T: Scalar> Sum<'_, T> {
     fn push(&mut self, i: usize, change: T) {
         match &mut self.lost {
             None => self.step[i] += change,
-            Some(lost) => compensated_add(&mut self.step[i], &mut lost[3 + i], change),
+            Some([_, lost]) => compensated_add(&mut self.step[i], &mut lost[i], change),
         }
     }
 
@@ -26,13 +27,13 @@ impl<T: Scalar> Sum<'_, T> {
     fn go(&mut self, i: usize, constrained: bool) {
         match &mut self.lost {
             None => self.u[i] += self.step[i],
-            Some(lost) => {
+            Some([of_u, of_step]) => {
                 // what boundary wrote is the whole of a constrained step
                 if constrained {
-                    lost[3 + i] = T::default();
+                    of_step[i] = T::default();
                 }
-                let exact = self.step[i] - lost[3 + i];
-                compensated_add(&mut self.u[i], &mut lost[i], exact);
+                let exact = self.step[i] - of_step[i];
+                compensated_add(&mut self.u[i], &mut of_u[i], exact);
             }
         }
     }

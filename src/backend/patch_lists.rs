@@ -1,0 +1,225 @@
+//! Patches as a GPU's kernels read them; `shaders/patches.wgsl` is what reads.
+
+use super::kernel::uniform;
+use crate::components::{Block, Patches, patch_groups};
+use crate::evaluation::{averages, lane_place, node_count};
+use crate::math::LANES;
+use crate::mesh::ElementKind;
+
+/// Groups of elements that a workgroup computes at a time.
+pub const BATCH_GROUPS: usize = 8;
+
+/// Bits of a corner's place among its patch's nodes; the rest of 16 are its round.
+const PLACE_WIDTH: u32 = 10;
+
+/// What [`PLACE_WIDTH`] bits can hold.
+pub const PLACE_BITS: u32 = (1 << PLACE_WIDTH) - 1;
+
+/// How many corners of a batch may take turns at a node.
+const MOST_ROUNDS: u32 = 1 << (16 - PLACE_WIDTH);
+
+/// Bytes of workgroup memory that every WebGPU device has (`maxComputeWorkgroupStorageSize`).
+pub const WEBGPU_WORKGROUP_MEMORY: usize = 16_384;
+
+/// Where a block's lists begin, in words.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct PatchLists {
+    count: u32,
+    rounds: u32,
+    corners: u32,
+    nodes: u32,
+}
+uniform!(PatchLists { count, rounds, corners, nodes });
+
+/// The patches of a block in one buffer: where each patch's nodes begin; for each batch and corner how many rounds there are,
+/// a byte each; each corner's place and round, two a word; the nodes. About 8 bytes a tetrahedron and 16 a hexahedron.
+pub struct PackedPatches {
+    /// Where what begins.
+    pub lists: PatchLists,
+    /// The buffer.
+    pub words: Vec<u32>,
+    /// Nodes that workgroup memory must have room for.
+    pub room: usize,
+}
+
+/// Batches of a full patch.
+pub const fn patch_batches(kind: ElementKind) -> usize {
+    patch_groups(kind).div_ceil(BATCH_GROUPS)
+}
+
+/// Nodes of a patch that workgroup memory has room for: a displacement and a force each, θ where it is called for.
+pub fn most_nodes(kind: ElementKind) -> usize {
+    let numbers = if averages(kind) { 7 } else { 6 };
+    WEBGPU_WORKGROUP_MEMORY / (4 * numbers) / ROOM_STEP * ROOM_STEP
+}
+
+/// Room is made in such steps, so that blocks with patches of about the same size share a kernel.
+const ROOM_STEP: usize = 64;
+
+impl PackedPatches {
+    /// How many patches there are.
+    pub fn count(&self) -> usize {
+        self.lists.count as usize
+    }
+}
+
+/// Packs the patches of a block.
+///
+/// # Errors
+/// Why no workgroup can sum them: a patch of too many nodes, or too many elements around one node. Then the scheme of two
+/// passes remains.
+pub fn pack(block: &Block, patches: &Patches) -> Result<PackedPatches, String> {
+    let (kind, count) = (block.kind, patches.count());
+    let corners = node_count(kind);
+    let nodes = patches.starts.windows(2).map(|pair| (pair[1] - pair[0]) as usize).max().unwrap_or(0);
+    let most = most_nodes(kind);
+    if nodes > most {
+        return Err(format!("a patch has {nodes} nodes, and {most} fit into a workgroup's memory"));
+    }
+    let words_a_batch = corners / 4;
+    let mut words = patches.starts.clone();
+    let rounds_at = words.len();
+    words.resize(rounds_at + count * patch_batches(kind) * words_a_batch, 0);
+    let mut packed = patches.connectivity.clone();
+    let mut turns = vec![0_u32; nodes];
+    let elements_a_patch = patch_groups(kind) * LANES;
+    for patch in 0..count {
+        let first = patch * elements_a_patch;
+        let elements = elements_a_patch.min(block.count - first);
+        let batches = elements.div_ceil(LANES).div_ceil(BATCH_GROUPS);
+        for batch in 0..batches {
+            for corner in 0..corners {
+                turns.fill(0);
+                let of_batch = (0..BATCH_GROUPS).flat_map(|slot| {
+                    let start = (slot * batches + batch) * LANES;
+                    start..(start + LANES).min(elements)
+                });
+                for element in of_batch {
+                    let place = &mut packed[lane_place(first + element, corners, corner)];
+                    let turn = &mut turns[usize::from(*place)];
+                    // turns fit their bits: more of them are refused below
+                    *place |= (*turn << PLACE_WIDTH) as u16;
+                    *turn += 1;
+                }
+                let rounds = turns.iter().copied().max().unwrap_or(0);
+                if rounds > MOST_ROUNDS {
+                    return Err(format!(
+                        "{rounds} of 128 neighbouring elements have the same corner in common, and {MOST_ROUNDS} may"
+                    ));
+                }
+                let at = rounds_at + (patch * patch_batches(kind) + batch) * words_a_batch + corner / 4;
+                words[at] |= rounds << (8 * (corner % 4));
+            }
+        }
+    }
+    let corners_at = words.len();
+    words.resize(corners_at + packed.len() / 2, 0);
+    for (group, pairs) in packed.chunks(corners * LANES).zip(words[corners_at..].chunks_mut(corners / 2 * LANES)) {
+        for (place, pair) in pairs.iter_mut().enumerate() {
+            let (of_corners, lane) = (place / LANES, place % LANES);
+            let corner = |k: usize| u32::from(group[(2 * of_corners + k) * LANES + lane]);
+            *pair = corner(0) | corner(1) << 16;
+        }
+    }
+    let nodes_at = words.len();
+    words.extend(&patches.nodes);
+    let place = |at: usize| at as u32;
+    let lists = PatchLists {
+        count: place(count),
+        rounds: place(rounds_at),
+        corners: place(corners_at),
+        nodes: place(nodes_at),
+    };
+    Ok(PackedPatches { lists, words, room: nodes.next_multiple_of(ROOM_STEP).max(ROOM_STEP) })
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+    use bevy_ecs::prelude::Entity;
+
+    /// A block whose corners meet at random in so many nodes, and its patches, all corners of which are in one node where
+    /// `of` says so.
+    fn block(kind: ElementKind, count: usize, of: impl Fn(usize) -> usize) -> (Block, Patches) {
+        let (corners, groups) = (node_count(kind), count.div_ceil(LANES));
+        let mut patches = Patches { starts: vec![0], ..Patches::default() };
+        let all: Vec<usize> = (0..groups * LANES * corners).map(of).collect();
+        for of_patch in all.chunks(patch_groups(kind) * LANES * corners) {
+            let mut nodes = of_patch.to_vec();
+            nodes.sort_unstable();
+            nodes.dedup();
+            let place = |node| nodes.binary_search(node).unwrap() as u16;
+            patches.connectivity.extend(of_patch.iter().map(place));
+            patches.nodes.extend(nodes.iter().map(|&node| node as u32));
+            patches.starts.push(patches.nodes.len() as u32);
+        }
+        let (body, material) = (Entity::PLACEHOLDER, Entity::PLACEHOLDER);
+        let (force_offset, force_length, fibre_directions) = (0, 0, Vec::new());
+        (Block { body, material, kind, count, force_offset, force_length, fibre_directions, simple: false }, patches)
+    }
+
+    /// Goes through the lists as `patches.wgsl` does.
+    #[test]
+    fn each_corner_is_summed_once_in_a_round_of_its_own() {
+        use ElementKind::*;
+        for kind in [Tet4, Tet4NodalPressure, Hex8, Hex8MeanDilatation] {
+            for count in [1, 15, 16, 130, 1024, 1025, 2100] {
+                let (block, patches) = block(kind, count, |i| i * 7919 % 501 + i / 4096);
+                let PackedPatches { lists, words, room } = pack(&block, &patches).unwrap();
+                let corners = node_count(kind);
+                let mut summed = vec![0; count * corners];
+                for patch in 0..lists.count as usize {
+                    let nodes = (words[patch + 1] - words[patch]) as usize;
+                    assert!(nodes <= room && room <= most_nodes(kind));
+                    let first_group = patch * patch_groups(kind);
+                    let groups = patch_groups(kind).min(count.div_ceil(LANES) - first_group);
+                    let batches = groups.div_ceil(BATCH_GROUPS);
+                    for batch in 0..batches {
+                        for corner in 0..corners {
+                            let of_four = (patch * patch_batches(kind) + batch) * corners / 4 + corner / 4;
+                            let rounds = words[lists.rounds as usize + of_four] >> (8 * (corner % 4)) & 255;
+                            let mut seen = std::collections::BTreeSet::new();
+                            for local in 0..BATCH_GROUPS * LANES {
+                                let group = local / LANES * batches + batch;
+                                let element = (first_group + group) * LANES + local % LANES;
+                                if group >= groups || element >= count {
+                                    continue;
+                                }
+                                let at = lists.corners as usize + lane_place(element, corners / 2, corner / 2);
+                                let word = words[at] >> (16 * (corner % 2)) & 0xffff;
+                                let (place, round) = (word & PLACE_BITS, word >> PLACE_WIDTH);
+                                assert!(round < rounds && seen.insert((place, round)), "{kind:?} {count}");
+                                let node = words[(lists.nodes + words[patch] + place) as usize];
+                                let corner_at = lane_place(element, corners, corner);
+                                assert_eq!(node as usize, corner_at * 7919 % 501 + corner_at / 4096);
+                                summed[element * corners + corner] += 1;
+                            }
+                        }
+                    }
+                }
+                assert!(summed.iter().all(|&times| times == 1), "{kind:?} {count}");
+            }
+        }
+    }
+
+    #[test]
+    fn patches_that_no_workgroup_can_sum_are_refused() {
+        let (tets, patches) = block(ElementKind::Tet4, 161, |i| i);
+        assert_eq!(
+            pack(&tets, &patches).err().unwrap(),
+            "a patch has 704 nodes, and 640 fit into a workgroup's memory"
+        );
+        let (tets, patches) = block(ElementKind::Tet4, 144, |i| i);
+        assert!(pack(&tets, &patches).is_ok());
+        // corner 0 of all is the same node
+        let fan = |i: usize| if i / LANES % 4 == 0 { 0 } else { 1 + i % 400 };
+        let (tets, patches) = block(ElementKind::Tet4, 65, fan);
+        let refused = pack(&tets, &patches).err().unwrap();
+        assert_eq!(refused, "65 of 128 neighbouring elements have the same corner in common, and 64 may");
+        let (tets, patches) = block(ElementKind::Tet4, 64, fan);
+        assert!(pack(&tets, &patches).is_ok());
+    }
+}
