@@ -2,7 +2,7 @@
 
 use bevy_ecs::prelude::*;
 use sinew::components::*;
-use sinew::elements::{Element, Hex8MeanDilatation, MOST_NODES};
+use sinew::elements::{Element, Hex8, Hex8MeanDilatation, MOST_NODES};
 use sinew::evaluation::{ElementState, lane_place, node_count, row_count};
 use sinew::materials::Elastic;
 use sinew::mesh::ElementKind;
@@ -27,6 +27,7 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
     let nodes = node_count(data.kind);
     let gradients = match data.kind {
         ElementKind::Hex8MeanDilatation => natural_gradients(number),
+        ElementKind::Hex8 => mean_gradients(number),
         _ => (0..3 * (nodes - 1)).map(|k| number(k).abs()).fold(0.0, f64::max),
     };
     let spread = state.displacements[..nodes].iter().flatten().map(|x| x.abs()).fold(0.0, f64::max);
@@ -49,11 +50,21 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
     let stress = (moduli * h + nodal) * (1.0 + h).powi(4) / compressed.powi(3) + memory;
     let hourglass = if data.kind == ElementKind::Hex8 {
         // q is a sum of eight displacements, and folded back along the element's arms with its gradients
-        number(22) * 8.0 * spread * 8.0
+        Hex8::FORCE_ROW.map_or(0.0, number) * 8.0 * spread * 8.0
     } else {
         0.0
     };
     Magnitude { stress, force: state.volume * stress * (1.0 + h) * gradients * nodes as f64 + hourglass }
+}
+
+/// The largest entry of a node's mean gradient: ∇u where that node alone has moved, by 1 along an axis.
+fn mean_gradients(number: impl Fn(usize) -> f64) -> f64 {
+    let of = |a: usize| {
+        let mut u = [[0.0; 3]; MOST_NODES];
+        u[a][0] = 1.0;
+        Hex8::at_point(&Hex8::prepare(&u), 0, &number).gradient.0[0]
+    };
+    (0..8).flat_map(of).fold(0.0, |largest, x| largest.max(x.abs()))
 }
 
 /// The largest ∂ξ/∂X, which stands for gradients in natural coordinates.
