@@ -194,6 +194,7 @@ mod tests {
     #[test]
     fn arithmetic_is_that_of_the_elements_and_more_with_effects() {
         let case = |element, effects| Case {
+            fuse: true,
             element,
             effects,
             backend: "cpu".into(),

@@ -27,8 +27,11 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
     let nodes = node_count(data.kind);
     let gradients = match data.kind {
         ElementKind::Hex8MeanDilatation => natural_gradients(number),
-        ElementKind::Hex8 => mean_gradients(number),
-        _ => (0..3 * (nodes - 1)).map(|k| number(k).abs()).fold(0.0, f64::max),
+        // a node's gradient is the sum of the slopes of six modes, each with either sign
+        ElementKind::Hex8 => {
+            (0..3).map(|axis| (0..6).map(|mode| number(3 * mode + axis).abs()).sum::<f64>()).fold(0.0, f64::max)
+        }
+        ElementKind::Tet4 | ElementKind::Tet4NodalPressure => (0..9).map(|k| number(k).abs()).fold(0.0, f64::max),
     };
     let spread = state.displacements[..nodes].iter().flatten().map(|x| x.abs()).fold(0.0, f64::max);
     // terms of h itself cancel: a gradient is a sum of seven products at most
@@ -50,21 +53,11 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
     let stress = (moduli * h + nodal) * (1.0 + h).powi(4) / compressed.powi(3) + memory;
     let hourglass = if data.kind == ElementKind::Hex8 {
         // q is a sum of eight displacements, and folded back along the element's arms with its gradients
-        Hex8::FORCE_ROW.map_or(0.0, number) * 8.0 * spread * 8.0
+        number(Hex8::FORCE_ROW.unwrap()) * 8.0 * spread * 8.0
     } else {
         0.0
     };
     Magnitude { stress, force: state.volume * stress * (1.0 + h) * gradients * nodes as f64 + hourglass }
-}
-
-/// The largest entry of a node's mean gradient: ∇u where that node alone has moved, by 1 along an axis.
-fn mean_gradients(number: impl Fn(usize) -> f64) -> f64 {
-    let of = |a: usize| {
-        let mut u = [[0.0; 3]; MOST_NODES];
-        u[a][0] = 1.0;
-        Hex8::at_point(&Hex8::prepare(&u), 0, &number).gradient.0[0]
-    };
-    (0..8).flat_map(of).fold(0.0, |largest, x| largest.max(x.abs()))
 }
 
 /// The largest ∂ξ/∂X, which stands for gradients in natural coordinates.
