@@ -107,12 +107,14 @@ impl<T: SimdScalar> Rows<'_, T> {
         let external = columns.external.map(|all| &all[numbers.clone()]);
         let u = &mut columns.u[numbers.clone()];
         let step = &mut columns.step[numbers.clone()];
+        // where a step is prescribed, the work takes another one, kept apart
+        let kept = columns.kept.get(numbers.clone());
         let mut work = [T::default(); NUMBERS];
         let lost = columns.compensation.as_mut();
         let mut lost = lost.map(|[of_u, of_step]| [&mut of_u[numbers.clone()], &mut of_step[numbers.clone()]]);
         let zero = T::splat(simd, T::default());
         let force = T::splat(simd, self.factors.force);
-        let mut astray = zero;
+        let (mut astray, mut spent) = (zero, zero);
         let mut at = 0;
         while at < NUMBERS {
             let inner = T::load(simd, &internal[at..]);
@@ -148,7 +150,11 @@ impl<T: SimdScalar> Rows<'_, T> {
             T::store(new, &mut u[at..]);
             // what is no number stays none
             astray += new * zero;
-            T::store(inner * (before + after), &mut work[at..]);
+            let along = inner * (before + after);
+            match kept {
+                Some(_) => T::store(along, &mut work[at..]),
+                None => spent += along,
+            }
             at += T::width::<S>();
         }
         let mut lanes = [T::default(); LANES];
@@ -157,7 +163,13 @@ impl<T: SimdScalar> Rows<'_, T> {
         if self.columns.sums.is_empty() {
             return (0.0, finite);
         }
-        (self.spent(from, &nodes.free, &mut work), finite)
+        if kept.is_some() {
+            return (self.spent(from, &nodes.free, &mut work), finite);
+        }
+        let mut lanes = [T::default(); LANES];
+        T::store(spent, &mut lanes);
+        let spent: f64 = lanes.iter().map(|lane| lane.to_f64()).sum();
+        (0.5 * self.factors.booked.to_f64() * spent, finite)
     }
 
     /// What each component needs of its node.
