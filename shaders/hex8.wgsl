@@ -118,16 +118,15 @@ fn corner_forces(row: u32, e: Element, forces: Forces) -> array<vec3<f32>, NODES
     let even_3 = (zx - yz) - xy;
     let even_4 = xy - (yz + zx);
     let even_6 = (yz + zx) + xy;
-    return array<vec3<f32>, NODES>(
-        even_6 - odd_6,
-        even_1 + odd_1,
-        even_4 - odd_4,
-        even_3 + odd_3,
-        even_4 + odd_4,
-        even_3 - odd_3,
-        even_6 + odd_6,
-        even_1 - odd_1,
-    );
+    let f1 = even_1 + odd_1;
+    let f2 = even_4 - odd_4;
+    let f3 = even_3 + odd_3;
+    let f4 = even_4 + odd_4;
+    let f5 = even_3 - odd_3;
+    let f6 = even_6 + odd_6;
+    let f7 = even_1 - odd_1;
+    // node 0 balances the others: see the twin
+    return array<vec3<f32>, NODES>(-(f1 + f2 + f3 + f4 + f5 + f6 + f7), f1, f2, f3, f4, f5, f6, f7);
 }
 
 // J

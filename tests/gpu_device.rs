@@ -166,7 +166,7 @@ fn a_gpu_lost_in_a_run_leaves_what_was_observed_before() {
 fn smaller(limits: SmallerLimits, gpu: &str, backend: sinew::BackendChoice) -> Result<sinew::Simulation, sinew::Error> {
     // all kinds of kernels: elements, averaged pressure, gather, loads on nodes and faces, removal, guards
     let scene = r#"(duration: 1, bodies: {"b": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (5, 5, 5), elements: Tet4NodalPressure), material: "m"),
-            "c": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (13, 11, 10), elements: Hex8), material: "m", translate: (1, 0, 0))},
+            "c": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (13, 11, 10), elements: Hex8), material: "m", translate: (1, 0, 0), spin: (1, 2, 3))},
         materials: {"m": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), prony: (terms: [(alpha: 0.3, tau: 0.1)]))},
         constraints: [Fixed(body: "b", on: Plane(normal: (0, 0, 1), at: 0)),
             Prescribed(body: "b", on: Plane(normal: (0, 0, 1), at: 0.1), axes: [X], displacement: (0.01, 0, 0), curve: Smooth(end: 0.05))],

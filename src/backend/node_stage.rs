@@ -139,15 +139,15 @@ pub fn node_kernels(stages: Vec<NodeStage>, fuse: bool, buffers: &mut dyn Buffer
     }
     let mut kernels = Vec::new();
     for body in bodies {
-        let mut waiting: Vec<NodeStage> = Vec::new();
+        let mut waiting: Vec<&NodeStage> = Vec::new();
         for stage in stages.iter().filter(|stage| stage.body == body) {
-            let mut longer = waiting.clone();
-            longer.push(stage.clone());
-            if !waiting.is_empty() && !(fuse && may_share(&longer, buffers.storage_buffers())) {
-                kernels.push(Fused::of(&waiting).into_kernel(&waiting, buffers));
-                longer.drain(..waiting.len());
+            waiting.push(stage);
+            if waiting.len() == 1 || (fuse && may_share(&waiting, buffers.storage_buffers().min(MOST_SHARED))) {
+                continue;
             }
-            waiting = longer;
+            let before = &waiting[..waiting.len() - 1];
+            kernels.push(Fused::of(before).into_kernel(before, buffers));
+            waiting = vec![stage];
         }
         if !waiting.is_empty() {
             kernels.push(Fused::of(&waiting).into_kernel(&waiting, buffers));
@@ -156,8 +156,11 @@ pub fn node_kernels(stages: Vec<NodeStage>, fuse: bool, buffers: &mut dyn Buffer
     kernels
 }
 
+/// Storage buffers of a kernel that several stages share, however many the device allows: what more loads gain is little.
+const MOST_SHARED: usize = 32;
+
 /// Whether all may run in one kernel, where nodes go their way independently of each other.
-fn may_share(stages: &[NodeStage], most: usize) -> bool {
+fn may_share(stages: &[&NodeStage], most: usize) -> bool {
     let fused = Fused::of(stages);
     let far: BTreeSet<&str> = stages.iter().flat_map(|stage| stage.elsewhere.iter().copied()).collect();
     fused.storage() <= most && fused.written().all(|name| !far.contains(name))
@@ -181,7 +184,7 @@ struct Fused {
 }
 
 impl Fused {
-    fn of(stages: &[NodeStage]) -> Self {
+    fn of(stages: &[&NodeStage]) -> Self {
         let mut fused = Self {
             shared: Vec::new(),
             own: Vec::new(),
@@ -279,7 +282,7 @@ impl Fused {
         self.columns.len() + self.storage_variables + self.places.len()
     }
 
-    fn into_kernel(self, stages: &[NodeStage], buffers: &mut dyn Buffers) -> Kernel {
+    fn into_kernel(self, stages: &[&NodeStage], buffers: &mut dyn Buffers) -> Kernel {
         let single = stages.len() == 1;
         let mut systems: Vec<&str> = stages.iter().map(|stage| stage.system).collect();
         systems.dedup();
@@ -333,7 +336,7 @@ impl Fused {
 
 /// How forces get from who sums them and who adds to them to who uses them: through memory, or, where one kernel does both,
 /// in the invocation's own registers.
-fn forces_between(stages: &[NodeStage]) -> Vec<Fragment> {
+fn forces_between(stages: &[&NodeStage]) -> Vec<Fragment> {
     let calls = |name: &str| stages.iter().any(|stage| stage.columns.iter().any(|(column, _)| *column == name));
     let (inner, outer) = (calls(InternalForce::NAME), calls(ExternalForce::NAME));
     let at_hand = ["gather", "integrate"].iter().all(|call| stages.iter().any(|stage| stage.call == *call));

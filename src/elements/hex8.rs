@@ -118,6 +118,20 @@ pub(super) fn spread<R: Real>([x, y, z, yz, zx, xy, xyz]: [R; MODES]) -> [R; MOS
     ]
 }
 
+/// Stores a component of forces on nodes 1 to 7, and on node 0 what balances them: forces that rounding keeps from adding up
+/// to nothing hold stiff motion awake (a cantilever at rest in f32 had residuals 1.3 times as large).
+#[inline(always)]
+pub(super) fn balanced<R: Real>(forces: [R; MOST_NODES], mut store: impl FnMut(usize, R)) {
+    let mut sum = forces[1];
+    for a in 2..8 {
+        sum += forces[a];
+    }
+    store(0, -sum);
+    for a in 1..8 {
+        store(a, forces[a]);
+    }
+}
+
 impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
     const NAME: &'static str = "hex8";
     const NODES: usize = 8;
@@ -214,10 +228,11 @@ impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
                 let row = folded.0[i];
                 forces[mode] = if mode < 3 { dot(row, slope) } else { dot_plus(row, slope, forces[mode]) };
             }
-            let forces = spread(forces);
-            for a in 0..8 {
-                store(a, i, forces[a]);
-            }
+            balanced(
+                spread(forces),
+                #[inline(always)]
+                |a, force| store(a, i, force),
+            );
         }
     }
 

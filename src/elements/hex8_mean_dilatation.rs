@@ -1,6 +1,6 @@
 //! The eight-node hexahedron with eight integration points and one mean dilatation.
 
-use super::hex8::{MODES, NODE_SIGNS, mode_sign, modes, natural_gradients, spread};
+use super::hex8::{MODES, NODE_SIGNS, balanced, mode_sign, modes, natural_gradients, spread};
 use super::{Element, MOST_NODES, MOST_ROWS, PointState, PressureFrom, Stiffness, gradient_measure, vector};
 use crate::math::{Mat3, Real, dot, minor};
 use glam::{DMat3, DVec3};
@@ -141,10 +141,15 @@ impl Element for Hex8MeanDilatation {
     ) {
         let share = shape(22) * u[0][0].constant(0.125);
         for i in 0..3 {
-            let at_nodes = spread(forces[i]);
-            for a in 0..8 {
-                store(a, i, at_nodes[a] * share);
+            let mut at_nodes = spread(forces[i]);
+            for a in 1..8 {
+                at_nodes[a] = at_nodes[a] * share;
             }
+            balanced(
+                at_nodes,
+                #[inline(always)]
+                |a, force| store(a, i, force),
+            );
         }
     }
 

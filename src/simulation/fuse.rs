@@ -39,7 +39,7 @@ fn is_of_nodes(schedule: &[Scheduled<'_>], place: usize) -> bool {
 }
 
 /// Moves a system on to just before the first that it must not be exchanged with, if that one works node by node too.
-fn put_off(place: usize, order: &mut Vec<usize>, schedule: &[Scheduled<'_>], access: &[SystemAccess]) {
+fn put_off(place: usize, order: &mut [usize], schedule: &[Scheduled<'_>], access: &[SystemAccess]) {
     let Some(from) = order.iter().position(|&other| other == place) else { return };
     let blocks = |&other: &usize| !may_be_exchanged(&access[place], &access[other]);
     let Some(steps) = order[from + 1..].iter().position(blocks) else { return };

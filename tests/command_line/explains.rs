@@ -32,6 +32,12 @@ fn what_is_off_says_what_turns_it_on() {
     assert!(on.contains("on   1 Prony term, Exact integrator") && on.contains("viscous_memory"), "{on}");
 }
 
+/// With whom a system shares its pass.
+fn said_of(json: &serde_json::Value, name: &str) -> Vec<serde_json::Value> {
+    let systems = json["systems"].as_array().unwrap().iter();
+    systems.filter(|system| system["name"] == name).flat_map(|s| s["shares_with"].as_array().unwrap().clone()).collect()
+}
+
 #[test]
 fn json_holds_what_the_page_says() {
     let place = Place::with_scene(SCENE);
@@ -42,7 +48,9 @@ fn json_holds_what_the_page_says() {
         let list = json[key].as_array().unwrap().iter();
         list.map(|system| system["name"].as_str().unwrap().to_string()).collect::<Vec<_>>()
     };
-    assert_eq!(names("systems"), ["boundary", "element_forces", "gather", "gravity", "integrate", "observe"]);
+    // boundary waits for the systems with which it shares a pass over the nodes
+    assert_eq!(names("systems"), ["element_forces", "gather", "gravity", "boundary", "integrate", "observe"]);
+    assert!(said_of(&json, "gravity").contains(&"integrate".into()), "{json}");
     assert_eq!(names("systems_off"), ["nodal_volume", "nodal_force", "pressure", "traction", "element_removal"]);
     let columns = json["columns"].as_array().unwrap();
     let displacement = columns.iter().find(|column| column["name"] == "displacement").unwrap();

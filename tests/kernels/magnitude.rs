@@ -2,7 +2,7 @@
 
 use bevy_ecs::prelude::*;
 use sinew::components::*;
-use sinew::elements::{Element, Hex8MeanDilatation, MOST_NODES};
+use sinew::elements::{Element, Hex8, Hex8MeanDilatation, MOST_NODES};
 use sinew::evaluation::{ElementState, lane_place, node_count, row_count};
 use sinew::materials::Elastic;
 use sinew::mesh::ElementKind;
@@ -27,7 +27,11 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
     let nodes = node_count(data.kind);
     let gradients = match data.kind {
         ElementKind::Hex8MeanDilatation => natural_gradients(number),
-        _ => (0..3 * (nodes - 1)).map(|k| number(k).abs()).fold(0.0, f64::max),
+        // a node's gradient is the sum of the slopes of six modes, each with either sign
+        ElementKind::Hex8 => {
+            (0..3).map(|axis| (0..6).map(|mode| number(3 * mode + axis).abs()).sum::<f64>()).fold(0.0, f64::max)
+        }
+        ElementKind::Tet4 | ElementKind::Tet4NodalPressure => (0..9).map(|k| number(k).abs()).fold(0.0, f64::max),
     };
     let spread = state.displacements[..nodes].iter().flatten().map(|x| x.abs()).fold(0.0, f64::max);
     // terms of h itself cancel: a gradient is a sum of seven products at most
@@ -49,7 +53,7 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
     let stress = (moduli * h + nodal) * (1.0 + h).powi(4) / compressed.powi(3) + memory;
     let hourglass = if data.kind == ElementKind::Hex8 {
         // q is a sum of eight displacements, and folded back along the element's arms with its gradients
-        number(22) * 8.0 * spread * 8.0
+        number(Hex8::FORCE_ROW.unwrap()) * 8.0 * spread * 8.0
     } else {
         0.0
     };

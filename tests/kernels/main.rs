@@ -13,4 +13,5 @@ mod loads;
 mod magnitude;
 mod motion;
 mod pair;
+mod patches;
 mod removal;

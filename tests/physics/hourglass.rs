@@ -7,7 +7,7 @@
 use crate::elements::{YOUNG, corners, displacements, distorted};
 use crate::random::Random;
 use glam::DVec3;
-use sinew::elements::{Element, Hex8, MOST_NODES, Parallelepiped};
+use sinew::elements::{Element, Hex8, Hex8MeanDilatation, MOST_NODES, Parallelepiped};
 use sinew::math::Mat3;
 use sinew::mesh::ElementKind;
 
@@ -95,6 +95,28 @@ fn parallelepipeds_need_fewer_rows_and_have_the_same_forces() {
         let read = |k: usize| if (9..18).contains(&k) || k >= 20 { f64::NAN } else { shape[k] };
         assert_eq!(Parallelepiped::ROWS_READ, (0..Hex8::ROWS).filter(|&k| !read(k).is_nan()).count());
         assert_eq!(forces_of::<Hex8>(&u, |k| shape[k]), forces_of::<Parallelepiped>(&u, read));
+    }
+}
+
+/// The first node balances the others to the bit: rounding that pushes whole elements holds stiff motion awake.
+#[test]
+fn forces_on_a_hexahedron_add_up_to_nothing() {
+    let mut random = Random(25);
+    for _ in 0..100 {
+        let points = distorted(ElementKind::Hex8, &mut random);
+        let mut u = [[0.0; 3]; MOST_NODES];
+        u.iter_mut().for_each(|u| *u = (random.vector() * 0.3).to_array());
+        let shape = Hex8::rest_shape(&points, YOUNG);
+        let cube = Hex8::rest_shape(&corners(ElementKind::Hex8), YOUNG);
+        let mean = Hex8MeanDilatation::rest_shape(&points, YOUNG);
+        for forces in [
+            forces_of::<Hex8>(&u, |k| shape[k]),
+            forces_of::<Parallelepiped>(&u, |k| cube[k]),
+            forces_of::<Hex8MeanDilatation>(&u, |k| mean[k]),
+        ] {
+            assert!(largest(&forces) > 0.0);
+            (0..3).for_each(|i| assert_eq!(-forces[0][i], forces[1..].iter().map(|f| f[i]).sum::<f64>()));
+        }
     }
 }
 
