@@ -18,7 +18,8 @@ pub fn cpu_to_gpu(record: &Record) -> Option<String> {
     for gpu in record.rows.iter().filter(|row| row.case.is_gpu()) {
         let same = |case: &Case| {
             let of = &gpu.case;
-            (case.element, case.effects, case.cells, case.fuse) == (of.element, of.effects, of.cells, of.fuse)
+            (case.element, case.effects, case.cells) == (of.element, of.effects, of.cells)
+                && (case.fuse, &case.scheme) == (of.fuse, &of.scheme)
         };
         for cpu in record.rows.iter().filter(|row| !row.case.is_gpu() && same(&row.case)) {
             let split = if gpu.case.fuse { "" } else { ", split" };
