@@ -16,7 +16,7 @@ use bevy_ecs::prelude::*;
 use std::sync::Arc;
 
 /// Rows of a node column that make one task. A constant: tasks must not depend on the number of threads.
-pub const ROWS_A_TASK: usize = 512;
+pub const ROWS_A_TASK: usize = 2048;
 
 /// Elements below which one thread does a step as fast as two (6 000 tetrahedra break even, 25 000 gain 1.7 times).
 const WORTH_SHARING: usize = 6000;
