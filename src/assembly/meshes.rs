@@ -60,8 +60,10 @@ fn one_copy_of(body: &Body, scene: &SceneFile) -> Result<Mesh, MeshError> {
     };
     let cells = 8_u64.saturating_pow(body.refine).saturating_mul(body.copies.into());
     let elements = (mesh.element_count() as u64).saturating_mul(cells);
-    if elements > scene.allowed.elements {
-        return Err(too_many(elements, scene));
+    // points without elements are copied too
+    let points = (mesh.points.len() as u64).saturating_mul(body.copies.into()) / 8;
+    if elements.max(points) > scene.allowed.elements {
+        return Err(too_many(elements.max(points), scene));
     }
     mesh.refine(body.refine)?;
     mesh.place(body.scale, body.rotate, body.translate)?;

@@ -30,9 +30,12 @@ impl Mesh {
             self.points.extend(one.points.iter().map(|&point| point + copy as f64 * apart));
             self.tets.extend(one.tets.iter().map(|nodes| nodes.map(|node| first + node)));
             self.hexes.extend(one.hexes.iter().map(|nodes| nodes.map(|node| first + node)));
-            point_ids.extend((0..points).map(|row| one.point_ids.of(row) + copy as u64 * point_step));
+            point_ids.extend(
+                (0..points).map(|row| one.point_ids.of(row).wrapping_add((copy as u64).wrapping_mul(point_step))),
+            );
             for row in 0..tets + hexes {
-                element_ids[place(copy, row)] = one.element_ids.of(row) + copy as u64 * element_step;
+                element_ids[place(copy, row)] =
+                    one.element_ids.of(row).wrapping_add((copy as u64).wrapping_mul(element_step));
             }
             for (name, rows) in &one.node_sets {
                 self.node_sets.entry(name.clone()).or_default().extend(rows.iter().map(|&row| first + row));
@@ -66,7 +69,7 @@ impl Mesh {
 fn step_of(ids: &Ids, count: usize) -> u64 {
     match ids {
         Ids::Rows => count as u64,
-        Ids::Named(ids) => ids.iter().max().map_or(0, |largest| largest + 1),
+        Ids::Named(ids) => ids.iter().max().map_or(0, |largest| largest.wrapping_add(1)),
     }
 }
 

@@ -25,6 +25,9 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
         if body.copies == 0 || body.copies > MOST_COPIES {
             judge.must(&path.name("copies"), &format!("between 1 and {MOST_COPIES}"), body.copies);
         }
+        if !(body.apart * f64::from(body.copies)).is_finite() {
+            judge.out.error_at(path.name("apart"), "the last copy would stand beyond all numbers");
+        }
         judge.not_negative(&path.name("hourglass"), body.hourglass, "");
         if let Some(Start::Scrambled { amplitude, .. }) = body.start {
             judge.not_negative(&path.name("start").name("amplitude"), amplitude, "m");
