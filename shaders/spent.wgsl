@@ -1,4 +1,4 @@
-// Work against internal forces (J), summed over sixty-four nodes, for integrate: what the guards compare with the energy that
+// Work against internal forces (J), summed over sixty-four nodes and kept in the place of the first, for integrate: what the guards compare with the energy that
 // elements hold. SPENT_AT and step_before are generated.
 var<private> spent: f32;
 var<workgroup> spent_parts: array<f32, 64>;
@@ -26,7 +26,7 @@ fn add_up_spent(local: u32, node: u32) {
         workgroupBarrier();
     }
     if local == 0u && node < pass_rows.count {
-        let at = SPENT_AT + node / 32u;
+        let at = SPENT_AT + node / 8u;
         let before = bitcast<f32>(atomicLoad(&first_non_finite[at]));
         let part = kept(spent_parts[0] + bitcast<f32>(atomicLoad(&first_non_finite[at + 1u])));
         let after = kept(before + part);

@@ -4,21 +4,26 @@
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::block_kernel::{BlockKernels, CornersAt};
-use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, run_block, run_block_fast};
+use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, Inside, run_block, run_block_fast};
 use crate::backend::kernel::Kernel;
 use crate::backend::patch_lists::pack;
 use crate::backend::step::{step_number, with_step};
 use crate::components::*;
+use crate::elements::Element;
 use crate::evaluation::{ElementState, node_count, with_element};
 use crate::math::SimdScalar;
 use crate::scene::schema::Inversion;
 use crate::shader;
 use bevy_ecs::prelude::*;
+use bevy_ecs::query::QueryData;
+
+/// Its name.
+pub(crate) const ELEMENT_FORCES: &str = "element_forces";
 
 /// Displacements to element forces, block by block.
 pub fn system() -> System {
     System::built_in(
-        "element_forces",
+        ELEMENT_FORCES,
         Phase::ElementForces,
         "strain, stress and nodal forces of every element",
         "bodies",
@@ -28,87 +33,123 @@ pub fn system() -> System {
     .on_device(kernels)
 }
 
-/// What a run does not change of a block, but by removing elements.
-type Fixed<'a> =
-    (&'a Connectivity, &'a RestShape, Option<&'a FibreDirection>, Option<&'a NodalVolumeChange>, Option<&'a Patches>);
-
-type BlockQuery<'a> = (
-    &'a Block,
-    Fixed<'a>,
-    Option<&'a mut ViscousMemory>,
-    &'a BlockLaw<f64>,
-    Option<&'a BlockLaw<f32>>,
-    &'a mut FirstInverted,
-    Option<&'a OnInversion>,
-    Option<&'a mut RemovalStep>,
-);
+/// What a block has.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(super) struct BlockParts {
+    block: &'static Block,
+    connectivity: &'static Connectivity,
+    shape: &'static RestShape,
+    fibres: Option<&'static FibreDirection>,
+    means: Option<&'static NodalVolumeChange>,
+    pub(super) patches: Option<&'static Patches>,
+    memory: Option<&'static mut ViscousMemory>,
+    law: &'static BlockLaw<f64>,
+    rounded: Option<&'static BlockLaw<f32>>,
+    inverted: &'static mut FirstInverted,
+    policy: Option<&'static OnInversion>,
+    removal: Option<&'static mut RemovalStep>,
+}
 
 fn element_forces(
     cpu: Res<Cpu>,
     clock: Res<Clock>,
-    mut blocks: Query<BlockQuery>,
+    mut blocks: Query<BlockParts>,
     mut bodies: Query<(&Authoring, &Displacement, &mut ElementForce)>,
 ) {
     for (authoring, displacement, mut force) in &mut bodies {
         for &entity in &authoring.blocks {
-            let Ok((block, columns, memory, law, rounded, mut inverted, policy, removal)) = blocks.get_mut(entity)
-            else {
-                continue;
+            let Ok(mut block) = blocks.get_mut(entity) else { continue };
+            let found = match &mut force.0 {
+                Reals::F32(force) => block.run::<f32>(&cpu, (displacement.slice(), 0), force, None),
+                Reals::F64(force) => block.run::<f64>(&cpu, (displacement.slice(), 0), force, None),
             };
-            let (connectivity, shape, ..) = columns;
-            let memory = memory.map(|m| &mut m.into_inner().0);
-            let go = policy.is_some_and(|policy| policy.0 == Inversion::Remove);
-            let patch = patch_groups(block.kind);
-            let found = match (&mut force.0, rounded) {
-                (Reals::F32(force), Some(law)) => {
-                    let columns = of_kernel(block, columns, memory, displacement, go, force);
-                    with_element!(block.kind, E => run_block_fast::<E>(&cpu, columns, law, patch))
-                }
-                (Reals::F64(force), _) => {
-                    let columns = of_kernel(block, columns, memory, displacement, go, force);
-                    with_element!(block.kind, E => run_block::<E, f64>(&cpu, columns, law, patch))
-                }
-                (Reals::F32(_), None) => false,
-            };
-            let is_inverted =
-                |row: &usize| ElementState::of(block.kind, *row, connectivity, shape, displacement, law).is_inverted();
-            match (policy, removal) {
-                _ if !found => {}
-                (Some(OnInversion(Inversion::Remove)), Some(mut removal)) => {
-                    let gone = (0..block.count).filter(is_inverted);
-                    gone.for_each(|row| remove(row, clock.step + 1, &mut removal));
-                }
-                // rounding may hide from f64 what the kernel saw
-                _ if inverted[0] == u32::MAX => {
-                    inverted[0] = (0..block.count).find(is_inverted).map_or(0, |row| row as u32);
-                    inverted[1] = step_number(&clock);
-                }
-                _ => {}
-            }
+            block.note_inverted(&found, displacement, &clock);
         }
     }
 }
 
-/// The columns as the kernel takes them.
-fn of_kernel<'a, T: SimdScalar>(
-    block: &Block,
-    (connectivity, shape, fibres, means, patches): Fixed<'a>,
-    memory: Option<&'a mut Reals>,
-    displacement: &'a Displacement,
-    inverted_go: bool,
-    force: &'a mut [T],
-) -> BlockColumns<'a, T> {
-    BlockColumns {
-        displacement: displacement.slice(),
-        connectivity,
-        rest_shape: shape.slice(),
-        simple: block.simple,
-        fibre_direction: fibres.map(|f| f.slice()),
-        nodal_volume_change: means.map_or(&[], |means| means.slice()),
-        memory: memory.map_or(&mut [], |m| m.slice_mut()),
-        force: &mut force[block.force_offset..block.force_offset + block.force_length],
-        patches,
-        inverted_go,
+impl BlockPartsItem<'_, '_> {
+    /// Runs the block's kernel: from displacements (m), from a row of the body on, to element forces (N). Returns the patches
+    /// that have elements with J < 0.
+    pub(super) fn run<'a, T: Precise>(
+        &'a mut self,
+        cpu: &Cpu,
+        (displacement, first_row): (&'a [T], usize),
+        force: &'a mut [T],
+        inside: Option<Inside<'a, '_, T>>,
+    ) -> Vec<usize> {
+        let block = self.block;
+        let columns = BlockColumns {
+            displacement,
+            first_row,
+            connectivity: self.connectivity,
+            rest_shape: self.shape.slice(),
+            simple: block.simple,
+            fibre_direction: self.fibres.map(|f| f.slice()),
+            nodal_volume_change: self.means.map_or(&[], |means| means.slice()),
+            memory: self.memory.as_mut().map_or(&mut [], |memory| memory.0.slice_mut()),
+            force: &mut force[block.force_offset..block.force_offset + block.force_length],
+            patches: self.patches,
+            inverted_go: self.policy.is_some_and(|policy| policy.0 == Inversion::Remove),
+            inside,
+        };
+        with_element!(block.kind, E => T::run::<E>(cpu, columns, (self.law, self.rounded), patch_groups(block.kind)))
+    }
+
+    /// Looks through patches in which the kernel found elements with J < 0, before their nodes move.
+    pub(super) fn note_inverted(&mut self, patches: &[usize], displacement: &Displacement, clock: &Clock) {
+        let block = self.block;
+        let length = patch_length(block.kind);
+        let rows = patches.iter().flat_map(|patch| patch * length..block.count.min((patch + 1) * length));
+        let is_inverted = |row: &usize| {
+            ElementState::of(block.kind, *row, self.connectivity, self.shape, displacement, self.law).is_inverted()
+        };
+        match (self.policy, &mut self.removal) {
+            _ if patches.is_empty() => {}
+            (Some(OnInversion(Inversion::Remove)), Some(removal)) => {
+                rows.filter(is_inverted).for_each(|row| remove(row, clock.step + 1, removal));
+            }
+            // rounding may hide from f64 what the kernel saw
+            _ if self.inverted[0] == u32::MAX => {
+                self.inverted[0] = { rows }.find(is_inverted).unwrap_or(patches[0] * length) as u32;
+                self.inverted[1] = step_number(clock);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// A precision in which kernels run.
+pub(super) trait Precise: SimdScalar {
+    /// Runs the kernel of an element type with the law in f64, or rounded.
+    fn run<E: Element>(
+        cpu: &Cpu,
+        columns: BlockColumns<'_, '_, Self>,
+        law: (&BlockLaw<f64>, Option<&BlockLaw<f32>>),
+        groups_a_patch: usize,
+    ) -> Vec<usize>;
+}
+
+impl Precise for f64 {
+    fn run<E: Element>(
+        cpu: &Cpu,
+        columns: BlockColumns<'_, '_, f64>,
+        (law, _): (&BlockLaw<f64>, Option<&BlockLaw<f32>>),
+        groups_a_patch: usize,
+    ) -> Vec<usize> {
+        run_block::<E, f64>(cpu, columns, law, groups_a_patch)
+    }
+}
+
+impl Precise for f32 {
+    fn run<E: Element>(
+        cpu: &Cpu,
+        columns: BlockColumns<'_, '_, f32>,
+        (_, law): (&BlockLaw<f64>, Option<&BlockLaw<f32>>),
+        groups_a_patch: usize,
+    ) -> Vec<usize> {
+        law.map_or(Vec::new(), |law| run_block_fast::<E>(cpu, columns, law, groups_a_patch))
     }
 }
 

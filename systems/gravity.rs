@@ -2,12 +2,14 @@
 
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
+use crate::backend::cpu::Cpu;
 use crate::backend::kernel::{Uniform, uniform};
 use crate::backend::node_stage::NodeStage;
 use crate::components::*;
-use crate::math::Scalar;
+use crate::math::{LANES, SimdScalar};
 use crate::shader;
 use bevy_ecs::prelude::*;
+use pulp::{Simd, WithSimd};
 
 /// Adds m g to the external forces.
 pub fn system() -> System {
@@ -22,23 +24,47 @@ pub fn system() -> System {
     .on_nodes(stages)
 }
 
-fn gravity(signals: Res<Signals>, loads: Query<(&Gravity, &OfBody)>, mut bodies: Query<(&Mass, &mut ExternalForce)>) {
+fn gravity(
+    cpu: Res<Cpu>,
+    signals: Res<Signals>,
+    loads: Query<(&Gravity, &OfBody)>,
+    mut bodies: Query<(&Mass, &mut ExternalForce)>,
+) {
     for (load, body) in &loads {
         let Ok((mass, mut external)) = bodies.get_mut(body.0) else { continue };
         let acceleration = signals.values()[load.signal];
         match &mut external.0 {
-            Reals::F32(external) => pull(mass.slice(), acceleration, external),
-            Reals::F64(external) => pull(mass.slice(), acceleration, external),
+            Reals::F32(external) => pull(&cpu, mass.slice(), acceleration, external),
+            Reals::F64(external) => pull(&cpu, mass.slice(), acceleration, external),
         }
     }
 }
 
 /// Pulls at all nodes that the columns have.
-pub(super) fn pull<T: Scalar>(mass: &[T], acceleration: [f64; 4], external: &mut [T]) {
-    let acceleration = [0, 1, 2].map(|i| T::from_f64(acceleration[i]));
-    for (force, &mass) in external.chunks_exact_mut(3).zip(mass) {
-        for i in 0..3 {
-            force[i] += mass * acceleration[i];
+pub(super) fn pull<T: SimdScalar>(cpu: &Cpu, mass: &[T], acceleration: [f64; 4], external: &mut [T]) {
+    cpu.dispatch_widest(Pull { mass, acceleration: acceleration.map(T::from_f64), external });
+}
+
+struct Pull<'a, T> {
+    mass: &'a [T],
+    acceleration: [T; 4],
+    external: &'a mut [T],
+}
+
+impl<T: SimdScalar> WithSimd for Pull<'_, T> {
+    type Output = ();
+
+    /// A register full of components at a time.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let width = T::width::<S>();
+        let components: [T; 3 * LANES] = std::array::from_fn(|at| self.acceleration[at % 3]);
+        let acceleration = [0, 1, 2].map(|k| T::load(simd, &components[k * width..]));
+        for (mass, external) in self.mass.chunks(width).zip(self.external.chunks_mut(3 * width)) {
+            let mass = T::thrice(T::load_part(simd, mass));
+            for ((mass, acceleration), external) in mass.into_iter().zip(acceleration).zip(external.chunks_mut(width)) {
+                T::store_part(T::load_part(simd, external) + mass * acceleration, external);
+            }
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `integrate`: moves the nodes. `shaders/integrate.wgsl` is its twin.
 
-use super::node_pass::{BodyColumns, pass_over};
+use super::node_pass::{BodyColumns, move_body};
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::Cpu;
@@ -34,8 +34,8 @@ pub fn system() -> System {
 }
 
 fn integrate(clock: Res<Clock>, cpu: Res<Cpu>, mut bodies: Query<BodyColumns>) {
-    for columns in &mut bodies {
-        pass_over(&cpu, &clock, columns, &());
+    for mut body in &mut bodies {
+        move_body(&cpu, &clock, &mut body, None, None);
     }
 }
 

@@ -13,6 +13,8 @@
 //! element_removal  criteria, times              -> Alive, RestShape, Mass                 per element, per node
 //! observe          all, read only               -> probes, energies, guards, files
 //! ```
+//!
+//! Neighbours that work node by node share a pass (`node_pass`), on the CPU with `element_forces` before them (`patch_pass`).
 
 mod boundary;
 mod element_forces;
@@ -24,14 +26,17 @@ mod nodal_force;
 mod nodal_volume;
 mod node_pass;
 mod observe;
+mod patch_pass;
 mod pressure;
 mod registry;
 mod traction;
 
+pub(crate) use element_forces::ELEMENT_FORCES;
 pub(crate) use gather::sum_corners;
 pub(crate) use nodal_volume::means_of;
 pub(crate) use node_pass::{is_a_pass, node_pass};
 pub use observe::{add_watch_columns, watch_kernels};
+pub(crate) use patch_pass::patch_pass;
 pub use registry::{DescribeKernels, HostSystem, OnDevice, Phase, Registry, System};
 
 /// Places in `rows`, which ascend, of those among `count` from row `first` on.

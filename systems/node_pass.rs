@@ -10,175 +10,108 @@ use crate::error::Error;
 use crate::math::SimdScalar;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
-use bevy_ecs::system::IntoSystem;
+use bevy_ecs::system::{IntoSystem, SystemParam};
 use std::sync::atomic::{AtomicU32, Ordering};
 
 /// What nodes have, and what the last system of a pass, `integrate`, moves.
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub(super) struct BodyColumns {
-    body: Entity,
+    pub(super) body: Entity,
     mass: &'static Mass,
     fictitious: Option<&'static FictitiousMass>,
     internal: &'static mut InternalForce,
     external: Option<&'static mut ExternalForce>,
     axes: &'static ConstrainedAxes,
     damping: Option<&'static DampingCoefficient>,
-    u: &'static mut Displacement,
+    pub(super) u: &'static mut Displacement,
     step: &'static mut DisplacementStep,
     compensation: Option<&'static mut DisplacementCompensation>,
     work: Option<&'static mut Work>,
     noticed: &'static mut FirstNonFinite,
 }
 
-/// Some rows of a body's columns, which no other task has.
-pub(super) struct Rows<'a, T> {
-    /// The first of them.
-    pub first: usize,
-    pub mass: &'a [T],
-    pub inertia: &'a [T],
-    pub internal: &'a mut [T],
-    pub external: Option<&'a mut [T]>,
-    pub axes: &'a [u32],
-    pub damping: Option<&'a [T]>,
-    pub u: &'a mut [T],
-    pub step: &'a mut [T],
-    /// Of displacements, and of steps.
-    pub compensation: Option<[&'a mut [T]; 2]>,
-    pub work: Option<&'a mut [T]>,
-    pub sums: &'a mut [u32],
-    pub kept: &'a mut [u32],
-}
-
-impl<'a, T> Rows<'a, T> {
-    /// The first of them (a multiple of [`SPENT_ROWS`]), and the others.
-    fn split(self, at: usize) -> (Self, Self) {
-        let (mass, inertia, axes) = (self.mass.split_at(at), self.inertia.split_at(at), self.axes.split_at(at));
-        let damping = self.damping.map(|all| all.split_at(at)).unzip();
-        let internal = self.internal.split_at_mut(3 * at);
-        let external = self.external.map(|all| all.split_at_mut(3 * at)).unzip();
-        let (u, step) = (self.u.split_at_mut(3 * at), self.step.split_at_mut(3 * at));
-        let compensation = self.compensation.map(|[of_u, of_step]| {
-            let (of_u, of_step) = (of_u.split_at_mut(3 * at), of_step.split_at_mut(3 * at));
-            ([of_u.0, of_step.0], [of_u.1, of_step.1])
-        });
-        let compensation = compensation.unzip();
-        let work = self.work.map(|all| all.split_at_mut(WORK_NUMBERS * at)).unzip();
-        let sums = self.sums.split_at_mut(self.sums.len().min(2 * at / SPENT_ROWS));
-        let kept = self.kept.split_at_mut(self.kept.len().min(3 * at));
-        macro_rules! part {
-            ($number:tt, $first:expr) => {
-                Rows {
-                    first: $first,
-                    mass: mass.$number,
-                    inertia: inertia.$number,
-                    internal: internal.$number,
-                    external: external.$number,
-                    axes: axes.$number,
-                    damping: damping.$number,
-                    u: u.$number,
-                    step: step.$number,
-                    compensation: compensation.$number,
-                    work: work.$number,
-                    sums: sums.$number,
-                    kept: kept.$number,
-                }
-            };
+impl BodyColumnsItem<'_, '_> {
+    /// All rows, in the run's precision.
+    pub(super) fn columns<T: SimdScalar>(&mut self) -> NodeColumns<'_, T> {
+        let nodes = self.axes.len();
+        // sums and steps stand only where not all work is booked
+        let words = self.noticed.0.get_mut(SPENT_AT..).unwrap_or_default();
+        let (sums, kept) = words.split_at_mut(words.len().min(before_at(nodes) - SPENT_AT));
+        NodeColumns {
+            first: 0,
+            mass: self.mass.slice(),
+            inertia: self.fictitious.map_or(self.mass.slice(), |fictitious| fictitious.slice()),
+            internal: self.internal.slice_mut(),
+            external: self.external.as_mut().map(|e| e.slice_mut()),
+            axes: self.axes,
+            damping: self.damping.map(|d| d.slice()),
+            u: self.u.slice_mut(),
+            step: self.step.slice_mut(),
+            compensation: self.compensation.as_mut().map(|c| c.slice_mut().split_at_mut(3 * nodes).into()),
+            work: self.work.as_mut().map(|w| w.slice_mut()),
+            sums,
+            kept,
         }
-        (part!(0, self.first), part!(1, self.first + at))
     }
 
-    /// Tasks of so many rows.
-    fn tasks(mut self, rows: usize) -> Vec<Self> {
-        let mut tasks = Vec::with_capacity(self.axes.len().div_ceil(rows));
-        while self.axes.len() > rows {
-            let (task, others) = self.split(rows);
-            tasks.push(task);
-            self = others;
+    /// Notes the lowest row of a node whose displacement is no longer finite; `u32::MAX`: none.
+    pub(super) fn note_astray(&mut self, row: u32, clock: &Clock) {
+        if row != u32::MAX && self.noticed[0] == u32::MAX {
+            (self.noticed[0], self.noticed[1]) = (row, step_number(clock));
         }
-        tasks.push(self);
-        tasks
     }
 }
 
-/// Something done to rows, in either precision.
-pub(super) trait OnRows: Sync {
-    fn on_rows<T: SimdScalar>(&self, rows: &mut Rows<'_, T>);
-}
-
-/// Takes all rows of a body through `before` and moves them, a task's rows at a time.
-pub(super) fn pass_over(cpu: &Cpu, clock: &Clock, columns: BodyColumnsItem<'_, '_>, before: &impl OnRows) {
-    let nodes = columns.axes.len();
-    let BodyColumnsItem { mass, fictitious, axes, damping, mut internal, external, .. } = columns;
-    let (mut u, mut step, mut noticed) = (columns.u, columns.step, columns.noticed);
-    let inertia = fictitious.map_or(&mass.0, |fictitious| &fictitious.0);
-    let external = external.map(|e| e.into_inner());
-    let compensation = columns.compensation.map(|c| c.into_inner());
-    let work = columns.work.map(|w| w.into_inner());
-    // two words only where all work is booked
-    let noted = noticed.0.len().min(SPENT_AT);
-    let (found, words) = noticed.0.split_at_mut(noted);
-    let (sums, kept) = words.split_at_mut(words.len().min(before_at(nodes) - SPENT_AT));
-    macro_rules! run {
-        ($internal:ident, $u:ident, $step:ident) => {{
-            let rows = Rows {
-                first: 0,
-                mass: mass.slice(),
-                inertia: inertia.slice(),
-                internal: $internal,
-                external: external.map(|e| e.slice_mut()),
-                axes,
-                damping: damping.map(|d| d.slice()),
-                u: $u,
-                step: $step,
-                compensation: compensation.map(|c| c.0.slice_mut().split_at_mut(3 * nodes).into()),
-                work: work.map(|w| w.0.slice_mut()),
-                sums,
-                kept,
-            };
-            move_rows(cpu, clock, rows, before)
-        }};
-    }
-    let bad = match (&mut internal.0, &mut u.0, &mut step.0) {
-        (Reals::F32(internal), Reals::F32(u), Reals::F32(step)) => run!(internal, u, step),
-        (Reals::F64(internal), Reals::F64(u), Reals::F64(step)) => run!(internal, u, step),
-        _ => None,
-    };
-    if let (Some(bad), u32::MAX) = (bad, found[0]) {
-        (found[0], found[1]) = (bad, step_number(clock));
-    }
-}
-
-/// Returns the lowest row whose displacement is no longer finite.
-fn move_rows<T: SimdScalar>(cpu: &Cpu, clock: &Clock, rows: Rows<'_, T>, before: &impl OnRows) -> Option<u32> {
-    let bad = AtomicU32::new(u32::MAX);
-    let factors = Factors::of(clock);
-    cpu.for_each(rows.tasks(ROWS_A_TASK).into_iter(), |mut rows| {
-        before.on_rows(&mut rows);
-        let columns = NodeColumns {
-            first: rows.first,
-            mass: rows.inertia,
-            internal: rows.internal,
-            external: rows.external.as_deref(),
-            axes: rows.axes,
-            damping: rows.damping,
-            u: rows.u,
-            step: rows.step,
-            compensation: rows.compensation,
-            work: rows.work,
-            sums: rows.sums,
-            kept: rows.kept,
-        };
-        if let Some(row) = move_nodes(cpu, columns, &factors) {
-            bad.fetch_min(row, Ordering::Relaxed);
+/// Takes nodes through `before` and moves them, a task's rows at a time. Returns the lowest row whose displacement is no longer
+/// finite; `u32::MAX`: none.
+pub(super) fn move_rows<T: SimdScalar>(
+    cpu: &Cpu,
+    factors: &Factors<T>,
+    tasks: Vec<NodeColumns<'_, T>>,
+    before: impl Fn(&mut NodeColumns<'_, T>) + Sync + Send,
+) -> u32 {
+    let astray = AtomicU32::new(u32::MAX);
+    cpu.for_each(tasks.into_iter(), |mut rows| {
+        before(&mut rows);
+        if let Some(row) = move_nodes(cpu, &mut rows, factors) {
+            astray.fetch_min(row, Ordering::Relaxed);
         }
     });
-    Some(bad.into_inner()).filter(|&row| row != u32::MAX)
+    astray.into_inner()
 }
 
-/// Nothing.
-impl OnRows for () {
-    fn on_rows<T: SimdScalar>(&self, _: &mut Rows<'_, T>) {}
+/// Moves all nodes of a body, which each sums its forces first, where it does, and takes what acts on it.
+pub(super) fn move_body(
+    cpu: &Cpu,
+    clock: &Clock,
+    body: &mut BodyColumnsItem<'_, '_>,
+    gather: Option<(&Corners, &ElementForce)>,
+    on_rows: Option<&OnRows<'_>>,
+) {
+    let astray = match body.u.precision() {
+        Precision::F32 => move_all::<f32>(cpu, clock, body, gather, on_rows),
+        Precision::F64 => move_all::<f64>(cpu, clock, body, gather, on_rows),
+    };
+    body.note_astray(astray, clock);
+}
+
+fn move_all<T: SimdScalar>(
+    cpu: &Cpu,
+    clock: &Clock,
+    body: &mut BodyColumnsItem<'_, '_>,
+    gather: Option<(&Corners, &ElementForce)>,
+    on_rows: Option<&OnRows<'_>>,
+) -> u32 {
+    let tasks = body.columns::<T>().tasks(ROWS_A_TASK);
+    move_rows(cpu, &Factors::of(clock), tasks, |rows| {
+        if let Some((corners, force)) = gather {
+            gather::sum_at(corners, force.slice(), rows.first, rows.internal);
+        }
+        if let Some(on_rows) = on_rows {
+            on_rows.act(cpu, rows);
+        }
+    })
 }
 
 /// The systems that a pass can hold, in whatever order the phases allow; it must hold the first and the last.
@@ -190,10 +123,9 @@ pub(crate) fn is_a_pass(systems: &[&str]) -> bool {
     ends && systems.iter().all(|system| OF_A_PASS.contains(system))
 }
 
-/// What a pass does to the rows of a body before it moves them.
-struct Before<'a> {
-    corners: Option<&'a Corners>,
-    force: Option<&'a ElementForce>,
+/// Loads and motions of a body, for some of its rows at a time.
+#[derive(Default)]
+pub(super) struct OnRows<'a> {
     loads: Vec<RowLoad<'a>>,
     motions: Vec<(&'a Prescribed, &'a [[f64; 4]])>,
 }
@@ -204,17 +136,15 @@ enum RowLoad<'a> {
     Traction(&'a Traction, [f64; 4]),
 }
 
-impl OnRows for Before<'_> {
-    fn on_rows<T: SimdScalar>(&self, rows: &mut Rows<'_, T>) {
+impl OnRows<'_> {
+    /// Sums the loads afresh, and says where constrained nodes go.
+    pub(super) fn act<T: SimdScalar>(&self, cpu: &Cpu, rows: &mut NodeColumns<'_, T>) {
         let first = rows.first;
-        if let (Some(corners), Some(force)) = (self.corners, self.force) {
-            gather::sum_at(corners, force.slice(), first, rows.internal);
-        }
         if let Some(external) = rows.external.as_deref_mut() {
             external.fill(T::default());
             for load in &self.loads {
                 match load {
-                    RowLoad::Gravity(acceleration) => gravity::pull(rows.mass, *acceleration, external),
+                    RowLoad::Gravity(acceleration) => gravity::pull(cpu, rows.mass, *acceleration, external),
                     RowLoad::NodalForce(load, force) => {
                         nodal_force::push(load, *force, first, rows.mass, external);
                     }
@@ -223,57 +153,62 @@ impl OnRows for Before<'_> {
             }
         }
         for (set, motion) in &self.motions {
-            boundary::move_rows(
-                set,
-                motion,
-                first,
-                rows.u,
-                rows.compensation.as_ref().map(|[of_u, _]| &**of_u),
-                rows.step,
-                rows.kept,
-            );
+            let lost = rows.compensation.as_ref().map(|[of_u, _]| &**of_u);
+            boundary::move_rows(set, motion, first, rows.u, lost, rows.step, rows.kept);
         }
+    }
+}
+
+/// Loads and motions of bodies.
+#[derive(SystemParam)]
+pub(super) struct OnBodies<'w, 's> {
+    signals: Res<'w, Signals>,
+    gravities: Query<'w, 's, (&'static Gravity, &'static OfBody)>,
+    forces: Query<'w, 's, (&'static NodalForce, &'static OfBody)>,
+    tractions: Query<'w, 's, (&'static Traction, &'static OfBody)>,
+    prescribed: Query<'w, 's, (&'static Prescribed, &'static OfBody)>,
+}
+
+impl OnBodies<'_, '_> {
+    /// What these systems, in their order, do to the rows of a body.
+    pub(super) fn of(&self, systems: &[String], body: Entity) -> OnRows<'_> {
+        let values = self.signals.values();
+        let mut rows = OnRows::default();
+        for system in systems {
+            match system.as_str() {
+                "gravity" => {
+                    let own = self.gravities.iter().filter(|(_, of)| of.0 == body);
+                    rows.loads.extend(own.map(|(load, _)| RowLoad::Gravity(values[load.signal])));
+                }
+                "nodal_force" => {
+                    let own = self.forces.iter().filter(|(_, of)| of.0 == body);
+                    rows.loads.extend(own.map(|(load, _)| RowLoad::NodalForce(load, values[load.signal])));
+                }
+                "traction" => {
+                    let own = self.tractions.iter().filter(|(_, of)| of.0 == body);
+                    rows.loads.extend(own.map(|(load, _)| RowLoad::Traction(load, values[load.signal])));
+                }
+                "boundary" => {
+                    let own = self.prescribed.iter().filter(|(_, of)| of.0 == body);
+                    rows.motions.extend(own.map(|(set, _)| (set, &values[set.signal..set.signal + 3])));
+                }
+                _ => {}
+            }
+        }
+        rows
     }
 }
 
 /// Several systems as one, in their order.
 pub(crate) fn node_pass(systems: Vec<String>) -> HostSystem {
-    type OfBodies<'w, 's, C> = Query<'w, 's, (&'static C, &'static OfBody)>;
     let pass = move |cpu: Res<Cpu>,
                      clock: Res<Clock>,
-                     signals: Res<Signals>,
-                     mut bodies: Query<(BodyColumns, Option<&Corners>, Option<&ElementForce>)>,
-                     gravities: OfBodies<Gravity>,
-                     forces: OfBodies<NodalForce>,
-                     tractions: OfBodies<Traction>,
-                     prescribed: OfBodies<Prescribed>|
+                     on_bodies: OnBodies,
+                     mut bodies: Query<(BodyColumns, Option<&Corners>, Option<&ElementForce>)>|
           -> Result<(), Error> {
-        let values = signals.values();
-        for (columns, corners, force) in &mut bodies {
-            let body = columns.body;
-            let mut before = Before { corners, force, loads: Vec::new(), motions: Vec::new() };
-            for system in &systems {
-                match system.as_str() {
-                    "gravity" => {
-                        let own = gravities.iter().filter(|(_, of)| of.0 == body);
-                        before.loads.extend(own.map(|(load, _)| RowLoad::Gravity(values[load.signal])));
-                    }
-                    "nodal_force" => {
-                        let own = forces.iter().filter(|(_, of)| of.0 == body);
-                        before.loads.extend(own.map(|(load, _)| RowLoad::NodalForce(load, values[load.signal])));
-                    }
-                    "traction" => {
-                        let own = tractions.iter().filter(|(_, of)| of.0 == body);
-                        before.loads.extend(own.map(|(load, _)| RowLoad::Traction(load, values[load.signal])));
-                    }
-                    "boundary" => {
-                        let own = prescribed.iter().filter(|(_, of)| of.0 == body);
-                        before.motions.extend(own.map(|(set, _)| (set, &values[set.signal..set.signal + 3])));
-                    }
-                    _ => {}
-                }
-            }
-            pass_over(&cpu, &clock, columns, &before);
+        for (mut body, corners, force) in &mut bodies {
+            let on_rows = on_bodies.of(&systems, body.body);
+            move_body(&cpu, &clock, &mut body, corners.zip(force), Some(&on_rows));
         }
         Ok(())
     };

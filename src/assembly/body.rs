@@ -75,10 +75,11 @@ pub(super) fn spawn(
         members.entry((kind, material)).or_default().push(element as u32);
     }
     let copies = assembly.scene.scene.bodies[name].copies as usize;
-    let members: Vec<((ElementKind, &str), Vec<u32>)> =
-        members.into_iter().map(|(key, elements)| (key, in_order(mesh, elements, copies))).collect();
-    let ordered = members.iter().flat_map(|(_, elements)| elements.iter().map(|&e| mesh.element(e as usize)));
-    let node_rows = node_rows(mesh.points.len(), ordered);
+    let order =
+        |(key, elements): ((ElementKind, _), _)| (key, element_order(mesh, elements, copies, patch_length(key.0)));
+    let members: Vec<((ElementKind, &str), Vec<u32>)> = members.into_iter().map(order).collect();
+    let patches = members.iter().flat_map(|((kind, _), elements)| elements.chunks(patch_length(*kind)));
+    let node_rows = node_rows(mesh.points.len(), patches.map(|patch| patch.iter().map(|&e| mesh.element(e as usize))));
     let members: Vec<((ElementKind, &str), Vec<u32>)> =
         members.into_iter().map(|(key, elements)| (key, strided(elements, key.0))).collect();
 
@@ -106,14 +107,6 @@ pub(super) fn spawn(
     world.entity_mut(body).insert(authoring);
     insert_forces(assembly.scheme, body, world);
     Some(BodyParts { entity: body, placed, copies, node_rows, element_rows, blocks })
-}
-
-/// Elements of a block with neighbours together, copy by copy: copies may stand in the same place.
-fn in_order(mesh: &Mesh, elements: Vec<u32>, copies: usize) -> Vec<u32> {
-    let points = mesh.points.len().div_ceil(copies.max(1)).max(1);
-    let copy_of = |element: &u32| mesh.element(*element as usize)[0] as usize / points;
-    // ascending, but tetrahedra of all copies stand before hexahedra
-    elements.chunk_by(|a, b| copy_of(a) == copy_of(b)).flat_map(|own| element_order(mesh, own.to_vec())).collect()
 }
 
 /// The name of each element's material.

@@ -9,7 +9,7 @@ use bevy_ecs::prelude::*;
 /// Neighbours of a block, patch by patch, in the order in which they are stored: the lanes of a group come from all over
 /// the patch, so that they seldom share a node and need not wait for each other's sums.
 pub fn strided(mut elements: Vec<u32>, kind: ElementKind) -> Vec<u32> {
-    for patch in elements.chunks_mut(patch_groups(kind) * LANES) {
+    for patch in elements.chunks_mut(patch_length(kind)) {
         let groups = patch.len().div_ceil(LANES);
         let mut order: Vec<usize> = (0..patch.len()).collect();
         order.sort_by_key(|&place| (place % groups, place / groups));
@@ -21,7 +21,7 @@ pub fn strided(mut elements: Vec<u32>, kind: ElementKind) -> Vec<u32> {
 
 /// The patches of a block's elements.
 pub fn cut(kind: ElementKind, connectivity: &[u32]) -> Patches {
-    let corners_a_patch = patch_groups(kind) * LANES * node_count(kind);
+    let corners_a_patch = patch_length(kind) * node_count(kind);
     let mut patches = Patches { starts: vec![0], ..Patches::default() };
     for corners in connectivity.chunks(corners_a_patch) {
         let mut nodes = corners.to_vec();
@@ -43,6 +43,7 @@ pub fn insert_forces(scheme: Scheme, body: Entity, world: &mut World) {
     let Some(blocks) = world.get::<Authoring>(body).map(|authoring| authoring.blocks.clone()) else { return };
     let precision = world.get::<Displacement>(body).map_or(Precision::F64, |u| u.precision());
     let mut places: Vec<(u32, u32)> = Vec::new();
+    let mut of_patches = Vec::new();
     let mut length = 0;
     for entity in blocks {
         let Some((kind, elements)) = world.get::<Block>(entity).map(|block| (block.kind, block.count)) else {
@@ -53,6 +54,7 @@ pub fn insert_forces(scheme: Scheme, body: Entity, world: &mut World) {
         match scheme {
             Scheme::Patches => {
                 let patches = cut(kind, connectivity);
+                of_patches.push(entity);
                 places.extend(patches.nodes.iter().zip(0..).map(|(&node, slot)| (node, offset as u32 + 3 * slot)));
                 length += 3 * patches.nodes.len();
                 world.entity_mut(entity).insert(patches);
@@ -74,7 +76,12 @@ pub fn insert_forces(scheme: Scheme, body: Entity, world: &mut World) {
         }
     }
     let stride = if scheme == Scheme::Patches { 1 } else { LANES };
-    let corners = corners(count, &places, stride);
+    let mut corners = corners(count, &places, stride);
+    for entity in of_patches {
+        if let Some(mut patches) = world.get_mut::<Patches>(entity) {
+            find_inside(&mut patches, &mut corners);
+        }
+    }
     world.entity_mut(body).insert((corners, ElementForce(Reals::zeros(precision, length))));
 }
 
@@ -89,7 +96,21 @@ fn corners(nodes: usize, places: &[(u32, u32)], stride: usize) -> Corners {
         corners[next[node as usize] as usize] = place;
         next[node as usize] += 1;
     }
-    Corners { starts, corners, stride }
+    Corners { starts, corners, stride, first_shared: 0 }
+}
+
+/// Counts the nodes of each patch that nobody else has and that follow those of the patches before.
+fn find_inside(patches: &mut Patches, corners: &mut Corners) {
+    let alone = |row: usize| corners.starts[row + 1] - corners.starts[row] == 1;
+    let mut next = corners.first_shared;
+    for ends in patches.starts.windows(2) {
+        let nodes = patches.nodes[ends[0] as usize..ends[1] as usize].iter().zip(next..);
+        let inside = nodes.take_while(|&(&node, wanted)| node as usize == wanted && alone(wanted)).count();
+        let inside = if inside < SPENT_ROWS { 0 } else { inside };
+        patches.inside.push(inside as u32);
+        next += inside;
+    }
+    corners.first_shared = next;
 }
 
 #[cfg(test)]

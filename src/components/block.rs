@@ -78,6 +78,11 @@ pub const fn patch_groups(kind: ElementKind) -> usize {
     }
 }
 
+/// Elements of each of a block's patches but the last, which may have less.
+pub const fn patch_length(kind: ElementKind) -> usize {
+    patch_groups(kind) * crate::math::LANES
+}
+
 /// Mass that was added to each element so that the step may be as large as it is (kg). Exists where the scene has mass
 /// scaled.
 #[derive(Component, Clone, Debug)]

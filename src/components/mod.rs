@@ -22,7 +22,7 @@ mod patches;
 pub use block::{
     AddedMass, Alive, Block, BlockCorners, Connectivity, ElementSums, ElementVolume, FamilyDirection, FibreDirection,
     FirstInverted, NodalVolumeChange, OnInversion, RemovalStep, RemovalTime, RemovedEnergy, RestShape, ViscousMemory,
-    patch_groups,
+    patch_groups, patch_length,
 };
 pub use clock::{Clock, Relaxation, Signal, Signals};
 pub use column::{Column, Precision, Reals};

@@ -38,8 +38,8 @@ columns! {
     /// energies are asked for.
     Work(Reals) = "work";
     /// What the integrator notices in passing. First the lowest row of a node whose displacement was found not finite, and the
-    /// step in which it was: the first in which there was one; `u32::MAX`: none. In a motion without [`Work`], from [`SPENT_AT`] on, the work against internal forces since the start: for each
-    /// [`SPENT_ROWS`] nodes, as bits of f32, a sum and what rounding has left out of it (J). With prescribed nodes, from
+    /// step in which it was: the first in which there was one; `u32::MAX`: none. In a motion without [`Work`], from [`SPENT_AT`] on, the work against internal forces since the start: with a place for each
+    /// [`SPENT_ROWS`] nodes and one more, sums over those that move together, as bits of f32, and what rounding has left out of them (J). With prescribed nodes, from
     /// [`before_at`] on, a vector a node: bits of the last step (m) along prescribed axes, which `boundary` has written over.
     /// One column: kernels may have few.
     FirstNonFinite(Vec<u32>) = "first_non_finite";
@@ -56,12 +56,12 @@ columns! {
 /// Where sums of work begin in [`FirstNonFinite`].
 pub const SPENT_AT: usize = 4;
 
-/// Nodes that share a sum there.
-pub const SPENT_ROWS: usize = 64;
+/// Nodes to a place there: no less are moved together, so that who moves some has a place of its own.
+pub const SPENT_ROWS: usize = 16;
 
 /// Where the last steps along prescribed axes begin in [`FirstNonFinite`] of a body with so many nodes.
 pub const fn before_at(nodes: usize) -> usize {
-    SPENT_AT + 2 * nodes.div_ceil(SPENT_ROWS)
+    SPENT_AT + 2 * (nodes.div_ceil(SPENT_ROWS) + 1)
 }
 
 /// Numbers a node in [`Work`].
@@ -77,6 +77,8 @@ pub struct Corners {
     pub corners: Vec<u32>,
     /// From component to component.
     pub stride: usize,
+    /// The first row that is not [inside](super::Patches::inside) a patch.
+    pub first_shared: usize,
 }
 
 /// How the author numbers and orders what the engine has renumbered.

@@ -7,6 +7,7 @@ mod real;
 mod rows;
 mod simd;
 mod tensor;
+mod thrice;
 
 pub(crate) use real::refine_inverse_cbrt;
 pub use real::{Real, Scalar, Task};

@@ -101,7 +101,7 @@ pub(super) fn add_f64s<S: Simd>(_: S, rows: &mut Rows<f64>, at: &[u16], vectors:
 /// The instruction set `Q` where `S` is that.
 #[cfg(target_arch = "x86_64")]
 #[inline(always)]
-fn coerced<S: Simd, Q: Copy + 'static>(simd: S) -> Option<Q> {
+pub(super) fn coerced<S: Simd, Q: Copy + 'static>(simd: S) -> Option<Q> {
     (&simd as &dyn std::any::Any).downcast_ref::<Q>().copied()
 }
 

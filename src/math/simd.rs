@@ -4,6 +4,7 @@ use super::real::{
     GUESS_F32, GUESS_F64, ONE_F32, ONE_F64, ROOT_HALF_F32, ROOT_HALF_F64, STEPS_F32, STEPS_F64, refine_inverse_cbrt,
 };
 use super::rows::{Rows, Scratch, add_f32s, add_f64s, load_f32s, load_f64s};
+use super::thrice::{thrice_f32s, thrice_f64s};
 use super::{Real, Scalar, Task};
 use pulp::{Simd, WithSimd};
 use std::cell::RefCell;
@@ -36,8 +37,14 @@ pub trait SimdScalar: Scalar {
     fn load<S: Simd>(simd: S, from: &[Self]) -> Self::Vector<S>;
     /// Writes a register to the start of a slice that is long enough.
     fn store<S: Simd>(vector: Self::Vector<S>, to: &mut [Self]);
+    /// Reads what a slice has, at most a register full; zeros in the other places.
+    fn load_part<S: Simd>(simd: S, from: &[Self]) -> Self::Vector<S>;
+    /// Writes as much of a register as a slice has room for.
+    fn store_part<S: Simd>(vector: Self::Vector<S>, to: &mut [Self]);
     /// The same number in all places.
     fn splat<S: Simd>(simd: S, value: Self) -> Self::Vector<S>;
+    /// Each number three times, over three registers.
+    fn thrice<S: Simd>(numbers: Self::Vector<S>) -> [Self::Vector<S>; 3];
     /// The four columns of rows, a row a lane.
     fn load_rows<S: Simd>(simd: S, rows: &Rows<Self>, at: &[u16]) -> [Self::Vector<S>; 4];
     /// Adds vectors to rows, one lane after the other.
@@ -49,7 +56,8 @@ pub trait SimdScalar: Scalar {
 macro_rules! vector {
     ($name:ident, $scalar:ty, $raw:ident, $lanes:ident, $load:ident, $store:ident, $splat:ident, $add:ident, $sub:ident,
      $mul:ident, $div:ident, $neg:ident, $max:ident, $mul_add:ident, $guess:ident, $steps:expr, $min:ident, $sqrt:ident,
-     $above:ident, $select:ident, $to_bits:ident, $from_bits:ident, $power:ident, $split:ident, $load_rows:ident, $add_rows:ident) => {
+     $above:ident, $select:ident, $to_bits:ident, $from_bits:ident, $power:ident, $split:ident, $load_rows:ident, $add_rows:ident,
+     $load_part:ident, $store_part:ident, $thrice:ident) => {
         #[doc = concat!("A register of `", stringify!($scalar), "`.")]
         #[derive(Clone, Copy)]
         pub struct $name<S: Simd> {
@@ -181,6 +189,20 @@ macro_rules! vector {
                 S::$store(&mut to[..S::$lanes]).0[0] = vector.value;
             }
             #[inline(always)]
+            fn load_part<S: Simd>(simd: S, from: &[Self]) -> $name<S> {
+                if from.len() < S::$lanes {
+                    return $name { simd, value: simd.$load_part(from) };
+                }
+                Self::load(simd, from)
+            }
+            #[inline(always)]
+            fn store_part<S: Simd>(vector: $name<S>, to: &mut [Self]) {
+                if to.len() < S::$lanes {
+                    return vector.simd.$store_part(to, vector.value);
+                }
+                Self::store(vector, to);
+            }
+            #[inline(always)]
             fn splat<S: Simd>(simd: S, value: Self) -> $name<S> {
                 $name { simd, value: simd.$splat(value) }
             }
@@ -197,6 +219,11 @@ macro_rules! vector {
             #[inline(always)]
             fn add_to_rows<S: Simd>(simd: S, rows: &mut Rows<Self>, at: &[u16], [x, y, z]: [$name<S>; 3]) {
                 $add_rows(simd, rows, &at[..S::$lanes], [x.value, y.value, z.value]);
+            }
+            #[inline(always)]
+            fn thrice<S: Simd>(numbers: $name<S>) -> [$name<S>; 3] {
+                let [a, b, c] = $thrice(numbers.simd, numbers.value);
+                [numbers.with(a), numbers.with(b), numbers.with(c)]
             }
             fn with_scratch<O>(task: impl FnOnce(&mut Scratch<Self>) -> O) -> O {
                 thread_local! {
@@ -292,7 +319,10 @@ vector!(
     power_f32s,
     split_f32s,
     load_f32s,
-    add_f32s
+    add_f32s,
+    partial_load_f32s,
+    partial_store_f32s,
+    thrice_f32s
 );
 vector!(
     F64s,
@@ -320,5 +350,8 @@ vector!(
     power_f64s,
     split_f64s,
     load_f64s,
-    add_f64s
+    add_f64s,
+    partial_load_f64s,
+    partial_store_f64s,
+    thrice_f64s
 );

@@ -25,7 +25,7 @@ use crate::observation::{Observer, Watch, WatchKernels};
 use crate::scene::schema::Analysis;
 use crate::scene::{Diagnostics, SceneFile};
 use crate::snapshot::{Keeping, identity};
-use crate::systems::{HostSystem, OnDevice, Phase, Registry, System, node_pass};
+use crate::systems::{ELEMENT_FORCES, HostSystem, OnDevice, Phase, Registry, System, node_pass, patch_pass};
 use bevy_ecs::component::ComponentId;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemAccess;
@@ -214,7 +214,8 @@ fn entries(
                 Job::Host { system: host, beat, observes: first.system.observes, reads, writes }
             }
             (None, _) => {
-                let mut system = node_pass(names.clone());
+                let pass = if first.system.name == ELEMENT_FORCES { patch_pass } else { node_pass };
+                let mut system = pass(names.clone());
                 let (reads, writes) = columns_of(&system.initialize(world), world);
                 Job::Host { system, beat: Beat::new(1, None), observes: false, reads, writes }
             }

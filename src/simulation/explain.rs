@@ -65,7 +65,7 @@ pub struct SystemInUse {
     pub on: &'static str,
     /// How many kernels it has on the device; one whose work is done beforehand needs none.
     pub kernels: usize,
-    /// Systems that share its pass over the nodes.
+    /// Systems that share its pass.
     pub shares_with: Vec<String>,
     /// Steps between two runs.
     pub every: u64,

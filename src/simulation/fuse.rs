@@ -1,7 +1,7 @@
-//! Which neighbours of a schedule share one pass over the nodes.
+//! Which neighbours of a schedule share one pass: over the nodes, or on the CPU over patches of elements and then the other nodes.
 
 use super::schedule::Scheduled;
-use crate::systems::{OnDevice, Phase, is_a_pass};
+use crate::systems::{ELEMENT_FORCES, OnDevice, Phase, is_a_pass};
 use bevy_ecs::system::SystemAccess;
 
 /// The places of the scheduled systems in the order in which they run, those together that share a pass. Without `fuse`
@@ -29,7 +29,27 @@ pub fn groups(schedule: &[Scheduled<'_>], access: &[SystemAccess], fuse: bool, o
         true => vec![group],
         false => group.into_iter().map(|place| vec![place]).collect(),
     };
-    groups.into_iter().flat_map(kept).collect()
+    let groups = groups.into_iter().flat_map(kept);
+    if on_gpu { groups.collect() } else { with_elements(groups, schedule) }
+}
+
+/// On the CPU the forces of elements belong to the pass that follows them: nodes inside a patch move with it.
+fn with_elements(groups: impl Iterator<Item = Vec<usize>>, schedule: &[Scheduled<'_>]) -> Vec<Vec<usize>> {
+    let mut together: Vec<Vec<usize>> = Vec::new();
+    let of_elements = |group: &[usize]| match group {
+        [place] => {
+            let Scheduled { system, every, .. } = &schedule[*place];
+            system.name == ELEMENT_FORCES && !system.custom && *every == 1
+        }
+        _ => false,
+    };
+    for group in groups {
+        match together.last_mut().filter(|before| group.len() > 1 && of_elements(before)) {
+            Some(before) => before.extend(group),
+            None => together.push(group),
+        }
+    }
+    together
 }
 
 /// Whether the engine's own system of that place works node by node, in every step.

@@ -58,7 +58,7 @@ pub struct Simulation {
     failure: Option<crate::error::Instability>,
 }
 
-/// A system of the running schedule, or several that share a pass over the nodes.
+/// A system of the running schedule, or several that share a pass.
 struct Entry {
     name: String,
     /// Of the last of them.

@@ -125,6 +125,7 @@ impl<'w> BlockForces<'w> {
         }
         let columns = BlockColumns {
             displacement: u,
+            first_row: 0,
             connectivity: self.connectivity,
             rest_shape: &self.shape,
             simple: block.simple,
@@ -134,6 +135,7 @@ impl<'w> BlockForces<'w> {
             force: &mut element_force[block.force_offset..block.force_offset + block.force_length],
             patches: self.patches,
             inverted_go: false,
+            inside: None,
         };
         with_element!(block.kind, E => run_block::<E, f64>(cpu, columns, &self.law, patch_groups(block.kind)));
     }

@@ -189,7 +189,7 @@ fn volume_ratio(world: &World, block: Entity, row: usize) -> f64 {
 fn crush(world: &mut World) {
     for body in entities::<Displacement>(world) {
         let mut u = world.get_mut::<Displacement>(body).unwrap();
-        for i in 60..120 {
+        for i in (0..u.len()).filter(|i| i / 3 % 8 == 0) {
             let value = u.get(i);
             u.set(i, 12.0 * value);
         }
@@ -225,7 +225,7 @@ fn inverted_elements_are_removed_alike() {
             assert!(all.clone().all(|&step| step == 4), "the step after the third");
             gone += all.count();
         }
-        assert!(gone >= 4, "{gone}");
+        assert!(gone >= 4, "{gone} of {effects:?}");
         // what is gone exerts nothing; of what is squeezed to nothing J has no digits in f32
         agree_in_force(&mut pair, ROUNDINGS, |world, block, row| match volume_ratio(world, block, row) {
             _ if step(world, block, row) != u32::MAX => 0.0,

@@ -140,10 +140,11 @@ fn compare_noticed(pair: &mut Pair) {
             |world: &World, node: usize| world.get::<DisplacementStep>(body).unwrap().vector(node).abs().element_sum();
         let count = pair.host().get::<Mass>(body).unwrap().len();
         let number = |words: &[u32], i: usize| f64::from(f32::from_bits(words[i]));
-        for group in 0..host.len().min(before_at(count)).saturating_sub(SPENT_AT) / 2 {
-            let at = SPENT_AT + 2 * group;
+        let booked = host.len() >= before_at(count);
+        for group in (0..count).step_by(64).filter(|_| booked) {
+            let at = SPENT_AT + 2 * group / SPENT_ROWS;
             let (a, b) = (number(&host, at) + number(&host, at + 1), number(&device, at) + number(&device, at + 1));
-            let nodes = SPENT_ROWS * group..count.min(SPENT_ROWS * (group + 1));
+            let nodes = group..count.min(group + 64);
             let steps: f64 = nodes.map(|node| moved(pair.before(), node) + moved(pair.host(), node)).sum();
             // forces under 0.01 N along both steps, each with its own twelve roundings, and sums of 64
             let allowed = 40.0 * UNIT * 0.01 * steps;

@@ -4,7 +4,7 @@
 use crate::configurations::{Configuration, configurations};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
-use sinew::components::{DisplacementStep, ExternalForce};
+use sinew::components::{DisplacementStep, ExternalForce, Patches, RemovalStep};
 use sinew::systems::{Phase, Registry, System};
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
 use std::path::Path;
@@ -87,8 +87,10 @@ fn who_shares_a_pass_is_told_and_what_must_stay_apart_does() {
         .with(System::custom("pushes", Phase::Loads, "pushes", pushes));
     let plain = scene("", "", true);
     assert!(shares(&plain, &registry, "boundary", "integrate") && shares(&plain, &registry, "gravity", "gather"));
+    assert!(shares(&plain, &registry, "element_forces", "integrate"));
     assert!(!shares(&scene("", "", false), &registry, "gravity", "gather"));
     assert!(!shares(&scene("", PRESSURE, true), &registry, "gather", "integrate"));
+    assert!(!shares(&scene("", PRESSURE, true), &registry, "element_forces", "gather"));
     let with = |own: [&str; 2]| {
         let all = [
             "boundary",
@@ -109,4 +111,41 @@ fn who_shares_a_pass_is_told_and_what_must_stay_apart_does() {
     assert!(!shares(&with(["looks", ""]), &registry, "boundary", "integrate"));
     assert!(shares(&with(["looks", ""]), &registry, "gravity", "integrate"));
     assert!(!shares(&with(["", "pushes"]), &registry, "gravity", "integrate"));
+    assert!(!shares(&with(["", "pushes"]), &registry, "element_forces", "gather"));
+}
+
+/// A body of several blocks and patches, one corner of which is torn inside out.
+fn torn(fuse: bool) -> String {
+    format!(
+        "(duration: 10, bodies: {{\"a\": (mesh: Box(size: (1, 1, 1), cells: (9, 9, 9), elements: Hex8), material: \"m\",
+            regions: [(on: Sphere(center: (0, 0, 0), radius: 0.5), material: \"n\")])}},
+        materials: {{
+            \"m\": (density: 1000, inversion: Remove, neo_hookean: Young(young: 3e3, poisson: 0.45)),
+            \"n\": (density: 900, inversion: Remove, neo_hookean: Young(young: 1e3, poisson: 0.4))}},
+        constraints: [Prescribed(body: \"a\", on: Plane(normal: (0, 0, 1), at: 0), displacement: (0, 0, 0.02), curve: Smooth(end: 0.05))],
+        loads: [Gravity(acceleration: (0, 1, -9.81)),
+            NodalForce(body: \"a\", on: Box(min: (0, 0.9, 0.9), max: (0.1, 1, 1)), force: (400, -300, -600))],
+        guards: (off: [Energy]), integration: (step: 0.001), fuse: {fuse})"
+    )
+}
+
+/// The nodes inside patches move with their patch, those of patches with inverted elements after a look at them.
+#[test]
+fn nodes_inside_patches_go_where_they_go_with_all_others() {
+    for run in configurations().into_iter().filter(|run| run.options.backend == BackendChoice::Cpu) {
+        let ends = [true, false].map(|fuse| {
+            let mut simulation = run.start_in(&torn(fuse), Path::new("."));
+            let inside = |simulation: &mut Simulation| -> u32 {
+                let world = simulation.world_mut();
+                world.query::<&Patches>().iter(world).flat_map(|patches| patches.inside.clone()).sum()
+            };
+            assert!((300..900).contains(&inside(&mut simulation)), "{}: {}", run.name, inside(&mut simulation));
+            simulation.advance(60).unwrap_or_else(|error| panic!("{}: {error}", run.name));
+            let world = simulation.world_mut();
+            let gone: Vec<u32> = world.query::<&RemovalStep>().iter(world).flat_map(|steps| steps.0.clone()).collect();
+            assert!(gone.iter().any(|&step| step < 60), "{}: no element was inverted", run.name);
+            (gone, simulation.displacements("a").unwrap())
+        });
+        assert!(ends[0] == ends[1], "{}", run.name);
+    }
 }

@@ -3,7 +3,7 @@
 mod at_hand;
 mod effects;
 
-use super::{BlockLaw, Cpu};
+use super::{BlockLaw, Cpu, Factors, NodeColumns, move_nodes};
 use crate::components::Patches;
 use crate::elements::{Element, MOST_NODES, PressureFrom};
 use crate::materials::{Elastic, ElasticLaw, Kinematics, NeoHookean};
@@ -11,12 +11,15 @@ use crate::math::{LANES, Mat3, Real, Scratch, SimdScalar, Sym3};
 use at_hand::{AtHand, part, parts};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 /// The columns a block's kernel reads and writes; layouts as in [`components`](crate::components).
-pub struct BlockColumns<'a, T> {
-    /// The body's displacements (m).
+pub struct BlockColumns<'a, 'n, T> {
+    /// The body's displacements (m), from row [`first_row`](Self::first_row) on.
     pub displacement: &'a [T],
+    /// The first of these rows: 0, or with [`inside`](Self::inside) the first that is not inside a patch.
+    pub first_row: usize,
     /// Nodes of each element.
     pub connectivity: &'a [u32],
     /// Rest shapes.
@@ -35,17 +38,32 @@ pub struct BlockColumns<'a, T> {
     pub patches: Option<&'a Patches>,
     /// Whether elements with J < 0 exert nothing.
     pub inverted_go: bool,
+    /// The nodes inside each patch, where they move as soon as its forces are known.
+    pub inside: Option<Inside<'a, 'n, T>>,
 }
 
-/// Fills in the forces of a block and carries its viscous history on by one step. Says whether an element has J < 0.
+/// The nodes inside patches, and how they move. Where a patch has an element with J < 0 they stay where they are.
+pub struct Inside<'a, 'n, T> {
+    /// Of each patch, perhaps none.
+    pub nodes: &'a mut [NodeColumns<'n, T>],
+    /// What is done to them, whose internal forces are known, before they move.
+    pub before: &'a (dyn Fn(&mut NodeColumns<'_, T>) + Sync),
+    /// What a step multiplies with.
+    pub factors: &'a Factors<T>,
+    /// The lowest row whose displacement is no longer finite; `u32::MAX`: none.
+    pub astray: &'a AtomicU32,
+}
+
+/// Fills in the forces of a block and carries its viscous history on by one step. Returns the patches that have elements
+/// with J < 0, ascending.
 ///
 /// One kernel an element type for all laws and effects, which asks for them at each point.
 pub fn run_block<E: Element, T: SimdScalar>(
     cpu: &Cpu,
-    columns: BlockColumns<'_, T>,
+    columns: BlockColumns<'_, '_, T>,
     law: &BlockLaw<T>,
     groups_a_patch: usize,
-) -> bool {
+) -> Vec<usize> {
     Block::<E, T> { cpu, columns, law, groups_a_patch, element: PhantomData }.run::<_, ASK>(&law.elastic)
 }
 
@@ -53,10 +71,10 @@ pub fn run_block<E: Element, T: SimdScalar>(
 /// viscosity, so that what a material lacks is not even asked for.
 pub fn run_block_fast<E: Element>(
     cpu: &Cpu,
-    columns: BlockColumns<'_, f32>,
+    columns: BlockColumns<'_, '_, f32>,
     law: &BlockLaw<f32>,
     groups_a_patch: usize,
-) -> bool {
+) -> Vec<usize> {
     let ElasticLaw::NeoHookean(elastic) = &law.elastic else {
         return run_block::<E, f32>(cpu, columns, law, groups_a_patch);
     };
@@ -77,16 +95,16 @@ const VISCOSITY: u8 = 2;
 /// The kernel asks the block's law which effects it has.
 const ASK: u8 = 4;
 
-struct Block<'a, E, T: SimdScalar> {
+struct Block<'a, 'n, E, T: SimdScalar> {
     cpu: &'a Cpu,
-    columns: BlockColumns<'a, T>,
+    columns: BlockColumns<'a, 'n, T>,
     law: &'a BlockLaw<T>,
     groups_a_patch: usize,
     element: PhantomData<E>,
 }
 
-impl<E: Element> Block<'_, E, f32> {
-    fn run_neo_hookean(self, elastic: &NeoHookean<f32>) -> bool {
+impl<E: Element> Block<'_, '_, E, f32> {
+    fn run_neo_hookean(self, elastic: &NeoHookean<f32>) -> Vec<usize> {
         match (self.law.fibres.is_some(), !self.law.prony.is_empty()) {
             (false, false) => self.run::<_, 0>(elastic),
             (true, false) => self.run::<_, FIBRES>(elastic),
@@ -96,18 +114,26 @@ impl<E: Element> Block<'_, E, f32> {
     }
 }
 
-impl<E: Element, T: SimdScalar> Block<'_, E, T> {
-    fn run<L: Elastic<T>, const EFFECTS: u8>(self, elastic: &L) -> bool {
+impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
+    fn run<L: Elastic<T>, const EFFECTS: u8>(self, elastic: &L) -> Vec<usize> {
         let Self { cpu, columns, law, groups_a_patch, element } = self;
-        let inverted = AtomicBool::new(false);
+        let inverted = Mutex::new(Vec::new());
         let patch = groups_a_patch * LANES;
         let memory_an_element = law.memory_numbers(E::POINTS);
         let varying = law.varying_families();
         // without viscosity there is no memory to hand out
         let mut memories = columns.memory.chunks_mut((patch * memory_an_element).max(1));
         let tasks = parts(columns.force, columns.patches, patch * 3 * E::NODES, patch * E::NODES);
+        let (inside, then) = match columns.inside {
+            Some(Inside { nodes, before, factors, astray }) => (nodes, Some((before, factors, astray))),
+            None => (&mut [][..], None),
+        };
+        let mut inside = inside.iter_mut();
         let tasks = tasks.into_iter().enumerate().map(move |(index, (force, at_hand))| Patch::<E, T, L, EFFECTS> {
+            index,
+            inside: inside.next(),
             displacement: columns.displacement,
+            first_row: columns.first_row,
             nodal_volume_change: columns.nodal_volume_change,
             connectivity: part(columns.connectivity, index, patch * E::NODES),
             rest_shape: part(columns.rest_shape, index, patch * E::ROWS),
@@ -122,20 +148,31 @@ impl<E: Element, T: SimdScalar> Block<'_, E, T> {
             element,
         });
         cpu.for_each(tasks, |patch| {
-            let found = T::with_scratch(|scratch| {
+            let index = patch.index;
+            let (found, inside) = T::with_scratch(|scratch| {
                 let task = OfPatch { patch, scratch };
                 if EFFECTS == ASK { cpu.dispatch(task) } else { cpu.dispatch_widest(task) }
             });
             if found {
-                inverted.store(true, Ordering::Relaxed);
+                inverted.lock().unwrap_or_else(PoisonError::into_inner).push(index);
+            } else if let (Some(inside), Some((before, factors, astray))) = (inside, then) {
+                before(inside);
+                if let Some(row) = move_nodes(cpu, inside, factors) {
+                    astray.fetch_min(row, Ordering::Relaxed);
+                }
             }
         });
-        inverted.into_inner()
+        let mut inverted = inverted.into_inner().unwrap_or_else(PoisonError::into_inner);
+        inverted.sort_unstable();
+        inverted
     }
 }
 
-struct Patch<'a, E, T: SimdScalar, L, const EFFECTS: u8> {
+struct Patch<'a, 'n, E, T: SimdScalar, L, const EFFECTS: u8> {
+    index: usize,
+    inside: Option<&'a mut NodeColumns<'n, T>>,
     displacement: &'a [T],
+    first_row: usize,
     nodal_volume_change: &'a [T],
     connectivity: &'a [u32],
     rest_shape: &'a [T],
@@ -151,16 +188,19 @@ struct Patch<'a, E, T: SimdScalar, L, const EFFECTS: u8> {
 }
 
 /// A patch and where to compute it.
-struct OfPatch<'a, 's, E, T: SimdScalar, L, const EFFECTS: u8> {
-    patch: Patch<'a, E, T, L, EFFECTS>,
+struct OfPatch<'a, 'n, 's, E, T: SimdScalar, L, const EFFECTS: u8> {
+    patch: Patch<'a, 'n, E, T, L, EFFECTS>,
     scratch: &'s mut Scratch<T>,
 }
 
-impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd for OfPatch<'_, '_, E, T, L, EFFECTS> {
-    type Output = bool;
+impl<'a, 'n, E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd
+    for OfPatch<'a, 'n, '_, E, T, L, EFFECTS>
+{
+    /// Whether there is an element with J < 0, and the nodes inside with their internal forces.
+    type Output = (bool, Option<&'a mut NodeColumns<'n, T>>);
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> bool {
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let Self { mut patch, scratch } = self;
         patch.bring(scratch);
         let mut worst = T::splat(simd, T::default());
@@ -174,7 +214,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd for O
         patch.bring_back(scratch);
         let mut lanes = [T::default(); LANES];
         T::store(worst, &mut lanes);
-        lanes.iter().any(|&v| v > T::default())
+        (lanes.iter().any(|&v| v > T::default()), patch.inside)
     }
 }
 
@@ -225,7 +265,7 @@ pub(super) fn corner_registers<E: Element, T: SimdScalar, S: Simd>(
     u
 }
 
-impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, '_, E, T, L, EFFECTS> {
     #[inline(always)]
     fn has_fibres(&self) -> bool {
         if EFFECTS == ASK { self.law.fibres.is_some() } else { EFFECTS & FIBRES != 0 }

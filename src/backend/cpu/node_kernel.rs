@@ -1,69 +1,44 @@
-//! Central differences for all nodes of a body, a register full at a time.
+//! Central differences for nodes of a body, a register full at a time.
 
+mod columns;
 mod factors;
 mod one_by_one;
 
+pub use columns::NodeColumns;
 pub use factors::Factors;
 
 use super::Cpu;
-use crate::components::{SPENT_ROWS, WORK_NUMBERS};
+use crate::components::WORK_NUMBERS;
 use crate::math::{LANES, Real, SimdScalar};
 use one_by_one::{OneNode, Sum, add_to_sum, move_node};
 use pulp::{Simd, WithSimd};
 
-/// What moves a body's nodes, or some of them one after the other; layouts as in [`components`](crate::components).
-pub struct NodeColumns<'a, T> {
-    /// Row of the first node.
-    pub first: usize,
-    /// Mass (kg).
-    pub mass: &'a [T],
-    /// Forces of elements (N).
-    pub internal: &'a [T],
-    /// Loads (N).
-    pub external: Option<&'a [T]>,
-    /// Which axes are constrained, as bits.
-    pub axes: &'a [u32],
-    /// Damping coefficients (kg/s).
-    pub damping: Option<&'a [T]>,
-    /// Displacements (m).
-    pub u: &'a mut [T],
-    /// Steps (m).
-    pub step: &'a mut [T],
-    /// What rounding left out of displacements, and of steps.
-    pub compensation: Option<[&'a mut [T]; 2]>,
-    /// Work booked.
-    pub work: Option<&'a mut [T]>,
-    /// Work against internal forces, of every so many nodes; none where the whole work is booked.
-    pub sums: &'a mut [u32],
-    /// Bits of the last steps (m) along prescribed axes; none where nothing is moved as told or all work is booked.
-    pub kept: &'a [u32],
-}
-
 /// Moves nodes. Returns the lowest row whose displacement is no longer finite.
-pub fn move_nodes<T: SimdScalar>(cpu: &Cpu, columns: NodeColumns<'_, T>, factors: &Factors<T>) -> Option<u32> {
-    cpu.dispatch_widest(Rows { columns, factors }).map(|row| row as u32)
+pub fn move_nodes<T: SimdScalar>(cpu: &Cpu, columns: &mut NodeColumns<'_, T>, factors: &Factors<T>) -> Option<u32> {
+    cpu.dispatch_widest(Task { columns, factors }).map(|row| row as u32)
 }
 
-struct Rows<'a, T> {
-    columns: NodeColumns<'a, T>,
+struct Task<'a, 'c, T> {
+    columns: &'a mut NodeColumns<'c, T>,
     factors: &'a Factors<T>,
 }
 
-impl<T: SimdScalar> WithSimd for Rows<'_, T> {
+impl<T: SimdScalar> WithSimd for Task<'_, '_, T> {
     type Output = Option<usize>;
 
     /// The lowest row whose displacement is no longer finite.
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, simd: S) -> Option<usize> {
-        let rows = self.columns.u.len() / 3;
+        let rows = self.columns.rows();
         let mut bad = None;
-        for from in (0..rows).step_by(SPENT_ROWS) {
-            let to = rows.min(from + SPENT_ROWS);
-            let mass = &self.columns.mass[from..to];
-            let whole =
-                to - from == SPENT_ROWS && self.columns.work.is_none() && mass.iter().all(|&mass| mass > T::default());
-            let (spent, finite) = if whole { self.chunk(simd, from) } else { self.one_by_one(from, to) };
-            add_to_sum(self.columns.sums.get_mut(2 * (from / SPENT_ROWS)..), spent);
+        for from in (0..rows).step_by(CHUNK) {
+            let to = rows.min(from + CHUNK);
+            let mass = &self.columns.inertia[from..to];
+            let plain = self.columns.work.is_none() && mass.iter().all(|&mass| mass > T::default());
+            let (spent, finite) = if plain { self.chunk(simd, from, to) } else { self.one_by_one(from, to) };
+            if let Some(sum) = self.columns.sum_of(from) {
+                add_to_sum(sum, spent);
+            }
             if bad.is_none() && !finite {
                 let u = &self.columns.u;
                 let is_bad = |row: &usize| !u[3 * row..3 * row + 3].iter().all(|u| u.to_f64().is_finite());
@@ -74,10 +49,10 @@ impl<T: SimdScalar> WithSimd for Rows<'_, T> {
     }
 }
 
-/// Components of a chunk's nodes.
-const NUMBERS: usize = 3 * SPENT_ROWS;
+/// Nodes whose work is summed before it is added to that of the steps before.
+const CHUNK: usize = 64;
 
-impl<T: SimdScalar> Rows<'_, T> {
+impl<T: SimdScalar> Task<'_, '_, T> {
     /// Any nodes, one after the other. Returns the work against internal forces (J), and whether displacements are finite.
     fn one_by_one(&mut self, from: usize, to: usize) -> (f64, bool) {
         let (mut spent, mut finite) = (0.0, true);
@@ -96,153 +71,193 @@ impl<T: SimdScalar> Rows<'_, T> {
         (spent, finite)
     }
 
-    /// [`SPENT_ROWS`] nodes with mass whose work is not booked: the same operations in the same order as one by one, for
+    /// At most [`CHUNK`] nodes with mass whose work is not booked: the same operations in the same order as one by one, for
     /// registers full of components.
     #[inline(always)]
-    fn chunk<S: Simd>(&mut self, simd: S, from: usize) -> (f64, bool) {
-        let nodes = self.nodes(simd, from);
-        let columns = &mut self.columns;
-        let numbers = 3 * from..3 * from + NUMBERS;
-        let internal = &columns.internal[numbers.clone()];
-        let external = columns.external.map(|all| &all[numbers.clone()]);
-        let u = &mut columns.u[numbers.clone()];
-        let step = &mut columns.step[numbers.clone()];
-        // where a step is prescribed, the work takes another one, kept apart
-        let kept = columns.kept.get(numbers.clone());
-        let mut work = [T::default(); NUMBERS];
-        let lost = columns.compensation.as_mut();
-        let mut lost = lost.map(|[of_u, of_step]| [&mut of_u[numbers.clone()], &mut of_step[numbers.clone()]]);
-        let zero = T::splat(simd, T::default());
-        let force = T::splat(simd, self.factors.force);
-        let (mut astray, mut spent) = (zero, zero);
-        let mut at = 0;
-        while at < NUMBERS {
-            let inner = T::load(simd, &internal[at..]);
-            let outer = match external {
-                Some(external) => T::load(simd, &external[at..]),
-                None => zero,
+    fn chunk<S: Simd>(&mut self, simd: S, from: usize, to: usize) -> (f64, bool) {
+        let factors = self.factors;
+        let columns = &mut *self.columns;
+        let numbers = 3 * from..3 * to;
+        let mut chunk = Chunk {
+            internal: &columns.internal[numbers.clone()],
+            external: columns.external.as_ref().map(|all| &all[numbers.clone()]),
+            u: &mut columns.u[numbers.clone()],
+            step: &mut columns.step[numbers.clone()],
+            lost: columns.compensation.as_mut().map(|lost| lost.each_mut().map(|all| &mut all[numbers.clone()])),
+            force: T::splat(simd, factors.force),
+            astray: T::splat(simd, T::default()),
+            spent: T::splat(simd, T::default()),
+        };
+        let width = T::width::<S>();
+        for node in (from..to).step_by(width) {
+            let nodes = node..to.min(node + width);
+            let constants = Constants {
+                mass: &columns.inertia[nodes.clone()],
+                damping: columns.damping.map(|all| &all[nodes.clone()]),
+                axes: &columns.axes[nodes.clone()],
+                factors,
             };
-            let free = T::load(simd, &nodes.free[at..]);
-            let before = T::load(simd, &step[at..]);
-            let mut change = force * ((outer - inner) * T::load(simd, &nodes.per_mass[at..]));
-            if nodes.damped {
-                change = (change - T::load(simd, &nodes.damping[at..]) * before) * T::load(simd, &nodes.shrink[at..]);
+            let [a, b, c] = constants.of_components(simd);
+            let at = 3 * (node - from);
+            if nodes.len() == width {
+                chunk.register::<true>(simd, at, a);
+                chunk.register::<true>(simd, at + width, b);
+                chunk.register::<true>(simd, at + 2 * width, c);
+            } else {
+                chunk.register::<false>(simd, at, a);
+                chunk.register::<false>(simd, at + width, b);
+                chunk.register::<false>(simd, at + 2 * width, c);
             }
-            let old = T::load(simd, &u[at..]);
-            let (after, new);
-            match &mut lost {
-                None => {
-                    after = free.if_positive(before + change, before);
-                    new = old + after;
-                }
-                Some([of_u, of_step]) => {
-                    let exact = change - T::load(simd, &of_step[at..]);
-                    let rounded = before + exact;
-                    let left = free.if_positive((rounded - before) - exact, zero);
-                    after = free.if_positive(rounded, before);
-                    let exact = (after - left) - T::load(simd, &of_u[at..]);
-                    new = old + exact;
-                    T::store(left, &mut of_step[at..]);
-                    T::store((new - old) - exact, &mut of_u[at..]);
-                }
-            }
-            T::store(after, &mut step[at..]);
-            T::store(new, &mut u[at..]);
-            // what is no number stays none
-            astray += new * zero;
-            let along = inner * (before + after);
-            match kept {
-                Some(_) => T::store(along, &mut work[at..]),
-                None => spent += along,
-            }
-            at += T::width::<S>();
         }
-        let mut lanes = [T::default(); LANES];
-        T::store(astray, &mut lanes);
-        let finite = lanes.iter().all(|&lane| lane == T::default());
-        if self.columns.sums.is_empty() {
+        let lanes = |register| {
+            let mut lanes = [T::default(); LANES];
+            T::store(register, &mut lanes);
+            lanes
+        };
+        let finite = lanes(chunk.astray).iter().all(|&lane| lane == T::default());
+        if columns.sums.is_empty() {
             return (0.0, finite);
         }
-        if kept.is_some() {
-            return (self.spent(from, &nodes.free, &mut work), finite);
-        }
-        let mut lanes = [T::default(); LANES];
-        T::store(spent, &mut lanes);
-        let spent: f64 = lanes.iter().map(|lane| lane.to_f64()).sum();
-        (0.5 * self.factors.booked.to_f64() * spent, finite)
-    }
-
-    /// What each component needs of its node.
-    #[inline(always)]
-    fn nodes<S: Simd>(&self, simd: S, from: usize) -> Nodes<T> {
-        let Factors { half_step, divide, relaxation, .. } = *self.factors;
-        let columns = &self.columns;
-        let (zero, one) = (T::default(), T::from_f64(1.0));
-        let rows = from..from + SPENT_ROWS;
-        let mut nodes = Nodes {
-            per_mass: [zero; NUMBERS],
-            damping: [zero; NUMBERS],
-            shrink: [zero; NUMBERS],
-            free: [one; NUMBERS],
-            damped: columns.damping.is_some() || relaxation > zero,
-        };
-        let mut per_mass = [zero; SPENT_ROWS];
-        let mass = &columns.mass[rows.clone()];
-        let mut at = 0;
-        while at < SPENT_ROWS {
-            T::store(T::splat(simd, one) / T::load(simd, &mass[at..]), &mut per_mass[at..]);
-            at += T::width::<S>();
-        }
-        for (three, per_mass) in nodes.per_mass.chunks_exact_mut(3).zip(per_mass) {
-            three.copy_from_slice(&[per_mass; 3]);
-        }
-        if nodes.damped {
-            for (row, per_mass) in per_mass.into_iter().enumerate() {
-                let coefficient = columns.damping.map_or(zero, |all| all[from + row]);
-                let a = coefficient * half_step * per_mass + relaxation;
-                let shrink = if a > zero { one / (one + divide * a) } else { one };
-                nodes.damping[3 * row..3 * row + 3].copy_from_slice(&[(one + divide) * a; 3]);
-                nodes.shrink[3 * row..3 * row + 3].copy_from_slice(&[shrink; 3]);
+        let mut spent: f64 = lanes(chunk.spent).iter().map(|lane| lane.to_f64()).sum();
+        // along prescribed axes the last step was kept apart
+        for (row, axes) in (from..to).map(|row| (row, columns.axes[row])).filter(|&(_, axes)| axes != 0) {
+            for at in (0..3).filter(|i| axes >> i & 1 == 1).map(|i| 3 * row + i) {
+                let last = columns.kept.get(at).map_or(0.0, |&bits| f64::from(f32::from_bits(bits)));
+                spent += columns.internal[at].to_f64() * (last + columns.step[at].to_f64());
             }
         }
-        for (row, &axes) in columns.axes[rows].iter().enumerate().filter(|(_, axes)| **axes != 0) {
-            for i in (0..3).filter(|i| axes >> i & 1 == 1) {
-                nodes.free[3 * row + i] = zero;
-            }
-        }
-        nodes
-    }
-
-    /// Work against internal forces (J), from internal forces times twice the mean step; where a step is prescribed, the one
-    /// before it was kept apart.
-    #[inline(always)]
-    fn spent(&self, from: usize, free: &[T; NUMBERS], work: &mut [T; NUMBERS]) -> f64 {
-        let columns = &self.columns;
-        let numbers = 3 * from..3 * from + NUMBERS;
-        let (internal, step) = (&columns.internal[numbers.clone()], &columns.step[numbers.clone()]);
-        let kept = columns.kept.get(numbers);
-        if let Some(kept) = kept {
-            for (at, &bits) in kept.iter().enumerate().filter(|(at, _)| free[*at] == T::default()) {
-                let last = T::from_f64(f64::from(f32::from_bits(bits)));
-                work[at] = internal[at] * (last + step[at]);
-            }
-        }
-        let mut sums = [0.0; 4];
-        for four in work.chunks_exact(12) {
-            for (sum, work) in sums.iter_mut().zip(four.chunks_exact(3)) {
-                *sum += (self.factors.booked * (work[0] + work[1] + work[2])).to_f64();
-            }
-        }
-        0.5 * ((sums[0] + sums[1]) + (sums[2] + sums[3]))
+        (0.5 * factors.booked.to_f64() * spent, finite)
     }
 }
 
-/// What each component of a chunk needs of its node.
-struct Nodes<T> {
-    per_mass: [T; NUMBERS],
-    damping: [T; NUMBERS],
-    shrink: [T; NUMBERS],
+/// What some nodes have, at most a register full.
+struct Constants<'a, T> {
+    mass: &'a [T],
+    damping: Option<&'a [T]>,
+    axes: &'a [u32],
+    factors: &'a Factors<T>,
+}
+
+/// What a register full of components needs.
+struct OfComponents<V> {
+    per_mass: V,
+    /// (1 + divide) a, and what the step shrinks with.
+    damping: Option<[V; 2]>,
     /// 1, or 0 along constrained axes.
-    free: [T; NUMBERS],
-    damped: bool,
+    free: Option<V>,
+}
+
+impl<T: SimdScalar> Constants<'_, T> {
+    #[inline(always)]
+    fn of_components<S: Simd>(&self, simd: S) -> [OfComponents<T::Vector<S>>; 3] {
+        let Factors { half_step, divide, relaxation, .. } = *self.factors;
+        let splat = |number: T| T::splat(simd, number);
+        let (zero, one) = (T::default(), T::from_f64(1.0));
+        let mass = T::load_part(simd, self.mass);
+        // places without a node have no mass
+        let per_mass = mass.if_positive(splat(one) / mass, splat(zero));
+        let [x, y, z] = T::thrice(per_mass);
+        let damping = (self.damping.is_some() || relaxation > zero).then(|| {
+            let coefficient = self.damping.map_or(splat(zero), |all| T::load_part(simd, all));
+            let a = coefficient * splat(half_step) * per_mass + splat(relaxation);
+            let shrink = a.if_positive(splat(one) / (splat(one) + splat(divide) * a), splat(one));
+            let ([ax, ay, az], [sx, sy, sz]) = (T::thrice(splat(one + divide) * a), T::thrice(shrink));
+            [[ax, sx], [ay, sy], [az, sz]]
+        });
+        let [dx, dy, dz] = match damping {
+            Some(damping) => damping.map(Some),
+            None => [None; 3],
+        };
+        let [fx, fy, fz] = match self.axes.iter().fold(0, |all, axes| all | axes) {
+            0 => [None; 3],
+            _ => self.free(simd).map(Some),
+        };
+        [
+            OfComponents { per_mass: x, damping: dx, free: fx },
+            OfComponents { per_mass: y, damping: dy, free: fy },
+            OfComponents { per_mass: z, damping: dz, free: fz },
+        ]
+    }
+
+    #[inline(always)]
+    fn free<S: Simd>(&self, simd: S) -> [T::Vector<S>; 3] {
+        let mut free = [T::from_f64(1.0); 3 * LANES];
+        for (three, axes) in free.chunks_exact_mut(3).zip(self.axes) {
+            for i in (0..3).filter(|i| axes >> i & 1 == 1) {
+                three[i] = T::default();
+            }
+        }
+        let width = T::width::<S>();
+        [T::load(simd, &free), T::load(simd, &free[width..]), T::load(simd, &free[2 * width..])]
+    }
+}
+
+/// The columns of a chunk's nodes, and what is summed over them.
+struct Chunk<'a, T: SimdScalar, S: Simd> {
+    internal: &'a [T],
+    external: Option<&'a [T]>,
+    u: &'a mut [T],
+    step: &'a mut [T],
+    lost: Option<[&'a mut [T]; 2]>,
+    force: T::Vector<S>,
+    /// Not 0 where a displacement is not finite.
+    astray: T::Vector<S>,
+    /// Internal forces times twice the mean step, but along constrained axes.
+    spent: T::Vector<S>,
+}
+
+impl<T: SimdScalar, S: Simd> Chunk<'_, T, S> {
+    /// A register full of components, or with `WHOLE` false what is left of them.
+    #[inline(always)]
+    fn register<const WHOLE: bool>(&mut self, simd: S, at: usize, constants: OfComponents<T::Vector<S>>) {
+        let at = if WHOLE { at } else { at.min(self.u.len()) };
+        macro_rules! load {
+            ($from:expr) => {
+                if WHOLE { T::load(simd, &$from[at..]) } else { T::load_part(simd, &$from[at..]) }
+            };
+        }
+        macro_rules! store {
+            ($value:expr, $to:expr) => {
+                if WHOLE { T::store::<S>($value, &mut $to[at..]) } else { T::store_part::<S>($value, &mut $to[at..]) }
+            };
+        }
+        let zero = T::splat(simd, T::default());
+        let inner = load!(self.internal);
+        let outer = match self.external {
+            Some(external) => load!(external),
+            None => zero,
+        };
+        let before = load!(self.step);
+        let mut change = self.force * ((outer - inner) * constants.per_mass);
+        if let Some([damping, shrink]) = constants.damping {
+            change = (change - damping * before) * shrink;
+        }
+        let old = load!(self.u);
+        let if_free = |moved: T::Vector<S>, held: T::Vector<S>| match constants.free {
+            Some(free) => free.if_positive(moved, held),
+            None => moved,
+        };
+        let (after, new);
+        match &mut self.lost {
+            None => {
+                after = if_free(before + change, before);
+                new = old + after;
+            }
+            Some([of_u, of_step]) => {
+                let exact = change - load!(of_step);
+                let rounded = before + exact;
+                let left = if_free((rounded - before) - exact, zero);
+                after = if_free(rounded, before);
+                let exact = (after - left) - load!(of_u);
+                new = old + exact;
+                store!(left, of_step);
+                store!((new - old) - exact, of_u);
+            }
+        }
+        store!(after, self.step);
+        store!(new, self.u);
+        // what is no number stays none
+        self.astray += new * zero;
+        self.spent += if_free(inner * (before + after), zero);
+    }
 }

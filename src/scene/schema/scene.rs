@@ -39,7 +39,7 @@ pub struct Scene {
     /// Systems in the order they run in each step; left out, it is derived from what the scene contains.
     #[serde(default)]
     pub schedule: Option<Vec<String>>,
-    /// Whether neighbouring systems that work node by node share a pass over the nodes.
+    /// Whether neighbouring systems that work node by node share a pass.
     #[serde(default = "yes")]
     pub fuse: bool,
     /// Parameters of custom systems, by the system's name.

@@ -41,7 +41,7 @@ fn write_system(system: &SystemInUse, on_gpu: bool, f: &mut Formatter<'_>) -> Re
     };
     writeln!(f, "  {:16}  because: {}{place}{every}", "", system.because)?;
     if !system.shares_with.is_empty() {
-        writeln!(f, "  {:16}  in one pass over the nodes with {}", "", system.shares_with.join(", "))?;
+        writeln!(f, "  {:16}  in one pass with {}", "", system.shares_with.join(", "))?;
     }
     let Some(travels) = &system.travels else { return Ok(()) };
     let list = |names: &[&str], bytes: u64| match names {

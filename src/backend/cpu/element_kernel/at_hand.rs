@@ -44,25 +44,46 @@ pub(super) struct AtHand<'a> {
     pub(super) corners: &'a [u16],
 }
 
-impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, '_, E, T, L, EFFECTS> {
     /// Displacements of the patch's nodes, and θ where elements take their pressure from it, to hand; no forces yet.
     #[inline(always)]
     pub(super) fn bring(&self, scratch: &mut Scratch<T>) {
         let Some(at_hand) = &self.at_hand else { return };
-        for (row, &node) in scratch.read.iter_mut().zip(at_hand.nodes) {
-            let u = &self.displacement[3 * node as usize..3 * node as usize + 3];
-            let theta =
-                if E::PRESSURE == PressureFrom::Nodes { self.nodal_volume_change[node as usize] } else { T::default() };
-            *row = [u[0], u[1], u[2], theta];
+        let theta = |node: u32| match E::PRESSURE {
+            PressureFrom::Nodes => self.nodal_volume_change[node as usize],
+            _ => T::default(),
+        };
+        let (inside, others) = at_hand.nodes.split_at(self.rows_inside());
+        if let Some(columns) = &self.inside {
+            for ((row, &node), u) in scratch.read.iter_mut().zip(inside).zip(columns.u.chunks_exact(3)) {
+                *row = [u[0], u[1], u[2], theta(node)];
+            }
+        }
+        for (row, &node) in scratch.read[inside.len()..].iter_mut().zip(others) {
+            let first = 3 * (node as usize - self.first_row);
+            let u = &self.displacement[first..first + 3];
+            *row = [u[0], u[1], u[2], theta(node)];
         }
         scratch.sums[..at_hand.nodes.len()].fill([T::default(); 4]);
+    }
+
+    /// How many of the patch's nodes, the first ones, move with it.
+    #[inline(always)]
+    fn rows_inside(&self) -> usize {
+        self.inside.as_ref().map_or(0, |columns| columns.rows())
     }
 
     /// The sums of forces from at hand.
     #[inline(always)]
     pub(super) fn bring_back(&mut self, scratch: &Scratch<T>) {
+        let inside = self.rows_inside();
+        if let Some(columns) = &mut self.inside {
+            for (force, sum) in columns.internal.chunks_exact_mut(3).zip(&*scratch.sums) {
+                force.copy_from_slice(&sum[..3]);
+            }
+        }
         if self.at_hand.is_some() {
-            for (force, sum) in self.force.chunks_exact_mut(3).zip(&*scratch.sums) {
+            for (force, sum) in self.force[3 * inside..].chunks_exact_mut(3).zip(&scratch.sums[inside..]) {
                 force.copy_from_slice(&sum[..3]);
             }
         }

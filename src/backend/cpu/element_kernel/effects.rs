@@ -10,7 +10,7 @@ use pulp::{Simd, WithSimd};
 /// Fibres and their unit vectors at rest.
 type FibresAlong<R> = (Fibres<R>, [R; 3]);
 
-impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, '_, E, T, L, EFFECTS> {
     /// S of the fibres (Pa).
     #[inline(always)]
     pub(super) fn fibre_stress<S: Simd>(

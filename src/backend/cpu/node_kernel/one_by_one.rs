@@ -49,8 +49,8 @@ fn compensated_add<T: Scalar>(sum: &mut T, lost: &mut T, change: T) {
 }
 
 /// Adds to a number that is kept as two of f32, as bits.
-pub(super) fn add_to_sum(sum: Option<&mut [u32]>, part: f64) {
-    let Some([high, low, ..]) = sum else { return };
+pub(super) fn add_to_sum(sum: &mut [u32], part: f64) {
+    let [high, low, ..] = sum else { return };
     let total = f64::from(f32::from_bits(*high)) + f64::from(f32::from_bits(*low)) + part;
     let rounded = total as f32;
     *high = rounded.to_bits();
@@ -72,11 +72,11 @@ impl<T: Scalar> OneNode<T> {
     pub(super) fn of(columns: &NodeColumns<'_, T>, row: usize) -> Self {
         let three = |all: &[T]| [0, 1, 2].map(|i| all[3 * row + i]);
         Self {
-            mass: columns.mass[row],
+            mass: columns.inertia[row],
             axes: columns.axes[row],
             damping: columns.damping.map_or(T::default(), |all| all[row]),
             internal: three(columns.internal),
-            external: columns.external.map_or([T::default(); 3], three),
+            external: columns.external.as_deref().map_or([T::default(); 3], three),
             kept: columns.kept.get(3 * row..3 * row + 3).map(|bits| [bits[0], bits[1], bits[2]]),
         }
     }

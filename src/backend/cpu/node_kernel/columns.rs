@@ -1,0 +1,138 @@
+//! What moves nodes, and how it is shared out among tasks.
+
+use crate::components::{SPENT_ROWS, WORK_NUMBERS};
+
+/// Some rows of a body's node columns, which no other task has; layouts as in [`components`](crate::components).
+pub struct NodeColumns<'a, T> {
+    /// Row of the first node.
+    pub first: usize,
+    /// Mass that weighs (kg).
+    pub mass: &'a [T],
+    /// Mass that is slow to move (kg): in a static analysis another one.
+    pub inertia: &'a [T],
+    /// Forces of elements (N).
+    pub internal: &'a mut [T],
+    /// Loads (N).
+    pub external: Option<&'a mut [T]>,
+    /// Which axes are constrained, as bits.
+    pub axes: &'a [u32],
+    /// Damping coefficients (kg/s).
+    pub damping: Option<&'a [T]>,
+    /// Displacements (m).
+    pub u: &'a mut [T],
+    /// Steps (m).
+    pub step: &'a mut [T],
+    /// What rounding left out of displacements, and of steps.
+    pub compensation: Option<[&'a mut [T]; 2]>,
+    /// Work booked.
+    pub work: Option<&'a mut [T]>,
+    /// Work against internal forces: a place for each row that is a multiple of [`SPENT_ROWS`], and one at the end of all; none
+    /// where the whole work is booked.
+    pub sums: &'a mut [u32],
+    /// Bits of the last steps (m) along prescribed axes; none where nothing is moved as told or all work is booked.
+    pub kept: &'a mut [u32],
+}
+
+impl<'a, T> NodeColumns<'a, T> {
+    /// How many nodes.
+    pub fn rows(&self) -> usize {
+        self.axes.len()
+    }
+
+    /// Takes the first so many of them away.
+    pub fn take(&mut self, rows: usize) -> Self {
+        let places = 2 * self.places_until(rows);
+        let taken = NodeColumns {
+            first: self.first,
+            mass: first(&mut self.mass, rows),
+            inertia: first(&mut self.inertia, rows),
+            internal: first_mut(&mut self.internal, 3 * rows),
+            external: self.external.as_mut().map(|all| first_mut(all, 3 * rows)),
+            axes: first(&mut self.axes, rows),
+            damping: self.damping.as_mut().map(|all| first(all, rows)),
+            u: first_mut(&mut self.u, 3 * rows),
+            step: first_mut(&mut self.step, 3 * rows),
+            compensation: self.compensation.as_mut().map(|both| both.each_mut().map(|all| first_mut(all, 3 * rows))),
+            work: self.work.as_mut().map(|all| first_mut(all, WORK_NUMBERS * rows)),
+            sums: first_mut(&mut self.sums, places),
+            kept: first_mut(&mut self.kept, 3 * rows),
+        };
+        self.first += rows;
+        taken
+    }
+
+    /// Tasks of so many rows.
+    pub fn tasks(mut self, rows: usize) -> Vec<Self> {
+        let mut tasks = Vec::with_capacity(self.rows().div_ceil(rows));
+        while self.rows() > rows {
+            tasks.push(self.take(rows));
+        }
+        tasks.push(self);
+        tasks
+    }
+
+    /// Places in `sums` of the rows before one.
+    fn places_until(&self, row: usize) -> usize {
+        (self.first + row).div_ceil(SPENT_ROWS) - self.first.div_ceil(SPENT_ROWS)
+    }
+
+    /// The place to which the work of rows from `row` on is added: theirs, or the last of this task.
+    pub(super) fn sum_of(&mut self, row: usize) -> Option<&mut [u32]> {
+        let place = self.places_until(row).min((self.sums.len() / 2).checked_sub(1)?);
+        Some(&mut self.sums[2 * place..2 * place + 2])
+    }
+}
+
+/// Takes the first so many away, if there are any.
+fn first<'a, X>(all: &mut &'a [X], count: usize) -> &'a [X] {
+    let (taken, others) = all.split_at(count.min(all.len()));
+    *all = others;
+    taken
+}
+
+fn first_mut<'a, X>(all: &mut &'a mut [X], count: usize) -> &'a mut [X] {
+    let count = count.min(all.len());
+    let (taken, others) = std::mem::take(all).split_at_mut(count);
+    *all = others;
+    taken
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// However rows are shared out, in parts of no less than [`SPENT_ROWS`] but for the last, every task has a place of its own.
+    #[test]
+    fn every_task_has_a_place_for_its_work() {
+        let nodes = 1003;
+        for cuts in [vec![16, 33, 49, 65, 1000], vec![1002], vec![31, 992]] {
+            let (mut floats, mut words) = (vec![0.0_f32; 4 * 3 * nodes], vec![0_u32; 2 * (nodes.div_ceil(16) + 1)]);
+            let (read, axes) = (vec![1.0; nodes], vec![0; nodes]);
+            let mut parts = floats.chunks_mut(3 * nodes);
+            let mut part = || parts.next().unwrap_or_default();
+            let mut rest = NodeColumns {
+                first: 0,
+                mass: &read,
+                inertia: &read,
+                internal: part(),
+                external: None,
+                axes: &axes,
+                damping: None,
+                u: part(),
+                step: part(),
+                compensation: None,
+                work: None,
+                sums: &mut words,
+                kept: &mut [],
+            };
+            let mut places = 0;
+            for cut in cuts {
+                let mut task = rest.take(cut - rest.first);
+                assert!(task.sum_of(0).is_some() && task.sum_of(task.rows() - 1).is_some(), "until {cut}");
+                places += task.sums.len() / 2;
+            }
+            assert!(rest.sum_of(0).is_some());
+            assert_eq!(places + rest.sums.len() / 2, nodes.div_ceil(16) + 1);
+        }
+    }
+}
