@@ -39,6 +39,24 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
         pressure: Option<R>,
         fibres: Option<(Fibres<R>, [R; 3])>,
     ) -> (Mat3<R>, R) {
+        self.stress_relaxed(
+            gradient,
+            pressure,
+            fibres,
+            #[inline(always)]
+            |isochoric| isochoric,
+        )
+    }
+
+    /// The same where something becomes of S_iso (Pa), fibres and all, before the pressure comes to it: `relax` says what.
+    #[inline(always)]
+    fn stress_relaxed(
+        &self,
+        gradient: &Mat3<R>,
+        pressure: Option<R>,
+        fibres: Option<(Fibres<R>, [R; 3])>,
+        relax: impl FnOnce(Sym3<R>) -> Sym3<R>,
+    ) -> (Mat3<R>, R) {
         let k = self.kinematics(gradient);
         let pressure = match pressure {
             Some(pressure) => pressure,
@@ -48,7 +66,7 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
         if let Some((fibres, direction)) = fibres {
             isochoric = isochoric.plus(&fibres.isochoric(&k, direction));
         }
-        (self.first_stress(gradient, &k, &isochoric, pressure), k.true_j)
+        (self.first_stress(gradient, &k, &relax(isochoric), pressure), k.true_j)
     }
 
     /// S_iso (Pa): all of the second Piola-Kirchhoff stress that the pressure does not give.

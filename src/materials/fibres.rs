@@ -1,6 +1,7 @@
 //! One family of fibres: transverse isotropy.
 
 use super::Kinematics;
+use super::kinematics::j_m23_change;
 use crate::math::{Real, Sym3, dot, dot_plus};
 use bevy_ecs::component::Component;
 
@@ -51,13 +52,19 @@ impl<R: Real> Fibres<R> {
     /// s = 2η(Ī₄ − 1)J^(−2/3) (Pa), F a and I₄, straight from ∇u, J − 1 and J^(−2/3).
     #[inline(always)]
     pub(super) fn pull(&self, gradient: &[[R; 3]; 3], a: [R; 3], volume_change: R, j_m23: R) -> (R, [R; 3], R) {
-        let (one, two) = (self.eta.constant(1.0), self.eta.constant(2.0));
         let ha = [dot(gradient[0], a), dot(gradient[1], a), dot(gradient[2], a)];
-        let i4_change = dot_plus(ha, ha, two * dot(a, ha));
-        let w = super::kinematics::j_m23_change(volume_change, j_m23);
-        let change = i4_change + w + w * i4_change;
-        let pull = two * self.eta * self.pulling(change) * j_m23;
-        (pull, [a[0] + ha[0], a[1] + ha[1], a[2] + ha[2]], one + i4_change)
+        let i4_change = dot_plus(ha, ha, self.eta.constant(2.0) * dot(a, ha));
+        let (pull, i4) = self.pull_of(i4_change, volume_change, j_m23);
+        (pull, [a[0] + ha[0], a[1] + ha[1], a[2] + ha[2]], i4)
+    }
+
+    /// s (Pa) and I₄ from I₄ − 1, J − 1 and J^(−2/3).
+    #[inline(always)]
+    pub(super) fn pull_of(&self, i4_change: R, volume_change: R, j_m23: R) -> (R, R) {
+        let (one, two) = (self.eta.constant(1.0), self.eta.constant(2.0));
+        let i4 = one + i4_change;
+        let change = j_m23_change(volume_change, j_m23).mul_add(i4, i4_change);
+        (self.pulling(change) * (two * self.eta * j_m23), i4)
     }
 
     /// Strain energy per rest volume (J/m³).

@@ -1,5 +1,6 @@
 //! The neo-Hookean law in isochoric and volumetric parts.
 
+use super::kinematics::{twice_green_strain, volume_change};
 use super::{Elastic, Fibres, J_FLOOR, Kinematics};
 use crate::math::{Mat3, Real, Sym3, dot, dot_plus, minor};
 use bevy_ecs::component::Component;
@@ -104,6 +105,60 @@ impl<R: Real> Elastic<R> for NeoHookean<R> {
             }
         }
         (stress, true_j)
+    }
+
+    /// With T = 2E and D = adj C − I = tr T I − T + adj T: S_iso = d I − (μ' − d) D + s a⊗a, where d = (μ'(3(J² − 1) − tr T) − s I₄)/(3J²)
+    /// is what is left of terms of the size of μ; the pressure adds p/J (I + D).
+    #[inline(always)]
+    fn stress_relaxed(
+        &self,
+        gradient: &Mat3<R>,
+        pressure: Option<R>,
+        fibres: Option<(Fibres<R>, [R; 3])>,
+        relax: impl FnOnce(Sym3<R>) -> Sym3<R>,
+    ) -> (Mat3<R>, R) {
+        let h = &gradient.0;
+        let (one, two, three) = (self.shear.constant(1.0), self.shear.constant(2.0), self.shear.constant(3.0));
+        let change = volume_change(gradient);
+        let true_j = one + change;
+        let change = change.max(one.constant(J_FLOOR - 1.0));
+        let j_m13 = (one + change).inverse_cbrt();
+        let j_m23 = j_m13 * j_m13;
+        // 1/J and 1/J², where a division would take as long as all of the rest
+        let per_j = j_m23 * j_m13;
+        let shear = self.shear * j_m23;
+        let t = Sym3(twice_green_strain(gradient));
+        let mut left = shear * three.mul_add(change * (two + change), -t.trace());
+        let third = per_j * per_j * one.constant(1.0 / 3.0);
+        left = left * third;
+        let mut square = None;
+        if let Some((fibres, a)) = fibres {
+            let a = Sym3::square_of(a);
+            let (pull, i4) = fibres.pull_of(t.contracted(&a), change, j_m23);
+            left = (-pull).mul_add(i4 * third, left);
+            square = Some((pull, a));
+        }
+        let adjugate_change = t.adjugate_change();
+        let factor = left - shear;
+        let mut isochoric = adjugate_change;
+        for i in 0..6 {
+            isochoric.0[i] =
+                if i < 3 { factor.mul_add(adjugate_change.0[i], left) } else { factor * adjugate_change.0[i] };
+            if let Some((pull, a)) = square {
+                isochoric.0[i] = pull.mul_add(a.0[i], isochoric.0[i]);
+            }
+        }
+        let mut stress = relax(isochoric);
+        let pressure = per_j
+            * match pressure {
+                Some(pressure) => pressure,
+                None => self.bulk * change,
+            };
+        for i in 0..6 {
+            let other = if i < 3 { stress.0[i] + pressure } else { stress.0[i] };
+            stress.0[i] = pressure.mul_add(adjugate_change.0[i], other);
+        }
+        (gradient.plus_identity_times(&stress), true_j)
     }
 
     /// κ(J − 1).

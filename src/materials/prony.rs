@@ -61,26 +61,39 @@ impl<R: Real> PronyTerm<R> {
 
     /// The share of a pressure (Pa) that has relaxed.
     #[inline(always)]
-    pub fn relaxed_pressure(&self, pressure: R, memory: R) -> R {
+    pub fn relaxed_component(&self, pressure: R, memory: R) -> R {
         self.stress.mul_add(pressure, self.memory * memory)
+    }
+
+    /// `rest` less the share.
+    #[inline(always)]
+    pub fn less_relaxed(&self, rest: R, stress: R, memory: R) -> R {
+        (-self.memory).mul_add(memory, (-self.stress).mul_add(stress, rest))
     }
 
     /// The memory of a pressure after the step.
     #[inline(always)]
-    pub fn pressure_carried_on(&self, pressure: R, memory: R) -> R {
+    pub fn component_carried_on(&self, pressure: R, memory: R) -> R {
         self.rate.mul_add(self.aim.mul_add(pressure, -memory), memory)
     }
 
     /// Υ of this term (Pa) for the present isochoric stress and memory.
     #[inline(always)]
     pub fn relaxed(&self, isochoric: &Sym3<R>, memory: &Sym3<R>) -> Sym3<R> {
-        isochoric.scaled(self.stress).plus(&memory.scaled(self.memory))
+        let mut relaxed = *memory;
+        for i in 0..6 {
+            relaxed.0[i] = self.stress.mul_add(isochoric.0[i], self.memory * memory.0[i]);
+        }
+        relaxed
     }
 
     /// The memory after the step.
     #[inline(always)]
     pub fn carried_on(&self, isochoric: &Sym3<R>, memory: &Sym3<R>) -> Sym3<R> {
-        let change = isochoric.scaled(self.aim).plus(&memory.scaled(self.rate.constant(-1.0))).scaled(self.rate);
-        memory.plus(&change)
+        let mut carried_on = *memory;
+        for i in 0..6 {
+            carried_on.0[i] = self.component_carried_on(isochoric.0[i], memory.0[i]);
+        }
+        carried_on
     }
 }

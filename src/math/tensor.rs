@@ -114,6 +114,22 @@ impl<R: Real> Sym3<R> {
         ])
     }
 
+    /// The adjugate of I + self, less I; keeps the digits of a small matrix.
+    #[inline(always)]
+    pub fn adjugate_change(&self) -> Self {
+        let [xx, yy, zz, xy, yz, xz] = self.0;
+        let one = xx.constant(1.0);
+        let (cx, cy, cz) = (one + xx, one + yy, one + zz);
+        Sym3([
+            (-yz).mul_add(yz, yy.mul_add(zz, yy + zz)),
+            (-xz).mul_add(xz, xx.mul_add(zz, xx + zz)),
+            (-xy).mul_add(xy, xx.mul_add(yy, xx + yy)),
+            minor(xz, xy, cz, yz),
+            minor(xy, cx, yz, xz),
+            minor(xy, cy, xz, yz),
+        ])
+    }
+
     /// The product with a symmetric matrix that has the same eigenvectors (so that the product is symmetric).
     #[inline(always)]
     pub fn times_coaxial(&self, other: &Self) -> Self {

@@ -3,7 +3,7 @@
 use super::Patch;
 use crate::components::FamilyDirection;
 use crate::elements::Element;
-use crate::materials::{Elastic, ExponentialFibre, Fibres, Kinematics};
+use crate::materials::{Elastic, ExponentialFibre, Fibres, Kinematics, PronyTerm};
 use crate::math::{LANES, Real, SimdScalar, Sym3};
 use pulp::{Simd, WithSimd};
 
@@ -35,6 +35,16 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
             |number: T| T::splat(simd, number),
         );
         Some((fibres, self.direction(simd, group, at, direction)))
+    }
+
+    /// Unit vectors of the fibres.
+    #[inline(always)]
+    pub(super) fn along<S: Simd>(&self, simd: S, group: usize, at: usize) -> [T::Vector<S>; 3] {
+        let (vectors, rows_a_group) = self.along;
+        let Some([x, y, z]) = vectors[group * rows_a_group..].first_chunk() else {
+            return [T::splat(simd, T::default()); 3];
+        };
+        [T::load(simd, &x[at..]), T::load(simd, &y[at..]), T::load(simd, &z[at..])]
     }
 
     /// Of all families that stiffen exponentially.
@@ -99,9 +109,9 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
             let first = group * self.law.memory_numbers(E::POINTS) + 6 * self.law.prony.len() * E::POINTS;
             let place = (first + number) * LANES + at;
             let memory = T::load(simd, &self.memory[place..]);
-            rest -= term.relaxed_pressure(pressure, memory);
+            rest -= term.relaxed_component(pressure, memory);
             if point + 1 == E::POINTS {
-                T::store(term.pressure_carried_on(pressure, memory), &mut self.memory[place..]);
+                T::store(term.component_carried_on(pressure, memory), &mut self.memory[place..]);
             }
         }
         rest
@@ -117,28 +127,42 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         point: usize,
         isochoric: Sym3<T::Vector<S>>,
     ) -> Sym3<T::Vector<S>> {
-        let terms = self.law.prony.len();
-        let mut stress = isochoric;
-        for (number, term) in self.law.prony.iter().enumerate() {
-            let term = term.map(
-                #[inline(always)]
-                |number: T| T::splat(simd, number),
-            );
-            let first = (group * self.law.memory_numbers(E::POINTS) + 6 * (point * terms + number)) * LANES + at;
-            let mut memory = isochoric;
-            for i in 0..6 {
-                memory.0[i] = T::load(simd, &self.memory[first + i * LANES..]);
-            }
-            let relaxed = term.relaxed(&isochoric, &memory);
-            for i in 0..6 {
-                stress.0[i] -= relaxed.0[i];
-            }
-            let memory = term.carried_on(&isochoric, &memory);
-            for i in 0..6 {
-                T::store(memory.0[i], &mut self.memory[first + i * LANES..]);
+        let terms = &self.law.prony[..];
+        let first = group * self.memory_rows + 6 * point * terms.len();
+        let rows = &mut self.memory.as_chunks_mut::<LANES>().0[first..];
+        let mut rest = isochoric;
+        match terms {
+            [term] => relax_by(simd, term, at, &isochoric, &mut rest, rows),
+            _ => {
+                for (term, rows) in terms.iter().zip(rows.chunks_exact_mut(6)) {
+                    relax_by(simd, term, at, &isochoric, &mut rest, rows);
+                }
             }
         }
-        stress
+        rest
+    }
+}
+
+/// Takes Υ of a term from `rest` and carries its memory on.
+#[inline(always)]
+fn relax_by<T: SimdScalar, S: Simd>(
+    simd: S,
+    term: &PronyTerm<T>,
+    at: usize,
+    isochoric: &Sym3<T::Vector<S>>,
+    rest: &mut Sym3<T::Vector<S>>,
+    rows: &mut [[T; LANES]],
+) {
+    let term = term.map(
+        #[inline(always)]
+        |number: T| T::splat(simd, number),
+    );
+    let Some(rows) = rows.first_chunk_mut::<6>() else { return };
+    for i in 0..6 {
+        let row = &mut rows[i][at..];
+        let memory = T::load(simd, row);
+        rest.0[i] = term.less_relaxed(rest.0[i], isochoric.0[i], memory);
+        T::store(term.component_carried_on(isochoric.0[i], memory), row);
     }
 }
 
