@@ -42,7 +42,10 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
         self.stress_relaxed(
             gradient,
             pressure,
-            fibres,
+            fibres.map(
+                #[inline(always)]
+                |(fibres, direction)| (fibres, Sym3::square_of(direction)),
+            ),
             #[inline(always)]
             |isochoric| isochoric,
         )
@@ -54,7 +57,7 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
         &self,
         gradient: &Mat3<R>,
         pressure: Option<R>,
-        fibres: Option<(Fibres<R>, [R; 3])>,
+        fibres: Option<(Fibres<R>, Sym3<R>)>,
         relax: impl FnOnce(Sym3<R>) -> Sym3<R>,
     ) -> (Mat3<R>, R) {
         let k = self.kinematics(gradient);
@@ -63,8 +66,8 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
             None => self.pressure(self.volume_measure(&k)),
         };
         let mut isochoric = self.isochoric(&k);
-        if let Some((fibres, direction)) = fibres {
-            isochoric = isochoric.plus(&fibres.isochoric(&k, direction));
+        if let Some((fibres, along_squared)) = fibres {
+            isochoric = isochoric.plus(&fibres.isochoric_along(&k, &along_squared));
         }
         (self.first_stress(gradient, &k, &relax(isochoric), pressure), k.true_j)
     }

@@ -114,7 +114,7 @@ impl<R: Real> Elastic<R> for NeoHookean<R> {
         &self,
         gradient: &Mat3<R>,
         pressure: Option<R>,
-        fibres: Option<(Fibres<R>, [R; 3])>,
+        fibres: Option<(Fibres<R>, Sym3<R>)>,
         relax: impl FnOnce(Sym3<R>) -> Sym3<R>,
     ) -> (Mat3<R>, R) {
         let h = &gradient.0;
@@ -133,7 +133,6 @@ impl<R: Real> Elastic<R> for NeoHookean<R> {
         left = left * third;
         let mut square = None;
         if let Some((fibres, a)) = fibres {
-            let a = Sym3::square_of(a);
             let (pull, i4) = fibres.pull_of(t.contracted(&a), change, j_m23);
             left = (-pull).mul_add(i4 * third, left);
             square = Some((pull, a));

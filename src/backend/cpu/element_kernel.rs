@@ -180,9 +180,12 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd for O
     fn with_simd<S: Simd>(self, simd: S) -> bool {
         let Self { mut patch, scratch } = self;
         patch.bring(scratch);
-        let law = patch.in_registers(simd);
+        let mut law = patch.in_registers(simd);
         let mut worst = T::splat(simd, T::default());
         for group in 0..patch.connectivity.len() / E::NODES {
+            if EFFECTS == FIBRES | VISCOSITY && (group == 0 || patch.along.1 > 0) {
+                patch.square_along(simd, group, &mut law.along_squared);
+            }
             let mut at = 0;
             while at < LANES {
                 worst = worst.max(patch.part_of_group(simd, &law, group, at, scratch));
@@ -243,16 +246,28 @@ pub(super) fn corner_registers<E: Element, T: SimdScalar, S: Simd>(
     u
 }
 
+/// Six rows from lane `at` on.
+#[inline(always)]
+fn rows_from<T: SimdScalar, S: Simd>(simd: S, rows: &[[T; LANES]; 6], at: usize) -> Sym3<T::Vector<S>> {
+    let mut all = Sym3([T::splat(simd, T::default()); 6]);
+    for i in 0..6 {
+        all.0[i] = T::load(simd, &rows[i][at..]);
+    }
+    all
+}
+
 /// Numbers of a law in registers, made once a patch.
-struct InRegisters<L, R: Send + Sync + 'static> {
+struct InRegisters<T, L, R: Send + Sync + 'static> {
     elastic: L,
+    /// a⊗a of a group's fibres where there is viscosity too.
+    along_squared: [[T; LANES]; 6],
     /// All zero where there are none.
     fibres: Fibres<R>,
 }
 
 impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
     #[inline(always)]
-    fn in_registers<S: Simd>(&self, simd: S) -> InRegisters<L::Of<T::Vector<S>>, T::Vector<S>> {
+    fn in_registers<S: Simd>(&self, simd: S) -> InRegisters<T, L::Of<T::Vector<S>>, T::Vector<S>> {
         macro_rules! splat {
             ($law:expr) => {
                 $law.map(
@@ -263,7 +278,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         }
         let none = Fibres { eta: T::default(), tension_only: T::default() };
         let fibres = self.law.fibres.as_ref().map_or(none, |(fibres, _)| *fibres);
-        InRegisters { elastic: splat!(self.elastic), fibres: splat!(fibres) }
+        InRegisters { elastic: splat!(self.elastic), fibres: splat!(fibres), along_squared: [[T::default(); LANES]; 6] }
     }
 
     #[inline(always)]
@@ -281,7 +296,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
     fn part_of_group<S: Simd>(
         &mut self,
         simd: S,
-        law: &InRegisters<L::Of<T::Vector<S>>, T::Vector<S>>,
+        law: &InRegisters<T, L::Of<T::Vector<S>>, T::Vector<S>>,
         group: usize,
         at: usize,
         scratch: &mut Scratch<T>,
@@ -335,7 +350,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
     fn stress<S: Simd>(
         &mut self,
         simd: S,
-        law: &InRegisters<L::Of<T::Vector<S>>, T::Vector<S>>,
+        law: &InRegisters<T, L::Of<T::Vector<S>>, T::Vector<S>>,
         group: usize,
         at: usize,
         point: usize,
@@ -345,13 +360,17 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         let elastic = &law.elastic;
         if EFFECTS != ASK {
             let pressure = (E::PRESSURE != PressureFrom::Point).then_some(shared);
-            let fibres = (EFFECTS & FIBRES != 0).then(
-                #[inline(always)]
-                || (law.fibres, self.along(simd, group, at)),
-            );
             if EFFECTS & VISCOSITY == 0 {
+                let fibres = (EFFECTS & FIBRES != 0).then(
+                    #[inline(always)]
+                    || (law.fibres, self.along(simd, group, at)),
+                );
                 return elastic.stress_at_once(gradient, pressure, fibres);
             }
+            let fibres = (EFFECTS & FIBRES != 0).then(
+                #[inline(always)]
+                || (law.fibres, rows_from(simd, &law.along_squared, at)),
+            );
             return elastic.stress_relaxed(
                 gradient,
                 pressure,

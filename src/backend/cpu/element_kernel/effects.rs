@@ -47,6 +47,19 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         [T::load(simd, &x[at..]), T::load(simd, &y[at..]), T::load(simd, &z[at..])]
     }
 
+    /// a⊗a of a group's fibres.
+    #[inline(always)]
+    pub(super) fn square_along<S: Simd>(&self, simd: S, group: usize, rows: &mut [[T; LANES]; 6]) {
+        let mut at = 0;
+        while at < LANES {
+            let square = Sym3::square_of(self.along(simd, group, at));
+            for i in 0..6 {
+                T::store(square.0[i], &mut rows[i][at..]);
+            }
+            at += T::width::<S>();
+        }
+    }
+
     /// Of all families that stiffen exponentially.
     #[inline(always)]
     pub(super) fn exponential_stress<S: Simd>(
