@@ -47,18 +47,19 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
                 |(fibres, direction)| (fibres, Sym3::square_of(direction)),
             ),
             #[inline(always)]
-            |isochoric| isochoric,
+            |isochoric, volumetric| isochoric.plus(&volumetric),
         )
     }
 
-    /// The same where something becomes of S_iso (Pa), fibres and all, before the pressure comes to it: `relax` says what.
+    /// The same where something becomes of S_iso (Pa), fibres and all: `relax` says what, and adds the second stress it gets (Pa), that
+    /// of the pressure. Fibres come with a⊗a of their direction.
     #[inline(always)]
     fn stress_relaxed(
         &self,
         gradient: &Mat3<R>,
         pressure: Option<R>,
         fibres: Option<(Fibres<R>, Sym3<R>)>,
-        relax: impl FnOnce(Sym3<R>) -> Sym3<R>,
+        relax: impl FnOnce(Sym3<R>, Sym3<R>) -> Sym3<R>,
     ) -> (Mat3<R>, R) {
         let k = self.kinematics(gradient);
         let pressure = match pressure {
@@ -69,7 +70,9 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
         if let Some((fibres, along_squared)) = fibres {
             isochoric = isochoric.plus(&fibres.isochoric_along(&k, &along_squared));
         }
-        (self.first_stress(gradient, &k, &relax(isochoric), pressure), k.true_j)
+        let zero = pressure.constant(0.0);
+        let rest = relax(isochoric, Sym3([zero; 6]));
+        (self.first_stress(gradient, &k, &rest, pressure), k.true_j)
     }
 
     /// S_iso (Pa): all of the second Piola-Kirchhoff stress that the pressure does not give.

@@ -70,7 +70,9 @@ impl<R: Real> Fibres<R> {
         let (one, two) = (self.eta.constant(1.0), self.eta.constant(2.0));
         let i4 = one + i4_change;
         let change = j_m23_change(volume_change, j_m23).mul_add(i4, i4_change);
-        (self.pulling(change) * (two * self.eta * j_m23), i4)
+        let stiffness = two * self.eta * j_m23;
+        let pushing = (one - self.tension_only) * stiffness;
+        ((change * stiffness).max(change * pushing), i4)
     }
 
     /// Strain energy per rest volume (J/m³).

@@ -1,6 +1,6 @@
 //! What every law starts from: strain measures of a displacement gradient.
 
-use crate::math::{Mat3, Real, Sym3, dot, dot_plus, minor};
+use crate::math::{Mat3, Real, Sym3, dot_plus, minor};
 
 /// Below this volume ratio the laws use this value instead, so that no kernel ever makes a NaN. The element is reported
 /// as inverted when J ≤ 0 and the run stops; what lies between is far beyond any tissue.
@@ -107,9 +107,8 @@ pub(super) fn j_m23_change<R: Real>(volume_change: R, j_m23: R) -> R {
     let (one, two, three) = (j_m23.constant(1.0), j_m23.constant(2.0), j_m23.constant(3.0));
     // w = J^(−2/3) − 1 solves (1+w)³ J² = 1: one Newton step on the expanded form brings back the lost digits
     let w = j_m23 - one;
-    let cube = w * w.mul_add(three + w, three);
     let square = volume_change * (two + volume_change);
-    let residual = cube.mul_add(one + square, square);
+    let residual = (w * (one + square)).mul_add(w.mul_add(three + w, three), square);
     residual.mul_add(j_m23 * j_m23.constant(-1.0 / 3.0), w)
 }
 

@@ -59,22 +59,16 @@ impl<R: Real> PronyTerm<R> {
         }
     }
 
-    /// The share of a pressure (Pa) that has relaxed.
+    /// Υ (Pa) of one component of a stress, or of a pressure.
     #[inline(always)]
-    pub fn relaxed_component(&self, pressure: R, memory: R) -> R {
-        self.stress.mul_add(pressure, self.memory * memory)
+    pub fn relaxed_component(&self, stress: R, memory: R) -> R {
+        self.stress.mul_add(stress, self.memory * memory)
     }
 
-    /// `rest` less the share.
+    /// The memory of one component after the step.
     #[inline(always)]
-    pub fn less_relaxed(&self, rest: R, stress: R, memory: R) -> R {
-        (-self.memory).mul_add(memory, (-self.stress).mul_add(stress, rest))
-    }
-
-    /// The memory of a pressure after the step.
-    #[inline(always)]
-    pub fn component_carried_on(&self, pressure: R, memory: R) -> R {
-        self.rate.mul_add(self.aim.mul_add(pressure, -memory), memory)
+    pub fn component_carried_on(&self, stress: R, memory: R) -> R {
+        self.rate.mul_add(self.aim.mul_add(stress, -memory), memory)
     }
 
     /// Υ of this term (Pa) for the present isochoric stress and memory.
@@ -82,7 +76,7 @@ impl<R: Real> PronyTerm<R> {
     pub fn relaxed(&self, isochoric: &Sym3<R>, memory: &Sym3<R>) -> Sym3<R> {
         let mut relaxed = *memory;
         for i in 0..6 {
-            relaxed.0[i] = self.stress.mul_add(isochoric.0[i], self.memory * memory.0[i]);
+            relaxed.0[i] = self.relaxed_component(isochoric.0[i], memory.0[i]);
         }
         relaxed
     }

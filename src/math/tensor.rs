@@ -94,6 +94,24 @@ impl<R: Real> Sym3<R> {
         self
     }
 
+    /// self + factor · other.
+    #[inline(always)]
+    pub fn plus_scaled(mut self, factor: R, other: &Self) -> Self {
+        for i in 0..6 {
+            self.0[i] = factor.mul_add(other.0[i], self.0[i]);
+        }
+        self
+    }
+
+    /// self + number · I.
+    #[inline(always)]
+    pub fn plus_diagonal(mut self, number: R) -> Self {
+        for i in 0..3 {
+            self.0[i] += number;
+        }
+        self
+    }
+
     /// Sum of the diagonal.
     #[inline(always)]
     pub fn trace(&self) -> R {

@@ -2,16 +2,18 @@
 
 mod at_hand;
 mod effects;
+mod stress;
 
 use super::{BlockLaw, Cpu};
 use crate::components::{FamilyDirection, Patches};
 use crate::elements::{Element, MOST_NODES, PressureFrom};
-use crate::materials::{Elastic, ElasticLaw, Fibres, Kinematics, NeoHookean};
-use crate::math::{LANES, Mat3, Real, Scratch, SimdScalar, Sym3};
+use crate::materials::{Elastic, ElasticLaw, NeoHookean};
+use crate::math::{LANES, Real, Scratch, SimdScalar};
 use at_hand::{AtHand, part, parts};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
 use std::sync::atomic::{AtomicBool, Ordering};
+use stress::InRegisters;
 
 /// The columns a block's kernel reads and writes; layouts as in [`components`](crate::components).
 pub struct BlockColumns<'a, T> {
@@ -199,21 +201,6 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd for O
     }
 }
 
-/// S_iso of a law in a function of its own: what all laws come to is too much code to stand in every element's kernel.
-struct Isochoric<'a, L, R> {
-    elastic: &'a L,
-    k: &'a Kinematics<R>,
-}
-
-impl<R: Real, L: Elastic<R>> WithSimd for Isochoric<'_, L, R> {
-    type Output = Sym3<R>;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Sym3<R> {
-        self.elastic.isochoric(self.k)
-    }
-}
-
 /// Vectors of a group's nodes, brought side by side.
 #[inline(always)]
 pub(super) fn group_vectors<E: Element, T: SimdScalar>(nodes: &[u32], column: &[T]) -> [[[T; LANES]; 3]; MOST_NODES] {
@@ -246,57 +233,13 @@ pub(super) fn corner_registers<E: Element, T: SimdScalar, S: Simd>(
     u
 }
 
-/// Six rows from lane `at` on.
-#[inline(always)]
-fn rows_from<T: SimdScalar, S: Simd>(simd: S, rows: &[[T; LANES]; 6], at: usize) -> Sym3<T::Vector<S>> {
-    let mut all = Sym3([T::splat(simd, T::default()); 6]);
-    for i in 0..6 {
-        all.0[i] = T::load(simd, &rows[i][at..]);
-    }
-    all
-}
-
-/// Numbers of a law in registers, made once a patch.
-struct InRegisters<T, L, R: Send + Sync + 'static> {
-    elastic: L,
-    /// a⊗a of a group's fibres where there is viscosity too.
-    along_squared: [[T; LANES]; 6],
-    /// All zero where there are none.
-    fibres: Fibres<R>,
-}
-
 impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
-    #[inline(always)]
-    fn in_registers<S: Simd>(&self, simd: S) -> InRegisters<T, L::Of<T::Vector<S>>, T::Vector<S>> {
-        macro_rules! splat {
-            ($law:expr) => {
-                $law.map(
-                    #[inline(always)]
-                    |number: T| T::splat(simd, number),
-                )
-            };
-        }
-        let none = Fibres { eta: T::default(), tension_only: T::default() };
-        let fibres = self.law.fibres.as_ref().map_or(none, |(fibres, _)| *fibres);
-        InRegisters { elastic: splat!(self.elastic), fibres: splat!(fibres), along_squared: [[T::default(); LANES]; 6] }
-    }
-
-    #[inline(always)]
-    fn has_fibres(&self) -> bool {
-        if EFFECTS == ASK { self.law.fibres.is_some() } else { EFFECTS & FIBRES != 0 }
-    }
-
-    #[inline(always)]
-    fn has_viscosity(&self) -> bool {
-        if EFFECTS == ASK { !self.law.prony.is_empty() } else { EFFECTS & VISCOSITY != 0 }
-    }
-
     /// One register full of elements, from lane `at` on. Returns −J V, positive for inverted elements.
     #[inline(always)]
     fn part_of_group<S: Simd>(
         &mut self,
         simd: S,
-        law: &InRegisters<T, L::Of<T::Vector<S>>, T::Vector<S>>,
+        law: &InRegisters<L::Of<T::Vector<S>>, T, S>,
         group: usize,
         at: usize,
         scratch: &mut Scratch<T>,
@@ -343,67 +286,6 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         );
         self.give(simd, group, at, scratch, &out);
         worst
-    }
-
-    /// First Piola-Kirchhoff stress (Pa) at a point, and J there.
-    #[inline(always)]
-    fn stress<S: Simd>(
-        &mut self,
-        simd: S,
-        law: &InRegisters<T, L::Of<T::Vector<S>>, T::Vector<S>>,
-        group: usize,
-        at: usize,
-        point: usize,
-        gradient: &Mat3<T::Vector<S>>,
-        shared: T::Vector<S>,
-    ) -> (Mat3<T::Vector<S>>, T::Vector<S>) {
-        let elastic = &law.elastic;
-        if EFFECTS != ASK {
-            let pressure = (E::PRESSURE != PressureFrom::Point).then_some(shared);
-            if EFFECTS & VISCOSITY == 0 {
-                let fibres = (EFFECTS & FIBRES != 0).then(
-                    #[inline(always)]
-                    || (law.fibres, self.along(simd, group, at)),
-                );
-                return elastic.stress_at_once(gradient, pressure, fibres);
-            }
-            let fibres = (EFFECTS & FIBRES != 0).then(
-                #[inline(always)]
-                || (law.fibres, rows_from(simd, &law.along_squared, at)),
-            );
-            return elastic.stress_relaxed(
-                gradient,
-                pressure,
-                fibres,
-                #[inline(always)]
-                |isochoric| self.relax(simd, group, at, point, isochoric),
-            );
-        }
-        let k = elastic.kinematics(gradient);
-        let mut pressure = match E::PRESSURE {
-            PressureFrom::Point => elastic.pressure(elastic.volume_measure(&k)),
-            _ => shared,
-        };
-        if EFFECTS == ASK && !self.law.volumetric.is_empty() {
-            pressure = self.relax_pressure(simd, group, at, point, pressure);
-        }
-        let mut isochoric = match EFFECTS {
-            ASK => simd.vectorize(Isochoric { elastic, k: &k }),
-            _ => elastic.isochoric(&k),
-        };
-        if self.has_fibres() {
-            isochoric = isochoric.plus(&self.fibre_stress(simd, group, at, &k));
-        }
-        if EFFECTS == ASK && !self.law.exponential.is_empty() {
-            isochoric = isochoric.plus(&self.exponential_stress(simd, group, at, &k));
-        }
-        if self.has_viscosity() {
-            isochoric = self.relax(simd, group, at, point, isochoric);
-        }
-        if EFFECTS == ASK && self.law.reproject {
-            isochoric = elastic.without_pressure(&k, isochoric);
-        }
-        (elastic.first_stress(gradient, &k, &isochoric, pressure), k.true_j)
     }
 }
 

@@ -3,40 +3,11 @@
 use super::Patch;
 use crate::components::FamilyDirection;
 use crate::elements::Element;
-use crate::materials::{Elastic, ExponentialFibre, Fibres, Kinematics, PronyTerm};
+use crate::materials::{Elastic, ExponentialFibre, Kinematics, PronyTerm};
 use crate::math::{LANES, Real, SimdScalar, Sym3};
 use pulp::{Simd, WithSimd};
 
-/// Fibres and their unit vectors at rest.
-type FibresAlong<R> = (Fibres<R>, [R; 3]);
-
 impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
-    /// S of the fibres (Pa).
-    #[inline(always)]
-    pub(super) fn fibre_stress<S: Simd>(
-        &self,
-        simd: S,
-        group: usize,
-        at: usize,
-        k: &Kinematics<T::Vector<S>>,
-    ) -> Sym3<T::Vector<S>> {
-        match self.fibres_at(simd, group, at) {
-            Some((fibres, direction)) => fibres.isochoric(k, direction),
-            None => Sym3([T::splat(simd, T::default()); 6]),
-        }
-    }
-
-    /// The fibres and their unit vectors.
-    #[inline(always)]
-    pub(super) fn fibres_at<S: Simd>(&self, simd: S, group: usize, at: usize) -> Option<FibresAlong<T::Vector<S>>> {
-        let (fibres, direction) = self.law.fibres.as_ref()?;
-        let fibres = fibres.map(
-            #[inline(always)]
-            |number: T| T::splat(simd, number),
-        );
-        Some((fibres, self.direction(simd, group, at, direction)))
-    }
-
     /// Unit vectors of the fibres.
     #[inline(always)]
     pub(super) fn along<S: Simd>(&self, simd: S, group: usize, at: usize) -> [T::Vector<S>; 3] {
@@ -130,7 +101,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         rest
     }
 
-    /// S_iso − Υ; the memory is carried on.
+    /// `other` + S_iso − Υ; the memory is carried on.
     #[inline(always)]
     pub(super) fn relax<S: Simd>(
         &mut self,
@@ -138,25 +109,28 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         group: usize,
         at: usize,
         point: usize,
-        isochoric: Sym3<T::Vector<S>>,
+        isochoric: &Sym3<T::Vector<S>>,
+        other: Sym3<T::Vector<S>>,
     ) -> Sym3<T::Vector<S>> {
         let terms = &self.law.prony[..];
         let first = group * self.memory_rows + 6 * point * terms.len();
         let rows = &mut self.memory.as_chunks_mut::<LANES>().0[first..];
-        let mut rest = isochoric;
+        let mut rest = other;
+        let mut share = T::splat(simd, T::default()).constant(1.0);
         match terms {
-            [term] => relax_by(simd, term, at, &isochoric, &mut rest, rows),
+            // most have one: no loop, more stays in registers
+            [term] => relax_by(simd, term, at, isochoric, &mut rest, &mut share, rows),
             _ => {
                 for (term, rows) in terms.iter().zip(rows.chunks_exact_mut(6)) {
-                    relax_by(simd, term, at, &isochoric, &mut rest, rows);
+                    relax_by(simd, term, at, isochoric, &mut rest, &mut share, rows);
                 }
             }
         }
-        rest
+        rest.plus_scaled(share, isochoric)
     }
 }
 
-/// Takes Υ of a term from `rest` and carries its memory on.
+/// Takes Υ of a term away, its part of the present stress from the `share` that is left of it, and carries its memory on.
 #[inline(always)]
 fn relax_by<T: SimdScalar, S: Simd>(
     simd: S,
@@ -164,22 +138,24 @@ fn relax_by<T: SimdScalar, S: Simd>(
     at: usize,
     isochoric: &Sym3<T::Vector<S>>,
     rest: &mut Sym3<T::Vector<S>>,
+    share: &mut T::Vector<S>,
     rows: &mut [[T; LANES]],
 ) {
     let term = term.map(
         #[inline(always)]
         |number: T| T::splat(simd, number),
     );
+    *share -= term.stress;
     let Some(rows) = rows.first_chunk_mut::<6>() else { return };
     for i in 0..6 {
         let row = &mut rows[i][at..];
         let memory = T::load(simd, row);
-        rest.0[i] = term.less_relaxed(rest.0[i], isochoric.0[i], memory);
+        rest.0[i] = (-term.memory).mul_add(memory, rest.0[i]);
         T::store(term.component_carried_on(isochoric.0[i], memory), row);
     }
 }
 
-/// S of a family in a function of its own, for the same reason as [`Isochoric`](super::Isochoric).
+/// S of a family in a function of its own, for the same reason as `Isochoric` in `stress`.
 struct Exponential<'a, R> {
     family: &'a ExponentialFibre<R>,
     k: &'a Kinematics<R>,
