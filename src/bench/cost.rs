@@ -6,7 +6,7 @@ use crate::components::patch_groups;
 use crate::elements::{Element, MOST_NODES, PressureFrom};
 use crate::evaluation::{node_count, row_count, with_element};
 use crate::materials::{Elastic, Fibres, NeoHookean, PronyTerm};
-use crate::math::{LANES, Real, Task, refine_inverse_cbrt};
+use crate::math::{LANES, Real, Sym3, Task, refine_inverse_cbrt};
 use std::cell::Cell;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -148,6 +148,7 @@ fn flops<E: Element>(effects: Effects) -> f64 {
     let term = PronyTerm { stress: Counted(1e-4), memory: Counted(-0.5), rate: Counted(1e-3), aim: Counted(-1.0) };
     let viscous = matches!(effects, Effects::Viscosity | Effects::FibresViscosity);
     let fibred = matches!(effects, Effects::Fibres | Effects::FibresViscosity);
+    let along_squared = Sym3::square_of(fibres.1);
     COUNT.set(0);
     let u = E::prepare(&[[Counted(1e-3); 3]; MOST_NODES]);
     let mut shared = None;
@@ -164,16 +165,14 @@ fn flops<E: Element>(effects: Effects) -> f64 {
     for point in 0..E::POINTS {
         let state = E::at_point(&u, point, shape);
         let stress = if viscous {
-            let k = law.kinematics(&state.gradient);
-            let mut isochoric = law.isochoric(&k);
-            if fibred {
-                isochoric = isochoric.plus(&fibres.0.isochoric(&k, fibres.1));
-            }
-            let memory = isochoric;
-            let relaxed = isochoric.plus(&term.relaxed(&isochoric, &memory));
-            let _ = term.carried_on(&isochoric, &memory);
-            let pressure = shared.unwrap_or_else(|| law.pressure(law.volume_measure(&k)));
-            law.first_stress(&state.gradient, &k, &relaxed, pressure)
+            let fibres = fibred.then(|| (fibres.0, along_squared));
+            let relax = |isochoric: Sym3<Counted>, volumetric: Sym3<Counted>| {
+                let memory = isochoric;
+                let relaxed = term.relaxed(&isochoric, &memory);
+                let _ = term.carried_on(&isochoric, &memory);
+                isochoric.plus(&relaxed).plus(&volumetric)
+            };
+            law.stress_relaxed(&state.gradient, shared, fibres, relax).0
         } else {
             law.stress_at_once(&state.gradient, shared, fibred.then_some(fibres)).0
         };

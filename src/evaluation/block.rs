@@ -77,7 +77,7 @@ impl<'a> BlockView<'a> {
                 stress = stress.plus(&term.relaxed(&isochoric, &history).scaled(-1.0));
             }
             for (number, term) in law.volumetric.iter().enumerate() {
-                pressure -= term.relaxed_pressure(instant, history(6 * terms * points + number));
+                pressure -= term.relaxed_component(instant, history(6 * terms * points + number));
             }
             if law.reproject {
                 stress = law.elastic.without_pressure(k, stress);

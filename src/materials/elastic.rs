@@ -39,16 +39,40 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
         pressure: Option<R>,
         fibres: Option<(Fibres<R>, [R; 3])>,
     ) -> (Mat3<R>, R) {
+        self.stress_relaxed(
+            gradient,
+            pressure,
+            fibres.map(
+                #[inline(always)]
+                |(fibres, direction)| (fibres, Sym3::square_of(direction)),
+            ),
+            #[inline(always)]
+            |isochoric, volumetric| isochoric.plus(&volumetric),
+        )
+    }
+
+    /// The same where something becomes of S_iso (Pa), fibres and all: `relax` says what, and adds the second stress it gets (Pa), that
+    /// of the pressure. Fibres come with a⊗a of their direction.
+    #[inline(always)]
+    fn stress_relaxed(
+        &self,
+        gradient: &Mat3<R>,
+        pressure: Option<R>,
+        fibres: Option<(Fibres<R>, Sym3<R>)>,
+        relax: impl FnOnce(Sym3<R>, Sym3<R>) -> Sym3<R>,
+    ) -> (Mat3<R>, R) {
         let k = self.kinematics(gradient);
         let pressure = match pressure {
             Some(pressure) => pressure,
             None => self.pressure(self.volume_measure(&k)),
         };
         let mut isochoric = self.isochoric(&k);
-        if let Some((fibres, direction)) = fibres {
-            isochoric = isochoric.plus(&fibres.isochoric(&k, direction));
+        if let Some((fibres, along_squared)) = fibres {
+            isochoric = isochoric.plus(&fibres.isochoric_along(&k, &along_squared));
         }
-        (self.first_stress(gradient, &k, &isochoric, pressure), k.true_j)
+        let zero = pressure.constant(0.0);
+        let rest = relax(isochoric, Sym3([zero; 6]));
+        (self.first_stress(gradient, &k, &rest, pressure), k.true_j)
     }
 
     /// S_iso (Pa): all of the second Piola-Kirchhoff stress that the pressure does not give.

@@ -1,6 +1,6 @@
 //! What every law starts from: strain measures of a displacement gradient.
 
-use crate::math::{Mat3, Real, Sym3, dot, dot_plus, minor};
+use crate::math::{Mat3, Real, Sym3, dot_plus, minor};
 
 /// Below this volume ratio the laws use this value instead, so that no kernel ever makes a NaN. The element is reported
 /// as inverted when J ≤ 0 and the run stops; what lies between is far beyond any tissue.
@@ -29,11 +29,7 @@ impl<R: Real> Kinematics<R> {
     pub fn new(gradient: &Mat3<R>) -> Self {
         let h = &gradient.0;
         let (half, one) = (h[0][0].constant(0.5), h[0][0].constant(1.0));
-        let column = [[h[0][0], h[1][0], h[2][0]], [h[0][1], h[1][1], h[2][1]], [h[0][2], h[1][2], h[2][2]]];
-        let mut twice = [one; 6];
-        for (entry, (i, j)) in [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)].into_iter().enumerate() {
-            twice[entry] = dot_plus(column[i], column[j], h[i][j] + h[j][i]);
-        }
+        let twice = twice_green_strain(gradient);
         let green_strain = Sym3(twice).scaled(half);
         let c = Sym3([one + twice[0], one + twice[1], one + twice[2], twice[3], twice[4], twice[5]]);
 
@@ -111,21 +107,32 @@ pub(super) fn j_m23_change<R: Real>(volume_change: R, j_m23: R) -> R {
     let (one, two, three) = (j_m23.constant(1.0), j_m23.constant(2.0), j_m23.constant(3.0));
     // w = J^(−2/3) − 1 solves (1+w)³ J² = 1: one Newton step on the expanded form brings back the lost digits
     let w = j_m23 - one;
-    let cube = w * (three + w * (three + w));
     let square = volume_change * (two + volume_change);
-    let residual = cube + square + cube * square;
-    w - residual * j_m23 * j_m23.constant(1.0 / 3.0)
+    let residual = (w * (one + square)).mul_add(w.mul_add(three + w, three), square);
+    residual.mul_add(j_m23 * j_m23.constant(-1.0 / 3.0), w)
 }
 
-/// J − 1 = first + second + third invariant of ∇u.
+/// 2E = ∇u + ∇uᵀ + ∇uᵀ∇u: xx, yy, zz, xy, yz, xz.
 #[inline(always)]
-fn volume_change<R: Real>(gradient: &Mat3<R>) -> R {
+pub(super) fn twice_green_strain<R: Real>(gradient: &Mat3<R>) -> [R; 6] {
     let h = &gradient.0;
-    let cofactor = [
-        minor(h[1][1], h[1][2], h[2][1], h[2][2]),
-        minor(h[1][2], h[1][0], h[2][2], h[2][0]),
-        minor(h[1][0], h[1][1], h[2][0], h[2][1]),
+    let column = [[h[0][0], h[1][0], h[2][0]], [h[0][1], h[1][1], h[2][1]], [h[0][2], h[1][2], h[2][2]]];
+    let mut twice = [h[0][0]; 6];
+    for (entry, (i, j)) in [(0, 0), (1, 1), (2, 2), (0, 1), (1, 2), (0, 2)].into_iter().enumerate() {
+        twice[entry] = dot_plus(column[i], column[j], h[i][j] + h[j][i]);
+    }
+    twice
+}
+
+/// J − 1 = tr K + first row of ∇u · first row of K less what both have, with K = cof F − I: exact to rounding for small ∇u.
+#[inline(always)]
+pub(super) fn volume_change<R: Real>(gradient: &Mat3<R>) -> R {
+    let h = &gradient.0;
+    let k = [
+        minor(h[1][1], h[1][2], h[2][1], h[2][2]) + (h[1][1] + h[2][2]),
+        minor(h[1][2], h[1][0], h[2][2], h[2][0]) - h[1][0],
+        minor(h[1][0], h[1][1], h[2][0], h[2][1]) - h[2][0],
     ];
-    let second = cofactor[0] + minor(h[0][0], h[0][1], h[1][0], h[1][1]) + minor(h[0][0], h[0][2], h[2][0], h[2][2]);
-    (h[0][0] + h[1][1] + h[2][2]) + second + dot(h[0], cofactor)
+    // (e + h)·(e + k) − 1 with the first axis e
+    dot_plus(h[0], k, h[0][0] + k[0])
 }

@@ -1,5 +1,6 @@
 //! The neo-Hookean law in isochoric and volumetric parts.
 
+use super::kinematics::{twice_green_strain, volume_change};
 use super::{Elastic, Fibres, J_FLOOR, Kinematics};
 use crate::math::{Mat3, Real, Sym3, dot, dot_plus, minor};
 use bevy_ecs::component::Component;
@@ -104,6 +105,45 @@ impl<R: Real> Elastic<R> for NeoHookean<R> {
             }
         }
         (stress, true_j)
+    }
+
+    /// With T = 2E and D = adj C − I = tr T I − T + adj T: S_iso = d I − (μ' − d) D + s (a⊗a − I₄/(3J²) (I + D)), where
+    /// d = μ'(3(J² − 1) − tr T)/(3J²) is what is left of terms of the size of μ; the pressure adds p/J (I + D). Little waits for s,
+    /// which comes last.
+    #[inline(always)]
+    fn stress_relaxed(
+        &self,
+        gradient: &Mat3<R>,
+        pressure: Option<R>,
+        fibres: Option<(Fibres<R>, Sym3<R>)>,
+        relax: impl FnOnce(Sym3<R>, Sym3<R>) -> Sym3<R>,
+    ) -> (Mat3<R>, R) {
+        let (one, two, three) = (self.shear.constant(1.0), self.shear.constant(2.0), self.shear.constant(3.0));
+        let change = volume_change(gradient);
+        let true_j = one + change;
+        let change = change.max(one.constant(J_FLOOR - 1.0));
+        let j_m13 = (one + change).inverse_cbrt();
+        let j_m23 = j_m13 * j_m13;
+        // 1/J and 1/(3J²), where a division would take as long as all of the rest
+        let per_j = j_m23 * j_m13;
+        let third_per_j2 = per_j * per_j * one.constant(1.0 / 3.0);
+        let twice_strain = Sym3(twice_green_strain(gradient));
+        let adjugate_change = twice_strain.adjugate_change();
+        let adjugate = adjugate_change.plus_diagonal(one);
+        let shear = self.shear * j_m23;
+        let left = shear * third_per_j2 * three.mul_add(change * (two + change), -twice_strain.trace());
+        let mut isochoric = adjugate_change.scaled(left - shear).plus_diagonal(left);
+        if let Some((fibres, square)) = fibres {
+            let (pull, i4) = fibres.pull_of(twice_strain.contracted(&square), change, j_m23);
+            let spherical = -(i4 * third_per_j2);
+            isochoric = isochoric.plus_scaled(pull, &square.plus_scaled(spherical, &adjugate));
+        }
+        let pressure = match pressure {
+            Some(pressure) => pressure,
+            None => self.bulk * change,
+        };
+        let volumetric = adjugate.scaled(pressure * per_j);
+        (gradient.plus_identity_times(&relax(isochoric, volumetric)), true_j)
     }
 
     /// κ(J − 1).

@@ -59,28 +59,35 @@ impl<R: Real> PronyTerm<R> {
         }
     }
 
-    /// The share of a pressure (Pa) that has relaxed.
+    /// Υ (Pa) of one component of a stress, or of a pressure.
     #[inline(always)]
-    pub fn relaxed_pressure(&self, pressure: R, memory: R) -> R {
-        self.stress.mul_add(pressure, self.memory * memory)
+    pub fn relaxed_component(&self, stress: R, memory: R) -> R {
+        self.stress.mul_add(stress, self.memory * memory)
     }
 
-    /// The memory of a pressure after the step.
+    /// The memory of one component after the step.
     #[inline(always)]
-    pub fn pressure_carried_on(&self, pressure: R, memory: R) -> R {
-        self.rate.mul_add(self.aim.mul_add(pressure, -memory), memory)
+    pub fn component_carried_on(&self, stress: R, memory: R) -> R {
+        self.rate.mul_add(self.aim.mul_add(stress, -memory), memory)
     }
 
     /// Υ of this term (Pa) for the present isochoric stress and memory.
     #[inline(always)]
     pub fn relaxed(&self, isochoric: &Sym3<R>, memory: &Sym3<R>) -> Sym3<R> {
-        isochoric.scaled(self.stress).plus(&memory.scaled(self.memory))
+        let mut relaxed = *memory;
+        for i in 0..6 {
+            relaxed.0[i] = self.relaxed_component(isochoric.0[i], memory.0[i]);
+        }
+        relaxed
     }
 
     /// The memory after the step.
     #[inline(always)]
     pub fn carried_on(&self, isochoric: &Sym3<R>, memory: &Sym3<R>) -> Sym3<R> {
-        let change = isochoric.scaled(self.aim).plus(&memory.scaled(self.rate.constant(-1.0))).scaled(self.rate);
-        memory.plus(&change)
+        let mut carried_on = *memory;
+        for i in 0..6 {
+            carried_on.0[i] = self.component_carried_on(isochoric.0[i], memory.0[i]);
+        }
+        carried_on
     }
 }

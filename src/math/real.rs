@@ -102,7 +102,8 @@ pub(crate) fn refine_inverse_cbrt<R: Real>(x: R, guess: R, steps: usize) -> R {
     let third = x * x.constant(-1.0 / 3.0);
     let mut y = guess;
     for _ in 0..steps {
-        y = y * (y * y * y).mul_add(third, x.constant(4.0 / 3.0));
+        // two products at a time: what waits for the root waits for a chain of these
+        y = y * (y * y).mul_add(y * third, x.constant(4.0 / 3.0));
     }
     y
 }

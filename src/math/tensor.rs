@@ -94,6 +94,24 @@ impl<R: Real> Sym3<R> {
         self
     }
 
+    /// self + factor · other.
+    #[inline(always)]
+    pub fn plus_scaled(mut self, factor: R, other: &Self) -> Self {
+        for i in 0..6 {
+            self.0[i] = factor.mul_add(other.0[i], self.0[i]);
+        }
+        self
+    }
+
+    /// self + number · I.
+    #[inline(always)]
+    pub fn plus_diagonal(mut self, number: R) -> Self {
+        for i in 0..3 {
+            self.0[i] += number;
+        }
+        self
+    }
+
     /// Sum of the diagonal.
     #[inline(always)]
     pub fn trace(&self) -> R {
@@ -111,6 +129,22 @@ impl<R: Real> Sym3<R> {
             minor(xz, xy, zz, yz),
             minor(xy, xx, yz, xz),
             minor(xy, yy, xz, yz),
+        ])
+    }
+
+    /// The adjugate of I + self, less I; keeps the digits of a small matrix.
+    #[inline(always)]
+    pub fn adjugate_change(&self) -> Self {
+        let [xx, yy, zz, xy, yz, xz] = self.0;
+        let one = xx.constant(1.0);
+        let (cx, cy, cz) = (one + xx, one + yy, one + zz);
+        Sym3([
+            (-yz).mul_add(yz, yy.mul_add(zz, yy + zz)),
+            (-xz).mul_add(xz, xx.mul_add(zz, xx + zz)),
+            (-xy).mul_add(xy, xx.mul_add(yy, xx + yy)),
+            minor(xz, xy, cz, yz),
+            minor(xy, cx, yz, xz),
+            minor(xy, cy, xz, yz),
         ])
     }
 

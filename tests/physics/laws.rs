@@ -8,6 +8,7 @@
 mod closed_forms;
 mod fibres;
 mod samples;
+mod short_ways;
 
 use crate::random::{Random, gradient};
 use glam::{DMat3, DVec3};

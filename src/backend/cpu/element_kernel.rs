@@ -2,17 +2,19 @@
 
 mod at_hand;
 mod effects;
+mod stress;
 
 use super::{BlockLaw, Cpu, Factors, NodeColumns, move_nodes};
-use crate::components::Patches;
+use crate::components::{FamilyDirection, Patches};
 use crate::elements::{Element, MOST_NODES, PressureFrom};
-use crate::materials::{Elastic, ElasticLaw, Kinematics, NeoHookean};
-use crate::math::{LANES, Mat3, Real, Scratch, SimdScalar, Sym3};
+use crate::materials::{Elastic, ElasticLaw, NeoHookean};
+use crate::math::{LANES, Real, Scratch, SimdScalar};
 use at_hand::{AtHand, part, parts};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
+use stress::InRegisters;
 
 /// The columns a block's kernel reads and writes; layouts as in [`components`](crate::components).
 pub struct BlockColumns<'a, 'n, T> {
@@ -121,6 +123,12 @@ impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
         let patch = groups_a_patch * LANES;
         let memory_an_element = law.memory_numbers(E::POINTS);
         let varying = law.varying_families();
+        let direction = law.fibres.as_ref().map(|(_, direction)| direction);
+        let uniform = match direction {
+            Some(FamilyDirection::Uniform(a)) => a.map(|number| [number; LANES]),
+            _ => Default::default(),
+        };
+        let uniform = &uniform[..];
         // without viscosity there is no memory to hand out
         let mut memories = columns.memory.chunks_mut((patch * memory_an_element).max(1));
         let tasks = parts(columns.force, columns.patches, patch * 3 * E::NODES, patch * E::NODES);
@@ -135,11 +143,18 @@ impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
             displacement: columns.displacement,
             first_row: columns.first_row,
             nodal_volume_change: columns.nodal_volume_change,
-            connectivity: part(columns.connectivity, index, patch * E::NODES),
-            rest_shape: part(columns.rest_shape, index, patch * E::ROWS),
+            connectivity: part(columns.connectivity, index, patch * E::NODES).as_chunks().0,
+            rest_shape: part(columns.rest_shape, index, patch * E::ROWS).as_chunks().0,
             fibre_direction: columns.fibre_direction.map(|all| &all[index * patch * 3 * varying..]),
             varying,
+            along: match (direction, columns.fibre_direction) {
+                (Some(FamilyDirection::Varying(place)), Some(all)) => {
+                    (&all.as_chunks().0[3 * (index * groups_a_patch * varying + place)..], 3 * varying)
+                }
+                _ => (uniform, 0),
+            },
             memory: memories.next().unwrap_or_default(),
+            memory_rows: memory_an_element,
             force,
             at_hand,
             inverted_go: columns.inverted_go,
@@ -174,11 +189,15 @@ struct Patch<'a, 'n, E, T: SimdScalar, L, const EFFECTS: u8> {
     displacement: &'a [T],
     first_row: usize,
     nodal_volume_change: &'a [T],
-    connectivity: &'a [u32],
-    rest_shape: &'a [T],
+    connectivity: &'a [[u32; LANES]],
+    rest_shape: &'a [[T; LANES]],
     fibre_direction: Option<&'a [T]>,
     varying: usize,
+    /// Unit vectors of the fibres, and how many rows a group has of them: none where all groups have the same.
+    along: (&'a [[T; LANES]], usize),
     memory: &'a mut [T],
+    /// Rows that a group has of it.
+    memory_rows: usize,
     force: &'a mut [T],
     at_hand: Option<AtHand<'a>>,
     inverted_go: bool,
@@ -203,11 +222,15 @@ impl<'a, 'n, E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSi
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let Self { mut patch, scratch } = self;
         patch.bring(scratch);
+        let mut law = patch.in_registers(simd);
         let mut worst = T::splat(simd, T::default());
-        for group in 0..patch.connectivity.len() / (LANES * E::NODES) {
+        for group in 0..patch.connectivity.len() / E::NODES {
+            if EFFECTS == FIBRES | VISCOSITY && (group == 0 || patch.along.1 > 0) {
+                patch.square_along(simd, group, &mut law.along_squared);
+            }
             let mut at = 0;
             while at < LANES {
-                worst = worst.max(patch.part_of_group(simd, group, at, scratch));
+                worst = worst.max(patch.part_of_group(simd, &law, group, at, scratch));
                 at += T::width::<S>();
             }
         }
@@ -215,21 +238,6 @@ impl<'a, 'n, E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSi
         let mut lanes = [T::default(); LANES];
         T::store(worst, &mut lanes);
         (lanes.iter().any(|&v| v > T::default()), patch.inside)
-    }
-}
-
-/// S_iso of a law in a function of its own: what all laws come to is too much code to stand in every element's kernel.
-struct Isochoric<'a, L, R> {
-    elastic: &'a L,
-    k: &'a Kinematics<R>,
-}
-
-impl<R: Real, L: Elastic<R>> WithSimd for Isochoric<'_, L, R> {
-    type Output = Sym3<R>;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Sym3<R> {
-        self.elastic.isochoric(self.k)
     }
 }
 
@@ -266,31 +274,25 @@ pub(super) fn corner_registers<E: Element, T: SimdScalar, S: Simd>(
 }
 
 impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, '_, E, T, L, EFFECTS> {
-    #[inline(always)]
-    fn has_fibres(&self) -> bool {
-        if EFFECTS == ASK { self.law.fibres.is_some() } else { EFFECTS & FIBRES != 0 }
-    }
-
-    #[inline(always)]
-    fn has_viscosity(&self) -> bool {
-        if EFFECTS == ASK { !self.law.prony.is_empty() } else { EFFECTS & VISCOSITY != 0 }
-    }
-
     /// One register full of elements, from lane `at` on. Returns −J V, positive for inverted elements.
     #[inline(always)]
-    fn part_of_group<S: Simd>(&mut self, simd: S, group: usize, at: usize, scratch: &mut Scratch<T>) -> T::Vector<S> {
-        let elastic = self.elastic.map(
-            #[inline(always)]
-            |number: T| T::splat(simd, number),
-        );
+    fn part_of_group<S: Simd>(
+        &mut self,
+        simd: S,
+        law: &InRegisters<L::Of<T::Vector<S>>, T, S>,
+        group: usize,
+        at: usize,
+        scratch: &mut Scratch<T>,
+    ) -> T::Vector<S> {
+        let elastic = &law.elastic;
         let zero = T::splat(simd, T::default());
-        let (displacements, theta) = self.at_corners(simd, &elastic, group, at, scratch);
+        let (displacements, theta) = self.at_corners(simd, elastic, group, at, scratch);
         let u = E::prepare(&displacements);
-        let rest_shape = &self.rest_shape[group * E::ROWS * LANES..(group + 1) * E::ROWS * LANES];
+        let rest_shape = &self.rest_shape[group * E::ROWS..][..E::ROWS];
         let shared = match E::PRESSURE {
             PressureFrom::Point => zero,
             PressureFrom::MeanOverPoints => {
-                elastic.pressure(mean_volume_change::<E, T, L, S>(simd, &elastic, &u, rest_shape, at))
+                elastic.pressure(mean_volume_change::<E, T, L, S>(simd, elastic, &u, rest_shape, at))
             }
             PressureFrom::Nodes => theta,
         };
@@ -301,20 +303,20 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, '_, 
                 &u,
                 point,
                 #[inline(always)]
-                |row: usize| T::load(simd, &rest_shape[row * LANES + at..]),
+                |row: usize| T::load(simd, &rest_shape[row][at..]),
             );
-            let (stress, j) = self.stress(simd, &elastic, group, at, point, &state.gradient, shared);
+            let (stress, j) = self.stress(simd, law, group, at, point, &state.gradient, shared);
             E::add_stress(&mut forces, point, &state, &stress);
             worst = worst.max(-j);
         }
-        let worst = worst * T::load(simd, &rest_shape[E::VOLUME_ROW * LANES + at..]);
+        let worst = worst * T::load(simd, &rest_shape[E::VOLUME_ROW][at..]);
         let mut out = [[zero; 3]; MOST_NODES];
         E::store_forces(
             &u,
             &forces,
             #[inline(always)]
             |row: usize| {
-                let number = T::load(simd, &rest_shape[row * LANES + at..]);
+                let number = T::load(simd, &rest_shape[row][at..]);
                 // forces are proportional to these
                 let scales = row == E::FORCE_ROW.unwrap_or(E::VOLUME_ROW) || row == E::VOLUME_ROW;
                 if scales && self.inverted_go { worst.if_positive(zero, number) } else { number }
@@ -325,50 +327,6 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, '_, 
         self.give(simd, group, at, scratch, &out);
         worst
     }
-
-    /// First Piola-Kirchhoff stress (Pa) at a point, and J there.
-    #[inline(always)]
-    fn stress<S: Simd>(
-        &mut self,
-        simd: S,
-        elastic: &L::Of<T::Vector<S>>,
-        group: usize,
-        at: usize,
-        point: usize,
-        gradient: &Mat3<T::Vector<S>>,
-        shared: T::Vector<S>,
-    ) -> (Mat3<T::Vector<S>>, T::Vector<S>) {
-        if EFFECTS == 0 || EFFECTS == FIBRES {
-            let pressure = (E::PRESSURE != PressureFrom::Point).then_some(shared);
-            let fibres = if EFFECTS == FIBRES { self.fibres_at(simd, group, at) } else { None };
-            return elastic.stress_at_once(gradient, pressure, fibres);
-        }
-        let k = elastic.kinematics(gradient);
-        let mut pressure = match E::PRESSURE {
-            PressureFrom::Point => elastic.pressure(elastic.volume_measure(&k)),
-            _ => shared,
-        };
-        if EFFECTS == ASK && !self.law.volumetric.is_empty() {
-            pressure = self.relax_pressure(simd, group, at, point, pressure);
-        }
-        let mut isochoric = match EFFECTS {
-            ASK => simd.vectorize(Isochoric { elastic, k: &k }),
-            _ => elastic.isochoric(&k),
-        };
-        if self.has_fibres() {
-            isochoric = isochoric.plus(&self.fibre_stress(simd, group, at, &k));
-        }
-        if EFFECTS == ASK && !self.law.exponential.is_empty() {
-            isochoric = isochoric.plus(&self.exponential_stress(simd, group, at, &k));
-        }
-        if self.has_viscosity() {
-            isochoric = self.relax(simd, group, at, point, isochoric);
-        }
-        if EFFECTS == ASK && self.law.reproject {
-            isochoric = elastic.without_pressure(&k, isochoric);
-        }
-        (elastic.first_stress(gradient, &k, &isochoric, pressure), k.true_j)
-    }
 }
 
 /// θ̄ = Σ V_q θ_q / V of elements with several points.
@@ -377,7 +335,7 @@ fn mean_volume_change<E: Element, T: SimdScalar, L: Elastic<T>, S: Simd>(
     simd: S,
     elastic: &L::Of<T::Vector<S>>,
     u: &E::Prepared<T::Vector<S>>,
-    rest_shape: &[T],
+    rest_shape: &[[T; LANES]],
     at: usize,
 ) -> T::Vector<S> {
     let mut change = T::splat(simd, T::default());
@@ -387,7 +345,7 @@ fn mean_volume_change<E: Element, T: SimdScalar, L: Elastic<T>, S: Simd>(
             u,
             point,
             #[inline(always)]
-            |row: usize| T::load(simd, &rest_shape[row * LANES + at..]),
+            |row: usize| T::load(simd, &rest_shape[row][at..]),
         );
         let k = elastic.kinematics(&state.gradient);
         change = state.volume.mul_add(elastic.volume_measure(&k), change);

@@ -20,7 +20,7 @@ pub(super) fn parts<'a, T>(
     let Some(patches) = patches else {
         return force.chunks_mut(forces_a_patch).map(|force| (force, None)).collect();
     };
-    let corners = patches.connectivity.chunks(corners_a_patch);
+    let corners = patches.connectivity.as_chunks().0.chunks(corners_a_patch / LANES);
     let nodes = patches.starts.windows(2).map(|ends| &patches.nodes[ends[0] as usize..ends[1] as usize]);
     let mut parts = Vec::with_capacity(patches.count());
     for (nodes, corners) in nodes.zip(corners) {
@@ -36,12 +36,18 @@ pub(super) fn part<X>(column: &[X], index: usize, length: usize) -> &[X] {
     &column[index * length..column.len().min((index + 1) * length)]
 }
 
+/// Rows of a group's corners, of that length so that no bound has to be checked further on.
+#[inline(always)]
+fn of_group<E: Element, X>(rows: &[X], group: usize) -> &[X] {
+    &rows[group * E::NODES..][..E::NODES]
+}
+
 /// A patch's nodes, to have at hand.
 pub(super) struct AtHand<'a> {
     /// Rows of the body.
     pub(super) nodes: &'a [u32],
     /// Which of them each corner is.
-    pub(super) corners: &'a [u16],
+    pub(super) corners: &'a [[u16; LANES]],
 }
 
 impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, '_, E, T, L, EFFECTS> {
@@ -105,8 +111,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, '_, 
         macro_rules! corner {
             ($corner:literal) => {
                 if $corner < E::NODES {
-                    let first = (group * E::NODES + $corner) * LANES + at;
-                    let (u, theta) = self.at_corner(simd, first, scratch);
+                    let (u, theta) = self.at_corner(simd, group, $corner, at, scratch);
                     if E::PRESSURE == PressureFrom::Nodes {
                         pressure += elastic.pressure(theta);
                     }
@@ -120,15 +125,23 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, '_, 
         (u, pressure * zero.constant(1.0 / E::NODES as f64))
     }
 
-    /// Displacements (m) and θ of a corner of a register full of elements, `first` in the connectivity.
+    /// Displacements (m) and θ of a corner of a register full of elements.
     #[inline(always)]
-    fn at_corner<S: Simd>(&self, simd: S, first: usize, scratch: &Scratch<T>) -> ([T::Vector<S>; 3], T::Vector<S>) {
+    fn at_corner<S: Simd>(
+        &self,
+        simd: S,
+        group: usize,
+        corner: usize,
+        at: usize,
+        scratch: &Scratch<T>,
+    ) -> ([T::Vector<S>; 3], T::Vector<S>) {
         match &self.at_hand {
             Some(at_hand) => {
-                let [x, y, z, theta] = T::load_rows(simd, &scratch.read, &at_hand.corners[first..]);
+                let [x, y, z, theta] =
+                    T::load_rows(simd, &scratch.read, &of_group::<E, _>(at_hand.corners, group)[corner][at..]);
                 ([x, y, z], theta)
             }
-            None => self.read_columns(simd, &self.connectivity[first..]),
+            None => self.read_columns(simd, &of_group::<E, _>(self.connectivity, group)[corner][at..]),
         }
     }
 
@@ -163,29 +176,33 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, '_, 
         macro_rules! give {
             ($($corner:literal)*) => {
                 $(if $corner < E::NODES {
-                    let first = (group * E::NODES + $corner) * LANES;
-                    self.give_corner(simd, first, at, scratch, forces[$corner]);
+                    self.give_corner(simd, group, $corner, at, scratch, forces[$corner]);
                 })*
             };
         }
         give!(0 1 2 3 4 5 6 7);
     }
 
-    /// The force on a corner of a register full of elements, `first` in the connectivity.
+    /// The force on a corner of a register full of elements.
     #[inline(always)]
     fn give_corner<S: Simd>(
         &mut self,
         simd: S,
-        first: usize,
+        group: usize,
+        corner: usize,
         at: usize,
         scratch: &mut Scratch<T>,
         force: [T::Vector<S>; 3],
     ) {
         match &self.at_hand {
-            Some(at_hand) => T::add_to_rows(simd, &mut scratch.sums, &at_hand.corners[first + at..], force),
+            Some(at_hand) => {
+                let rows = &of_group::<E, _>(at_hand.corners, group)[corner][at..];
+                T::add_to_rows(simd, &mut scratch.sums, rows, force);
+            }
             None => {
+                let first = 3 * (group * E::NODES + corner);
                 for i in 0..3 {
-                    T::store(force[i], &mut self.force[3 * first + i * LANES + at..]);
+                    T::store(force[i], &mut self.force.as_chunks_mut::<LANES>().0[first + i][at..]);
                 }
             }
         }

@@ -3,38 +3,32 @@
 use super::Patch;
 use crate::components::FamilyDirection;
 use crate::elements::Element;
-use crate::materials::{Elastic, ExponentialFibre, Fibres, Kinematics};
+use crate::materials::{Elastic, ExponentialFibre, Kinematics, PronyTerm};
 use crate::math::{LANES, Real, SimdScalar, Sym3};
 use pulp::{Simd, WithSimd};
 
-/// Fibres and their unit vectors at rest.
-type FibresAlong<R> = (Fibres<R>, [R; 3]);
-
 impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, '_, E, T, L, EFFECTS> {
-    /// S of the fibres (Pa).
+    /// Unit vectors of the fibres.
     #[inline(always)]
-    pub(super) fn fibre_stress<S: Simd>(
-        &self,
-        simd: S,
-        group: usize,
-        at: usize,
-        k: &Kinematics<T::Vector<S>>,
-    ) -> Sym3<T::Vector<S>> {
-        match self.fibres_at(simd, group, at) {
-            Some((fibres, direction)) => fibres.isochoric(k, direction),
-            None => Sym3([T::splat(simd, T::default()); 6]),
-        }
+    pub(super) fn along<S: Simd>(&self, simd: S, group: usize, at: usize) -> [T::Vector<S>; 3] {
+        let (vectors, rows_a_group) = self.along;
+        let Some([x, y, z]) = vectors[group * rows_a_group..].first_chunk() else {
+            return [T::splat(simd, T::default()); 3];
+        };
+        [T::load(simd, &x[at..]), T::load(simd, &y[at..]), T::load(simd, &z[at..])]
     }
 
-    /// The fibres and their unit vectors.
+    /// a⊗a of a group's fibres.
     #[inline(always)]
-    pub(super) fn fibres_at<S: Simd>(&self, simd: S, group: usize, at: usize) -> Option<FibresAlong<T::Vector<S>>> {
-        let (fibres, direction) = self.law.fibres.as_ref()?;
-        let fibres = fibres.map(
-            #[inline(always)]
-            |number: T| T::splat(simd, number),
-        );
-        Some((fibres, self.direction(simd, group, at, direction)))
+    pub(super) fn square_along<S: Simd>(&self, simd: S, group: usize, rows: &mut [[T; LANES]; 6]) {
+        let mut at = 0;
+        while at < LANES {
+            let square = Sym3::square_of(self.along(simd, group, at));
+            for i in 0..6 {
+                T::store(square.0[i], &mut rows[i][at..]);
+            }
+            at += T::width::<S>();
+        }
     }
 
     /// Of all families that stiffen exponentially.
@@ -99,15 +93,15 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, '_, 
             let first = group * self.law.memory_numbers(E::POINTS) + 6 * self.law.prony.len() * E::POINTS;
             let place = (first + number) * LANES + at;
             let memory = T::load(simd, &self.memory[place..]);
-            rest -= term.relaxed_pressure(pressure, memory);
+            rest -= term.relaxed_component(pressure, memory);
             if point + 1 == E::POINTS {
-                T::store(term.pressure_carried_on(pressure, memory), &mut self.memory[place..]);
+                T::store(term.component_carried_on(pressure, memory), &mut self.memory[place..]);
             }
         }
         rest
     }
 
-    /// S_iso − Υ; the memory is carried on.
+    /// `other` + S_iso − Υ; the memory is carried on.
     #[inline(always)]
     pub(super) fn relax<S: Simd>(
         &mut self,
@@ -115,34 +109,53 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, '_, 
         group: usize,
         at: usize,
         point: usize,
-        isochoric: Sym3<T::Vector<S>>,
+        isochoric: &Sym3<T::Vector<S>>,
+        other: Sym3<T::Vector<S>>,
     ) -> Sym3<T::Vector<S>> {
-        let terms = self.law.prony.len();
-        let mut stress = isochoric;
-        for (number, term) in self.law.prony.iter().enumerate() {
-            let term = term.map(
-                #[inline(always)]
-                |number: T| T::splat(simd, number),
-            );
-            let first = (group * self.law.memory_numbers(E::POINTS) + 6 * (point * terms + number)) * LANES + at;
-            let mut memory = isochoric;
-            for i in 0..6 {
-                memory.0[i] = T::load(simd, &self.memory[first + i * LANES..]);
-            }
-            let relaxed = term.relaxed(&isochoric, &memory);
-            for i in 0..6 {
-                stress.0[i] -= relaxed.0[i];
-            }
-            let memory = term.carried_on(&isochoric, &memory);
-            for i in 0..6 {
-                T::store(memory.0[i], &mut self.memory[first + i * LANES..]);
+        let terms = &self.law.prony[..];
+        let first = group * self.memory_rows + 6 * point * terms.len();
+        let rows = &mut self.memory.as_chunks_mut::<LANES>().0[first..];
+        let mut rest = other;
+        let mut share = T::splat(simd, T::default()).constant(1.0);
+        match terms {
+            // most have one: no loop, more stays in registers
+            [term] => relax_by(simd, term, at, isochoric, &mut rest, &mut share, rows),
+            _ => {
+                for (term, rows) in terms.iter().zip(rows.chunks_exact_mut(6)) {
+                    relax_by(simd, term, at, isochoric, &mut rest, &mut share, rows);
+                }
             }
         }
-        stress
+        rest.plus_scaled(share, isochoric)
     }
 }
 
-/// S of a family in a function of its own, for the same reason as [`Isochoric`](super::Isochoric).
+/// Takes Υ of a term away, its part of the present stress from the `share` that is left of it, and carries its memory on.
+#[inline(always)]
+fn relax_by<T: SimdScalar, S: Simd>(
+    simd: S,
+    term: &PronyTerm<T>,
+    at: usize,
+    isochoric: &Sym3<T::Vector<S>>,
+    rest: &mut Sym3<T::Vector<S>>,
+    share: &mut T::Vector<S>,
+    rows: &mut [[T; LANES]],
+) {
+    let term = term.map(
+        #[inline(always)]
+        |number: T| T::splat(simd, number),
+    );
+    *share -= term.stress;
+    let Some(rows) = rows.first_chunk_mut::<6>() else { return };
+    for i in 0..6 {
+        let row = &mut rows[i][at..];
+        let memory = T::load(simd, row);
+        rest.0[i] = (-term.memory).mul_add(memory, rest.0[i]);
+        T::store(term.component_carried_on(isochoric.0[i], memory), row);
+    }
+}
+
+/// S of a family in a function of its own, for the same reason as `Isochoric` in `stress`.
 struct Exponential<'a, R> {
     family: &'a ExponentialFibre<R>,
     k: &'a Kinematics<R>,

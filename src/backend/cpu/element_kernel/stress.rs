@@ -1,0 +1,132 @@
+//! Stress at a point of a register full of elements: the law's, with what the material has on top.
+
+use super::{ASK, FIBRES, Patch, VISCOSITY};
+use crate::elements::{Element, PressureFrom};
+use crate::materials::{Elastic, Fibres, Kinematics};
+use crate::math::{LANES, Mat3, Real, SimdScalar, Sym3};
+use pulp::{Simd, WithSimd};
+
+/// Numbers of a material, made ready once a patch.
+pub(super) struct InRegisters<L, T: SimdScalar, S: Simd> {
+    pub(super) elastic: L,
+    /// All zero where there are none.
+    pub(super) fibres: Fibres<T::Vector<S>>,
+    /// a⊗a of a group's fibres where there is viscosity too: made anew for a group where they differ.
+    pub(super) along_squared: [[T; LANES]; 6],
+}
+
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, '_, E, T, L, EFFECTS> {
+    #[inline(always)]
+    pub(super) fn in_registers<S: Simd>(&self, simd: S) -> InRegisters<L::Of<T::Vector<S>>, T, S> {
+        let none = Fibres { eta: T::default(), tension_only: T::default() };
+        let fibres = self.law.fibres.as_ref().map_or(none, |(fibres, _)| *fibres);
+        macro_rules! splat {
+            ($law:expr) => {
+                $law.map(
+                    #[inline(always)]
+                    |number: T| T::splat(simd, number),
+                )
+            };
+        }
+        InRegisters { elastic: splat!(self.elastic), fibres: splat!(fibres), along_squared: [[T::default(); LANES]; 6] }
+    }
+
+    /// First Piola-Kirchhoff stress (Pa) at a point, and J there.
+    #[inline(always)]
+    pub(super) fn stress<S: Simd>(
+        &mut self,
+        simd: S,
+        law: &InRegisters<L::Of<T::Vector<S>>, T, S>,
+        group: usize,
+        at: usize,
+        point: usize,
+        gradient: &Mat3<T::Vector<S>>,
+        shared: T::Vector<S>,
+    ) -> (Mat3<T::Vector<S>>, T::Vector<S>) {
+        if EFFECTS == ASK {
+            return self.stress_asked_for(simd, law, group, at, point, gradient, shared);
+        }
+        let pressure = (E::PRESSURE != PressureFrom::Point).then_some(shared);
+        if EFFECTS & VISCOSITY == 0 {
+            let fibres = (EFFECTS & FIBRES != 0).then(
+                #[inline(always)]
+                || (law.fibres, self.along(simd, group, at)),
+            );
+            return law.elastic.stress_at_once(gradient, pressure, fibres);
+        }
+        let fibres = (EFFECTS & FIBRES != 0).then(
+            #[inline(always)]
+            || (law.fibres, six_rows(simd, &law.along_squared, at)),
+        );
+        law.elastic.stress_relaxed(
+            gradient,
+            pressure,
+            fibres,
+            #[inline(always)]
+            |isochoric, volumetric| self.relax(simd, group, at, point, &isochoric, volumetric),
+        )
+    }
+
+    /// The same with all that a material can have, by way of S.
+    #[inline(always)]
+    fn stress_asked_for<S: Simd>(
+        &mut self,
+        simd: S,
+        law: &InRegisters<L::Of<T::Vector<S>>, T, S>,
+        group: usize,
+        at: usize,
+        point: usize,
+        gradient: &Mat3<T::Vector<S>>,
+        shared: T::Vector<S>,
+    ) -> (Mat3<T::Vector<S>>, T::Vector<S>) {
+        let elastic = &law.elastic;
+        let k = elastic.kinematics(gradient);
+        let mut pressure = match E::PRESSURE {
+            PressureFrom::Point => elastic.pressure(elastic.volume_measure(&k)),
+            _ => shared,
+        };
+        if !self.law.volumetric.is_empty() {
+            pressure = self.relax_pressure(simd, group, at, point, pressure);
+        }
+        let mut isochoric = simd.vectorize(Isochoric { elastic, k: &k });
+        if self.law.fibres.is_some() {
+            isochoric = isochoric.plus(&law.fibres.isochoric(&k, self.along(simd, group, at)));
+        }
+        if !self.law.exponential.is_empty() {
+            isochoric = isochoric.plus(&self.exponential_stress(simd, group, at, &k));
+        }
+        if !self.law.prony.is_empty() {
+            let nothing = Sym3([shared.constant(0.0); 6]);
+            isochoric = self.relax(simd, group, at, point, &isochoric, nothing);
+        }
+        if self.law.reproject {
+            isochoric = elastic.without_pressure(&k, isochoric);
+        }
+        (elastic.first_stress(gradient, &k, &isochoric, pressure), k.true_j)
+    }
+}
+
+/// S_iso of a law in a function of its own: what all laws come to is too much code to stand in every element's kernel.
+struct Isochoric<'a, L, R> {
+    elastic: &'a L,
+    k: &'a Kinematics<R>,
+}
+
+impl<R: Real, L: Elastic<R>> WithSimd for Isochoric<'_, L, R> {
+    type Output = Sym3<R>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Sym3<R> {
+        self.elastic.isochoric(self.k)
+    }
+}
+
+/// A symmetric matrix from its rows, from lane `at` on.
+#[inline(always)]
+fn six_rows<T: SimdScalar, S: Simd>(simd: S, rows: &[[T; LANES]; 6], at: usize) -> Sym3<T::Vector<S>> {
+    let mut all = Sym3([T::splat(simd, T::default()); 6]);
+    for i in 0..6 {
+        all.0[i] = T::load(simd, &rows[i][at..]);
+    }
+    all
+}
