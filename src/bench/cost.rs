@@ -165,7 +165,7 @@ fn flops<E: Element>(effects: Effects) -> f64 {
     for point in 0..E::POINTS {
         let state = E::at_point(&u, point, shape);
         let stress = if viscous {
-            let fibres = fibred.then(|| (fibres.0, along_squared));
+            let fibres = fibred.then_some((fibres.0, along_squared));
             let relax = |isochoric: Sym3<Counted>, volumetric: Sym3<Counted>| {
                 let memory = isochoric;
                 let relaxed = term.relaxed(&isochoric, &memory);
