@@ -51,26 +51,26 @@ pub fn run_block<E: Element, T: SimdScalar>(
     Block::<E, T> { cpu, columns, law, groups_a_patch, element: PhantomData }.run::<_, ASK>(&law.elastic)
 }
 
-/// The same in f32, where speed counts: the neo-Hookean law has a kernel of its own for each combination of fibres and
-/// viscosity, so that what a material lacks is not even asked for.
+/// The same in f32, where speed counts, with a kernel of its own for what is asked for most: the neo-Hookean law with each
+/// combination of fibres and viscosity, and three laws with neither. What a material lacks is not even asked for.
 pub fn run_block_fast<E: Element>(
     cpu: &Cpu,
     columns: BlockColumns<'_, f32>,
     law: &BlockLaw<f32>,
     groups_a_patch: usize,
 ) -> bool {
-    let ElasticLaw::NeoHookean(elastic) = &law.elastic else {
-        return run_block::<E, f32>(cpu, columns, law, groups_a_patch);
-    };
     let plain = law.exponential.is_empty() && law.volumetric.is_empty() && !law.reproject;
-    if !plain {
-        return run_block::<E, f32>(cpu, columns, law, groups_a_patch);
+    let alone = plain && law.fibres.is_none() && law.prony.is_empty();
+    let simple = columns.simple;
+    let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
+    match &law.elastic {
+        ElasticLaw::NeoHookean(elastic) if plain && simple => block.simple().run_neo_hookean(elastic),
+        ElasticLaw::NeoHookean(elastic) if plain => block.run_neo_hookean(elastic),
+        ElasticLaw::StableNeoHookean(elastic) if alone => block.run::<_, 0>(elastic),
+        ElasticLaw::MooneyRivlin(elastic) if alone => block.run::<_, 0>(elastic),
+        ElasticLaw::Ogden(elastic) if alone => block.run::<_, 0>(elastic),
+        asked => block.run::<_, ASK>(asked),
     }
-    if columns.simple {
-        let block = Block::<E::Simple, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
-        return block.run_neo_hookean(elastic);
-    }
-    Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData }.run_neo_hookean(elastic)
 }
 
 /// Effects of a kernel, as bits.
@@ -87,7 +87,13 @@ struct Block<'a, E, T: SimdScalar> {
     element: PhantomData<E>,
 }
 
-impl<E: Element> Block<'_, E, f32> {
+impl<'a, E: Element> Block<'a, E, f32> {
+    /// The same for elements that [are simple](Element::is_simple).
+    fn simple(self) -> Block<'a, E::Simple, f32> {
+        let Self { cpu, columns, law, groups_a_patch, element: _ } = self;
+        Block { cpu, columns, law, groups_a_patch, element: PhantomData }
+    }
+
     fn run_neo_hookean(self, elastic: &NeoHookean<f32>) -> bool {
         match (self.law.fibres.is_some(), !self.law.prony.is_empty()) {
             (false, false) => self.run::<_, 0>(elastic),
