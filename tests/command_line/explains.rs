@@ -13,6 +13,8 @@ fn only_what_the_scene_calls_for_has_columns() {
     assert!(with.contains("fibre_direction of block/tissue/Hex8"), "{with}");
     assert!(without.contains("without fibres, without viscosity"), "{without}");
     assert!(with.contains("with fibres, without viscosity"), "{with}");
+    let in_f64 = place.done(&["explain", "block.ron", "--backend", "cpu", "--precision", "f64"]);
+    assert!(in_f64.contains("which asks for each effect"), "{in_f64}");
 }
 
 #[test]

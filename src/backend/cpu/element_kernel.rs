@@ -69,26 +69,41 @@ pub fn run_block<E: Element, T: SimdScalar>(
     Block::<E, T> { cpu, columns, law, groups_a_patch, element: PhantomData }.run::<_, ASK>(&law.elastic)
 }
 
-/// The same in f32, where speed counts: the neo-Hookean law has a kernel of its own for each combination of fibres and
-/// viscosity, so that what a material lacks is not even asked for.
+/// The same in f32, where speed counts, with a kernel of its own for what is asked for most: the neo-Hookean law with each
+/// combination of fibres and viscosity, and three laws with neither. What a material lacks is not even asked for.
 pub fn run_block_fast<E: Element>(
     cpu: &Cpu,
     columns: BlockColumns<'_, '_, f32>,
     law: &BlockLaw<f32>,
     groups_a_patch: usize,
 ) -> Vec<usize> {
-    let ElasticLaw::NeoHookean(elastic) = &law.elastic else {
-        return run_block::<E, f32>(cpu, columns, law, groups_a_patch);
+    let effects = kernel_effects(law);
+    let simple = columns.simple;
+    let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
+    match &law.elastic {
+        asked if effects.is_none() => block.run::<_, ASK>(asked),
+        ElasticLaw::NeoHookean(elastic) if simple => block.simple().run_neo_hookean(elastic),
+        ElasticLaw::NeoHookean(elastic) => block.run_neo_hookean(elastic),
+        ElasticLaw::StableNeoHookean(elastic) => block.run::<_, 0>(elastic),
+        ElasticLaw::MooneyRivlin(elastic) => block.run::<_, 0>(elastic),
+        ElasticLaw::Ogden(elastic) => block.run::<_, 0>(elastic),
+        asked => block.run::<_, ASK>(asked),
+    }
+}
+
+/// Whether a law's kernel in f32 is one that has fibres, and one that has viscosity, and nothing that it need not have; `None`: it
+/// is the one that asks for each effect.
+pub fn kernel_effects(law: &BlockLaw<f32>) -> Option<[bool; 2]> {
+    let effects = [law.fibres.is_some(), !law.prony.is_empty()];
+    let others = !law.exponential.is_empty() || !law.volumetric.is_empty() || law.reproject;
+    let is_there = match law.elastic {
+        ElasticLaw::NeoHookean(_) => true,
+        ElasticLaw::StableNeoHookean(_) | ElasticLaw::MooneyRivlin(_) | ElasticLaw::Ogden(_) => {
+            effects == [false, false]
+        }
+        _ => false,
     };
-    let plain = law.exponential.is_empty() && law.volumetric.is_empty() && !law.reproject;
-    if !plain {
-        return run_block::<E, f32>(cpu, columns, law, groups_a_patch);
-    }
-    if columns.simple {
-        let block = Block::<E::Simple, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
-        return block.run_neo_hookean(elastic);
-    }
-    Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData }.run_neo_hookean(elastic)
+    (is_there && !others).then_some(effects)
 }
 
 /// Effects of a kernel, as bits.
@@ -105,7 +120,13 @@ struct Block<'a, 'n, E, T: SimdScalar> {
     element: PhantomData<E>,
 }
 
-impl<E: Element> Block<'_, '_, E, f32> {
+impl<'a, 'n, E: Element> Block<'a, 'n, E, f32> {
+    /// The same for elements that [are simple](Element::is_simple).
+    fn simple(self) -> Block<'a, 'n, E::Simple, f32> {
+        let Self { cpu, columns, law, groups_a_patch, element: _ } = self;
+        Block { cpu, columns, law, groups_a_patch, element: PhantomData }
+    }
+
     fn run_neo_hookean(self, elastic: &NeoHookean<f32>) -> Vec<usize> {
         match (self.law.fibres.is_some(), !self.law.prony.is_empty()) {
             (false, false) => self.run::<_, 0>(elastic),

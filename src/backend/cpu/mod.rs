@@ -6,7 +6,7 @@ mod node_kernel;
 mod volume_kernel;
 mod watch_kernel;
 
-pub use element_kernel::{BlockColumns, Inside, run_block, run_block_fast};
+pub use element_kernel::{BlockColumns, Inside, kernel_effects, run_block, run_block_fast};
 pub use law::BlockLaw;
 pub use node_kernel::{Factors, NodeColumns, move_nodes};
 pub use volume_kernel::run_volumes;

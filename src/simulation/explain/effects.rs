@@ -1,6 +1,7 @@
 //! What blocks and bodies have or lack, and what would give it to them.
 
 use super::{Effect, Part};
+use crate::backend::cpu::{BlockLaw, kernel_effects};
 use crate::backend::user_law::Findings;
 use crate::components::*;
 use crate::materials::{Elastic, ElasticLaw, ExponentialFibre, Fibres, UserLaw};
@@ -13,7 +14,7 @@ pub fn parts(scene: &Scene, precision: Precision, on_gpu: bool, world: &mut Worl
     let mut blocks: Vec<Part> = Vec::new();
     let mut query = world.query::<(EntityRef, &Block, &Label)>();
     for (entity, block, label) in query.iter(world) {
-        let cpu_variant = (!on_gpu).then(|| cpu_variant(block, precision, world));
+        let cpu_variant = (!on_gpu).then(|| cpu_variant(&entity, block, world));
         let (body, material) = (name(world, block.body), name(world, block.material));
         let size = format!("{} {:?} elements of {material} in {body}", block.count, block.kind);
         let effects = block_effects(&entity, block, &material, &body, world);
@@ -188,23 +189,18 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> 
 }
 
 /// Which of the compiled kernels a block runs on the CPU.
-fn cpu_variant(block: &Block, precision: Precision, world: &World) -> String {
-    let material = world.entity(block.material);
-    let (families, prony) = (material.contains::<ExponentialFibres>(), material.get::<Prony>());
-    let plain = !families && prony.is_none_or(|prony| prony.volumetric.is_empty() && !prony.reproject);
-    let variant = match ElasticLaw::of(material) {
-        Some(ElasticLaw::NeoHookean(_)) if plain => {
-            let word = |is: bool| if is { "with" } else { "without" };
-            let fibres = word(material.contains::<Fibres<f64>>());
-            format!("{fibres} fibres, {} viscosity", word(prony.is_some()))
+fn cpu_variant(entity: &EntityRef<'_>, block: &Block, world: &World) -> String {
+    let law = ElasticLaw::of(world.entity(block.material)).map_or("no law", |law| law.name());
+    let rounded = entity.get::<BlockLaw<f32>>();
+    let variant = match rounded.and_then(kernel_effects) {
+        Some(effects) => {
+            let [fibres, viscosity] = effects.map(|is| if is { "with" } else { "without" });
+            format!("{fibres} fibres, {viscosity} viscosity")
         }
-        law => format!("of {}, which asks for each effect", law.map_or("no law", |law| law.name())),
+        None => "which asks for each effect".into(),
     };
-    let lanes = match precision {
-        Precision::F32 => "f32",
-        Precision::F64 => "f64",
-    };
-    format!("{:?} in {lanes}, groups of {LANES}, {variant}", block.kind)
+    let lanes = if rounded.is_some() { "f32" } else { "f64" };
+    format!("{:?} in {lanes}, groups of {LANES}, of {law}, {variant}", block.kind)
 }
 
 /// Six digits are enough to recognise a parameter that was computed from others.
