@@ -12,11 +12,14 @@ use sinew::components::{Scheme, Signals};
 use std::collections::BTreeSet;
 
 /// Fragments that belong to no system, element or material by name, and what calls for them.
-const SUPPORT: [(&str, &str); 42] = [
+const SUPPORT: [(&str, &str); 45] = [
     ("corner", "corners of elements, in columns"),
     ("corner_volume", "the same for averaged nodal pressure"),
     ("patch_volume", "averaged nodal pressure, in patches"),
     ("patches", "forces summed patch by patch"),
+    ("patch_pass", "the same, a workgroup a patch"),
+    ("pass_rows", "how many nodes a kernel has"),
+    ("many_steps", "steps of small bodies, in one dispatch"),
     ("two_pass", "forces summed in two passes"),
     ("alive", "loads on faces of elements that can go"),
     ("block", "columns of element blocks"),
@@ -211,6 +214,8 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
         "neo_hookean",
         "node_pass",
         "note_inverted",
+        "pass_rows",
+        "patch_pass",
         "patches",
         "point",
         "point_pressure",

@@ -303,6 +303,10 @@ impl Buffers for Binder<'_> {
         self.device.gpu.limits().storage_buffers as usize
     }
 
+    fn workgroup_invocations(&self) -> usize {
+        self.device.gpu.limits().workgroup_size as usize
+    }
+
     fn constants(&mut self, label: String, bytes: &[u8]) -> BufferId {
         self.create(&label, bytes, bytes.len(), BufferKind::Storage)
     }

@@ -12,6 +12,13 @@ pub struct Item<'a> {
     lines: Vec<&'a str>,
 }
 
+impl Item<'_> {
+    /// Its text.
+    pub fn text(&self) -> String {
+        self.lines.join("\n")
+    }
+}
+
 /// The declarations of a text, in order.
 pub struct Items<'a>(pub Vec<Item<'a>>);
 

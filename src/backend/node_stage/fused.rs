@@ -1,0 +1,223 @@
+//! Stages put together into one kernel.
+
+use super::items::{Items, renamed, storage_variable};
+use super::{NodePass, NodeStage, Rows};
+use crate::backend::Buffers;
+use crate::backend::kernel::{BufferId, Fragment, Kernel, Layout, Uniform};
+use crate::components::{Column, ExternalForce, InternalForce};
+use crate::shader;
+use std::borrow::Cow;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// The WGSL of several stages in one, and what it binds.
+pub struct Fused {
+    shared: Vec<Fragment>,
+    own: Vec<Fragment>,
+    /// WGSL access and type of each column, the widest access that any stage asks for.
+    columns: BTreeMap<String, (bool, String)>,
+    buffers: BTreeMap<&'static str, BufferId>,
+    bindings: Vec<(Cow<'static, str>, BufferId)>,
+    layouts: Vec<(Cow<'static, str>, Layout)>,
+    /// Lines of the kernel's beginning, of its body, and of its end.
+    sums: String,
+    calls: String,
+    finish: String,
+    /// Texts of the structs, by name.
+    structs: BTreeMap<String, String>,
+    /// Variables that hold each node's place in a stage's rows, and those rows.
+    places: Vec<(String, usize)>,
+    storage_variables: usize,
+}
+
+impl Fused {
+    /// Puts stages together.
+    pub fn of(stages: &[&NodeStage]) -> Self {
+        let mut fused = Self {
+            shared: Vec::new(),
+            own: Vec::new(),
+            columns: BTreeMap::new(),
+            buffers: BTreeMap::new(),
+            bindings: Vec::new(),
+            layouts: Vec::new(),
+            sums: String::new(),
+            calls: String::new(),
+            finish: String::new(),
+            structs: BTreeMap::new(),
+            places: Vec::new(),
+            storage_variables: 0,
+        };
+        let mut declared: BTreeSet<String> = BTreeSet::new();
+        for fragment in forces_between(stages).into_iter().chain(stages.iter().flat_map(|s| s.shared.clone())) {
+            if fused.shared.iter().any(|there| there.path == fragment.path) {
+                continue;
+            }
+            let text = fused.without_columns(&fragment.text, &|_| true);
+            declared.extend(Items::of(&text).names().map(str::to_owned));
+            fused.shared.push(Fragment { text: text.into(), ..fragment });
+        }
+        let single = stages.len() == 1;
+        for (number, stage) in stages.iter().enumerate() {
+            fused.add(number, stage, single, &mut declared);
+        }
+        fused
+    }
+
+    fn add(&mut self, number: usize, stage: &NodeStage, single: bool, declared: &mut BTreeSet<String>) {
+        // a column that another stage has under the name of one of its own is not shared
+        let is_other = |(name, buffer): &(&'static str, BufferId)| self.buffers.get(name).is_some_and(|b| b != buffer);
+        let (own, columns): (Vec<_>, Vec<_>) = stage.columns.iter().copied().partition(is_other);
+        self.buffers.extend(columns.iter().copied());
+        declared.extend(columns.iter().map(|(name, _)| (*name).to_owned()));
+        let is_column = |name: &str| columns.iter().any(|(column, _)| *column == name);
+        let texts: Vec<String> =
+            stage.own.iter().map(|fragment| self.without_columns(&fragment.text, &is_column)).collect();
+        let mut names: BTreeMap<String, String> = BTreeMap::new();
+        let mut structs: BTreeSet<String> = BTreeSet::new();
+        for item in texts.iter().flat_map(|text| Items::of(text).0) {
+            let Some(name) = item.name.map(str::to_owned) else { continue };
+            // the same system's stages have the same structs
+            if item.is_struct && self.structs.get(&name) == Some(&item.text()) {
+                structs.insert(name);
+            } else if declared.contains(&name) {
+                names.insert(name.clone(), format!("{name}_{number}"));
+            } else {
+                if item.is_struct {
+                    self.structs.insert(name.clone(), item.text());
+                }
+                declared.insert(name);
+            }
+        }
+        for (fragment, text) in stage.own.iter().zip(texts) {
+            let text = renamed(&Items::of(&text).without(&structs), &names);
+            self.storage_variables += text.matches("var<storage").count();
+            self.own.push(Fragment { path: fragment.path.clone(), text: text.into() });
+        }
+        let now = |name: &Cow<'static, str>| names.get(name.as_ref()).map_or(name.clone(), |name| name.clone().into());
+        let own = own.into_iter().map(|(name, buffer)| (name.into(), buffer));
+        self.bindings.extend(stage.bindings.iter().cloned().chain(own).map(|(name, buffer)| (now(&name), buffer)));
+        self.layouts.extend(stage.layouts.iter().map(|(name, layout)| (now(name), *layout)));
+        let call = now(&stage.call.into());
+        match (&stage.rows, single) {
+            (Rows::Patch, _) => self.sums += &format!("    {call}(0u, local);\n"),
+            (Rows::All, _) | (Rows::Some(_), true) => self.calls += &format!("    {call}(node);\n"),
+            (Rows::Some(_), false) => {
+                let places = format!("places_{number}");
+                self.calls += &format!("    if {places}[node] != NO_PLACE {{ {call}({places}[node]); }}\n");
+                self.places.push((places, number));
+            }
+        }
+        if let Some(finish) = stage.finish {
+            self.finish += &format!("    {finish}(local, node);\n");
+        }
+    }
+
+    /// Takes the declarations of columns out of a text: they stand once for all.
+    fn without_columns(&mut self, text: &str, is_column: &dyn Fn(&str) -> bool) -> String {
+        let mut rest = String::new();
+        for line in text.lines() {
+            match storage_variable(line).filter(|(name, ..)| is_column(name)) {
+                Some((name, writes, of)) => {
+                    let entry = self.columns.entry(name.to_owned()).or_insert((writes, of.to_owned()));
+                    entry.0 |= writes;
+                }
+                None => rest = rest + line + "\n",
+            }
+        }
+        rest
+    }
+
+    /// Names of the columns that it writes.
+    pub fn written(&self) -> impl Iterator<Item = &str> {
+        self.columns.iter().filter(|(_, (writes, _))| *writes).map(|(name, _)| name.as_str())
+    }
+
+    /// How many storage buffers it binds.
+    pub fn storage(&self) -> usize {
+        self.columns.len() + self.storage_variables + self.places.len()
+    }
+
+    /// The kernel of `count` rows, but for the function `entry`, which calls `sum_all`, `call_all` and `finish_all`.
+    pub fn into_kernel(
+        self,
+        entry: &'static str,
+        stages: &[&NodeStage],
+        count: u32,
+        buffers: &mut dyn Buffers,
+    ) -> Kernel {
+        let mut systems: Vec<&str> = stages.iter().map(|stage| stage.system).collect();
+        systems.dedup();
+        let mut text = String::new();
+        for (number, (name, (writes, of))) in self.columns.iter().enumerate() {
+            let access = if *writes { "read_write" } else { "read" };
+            text += &format!("@group(0) @binding({number}) var<storage, {access}> {name}: {of};\n");
+        }
+        let mut kernel = Kernel::new(systems.join(" + "), entry);
+        text += &self.calls_as_functions();
+        if !self.places.is_empty() {
+            text += "const NO_PLACE: u32 = 0xffffffffu;\n";
+        }
+        for (variable, number) in self.places {
+            text += &format!("@group(0) @binding(0) var<storage, read> {variable}: array<u32>;\n");
+            let stage = &stages[number];
+            let Rows::Some(rows) = &stage.rows else { continue };
+            let mut places = vec![u32::MAX; stage.nodes as usize];
+            for (place, &row) in rows.iter().enumerate() {
+                places[row as usize] = place as u32;
+            }
+            let label = format!("places of {}", stage.system);
+            kernel = kernel.bind(variable, buffers.constants(label, bytemuck::cast_slice(&places)));
+        }
+        for (name, buffer) in self.buffers {
+            kernel = kernel.bind(name, buffer);
+        }
+        kernel.bindings.extend(self.bindings);
+        kernel.layouts.extend(self.layouts);
+        kernel.fragments.extend(self.own);
+        kernel.fragments.extend(self.shared);
+        let pass = buffers.uniform(format!("rows of {}", kernel.label), &NodePass { count }.bytes());
+        kernel
+            .fragment(shader!("pass_rows"))
+            .fragment(Fragment::new("generated: columns and calls of the kernel", text))
+            .bind_uniform::<NodePass>("pass_rows", pass)
+    }
+
+    fn calls_as_functions(&self) -> String {
+        let sums = match self.sums.as_str() {
+            "" => String::new(),
+            sums => format!("fn sum_all(local: u32) {{\n{sums}}}\n"),
+        };
+        let Self { calls, finish, .. } = self;
+        sums + &format!("fn call_all(node: u32) {{\n{calls}}}\nfn finish_all(local: u32, node: u32) {{\n{finish}}}\n")
+    }
+}
+
+/// How forces get from who sums them and who adds to them to who uses them: through memory, or, where one kernel does both,
+/// in the invocation's own registers.
+fn forces_between(stages: &[&NodeStage]) -> Vec<Fragment> {
+    let calls = |name: &str| stages.iter().any(|stage| stage.columns.iter().any(|(column, _)| *column == name));
+    let (inner, outer) = (calls(InternalForce::NAME), calls(ExternalForce::NAME));
+    let at_hand = ["gather", "integrate"].iter().all(|call| stages.iter().any(|stage| stage.call == *call));
+    let loaded = stages.iter().any(|stage| stage.loaded);
+    // the second half of integrate asks for none of them, but the fragment does
+    let integrates = stages.iter().any(|stage| stage.system == "integrate");
+    let mut fragments = Vec::new();
+    match (inner, at_hand) {
+        (true, true) => fragments.push(shader!("internal_force_at_hand")),
+        (true, false) => fragments.push(shader!("internal_force")),
+        (false, _) if integrates => fragments.push(Fragment::new(
+            "generated: no forces of elements",
+            "fn internal_force_of(node: u32) -> vec3<f32> {\n    return vec3<f32>(0.0);\n}\n",
+        )),
+        (false, _) => {}
+    }
+    match (outer && loaded, at_hand) {
+        (true, true) => fragments.push(shader!("external_force_at_hand")),
+        (true, false) => fragments.push(shader!("external_force")),
+        (false, _) if inner || integrates => fragments.push(Fragment::new(
+            "generated: no loads",
+            "fn clear_loads(node: u32) {}\nfn external_force_of(node: u32) -> vec3<f32> {\n    return vec3<f32>(0.0);\n}\n",
+        )),
+        (false, _) => {}
+    }
+    fragments
+}
