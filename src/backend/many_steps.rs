@@ -32,9 +32,10 @@ pub fn step_by_step(because: &str, world: &mut World) -> Vec<Dispatched> {
     bodies(world).into_iter().map(of_body).collect()
 }
 
-/// The kernels of small bodies: takes what they put together out of `elements`, all kernels of the element forces, and `stages`, all
-/// else that a step does.
+/// The kernels of bodies of at most so many elements: takes what they put together out of `elements`, all kernels of the element
+/// forces, and `stages`, all else that a step does.
 pub fn take_small_bodies(
+    most_elements: usize,
     elements: &mut Vec<Kernel>,
     stages: &mut Vec<NodeStage>,
     world: &mut World,
@@ -46,7 +47,7 @@ pub fn take_small_bodies(
         let blocks: Vec<&Kernel> = elements.iter().filter(|kernel| is_of_body(kernel)).collect();
         let step = whole_step(&blocks, body, stages, world);
         let step: Vec<&NodeStage> = step.iter().collect();
-        let width = width(&blocks, world, buffers).and_then(|width| {
+        let width = width(&blocks, most_elements, world, buffers).and_then(|width| {
             // one more for the records of the steps
             let most = buffers.storage_buffers().saturating_sub(1);
             node_stage::why_apart(&step, most).map_or(Ok(width), Err)
@@ -74,7 +75,7 @@ fn whole_step(blocks: &[&Kernel], body: Entity, stages: &[NodeStage], world: &Wo
 
 /// How many invocations the workgroup of a body has, or why many steps in a dispatch are not for it: all by count, before anything
 /// is put together.
-fn width(blocks: &[&Kernel], world: &World, buffers: &dyn Buffers) -> Result<usize, String> {
+fn width(blocks: &[&Kernel], most_elements: usize, world: &World, buffers: &dyn Buffers) -> Result<usize, String> {
     const BATCH: usize = BATCH_GROUPS * LANES;
     let parts: Vec<(&Block, &Patches)> = blocks
         .iter()
@@ -88,8 +89,8 @@ fn width(blocks: &[&Kernel], world: &World, buffers: &dyn Buffers) -> Result<usi
         return Err("its forces are not summed by patches".into());
     }
     let elements: usize = parts.iter().map(|(block, _)| block.count).sum();
-    if elements > MOST_ELEMENTS {
-        return Err(format!("it has {elements} elements; with more than {MOST_ELEMENTS} it does not pay"));
+    if elements > most_elements {
+        return Err(format!("it has {elements} elements; with more than {most_elements} it does not pay"));
     }
     if let Some((_, patches)) = parts.iter().find(|(_, patches)| patches.count() != 1) {
         return Err(format!(

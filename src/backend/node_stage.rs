@@ -21,7 +21,7 @@ pub type DescribeStages = fn(&mut World, &mut dyn Buffers) -> Vec<NodeStage>;
 pub struct NodeStage {
     body: Entity,
     system: &'static str,
-    /// The WGSL function: of a node, or of a place in `rows`.
+    /// The WGSL function: of a node, of a place in `rows` and the node there, or of a patch and an invocation.
     call: &'static str,
     /// Called by all invocations of a workgroup after that, with their place in it and their row.
     finish: Option<&'static str>,
@@ -65,7 +65,7 @@ impl NodeStage {
         }
     }
 
-    /// Only for some nodes, ascending: calls `call(i)` for each place `i` in `rows`.
+    /// Only for some nodes, ascending: calls `call(i, node)` for each place `i` in `rows` and the node that is there.
     pub fn of_rows(mut self, rows: Vec<u32>) -> Self {
         self.rows = Rows::Some(rows);
         self

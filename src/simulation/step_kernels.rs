@@ -2,7 +2,7 @@
 
 use crate::backend::Buffers;
 use crate::backend::kernel::Kernel;
-use crate::backend::many_steps::{Dispatched, step_by_step, take_small_bodies};
+use crate::backend::many_steps::{Dispatched, MOST_ELEMENTS, step_by_step, take_small_bodies};
 use crate::backend::node_stage::{NodeStage, node_kernels};
 use crate::systems::{OnDevice, Phase, System};
 use bevy_ecs::prelude::*;
@@ -25,7 +25,8 @@ pub(super) fn step_kernels(
     }
     let dispatched = match elements_then_nodes(groups) {
         Ok([elements, nodes]) => {
-            let (small, how) = take_small_bodies(&mut kernels[elements], &mut stages[nodes], world, buffers);
+            let (small, how) =
+                take_small_bodies(MOST_ELEMENTS, &mut kernels[elements], &mut stages[nodes], world, buffers);
             kernels[nodes] = small;
             how
         }

@@ -24,8 +24,8 @@ pub struct Fused {
     finish: String,
     /// Texts of the structs, by name.
     structs: BTreeMap<String, String>,
-    /// Variables that hold each node's place in a stage's rows, and those rows.
-    places: Vec<(String, usize)>,
+    /// Variables that hold a stage's rows, or, where others share the kernel, each node's place among them; and whose.
+    lists: Vec<(String, usize)>,
     storage_variables: usize,
 }
 
@@ -43,7 +43,7 @@ impl Fused {
             calls: String::new(),
             finish: String::new(),
             structs: BTreeMap::new(),
-            places: Vec::new(),
+            lists: Vec::new(),
             storage_variables: 0,
         };
         let mut declared: BTreeSet<String> = BTreeSet::new();
@@ -99,11 +99,15 @@ impl Fused {
         let call = now(&stage.call.into());
         match (&stage.rows, single) {
             (Rows::Patch, _) => self.sums += &format!("    {call}(0u, local);\n"),
-            (Rows::All, _) | (Rows::Some(_), true) => self.calls += &format!("    {call}(node);\n"),
+            (Rows::All, _) => self.calls += &format!("    {call}(node);\n"),
+            (Rows::Some(_), true) => {
+                self.calls += &format!("    {call}(node, rows[node]);\n");
+                self.lists.push(("rows".to_owned(), number));
+            }
             (Rows::Some(_), false) => {
                 let places = format!("places_{number}");
-                self.calls += &format!("    if {places}[node] != NO_PLACE {{ {call}({places}[node]); }}\n");
-                self.places.push((places, number));
+                self.calls += &format!("    if {places}[node] != 0xffffffffu {{ {call}({places}[node], node); }}\n");
+                self.lists.push((places, number));
             }
         }
         if let Some(finish) = stage.finish {
@@ -133,7 +137,7 @@ impl Fused {
 
     /// How many storage buffers it binds.
     pub fn storage(&self) -> usize {
-        self.columns.len() + self.storage_variables + self.places.len()
+        self.columns.len() + self.storage_variables + self.lists.len()
     }
 
     /// The kernel of `count` rows, but for the function `entry`, which calls `sum_all`, `call_all` and `finish_all`.
@@ -153,19 +157,14 @@ impl Fused {
         }
         let mut kernel = Kernel::new(systems.join(" + "), entry);
         text += &self.calls_as_functions();
-        if !self.places.is_empty() {
-            text += "const NO_PLACE: u32 = 0xffffffffu;\n";
-        }
-        for (variable, number) in self.places {
+        for (variable, number) in self.lists {
             text += &format!("@group(0) @binding(0) var<storage, read> {variable}: array<u32>;\n");
-            let stage = &stages[number];
-            let Rows::Some(rows) = &stage.rows else { continue };
-            let mut places = vec![u32::MAX; stage.nodes as usize];
-            for (place, &row) in rows.iter().enumerate() {
-                places[row as usize] = place as u32;
-            }
-            let label = format!("places of {}", stage.system);
-            kernel = kernel.bind(variable, buffers.constants(label, bytemuck::cast_slice(&places)));
+            let NodeStage { system, nodes, rows: Rows::Some(rows), .. } = stages[number] else { continue };
+            let list = match stages {
+                [_] => buffers.constants(format!("rows of {system}"), bytemuck::cast_slice(rows)),
+                _ => buffers.constants(format!("places of {system}"), bytemuck::cast_slice(&places(rows, *nodes))),
+            };
+            kernel = kernel.bind(variable, list);
         }
         for (name, buffer) in self.buffers {
             kernel = kernel.bind(name, buffer);
@@ -189,6 +188,15 @@ impl Fused {
         let Self { calls, finish, .. } = self;
         sums + &format!("fn call_all(node: u32) {{\n{calls}}}\nfn finish_all(local: u32, node: u32) {{\n{finish}}}\n")
     }
+}
+
+/// The place of each node among a stage's rows; of others the largest number.
+fn places(rows: &[u32], nodes: u32) -> Vec<u32> {
+    let mut places = vec![u32::MAX; nodes as usize];
+    for (place, &row) in rows.iter().enumerate() {
+        places[row as usize] = place as u32;
+    }
+    places
 }
 
 /// How forces get from who sums them and who adds to them to who uses them: through memory, or, where one kernel does both,
@@ -220,4 +228,33 @@ fn forces_between(stages: &[&NodeStage]) -> Vec<Fragment> {
         (false, _) => {}
     }
     fragments
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::backend::kernel::compose;
+    use bevy_ecs::prelude::Entity;
+
+    fn stage(call: &'static str, of: &str) -> NodeStage {
+        let text = format!(
+            "struct Load {{\n    {of}: u32,\n}}\n@group(0) @binding(0) var<uniform> load: Load;\n\
+             fn {call}(node: u32) {{\n    let now = load.{of} + node;\n}}\n"
+        );
+        NodeStage::new("loads", call, Entity::PLACEHOLDER, 1, Fragment::new(of.to_owned(), text))
+            .bind("load", BufferId::NONE)
+    }
+
+    /// Those of one system's stages are one; a stage of another may have something else under the name.
+    #[test]
+    fn structs_of_one_name_are_one_only_if_they_are_the_same() {
+        let stages = [stage("push", "slot"), stage("pull", "slot"), stage("turn", "axis")];
+        let fused = Fused::of(&[&stages[0], &stages[1], &stages[2]]);
+        let text: String = fused.own.iter().map(|fragment| fragment.text.as_ref()).collect();
+        let found: Vec<&str> = text.lines().filter(|line| line.starts_with("struct")).collect();
+        assert_eq!(found, ["struct Load {", "struct Load_2 {"]);
+        assert!(compose(&fused.own).is_ok(), "{text}");
+        let bound: Vec<&str> = fused.bindings.iter().map(|(name, _)| name.as_ref()).collect();
+        assert_eq!(bound, ["load", "load_1", "load_2"]);
+    }
 }
