@@ -11,9 +11,12 @@ use crate::math::LANES;
 use crate::shader;
 use bevy_ecs::prelude::*;
 
-/// Elements of the largest body that takes many steps in a dispatch: with an invocation each, a step of so many takes about as long
-/// as starting two kernels does (docs/performance.md).
-pub const MOST_ELEMENTS: usize = 512;
+/// Elements of the largest body that takes many steps in a dispatch: about a patch of tetrahedra, which one workgroup sums in any case
+/// (docs/performance.md).
+pub const MOST_ELEMENTS: usize = 1024;
+
+/// Invocations of the largest workgroup: a core's registers are then all in use. More elements take turns.
+const MOST_INVOCATIONS: usize = 512;
 
 /// How the steps of a body get to the GPU.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Serialize)]
@@ -45,22 +48,25 @@ pub fn take_small_bodies(
     for (body, name) in bodies(world) {
         let is_of_body = |kernel: &Kernel| block_of(kernel, world).is_some_and(|(_, block)| block.body == body);
         let blocks: Vec<&Kernel> = elements.iter().filter(|kernel| is_of_body(kernel)).collect();
-        let step = whole_step(&blocks, body, stages, world);
-        let step: Vec<&NodeStage> = step.iter().collect();
-        let width = width(&blocks, most_elements, world, buffers).and_then(|width| {
+        let kernel = width(&blocks, most_elements, world, buffers).and_then(|width| {
+            let step = whole_step(&blocks, body, stages, world);
+            let step: Vec<&NodeStage> = step.iter().collect();
             // one more for the records of the steps
             let most = buffers.storage_buffers().saturating_sub(1);
-            node_stage::why_apart(&step, most).map_or(Ok(width), Err)
+            match node_stage::why_apart(&step, most) {
+                None => Ok(node_stage::many_steps(&step, width, buffers)),
+                Some(reason) => Err(reason),
+            }
         });
-        let many_steps = width.is_ok();
-        let because = match width {
-            Ok(width) => {
-                kernels.push(node_stage::many_steps(&step, width, buffers));
+        let (many_steps, because) = match kernel {
+            Ok(kernel) => {
                 elements.retain(|kernel| !is_of_body(kernel));
                 stages.retain(|stage| stage.body() != body);
-                format!("an element is an invocation of one workgroup of {width}")
+                let width = kernel.threads;
+                kernels.push(kernel);
+                (true, format!("one workgroup of {width} has room for it"))
             }
-            Err(reason) => reason,
+            Err(reason) => (false, reason),
         };
         dispatched.push(Dispatched { body: name, many_steps, because });
     }
@@ -90,19 +96,18 @@ fn width(blocks: &[&Kernel], most_elements: usize, world: &World, buffers: &dyn 
     }
     let elements: usize = parts.iter().map(|(block, _)| block.count).sum();
     if elements > most_elements {
-        return Err(format!("it has {elements} elements; with more than {most_elements} it does not pay"));
+        return Err(format!(
+            "it has {elements} elements, and {most_elements} may be: more are faster in many workgroups"
+        ));
     }
     if let Some((_, patches)) = parts.iter().find(|(_, patches)| patches.count() != 1) {
         return Err(format!(
-            "elements of one kind are in {} patches; with more than one it does not pay",
+            "elements of a block are in {} patches: they are faster in as many workgroups",
             patches.count()
         ));
     }
-    let width = parts.iter().map(|(block, _)| block.count.next_multiple_of(BATCH)).max().unwrap_or(BATCH);
-    let most = buffers.workgroup_invocations();
-    if width > most {
-        return Err(format!("it would need a workgroup of {width} invocations, and {most} may be"));
-    }
+    let most = MOST_INVOCATIONS.min(buffers.workgroup_invocations() / BATCH * BATCH).max(BATCH);
+    let width = parts.iter().map(|(block, _)| block.count.next_multiple_of(BATCH)).max().unwrap_or(BATCH).min(most);
     // a number an invocation for what the guards count
     let signals = world.get_resource::<Signals>().map_or(0, record_size);
     let memory =

@@ -105,9 +105,9 @@ fn which_bodies_take_many_steps_in_one_dispatch_is_told_with_the_reason() {
     let removal = "removal=[(body: \"block\", when: VolumeRatioAbove(2))]";
     let pressure = "loads=[Pressure(body: \"block\", on: All, pressure: 1)]";
     for (more, kernels, because) in [
-        (&[][..], 1, "an element is an invocation of one workgroup of 128"),
+        (&[][..], 1, "one workgroup of 128 has room for it"),
         (&["--set", "fuse=false"], 4, "`boundary` does not share a pass over the nodes"),
-        (&["--set", larger], 2, "elements of one kind are in 3 patches; with more than one it does not pay"),
+        (&["--set", larger], 2, "elements of a block are in 3 patches: they are faster in as many workgroups"),
         (&["--scheme", "two-pass"], 2, "its forces are not summed by patches"),
         (&["--set", removal], 6, "`element_removal` does not share a pass over the nodes"),
         (&["--set", pressure], 3, "`pressure` looks at other nodes than its own, which must not have moved"),
@@ -119,7 +119,7 @@ fn which_bodies_take_many_steps_in_one_dispatch_is_told_with_the_reason() {
     let mut command = page.command(&["explain", "block.ron", "--backend", "gpu"]);
     command.env("VK_DRIVER_FILES", "/nowhere").env("VK_ICD_FILENAMES", "/nowhere");
     let said = Ended::of(command.output().unwrap()).said;
-    assert!(said.contains("block             yes  an element is an invocation"), "{said}");
+    assert!(said.contains("block             yes  one workgroup of 128 has room for it"), "{said}");
 }
 
 #[test]

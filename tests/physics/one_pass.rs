@@ -59,12 +59,12 @@ fn a_shared_pass_changes_nothing() {
     }
 }
 
-/// Steps, dispatches and submissions of two small bodies on a GPU (one of several batches, one of more nodes than invocations), where they are in the end, and the work against internal forces
+/// Steps, dispatches and submissions of two small bodies on a GPU (one of more elements than invocations, one of more nodes), where they are in the end, and the work against internal forces
 /// (J) that the guards go by.
 fn small_bodies(run: &Configuration, effect: &str, output: &str, fuse: bool) -> ([u64; 3], Vec<DVec3>, [f64; 2]) {
     let text = format!(
         "(duration: 10, bodies: {{
-            \"a\": (mesh: Box(size: (1, 1, 1), cells: (4, 3, 4), elements: Tet4), material: \"m\"),
+            \"a\": (mesh: Box(size: (1, 1, 1), cells: (5, 4, 5), elements: Tet4), material: \"m\"),
             \"b\": (mesh: Box(size: (1, 1, 15), cells: (2, 2, 30), elements: Hex8), material: \"m\", translate: (2, 0, 0))}},
         materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), {effect})}},
         constraints: [

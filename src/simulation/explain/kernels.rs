@@ -2,6 +2,7 @@
 
 use super::buffers::{Counter, Sizes};
 use super::{Bound, Buffer, KernelInUse, Piece};
+use crate::backend::device::Device;
 use crate::backend::gpu::GpuError;
 use crate::backend::kernel::{BindingKind, Kernel, compose};
 use crate::backend::many_steps::Dispatched;
@@ -17,7 +18,8 @@ pub fn describe(
     sizes: &Sizes,
     world: &mut World,
 ) -> Result<(Vec<KernelInUse>, Vec<Buffer>, Vec<Dispatched>), Error> {
-    let mut counter = Counter::new(sizes);
+    let limits = world.get_resource::<Device>().map(Device::limits);
+    let mut counter = Counter::new(sizes, limits);
     let mut groups: Vec<Vec<&System>> = Vec::new();
     let is_of_nodes = |system: &System| matches!(system.device, OnDevice::Stages(_));
     for &system in systems {
