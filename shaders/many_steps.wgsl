@@ -7,16 +7,18 @@ struct StepRecords {
 @group(0) @binding(0) var<storage, read> step_records: StepRecords;
 var<workgroup> step: Step;
 
+// `id` is 0. No 0 is written in its place: Mesa 22.3's software GPU compiles loops anew, while they run, of which only a uniform is
+// not known before, and has been seen to crash over it.
 @compute @workgroup_size(INVOCATIONS)
-fn many_steps(@builtin(local_invocation_index) local: u32) {
+fn many_steps(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation_index) local: u32) {
     for (var number = 0u; number < step_records.count; number++) {
         if local == 0u {
             step = step_records.steps[number];
         }
         workgroupBarrier();
-        sum_all(local);
+        sum_all(id.x, local);
         storageBarrier();
-        for (var first = 0u; first < pass_rows.count; first += INVOCATIONS) {
+        for (var first = id.x; first < pass_rows.count; first += INVOCATIONS) {
             let node = first + local;
             if node < pass_rows.count {
                 call_all(node);

@@ -4,6 +4,7 @@ use super::items::{Items, renamed, storage_variable};
 use super::{NodePass, NodeStage, Rows};
 use crate::backend::Buffers;
 use crate::backend::kernel::{BufferId, Fragment, Kernel, Layout, Uniform};
+use crate::backend::user_law::declared_names;
 use crate::components::{Column, ExternalForce, InternalForce};
 use crate::shader;
 use std::borrow::Cow;
@@ -52,7 +53,7 @@ impl Fused {
                 continue;
             }
             let text = fused.without_columns(&fragment.text, &|_| true);
-            declared.extend(Items::of(&text).names().map(str::to_owned));
+            declared.extend(declared_names(&text));
             fused.shared.push(Fragment { text: text.into(), ..fragment });
         }
         let single = stages.len() == 1;
@@ -72,23 +73,21 @@ impl Fused {
         let texts: Vec<String> =
             stage.own.iter().map(|fragment| self.without_columns(&fragment.text, &is_column)).collect();
         let mut names: BTreeMap<String, String> = BTreeMap::new();
-        let mut structs: BTreeSet<String> = BTreeSet::new();
-        for item in texts.iter().flat_map(|text| Items::of(text).0) {
-            let Some(name) = item.name.map(str::to_owned) else { continue };
-            // the same system's stages have the same structs
-            if item.is_struct && self.structs.get(&name) == Some(&item.text()) {
-                structs.insert(name);
-            } else if declared.contains(&name) {
+        // the same system's stages have the same structs; those of patches are made of constants that may differ
+        let of_patch = matches!(stage.rows, Rows::Patch);
+        let structs = texts.iter().filter(|_| !of_patch).flat_map(|text| Items::of(text).structs());
+        let (known, new): (Vec<_>, Vec<_>) = structs.partition(|(name, text)| self.structs.get(name) == Some(text));
+        let known: BTreeSet<String> = known.into_iter().map(|(name, _)| name).collect();
+        for name in texts.iter().flat_map(|text| declared_names(text)).filter(|name| !known.contains(name)) {
+            if declared.contains(&name) {
                 names.insert(name.clone(), format!("{name}_{number}"));
             } else {
-                if item.is_struct {
-                    self.structs.insert(name.clone(), item.text());
-                }
                 declared.insert(name);
             }
         }
+        self.structs.extend(new.into_iter().filter(|(name, _)| !names.contains_key(name)));
         for (fragment, text) in stage.own.iter().zip(texts) {
-            let text = renamed(&Items::of(&text).without(&structs), &names);
+            let text = renamed(&Items::of(&text).without(&known), &names);
             self.storage_variables += text.matches("var<storage").count();
             self.own.push(Fragment { path: fragment.path.clone(), text: text.into() });
         }
@@ -98,7 +97,7 @@ impl Fused {
         self.layouts.extend(stage.layouts.iter().map(|(name, layout)| (now(name), *layout)));
         let call = now(&stage.call.into());
         match (&stage.rows, single) {
-            (Rows::Patch, _) => self.sums += &format!("    {call}(0u, local);\n"),
+            (Rows::Patch, _) => self.sums += &format!("    {call}(number, local);\n"),
             (Rows::All, _) => self.calls += &format!("    {call}(node);\n"),
             (Rows::Some(_), true) => {
                 self.calls += &format!("    {call}(node, rows[node]);\n");
@@ -183,7 +182,7 @@ impl Fused {
     fn calls_as_functions(&self) -> String {
         let sums = match self.sums.as_str() {
             "" => String::new(),
-            sums => format!("fn sum_all(local: u32) {{\n{sums}}}\n"),
+            sums => format!("fn sum_all(number: u32, local: u32) {{\n{sums}}}\n"),
         };
         let Self { calls, finish, .. } = self;
         sums + &format!("fn call_all(node: u32) {{\n{calls}}}\nfn finish_all(local: u32, node: u32) {{\n{finish}}}\n")
@@ -254,6 +253,12 @@ mod tests {
         let found: Vec<&str> = text.lines().filter(|line| line.starts_with("struct")).collect();
         assert_eq!(found, ["struct Load {", "struct Load_2 {"]);
         assert!(compose(&fused.own).is_ok(), "{text}");
+        // a law of the user's own, which no stage may break: it goes first
+        let law = "  struct Load { mu: f32 } @group(0) @binding(0) var<uniform> load: Load; fn push(f: f32) -> f32 { return load.mu * f; }";
+        let patch = NodeStage { rows: Rows::Patch, own: vec![Fragment::new("law", law)], ..stage("push", "mu") };
+        let with_law = Fused::of(&[&patch, &stages[0]]);
+        let text: String = with_law.own.iter().map(|fragment| fragment.text.as_ref()).collect();
+        assert!(compose(&with_law.own).is_ok() && text.contains("fn push_1(node: u32)"), "{text}");
         let bound: Vec<&str> = fused.bindings.iter().map(|(name, _)| name.as_ref()).collect();
         assert_eq!(bound, ["load", "load_1", "load_2"]);
     }

@@ -42,6 +42,11 @@ pub(super) fn declared(text: &str) -> Vec<Declared> {
     found
 }
 
+/// The names of what a text declares, however it is laid out.
+pub(crate) fn declared_names(text: &str) -> impl Iterator<Item = String> {
+    declared(text).into_iter().map(|declared| declared.name)
+}
+
 /// Where a member of a struct stands, else the struct itself.
 pub(super) fn member(text: &str, of: &Declared, member: &str) -> Range<usize> {
     let behind = words(text).skip_while(|range| range.start < of.at.end);
