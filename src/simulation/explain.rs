@@ -12,6 +12,7 @@ use crate::components::Precision;
 use crate::error::Error;
 use crate::systems::{Registry, System};
 use buffers::{Sizes, host_columns};
+use kernels::OnGpu;
 use serde::Serialize;
 
 /// What a scene causes on a backend. As text it is a page for people.
@@ -220,7 +221,7 @@ impl Simulation {
             let in_use = |member: &Member| system_in_use(entry, member, registry.get(&member.name), on_gpu, &sizes);
             systems.extend(entry.systems.iter().map(in_use));
         }
-        let (kernels, buffers, dispatched) = match on_gpu {
+        let OnGpu { kernels, buffers, dispatched } = match on_gpu {
             true => {
                 let names = self.entries.iter().flat_map(|entry| &entry.systems).map(|system| system.name.as_str());
                 let scheduled: Vec<&System> = names.filter_map(|name| registry.get(name)).collect();

@@ -11,13 +11,19 @@ use crate::simulation::step_kernels::step_kernels;
 use crate::systems::{OnDevice, System};
 use bevy_ecs::prelude::*;
 
-/// The kernels of all systems, which stand in their order, the buffers that they bind, and how each body's steps are dispatched.
-pub fn describe(
-    systems: &[&System],
-    fuse: bool,
-    sizes: &Sizes,
-    world: &mut World,
-) -> Result<(Vec<KernelInUse>, Vec<Buffer>, Vec<Dispatched>), Error> {
+/// What runs on a GPU in a step.
+#[derive(Default)]
+pub struct OnGpu {
+    /// The kernels, in order.
+    pub kernels: Vec<KernelInUse>,
+    /// The buffers that they bind.
+    pub buffers: Vec<Buffer>,
+    /// How each body's steps are dispatched.
+    pub dispatched: Vec<Dispatched>,
+}
+
+/// What a GPU runs for systems, which stand in their order.
+pub fn describe(systems: &[&System], fuse: bool, sizes: &Sizes, world: &mut World) -> Result<OnGpu, Error> {
     let limits = world.get_resource::<Device>().map(Device::limits);
     let mut counter = Counter::new(sizes, limits);
     let mut groups: Vec<Vec<&System>> = Vec::new();
@@ -36,7 +42,7 @@ pub fn describe(
             described.push(in_use(system, kernel, &counter)?);
         }
     }
-    Ok((described, counter.buffers, dispatched))
+    Ok(OnGpu { kernels: described, buffers: counter.buffers, dispatched })
 }
 
 fn in_use(system: &str, kernel: &Kernel, counter: &Counter<'_>) -> Result<KernelInUse, Error> {
