@@ -1,12 +1,12 @@
 // Sums element forces at the nodes in a fixed order; twin of systems/gather.rs. set_internal_force and clear_loads are in
 // internal_force.wgsl and external_force.wgsl, or, where integrate shares the kernel, in their twins at hand. STRIDE is generated.
-@group(0) @binding(1) var<storage, read> starts: array<u32>;
-@group(0) @binding(2) var<storage, read> corners: array<u32>;
-@group(0) @binding(3) var<storage, read> element_force: array<f32>;
+// where each node's begin, and the end; behind these, where in element_force they are
+@group(0) @binding(0) var<storage, read> corners: array<u32>;
+@group(0) @binding(1) var<storage, read> element_force: array<f32>;
 
 fn gather(node: u32) {
     var sum = vec3<f32>(0.0);
-    for (var i = starts[node]; i < starts[node + 1u]; i++) {
+    for (var i = corners[node]; i < corners[node + 1u]; i++) {
         let at = corners[i];
         sum += vec3<f32>(element_force[at], element_force[at + STRIDE], element_force[at + 2u * STRIDE]);
     }

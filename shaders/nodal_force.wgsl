@@ -4,11 +4,10 @@ struct NodalLoad {
     signal: u32, // slot of the force (N)
 }
 @group(0) @binding(0) var<uniform> load: NodalLoad;
-@group(0) @binding(1) var<storage, read> rows: array<u32>;
-@group(0) @binding(2) var<storage, read> mass: array<f32>;
+@group(0) @binding(1) var<storage, read> mass: array<f32>;
 
-fn nodal_force(i: u32) {
-    if mass[rows[i]] > 0.0 {
-        add_load(rows[i], factor_of(i) * step.signals[load.signal].xyz);
+fn nodal_force(i: u32, node: u32) {
+    if mass[node] > 0.0 {
+        add_load(node, factor_of(i) * step.signals[load.signal].xyz);
     }
 }

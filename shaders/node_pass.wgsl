@@ -1,11 +1,8 @@
 // The kernel of systems that work node by node. call_all and finish_all are generated: the functions of those systems, in
 // their order.
-struct NodePass {
-    count: u32, // rows
-}
-@group(0) @binding(0) var<uniform> pass_rows: NodePass;
+const INVOCATIONS: u32 = 64u;
 
-@compute @workgroup_size(64)
+@compute @workgroup_size(INVOCATIONS)
 fn node_pass(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,

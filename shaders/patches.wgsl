@@ -1,6 +1,6 @@
-// Sums element forces at the nodes of each patch, in workgroup memory: one workgroup a patch, one invocation an element, batch
-// after batch. Corners of a batch that meet in a node take turns, in rounds that src/backend/patch_lists.rs has found: a fixed order,
-// without atomics. add_forces and the constants are generated.
+// Sums element forces at the nodes of a patch, in workgroup memory: one invocation an element, as many batches at a time as the
+// workgroup of INVOCATIONS has room for. Corners of a batch that meet in a node take turns, in rounds that src/backend/patch_lists.rs
+// has found, batch after batch: a fixed order, without atomics. add_forces and the constants are generated.
 struct PatchLists {
     count: u32, // patches
     rounds: u32, // where in patch_lists the numbers of rounds begin, a byte a corner of each batch
@@ -49,19 +49,11 @@ fn add_force(element: u32, is_there: bool, batch: u32, corner: u32, force: vec3<
     }
 }
 
-@compute @workgroup_size(BATCH)
-fn element_forces(
-    @builtin(workgroup_id) id: vec3<u32>,
-    @builtin(num_workgroups) workgroups: vec3<u32>,
-    @builtin(local_invocation_index) local: u32,
-) {
-    let number = patch_row(id, workgroups);
-    if number >= patches.count {
-        return;
-    }
+// Uniform: all invocations of the workgroup sum the same patch.
+fn sum_patch(number: u32, local: u32) {
     let first_node = patch_lists[number];
     let nodes = patch_lists[number + 1u] - first_node;
-    for (var i = local; i < nodes; i += BATCH) {
+    for (var i = local; i < nodes; i += INVOCATIONS) {
         let node = patch_lists[patches.nodes + first_node + i];
         for (var axis = 0u; axis < 3u; axis++) {
             patch_displacement[3u * i + axis] = displacement[3u * node + axis];
@@ -73,18 +65,21 @@ fn element_forces(
     let first_group = number * PATCH_GROUPS;
     let groups = min(PATCH_GROUPS, (block.count + LANES - 1u) / LANES - first_group);
     let batches = (groups + BATCH_GROUPS - 1u) / BATCH_GROUPS;
-    for (var batch = 0u; batch < batches; batch++) {
+    for (var first = 0u; first < batches; first += INVOCATIONS / BATCH) {
+        let own = first + local / BATCH;
         // a batch takes every so many-th group: its elements come from all over the patch and seldom meet
-        let group = local / LANES * batches + batch;
+        let group = local % BATCH / LANES * batches + own;
         let element = (first_group + group) * LANES + local % LANES;
-        let is_there = group < groups && element < block.count;
+        let is_there = own < batches && group < groups && element < block.count;
         var forces = array<vec3<f32>, NODES>();
         if is_there {
             forces = forces_of(element);
         }
-        add_forces(element, is_there, number * PATCH_BATCHES + batch, forces);
+        for (var batch = first; batch < min(first + INVOCATIONS / BATCH, batches); batch++) {
+            add_forces(element, is_there && batch == own, number * PATCH_BATCHES + batch, forces);
+        }
     }
-    for (var i = local; i < 3u * nodes; i += BATCH) {
+    for (var i = local; i < 3u * nodes; i += INVOCATIONS) {
         element_force[block.force_offset + 3u * first_node + i] = patch_force[i];
     }
 }

@@ -4,12 +4,11 @@ struct PressureLoad {
     signal: u32, // slot of the pressure (Pa)
 }
 @group(0) @binding(0) var<uniform> load: PressureLoad;
-@group(0) @binding(1) var<storage, read> rows: array<u32>;
-@group(0) @binding(2) var<storage, read> starts: array<u32>;
-@group(0) @binding(3) var<storage, read> corners: array<u32>; // face times four plus corner
-@group(0) @binding(4) var<storage, read> faces: array<u32>; // five a face: nodes, row of the element behind
-@group(0) @binding(5) var<storage, read> face_points: array<f32>; // four points a face at rest (m)
-@group(0) @binding(6) var<storage, read> displacement: array<f32>;
+@group(0) @binding(1) var<storage, read> starts: array<u32>;
+@group(0) @binding(2) var<storage, read> corners: array<u32>; // face times four plus corner
+@group(0) @binding(3) var<storage, read> faces: array<u32>; // five a face: nodes, row of the element behind
+@group(0) @binding(4) var<storage, read> face_points: array<f32>; // four points a face at rest (m)
+@group(0) @binding(5) var<storage, read> displacement: array<f32>;
 
 fn face_point(face: u32, corner: u32) -> vec3<f32> {
     let x = 12u * face + 3u * corner;
@@ -35,7 +34,7 @@ fn face_area_at(face: u32, a: u32) -> vec3<f32> {
     return diagonals * 0.125 + (own - across) * (1.0 / 24.0);
 }
 
-fn pressure(i: u32) {
+fn pressure(i: u32, node: u32) {
     var area = vec3<f32>(0.0);
     for (var at = starts[i]; at < starts[i + 1u]; at++) {
         let face = corners[at] / 4u;
@@ -43,5 +42,5 @@ fn pressure(i: u32) {
             area += face_area_at(face, corners[at] % 4u);
         }
     }
-    add_load(rows[i], -step.signals[load.signal].x * area);
+    add_load(node, -step.signals[load.signal].x * area);
 }

@@ -1,7 +1,8 @@
-// Work against internal forces (J), summed over sixty-four nodes and kept in the place of the first, for integrate: what the guards compare with the energy that
-// elements hold. SPENT_AT and step_before are generated.
+// Work against internal forces (J), summed over sixty-four nodes and kept in the place of the first, for integrate: what the
+// guards compare with the energy that elements hold. SPENT_AT and step_before are generated; INVOCATIONS of the kernel are whole
+// sixty-fours.
 var<private> spent: f32;
-var<workgroup> spent_parts: array<f32, 64>;
+var<workgroup> spent_parts: array<f32, INVOCATIONS>;
 
 // Forces at the beginning of the step along the mean of the steps before and after; counted by the
 // time between the middles of both.
@@ -15,20 +16,24 @@ fn kept(x: f32) -> f32 {
     return bitcast<f32>(bitcast<u32>(x) ^ step.zero);
 }
 
-// Adds the workgroup's part to its sum and to what rounding has left out of it (Kahan 1965); all invocations must call it.
+// Adds the part of each sixty-four invocations to its sum and to what rounding has left out of it (Kahan 1965); all invocations
+// must call it.
 fn add_up_spent(local: u32, node: u32) {
     spent_parts[local] = spent;
+    // the invocation's next node may spend nothing
+    spent = 0.0;
+    let lane = local % 64u;
     workgroupBarrier();
     for (var width = 32u; width > 0u; width /= 2u) {
-        if local < width {
+        if lane < width {
             spent_parts[local] += spent_parts[local + width];
         }
         workgroupBarrier();
     }
-    if local == 0u && node < pass_rows.count {
+    if lane == 0u && node < pass_rows.count {
         let at = SPENT_AT + node / 8u;
         let before = bitcast<f32>(atomicLoad(&first_non_finite[at]));
-        let part = kept(spent_parts[0] + bitcast<f32>(atomicLoad(&first_non_finite[at + 1u])));
+        let part = kept(spent_parts[local] + bitcast<f32>(atomicLoad(&first_non_finite[at + 1u])));
         let after = kept(before + part);
         atomicStore(&first_non_finite[at], bitcast<u32>(after));
         atomicStore(&first_non_finite[at + 1u], bitcast<u32>(part - kept(after - before)));

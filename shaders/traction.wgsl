@@ -3,17 +3,16 @@ struct TractionLoad {
     signal: u32, // slot of the force per area (Pa)
 }
 @group(0) @binding(0) var<uniform> load: TractionLoad;
-@group(0) @binding(1) var<storage, read> rows: array<u32>;
-@group(0) @binding(2) var<storage, read> starts: array<u32>;
-@group(0) @binding(3) var<storage, read> areas: array<f32>; // that fall to the node from each of its faces (m²)
-@group(0) @binding(4) var<storage, read> behind: array<u32>; // row of the element behind each of them
+@group(0) @binding(1) var<storage, read> starts: array<u32>;
+@group(0) @binding(2) var<storage, read> areas: array<f32>; // that fall to the node from each of its faces (m²)
+@group(0) @binding(3) var<storage, read> behind: array<u32>; // row of the element behind each of them
 
-fn traction(i: u32) {
+fn traction(i: u32, node: u32) {
     var area = 0.0;
     for (var at = starts[i]; at < starts[i + 1u]; at++) {
         if bears(behind[at]) {
             area += areas[at];
         }
     }
-    add_load(rows[i], step.signals[load.signal].xyz * area);
+    add_load(node, step.signals[load.signal].xyz * area);
 }

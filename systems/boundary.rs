@@ -98,7 +98,6 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
         let nodes = rows_of(body, world);
         let mut stage = NodeStage::new("boundary", "boundary", body, nodes, shader!("boundary"))
             .bind_uniform::<Motion>("motion", buffers.uniform("boundary".into(), &motion.bytes()))
-            .bind("rows", buffers.constants("rows of boundary".into(), bytemuck::cast_slice(&set.rows)))
             .bind("arms", buffers.constants("arms of boundary".into(), bytemuck::cast_slice(&arms)))
             .column(Displacement::NAME, buffers.column(body, Displacement::NAME))
             .column(DisplacementStep::NAME, buffers.column(body, DisplacementStep::NAME))

@@ -71,6 +71,12 @@ fn sum_at_stride<T: Scalar, const STRIDE: usize>(
     }
 }
 
+/// The corners of each node behind where they begin, and the end: a kernel has few buffers.
+fn in_one(corners: &Corners) -> Vec<u32> {
+    let first = corners.starts.len() as u32;
+    corners.starts.iter().map(|start| first + start).chain(corners.corners.iter().copied()).collect()
+}
+
 /// One stage for each body.
 fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
     let bodies: Vec<(Entity, Corners, bool)> = world
@@ -83,8 +89,7 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
         let nodes = corners.starts.len().saturating_sub(1) as u32;
         let stage = NodeStage::new("gather", "gather", body, nodes, shader!("gather"))
             .own(Fragment::new("generated: stride", format!("const STRIDE: u32 = {}u;\n", corners.stride)))
-            .bind("starts", buffers.constants("starts of corners".into(), bytemuck::cast_slice(&corners.starts)))
-            .bind("corners", buffers.constants("corners".into(), bytemuck::cast_slice(&corners.corners)))
+            .bind("corners", buffers.constants("corners".into(), bytemuck::cast_slice(&in_one(&corners))))
             .column(ElementForce::NAME, buffers.column(body, ElementForce::NAME))
             .column(InternalForce::NAME, buffers.column(body, InternalForce::NAME))
             .with_step(world)

@@ -67,7 +67,6 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
         let load = NodalLoad { signal: force.signal as u32 };
         let stage = NodeStage::new("nodal_force", "nodal_force", body, rows_of(body, world), shader!("nodal_force"))
             .bind_uniform::<NodalLoad>("load", buffers.uniform("nodal_force".into(), &load.bytes()))
-            .bind("rows", buffers.constants("rows of nodal_force".into(), bytemuck::cast_slice(&force.rows)))
             .column(Mass::NAME, buffers.column(body, Mass::NAME))
             .column(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME))
             .of_rows(force.rows);

@@ -142,7 +142,6 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
             let load = PressureLoad { signal: pressure.signal as u32 };
             let stage = NodeStage::new("pressure", "pressure", body, rows_of(body, world), shader!("pressure"))
                 .bind_uniform::<PressureLoad>("load", buffers.uniform("pressure".into(), &load.bytes()))
-                .bind("rows", buffers.constants("rows of pressure".into(), bytemuck::cast_slice(&faces.rows)))
                 .bind("starts", buffers.constants("starts of pressure".into(), bytemuck::cast_slice(&faces.starts)))
                 .bind("corners", buffers.constants("corners of pressure".into(), bytemuck::cast_slice(&faces.corners)))
                 .bind("faces", buffers.constants("faces of pressure".into(), bytemuck::cast_slice(&nodes)))

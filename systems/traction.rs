@@ -74,7 +74,6 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
             let load = TractionLoad { signal: traction.signal as u32 };
             let stage = NodeStage::new("traction", "traction", body, rows_of(body, world), shader!("traction"))
                 .bind_uniform::<TractionLoad>("load", buffers.uniform("traction".into(), &load.bytes()))
-                .bind("rows", buffers.constants("rows of traction".into(), bytemuck::cast_slice(&faces.rows)))
                 .bind("starts", buffers.constants("starts of traction".into(), bytemuck::cast_slice(&faces.starts)))
                 .bind("areas", buffers.constants("areas of traction".into(), bytemuck::cast_slice(&areas)))
                 .bind("behind", buffers.constants("elements of traction".into(), bytemuck::cast_slice(&behind)))

@@ -3,7 +3,7 @@
 
 mod gpu_kernels;
 
-use gpu_kernels::{march, march_records, saxpy, storage};
+use gpu_kernels::{march, march_on, march_records, saxpy, storage};
 use sinew::backend::gpu::{BufferKind, GpuError, SmallerLimits, gpu_or_reason};
 
 #[test]
@@ -42,6 +42,29 @@ fn many_steps_share_a_submission_and_256_at_most() {
     gpu.run(&[kernel], &march_records(5000), 8, 5000).unwrap();
     gpu.wait().unwrap();
     assert!((20..1000).contains(&gpu.submissions()), "{} submissions", gpu.submissions());
+}
+
+#[test]
+fn a_kernel_of_many_steps_is_dispatched_once_a_submission_and_sees_all_records() {
+    let Some(mut gpu) = gpu_or_reason() else { return };
+    let (apart, at_once) = (storage(&mut gpu, "apart", &[0.5; 100]), storage(&mut gpu, "at once", &[0.5; 100]));
+    let kernel = gpu.prepare(&march(apart, 100)).unwrap();
+    let records: Vec<u8> = march_records(1000).chunks(8).flat_map(|record| [record, &[0; 8]].concat()).collect();
+    gpu.run(&[kernel], &records, 16, 1000).unwrap();
+    assert_eq!(gpu.dispatches(), 1000);
+    let before = gpu.submissions();
+    let kernel = gpu.prepare(&march_on(at_once, 100)).unwrap();
+    gpu.run(&[kernel], &records, 16, 1000).unwrap();
+    assert_eq!(gpu.dispatches() - 1000, gpu.submissions() - before);
+    let both = gpu.download(&[apart, at_once]).unwrap();
+    assert_eq!(both[0], both[1]);
+    // beside a kernel that is dispatched step by step
+    let steps = gpu.prepare(&march(apart, 100)).unwrap();
+    gpu.run(&[steps, kernel], &records, 16, 1000).unwrap();
+    let both = gpu.download(&[apart, at_once]).unwrap();
+    assert_eq!(both[0], both[1]);
+    let refused = gpu.run(&[kernel], &records, 32, 500).unwrap_err().to_string();
+    assert!(refused.contains("reads records of 16 bytes, these have 32"), "{refused}");
 }
 
 #[test]

@@ -12,11 +12,14 @@ use sinew::components::{Scheme, Signals};
 use std::collections::BTreeSet;
 
 /// Fragments that belong to no system, element or material by name, and what calls for them.
-const SUPPORT: [(&str, &str); 42] = [
+const SUPPORT: [(&str, &str); 45] = [
     ("corner", "corners of elements, in columns"),
     ("corner_volume", "the same for averaged nodal pressure"),
     ("patch_volume", "averaged nodal pressure, in patches"),
     ("patches", "forces summed patch by patch"),
+    ("patch_pass", "the same, a workgroup a patch"),
+    ("pass_rows", "how many nodes a kernel has"),
+    ("many_steps", "steps of small bodies, in one dispatch"),
     ("two_pass", "forces summed in two passes"),
     ("alive", "loads on faces of elements that can go"),
     ("block", "columns of element blocks"),
@@ -72,6 +75,13 @@ fn all(effects: &Effects) -> Vec<(String, Kernel)> {
         all.extend(small.into_iter().map(|kernel| (kernel.label.clone(), kernel)));
         all.extend(sharing(systems, world, 64).into_iter().map(|kernel| (LARGER_DEVICE.to_owned(), kernel)));
     }
+    // whose steps are element forces and one pass over the nodes
+    if !effects.removal && !effects.averaged && effects.scheme == Scheme::Patches {
+        let small = kernel_worlds::small_bodies(&without, world, &mut Described { most: 64, ..Described::default() });
+        // two copies are more than a patch
+        assert_eq!(small.len(), if effects.copies { 0 } else { 2 }, "{effects:?}");
+        all.extend(small.into_iter().map(|kernel| (LARGER_DEVICE.to_owned(), kernel)));
+    }
     all.extend(kernel_worlds::watch_kernels(world));
     // one of each kind is enough
     let mut seen: Vec<Vec<String>> = Vec::new();
@@ -123,7 +133,17 @@ fn every_combination_of_effects_composes_with_at_most_eight_storage_buffers() {
             let composed = compose(&kernel.fragments).unwrap_or_else(|e| panic!("{}: {e}", kernel.label));
             let entry = composed.entry(kernel.entry).unwrap_or_else(|| panic!("{}: no {}", kernel.label, kernel.entry));
             let patches = kernel.fragments.iter().any(|fragment| fragment.path == "shaders/patches.wgsl");
-            assert_eq!(entry.workgroup_size, [if patches { 128 } else { 64 }, 1, 1], "{}", kernel.label);
+            let width = match (kernel.entry, patches) {
+                ("many_steps", _) => kernel.threads,
+                (_, patches) => {
+                    if patches {
+                        128
+                    } else {
+                        64
+                    }
+                }
+            };
+            assert_eq!(entry.workgroup_size, [width, 1, 1], "{}", kernel.label);
             assert!(entry.workgroup_memory as usize <= WEBGPU_WORKGROUP_MEMORY, "{}", kernel.label);
             assert!(!patches || entry.workgroup_memory > 0, "{}", kernel.label);
             let storage = composed.storage_buffers(entry);
@@ -140,7 +160,7 @@ fn every_variable_in_use_has_a_buffer_and_every_buffer_is_in_use() {
             let composed = compose(&kernel.fragments).unwrap();
             let entry = composed.entry(kernel.entry).unwrap();
             let names = entry.uses.iter().map(|i| composed.bindings[*i].name.as_str());
-            let used: BTreeSet<_> = names.filter(|name| *name != "step").collect();
+            let used: BTreeSet<_> = names.filter(|name| !["step", "step_records"].contains(name)).collect();
             let given: BTreeSet<_> = kernel.bindings.iter().map(|(name, _)| name.as_ref()).collect();
             assert_eq!(used, given, "{} of {effects:?}", kernel.label);
         }
@@ -211,6 +231,8 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
         "neo_hookean",
         "node_pass",
         "note_inverted",
+        "pass_rows",
+        "patch_pass",
         "patches",
         "point",
         "point_pressure",

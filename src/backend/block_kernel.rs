@@ -143,6 +143,7 @@ impl BlockKernels {
         let threads = packed.count() * batch;
         self.with_law(self.of_block(entry))
             .fragment(shader!("patches"))
+            .fragment(shader!("patch_pass"))
             .fragment(self.generated("patches", constants + &calls + "}\n"))
             .bind_uniform::<PatchLists>("patches", lists)
             .bind("patch_lists", words)
@@ -176,7 +177,8 @@ impl BlockKernels {
     }
 
     fn of_block(&self, entry: &'static str) -> Kernel {
-        Kernel::new(format!("{entry} of {}", self.label), entry)
+        let kernel = Kernel { block: Some(self.entity), ..Kernel::new(format!("{entry} of {}", self.label), entry) };
+        kernel
             .fragment(shader!("row"))
             .fragment(shader!("block"))
             .fragment(self.generated("constants", self.constants()))

@@ -1,7 +1,7 @@
 //! A run on the GPU: where the truth of each column lies, and what travels.
 
 use super::Buffers;
-use super::gpu::{BufferKind, Gpu};
+use super::gpu::{BufferKind, Gpu, GpuLimits};
 use super::kernel::{BindingKind, BufferId, Kernel, KernelId, compose};
 use crate::components::*;
 use crate::error::Error;
@@ -111,6 +111,11 @@ impl Device {
     pub fn new(gpu: Gpu, accesses: Vec<ColumnAccess>) -> Self {
         let (columns, written, uniforms) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
         Self { gpu, columns, accesses, written, uniforms, traffic: Traffic::default() }
+    }
+
+    /// What the GPU allows.
+    pub fn limits(&self) -> GpuLimits {
+        self.gpu.limits()
     }
 
     /// The GPU.
@@ -301,6 +306,10 @@ impl Buffers for Binder<'_> {
 
     fn storage_buffers(&self) -> usize {
         self.device.gpu.limits().storage_buffers as usize
+    }
+
+    fn workgroup_invocations(&self) -> usize {
+        self.device.gpu.limits().workgroup_size as usize
     }
 
     fn constants(&mut self, label: String, bytes: &[u8]) -> BufferId {

@@ -11,6 +11,7 @@ mod reflect;
 #[cfg(test)]
 mod tests;
 
+use bevy_ecs::prelude::Entity;
 use std::borrow::Cow;
 
 pub use compose::{Composed, Entry, compose};
@@ -22,11 +23,19 @@ pub use reflect::{Binding, BindingKind, Member};
 /// Name of the uniform variable that holds the step's record; the GPU layer binds it, a kernel must not.
 pub const STEP_VARIABLE: &str = "step";
 
+/// Name of the storage variable that holds the records of all steps of a submission: a kernel that declares it is dispatched once
+/// a submission. It is a struct of their number, padding up to 16 bytes, and the records, of whole sixteens of bytes. The GPU
+/// layer binds it, a kernel must not.
+pub const STEP_RECORDS_VARIABLE: &str = "step_records";
+
 /// Storage buffers a kernel may use on every WebGPU device (`maxStorageBuffersPerShaderStage`).
 pub const WEBGPU_STORAGE_BUFFERS: usize = 8;
 
 /// Storage buffers a kernel may use on every desktop GPU: what is assumed where kernels are described without one.
 pub const DESKTOP_STORAGE_BUFFERS: usize = 16;
+
+/// Invocations that a workgroup may have on every desktop GPU: what is assumed where kernels are described without one.
+pub const DESKTOP_WORKGROUP: usize = 1024;
 
 /// A piece of WGSL: one file, or text generated under a file's name.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -75,6 +84,8 @@ pub struct Kernel {
     pub label: String,
     /// Name of the `@compute` function.
     pub entry: &'static str,
+    /// The element block that it works on, if it is one.
+    pub block: Option<Entity>,
     /// The WGSL, in any order: WGSL declarations are order-free.
     pub fragments: Vec<Fragment>,
     /// (WGSL variable, buffer). Every variable the entry point uses needs one, [`STEP_VARIABLE`] excepted.
@@ -91,6 +102,7 @@ impl Kernel {
         Self {
             label: label.into(),
             entry,
+            block: None,
             fragments: Vec::new(),
             bindings: Vec::new(),
             layouts: Vec::new(),

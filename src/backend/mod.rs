@@ -7,6 +7,7 @@ pub(crate) mod face_kernel;
 pub mod gpu;
 pub mod kernel;
 mod law_kernel;
+pub mod many_steps;
 pub mod node_stage;
 pub mod patch_lists;
 pub mod step;
@@ -24,6 +25,10 @@ pub trait Buffers {
     /// How many storage buffers a kernel may use.
     fn storage_buffers(&self) -> usize {
         kernel::DESKTOP_STORAGE_BUFFERS
+    }
+    /// How many invocations a workgroup may have.
+    fn workgroup_invocations(&self) -> usize {
+        kernel::DESKTOP_WORKGROUP
     }
     /// A uniform buffer of parameters.
     fn uniform(&mut self, label: String, bytes: &[u8]) -> BufferId;

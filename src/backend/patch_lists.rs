@@ -52,10 +52,28 @@ pub const fn patch_batches(kind: ElementKind) -> usize {
     patch_groups(kind).div_ceil(BATCH_GROUPS)
 }
 
-/// Nodes of a patch that workgroup memory has room for: a displacement and a force each, θ where it is called for.
+/// Nodes of a patch that workgroup memory has room for.
 pub fn most_nodes(kind: ElementKind) -> usize {
-    let numbers = if averages(kind) { 7 } else { 6 };
-    WEBGPU_WORKGROUP_MEMORY / (4 * numbers) / ROOM_STEP * ROOM_STEP
+    WEBGPU_WORKGROUP_MEMORY / bytes_a_node(kind) / ROOM_STEP * ROOM_STEP
+}
+
+/// Bytes of workgroup memory for a node: a displacement and a force, θ where it is called for.
+fn bytes_a_node(kind: ElementKind) -> usize {
+    4 * if averages(kind) { 7 } else { 6 }
+}
+
+/// Bytes of workgroup memory that the kernel of a block takes for a patch.
+pub(crate) fn workgroup_memory(kind: ElementKind, patches: &Patches) -> usize {
+    room(most_nodes_of(patches)) * bytes_a_node(kind)
+}
+
+fn most_nodes_of(patches: &Patches) -> usize {
+    patches.starts.windows(2).map(|pair| (pair[1] - pair[0]) as usize).max().unwrap_or(0)
+}
+
+/// Room that is made for so many nodes.
+fn room(nodes: usize) -> usize {
+    nodes.next_multiple_of(ROOM_STEP).max(ROOM_STEP)
 }
 
 /// Room is made in such steps, so that blocks with patches of about the same size share a kernel.
@@ -76,7 +94,7 @@ impl PackedPatches {
 pub fn pack(block: &Block, patches: &Patches) -> Result<PackedPatches, String> {
     let (kind, count) = (block.kind, patches.count());
     let corners = node_count(kind);
-    let nodes = patches.starts.windows(2).map(|pair| (pair[1] - pair[0]) as usize).max().unwrap_or(0);
+    let nodes = most_nodes_of(patches);
     let most = most_nodes(kind);
     if nodes > most {
         return Err(format!("a patch has {nodes} nodes, and {most} fit into a workgroup's memory"));
@@ -135,5 +153,5 @@ pub fn pack(block: &Block, patches: &Patches) -> Result<PackedPatches, String> {
         corners: place(corners_at),
         nodes: place(nodes_at),
     };
-    Ok(PackedPatches { lists, words, room: nodes.next_multiple_of(ROOM_STEP).max(ROOM_STEP) })
+    Ok(PackedPatches { lists, words, room: room(nodes) })
 }

@@ -1,6 +1,6 @@
 //! The step's record, as kernels see it; `shaders/step.wgsl` is its twin.
 
-use super::kernel::{Fragment, Kernel, Uniform, uniform};
+use super::kernel::{Fragment, Kernel, STEP_VARIABLE, Uniform, uniform};
 use crate::components::{Clock, Signals};
 use bevy_ecs::prelude::*;
 
@@ -104,8 +104,16 @@ pub(crate) fn with_step(kernel: Kernel, world: &World) -> Kernel {
 }
 
 /// The fragments that declare `step` for a world's signals.
-pub(crate) fn step_fragments(world: &World) -> [Fragment; 2] {
+pub(crate) fn step_fragments(world: &World) -> [Fragment; 3] {
     let slots = world.get_resource::<Signals>().map_or(1, slots);
     let signals = Fragment::new("generated: signals of the scene", format!("const SIGNALS: u32 = {slots}u;\n"));
-    [crate::shader!("step"), signals]
+    [crate::shader!("step"), signals, step_in_a_uniform()]
+}
+
+/// Declares `step` where a kernel is dispatched once a step.
+pub(crate) fn step_in_a_uniform() -> Fragment {
+    Fragment::new(
+        "generated: where the step's record is",
+        format!("@group(0) @binding(0) var<uniform> {STEP_VARIABLE}: Step;\n"),
+    )
 }

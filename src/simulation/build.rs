@@ -11,21 +11,20 @@ use super::relax::Relaxing;
 use super::schedule::{Scheduled, check_names, resolve};
 use super::scheme::{fit_workgroups, sum_forces};
 use super::stable_step::{self, Stability};
+use super::step_kernels::step_kernels;
 use super::{Entry, Facts, Job, Member, Options, Simulation};
 use crate::assembly::{Assembly, assemble, assemble_in_time, insert_laws};
-use crate::backend::Buffers;
 use crate::backend::cpu::Cpu;
 use crate::backend::device::{Device, all_columns};
 use crate::backend::gpu::Gpu;
 use crate::backend::kernel::KernelId;
-use crate::backend::node_stage::{NodeStage, node_kernels};
 use crate::components::*;
 use crate::error::Error;
 use crate::observation::{Observer, Watch, WatchKernels};
 use crate::scene::schema::Analysis;
 use crate::scene::{Diagnostics, SceneFile};
 use crate::snapshot::{Keeping, identity};
-use crate::systems::{ELEMENT_FORCES, HostSystem, OnDevice, Phase, Registry, System, node_pass, patch_pass};
+use crate::systems::{ELEMENT_FORCES, HostSystem, Phase, Registry, System, node_pass, patch_pass};
 use bevy_ecs::component::ComponentId;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemAccess;
@@ -152,37 +151,21 @@ fn kernels_on(
         let watch = Device::prepare(world, crate::systems::watch_kernels)?;
         world.insert_resource(WatchKernels(watch));
     }
-    let kernels = groups.into_iter().map(|group| {
-        let kernels = match schedule[group[0]].system.device {
-            OnDevice::None => None,
-            OnDevice::Kernels(describe) => Some(Device::prepare(world, describe)?),
-            OnDevice::Stages(_) => Some(Device::prepare(world, |world, buffers| {
-                let fused = group.len() > 1;
-                node_kernels(
-                    stages_of(group.iter().map(|&place| schedule[place].system), world, buffers),
-                    fused,
-                    buffers,
-                )
-            })?),
-        };
-        Ok((group, kernels))
+    let systems: Vec<Vec<&System>> =
+        groups.iter().map(|group| group.iter().map(|&place| schedule[place].system).collect()).collect();
+    let mut counts = Vec::new();
+    let all = Device::prepare(world, |world, buffers| {
+        let (kernels, _) = step_kernels(&systems, world, buffers);
+        counts.extend(kernels.iter().map(Vec::len));
+        kernels.into_iter().flatten().collect()
+    })?;
+    let mut all = all.into_iter();
+    let with_kernels = groups.into_iter().zip(counts).map(|(group, count)| {
+        let kernels = all.by_ref().take(count).collect();
+        let on_device = schedule[group[0]].system.device.is_some();
+        (group, on_device.then_some(kernels))
     });
-    kernels.collect()
-}
-
-/// What several systems do to nodes, in their order.
-pub(super) fn stages_of<'a>(
-    systems: impl Iterator<Item = &'a System>,
-    world: &mut World,
-    buffers: &mut dyn Buffers,
-) -> Vec<NodeStage> {
-    let mut stages = Vec::new();
-    for system in systems {
-        if let OnDevice::Stages(describe) = system.device {
-            stages.extend(describe(world, buffers));
-        }
-    }
-    stages
+    Ok(with_kernels.collect())
 }
 
 /// Places of scheduled systems that share an entry, with their kernels where they have some.

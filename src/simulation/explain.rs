@@ -7,10 +7,12 @@ mod kernels;
 mod page;
 
 use super::{Entry, Job, Member, Simulation};
+use crate::backend::many_steps::Dispatched;
 use crate::components::Precision;
 use crate::error::Error;
 use crate::systems::{Registry, System};
 use buffers::{Sizes, host_columns};
+use kernels::OnGpu;
 use serde::Serialize;
 
 /// What a scene causes on a backend. As text it is a page for people.
@@ -38,6 +40,8 @@ pub struct Explanation {
     pub parts: Vec<Part>,
     /// What runs on the GPU in a step, in order; empty on the CPU.
     pub kernels: Vec<KernelInUse>,
+    /// Which bodies take all steps of a submission in one dispatch, and why others do not; empty on the CPU.
+    pub dispatched: Vec<Dispatched>,
     /// Columns of numbers on the host.
     pub columns: Vec<Buffer>,
     /// Buffers on the device; empty on the CPU.
@@ -217,7 +221,7 @@ impl Simulation {
             let in_use = |member: &Member| system_in_use(entry, member, registry.get(&member.name), on_gpu, &sizes);
             systems.extend(entry.systems.iter().map(in_use));
         }
-        let (kernels, buffers) = match on_gpu {
+        let OnGpu { kernels, buffers, dispatched } = match on_gpu {
             true => {
                 let names = self.entries.iter().flat_map(|entry| &entry.systems).map(|system| system.name.as_str());
                 let scheduled: Vec<&System> = names.filter_map(|name| registry.get(name)).collect();
@@ -248,6 +252,7 @@ impl Simulation {
             systems_off,
             parts: effects::parts(&self.scene, self.facts.precision, on_gpu, &mut self.world),
             kernels,
+            dispatched,
             columns,
             buffers,
             host_bytes,

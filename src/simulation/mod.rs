@@ -23,6 +23,7 @@ mod schedule;
 mod scheme;
 mod stable_step;
 mod step_change;
+mod step_kernels;
 mod stretch;
 mod summary;
 mod surface;

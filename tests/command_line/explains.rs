@@ -73,7 +73,7 @@ fn on_a_gpu(more: &[&str]) -> serde_json::Value {
 
 #[test]
 fn kernels_are_shown_with_their_fragments_and_buffers_without_a_gpu() {
-    let json = on_a_gpu(&[]);
+    let json = on_a_gpu(&["--set", "fuse=false"]);
     let kernels = json["kernels"].as_array().unwrap();
     let forces = kernels.iter().find(|kernel| kernel["system"] == "element_forces").unwrap();
     assert_eq!(forces["label"], "element_forces of block/tissue/Hex8");
@@ -90,6 +90,38 @@ fn kernels_are_shown_with_their_fragments_and_buffers_without_a_gpu() {
     assert_eq!((&displacement["access"], &displacement["bytes"]), (&"read".into(), &(64 * 3 * 4).into()));
     let sum: u64 = json["buffers"].as_array().unwrap().iter().map(|buffer| buffer["bytes"].as_u64().unwrap()).sum();
     assert_eq!(json["device_bytes"], sum);
+}
+
+#[test]
+fn which_bodies_take_many_steps_in_one_dispatch_is_told_with_the_reason() {
+    let told = |more: &[&str]| {
+        let json = on_a_gpu(more);
+        let body = json["dispatched"][0].clone();
+        assert_eq!(body["body"], "block");
+        let entries: Vec<String> =
+            json["kernels"].as_array().unwrap().iter().map(|kernel| kernel["entry"].as_str().unwrap().into()).collect();
+        assert_eq!(body["many_steps"].as_bool().unwrap(), entries == ["many_steps"], "{entries:?}");
+        (entries.len(), body["because"].as_str().unwrap().to_string())
+    };
+    let larger = "bodies.block.mesh=Box(size: (0.1, 0.1, 0.1), cells: (8, 8, 8), elements: Hex8)";
+    let removal = "removal=[(body: \"block\", when: VolumeRatioAbove(2))]";
+    let pressure = "loads=[Pressure(body: \"block\", on: All, pressure: 1)]";
+    for (more, kernels, because) in [
+        (&[][..], 1, "one workgroup of 128 has room for it"),
+        (&["--set", "fuse=false"], 4, "`boundary` does not share a pass over the nodes"),
+        (&["--set", larger], 2, "elements of a block are in 3 patches: they are faster in as many workgroups"),
+        (&["--scheme", "two-pass"], 2, "its forces are not summed by patches"),
+        (&["--set", removal], 6, "`element_removal` does not share a pass over the nodes"),
+        (&["--set", pressure], 3, "`pressure` looks at other nodes than its own, which must not have moved"),
+        (&["--set", FIBRES], 2, "it would need 16 storage buffers, and 15 may be"),
+    ] {
+        assert_eq!(told(more), (kernels, because.to_string()), "{more:?}");
+    }
+    let page = Place::new();
+    let mut command = page.command(&["explain", "block.ron", "--backend", "gpu"]);
+    command.env("VK_DRIVER_FILES", "/nowhere").env("VK_ICD_FILENAMES", "/nowhere");
+    let said = Ended::of(command.output().unwrap()).said;
+    assert!(said.contains("block             yes  one workgroup of 128 has room for it"), "{said}");
 }
 
 #[test]

@@ -29,6 +29,22 @@ fn march(@builtin(global_invocation_id) id: vec3<u32>) {
 }
 ";
 
+/// The same, all steps of a submission in one dispatch; records are of 16 bytes.
+pub const MARCH_ON: &str = "struct Step { number: u32, push: f32, @size(8) reserved: u32 }
+struct StepRecords { count: u32, @align(16) steps: array<Step> }
+@group(0) @binding(0) var<storage, read> step_records: StepRecords;
+@group(0) @binding(1) var<storage, read_write> state: array<f32>;
+@compute @workgroup_size(64)
+fn march(@builtin(global_invocation_id) id: vec3<u32>) {
+    for (var i = 0u; i < step_records.count; i++) {
+        let step = step_records.steps[i];
+        if id.x < arrayLength(&state) {
+            state[id.x] = state[id.x] * 0.75 + step.push + f32(step.number % 7u) * f32(id.x + 1u);
+        }
+    }
+}
+";
+
 pub fn saxpy(x: BufferId, y: BufferId, scale: BufferId, threads: u32) -> Kernel {
     let kernel = Kernel::new("saxpy", "saxpy").fragment(Fragment::new("saxpy.wgsl", SAXPY)).fragment(shader!("row"));
     kernel.bind("x", x).bind("y", y).bind("scale", scale).threads(threads)
@@ -36,6 +52,13 @@ pub fn saxpy(x: BufferId, y: BufferId, scale: BufferId, threads: u32) -> Kernel 
 
 pub fn march(state: BufferId, threads: u32) -> Kernel {
     Kernel::new("march", "march").fragment(Fragment::new("march.wgsl", MARCH)).bind("state", state).threads(threads)
+}
+
+pub fn march_on(state: BufferId, threads: u32) -> Kernel {
+    Kernel::new("march on", "march")
+        .fragment(Fragment::new("march.wgsl", MARCH_ON))
+        .bind("state", state)
+        .threads(threads)
 }
 
 pub fn march_records(count: u32) -> Vec<u8> {

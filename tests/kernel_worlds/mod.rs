@@ -4,7 +4,8 @@
 use bevy_ecs::prelude::*;
 use sinew::backend::Buffers;
 use sinew::backend::kernel::{BufferId, Kernel, WEBGPU_STORAGE_BUFFERS};
-use sinew::backend::node_stage::node_kernels;
+use sinew::backend::many_steps::take_small_bodies;
+use sinew::backend::node_stage::{NodeStage, node_kernels};
 use sinew::components::*;
 use sinew::systems::{OnDevice, Registry};
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
@@ -291,6 +292,19 @@ pub const OF_NODES: [&str; 7] = ["gather", "gravity", "nodal_force", "traction",
 
 /// Kernels of systems of nodes that share them.
 pub fn shared_kernels(systems: &[&str], world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+    let stages = stages_of(systems, world, buffers);
+    node_kernels(stages, true, buffers)
+}
+
+/// Kernels of bodies that take many steps in a dispatch: however many elements they have, if only their patches allow it.
+pub fn small_bodies(of_nodes: &[&str], world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+    let forces = Registry::default().get("element_forces").unwrap().device;
+    let mut elements = forces.kernels(world, buffers);
+    let mut stages = stages_of(of_nodes, world, buffers);
+    take_small_bodies(usize::MAX, &mut elements, &mut stages, world, buffers).0
+}
+
+fn stages_of(systems: &[&str], world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
     let registry = Registry::default();
     let mut stages = Vec::new();
     for system in systems.iter().filter_map(|name| registry.get(name)) {
@@ -299,7 +313,7 @@ pub fn shared_kernels(systems: &[&str], world: &mut World, buffers: &mut dyn Buf
             (_, device) => assert!(!matches!(device, OnDevice::Kernels(_)), "{}", system.name),
         }
     }
-    node_kernels(stages, true, buffers)
+    stages
 }
 
 /// The kernels of the guards, which run beside the step.

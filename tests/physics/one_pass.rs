@@ -4,7 +4,10 @@
 use crate::configurations::{Configuration, configurations};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
-use sinew::components::{DisplacementStep, ExternalForce, Patches, RemovalStep};
+use sinew::backend::device::Device;
+use sinew::components::{
+    DisplacementStep, ExternalForce, FirstNonFinite, Mass, Patches, RemovalStep, SPENT_AT, before_at,
+};
 use sinew::systems::{Phase, Registry, System};
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
 use std::path::Path;
@@ -54,6 +57,69 @@ fn a_shared_pass_changes_nothing() {
             } else {
                 assert_eq!(shared, apart, "{} {loads}", run.name);
             }
+        }
+    }
+}
+
+/// Steps, dispatches and submissions of two small bodies on a GPU (one of more elements than invocations, one of more nodes), where they are in the end, and the work against internal forces
+/// (J) that the guards go by.
+fn small_bodies(run: &Configuration, effect: &str, output: &str, fuse: bool) -> ([u64; 3], Vec<DVec3>, [f64; 2]) {
+    let text = format!(
+        "(duration: 10, bodies: {{
+            \"a\": (mesh: Box(size: (1, 1, 1), cells: (5, 4, 5), elements: Tet4), material: \"m\"),
+            \"b\": (mesh: Box(size: (1, 1, 15), cells: (2, 2, 30), elements: Hex8), material: \"m\", translate: (2, 0, 0))}},
+        materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), {effect})}},
+        constraints: [
+            Prescribed(body: \"a\", on: Plane(normal: (0, 0, 1), at: 1), displacement: (0, 0, -0.1), rotation: (0, 0, 20), curve: Smooth(end: 0.5))],
+        loads: [Gravity(body: \"b\", acceleration: (0, 1, -9.81)),
+            NodalForce(body: \"b\", on: Plane(normal: (1, 0, 0), at: 3), force: (0.5, 0, 0), curve: Smooth(end: 0.3))],
+        integration: (step: 0.002, compensated: false), guards: (every: 5000), {output} fuse: {fuse})"
+    );
+    let mut simulation = run.start_in(&text, Path::new("."));
+    let counts = |simulation: &mut Simulation| {
+        let steps = simulation.step_count();
+        let mut device = simulation.world_mut().resource_mut::<Device>();
+        [steps, device.gpu().dispatches(), device.gpu().submissions()]
+    };
+    let before = counts(&mut simulation);
+    // submissions of one step, of a few, of many
+    for steps in [1, 7, 292] {
+        simulation.advance(steps).unwrap_or_else(|error| panic!("{error}"));
+    }
+    let after = counts(&mut simulation);
+    let ends = ["a", "b"].map(|body| simulation.displacements(body).unwrap()).concat();
+    sinew::backend::device::bring_to_host(simulation.world_mut(), |_, _| true).unwrap();
+    let spent = ["a", "b"].map(|body| {
+        let body = simulation.body(body).unwrap();
+        let body = simulation.world().entity(body);
+        let end = before_at(body.get::<Mass>().unwrap().len());
+        let words = body.get::<FirstNonFinite>().unwrap().get(SPENT_AT..end).unwrap_or_default();
+        words.iter().map(|&word| f64::from(f32::from_bits(word))).sum()
+    });
+    ([0, 1, 2].map(|i| after[i] - before[i]), ends, spent)
+}
+
+/// The same operations in the same order, but compilers may contract them otherwise: see above.
+#[test]
+fn small_bodies_take_many_steps_in_one_dispatch() {
+    let Some(run) = configurations().into_iter().find(|run| run.options.backend == BackendChoice::Gpu) else { return };
+    // where energies are observed, integrate books them node by node, and invocations need not meet for that
+    for (effect, output) in [("prony: (terms: [(alpha: 0.4, tau: 0.05)])", ""), ("", "output: (energies_every: 5),")] {
+        let ([steps, dispatches, submissions], together, spent) = small_bodies(&run, effect, output, true);
+        assert_eq!((steps, dispatches), (300, 2 * submissions));
+        assert!(submissions < 100, "{submissions}");
+        let ([steps, dispatches, _], apart, spent_apart) = small_bodies(&run, effect, output, false);
+        // element forces, gather, boundary or two loads, integrate
+        assert_eq!(dispatches, (4 + 5) * steps);
+        let largest = apart.iter().map(|u| u.length()).fold(0.0, f64::max);
+        let off = together.iter().zip(&apart).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+        assert!(off <= 1e-5 * largest && largest > 0.1, "{off:e} of {largest:e}");
+        // forces along steps: off as displacements are
+        for (spent, apart) in spent.into_iter().zip(spent_apart) {
+            assert!(
+                (spent - apart).abs() <= 1e-5 * apart.abs() && (apart > 1e-3) == output.is_empty(),
+                "{spent} J instead of {apart} J"
+            );
         }
     }
 }

@@ -24,6 +24,8 @@ pub(super) struct Pace {
     last_end: Option<Instant>,
     /// made so far
     pub(super) submissions: u64,
+    /// dispatches in them
+    pub(super) dispatches: u64,
 }
 
 struct Flight {

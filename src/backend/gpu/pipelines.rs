@@ -11,9 +11,11 @@ use wgpu::{
     ShaderStages,
 };
 
+use super::run::PACKED_HEADER;
 use super::{BufferKind, Gpu, GpuError};
 use crate::backend::kernel::{
-    Binding, BindingKind, Composed, Entry, Kernel, KernelError, KernelId, NameMismatch, STEP_VARIABLE, compose,
+    Binding, BindingKind, Composed, Entry, Kernel, KernelError, KernelId, NameMismatch, STEP_RECORDS_VARIABLE,
+    STEP_VARIABLE, compose,
 };
 
 /// Modules by text and pipelines by text and entry point: bodies of one kind share them.
@@ -35,6 +37,8 @@ pub(super) struct Prepared {
     pub(super) group: BindGroup,
     /// Bytes of the step's record, for kernels that use it.
     pub(super) record: Option<u32>,
+    /// Bytes of a step's record, for kernels that run all steps of a submission in one dispatch.
+    pub(super) packed_record: Option<u32>,
     /// Workgroups in x and y; 0 runs nothing.
     pub(super) groups: (u32, u32),
     workgroup: u32,
@@ -68,9 +72,12 @@ impl Gpu {
         let groups = self.groups(&kernel.label, kernel.threads, workgroup)?;
         let (pipeline, layout) = self.pipeline(kernel, key, &module, entry)?;
         let group = self.bind_group(kernel, composed, entry, &layout)?;
-        let record = entry.uses.iter().map(|i| &composed.bindings[*i]).find(|b| b.name == STEP_VARIABLE);
-        let record = record.map(|b| b.size);
-        self.kernels.push(Prepared { label: kernel.label.clone(), pipeline, group, record, groups, workgroup });
+        let bytes_of =
+            |name| entry.uses.iter().map(|i| &composed.bindings[*i]).find(|b| b.name == name).map(|b| b.size);
+        let record = bytes_of(STEP_VARIABLE);
+        let packed_record = bytes_of(STEP_RECORDS_VARIABLE).map(|bytes| bytes.saturating_sub(PACKED_HEADER as u32));
+        let label = kernel.label.clone();
+        self.kernels.push(Prepared { label, pipeline, group, record, packed_record, groups, workgroup });
         Ok(KernelId(self.kernels.len() as u32 - 1))
     }
 
@@ -149,6 +156,8 @@ impl Gpu {
         for binding in entry.uses.iter().map(|i| &composed.bindings[*i]) {
             let resource = if binding.name == STEP_VARIABLE {
                 self.records.binding(binding.size)
+            } else if binding.name == STEP_RECORDS_VARIABLE {
+                self.records.packed()
             } else {
                 no_alias(self, kernel, composed, entry, binding)?;
                 self.buffer_binding(kernel, binding)?
@@ -227,17 +236,20 @@ fn no_alias(gpu: &Gpu, kernel: &Kernel, composed: &Composed, entry: &Entry, bind
     })
 }
 
+/// Variables that this layer binds itself.
+const OWN_VARIABLES: [&str; 2] = [STEP_VARIABLE, STEP_RECORDS_VARIABLE];
+
 /// Every variable in use has a buffer and every buffer a variable, once.
 fn match_names(kernel: &Kernel, composed: &Composed, entry: &Entry) -> Result<(), KernelError> {
     let used: Vec<_> = entry.uses.iter().map(|i| composed.bindings[*i].name.clone()).collect();
     let given: Vec<_> = kernel.bindings.iter().map(|(name, _)| name.clone().into_owned()).collect();
     let without_buffer: Vec<_> =
-        used.iter().filter(|name| *name != STEP_VARIABLE && !given.contains(name)).cloned().collect();
+        used.iter().filter(|name| !OWN_VARIABLES.contains(&name.as_str()) && !given.contains(name)).cloned().collect();
     let mut without_variable = Vec::new();
     for (index, name) in given.iter().enumerate() {
         if given[..index].contains(name) {
             without_variable.push(format!("{name} (given twice)"));
-        } else if name == STEP_VARIABLE {
+        } else if OWN_VARIABLES.contains(&name.as_str()) {
             without_variable.push(format!("{name} (bound by the GPU layer)"));
         } else if composed.binding(name).is_none() {
             without_variable.push(name.clone());

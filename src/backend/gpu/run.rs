@@ -16,20 +16,32 @@ use crate::backend::kernel::KernelId;
 /// Dynamic offsets of uniforms are multiples of this on every WebGPU device.
 const RECORD_ALIGNMENT: u64 = 256;
 
-/// The records of one submission's steps, one 256-byte slot each (several, where a record is longer).
+/// Bytes of the number of records before packed records, with the padding behind it.
+pub(super) const PACKED_HEADER: usize = 16;
+
+/// The records of one submission's steps, one 256-byte slot each (several, where a record is longer); and their number and all of
+/// them one after the other, for kernels that run all those steps in one dispatch.
 pub(super) struct StepRecords {
     buffer: Buffer,
+    packed: Buffer,
 }
 
 impl StepRecords {
     pub(super) fn new(device: &Device) -> Self {
-        let buffer = device.create_buffer(&BufferDescriptor {
-            label: Some("step records"),
-            size: RECORD_ALIGNMENT * u64::from(MOST_STEPS),
-            usage: BufferUsages::UNIFORM | BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        Self { buffer }
+        let size = RECORD_ALIGNMENT * u64::from(MOST_STEPS);
+        let buffer = |label, size, usage| {
+            let usage = usage | BufferUsages::COPY_DST;
+            device.create_buffer(&BufferDescriptor { label: Some(label), size, usage, mapped_at_creation: false })
+        };
+        Self {
+            buffer: buffer("step records", size, BufferUsages::UNIFORM),
+            packed: buffer("packed step records", PACKED_HEADER as u64 + size, BufferUsages::STORAGE),
+        }
+    }
+
+    /// What a kernel binds that runs all steps of a submission in one dispatch.
+    pub(super) fn packed(&self) -> BufferBinding<'_> {
+        self.packed.as_entire_buffer_binding()
     }
 
     /// What a kernel binds; the dynamic offset chooses the step.
@@ -74,7 +86,12 @@ impl Gpu {
         while done < count {
             let steps = self.pace.batch(kernels).min(most).min(count - done);
             let records = &step_records[done as usize * record_size..][..steps as usize * record_size];
-            self.write_records(records, record_size, stride);
+            if self.any(kernels, |kernel| kernel.record.is_some()) {
+                self.write_records(records, record_size, stride);
+            }
+            if self.any(kernels, |kernel| kernel.packed_record.is_some()) {
+                self.write_packed_records(records, steps);
+            }
             self.submit(&key, steps, stride)?;
             done += steps;
         }
@@ -92,6 +109,15 @@ impl Gpu {
     /// Submissions of steps so far: how far many steps share one.
     pub fn submissions(&self) -> u64 {
         self.pace.submissions
+    }
+
+    /// Dispatches of kernels so far.
+    pub fn dispatches(&self) -> u64 {
+        self.pace.dispatches
+    }
+
+    fn any(&self, kernels: &[KernelId], is_so: impl Fn(&Prepared) -> bool) -> bool {
+        kernels.iter().any(|id| self.kernel(*id).is_ok_and(&is_so))
     }
 
     fn admit_records(
@@ -114,6 +140,12 @@ impl Gpu {
                     "kernel `{label}` reads a `step` of {wanted} bytes, the records have {record_size}"
                 )));
             }
+            if let Some(wanted) = kernel.packed_record.filter(|wanted| *wanted as usize != record_size) {
+                let label = &kernel.label;
+                return Err(GpuError::Records(format!(
+                    "kernel `{label}` reads records of {wanted} bytes, these have {record_size}"
+                )));
+            }
         }
         self.records.stride(record_size).ok_or_else(|| {
             let most = self.records.buffer.size();
@@ -131,6 +163,13 @@ impl Gpu {
             slot[..record_size].copy_from_slice(record);
         }
         self.queue.write_buffer(&self.records.buffer, 0, &spread);
+    }
+
+    fn write_packed_records(&self, records: &[u8], steps: u32) {
+        let mut packed = vec![0; PACKED_HEADER];
+        packed[..size_of::<u32>()].copy_from_slice(&steps.to_le_bytes());
+        packed.extend_from_slice(records);
+        self.queue.write_buffer(&self.records.packed, 0, &packed);
     }
 
     fn submit(&mut self, key: &Arc<[KernelId]>, steps: u32, stride: u64) -> Result<(), GpuError> {
@@ -154,7 +193,10 @@ impl Gpu {
                 labels
             }
         };
+        let mut dispatches = 0;
+        batch.each(|_, _| dispatches += 1);
         let index = self.queue.submit([encoder.finish()]);
+        self.pace.dispatches += dispatches;
         self.check("running kernels")?;
         self.pace.submitted(index, key.clone(), steps);
         if !timed.is_empty() {
@@ -169,10 +211,10 @@ impl Gpu {
 }
 
 impl Batch<'_> {
-    /// Calls `run` for every kernel of every step with the offset of the step's record.
+    /// Calls `run` for every kernel of every step with the offset of the step's record; once for those that run all steps.
     fn each(&self, mut run: impl FnMut(&Prepared, u32)) {
         for step in 0..self.steps {
-            for kernel in &self.kernels {
+            for kernel in self.kernels.iter().filter(|kernel| step == 0 || kernel.packed_record.is_none()) {
                 run(kernel, (u64::from(step) * self.stride) as u32);
             }
         }

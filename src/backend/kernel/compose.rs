@@ -6,7 +6,7 @@ use naga::{AddressSpace, Module, ResourceBinding, ShaderStage};
 
 use super::diagnose::Sources;
 use super::reflect::{binding, members, type_name};
-use super::{Binding, BindingKind, Fragment, KernelError, Member, STEP_VARIABLE};
+use super::{Binding, BindingKind, Fragment, KernelError, Member, STEP_RECORDS_VARIABLE, STEP_VARIABLE};
 
 /// A compute entry point.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -65,6 +65,9 @@ pub fn compose(fragments: &[Fragment]) -> Result<Composed, KernelError> {
             .ok_or_else(|| variable_error(name, "is not a buffer".to_owned()))?;
         if name == STEP_VARIABLE && found.kind != BindingKind::Uniform {
             return Err(variable_error(name, "holds the step's record and must be a var<uniform>".to_owned()));
+        }
+        if name == STEP_RECORDS_VARIABLE && found.kind != BindingKind::Read {
+            return Err(variable_error(name, "holds the steps' records and must be a var<storage, read>".to_owned()));
         }
         bindings.push(found);
         handles.push(handle);

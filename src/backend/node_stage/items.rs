@@ -36,9 +36,10 @@ impl<'a> Items<'a> {
         Self(items)
     }
 
-    /// What they declare.
-    pub fn names(&self) -> impl Iterator<Item = &'a str> {
-        self.0.iter().filter_map(|item| item.name)
+    /// The structs by name, with their texts.
+    pub fn structs(&self) -> Vec<(String, String)> {
+        let named = |item: &Item| Some((item.name?.to_owned(), item.lines.join("\n")));
+        self.0.iter().filter(|item| item.is_struct).filter_map(named).collect()
     }
 
     /// The text without some of the structs.
@@ -115,7 +116,9 @@ fn pull(node: u32) {
     #[test]
     fn declarations_are_found_by_name() {
         let items = Items::of(TEXT);
-        assert_eq!(items.names().collect::<Vec<_>>(), ["Load", "load", "mass", "sum", "pull"]);
+        let names: Vec<&str> = items.0.iter().filter_map(|item| item.name).collect();
+        assert_eq!(names, ["Load", "load", "mass", "sum", "pull"]);
+        assert_eq!(items.structs().len(), 1);
         assert!(!items.without(&["Load".to_owned()].into()).contains("slot"));
         assert_eq!(items.without(&BTreeSet::new()), TEXT);
         assert_eq!(storage_variable(TEXT.lines().nth(5).unwrap_or_default()), Some(("mass", false, "array<f32>")));

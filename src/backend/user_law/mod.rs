@@ -9,6 +9,7 @@ mod names;
 mod text;
 
 pub use checks::Findings;
+pub(crate) use names::declared_names;
 
 use crate::materials::program::Untranslatable;
 use crate::materials::{LawPrograms, UserLaw};

@@ -42,6 +42,11 @@ pub(super) fn declared(text: &str) -> Vec<Declared> {
     found
 }
 
+/// The names of what a text declares, however it is laid out.
+pub(crate) fn declared_names(text: &str) -> impl Iterator<Item = String> {
+    declared(text).into_iter().map(|declared| declared.name)
+}
+
 /// Where a member of a struct stands, else the struct itself.
 pub(super) fn member(text: &str, of: &Declared, member: &str) -> Range<usize> {
     let behind = words(text).skip_while(|range| range.start < of.at.end);
@@ -71,9 +76,14 @@ pub(super) fn beside() -> Vec<Fragment> {
         shader!("finite_strain"),
         shader!("hex8"),
         shader!("hex8_mean_dilatation"),
+        shader!("many_steps"),
         shader!("nodal_mean"),
         shader!("nodal_volume"),
         shader!("note_inverted"),
+        shader!("pass_rows"),
+        shader!("patch_pass"),
+        shader!("patch_volume"),
+        shader!("patches"),
         shader!("point"),
         shader!("point_pressure"),
         shader!("prony"),
@@ -88,7 +98,11 @@ pub(super) fn beside() -> Vec<Fragment> {
 }
 
 /// Names that kernels are generated with.
-const GENERATED: [&str; 14] = [
+const GENERATED: [&str; 18] = [
+    "add_forces",
+    "call_all",
+    "finish_all",
+    "sum_all",
     "isochoric_stress",
     "energy_density",
     "fibres_energy_at",

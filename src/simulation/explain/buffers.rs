@@ -3,7 +3,8 @@
 use super::Buffer;
 use crate::backend::Buffers;
 use crate::backend::device::all_columns;
-use crate::backend::kernel::BufferId;
+use crate::backend::gpu::GpuLimits;
+use crate::backend::kernel::{BufferId, DESKTOP_STORAGE_BUFFERS, DESKTOP_WORKGROUP};
 use crate::components::{Corners, Label, Patches, RestPosition};
 use bevy_ecs::prelude::*;
 use std::collections::BTreeMap;
@@ -78,14 +79,16 @@ pub fn host_columns(sizes: &Sizes, world: &mut World) -> Vec<Buffer> {
 pub struct Counter<'a> {
     sizes: &'a Sizes,
     columns: BTreeMap<(Entity, &'static str), BufferId>,
+    /// What the device allows, if there is one.
+    limits: Option<GpuLimits>,
     /// All buffers; the place is the id.
     pub buffers: Vec<Buffer>,
 }
 
 impl<'a> Counter<'a> {
     /// Nothing counted yet.
-    pub fn new(sizes: &'a Sizes) -> Self {
-        Self { sizes, columns: BTreeMap::new(), buffers: Vec::new() }
+    pub fn new(sizes: &'a Sizes, limits: Option<GpuLimits>) -> Self {
+        Self { sizes, columns: BTreeMap::new(), limits, buffers: Vec::new() }
     }
 
     /// The buffer of an id.
@@ -108,6 +111,14 @@ impl Buffers for Counter<'_> {
         let id = self.add(self.sizes.name_of(entity), name.into(), "column", bytes);
         self.columns.insert((entity, name), id);
         id
+    }
+
+    fn storage_buffers(&self) -> usize {
+        self.limits.map_or(DESKTOP_STORAGE_BUFFERS, |limits| limits.storage_buffers as usize)
+    }
+
+    fn workgroup_invocations(&self) -> usize {
+        self.limits.map_or(DESKTOP_WORKGROUP, |limits| limits.workgroup_size as usize)
     }
 
     fn constants(&mut self, label: String, bytes: &[u8]) -> BufferId {

@@ -2,41 +2,47 @@
 
 use super::buffers::{Counter, Sizes};
 use super::{Bound, Buffer, KernelInUse, Piece};
+use crate::backend::device::Device;
 use crate::backend::gpu::GpuError;
 use crate::backend::kernel::{BindingKind, Kernel, compose};
-use crate::backend::node_stage::node_kernels;
+use crate::backend::many_steps::Dispatched;
 use crate::error::Error;
-use crate::simulation::build::stages_of;
+use crate::simulation::step_kernels::step_kernels;
 use crate::systems::{OnDevice, System};
 use bevy_ecs::prelude::*;
 
-/// The kernels of all systems, which stand in their order, and the buffers that they bind.
-pub fn describe(
-    systems: &[&System],
-    fuse: bool,
-    sizes: &Sizes,
-    world: &mut World,
-) -> Result<(Vec<KernelInUse>, Vec<Buffer>), Error> {
-    let mut counter = Counter::new(sizes);
-    let mut described = Vec::new();
-    let mut nodes: Vec<&System> = Vec::new();
-    // one more time round, for what is left of systems of nodes at the end
-    for system in systems.iter().map(Some).chain([None]) {
-        let of_nodes = system.filter(|system| matches!(system.device, OnDevice::Stages(_)) && fuse);
-        if let Some(system) = of_nodes {
-            nodes.push(system);
-            continue;
-        }
-        let stages = stages_of(nodes.drain(..), world, &mut counter);
-        for kernel in node_kernels(stages, true, &mut counter) {
-            described.push(in_use(&kernel.label, &kernel, &counter)?);
-        }
-        let Some(system) = system else { break };
-        for kernel in system.device.kernels(world, &mut counter) {
-            described.push(in_use(&system.name, &kernel, &counter)?);
+/// What runs on a GPU in a step.
+#[derive(Default)]
+pub struct OnGpu {
+    /// The kernels, in order.
+    pub kernels: Vec<KernelInUse>,
+    /// The buffers that they bind.
+    pub buffers: Vec<Buffer>,
+    /// How each body's steps are dispatched.
+    pub dispatched: Vec<Dispatched>,
+}
+
+/// What a GPU runs for systems, which stand in their order.
+pub fn describe(systems: &[&System], fuse: bool, sizes: &Sizes, world: &mut World) -> Result<OnGpu, Error> {
+    let limits = world.get_resource::<Device>().map(Device::limits);
+    let mut counter = Counter::new(sizes, limits);
+    let mut groups: Vec<Vec<&System>> = Vec::new();
+    let is_of_nodes = |system: &System| matches!(system.device, OnDevice::Stages(_));
+    for &system in systems {
+        match groups.last_mut().filter(|group| fuse && is_of_nodes(group[0]) && is_of_nodes(system)) {
+            Some(group) => group.push(system),
+            None => groups.push(vec![system]),
         }
     }
-    Ok((described, counter.buffers))
+    let (kernels, dispatched) = step_kernels(&groups, world, &mut counter);
+    let mut described = Vec::new();
+    for (kernels, group) in kernels.iter().zip(&groups) {
+        for kernel in kernels {
+            let system = if is_of_nodes(group[0]) { &kernel.label } else { &group[0].name };
+            described.push(in_use(system, kernel, &counter)?);
+        }
+    }
+    Ok(OnGpu { kernels: described, buffers: counter.buffers, dispatched })
 }
 
 fn in_use(system: &str, kernel: &Kernel, counter: &Counter<'_>) -> Result<KernelInUse, Error> {

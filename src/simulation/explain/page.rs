@@ -19,6 +19,13 @@ impl Display for Explanation {
             writeln!(f, "  {:<16}  turned on by {}", system.name, system.turned_on_by)?;
         }
         self.parts.iter().try_for_each(|part| write_part(part, f))?;
+        if self.on_gpu {
+            writeln!(f, "\nAll steps of a submission in one dispatch")?;
+        }
+        for body in &self.dispatched {
+            let on = if body.many_steps { "yes" } else { "no " };
+            writeln!(f, "  {:<16}  {on}  {}", body.body, body.because)?;
+        }
         self.kernels.iter().try_for_each(|kernel| write_kernel(kernel, f))?;
         if self.on_gpu {
             write_buffers("Buffers on the device", &self.buffers, self.device_bytes, f)?;
