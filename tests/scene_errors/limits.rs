@@ -117,6 +117,11 @@ fn elements_are_counted_before_they_are_made() {
     assert!(told.contains("would have 6400000000 elements: 64000 cells, 100000 copies"), "{told}");
     let none = with(cells, cells).replace("material: \"tissue\",", "material: \"tissue\", copies: 0,");
     assert!(brief(&none, &[]).contains("between 1 and 100000"), "{}", brief(&none, &[]));
+    let gone =
+        with(cells, cells).replace("material: \"tissue\",", "material: \"tissue\", copies: 3, apart: (1e308, 0, 0),");
+    let told = brief(&gone, &[]);
+    assert!(told.contains("the last copy would stand beyond all numbers"), "{told}");
+    assert!(told.contains("`apart` is too large: 1e308"), "{told}");
 }
 
 fn allowing(text: &str, elements: u64) -> Result<Simulation, Error> {
