@@ -2,7 +2,7 @@
 //! core's cache. On a GPU the same is one kernel (src/backend/node_stage.rs).
 
 use super::registry::HostSystem;
-use super::{boundary, gather, gravity, nodal_force, traction};
+use super::{boundary, gather, gravity, nodal_force, pressure, traction};
 use crate::backend::cpu::{Cpu, Factors, NodeColumns, ROWS_A_TASK, move_nodes};
 use crate::backend::step::step_number;
 use crate::components::*;
@@ -17,7 +17,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub(super) struct BodyColumns {
-    pub(super) body: Entity,
+    body: Entity,
+    rest: &'static RestPosition,
     mass: &'static Mass,
     fictitious: Option<&'static FictitiousMass>,
     internal: &'static mut InternalForce,
@@ -115,7 +116,7 @@ fn move_all<T: SimdScalar>(
 }
 
 /// The systems that a pass can hold, in whatever order the phases allow; it must hold the first and the last.
-const OF_A_PASS: [&str; 6] = ["gather", "gravity", "nodal_force", "traction", "boundary", "integrate"];
+const OF_A_PASS: [&str; 7] = ["gather", "gravity", "nodal_force", "pressure", "traction", "boundary", "integrate"];
 
 /// Whether these systems, which follow one another in a step, can be one pass on the CPU.
 pub(crate) fn is_a_pass(systems: &[&str]) -> bool {
@@ -133,6 +134,8 @@ pub(super) struct OnRows<'a> {
 enum RowLoad<'a> {
     Gravity([f64; 4]),
     NodalForce(&'a NodalForce, [f64; 4]),
+    /// With the areas of its faces as they are at the beginning of the pass.
+    Pressure(&'a Pressure, f64, Reals),
     Traction(&'a Traction, [f64; 4]),
 }
 
@@ -147,6 +150,9 @@ impl OnRows<'_> {
                     RowLoad::Gravity(acceleration) => gravity::pull(cpu, rows.mass, *acceleration, external),
                     RowLoad::NodalForce(load, force) => {
                         nodal_force::push(load, *force, first, rows.mass, external);
+                    }
+                    RowLoad::Pressure(load, pressure, areas) => {
+                        pressure::push(&load.faces, *pressure, areas, first, external);
                     }
                     RowLoad::Traction(load, traction) => traction::pull(&load.faces, *traction, first, external),
                 }
@@ -165,14 +171,15 @@ pub(super) struct OnBodies<'w, 's> {
     signals: Res<'w, Signals>,
     gravities: Query<'w, 's, (&'static Gravity, &'static OfBody)>,
     forces: Query<'w, 's, (&'static NodalForce, &'static OfBody)>,
+    pressures: Query<'w, 's, (&'static Pressure, &'static OfBody)>,
     tractions: Query<'w, 's, (&'static Traction, &'static OfBody)>,
     prescribed: Query<'w, 's, (&'static Prescribed, &'static OfBody)>,
 }
 
 impl OnBodies<'_, '_> {
     /// What these systems, in their order, do to the rows of a body.
-    pub(super) fn of(&self, systems: &[String], body: Entity) -> OnRows<'_> {
-        let values = self.signals.values();
+    pub(super) fn of(&self, systems: &[String], columns: &BodyColumnsItem<'_, '_>) -> OnRows<'_> {
+        let (values, body) = (self.signals.values(), columns.body);
         let mut rows = OnRows::default();
         for system in systems {
             match system.as_str() {
@@ -183,6 +190,13 @@ impl OnBodies<'_, '_> {
                 "nodal_force" => {
                     let own = self.forces.iter().filter(|(_, of)| of.0 == body);
                     rows.loads.extend(own.map(|(load, _)| RowLoad::NodalForce(load, values[load.signal])));
+                }
+                "pressure" => {
+                    let own = self.pressures.iter().filter(|(_, of)| of.0 == body);
+                    rows.loads.extend(own.map(|(load, _)| {
+                        let areas = pressure::areas(&load.faces, columns.rest, &columns.u);
+                        RowLoad::Pressure(load, values[load.signal][0], areas)
+                    }));
                 }
                 "traction" => {
                     let own = self.tractions.iter().filter(|(_, of)| of.0 == body);
@@ -207,7 +221,7 @@ pub(crate) fn node_pass(systems: Vec<String>) -> HostSystem {
                      mut bodies: Query<(BodyColumns, Option<&Corners>, Option<&ElementForce>)>|
           -> Result<(), Error> {
         for (mut body, corners, force) in &mut bodies {
-            let on_rows = on_bodies.of(&systems, body.body);
+            let on_rows = on_bodies.of(&systems, &body);
             move_body(&cpu, &clock, &mut body, corners.zip(force), Some(&on_rows));
         }
         Ok(())

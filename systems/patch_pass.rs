@@ -21,7 +21,7 @@ pub(crate) fn patch_pass(systems: Vec<String>) -> HostSystem {
                      mut bodies: Query<(BodyColumns, &Authoring, &Corners, &mut ElementForce)>|
           -> Result<(), Error> {
         for (mut body, authoring, corners, mut force) in &mut bodies {
-            let on_rows = &on_bodies.of(&systems, body.body);
+            let on_rows = &on_bodies.of(&systems, &body);
             let step = Step { cpu: &cpu, clock: &clock, blocks: &authoring.blocks, corners, on_rows };
             match body.u.precision() {
                 Precision::F32 => step.take::<f32>(&mut body, &mut force, &mut blocks),

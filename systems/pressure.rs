@@ -1,5 +1,6 @@
 //! `pressure`: a pressure that follows the surface. `shaders/pressure.wgsl` is its twin.
 
+use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::face_kernel::{FaceLoad, face_loads};
@@ -26,59 +27,59 @@ pub fn system() -> System {
     .on_nodes(stages)
 }
 
-/// Area vectors of each face's corners (m²), kept from step to step for their memory only.
-#[derive(Default)]
-struct CornerAreas {
-    f32: Vec<[[f32; 3]; 4]>,
-    f64: Vec<[[f64; 3]; 4]>,
-}
-
 fn pressure(
     signals: Res<Signals>,
     loads: Query<(&Pressure, &OfBody)>,
     mut bodies: Query<(&RestPosition, &Displacement, &mut ExternalForce)>,
-    mut areas: Local<CornerAreas>,
 ) {
     for (load, body) in &loads {
         let Ok((rest, displacement, mut external)) = bodies.get_mut(body.0) else { continue };
         let pressure = signals.values()[load.signal][0];
-        let faces = &load.faces;
+        let areas = areas(&load.faces, rest, displacement);
         match &mut external.0 {
-            Reals::F32(external) => push(faces, pressure, rest, displacement.slice(), &mut areas.f32, external),
-            Reals::F64(external) => push(faces, pressure, rest, displacement.slice(), &mut areas.f64, external),
+            Reals::F32(external) => push(&load.faces, pressure, &areas, 0, external),
+            Reals::F64(external) => push(&load.faces, pressure, &areas, 0, external),
         }
     }
 }
 
-fn push<T: Scalar>(
-    faces: &FaceCorners,
-    pressure: f64,
-    rest: &RestPosition,
-    displacement: &[T],
-    areas: &mut Vec<[[T; 3]; 4]>,
-    external: &mut [T],
-) {
-    // each face once: its corners share most of the work. Written out: `map` over arrays costs seven times as much here
-    areas.clear();
+/// Area vectors of each face's corners (m²), twelve numbers a face: of all faces before any node moves.
+pub(super) fn areas(faces: &FaceCorners, rest: &RestPosition, displacement: &Displacement) -> Reals {
+    match &displacement.0 {
+        Reals::F32(u) => Reals::F32(areas_of(faces, rest, u)),
+        Reals::F64(u) => Reals::F64(areas_of(faces, rest, u)),
+    }
+}
+
+// each face once: its corners share most of the work. Written out: `map` over arrays costs seven times as much here
+fn areas_of<T: Scalar>(faces: &FaceCorners, rest: &RestPosition, displacement: &[T]) -> Vec<T> {
+    let mut areas = Vec::with_capacity(12 * faces.faces.len());
     let at = |node: u32| {
         let (x, u) = (rest.0[node as usize], &displacement[3 * node as usize..3 * node as usize + 3]);
         [T::from_f64(x.x) + u[0], T::from_f64(x.y) + u[1], T::from_f64(x.z) + u[2]]
     };
     for (&[a, b, c, d], &alive) in faces.faces.iter().zip(&faces.alive) {
         let there = alive != 0;
-        areas.push(if there { corner_areas([at(a), at(b), at(c), at(d)]) } else { [[T::default(); 3]; 4] });
+        let of_face = if there { corner_areas([at(a), at(b), at(c), at(d)]) } else { [[T::default(); 3]; 4] };
+        areas.extend_from_slice(of_face.as_flattened());
     }
-    let pressure = T::from_f64(pressure);
-    for (i, &row) in faces.rows.iter().enumerate() {
+    areas
+}
+
+/// Pushes those nodes from row `first` on that the column has.
+pub(super) fn push<T: Scalar>(faces: &FaceCorners, pressure: f64, areas: &Reals, first: usize, external: &mut [T]) {
+    let (areas, pressure) = (areas.slice::<T>(), T::from_f64(pressure));
+    for i in places_within(&faces.rows, first, external.len() / 3) {
         let mut sum = [T::default(); 3];
         for &corner in &faces.corners[faces.starts[i] as usize..faces.starts[i + 1] as usize] {
-            let area = areas[corner as usize / 4][corner as usize % 4];
+            let area = &areas[3 * corner as usize..3 * corner as usize + 3];
             for i in 0..3 {
                 sum[i] += area[i];
             }
         }
+        let row = faces.rows[i] as usize - first;
         for i in 0..3 {
-            external[3 * row as usize + i] -= pressure * sum[i];
+            external[3 * row + i] -= pressure * sum[i];
         }
     }
 }

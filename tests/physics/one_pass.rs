@@ -155,8 +155,7 @@ fn who_shares_a_pass_is_told_and_what_must_stay_apart_does() {
     assert!(shares(&plain, &registry, "boundary", "integrate") && shares(&plain, &registry, "gravity", "gather"));
     assert!(shares(&plain, &registry, "element_forces", "integrate"));
     assert!(!shares(&scene("", "", false), &registry, "gravity", "gather"));
-    assert!(!shares(&scene("", PRESSURE, true), &registry, "gather", "integrate"));
-    assert!(!shares(&scene("", PRESSURE, true), &registry, "element_forces", "gather"));
+    assert!(shares(&scene("", PRESSURE, true), &registry, "pressure", "integrate"));
     let with = |own: [&str; 2]| {
         let all = [
             "boundary",

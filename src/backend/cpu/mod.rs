@@ -105,7 +105,7 @@ impl Cpu {
             None => items.for_each(task),
             Some(pool) => {
                 let mut items: Vec<I> = items.collect();
-                if items.len() == 1 {
+                if items.len() <= 1 {
                     return items.drain(..).for_each(task);
                 }
                 pool.install(|| {
