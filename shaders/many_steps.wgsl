@@ -16,7 +16,7 @@ fn many_steps(@builtin(workgroup_id) id: vec3<u32>, @builtin(local_invocation_in
             step = step_records.steps[number];
         }
         workgroupBarrier();
-        sum_all(id.x, local);
+        sum_all(id.x, local, 0u);
         storageBarrier();
         for (var first = id.x; first < pass_rows.count; first += INVOCATIONS) {
             let node = first + local;

@@ -8,7 +8,7 @@ fn node_pass(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) local: u32,
 ) {
-    let node = row(id, groups);
+    let node = pass_rows.first + row(id, groups);
     if node < pass_rows.count {
         call_all(node);
     }

@@ -1,5 +1,6 @@
-// How many nodes a kernel works on.
+// Which nodes a kernel works on.
 struct NodePass {
-    count: u32, // rows
+    count: u32, // where its rows end
+    first: u32, // row
 }
 @group(0) @binding(0) var<uniform> pass_rows: NodePass;

@@ -9,6 +9,6 @@ fn element_forces(
 ) {
     let number = patch_row(id, workgroups);
     if number < patches.count {
-        sum_patch(number, local);
+        sum_patch(number, local, 0u);
     }
 }

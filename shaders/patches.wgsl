@@ -6,6 +6,7 @@ struct PatchLists {
     rounds: u32, // where in patch_lists the numbers of rounds begin, a byte a corner of each batch
     corners: u32, // where corners begin: as connectivity, but two in a word
     nodes: u32, // where the nodes of patches begin; before all these, where each patch's are among them
+    inside: u32, // where it begins how many of each patch's nodes, its first ones, no other patch has
 }
 @group(0) @binding(0) var<uniform> patches: PatchLists;
 @group(0) @binding(1) var<storage, read> patch_lists: array<u32>;
@@ -49,8 +50,9 @@ fn add_force(element: u32, is_there: bool, batch: u32, corner: u32, force: vec3<
     }
 }
 
-// Uniform: all invocations of the workgroup sum the same patch.
-fn sum_patch(number: u32, local: u32) {
+// Uniform: all invocations of the workgroup sum the same patch. They write down the forces but those on the first `kept` nodes; all
+// are in patch_force, where every invocation may read them: a barrier follows the last sum.
+fn sum_patch(number: u32, local: u32, kept: u32) {
     let first_node = patch_lists[number];
     let nodes = patch_lists[number + 1u] - first_node;
     for (var i = local; i < nodes; i += INVOCATIONS) {
@@ -79,7 +81,7 @@ fn sum_patch(number: u32, local: u32) {
             add_forces(element, is_there && batch == own, number * PATCH_BATCHES + batch, forces);
         }
     }
-    for (var i = local; i < 3u * nodes; i += INVOCATIONS) {
+    for (var i = 3u * kept + local; i < 3u * nodes; i += INVOCATIONS) {
         element_force[block.force_offset + 3u * first_node + i] = patch_force[i];
     }
 }

@@ -113,7 +113,8 @@ fn with_optional(
     }
     if spent {
         fragments.push(shader!("spent"));
-        without += &format!("const SPENT_AT: u32 = {SPENT_AT}u;\nfn step_before(node: u32) -> vec3<f32> {{\n");
+        without += &format!("const SPENT_AT: u32 = {SPENT_AT}u;\nconst SPENT_ROWS: u32 = {SPENT_ROWS}u;\n");
+        without += "fn step_before(node: u32) -> vec3<f32> {\n";
         without += &match kept {
             None => "    return vec3<f32>(0.0);\n}\n".to_string(),
             Some(at) => {

@@ -12,12 +12,14 @@ use sinew::components::{Scheme, Signals};
 use std::collections::BTreeSet;
 
 /// Fragments that belong to no system, element or material by name, and what calls for them.
-const SUPPORT: [(&str, &str); 45] = [
+const SUPPORT: [(&str, &str); 47] = [
     ("corner", "corners of elements, in columns"),
     ("corner_volume", "the same for averaged nodal pressure"),
     ("patch_volume", "averaged nodal pressure, in patches"),
     ("patches", "forces summed patch by patch"),
     ("patch_pass", "the same, a workgroup a patch"),
+    ("patch_step", "the same, and nodes inside patches move"),
+    ("patch_gather", "forces on nodes inside a patch, within its kernel"),
     ("pass_rows", "how many nodes a kernel has"),
     ("many_steps", "steps of small bodies, in one dispatch"),
     ("two_pass", "forces summed in two passes"),

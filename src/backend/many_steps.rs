@@ -27,11 +27,21 @@ pub struct Dispatched {
     pub many_steps: bool,
     /// Why, or why not.
     pub because: String,
+    /// How many nodes move in the kernel that sums the forces of the patch they are inside, the only one that has them.
+    pub inside: u32,
+    /// Why so many.
+    pub inside_because: String,
+}
+
+impl Dispatched {
+    fn new(body: String, many_steps: bool, because: String) -> Self {
+        Self { body, many_steps, because, inside: 0, inside_because: String::new() }
+    }
 }
 
 /// Of all bodies, where none takes many steps in a dispatch.
 pub fn step_by_step(because: &str, world: &mut World) -> Vec<Dispatched> {
-    let of_body = |(_, body)| Dispatched { body, many_steps: false, because: because.to_owned() };
+    let of_body = |(_, body)| Dispatched::new(body, false, because.to_owned());
     bodies(world).into_iter().map(of_body).collect()
 }
 
@@ -68,7 +78,7 @@ pub fn take_small_bodies(
             }
             Err(reason) => (false, reason),
         };
-        dispatched.push(Dispatched { body: name, many_steps, because });
+        dispatched.push(Dispatched::new(name, many_steps, because));
     }
     (kernels, dispatched)
 }
@@ -121,13 +131,13 @@ fn width(blocks: &[&Kernel], most_elements: usize, world: &World, buffers: &dyn 
 }
 
 /// The block that a kernel works on.
-fn block_of<'a>(kernel: &Kernel, world: &'a World) -> Option<(Entity, &'a Block)> {
+pub(super) fn block_of<'a>(kernel: &Kernel, world: &'a World) -> Option<(Entity, &'a Block)> {
     let entity = kernel.block?;
     Some((entity, world.get::<Block>(entity)?))
 }
 
 /// All bodies by name.
-fn bodies(world: &mut World) -> Vec<(Entity, String)> {
+pub(super) fn bodies(world: &mut World) -> Vec<(Entity, String)> {
     let mut query = world.query_filtered::<(Entity, Option<&Label>), With<Authoring>>();
     let named =
         |(body, label): (Entity, Option<&Label>)| (body, label.map_or_else(|| body.to_string(), |l| l.0.clone()));

@@ -10,6 +10,7 @@ mod law_kernel;
 pub mod many_steps;
 pub mod node_stage;
 pub mod patch_lists;
+pub mod patch_step;
 pub mod step;
 pub mod user_law;
 

@@ -7,11 +7,12 @@ mod items;
 use super::Buffers;
 use super::kernel::{BufferId, Fragment, Kernel, Layout, Uniform, uniform};
 use super::step::{step_fragments, step_in_a_uniform};
-use crate::components::{Column, Displacement, ElementForce, Mass};
+use crate::components::{Column, Displacement, ElementForce, Mass, SPENT_ROWS};
 use crate::shader;
 use bevy_ecs::prelude::*;
 use fused::Fused;
 use std::borrow::Cow;
+use std::ops::Range;
 
 /// Describes what a system does to nodes, body by body, bound to buffers.
 pub type DescribeStages = fn(&mut World, &mut dyn Buffers) -> Vec<NodeStage>;
@@ -26,6 +27,8 @@ pub struct NodeStage {
     /// Called by all invocations of a workgroup after that, with their place in it and their row.
     finish: Option<&'static str>,
     nodes: u32,
+    /// Those of the body's nodes that it is for.
+    within: Range<u32>,
     rows: Rows,
     own: Vec<Fragment>,
     shared: Vec<Fragment>,
@@ -54,6 +57,7 @@ impl NodeStage {
             call,
             finish: None,
             nodes,
+            within: 0..nodes,
             rows: Rows::All,
             own: vec![fragment],
             shared: Vec::new(),
@@ -71,7 +75,7 @@ impl NodeStage {
         self
     }
 
-    /// The kernel of a block of one patch, but for its frame: forces that others in the same kernel can go on with.
+    /// The kernel of a block's patches, but for its frame: forces that others in the same kernel can go on with.
     pub(crate) fn of_patch(kernel: Kernel, body: Entity, world: &World) -> Self {
         let (step, frame) = (step_fragments(world), shader!("patch_pass"));
         let fragments = kernel.fragments.into_iter().filter(|fragment| *fragment != frame);
@@ -81,6 +85,29 @@ impl NodeStage {
         let bindings = kernel.bindings.iter().filter(|(name, _)| column(name).is_none()).cloned().collect();
         let stage = Self::new("element_forces", "sum_patch", body, rows_of(body, world), frame);
         Self { rows: Rows::Patch, own, shared, columns, bindings, layouts: kernel.layouts, ..stage }
+    }
+
+    /// The same for some of the body's nodes, one after the other; `None` where there is nothing to do for them.
+    pub(super) fn within(&self, nodes: Range<u32>) -> Option<Self> {
+        match &self.rows {
+            Rows::Some(rows) if !rows.iter().any(|row| nodes.contains(row)) => None,
+            _ if nodes.is_empty() => None,
+            _ => Some(Self { within: nodes, ..self.clone() }),
+        }
+    }
+
+    /// The same for nodes inside a patch, in the kernel of that patch: forces are at hand.
+    pub(super) fn in_patch(self) -> Self {
+        if self.call != GATHER {
+            return self;
+        }
+        let columns = self.columns.into_iter().filter(|(name, _)| *name != ElementForce::NAME).collect();
+        Self { own: vec![shader!("patch_gather")], bindings: Vec::new(), columns, ..self }
+    }
+
+    /// Whether it sums the forces of elements.
+    pub(super) fn gathers(&self) -> bool {
+        self.call == GATHER
     }
 
     /// The body.
@@ -147,13 +174,17 @@ pub fn rows_of(body: Entity, world: &World) -> u32 {
     world.get::<Mass>(body).map_or(0, |mass| mass.len()) as u32
 }
 
-/// How many rows a kernel of nodes has.
+/// The call that sums forces of elements.
+const GATHER: &str = "gather";
+
+/// The rows of a kernel of nodes: where they end, and where they begin.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 struct NodePass {
     count: u32,
+    first: u32,
 }
-uniform!(NodePass { count });
+uniform!(NodePass { count, first });
 
 /// Kernels of stages that follow one another in a step. Those of one body share as few kernels as can be: none in which a
 /// stage reads of other nodes what another writes, and none with more storage buffers than the device has for a kernel. With
@@ -202,22 +233,39 @@ pub(super) fn why_apart(stages: &[&NodeStage], most: usize) -> Option<String> {
 
 /// A kernel of stages that may run in one, an invocation a node.
 fn node_pass(stages: &[&NodeStage], buffers: &mut dyn Buffers) -> Kernel {
-    let count = match (stages, &stages[0].rows) {
-        ([_], Rows::Some(rows)) => rows.len() as u32,
-        _ => stages[0].nodes,
+    let Range { start, end } = stages[0].within;
+    let rows = match (stages, &stages[0].rows) {
+        // places among the rows
+        ([_], Rows::Some(rows)) => [start, end].map(|bound| rows.partition_point(|&row| row < bound) as u32),
+        _ => [start, end],
     };
-    let kernel = Fused::of(stages).into_kernel("node_pass", stages, count, buffers);
-    kernel.fragment(shader!("row")).fragment(shader!("node_pass")).threads(count)
+    let [first, count] = rows;
+    let kernel = Fused::of(stages).into_kernel("node_pass", stages, NodePass { count, first }, buffers);
+    kernel.fragment(shader!("row")).fragment(shader!("node_pass")).threads(count - first)
 }
 
 /// The same in one workgroup of so many invocations (a multiple of 128), for all steps of a submission: the stages of a whole step.
 pub(super) fn many_steps(stages: &[&NodeStage], invocations: usize, buffers: &mut dyn Buffers) -> Kernel {
     let width = format!("const INVOCATIONS: u32 = {invocations}u;\n");
-    let mut kernel = Fused::of(stages).into_kernel("many_steps", stages, stages[0].nodes, buffers);
+    let rows = NodePass { count: stages[0].nodes, first: 0 };
+    let mut kernel = Fused::of(stages).into_kernel("many_steps", stages, rows, buffers);
     // many_steps.wgsl says where `step` is
     kernel.fragments.retain(|fragment| *fragment != step_in_a_uniform());
     kernel
         .fragment(shader!("many_steps"))
         .fragment(Fragment::new("generated: how large the workgroup is", width))
         .threads(invocations as u32)
+}
+
+/// The kernel of a block's patches, of so many invocations in all, that moves the nodes inside each of them: the stages of a whole
+/// step of these nodes.
+pub(super) fn patch_step(stages: &[&NodeStage], invocations: u32, buffers: &mut dyn Buffers) -> Kernel {
+    let least = format!("const LEAST_INSIDE: u32 = {SPENT_ROWS}u;\n");
+    let node = &stages[stages.len() - 1];
+    let rows = NodePass { count: node.nodes, first: node.within.start };
+    Fused::of(stages)
+        .into_kernel("patch_step", stages, rows, buffers)
+        .fragment(shader!("patch_step"))
+        .fragment(Fragment::new("generated: the least nodes inside a patch", least))
+        .threads(invocations)
 }

@@ -4,11 +4,12 @@ use crate::backend::Buffers;
 use crate::backend::kernel::Kernel;
 use crate::backend::many_steps::{Dispatched, MOST_ELEMENTS, step_by_step, take_small_bodies};
 use crate::backend::node_stage::{NodeStage, node_kernels};
+use crate::backend::patch_step::take_inner_nodes;
 use crate::systems::{OnDevice, Phase, System};
 use bevy_ecs::prelude::*;
 
 /// The kernels of each group of systems that share a pass (those of systems by themselves are groups, too), and how each body's
-/// steps are dispatched. A kernel that takes whole steps is among those of the group that moves the nodes.
+/// steps are dispatched. A kernel that sums forces and moves nodes is among those of the group that moves the nodes.
 pub(super) fn step_kernels(
     groups: &[Vec<&System>],
     world: &mut World,
@@ -23,7 +24,7 @@ pub(super) fn step_kernels(
         });
         stages.push(stages_of(group, world, buffers));
     }
-    let dispatched = match elements_then_nodes(groups) {
+    let mut dispatched = match nothing_but_elements_then_nodes(groups) {
         Ok([elements, nodes]) => {
             let (small, how) =
                 take_small_bodies(MOST_ELEMENTS, &mut kernels[elements], &mut stages[nodes], world, buffers);
@@ -32,6 +33,14 @@ pub(super) fn step_kernels(
         }
         Err(reason) => step_by_step(&reason, world),
     };
+    match elements_then_nodes(groups) {
+        Ok([elements, nodes]) => {
+            let (elements, stages) = (&mut kernels[elements], &mut stages[nodes]);
+            let inner = take_inner_nodes(elements, stages, &mut dispatched, world, buffers);
+            kernels[nodes].extend(inner);
+        }
+        Err(reason) => dispatched.iter_mut().for_each(|body| body.inside_because.clone_from(&reason)),
+    }
     for ((kernels, stages), group) in kernels.iter_mut().zip(stages).zip(groups) {
         kernels.extend(node_kernels(stages, group.len() > 1, buffers));
     }
@@ -49,21 +58,36 @@ fn stages_of(systems: &[&System], world: &mut World, buffers: &mut dyn Buffers) 
     stages
 }
 
-/// The places of the two groups where a step is the engine's element forces and one pass over the nodes, and nothing else that
-/// changes anything; else what is in the way of taking steps one after the other in a kernel.
+/// The places of element forces and of the pass over the nodes that follows at once; else what is in the way of moving nodes as soon
+/// as the forces on them are known. What only looks does so between steps.
 fn elements_then_nodes(groups: &[Vec<&System>]) -> Result<[usize; 2], String> {
-    let is_forces = |system: &System| system.phase == Phase::ElementForces && system.device.is_some();
-    let is_pass = |group: &[&System]| group.len() > 1 && group.iter().any(|system| system.phase == Phase::Integrate);
-    let mut found = [None; 2];
-    for (place, group) in groups.iter().enumerate().filter(|(_, group)| !group[0].observes) {
-        match (is_forces(group[0]), is_pass(group)) {
-            (true, _) => found[0] = Some(place),
-            (_, true) => found[1] = Some(place),
-            _ => return Err(format!("`{}` does not share a pass over the nodes", group[0].name)),
-        }
+    let mut places = (0..groups.len()).filter(|&place| !groups[place][0].observes);
+    let elements = places.find(|&place| is_forces(&groups[place])).ok_or("it has no element forces")?;
+    match places.next() {
+        Some(nodes) if is_pass(&groups[nodes]) => Ok([elements, nodes]),
+        Some(other) => Err(apart(&groups[other])),
+        None => Err("nothing moves the nodes after element forces".into()),
     }
-    match found {
-        [Some(elements), Some(nodes)] => Ok([elements, nodes]),
-        _ => Err("nothing moves the nodes after element forces".into()),
+}
+
+/// The same where a step is nothing else that changes anything; else what is in the way of taking steps one after the other in a
+/// kernel.
+fn nothing_but_elements_then_nodes(groups: &[Vec<&System>]) -> Result<[usize; 2], String> {
+    let changing = groups.iter().filter(|group| !group[0].observes);
+    match { changing }.find(|group| !is_forces(group) && !is_pass(group)) {
+        Some(other) => Err(apart(other)),
+        None => elements_then_nodes(groups),
     }
+}
+
+fn is_forces(group: &[&System]) -> bool {
+    group[0].phase == Phase::ElementForces && group[0].device.is_some()
+}
+
+fn is_pass(group: &[&System]) -> bool {
+    group.len() > 1 && group.iter().any(|system| system.phase == Phase::Integrate)
+}
+
+fn apart(group: &[&System]) -> String {
+    format!("`{}` does not share a pass over the nodes", group[0].name)
 }

@@ -214,3 +214,65 @@ fn nodes_inside_patches_go_where_they_go_with_all_others() {
         assert!(ends[0] == ends[1], "{}", run.name);
     }
 }
+
+/// A cube of several patches under gravity, turned at one end and pushed at a side.
+fn turned(elements: &str, material: &str, more: &str, fuse: bool) -> String {
+    format!(
+        "(duration: 10, bodies: {{\"a\": (mesh: Box(size: (1, 1, 1), cells: {elements}), material: \"m\")}},
+        materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), {material})}},
+        constraints: [Prescribed(body: \"a\", on: Plane(normal: (0, 0, 1), at: 0), displacement: (0, 0, 0.05), rotation: (0, 0, 5), curve: Smooth(end: 0.1))],
+        loads: [Gravity(acceleration: (0, 1, -9.81)),
+            NodalForce(body: \"a\", on: Plane(normal: (0, 1, 0), at: 1), force: (0.5, 0, 0)),
+            Traction(body: \"a\", on: Surface(normal: (1, 0, 0)), traction: (30, 20, 10))],
+        guards: (every: 5000), integration: (step: 0.001), {more} fuse: {fuse})"
+    )
+}
+
+/// Where the nodes of "a" are after so many steps on a GPU, in submissions of one step, of a few and of the rest; dispatches a step; and work against
+/// internal forces (J) as the guards have it.
+fn on_a_gpu(run: &Configuration, text: &str, steps: u64) -> (Vec<DVec3>, u64, f64) {
+    let mut simulation = run.start_in(text, Path::new("."));
+    let dispatches = |simulation: &mut Simulation| simulation.world_mut().resource_mut::<Device>().gpu().dispatches();
+    let before = dispatches(&mut simulation);
+    for steps in [1, 5, steps - 6] {
+        simulation.advance(steps).unwrap_or_else(|error| panic!("{}: {error}", run.name));
+    }
+    let dispatches = (dispatches(&mut simulation) - before) / steps;
+    let ends = simulation.displacements("a").unwrap();
+    sinew::backend::device::bring_to_host(simulation.world_mut(), |_, _| true).unwrap();
+    let body = simulation.body("a").unwrap();
+    let body = simulation.world().entity(body);
+    let end = before_at(body.get::<Mass>().unwrap().len());
+    let words = body.get::<FirstNonFinite>().unwrap().get(SPENT_AT..end).unwrap_or_default();
+    (ends, dispatches, words.iter().map(|&word| f64::from(f32::from_bits(word))).sum())
+}
+
+/// The same operations in the same order, but compilers may contract them otherwise: see above. What is counted is a dispatch a
+/// block and one for the nodes that patches share, beside those of systems that stay apart.
+#[test]
+fn on_a_gpu_nodes_inside_patches_go_where_they_go_with_all_others() {
+    let Some(run) = configurations().into_iter().find(|run| run.options.backend == BackendChoice::Gpu) else { return };
+    let viscous = "damping: 2, prony: (terms: [(alpha: 0.4, tau: 0.05)])";
+    let plain = |elements: &'static str, material: &'static str, more: &'static str| {
+        [true, false].map(|fuse| turned(elements, material, more, fuse))
+    };
+    for (dispatches, texts) in [
+        ([2, 7], plain("(12, 12, 12), elements: Tet4", "", "")),
+        ([2, 7], plain("(9, 8, 9), elements: Hex8", viscous, "")),
+        // means of the volume around nodes come first, in two kernels; energies are booked node by node
+        ([4, 9], plain("(9, 9, 9), elements: Tet4NodalPressure", "", "output: (energies_every: 5),")),
+        // two blocks, in which inverted elements go: five kernels more
+        ([3, 6], [true, false].map(torn)),
+    ] {
+        let [(together, counted, spent), (apart, counted_apart, spent_apart)] =
+            texts.each_ref().map(|text| on_a_gpu(&run, text, 60));
+        assert!(together.iter().chain(&apart).all(|u| u.is_finite()));
+        let largest = apart.iter().map(|u| u.length()).fold(0.0, f64::max);
+        let off = together.iter().zip(&apart).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
+        println!("{off:e} of {largest:e}, {spent} J and {spent_apart} J, {counted} and {counted_apart} dispatches");
+        assert!(off <= 1e-5 * largest && largest > 0.02, "{off:e} of {largest:e}");
+        assert!((spent - spent_apart).abs() <= 1e-5 * spent_apart.abs(), "{spent} J instead of {spent_apart} J");
+        assert_eq!([counted, counted_apart], dispatches);
+        assert!(on_a_gpu(&run, &texts[0], 60).0 == together, "not the same bits");
+    }
+}

@@ -9,6 +9,7 @@ use crate::components::{Column, ExternalForce, InternalForce};
 use crate::shader;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 /// The WGSL of several stages in one, and what it binds.
 pub struct Fused {
@@ -97,7 +98,7 @@ impl Fused {
         self.layouts.extend(stage.layouts.iter().map(|(name, layout)| (now(name), *layout)));
         let call = now(&stage.call.into());
         match (&stage.rows, single) {
-            (Rows::Patch, _) => self.sums += &format!("    {call}(number, local);\n"),
+            (Rows::Patch, _) => self.sums += &format!("    {call}(number, local, kept);\n"),
             (Rows::All, _) => self.calls += &format!("    {call}(node);\n"),
             (Rows::Some(_), true) => {
                 self.calls += &format!("    {call}(node, rows[node]);\n");
@@ -105,7 +106,9 @@ impl Fused {
             }
             (Rows::Some(_), false) => {
                 let places = format!("places_{number}");
-                self.calls += &format!("    if {places}[node] != 0xffffffffu {{ {call}({places}[node], node); }}\n");
+                let place = format!("place_{number}");
+                self.calls += &format!("    let {place} = {places}[node - pass_rows.first];\n");
+                self.calls += &format!("    if {place} != 0xffffffffu {{ {call}({place}, node); }}\n");
                 self.lists.push((places, number));
             }
         }
@@ -139,12 +142,12 @@ impl Fused {
         self.columns.len() + self.storage_variables + self.lists.len()
     }
 
-    /// The kernel of `count` rows, but for the function `entry`, which calls `sum_all`, `call_all` and `finish_all`.
+    /// The kernel of some rows, but for the function `entry`, which calls `sum_all`, `call_all` and `finish_all`.
     pub fn into_kernel(
         self,
         entry: &'static str,
         stages: &[&NodeStage],
-        count: u32,
+        rows: NodePass,
         buffers: &mut dyn Buffers,
     ) -> Kernel {
         let mut systems: Vec<&str> = stages.iter().map(|stage| stage.system).collect();
@@ -158,10 +161,10 @@ impl Fused {
         text += &self.calls_as_functions();
         for (variable, number) in self.lists {
             text += &format!("@group(0) @binding(0) var<storage, read> {variable}: array<u32>;\n");
-            let NodeStage { system, nodes, rows: Rows::Some(rows), .. } = stages[number] else { continue };
+            let NodeStage { system, within, rows: Rows::Some(rows), .. } = stages[number] else { continue };
             let list = match stages {
                 [_] => buffers.constants(format!("rows of {system}"), bytemuck::cast_slice(rows)),
-                _ => buffers.constants(format!("places of {system}"), bytemuck::cast_slice(&places(rows, *nodes))),
+                _ => buffers.constants(format!("places of {system}"), bytemuck::cast_slice(&places(rows, within))),
             };
             kernel = kernel.bind(variable, list);
         }
@@ -172,7 +175,7 @@ impl Fused {
         kernel.layouts.extend(self.layouts);
         kernel.fragments.extend(self.own);
         kernel.fragments.extend(self.shared);
-        let pass = buffers.uniform(format!("rows of {}", kernel.label), &NodePass { count }.bytes());
+        let pass = buffers.uniform(format!("rows of {}", kernel.label), &rows.bytes());
         kernel
             .fragment(shader!("pass_rows"))
             .fragment(Fragment::new("generated: columns and calls of the kernel", text))
@@ -182,18 +185,18 @@ impl Fused {
     fn calls_as_functions(&self) -> String {
         let sums = match self.sums.as_str() {
             "" => String::new(),
-            sums => format!("fn sum_all(number: u32, local: u32) {{\n{sums}}}\n"),
+            sums => format!("fn sum_all(number: u32, local: u32, kept: u32) {{\n{sums}}}\n"),
         };
         let Self { calls, finish, .. } = self;
         sums + &format!("fn call_all(node: u32) {{\n{calls}}}\nfn finish_all(local: u32, node: u32) {{\n{finish}}}\n")
     }
 }
 
-/// The place of each node among a stage's rows; of others the largest number.
-fn places(rows: &[u32], nodes: u32) -> Vec<u32> {
-    let mut places = vec![u32::MAX; nodes as usize];
-    for (place, &row) in rows.iter().enumerate() {
-        places[row as usize] = place as u32;
+/// The place of each of some nodes among a stage's rows; of others the largest number.
+fn places(rows: &[u32], nodes: &Range<u32>) -> Vec<u32> {
+    let mut places = vec![u32::MAX; nodes.len()];
+    for (place, &row) in rows.iter().enumerate().filter(|(_, row)| nodes.contains(row)) {
+        places[(row - nodes.start) as usize] = place as u32;
     }
     places
 }

@@ -81,7 +81,9 @@ pub(super) fn beside() -> Vec<Fragment> {
         shader!("nodal_volume"),
         shader!("note_inverted"),
         shader!("pass_rows"),
+        shader!("patch_gather"),
         shader!("patch_pass"),
+        shader!("patch_step"),
         shader!("patch_volume"),
         shader!("patches"),
         shader!("point"),
@@ -98,11 +100,12 @@ pub(super) fn beside() -> Vec<Fragment> {
 }
 
 /// Names that kernels are generated with.
-const GENERATED: [&str; 18] = [
+const GENERATED: [&str; 19] = [
     "add_forces",
     "call_all",
     "finish_all",
     "sum_all",
+    "LEAST_INSIDE",
     "isochoric_stress",
     "energy_density",
     "fibres_energy_at",

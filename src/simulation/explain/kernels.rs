@@ -38,7 +38,8 @@ pub fn describe(systems: &[&System], fuse: bool, sizes: &Sizes, world: &mut Worl
     let mut described = Vec::new();
     for (kernels, group) in kernels.iter().zip(&groups) {
         for kernel in kernels {
-            let system = if is_of_nodes(group[0]) { &kernel.label } else { &group[0].name };
+            let systems = kernel.label.split_once(" of ").map_or(kernel.label.as_str(), |(systems, _)| systems);
+            let system = if is_of_nodes(group[0]) { systems } else { &group[0].name };
             described.push(in_use(system, kernel, &counter)?);
         }
     }

@@ -26,6 +26,12 @@ impl Display for Explanation {
             let on = if body.many_steps { "yes" } else { "no " };
             writeln!(f, "  {:<16}  {on}  {}", body.body, body.because)?;
         }
+        if self.on_gpu {
+            writeln!(f, "\nNodes that move with the patch that they are inside")?;
+        }
+        for body in &self.dispatched {
+            writeln!(f, "  {:<16}  {}  {}", body.body, body.inside, body.inside_because)?;
+        }
         self.kernels.iter().try_for_each(|kernel| write_kernel(kernel, f))?;
         if self.on_gpu {
             write_buffers("Buffers on the device", &self.buffers, self.device_bytes, f)?;

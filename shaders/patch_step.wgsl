@@ -1,0 +1,32 @@
+// The kernel of a block's patches where the nodes inside a patch move as soon as its forces are known: the stages of the pass over the
+// nodes, which does the rest. sum_all (sum_patch of patches.wgsl), call_all, finish_all and LEAST_INSIDE are generated.
+//
+// No workgroup sees what another moves: a node is inside a patch if no other patch of the body has it, a patch reads the
+// displacements of its own nodes only, and no stage reads those of other nodes than its own. Within a workgroup all displacements
+// have been read before the first barrier of sum_all.
+const INVOCATIONS: u32 = BATCH;
+
+// Place of the node among its patch's, for patch_gather.wgsl.
+var<private> place_in_patch: u32;
+
+@compute @workgroup_size(INVOCATIONS)
+fn patch_step(
+    @builtin(workgroup_id) id: vec3<u32>,
+    @builtin(num_workgroups) workgroups: vec3<u32>,
+    @builtin(local_invocation_index) local: u32,
+) {
+    let number = patch_row(id, workgroups);
+    if number < patches.count {
+        let inside = patch_lists[patches.inside + number];
+        sum_all(number, local, inside);
+        // they follow one another
+        let first = patch_lists[patches.nodes + patch_lists[number]];
+        for (var i = local; i < inside; i += INVOCATIONS) {
+            place_in_patch = i;
+            call_all(first + i);
+        }
+        // once for all of them: each sixty-four invocations that had any have a place of the patch's own
+        let part = local / 64u;
+        finish_all(local, select(pass_rows.count, first + LEAST_INSIDE * part, 64u * part < inside));
+    }
+}
