@@ -84,6 +84,12 @@ fn all(effects: &Effects) -> Vec<(String, Kernel)> {
         assert_eq!(small.len(), if effects.copies { 0 } else { 2 }, "{effects:?}");
         all.extend(small.into_iter().map(|kernel| (LARGER_DEVICE.to_owned(), kernel)));
     }
+    if effects.scheme == Scheme::Patches {
+        let mut described = Described { most: 64, ..Described::default() };
+        let (inner, others, _) = kernel_worlds::inner_nodes(&without, world, &mut described);
+        assert!(inner.len() >= 2, "{effects:?}");
+        all.extend(inner.into_iter().chain(others).map(|kernel| (LARGER_DEVICE.to_owned(), kernel)));
+    }
     all.extend(kernel_worlds::watch_kernels(world));
     // one of each kind is enough
     let mut seen: Vec<Vec<String>> = Vec::new();
@@ -122,6 +128,37 @@ fn systems_of_nodes_share_kernels() {
     assert_eq!(labels(&loads, 64), [two, two].concat());
     let few = labels(&moved, WEBGPU_STORAGE_BUFFERS);
     assert!(few.len() > 2 && few.iter().all(|label| label != "gather + boundary + integrate"), "{few:?}");
+}
+
+/// Patches move the nodes inside them where nothing looks at other nodes and the device allows the buffers.
+#[test]
+fn patches_move_the_nodes_inside_them_where_they_may() {
+    let told = |effects: &Effects, systems: &[&str], most: usize| -> (Vec<String>, [usize; 2], String) {
+        let mut simulation = effects.simulation(BackendChoice::Cpu);
+        let mut described = Described { most, ..Described::default() };
+        let (inner, others, told) = kernel_worlds::inner_nodes(systems, simulation.world_mut(), &mut described);
+        assert!(told.iter().all(|body| (body.inside > 0) == !inner.is_empty()), "{told:?}");
+        let labels = inner.iter().map(|kernel| kernel.label.split(" of ").next().unwrap().to_owned());
+        (labels.collect(), [inner.len(), others.len()], told[0].inside_because.clone())
+    };
+    let plain = Effects::default();
+    let (labels, counts, because) = told(&plain, &OF_NODES, 64);
+    assert!(labels.iter().all(|label| label == "element_forces + gather + integrate"), "{labels:?}");
+    // two bodies of two blocks
+    assert_eq!((counts, because.as_str()), ([4, 2], "no other patch has them"));
+    let loads = Effects { loads: true, ..Effects::default() };
+    let without: Vec<&str> = OF_NODES.into_iter().filter(|system| *system != "pressure").collect();
+    assert_eq!(told(&loads, &without, 64).1, [4, 2]);
+    let (_, counts, because) = told(&loads, &OF_NODES, 64);
+    // the pass is in two, for the same reason
+    assert_eq!(
+        (counts, because.as_str()),
+        ([0, 4], "`pressure` looks at other nodes than its own, which must not have moved")
+    );
+    let (_, counts, because) = told(&plain, &OF_NODES, 9);
+    assert_eq!((counts, because.as_str()), ([0, 2], "it would need 10 storage buffers, and 9 may be"));
+    let two_pass = Effects { scheme: Scheme::TwoPass, ..plain };
+    assert_eq!(told(&two_pass, &OF_NODES, 64).2, "its forces are not summed by patches");
 }
 
 fn members(layout: &Layout) -> Vec<(String, u32, u32)> {

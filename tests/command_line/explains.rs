@@ -101,27 +101,54 @@ fn which_bodies_take_many_steps_in_one_dispatch_is_told_with_the_reason() {
         let entries: Vec<String> =
             json["kernels"].as_array().unwrap().iter().map(|kernel| kernel["entry"].as_str().unwrap().into()).collect();
         assert_eq!(body["many_steps"].as_bool().unwrap(), entries == ["many_steps"], "{entries:?}");
-        (entries.len(), body["because"].as_str().unwrap().to_string())
+        let inside = (body["inside"].as_u64().unwrap(), body["inside_because"].as_str().unwrap().to_string());
+        let steps = entries.iter().filter(|entry| *entry == "patch_step").count();
+        assert_eq!(inside.0 > 0, steps > 0, "{entries:?}");
+        (entries.len(), body["because"].as_str().unwrap().to_string(), inside)
     };
     let larger = "bodies.block.mesh=Box(size: (0.1, 0.1, 0.1), cells: (8, 8, 8), elements: Hex8)";
     let removal = "removal=[(body: \"block\", when: VolumeRatioAbove(2))]";
     let pressure = "loads=[Pressure(body: \"block\", on: All, pressure: 1)]";
-    for (more, kernels, because) in [
-        (&[][..], 1, "one workgroup of 128 has room for it"),
-        (&["--set", "fuse=false"], 4, "`boundary` does not share a pass over the nodes"),
-        (&["--set", larger], 2, "elements of a block are in 3 patches: they are faster in as many workgroups"),
-        (&["--scheme", "two-pass"], 2, "its forces are not summed by patches"),
-        (&["--set", removal], 6, "`element_removal` does not share a pass over the nodes"),
-        (&["--set", pressure], 3, "`pressure` looks at other nodes than its own, which must not have moved"),
-        (&["--set", FIBRES], 2, "it would need 16 storage buffers, and 15 may be"),
+    let (none, at_once) = ("no other patch has them", "all nodes move in the dispatch of all steps");
+    for (more, kernels, because, inside) in [
+        (&[][..], 1, "one workgroup of 128 has room for it", (0, at_once)),
+        (
+            &["--set", "fuse=false"],
+            4,
+            "`boundary` does not share a pass over the nodes",
+            (0, "`gather` does not share a pass over the nodes"),
+        ),
+        (
+            &["--set", larger],
+            2,
+            "elements of a block are in 3 patches: they are faster in as many workgroups",
+            (588, none),
+        ),
+        (
+            &["--scheme", "two-pass"],
+            2,
+            "its forces are not summed by patches",
+            (0, "its forces are not summed by patches"),
+        ),
+        // the only patch has all nodes
+        (&["--set", removal], 5, "`element_removal` does not share a pass over the nodes", (64, none)),
+        (
+            &["--set", pressure],
+            3,
+            "`pressure` looks at other nodes than its own, which must not have moved",
+            (0, "`pressure` looks at other nodes than its own, which must not have moved"),
+        ),
+        (&["--set", FIBRES], 1, "it would need 16 storage buffers, and 15 may be", (64, none)),
     ] {
-        assert_eq!(told(more), (kernels, because.to_string()), "{more:?}");
+        let inside = (inside.0, inside.1.to_string());
+        assert_eq!(told(more), (kernels, because.to_string(), inside), "{more:?}");
     }
     let page = Place::new();
     let mut command = page.command(&["explain", "block.ron", "--backend", "gpu"]);
     command.env("VK_DRIVER_FILES", "/nowhere").env("VK_ICD_FILENAMES", "/nowhere");
     let said = Ended::of(command.output().unwrap()).said;
     assert!(said.contains("block             yes  one workgroup of 128 has room for it"), "{said}");
+    assert!(said.contains("block             0  all nodes move in the dispatch of all steps"), "{said}");
 }
 
 #[test]

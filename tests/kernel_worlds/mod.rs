@@ -4,8 +4,9 @@
 use bevy_ecs::prelude::*;
 use sinew::backend::Buffers;
 use sinew::backend::kernel::{BufferId, Kernel, WEBGPU_STORAGE_BUFFERS};
-use sinew::backend::many_steps::take_small_bodies;
+use sinew::backend::many_steps::{Dispatched, step_by_step, take_small_bodies};
 use sinew::backend::node_stage::{NodeStage, node_kernels};
+use sinew::backend::patch_step::take_inner_nodes;
 use sinew::components::*;
 use sinew::systems::{OnDevice, Registry};
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
@@ -302,6 +303,20 @@ pub fn small_bodies(of_nodes: &[&str], world: &mut World, buffers: &mut dyn Buff
     let mut elements = forces.kernels(world, buffers);
     let mut stages = stages_of(of_nodes, world, buffers);
     take_small_bodies(usize::MAX, &mut elements, &mut stages, world, buffers).0
+}
+
+/// Kernels of patches that move the nodes inside them, those of the other nodes, and what is told of each body.
+pub fn inner_nodes(
+    of_nodes: &[&str],
+    world: &mut World,
+    buffers: &mut dyn Buffers,
+) -> (Vec<Kernel>, Vec<Kernel>, Vec<Dispatched>) {
+    let forces = Registry::default().get("element_forces").unwrap().device;
+    let mut elements = forces.kernels(world, buffers);
+    let mut stages = stages_of(of_nodes, world, buffers);
+    let mut told = step_by_step("patches are to move their nodes", world);
+    let inner = take_inner_nodes(&mut elements, &mut stages, &mut told, world, buffers);
+    (inner, node_kernels(stages, true, buffers), told)
 }
 
 fn stages_of(systems: &[&str], world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {

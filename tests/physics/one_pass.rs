@@ -1,12 +1,12 @@
 //! Systems that share a pass over the nodes give what they give by themselves: on the CPU the same bits; on a GPU, where
 //! compilers may round sums otherwise, 1e-5 of the displacement after 200 steps.
 
-use crate::configurations::{Configuration, configurations};
+use crate::configurations::{Configuration, configurations, scene_of};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use sinew::backend::device::Device;
 use sinew::components::{
-    DisplacementStep, ExternalForce, FirstNonFinite, Mass, Patches, RemovalStep, SPENT_AT, before_at,
+    DisplacementStep, ExternalForce, FirstNonFinite, Mass, Patches, Precision, RemovalStep, SPENT_AT, before_at,
 };
 use sinew::systems::{Phase, Registry, System};
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
@@ -215,6 +215,24 @@ fn nodes_inside_patches_go_where_they_go_with_all_others() {
     }
 }
 
+/// What acts on none of the nodes inside a block's patches is not in their kernel, nor in that of the other nodes.
+#[test]
+fn kernels_of_patches_have_only_what_acts_on_nodes_inside_them() {
+    let (scene, registry) = (scene_of(&torn(true), Path::new(".")), Registry::default());
+    let options = Options { backend: BackendChoice::Cpu, precision: Precision::F32, ..Options::default() };
+    let mut simulation = Simulation::with_systems(&scene, &options, &registry).unwrap_or_else(|e| panic!("{e}"));
+    let explained = simulation.explain_on_gpu(&registry).unwrap();
+    let found = explained.kernels.iter().filter(|kernel| ["patch_step", "node_pass"].contains(&kernel.entry));
+    let found: Vec<(&str, u32)> = found.map(|kernel| (kernel.label.as_str(), kernel.threads)).collect();
+    let shared = explained.nodes as u32 - explained.dispatched[0].inside;
+    let expected = [
+        ("element_forces + gather + gravity + nodal_force + boundary + integrate of a/m/Hex8", 4 * 128),
+        ("element_forces + gather + gravity + boundary + integrate of a/n/Hex8", 128),
+        ("gather + gravity + boundary + integrate", shared),
+    ];
+    assert_eq!(found, expected);
+}
+
 /// A cube of several patches under gravity, turned at one end and pushed at a side.
 fn turned(elements: &str, material: &str, more: &str, fuse: bool) -> String {
     format!(
@@ -261,8 +279,8 @@ fn on_a_gpu_nodes_inside_patches_go_where_they_go_with_all_others() {
         ([2, 7], plain("(9, 8, 9), elements: Hex8", viscous, "")),
         // means of the volume around nodes come first, in two kernels; energies are booked node by node
         ([4, 9], plain("(9, 9, 9), elements: Tet4NodalPressure", "", "output: (energies_every: 5),")),
-        // two blocks, in which inverted elements go: five kernels more
-        ([3, 6], [true, false].map(torn)),
+        // two blocks, in which inverted elements go: six kernels more
+        ([9, 13], [true, false].map(torn)),
     ] {
         let [(together, counted, spent), (apart, counted_apart, spent_apart)] =
             texts.each_ref().map(|text| on_a_gpu(&run, text, 60));
