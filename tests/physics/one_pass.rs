@@ -4,9 +4,9 @@
 use crate::configurations::{Configuration, configurations, scene_of};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
-use sinew::backend::device::Device;
+use sinew::backend::device::{Device, bring_to_host, send_to_device};
 use sinew::components::{
-    DisplacementStep, ExternalForce, FirstNonFinite, Mass, Patches, Precision, RemovalStep, SPENT_AT, before_at,
+    Column, DisplacementStep, ExternalForce, FirstNonFinite, Mass, Patches, Precision, RemovalStep, SPENT_AT, before_at,
 };
 use sinew::systems::{Phase, Registry, System};
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
@@ -38,7 +38,7 @@ fn end(run: &Configuration, text: &str) -> Vec<DVec3> {
     let bodies = ["a", "b"].map(|body| {
         let entity = simulation.body(body).unwrap();
         let mut all = simulation.displacements(body).unwrap();
-        sinew::backend::device::bring_to_host(simulation.world_mut(), |_, _| true).unwrap();
+        bring_to_host(simulation.world_mut(), |_, _| true).unwrap();
         all.extend(simulation.world().get::<ExternalForce>(entity).unwrap().vectors().map(|force| 1e-3 * force));
         all
     });
@@ -88,7 +88,7 @@ fn small_bodies(run: &Configuration, effect: &str, output: &str, fuse: bool) -> 
     }
     let after = counts(&mut simulation);
     let ends = ["a", "b"].map(|body| simulation.displacements(body).unwrap()).concat();
-    sinew::backend::device::bring_to_host(simulation.world_mut(), |_, _| true).unwrap();
+    bring_to_host(simulation.world_mut(), |_, _| true).unwrap();
     let spent = ["a", "b"].map(|body| {
         let body = simulation.body(body).unwrap();
         let body = simulation.world().entity(body);
@@ -246,10 +246,36 @@ fn turned(elements: &str, material: &str, more: &str, fuse: bool) -> String {
     )
 }
 
-/// Where the nodes of "a" are after so many steps on a GPU, in submissions of one step, of a few and of the rest; dispatches a step; and work against
-/// internal forces (J) as the guards have it.
-fn on_a_gpu(run: &Configuration, text: &str, steps: u64) -> (Vec<DVec3>, u64, f64) {
+/// What became of "a" on a GPU.
+#[derive(PartialEq)]
+struct Run {
+    ends: Vec<DVec3>,
+    /// Each step.
+    dispatches: u64,
+    /// Work against internal forces (J) as the guards have it.
+    spent: f64,
+    /// In how many places that is booked, and in how many it should be.
+    places: [usize; 2],
+}
+
+/// So many steps, in submissions of one, of a few and of the rest.
+fn on_a_gpu(run: &Configuration, text: &str, steps: u64, fuse: bool) -> Run {
     let mut simulation = run.start_in(text, Path::new("."));
+    let body = simulation.body("a").unwrap();
+    let world = simulation.world_mut();
+    let nodes = world.get::<Mass>(body).unwrap().len();
+    // −0, which a sum of anything with it is not
+    let untouched = (-0.0_f32).to_bits();
+    let places = SPENT_AT..before_at(nodes);
+    if let Some(words) = world.get_mut::<FirstNonFinite>(body).unwrap().0.get_mut(places.clone()) {
+        words.fill(untouched);
+    }
+    send_to_device(world, |_, name| name == FirstNonFinite::NAME).unwrap();
+    // a place for each sixty-four nodes, and for each of the first two sixty-fours of invocations that a patch gives nodes to
+    let inside: Vec<u32> = world.query::<&Patches>().iter(world).flat_map(|patches| patches.inside.clone()).collect();
+    let inside: Vec<usize> = inside.into_iter().filter(|_| fuse).map(|nodes| nodes as usize).collect();
+    let of_patches: usize = inside.iter().map(|&nodes| nodes.div_ceil(64).min(2)).sum();
+    let expected = of_patches + (nodes - inside.iter().sum::<usize>()).div_ceil(64);
     let dispatches = |simulation: &mut Simulation| simulation.world_mut().resource_mut::<Device>().gpu().dispatches();
     let before = dispatches(&mut simulation);
     for steps in [1, 5, steps - 6] {
@@ -257,12 +283,12 @@ fn on_a_gpu(run: &Configuration, text: &str, steps: u64) -> (Vec<DVec3>, u64, f6
     }
     let dispatches = (dispatches(&mut simulation) - before) / steps;
     let ends = simulation.displacements("a").unwrap();
-    sinew::backend::device::bring_to_host(simulation.world_mut(), |_, _| true).unwrap();
-    let body = simulation.body("a").unwrap();
-    let body = simulation.world().entity(body);
-    let end = before_at(body.get::<Mass>().unwrap().len());
-    let words = body.get::<FirstNonFinite>().unwrap().get(SPENT_AT..end).unwrap_or_default();
-    (ends, dispatches, words.iter().map(|&word| f64::from(f32::from_bits(word))).sum())
+    bring_to_host(simulation.world_mut(), |_, _| true).unwrap();
+    let words = simulation.world().get::<FirstNonFinite>(body).unwrap().0.get(places).unwrap_or_default();
+    let spent = words.iter().map(|&word| f64::from(f32::from_bits(word))).sum();
+    let touched = words.chunks(2).filter(|sum| sum[0] != untouched).count();
+    let expected = if words.is_empty() { 0 } else { expected };
+    Run { ends, dispatches, spent, places: [touched, expected] }
 }
 
 /// The same operations in the same order, but compilers may contract them otherwise: see above. What is counted is a dispatch a
@@ -282,15 +308,17 @@ fn on_a_gpu_nodes_inside_patches_go_where_they_go_with_all_others() {
         // two blocks, in which inverted elements go: six kernels more
         ([9, 13], [true, false].map(torn)),
     ] {
-        let [(together, counted, spent), (apart, counted_apart, spent_apart)] =
-            texts.each_ref().map(|text| on_a_gpu(&run, text, 60));
-        assert!(together.iter().chain(&apart).all(|u| u.is_finite()));
-        let largest = apart.iter().map(|u| u.length()).fold(0.0, f64::max);
-        let off = together.iter().zip(&apart).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
-        println!("{off:e} of {largest:e}, {spent} J and {spent_apart} J, {counted} and {counted_apart} dispatches");
+        let [together, apart] = [0, 1].map(|i| on_a_gpu(&run, &texts[i], 60, i == 0));
+        assert!(together.ends.iter().chain(&apart.ends).all(|u| u.is_finite()));
+        let largest = apart.ends.iter().map(|u| u.length()).fold(0.0, f64::max);
+        let off = together.ends.iter().zip(&apart.ends).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
         assert!(off <= 1e-5 * largest && largest > 0.02, "{off:e} of {largest:e}");
+        let (spent, spent_apart) = (together.spent, apart.spent);
         assert!((spent - spent_apart).abs() <= 1e-5 * spent_apart.abs(), "{spent} J instead of {spent_apart} J");
-        assert_eq!([counted, counted_apart], dispatches);
-        assert!(on_a_gpu(&run, &texts[0], 60).0 == together, "not the same bits");
+        assert_eq!([together.dispatches, apart.dispatches], dispatches);
+        for Run { places: [booked, expected], .. } in [&together, &apart] {
+            assert_eq!(booked, expected);
+        }
+        assert!(on_a_gpu(&run, &texts[0], 60, true) == together, "not the same bits");
     }
 }
