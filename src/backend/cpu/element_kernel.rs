@@ -2,6 +2,7 @@
 
 mod at_hand;
 mod effects;
+mod fetch;
 mod stress;
 
 use super::{BlockLaw, Cpu, Factors, NodeColumns, move_nodes};
@@ -10,6 +11,7 @@ use crate::elements::{Element, MOST_NODES, PressureFrom};
 use crate::materials::{Elastic, ElasticLaw, NeoHookean};
 use crate::math::{LANES, Real, Scratch, SimdScalar};
 use at_hand::{AtHand, part, parts};
+use fetch::{AHEAD, NEAR};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -26,8 +28,6 @@ pub struct BlockColumns<'a, 'n, T> {
     pub connectivity: &'a [u32],
     /// Rest shapes.
     pub rest_shape: &'a [T],
-    /// Whether every element [is simple](Element::is_simple).
-    pub simple: bool,
     /// Fibre directions, where they differ.
     pub fibre_direction: Option<&'a [T]>,
     /// θ of each node of the body; empty for elements that do not need it.
@@ -78,11 +78,9 @@ pub fn run_block_fast<E: Element>(
     groups_a_patch: usize,
 ) -> Vec<usize> {
     let effects = kernel_effects(law);
-    let simple = columns.simple;
     let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
     match &law.elastic {
         asked if effects.is_none() => block.run::<_, ASK>(asked),
-        ElasticLaw::NeoHookean(elastic) if simple => block.simple().run_neo_hookean(elastic),
         ElasticLaw::NeoHookean(elastic) => block.run_neo_hookean(elastic),
         ElasticLaw::StableNeoHookean(elastic) => block.run::<_, 0>(elastic),
         ElasticLaw::MooneyRivlin(elastic) => block.run::<_, 0>(elastic),
@@ -120,13 +118,7 @@ struct Block<'a, 'n, E, T: SimdScalar> {
     element: PhantomData<E>,
 }
 
-impl<'a, 'n, E: Element> Block<'a, 'n, E, f32> {
-    /// The same for elements that [are simple](Element::is_simple).
-    fn simple(self) -> Block<'a, 'n, E::Simple, f32> {
-        let Self { cpu, columns, law, groups_a_patch, element: _ } = self;
-        Block { cpu, columns, law, groups_a_patch, element: PhantomData }
-    }
-
+impl<E: Element> Block<'_, '_, E, f32> {
     fn run_neo_hookean(self, elastic: &NeoHookean<f32>) -> Vec<usize> {
         match (self.law.fibres.is_some(), !self.law.prony.is_empty()) {
             (false, false) => self.run::<_, 0>(elastic),
@@ -142,6 +134,7 @@ impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
         let Self { cpu, columns, law, groups_a_patch, element } = self;
         let inverted = Mutex::new(Vec::new());
         let patch = groups_a_patch * LANES;
+        let far = size_of_val(columns.rest_shape) > NEAR;
         let memory_an_element = law.memory_numbers(E::POINTS);
         let varying = law.varying_families();
         let direction = law.fibres.as_ref().map(|(_, direction)| direction);
@@ -179,6 +172,7 @@ impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
             force,
             at_hand,
             inverted_go: columns.inverted_go,
+            far,
             elastic,
             law,
             element,
@@ -222,6 +216,8 @@ struct Patch<'a, 'n, E, T: SimdScalar, L, const EFFECTS: u8> {
     force: &'a mut [T],
     at_hand: Option<AtHand<'a>>,
     inverted_go: bool,
+    /// Whether what comes next has to be fetched from memory.
+    far: bool,
     elastic: &'a L,
     law: &'a BlockLaw<T>,
     element: PhantomData<E>,
@@ -246,6 +242,9 @@ impl<'a, 'n, E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSi
         let mut law = patch.in_registers(simd);
         let mut worst = T::splat(simd, T::default());
         for group in 0..patch.connectivity.len() / E::NODES {
+            if patch.far {
+                patch.fetch(group + AHEAD);
+            }
             if EFFECTS == FIBRES | VISCOSITY && (group == 0 || patch.along.1 > 0) {
                 patch.square_along(simd, group, &mut law.along_squared);
             }
