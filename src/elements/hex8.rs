@@ -279,7 +279,8 @@ impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
             largest_row = largest_row.max(row);
             overlap = overlap.max((0..8).map(|a| b[a] * gamma(m, a)).sum::<DVec3>().length());
         }
-        let hourglass = shape[Self::STIFFNESS_ROW] * largest_row.min(square) / (stiffness.density * shape[Self::VOLUME_ROW] / 8.0);
+        let hourglass =
+            shape[Self::STIFFNESS_ROW] * largest_row.min(square) / (stiffness.density * shape[Self::VOLUME_ROW] / 8.0);
         // modes of both kinds are orthogonal in a parallelepiped: then the larger counts, else their sum
         if overlap < 1e-9 * trace.sqrt() { material.max(hourglass) } else { material + hourglass }
     }

@@ -16,7 +16,7 @@ pub(super) const AHEAD: usize = 3;
 /// Bytes that come at once.
 const LINE: usize = 64;
 
-impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, '_, E, T, L, EFFECTS> {
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
     /// Asks for what a group of elements reads one after the other. It may be one of the next patch's, or none.
     #[inline(always)]
     pub(super) fn fetch(&self, group: usize) {
