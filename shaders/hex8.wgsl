@@ -19,8 +19,17 @@ struct Element {
     volume: f32, // m³
 }
 
-const HOURGLASS_STIFFNESS: u32 = 19u;
-const HOURGLASS_ARMS: u32 = 20u;
+// how many modes' slopes are not zero: parallelepipeds have those of x, y and z only, and no arms
+const SLOPES: u32 = VOLUME_ROW / 3u;
+const HOURGLASS_STIFFNESS: u32 = VOLUME_ROW + 1u;
+const HOURGLASS_ARMS: u32 = VOLUME_ROW + 2u;
+
+fn further_slope(row: u32, mode: u32) -> vec3<f32> {
+    if mode < SLOPES {
+        return shape_vector(row, 3u * mode);
+    }
+    return vec3<f32>(0.0);
+}
 
 fn element_of(row: u32) -> Element {
     let u0 = corner_displacement(row, 0u);
@@ -49,9 +58,9 @@ fn element_of(row: u32) -> Element {
         shape_vector(row, 0u),
         shape_vector(row, 3u),
         shape_vector(row, 6u),
-        shape_vector(row, 9u),
-        shape_vector(row, 12u),
-        shape_vector(row, 15u),
+        further_slope(row, 3u),
+        further_slope(row, 4u),
+        further_slope(row, 5u),
         rest_shape[place(row, ROWS, VOLUME_ROW)],
     );
 }
@@ -65,9 +74,11 @@ fn at_point(e: Element, point: u32) -> PointState {
     var h = mat3x3<f32>(e.x.x * e.slope_x, e.x.y * e.slope_x, e.x.z * e.slope_x);
     h = plus_outer(h, e.y, e.slope_y);
     h = plus_outer(h, e.z, e.slope_z);
-    h = plus_outer(h, e.yz, e.slope_yz);
-    h = plus_outer(h, e.zx, e.slope_zx);
-    h = plus_outer(h, e.xy, e.slope_xy);
+    if SLOPES > 3u {
+        h = plus_outer(h, e.yz, e.slope_yz);
+        h = plus_outer(h, e.zx, e.slope_zx);
+        h = plus_outer(h, e.xy, e.slope_xy);
+    }
     return PointState(h, h, e.volume);
 }
 
@@ -82,6 +93,9 @@ fn hourglass_arm(row: u32, m: u32) -> vec3<f32> {
 
 // The four hourglass displacements q_m = Γ_m·u − ∇u h_m (m), of the modes yz, zx, xy, xyz.
 fn hourglass_displacements(row: u32, e: Element, h: mat3x3<f32>) -> array<vec3<f32>, 4> {
+    if SLOPES == 3u {
+        return array<vec3<f32>, 4>(e.yz, e.zx, e.xy, e.xyz);
+    }
     return array<vec3<f32>, 4>(
         e.yz - times_vector(h, hourglass_arm(row, 0u)),
         e.zx - times_vector(h, hourglass_arm(row, 1u)),
@@ -99,17 +113,24 @@ fn corner_forces(row: u32, e: Element, forces: Forces) -> array<vec3<f32>, NODES
     let r = stiffness * displacements[2];
     let s = stiffness * displacements[3];
     var folded = e.volume * forces.stress;
-    folded = plus_outer(folded, -p, hourglass_arm(row, 0u));
-    folded = plus_outer(folded, -q, hourglass_arm(row, 1u));
-    folded = plus_outer(folded, -r, hourglass_arm(row, 2u));
-    folded = plus_outer(folded, -s, hourglass_arm(row, 3u));
+    if SLOPES > 3u {
+        folded = plus_outer(folded, -p, hourglass_arm(row, 0u));
+        folded = plus_outer(folded, -q, hourglass_arm(row, 1u));
+        folded = plus_outer(folded, -r, hourglass_arm(row, 2u));
+        folded = plus_outer(folded, -s, hourglass_arm(row, 3u));
+    }
     // what is odd in (x, y, z), and what is even, has its counterpart at the opposite node
     let x = times_vector(folded, e.slope_x);
     let y = times_vector(folded, e.slope_y);
     let z = times_vector(folded, e.slope_z);
-    let yz = p + times_vector(folded, e.slope_yz);
-    let zx = q + times_vector(folded, e.slope_zx);
-    let xy = r + times_vector(folded, e.slope_xy);
+    var yz = p;
+    var zx = q;
+    var xy = r;
+    if SLOPES > 3u {
+        yz += times_vector(folded, e.slope_yz);
+        zx += times_vector(folded, e.slope_zx);
+        xy += times_vector(folded, e.slope_xy);
+    }
     let odd_1 = (x - y) - (z - s);
     let odd_3 = (y - x) - (z - s);
     let odd_4 = (z + s) - (x + y);

@@ -10,7 +10,7 @@ use crate::backend::patch_lists::pack;
 use crate::backend::step::{step_number, with_step};
 use crate::components::*;
 use crate::elements::Element;
-use crate::evaluation::{ElementState, node_count, with_element};
+use crate::evaluation::{ElementState, node_count, with_element_of};
 use crate::math::SimdScalar;
 use crate::scene::schema::Inversion;
 use crate::shader;
@@ -85,7 +85,6 @@ impl BlockPartsItem<'_, '_> {
             first_row,
             connectivity: self.connectivity,
             rest_shape: self.shape.slice(),
-            simple: block.simple,
             fibre_direction: self.fibres.map(|f| f.slice()),
             nodal_volume_change: self.means.map_or(&[], |means| means.slice()),
             memory: self.memory.as_mut().map_or(&mut [], |memory| memory.0.slice_mut()),
@@ -94,7 +93,7 @@ impl BlockPartsItem<'_, '_> {
             inverted_go: self.policy.is_some_and(|policy| policy.0 == Inversion::Remove),
             inside,
         };
-        with_element!(block.kind, E => T::run::<E>(cpu, columns, (self.law, self.rounded), patch_groups(block.kind)))
+        with_element_of!(block, E => T::run::<E>(cpu, columns, (self.law, self.rounded), patch_groups(block.kind)))
     }
 
     /// Looks through patches in which the kernel found elements with J < 0, before their nodes move.
@@ -103,7 +102,7 @@ impl BlockPartsItem<'_, '_> {
         let length = patch_length(block.kind);
         let rows = patches.iter().flat_map(|patch| patch * length..block.count.min((patch + 1) * length));
         let is_inverted = |row: &usize| {
-            ElementState::of(block.kind, *row, self.connectivity, self.shape, displacement, self.law).is_inverted()
+            ElementState::of(block, *row, self.connectivity, self.shape, displacement, self.law).is_inverted()
         };
         match (self.policy, &mut self.removal) {
             _ if patches.is_empty() => {}

@@ -9,7 +9,7 @@ use crate::backend::step::with_step;
 use crate::components::*;
 use crate::elements::Element;
 use crate::evaluation::{
-    BlockView, ElementState, add_nodal_masses, extinguish, lane_place, node_count, row_count, with_element,
+    BlockView, ElementState, add_nodal_masses, extinguish, lane_place, node_count, with_element_of,
 };
 use crate::shader;
 use bevy_ecs::prelude::*;
@@ -97,7 +97,7 @@ fn element_removal(
         for (&row, held) in gone.iter().zip(held) {
             energies.set(row, held);
             alive[row] = 0;
-            extinguish(block.kind, row, &mut shape);
+            extinguish(block, row, &mut shape);
         }
         if !gone.is_empty() && !touched.contains(&block.body) {
             touched.push(block.body);
@@ -270,7 +270,7 @@ fn motion_kernel(block: &BlockKernels, world: &World, buffers: &mut dyn Buffers)
 }
 
 fn removal_kernel(block: &BlockKernels, buffers: &mut dyn Buffers) -> Kernel {
-    let (volume, further) = with_element!(block.block.kind, E => (E::VOLUME_ROW, E::FORCE_ROW));
+    let (volume, further) = with_element_of!(block.block, E => (E::VOLUME_ROW, E::FORCE_ROW));
     let mut text = String::from("fn extinguish(element: u32) {\n");
     for row in std::iter::once(volume).chain(further) {
         text += &format!("    rest_shape[place(element, ROWS, {row}u)] = 0.0;\n");
@@ -313,10 +313,9 @@ fn mass_kernel(block: &BlockKernels, first: bool, world: &World, buffers: &mut d
 /// For each of a body's nodes the places, in the rest shapes of a block, of the volumes of the elements that meet there.
 fn volumes_at_nodes(block: &Block, connectivity: &[u32], count: usize) -> (Vec<u32>, Vec<u32>) {
     let nodes = node_count(block.kind);
-    let volume = with_element!(block.kind, E => E::VOLUME_ROW);
     let mut pairs: Vec<(u32, u32)> = Vec::with_capacity(block.count * nodes);
     for row in 0..block.count {
-        let place = lane_place(row, row_count(block.kind), volume) as u32;
+        let place = with_element_of!(block, E => lane_place(row, E::ROWS, E::VOLUME_ROW)) as u32;
         pairs.extend((0..nodes).map(|corner| (connectivity[lane_place(row, nodes, corner)], place)));
     }
     pairs.sort_unstable();

@@ -35,7 +35,7 @@ pub fn system() -> System {
 
 fn integrate(clock: Res<Clock>, cpu: Res<Cpu>, mut bodies: Query<BodyColumns>) {
     for mut body in &mut bodies {
-        move_body(&cpu, &clock, &mut body, None, None);
+        move_body(&cpu, (&clock, true), &mut body, None, None);
     }
 }
 

@@ -64,20 +64,23 @@ impl BodyColumnsItem<'_, '_> {
     }
 }
 
-/// Takes nodes through `before` and moves them, a task's rows at a time. Returns the lowest row whose displacement is no longer
-/// finite; `u32::MAX`: none.
+/// Takes nodes through `before` and moves them, a task's rows at a time; without `observed` their forces go nowhere else. Returns the
+/// lowest row whose displacement is no longer finite; `u32::MAX`: none.
 pub(super) fn move_rows<T: SimdScalar>(
     cpu: &Cpu,
     factors: &Factors<T>,
+    observed: bool,
     tasks: Vec<NodeColumns<'_, T>>,
     before: impl Fn(&mut NodeColumns<'_, T>) + Sync + Send,
 ) -> u32 {
     let astray = AtomicU32::new(u32::MAX);
     cpu.for_each(tasks.into_iter(), |mut rows| {
-        before(&mut rows);
-        if let Some(row) = move_nodes(cpu, &mut rows, factors) {
-            astray.fetch_min(row, Ordering::Relaxed);
-        }
+        rows.with_forces(observed, |rows| {
+            before(rows);
+            if let Some(row) = move_nodes(cpu, rows, factors) {
+                astray.fetch_min(row, Ordering::Relaxed);
+            }
+        });
     });
     astray.into_inner()
 }
@@ -85,27 +88,27 @@ pub(super) fn move_rows<T: SimdScalar>(
 /// Moves all nodes of a body, which each sums its forces first, where it does, and takes what acts on it.
 pub(super) fn move_body(
     cpu: &Cpu,
-    clock: &Clock,
+    (clock, observed): (&Clock, bool),
     body: &mut BodyColumnsItem<'_, '_>,
     gather: Option<(&Corners, &ElementForce)>,
     on_rows: Option<&OnRows<'_>>,
 ) {
     let astray = match body.u.precision() {
-        Precision::F32 => move_all::<f32>(cpu, clock, body, gather, on_rows),
-        Precision::F64 => move_all::<f64>(cpu, clock, body, gather, on_rows),
+        Precision::F32 => move_all::<f32>(cpu, (clock, observed), body, gather, on_rows),
+        Precision::F64 => move_all::<f64>(cpu, (clock, observed), body, gather, on_rows),
     };
     body.note_astray(astray, clock);
 }
 
 fn move_all<T: SimdScalar>(
     cpu: &Cpu,
-    clock: &Clock,
+    (clock, observed): (&Clock, bool),
     body: &mut BodyColumnsItem<'_, '_>,
     gather: Option<(&Corners, &ElementForce)>,
     on_rows: Option<&OnRows<'_>>,
 ) -> u32 {
     let tasks = body.columns::<T>().tasks(ROWS_A_TASK);
-    move_rows(cpu, &Factors::of(clock), tasks, |rows| {
+    move_rows(cpu, &Factors::of(clock), observed, tasks, |rows| {
         if let Some((corners, force)) = gather {
             gather::sum_at(corners, force.slice(), rows.first, rows.internal);
         }
@@ -217,12 +220,13 @@ impl OnBodies<'_, '_> {
 pub(crate) fn node_pass(systems: Vec<String>) -> HostSystem {
     let pass = move |cpu: Res<Cpu>,
                      clock: Res<Clock>,
+                     observed: Res<Observed>,
                      on_bodies: OnBodies,
                      mut bodies: Query<(BodyColumns, Option<&Corners>, Option<&ElementForce>)>|
           -> Result<(), Error> {
         for (mut body, corners, force) in &mut bodies {
             let on_rows = on_bodies.of(&systems, &body);
-            move_body(&cpu, &clock, &mut body, corners.zip(force), Some(&on_rows));
+            move_body(&cpu, (&clock, observed.0), &mut body, corners.zip(force), Some(&on_rows));
         }
         Ok(())
     };

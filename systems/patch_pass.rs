@@ -16,13 +16,15 @@ use std::sync::atomic::AtomicU32;
 pub(crate) fn patch_pass(systems: Vec<String>) -> HostSystem {
     let pass = move |cpu: Res<Cpu>,
                      clock: Res<Clock>,
+                     observed: Res<Observed>,
                      on_bodies: OnBodies,
                      mut blocks: Query<BlockParts>,
                      mut bodies: Query<(BodyColumns, &Authoring, &Corners, &mut ElementForce)>|
           -> Result<(), Error> {
         for (mut body, authoring, corners, mut force) in &mut bodies {
             let on_rows = &on_bodies.of(&systems, &body);
-            let step = Step { cpu: &cpu, clock: &clock, blocks: &authoring.blocks, corners, on_rows };
+            let step =
+                Step { cpu: &cpu, clock: &clock, observed: observed.0, blocks: &authoring.blocks, corners, on_rows };
             match body.u.precision() {
                 Precision::F32 => step.take::<f32>(&mut body, &mut force, &mut blocks),
                 Precision::F64 => step.take::<f64>(&mut body, &mut force, &mut blocks),
@@ -37,6 +39,7 @@ pub(crate) fn patch_pass(systems: Vec<String>) -> HostSystem {
 struct Step<'a> {
     cpu: &'a Cpu,
     clock: &'a Clock,
+    observed: bool,
     blocks: &'a [Entity],
     corners: &'a Corners,
     on_rows: &'a OnRows<'a>,
@@ -60,7 +63,7 @@ impl Step<'_> {
         let act = |rows: &mut NodeColumns<'_, T>| self.on_rows.act(self.cpu, rows);
         let mut found = Vec::new();
         for (&entity, nodes) in self.blocks.iter().zip(&mut inside) {
-            let inside = Inside { nodes, before: &act, factors: &factors, astray: &astray };
+            let inside = Inside { nodes, before: &act, factors: &factors, observed: self.observed, astray: &astray };
             let displacement = (&*shared.u, self.corners.first_shared);
             let patches = blocks
                 .get_mut(entity)
@@ -85,13 +88,13 @@ impl Step<'_> {
         } else {
             shared.take(self.corners.first_shared);
         }
-        let one = move_rows(self.cpu, &factors, left, act);
+        left.extend(shared.tasks(ROWS_A_TASK));
         let forces = force.slice();
-        let other = move_rows(self.cpu, &factors, shared.tasks(ROWS_A_TASK), |rows| {
+        let others = move_rows(self.cpu, &factors, self.observed, left, |rows| {
             sum_at(self.corners, forces, rows.first, rows.internal);
             self.on_rows.act(self.cpu, rows);
         });
-        body.note_astray(astray.into_inner().min(one).min(other), self.clock);
+        body.note_astray(astray.into_inner().min(others), self.clock);
     }
 }
 

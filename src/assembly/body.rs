@@ -7,8 +7,8 @@ use super::material::called_for;
 use super::patches::{insert_forces, strided};
 use super::{Assembly, PlacedMesh, select};
 use crate::components::*;
-use crate::elements::{Element, MOST_ROWS};
-use crate::evaluation::{averages, extinguish, lane_place, node_count, row_count, with_element};
+use crate::elements::Element;
+use crate::evaluation::{averages, lane_place, node_count, with_element, with_element_of};
 use crate::materials::{Elastic, ElasticLaw};
 use crate::math::LANES;
 use crate::mesh::{ElementKind, Mesh};
@@ -152,7 +152,6 @@ impl BlockBuilder<'_> {
         let members = Members { mesh: self.mesh, elements: self.elements, body: name, material: &material_name };
         let material = &called_for(&self.assembly.scene.scene.materials[&material_name]);
         let (fibre_directions, varying) = members.directions(material, self.assembly.precision, diagnostics);
-        let (shapes, simple) = self.rest_shapes(hourglass * young);
         let block = Block {
             body,
             material: self.material,
@@ -160,9 +159,10 @@ impl BlockBuilder<'_> {
             count: self.elements.len(),
             force_offset: 0,
             force_length: 0,
-            simple,
+            simple: self.is_simple(),
             fibre_directions,
         };
+        let shapes = with_element_of!(block, E => self.rest_shapes::<E>(hourglass * young));
         let connectivity = self.connectivity();
         let mut entity = world.spawn((
             Label(format!("{name}/{material_name}/{:?}", self.kind)),
@@ -205,29 +205,30 @@ impl BlockBuilder<'_> {
         connectivity
     }
 
-    /// Rest shapes, and whether all are simple.
-    fn rest_shapes(&self, young: f64) -> (Reals, bool) {
-        let mut simple = true;
-        let numbers = row_count(self.kind);
-        let mut shapes = Reals::zeros(self.assembly.precision, self.padded() * numbers);
+    /// Rest positions of an element's nodes (m).
+    fn points(&self, element: u32) -> Vec<DVec3> {
+        self.mesh.element(element as usize).iter().map(|&node| self.mesh.points[node as usize]).collect()
+    }
+
+    /// Whether the type for [simple](Element::Simple) shapes describes all elements.
+    fn is_simple(&self) -> bool {
+        with_element!(self.kind, E => self.elements.iter().all(|&e| <E as Element>::Simple::describes(&self.points(e))))
+    }
+
+    /// Rest shapes for an element type.
+    fn rest_shapes<E: Element>(&self, young: f64) -> Reals {
+        let mut shapes = Reals::zeros(self.assembly.precision, self.padded() * E::ROWS);
         for row in 0..self.padded() {
             // elements that fill up the last group have the last element's shape and no volume
             let element = self.elements[row.min(self.elements.len() - 1)];
-            let nodes = self.mesh.element(element as usize);
-            let mut points = [DVec3::ZERO; 8];
-            for (point, &node) in points.iter_mut().zip(nodes) {
-                *point = self.mesh.points[node as usize];
-            }
-            let shape: [f64; MOST_ROWS] = with_element!(self.kind, E => E::rest_shape(&points[..nodes.len()], young));
-            simple &= with_element!(self.kind, E => E::is_simple(&shape));
-            for k in 0..numbers {
-                shapes.set(lane_place(row, numbers, k), shape[k]);
-            }
-            if row >= self.elements.len() {
-                extinguish(self.kind, row, &mut shapes);
+            let shape = E::rest_shape(&self.points(element), young);
+            for k in 0..E::ROWS {
+                let exerts = Some(k) == E::FORCE_ROW || k == E::VOLUME_ROW;
+                let number = if exerts && row >= self.elements.len() { 0.0 } else { shape[k] };
+                shapes.set(lane_place(row, E::ROWS, k), number);
             }
         }
-        (shapes, simple)
+        shapes
     }
 }
 

@@ -4,8 +4,7 @@ use super::Assembly;
 use super::columns::stiffness;
 use super::time_step::square_frequency;
 use crate::components::*;
-use crate::elements::Element;
-use crate::evaluation::{lane_place, node_count, row_count, with_element};
+use crate::evaluation::{lane_place, node_count, rest_volume};
 use bevy_ecs::prelude::*;
 
 /// Loads grow over at least so many pseudo-steps.
@@ -31,10 +30,9 @@ pub(super) fn insert_fictitious_masses(assembly: &Assembly<'_>, world: &mut Worl
             };
             let Some(frequency) = square_frequency(world, entity, block) else { continue };
             let density = world.get::<Density>(block.material).map_or(0.0, |density| density.0);
-            let (nodes, numbers) = (node_count(block.kind), row_count(block.kind));
-            let volume_row = with_element!(block.kind, E => E::VOLUME_ROW);
+            let nodes = node_count(block.kind);
             for row in 0..block.count {
-                let real = density * shape.get(lane_place(row, numbers, volume_row)) / nodes as f64;
+                let real = density * rest_volume(block, row, shape) / nodes as f64;
                 let share = real * 0.25 * frequency(row) * time_step * time_step;
                 for corner in 0..nodes {
                     mass[connectivity[lane_place(row, nodes, corner)] as usize] += share;

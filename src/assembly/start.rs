@@ -65,7 +65,7 @@ fn complain(name: &str, body: Entity, world: &World, diagnostics: &mut Diagnosti
         }
         let mut found: Vec<(u64, f64)> = Vec::new();
         for row in 0..data.count {
-            let state = ElementState::of(data.kind, row, nodes, shape, u, law);
+            let state = ElementState::of(data, row, nodes, shape, u, law);
             let least = state.points().iter().map(|p| p.kinematics.true_j).fold(f64::INFINITY, f64::min);
             if least < J_FLOOR || !least.is_finite() {
                 found.push((authoring.element_id(place, row), least));

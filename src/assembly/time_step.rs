@@ -3,7 +3,7 @@
 use super::columns::stiffness;
 use crate::components::*;
 use crate::elements::{Element, MOST_ROWS};
-use crate::evaluation::{lane_place, rest_volume, row_count, with_element};
+use crate::evaluation::{lane_place, rest_volume, with_element_of};
 use bevy_ecs::prelude::*;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -57,13 +57,14 @@ pub(super) fn square_frequency<'a>(
 ) -> Option<impl Fn(usize) -> f64 + Sync + 'a> {
     let stiffness = stiffness(world, block.material);
     let shape = world.get::<RestShape>(entity)?;
-    let numbers = row_count(block.kind);
     Some(move |row: usize| {
         let mut rest = [0.0; MOST_ROWS];
-        for k in 0..numbers {
-            rest[k] = shape.get(lane_place(row, numbers, k));
-        }
-        with_element!(block.kind, E => E::frequency_bound(&rest, &stiffness))
+        with_element_of!(block, E => {
+            for k in 0..E::ROWS {
+                rest[k] = shape.get(lane_place(row, E::ROWS, k));
+            }
+            E::frequency_bound(&rest, &stiffness)
+        })
     })
 }
 
@@ -75,7 +76,7 @@ pub fn square_frequencies(world: &World, entity: Entity) -> Vec<(f64, f64)> {
         return Vec::new();
     };
     let of_row = |row: usize| {
-        let volume = rest_volume(block.kind, row, shape);
+        let volume = rest_volume(block, row, shape);
         if volume > 0.0 { (frequency(row), volume) } else { (0.0, 0.0) }
     };
     (0..block.count).into_par_iter().map(of_row).collect()

@@ -9,7 +9,7 @@ use crate::components::{
     self, Column, Connectivity, Displacement, FamilyDirection, FibreDirection, Label, NodalVolumeChange, ViscousMemory,
 };
 use crate::elements::{Element, PressureFrom};
-use crate::evaluation::{node_count, with_element};
+use crate::evaluation::{node_count, with_element, with_element_of};
 use crate::materials::{Fibres, J_FLOOR, PronyTerm};
 use crate::math::LANES;
 use crate::mesh::ElementKind;
@@ -309,7 +309,7 @@ impl BlockKernels {
     }
 
     fn constants(&self) -> String {
-        with_element!(self.block.kind, E => constants::<E>())
+        with_element_of!(self.block, E => constants::<E>())
     }
 }
 

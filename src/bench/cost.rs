@@ -4,7 +4,7 @@ use super::{Case, Effects};
 use crate::backend::patch_lists::patch_batches;
 use crate::components::patch_groups;
 use crate::elements::{Element, MOST_NODES, PressureFrom};
-use crate::evaluation::{node_count, row_count, with_element};
+use crate::evaluation::{node_count, with_element};
 use crate::materials::{Elastic, Fibres, NeoHookean, PronyTerm};
 use crate::math::{LANES, Real, Sym3, Task, refine_inverse_cbrt};
 use std::cell::Cell;
@@ -41,15 +41,11 @@ pub fn cost(case: &Case, elements: u64, nodes: u64) -> Cost {
     } else {
         4.0 * corners + corners * (4.0 + 2.0 * 3.0 * number) + a_node * 3.0 * number
     };
-    // cubes of cubes: the CPU's kernels in f32 leave out what only other shapes need
-    let simple = case.backend == "cpu" && case.precision == "f32";
-    let rows = if simple { with_element!(kind, E => <E as Element>::Simple::ROWS_READ) } else { row_count(kind) };
-    let shape = rows as f64 * number;
-    let flops = with_element!(kind, E => if simple {
-        flops::<<E as Element>::Simple>(case.effects)
-    } else {
-        flops::<E>(case.effects)
+    // cubes of cubes: what only other shapes need is left out
+    let (rows, flops) = with_element!(kind, E => {
+        (<E as Element>::Simple::ROWS, flops::<<E as Element>::Simple>(case.effects))
     });
+    let shape = rows as f64 * number;
     Cost { flops, bytes: shape + history + forces + a_node * of_node }
 }
 

@@ -22,7 +22,7 @@ pub struct Block {
     pub force_offset: usize,
     /// How many numbers it has there.
     pub force_length: usize,
-    /// Whether every element [is simple](crate::elements::Element::is_simple).
+    /// Whether the element type is that for [simple](crate::elements::Element::Simple) shapes.
     pub simple: bool,
     /// Of each family of fibres its direction: first that of `fibres`, then those of `exponential_fibres`.
     pub fibre_directions: Vec<FamilyDirection<f64>>,

@@ -35,7 +35,7 @@ pub use nodes::{
     ElementForce, ExternalForce, FictitiousMass, FirstNonFinite, InternalForce, Mass, MiddleDisplacement, NodeSums,
     RestPosition, SPENT_AT, SPENT_ROWS, WORK_NUMBERS, Work, before_at,
 };
-pub use observation::{Cadence, Energies, Probe};
+pub use observation::{Cadence, Energies, Observed, Probe};
 pub use patches::{Patches, Scheme};
 
 use bevy_ecs::prelude::*;

@@ -16,6 +16,11 @@ pub struct Probe {
     pub every: Cadence,
 }
 
+/// Whether somebody may look at forces after the present step: if not, one pass over the nodes keeps them at hand and leaves
+/// [`InternalForce`](super::InternalForce) and [`ExternalForce`](super::ExternalForce) as they were.
+#[derive(Resource, Clone, Copy, Debug)]
+pub struct Observed(pub bool);
+
 /// How often something is observed: at the start, and at the first step that is not earlier than each multiple of an
 /// interval.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,14 +15,14 @@ use glam::{DMat3, DVec3};
 /// on the mode ξηζ of its corners. The sums Γ·u that hourglass control needs come with ∇u = Σ_m (Σ_a s_ma u_a) ⊗ β_m.
 ///
 /// γ is never stored: with h_m = XᵀΓ_m, q_m = Γ_m·u − ∇u h_m, and its force folds into the stress.
-/// Rest shape: β of the six modes (rows 0 to 17), volume (18), k (N/m, 19), h_m (20 to 31). In a parallelepiped the last three β
-/// and all h_m are zero: `SLOPES`, how many β are made use of, is 6 or 3.
+/// Rest shape: β of the modes (1/m), volume (m³), k (N/m), h_m (m). In a parallelepiped the last three β and all h_m are zero: it has
+/// 11 numbers in place of 32. `SLOPES`, how many β there are, is 3 or 6.
 #[derive(Clone, Copy, Debug)]
 pub struct Hexahedron<const SLOPES: usize>;
 
 /// Of any shape.
 pub type Hex8 = Hexahedron<6>;
-/// A parallelepiped: six of its modes' gradients and arms are zero, and not even read.
+/// Parallelepipeds only: what is zero in them has no place in the rest shape.
 pub type Parallelepiped = Hexahedron<3>;
 
 pub(super) const NODE_SIGNS: [[f64; 3]; 8] = [
@@ -76,6 +76,11 @@ pub(super) fn natural_gradients(at: [f64; 3]) -> [DVec3; 8] {
     })
 }
 
+/// h_m = XᵀΓ_m (m).
+fn arms(points: &[DVec3]) -> [DVec3; 4] {
+    [0, 1, 2, 3].map(|m| (0..8).map(|a| (points[a] - points[0]) * hourglass_sign(m, a)).sum())
+}
+
 /// Sign of a mode at node a: ξ, η, ζ, then the Γ.
 pub(super) fn mode_sign(mode: usize, a: usize) -> f64 {
     if mode < 3 { NODE_SIGNS[a][mode] } else { hourglass_sign(mode - 3, a) }
@@ -83,9 +88,6 @@ pub(super) fn mode_sign(mode: usize, a: usize) -> f64 {
 
 /// How many modes there are.
 pub(super) const MODES: usize = 7;
-/// First row of the h_m.
-const ARMS: usize = 20;
-
 /// Σ_a s_ma u_a of the modes, for one component of u: from differences along edges, so that a common displacement drops
 /// out before it can round.
 #[inline(always)]
@@ -132,33 +134,38 @@ pub(super) fn balanced<R: Real>(forces: [R; MOST_NODES], mut store: impl FnMut(u
     }
 }
 
+impl<const SLOPES: usize> Hexahedron<SLOPES> {
+    const STIFFNESS_ROW: usize = 3 * SLOPES + 1;
+
+    /// h_m (m).
+    #[inline(always)]
+    fn arm<R: Real>(shape: &impl Fn(usize) -> R, m: usize) -> Option<[R; 3]> {
+        (SLOPES == MODES - 1).then(|| vector(shape, Self::STIFFNESS_ROW + 1 + 3 * m))
+    }
+}
+
 impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
     const NAME: &'static str = "hex8";
     const NODES: usize = 8;
     const POINTS: usize = 1;
-    const ROWS: usize = 32;
-    const ROWS_READ: usize = if SLOPES == 3 { 11 } else { 32 };
-    const VOLUME_ROW: usize = 18;
-    const FORCE_ROW: Option<usize> = Some(19);
+    const ROWS: usize = if SLOPES == MODES - 1 { Self::STIFFNESS_ROW + 13 } else { Self::STIFFNESS_ROW + 1 };
+    const VOLUME_ROW: usize = 3 * SLOPES;
+    const FORCE_ROW: Option<usize> = Some(Self::STIFFNESS_ROW);
     const PRESSURE: PressureFrom = PressureFrom::Point;
 
     fn rest_shape(points: &[DVec3], young: f64) -> [f64; MOST_ROWS] {
         let (volume, b) = mean_gradients(points);
         let mut shape = [0.0; MOST_ROWS];
-        shape[18] = volume;
-        shape[19] = young * volume * b.iter().map(|b| b.length_squared()).sum::<f64>() / 72.0;
-        let arms =
-            [0, 1, 2, 3].map(|m| -> DVec3 { (0..8).map(|a| (points[a] - points[0]) * hourglass_sign(m, a)).sum() });
-        // as far as its corners' coordinates, rounded as they are, can tell
-        let farthest = points.iter().fold(0.0_f64, |farthest, x| farthest.max(x.abs().max_element()));
-        let parallelepiped = arms.iter().all(|h| h.abs().max_element() <= 32.0 * f64::EPSILON * farthest);
-        for mode in 0..if parallelepiped { 3 } else { 6 } {
+        shape[Self::VOLUME_ROW] = volume;
+        shape[Self::STIFFNESS_ROW] = young * volume * b.iter().map(|b| b.length_squared()).sum::<f64>() / 72.0;
+        let parallelepiped = Parallelepiped::describes(points);
+        for mode in 0..if parallelepiped { 3 } else { SLOPES } {
             let slope: DVec3 = (0..8).map(|a| b[a] * (mode_sign(mode, a) / 8.0)).sum();
             shape[3 * mode..3 * mode + 3].copy_from_slice(&slope.to_array());
         }
-        if !parallelepiped {
-            for m in 0..4 {
-                shape[ARMS + 3 * m..ARMS + 3 * m + 3].copy_from_slice(&arms[m].to_array());
+        if !parallelepiped && SLOPES == MODES - 1 {
+            for (row, arm) in shape[Self::STIFFNESS_ROW + 1..].chunks_exact_mut(3).zip(arms(points)) {
+                row.copy_from_slice(&arm.to_array());
             }
         }
         shape
@@ -166,8 +173,10 @@ impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
 
     type Simple = Parallelepiped;
 
-    fn is_simple(shape: &[f64; MOST_ROWS]) -> bool {
-        shape[9..18].iter().chain(&shape[ARMS..]).all(|&number| number == 0.0)
+    fn describes(points: &[DVec3]) -> bool {
+        // as far as its corners' coordinates, rounded as they are, can tell
+        let farthest = points.iter().fold(0.0_f64, |farthest, x| farthest.max(x.abs().max_element()));
+        SLOPES == MODES - 1 || arms(points).iter().all(|h| h.abs().max_element() <= 32.0 * f64::EPSILON * farthest)
     }
 
     /// Modes of each component of u (m).
@@ -210,15 +219,14 @@ impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
         mut store: impl FnMut(usize, usize, R),
     ) {
         let mut folded = stress.scaled(shape(Self::VOLUME_ROW));
-        let stiffness = shape(19);
+        let stiffness = shape(Self::STIFFNESS_ROW);
         for i in 0..3 {
             let mut forces = [stiffness; MODES];
             for m in 0..4 {
-                if SLOPES == 3 {
+                let Some(arm) = Self::arm(&shape, m) else {
                     forces[3 + m] = u[i][3 + m] * stiffness;
                     continue;
-                }
-                let arm = vector(&shape, ARMS + 3 * m);
+                };
                 let q = (u[i][3 + m] - dot(gradient.0[i], arm)) * stiffness;
                 folded.add_to_row(i, -q, arm);
                 forces[3 + m] = q;
@@ -241,20 +249,26 @@ impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
         let mut sum = u[0][0].constant(0.0);
         for i in 0..3 {
             for m in 0..4 {
-                let q = u[i][3 + m] - dot(gradient.0[i], vector(&shape, ARMS + 3 * m));
+                let q = match Self::arm(&shape, m) {
+                    Some(arm) => u[i][3 + m] - dot(gradient.0[i], arm),
+                    None => u[i][3 + m],
+                };
                 sum += q * q;
             }
         }
-        sum * shape(19) * sum.constant(0.5)
+        sum * shape(Self::STIFFNESS_ROW) * sum.constant(0.5)
     }
 
     fn frequency_bound(shape: &[f64; MOST_ROWS], stiffness: &Stiffness) -> f64 {
         let slope = |mode: usize, a: usize| DVec3::from_slice(&shape[3 * mode..]) * mode_sign(mode, a);
-        let b: [DVec3; 8] = std::array::from_fn(|a| (0..6).map(|mode| slope(mode, a)).sum());
+        let b: [DVec3; 8] = std::array::from_fn(|a| (0..SLOPES).map(|mode| slope(mode, a)).sum());
         let (trace, largest) = gradient_measure(b.into_iter());
         let material = 8.0 / stiffness.density * (stiffness.lambda * trace + stiffness.deviatoric * largest);
 
-        let gamma = |m: usize, a: usize| hourglass_sign(m, a) - b[a].dot(DVec3::from_slice(&shape[ARMS + 3 * m..]));
+        let gamma = |m: usize, a: usize| {
+            let arm = Self::arm(&|row: usize| shape[row], m).map_or(DVec3::ZERO, DVec3::from);
+            hourglass_sign(m, a) - b[a].dot(arm)
+        };
         let square: f64 = (0..4).flat_map(|m| (0..8).map(move |a| (m, a))).map(|(m, a)| gamma(m, a).powi(2)).sum();
         // the largest eigenvalue of Σ γ γᵀ is below its trace, and is the trace's quarter when the four are orthogonal and
         // equally long, as in every parallelepiped
@@ -265,7 +279,8 @@ impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
             largest_row = largest_row.max(row);
             overlap = overlap.max((0..8).map(|a| b[a] * gamma(m, a)).sum::<DVec3>().length());
         }
-        let hourglass = shape[19] * largest_row.min(square) / (stiffness.density * shape[18] / 8.0);
+        let hourglass =
+            shape[Self::STIFFNESS_ROW] * largest_row.min(square) / (stiffness.density * shape[Self::VOLUME_ROW] / 8.0);
         // modes of both kinds are orthogonal in a parallelepiped: then the larger counts, else their sum
         if overlap < 1e-9 * trace.sqrt() { material.max(hourglass) } else { material + hourglass }
     }

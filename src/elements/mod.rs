@@ -39,8 +39,6 @@ pub trait Element: Copy + Send + Sync + 'static {
     const POINTS: usize;
     /// How many numbers describe the rest shape.
     const ROWS: usize;
-    /// How many of them the element's kernel reads.
-    const ROWS_READ: usize = Self::ROWS;
     /// Which of them is the volume.
     const VOLUME_ROW: usize;
     /// Which further number forces are proportional to, if any.
@@ -48,7 +46,8 @@ pub trait Element: Copy + Send + Sync + 'static {
     /// Where the pressure comes from.
     const PRESSURE: PressureFrom;
 
-    /// The same element where it [is simple](Element::is_simple): it reads fewer rows of the same rest shape.
+    /// The same element for simple shapes, of which fewer numbers need be known: what a block is made of if it
+    /// [describes](Element::describes) all its elements. Itself, if there are none such.
     type Simple: Element;
     /// What all points need of the displacements.
     type Prepared<R: Real>: Copy;
@@ -59,9 +58,9 @@ pub trait Element: Copy + Send + Sync + 'static {
     /// control is scaled by.
     fn rest_shape(points: &[DVec3], young: f64) -> [f64; MOST_ROWS];
 
-    /// Whether the rows that [`Simple`](Element::Simple) does not read are zero.
-    fn is_simple(_shape: &[f64; MOST_ROWS]) -> bool {
-        false
+    /// Whether it can have that shape: the nodes' rest positions (m).
+    fn describes(_points: &[DVec3]) -> bool {
+        true
     }
 
     /// Makes nodal displacements (m) ready.

@@ -59,7 +59,7 @@ impl<'a> BlockView<'a> {
 
     /// An element's state.
     pub fn element(&self, row: usize) -> ElementState {
-        ElementState::of(self.block.kind, row, self.connectivity, self.shape, self.displacement, self.law)
+        ElementState::of(self.block, row, self.connectivity, self.shape, self.displacement, self.law)
     }
 
     /// First Piola-Kirchhoff stress (Pa) at a point that the next `element_forces` will find.

@@ -1,6 +1,6 @@
 //! One element's state.
 
-use super::{lane_place, node_count, point_count, row_count, with_element};
+use super::{lane_place, node_count, point_count, with_element_of};
 use crate::backend::cpu::BlockLaw;
 use crate::components::*;
 use crate::elements::{Element, MOST_NODES, MOST_POINTS, largest_eigenvalue};
@@ -29,27 +29,29 @@ pub struct ElementState {
     pub displacements: [[f64; 3]; MOST_NODES],
     /// Rest volume (m³); 0 once removed.
     pub volume: f64,
+    simple: bool,
     points: [PointKinematics; MOST_POINTS],
 }
 
 impl ElementState {
     /// Looks at element `row` of a block.
     pub fn of(
-        kind: ElementKind,
+        block: &Block,
         row: usize,
         connectivity: &[u32],
         shape: &Reals,
         displacement: &Reals,
         law: &BlockLaw<f64>,
     ) -> Self {
+        let Block { kind, simple, .. } = *block;
         let mut nodes = [0; MOST_NODES];
         let mut displacements = [[0.0; 3]; MOST_NODES];
         for corner in 0..node_count(kind) {
             nodes[corner] = connectivity[lane_place(row, node_count(kind), corner)];
             displacements[corner] = displacement.vector(nodes[corner] as usize).to_array();
         }
-        let number = |k: usize| shape.get(lane_place(row, row_count(kind), k));
-        with_element!(kind, E => {
+        with_element_of!(block, E => {
+            let number = |k: usize| shape.get(lane_place(row, E::ROWS, k));
             let u = E::prepare(&displacements);
             let states: [_; E::POINTS] = std::array::from_fn(|point| E::at_point(&u, point, number));
             let whole: f64 = states.iter().map(|state| state.volume).sum();
@@ -59,7 +61,7 @@ impl ElementState {
                 PointKinematics { gradient: state.gradient, kinematics: law.elastic.kinematics(&state.gradient), share }
             };
             let points = std::array::from_fn(at);
-            Self { kind, nodes, displacements, volume: number(E::VOLUME_ROW), points }
+            Self { kind, nodes, displacements, volume: number(E::VOLUME_ROW), simple, points }
         })
     }
 
@@ -80,9 +82,9 @@ impl ElementState {
 
     /// Nodal forces (N) for a first Piola-Kirchhoff stress (Pa) at each point.
     pub fn forces(&self, row: usize, shape: &Reals, stress: impl Fn(usize) -> Mat3<f64>) -> [[f64; 3]; MOST_NODES] {
-        let number = |k: usize| shape.get(lane_place(row, row_count(self.kind), k));
         let mut forces = [[0.0; 3]; MOST_NODES];
-        with_element!(self.kind, E => {
+        with_element_of!(self, E => {
+            let number = |k: usize| shape.get(lane_place(row, E::ROWS, k));
             let u = E::prepare(&self.displacements);
             let mut sums = E::no_forces(0.0);
             for point in 0..E::POINTS {
@@ -95,9 +97,11 @@ impl ElementState {
 
     /// Energy in hourglass control (J).
     pub fn hourglass_energy(&self, row: usize, shape: &Reals) -> f64 {
-        let number = |k: usize| shape.get(lane_place(row, row_count(self.kind), k));
         let gradient = &self.points[0].gradient;
-        with_element!(self.kind, E => E::hourglass_energy(&E::prepare(&self.displacements), gradient, number))
+        with_element_of!(self, E => {
+            let number = |k: usize| shape.get(lane_place(row, E::ROWS, k));
+            E::hourglass_energy(&E::prepare(&self.displacements), gradient, number)
+        })
     }
 
     /// Largest principal stretch of all points.

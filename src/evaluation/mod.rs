@@ -37,6 +37,22 @@ macro_rules! with_element {
 }
 pub(crate) use with_element;
 
+/// The same for a block, or whatever has a `kind` and is `simple` as one: where it is, with the type for
+/// [simple](Element::Simple) shapes.
+macro_rules! with_element_of {
+    ($block:expr, $element:ident => $body:expr) => {
+        if $block.simple {
+            $crate::evaluation::with_element!($block.kind, General => {
+                type $element = <General as $crate::elements::Element>::Simple;
+                $body
+            })
+        } else {
+            $crate::evaluation::with_element!($block.kind, $element => $body)
+        }
+    };
+}
+pub(crate) use with_element_of;
+
 /// Place of number `k` of `numbers` of an element in a column of groups.
 pub fn lane_place(row: usize, numbers: usize, k: usize) -> usize {
     (row / LANES * numbers + k) * LANES + row % LANES
@@ -47,9 +63,9 @@ pub const fn node_count(kind: ElementKind) -> usize {
     with_element!(kind, E => E::NODES)
 }
 
-/// How many numbers describe the rest shape of an element of a kind.
-pub const fn row_count(kind: ElementKind) -> usize {
-    with_element!(kind, E => E::ROWS)
+/// How many numbers describe the rest shape of an element of a block.
+pub const fn row_count(block: &Block) -> usize {
+    with_element_of!(block, E => E::ROWS)
 }
 
 /// How many integration points an element of a kind has.
@@ -63,17 +79,16 @@ pub fn averages(kind: ElementKind) -> bool {
 }
 
 /// An element's volume at rest (m³); 0 once it is removed.
-pub fn rest_volume(kind: ElementKind, row: usize, shape: &Reals) -> f64 {
-    shape.get(lane_place(row, row_count(kind), with_element!(kind, E => E::VOLUME_ROW)))
+pub fn rest_volume(block: &Block, row: usize, shape: &Reals) -> f64 {
+    shape.get(with_element_of!(block, E => lane_place(row, E::ROWS, E::VOLUME_ROW)))
 }
 
 /// Makes an element exert nothing and weigh nothing.
-pub fn extinguish(kind: ElementKind, row: usize, shape: &mut Reals) {
-    let numbers = row_count(kind);
-    with_element!(kind, E => {
-        shape.set(lane_place(row, numbers, E::VOLUME_ROW), 0.0);
+pub fn extinguish(block: &Block, row: usize, shape: &mut Reals) {
+    with_element_of!(block, E => {
+        shape.set(lane_place(row, E::ROWS, E::VOLUME_ROW), 0.0);
         if let Some(further) = E::FORCE_ROW {
-            shape.set(lane_place(row, numbers, further), 0.0);
+            shape.set(lane_place(row, E::ROWS, further), 0.0);
         }
     });
 }
@@ -90,9 +105,8 @@ pub fn add_nodal_masses(
     damping: &mut [f64],
 ) {
     let nodes = node_count(block.kind);
-    let volume_row = with_element!(block.kind, E => E::VOLUME_ROW);
     for row in 0..block.count {
-        let share = density * shape.get(lane_place(row, row_count(block.kind), volume_row)) / nodes as f64;
+        let share = density * rest_volume(block, row, shape) / nodes as f64;
         for corner in 0..nodes {
             let node = connectivity[lane_place(row, nodes, corner)] as usize;
             mass[node] += share;

@@ -6,7 +6,7 @@ use crate::backend::device::{Device, bring_to_host};
 use crate::backend::kernel::KernelId;
 use crate::components::*;
 use crate::error::Error;
-use crate::evaluation::{BlockView, averages, with_element};
+use crate::evaluation::{BlockView, averages, with_element_of};
 use crate::math::SimdScalar;
 use bevy_ecs::prelude::*;
 
@@ -153,5 +153,5 @@ fn sums_of<T: SimdScalar>(world: &World, entity: Entity, displacement: &Displace
         nodal_volume_change: &means,
     };
     let law = world.get::<BlockLaw<f64>>(entity)?.rounded::<T>();
-    Some(with_element!(block.kind, E => run_watch::<E, T>(cpu, &columns, &law, patch_groups(block.kind))))
+    Some(with_element_of!(block, E => run_watch::<E, T>(cpu, &columns, &law, patch_groups(block.kind))))
 }

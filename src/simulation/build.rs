@@ -109,9 +109,11 @@ impl Simulation {
         }
         let mut observer = world.resource_mut::<Observer>();
         (observer.watch.foreign, observer.on_gpu) = (foreign, on_gpu);
-        observer.all_on_device = on_gpu && !schedule.iter().any(|entry| entry.system.custom);
+        let custom = schedule.iter().any(|entry| entry.system.custom);
+        observer.all_on_device = on_gpu && !custom;
         let facts = Facts {
             on_gpu,
+            custom,
             backend,
             why,
             precision: options.precision,
@@ -236,6 +238,7 @@ fn plan<'a>(
     let (clock, stability, steps) = clock(scene, world, diagnostics)?;
     outputs::check(scene, &clock, steps, diagnostics);
     world.insert_resource(clock);
+    world.insert_resource(Observed(true));
     assemble_in_time(&assembly, world, diagnostics);
     let mut schedule = resolve(scene.scene.schedule.as_deref(), registry, world, diagnostics);
     hand_out(&scene.scene, registry, &mut schedule, world, diagnostics);

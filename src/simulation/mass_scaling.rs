@@ -120,7 +120,7 @@ fn spread(world: &World, entity: Entity, nodes: &mut [f64]) -> f64 {
     let (Some(block), Some(connectivity), Some(added), Some(shape)) = parts else { return 0.0 };
     let corners = node_count(block.kind);
     let mut sum = 0.0;
-    for row in (0..block.count).filter(|&row| added.0[row] > 0.0 && rest_volume(block.kind, row, shape) > 0.0) {
+    for row in (0..block.count).filter(|&row| added.0[row] > 0.0 && rest_volume(block, row, shape) > 0.0) {
         sum += added.0[row];
         for corner in 0..corners {
             nodes[connectivity[lane_place(row, corners, corner)] as usize] += added.0[row] / corners as f64;
@@ -133,7 +133,7 @@ fn spread(world: &World, entity: Entity, nodes: &mut [f64]) -> f64 {
 fn mass_of(world: &World, entity: Entity, row: usize) -> f64 {
     let (Some(block), Some(shape)) = (world.get::<Block>(entity), world.get::<RestShape>(entity)) else { return 0.0 };
     let density = world.get::<Density>(block.material).map_or(0.0, |density| density.0);
-    density * rest_volume(block.kind, row, shape)
+    density * rest_volume(block, row, shape)
 }
 
 /// How much heavier an element is than it was: real and added mass over the real one.

@@ -85,6 +85,8 @@ enum Job {
 /// What was decided when the simulation was made.
 struct Facts {
     on_gpu: bool,
+    /// Whether there are systems of the user's own.
+    custom: bool,
     backend: String,
     why: String,
     precision: crate::components::Precision,

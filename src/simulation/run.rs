@@ -118,7 +118,7 @@ impl Simulation {
 
     /// One step on the host, or as many as can be submitted together.
     fn some_steps(&mut self, target: u64) -> Result<(), Error> {
-        if self.facts.on_gpu { self.device_steps(target) } else { self.host_step() }
+        if self.facts.on_gpu { self.device_steps(target) } else { self.host_step(target) }
     }
 
     /// Observes the present state, whatever is due.
@@ -139,8 +139,11 @@ impl Simulation {
         }
     }
 
-    fn host_step(&mut self) -> Result<(), Error> {
+    /// A step on the way to `target`, where the caller may look at all.
+    fn host_step(&mut self, target: u64) -> Result<(), Error> {
         let step = self.step_count();
+        let due = target.min(self.world.resource::<Observer>().next_due(step));
+        self.world.insert_resource(Observed(self.facts.custom || due == step + 1));
         self.evaluate_signals(step);
         let mut moved = false;
         for entry in &mut self.entries {

@@ -3,7 +3,7 @@
 
 use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, run_block};
 use crate::components::*;
-use crate::evaluation::{lane_place, node_count, with_element};
+use crate::evaluation::{lane_place, node_count, with_element_of};
 use crate::systems::{means_of, sum_corners};
 use bevy_ecs::prelude::*;
 use std::borrow::Cow;
@@ -128,7 +128,6 @@ impl<'w> BlockForces<'w> {
             first_row: 0,
             connectivity: self.connectivity,
             rest_shape: &self.shape,
-            simple: block.simple,
             fibre_direction: self.fibres.as_deref(),
             nodal_volume_change: &self.means,
             memory: &mut self.memory,
@@ -137,7 +136,7 @@ impl<'w> BlockForces<'w> {
             inverted_go: false,
             inside: None,
         };
-        with_element!(block.kind, E => run_block::<E, f64>(cpu, columns, &self.law, patch_groups(block.kind)));
+        with_element_of!(block, E => run_block::<E, f64>(cpu, columns, &self.law, patch_groups(block.kind)));
     }
 }
 
@@ -179,7 +178,7 @@ fn least_height(world: &World, bodies: &[Entity]) -> f64 {
                 let corner = |a: usize| rest.0[connectivity[lane_place(row, nodes, a)] as usize];
                 let pairs = (1..nodes).flat_map(|a| (0..a).map(move |b| (a, b)));
                 let longest = pairs.map(|(a, b)| corner(a).distance_squared(corner(b))).fold(0.0, f64::max);
-                let volume = crate::evaluation::rest_volume(block.kind, row, shape);
+                let volume = crate::evaluation::rest_volume(block, row, shape);
                 if volume > 0.0 {
                     least = least.min(volume / longest);
                 }

@@ -6,7 +6,7 @@ use crate::assembly::square_frequencies;
 use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK};
 use crate::components::*;
 use crate::elements::{Element, MOST_NODES};
-use crate::evaluation::{lane_place, node_count, with_element};
+use crate::evaluation::{lane_place, node_count, with_element_of};
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 
@@ -127,7 +127,7 @@ impl Watched {
                         fibres,
                         growth: &self.growth,
                     };
-                    with_element!(block.kind, E => elements.run::<E, R>(cpu, block.count, &of))
+                    with_element_of!(block, E => elements.run::<E, R>(cpu, block.count, &of))
                 }};
             }
             Some(match u.0 {

@@ -114,7 +114,7 @@ fn elements_that_are_left_exert_the_same_forces() {
         for block in entities::<Alive>(world) {
             let data = world.get::<Block>(block).unwrap().clone();
             let mut shape = world.get_mut::<RestShape>(block).unwrap();
-            (0..data.count).filter(|row| row % 7 < 3).for_each(|row| extinguish(data.kind, row, &mut shape));
+            (0..data.count).filter(|row| row % 7 < 3).for_each(|row| extinguish(&data, row, &mut shape));
         }
     };
     for averaged in [false, true] {
@@ -129,10 +129,11 @@ fn patches_give_the_same_bits_from_run_to_run() {
     let give_volumes_to_fill_up_lanes = |world: &mut World| {
         let mut given = 0;
         for block in entities::<Block>(world) {
-            let Block { kind, count, .. } = *world.get::<Block>(block).unwrap();
+            let data = world.get::<Block>(block).unwrap().clone();
+            let numbers = row_count(&data);
             let mut shape = world.get_mut::<RestShape>(block).unwrap();
-            for row in count..shape.len() / row_count(kind) {
-                for at in (0..row_count(kind)).map(|k| lane_place(row, row_count(kind), k)) {
+            for row in data.count..shape.len() / numbers {
+                for at in (0..numbers).map(|k| lane_place(row, numbers, k)) {
                     let value = shape.get(at);
                     shape.set(at, if value == 0.0 { 1e-6 } else { value });
                 }
@@ -181,7 +182,7 @@ fn volume_ratio(world: &World, block: Entity, row: usize) -> f64 {
     let data = world.get::<Block>(block).unwrap();
     let (shape, u) = (world.get::<RestShape>(block).unwrap(), world.get::<Displacement>(data.body).unwrap());
     let law = world.get::<sinew::backend::cpu::BlockLaw<f64>>(block).unwrap();
-    let state = ElementState::of(data.kind, row, world.get::<Connectivity>(block).unwrap(), shape, u, law);
+    let state = ElementState::of(data, row, world.get::<Connectivity>(block).unwrap(), shape, u, law);
     state.points().iter().map(|point| point.kinematics.true_j).fold(f64::INFINITY, f64::min)
 }
 

@@ -2,7 +2,7 @@
 
 use bevy_ecs::prelude::*;
 use sinew::components::*;
-use sinew::elements::{Element, Hex8, Hex8MeanDilatation, MOST_NODES};
+use sinew::elements::{Element, Hex8, Hex8MeanDilatation, MOST_NODES, Parallelepiped};
 use sinew::evaluation::{ElementState, lane_place, node_count, row_count};
 use sinew::materials::Elastic;
 use sinew::mesh::ElementKind;
@@ -20,16 +20,17 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
     let shape = world.get::<RestShape>(block).unwrap();
     let displacement = world.get::<Displacement>(data.body).unwrap();
     let law = world.get::<sinew::backend::cpu::BlockLaw<f64>>(block).unwrap();
-    let state = ElementState::of(data.kind, row, world.get::<Connectivity>(block).unwrap(), shape, displacement, law);
+    let state = ElementState::of(data, row, world.get::<Connectivity>(block).unwrap(), shape, displacement, law);
     let entries = state.points().iter().flat_map(|point| point.gradient.0).flatten();
     let h = entries.map(|x| x.abs()).fold(0.0, f64::max);
-    let number = |k: usize| shape.get(lane_place(row, row_count(data.kind), k));
+    let number = |k: usize| shape.get(lane_place(row, row_count(data), k));
     let nodes = node_count(data.kind);
     let gradients = match data.kind {
         ElementKind::Hex8MeanDilatation => natural_gradients(number),
-        // a node's gradient is the sum of the slopes of six modes, each with either sign
+        // a node's gradient is the sum of the slopes of all modes, each with either sign
         ElementKind::Hex8 => {
-            (0..3).map(|axis| (0..6).map(|mode| number(3 * mode + axis).abs()).sum::<f64>()).fold(0.0, f64::max)
+            let slopes = if data.simple { 3 } else { 6 };
+            (0..3).map(|axis| (0..slopes).map(|mode| number(3 * mode + axis).abs()).sum::<f64>()).fold(0.0, f64::max)
         }
         ElementKind::Tet4 | ElementKind::Tet4NodalPressure => (0..9).map(|k| number(k).abs()).fold(0.0, f64::max),
     };
@@ -53,7 +54,8 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
     let stress = (moduli * h + nodal) * (1.0 + h).powi(4) / compressed.powi(3) + memory;
     let hourglass = if data.kind == ElementKind::Hex8 {
         // q is a sum of eight displacements, and folded back along the element's arms with its gradients
-        number(Hex8::FORCE_ROW.unwrap()) * 8.0 * spread * 8.0
+        let row = if data.simple { Parallelepiped::FORCE_ROW } else { Hex8::FORCE_ROW };
+        number(row.unwrap()) * 8.0 * spread * 8.0
     } else {
         0.0
     };

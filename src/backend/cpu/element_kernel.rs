@@ -2,6 +2,7 @@
 
 mod at_hand;
 mod effects;
+mod fetch;
 mod stress;
 
 use super::{BlockLaw, Cpu, Factors, NodeColumns, move_nodes};
@@ -10,6 +11,7 @@ use crate::elements::{Element, MOST_NODES, PressureFrom};
 use crate::materials::{Elastic, ElasticLaw, NeoHookean};
 use crate::math::{LANES, Real, Scratch, SimdScalar};
 use at_hand::{AtHand, part, parts};
+use fetch::{AHEAD, NEAR};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
 use std::sync::atomic::{AtomicU32, Ordering};
@@ -26,8 +28,6 @@ pub struct BlockColumns<'a, 'n, T> {
     pub connectivity: &'a [u32],
     /// Rest shapes.
     pub rest_shape: &'a [T],
-    /// Whether every element [is simple](Element::is_simple).
-    pub simple: bool,
     /// Fibre directions, where they differ.
     pub fibre_direction: Option<&'a [T]>,
     /// θ of each node of the body; empty for elements that do not need it.
@@ -52,6 +52,8 @@ pub struct Inside<'a, 'n, T> {
     pub before: &'a (dyn Fn(&mut NodeColumns<'_, T>) + Sync),
     /// What a step multiplies with.
     pub factors: &'a Factors<T>,
+    /// Whether somebody may look at their forces afterwards.
+    pub observed: bool,
     /// The lowest row whose displacement is no longer finite; `u32::MAX`: none.
     pub astray: &'a AtomicU32,
 }
@@ -78,11 +80,9 @@ pub fn run_block_fast<E: Element>(
     groups_a_patch: usize,
 ) -> Vec<usize> {
     let effects = kernel_effects(law);
-    let simple = columns.simple;
     let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
     match &law.elastic {
         asked if effects.is_none() => block.run::<_, ASK>(asked),
-        ElasticLaw::NeoHookean(elastic) if simple => block.simple().run_neo_hookean(elastic),
         ElasticLaw::NeoHookean(elastic) => block.run_neo_hookean(elastic),
         ElasticLaw::StableNeoHookean(elastic) => block.run::<_, 0>(elastic),
         ElasticLaw::MooneyRivlin(elastic) => block.run::<_, 0>(elastic),
@@ -120,13 +120,7 @@ struct Block<'a, 'n, E, T: SimdScalar> {
     element: PhantomData<E>,
 }
 
-impl<'a, 'n, E: Element> Block<'a, 'n, E, f32> {
-    /// The same for elements that [are simple](Element::is_simple).
-    fn simple(self) -> Block<'a, 'n, E::Simple, f32> {
-        let Self { cpu, columns, law, groups_a_patch, element: _ } = self;
-        Block { cpu, columns, law, groups_a_patch, element: PhantomData }
-    }
-
+impl<E: Element> Block<'_, '_, E, f32> {
     fn run_neo_hookean(self, elastic: &NeoHookean<f32>) -> Vec<usize> {
         match (self.law.fibres.is_some(), !self.law.prony.is_empty()) {
             (false, false) => self.run::<_, 0>(elastic),
@@ -142,6 +136,7 @@ impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
         let Self { cpu, columns, law, groups_a_patch, element } = self;
         let inverted = Mutex::new(Vec::new());
         let patch = groups_a_patch * LANES;
+        let far = size_of_val(columns.rest_shape) > NEAR;
         let memory_an_element = law.memory_numbers(E::POINTS);
         let varying = law.varying_families();
         let direction = law.fibres.as_ref().map(|(_, direction)| direction);
@@ -154,48 +149,63 @@ impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
         let mut memories = columns.memory.chunks_mut((patch * memory_an_element).max(1));
         let tasks = parts(columns.force, columns.patches, patch * 3 * E::NODES, patch * E::NODES);
         let (inside, then) = match columns.inside {
-            Some(Inside { nodes, before, factors, astray }) => (nodes, Some((before, factors, astray))),
+            Some(Inside { nodes, before, factors, observed, astray }) => {
+                (nodes, Some((before, factors, observed, astray)))
+            }
             None => (&mut [][..], None),
         };
         let mut inside = inside.iter_mut();
-        let tasks = tasks.into_iter().enumerate().map(move |(index, (force, at_hand))| Patch::<E, T, L, EFFECTS> {
-            index,
-            inside: inside.next(),
-            displacement: columns.displacement,
-            first_row: columns.first_row,
-            nodal_volume_change: columns.nodal_volume_change,
-            connectivity: part(columns.connectivity, index, patch * E::NODES).as_chunks().0,
-            rest_shape: part(columns.rest_shape, index, patch * E::ROWS).as_chunks().0,
-            fibre_direction: columns.fibre_direction.map(|all| &all[index * patch * 3 * varying..]),
-            varying,
-            along: match (direction, columns.fibre_direction) {
-                (Some(FamilyDirection::Varying(place)), Some(all)) => {
-                    (&all.as_chunks().0[3 * (index * groups_a_patch * varying + place)..], 3 * varying)
-                }
-                _ => (uniform, 0),
-            },
-            memory: memories.next().unwrap_or_default(),
-            memory_rows: memory_an_element,
-            force,
-            at_hand,
-            inverted_go: columns.inverted_go,
-            elastic,
-            law,
-            element,
+        let tasks = tasks.into_iter().enumerate().map(move |(index, (force, at_hand))| {
+            let patch = Patch::<E, T, L, EFFECTS> {
+                index,
+                displacement: columns.displacement,
+                first_row: columns.first_row,
+                nodal_volume_change: columns.nodal_volume_change,
+                connectivity: part(columns.connectivity, index, patch * E::NODES).as_chunks().0,
+                rest_shape: part(columns.rest_shape, index, patch * E::ROWS).as_chunks().0,
+                fibre_direction: columns.fibre_direction.map(|all| &all[index * patch * 3 * varying..]),
+                varying,
+                along: match (direction, columns.fibre_direction) {
+                    (Some(FamilyDirection::Varying(place)), Some(all)) => {
+                        (&all.as_chunks().0[3 * (index * groups_a_patch * varying + place)..], 3 * varying)
+                    }
+                    _ => (uniform, 0),
+                },
+                memory: memories.next().unwrap_or_default(),
+                memory_rows: memory_an_element,
+                force,
+                at_hand,
+                inverted_go: columns.inverted_go,
+                far,
+                elastic,
+                law,
+                element,
+            };
+            (patch, inside.next())
         });
-        cpu.for_each(tasks, |patch| {
+        cpu.for_each(tasks, |(patch, inside)| {
             let index = patch.index;
-            let (found, inside) = T::with_scratch(|scratch| {
-                let task = OfPatch { patch, scratch };
-                if EFFECTS == ASK { cpu.dispatch(task) } else { cpu.dispatch_widest(task) }
-            });
-            if found {
+            let run = |patch: Patch<'_, E, T, L, EFFECTS>, inside: Option<&mut NodeColumns<'_, T>>| {
+                T::with_scratch(|scratch| {
+                    let task = OfPatch { patch, inside, scratch };
+                    if EFFECTS == ASK { cpu.dispatch(task) } else { cpu.dispatch_widest(task) }
+                })
+            };
+            let is_inverted = match (inside, then) {
+                (Some(inside), Some((before, factors, observed, astray))) => inside.with_forces(observed, |inside| {
+                    let is_inverted = run(patch, Some(inside));
+                    if !is_inverted {
+                        before(inside);
+                        if let Some(row) = move_nodes(cpu, inside, factors) {
+                            astray.fetch_min(row, Ordering::Relaxed);
+                        }
+                    }
+                    is_inverted
+                }),
+                _ => run(patch, None),
+            };
+            if is_inverted {
                 inverted.lock().unwrap_or_else(PoisonError::into_inner).push(index);
-            } else if let (Some(inside), Some((before, factors, astray))) = (inside, then) {
-                before(inside);
-                if let Some(row) = move_nodes(cpu, inside, factors) {
-                    astray.fetch_min(row, Ordering::Relaxed);
-                }
             }
         });
         let mut inverted = inverted.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -204,9 +214,8 @@ impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
     }
 }
 
-struct Patch<'a, 'n, E, T: SimdScalar, L, const EFFECTS: u8> {
+struct Patch<'a, E, T: SimdScalar, L, const EFFECTS: u8> {
     index: usize,
-    inside: Option<&'a mut NodeColumns<'n, T>>,
     displacement: &'a [T],
     first_row: usize,
     nodal_volume_change: &'a [T],
@@ -222,30 +231,36 @@ struct Patch<'a, 'n, E, T: SimdScalar, L, const EFFECTS: u8> {
     force: &'a mut [T],
     at_hand: Option<AtHand<'a>>,
     inverted_go: bool,
+    /// Whether what comes next has to be fetched from memory.
+    far: bool,
     elastic: &'a L,
     law: &'a BlockLaw<T>,
     element: PhantomData<E>,
 }
 
-/// A patch and where to compute it.
-struct OfPatch<'a, 'n, 's, E, T: SimdScalar, L, const EFFECTS: u8> {
-    patch: Patch<'a, 'n, E, T, L, EFFECTS>,
+/// A patch, the nodes inside it if they move with it, and where to compute it.
+struct OfPatch<'a, 'i, 'n, 's, E, T: SimdScalar, L, const EFFECTS: u8> {
+    patch: Patch<'a, E, T, L, EFFECTS>,
+    inside: Option<&'i mut NodeColumns<'n, T>>,
     scratch: &'s mut Scratch<T>,
 }
 
-impl<'a, 'n, E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd
-    for OfPatch<'a, 'n, '_, E, T, L, EFFECTS>
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd
+    for OfPatch<'_, '_, '_, '_, E, T, L, EFFECTS>
 {
-    /// Whether there is an element with J < 0, and the nodes inside with their internal forces.
-    type Output = (bool, Option<&'a mut NodeColumns<'n, T>>);
+    /// Whether there is an element with J < 0.
+    type Output = bool;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let Self { mut patch, scratch } = self;
-        patch.bring(scratch);
+    fn with_simd<S: Simd>(self, simd: S) -> bool {
+        let Self { mut patch, inside, scratch } = self;
+        patch.bring(inside.as_deref(), scratch);
         let mut law = patch.in_registers(simd);
         let mut worst = T::splat(simd, T::default());
         for group in 0..patch.connectivity.len() / E::NODES {
+            if patch.far {
+                patch.fetch(group + AHEAD);
+            }
             if EFFECTS == FIBRES | VISCOSITY && (group == 0 || patch.along.1 > 0) {
                 patch.square_along(simd, group, &mut law.along_squared);
             }
@@ -255,10 +270,11 @@ impl<'a, 'n, E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSi
                 at += T::width::<S>();
             }
         }
-        patch.bring_back(scratch);
         let mut lanes = [T::default(); LANES];
         T::store(worst, &mut lanes);
-        (lanes.iter().any(|&v| v > T::default()), patch.inside)
+        let is_inverted = lanes.iter().any(|&v| v > T::default());
+        patch.bring_back(inside.filter(|_| !is_inverted), scratch);
+        is_inverted
     }
 }
 
@@ -294,7 +310,7 @@ pub(super) fn corner_registers<E: Element, T: SimdScalar, S: Simd>(
     u
 }
 
-impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, '_, E, T, L, EFFECTS> {
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
     /// One register full of elements, from lane `at` on. Returns −J V, positive for inverted elements.
     #[inline(always)]
     fn part_of_group<S: Simd>(

@@ -1,6 +1,6 @@
 //! What a patch has at hand: its nodes' displacements, and the sums of its forces.
 
-use super::Patch;
+use super::{NodeColumns, Patch};
 use crate::components::Patches;
 use crate::elements::{Element, MOST_NODES, PressureFrom};
 use crate::materials::Elastic;
@@ -50,22 +50,22 @@ pub(super) struct AtHand<'a> {
     pub(super) corners: &'a [[u16; LANES]],
 }
 
-impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, '_, E, T, L, EFFECTS> {
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
     /// Displacements of the patch's nodes, and θ where elements take their pressure from it, to hand; no forces yet.
     #[inline(always)]
-    pub(super) fn bring(&self, scratch: &mut Scratch<T>) {
+    pub(super) fn bring(&self, inside: Option<&NodeColumns<'_, T>>, scratch: &mut Scratch<T>) {
         let Some(at_hand) = &self.at_hand else { return };
         let theta = |node: u32| match E::PRESSURE {
             PressureFrom::Nodes => self.nodal_volume_change[node as usize],
             _ => T::default(),
         };
-        let (inside, others) = at_hand.nodes.split_at(self.rows_inside());
-        if let Some(columns) = &self.inside {
-            for ((row, &node), u) in scratch.read.iter_mut().zip(inside).zip(columns.u.chunks_exact(3)) {
+        let (own, others) = at_hand.nodes.split_at(inside.map_or(0, |columns| columns.rows()));
+        if let Some(columns) = inside {
+            for ((row, &node), u) in scratch.read.iter_mut().zip(own).zip(columns.u.chunks_exact(3)) {
                 *row = [u[0], u[1], u[2], theta(node)];
             }
         }
-        for (row, &node) in scratch.read[inside.len()..].iter_mut().zip(others) {
+        for (row, &node) in scratch.read[own.len()..].iter_mut().zip(others) {
             let first = 3 * (node as usize - self.first_row);
             let u = &self.displacement[first..first + 3];
             *row = [u[0], u[1], u[2], theta(node)];
@@ -73,23 +73,18 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, '_, 
         scratch.sums[..at_hand.nodes.len()].fill([T::default(); 4]);
     }
 
-    /// How many of the patch's nodes, the first ones, move with it.
+    /// The sums of forces from at hand: to the nodes inside that move now, all others to where patches are gathered.
     #[inline(always)]
-    fn rows_inside(&self) -> usize {
-        self.inside.as_ref().map_or(0, |columns| columns.rows())
-    }
-
-    /// The sums of forces from at hand.
-    #[inline(always)]
-    pub(super) fn bring_back(&mut self, scratch: &Scratch<T>) {
-        let inside = self.rows_inside();
-        if let Some(columns) = &mut self.inside {
+    pub(super) fn bring_back(&mut self, inside: Option<&mut NodeColumns<'_, T>>, scratch: &Scratch<T>) {
+        let mut rows = 0;
+        if let Some(columns) = inside {
+            rows = columns.rows();
             for (force, sum) in columns.internal.chunks_exact_mut(3).zip(&*scratch.sums) {
                 force.copy_from_slice(&sum[..3]);
             }
         }
         if self.at_hand.is_some() {
-            for (force, sum) in self.force[3 * inside..].chunks_exact_mut(3).zip(&scratch.sums[inside..]) {
+            for (force, sum) in self.force[3 * rows..].chunks_exact_mut(3).zip(&scratch.sums[rows..]) {
                 force.copy_from_slice(&sum[..3]);
             }
         }

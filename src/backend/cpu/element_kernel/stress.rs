@@ -15,7 +15,7 @@ pub(super) struct InRegisters<L, T: SimdScalar, S: Simd> {
     pub(super) along_squared: [[T; LANES]; 6],
 }
 
-impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, '_, E, T, L, EFFECTS> {
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
     #[inline(always)]
     pub(super) fn in_registers<S: Simd>(&self, simd: S) -> InRegisters<L::Of<T::Vector<S>>, T, S> {
         let none = Fibres { eta: T::default(), tension_only: T::default() };

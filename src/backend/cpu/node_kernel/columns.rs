@@ -1,6 +1,7 @@
 //! What moves nodes, and how it is shared out among tasks.
 
 use crate::components::{SPENT_ROWS, WORK_NUMBERS};
+use crate::math::Scalar;
 
 /// Some rows of a body's node columns, which no other task has; layouts as in [`components`](crate::components).
 pub struct NodeColumns<'a, T> {
@@ -31,6 +32,32 @@ pub struct NodeColumns<'a, T> {
     pub sums: &'a mut [u32],
     /// Bits of the last steps (m) along prescribed axes; none where nothing is moved as told or all work is booked.
     pub kept: &'a mut [u32],
+}
+
+impl<T: Scalar> NodeColumns<'_, T> {
+    /// Does a task with them; without `observed` forces are in a place of the task's own, which is gone afterwards.
+    pub fn with_forces<R>(&mut self, observed: bool, task: impl FnOnce(&mut NodeColumns<'_, T>) -> R) -> R {
+        if observed {
+            return task(self);
+        }
+        let mut internal = vec![T::default(); self.internal.len()];
+        let mut external = self.external.as_ref().map(|external| vec![T::default(); external.len()]);
+        task(&mut NodeColumns {
+            first: self.first,
+            mass: self.mass,
+            inertia: self.inertia,
+            internal: &mut internal,
+            external: external.as_deref_mut(),
+            axes: self.axes,
+            damping: self.damping,
+            u: &mut *self.u,
+            step: &mut *self.step,
+            compensation: self.compensation.as_mut().map(|both| both.each_mut().map(|all| &mut **all)),
+            work: self.work.as_deref_mut(),
+            sums: &mut *self.sums,
+            kept: &mut *self.kept,
+        })
+    }
 }
 
 impl<'a, T> NodeColumns<'a, T> {
