@@ -14,7 +14,8 @@
 //! observe          all, read only               -> probes, energies, guards, files
 //! ```
 //!
-//! Neighbours that work node by node share a pass (`node_pass`), on the CPU with `element_forces` before them (`patch_pass`).
+//! Neighbours that work node by node share a pass (`node_pass`), with `element_forces` before them for the nodes inside a patch
+//! (`patch_pass`; on a GPU `src/backend/patch_step.rs`).
 
 mod boundary;
 mod element_forces;

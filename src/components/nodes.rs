@@ -48,7 +48,7 @@ columns! {
     /// What each 64 nodes come to, four words each: bits of ½ m d² (kg m²) and of the longest step's square (m²), its row.
     NodeSums(Vec<u32>) = "node_sums";
     /// Forces of all elements (N), all blocks of the body one after the other: a vector for each node of each patch
-    /// ([`Patches`](super::Patches)); in the scheme of two passes those on corners, in each group of
+    /// ([`Patches`](super::Patches)), which those that move with their patch do not use; in the scheme of two passes those on corners, in each group of
     /// [`LANES`](crate::math::LANES) elements by corner, component, element.
     ElementForce(Reals) = "element_force";
 }
