@@ -218,10 +218,24 @@ fn nodes_inside_patches_go_where_they_go_with_all_others() {
 /// What acts on none of the nodes inside a block's patches is not in their kernel, nor in that of the other nodes.
 #[test]
 fn kernels_of_patches_have_only_what_acts_on_nodes_inside_them() {
-    let (scene, registry) = (scene_of(&torn(true), Path::new(".")), Registry::default());
-    let options = Options { backend: BackendChoice::Cpu, precision: Precision::F32, ..Options::default() };
-    let mut simulation = Simulation::with_systems(&scene, &options, &registry).unwrap_or_else(|e| panic!("{e}"));
-    let explained = simulation.explain_on_gpu(&registry).unwrap();
+    let registry = Registry::default();
+    let explained = |text: &str| {
+        let options = Options { backend: BackendChoice::Cpu, precision: Precision::F32, ..Options::default() };
+        let scene = scene_of(text, Path::new("."));
+        let mut simulation = Simulation::with_systems(&scene, &options, &registry).unwrap_or_else(|e| panic!("{e}"));
+        simulation.explain_on_gpu(&registry).unwrap()
+    };
+    // a pressure on nodes that patches share, only: none of the others moves before it has looked
+    let corner = torn(true)
+        .replace("Sphere(center: (0, 0, 0), radius: 0.5)", "Box(min: (0, 0, 0), max: (0.1, 0.1, 0.1))")
+        .replace(
+            "loads: [",
+            "loads: [Pressure(body: \"a\", on: Box(min: (0, 0, 0), max: (0.12, 0.12, 0)), pressure: 100), ",
+        );
+    let told = &explained(&corner).dispatched[0];
+    let because = "`pressure` looks at other nodes than its own, which must not have moved";
+    assert_eq!((told.inside, told.inside_because.as_str()), (0, because));
+    let explained = explained(&torn(true));
     let found = explained.kernels.iter().filter(|kernel| ["patch_step", "node_pass"].contains(&kernel.entry));
     let found: Vec<(&str, u32)> = found.map(|kernel| (kernel.label.as_str(), kernel.threads)).collect();
     let shared = explained.nodes as u32 - explained.dispatched[0].inside;
