@@ -137,7 +137,7 @@ fn patches_move_the_nodes_inside_them_where_they_may() {
         let mut simulation = effects.simulation(BackendChoice::Cpu);
         let mut described = Described { most, ..Described::default() };
         let (inner, others, told) = kernel_worlds::inner_nodes(systems, simulation.world_mut(), &mut described);
-        assert!(told.iter().all(|body| (body.inside > 0) == !inner.is_empty()), "{told:?}");
+        assert!(told.iter().all(|body| (body.inside == 0) == inner.is_empty()), "{told:?}");
         let labels = inner.iter().map(|kernel| kernel.label.split(" of ").next().unwrap().to_owned());
         (labels.collect(), [inner.len(), others.len()], told[0].inside_because.clone())
     };
