@@ -103,8 +103,8 @@ fn elements_exert_the_same_forces() {
 fn parallelepipeds_exert_the_same_forces() {
     let cells = Effects { cells: true, ..Effects::default() };
     compare_element_forces(&cells, |world| {
-        let blocks = world.query::<&Block>().iter(world);
-        assert!(blocks.filter(|block| block.kind == ElementKind::Hex8).all(|block| block.simple));
+        let mut blocks = world.query::<&Block>();
+        assert!(blocks.iter(world).filter(|block| block.kind == ElementKind::Hex8).all(|block| block.simple));
     });
     compare_element_forces(
         &Effects { fibres: Some(AROUND), prony: 2, scheme: Scheme::TwoPass, ..cells.clone() },
