@@ -233,7 +233,8 @@ fn forces_are_there_for_whoever_looks() {
         seen.0.push(forces(internal, external));
     }
     let registry = Registry::default().with(System::custom("looks", Phase::Observe, "looks at forces", looks));
-    let probe = "probes: {\"floor\": (what: Reaction, body: \"a\", on: Plane(normal: (0, 0, 1), at: 0), every: 0.006)},";
+    let probe =
+        "probes: {\"floor\": (what: Reaction, body: \"a\", on: Plane(normal: (0, 0, 1), at: 0), every: 0.006)},";
     let schedule = "schedule: [\"boundary\", \"element_forces\", \"gather\", \"gravity\", \"nodal_force\", \"pressure\", \"traction\", \"integrate\", \"looks\", \"observe\"],";
     for options in configurations().into_iter().map(|run| run.options).filter(|o| o.backend == BackendChoice::Cpu) {
         let run = |fuse: bool, more: &str, count: u64| {
