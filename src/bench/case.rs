@@ -1,5 +1,6 @@
 //! What is measured: cubes under gravity, held at the bottom.
 
+use crate::backend::cpu::Instructions;
 use crate::components::{Precision, Scheme};
 use crate::error::Error;
 use crate::mesh::ElementKind;
@@ -35,6 +36,9 @@ pub struct Case {
     pub precision: String,
     /// CPU threads.
     pub threads: usize,
+    /// Vector registers of the CPU: `widest`, `avx2` or `portable`.
+    #[serde(default = "widest")]
+    pub instructions: String,
     /// `patches` or `two-pass`.
     pub scheme: String,
     /// Cells along each edge.
@@ -45,6 +49,10 @@ pub struct Case {
 }
 
 /// Records of before had no word for it.
+fn widest() -> String {
+    "widest".into()
+}
+
 fn yes() -> bool {
     true
 }
@@ -64,6 +72,8 @@ pub struct Plan {
     pub precisions: Vec<String>,
     /// CPU threads.
     pub threads: Vec<usize>,
+    /// `widest`, `avx2`, `portable`.
+    pub instructions: Vec<String>,
     /// `patches`, `two-pass`.
     pub schemes: Vec<String>,
     /// Whether systems share kernels, both for what that gains.
@@ -81,7 +91,7 @@ impl Plan {
                     for backend in &self.backends {
                         let gpu = backend == "gpu";
                         for precision in self.precisions.iter().filter(|precision| !gpu || *precision == "f32") {
-                            for &threads in if gpu { &[1][..] } else { &self.threads } {
+                            for (threads, instructions) in if gpu { vec![(1, widest())] } else { self.on_cpu() } {
                                 for scheme in &self.schemes {
                                     group.extend(self.fuse.iter().map(|&fuse| Case {
                                         element,
@@ -89,6 +99,7 @@ impl Plan {
                                         backend: backend.clone(),
                                         precision: precision.clone(),
                                         threads,
+                                        instructions: instructions.clone(),
                                         scheme: scheme.clone(),
                                         cells,
                                         fuse,
@@ -103,6 +114,12 @@ impl Plan {
         }
         groups.retain(|group: &Vec<Case>| !group.is_empty());
         groups
+    }
+
+    /// Threads and registers.
+    fn on_cpu(&self) -> Vec<(usize, String)> {
+        let with = |&threads| self.instructions.iter().map(move |instructions| (threads, instructions.clone()));
+        self.threads.iter().flat_map(with).collect()
     }
 }
 
@@ -130,6 +147,15 @@ impl Case {
     /// Whether it runs on a GPU.
     pub fn is_gpu(&self) -> bool {
         self.backend == "gpu"
+    }
+
+    /// Where it runs, in a few words.
+    pub fn on(&self) -> String {
+        match self.instructions.as_str() {
+            _ if self.is_gpu() => "GPU".into(),
+            "widest" => format!("{} × {}", self.threads, self.precision),
+            instructions => format!("{} × {}, {instructions}", self.threads, self.precision),
+        }
     }
 
     /// The same with every system apart.
@@ -174,6 +200,11 @@ impl Case {
             backend: if self.is_gpu() { BackendChoice::Gpu } else { BackendChoice::Cpu },
             precision: if self.precision == "f64" { Precision::F64 } else { Precision::F32 },
             threads: self.threads,
+            instructions: match self.instructions.as_str() {
+                "avx2" => Instructions::Avx2,
+                "portable" => Instructions::Portable,
+                _ => Instructions::Widest,
+            },
             scheme: if self.scheme == "patches" { Scheme::Patches } else { Scheme::TwoPass },
             ..Options::default()
         }

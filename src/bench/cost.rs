@@ -198,6 +198,7 @@ mod tests {
             backend: "cpu".into(),
             precision: "f32".into(),
             threads: 1,
+            instructions: "widest".into(),
             scheme: "patches".into(),
             cells: 20,
         };

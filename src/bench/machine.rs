@@ -1,6 +1,6 @@
 //! What the machine can do at best, measured.
 
-use crate::backend::cpu::Cpu;
+use crate::backend::cpu::{Cpu, Instructions};
 use crate::math::{Real, SimdScalar};
 use pulp::{Simd, WithSimd};
 use serde::{Deserialize, Serialize};
@@ -27,7 +27,7 @@ const CHAINS: usize = 10;
 impl Machine {
     /// Measures for some tenths of a second.
     pub fn measure(threads: usize) -> Self {
-        let cpu = Cpu::new(threads, 0);
+        let cpu = Cpu::new(threads, 0, Instructions::Widest);
         let from = vec![1.0_f32; NUMBERS];
         let mut to = vec![0.0_f32; NUMBERS];
         let chunk = NUMBERS / threads.max(1);

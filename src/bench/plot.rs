@@ -58,7 +58,7 @@ pub fn svg(record: &Record) -> String {
 }
 
 fn name(case: &Case) -> String {
-    let on = if case.is_gpu() { "GPU".to_string() } else { format!("{} × {}", case.threads, case.precision) };
+    let on = case.on();
     let split = if case.fuse { "" } else { ", split" };
     format!("{:?}, {}, {on}, {}{split}", case.element, case.effects.name(), case.scheme)
 }

@@ -24,11 +24,10 @@ pub fn cpu_to_gpu(record: &Record) -> Option<String> {
         for cpu in record.rows.iter().filter(|row| !row.case.is_gpu() && same(&row.case)) {
             let split = if gpu.case.fuse { "" } else { ", split" };
             let name = format!(
-                "{:?}, {}{split}: {} × {} {} / GPU {}",
+                "{:?}, {}{split}: {} {} / GPU {}",
                 gpu.case.element,
                 gpu.case.effects.name(),
-                cpu.case.threads,
-                cpu.case.precision,
+                cpu.case.on(),
                 cpu.case.scheme,
                 gpu.case.scheme
             );
@@ -47,7 +46,7 @@ pub fn split_to_fused(record: &Record) -> Option<String> {
         let wanted = fused.case.split();
         let Some(split) = record.rows.iter().find(|row| row.case == wanted) else { continue };
         let case = &fused.case;
-        let on = if case.is_gpu() { "GPU".to_string() } else { format!("{} × {}", case.threads, case.precision) };
+        let on = case.on();
         let name = format!("{:?}, {}, {on}, {}", case.element, case.effects.name(), case.scheme);
         let more = |of: fn(&Row) -> Option<f64>| Some(100.0 * (of(split)? / of(fused)? - 1.0));
         let at = fused.nodes as f64;

@@ -29,6 +29,7 @@ pub fn csv(record: &Record) -> String {
         "fuse",
         "gpu_ns",
         "adapter",
+        "instructions",
     ]);
     let optional = |number: Option<f64>| number.map(|number| number.to_string()).unwrap_or_default();
     for row in &record.rows {
@@ -56,6 +57,7 @@ pub fn csv(record: &Record) -> String {
             if case.fuse { "on" } else { "off" }.into(),
             optional(row.gpu_ns),
             row.adapter.clone().unwrap_or_default(),
+            if case.is_gpu() { String::new() } else { case.instructions.clone() },
         ]);
     }
     writer.into_inner().map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).unwrap_or_default()
@@ -88,10 +90,7 @@ pub fn markdown(record: &Record) -> String {
 /// A row of the table.
 pub fn line(row: &Row) -> String {
     let case = &row.case;
-    let on = match case.backend.as_str() {
-        "gpu" => "GPU".to_string(),
-        _ => format!("{} × {}", case.threads, case.precision),
-    };
+    let on = case.on();
     let scheme = if case.fuse { case.scheme.clone() } else { format!("{}, split", case.scheme) };
     let percent = |share: Option<f64>| share.map_or("".into(), |share| format!("{:.0} %", 100.0 * share));
     format!(

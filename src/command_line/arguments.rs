@@ -220,6 +220,9 @@ pub struct BenchArguments {
     /// CPU threads [default: 1 and one a core]
     #[arg(long, value_name = "N,..", value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Vec<u16>,
+    /// Vector registers of the CPU: the widest it has, AVX2 also where there is AVX-512, or what any machine has
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["widest".to_string()], value_parser = ["widest", "avx2", "portable"])]
+    pub instructions: Vec<String>,
     /// How element forces are summed
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["patches".to_string(), "two-pass".to_string()], value_parser = ["patches", "two-pass"])]
     pub schemes: Vec<String>,

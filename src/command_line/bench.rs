@@ -45,13 +45,11 @@ pub fn command(arguments: &BenchArguments) -> Outcome {
         let word = if change.ratio() > SLOWER { "SLOWER" } else { "      " };
         slower += usize::from(change.ratio() > SLOWER);
         terminal::say(&format!(
-            "{word} {:.2} times as long: {:?}, {}, {} {} × {}, {}, {} cells: {:.2} ns, was {:.2}\n",
+            "{word} {:.2} times as long: {:?}, {}, {}, {}, {} cells: {:.2} ns, was {:.2}\n",
             change.ratio(),
             case.element,
             case.effects.name(),
-            case.backend,
-            case.threads,
-            case.precision,
+            case.on(),
             case.scheme,
             case.cells,
             change.ns[1],
@@ -90,6 +88,7 @@ fn plan(arguments: &BenchArguments) -> Plan {
         backends: arguments.backends.clone(),
         precisions: arguments.precisions.clone(),
         threads,
+        instructions: arguments.instructions.clone(),
         schemes: arguments.schemes.clone(),
         fuse: arguments.fuse.iter().map(|word| word == "on").collect(),
     }

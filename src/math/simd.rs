@@ -7,7 +7,7 @@ use super::rows::{Rows, Scratch, add_f32s, add_f64s, load_f32s, load_f64s};
 use super::thrice::{thrice_f32s, thrice_f64s};
 use super::{Real, Scalar, Task};
 use pulp::{Simd, WithSimd};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::fmt::{Debug, Formatter, Result};
 use std::marker::PhantomData;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -51,6 +51,8 @@ pub trait SimdScalar: Scalar {
     fn add_to_rows<S: Simd>(simd: S, rows: &mut Rows<Self>, at: &[u16], vectors: [Self::Vector<S>; 3]);
     /// Lends the thread's rows to a task, which must not ask for them again.
     fn with_scratch<O>(task: impl FnOnce(&mut Scratch<Self>) -> O) -> O;
+    /// Lends so many numbers of the thread's own, whatever they are.
+    fn with_spare<O>(count: usize, task: impl FnOnce(&mut [Self]) -> O) -> O;
 }
 
 macro_rules! vector {
@@ -230,6 +232,18 @@ macro_rules! vector {
                     static SCRATCH: RefCell<Scratch<$scalar>> = RefCell::default();
                 }
                 SCRATCH.with_borrow_mut(task)
+            }
+            fn with_spare<O>(count: usize, task: impl FnOnce(&mut [Self]) -> O) -> O {
+                thread_local! {
+                    static SPARE: Cell<Vec<$scalar>> = const { Cell::new(Vec::new()) };
+                }
+                let mut spare = SPARE.take();
+                if spare.len() < count {
+                    spare.resize(count, 0.0);
+                }
+                let output = task(&mut spare[..count]);
+                SPARE.set(spare);
+                output
             }
         }
     };

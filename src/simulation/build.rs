@@ -231,7 +231,7 @@ fn plan<'a>(
     let assembly = assemble(scene, options.precision, options.scheme, world, diagnostics);
     check_names(scene.scene.schedule.as_deref().unwrap_or_default(), registry, diagnostics);
     let assembly = assembly?;
-    world.insert_resource(Cpu::new(options.threads, counts(&assembly).1));
+    world.insert_resource(Cpu::new(options.threads, counts(&assembly).1, options.instructions));
     // what is stable depends on the laws, whose history waits for the step
     world.insert_resource(Clock::with_step(1.0));
     insert_laws(options.precision, world);

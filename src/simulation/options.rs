@@ -1,5 +1,6 @@
 //! How to run a scene: what is not the scene's business.
 
+use crate::backend::cpu::Instructions;
 use crate::backend::gpu::{Choice, Gpu, NoGpu, SmallerLimits};
 use crate::components::{Precision, Scheme};
 use crate::error::Error;
@@ -25,6 +26,8 @@ pub struct Options {
     pub precision: Precision,
     /// CPU threads; 0: one a core, and one only for bodies too small to share.
     pub threads: usize,
+    /// Which vector registers the CPU's kernels use: fewer for trying out what becomes of a scene on a smaller machine.
+    pub instructions: Instructions,
     /// Which GPU, when there are several.
     pub gpu: Choice,
     /// How element forces are summed.

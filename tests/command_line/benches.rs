@@ -51,6 +51,7 @@ fn row(backend: &str, cells: u32, fuse: bool, ns: f64, gpu_ns: Option<f64>, adap
         backend: backend.into(),
         precision: "f32".into(),
         threads: 1,
+        instructions: "widest".into(),
         scheme: "two-pass".into(),
         cells,
         fuse,

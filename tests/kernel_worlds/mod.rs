@@ -31,6 +31,8 @@ pub struct Effects {
     pub at_rest: bool,
     /// A removal criterion for all elements, as RON writes it.
     pub criterion: Option<&'static str>,
+    /// Hexahedra that are all parallelepipeds.
+    pub cells: bool,
     /// Elements that take their pressure from means.
     pub averaged: bool,
     /// The elastic law, as RON writes it; else the neo-Hookean one.
@@ -80,6 +82,7 @@ impl Effects {
             removal: true,
             at_rest: false,
             criterion: None,
+            cells: false,
             averaged: false,
             law: None,
             families: Some(FAMILIES),
@@ -92,7 +95,7 @@ impl Effects {
 
     /// Every combination of material effects, and of what a body can have.
     pub fn combinations() -> Vec<Self> {
-        let mut all = Vec::new();
+        let mut all = vec![Self { cells: true, ..Self::default() }, Self { cells: true, ..Self::all() }];
         for fibres in [None, Some(ALONG), Some(AROUND)] {
             for prony in [0, 1, 2] {
                 all.push(Self { fibres, prony, ..Self::default() });
@@ -200,8 +203,14 @@ impl Effects {
         let energies = if self.energies { "output: (energies_every: 0.1)," } else { "" };
         let analysis = if self.at_rest { "Static()" } else { "Transient" };
         let body = |kind: &str| {
+            let mesh = match self.cells && kind.starts_with("Hex8") {
+                true => format!(
+                    "Box(size: (0.1, 0.08, 0.12), cells: (6, 5, 7), elements: {kind}), translate: (-0.05, -0.04, -0.06)"
+                ),
+                false => format!("Ellipsoid(radii: (0.05, 0.04, 0.06), across: 6, elements: {kind})"),
+            };
             format!(
-                "(mesh: Ellipsoid(radii: (0.05, 0.04, 0.06), across: 6, elements: {kind}), material: \"tissue\", {copies}
+                "(mesh: {mesh}, material: \"tissue\", {copies}
                   regions: [(on: Box(min: (0, -1, -1), max: (1, 1, 1)), material: \"plain\")])"
             )
         };

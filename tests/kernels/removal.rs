@@ -10,6 +10,7 @@ fn the_same_elements_are_removed() {
     for effects in [
         Effects { removal: true, damping: true, fibres: Some(AROUND), ..Effects::default() },
         Effects::all(),
+        Effects { cells: true, ..Effects::all() },
         Effects { averaged: true, ..Effects::all() },
     ] {
         for step in [0, 9] {

@@ -7,6 +7,7 @@ use crate::configurations::{Configuration, configurations};
 use crate::grids::{Grid, bits, grid};
 use crate::random::Random;
 use glam::DVec3;
+use sinew::backend::cpu::{Cpu, Instructions};
 use sinew::components::{Precision, Scheme};
 use sinew::mesh::ElementKind;
 use sinew::{BackendChoice, Options, Simulation};
@@ -92,6 +93,27 @@ fn gpu_gives_the_same_bits_from_run_to_run() {
 fn largest_difference(a: &[DVec3], b: &[DVec3]) -> f64 {
     let largest = a.iter().fold(0.0_f64, |largest, u| largest.max(u.length()));
     a.iter().zip(b).fold(0.0_f64, |worst, (a, b)| worst.max((*a - *b).length())) / largest
+}
+
+/// Also those that this machine would not choose.
+#[test]
+fn all_vector_registers_give_the_same_motion() {
+    let (folder, mesh) = (tempfile::tempdir().unwrap(), mesh(6));
+    for (precision, bound) in [(Precision::F64, 1e-12), (Precision::F32, 1e-4)] {
+        let [widest, others @ ..] =
+            [Instructions::Widest, Instructions::Avx2, Instructions::Portable].map(|instructions| {
+                let options = Options { backend: BackendChoice::Cpu, precision, instructions, ..Options::default() };
+                let run = Configuration { name: "CPU", options };
+                let mut simulation = start(&mesh, &run, Effects::Laws, folder.path());
+                simulation.advance(60).unwrap();
+                (simulation.displacements("b").unwrap(), simulation.world().resource::<Cpu>().describe())
+            });
+        assert!(others[1].1.contains("scalar"), "{}", others[1].1);
+        for (other, backend) in others {
+            let off = largest_difference(&widest.0, &other);
+            assert!(off <= bound, "{backend}: {off:e}");
+        }
+    }
 }
 
 /// Nodes whose work is booked are moved one after the other, others a register full at a time.

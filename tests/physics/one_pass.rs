@@ -6,7 +6,8 @@ use bevy_ecs::prelude::*;
 use glam::DVec3;
 use sinew::backend::device::{Device, bring_to_host, send_to_device};
 use sinew::components::{
-    Column, DisplacementStep, ExternalForce, FirstNonFinite, Mass, Patches, Precision, RemovalStep, SPENT_AT, before_at,
+    Column, DisplacementStep, ExternalForce, FirstNonFinite, InternalForce, Mass, Patches, Precision, RemovalStep,
+    SPENT_AT, before_at,
 };
 use sinew::systems::{Phase, Registry, System};
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
@@ -40,6 +41,9 @@ fn end(run: &Configuration, text: &str) -> Vec<DVec3> {
         let mut all = simulation.displacements(body).unwrap();
         bring_to_host(simulation.world_mut(), |_, _| true).unwrap();
         all.extend(simulation.world().get::<ExternalForce>(entity).unwrap().vectors().map(|force| 1e-3 * force));
+        if run.options.backend == BackendChoice::Cpu {
+            all.extend(simulation.world().get::<InternalForce>(entity).unwrap().vectors());
+        }
         all
     });
     bodies.concat()
@@ -212,6 +216,45 @@ fn nodes_inside_patches_go_where_they_go_with_all_others() {
             (gone, simulation.displacements("a").unwrap())
         });
         assert!(ends[0] == ends[1], "{}", run.name);
+    }
+}
+
+/// All forces in the world (N), of what a body exerts and of what acts on it.
+fn forces(internal: Query<&InternalForce>, external: Query<&ExternalForce>) -> Vec<DVec3> {
+    internal.iter().flat_map(|force| force.vectors()).chain(external.iter().flat_map(|force| force.vectors())).collect()
+}
+
+/// Between steps after which nobody looks they go nowhere; a system of one's own finds them in every step, whoever takes steps
+/// after the last, and a probe when it is due.
+#[test]
+fn forces_are_there_for_whoever_looks() {
+    #[derive(Resource, Default)]
+    struct Seen(Vec<Vec<DVec3>>);
+    fn looks(mut seen: ResMut<Seen>, internal: Query<&InternalForce>, external: Query<&ExternalForce>) {
+        seen.0.push(forces(internal, external));
+    }
+    let registry = Registry::default().with(System::custom("looks", Phase::Observe, "looks at forces", looks));
+    let probe =
+        "probes: {\"floor\": (what: Reaction, body: \"a\", on: Plane(normal: (0, 0, 1), at: 0), every: 0.006)},";
+    let schedule = "schedule: [\"boundary\", \"element_forces\", \"gather\", \"gravity\", \"nodal_force\", \"pressure\", \"traction\", \"integrate\", \"looks\", \"observe\"],";
+    for options in configurations().into_iter().map(|run| run.options).filter(|o| o.backend == BackendChoice::Cpu) {
+        let run = |fuse: bool, more: &str, count: u64| {
+            let text = scene(&format!("{probe} {more}"), PRESSURE, fuse);
+            let file = scene_of(&text, Path::new("."));
+            let mut simulation = Simulation::with_systems(&file, &options, &registry).unwrap_or_else(|e| panic!("{e}"));
+            simulation.world_mut().init_resource::<Seen>();
+            let (mut ends, mut probed) = (Vec::new(), Vec::new());
+            for _ in 0..42 / count {
+                simulation.advance(count).unwrap_or_else(|error| panic!("{error}"));
+                ends.push(simulation.world_mut().run_system_cached(forces).unwrap());
+                probed.push(simulation.summary("").unwrap().probes);
+            }
+            (std::mem::take(&mut simulation.world_mut().resource_mut::<Seen>().0), ends, probed)
+        };
+        for (more, count) in [("", 1), ("", 7), (schedule, 42)] {
+            assert!(run(true, more, count) == run(false, more, count), "{:?} in steps of {count}", options.precision);
+        }
+        assert_eq!(run(true, schedule, 42).0.len(), 42);
     }
 }
 

@@ -21,6 +21,18 @@ pub const ROWS_A_TASK: usize = 2048;
 /// Elements below which one thread does a step as fast as two (6 000 tetrahedra break even, 25 000 gain 1.7 times).
 const WORTH_SHARING: usize = 6000;
 
+/// Which vector registers kernels use.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Instructions {
+    /// The widest that the machine has.
+    #[default]
+    Widest,
+    /// AVX2 also where there is AVX-512.
+    Avx2,
+    /// What any machine has.
+    Portable,
+}
+
 /// Threads and instruction set of a run.
 #[derive(Resource)]
 pub struct Cpu {
@@ -31,7 +43,7 @@ pub struct Cpu {
 
 impl Cpu {
     /// `threads` 0: one a core, and one only for bodies too small to share.
-    pub fn new(threads: usize, elements: usize) -> Self {
+    pub fn new(threads: usize, elements: usize, instructions: Instructions) -> Self {
         let threads = match threads {
             0 if elements < WORTH_SHARING => 1,
             0 => std::thread::available_parallelism().map_or(1, |n| n.get()),
@@ -42,7 +54,13 @@ impl Cpu {
             n => rayon::ThreadPoolBuilder::new().num_threads(n).build().ok().map(Arc::new),
         };
         let threads = if pool.is_some() { threads } else { 1 };
-        Self { pool, threads, arch: pulp::Arch::new() }
+        let arch = match (instructions, pulp::Arch::new()) {
+            (Instructions::Portable, _) => pulp::Arch::Scalar,
+            #[cfg(target_arch = "x86_64")]
+            (Instructions::Avx2, pulp::Arch::V4(simd)) => pulp::Arch::V3(*simd),
+            (_, widest) => widest,
+        };
+        Self { pool, threads, arch }
     }
 
     /// How many threads work.

@@ -175,7 +175,8 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
                 })*
             };
         }
-        give!(0 1 2 3 4 5 6 7);
+        // node 0 last: its force is what balances the others'
+        give!(1 2 3 4 5 6 7 0);
     }
 
     /// The force on a corner of a register full of elements.

@@ -1,7 +1,7 @@
 //! What moves nodes, and how it is shared out among tasks.
 
 use crate::components::{SPENT_ROWS, WORK_NUMBERS};
-use crate::math::Scalar;
+use crate::math::SimdScalar;
 
 /// Some rows of a body's node columns, which no other task has; layouts as in [`components`](crate::components).
 pub struct NodeColumns<'a, T> {
@@ -34,28 +34,29 @@ pub struct NodeColumns<'a, T> {
     pub kept: &'a mut [u32],
 }
 
-impl<T: Scalar> NodeColumns<'_, T> {
+impl<T: SimdScalar> NodeColumns<'_, T> {
     /// Does a task with them; without `observed` forces are in a place of the task's own, which is gone afterwards.
     pub fn with_forces<R>(&mut self, observed: bool, task: impl FnOnce(&mut NodeColumns<'_, T>) -> R) -> R {
         if observed {
             return task(self);
         }
-        let mut internal = vec![T::default(); self.internal.len()];
-        let mut external = self.external.as_ref().map(|external| vec![T::default(); external.len()]);
-        task(&mut NodeColumns {
-            first: self.first,
-            mass: self.mass,
-            inertia: self.inertia,
-            internal: &mut internal,
-            external: external.as_deref_mut(),
-            axes: self.axes,
-            damping: self.damping,
-            u: &mut *self.u,
-            step: &mut *self.step,
-            compensation: self.compensation.as_mut().map(|both| both.each_mut().map(|all| &mut **all)),
-            work: self.work.as_deref_mut(),
-            sums: &mut *self.sums,
-            kept: &mut *self.kept,
+        T::with_spare(2 * self.internal.len(), |spare| {
+            let (internal, external) = spare.split_at_mut(self.internal.len());
+            task(&mut NodeColumns {
+                first: self.first,
+                mass: self.mass,
+                inertia: self.inertia,
+                internal,
+                external: self.external.is_some().then_some(external),
+                axes: self.axes,
+                damping: self.damping,
+                u: &mut *self.u,
+                step: &mut *self.step,
+                compensation: self.compensation.as_mut().map(|both| both.each_mut().map(|all| &mut **all)),
+                work: self.work.as_deref_mut(),
+                sums: &mut *self.sums,
+                kept: &mut *self.kept,
+            })
         })
     }
 }
