@@ -116,16 +116,9 @@ impl Effects {
                 all.push(Self { volumetric: true, reproject: true, ..plain });
             }
         }
+        let at_rest = Self { at_rest: true, prony: 1, damping: true, moved: true, ..Self::default() };
         for (loads, compensated) in [(false, false), (false, true), (true, false), (true, true)] {
-            all.push(Self {
-                at_rest: true,
-                prony: 1,
-                damping: true,
-                loads,
-                compensated,
-                moved: true,
-                ..Self::default()
-            });
+            all.push(Self { loads, compensated, ..at_rest.clone() });
         }
         for averaged in [false, true] {
             all.push(Self { inversion: Some("Remove"), averaged, removal: true, ..Self::default() });
