@@ -7,7 +7,7 @@ use super::material::called_for;
 use super::patches::{insert_forces, strided};
 use super::{Assembly, PlacedMesh, select};
 use crate::components::*;
-use crate::elements::Element;
+use crate::elements::{Element, MOST_NODES};
 use crate::evaluation::{averages, lane_place, node_count, with_element, with_element_of};
 use crate::materials::{Elastic, ElasticLaw};
 use crate::math::LANES;
@@ -206,13 +206,17 @@ impl BlockBuilder<'_> {
     }
 
     /// Rest positions of an element's nodes (m).
-    fn points(&self, element: u32) -> Vec<DVec3> {
-        self.mesh.element(element as usize).iter().map(|&node| self.mesh.points[node as usize]).collect()
+    fn points(&self, element: u32) -> [DVec3; MOST_NODES] {
+        let mut points = [DVec3::ZERO; MOST_NODES];
+        for (point, &node) in points.iter_mut().zip(self.mesh.element(element as usize)) {
+            *point = self.mesh.points[node as usize];
+        }
+        points
     }
 
     /// Whether the type for [simple](Element::Simple) shapes describes all elements.
     fn is_simple(&self) -> bool {
-        with_element!(self.kind, E => self.elements.iter().all(|&e| <E as Element>::Simple::describes(&self.points(e))))
+        with_element!(self.kind, E => self.elements.iter().all(|&e| <E as Element>::Simple::describes(&self.points(e)[..E::NODES])))
     }
 
     /// Rest shapes for an element type.
@@ -221,7 +225,7 @@ impl BlockBuilder<'_> {
         for row in 0..self.padded() {
             // elements that fill up the last group have the last element's shape and no volume
             let element = self.elements[row.min(self.elements.len() - 1)];
-            let shape = E::rest_shape(&self.points(element), young);
+            let shape = E::rest_shape(&self.points(element)[..E::NODES], young);
             for k in 0..E::ROWS {
                 let exerts = Some(k) == E::FORCE_ROW || k == E::VOLUME_ROW;
                 let number = if exerts && row >= self.elements.len() { 0.0 } else { shape[k] };
