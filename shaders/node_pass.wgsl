@@ -8,7 +8,6 @@ fn node_pass(
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) local: u32,
 ) {
-    // in this order: Mesa 22.3's software GPU has been seen to crash over conditions whose first operand is a uniform
     let node = row(id, groups) + pass_rows.first;
     if node < pass_rows.count {
         call_all(node);

@@ -52,7 +52,7 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
         let fictitious = world.get::<FictitiousMass>(body).is_some();
         let compensated = world.get::<DisplacementCompensation>(body).is_some();
         let [external, damped, worked] = optional;
-        let most = buffers.storage_buffers();
+        let most = buffers.most_buffers().storage;
         let mut stage = |call: &'static str, columns: &[&'static str]| {
             let stage = NodeStage::new("integrate", call, body, count, shader!("integrate")).with_step(world);
             let stage = with_optional(stage, [damped, worked], compensated, relaxed, (spent, kept)).loaded(external);

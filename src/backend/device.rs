@@ -2,7 +2,7 @@
 
 use super::Buffers;
 use super::gpu::{BufferKind, Gpu, GpuLimits};
-use super::kernel::{BindingKind, BufferId, Kernel, KernelId, compose};
+use super::kernel::{BindingKind, BufferId, Kernel, KernelId, MostBuffers, compose};
 use crate::components::*;
 use crate::error::Error;
 use bevy_ecs::component::ComponentId;
@@ -304,8 +304,8 @@ impl Buffers for Binder<'_> {
         buffer
     }
 
-    fn storage_buffers(&self) -> usize {
-        self.device.gpu.limits().storage_buffers as usize
+    fn most_buffers(&self) -> MostBuffers {
+        self.device.gpu.limits().buffers
     }
 
     fn workgroup_invocations(&self) -> usize {

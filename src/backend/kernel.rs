@@ -28,11 +28,39 @@ pub const STEP_VARIABLE: &str = "step";
 /// layer binds it, a kernel must not.
 pub const STEP_RECORDS_VARIABLE: &str = "step_records";
 
-/// Storage buffers a kernel may use on every WebGPU device (`maxStorageBuffersPerShaderStage`).
-pub const WEBGPU_STORAGE_BUFFERS: usize = 8;
+/// How many buffers a kernel may use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MostBuffers {
+    /// Storage buffers.
+    pub storage: usize,
+    /// Uniform buffers.
+    pub uniform: usize,
+    /// Of both kinds together.
+    pub together: usize,
+}
 
-/// Storage buffers a kernel may use on every desktop GPU: what is assumed where kernels are described without one.
-pub const DESKTOP_STORAGE_BUFFERS: usize = 16;
+impl MostBuffers {
+    /// On every WebGPU device (`maxStorageBuffersPerShaderStage`, `maxUniformBuffersPerShaderStage`).
+    pub const WEBGPU: Self = Self::new(8, 12);
+    /// On every desktop GPU: what is assumed where kernels are described without one.
+    pub const DESKTOP: Self = Self::new(16, 12);
+
+    /// So many of each kind, and of both together no fewer.
+    pub const fn new(storage: usize, uniform: usize) -> Self {
+        Self { storage, uniform, together: storage + uniform }
+    }
+
+    /// Why a kernel with so many buffers cannot be, if so.
+    pub fn exceeded_by(self, storage: usize, uniform: usize) -> Option<String> {
+        let counts = [
+            (storage, "storage buffers", self.storage),
+            (uniform, "uniform buffers", self.uniform),
+            (storage + uniform, "buffers", self.together),
+        ];
+        let (needed, of, most) = counts.into_iter().find(|(needed, _, most)| needed > most)?;
+        Some(format!("it would need {needed} {of}, and {most} may be"))
+    }
+}
 
 /// Invocations that a workgroup may have on every desktop GPU: what is assumed where kernels are described without one.
 pub const DESKTOP_WORKGROUP: usize = 1024;

@@ -2,7 +2,7 @@
 //! `shaders/many_steps.wgsl` is the kernel.
 
 use super::Buffers;
-use super::kernel::Kernel;
+use super::kernel::{Kernel, MostBuffers};
 use super::node_stage::{self, NodeStage};
 use super::patch_lists::{BATCH_GROUPS, WEBGPU_WORKGROUP_MEMORY, workgroup_memory};
 use super::step::record_size;
@@ -62,7 +62,8 @@ pub fn take_small_bodies(
             let step = whole_step(&blocks, body, stages, world);
             let step: Vec<&NodeStage> = step.iter().collect();
             // one more for the records of the steps
-            let most = buffers.storage_buffers().saturating_sub(1);
+            let most = buffers.most_buffers();
+            let most = MostBuffers { storage: most.storage.saturating_sub(1), ..most };
             match node_stage::why_apart(&step, most) {
                 None => Ok(node_stage::many_steps(&step, width, buffers)),
                 Some(reason) => Err(reason),

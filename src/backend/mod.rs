@@ -23,9 +23,9 @@ pub trait Buffers {
     fn column(&mut self, entity: Entity, name: &'static str) -> BufferId;
     /// A read-only storage buffer of constants.
     fn constants(&mut self, label: String, bytes: &[u8]) -> BufferId;
-    /// How many storage buffers a kernel may use.
-    fn storage_buffers(&self) -> usize {
-        kernel::DESKTOP_STORAGE_BUFFERS
+    /// How many buffers a kernel may use.
+    fn most_buffers(&self) -> kernel::MostBuffers {
+        kernel::MostBuffers::DESKTOP
     }
     /// How many invocations a workgroup may have.
     fn workgroup_invocations(&self) -> usize {

@@ -5,7 +5,7 @@ mod fused;
 mod items;
 
 use super::Buffers;
-use super::kernel::{BufferId, Fragment, Kernel, Layout, Uniform, uniform};
+use super::kernel::{BufferId, Fragment, Kernel, Layout, MostBuffers, Uniform, uniform};
 use super::step::{step_fragments, step_in_a_uniform};
 use crate::components::{Column, Displacement, ElementForce, Mass, SPENT_ROWS};
 use crate::shader;
@@ -201,7 +201,7 @@ pub fn node_kernels(stages: Vec<NodeStage>, fuse: bool, buffers: &mut dyn Buffer
         let mut waiting: Vec<&NodeStage> = Vec::new();
         for stage in stages.iter().filter(|stage| stage.body == body) {
             waiting.push(stage);
-            if waiting.len() == 1 || (fuse && why_apart(&waiting, buffers.storage_buffers()).is_none()) {
+            if waiting.len() == 1 || (fuse && why_apart(&waiting, buffers.most_buffers()).is_none()) {
                 continue;
             }
             let before = &waiting[..waiting.len() - 1];
@@ -215,20 +215,19 @@ pub fn node_kernels(stages: Vec<NodeStage>, fuse: bool, buffers: &mut dyn Buffer
     kernels
 }
 
-/// Storage buffers of a kernel that several stages share, however many the device allows: what more loads gain is little.
-const MOST_SHARED: usize = 32;
+/// Buffers of a kernel that several stages share, however many the device allows: what more loads gain is little.
+pub(super) const MOST_SHARED: MostBuffers = MostBuffers::new(32, 32);
 
-/// Why not all may run in one kernel, where nodes go their way independently of each other, if so; `most`: storage buffers that
-/// the device allows.
-pub(super) fn why_apart(stages: &[&NodeStage], most: usize) -> Option<String> {
-    let (fused, most) = (Fused::of(stages), most.min(MOST_SHARED));
+/// Why not all may run in one kernel, where nodes go their way independently of each other, if so.
+pub(super) fn why_apart(stages: &[&NodeStage], most: MostBuffers) -> Option<String> {
+    let fused = Fused::of(stages);
     let looks =
         |stage: &&&NodeStage| stage.elsewhere.iter().any(|name| fused.written().any(|written| written == *name));
     if let Some(stage) = stages.iter().find(looks) {
         return Some(format!("`{}` looks at other nodes than its own, which must not have moved", stage.system));
     }
-    let storage = fused.storage();
-    (storage > most).then(|| format!("it would need {storage} storage buffers, and {most} may be"))
+    let (storage, uniform) = (fused.storage(), fused.uniforms());
+    MOST_SHARED.exceeded_by(storage, uniform).or_else(|| most.exceeded_by(storage, uniform))
 }
 
 /// A kernel of stages that may run in one, an invocation a node.

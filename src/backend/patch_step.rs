@@ -68,10 +68,10 @@ fn of_body(
         return Err(format!("no patch has {SPENT_ROWS} nodes that no other has"));
     }
     // of all nodes: those that stay may look at those that move
-    if let Some(reason) = node_stage::why_apart(&of_nodes, usize::MAX) {
+    if let Some(reason) = node_stage::why_apart(&of_nodes, node_stage::MOST_SHARED) {
         return Err(reason);
     }
-    let most = buffers.storage_buffers();
+    let most = buffers.most_buffers();
     let mut steps = Vec::new();
     for kernel in blocks {
         let Some(inside) = rows_inside(kernel, world)? else { continue };

@@ -3,7 +3,7 @@
 
 use bevy_ecs::prelude::*;
 use sinew::backend::Buffers;
-use sinew::backend::kernel::{BufferId, Kernel, WEBGPU_STORAGE_BUFFERS};
+use sinew::backend::kernel::{BufferId, Kernel, MostBuffers};
 use sinew::backend::many_steps::{Dispatched, step_by_step, take_small_bodies};
 use sinew::backend::node_stage::{NodeStage, node_kernels};
 use sinew::backend::patch_step::take_inner_nodes;
@@ -245,8 +245,7 @@ pub fn gpu_choice() -> sinew::backend::gpu::Choice {
 
 /// Hands out no buffers, but remembers the bytes of uniforms.
 pub struct Described {
-    /// Storage buffers a kernel may use.
-    pub most: usize,
+    pub most: MostBuffers,
     pub uniforms: Vec<(String, usize)>,
     pub columns: Vec<(Entity, &'static str)>,
 }
@@ -254,12 +253,12 @@ pub struct Described {
 impl Default for Described {
     /// As on the smallest device.
     fn default() -> Self {
-        Self { most: WEBGPU_STORAGE_BUFFERS, uniforms: Vec::new(), columns: Vec::new() }
+        Self { most: MostBuffers::WEBGPU, uniforms: Vec::new(), columns: Vec::new() }
     }
 }
 
 impl Buffers for Described {
-    fn storage_buffers(&self) -> usize {
+    fn most_buffers(&self) -> MostBuffers {
         self.most
     }
     fn column(&mut self, entity: Entity, name: &'static str) -> BufferId {

@@ -31,6 +31,19 @@ fn is(run: &Configuration, what: &str, found: DVec3, expected: DVec3, scale: f64
     assert!(error < run.bound(1e-12, 1e-5), "{}, {what}: {found} instead of {expected}: {error:e}", run.name);
 }
 
+/// More than a kernel has room for parameters of: 1 + 2 + … + 40 thousandths of a newton a node.
+#[test]
+fn there_may_be_any_number_of_loads() {
+    let on = "on: Plane(normal: (0, 0, 1), at: 0.4)";
+    let loads: Vec<String> =
+        (1..=40).map(|i| format!("NodalForce({on}, force: (0, {}, 0))", 1e-3 * f64::from(i))).collect();
+    for run in &configurations() {
+        let (forces, _) = forces(run, "Tet4", "Fixed(on: Plane(normal: (0, 0, 1), at: 0))", &loads.join(", "));
+        let sum: DVec3 = forces.iter().sum();
+        is(run, "sum", sum, DVec3::new(0.0, 0.82 * 12.0, 0.0), 0.82 * 12.0);
+    }
+}
+
 #[test]
 fn nodal_forces_are_each_or_in_total_what_the_scene_says() {
     for run in &configurations() {

@@ -58,6 +58,7 @@ impl Gpu {
         self.within(label, bytes, self.limits.max_buffer_size, "bytes", "maxBufferSize")?;
         let kind_usage = match kind {
             BufferKind::Storage => BufferUsages::STORAGE,
+            BufferKind::Uniform if self.safe_uniforms.is_some() => BufferUsages::UNIFORM | BufferUsages::STORAGE,
             BufferKind::Uniform => BufferUsages::UNIFORM,
         };
         let usage = kind_usage | BufferUsages::COPY_SRC | BufferUsages::COPY_DST;

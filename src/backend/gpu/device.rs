@@ -10,9 +10,11 @@ use super::buffers::Slot;
 use super::error::{Event, Inbox};
 use super::pace::Pace;
 use super::pipelines::{Pipelines, Prepared};
+use super::quirks::safe_uniforms;
 use super::run::StepRecords;
 use super::timing::Timing;
 use super::{GpuError, NoGpu};
+use crate::backend::kernel::MostBuffers;
 
 /// A submission that takes longer than this is taken for dead.
 const PATIENCE: Duration = Duration::from_secs(300);
@@ -30,6 +32,8 @@ pub struct Gpu {
     pub(super) pace: Pace,
     pub(super) timing: Option<Timing>,
     pub(super) times: HashMap<String, super::KernelTime>,
+    /// Uniform buffers of a kernel, where the driver spoils memory with more.
+    pub(super) safe_uniforms: Option<usize>,
     inbox: Inbox,
     report: AdapterReport,
 }
@@ -43,8 +47,8 @@ pub struct GpuLimits {
     pub uniform_binding: u64,
     /// Bytes of one buffer.
     pub buffer: u64,
-    /// Storage buffers of one kernel.
-    pub storage_buffers: u32,
+    /// Buffers of one kernel.
+    pub buffers: MostBuffers,
     /// Bytes of workgroup memory.
     pub workgroup_memory: u32,
     /// Invocations of a workgroup.
@@ -86,6 +90,7 @@ impl Gpu {
             device,
             queue,
             inbox,
+            safe_uniforms: safe_uniforms(&report),
             report,
         })
     }
@@ -112,11 +117,16 @@ impl Gpu {
     /// What the device allows.
     pub fn limits(&self) -> GpuLimits {
         let limits = &self.limits;
+        let (storage, uniform) =
+            (limits.max_storage_buffers_per_shader_stage, limits.max_uniform_buffers_per_shader_stage);
+        let both = MostBuffers::new(storage as usize, uniform as usize);
+        // those beyond count as storage buffers
+        let together = self.safe_uniforms.map_or(both.together, |safe| both.storage + safe);
         GpuLimits {
             storage_binding: limits.max_storage_buffer_binding_size,
             uniform_binding: limits.max_uniform_buffer_binding_size,
             buffer: limits.max_buffer_size,
-            storage_buffers: limits.max_storage_buffers_per_shader_stage,
+            buffers: MostBuffers { together, ..both },
             workgroup_memory: limits.max_compute_workgroup_storage_size,
             workgroup_size: limits.max_compute_invocations_per_workgroup,
             time_stamps: self.device.features().contains(Features::TIMESTAMP_QUERY),

@@ -24,6 +24,7 @@ mod device;
 mod error;
 mod pace;
 mod pipelines;
+mod quirks;
 mod run;
 mod testing;
 mod timing;

@@ -11,6 +11,7 @@ use wgpu::{
     ShaderStages,
 };
 
+use super::quirks::read_from_storage;
 use super::run::PACKED_HEADER;
 use super::{BufferKind, Gpu, GpuError};
 use crate::backend::kernel::{
@@ -28,6 +29,8 @@ pub(super) struct Pipelines {
 struct Module {
     composed: Composed,
     shader: ShaderModule,
+    /// Uniforms that are read from storage buffers.
+    moved: Vec<String>,
 }
 
 /// A kernel with everything a dispatch needs.
@@ -62,8 +65,14 @@ impl Gpu {
             found: composed.entries.iter().map(|e| e.name.clone()).collect(),
         })?;
         match_names(kernel, composed, entry)?;
-        let storage = composed.storage_buffers(entry) as u64;
+        let is_moved = |binding: &Binding| module.moved.contains(&binding.name);
+        let moved = entry.uses.iter().filter(|i| is_moved(&composed.bindings[**i])).count();
+        let storage = composed.storage_buffers(entry);
+        let uniforms = (entry.uses.len() - storage) as u64;
+        let limit = u64::from(self.limits.max_uniform_buffers_per_shader_stage);
+        self.within(&kernel.label, uniforms, limit, "uniform buffers", "maxUniformBuffersPerShaderStage")?;
         let limit = u64::from(self.limits.max_storage_buffers_per_shader_stage);
+        let storage = (storage + moved) as u64;
         self.within(&kernel.label, storage, limit, "storage buffers", "maxStorageBuffersPerShaderStage")?;
         let memory = u64::from(self.limits.max_compute_workgroup_storage_size);
         let wanted = u64::from(entry.workgroup_memory);
@@ -92,6 +101,12 @@ impl Gpu {
         Ok(())
     }
 
+    /// Uniforms of all kernels that are read from storage buffers.
+    #[cfg(test)]
+    pub(super) fn moved_uniforms(&self) -> Vec<String> {
+        self.pipelines.modules.values().flat_map(|module| module.moved.clone()).collect()
+    }
+
     pub(super) fn kernel(&self, id: KernelId) -> Result<&Prepared, GpuError> {
         self.kernels.get(id.0 as usize).ok_or_else(|| GpuError::Unknown(format!("kernel {}", id.0)))
     }
@@ -101,10 +116,12 @@ impl Gpu {
             return Ok(known.clone());
         }
         let composed = compose(&kernel.fragments)?;
-        let source = ShaderSource::Naga(std::borrow::Cow::Owned(composed.module().clone()));
+        let mut module = composed.module().clone();
+        let moved = self.safe_uniforms.map(|safe| read_from_storage(&mut module, safe)).unwrap_or_default();
+        let source = ShaderSource::Naga(std::borrow::Cow::Owned(module));
         let shader = self.device.create_shader_module(ShaderModuleDescriptor { label: Some(&kernel.label), source });
         self.check(&format!("the shader of kernel `{}` ({})", kernel.label, kernel.paths()))?;
-        let module = Arc::new(Module { composed, shader });
+        let module = Arc::new(Module { composed, shader, moved });
         self.pipelines.modules.insert(key.to_owned(), module.clone());
         Ok(module)
     }
@@ -121,7 +138,8 @@ impl Gpu {
             return Ok(known.clone());
         }
         let label = Some(kernel.label.as_str());
-        let entries: Vec<_> = entry.uses.iter().map(|i| layout_entry(&module.composed.bindings[*i])).collect();
+        let bindings = entry.uses.iter().map(|i| &module.composed.bindings[*i]);
+        let entries: Vec<_> = bindings.map(|b| layout_entry(b, module.moved.contains(&b.name))).collect();
         let layout = self.device.create_bind_group_layout(&BindGroupLayoutDescriptor { label, entries: &entries });
         let pipeline_layout = self.device.create_pipeline_layout(&PipelineLayoutDescriptor {
             label,
@@ -205,8 +223,9 @@ impl Gpu {
     }
 }
 
-fn layout_entry(binding: &Binding) -> BindGroupLayoutEntry {
+fn layout_entry(binding: &Binding, moved: bool) -> BindGroupLayoutEntry {
     let ty = match binding.kind {
+        BindingKind::Uniform if moved => BufferBindingType::Storage { read_only: true },
         BindingKind::Uniform => BufferBindingType::Uniform,
         BindingKind::Read => BufferBindingType::Storage { read_only: true },
         BindingKind::ReadWrite => BufferBindingType::Storage { read_only: false },

@@ -148,7 +148,7 @@ impl Composed {
         self.entries.iter().find(|e| e.name == name)
     }
 
-    /// Storage buffers that an entry point uses; WebGPU promises [`super::WEBGPU_STORAGE_BUFFERS`].
+    /// Storage buffers that an entry point uses; WebGPU promises [`super::MostBuffers`].
     pub fn storage_buffers(&self, entry: &Entry) -> usize {
         entry.uses.iter().filter(|i| self.bindings[**i].kind != BindingKind::Uniform).count()
     }

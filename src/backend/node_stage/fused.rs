@@ -142,6 +142,12 @@ impl Fused {
         self.columns.len() + self.storage_variables + self.lists.len()
     }
 
+    /// How many uniform buffers it binds, the number of rows counted in.
+    pub fn uniforms(&self) -> usize {
+        let fragments = self.own.iter().chain(&self.shared);
+        1 + fragments.map(|fragment| fragment.text.matches("var<uniform>").count()).sum::<usize>()
+    }
+
     /// The kernel of some rows, but for the function `entry`, which calls `sum_all`, `call_all` and `finish_all`.
     pub fn into_kernel(
         self,

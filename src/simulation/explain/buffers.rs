@@ -4,7 +4,7 @@ use super::Buffer;
 use crate::backend::Buffers;
 use crate::backend::device::all_columns;
 use crate::backend::gpu::GpuLimits;
-use crate::backend::kernel::{BufferId, DESKTOP_STORAGE_BUFFERS, DESKTOP_WORKGROUP};
+use crate::backend::kernel::{BufferId, DESKTOP_WORKGROUP, MostBuffers};
 use crate::components::{Corners, Label, Patches, RestPosition};
 use bevy_ecs::prelude::*;
 use std::collections::BTreeMap;
@@ -113,8 +113,8 @@ impl Buffers for Counter<'_> {
         id
     }
 
-    fn storage_buffers(&self) -> usize {
-        self.limits.map_or(DESKTOP_STORAGE_BUFFERS, |limits| limits.storage_buffers as usize)
+    fn most_buffers(&self) -> MostBuffers {
+        self.limits.map_or(MostBuffers::DESKTOP, |limits| limits.buffers)
     }
 
     fn workgroup_invocations(&self) -> usize {
