@@ -106,17 +106,28 @@ fn speeds(summary: &Summary, page: &mut Page) {
     }
 }
 
+/// What is no system, but a part of the run.
+const FOLLOWED: &str = "between steps: the stable step";
+
 fn systems(summary: &Summary, page: &mut Page) {
-    let width = summary.systems.iter().map(|system| system.name.len()).max().unwrap_or(0);
-    let lines = summary.systems.iter().map(|system| {
-        let time = match system.seconds {
+    let followed = summary.step_history.as_ref().filter(|history| history.looks > 0).map(|history| {
+        let sharp = counted(history.sharp_looks, "time");
+        let because =
+            format!("{} at elements; the highest frequency was found {sharp}", counted(history.looks, "look"));
+        (FOLLOWED, Some(history.seconds), because)
+    });
+    let systems = summary.systems.iter().map(|system| (&*system.name, system.seconds, system.because.clone()));
+    let all: Vec<_> = systems.chain(followed).collect();
+    let width = all.iter().map(|(name, ..)| name.len()).max().unwrap_or(0);
+    let lines = all.iter().map(|(name, seconds, because)| {
+        let time = match seconds {
             Some(seconds) => {
                 let share = 100.0 * seconds / summary.run_seconds.max(f64::MIN_POSITIVE);
-                format!("{:>8}  {share:3.0} %", quantity(seconds, "s"))
+                format!("{:>8}  {share:3.0} %", quantity(*seconds, "s"))
             }
             None => "on the device  ".into(),
         };
-        format!("{:width$}  {time}  {}", system.name, system.because)
+        format!("{name:width$}  {time}  {because}")
     });
     page.rows("systems", lines);
     if let Some(traffic) = &summary.traffic {

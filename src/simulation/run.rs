@@ -26,7 +26,7 @@ impl Simulation {
     /// As [`Simulation::advance`].
     pub fn advance_to(&mut self, time: f64) -> Result<(), Error> {
         loop {
-            self.follow()?;
+            self.follow_in_time()?;
             let clock = *self.world.resource::<Clock>();
             // a time that is a whole number of steps is met in spite of rounding
             let target = clock.since.0 + ((time - clock.since.1) / clock.time_step - 1e-6).ceil().max(0.0) as u64;
@@ -45,7 +45,7 @@ impl Simulation {
     pub fn advance_towards_end(&mut self, count: u64) -> Result<(), Error> {
         let target = self.step_count().saturating_add(count);
         while !self.is_finished() && self.step_count() < target {
-            self.follow()?;
+            self.follow_in_time()?;
             let end = self.planned_steps().min(target).min(self.next_follow());
             let left = end.saturating_sub(self.step_count());
             if left == 0 {
@@ -72,6 +72,14 @@ impl Simulation {
         };
         self.elapsed += started.elapsed();
         result.map_err(|error| self.note(error))
+    }
+
+    /// [`Simulation::follow`] as a part of the run.
+    fn follow_in_time(&mut self) -> Result<(), Error> {
+        let started = Instant::now();
+        let followed = self.follow();
+        self.elapsed += started.elapsed();
+        followed
     }
 
     /// Says of a GPU that failed how far the run came.

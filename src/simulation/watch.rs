@@ -1,13 +1,12 @@
 //! How much quicker elements can have become: a cheap bound, from how far they are deformed now.
 
-use super::growth::{Growth, right_cauchy_green, sizes, with_identity};
+use super::growth::Growth;
 use super::mass_scaling::heaviness;
 use crate::assembly::square_frequencies;
-use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK};
+use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK, Strain, StrainColumns, strains};
 use crate::components::*;
-use crate::elements::{Element, MOST_NODES};
 use crate::evaluation::{lane_place, node_count, with_element_of};
-use crate::math::Scalar;
+use crate::math::LANES;
 use bevy_ecs::prelude::*;
 
 /// The elements of a block, and what is known of their frequencies.
@@ -91,51 +90,84 @@ impl Watched {
 
     /// Looks at all elements; ω² of all was `known` (1/s²) when it was found last.
     pub fn look(&self, world: &World, known: f64) -> Seen {
-        let of_growths = self.growths(world, |row, growth, speed| {
+        let of_growths = self.growths(world, Seen::NOTHING, |seen, row, growth, speed| {
             let own = self.squares[row] * growth;
             let ratio = (growth / f64::from(self.known_growth[row])).max(1.0);
-            Seen { square: own.min(known * ratio), of_elements: own, at_rest: self.squares[row], speed, alive: 1 }
+            let of_element =
+                Seen { square: own.min(known * ratio), of_elements: own, at_rest: self.squares[row], speed, alive: 1 };
+            *seen = seen.and(of_element);
         });
         of_growths.into_iter().fold(Seen::NOTHING, Seen::and)
     }
 
     /// Remembers the present growth, now that the frequency of all is known.
     pub fn remember(&mut self, world: &World) {
-        let growths = self.growths(world, |row, growth, _| (row, growth as f32));
-        growths.into_iter().for_each(|(row, growth)| self.known_growth[row] = growth);
+        let growths = self.growths(world, Vec::new(), |found, row, growth, _| found.push((row, growth as f32)));
+        growths.into_iter().flatten().for_each(|(row, growth)| self.known_growth[row] = growth);
     }
 
     /// The bound of ω² of each element that is there, as it is now (1/s²), with its row.
     pub fn now(&self, world: &World) -> Vec<(usize, f64)> {
-        self.growths(world, |row, growth, _| (row, self.squares[row] * growth))
+        let found =
+            self.growths(world, Vec::new(), |found, row, growth, _| found.push((row, self.squares[row] * growth)));
+        found.into_iter().flatten().collect()
     }
 
-    fn growths<R: Send>(&self, world: &World, of: impl Fn(usize, f64, f64) -> R + Sync + Send) -> Vec<R> {
-        let found = (|| {
-            let block = world.get::<Block>(self.entity)?;
-            let (u, d) = (world.get::<Displacement>(block.body)?, world.get::<DisplacementStep>(block.body)?);
-            let (connectivity, shape) = (world.get::<Connectivity>(self.entity)?, world.get::<RestShape>(self.entity)?);
-            let fibres = world.get::<FibreDirection>(self.entity).map(|fibres| &fibres.0);
-            let cpu = world.resource::<Cpu>();
-            macro_rules! run {
-                ($T:ty) => {{
-                    let elements = Elements::<$T> {
-                        connectivity,
-                        shape: shape.slice(),
-                        u: u.slice(),
-                        d: d.slice(),
-                        fibres,
-                        growth: &self.growth,
-                    };
-                    with_element_of!(block, E => elements.run::<E, R>(cpu, block.count, &of))
-                }};
+    /// Visits all elements that are there with row, growth of ω² and speed of deformation: each of several threads begins with
+    /// `start`, and what they made of it comes in the order of rows.
+    fn growths<R: Clone + Send + Sync>(
+        &self,
+        world: &World,
+        start: R,
+        visit: impl Fn(&mut R, usize, f64, f64) + Sync + Send,
+    ) -> Vec<R> {
+        let (cpu, count) = (world.resource::<Cpu>(), self.squares.len());
+        let task = |task: usize| {
+            let mut found = start.clone();
+            for strain in self.strains(world, task).unwrap_or_default() {
+                visit(&mut found, strain.row, self.growth.at(strain.size) + strain.more, strain.speed);
             }
-            Some(match u.0 {
-                Reals::F32(_) => run!(f32),
-                Reals::F64(_) => run!(f64),
-            })
-        })();
-        found.unwrap_or_default()
+            found
+        };
+        cpu.map(count.div_ceil(ROWS_A_TASK), task)
+    }
+
+    /// Of the elements of a task; `None` where the world has them no longer.
+    fn strains(&self, world: &World, task: usize) -> Option<Vec<Strain>> {
+        let block = world.get::<Block>(self.entity)?;
+        let (u, d) = (world.get::<Displacement>(block.body)?, world.get::<DisplacementStep>(block.body)?);
+        let (connectivity, shape) = (world.get::<Connectivity>(self.entity)?, world.get::<RestShape>(self.entity)?);
+        let fibres = world.get::<FibreDirection>(self.entity).map(|fibres| &fibres.0);
+        let families = |row: usize, c: [f64; 6]| -> f64 {
+            let families = self.growth.families.iter();
+            families.map(|(family, from)| self.growth.of_family(family, c, self.direction(row, from, fibres))).sum()
+        };
+        let more = (!self.growth.families.is_empty()).then_some(&families as &(dyn Fn(usize, [f64; 6]) -> f64 + Sync));
+        let groups = ROWS_A_TASK / LANES;
+        let groups = task * groups..block.count.div_ceil(LANES).min((task + 1) * groups);
+        let cpu = world.resource::<Cpu>();
+        macro_rules! run {
+            ($T:ty) => {{
+                let (displacement, step, rest_shape) = (u.slice(), d.slice(), shape.slice());
+                let columns = StrainColumns::<$T> { displacement, step, connectivity, rest_shape };
+                with_element_of!(block, E => strains::<E, $T>(cpu, &columns, groups, more))
+            }};
+        }
+        Some(match u.0 {
+            Reals::F32(_) => run!(f32),
+            Reals::F64(_) => run!(f64),
+        })
+    }
+
+    fn direction(&self, row: usize, from: &FamilyDirection<f64>, fibres: Option<&Reals>) -> [f64; 3] {
+        match (from, fibres) {
+            (FamilyDirection::Uniform(a), _) => *a,
+            (FamilyDirection::Varying(place), Some(all)) => {
+                let numbers = 3 * self.growth.varying;
+                [0, 1, 2].map(|i| all.get(lane_place(row, numbers, 3 * place + i)))
+            }
+            (FamilyDirection::Varying(_), None) => [0.0; 3],
+        }
     }
 }
 
@@ -150,78 +182,4 @@ fn shortest_edge(world: &World, entity: Entity) -> Option<f64> {
         pairs.clone().fold(f64::INFINITY, |least, (a, b)| least.min(place(row, a).distance_squared(place(row, b))))
     };
     Some((0..block.count).map(of_element).fold(f64::INFINITY, f64::min).sqrt())
-}
-
-struct Elements<'a, T> {
-    connectivity: &'a [u32],
-    shape: &'a [T],
-    u: &'a [T],
-    d: &'a [T],
-    fibres: Option<&'a Reals>,
-    growth: &'a Growth,
-}
-
-impl<T: Scalar> Elements<'_, T> {
-    fn run<E: Element, R: Send>(
-        &self,
-        cpu: &Cpu,
-        count: usize,
-        of: &(impl Fn(usize, f64, f64) -> R + Sync + Send),
-    ) -> Vec<R> {
-        let task = |task: usize| {
-            let rows = task * ROWS_A_TASK..count.min((task + 1) * ROWS_A_TASK);
-            rows.filter_map(|row| self.element::<E>(row).map(|(growth, speed)| of(row, growth, speed))).collect()
-        };
-        cpu.map(count.div_ceil(ROWS_A_TASK), task).into_iter().flat_map(|part: Vec<R>| part).collect()
-    }
-
-    /// Growth and speed of deformation of an element; `None` once it is removed.
-    fn element<E: Element>(&self, row: usize) -> Option<(f64, f64)> {
-        let number = |k: usize| self.shape[lane_place(row, E::ROWS, k)].to_f64();
-        if number(E::VOLUME_ROW) <= 0.0 {
-            return None;
-        }
-        let corners = |column: &[T]| {
-            let mut vectors = [[0.0; 3]; MOST_NODES];
-            for (a, vector) in vectors[..E::NODES].iter_mut().enumerate() {
-                let at = 3 * self.connectivity[lane_place(row, E::NODES, a)] as usize;
-                *vector = [0, 1, 2].map(|i| column[at + i].to_f64());
-            }
-            E::prepare(&vectors)
-        };
-        let (u, d) = (corners(self.u), corners(self.d));
-        let (mut growth, mut speed) = (0.0_f64, 0.0_f64);
-        for point in 0..E::POINTS {
-            let gradient = E::at_point(&u, point, number).gradient;
-            let change = E::at_point(&d, point, number).gradient.0;
-            let (f, c) = (with_identity(&gradient), right_cauchy_green(&gradient));
-            let [first, inverse] = sizes(c);
-            let families = self.growth.families.iter();
-            let families: f64 =
-                families.map(|(family, from)| self.growth.of_family(family, c, self.direction(row, from))).sum();
-            growth = growth.max(self.growth.at(first.max(inverse)) + families);
-            // the change of E in a step: turning is none
-            let mut square = 0.0;
-            for i in 0..3 {
-                for j in 0..3 {
-                    let e: f64 = (0..3).map(|k| 0.5 * (f[k][i] * change[k][j] + change[k][i] * f[k][j])).sum();
-                    square += e * e;
-                }
-            }
-            let relative = square.sqrt() * inverse;
-            speed = if relative.is_nan() { f64::INFINITY } else { speed.max(relative) };
-        }
-        Some((growth, speed))
-    }
-
-    fn direction(&self, row: usize, from: &FamilyDirection<f64>) -> [f64; 3] {
-        match (from, self.fibres) {
-            (FamilyDirection::Uniform(a), _) => *a,
-            (FamilyDirection::Varying(place), Some(all)) => {
-                let numbers = 3 * self.growth.varying;
-                [0, 1, 2].map(|i| all.get(lane_place(row, numbers, 3 * place + i)))
-            }
-            (FamilyDirection::Varying(_), None) => [0.0; 3],
-        }
-    }
 }

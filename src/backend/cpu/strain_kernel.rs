@@ -1,0 +1,235 @@
+//! How far the elements of a block are deformed, and how fast; a register full at a time. The stable step is followed by it.
+
+use super::Cpu;
+use super::element_kernel::{corner_registers, group_vectors};
+use crate::elements::{Element, MOST_NODES};
+use crate::math::{LANES, Mat3, Real, SimdScalar};
+use pulp::{Simd, WithSimd};
+use std::marker::PhantomData;
+use std::ops::Range;
+
+/// The columns that strains are taken from; layouts as in [`components`](crate::components).
+pub struct StrainColumns<'a, T> {
+    /// The body's displacements (m).
+    pub displacement: &'a [T],
+    /// Their change in the last step (m).
+    pub step: &'a [T],
+    /// Nodes of each element.
+    pub connectivity: &'a [u32],
+    /// Rest shapes.
+    pub rest_shape: &'a [T],
+}
+
+/// An element's deformation; the largest of its integration points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Strain {
+    /// Row of the element.
+    pub row: usize,
+    /// max(tr C, tr C⁻¹)/3: 1 at rest; infinite for what is flat, or no number.
+    pub size: f64,
+    /// √(ΔE : ΔE) tr C⁻¹/3 with the change ΔE of Green's strain in a step; infinite for what is no number.
+    pub speed: f64,
+    /// What was asked for of its C.
+    pub more: f64,
+}
+
+/// What is asked for beside: a number from an element's row and its C (xx, yy, zz, xy, yz, xz).
+pub type OfStretch<'a> = &'a (dyn Fn(usize, [f64; 6]) -> f64 + Sync);
+
+/// Strains of the elements of some groups that are there, in their order.
+pub fn strains<E: Element, T: SimdScalar>(
+    cpu: &Cpu,
+    columns: &StrainColumns<'_, T>,
+    groups: Range<usize>,
+    more: Option<OfStretch<'_>>,
+) -> Vec<Strain> {
+    cpu.dispatch(Groups::<E, T> { columns, groups, more, element: PhantomData })
+}
+
+struct Groups<'a, E, T> {
+    columns: &'a StrainColumns<'a, T>,
+    groups: Range<usize>,
+    more: Option<OfStretch<'a>>,
+    element: PhantomData<E>,
+}
+
+impl<E: Element, T: SimdScalar> WithSimd for Groups<'_, E, T> {
+    type Output = Vec<Strain>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) -> Vec<Strain> {
+        let Self { columns, groups, more, .. } = self;
+        let mut found = Vec::with_capacity(groups.len() * LANES);
+        for group in groups {
+            let nodes = &columns.connectivity[group * E::NODES * LANES..(group + 1) * E::NODES * LANES];
+            let shape = &columns.rest_shape[group * E::ROWS * LANES..(group + 1) * E::ROWS * LANES];
+            let u = group_vectors::<E, T>(nodes, columns.displacement);
+            let d = group_vectors::<E, T>(nodes, columns.step);
+            let mut sizes = [T::default(); LANES];
+            let mut speeds = [T::default(); LANES];
+            let mut lost = [T::default(); LANES];
+            let mut largest = [0.0_f64; LANES];
+            let mut at = 0;
+            while at < LANES {
+                let rows = more.map(|more| (more, group * LANES + at, &mut largest[at..]));
+                let [size, speed, astray] = register::<E, T, S>(simd, [&u, &d], shape, at, rows);
+                T::store(size, &mut sizes[at..]);
+                T::store(speed, &mut speeds[at..]);
+                T::store(astray, &mut lost[at..]);
+                at += T::width::<S>();
+            }
+            for lane in 0..LANES {
+                if shape[E::VOLUME_ROW * LANES + lane] <= T::default() {
+                    continue;
+                }
+                let number = |of: T| if lost[lane] == T::default() { of.to_f64() } else { f64::INFINITY };
+                let (size, speed) = (number(sizes[lane]), number(speeds[lane]));
+                found.push(Strain { row: group * LANES + lane, size, speed, more: largest[lane] });
+            }
+        }
+        found
+    }
+}
+
+/// Size and speed of a register full of elements, and what is not 0 where either is no number. `rows`: what more is asked for, of
+/// which row on, and where it goes.
+#[inline(always)]
+fn register<E: Element, T: SimdScalar, S: Simd>(
+    simd: S,
+    [u, d]: [&[[[T; LANES]; 3]; MOST_NODES]; 2],
+    shape: &[T],
+    at: usize,
+    mut rows: Option<(OfStretch<'_>, usize, &mut [f64])>,
+) -> [T::Vector<S>; 3] {
+    let u = E::prepare(&corner_registers::<E, T, S>(simd, u, at));
+    let d = E::prepare(&corner_registers::<E, T, S>(simd, d, at));
+    let zero = T::splat(simd, T::default());
+    let (mut size, mut speed, mut astray) = (zero, zero, zero);
+    for point in 0..E::POINTS {
+        let state = E::at_point(
+            &u,
+            point,
+            #[inline(always)]
+            |row: usize| T::load(simd, &shape[row * LANES + at..]),
+        );
+        let change = E::at_point(
+            &d,
+            point,
+            #[inline(always)]
+            |row: usize| T::load(simd, &shape[row * LANES + at..]),
+        );
+        let f = with_identity(&state.gradient);
+        if let Some((more, row, largest)) = &mut rows {
+            let c = right_cauchy_green(&f);
+            let mut lanes = [[T::default(); LANES]; 6];
+            for i in 0..6 {
+                T::store(c[i], &mut lanes[i]);
+            }
+            for lane in 0..T::width::<S>() {
+                let c = [0, 1, 2, 3, 4, 5].map(|i: usize| lanes[i][lane].to_f64());
+                largest[lane] = largest[lane].max(more(*row + lane, c));
+            }
+        }
+        let [first, inverse] = sizes(&f);
+        let relative = change_of_strain(&f, &change.gradient).sqrt() * inverse;
+        size = size.max(first.max(inverse));
+        speed = speed.max(relative);
+        // what is no number, or infinite, stays none
+        astray += (inverse + relative) * zero;
+    }
+    [size, speed, astray]
+}
+
+/// F = I + ∇u.
+#[inline(always)]
+fn with_identity<R: Real>(gradient: &Mat3<R>) -> [[R; 3]; 3] {
+    let mut f = gradient.0;
+    for i in 0..3 {
+        f[i][i] += f[i][i].constant(1.0);
+    }
+    f
+}
+
+/// tr C/3 and tr C⁻¹/3: |F|² and |cof F|²/J², which lose no digits where C is nearly singular.
+#[inline(always)]
+fn sizes<R: Real>(f: &[[R; 3]; 3]) -> [R; 2] {
+    let third = f[0][0].constant(1.0 / 3.0);
+    let zero = f[0][0].constant(0.0);
+    let (mut first, mut second, mut j) = (zero, zero, zero);
+    for a in 0..3 {
+        let (b, c) = ((a + 1) % 3, (a + 2) % 3);
+        for i in 0..3 {
+            let (k, l) = ((i + 1) % 3, (i + 2) % 3);
+            let cofactor = f[b][k].mul_add(f[c][l], -(f[b][l] * f[c][k]));
+            first = f[a][i].mul_add(f[a][i], first);
+            second = cofactor.mul_add(cofactor, second);
+            if a == 0 {
+                j = f[a][i].mul_add(cofactor, j);
+            }
+        }
+    }
+    [first * third, second / (j * j) * third]
+}
+
+/// (AᵀB)_ij.
+#[inline(always)]
+fn product<R: Real>(a: &[[R; 3]; 3], b: &[[R; 3]; 3], i: usize, j: usize) -> R {
+    a[2][i].mul_add(b[2][j], a[1][i].mul_add(b[1][j], a[0][i] * b[0][j]))
+}
+
+/// C: xx, yy, zz, xy, yz, xz.
+#[inline(always)]
+fn right_cauchy_green<R: Real>(f: &[[R; 3]; 3]) -> [R; 6] {
+    [
+        product(f, f, 0, 0),
+        product(f, f, 1, 1),
+        product(f, f, 2, 2),
+        product(f, f, 0, 1),
+        product(f, f, 1, 2),
+        product(f, f, 0, 2),
+    ]
+}
+
+/// ΔE : ΔE with ΔE = sym(Fᵀ Δ∇u): turning is none.
+#[inline(always)]
+fn change_of_strain<R: Real>(f: &[[R; 3]; 3], change: &Mat3<R>) -> R {
+    let mut square = f[0][0].constant(0.0);
+    for i in 0..3 {
+        let j = (i + 1) % 3;
+        let along = product(f, &change.0, i, i);
+        let shear = product(f, &change.0, i, j) + product(f, &change.0, j, i);
+        square = along.mul_add(along, square);
+        square = (shear * shear).mul_add(shear.constant(0.5), square);
+    }
+    square
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sizes_are_traces_of_c_and_of_its_inverse() {
+        // stretches 2, 3 and ¼, turned about z by 90°
+        let f = [[0.0, -3.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 0.25]];
+        let [first, inverse] = sizes(&f);
+        assert!((first - (4.0 + 9.0 + 0.0625) / 3.0_f64).abs() < 1e-14);
+        assert!((inverse - (0.25 + 1.0 / 9.0 + 16.0) / 3.0_f64).abs() < 1e-14);
+        assert_eq!(right_cauchy_green(&f), [4.0, 9.0, 0.0625, 0.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn turning_changes_no_strain_and_stretching_does() {
+        let f = [[1.2, 0.3, 0.0], [-0.1, 0.9, 0.2], [0.05, 0.0, 1.1]];
+        // w × F: a rigid turn of the present shape
+        let w = [0.3, -0.2, 0.5];
+        let spun = |i: usize, j: usize| w[(i + 1) % 3] * f[(i + 2) % 3][j] - w[(i + 2) % 3] * f[(i + 1) % 3][j];
+        let turn = Mat3(std::array::from_fn(|i| std::array::from_fn(|j| spun(i, j))));
+        assert!(change_of_strain(&f, &turn).abs() < 1e-30_f64);
+        // F grows by a hundredth: E by (F^T F)/100, component by component
+        let grown = Mat3(f.map(|row| row.map(|x: f64| 0.01 * x)));
+        let [xx, yy, zz, xy, yz, xz] = right_cauchy_green(&f);
+        let expected = 1e-4 * (xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + xz * xz));
+        assert!((change_of_strain(&f, &grown) / expected - 1.0).abs() < 1e-12);
+    }
+}
