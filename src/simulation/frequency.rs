@@ -151,8 +151,18 @@ fn noise(roots: &[f64]) -> Vec<f64> {
     roots.iter().map(|&root| if root > 0.0 { normal() } else { 0.0 }).collect()
 }
 
+/// Eight sums side by side: one alone waits for each addition.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+    let (a, left) = a.as_chunks::<8>();
+    let (b, beside) = b.as_chunks::<8>();
+    let mut sums = [0.0; 8];
+    for (a, b) in a.iter().zip(b) {
+        for i in 0..8 {
+            sums[i] += a[i] * b[i];
+        }
+    }
+    let rest: f64 = left.iter().zip(beside).map(|(a, b)| a * b).sum();
+    sums.iter().sum::<f64>() + rest
 }
 
 /// By bisection: as many eigenvalues are above x as the pivots of T − x that are positive.

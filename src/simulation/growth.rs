@@ -26,6 +26,8 @@ const MULTIPLICATIONS: usize = 40;
 pub(super) struct Growth {
     /// Size and growth, both ascending.
     points: Vec<(f64, f64)>,
+    /// The first of them in each [`bucket`] of sizes, or else behind it.
+    first: Vec<usize>,
     /// The largest eigenvalue of the isochoric part at rest (Pa).
     isochoric: f64,
     /// Exponential fibres, and where they have their directions from.
@@ -81,7 +83,9 @@ impl Growth {
             *growth = largest;
         }
         points.insert(0, (1.0, 1.0));
-        Self { points, isochoric: rest[0], families, varying }
+        let beyond = points.last().map_or(0, |(size, _)| bucket(*size) + 1);
+        let first = (0..=beyond).map(|b| points.partition_point(|(size, _)| bucket(*size) < b)).collect();
+        Self { points, first, isochoric: rest[0], families, varying }
     }
 
     /// What a family of exponential fibres adds to the growth, for a C and its direction: k₁ e^x (4 (1 + 2x) M + 2Ē) with
@@ -99,13 +103,21 @@ impl Growth {
 
     /// Growth of ω² at most without exponential fibres, for a deformation of a size; infinite beyond all that was tried.
     pub fn at(&self, size: f64) -> f64 {
-        let after = self.points.partition_point(|(s, _)| *s < size);
+        let mut after = self.first.get(bucket(size)).copied().unwrap_or(self.points.len());
+        while self.points.get(after).is_some_and(|(s, _)| *s < size) {
+            after += 1;
+        }
         match (after.checked_sub(1).map(|i| self.points[i]), self.points.get(after)) {
             (Some((s0, g0)), Some(&(s1, g1))) => g0 + (g1 - g0) * (size - s0) / (s1 - s0),
             (None, _) => 1.0,
             (Some(_), None) => f64::INFINITY,
         }
     }
+}
+
+/// Which sixty-fourth of an octave from 1 on a size is in: the exponent and six bits of the mantissa.
+fn bucket(size: f64) -> usize {
+    ((size.to_bits() >> 46) as usize).saturating_sub((1.0_f64.to_bits() >> 46) as usize)
 }
 
 /// Principal stretches that are tried: of constant volume pulled, squeezed and sheared, along the fibres and across, and of
@@ -221,7 +233,16 @@ mod tests {
             println!("{size}: {growth}");
             assert!(growth > 0.9 * size && growth < 4.0 * size, "{size}: {growth}");
         }
-        assert!(soft.at(1e3).is_infinite());
+        assert!(soft.at(1e3).is_infinite() && soft.at(f64::INFINITY).is_infinite());
+        assert_eq!((soft.at(1.0), soft.at(0.999)), (1.0, 1.0));
+        for k in 0..2000 {
+            let size = 1.0 + 4e-3 * f64::from(k);
+            let after = soft.points.partition_point(|(s, _)| *s < size);
+            let (s0, g0) = soft.points[after.max(1) - 1];
+            let (s1, g1) = soft.points[after];
+            let between = if after == 0 { 1.0 } else { g0 + (g1 - g0) * (size - s0) / (s1 - s0) };
+            assert_eq!(soft.at(size), between, "{size}");
+        }
     }
 
     #[test]

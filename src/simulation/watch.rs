@@ -3,11 +3,14 @@
 use super::growth::Growth;
 use super::mass_scaling::heaviness;
 use crate::assembly::square_frequencies;
-use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK, Strain, StrainColumns, strains};
+use crate::backend::cpu::{BlockLaw, Cpu, Strain, StrainColumns, strains};
 use crate::components::*;
 use crate::evaluation::{lane_place, node_count, with_element_of};
 use crate::math::LANES;
 use bevy_ecs::prelude::*;
+
+/// Elements looked at in one task: what is found of them stays in the core's cache.
+const ROWS_A_TASK: usize = 512;
 
 /// The elements of a block, and what is known of their frequencies.
 pub(super) struct Watched {
@@ -93,9 +96,8 @@ impl Watched {
         let of_growths = self.growths(world, Seen::NOTHING, |seen, row, growth, speed| {
             let own = self.squares[row] * growth;
             let ratio = (growth / f64::from(self.known_growth[row])).max(1.0);
-            let of_element =
-                Seen { square: own.min(known * ratio), of_elements: own, at_rest: self.squares[row], speed, alive: 1 };
-            *seen = seen.and(of_element);
+            let (square, at_rest) = (own.min(known * ratio), self.squares[row]);
+            *seen = seen.and(Seen { square, of_elements: own, at_rest, speed, alive: 1 });
         });
         of_growths.into_iter().fold(Seen::NOTHING, Seen::and)
     }
