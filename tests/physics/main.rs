@@ -32,6 +32,7 @@ mod random;
 mod removal;
 mod snapshots;
 mod statics;
+mod strains;
 mod true_limit;
 mod unstable_elements;
 mod user_laws;
