@@ -6,6 +6,7 @@
 use crate::configurations::{ELEMENTS, configurations, near};
 use glam::{DMat3, DVec3};
 use sinew::backend::cpu::{Cpu, Strain, StrainColumns, strains};
+use sinew::bevy_ecs::prelude::Entity;
 use sinew::components::*;
 use sinew::elements::{Element, Hex8, Hex8MeanDilatation, Tet4, Tet4NodalPressure};
 use sinew::math::{LANES, SimdScalar};
@@ -20,14 +21,14 @@ fn matrix(rows: [[f64; 3]; 3]) -> DMat3 {
     DMat3::from_cols_array_2d(&rows).transpose()
 }
 
-fn moved(simulation: &Simulation, body: sinew::bevy_ecs::entity::Entity, gradient: DMat3) -> impl Iterator<Item = f64> {
+fn moved(simulation: &Simulation, body: Entity, gradient: DMat3) -> impl Iterator<Item = f64> {
     let rest = simulation.world().get::<RestPosition>(body).unwrap().0.clone();
     rest.into_iter().flat_map(move |x| (gradient * x).to_array())
 }
 
 /// Of all elements of the only block, with C_xx beside.
-fn all(simulation: &Simulation, body: sinew::bevy_ecs::entity::Entity) -> Vec<Strain> {
-    fn of<E: Element, T: SimdScalar>(simulation: &Simulation, body: sinew::bevy_ecs::entity::Entity) -> Vec<Strain> {
+fn all(simulation: &Simulation, body: Entity) -> Vec<Strain> {
+    fn of<E: Element, T: SimdScalar>(simulation: &Simulation, body: Entity) -> Vec<Strain> {
         let world = simulation.world();
         let entity = world.get::<Authoring>(body).unwrap().blocks[0];
         let block = world.get::<Block>(entity).unwrap();
