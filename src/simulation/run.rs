@@ -65,19 +65,23 @@ impl Simulation {
     pub fn advance(&mut self, count: u64) -> Result<(), Error> {
         let started = Instant::now();
         let target = self.step_count() + count;
-        let pool = self.world.resource::<Cpu>().pool().filter(|_| !self.facts.on_gpu);
-        let result = match pool {
-            Some(pool) => pool.install(|| self.steps_to(target)),
-            None => self.steps_to(target),
-        };
+        let result = self.on_threads(|simulation| simulation.steps_to(target));
         self.elapsed += started.elapsed();
         result.map_err(|error| self.note(error))
+    }
+
+    /// From one of the threads that work, where there are several.
+    fn on_threads(&mut self, task: impl FnOnce(&mut Self) -> Result<(), Error> + Send) -> Result<(), Error> {
+        match self.world.resource::<Cpu>().pool().filter(|_| !self.facts.on_gpu) {
+            Some(pool) => pool.install(|| task(self)),
+            None => task(self),
+        }
     }
 
     /// [`Simulation::follow`] as a part of the run.
     fn follow_in_time(&mut self) -> Result<(), Error> {
         let started = Instant::now();
-        let followed = self.follow();
+        let followed = self.on_threads(Self::follow);
         self.elapsed += started.elapsed();
         followed
     }

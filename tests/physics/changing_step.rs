@@ -85,6 +85,17 @@ fn the_same_step_all_along_becomes_unstable_there() {
     }
 }
 
+/// Looking at the stable step is a part of the run as its systems are.
+#[test]
+fn looks_count_as_time_of_the_run() {
+    let mut simulation = configurations()[0].start(&squeezed("bound: Iterated", 0.3, "Hex8"));
+    simulation.advance_towards_end(u64::MAX).unwrap();
+    let summary = simulation.summary("finished").unwrap();
+    let (looks, systems) = (summary.step_history.unwrap().seconds, summary.systems.iter().filter_map(|s| s.seconds));
+    let parts = looks + systems.sum::<f64>();
+    assert!(looks > 0.0 && summary.run_seconds >= parts, "{} s of {parts} s", summary.run_seconds);
+}
+
 /// Free vibration of a block whose step is changed by hand every few steps.
 fn vibrating(steps: &[f64]) -> (Simulation, Energies) {
     let text = r#"(duration: 1, bodies: {"b": (mesh: Box(size: (0.1, 0.02, 0.02), cells: (6, 1, 1), elements: Hex8), material: "m", spin: (1, 2, 3))},
