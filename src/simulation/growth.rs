@@ -7,7 +7,7 @@
 //! Elements that average the pressure feel these parts to different shares. Exponential fibres stiffen by so much more that what
 //! they add is computed along their own directions.
 
-use crate::backend::cpu::BlockLaw;
+use crate::backend::cpu::{BlockLaw, sizes, with_identity};
 use crate::components::FamilyDirection;
 use crate::materials::{Elastic, ExponentialFibre};
 use crate::math::Mat3;
@@ -36,29 +36,6 @@ pub(super) struct Growth {
     pub varying: usize,
 }
 
-/// tr C/3 and tr C⁻¹/3 of a C (xx, yy, zz, xy, yz, xz): 1 at rest.
-pub(super) fn sizes([xx, yy, zz, xy, yz, xz]: [f64; 6]) -> [f64; 2] {
-    let first = xx + yy + zz;
-    let second = xx * yy + yy * zz + zz * xx - xy * xy - yz * yz - xz * xz;
-    let third = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
-    let inverse = if third > 0.0 { second / third } else { f64::INFINITY };
-    [first / 3.0, inverse / 3.0]
-}
-
-/// C: xx, yy, zz, xy, yz, xz.
-pub(super) fn right_cauchy_green(gradient: &Mat3<f64>) -> [f64; 6] {
-    let f = with_identity(gradient);
-    let along = |i: usize, j: usize| (0..3).map(|k| f[k][i] * f[k][j]).sum::<f64>();
-    [along(0, 0), along(1, 1), along(2, 2), along(0, 1), along(1, 2), along(0, 2)]
-}
-
-/// F = I + ∇u.
-pub(super) fn with_identity(gradient: &Mat3<f64>) -> [[f64; 3]; 3] {
-    let mut f = gradient.0;
-    (0..3).for_each(|i| f[i][i] += 1.0);
-    f
-}
-
 impl Growth {
     /// Of a law.
     pub fn of(law: &BlockLaw<f64>) -> Self {
@@ -71,7 +48,7 @@ impl Growth {
             let ratio = |i: usize| if rest[i] > 0.0 { found[i] / rest[i] } else { 1.0 };
             let mut gradient = Mat3::zero(0.0);
             (0..3).for_each(|i| gradient.0[i][i] = stretches[i] - 1.0);
-            let [first, inverse] = sizes(right_cauchy_green(&gradient));
+            let [first, inverse] = sizes(&with_identity(&gradient));
             (first.max(inverse), ratio(0).max(ratio(1)).max(ratio(2)))
         };
         let mut points: Vec<(f64, f64)> = samples().map(of_sample).collect();

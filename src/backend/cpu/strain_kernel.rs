@@ -142,7 +142,7 @@ fn register<E: Element, T: SimdScalar, S: Simd>(
 
 /// F = I + ∇u.
 #[inline(always)]
-fn with_identity<R: Real>(gradient: &Mat3<R>) -> [[R; 3]; 3] {
+pub(crate) fn with_identity<R: Real>(gradient: &Mat3<R>) -> [[R; 3]; 3] {
     let mut f = gradient.0;
     for i in 0..3 {
         f[i][i] += f[i][i].constant(1.0);
@@ -152,7 +152,7 @@ fn with_identity<R: Real>(gradient: &Mat3<R>) -> [[R; 3]; 3] {
 
 /// tr C/3 and tr C⁻¹/3: |F|² and |cof F|²/J², which lose no digits where C is nearly singular.
 #[inline(always)]
-fn sizes<R: Real>(f: &[[R; 3]; 3]) -> [R; 2] {
+pub(crate) fn sizes<R: Real>(f: &[[R; 3]; 3]) -> [R; 2] {
     let third = f[0][0].constant(1.0 / 3.0);
     let zero = f[0][0].constant(0.0);
     let (mut first, mut second, mut j) = (zero, zero, zero);
