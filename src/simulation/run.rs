@@ -80,6 +80,10 @@ impl Simulation {
 
     /// [`Simulation::follow`] as a part of the run.
     fn follow_in_time(&mut self) -> Result<(), Error> {
+        // threads are not called together for nothing
+        if self.next_follow() > self.step_count() {
+            return Ok(());
+        }
         let started = Instant::now();
         let followed = self.on_threads(Self::follow);
         self.elapsed += started.elapsed();
