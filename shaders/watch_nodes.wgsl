@@ -1,5 +1,5 @@
-// What a body's nodes come to, sixty-four at a time: ½ m d² (kg m²) and the longest step; and displacements in the middle of
-// the last step, where velocities are, for watch_elements.wgsl. Twin of the sums in src/observation/look.rs.
+// What a body's nodes come to, sixty-four at a time: ½ m d² (kg m²), the longest step, the square of the largest displacement
+// (m²); and displacements in the middle of the last step, where velocities are, for watch_elements.wgsl. Twin of the sums in src/observation/look.rs.
 struct WatchedNodes {
     count: u32,
 }
@@ -13,6 +13,7 @@ struct WatchedNodes {
 var<workgroup> motions: array<f32, 64>;
 var<workgroup> squares: array<f32, 64>;
 var<workgroup> fastest: array<u32, 64>;
+var<workgroup> reaches: array<f32, 64>;
 
 @compute @workgroup_size(64)
 fn watch_nodes(
@@ -24,6 +25,7 @@ fn watch_nodes(
     motions[local] = 0.0;
     squares[local] = -1.0;
     fastest[local] = 0xffffffffu;
+    reaches[local] = 0.0;
     if node < nodes.count {
         let at = 3u * node;
         let d = vec3<f32>(displacement_step[at], displacement_step[at + 1u], displacement_step[at + 2u]);
@@ -33,11 +35,14 @@ fn watch_nodes(
         squares[local] = dot(d, d);
         motions[local] = 0.5 * mass[node] * squares[local];
         fastest[local] = node;
+        let u = vec3<f32>(displacement[at], displacement[at + 1u], displacement[at + 2u]);
+        reaches[local] = dot(u, u);
     }
     workgroupBarrier();
     for (var width = 32u; width > 0u; width /= 2u) {
         if local < width {
             motions[local] += motions[local + width];
+            reaches[local] = max(reaches[local], reaches[local + width]);
             if squares[local + width] > squares[local] {
                 squares[local] = squares[local + width];
                 fastest[local] = fastest[local + width];
@@ -50,5 +55,6 @@ fn watch_nodes(
         node_sums[at] = bitcast<u32>(motions[0]);
         node_sums[at + 1u] = bitcast<u32>(squares[0]);
         node_sums[at + 2u] = fastest[0];
+        node_sums[at + 3u] = bitcast<u32>(reaches[0]);
     }
 }

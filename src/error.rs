@@ -181,3 +181,8 @@ impl From<Diagnostics> for Error {
         Error::Scene(Box::new(diagnostics))
     }
 }
+
+/// Something that the engine itself has put in place is not there: in builds for debugging that ends the program with its name.
+pub(crate) fn missing(what: &str) {
+    debug_assert!(false, "a broken invariant: {what} is missing");
+}

@@ -6,6 +6,7 @@ use crate::backend::Buffers;
 use crate::backend::kernel::{Fragment, Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
+use crate::error::missing;
 use crate::math::Scalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
@@ -38,7 +39,10 @@ fn boundary(
     mut bodies: Query<(&Displacement, Option<&DisplacementCompensation>, &mut DisplacementStep, &mut FirstNonFinite)>,
 ) {
     for (prescribed, body) in &constraints {
-        let Ok((displacement, compensation, mut step, mut noticed)) = bodies.get_mut(body.0) else { continue };
+        let Ok((displacement, compensation, mut step, mut noticed)) = bodies.get_mut(body.0) else {
+            missing("a column of a body");
+            continue;
+        };
         let kept = noticed.get_mut(before_at(displacement.len() / 3)..).unwrap_or_default();
         let rows = &signals.values()[prescribed.signal..prescribed.signal + 3];
         match &mut step.0 {

@@ -10,6 +10,7 @@ use crate::backend::patch_lists::pack;
 use crate::backend::step::{step_number, with_step};
 use crate::components::*;
 use crate::elements::Element;
+use crate::error::missing;
 use crate::evaluation::{ElementState, node_count, with_element_of};
 use crate::math::SimdScalar;
 use crate::scene::schema::Inversion;
@@ -59,7 +60,10 @@ fn element_forces(
 ) {
     for (authoring, displacement, mut force) in &mut bodies {
         for &entity in &authoring.blocks {
-            let Ok(mut block) = blocks.get_mut(entity) else { continue };
+            let Ok(mut block) = blocks.get_mut(entity) else {
+                missing("a column of a body");
+                continue;
+            };
             let found = match &mut force.0 {
                 Reals::F32(force) => block.run::<f32>(&cpu, (displacement.slice(), 0), force, None),
                 Reals::F64(force) => block.run::<f64>(&cpu, (displacement.slice(), 0), force, None),
@@ -145,10 +149,13 @@ impl Precise for f32 {
     fn run<E: Element>(
         cpu: &Cpu,
         columns: BlockColumns<'_, '_, f32>,
-        (_, law): (&BlockLaw<f64>, Option<&BlockLaw<f32>>),
+        (exact, law): (&BlockLaw<f64>, Option<&BlockLaw<f32>>),
         groups_a_patch: usize,
     ) -> Vec<usize> {
-        law.map_or(Vec::new(), |law| run_block_fast::<E>(cpu, columns, law, groups_a_patch))
+        match law {
+            Some(law) => run_block_fast::<E>(cpu, columns, law, groups_a_patch),
+            None => run_block_fast::<E>(cpu, columns, &exact.rounded(), groups_a_patch),
+        }
     }
 }
 

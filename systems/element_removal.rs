@@ -8,6 +8,7 @@ use crate::backend::kernel::{Fragment, Kernel, Uniform, uniform};
 use crate::backend::step::with_step;
 use crate::components::*;
 use crate::elements::Element;
+use crate::error::missing;
 use crate::evaluation::{
     BlockView, ElementState, add_nodal_masses, extinguish, lane_place, node_count, with_element_of,
 };
@@ -63,7 +64,10 @@ fn element_removal(
     for (entity, block, connectivity, mut shape, law, fibres, memory, means, mut alive, by_time, mut energies) in
         &mut blocks
     {
-        let Ok((_, displacement, step, ..)) = bodies.get(block.body) else { continue };
+        let Ok((_, displacement, step, ..)) = bodies.get(block.body) else {
+            missing("a column of a body");
+            continue;
+        };
         let view = BlockView {
             block,
             connectivity,
@@ -104,7 +108,10 @@ fn element_removal(
         }
     }
     for body in touched {
-        let Ok((authoring, .., mut mass, mut damping)) = bodies.get_mut(body) else { continue };
+        let Ok((authoring, .., mut mass, mut damping)) = bodies.get_mut(body) else {
+            missing("a column of a body");
+            continue;
+        };
         weigh(authoring, &blocks, &densities, &mut mass, damping.as_deref_mut());
         let alive = |(block, row): (u32, u32)| {
             authoring
@@ -158,7 +165,10 @@ fn weigh(
     let count = mass.len();
     let (mut masses, mut coefficients) = (vec![0.0; count], vec![0.0; count]);
     for (_, block, connectivity, shape, ..) in authoring.blocks.iter().filter_map(|&block| blocks.get(block).ok()) {
-        let Ok((density, rate)) = materials.get(block.material) else { continue };
+        let Ok((density, rate)) = materials.get(block.material) else {
+            missing("a column of a body");
+            continue;
+        };
         let rate = rate.map_or(0.0, |rate| rate.0);
         add_nodal_masses(block, connectivity, shape, density.0, rate, &mut masses, &mut coefficients);
     }

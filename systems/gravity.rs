@@ -6,6 +6,7 @@ use crate::backend::cpu::Cpu;
 use crate::backend::kernel::{Uniform, uniform};
 use crate::backend::node_stage::NodeStage;
 use crate::components::*;
+use crate::error::missing;
 use crate::math::{LANES, SimdScalar};
 use crate::shader;
 use bevy_ecs::prelude::*;
@@ -31,7 +32,10 @@ fn gravity(
     mut bodies: Query<(&Mass, &mut ExternalForce)>,
 ) {
     for (load, body) in &loads {
-        let Ok((mass, mut external)) = bodies.get_mut(body.0) else { continue };
+        let Ok((mass, mut external)) = bodies.get_mut(body.0) else {
+            missing("a column of a body");
+            continue;
+        };
         let acceleration = signals.values()[load.signal];
         match &mut external.0 {
             Reals::F32(external) => pull(&cpu, mass.slice(), acceleration, external),

@@ -6,6 +6,7 @@ use crate::backend::Buffers;
 use crate::backend::kernel::{Fragment, Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
+use crate::error::missing;
 use crate::math::Scalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
@@ -29,7 +30,10 @@ fn nodal_force(
     mut bodies: Query<(&Mass, &mut ExternalForce)>,
 ) {
     for (load, body) in &loads {
-        let Ok((mass, mut external)) = bodies.get_mut(body.0) else { continue };
+        let Ok((mass, mut external)) = bodies.get_mut(body.0) else {
+            missing("a column of a body");
+            continue;
+        };
         let force = signals.values()[load.signal];
         match &mut external.0 {
             Reals::F32(external) => push(load, force, 0, mass.slice(), external),

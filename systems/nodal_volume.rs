@@ -8,6 +8,7 @@ use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK, run_volumes};
 use crate::backend::kernel::{Fragment, Kernel, Uniform, uniform};
 use crate::components::*;
 use crate::elements::Tet4NodalPressure;
+use crate::error::missing;
 use crate::math::{LANES, Scalar, SimdScalar};
 use crate::shader;
 use bevy_ecs::prelude::*;
@@ -39,7 +40,10 @@ type BlockQuery<'a> = (
 
 fn nodal_volume(cpu: Res<Cpu>, mut blocks: Query<BlockQuery>, bodies: Query<&Displacement>) {
     for (block, connectivity, shape, corners, law, rounded, mut volumes, mut means) in &mut blocks {
-        let Ok(displacement) = bodies.get(block.body) else { continue };
+        let Ok(displacement) = bodies.get(block.body) else {
+            missing("a column of a body");
+            continue;
+        };
         match (&mut volumes.0, &mut means.0, rounded) {
             (Reals::F32(volumes), Reals::F32(means), Some(law)) => {
                 means_of(
@@ -107,7 +111,10 @@ uniform!(Nodes { count });
 pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let mut kernels = Vec::new();
     for block in BlockKernels::of_world(world, buffers) {
-        let Some(corners) = world.get::<BlockCorners>(block.entity) else { continue };
+        let Some(corners) = world.get::<BlockCorners>(block.entity) else {
+            missing("a column of a body");
+            continue;
+        };
         let column = |buffers: &mut dyn Buffers, name| buffers.column(block.entity, name);
         kernels.push(
             block

@@ -7,6 +7,7 @@ use crate::backend::face_kernel::{FaceLoad, face_loads};
 use crate::backend::kernel::{Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
+use crate::error::missing;
 use crate::math::Scalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
@@ -33,7 +34,10 @@ fn pressure(
     mut bodies: Query<(&RestPosition, &Displacement, &mut ExternalForce)>,
 ) {
     for (load, body) in &loads {
-        let Ok((rest, displacement, mut external)) = bodies.get_mut(body.0) else { continue };
+        let Ok((rest, displacement, mut external)) = bodies.get_mut(body.0) else {
+            missing("a column of a body");
+            continue;
+        };
         let pressure = signals.values()[load.signal][0];
         let areas = areas(&load.faces, rest, displacement);
         match &mut external.0 {
@@ -135,7 +139,10 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
     let mut stages = Vec::new();
     for (pressure, body) in loads {
         for FaceLoad { faces, alive } in face_loads(&pressure.faces, body, world) {
-            let Some(rest) = world.get::<RestPosition>(body) else { continue };
+            let Some(rest) = world.get::<RestPosition>(body) else {
+                missing("a column of a body");
+                continue;
+            };
             let face = |(nodes, behind): (&[u32; 4], &(u32, u32))| [nodes[0], nodes[1], nodes[2], nodes[3], behind.1];
             let nodes: Vec<[u32; 5]> = faces.faces.iter().zip(&faces.elements).map(face).collect();
             let points: Vec<[f32; 3]> =

@@ -136,19 +136,16 @@ impl System {
     }
 
     /// A custom system whose resource `S` belongs to the state of a simulation: snapshots hold it, and what goes on from one
-    /// has it back. `S` is anything that JSON can hold; it is put into the world by the system's parameters or by
+    /// has it back. `S` is anything that RON can hold, infinite numbers too; it is put into the world by the system's parameters or by
     /// [`Simulation::world_mut`](crate::Simulation::world_mut). A system's `Local`s are not kept.
     pub fn with_state<S: Resource + serde::Serialize + serde::de::DeserializeOwned>(mut self) -> Self {
         self.state = Some(StateAccess {
             keep: |world| {
                 let state = world.get_resource::<S>().ok_or("it is not in the world")?;
-                match crate::output::not_finite(state).first() {
-                    Some((way, number)) => Err(format!("{way} is {number}")),
-                    None => serde_json::to_value(state).map_err(|error| error.to_string()),
-                }
+                ron::to_string(state).map_err(|error| error.to_string())
             },
-            take_back: |value, world| {
-                let state: S = serde_json::from_value(value).map_err(|error| error.to_string())?;
+            take_back: |kept, world| {
+                let state: S = ron::from_str(kept).map_err(|error| error.to_string())?;
                 world.insert_resource(state);
                 Ok(())
             },

@@ -7,6 +7,7 @@ use crate::backend::face_kernel::{FaceLoad, face_loads};
 use crate::backend::kernel::{Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
+use crate::error::missing;
 use crate::math::Scalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
@@ -26,7 +27,10 @@ pub fn system() -> System {
 
 fn traction(signals: Res<Signals>, loads: Query<(&Traction, &OfBody)>, mut bodies: Query<&mut ExternalForce>) {
     for (load, body) in &loads {
-        let Ok(mut external) = bodies.get_mut(body.0) else { continue };
+        let Ok(mut external) = bodies.get_mut(body.0) else {
+            missing("a column of a body");
+            continue;
+        };
         let traction = signals.values()[load.signal];
         match &mut external.0 {
             Reals::F32(external) => pull(&load.faces, traction, 0, external),

@@ -21,10 +21,16 @@ impl PlacedMesh {
         self.surface.get_or_init(|| self.mesh.surface())
     }
 
-    /// Length of the bounding box's diagonal (m).
-    pub fn size(&self) -> f64 {
+    /// The lowest and the largest coordinates (m).
+    pub fn extent(&self) -> (DVec3, DVec3) {
         let low = self.mesh.points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
         let high = self.mesh.points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+        (low, high)
+    }
+
+    /// Length of the bounding box's diagonal (m).
+    pub fn size(&self) -> f64 {
+        let (low, high) = self.extent();
         (high - low).length()
     }
 }

@@ -87,7 +87,7 @@ impl Selection {
     /// # Errors
     /// That none is picked.
     pub fn nodes(&self, placed: &PlacedMesh) -> Result<Vec<bool>, Problem> {
-        some(nodes(placed, &self.select), "node")
+        some(placed, &self.select, nodes(placed, &self.select), "node")
     }
 
     /// The places in [`PlacedMesh::surface`] of the faces picked.
@@ -95,7 +95,7 @@ impl Selection {
     /// # Errors
     /// That none is picked.
     pub fn faces(&self, placed: &PlacedMesh) -> Result<Vec<usize>, Problem> {
-        let marks = some(faces(placed, &self.select), "face of the surface")?;
+        let marks = some(placed, &self.select, faces(placed, &self.select), "face of the surface")?;
         Ok(marks.iter().enumerate().filter(|(_, marked)| **marked).map(|(place, _)| place).collect())
     }
 
@@ -104,16 +104,52 @@ impl Selection {
     /// # Errors
     /// That none is picked.
     pub fn elements(&self, placed: &PlacedMesh) -> Result<Vec<bool>, Problem> {
-        some(elements(placed, &self.select), "element")
+        some(placed, &self.select, elements(placed, &self.select), "element")
     }
 }
 
-fn some(marks: Vec<bool>, word: &str) -> Result<Vec<bool>, Problem> {
+fn some(placed: &PlacedMesh, select: &Select, marks: Vec<bool>, word: &str) -> Result<Vec<bool>, Problem> {
     if marks.contains(&true) {
         return Ok(marks);
     }
     let message = format!("no {word} is here");
-    Err(Problem { message, notes: vec!["lengths are in metres, after scale, rotate and translate".into()] })
+    Err(Problem { message, notes: where_it_is(placed, select) })
+}
+
+/// Where the body lies, and which of its nodes is nearest to a place where there is none.
+fn where_it_is(placed: &PlacedMesh, select: &Select) -> Vec<String> {
+    let (low, high) = placed.extent();
+    let mut notes = vec![format!(
+        "the body lies between ({:.4}, {:.4}, {:.4}) and ({:.4}, {:.4}, {:.4}), in metres, after scale, rotate and translate",
+        low.x, low.y, low.z, high.x, high.y, high.z
+    )];
+    let mesh = &placed.mesh;
+    let nearest = distance_to(select).and_then(|distance| {
+        let all = mesh.points.iter().map(|&point| distance(point)).enumerate();
+        all.min_by(|a, b| a.1.total_cmp(&b.1))
+    });
+    if let Some((row, distance)) = nearest {
+        let (id, at) = (mesh.point_ids.of(row), mesh.points[row]);
+        let place = format!("({:.4}, {:.4}, {:.4})", at.x, at.y, at.z);
+        notes.push(match distance > 0.0 {
+            true => format!("the nearest node is {id} at {place}, {distance:.3e} m off"),
+            false => format!("some nodes are there, such as {id} at {place}, but not all of any face or element"),
+        });
+    }
+    notes
+}
+
+/// How far a point is from a region of space (m), 0 within; `None` for selections that are none.
+fn distance_to(select: &Select) -> Option<Box<dyn Fn(DVec3) -> f64>> {
+    match *select {
+        Select::Plane { normal, at, tolerance } => {
+            let (normal, tolerance) = (normal.normalize(), tolerance.unwrap_or(0.0));
+            Some(Box::new(move |x| ((normal.dot(x) - at).abs() - tolerance).max(0.0)))
+        }
+        Select::Box { min, max } => Some(Box::new(move |x| x.distance(x.max(min).min(max)))),
+        Select::Sphere { center, radius } => Some(Box::new(move |x| (x.distance(center) - radius).max(0.0))),
+        _ => None,
+    }
 }
 
 /// Combines the marks that a way of marking gives to the parts of And, Or and Not; `None` for all other selections.

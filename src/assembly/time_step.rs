@@ -1,6 +1,7 @@
 //! The stable step, from the element bound, and the elements that set it.
 
 use super::columns::stiffness;
+use crate::backend::cpu::Cpu;
 use crate::components::*;
 use crate::elements::{Element, MOST_ROWS};
 use crate::evaluation::{lane_place, rest_volume, with_element_of};
@@ -79,7 +80,7 @@ pub fn square_frequencies(world: &World, entity: Entity) -> Vec<(f64, f64)> {
         let volume = rest_volume(block, row, shape);
         if volume > 0.0 { (frequency(row), volume) } else { (0.0, 0.0) }
     };
-    (0..block.count).into_par_iter().map(of_row).collect()
+    world.resource::<Cpu>().confine(|| (0..block.count).into_par_iter().map(of_row).collect())
 }
 
 /// An element, by how quick it is.
@@ -101,7 +102,9 @@ pub fn stable_step(world: &mut World) -> Option<StableStep> {
         all.extend(there.map(|(row, (square, volume))| Ranked { square, volume, block, row }));
     }
     // the highest frequency first; among equals the lowest row, whatever the order of work
-    all.par_sort_unstable_by(|a, b| b.square.total_cmp(&a.square).then(a.block.cmp(&b.block)).then(a.row.cmp(&b.row)));
+    let order =
+        |a: &Ranked, b: &Ranked| b.square.total_cmp(&a.square).then(a.block.cmp(&b.block)).then(a.row.cmp(&b.row));
+    world.resource::<Cpu>().confine(|| all.par_sort_unstable_by(order));
     let half = 0.5 * all.iter().map(|element| element.volume).sum::<f64>();
     let mut volume = 0.0;
     let usual = all.iter().find(|element| {

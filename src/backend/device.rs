@@ -5,69 +5,8 @@ use super::gpu::{BufferKind, Gpu, GpuLimits};
 use super::kernel::{BindingKind, BufferId, Kernel, KernelId, MostBuffers, compose};
 use crate::components::*;
 use crate::error::Error;
-use bevy_ecs::component::ComponentId;
 use bevy_ecs::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
-
-/// Access to one kind of column without its type.
-#[derive(Clone, Copy)]
-pub struct ColumnAccess {
-    /// The column's name.
-    pub name: &'static str,
-    /// Its bytes on the host.
-    pub bytes: fn(&World, Entity) -> Option<&[u8]>,
-    /// Writes its bytes on the host.
-    pub write: fn(&mut World, Entity, &[u8]),
-    /// Its component.
-    pub id: fn(&World) -> Option<ComponentId>,
-}
-
-impl ColumnAccess {
-    /// Access to a kind of column.
-    pub fn of<C: Column>() -> Self {
-        Self {
-            name: C::NAME,
-            bytes: |world, entity| world.get::<C>(entity).map(|column| column.bytes()),
-            write: |world, entity, bytes| {
-                if let Some(mut column) = world.get_mut::<C>(entity) {
-                    column.bytes_mut().copy_from_slice(bytes);
-                }
-            },
-            id: |world| world.component_id::<C>(),
-        }
-    }
-}
-
-/// Every kind of column there is.
-pub fn all_columns() -> Vec<ColumnAccess> {
-    vec![
-        ColumnAccess::of::<Displacement>(),
-        ColumnAccess::of::<DisplacementStep>(),
-        ColumnAccess::of::<DisplacementCompensation>(),
-        ColumnAccess::of::<Mass>(),
-        ColumnAccess::of::<FictitiousMass>(),
-        ColumnAccess::of::<DampingCoefficient>(),
-        ColumnAccess::of::<InternalForce>(),
-        ColumnAccess::of::<ExternalForce>(),
-        ColumnAccess::of::<ConstrainedAxes>(),
-        ColumnAccess::of::<Work>(),
-        ColumnAccess::of::<ElementForce>(),
-        ColumnAccess::of::<FirstNonFinite>(),
-        ColumnAccess::of::<MiddleDisplacement>(),
-        ColumnAccess::of::<NodeSums>(),
-        ColumnAccess::of::<ElementSums>(),
-        ColumnAccess::of::<Connectivity>(),
-        ColumnAccess::of::<RestShape>(),
-        ColumnAccess::of::<FibreDirection>(),
-        ColumnAccess::of::<ViscousMemory>(),
-        ColumnAccess::of::<Alive>(),
-        ColumnAccess::of::<RemovalStep>(),
-        ColumnAccess::of::<RemovedEnergy>(),
-        ColumnAccess::of::<FirstInverted>(),
-        ColumnAccess::of::<ElementVolume>(),
-        ColumnAccess::of::<NodalVolumeChange>(),
-    ]
-}
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Truth {

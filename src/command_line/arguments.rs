@@ -41,6 +41,9 @@ pub enum Command {
     /// Draw a scene or the output of a run
     #[command(after_help = STATUSES)]
     Render(RenderArguments),
+    /// Show what a mesh is and where it lies: extents, sets, quality, likely units; of a mesh file or of a scene's bodies
+    #[command(after_help = STATUSES)]
+    Mesh(MeshArguments),
     /// Show what accuracy costs in time: solve a scene in many ways, time each, measure each against a reference
     #[command(after_help = STATUSES)]
     Accuracy(AccuracyArguments),
@@ -62,7 +65,7 @@ impl Command {
             Command::Accuracy(arguments) => arguments.backend != BackendName::Cpu,
             Command::Hard(arguments) => arguments.backend != BackendName::Cpu,
             Command::Bench(arguments) => arguments.backends.contains(&"gpu".to_string()),
-            Command::Check(_) => false,
+            Command::Check(_) | Command::Mesh(_) => false,
         }
     }
 }
@@ -100,6 +103,32 @@ pub struct CheckArguments {
     /// What is known of a sound scene as JSON: sizes, steps, and the stable step with the elements that set it
     #[arg(long)]
     pub json: bool,
+}
+
+/// What `sinew mesh` is told.
+#[derive(Args)]
+pub struct MeshArguments {
+    /// A mesh file (Gmsh, VTK, VTU), or a scene file (.ron), whose bodies are shown as it places them
+    #[arg(value_name = "FILE|SCENE")]
+    pub what: PathBuf,
+    /// Put a value into the scene first; may be given several times
+    #[arg(long, value_name = "PATH=VALUE")]
+    pub set: Vec<String>,
+    /// Let the scene name files outside its own folder
+    #[arg(long)]
+    pub allow_outside: bool,
+    /// Turn inverted elements of a mesh file the right way round
+    #[arg(long)]
+    pub flip_inverted: bool,
+    /// Print JSON instead of a page; no picture
+    #[arg(long)]
+    pub json: bool,
+    /// Draw no picture
+    #[arg(long)]
+    pub no_picture: bool,
+    /// The folder for the picture and fields.pvd, in place of earlier ones [default: out/NAME-mesh]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
 }
 
 /// How to run it.

@@ -8,6 +8,7 @@ mod explain;
 mod failure;
 mod hard;
 mod interrupt;
+mod mesh;
 mod progress;
 mod quiet_driver;
 mod render;
@@ -31,6 +32,7 @@ pub fn main() -> ExitCode {
     let done = match command {
         Command::Run(arguments) => run::command(&arguments),
         Command::Check(arguments) => check::command(&arguments),
+        Command::Mesh(arguments) => mesh::command(&arguments),
         Command::Explain(arguments) => explain::command(&arguments),
         Command::Render(arguments) => render::command(&arguments),
         Command::Accuracy(arguments) => accuracy::command(&arguments),

@@ -43,31 +43,34 @@ pub enum FamilyDirection<T> {
 
 columns! {
     /// Rows of the body's node columns, by corner.
-    Connectivity(Vec<u32>) = "connectivity";
+    Connectivity(Vec<u32>) = "connectivity", Structure;
     /// What the element type knows of the rest shape: see [`Element`](crate::elements::Element).
-    RestShape(Reals) = "rest_shape";
+    RestShape(Reals) = "rest_shape", Given;
     /// Unit vectors along the fibres at rest, of the families where they differ from element to element.
-    FibreDirection(Reals) = "fibre_direction";
+    FibreDirection(Reals) = "fibre_direction", Given;
     /// Viscous history q: six numbers a point and Prony term, then one a term of the pressure.
-    ViscousMemory(Reals) = "viscous_memory";
+    ViscousMemory(Reals) = "viscous_memory", State;
     /// 1 until the element is removed, then 0. Exists when elements can be removed.
-    Alive(Vec<u32>) = "alive";
+    Alive(Vec<u32>) = "alive", State;
     /// The step before which the element goes at the latest; `u32::MAX`: never. Exists with [`Alive`].
-    RemovalStep(Vec<u32>) = "removal_step";
+    RemovalStep(Vec<u32>) = "removal_step", State;
     /// Elastic and hourglass energy (J) that each element held when it was removed. Exists with [`Alive`].
-    RemovedEnergy(Reals) = "removed_energy";
+    RemovedEnergy(Reals) = "removed_energy", State;
     /// Volume at rest (m³) of each element that is there, and that times θ, by which its law measures the change of volume.
     /// Exists with [`NodalVolumeChange`].
-    ElementVolume(Reals) = "element_volume";
+    ElementVolume(Reals) = "element_volume", Scratch;
     /// θ of each node of the body: the mean over the block's elements around it, by rest volume. Exists for elements with
     /// averaged nodal pressure.
-    NodalVolumeChange(Reals) = "nodal_volume_change";
+    NodalVolumeChange(Reals) = "nodal_volume_change", Scratch;
     /// What each 64 elements come to, four words each: bits of the elastic and the hourglass energy (J) and of the smallest
     /// J, and its row. For the guards on a GPU.
-    ElementSums(Vec<u32>) = "element_sums";
+    ElementSums(Vec<u32>) = "element_sums", Scratch;
     /// Two numbers: the lowest row of an element found with J < 0, by the kernel itself in every step, and the step in which it
     /// was: the first in which there was one; `u32::MAX`: none. Elements that are removed for it ([`OnInversion`]) are not noted here.
-    FirstInverted(Vec<u32>) = "first_inverted";
+    FirstInverted(Vec<u32>) = "first_inverted", State;
+    /// Mass that was added to each element so that the step may be as large as it is (kg), in f64 whatever the run's precision.
+    /// Exists where the scene has mass scaled.
+    AddedMass(Vec<f64>) = "added_mass", State;
 }
 
 /// Elements of a patch: enough to be worth a task, few enough that their nodes and forces stay in a core's cache.
@@ -82,11 +85,6 @@ pub const fn patch_groups(kind: ElementKind) -> usize {
 pub const fn patch_length(kind: ElementKind) -> usize {
     patch_groups(kind) * crate::math::LANES
 }
-
-/// Mass that was added to each element so that the step may be as large as it is (kg). Exists where the scene has mass
-/// scaled.
-#[derive(Component, Clone, Debug)]
-pub struct AddedMass(pub Vec<f64>);
 
 /// When each element goes at the latest (s); infinite: never by time. Exists with [`RemovalStep`] where elements go by time.
 #[derive(Component, Clone, Debug)]

@@ -1,5 +1,6 @@
 //! Time, and what depends on nothing else.
 
+use super::curve::smooth;
 use crate::scene::schema::Curve;
 use bevy_ecs::prelude::*;
 use glam::{DMat3, DVec3};
@@ -27,6 +28,20 @@ impl Clock {
         Self { step: 0, time_step, since: (0, 0.0), before: time_step, relaxation: None }
     }
 
+    /// Whether it can be the clock of a motion: steps are positive and finite, and Δt is what it is since a step that was taken.
+    pub fn is_sound(&self) -> bool {
+        let step = |step: f64| step.is_finite() && step > 0.0;
+        let since = self.since.0 <= self.step && self.since.1.is_finite() && self.since.1 >= 0.0;
+        step(self.time_step) && step(self.before) && since && self.relaxation.is_none() && self.time().is_finite()
+    }
+
+    /// The step that is nearest to a time (s), in steps as they are now: the present one at least.
+    pub fn step_nearest(&self, time: f64) -> u64 {
+        let steps = ((time - self.since.1) / self.time_step).round().max(0.0);
+        // a number of steps beyond what can be counted ends at the largest
+        self.since.0.saturating_add(steps as u64).max(self.step)
+    }
+
     /// Time at the beginning of a step (s), which must not lie before the last change of Δt: the time of the change and so
     /// many steps, exact however long the run.
     pub fn time_at(&self, step: u64) -> f64 {
@@ -41,6 +56,14 @@ impl Clock {
             step if step == self.since.0 => 0.5 * (self.before + self.time_step),
             _ => self.time_step,
         }
+    }
+
+    /// The times (s) from the middle of the step before to the middle of a step, which must not lie before the last change of
+    /// Δt: over them forces at its beginning change velocities. The first such window begins with the motion.
+    pub fn window_at(&self, step: u64) -> (f64, f64) {
+        let there = Self { step, ..*self };
+        let end = self.time_at(step) + 0.5 * self.time_step;
+        (end - there.between_middles(), end)
     }
 
     /// Takes steps of another length from now on (s).
@@ -95,15 +118,10 @@ impl Relaxation {
     }
 }
 
-/// 10s³ − 15s⁴ + 6s⁵, from 0 to 1 without a jump of the first two derivatives.
-fn smooth(s: f64) -> f64 {
-    s * s * s * (10.0 + s * (6.0 * s - 15.0))
-}
-
 /// A number or three that depend on time alone.
 #[derive(Clone, Debug)]
 pub enum Signal {
-    /// A curve times a vector, at the beginning of the step: one slot.
+    /// A curve's mean over the window in which the load acts, times a vector: one slot.
     Load {
         /// Course in time.
         curve: Curve,
@@ -123,6 +141,13 @@ pub enum Signal {
     },
 }
 
+/// What a curve is the course of.
+#[derive(Clone, Copy)]
+enum Use {
+    Load,
+    Motion,
+}
+
 impl Signal {
     /// How many slots it fills.
     pub fn slots(&self) -> usize {
@@ -132,14 +157,14 @@ impl Signal {
         }
     }
 
-    fn fill(&self, factor: impl Fn(&Curve, bool) -> f64, slots: &mut [[f64; 4]]) {
+    fn fill(&self, factor: impl Fn(&Curve, Use) -> f64, slots: &mut [[f64; 4]]) {
         match self {
             Signal::Load { curve, amplitude } => {
-                let v = *amplitude * factor(curve, false);
+                let v = *amplitude * factor(curve, Use::Load);
                 slots[0] = [v.x, v.y, v.z, 0.0];
             }
             Signal::Motion { curve, displacement, gradient, rotation } => {
-                let factor = factor(curve, true);
+                let factor = factor(curve, Use::Motion);
                 let a = *gradient * factor + rotation_less_identity(*rotation * factor);
                 let b = *displacement * factor;
                 for i in 0..3 {
@@ -178,9 +203,13 @@ impl Signals {
         slot
     }
 
-    /// Evaluates all signals for the step from `now` to `next` (s).
-    pub fn evaluate(&mut self, now: f64, next: f64) {
-        self.fill(|curve, ends| curve.value(if ends { next } else { now }));
+    /// Evaluates all signals for a step: of loads the mean over a window (s), see [`Clock::window_at`], of motions where they
+    /// are at the end of the step (s).
+    pub fn evaluate(&mut self, window: (f64, f64), end: f64) {
+        self.fill(|curve, of| match of {
+            Use::Load => curve.mean(window),
+            Use::Motion => curve.value(end),
+        });
     }
 
     /// Takes a share of what all signals are at a time (s): of a rotation, of its angle.
@@ -188,7 +217,7 @@ impl Signals {
         self.fill(|curve, _| share * curve.value(time));
     }
 
-    fn fill(&mut self, factor: impl Fn(&Curve, bool) -> f64) {
+    fn fill(&mut self, factor: impl Fn(&Curve, Use) -> f64) {
         let mut slot = 0;
         for source in &self.sources {
             source.fill(&factor, &mut self.values[slot..]);
@@ -207,31 +236,5 @@ impl Signals {
     /// Values of all slots in the present step.
     pub fn values(&self) -> &[[f64; 4]] {
         &self.values
-    }
-}
-
-impl Curve {
-    /// The factor at a time (s).
-    pub fn value(&self, time: f64) -> f64 {
-        let share = |start: f64, end: f64| ((time - start) / (end - start)).clamp(0.0, 1.0);
-        match self {
-            Curve::Step { start, end } => {
-                if time >= *start && end.is_none_or(|end| time < end) {
-                    1.0
-                } else {
-                    0.0
-                }
-            }
-            Curve::Ramp { start, end } => share(*start, *end),
-            Curve::Smooth { start, end } => smooth(share(*start, *end)),
-            Curve::Table(points) => {
-                let after = points.partition_point(|&(t, _)| t <= time);
-                match (after.checked_sub(1).map(|i| points[i]), points.get(after)) {
-                    (Some((t0, v0)), Some(&(t1, v1))) => v0 + (v1 - v0) * (time - t0) / (t1 - t0),
-                    (Some((_, v)), None) | (None, Some(&(_, v))) => v,
-                    (None, None) => 0.0,
-                }
-            }
-        }
     }
 }

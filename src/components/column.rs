@@ -1,7 +1,7 @@
 //! Columns of numbers in the precision that a run has.
 
 use crate::math::Scalar;
-use bevy_ecs::component::Mutable;
+use bevy_ecs::component::{ComponentId, Mutable};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -99,13 +99,20 @@ impl Reals {
         (0..self.len() / 3).map(|row| self.vector(row))
     }
 
-    /// The numbers as `T`; `None` when the run has another precision.
+    /// Whether `T` is the number type.
+    fn is_of<T>(&self) -> bool {
+        either!(self, v => size_of_val(v.as_slice()) == v.len() * size_of::<T>())
+    }
+
+    /// The numbers as `T`, which must be the run's own number type.
     pub fn slice<T: Scalar>(&self) -> &[T] {
+        debug_assert!(self.is_of::<T>(), "a column of {:?} is taken for one of another precision", self.precision());
         either!(self, v => bytemuck::try_cast_slice(v).unwrap_or(&[]))
     }
 
-    /// The numbers as `T`, to write; empty when the run has another precision.
+    /// The same, to write.
     pub fn slice_mut<T: Scalar>(&mut self) -> &mut [T] {
+        debug_assert!(self.is_of::<T>(), "a column of {:?} is taken for one of another precision", self.precision());
         either!(self, v => bytemuck::try_cast_slice_mut(v).unwrap_or(&mut []))
     }
 
@@ -120,19 +127,72 @@ impl Reals {
     }
 }
 
+/// What a column is to the state of a simulation. Every column names its role where it is declared, so that snapshots cannot
+/// forget one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Carried on from step to step: part of every snapshot.
+    State,
+    /// What the scene says; part of a snapshot where a system of one's own writes it.
+    Given,
+    /// The shape of the mesh; never changes.
+    Structure,
+    /// Made afresh in every step before it is read.
+    Scratch,
+}
+
 /// A component that is a column of plain numbers and can live on a device: the same bytes here and there.
 pub trait Column: Component<Mutability = Mutable> {
     /// Its name in shaders and reports.
     const NAME: &'static str;
+    /// What it is to the state.
+    const ROLE: Role;
     /// The bytes.
     fn bytes(&self) -> &[u8];
     /// The bytes, to write.
     fn bytes_mut(&mut self) -> &mut [u8];
 }
 
-/// Declares components that are columns.
+/// Access to one kind of column without its type.
+#[derive(Clone, Copy)]
+pub struct ColumnAccess {
+    /// The column's name.
+    pub name: &'static str,
+    /// What it is to the state.
+    pub role: Role,
+    /// Its bytes on the host.
+    pub bytes: fn(&World, Entity) -> Option<&[u8]>,
+    /// Writes its bytes on the host.
+    pub write: fn(&mut World, Entity, &[u8]),
+    /// Its component.
+    pub id: fn(&World) -> Option<ComponentId>,
+}
+
+impl ColumnAccess {
+    /// Access to a kind of column.
+    pub fn of<C: Column>() -> Self {
+        Self {
+            name: C::NAME,
+            role: C::ROLE,
+            bytes: |world, entity| world.get::<C>(entity).map(|column| column.bytes()),
+            write: |world, entity, bytes| {
+                if let Some(mut column) = world.get_mut::<C>(entity) {
+                    column.bytes_mut().copy_from_slice(bytes);
+                }
+            },
+            id: |world| world.component_id::<C>(),
+        }
+    }
+}
+
+/// Every kind of column there is, as the modules declare them.
+pub fn all_columns() -> Vec<ColumnAccess> {
+    [super::nodes::accesses(), super::block::accesses()].concat()
+}
+
+/// Declares components that are columns, each with its name and its [`Role`]; and a function `accesses` that lists them.
 macro_rules! columns {
-    ($($(#[$doc:meta])* $name:ident($type:ty) = $word:literal;)*) => {
+    ($($(#[$doc:meta])* $name:ident($type:ty) = $word:literal, $role:ident;)*) => {
         $(
             $(#[$doc])*
             #[derive(bevy_ecs::prelude::Component, Clone, Debug)]
@@ -140,6 +200,7 @@ macro_rules! columns {
 
             impl $crate::components::Column for $name {
                 const NAME: &'static str = $word;
+                const ROLE: $crate::components::Role = $crate::components::Role::$role;
                 fn bytes(&self) -> &[u8] {
                     $crate::components::column::AsBytes::as_bytes(&self.0)
                 }
@@ -161,6 +222,11 @@ macro_rules! columns {
                 }
             }
         )*
+
+        /// The columns declared here.
+        pub(super) fn accesses() -> Vec<$crate::components::ColumnAccess> {
+            vec![$($crate::components::ColumnAccess::of::<$name>()),*]
+        }
     };
 }
 pub(crate) use columns;
@@ -179,6 +245,15 @@ impl AsBytes for Reals {
     }
     fn as_bytes_mut(&mut self) -> &mut [u8] {
         self.bytes_mut()
+    }
+}
+
+impl AsBytes for Vec<f64> {
+    fn as_bytes(&self) -> &[u8] {
+        bytemuck::cast_slice(self)
+    }
+    fn as_bytes_mut(&mut self) -> &mut [u8] {
+        bytemuck::cast_slice_mut(self)
     }
 }
 

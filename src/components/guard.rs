@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 pub struct GuardMemory {
     /// Looks so far.
     pub looks: u64,
-    /// Energy below which rounding hides what becomes of it (J).
-    pub floor: f64,
+    /// Energy that rounding may have made or lost so far (J).
+    pub rounding: f64,
     /// What elements held at the start (J), where bodies start deformed.
     pub at_start: f64,
     /// The largest energy so far (J): what imbalances are shares of.

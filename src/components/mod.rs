@@ -12,6 +12,7 @@ mod block;
 mod clock;
 mod column;
 mod constraint;
+mod curve;
 mod guard;
 mod load;
 mod material;
@@ -25,7 +26,7 @@ pub use block::{
     patch_groups, patch_length,
 };
 pub use clock::{Clock, Relaxation, Signal, Signals};
-pub use column::{Column, Precision, Reals};
+pub use column::{Column, ColumnAccess, Precision, Reals, Role, all_columns};
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
 pub use guard::{GuardMemory, Notice, Seen};
 pub use load::{FaceCorners, Gravity, NodalForce, Pressure, Traction};

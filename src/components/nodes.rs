@@ -12,45 +12,46 @@ pub struct RestPosition(pub Vec<DVec3>);
 
 columns! {
     /// Displacement u (m), a vector a node.
-    Displacement(Reals) = "displacement";
+    Displacement(Reals) = "displacement", State;
     /// Displacement of the last step, u_n − u_{n−1} (m), a vector a node: velocity in the middle of the step times Δt.
     /// On constrained axes `boundary` writes the step to come here.
-    DisplacementStep(Reals) = "displacement_step";
+    DisplacementStep(Reals) = "displacement_step", State;
     /// What rounding has made of the displacements too much (m), a vector a node, and then what of their steps, likewise.
     /// Exists in f32 where sums are compensated.
-    DisplacementCompensation(Reals) = "displacement_compensation";
+    DisplacementCompensation(Reals) = "displacement_compensation", State;
     /// Lumped mass (kg), a number a node; 0 parks the node.
-    Mass(Reals) = "mass";
+    Mass(Reals) = "mass", State;
     /// Mass (kg) that resists acceleration in place of the real one, which only weighs then: in static analyses the mass
     /// that makes every element's bound of the stable step the same, else the real one and what was added to it where a
     /// scene has mass scaled. A number a node.
-    FictitiousMass(Reals) = "fictitious_mass";
+    FictitiousMass(Reals) = "fictitious_mass", State;
     /// Σ c m over a node's elements (kg/s): damping rate times mass. Exists when a material is damped.
-    DampingCoefficient(Reals) = "damping_coefficient";
+    DampingCoefficient(Reals) = "damping_coefficient", State;
     /// Force of the deformed elements on the node, sign such that M ü = R − F (N), a vector a node.
-    InternalForce(Reals) = "internal_force";
+    InternalForce(Reals) = "internal_force", State;
     /// Sum R of all loads (N), a vector a node. Exists when there are loads.
-    ExternalForce(Reals) = "external_force";
+    ExternalForce(Reals) = "external_force", State;
     /// Bits 0, 1, 2: the node does not move freely along x, y, z.
-    ConstrainedAxes(Vec<u32>) = "constrained_axes";
+    ConstrainedAxes(Vec<u32>) = "constrained_axes", Given;
     /// Work done on or by a node since the start (J): by loads, against damping, by constraints, by internal forces; then
     /// the last step along constrained axes (m), which `boundary` writes over: [`WORK_NUMBERS`] a node. Exists when
     /// energies are asked for.
-    Work(Reals) = "work";
+    Work(Reals) = "work", State;
     /// What the integrator notices in passing. First the lowest row of a node whose displacement was found not finite, and the
     /// step in which it was: the first in which there was one; `u32::MAX`: none. In a motion without [`Work`], from [`SPENT_AT`] on, the work against internal forces since the start: with a place for each
     /// [`SPENT_ROWS`] nodes and one more, sums over those that move together, as bits of f32, and what rounding has left out of them (J). With prescribed nodes, from
     /// [`before_at`] on, a vector a node: bits of the last step (m) along prescribed axes, which `boundary` has written over.
     /// One column: kernels may have few.
-    FirstNonFinite(Vec<u32>) = "first_non_finite";
+    FirstNonFinite(Vec<u32>) = "first_non_finite", State;
     /// Displacement in the middle of the last step (m), a vector a node: for the guards on a GPU.
-    MiddleDisplacement(Reals) = "middle_displacement";
-    /// What each 64 nodes come to, four words each: bits of ½ m d² (kg m²) and of the longest step's square (m²), its row.
-    NodeSums(Vec<u32>) = "node_sums";
+    MiddleDisplacement(Reals) = "middle_displacement", Scratch;
+    /// What each 64 nodes come to, four words each: bits of ½ m d² (kg m²) and of the longest step's square (m²), its row, bits of
+    /// the square of the largest displacement (m²).
+    NodeSums(Vec<u32>) = "node_sums", Scratch;
     /// Forces of all elements (N), all blocks of the body one after the other: a vector for each node of each patch
     /// ([`Patches`](super::Patches)), which those that move with their patch do not use; in the scheme of two passes those on corners, in each group of
     /// [`LANES`](crate::math::LANES) elements by corner, component, element.
-    ElementForce(Reals) = "element_force";
+    ElementForce(Reals) = "element_force", Scratch;
 }
 
 /// Where sums of work begin in [`FirstNonFinite`].

@@ -1,11 +1,11 @@
 //! Guards: what kernels found wrong in passing, and what a look at energies and elements shows, told in the author's words.
 
-use super::look::{Look, look};
-use crate::backend::cpu::BlockLaw;
+use super::look::{Look, look, look_at_result};
+use super::rounding::Rounding;
+use crate::backend::cpu::BlockSums;
 use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::error::{Criterion, Error, Instability};
-use crate::materials::Elastic;
 use crate::scene::schema::{Guard, Guards, Inversion};
 use bevy_ecs::prelude::*;
 
@@ -14,6 +14,8 @@ const STEP_TOO_LARGE: &str = "a time step beyond the stable one (leave `step` ou
 const JUMP: &str = "a prescribed motion that jumps (use a ramp: `curve: Smooth(end: ...)` or `Ramp(end: ...)`)";
 const INVERTED: &str = "a load or motion too large or too sudden for the mesh (use a ramp, a finer mesh, or say by `inversion` of the \
                         material what becomes of such elements), or a time step that is too large (lower integration.safety)";
+const OVERFLOW: &str = "a motion, load or modulus beyond what numbers can express, or a time step that is too large (lower \
+                        integration.safety)";
 /// Parts that hold less than this share of all energy are not asked for their hourglass energy.
 const WORTH_LOOKING: f64 = 1e-3;
 
@@ -69,39 +71,78 @@ fn turned_inside_out(authoring: &Authoring, block: Entity, row: usize) -> (Strin
 }
 
 /// The body, and the same, where a look shows it of elements that must not: kernels see it a step later.
-fn seen_inside_out(seen: &Look, world: &World) -> Option<(String, String, Criterion)> {
-    seen.parts.iter().find_map(|(entity, sums)| {
-        let ends =
-            world.get::<OnInversion>(*entity) == Some(&OnInversion(Inversion::Stop)) && sums.least_volume_ratio < 0.0;
-        let body = world.get::<Block>(*entity).filter(|_| ends)?.body;
+fn seen_inside_out(parts: &[(Entity, BlockSums)], world: &World) -> Option<(String, String, Criterion)> {
+    parts.iter().find_map(|(entity, sums)| {
+        let ends = world.get::<OnInversion>(*entity) == Some(&OnInversion(Inversion::Stop));
+        // without elements J is infinite; what is no number is not above 0
+        let body = world.get::<Block>(*entity).filter(|_| ends && !(sums.least_volume_ratio > 0.0))?.body;
         let (what, criterion) = turned_inside_out(world.get::<Authoring>(body)?, *entity, sums.row as usize);
         Some((label(world, body), what, criterion))
     })
+}
+
+/// What of a look is no finite number: in words, with the body or part that it is of.
+fn not_finite(seen: &Look, world: &World) -> Option<(String, f64)> {
+    let part = |(entity, sums): &(Entity, BlockSums)| {
+        let label = label(world, *entity);
+        let named = [("elastic energy", sums.strain), ("hourglass energy", sums.hourglass)];
+        let found = named.into_iter().find(|(_, value)| !value.is_finite());
+        let found = found.or(sums.least_volume_ratio.is_nan().then_some(("smallest J", sums.least_volume_ratio)));
+        found.map(|(name, value)| (format!("the {name} of {label}"), value))
+    };
+    let of_nodes = [
+        ("the kinetic energy", seen.kinetic),
+        ("the work against internal forces", seen.spent),
+        ("the largest speed", seen.fastest.map_or(0.0, |(.., speed)| speed)),
+        ("the largest displacement", seen.reach.iter().map(|(_, reach)| *reach).fold(0.0, larger)),
+    ];
+    let of_nodes = of_nodes.into_iter().find(|(_, value)| !value.is_finite());
+    seen.parts.iter().find_map(part).or(of_nodes.map(|(name, value)| (name.into(), value)))
+}
+
+/// The larger of two numbers, or what is no number.
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}
+
+/// What is wrong with the present state itself. Kernels notice what is turned inside out when they next take its forces: of a
+/// state that is handed out as a result, and of the last one, that would be too late.
+pub(super) fn find_in_result(world: &mut World, good_until: f64, watch: &Watch) -> Result<Option<Instability>, Error> {
+    let parts = look_at_result(world)?;
+    let found = seen_inside_out(&parts, world);
+    Ok(found.map(|(body, what, criterion)| instability(world, watch, body, what, INVERTED, criterion, good_until)))
 }
 
 /// Looks at energies and elements. Warns of what passes a limit, each once, and ends the run where elements hold more energy
 /// than was spent on them: so a step beyond the stable one shows that does not run away, because large motion holds it.
 pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch) -> Result<(), Error> {
     let seen = look(world)?;
+    if let Some((what, value)) = not_finite(&seen, world) {
+        let inside_out = seen_inside_out(&seen.parts, world);
+        let (body, what, cause, criterion) = match inside_out {
+            Some((body, what, criterion)) => (body, what, INVERTED, criterion),
+            None => (bodies(world), format!("{what} is {value}"), OVERFLOW, Criterion::of("result")),
+        };
+        let broken = instability(world, watch, body, what, cause, criterion, good_until);
+        return Err(Error::Unstable(Box::new(broken)));
+    }
+    let rounding = world.get_resource::<Rounding>().map_or(0.0, |rounding| rounding.of_energy(&seen.reach));
     let clock = *world.resource::<Clock>();
     let Some(mut memory) = world.remove_resource::<GuardMemory>() else { return Ok(()) };
     memory.looks += 1;
+    memory.rounding = memory.rounding.max(rounding);
     remember(&mut memory, &seen, world);
-    let made = balance(&mut memory, &seen, watch, world);
+    let (made, held) = balance(&mut memory, &seen, watch, world);
     hourglass(&mut memory, &seen, watch, world);
-    let scale = memory.scale;
+    let (scale, rounding) = (memory.scale, memory.rounding);
     world.insert_resource(memory);
     let stop = watch.limits.energy.stop;
-    let (made, held) = made;
-    if made <= stop * scale || watch.foreign || scale <= world.resource::<GuardMemory>().floor {
+    if made <= stop * scale + rounding || watch.foreign {
         return Ok(());
     }
-    if let Some((body, what, criterion)) = seen_inside_out(&seen, world) {
+    if let Some((body, what, criterion)) = seen_inside_out(&seen.parts, world) {
         return Err(Error::Unstable(Box::new(instability(world, watch, body, what, INVERTED, criterion, good_until))));
     }
-    let mut bodies: Vec<String> =
-        world.query_filtered::<&Label, With<Authoring>>().iter(world).map(|label| label.0.clone()).collect();
-    bodies.sort();
     let what = format!(
         "elements hold {held:.3e} J, but only {:.3e} J were spent on them: {:.1} % of the largest energy so far came from \
          nothing, {:.1} % are allowed (guards.energy.stop)",
@@ -113,7 +154,8 @@ pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch) -> Result
                  ramp)";
     let criterion = Criterion { value: Some(made / scale), limit: Some(stop), ..Criterion::of("energy") };
     debug_assert!(clock.relaxation.is_none());
-    let broken = instability(world, watch, bodies.join(", "), what, cause, criterion, good_until);
+    let body = bodies(world);
+    let broken = instability(world, watch, body, what, cause, criterion, good_until);
     Err(Error::Unstable(Box::new(broken)))
 }
 
@@ -128,11 +170,12 @@ fn balance(memory: &mut GuardMemory, seen: &Look, watch: &Watch, world: &World) 
     let made = held - seen.spent - memory.at_start;
     let made = if viscous || watch.removal { made.max(0.0) } else { made };
     let limit = watch.limits.energy.warn;
-    if memory.scale > 0.0 && (made / memory.scale).abs() > memory.imbalance.abs() {
-        memory.imbalance = made / memory.scale;
+    // what rounding alone may have made of it is no imbalance
+    let share = made.signum() * (made.abs() - memory.rounding).max(0.0) / memory.scale;
+    if memory.scale > 0.0 && share.abs() > memory.imbalance.abs() {
+        memory.imbalance = share;
     }
-    if made.abs() > limit * memory.scale && memory.scale > memory.floor {
-        let share = made / memory.scale;
+    if memory.scale > 0.0 && share.abs() > limit {
         let way = if made > 0.0 { "came from nothing" } else { "went into nothing" };
         let message = format!(
             "{:.1} % of the largest energy so far {way} ({:.1} % are a warning, guards.energy.warn): results are that \
@@ -175,28 +218,12 @@ fn held_by(seen: &Look, world: &World) -> Held {
 pub fn begin(world: &mut World) -> Result<(), Error> {
     let seen = look(world)?;
     let held = held_by(&seen, world);
+    let rounding = Rounding::of(world);
     let mut memory = world.get_resource_or_init::<GuardMemory>();
     (memory.at_start, memory.scale) = (held.lasting, held.all);
-    let floor = rounding(world);
-    world.get_resource_or_init::<GuardMemory>().floor = floor;
+    memory.rounding = rounding.of_energy(&seen.reach);
+    world.insert_resource(rounding);
     Ok(())
-}
-
-/// Strains that f32 knows to a twentieth of their energy: volume changes cancel in it to eps/ε.
-const KNOWN_STRAIN: f64 = 1e-6;
-
-/// Energy (J) of all bodies at strains too small for f32 to be sure of it; nothing in f64.
-fn rounding(world: &mut World) -> f64 {
-    let mut floor = 0.0;
-    for (block, shape, law) in world.query::<(&Block, &RestShape, &BlockLaw<f64>)>().iter(world) {
-        let Reals::F32(_) = shape.0 else { continue };
-        let Some(mass) = world.get::<Mass>(block.body) else { continue };
-        let Some(density) = world.get::<Density>(block.material) else { continue };
-        let [shear, bulk] = law.elastic.small_strain_moduli();
-        let volume = (0..mass.len()).map(|row| mass.get(row)).sum::<f64>() / density.0;
-        floor += 0.5 * (bulk + shear) * volume * KNOWN_STRAIN * KNOWN_STRAIN;
-    }
-    floor
 }
 
 fn hourglass(memory: &mut GuardMemory, seen: &Look, watch: &Watch, world: &World) {
@@ -252,6 +279,14 @@ fn remember(memory: &mut GuardMemory, seen: &Look, world: &World) {
         let id = authoring.node_id(row as usize);
         memory.fastest_node = Some(Seen { value, body: label(world, body), id, time });
     }
+}
+
+/// The names of all bodies.
+fn bodies(world: &mut World) -> String {
+    let mut names: Vec<String> =
+        world.query_filtered::<&Label, With<Authoring>>().iter(world).map(|label| label.0.clone()).collect();
+    names.sort();
+    names.join(", ")
 }
 
 fn label(world: &World, entity: Entity) -> String {

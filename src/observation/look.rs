@@ -5,7 +5,7 @@ use crate::backend::cpu::{BlockLaw, BlockSums, Cpu, WatchedColumns, run_watch};
 use crate::backend::device::{Device, bring_to_host};
 use crate::backend::kernel::KernelId;
 use crate::components::*;
-use crate::error::Error;
+use crate::error::{Error, missing};
 use crate::evaluation::{BlockView, averages, with_element_of};
 use crate::math::SimdScalar;
 use bevy_ecs::prelude::*;
@@ -23,6 +23,8 @@ pub struct Look {
     pub spent: f64,
     /// The body, row and speed (m/s) of the fastest node.
     pub fastest: Option<(Entity, u32, f64)>,
+    /// Each body, and the largest displacement of a node (m).
+    pub reach: Vec<(Entity, f64)>,
     /// Each block and what its elements come to.
     pub parts: Vec<(Entity, BlockSums)>,
 }
@@ -74,7 +76,13 @@ fn spent(world: &mut World) -> Result<f64, Error> {
 }
 
 impl Look {
-    fn add_nodes(&mut self, body: Entity, motion: f64, square: f64, row: u32, rate: f64) {
+    fn add_nodes(&mut self, body: Entity, motion: f64, square: f64, row: u32, rate: f64, reach: f64) {
+        match self.reach.last_mut().filter(|(of, _)| *of == body) {
+            // max forgets what is no number
+            Some((_, most)) if !most.is_nan() => *most = if reach.is_nan() { reach } else { most.max(reach) },
+            Some(_) => {}
+            None => self.reach.push((body, reach)),
+        }
         self.kinetic += motion * rate * rate;
         let speed = square.max(0.0).sqrt() * rate;
         if self.fastest.is_none_or(|(_, _, fastest)| speed > fastest) {
@@ -88,23 +96,24 @@ fn add_up_nodes(look: &mut Look, world: &mut World) {
     for (body, sums) in world.query::<(Entity, &NodeSums)>().iter(world) {
         for words in sums.chunks_exact(4) {
             let number = |i: usize| f64::from(f32::from_bits(words[i]));
-            look.add_nodes(body, number(0), number(1), words[2], rate);
+            look.add_nodes(body, number(0), number(1), words[2], rate, number(3).sqrt());
         }
     }
 }
 
 fn look_at_nodes(look: &mut Look, world: &mut World) {
     let rate = world.resource::<Clock>().rate();
-    for (body, mass, step) in world.query::<(Entity, &Mass, &DisplacementStep)>().iter(world) {
-        let (mut motion, mut fastest) = (0.0, (-1.0, u32::MAX));
+    for (body, mass, step, u) in world.query::<(Entity, &Mass, &DisplacementStep, &Displacement)>().iter(world) {
+        let (mut motion, mut fastest, mut reach) = (0.0, (-1.0, u32::MAX), 0.0_f64);
         for row in 0..mass.len() {
+            reach = reach.max(u.vector(row).length_squared());
             let square = step.vector(row).length_squared();
             motion += 0.5 * mass.get(row) * square;
             if square > fastest.0 {
                 fastest = (square, row as u32);
             }
         }
-        look.add_nodes(body, motion, fastest.0, fastest.1, rate);
+        look.add_nodes(body, motion, fastest.0, fastest.1, rate, reach.sqrt());
     }
 }
 
@@ -116,13 +125,36 @@ fn look_at_elements(look: &mut Look, world: &mut World) {
         if middle.as_ref().is_none_or(|(of, _)| *of != body) {
             middle = middle_of_step(world, body).map(|displacement| (body, displacement));
         }
-        let Some((_, displacement)) = &middle else { continue };
+        let Some((_, displacement)) = &middle else {
+            missing("a column of a body");
+            continue;
+        };
         let sums = match displacement.0 {
             Reals::F32(_) => sums_of::<f32>(world, entity, displacement),
             Reals::F64(_) => sums_of::<f64>(world, entity, displacement),
         };
+        debug_assert!(sums.is_some(), "a broken invariant: a block that cannot be looked at");
         look.parts.extend(sums.map(|sums| (entity, sums)));
     }
+}
+
+/// Each block and what its elements come to at the present displacements, evaluated on the host.
+///
+/// # Errors
+/// What the GPU says.
+pub fn look_at_result(world: &mut World) -> Result<Vec<(Entity, BlockSums)>, Error> {
+    bring_to_host(world, |_, name| name == Displacement::NAME || name == RestShape::NAME)?;
+    let blocks: Vec<(Entity, Entity)> =
+        world.query::<(Entity, &Block)>().iter(world).map(|(entity, block)| (entity, block.body)).collect();
+    let sums = |(entity, body): (Entity, Entity)| {
+        let displacement = world.get::<Displacement>(body)?;
+        let sums = match displacement.0 {
+            Reals::F32(_) => sums_of::<f32>(world, entity, displacement),
+            Reals::F64(_) => sums_of::<f64>(world, entity, displacement),
+        };
+        Some((entity, sums?))
+    };
+    Ok(blocks.into_iter().filter_map(sums).collect())
 }
 
 /// Displacements in the middle of the last step, in the run's precision.

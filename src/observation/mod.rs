@@ -5,12 +5,14 @@ mod fields;
 mod guards;
 mod look;
 mod probes;
+mod rounding;
 
 pub use energies::{energies, mass};
 pub use fields::{BodyFields, body_fields, internal_forces, write as write_fields};
 pub use guards::{Watch, begin as begin_to_guard};
 pub use look::{Look, WatchKernels, look};
 pub use probes::{header, observe_probe};
+pub use rounding::{Rounding, shortest_edge};
 
 use crate::components::*;
 use crate::error::{Criterion, Error, Instability};
@@ -206,6 +208,10 @@ impl Observer {
             // the steps since the last look at the residual will be taken back
             Some(_) if clock.relaxation.is_some() => return Ok(()),
             Some(found) => return Err(Error::Unstable(Box::new(found))),
+        }
+        let shown = last || self.files.is_some() && (due(self.fields) || self.snapshots.is_some_and(due));
+        if shown && let Some(found) = guards::find_in_result(world, self.good_until, &self.watch)? {
+            return Err(Error::Unstable(Box::new(found)));
         }
         let look = clock.step.is_multiple_of(self.watch.limits.every.max(1)) || last;
         if look && clock.step > 0 && !to_rest {

@@ -16,6 +16,11 @@ impl Beat {
         Self { every, from: 0, interval }
     }
 
+    /// Whether it comes again and again.
+    pub fn is_sound(&self) -> bool {
+        self.every >= 1 && self.interval.is_none_or(|interval| interval.is_finite() && interval > 0.0)
+    }
+
     pub fn is_due(&self, step: u64) -> bool {
         step >= self.from && (step - self.from).is_multiple_of(self.every)
     }

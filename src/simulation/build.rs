@@ -15,7 +15,7 @@ use super::step_kernels::step_kernels;
 use super::{Entry, Facts, Job, Member, Options, Simulation};
 use crate::assembly::{Assembly, assemble, assemble_in_time, insert_laws};
 use crate::backend::cpu::Cpu;
-use crate::backend::device::{Device, all_columns};
+use crate::backend::device::Device;
 use crate::backend::gpu::Gpu;
 use crate::backend::kernel::KernelId;
 use crate::components::*;
@@ -237,6 +237,7 @@ fn plan<'a>(
     insert_laws(options.precision, world);
     let (clock, stability, steps) = clock(scene, world, diagnostics)?;
     outputs::check(scene, &clock, steps, diagnostics);
+    outputs::check_curves(scene, &clock, diagnostics);
     world.insert_resource(clock);
     world.insert_resource(Observed(true));
     assemble_in_time(&assembly, world, diagnostics);

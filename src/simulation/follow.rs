@@ -156,7 +156,8 @@ impl Follower {
             known_at: self.known_at,
             seen: self.seen,
             guessed: self.guessed,
-            history: self.history,
+            // time on a clock on the wall is no part of the state
+            history: StepHistory { seconds: 0.0, ..self.history },
             growths: self.watched.iter().map(growth).collect(),
         }
     }

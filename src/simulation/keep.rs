@@ -19,7 +19,7 @@ impl Simulation {
     /// That it is a static analysis; what the GPU says.
     pub fn snapshot(&mut self) -> Result<Snapshot, Error> {
         let mut snapshot = Snapshot::take(&mut self.world)?;
-        self.note_pace(&mut snapshot);
+        self.note_pace(&mut snapshot)?;
         Ok(snapshot)
     }
 

@@ -1,7 +1,8 @@
-//! How much a run would write.
+//! What a scene asks for in time, held against its steps: how much a run would write, and courses finer than steps.
 
 use crate::components::{Cadence, Clock};
 use crate::scene::limits::{FRAMES, ROWS};
+use crate::scene::schema::Curve;
 use crate::scene::syntax::Path;
 use crate::scene::{Diagnostics, SceneFile};
 
@@ -25,5 +26,28 @@ pub(super) fn check(scene: &SceneFile, clock: &Clock, steps: u64, diagnostics: &
     for (name, probe) in &scene.probes {
         let every = probe.every.unwrap_or_else(|| scene.fields_every());
         at_most(ROWS, "rows of a probe", every, Path::default().name("probes").name(name).name("every"));
+    }
+}
+
+/// Warns of courses in time that are finer than steps.
+pub(super) fn check_curves(scene: &SceneFile, clock: &Clock, diagnostics: &mut Diagnostics) {
+    if clock.relaxation.is_some() {
+        return;
+    }
+    let scene = &scene.scene;
+    let mut check = |curve: &Curve, path: Path, what_of_it: &str| {
+        let Some(finest) = curve.finest().filter(|finest| *finest < clock.time_step) else { return };
+        let message = format!("the curve changes within {finest:.3e} s, and a step is {:.3e} s", clock.time_step);
+        diagnostics.warn_at(path.name("curve"), message).note(what_of_it);
+    };
+    for (number, load) in scene.loads.iter().enumerate() {
+        let note = "its impulse is right, but it acts as a mean over a step; a smaller `step` shows more of it";
+        check(load.curve(), Path::default().name("loads").index(number), note);
+    }
+    for (number, constraint) in scene.constraints.iter().enumerate() {
+        let note = "nodes are put where it is at the ends of steps: what happens between them is lost; a smaller `step` shows \
+                    more of it";
+        let path = Path::default().name("constraints").index(number);
+        constraint.curve().into_iter().for_each(|curve| check(curve, path.clone(), note));
     }
 }

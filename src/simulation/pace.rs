@@ -15,8 +15,6 @@ use std::collections::BTreeMap;
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Pace {
-    /// The last step of the scene, in steps as they are now.
-    last_step: u64,
     /// When systems on the host run next, by name.
     beats: BTreeMap<String, Beat>,
     /// What is known of the stable step.
@@ -25,25 +23,27 @@ struct Pace {
 
 impl Simulation {
     /// Notes the pace in a snapshot of the world.
-    pub(super) fn note_pace(&self, snapshot: &mut Snapshot) {
+    pub(super) fn note_pace(&self, snapshot: &mut Snapshot) -> Result<(), SnapshotError> {
         let beat = |entry: &super::Entry| match &entry.job {
             Job::Host { beat, .. } => Some((entry.name.clone(), *beat)),
             Job::Kernels(_) => None,
         };
         let pace = Pace {
-            last_step: self.facts.steps,
             beats: self.entries.iter().filter_map(beat).collect(),
             found: self.follower.as_ref().map(|follower| follower.found()),
         };
-        // numbers and names are always written
-        snapshot.set_pace(serde_json::to_value(pace).unwrap_or_default());
+        let text = ron::to_string(&pace).map_err(|error| SnapshotError::Senseless(error.to_string()))?;
+        snapshot.set_pace(text);
+        Ok(())
     }
 
     /// Goes on at the pace of a snapshot that has been put into the world.
     pub(super) fn take_up_pace(&mut self, snapshot: &Snapshot) -> Result<(), Error> {
         let senseless = |reason: String| SnapshotError::Senseless(format!("its pace cannot be taken up: {reason}"));
-        let pace: Pace =
-            serde_json::from_value(snapshot.pace().clone()).map_err(|error| senseless(error.to_string()))?;
+        let pace: Pace = ron::from_str(snapshot.pace()).map_err(|error| senseless(error.to_string()))?;
+        if let Some((name, _)) = pace.beats.iter().find(|(_, beat)| !beat.is_sound()) {
+            return Err(senseless(format!("the system `{name}` can never run")).into());
+        }
         let clock = *self.world.resource::<Clock>();
         relax_as(&mut self.world, &clock)?;
         for entry in &mut self.entries {
@@ -51,8 +51,10 @@ impl Simulation {
                 *beat = *kept;
             }
         }
-        self.facts.steps = pace.last_step;
-        self.world.resource_mut::<Observer>().go_on(&clock, pace.last_step);
+        // the scene may last longer than that of the snapshot
+        let last_step = clock.step_nearest(self.scene.duration);
+        self.facts.steps = last_step;
+        self.world.resource_mut::<Observer>().go_on(&clock, last_step);
         if let (Some(follower), Some(found)) = (&mut self.follower, pace.found)
             && !follower.take_up(found, &mut self.world)
         {

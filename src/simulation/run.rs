@@ -151,7 +151,7 @@ impl Simulation {
         let mut signals = self.world.resource_mut::<Signals>();
         match &clock.relaxation {
             Some(relaxation) => signals.approach(relaxation.end, relaxation.share(step + 1)),
-            None => signals.evaluate(clock.time_at(step), clock.time_at(step + 1)),
+            None => signals.evaluate(clock.window_at(step), clock.time_at(step + 1)),
         }
     }
 

@@ -5,8 +5,9 @@ use super::mass_scaling::heaviness;
 use crate::assembly::square_frequencies;
 use crate::backend::cpu::{BlockLaw, Cpu, Strain, StrainColumns, strains};
 use crate::components::*;
-use crate::evaluation::{lane_place, node_count, with_element_of};
+use crate::evaluation::{lane_place, with_element_of};
 use crate::math::LANES;
+use crate::observation::shortest_edge;
 use bevy_ecs::prelude::*;
 
 /// Elements looked at in one task: what is found of them stays in the core's cache.
@@ -62,7 +63,9 @@ impl Watched {
         blocks.sort();
         let watched = |&entity: &Entity| {
             let growth = Growth::of(world.get::<BlockLaw<f64>>(entity)?);
-            let shortest_edge = shortest_edge(world, entity)?;
+            let block = world.get::<Block>(entity)?;
+            let rest = world.get::<RestPosition>(block.body)?;
+            let shortest_edge = shortest_edge(block, world.get::<Connectivity>(entity)?, rest);
             let mut watched = Self { entity, growth, squares: Vec::new(), shortest_edge, known_growth: Vec::new() };
             watched.weigh(world);
             watched.known_growth = vec![1.0; watched.squares.len()];
@@ -171,17 +174,4 @@ impl Watched {
             (FamilyDirection::Varying(_), None) => [0.0; 3],
         }
     }
-}
-
-/// The shortest distance between two nodes of an element of a block at rest (m).
-fn shortest_edge(world: &World, entity: Entity) -> Option<f64> {
-    let (block, connectivity) = (world.get::<Block>(entity)?, world.get::<Connectivity>(entity)?);
-    let rest = &world.get::<RestPosition>(block.body)?.0;
-    let nodes = node_count(block.kind);
-    let place = |row: usize, a: usize| rest[connectivity[lane_place(row, nodes, a)] as usize];
-    let pairs = (1..nodes).flat_map(|a| (0..a).map(move |b| (a, b)));
-    let of_element = |row: usize| {
-        pairs.clone().fold(f64::INFINITY, |least, (a, b)| least.min(place(row, a).distance_squared(place(row, b))))
-    };
-    Some((0..block.count).map(of_element).fold(f64::INFINITY, f64::min).sqrt())
 }

@@ -1,36 +1,7 @@
 //! Which columns make up a simulation's state, and how they get into a snapshot and out of it.
 
-use crate::backend::device::{ColumnAccess, all_columns};
 use crate::components::*;
 use bevy_ecs::prelude::*;
-
-/// Columns that steps carry on.
-const STATE: [&str; 14] = [
-    Displacement::NAME,
-    DisplacementStep::NAME,
-    DisplacementCompensation::NAME,
-    Mass::NAME,
-    DampingCoefficient::NAME,
-    InternalForce::NAME,
-    ExternalForce::NAME,
-    Work::NAME,
-    FirstNonFinite::NAME,
-    FirstInverted::NAME,
-    ViscousMemory::NAME,
-    Alive::NAME,
-    RemovalStep::NAME,
-    RemovedEnergy::NAME,
-];
-/// Columns that never change, or are made afresh in every step before they are read.
-const NEVER: [&str; 7] = [
-    Connectivity::NAME,
-    ElementForce::NAME,
-    ElementVolume::NAME,
-    NodalVolumeChange::NAME,
-    MiddleDisplacement::NAME,
-    NodeSums::NAME,
-    ElementSums::NAME,
-];
 
 /// Where a column belongs: a body by its name, or one of its blocks by its place in the body's list.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize, PartialEq, Eq, PartialOrd, Ord)]
@@ -68,16 +39,19 @@ pub struct StateColumn {
     pub access: ColumnAccess,
 }
 
-/// The columns of a world's state in a fixed order. `further`: columns that custom systems write.
+/// The columns of a world's state in a fixed order: all whose [`Role`] says so. `further`: columns that custom systems write.
 pub fn state_columns(world: &mut World, further: &[&'static str]) -> Vec<StateColumn> {
     let accesses = all_columns();
     let mut columns = Vec::new();
     for (place, entity) in places(world) {
         // elements that are taken away are so in their rest shapes
-        let shapes = world.get::<Alive>(entity).is_some();
-        let wanted =
-            |name: &&'static str| STATE.contains(name) || further.contains(name) || shapes && *name == RestShape::NAME;
-        for access in accesses.iter().filter(|access| wanted(&access.name) && !NEVER.contains(&access.name)) {
+        let removes = world.get::<Alive>(entity).is_some();
+        let belongs = |access: &&ColumnAccess| match access.role {
+            Role::State => true,
+            Role::Given => further.contains(&access.name) || removes && access.name == RestShape::NAME,
+            Role::Structure | Role::Scratch => false,
+        };
+        for access in accesses.iter().filter(belongs) {
             if (access.bytes)(world, entity).is_some() {
                 columns.push(StateColumn { place: place.clone(), entity, access: *access });
             }

@@ -28,13 +28,18 @@ pub fn identity(scene: &Scene, world: &mut World) -> Identity {
     // a longer scene has the same steps where `step` is named; else they fit its duration
     add("time step (from `duration` and `integration`)", world.resource::<Clock>().time_step.to_bits());
     let (mut meshes, mut laws) = (XxHash64::default(), XxHash64::default());
-    for (_, entity) in super::columns::places(world) {
-        let entity = world.entity(entity);
+    let columns = all_columns();
+    for (_, place) in super::columns::places(world) {
+        // fields of elements too: fibres of another file pull otherwise
+        for column in columns.iter().filter(|column| matches!(column.role, Role::Structure | Role::Given)) {
+            if let Some(bytes) = (column.bytes)(world, place) {
+                meshes.write(column.name.as_bytes());
+                meshes.write(bytes);
+            }
+        }
+        let entity = world.entity(place);
         if let Some(rest) = entity.get::<RestPosition>() {
             meshes.write(bytemuck::cast_slice(&rest.0));
-        }
-        if let Some(connectivity) = entity.get::<Connectivity>() {
-            meshes.write(connectivity.bytes());
         }
         if let Some(block) = entity.get::<Block>() {
             meshes.write(format!("{:?} {}", block.kind, block.count).as_bytes());
@@ -48,10 +53,42 @@ pub fn identity(scene: &Scene, world: &mut World) -> Identity {
             }
         }
     }
-    add("meshes", meshes.finish());
+    meshes.write_u64(sets_in_use(world));
+    add("meshes (with their named sets and fields)", meshes.finish());
     laws.write_u64(of_text(&scene.materials));
     add("materials", laws.finish());
     parts
+}
+
+/// The rows that constraints, loads and removal act on, as they were found by the names of sets or by place.
+fn sets_in_use(world: &mut World) -> u64 {
+    let mut all: Vec<u64> = Vec::new();
+    let mut note = |kind: &str, number: usize, parts: &[&[u8]]| {
+        let mut hash = XxHash64::default();
+        hash.write(kind.as_bytes());
+        hash.write_usize(number);
+        parts.iter().for_each(|part| hash.write(part));
+        all.push(hash.finish());
+    };
+    fn bytes<T: bytemuck::NoUninit>(rows: &[T]) -> &[u8] {
+        bytemuck::cast_slice(rows)
+    }
+    world.query::<&Fixed>().iter(world).for_each(|c| note("fixed", c.axes as usize, &[bytes(&c.rows)]));
+    world.query::<&Prescribed>().iter(world).for_each(|c| {
+        note("prescribed", c.signal, &[&c.axes.to_le_bytes(), bytes(&c.rows), bytes(&c.arms)]);
+    });
+    world.query::<&NodalForce>().iter(world).for_each(|l| {
+        note("nodal force", l.signal, &[bytes(&l.rows), bytes(&l.factors)]);
+    });
+    world.query::<&Pressure>().iter(world).for_each(|l| note("pressure", l.signal, &[bytes(&l.faces.faces)]));
+    world.query::<&Traction>().iter(world).for_each(|l| note("traction", l.signal, &[bytes(&l.faces.faces)]));
+    world.query::<&RemovalCriterion>().iter(world).for_each(|r| {
+        note("removal", r.measure as usize, &[bytes(&r.rows), &r.limit.to_le_bytes()]);
+    });
+    world.query::<&RemovalTime>().iter(world).for_each(|r| note("removal in time", 0, &[bytes(&r.0)]));
+    // entities come in no order that a scene knows of
+    all.sort_unstable();
+    XxHash64::oneshot(0, bytes(&all))
 }
 
 fn of_text<T: Serialize>(part: &T) -> u64 {

@@ -22,7 +22,6 @@ use crate::output::{OutputError, replace};
 use bevy_ecs::prelude::*;
 use columns::{state_columns, update_faces};
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
@@ -45,15 +44,16 @@ struct Head {
     clock: Clock,
     columns: Vec<ColumnEntry>,
     guards: GuardMemory,
-    systems: BTreeMap<String, Value>,
-    /// How the simulation goes on from here: the simulation's own words.
-    pace: Value,
+    /// The states of custom systems, as RON.
+    systems: BTreeMap<String, String>,
+    /// How the simulation goes on from here: the simulation's own words, as RON.
+    pace: String,
 }
 
 impl PartialEq for Head {
     fn eq(&self, other: &Self) -> bool {
         // numbers by their digits: what is written is what counts
-        serde_json::to_value(self).ok() == serde_json::to_value(other).ok()
+        ron::to_string(self).ok() == ron::to_string(other).ok()
     }
 }
 
@@ -81,10 +81,10 @@ pub struct Keeping {
 /// How the state of a custom system is kept and taken back.
 #[derive(Clone, Copy)]
 pub struct StateAccess {
-    /// The state as a value.
-    pub keep: fn(&World) -> Result<Value, String>,
-    /// Puts a value back.
-    pub take_back: fn(Value, &mut World) -> Result<(), String>,
+    /// The state as RON.
+    pub keep: fn(&World) -> Result<String, String>,
+    /// Puts it back.
+    pub take_back: fn(&str, &mut World) -> Result<(), String>,
 }
 
 impl Snapshot {
@@ -115,12 +115,12 @@ impl Snapshot {
     }
 
     /// How the simulation goes on from here.
-    pub(crate) fn pace(&self) -> &Value {
+    pub(crate) fn pace(&self) -> &str {
         &self.head.pace
     }
 
     /// Sets it.
-    pub(crate) fn set_pace(&mut self, pace: Value) {
+    pub(crate) fn set_pace(&mut self, pace: String) {
         self.head.pace = pace;
     }
 
@@ -153,12 +153,34 @@ impl Snapshot {
     /// Bytes that are no snapshot, of another version, cut short, damaged, or senseless.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, SnapshotError> {
         let (head, data) = format::read(bytes)?;
-        let clock = &head.clock;
-        let sound = clock.time_step.is_finite() && clock.time_step > 0.0 && clock.relaxation.is_none();
-        if !sound {
+        if !head.clock.is_sound() {
             return Err(SnapshotError::Senseless("its clock cannot be that of a motion".into()));
         }
         Ok(Self { head, data })
+    }
+
+    /// In which parts two snapshots differ: columns by name and place, or the head.
+    pub fn differences(&self, other: &Self) -> Vec<String> {
+        let parts = |snapshot: &Self| {
+            let mut data = snapshot.data.as_slice();
+            let mut parts = BTreeMap::new();
+            for column in &snapshot.head.columns {
+                let (bytes, rest) = data.split_at((column.bytes as usize).min(data.len()));
+                let block = column.place.block.map_or(String::new(), |block| format!(", block {block}"));
+                parts.insert(format!("{} of {}{block}", column.name, column.place.body), bytes.to_vec());
+                data = rest;
+            }
+            let text = |text: Result<String, ron::Error>| text.unwrap_or_default().into_bytes();
+            parts.insert("clock".into(), text(ron::to_string(&snapshot.head.clock)));
+            parts.insert("guards".into(), text(ron::to_string(&snapshot.head.guards)));
+            parts.insert("systems".into(), text(ron::to_string(&snapshot.head.systems)));
+            parts.insert("pace".into(), snapshot.head.pace.clone().into_bytes());
+            parts.insert("identity".into(), text(ron::to_string(&snapshot.head.identity)));
+            parts
+        };
+        let (ours, theirs) = (parts(self), parts(other));
+        let names: std::collections::BTreeSet<&String> = ours.keys().chain(theirs.keys()).collect();
+        names.into_iter().filter(|name| ours.get(*name) != theirs.get(*name)).cloned().collect()
     }
 
     /// Writes the snapshot; the file appears when it is complete.
@@ -175,8 +197,7 @@ impl Snapshot {
     /// # Errors
     /// As [`Snapshot::from_bytes`], and files that cannot be read.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let bytes = std::fs::read(path).map_err(|source| SnapshotError::Read { path: path.to_path_buf(), source })?;
-        Ok(Self::from_bytes(&bytes)?)
+        Ok(Self::from_bytes(&format::read_file(path)?)?)
     }
 }
 
@@ -203,7 +224,7 @@ fn take(world: &mut World, keeping: &Keeping, clock: Clock) -> Result<Snapshot, 
         columns: entries,
         guards: world.get_resource::<GuardMemory>().cloned().unwrap_or_default(),
         systems,
-        pace: Value::Null,
+        pace: String::new(),
     };
     Ok(Snapshot { head, data })
 }
@@ -228,8 +249,8 @@ fn put(snapshot: &Snapshot, world: &mut World, keeping: &Keeping) -> Result<(), 
     update_faces(world);
     for (system, state) in &keeping.systems {
         let refused = |reason| SnapshotError::System { system: system.clone(), done: "taken back", reason };
-        let value = snapshot.head.systems.get(system).cloned().unwrap_or_default();
-        (state.take_back)(value, world).map_err(refused)?;
+        let kept = snapshot.head.systems.get(system).map_or("", String::as_str);
+        (state.take_back)(kept, world).map_err(refused)?;
     }
     send_to_device(world, ours)
 }

@@ -6,6 +6,7 @@
 //! the same inputs. What breaks something is kept in the folder `sinew-fuzz` of the system's temporary files.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod generate;
 mod memory;
 mod mutate;
 #[path = "../meshes/samples.rs"]
@@ -16,6 +17,7 @@ mod samples;
 mod samples_vtk;
 mod seeds;
 mod targets;
+mod whole;
 
 use std::collections::BTreeMap;
 use std::hash::{DefaultHasher, Hash, Hasher};

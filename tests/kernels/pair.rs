@@ -3,7 +3,7 @@
 use super::kernel_worlds::{Effects, randomize, shared_kernels};
 use bevy_ecs::prelude::*;
 use sinew::BackendChoice;
-use sinew::backend::device::{Device, all_columns, bring_to_host};
+use sinew::backend::device::{Device, bring_to_host};
 use sinew::backend::gpu::{Gpu, gpu_or_reason};
 use sinew::components::*;
 use sinew::systems::Registry;
@@ -33,8 +33,8 @@ pub fn run_all(systems: &[&str], effects: &Effects, step: u64, change: impl Fn(&
         change(world);
         let mut clock = world.resource_mut::<Clock>();
         clock.step = step;
-        let (now, next) = (step as f64 * clock.time_step, (step + 1) as f64 * clock.time_step);
-        world.resource_mut::<Signals>().evaluate(now, next);
+        let (window, end) = (clock.window_at(step), (step + 1) as f64 * clock.time_step);
+        world.resource_mut::<Signals>().evaluate(window, end);
         simulation
     };
     let (before, mut host, mut device) = (world(), world(), world());

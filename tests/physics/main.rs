@@ -12,6 +12,7 @@ mod conservation;
 mod copies;
 mod determinism;
 mod elements;
+mod endings;
 mod equilibrium;
 mod far_away;
 mod frequency_bound;

@@ -208,10 +208,16 @@ fn damaged_snapshots_say_what_is_wrong() {
     head[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
     assert!(said(&sealed(head)).contains("longer than the whole"));
     let text = String::from_utf8_lossy(&good[24..]).into_owned();
-    let column = text.find("\"bytes\":").unwrap() + 24 + 8;
+    let column = text.find("bytes:").unwrap() + 24 + 6;
     let mut huge = good.clone();
     huge[column] = b'9';
     assert!(said(&sealed(huge)).contains("columns are not"));
+    // a clock whose step began to count after the present one would stand still
+    let mut clock = good.clone();
+    let since = text.find("since:(0,").unwrap() + 24 + 7;
+    clock[since] = b'9';
+    let said = said(&sealed(clock));
+    assert!(said.contains("clock cannot be that of a motion"), "{said}");
     assert!(Snapshot::from_bytes(&sealed(good.clone())).unwrap() == Snapshot::from_bytes(&good).unwrap());
 }
 
@@ -245,4 +251,68 @@ proptest! {
             }
         }
     }
+}
+
+/// The same tissue with fibres along x in one file and along y in the other, and a set that holds other nodes.
+#[test]
+fn other_fields_or_sets_of_a_mesh_are_another_simulation() {
+    let place = tempfile::tempdir().unwrap();
+    let mesh = |fibres: [f64; 3], top: &str| {
+        format!(
+            "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n2\n0 1 \"top\"\n3 2 \"all\"\n$EndPhysicalNames\n\
+             $Nodes\n5\n1 0 0 0\n2 .1 0 0\n3 0 .1 0\n4 0 0 .1\n5 .1 .1 .1\n$EndNodes\n\
+             $Elements\n3\n1 15 2 1 1 {top}\n2 4 2 2 2 1 2 3 4\n3 4 2 2 2 2 3 4 5\n$EndElements\n\
+             $ElementData\n1\n\"fibres\"\n1\n0\n3\n0\n3\n2\n2 {x} {y} {z}\n3 {x} {y} {z}\n$EndElementData\n",
+            x = fibres[0],
+            y = fibres[1],
+            z = fibres[2]
+        )
+    };
+    let scene = "(duration: 1, bodies: {\"b\": (mesh: File(path: \"m.msh\"), material: \"m\")},
+        materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.3),
+            fibres: (eta: 1e3, direction: Field(\"fibres\")))},
+        constraints: [Fixed(on: Set(\"top\"))], integration: (step: 1e-4))";
+    let start = |text: String| {
+        std::fs::write(place.path().join("m.msh"), text).unwrap();
+        cpu(Precision::F32).start_in(scene, place.path())
+    };
+    let mut first = start(mesh([1.0, 0.0, 0.0], "4"));
+    first.advance(3).unwrap();
+    let kept = first.snapshot().unwrap();
+    start(mesh([1.0, 0.0, 0.0], "4")).restore(&kept).unwrap();
+    for other in [mesh([0.0, 1.0, 0.0], "4"), mesh([1.0, 0.0, 0.0], "5")] {
+        let said = start(other).restore(&kept).unwrap_err().to_string();
+        assert!(said.contains("meshes (with their named sets and fields)"), "{said}");
+    }
+}
+
+/// Nothing of the world outside is in them: not how long something took.
+#[test]
+fn two_snapshots_of_a_state_are_the_same_bytes() {
+    let soft =
+        scene("Tet4", "").replace("integration: (step: 5e-4)", "integration: ()").replace("young: 3e3", "young: 1e2");
+    let run = || {
+        let mut simulation = cpu(Precision::F32).start(&soft);
+        simulation.advance(60).unwrap();
+        simulation.snapshot().unwrap().to_bytes().unwrap()
+    };
+    assert!(run() == run());
+}
+
+#[test]
+fn what_is_no_file_is_not_read_to_its_end() {
+    let said = |path: &Path| Snapshot::read(path).unwrap_err().to_string();
+    if Path::new("/dev/zero").exists() {
+        assert!(said(Path::new("/dev/zero")).contains("is no file"));
+    }
+    let place = tempfile::tempdir().unwrap();
+    assert!(said(place.path()).contains("is no file"));
+    // two gigabytes that hold nothing, and the same behind the beginning of a snapshot
+    let path = place.path().join("large");
+    let large = std::fs::File::create(&path).unwrap();
+    large.set_len(2 << 30).unwrap();
+    assert!(said(&path).contains("does not begin as one"));
+    std::fs::write(&path, &bytes()[..200]).unwrap();
+    std::fs::File::options().write(true).open(&path).unwrap().set_len(2 << 30).unwrap();
+    assert!(said(&path).contains("cut short or has been added to"));
 }

@@ -7,6 +7,7 @@ mod column;
 mod cube;
 mod lens;
 mod parameters;
+mod resume;
 mod shipped;
 
 use sinew::components::Precision;

@@ -16,7 +16,7 @@ pub use volume_kernel::run_volumes;
 pub use watch_kernel::{BlockSums, WatchedColumns, run_watch};
 
 use bevy_ecs::prelude::*;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Rows of a node column that make one task. A constant: tasks must not depend on the number of threads.
 pub const ROWS_A_TASK: usize = 2048;
@@ -40,6 +40,8 @@ pub enum Instructions {
 #[derive(Resource)]
 pub struct Cpu {
     pool: Option<Arc<rayon::ThreadPool>>,
+    /// A pool of one thread, made when something would otherwise spread over the machine.
+    alone: OnceLock<Option<rayon::ThreadPool>>,
     threads: usize,
     arch: pulp::Arch,
 }
@@ -63,7 +65,7 @@ impl Cpu {
             (Instructions::Avx2, pulp::Arch::V4(simd)) => pulp::Arch::V3(*simd),
             (_, widest) => widest,
         };
-        Self { pool, threads, arch }
+        Self { pool, alone: OnceLock::new(), threads, arch }
     }
 
     /// How many threads work.
@@ -86,6 +88,15 @@ impl Cpu {
     /// several times that in every system. `None` when one thread works.
     pub fn pool(&self) -> Option<Arc<rayon::ThreadPool>> {
         self.pool.clone()
+    }
+
+    /// Runs a task so that what it shares among threads stays on those of this run: on one, where one is asked for.
+    pub fn confine<R: Send>(&self, task: impl FnOnce() -> R + Send) -> R {
+        let alone = || self.alone.get_or_init(|| rayon::ThreadPoolBuilder::new().num_threads(1).build().ok()).as_ref();
+        match self.pool.as_deref().or_else(alone) {
+            Some(pool) => pool.install(task),
+            None => task(),
+        }
     }
 
     /// Threads and instruction set in a few words.

@@ -32,8 +32,9 @@ impl Default for BlockSums {
 impl BlockSums {
     /// These and those of later rows.
     pub fn and(self, later: Self) -> Self {
-        let less = later.least_volume_ratio < self.least_volume_ratio;
-        let least = if less { later } else { self };
+        // what is no number stays
+        let less = later.least_volume_ratio < self.least_volume_ratio || later.least_volume_ratio.is_nan();
+        let least = if less && !self.least_volume_ratio.is_nan() { later } else { self };
         Self { strain: self.strain + later.strain, hourglass: self.hourglass + later.hourglass, ..least }
     }
 }

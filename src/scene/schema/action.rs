@@ -58,6 +58,16 @@ pub enum Axis {
     Z,
 }
 
+impl Constraint {
+    /// Its course in time; what is fixed has none.
+    pub fn curve(&self) -> Option<&Curve> {
+        match self {
+            Constraint::Fixed { .. } => None,
+            Constraint::Prescribed { curve, .. } => Some(curve),
+        }
+    }
+}
+
 /// What pushes and pulls.
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
@@ -118,6 +128,18 @@ pub enum Load {
         #[serde(default)]
         curve: Curve,
     },
+}
+
+impl Load {
+    /// Its course in time.
+    pub fn curve(&self) -> &Curve {
+        match self {
+            Load::Gravity { curve, .. }
+            | Load::NodalForce { curve, .. }
+            | Load::Pressure { curve, .. }
+            | Load::Traction { curve, .. } => curve,
+        }
+    }
 }
 
 /// How a force is shared among nodes.

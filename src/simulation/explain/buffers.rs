@@ -2,10 +2,9 @@
 
 use super::Buffer;
 use crate::backend::Buffers;
-use crate::backend::device::all_columns;
 use crate::backend::gpu::GpuLimits;
 use crate::backend::kernel::{BufferId, DESKTOP_WORKGROUP, MostBuffers};
-use crate::components::{Corners, Label, Patches, RestPosition};
+use crate::components::{Corners, Label, Patches, RestPosition, all_columns};
 use bevy_ecs::prelude::*;
 use std::collections::BTreeMap;
 

@@ -1,0 +1,122 @@
+//! Courses in time: values, and means over a window.
+
+use crate::scene::schema::Curve;
+
+/// 10s³ − 15s⁴ + 6s⁵, from 0 to 1 without a jump of the first two derivatives.
+pub(super) fn smooth(s: f64) -> f64 {
+    s * s * s * (10.0 + s * (6.0 * s - 15.0))
+}
+
+/// √(3/5): where Gauss and Legendre's rule of three points has its outer ones; exact for polynomials of the fifth degree.
+const OUTER: f64 = 0.774_596_669_241_483_4;
+
+impl Curve {
+    /// The factor at a time (s).
+    pub fn value(&self, time: f64) -> f64 {
+        let share = |start: f64, end: f64| ((time - start) / (end - start)).clamp(0.0, 1.0);
+        match self {
+            Curve::Step { start, end } => {
+                if time >= *start && end.is_none_or(|end| time < end) {
+                    1.0
+                } else {
+                    0.0
+                }
+            }
+            Curve::Ramp { start, end } => share(*start, *end),
+            Curve::Smooth { start, end } => smooth(share(*start, *end)),
+            Curve::Table(points) => {
+                let after = points.partition_point(|&(t, _)| t <= time);
+                match (after.checked_sub(1).map(|i| points[i]), points.get(after)) {
+                    (Some((t0, v0)), Some(&(t1, v1))) => v0 + (v1 - v0) * (time - t0) / (t1 - t0),
+                    (Some((_, v)), None) | (None, Some(&(_, v))) => v,
+                    (None, None) => 0.0,
+                }
+            }
+        }
+    }
+
+    /// The mean of the factor over a window of time (s), to rounding: each piece between two corners is a polynomial of the fifth
+    /// degree at most. So a pulse between two steps is not lost, and its impulse does not depend on where steps lie.
+    pub fn mean(&self, (from, to): (f64, f64)) -> f64 {
+        let (mut at, mut sum) = (from, 0.0);
+        while let Some(corner) = self.corner_after(at).filter(|corner| *corner < to) {
+            sum += (corner - at) * self.mean_of_piece(at, corner);
+            at = corner;
+        }
+        // what has no corner is not rounded twice
+        if at == from {
+            self.mean_of_piece(from, to)
+        } else {
+            (sum + (to - at) * self.mean_of_piece(at, to)) / (to - from)
+        }
+    }
+
+    /// The least time between two corners (s), if there are two: what is finer than steps is seen as a mean by loads, and at
+    /// the ends of steps by motions.
+    pub fn finest(&self) -> Option<f64> {
+        let mut corners = std::iter::successors(self.corner_after(f64::NEG_INFINITY), |&at| self.corner_after(at));
+        let mut before = corners.next()?;
+        corners.map(|at| at - std::mem::replace(&mut before, at)).reduce(f64::min)
+    }
+
+    /// The first time after one at which two pieces of the curve meet (s).
+    fn corner_after(&self, time: f64) -> Option<f64> {
+        let first = |corners: [Option<f64>; 2]| corners.into_iter().flatten().find(|corner| *corner > time);
+        match self {
+            Curve::Step { start, end } => first([Some(*start), *end]),
+            Curve::Ramp { start, end } | Curve::Smooth { start, end } => first([Some(*start), Some(*end)]),
+            Curve::Table(points) => points.get(points.partition_point(|&(t, _)| t <= time)).map(|point| point.0),
+        }
+    }
+
+    fn mean_of_piece(&self, from: f64, to: f64) -> f64 {
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        match self {
+            Curve::Smooth { .. } => {
+                let outer = self.value(middle - OUTER * half) + self.value(middle + OUTER * half);
+                (5.0 * outer + 8.0 * self.value(middle)) / 18.0
+            }
+            _ => self.value(middle),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Against sums of a hundred thousand values.
+    #[test]
+    fn means_are_those_of_many_values() {
+        let curves = [
+            Curve::Step { start: 0.21, end: Some(0.24) },
+            Curve::Step { start: 0.3, end: None },
+            Curve::Ramp { start: 0.1, end: 0.45 },
+            Curve::Smooth { start: 0.05, end: 0.31 },
+            Curve::Table(vec![(0.1, 1.0), (0.2, -3.0), (0.21, 5.0), (0.4, 0.0)]),
+        ];
+        for curve in curves {
+            for window in [(0.0, 0.5), (0.2, 0.25), (0.26, 0.29), (0.0, 0.01), (0.1, 0.4), (0.6, 0.7)] {
+                let count = 100_000;
+                let time = |i: usize| window.0 + (window.1 - window.0) * (i as f64 + 0.5) / f64::from(count);
+                let sum: f64 = (0..count as usize).map(|i| curve.value(time(i))).sum();
+                let (mean, expected) = (curve.mean(window), sum / f64::from(count));
+                // a value beside a jump may be on the wrong side of it
+                assert!((mean - expected).abs() <= 2e-5, "{curve:?} over {window:?}: {mean}, expected {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn constant_curve_is_one_exactly() {
+        assert_eq!(Curve::default().mean((0.0, 1e-3)), 1.0);
+        assert_eq!(Curve::default().mean((0.1, 0.1 + 1e-3)), 1.0);
+    }
+
+    #[test]
+    fn finest_is_the_shortest_piece() {
+        assert_eq!(Curve::default().finest(), None);
+        assert_eq!(Curve::Ramp { start: 1.0, end: 1.5 }.finest(), Some(0.5));
+        assert_eq!(Curve::Table(vec![(0.0, 0.0), (2.0, 1.0), (2.25, 0.0)]).finest(), Some(0.25));
+    }
+}
