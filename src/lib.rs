@@ -45,7 +45,7 @@ pub use error::{Error, GpuFailure, Instability, NotConverged};
 pub use scene::SceneFile;
 pub use simulation::explain;
 pub use simulation::{
-    BackendChoice, Equilibrium, Inversions, Options, Simulation, Stability, StepHistory, Summary, SystemTime,
+    BackendChoice, Equilibrium, Inversions, Mode, Options, Simulation, Stability, StepHistory, Summary, SystemTime,
 };
 pub use snapshot::Snapshot;
 

@@ -23,9 +23,7 @@ impl PlacedMesh {
 
     /// The lowest and the largest coordinates (m).
     pub fn extent(&self) -> (DVec3, DVec3) {
-        let low = self.mesh.points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-        let high = self.mesh.points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-        (low, high)
+        crate::mesh::extent(self.mesh.points.iter().copied())
     }
 
     /// Length of the bounding box's diagonal (m).

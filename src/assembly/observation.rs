@@ -32,7 +32,11 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         }
         let every = probe.every.unwrap_or_else(|| scene.fields_every());
         let every = Cadence::new(every, time_step);
-        world.spawn((Label(name.clone()), Probe { what: probe.what, nodes, elements, every }, OfBody(body.entity)));
+        world.spawn((
+            Label(name.clone()),
+            Probe { what: probe.what, nodes, elements, every, peak: probe.peak },
+            OfBody(body.entity),
+        ));
     }
 }
 

@@ -183,6 +183,16 @@ fn contains(placed: &PlacedMesh, select: &Select) -> Option<Box<dyn Fn(DVec3) ->
             Some(Box::new(move |x| x.cmpge(min).all() && x.cmple(max).all()))
         }
         Select::Sphere { center, radius } => Some(Box::new(move |x| x.distance(center) <= radius + rounding)),
+        Select::Cylinder { from, to, radius } => Some(Box::new(move |x| {
+            let (axis, arm) = (to - from, x - from);
+            let along = arm.dot(axis) / axis.length();
+            let within = along >= -rounding && along <= axis.length() + rounding;
+            within && (arm - axis * (along / axis.length())).length() <= radius + rounding
+        })),
+        Select::Ellipsoid { center, radii } => {
+            let radii = radii + rounding;
+            Some(Box::new(move |x| ((x - center) / radii).length_squared() <= 1.0))
+        }
         _ => None,
     }
 }

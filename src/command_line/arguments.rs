@@ -44,6 +44,9 @@ pub enum Command {
     /// Show what a mesh is and where it lies: extents, sets, quality, likely units; of a mesh file or of a scene's bodies
     #[command(after_help = STATUSES)]
     Mesh(MeshArguments),
+    /// Find the lowest natural frequencies of a scene and their shapes, with a proposal for damping and ramps
+    #[command(after_help = STATUSES)]
+    Modes(ModesArguments),
     /// Show what accuracy costs in time: solve a scene in many ways, time each, measure each against a reference
     #[command(after_help = STATUSES)]
     Accuracy(AccuracyArguments),
@@ -65,7 +68,7 @@ impl Command {
             Command::Accuracy(arguments) => arguments.backend != BackendName::Cpu,
             Command::Hard(arguments) => arguments.backend != BackendName::Cpu,
             Command::Bench(arguments) => arguments.backends.contains(&"gpu".to_string()),
-            Command::Check(_) | Command::Mesh(_) => false,
+            Command::Check(_) | Command::Mesh(_) | Command::Modes(_) => false,
         }
     }
 }
@@ -127,6 +130,28 @@ pub struct MeshArguments {
     #[arg(long)]
     pub no_picture: bool,
     /// The folder for the picture and fields.pvd, in place of earlier ones [default: out/NAME-mesh]
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// What `sinew modes` is told.
+#[derive(Args)]
+pub struct ModesArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// How many modes
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u16).range(1..=100))]
+    pub count: u16,
+    /// CPU threads; 0 is one a core, or a single one for small bodies
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    pub threads: u16,
+    /// Print JSON instead of a table; no picture
+    #[arg(long)]
+    pub json: bool,
+    /// Draw no picture
+    #[arg(long)]
+    pub no_picture: bool,
+    /// The folder for the animation and fields.pvd, in place of earlier ones [default: out/NAME-OF-THE-SCENE-modes]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }

@@ -9,6 +9,7 @@ mod failure;
 mod hard;
 mod interrupt;
 mod mesh;
+mod modes;
 mod progress;
 mod quiet_driver;
 mod render;
@@ -32,6 +33,7 @@ pub fn main() -> ExitCode {
     let done = match command {
         Command::Run(arguments) => run::command(&arguments),
         Command::Check(arguments) => check::command(&arguments),
+        Command::Modes(arguments) => modes::command(&arguments),
         Command::Mesh(arguments) => mesh::command(&arguments),
         Command::Explain(arguments) => explain::command(&arguments),
         Command::Render(arguments) => render::command(&arguments),

@@ -4,7 +4,7 @@ use bevy_ecs::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What the guards have seen so far; part of the state, so that what goes on from a snapshot stops where it would have.
+/// What the guards, and probes that hold peaks, have seen so far; part of the state, so that what goes on from a snapshot stops where it would have.
 #[derive(Resource, Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct GuardMemory {
@@ -22,6 +22,8 @@ pub struct GuardMemory {
     pub peaks: BTreeMap<String, f64>,
     /// The largest share of hourglass energy of each part so far.
     pub hourglass: BTreeMap<String, f64>,
+    /// Of each probe that holds peaks, by name, the values of the largest size so far.
+    pub probe_peaks: BTreeMap<String, Vec<f64>>,
     /// The smallest J of all looks.
     pub least_volume_ratio: Option<Seen>,
     /// The fastest node of all looks (m/s).

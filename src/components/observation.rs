@@ -14,6 +14,8 @@ pub struct Probe {
     pub elements: Vec<(u32, u32)>,
     /// How often.
     pub every: Cadence,
+    /// Whether it holds of each number the value of the largest size so far.
+    pub peak: bool,
 }
 
 /// Whether somebody may look at forces after the present step: if not, one pass over the nodes keeps them at hand and leaves

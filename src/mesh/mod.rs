@@ -22,7 +22,7 @@ pub use error::{MeshError, Place};
 pub use generators::ElementKind;
 pub use locate::{Location, Locator};
 pub use quality::Quality;
-pub use report::{MeshReport, SetReport};
+pub use report::{MeshReport, SetReport, extent};
 pub use surface::SurfaceFace;
 
 use glam::DVec3;

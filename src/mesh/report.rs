@@ -107,7 +107,7 @@ impl Mesh {
 }
 
 /// The box around some points; infinite where there are none.
-fn extent(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
+pub fn extent(points: impl Iterator<Item = DVec3>) -> (DVec3, DVec3) {
     points.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(min, max), point| (min.min(point), max.max(point)))
 }
 

@@ -260,6 +260,7 @@ impl Observer {
         for (entity, name) in probes {
             let values = observe_probe(world, entity)?;
             self.finite(world, values.iter().copied(), || format!("the probe {name}"))?;
+            let values = probes::with_peaks(world, entity, &name, values);
             if let Some(table) = self.files.as_mut().and_then(|files| files.probes.get_mut(&name)) {
                 let mut row = vec![clock.time()];
                 row.extend(&values);

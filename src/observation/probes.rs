@@ -15,6 +15,9 @@ pub fn header(what: Quantity) -> Vec<&'static str> {
         Quantity::Position => &["x (m)", "y (m)", "z (m)"],
         Quantity::Velocity => &["vx (m/s)", "vy (m/s)", "vz (m/s)"],
         Quantity::Reaction => &["Rx (N)", "Ry (N)", "Rz (N)"],
+        Quantity::Force { .. } => &["force (N)"],
+        Quantity::Moment { .. } => &["Mx (N m)", "My (N m)", "Mz (N m)"],
+        Quantity::Torque { .. } => &["torque (N m)"],
         Quantity::Stress => &["xx (Pa)", "yy (Pa)", "zz (Pa)", "xy (Pa)", "yz (Pa)", "xz (Pa)"],
         Quantity::VolumeRatio => &["J"],
     };
@@ -35,7 +38,10 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
     let columns: &[&str] = match probe.what {
         Quantity::Displacement | Quantity::Position => &[Displacement::NAME],
         Quantity::Velocity => &[DisplacementStep::NAME],
-        Quantity::Reaction => &[InternalForce::NAME, ExternalForce::NAME],
+        Quantity::Reaction | Quantity::Force { .. } => &[InternalForce::NAME, ExternalForce::NAME],
+        Quantity::Moment { .. } | Quantity::Torque { .. } => {
+            &[InternalForce::NAME, ExternalForce::NAME, Displacement::NAME, DisplacementStep::NAME]
+        }
         Quantity::Stress | Quantity::VolumeRatio => &[Displacement::NAME, RestShape::NAME, ViscousMemory::NAME],
     };
     let of_body = |world: &World, entity: Entity| world.get::<OfBody>(entity).is_some_and(|of| of.0 == body);
@@ -50,25 +56,43 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
     let entity = world.entity(body);
     let vector = |reals: Option<&Reals>, row: usize| reals.map_or(DVec3::ZERO, |reals| reals.vector(row));
     let displacement = entity.get::<Displacement>().map(|u| &u.0);
+    let step = entity.get::<DisplacementStep>().map(|d| &d.0);
+    let internal = entity.get::<InternalForce>().map(|f| &f.0);
+    let external = entity.get::<ExternalForce>().map(|f| &f.0);
+    let force = |row: usize| vector(internal, row) - vector(external, row);
+    let rows = || probe.nodes.iter().map(|&row| row as usize);
+    let reaction = || rows().map(force).sum::<DVec3>();
+    let rest = entity.get::<RestPosition>();
+    let place = |row: usize| rest.map_or(DVec3::ZERO, |rest| rest.0[row]) + vector(displacement, row);
+    // arms are where the forces were, at the beginning of the step
+    let arm = |row: usize, center: DVec3| place(row) - vector(step, row) - center;
+    let moment = |center: DVec3| rows().map(|row| arm(row, center).cross(force(row))).sum::<DVec3>();
     Ok(match probe.what {
         Quantity::Displacement => mean(&|row| vector(displacement, row)),
-        Quantity::Position => {
-            let rest = entity.get::<RestPosition>();
-            mean(&|row| rest.map_or(DVec3::ZERO, |rest| rest.0[row]) + vector(displacement, row))
-        }
-        Quantity::Velocity => {
-            let step = entity.get::<DisplacementStep>().map(|d| &d.0);
-            mean(&|row| vector(step, row) * rate)
-        }
-        Quantity::Reaction => {
-            let internal = entity.get::<InternalForce>().map(|f| &f.0);
-            let external = entity.get::<ExternalForce>().map(|f| &f.0);
-            let force = |row: u32| vector(internal, row as usize) - vector(external, row as usize);
-            probe.nodes.iter().map(|&row| force(row)).sum::<DVec3>().to_array().to_vec()
-        }
+        Quantity::Position => mean(&place),
+        Quantity::Velocity => mean(&|row| vector(step, row) * rate),
+        Quantity::Reaction => reaction().to_array().to_vec(),
+        Quantity::Force { direction } => vec![reaction().dot(direction.normalize())],
+        Quantity::Moment { center } => moment(center).to_array().to_vec(),
+        Quantity::Torque { center, axis } => vec![moment(center).dot(axis.normalize())],
         Quantity::Stress => element_mean(world, body, &probe, |view, row, state| view.cauchy(row, state).to_vec()),
         Quantity::VolumeRatio => element_mean(world, body, &probe, |_, _, state| vec![state.volume_ratio()]),
     })
+}
+
+/// The values themselves, or where the probe holds peaks those of the largest size so far.
+pub fn with_peaks(world: &mut World, probe: Entity, name: &str, values: Vec<f64>) -> Vec<f64> {
+    if !world.get::<Probe>(probe).is_some_and(|probe| probe.peak) {
+        return values;
+    }
+    let mut memory = world.get_resource_or_init::<GuardMemory>();
+    let peaks = memory.probe_peaks.entry(name.to_string()).or_insert_with(|| values.clone());
+    for (peak, value) in peaks.iter_mut().zip(&values) {
+        if value.abs() > peak.abs() {
+            *peak = *value;
+        }
+    }
+    peaks.clone()
 }
 
 /// Mean over the probe's elements that are still there, by rest volume.

@@ -7,6 +7,7 @@ use super::fuse::groups;
 use super::options::{BackendChoice, Chosen, choose};
 use super::outputs;
 use super::parameters::hand_out;
+use super::plausible;
 use super::relax::Relaxing;
 use super::schedule::{Scheduled, check_names, resolve};
 use super::scheme::{fit_workgroups, sum_forces};
@@ -238,6 +239,7 @@ fn plan<'a>(
     let (clock, stability, steps) = clock(scene, world, diagnostics)?;
     outputs::check(scene, &clock, steps, diagnostics);
     outputs::check_curves(scene, &clock, diagnostics);
+    plausible::check(&assembly, world, diagnostics);
     world.insert_resource(clock);
     world.insert_resource(Observed(true));
     assemble_in_time(&assembly, world, diagnostics);

@@ -111,14 +111,14 @@ fn lanczos(start: Vec<f64>, products: usize, mut times: impl FnMut(&[f64], &mut 
 }
 
 /// Bodies in a fixed order.
-fn bodies(world: &mut World) -> Vec<Entity> {
+pub(super) fn bodies(world: &mut World) -> Vec<Entity> {
     let mut bodies: Vec<Entity> = world.query_filtered::<Entity, With<ConstrainedAxes>>().iter(world).collect();
     bodies.sort();
     bodies
 }
 
 /// 1/√M of every free axis, 0 of held and parked ones. M is the mass that nodes are moved with.
-fn roots_of_mass(world: &World, bodies: &[Entity]) -> Vec<f64> {
+pub(super) fn roots_of_mass(world: &World, bodies: &[Entity]) -> Vec<f64> {
     let mut roots = Vec::new();
     for &body in bodies {
         let (Some(mass), Some(axes)) = (world.get::<Mass>(body), world.get::<ConstrainedAxes>(body)) else { continue };
@@ -135,7 +135,7 @@ fn roots_of_mass(world: &World, bodies: &[Entity]) -> Vec<f64> {
 
 /// A start that prefers no direction, the same everywhere: independent numbers of a normal distribution (Marsaglia's polar
 /// form of Box & Muller's).
-fn noise(roots: &[f64]) -> Vec<f64> {
+pub(super) fn noise(roots: &[f64]) -> Vec<f64> {
     let mut state = 1_u64;
     let mut next = || {
         state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
@@ -154,7 +154,7 @@ fn noise(roots: &[f64]) -> Vec<f64> {
 }
 
 /// Eight sums side by side: one alone waits for each addition.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (a, left) = a.as_chunks::<8>();
     let (b, beside) = b.as_chunks::<8>();
     let mut sums = [0.0; 8];

@@ -150,7 +150,8 @@ pub fn reactions(scene: &Scene) -> Vec<(String, Probe, Vec<Axis>)> {
         let same = |probe: &Probe| probe.what == Quantity::Reaction && probe.on == *on && probe.body == *body;
         let name = if many { format!("reaction{number}") } else { "reaction".into() };
         if !scene.probes.values().any(same) && !scene.probes.contains_key(&name) {
-            let probe = Probe { body: body.clone(), what: Quantity::Reaction, on: on.clone(), every: None };
+            let probe =
+                Probe { body: body.clone(), what: Quantity::Reaction, on: on.clone(), every: None, peak: false };
             found.push((name, probe, axes.clone()));
         }
     }

@@ -36,6 +36,22 @@ pub enum Select {
         /// Radius (m).
         radius: f64,
     },
+    /// A cylinder between two points, its surface included.
+    Cylinder {
+        /// One end of the axis (m).
+        from: DVec3,
+        /// The other (m).
+        to: DVec3,
+        /// Radius (m).
+        radius: f64,
+    },
+    /// An ellipsoid with axes along x, y and z, its surface included.
+    Ellipsoid {
+        /// Centre (m).
+        center: DVec3,
+        /// Half-axes (m).
+        radii: DVec3,
+    },
     /// Faces of the surface whose outward normal at rest lies within an angle of a direction, and their nodes.
     Surface {
         /// The direction; left out: the whole surface.
@@ -71,10 +87,14 @@ pub struct Probe {
     /// Time between observations (s).
     #[serde(default)]
     pub every: Option<f64>,
+    /// Hold of each number the value of the largest size so far, of all observations.
+    #[serde(default)]
+    pub peak: bool,
 }
 
 /// What a probe observes.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
 pub enum Quantity {
     /// Mean displacement of the nodes (m).
     Displacement,
@@ -84,10 +104,35 @@ pub enum Quantity {
     Velocity,
     /// What holds the nodes: the sum of internal less external forces (N).
     Reaction,
+    /// The part of the reaction along a direction (N).
+    Force {
+        /// The direction; its length does not matter.
+        direction: DVec3,
+    },
+    /// The moment of the reactions about a point (N m).
+    Moment {
+        /// The point (m).
+        center: DVec3,
+    },
+    /// The part of that moment about an axis (N m), positive by the right hand.
+    Torque {
+        /// A point on the axis (m).
+        #[serde(default)]
+        center: DVec3,
+        /// The direction of the axis; its length does not matter.
+        axis: DVec3,
+    },
     /// Volume mean of the Cauchy stress of the elements: xx, yy, zz, xy, yz, xz (Pa).
     Stress,
     /// Volume mean of the volume ratio J of the elements.
     VolumeRatio,
+}
+
+impl Quantity {
+    /// Whether it is made of the forces that hold nodes.
+    pub fn is_of_reactions(self) -> bool {
+        matches!(self, Self::Reaction | Self::Force { .. } | Self::Moment { .. } | Self::Torque { .. })
+    }
 }
 
 fn thirty() -> f64 {

@@ -1,7 +1,7 @@
 //! Constraints, loads, removal and probes: what they select and what they do.
 
 use super::{Judge, scene, select, show};
-use crate::scene::schema::{Axis, Constraint, Load, Scene, When};
+use crate::scene::schema::{Axis, Constraint, Load, Quantity, Scene, When};
 use crate::scene::syntax::Path;
 use glam::DVec3;
 
@@ -47,6 +47,12 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
     }
     for (name, probe) in &scene_.probes {
         select::validate(judge, &scene("probes").name(name).name("on"), &probe.on);
+        let what = scene("probes").name(name).name("what");
+        match probe.what {
+            Quantity::Force { direction } => judge.has_direction(&what.name("direction"), direction),
+            Quantity::Torque { axis, .. } => judge.has_direction(&what.name("axis"), axis),
+            _ => {}
+        }
     }
 }
 

@@ -29,6 +29,17 @@ pub(super) fn validate(judge: &mut Judge, path: &Path, select: &Select) {
             }
         }
         Select::Sphere { radius, .. } => judge.above_zero(&path.name("radius"), *radius, "m"),
+        Select::Cylinder { from, to, radius } => {
+            judge.above_zero(&path.name("radius"), *radius, "m");
+            if from == to {
+                judge.out.error_at(path.name("to"), "both ends of the cylinder's axis are the same point");
+            }
+        }
+        Select::Ellipsoid { radii, .. } => {
+            for (i, radius) in radii.to_array().into_iter().enumerate() {
+                judge.above_zero(&path.name("radii").index(i), radius, "m");
+            }
+        }
         Select::Surface { normal, within } => {
             if let Some(normal) = normal {
                 judge.has_direction(&path.name("normal"), *normal);

@@ -1,0 +1,122 @@
+//! `sinew modes`: the lowest natural frequencies of a scene and their shapes, and what damping and ramps follow from them.
+
+use super::arguments::{ModesArguments, default_folder};
+use super::failure::Failure;
+use super::run::PICTURES;
+use super::wording::{digits, quantity};
+use super::{Outcome, progress, terminal};
+use sinew::components::Authoring;
+use sinew::glam::DVec3;
+use sinew::output::{Array, Folder, Frame, Series, Values};
+use sinew::render::{Options as Picture, draw};
+use sinew::{BackendChoice, Mode, Options, Simulation};
+use std::path::Path;
+
+/// How large the largest displacement of a drawn mode is, as a share of the scene's size.
+const DRAWN: f64 = 0.1;
+/// Damping of the lowest mode that brings to rest quickly and hardly changes what is faster, as a share of the critical one.
+const SHARE: f64 = 0.2;
+/// Periods of the lowest mode over which a ramp hardly rings: with the 3-4-5 polynomial its overshoot is below 1 %.
+const PERIODS: f64 = 5.0;
+
+/// Finds the modes, tells of them and draws them.
+pub fn command(arguments: &ModesArguments) -> Outcome {
+    let scene = arguments.scene.load()?;
+    let options = Options {
+        backend: BackendChoice::Cpu,
+        precision: sinew::components::Precision::F64,
+        threads: arguments.threads.into(),
+        ..Options::default()
+    };
+    let mut simulation = progress::during("building the simulation", || Simulation::new(&scene, &options))?;
+    let modes = progress::during("looking for the lowest frequencies", || simulation.modes(arguments.count.into()))?;
+    if arguments.json {
+        let text = serde_json::to_string_pretty(&modes).map_err(|error| Failure::Silent(error.into()))?;
+        return terminal::say(&format!("{text}\n"));
+    }
+    terminal::say(&table(&modes))?;
+    if arguments.no_picture || modes.is_empty() {
+        return Ok(());
+    }
+    let mut name = default_folder(&arguments.scene.scene).into_os_string();
+    name.push("-modes");
+    let path = arguments.out.clone().unwrap_or_else(|| name.into());
+    let animation = draw_modes(&mut simulation, &modes, &path)?;
+    let folder = path.display();
+    terminal::say(&format!("see them    {}; in ParaView {folder}/fields.pvd, a mode a frame\n", animation.display()))
+}
+
+/// A line for each mode, and what follows from the lowest.
+fn table(modes: &[Mode]) -> String {
+    let mut text = String::from("mode  frequency     period        moves of all mass along x, y, z\n");
+    for (number, mode) in modes.iter().enumerate() {
+        let masses = mode.effective_mass.map(|share| format!("{:3.0} %", 100.0 * share)).join("  ");
+        let (frequency, period) = match mode.frequency {
+            0.0 => ("rigid".to_string(), String::new()),
+            frequency => (quantity(frequency, "Hz"), quantity(1.0 / frequency, "s")),
+        };
+        text += &format!("{:>4}  {frequency:<12}  {period:<12}  {masses}\n", number + 1);
+    }
+    let Some(lowest) = modes.iter().map(|mode| mode.frequency).find(|frequency| *frequency > 0.0) else {
+        text += match modes.len() {
+            0 => "nothing can move\n",
+            _ => "all of these are rigid motion: nothing holds a body; ask for more with --count\n",
+        };
+        return text;
+    };
+    let critical = 2.0 * std::f64::consts::TAU * lowest;
+    text += &format!(
+        "damping     damping: {} (1/s) is critical for the lowest, {} lets it ring out in some periods\n",
+        digits(critical),
+        digits(SHARE * critical)
+    );
+    text += &format!(
+        "ramps       curve: Smooth(end: {}) or longer loads it as if at rest ({PERIODS} periods of the lowest)\n",
+        digits(PERIODS / lowest)
+    );
+    text
+}
+
+/// Writes a frame for each mode, and draws them one after the other; the animation's file.
+fn draw_modes(simulation: &mut Simulation, modes: &[Mode], path: &Path) -> Result<std::path::PathBuf, Failure> {
+    let mut folder = Folder::create(path)?;
+    let out = folder.claim(PICTURES[1])?;
+    let bodies: Vec<String> = simulation.scene().bodies.keys().cloned().collect();
+    let (mut points, mut tets, mut hexes) = (Vec::new(), Vec::new(), Vec::new());
+    for body in &bodies {
+        let first = points.len() as u32;
+        let entity = simulation.body(body)?;
+        points.extend(simulation.rest_positions(body)?);
+        let Some(authoring) = simulation.world().get::<Authoring>(entity) else { continue };
+        tets.extend(authoring.tets.iter().map(|tet| tet.map(|node| node + first)));
+        hexes.extend(authoring.hexes.iter().map(|hex| hex.map(|node| node + first)));
+    }
+    let (low, high) = sinew::mesh::extent(points.iter().copied());
+    let size = DRAWN * (high - low).length();
+    let alive = vec![1_u8; tets.len() + hexes.len()];
+    let mut series = Series::create(&folder)?;
+    for (number, mode) in modes.iter().enumerate() {
+        let shape = bodies.iter().flat_map(|body| mode.shapes.get(body).into_iter().flatten());
+        let displacement: Vec<f32> = shape.flat_map(|u: &DVec3| (*u * size).as_vec3().to_array()).collect();
+        series.write(&Frame {
+            time: (number + 1) as f64,
+            points: &points,
+            tets: &tets,
+            hexes: &hexes,
+            point_arrays: vec![Array { name: "displacement", components: 3, values: Values::F32(&displacement) }],
+            cell_arrays: vec![Array { name: "alive", components: 1, values: Values::U8(&alive) }],
+        })?;
+    }
+    let picture = &simulation.scene().picture;
+    let options = Picture {
+        field: "displacement".into(),
+        from: picture.from.as_vec3(),
+        size: picture.size,
+        at: None,
+        animate: true,
+        out,
+        range: None,
+        edges: true,
+    };
+    Ok(draw(path, &options)?.out)
+}
