@@ -37,6 +37,12 @@ pub const LAW_BYTES: u64 = 1 << 20;
 /// Mistakes that are kept; there is enough to do.
 pub(super) const MISTAKES: usize = 100_000;
 /// Places where a text is no RON, after which reading it is given up.
+/// Words, numbers and signs of a law of one's own, comments left out.
+pub const LAW_WORDS: usize = 20_000;
+/// Functions, structs, constants and other declarations of a law of one's own; arrays in it.
+pub const LAW_DECLARATIONS: usize = 500;
+/// Operators, brackets and branches of a law of one's own that are within each other.
+pub const LAW_DEPTH: usize = 500;
 pub(super) const FAULTS: usize = 1000;
 
 /// What whoever loads a scene allows it. Scenes of strangers are best read with the default, or less.

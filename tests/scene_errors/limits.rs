@@ -214,3 +214,6 @@ fn the_reference_lists_the_limits() {
         assert!(table.contains(&format!("|{limit}{what}")), "{limit}{what} is not in the reference");
     }
 }
+        (limits::LAW_WORDS as u64, "|words"),
+        (limits::LAW_DECLARATIONS as u64, "|declarations"),
+        (limits::LAW_DEPTH as u64, "|operators"),
