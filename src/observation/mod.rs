@@ -14,11 +14,12 @@ pub use probes::{header, observe_probe};
 
 use crate::components::*;
 use crate::error::{Criterion, Error, Instability};
-use crate::output::{Folder, OutputError, Series, Table};
+use crate::output::{Folder, Lock, OutputError, Series, Table};
 use crate::snapshot::Snapshot;
 use bevy_ecs::prelude::*;
 use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Steps between two looks for numbers that are not finite and for elements turned inside out, at most, on the host. On a
 /// GPU its kernels look in every step, and the host asks them in every 256 at least; where systems of one's own run on the
@@ -64,6 +65,7 @@ pub struct Observer {
 
 struct Files {
     folder: PathBuf,
+    _lock: Arc<Lock>,
     series: Series,
     energies: Option<Table>,
     probes: BTreeMap<String, Table>,
@@ -127,7 +129,8 @@ impl Observer {
             None => None,
             Some(_) => Some(Table::create(&folder.claim("convergence.csv")?, &CONVERGENCE)?),
         };
-        self.files = Some(Files { folder: folder.path().to_path_buf(), series, energies, probes, convergence });
+        let (folder, _lock) = (folder.path().to_path_buf(), folder.lock());
+        self.files = Some(Files { folder, _lock, series, energies, probes, convergence });
         Ok(())
     }
 

@@ -7,5 +7,6 @@ mod benches;
 mod ends;
 mod explains;
 mod interrupted;
+mod locked;
 mod renders;
 mod runs;
