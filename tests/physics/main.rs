@@ -29,6 +29,7 @@ mod points;
 mod precision;
 mod programs;
 mod random;
+mod refined_lists;
 mod removal;
 mod snapshots;
 mod statics;
