@@ -4,6 +4,7 @@ mod energies;
 mod fields;
 mod guards;
 mod look;
+mod overlaps;
 mod probes;
 
 pub use energies::{energies, mass};
@@ -280,6 +281,9 @@ impl Observer {
                 None => {}
                 Some(what) => self.finite(world, [f64::NAN].into_iter(), || what.clone())?,
             }
+        }
+        if due(self.fields) && (self.files.is_some() || clock.step == 0) {
+            overlaps::look(world)?;
         }
         self.good_until = clock.time();
         Ok(())

@@ -25,6 +25,7 @@ mod locking;
 mod manufactured;
 mod motions;
 mod one_pass;
+mod overlaps;
 mod points;
 mod precision;
 mod programs;
