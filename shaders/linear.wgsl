@@ -5,7 +5,7 @@ struct Linear {
 }
 @group(0) @binding(0) var<uniform> elastic: Linear;
 
-// ε for E, tr ε for the change of volume, C = I
+// ε for E, tr ε for the change of volume, C = I; det F tells what is inside out
 fn elastic_kinematics(h: mat3x3<f32>) -> Kinematics {
     let trace = h[0][0] + h[1][1] + h[2][2];
     return Kinematics(
@@ -16,7 +16,7 @@ fn elastic_kinematics(h: mat3x3<f32>) -> Kinematics {
         Sym3(vec3<f32>(1.0), vec3<f32>(0.0)),
         trace,
         1.0,
-        1.0 + trace,
+        1.0 + volume_change_of(h),
         1.0,
     );
 }

@@ -4,7 +4,7 @@
 use flate2::read::ZlibDecoder;
 use glam::DVec3;
 use serde_json::{Value, json};
-use sinew::output::{Array, Folder, Frame, Node, Series, Table, Values, nodes, summary, write_vtu};
+use sinew::output::{Array, Folder, Frame, Lock, Node, Series, Table, Values, nodes, summary, write_vtu};
 use std::fs;
 use std::io::Read;
 use std::path::Path;
@@ -68,9 +68,11 @@ fn array(file: &[u8], name: &str) -> Vec<u8> {
     bytes
 }
 
+/// What is in a folder, hidden files aside.
 fn names(folder: &Path) -> Vec<String> {
     let mut names: Vec<_> =
         fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.retain(|name| !name.starts_with('.'));
     names.sort();
     names
 }
@@ -236,6 +238,7 @@ fn only_what_sinew_wrote_is_cleared() {
     for own in ["notes.txt", "fields_mine.vtu", "fields_12.vtu", "other.csv"] {
         fs::write(path.join(own), "").unwrap();
     }
+    drop(folder);
     Folder::create(&path).unwrap();
     assert_eq!(names(&path), ["fields_12.vtu", "fields_mine.vtu", "notes.txt", "other.csv", "sinew.json"]);
 }
@@ -244,10 +247,10 @@ fn only_what_sinew_wrote_is_cleared() {
 fn a_list_in_the_mark_cannot_reach_out_of_the_folder() {
     let place = tempfile::tempdir().unwrap();
     let (path, treasure) = (place.path().join("out"), place.path().join("treasure"));
-    let mut folder = Folder::create(&path).unwrap();
+    fs::create_dir(&path).unwrap();
     fs::write(&treasure, "").unwrap();
     fs::write(path.join("sinew.json"), r#"{"files": ["../treasure", "", ".."]}"#).unwrap();
-    Folder::create(&path).unwrap();
+    let mut folder = Folder::create(&path).unwrap();
     assert!(treasure.is_file());
     for name in ["../treasure", "a/b", "", ".hidden", "sinew.json", "a\\b", "c:"] {
         let text = folder.claim(name).unwrap_err().to_string();
@@ -268,5 +271,30 @@ fn a_foreign_folder_is_refused() {
     assert!(text.ends_with("thesis.tex is a file; the output needs a folder"), "{text}");
     let text = Folder::create(&place.path().join("thesis.tex/out")).err().unwrap().to_string();
     assert!(text.contains("cannot create") && text.contains("Not a directory"), "{text}");
-    assert_eq!(fs::read_dir(place.path()).unwrap().count(), 2);
+    assert_eq!(names(place.path()), ["thesis.tex"]);
+}
+
+#[test]
+fn a_folder_has_one_writer_until_the_last_who_writes_into_it_is_gone() {
+    let place = tempfile::tempdir().unwrap();
+    let path = place.path().join("out");
+    let folder = Folder::create_for(&path, "cube.ron").unwrap();
+    let refused = |why: &str| {
+        let text = Folder::create(&path).err().unwrap_or_else(|| panic!("{why}")).to_string();
+        let holder = format!("out is being written by another sinew (process {}, for ", std::process::id());
+        assert!(text.contains(&holder) && text.contains(" s, cube.ron); wait"), "{text}");
+    };
+    refused("the folder is held");
+    let lock = folder.lock();
+    drop(folder);
+    refused("who writes into it holds it");
+    drop(lock);
+    let pictures = Lock::of_pictures(&path, "sinew render").unwrap();
+    let text = Folder::create(&path).err().unwrap().to_string();
+    assert!(text.contains("sinew render"), "{text}");
+    drop(pictures);
+    let folder = Folder::create(&path).unwrap();
+    // a run that goes on can be drawn
+    Lock::of_pictures(&path, "sinew render").unwrap();
+    drop(folder);
 }

@@ -6,9 +6,12 @@ use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Axis, Constraint, Curve};
 use bevy_ecs::prelude::*;
 use glam::{DMat3, DVec3};
+use std::collections::HashMap;
 
 /// Spawns all constraints and marks the axes they take.
 pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
+    // of each body the axes along which `Prescribed` moves its nodes
+    let mut moved: HashMap<Entity, Vec<u32>> = HashMap::new();
     for (number, constraint) in assembly.scene.scene.constraints.iter().enumerate() {
         let (Constraint::Fixed { body, on, axes } | Constraint::Prescribed { body, on, axes, .. }) = constraint;
         let Some(body) = assembly.body(body) else { continue };
@@ -30,6 +33,15 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         });
         match constraint {
             Constraint::Fixed { .. } => {
+                let moved = moved.get(&body.entity);
+                let taken = |row: &&u32| moved.is_some_and(|moved| moved[**row as usize] & axes != 0);
+                let taken = rows.iter().filter(taken).count();
+                if taken > 0 {
+                    diagnostics.warn_at(
+                        format!("constraints[{number}]").as_str(),
+                        format!("{taken} of its nodes are moved along the same axes by an earlier one: this one does not hold them"),
+                    );
+                }
                 world.spawn((Fixed { rows, axes }, OfBody(body.entity)));
             }
             Constraint::Prescribed { displacement, gradient, rotation, center, curve, .. } => {
@@ -39,6 +51,9 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
                         format!("{taken} of its nodes are constrained along the same axes by an earlier one: this one moves them"),
                     );
                 }
+                let count = world.get::<ConstrainedAxes>(body.entity).map_or(0, |all| all.len());
+                let moved = moved.entry(body.entity).or_insert_with(|| vec![0; count]);
+                rows.iter().for_each(|&row| moved[row as usize] |= axes);
                 let moves = (*displacement, *rotation, *gradient) != (DVec3::ZERO, DVec3::ZERO, [DVec3::ZERO; 3]);
                 // a static analysis lets every motion grow smoothly
                 let at_once = matches!(curve, Curve::Step { .. }) && !assembly.scene.scene.is_static();

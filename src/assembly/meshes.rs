@@ -3,7 +3,7 @@
 use crate::mesh::{Mesh, MeshError, SurfaceFace, generators};
 use crate::scene::SceneFile;
 use crate::scene::diagnostic::Diagnostics;
-use crate::scene::schema::{Body, MeshSource};
+use crate::scene::schema::{Body, MeshSource, Select};
 use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::OnceLock;
@@ -68,6 +68,11 @@ fn one_copy_of(body: &Body, scene: &SceneFile) -> Result<Mesh, MeshError> {
     let points = (mesh.points.len() as u64).saturating_mul(body.copies.into()) / 8;
     if elements.max(points) > scene.allowed.elements {
         return Err(too_many(elements.max(points), scene));
+    }
+    if body.refine > 0 {
+        let rows = mesh.point_rows();
+        let lists = scene.scene.selections().flat_map(Select::lists_of_nodes);
+        lists.for_each(|numbers| mesh.keep_list(numbers, &rows));
     }
     mesh.refine(body.refine)?;
     mesh.place(body.scale, body.rotate, body.translate)?;

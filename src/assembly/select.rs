@@ -50,7 +50,7 @@ fn check(placed: &PlacedMesh, select: &Select) -> Result<(), Problem> {
             Err(Problem { message: format!("the mesh has no set named {name:?}"), notes: choice(name, names) })
         }
         Select::Nodes(ids) => {
-            let known = numbers(mesh.points.len(), &mesh.point_ids);
+            let known = mesh.point_rows();
             missing("node", ids, &|id| known.contains_key(&id), mesh.points.len())
         }
         Select::Elements(ids) => {
@@ -217,8 +217,13 @@ fn nodes(placed: &PlacedMesh, select: &Select) -> Vec<bool> {
             picked.flat_map(|(face, _)| face.nodes).for_each(mark);
         }
         Select::Nodes(ids) => {
-            let known = numbers(mesh.points.len(), &mesh.point_ids);
-            ids.iter().filter_map(|id| known.get(id)).for_each(|&row| mark(row as u32));
+            // with the points between them that refining has made
+            if let Some(rows) = mesh.point_lists.get(ids) {
+                rows.iter().for_each(|&row| mark(row));
+            } else {
+                let known = mesh.point_rows();
+                ids.iter().filter_map(|id| known.get(id)).for_each(|&row| mark(row as u32));
+            }
         }
         Select::Elements(_) => {
             let picked = elements(placed, select).into_iter().enumerate().filter(|(_, picked)| *picked);

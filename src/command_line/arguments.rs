@@ -4,6 +4,8 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::Vec3;
 use sinew::backend::gpu::Choice;
 use sinew::components::{Precision, Scheme};
+use sinew::render::RenderError;
+use sinew::scene::limits::PICTURE;
 use sinew::scene::{Allowed, Diagnostics};
 use sinew::{BackendChoice, Options, SceneFile};
 use std::path::{Path, PathBuf};
@@ -397,7 +399,11 @@ fn direction(text: &str) -> Result<Vec3, String> {
 fn size(text: &str) -> Result<(u32, u32), String> {
     let halves = text.split_once(['x', 'X', '×']);
     let numbers = halves.and_then(|(wide, high)| Some((wide.trim().parse().ok()?, high.trim().parse().ok()?)));
-    numbers.ok_or_else(|| "width and height with an x between are wanted, such as 960x720".into())
+    let size = numbers.ok_or("width and height with an x between are wanted, such as 960x720")?;
+    match PICTURE[0].contains(&size.0) && PICTURE[1].contains(&size.1) {
+        true => Ok(size),
+        false => Err(RenderError::Size { size }.to_string()),
+    }
 }
 
 fn above_zero(text: &str) -> Result<f64, String> {

@@ -101,7 +101,7 @@ fn read(path: &Path) -> Result<Record, Failure> {
 }
 
 fn write(path: &Path, record: &Record) -> Outcome {
-    let mut folder = Folder::create(path)?;
+    let mut folder = Folder::create_for(path, "sinew bench")?;
     let mut put = |name: &str, bytes: &[u8]| -> Outcome {
         let path = folder.claim(name)?;
         replace(&path, |file| file.write_all(bytes).map_err(OutputError::system("write", &path)))?;

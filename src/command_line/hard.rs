@@ -103,7 +103,7 @@ struct Table<'a> {
 }
 
 fn write(path: &Path, rows: &[Row]) -> Outcome {
-    let mut folder = Folder::create(path)?;
+    let mut folder = Folder::create_for(path, "sinew hard")?;
     for (name, text) in [("hard.md", markdown(rows)), ("hard.csv", csv(rows))] {
         let path = folder.claim(name)?;
         replace(&path, |file| file.write_all(text.as_bytes()).map_err(OutputError::system("write", &path)))?;

@@ -5,6 +5,7 @@ use super::failure::Failure;
 use super::run::{self, PICTURES, SCENE};
 use super::terminal;
 use super::{Outcome, progress};
+use sinew::output::Lock;
 use sinew::render::{Options, draw_with_progress};
 use sinew::scene::schema::{Field, MeshSource, Picture};
 use sinew::{Options as RunOptions, SceneFile};
@@ -16,6 +17,10 @@ use std::time::SystemTime;
 pub fn command(arguments: &RenderArguments) -> Outcome {
     let files = files(arguments)?;
     let (folder, picture, ended) = source(&arguments.what, arguments.allow_outside)?;
+    let _lock = match files.iter().any(|(_, file)| file.is_none()) {
+        true => Some(Lock::of_pictures(&folder, "sinew render")?),
+        false => None,
+    };
     for (animate, file) in files {
         let options = Options {
             field: arguments.field.clone().unwrap_or_else(|| field_name(picture.field).into()),

@@ -4,6 +4,7 @@ use super::run::PICTURES;
 use super::stability;
 use super::terminal::Paint;
 use super::wording::{bytes, counted, digits, quantity, speed};
+use sinew::components::GuardMemory;
 use sinew::{Equilibrium, SceneFile, Summary};
 use std::fmt::Write;
 use std::path::Path;
@@ -161,9 +162,13 @@ fn energies(summary: &Summary, page: &mut Page) {
 
 fn guards(summary: &Summary, page: &mut Page) {
     let seen = &summary.guards;
-    if seen.looks == 0 {
-        return;
+    if seen.looks > 0 {
+        page.row("guards", balance(seen));
     }
+    page.rows("warnings", seen.warnings.iter().map(|w| format!("from t = {} s: {}", digits(w.time), w.message)));
+}
+
+fn balance(seen: &GuardMemory) -> String {
     let mut line = format!("energy balances to {:.2} %", 100.0 * seen.imbalance.abs());
     if let Some(least) = &seen.least_volume_ratio {
         let _ = write!(line, ", smallest J {} (element {} of {})", digits(least.value), least.id, least.body);
@@ -172,8 +177,7 @@ fn guards(summary: &Summary, page: &mut Page) {
         let speed = quantity(fastest.value, "m/s");
         let _ = write!(line, ", fastest node {} of {}: {speed}", fastest.id, fastest.body);
     }
-    page.row("guards", line);
-    page.rows("warnings", seen.warnings.iter().map(|w| format!("from t = {} s: {}", digits(w.time), w.message)));
+    line
 }
 
 fn mass(summary: &Summary, page: &mut Page) {

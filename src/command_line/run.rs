@@ -86,7 +86,7 @@ pub fn run(
     if let Some(snapshot) = from {
         go_on_from(snapshot, &mut simulation)?;
     }
-    let mut folder = Folder::create(path)?;
+    let mut folder = Folder::create_for(path, &scene.path.display().to_string())?;
     for picture in PICTURES {
         folder.claim(picture)?;
     }

@@ -50,15 +50,15 @@ pub struct Seen {
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Notice {
-    /// The guard: `energy` or `hourglass`.
+    /// The guard: `energy` or `hourglass`; `overlap` for bodies that are where others are.
     pub criterion: String,
-    /// The part that it is about; all bodies when empty.
+    /// The part that it is about, or the two bodies; all bodies when empty.
     pub part: String,
     /// When it was seen first (s).
     pub time: f64,
     /// The same in steps.
     pub step: u64,
-    /// What was seen, as a share.
+    /// What was seen, as a share; 1 for bodies that overlap.
     pub value: f64,
     /// The limit.
     pub limit: f64,

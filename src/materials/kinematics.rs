@@ -49,7 +49,8 @@ impl<R: Real> Kinematics<R> {
     }
 
     /// Strain measures of the linear theory: ε = ½(∇u + ∇uᵀ) as `green_strain`, tr ε as change of volume, and no
-    /// difference between the body at rest and deformed: C = I.
+    /// difference between the body at rest and deformed: C = I. Whether an element is inside out it does not know: J as it is
+    /// is that of F, as for all laws.
     #[inline(always)]
     pub fn linear(gradient: &Mat3<R>) -> Self {
         let h = &gradient.0;
@@ -61,7 +62,7 @@ impl<R: Real> Kinematics<R> {
             adjugate_c: Sym3([one, one, one, zero, zero, zero]),
             volume_change: trace,
             j: one,
-            true_j: one + trace,
+            true_j: one + volume_change(gradient),
             j_m23: one,
         }
     }

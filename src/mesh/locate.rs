@@ -116,6 +116,17 @@ impl<'a> Locator<'a> {
         best.filter(|best| best.outside < 2.0)
     }
 
+    /// An element that a point (m) lies in, if one does.
+    pub fn holds(&self, x: DVec3) -> Option<usize> {
+        if self.elements.is_empty() || !x.is_finite() {
+            return None;
+        }
+        // elements stand in every box that they touch; a point beside the mesh is taken to the last box, and is in none
+        let number = self.number(self.cell(x)) as usize;
+        let near = &self.elements[self.starts[number] as usize..self.starts[number + 1] as usize];
+        near.iter().map(|&element| element as usize).find(|&element| self.in_element(element, x).outside <= ROUNDING)
+    }
+
     fn in_element(&self, element: usize, x: DVec3) -> Location {
         match element.checked_sub(self.mesh.tets.len()) {
             None => in_tet(element, self.mesh.tet_corners(element), x),

@@ -26,7 +26,7 @@ pub use report::{MeshReport, SetReport, extent};
 pub use surface::SurfaceFace;
 
 use glam::DVec3;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// The numbers an author knows things by: row numbers from 0, or the numbers that a file gives.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -64,6 +64,9 @@ pub struct Mesh {
     pub element_ids: Ids,
     /// Named sets of points (rows of `points`, ascending, each once).
     pub node_sets: BTreeMap<String, Vec<u32>>,
+    /// Lists of points by their numbers, with their rows (ascending, each once): [`Mesh::refine`] adds the new points between
+    /// them, as it does to named sets.
+    pub point_lists: BTreeMap<Vec<u64>, Vec<u32>>,
     /// Named sets of surface faces: rows of `points`; a triangle repeats its last point.
     pub face_sets: BTreeMap<String, Vec<[u32; 4]>>,
     /// Named sets of elements (tetrahedra first, then hexahedra; ascending, each once).
@@ -75,6 +78,19 @@ pub struct Mesh {
 }
 
 impl Mesh {
+    /// Keeps a list of points by their numbers, if the mesh has all of them.
+    pub fn keep_list(&mut self, numbers: &[u64], rows: &HashMap<u64, usize>) {
+        let found: Option<BTreeSet<u32>> = numbers.iter().map(|id| rows.get(id).map(|&row| row as u32)).collect();
+        if let Some(found) = found {
+            self.point_lists.insert(numbers.to_vec(), found.into_iter().collect());
+        }
+    }
+
+    /// Rows of the points by their numbers.
+    pub fn point_rows(&self) -> HashMap<u64, usize> {
+        (0..self.points.len()).map(|row| (self.point_ids.of(row), row)).collect()
+    }
+
     /// How many elements there are, of both kinds.
     pub fn element_count(&self) -> usize {
         self.tets.len() + self.hexes.len()

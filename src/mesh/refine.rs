@@ -1,6 +1,6 @@
 //! Uniform subdivision: every element becomes eight of the same kind.
 
-use super::{Ids, Mesh, MeshError};
+use super::{Ids, Mesh, MeshError, SurfaceFace};
 use glam::DVec3;
 use std::collections::{BTreeSet, HashMap};
 
@@ -22,8 +22,8 @@ impl Mesh {
     /// polygon it is.
     ///
     /// Points keep their rows and numbers, new ones follow. The parts of an element bear its number, its vectors and its
-    /// sets. A new point belongs to a set of points when the face, element or edge it lies on does (with faces of the
-    /// surface tried first).
+    /// sets. A new point belongs to a set of points, or to a list of them, when the face, element or edge it lies on does
+    /// (with faces of the surface tried first).
     ///
     /// # Errors
     /// More elements or points than 32 bits count.
@@ -58,11 +58,13 @@ impl Mesh {
         for hex in &hexes {
             self.hexes.extend(eight_hexes(hex, &mut middles));
         }
-        let elements: Vec<Vec<u32>> = tets.iter().map(|t| t.to_vec()).chain(hexes.iter().map(|h| h.to_vec())).collect();
-        let faces: Vec<[u32; 4]> = surface.iter().map(|face| face.nodes).collect();
-        for (name, set) in &mut self.node_sets {
-            let own = self.face_sets.get(name).filter(|faces| same_points(faces, set));
-            middles.join(set, own, &faces, &elements);
+        if !self.node_sets.is_empty() || !self.point_lists.is_empty() {
+            let near = Near::of(&middles, &surface, &tets, &hexes);
+            for (name, set) in &mut self.node_sets {
+                let own = self.face_sets.get(name).filter(|faces| same_points(faces, set));
+                middles.join(&near, set, own);
+            }
+            self.point_lists.values_mut().for_each(|list| middles.join(&near, list, None));
         }
         for set in self.face_sets.values_mut() {
             *set = set.iter().flat_map(|face| middles.four(face)).collect();
@@ -73,7 +75,7 @@ impl Mesh {
         for vectors in self.element_vectors.values_mut() {
             *vectors = vectors.iter().flat_map(|vector| [*vector; 8]).collect();
         }
-        let ids = (0..elements.len()).flat_map(|parent| [self.element_ids.of(parent); 8]).collect();
+        let ids = (0..tets.len() + hexes.len()).flat_map(|parent| [self.element_ids.of(parent); 8]).collect();
         self.element_ids = Ids::Named(ids);
         if let Ids::Named(ids) = &mut self.point_ids {
             ids.extend(free_numbers(ids, middles.points.len() - before));
@@ -137,41 +139,81 @@ impl Middles {
         parts().unwrap_or_default()
     }
 
-    /// Adds to a set of points the new ones that belong to it.
-    fn join(&self, set: &mut Vec<u32>, own: Option<&Vec<[u32; 4]>>, surface: &[[u32; 4]], elements: &[Vec<u32>]) {
+    /// Adds to a set of points the new ones that belong to it: those on the faces of its own, else on faces of the surface,
+    /// else also in elements, that have all their corners in it; and those between points of the set of which one is on none
+    /// of these.
+    fn join(&self, near: &Near<'_>, set: &mut Vec<u32>, own: Option<&Vec<[u32; 4]>>) {
+        if set.len() < 2 {
+            return;
+        }
         let old: BTreeSet<u32> = set.iter().copied().collect();
         let whole = |nodes: &[u32]| nodes.iter().all(|node| old.contains(node));
-        let mut faces: Vec<&[u32]> = surface.iter().map(|face| &face[..]).filter(|face| whole(face)).collect();
-        if let Some(own) = own {
-            faces = own.iter().map(|face| &face[..]).collect();
+        let mut parts: Vec<&[u32]> = match own {
+            Some(own) => own.iter().map(|face| &face[..]).collect(),
+            None => at(&near.faces, set).filter(|face| whole(face)).collect(),
+        };
+        let on_faces: BTreeSet<u32> = parts.iter().flat_map(|part| part.iter().copied()).collect();
+        if on_faces.len() < old.len() {
+            parts.extend(at(&near.elements, set).filter(|element| whole(element)));
         }
-        let within: Vec<&[u32]> = elements.iter().map(Vec::as_slice).filter(|nodes| whole(nodes)).collect();
-        let covers = |parts: &[&[u32]]| {
-            let covered: BTreeSet<u32> = parts.iter().flat_map(|part| part.iter().copied()).collect();
-            covered.len() == old.len()
-        };
-        // a point lies on a part when all of its parents are corners of it
-        let parts = match (covers(&faces), covers(&within)) {
-            (true, _) => faces,
-            (false, true) => within,
-            (false, false) => vec![],
-        };
         let mut of_point: HashMap<u32, Vec<usize>> = HashMap::new();
         for (place, part) in parts.iter().enumerate() {
             part.iter().for_each(|&node| of_point.entry(node).or_default().push(place));
         }
-        let on_part = |parents: &[u32]| {
+        // a point lies on a part when all of its parents are corners of it
+        let belongs = |parents: &[u32]| {
             let places = of_point.get(&parents[0]).map_or(&[][..], Vec::as_slice);
             places.iter().any(|&place| parents.iter().all(|parent| parts[place].contains(parent)))
+                || parents.iter().any(|parent| !of_point.contains_key(parent))
         };
-        for (key, &row) in &self.known {
-            let parents: Vec<u32> = key.iter().copied().filter(|&parent| parent != NOBODY).collect();
-            if whole(&parents) && if parts.is_empty() { parents.len() == 2 } else { on_part(&parents) } {
-                set.push(row);
+        let mut new = Vec::new();
+        for (key, row) in old.iter().filter_map(|node| near.points.get(node)).flatten() {
+            let parents = &key[..key.partition_point(|&parent| parent != NOBODY)];
+            if whole(parents) && belongs(parents) {
+                new.push(*row);
             }
         }
+        set.extend(new);
         set.sort_unstable();
         set.dedup();
+    }
+}
+
+type ByLowest = HashMap<u32, Vec<Vec<u32>>>;
+
+/// The parts whose lowest corner is one of some points.
+fn at<'a>(parts: &'a ByLowest, points: &'a [u32]) -> impl Iterator<Item = &'a [u32]> {
+    points.iter().filter_map(|point| parts.get(point)).flatten().map(Vec::as_slice)
+}
+
+/// Faces of the surface, elements and new points, each by the lowest of its corners or parents.
+struct Near<'a> {
+    faces: ByLowest,
+    elements: ByLowest,
+    points: HashMap<u32, Vec<(&'a [u32; 8], u32)>>,
+}
+
+impl<'a> Near<'a> {
+    fn of(middles: &'a Middles, surface: &[SurfaceFace], tets: &[[u32; 4]], hexes: &[[u32; 8]]) -> Self {
+        let by_lowest = |parts: &mut dyn Iterator<Item = Vec<u32>>| {
+            let mut found = ByLowest::new();
+            for part in parts {
+                if let Some(&lowest) = part.iter().min() {
+                    found.entry(lowest).or_default().push(part);
+                }
+            }
+            found
+        };
+        let mut points: HashMap<u32, Vec<(&[u32; 8], u32)>> = HashMap::new();
+        for (key, &row) in &middles.known {
+            points.entry(key[0]).or_default().push((key, row));
+        }
+        let elements = tets.iter().map(|tet| tet.to_vec());
+        Self {
+            faces: by_lowest(&mut surface.iter().map(|face| face.nodes.to_vec())),
+            elements: by_lowest(&mut elements.chain(hexes.iter().map(|hex| hex.to_vec()))),
+            points,
+        }
     }
 }
 

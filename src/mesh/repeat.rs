@@ -62,6 +62,8 @@ impl Mesh {
         self.point_ids = Ids::Named(point_ids);
         self.element_ids = Ids::Named(element_ids);
         self.notes = one.notes;
+        // numbers are those of the first copy
+        self.point_lists = one.point_lists;
     }
 }
 

@@ -4,6 +4,7 @@ mod energies;
 mod fields;
 mod guards;
 mod look;
+mod overlaps;
 mod probes;
 mod rounding;
 
@@ -16,11 +17,12 @@ pub use rounding::{Rounding, shortest_edge};
 
 use crate::components::*;
 use crate::error::{Criterion, Error, Instability};
-use crate::output::{Folder, OutputError, Series, Table};
+use crate::output::{Folder, Lock, OutputError, Series, Table};
 use crate::snapshot::Snapshot;
 use bevy_ecs::prelude::*;
 use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Steps between two looks for numbers that are not finite and for elements turned inside out, at most, on the host. On a
 /// GPU its kernels look in every step, and the host asks them in every 256 at least; where systems of one's own run on the
@@ -66,6 +68,7 @@ pub struct Observer {
 
 struct Files {
     folder: PathBuf,
+    _lock: Arc<Lock>,
     series: Series,
     energies: Option<Table>,
     probes: BTreeMap<String, Table>,
@@ -129,7 +132,8 @@ impl Observer {
             None => None,
             Some(_) => Some(Table::create(&folder.claim("convergence.csv")?, &CONVERGENCE)?),
         };
-        self.files = Some(Files { folder: folder.path().to_path_buf(), series, energies, probes, convergence });
+        let (folder, _lock) = (folder.path().to_path_buf(), folder.lock());
+        self.files = Some(Files { folder, _lock, series, energies, probes, convergence });
         Ok(())
     }
 
@@ -284,6 +288,9 @@ impl Observer {
                 None => {}
                 Some(what) => self.finite(world, [f64::NAN].into_iter(), || what.clone())?,
             }
+        }
+        if due(self.fields) && (self.files.is_some() || clock.step == 0) {
+            overlaps::look(world)?;
         }
         self.good_until = clock.time();
         Ok(())

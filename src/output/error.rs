@@ -33,6 +33,14 @@ pub enum OutputError {
         /// The path.
         path: PathBuf,
     },
+    /// Another process writes into the output folder.
+    #[error("{} is being written by another sinew ({by}); wait until it has ended, or name another folder", path.display())]
+    Held {
+        /// The folder.
+        path: PathBuf,
+        /// Who it is, as far as known: process, since when, scene.
+        by: String,
+    },
     /// A name that cannot be a file in the output folder.
     #[error("\"{name}\" cannot be the name of an output file; allowed are letters, digits, '_', '-', '.' and ' '")]
     FileName {

@@ -1,40 +1,61 @@
 //! The output folder: made, recognised and cleared of the previous run.
 
-use super::{FIELDS, OutputError, summary};
+use super::{FIELDS, Lock, OutputError, summary};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The mark of an output folder, written before anything else; it also names the tables of the run.
 const MARK: &str = "sinew.json";
 /// Files that every run may leave.
 const KNOWN: [&str; 5] = [FIELDS, "last_states.pvd", "energy.csv", "nodes.csv", "summary.json"];
 
-/// A folder that a run may write into.
+/// A folder that a run may write into, and no other: it is locked until the last one that writes into it is gone.
 pub struct Folder {
     path: PathBuf,
     /// Names of files beyond those that every run may leave.
     claimed: BTreeSet<String>,
+    lock: Arc<Lock>,
 }
 
 impl Folder {
     /// Makes the folder, or takes one that is empty (hidden files aside) or holds an earlier output, which is removed: the
-    /// files that sinew writes and no other. A folder with anything else in it is refused.
+    /// files that sinew writes and no other.
+    ///
+    /// # Errors
+    /// A folder with anything else in it, one that another process writes into, or the system refuses.
     pub fn create(path: &Path) -> Result<Folder, OutputError> {
+        Self::create_for(path, "")
+    }
+
+    /// As [`Folder::create`]; others that want the folder meanwhile are told what it is for: a scene.
+    ///
+    /// # Errors
+    /// As [`Folder::create`].
+    pub fn create_for(path: &Path, what: &str) -> Result<Folder, OutputError> {
         if path.exists() && !path.is_dir() {
             return Err(OutputError::NotAFolder { path: path.to_path_buf() });
         }
         fs::create_dir_all(path).map_err(OutputError::system("create", path))?;
         let names = names_in(path)?;
-        if names.contains(MARK) {
-            clear(path, &names)?;
-        } else if let Some(found) = names.iter().find(|name| !name.starts_with('.')) {
+        let foreign = names.iter().find(|name| !name.starts_with('.'));
+        if let Some(found) = foreign.filter(|_| !names.contains(MARK)) {
             return Err(OutputError::ForeignFolder { path: path.to_path_buf(), found: found.clone() });
         }
-        let folder = Folder { path: path.to_path_buf(), claimed: BTreeSet::new() };
+        let lock = Arc::new(Lock::of_a_run(path, what)?);
+        // a picture that is being drawn of what is cleared now would be one of the new run
+        let _pictures = Lock::of_pictures(path, what)?;
+        clear(path, &names_in(path)?)?;
+        let folder = Folder { path: path.to_path_buf(), claimed: BTreeSet::new(), lock };
         folder.mark()?;
         Ok(folder)
+    }
+
+    /// The folder's lock, for all who write into it.
+    pub fn lock(&self) -> Arc<Lock> {
+        Arc::clone(&self.lock)
     }
 
     /// The folder's path.

@@ -9,12 +9,13 @@
 //! | `summary.json` | [`summary::write`] |
 //!
 //! Every file is readable at every moment: whole files are written under another name and renamed, files that grow do so
-//! by whole rows. A run that is interrupted leaves what it had written until then.
+//! by whole rows. One process at a time writes into a folder: [`Folder`] holds a [`Lock`]. A run that is interrupted leaves what it had written until then.
 
 mod atomic;
 mod error;
 mod finite;
 mod folder;
+mod lock;
 pub mod nodes;
 mod pvd;
 pub mod summary;
@@ -25,6 +26,7 @@ pub use atomic::replace;
 pub use error::OutputError;
 pub use finite::not_finite;
 pub use folder::Folder;
+pub use lock::Lock;
 pub use nodes::Node;
 pub use pvd::{FIELDS, Series};
 pub use table::Table;

@@ -8,6 +8,7 @@ use super::range::Seen;
 use super::series::Series;
 use super::surface::Faces;
 use super::{Fit, Image, RenderError, animation, encode};
+use crate::scene::limits::PICTURE;
 use glam::Vec3;
 use std::path::{Path, PathBuf};
 
@@ -107,7 +108,7 @@ fn check(options: &Options) -> Result<(), RenderError> {
         _ => (),
     }
     let (wide, high) = options.size;
-    match (320..=16384).contains(&wide) && (240..=16384).contains(&high) {
+    match PICTURE[0].contains(&wide) && PICTURE[1].contains(&high) {
         true => Ok(()),
         false => Err(RenderError::Size { size: options.size }),
     }

@@ -1,6 +1,7 @@
 //! What can go wrong while pictures are made.
 
 use crate::output::OutputError;
+use crate::scene::limits::PICTURE;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -60,7 +61,10 @@ pub enum RenderError {
         high: f32,
     },
     /// The picture is too small or too large.
-    #[error("a picture of {} by {} pixels; allowed are 320 by 240 to 16384 by 16384", size.0, size.1)]
+    #[error(
+        "a picture of {} by {} pixels; allowed are {} by {} to {} by {}",
+        size.0, size.1, PICTURE[0].start(), PICTURE[1].start(), PICTURE[0].end(), PICTURE[1].end()
+    )]
     Size {
         /// Width and height (pixels).
         size: (u32, u32),

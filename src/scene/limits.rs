@@ -17,8 +17,11 @@ pub const ACTIONS: usize = 10_000;
 pub const TABLE_POINTS: usize = 100_000;
 /// Terms of each of a material's series (viscosity, families of fibres).
 pub const TERMS: usize = 100;
-/// Letters of the name of a body or probe: files are named after them.
-pub const NAME_LETTERS: usize = 100;
+/// Bytes of a name in UTF-8, of a body, material, set or probe: files are named after some, and no file name may have more
+/// than 255.
+pub const NAME_BYTES: usize = 100;
+/// Pixels of a picture in width and in height: there must be room for its legend.
+pub const PICTURE: [std::ops::RangeInclusive<u32>; 2] = [320..=8192, 240..=8192];
 /// Times that a mesh is refined: each makes eight elements of one, ten a billion.
 pub const MOST_REFINEMENT: u32 = 9;
 
@@ -34,6 +37,12 @@ pub const ROWS: u64 = 100_000_000;
 pub const PSEUDO_STEPS: u64 = 1_000_000_000;
 /// Bytes of a law of one's own.
 pub const LAW_BYTES: u64 = 1 << 20;
+/// Words, numbers and signs of a law of one's own, comments left out.
+pub const LAW_WORDS: usize = 20_000;
+/// Functions, structs, constants and other declarations of a law of one's own; arrays in it.
+pub const LAW_DECLARATIONS: usize = 500;
+/// Operators, brackets and branches of a law of one's own that are within each other.
+pub const LAW_DEPTH: usize = 500;
 /// Mistakes that are kept; there is enough to do.
 pub(super) const MISTAKES: usize = 100_000;
 /// Places where a text is no RON, after which reading it is given up.

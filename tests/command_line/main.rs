@@ -7,6 +7,7 @@ mod benches;
 mod ends;
 mod explains;
 mod interrupted;
+mod locked;
 mod renders;
 mod runs;
 mod threads;

@@ -129,3 +129,31 @@ fn mirrored_cube_stands_up_again() {
         assert!(apart < 1e-3 && least(&mut simulation) > 0.9, "{}, {elements}: {apart:e}", run.name);
     }
 }
+
+/// The linear theory does not see it: 1 + tr ∇u is .4 where det F is −.95. Guards and removal look at det F, for every law.
+#[test]
+fn elements_of_the_linear_law_are_inside_out_where_their_volume_is() {
+    let linear = "linear: Young(young: 3e3, poisson: 0.45)";
+    let moved = |gradient: &str| format!("Prescribed(on: All, gradient: {gradient}, curve: Ramp(end: 0.5))");
+    let (inverted, squeezed) = ("((0.9, 0, 0), (0, 0, 0), (0, 0, -1.5))", "((0.3, 0, 0), (0, 0, 0), (0, 0, -0.5))");
+    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+        let what = format!("{}, {elements}", run.name);
+        let mut simulation = run.start(
+            &standing(elements, linear, "", &moved(inverted), 0.4)
+                .replace("Fixed(on: Plane(normal: (0, 0, 1), at: 0)), ", ""),
+        );
+        let error = simulation.advance_to(0.6).unwrap_err().to_string();
+        assert!(error.contains("is turned inside out"), "{what}: {error}");
+
+        // J = 1.3 · .5, which the trace calls .8
+        for (limit, goes) in [(0.7, true), (0.6, false)] {
+            let scene = standing(elements, linear, "", &moved(squeezed), 0.4);
+            let scene = scene.replace("Fixed(on: Plane(normal: (0, 0, 1), at: 0)), ", "");
+            let removal = format!("(removal: [(when: VolumeRatioBelow({limit}))], ");
+            let mut simulation = run.start(&scene.replacen('(', &removal, 1));
+            simulation.advance_to(0.6).unwrap_or_else(|error| panic!("{what}: {error}"));
+            let summary = simulation.summary("finished").unwrap();
+            assert_eq!(summary.removed_elements > 0, goes, "{what}, {limit}");
+        }
+    }
+}

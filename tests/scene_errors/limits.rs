@@ -40,8 +40,23 @@ fn too_many_of_anything_are_refused_by_their_number() {
     assert_eq!(first("material: \"tissue\"", &regions), "1001 regions; at most 1000 are allowed");
     let terms = format!("density: 1060, prony: (terms: [{}])", "(alpha: 0, tau: 1),".repeat(101));
     assert_eq!(first("density: 1060", &terms), "101 terms; at most 100 are allowed");
-    let name = format!("\"{}\": (what", "x".repeat(101));
-    assert_eq!(first("\"tip\": (what", &name), "101 letters in a name; at most 100 are allowed");
+}
+
+/// A file name may have 255 bytes: so many letters of four bytes would not fit, though they are few.
+#[test]
+fn names_are_limited_in_bytes() {
+    let told = |count: usize| format!("{count} bytes in a name; at most 100 are allowed");
+    for (name, bytes) in [("x".repeat(101), 101), ("ü".repeat(51), 102), ("𝔏".repeat(64), 256)] {
+        assert_eq!(first("\"tip\": (what", &format!("\"{name}\": (what")), told(bytes));
+        let material = format!("materials: {{\"{name}\": (density: 1, neo_hookean: Moduli(shear: 1, bulk: 1)),");
+        assert_eq!(first("materials: {", &material), told(bytes));
+        let body =
+            format!("bodies: {{\"{name}\": (mesh: Box(size: (1, 1, 1), cells: (1, 1, 1)), material: \"tissue\"),");
+        assert_eq!(first("bodies: {", &body), told(bytes));
+        let load = format!("loads: [Pressure(on: Set(\"{name}\"), pressure: 1),");
+        assert_eq!(first("loads: [", &load), told(bytes));
+    }
+    assert_eq!(brief(&with("\"tip\": (what", &format!("\"{}\": (what", "ü".repeat(50))), &[]), "");
 }
 
 #[test]
@@ -203,10 +218,13 @@ fn the_reference_lists_the_limits() {
         (limits::ACTIONS as u64, "|constraints;loads;removals;probes"),
         (limits::TABLE_POINTS as u64, "|pointsofatable"),
         (limits::TERMS as u64, "|termsofviscosity"),
-        (limits::NAME_LETTERS as u64, "|letters"),
+        (limits::NAME_BYTES as u64, "bytes|thenameofabody"),
         (u64::from(limits::MOST_REFINEMENT), "|times"),
         (limits::ELEMENTS, "|elementsofallbodies"),
         (limits::LAW_BYTES, "bytes|alaw"),
+        (limits::LAW_WORDS as u64, "|words"),
+        (limits::LAW_DECLARATIONS as u64, "|declarations"),
+        (limits::LAW_DEPTH as u64, "|operators"),
         (limits::PSEUDO_STEPS, "|pseudo-steps"),
         (limits::FRAMES, "|VTUfiles"),
         (limits::ROWS, "|rows"),

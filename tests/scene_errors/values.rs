@@ -261,10 +261,10 @@ fn bodies_selections_and_pictures_are_checked() {
         ),
         (
             "duration: 0.5,",
-            "duration: 0.5, picture: (size: (8, 10000), from: (0, 0, 0)),",
-            r"3:37: error: `size` must be from 16 to 8192 pixels, found 8
-3:40: error: `size` must be from 16 to 8192 pixels, found 10000
-3:54: error: `from` has no direction: its length is 0 | its length does not matter, but it must point somewhere: (0, 0, 1)",
+            "duration: 0.5, picture: (size: (319, 10000), from: (0, 0, 0)),",
+            r"3:37: error: `size` must be from 320 to 8192 pixels wide, found 319
+3:42: error: `size` must be from 240 to 8192 pixels high, found 10000
+3:56: error: `from` has no direction: its length is 0 | its length does not matter, but it must point somewhere: (0, 0, 1)",
         ),
         (
             r#"material: "tissue""#,

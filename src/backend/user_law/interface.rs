@@ -1,6 +1,6 @@
 //! Whether a text has the form of a law: the four functions, one uniform of numbers, nothing else that kernels have.
 
-use super::names::{Declared, declared, member, owner};
+use super::names::{Declared, declared, member, owners};
 use super::{About, Complaint, FUNCTIONS, PARAMETERS, text};
 use crate::backend::kernel::{Composed, KernelError, compose};
 use naga::AddressSpace;
@@ -15,10 +15,10 @@ pub(super) struct Parameters {
 
 /// Checks the form of a law and packs its parameters.
 pub(super) fn check(path: &str, text: &str, given: &BTreeMap<String, f64>) -> Result<Parameters, Vec<Complaint>> {
-    let declared = declared(text);
+    let (declared, owners) = (declared(text), owners());
     let mut complaints = Vec::new();
     for Declared { name, at, .. } in &declared {
-        if let Some(owner) = owner(name) {
+        if let Some(owner) = owners.get(name) {
             let message = format!("`{name}` is a name of sinew's own ({owner})");
             complaints.push(Complaint::new(About::Bytes(at.clone()), message).note("choose another name"));
         }

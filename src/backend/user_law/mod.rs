@@ -5,6 +5,7 @@ mod checks;
 mod comparison;
 mod deformations;
 mod interface;
+mod limits;
 mod names;
 mod text;
 
@@ -81,6 +82,7 @@ const PARAMETERS: &str = "elastic";
 /// # Errors
 /// All that is wrong with the text, or with the parameters; if they are sound, with the law itself.
 pub fn read(path: &str, text: &str, parameters: &BTreeMap<String, f64>) -> Result<Read, Vec<Complaint>> {
+    limits::check(text).map_err(|complaint| vec![complaint])?;
     let uniform = interface::check(path, text, parameters)?;
     let whole = text::in_double_precision(text);
     let own = whole.len() - text.len();

@@ -3,6 +3,7 @@
 use crate::backend::kernel::Fragment;
 use crate::materials::program::{is_name, words};
 use crate::shader;
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// Something declared outside of all functions.
@@ -122,13 +123,16 @@ const GENERATED: [&str; 19] = [
     "J_FLOOR",
 ];
 
-/// The file of ours that has a name already, if one has.
-pub(super) fn owner(name: &str) -> Option<String> {
-    if GENERATED.contains(&name) {
-        return Some("a generated part of the kernel".to_owned());
+/// The names that are ours, each with the file that has it.
+pub(super) fn owners() -> HashMap<String, String> {
+    let mut owners = HashMap::new();
+    for fragment in to_call().into_iter().chain(beside()) {
+        for name in declared_names(&fragment.text) {
+            owners.entry(name).or_insert_with(|| fragment.path.clone());
+        }
     }
-    let fragments = to_call().into_iter().chain(beside());
-    fragments.into_iter().find(|f| declared(&f.text).iter().any(|d| d.name == name)).map(|f| f.path)
+    owners.extend(GENERATED.map(|name| (name.to_owned(), "a generated part of the kernel".to_owned())));
+    owners
 }
 
 #[cfg(test)]

@@ -32,7 +32,7 @@ pub fn command(arguments: &AccuracyArguments) -> Outcome {
     }
     terminal::aside(&diagnostics.render(Paint::of_stderr().is_on()));
     let path = arguments.out.clone().unwrap_or_else(|| accuracy_folder(&arguments.scene.scene));
-    let mut folder = Folder::create(&path)?;
+    let mut folder = Folder::create_for(&path, &format!("sinew accuracy of {}", file.path.display()))?;
     let gpu = arguments.backend != BackendName::Cpu && has_gpu(&Choice::parse(&arguments.gpu));
     let mut engine = Engine::new(&file, arguments.options(), gpu, arguments.effects, interrupt::is_asked)
         .up_to(arguments.finest.unwrap_or(f64::INFINITY));

@@ -17,6 +17,7 @@ impl<'m> Translator<'m> {
             Expression::Constant(constant) => return self.global(self.module.constants[*constant].init),
             Expression::ZeroValue(ty) => return self.zero(*ty, at),
             Expression::Compose { ty, components } => {
+                self.bearable(*ty, at)?;
                 let mut parts = Vec::new();
                 for component in components {
                     match (self.value(frame, *component)?, &self.module.types[*ty].inner) {
@@ -107,6 +108,16 @@ impl<'m> Translator<'m> {
         })
     }
 
+    /// Whether a value of a type is small enough to be handled number by number.
+    fn bearable(&self, ty: Handle<Type>, at: Span) -> Result<()> {
+        let size = self.module.types[ty].inner.try_size(self.module.to_ctx());
+        if size.is_none_or(|bytes| bytes > MOST_BYTES) {
+            let message = format!("a value of more than {MOST_BYTES} bytes is too large for a law");
+            return Err(Untranslatable::new(at, message).note("its numbers are handled one by one: use smaller arrays"));
+        }
+        Ok(())
+    }
+
     /// The zero of a type: what a variable starts with.
     pub(super) fn zero(&mut self, ty: Handle<Type>, at: Span) -> Result<Value> {
         let scalar = |this: &mut Self, kind: ScalarKind| match kind {
@@ -116,12 +127,8 @@ impl<'m> Translator<'m> {
             ScalarKind::Bool => Ok(Value::Bool(Test::Known(false))),
             _ => Err(Untranslatable::new(at, NOT_ALLOWED)),
         };
-        let inner = &self.module.types[ty].inner;
-        if inner.try_size(self.module.to_ctx()).is_none_or(|bytes| bytes > MOST_BYTES) {
-            let message = format!("a value of more than {MOST_BYTES} bytes is too large for a law");
-            return Err(Untranslatable::new(at, message).note("its numbers are handled one by one: use smaller arrays"));
-        }
-        Ok(match inner {
+        self.bearable(ty, at)?;
+        Ok(match &self.module.types[ty].inner {
             TypeInner::Scalar(s) => scalar(self, s.kind)?,
             TypeInner::Vector { size, scalar: s } => Value::Parts(vec![scalar(self, s.kind)?; *size as usize]),
             TypeInner::Matrix { columns, rows, scalar: s } => {

@@ -39,6 +39,13 @@ impl Default for State {
     }
 }
 
+impl State {
+    /// Numbers of all variables.
+    fn numbers(&self) -> usize {
+        self.locals.iter().map(Value::numbers).sum()
+    }
+}
+
 impl<'m> Translator<'m> {
     /// Both branches, and what they leave chosen from.
     pub(super) fn branch(
@@ -47,10 +54,13 @@ impl<'m> Translator<'m> {
         condition: Test,
         accept: &'m Block,
         reject: &'m Block,
+        at: Span,
     ) -> Result<()> {
         if let Test::Known(known) = condition {
             return self.block(frame, if known { accept } else { reject });
         }
+        // kept, chosen from and chosen
+        self.spend(3 * frame.state.numbers(), at)?;
         let before = frame.state.clone();
         self.block(frame, accept)?;
         let accepted = std::mem::replace(&mut frame.state, before);
@@ -108,6 +118,7 @@ impl<'m> Translator<'m> {
                 return Err(Untranslatable::new(at, message)
                     .note("count its rounds by a whole number up to a constant: for (var i = 0; i < 8; i++) { ... }"));
             }
+            self.spend(frame.state.locals.len() / 8, at)?;
             // those that cut this round short come back after it: only what this round did without them is not theirs
             let none = vec![false; frame.state.loose.len()];
             let before = std::mem::replace(&mut frame.state.loose, none);
@@ -119,6 +130,7 @@ impl<'m> Translator<'m> {
             self.block(frame, continuing)?;
             if let Some(condition) = break_if.filter(|_| frame.state.running != no) {
                 let condition = self.test(frame, condition)?;
+                self.spend(3 * frame.state.numbers(), at)?;
                 let mut leaving = frame.state.clone();
                 self.stop(&mut leaving, |state| &mut state.broken);
                 let merged = match condition {

@@ -9,8 +9,14 @@ use naga::{Arena, Block, Expression, Function, Handle, Module, Span, Statement, 
 
 pub(super) type Result<T> = std::result::Result<T, Untranslatable>;
 
-/// Statements and expressions, unrolled and with all calls, after which a function is given up.
-const MOST_WORK: usize = 200_000;
+/// Statements, and numbers that expressions and branches handle, unrolled and with all calls, after which a function is
+/// given up: some tenths of a second.
+const MOST_WORK: usize = 2_000_000;
+/// Values of a function, unrolled and with all calls, after which it is given up: each is an instruction of every element and
+/// step.
+const MOST_VALUES: usize = 50_000;
+/// Calls and blocks within each other.
+const MOST_DEPTH: usize = 200;
 
 /// Translates functions of one module into one graph.
 pub(super) struct Translator<'m> {
@@ -18,7 +24,10 @@ pub(super) struct Translator<'m> {
     pub(super) graph: Graph,
     /// Values of the module's variables; none for those that may not be used.
     pub(super) globals: Vec<Option<Value>>,
+    /// Values of the module's own expressions, once they are known.
+    constants: Vec<Option<Value>>,
     work: usize,
+    depth: usize,
 }
 
 /// What a function is in the middle of.
@@ -31,7 +40,8 @@ pub(super) struct Frame<'m> {
 
 impl<'m> Translator<'m> {
     pub(super) fn new(module: &'m Module, globals: Vec<Option<Value>>) -> Self {
-        Self { module, graph: Graph::default(), globals, work: 0 }
+        let constants = vec![None; module.global_expressions.len()];
+        Self { module, graph: Graph::default(), globals, constants, work: 0, depth: 0 }
     }
 
     /// What a function returns for these arguments.
@@ -43,12 +53,14 @@ impl<'m> Translator<'m> {
             return Err(Untranslatable::new(at, "a pointer cannot be handed to a function")
                 .note("let the function return its result, as a struct when there are several"));
         }
+        self.spend(function.expressions.len() / 8, at)?;
         let mut frame = self.frame(&function.expressions, arguments);
         for (_, variable) in function.local_variables.iter() {
             let value = match variable.init {
                 Some(init) => self.value(&mut frame, init)?,
                 None => self.zero(variable.ty, at)?,
             };
+            self.spend(value.numbers(), at)?;
             frame.state.locals.push(value);
         }
         frame.state.loose = vec![false; frame.state.locals.len()];
@@ -72,8 +84,14 @@ impl<'m> Translator<'m> {
 
     /// The value of an expression of the module itself.
     pub(super) fn global(&mut self, handle: Handle<Expression>) -> Result<Value> {
-        let mut frame = self.frame(&self.module.global_expressions, Vec::new());
-        self.value(&mut frame, handle)
+        if let Some(known) = &self.constants[handle.index()] {
+            return Ok(known.clone());
+        }
+        let expressions = &self.module.global_expressions;
+        let mut frame = Frame { expressions, arguments: Vec::new(), values: Vec::new(), state: State::default() };
+        let value = self.value(&mut frame, handle)?;
+        self.constants[handle.index()] = Some(value.clone());
+        Ok(value)
     }
 
     fn frame(&self, expressions: &'m Arena<Expression>, arguments: Vec<Value>) -> Frame<'m> {
@@ -82,29 +100,38 @@ impl<'m> Translator<'m> {
 
     /// The value of an expression: as it was found when its turn came, or now for what has no turn.
     pub(super) fn value(&mut self, frame: &mut Frame<'m>, handle: Handle<Expression>) -> Result<Value> {
-        match &frame.values[handle.index()] {
-            Some(value) => Ok(value.clone()),
-            None => self.expression(frame, handle),
-        }
+        let value = match frame.values.get(handle.index()) {
+            Some(Some(value)) => value.clone(),
+            _ => self.expression(frame, handle)?,
+        };
+        self.spend(value.numbers(), frame.expressions.get_span(handle))?;
+        Ok(value)
     }
 
-    pub(super) fn spend(&mut self, at: Span) -> Result<()> {
-        self.work += 1;
-        match self.work > MOST_WORK {
-            true => Err(Untranslatable::new(at, "this is too long once its loops are unrolled")
-                .note("fewer rounds, or a formula without a loop")),
-            false => Ok(()),
+    /// Counts work that is proportional to so many numbers.
+    pub(super) fn spend(&mut self, numbers: usize, at: Span) -> Result<()> {
+        self.work += 1 + numbers;
+        if self.work > MOST_WORK || self.graph.nodes().len() > MOST_VALUES {
+            return Err(Untranslatable::new(at, "this is too long once its loops are unrolled")
+                .note("fewer rounds, or a formula without a loop"));
         }
+        Ok(())
     }
 
     pub(super) fn block(&mut self, frame: &mut Frame<'m>, block: &'m Block) -> Result<()> {
+        self.depth += 1;
         for (statement, span) in block.span_iter() {
             if frame.state.running == Test::Known(false) {
-                return Ok(());
+                break;
             }
-            self.spend(*span)?;
+            if self.depth > MOST_DEPTH {
+                let message = format!("more than {MOST_DEPTH} calls and blocks within each other");
+                return Err(Untranslatable::new(*span, message).note("functions that call functions count with theirs"));
+            }
+            self.spend(0, *span)?;
             self.statement(frame, statement, *span)?;
         }
+        self.depth -= 1;
         Ok(())
     }
 
@@ -112,17 +139,18 @@ impl<'m> Translator<'m> {
         match statement {
             Statement::Emit(range) => {
                 for handle in range.clone() {
-                    self.spend(at)?;
                     let value = self.expression(frame, handle)?;
+                    self.spend(value.numbers(), at)?;
                     frame.values[handle.index()] = Some(value);
                 }
             }
             Statement::Block(block) => self.block(frame, block)?,
             Statement::If { condition, accept, reject } => {
                 let condition = self.test(frame, *condition)?;
-                self.branch(frame, condition, accept, reject)?;
+                self.branch(frame, condition, accept, reject, at)?;
             }
             Statement::Switch { selector, cases } => {
+                self.spend(cases.len(), at)?;
                 let chosen = match self.value(frame, *selector)? {
                     Value::Signed(number) => SwitchValue::I32(number),
                     Value::Unsigned(number) => SwitchValue::U32(number),

@@ -77,6 +77,15 @@ impl Value {
         }
     }
 
+    /// How much there is of it: its numbers and what they are arranged in, or the way to them.
+    pub(super) fn numbers(&self) -> usize {
+        match self {
+            Value::Parts(parts) => 1 + parts.iter().map(Value::numbers).sum::<usize>(),
+            Value::Place(place) => 1 + place.path.len(),
+            _ => 1,
+        }
+    }
+
     /// A vector of numbers.
     pub(super) fn vector(ids: impl IntoIterator<Item = Id>) -> Self {
         Value::Parts(ids.into_iter().map(Value::Float).collect())

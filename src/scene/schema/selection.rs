@@ -1,5 +1,6 @@
 //! Selections by place, name or number, and probes on them.
 
+use super::{Constraint, Load, Scene};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -132,6 +133,34 @@ impl Quantity {
     /// Whether it is made of the forces that hold nodes.
     pub fn is_of_reactions(self) -> bool {
         matches!(self, Self::Reaction | Self::Force { .. } | Self::Moment { .. } | Self::Torque { .. })
+    }
+}
+
+impl Select {
+    /// The lists of nodes in a selection and its parts.
+    pub(crate) fn lists_of_nodes(&self) -> Vec<&[u64]> {
+        match self {
+            Select::Nodes(numbers) => vec![numbers],
+            Select::And(parts) | Select::Or(parts) => parts.iter().flat_map(Select::lists_of_nodes).collect(),
+            Select::Not(part) => part.lists_of_nodes(),
+            _ => Vec::new(),
+        }
+    }
+}
+
+impl Scene {
+    /// All selections that are written in the scene.
+    pub(crate) fn selections(&self) -> impl Iterator<Item = &Select> {
+        let regions = self.bodies.values().flat_map(|body| body.regions.iter().map(|region| &region.on));
+        let constraints = self.constraints.iter().map(|constraint| match constraint {
+            Constraint::Fixed { on, .. } | Constraint::Prescribed { on, .. } => on,
+        });
+        let loads = self.loads.iter().filter_map(|load| match load {
+            Load::NodalForce { on, .. } | Load::Pressure { on, .. } | Load::Traction { on, .. } => Some(on),
+            Load::Gravity { .. } => None,
+        });
+        let removal = self.removal.iter().map(|removal| &removal.on);
+        regions.chain(constraints).chain(loads).chain(removal).chain(self.probes.values().map(|probe| &probe.on))
     }
 }
 

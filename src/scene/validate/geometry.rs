@@ -3,7 +3,7 @@
 use super::{Judge, scene, select};
 use crate::mesh::generators::cells_around;
 use crate::scene::beside::Outside;
-use crate::scene::limits::{MOST_COPIES, MOST_REFINEMENT};
+use crate::scene::limits::{MOST_COPIES, MOST_REFINEMENT, PICTURE};
 use crate::scene::load::SceneFile;
 use crate::scene::schema::{AccuracyReference, MeshSource, Picture, Start};
 use crate::scene::suggest::{choice, list};
@@ -214,8 +214,10 @@ pub(super) fn tell_outside(judge: &mut Judge, path: &Path, outside: &Outside) {
 fn picture(judge: &mut Judge, picture: &Picture) {
     let path = scene("picture");
     for (i, pixels) in [picture.size.0, picture.size.1].into_iter().enumerate() {
-        if !(16..=8192).contains(&pixels) {
-            judge.must(&path.name("size").index(i), "from 16 to 8192 pixels", pixels);
+        let (allowed, what) = (&PICTURE[i], ["wide", "high"][i]);
+        if !allowed.contains(&pixels) {
+            let allowed = format!("from {} to {} pixels {what}", allowed.start(), allowed.end());
+            judge.must(&path.name("size").index(i), &allowed, pixels);
         }
     }
     judge.has_direction(&path.name("from"), picture.from);

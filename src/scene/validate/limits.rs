@@ -1,7 +1,7 @@
 //! Whether a scene has more of anything than is allowed. Looked at first: all else may take its time with what is too much.
 
 use super::{Judge, scene};
-use crate::scene::limits::{ACTIONS, BODIES, MOST_REFINEMENT, NAME_LETTERS, TABLE_POINTS, TERMS};
+use crate::scene::limits::{ACTIONS, BODIES, MOST_REFINEMENT, NAME_BYTES, TABLE_POINTS, TERMS};
 use crate::scene::load::SceneFile;
 use crate::scene::schema::{Constraint, Curve, Load, MeshSource};
 use crate::scene::syntax::Path;
@@ -43,8 +43,9 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) -> bool {
         limits.table(curve, || scene("loads").index(i).name("curve"));
     }
     let bodies = found.bodies.keys().map(|name| ("bodies", name));
-    for (what, name) in bodies.chain(found.probes.keys().map(|name| ("probes", name))) {
-        limits.at_most(NAME_LETTERS, name.chars().count(), "letters in a name", || scene(what).name(name));
+    let materials = found.materials.keys().map(|name| ("materials", name));
+    for (what, name) in bodies.chain(materials).chain(found.probes.keys().map(|name| ("probes", name))) {
+        limits.at_most(NAME_BYTES, name.len(), "bytes in a name", || scene(what).name(name));
     }
     limits.kept
 }

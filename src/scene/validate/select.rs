@@ -1,6 +1,7 @@
 //! Selections, as far as they make no sense for any mesh.
 
 use super::{Judge, show};
+use crate::scene::limits::NAME_BYTES;
 use crate::scene::schema::Select;
 use crate::scene::syntax::Path;
 
@@ -10,6 +11,10 @@ pub(super) fn validate(judge: &mut Judge, path: &Path, select: &Select) {
         Select::Set(name) => {
             if name.is_empty() {
                 judge.out.error_at(path, "the name of the set is empty");
+            }
+            if name.len() > NAME_BYTES {
+                let message = format!("{} bytes in a name; at most {NAME_BYTES} are allowed", name.len());
+                judge.out.error_at(path, message);
             }
         }
         Select::Plane { normal, tolerance, .. } => {

@@ -1,0 +1,168 @@
+//! Bodies that are where others are. Nothing keeps bodies apart as long as there is no contact: what they do to each other
+//! then is nothing, and that must be known.
+
+use crate::backend::device::bring_to_host;
+use crate::components::*;
+use crate::error::Error;
+use crate::mesh::{Locator, Mesh};
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+/// What the warnings are called.
+const OVERLAP: &str = "overlap";
+/// Pairs of bodies that are told; who has more knows what is wrong.
+const MOST_PAIRS: usize = 100;
+/// How deep in its own element, as a share of the way from its surface to its middle, a point must be that lies in another
+/// body: what only touches does not overlap, nor do curved surfaces whose facets differ.
+const DEPTH: f64 = 0.05;
+
+/// Where two bodies overlap.
+struct Overlap {
+    /// A node of the surface (author's number), or one of the face whose middle it is.
+    node: u64,
+    /// The element of the other body (author's number).
+    element: u64,
+    at: DVec3,
+}
+
+/// A body as it is now.
+struct Placed<'a> {
+    label: &'a str,
+    authoring: &'a Authoring,
+    /// In the author's order (m).
+    points: Vec<DVec3>,
+    low: DVec3,
+    high: DVec3,
+}
+
+/// Looks for pairs of bodies that overlap, and warns once of each. Boxes around bodies are compared first: those of one body,
+/// or apart from each other, take no time.
+///
+/// # Errors
+/// What the GPU says.
+pub(super) fn look(world: &mut World) -> Result<(), Error> {
+    let bodies: Vec<Entity> = world.query_filtered::<Entity, With<Authoring>>().iter(world).collect();
+    let told = |memory: &GuardMemory| memory.warnings.iter().filter(|notice| notice.criterion == OVERLAP).count();
+    if bodies.len() < 2 || world.get_resource::<GuardMemory>().is_some_and(|memory| told(memory) >= MOST_PAIRS) {
+        return Ok(());
+    }
+    bring_to_host(world, |_, name| name == Displacement::NAME || name == Alive::NAME)?;
+    let (time, step) = (world.resource::<Clock>().time(), world.resource::<Clock>().step);
+    let mut memory = world.get_resource::<GuardMemory>().cloned().unwrap_or_default();
+    let mut placed: Vec<Placed<'_>> = bodies.iter().filter_map(|&body| place(world, body)).collect();
+    placed.sort_by_key(|body| body.label);
+    for (number, a) in placed.iter().enumerate() {
+        for b in &placed[number + 1..] {
+            let (low, high) = (a.low.max(b.low), a.high.min(b.high));
+            // false also where a position is no number
+            if !low.cmplt(high).all() || told(&memory) >= MOST_PAIRS {
+                continue;
+            }
+            let part = format!("{} and {}", a.label, b.label);
+            if memory.warnings.iter().any(|notice| notice.criterion == OVERLAP && notice.part == part) {
+                continue;
+            }
+            let (near_a, near_b) = (near(world, a, low, high), near(world, b, low, high));
+            let found = overlap(&near_a, &near_b, a, b).map(|found| (found, a, b));
+            let found = found.or_else(|| overlap(&near_b, &near_a, b, a).map(|found| (found, b, a)));
+            if let Some((found, one, other)) = found {
+                let message = message(&found, one.label, other.label);
+                let criterion = OVERLAP.to_string();
+                memory.warnings.push(Notice { criterion, part, time, step, value: 1.0, limit: 0.0, message });
+            }
+        }
+    }
+    world.insert_resource(memory);
+    Ok(())
+}
+
+fn message(found: &Overlap, one: &str, other: &str) -> String {
+    let at = found.at.to_array().map(|x| format!("{x:.4}")).join(", ");
+    let Overlap { node, element, .. } = found;
+    format!(
+        "{one} and {other} overlap at ({at}) m: the surface of {one} at its node {node} is in element {element} of {other}; there \
+         is no contact yet, bodies pass through each other"
+    )
+}
+
+fn place(world: &World, entity: Entity) -> Option<Placed<'_>> {
+    let authoring = world.get::<Authoring>(entity)?;
+    let (rest, u) = (&world.get::<RestPosition>(entity)?.0, world.get::<Displacement>(entity)?);
+    let point = |&row: &u32| rest[row as usize] + u.vector(row as usize);
+    let points: Vec<DVec3> = authoring.node_rows.iter().map(point).collect();
+    let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
+    Some(Placed { label: &world.get::<Label>(entity)?.0, authoring, points, low, high })
+}
+
+/// The elements of a body that are there and reach into a box, with their places in the author's order and those of their nodes.
+struct NearBox {
+    mesh: Mesh,
+    elements: Vec<usize>,
+    nodes: Vec<u32>,
+    low: DVec3,
+    high: DVec3,
+}
+
+fn near(world: &World, body: &Placed<'_>, low: DVec3, high: DVec3) -> NearBox {
+    let Placed { authoring, points, .. } = body;
+    let there = |element: usize| {
+        let (block, row) = authoring.element_rows[element];
+        world.get::<Alive>(authoring.blocks[block as usize]).is_none_or(|alive| alive[row as usize] == 1)
+    };
+    let reaches = |nodes: &[u32]| {
+        let corners = nodes.iter().map(|&node| points[node as usize]);
+        let (a, b) = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+        a.cmple(high).all() && b.cmpge(low).all()
+    };
+    let tets = authoring.tets.len();
+    let of_tets: Vec<usize> = (0..tets).filter(|&e| reaches(&authoring.tets[e]) && there(e)).collect();
+    let of_hexes: Vec<usize> =
+        (0..authoring.hexes.len()).filter(|&e| reaches(&authoring.hexes[e]) && there(tets + e)).collect();
+    let (mut nodes, mut rows) = (Vec::new(), vec![u32::MAX; points.len()]);
+    let mut row = |node: u32| {
+        let row = &mut rows[node as usize];
+        if *row == u32::MAX {
+            *row = nodes.len() as u32;
+            nodes.push(node);
+        }
+        *row
+    };
+    let mesh = Mesh {
+        tets: of_tets.iter().map(|&e| authoring.tets[e].map(&mut row)).collect(),
+        hexes: of_hexes.iter().map(|&e| authoring.hexes[e].map(&mut row)).collect(),
+        ..Mesh::default()
+    };
+    let mesh = Mesh { points: nodes.iter().map(|&node| points[node as usize]).collect(), ..mesh };
+    let elements = of_tets.into_iter().chain(of_hexes.into_iter().map(|e| tets + e)).collect();
+    NearBox { mesh, elements, nodes, low, high }
+}
+
+/// Whether a point below the surface of one body lies in an element of the other. Where the elements near the box leave off
+/// counts as surface, too: what is in there is in the body all the same.
+fn overlap(one: &NearBox, other: &NearBox, of: &Placed<'_>, with: &Placed<'_>) -> Option<Overlap> {
+    if one.elements.is_empty() || other.elements.is_empty() {
+        return None;
+    }
+    let locator = Locator::new(&other.mesh);
+    let points = &one.mesh.points;
+    for face in one.mesh.surface() {
+        let corners = one.mesh.element(face.element as usize);
+        let middle = corners.iter().map(|&node| points[node as usize]).sum::<DVec3>() / corners.len() as f64;
+        let nodes = face.nodes.map(|node| points[node as usize]);
+        // a triangle repeats a corner
+        let count = if face.nodes[2] == face.nodes[3] { 3 } else { 4 };
+        let center = nodes[..count].iter().sum::<DVec3>() / count as f64;
+        for (place, x) in nodes[..count].iter().chain([&center]).enumerate() {
+            let below = x.lerp(middle, DEPTH);
+            let inside = below.cmpge(one.low).all() && below.cmple(one.high).all();
+            if let Some(element) = inside.then(|| locator.holds(below)).flatten() {
+                let node = one.nodes[face.nodes[place % count] as usize];
+                let node = of.authoring.node_ids.of(node as usize);
+                let element = with.authoring.element_ids.of(other.elements[element]);
+                return Some(Overlap { node, element, at: *x });
+            }
+        }
+    }
+    None
+}

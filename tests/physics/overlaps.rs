@@ -1,0 +1,87 @@
+//! Bodies that are where others are: warned of once a pair, when and where; never of those that only touch.
+
+use crate::configurations::{ELEMENTS, configurations};
+use sinew::components::Notice;
+use sinew::output::Folder;
+use sinew::{Options, SceneFile, Simulation};
+use std::path::Path;
+
+/// A cube of .1 m in each of these places, what is done to them, and what a run of .1 s warns of.
+fn warned(options: &Options, elements: &str, cells: &[(u32, f64, [f64; 3])], rest: &str) -> Vec<Notice> {
+    let bodies: String = cells
+        .iter()
+        .enumerate()
+        .map(|(i, (cells, size, [x, y, z]))| {
+            format!(
+                "\"b{i}\": (mesh: Box(size: ({size}, {size}, {size}), cells: ({cells}, {cells}, {cells}), elements: {elements}),
+                material: \"m\", translate: ({x}, {y}, {z})),"
+            )
+        })
+        .collect();
+    let scene = format!(
+        "(duration: 0.1, bodies: {{{bodies}}}, materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
+        output: (fields_every: 0.02), {rest})"
+    );
+    let scene = SceneFile::from_text("overlaps.ron", &scene, Path::new("."), &[])
+        .unwrap_or_else(|wrong| panic!("{}", wrong.render(false)));
+    let folder = tempfile::tempdir().unwrap();
+    let mut simulation = Simulation::new(&scene, options).unwrap();
+    simulation.write_into(&mut Folder::create(folder.path()).unwrap()).unwrap();
+    simulation.observe().unwrap();
+    simulation.finish().unwrap();
+    let summary = simulation.summary("finished").unwrap();
+    let mut warnings = summary.guards.warnings;
+    warnings.retain(|notice| notice.criterion == "overlap");
+    warnings
+}
+
+#[test]
+fn bodies_that_overlap_at_the_start_are_warned_of_once_and_those_beside_each_other_are_not() {
+    let cases: [(&str, &[(u32, f64, [f64; 3])], bool); 8] = [
+        ("apart", &[(2, 0.1, [0.0; 3]), (3, 0.1, [0.2, 0.0, 0.0])], false),
+        ("face on face", &[(2, 0.1, [0.0; 3]), (3, 0.1, [0.1, 0.0, 0.0])], false),
+        ("edge on face", &[(2, 0.1, [0.0; 3]), (3, 0.1, [0.1, 0.05, 0.0])], false),
+        ("a corner in", &[(2, 0.1, [0.0; 3]), (3, 0.1, [0.08, 0.08, 0.08])], true),
+        ("half in", &[(2, 0.1, [0.0; 3]), (2, 0.1, [0.05, 0.0, 0.0])], true),
+        ("within", &[(1, 0.1, [0.0; 3]), (2, 0.02, [0.03, 0.03, 0.03])], true),
+        ("around", &[(2, 0.02, [0.03, 0.03, 0.03]), (1, 0.1, [0.0; 3])], true),
+        ("the same", &[(2, 0.1, [0.0; 3]), (2, 0.1, [0.0; 3])], true),
+    ];
+    for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
+        for (what, cells, overlap) in cases {
+            let told = warned(&run.options, elements, cells, "");
+            assert_eq!(told.len(), usize::from(overlap), "{}, {elements}, {what}: {told:?}", run.name);
+            for notice in told {
+                assert_eq!((notice.part.as_str(), notice.time, notice.step), ("b0 and b1", 0.0, 0));
+                assert!(notice.message.contains("overlap at (") && notice.message.contains("no contact"), "{notice:?}");
+            }
+        }
+    }
+}
+
+/// The second cube goes through the first, from .05 m beside it at 3 m/s; the third stays where it is, out of their way.
+#[test]
+fn a_body_that_passes_through_another_is_warned_of_when_it_gets_there() {
+    let cells: [(u32, f64, [f64; 3]); 3] =
+        [(2, 0.1, [0.0; 3]), (3, 0.1, [0.15, 0.02, 0.01]), (1, 0.1, [0.0, 0.0, 0.5])];
+    let moves = "constraints: [Prescribed(body: \"b1\", on: All, displacement: (-0.3, 0, 0), curve: Ramp(end: 0.1))]";
+    for run in &configurations() {
+        let told = warned(&run.options, "Hex8", &cells, moves);
+        assert_eq!(told.len(), 1, "{}: {told:?}", run.name);
+        // looked at every .02 s: at .02 s it is .01 m in
+        assert!((0.02 - 1e-9..0.03).contains(&told[0].time) && told[0].part == "b0 and b1", "{told:?}");
+    }
+}
+
+#[test]
+fn elements_that_are_gone_overlap_with_nothing() {
+    let cells: [(u32, f64, [f64; 3]); 2] = [(2, 0.1, [0.0; 3]), (2, 0.1, [0.15, 0.0, 0.0])];
+    let moves = "constraints: [Prescribed(body: \"b1\", on: All, displacement: (-0.1, 0, 0), curve: Ramp(end: 0.1))]";
+    let all = [configurations().remove(0)];
+    let gone =
+        format!("{moves}, removal: [(body: \"b0\", on: Box(min: (0.04, 0, 0), max: (0.1, 0.1, 0.1)), when: At(0.01))]");
+    for run in &all {
+        assert_eq!(warned(&run.options, "Hex8", &cells, moves).len(), 1);
+        assert_eq!(warned(&run.options, "Hex8", &cells, &gone), []);
+    }
+}
