@@ -41,11 +41,12 @@ pub use bevy_ecs;
 pub use glam;
 pub use serde;
 
-pub use error::{Error, GpuFailure, Instability, NotConverged};
+pub use error::{Error, GpuFailure, Instability, NotConverged, shell_word};
 pub use scene::SceneFile;
 pub use simulation::explain;
 pub use simulation::{
-    BackendChoice, Equilibrium, Inversions, Options, Simulation, Stability, StepHistory, Summary, SystemTime,
+    BackendChoice, Equilibrium, FieldName, Inversions, Names, Options, Simulation, Stability,
+    StepHistory, Summary, SystemTime,
 };
 pub use snapshot::Snapshot;
 

@@ -10,6 +10,7 @@ mod fuse;
 mod growth;
 mod keep;
 mod mass_scaling;
+mod names;
 mod options;
 mod outputs;
 mod pace;
@@ -31,6 +32,7 @@ mod tangent;
 mod watch;
 
 pub use follow::StepHistory;
+pub use names::{FieldName, Names};
 pub use options::{BackendChoice, Options};
 pub use relax::Equilibrium;
 pub use stable_step::Stability;

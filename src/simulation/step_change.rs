@@ -63,7 +63,7 @@ impl Simulation {
         scale_steps(world, now.time_step / before.time_step);
         relax_on(world, &now)?;
         remove_in_time(world, &now);
-        world.resource_mut::<Observer>().change_step(&now, last_step);
+        world.resource_scope(|world, mut observer: Mut<Observer>| observer.change_step(world, last_step))?;
         for entry in &mut self.entries {
             if let Job::Host { beat, .. } = &mut entry.job {
                 beat.change_step(now.step, before.time_step, now.time_step);
