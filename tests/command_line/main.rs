@@ -9,3 +9,4 @@ mod explains;
 mod interrupted;
 mod renders;
 mod runs;
+mod words;
