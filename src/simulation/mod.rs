@@ -11,6 +11,7 @@ mod growth;
 mod keep;
 mod mass_scaling;
 mod names;
+mod node_set;
 mod options;
 mod outputs;
 mod pace;
@@ -33,6 +34,7 @@ mod watch;
 
 pub use follow::StepHistory;
 pub use names::{FieldName, Names};
+pub use node_set::{NodeSet, NodeState};
 pub use options::{BackendChoice, Options};
 pub use relax::Equilibrium;
 pub use stable_step::Stability;

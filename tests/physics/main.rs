@@ -25,6 +25,7 @@ mod loads;
 mod locking;
 mod manufactured;
 mod motions;
+mod node_sets;
 mod one_pass;
 mod output_fields;
 mod points;
