@@ -175,7 +175,8 @@ fn features(edges: &str) -> Vec<String> {
     let output = std::process::Command::new(env!("CARGO")).args(tree).current_dir(root()).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let text = String::from_utf8(output.stdout).unwrap();
-    let mut lines: Vec<String> = text.lines().map(|line| line.trim_end_matches(" (*)").trim_end().to_string()).collect();
+    let mut lines: Vec<String> =
+        text.lines().map(|line| line.trim_end_matches(" (*)").trim_end().to_string()).collect();
     lines.sort();
     lines.dedup();
     lines

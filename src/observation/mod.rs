@@ -85,8 +85,8 @@ struct Files {
     convergence: Option<Table>,
 }
 
-/// The columns of `convergence.csv`.
-const CONVERGENCE: [&str; 5] = ["step", "load share", "residual", "remaining motion", "damping"];
+/// The columns of `convergence.csv`, plain numbers all.
+pub const CONVERGENCE: [&str; 5] = ["step", "load share", "residual", "remaining motion", "damping"];
 
 impl Observer {
     /// Observes the probes of a world.
@@ -109,13 +109,14 @@ impl Observer {
         tracks.map(|track| &mut track.every).chain(&mut self.snapshots).chain([&mut self.fields])
     }
 
-    /// Goes on with steps of the clock's new length; the run ends with `last_step`.
+    /// Will go on with steps of another length (s) from here; the run ends with `last_step`. The clock and the columns are still
+    /// those of the last step.
     ///
     /// # Errors
     /// What the GPU says; that what is observed is not finite.
-    pub fn change_step(&mut self, world: &mut World, last_step: u64) -> Result<(), Error> {
-        let clock = *world.resource::<Clock>();
-        self.cadences().for_each(|cadence| cadence.change_step(clock.step, clock.time_step));
+    pub fn change_step(&mut self, world: &mut World, time_step: f64, last_step: u64) -> Result<(), Error> {
+        let step = world.resource::<Clock>().step;
+        self.cadences().for_each(|cadence| cadence.change_step(step, time_step));
         self.last_step = last_step;
         // a longer step may go beyond a time that is asked for
         self.keep_what_precedes(world)

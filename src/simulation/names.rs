@@ -54,6 +54,9 @@ impl Names {
             let header = observation::energy_header(scene.is_static());
             columns.insert("energy.csv".into(), with_units(header));
         }
+        if scene.is_static() {
+            columns.insert("convergence.csv".into(), with_units(&observation::CONVERGENCE));
+        }
         let of_nodes: Vec<(String, String)> =
             nodes::COLUMNS.iter().map(|(name, unit)| (name.to_string(), unit.to_string())).collect();
         for name in scene.bodies.keys() {

@@ -4,7 +4,7 @@ use crate::sinew::{Ended, Place, SCENE};
 use std::io::Write;
 use std::process::Stdio;
 
-const SHORT: [&str; 4] = ["--backend", "cpu", "--set", "duration=0.02"];
+const SHORT: [&str; 4] = ["--backend", "cpu", "--set", "duration=0.05"];
 
 #[test]
 fn quiet_says_nothing_but_warnings_and_errors() {
