@@ -5,6 +5,7 @@ use crate::output::OutputError;
 use crate::scene::Diagnostics;
 use crate::simulation::Equilibrium;
 use crate::snapshot::SnapshotError;
+use std::path::{Path, PathBuf};
 
 /// Why a simulation does not start or go on.
 #[derive(Debug, thiserror::Error)]
@@ -53,12 +54,13 @@ pub struct GpuFailure {
     pub step: u64,
     /// The last observation before (s).
     pub good_until: f64,
-    /// The snapshot that was written of the last state kept in memory, where files are written: a file in the output folder.
-    pub snapshot: Option<String>,
+    /// The snapshot that was written of the last state kept in memory, where files are written.
+    pub snapshot: Option<PathBuf>,
 }
 
-fn from_snapshot(snapshot: &Option<String>) -> String {
-    snapshot.as_ref().map(|file| format!(", and goes on from there with --resume {file}")).unwrap_or_default()
+fn from_snapshot(snapshot: &Option<PathBuf>) -> String {
+    let tip = |file: &PathBuf| format!(", and goes on from there with --resume {}", shell_word(file));
+    snapshot.as_ref().map(tip).unwrap_or_default()
 }
 
 /// Where and how a simulation broke down.
@@ -115,6 +117,17 @@ pub struct LastGood {
     pub snapshot: String,
     /// The series of the last states in the output folder.
     pub series: String,
+    /// The output folder.
+    pub folder: PathBuf,
+}
+
+/// A path as it can be pasted into a shell.
+pub fn shell_word(path: &Path) -> String {
+    let text = path.display().to_string();
+    let plain = |letter: char| letter.is_alphanumeric() || "/._-+,:=@%".contains(letter);
+    // a path that begins with a hyphen would be taken for an option
+    let text = if text.starts_with('-') { format!("./{text}") } else { text };
+    if !text.is_empty() && text.chars().all(plain) { text } else { format!("'{}'", text.replace('\'', "'\\''")) }
 }
 
 impl std::fmt::Display for Instability {
@@ -127,10 +140,10 @@ impl std::fmt::Display for Instability {
         )?;
         match &self.last_good {
             None => Ok(()),
-            Some(LastGood { time, snapshot, series, .. }) => write!(
+            Some(LastGood { time, snapshot, series, folder, .. }) => write!(
                 f,
-                "; {series} shows the last states, and the last good one, of t = {time} s, can be gone on from: --resume \
-                 {snapshot}"
+                "; {series} shows the last states, and the last good one, of t = {time} s, can be gone on from: --resume {}",
+                shell_word(&folder.join(snapshot))
             ),
         }
     }

@@ -41,13 +41,26 @@ pub use bevy_ecs;
 pub use glam;
 pub use serde;
 
-pub use error::{Error, GpuFailure, Instability, NotConverged};
+pub use error::{Error, GpuFailure, Instability, NotConverged, shell_word};
 pub use scene::SceneFile;
 pub use simulation::explain;
 pub use simulation::{
-    BackendChoice, Equilibrium, Inversions, Mode, Options, Simulation, Stability, StepHistory, Summary, SystemTime,
+    BackendChoice, Equilibrium, FieldName, Inversions, Mode, Names, NodeSet, NodeState, Options, Simulation, Stability,
+    StepHistory, Summary, SystemTime,
 };
 pub use snapshot::Snapshot;
+
+/// What systems of one's own are written with: `use sinew::prelude::*;`.
+///
+/// The derive macros of bevy_ecs name their crate `bevy_ecs`; it is among these, so that `#[derive(Resource)]` compiles in a
+/// crate that depends on sinew alone. Those of serde need `#[serde(crate = "sinew::serde")]` there.
+pub mod prelude {
+    pub use crate::components::{Clock, Displacement, DisplacementStep, ExternalForce, Mass, RestPosition};
+    pub use crate::systems::{Phase, Registry, System};
+    pub use crate::{BackendChoice, Error, NodeSet, Options, SceneFile, Simulation, bevy_ecs, glam, serde};
+    pub use bevy_ecs::prelude::*;
+    pub use glam::DVec3;
+}
 
 /// The code in the readme compiles and runs.
 #[cfg(doctest)]

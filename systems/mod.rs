@@ -38,7 +38,7 @@ pub(crate) use nodal_volume::means_of;
 pub(crate) use node_pass::{is_a_pass, node_pass};
 pub use observe::{add_watch_columns, watch_kernels};
 pub(crate) use patch_pass::patch_pass;
-pub use registry::{DescribeKernels, HostSystem, OnDevice, Phase, Registry, System};
+pub use registry::{DescribeKernels, HostSystem, OnDevice, Outcome, Phase, Registry, System};
 
 /// Places in `rows`, which ascend, of those among `count` from row `first` on.
 fn places_within(rows: &[u32], first: usize, count: usize) -> std::ops::Range<usize> {

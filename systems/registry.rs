@@ -93,17 +93,39 @@ pub struct System {
 /// Turns what a scene gives as a system's parameters into a resource; else says why it cannot.
 type ReadParameters = fn(ron::Value, &mut World) -> Result<(), String>;
 
+/// What a system of one's own may return.
+pub trait Outcome: 'static {
+    /// How it ended.
+    ///
+    /// # Errors
+    /// What ends the run.
+    fn outcome(self) -> Result<(), Error>;
+}
+
+impl Outcome for () {
+    fn outcome(self) -> Result<(), Error> {
+        Ok(())
+    }
+}
+
+impl Outcome for Result<(), Error> {
+    fn outcome(self) -> Result<(), Error> {
+        self
+    }
+}
+
 impl System {
     /// A system of one's own, run on the host on both backends, once a step. `system` is any bevy system function: its
     /// queries say which columns it reads (they are brought to the host before it runs) and which it writes (they go back
     /// to the device after). It runs only when a scene's schedule names it.
     ///
-    /// `system` is called through a function without captures, so that each simulation gets its own copy.
-    pub fn custom<M>(
+    /// It returns nothing or a `Result<(), Error>`, whose error ends the run. `system` is called through a function without
+    /// captures, so that each simulation gets its own copy.
+    pub fn custom<M, O: Outcome>(
         name: impl Into<String>,
         phase: Phase,
         does: impl Into<String>,
-        system: impl IntoSystem<(), (), M> + Clone + Send + Sync + 'static,
+        system: impl IntoSystem<(), O, M> + Clone + Send + Sync + 'static,
     ) -> Self {
         Self {
             name: name.into(),
@@ -111,7 +133,7 @@ impl System {
             does: does.into(),
             called_for_by: "its name in the scene's `schedule`",
             because: |_| None,
-            host: Box::new(move || Box::new(IntoSystem::into_system(system.clone().map(Ok)))),
+            host: Box::new(move || Box::new(IntoSystem::into_system(system.clone().map(O::outcome)))),
             device: OnDevice::None,
             observes: false,
             every: 1,

@@ -168,3 +168,25 @@ fn every_system_is_a_file_of_its_name_and_a_line_of_the_step() {
         assert!(name == "observe" || shader.exists(), "the system {name} has no file shaders/{name}.wgsl");
     }
 }
+
+/// Each crate below sinew with its version and features.
+fn features(edges: &str) -> Vec<String> {
+    let tree = ["tree", "--offline", "--prefix", "none", "--no-dedupe", "--format", "{p} {f}", "--edges", edges];
+    let output = std::process::Command::new(env!("CARGO")).args(tree).current_dir(root()).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let mut lines: Vec<String> =
+        text.lines().map(|line| line.trim_end_matches(" (*)").trim_end().to_string()).collect();
+    lines.sort();
+    lines.dedup();
+    lines
+}
+
+/// Cargo compiles a crate once for each set of features: those of tests and examples must be those of a build for use.
+#[test]
+fn tests_and_examples_use_the_crates_of_a_build() {
+    let (build, tests) = (features("normal,build"), features("normal,build,dev"));
+    assert!(build.len() > 100 && tests.len() > build.len(), "{build:?}");
+    let others: Vec<&String> = build.iter().filter(|line| !tests.contains(line)).collect();
+    assert!(others.is_empty(), "with other features for tests (pin those in Cargo.toml): {others:?}");
+}

@@ -166,7 +166,7 @@ fn a_gpu_lost_in_a_run_leaves_what_was_observed_before() {
     assert!(text.contains("the GPU was lost") && text.contains("s are kept"), "{text}");
     // the last state that was on the host can be gone on from, on the CPU
     let name = failure.snapshot.clone().unwrap();
-    assert!(text.contains(&format!("--resume {name}")), "{text}");
+    assert!(text.contains(&format!("--resume {}", name.display())), "{text}");
     let kept = sinew::Snapshot::read(&path.join(name)).unwrap();
     let cpu = sinew::Options { backend: sinew::BackendChoice::Cpu, ..sinew::Options::default() };
     let mut rest = sinew::Simulation::new(&scene, &cpu).unwrap();

@@ -91,3 +91,29 @@ fn a_scene_written_and_read_again_is_the_same() {
         assert_eq!(read(&named), scene, "{named}");
     }
 }
+
+#[test]
+fn the_named_sets_of_generators_are_in_the_reference() {
+    use sinew::mesh::{ElementKind::Hex8, Mesh, generators::*};
+    let cells = (4, 8, 2);
+    let corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)];
+    let corners = corners.map(|(x, y, z)| glam::DVec3::new(f64::from(x), f64::from(y), f64::from(z)));
+    let meshes: [(&str, Mesh); 6] = [
+        ("Box", box_mesh(glam::DVec3::ONE, cells, Hex8).unwrap()),
+        ("Hexahedron", hexahedron_mesh(corners, cells, Hex8).unwrap()),
+        ("Tube", tube_mesh(1.0, 2.0, 1.0, 90.0, cells, Hex8).unwrap()),
+        ("Cylinder", cylinder_mesh(1.0, 1.0, 4, 2, Hex8).unwrap()),
+        ("Ellipsoid", ellipsoid_mesh(glam::DVec3::ONE, 4, Hex8).unwrap()),
+        ("Lens", lens_mesh(2.0, 1.0, 4, 2, Hex8).unwrap()),
+    ];
+    let table = REFERENCE.split("#### Named sets").nth(1).unwrap().split("####").next().unwrap();
+    for (name, mesh) in &meshes {
+        let row = table.lines().find(|line| line.starts_with(&format!("| `{name}` |"))).unwrap();
+        let named: Vec<&str> = row.split('`').skip(3).step_by(2).filter(|word| *word != "size").collect();
+        let mut named: Vec<String> = named.into_iter().map(str::to_string).collect();
+        named.sort();
+        let there: Vec<String> = mesh.node_sets.keys().cloned().collect();
+        assert_eq!(named, there, "{name}");
+        assert_eq!(mesh.face_sets.keys().cloned().collect::<Vec<_>>(), there);
+    }
+}

@@ -27,6 +27,12 @@ Exit status:
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
+    /// Say nothing but warnings and errors: no report, no progress
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Say what is done meanwhile, too
+    #[arg(short, long, global = true)]
+    pub verbose: bool,
 }
 
 #[derive(Subcommand)]
@@ -58,6 +64,17 @@ pub enum Command {
     /// Measure what a step costs: sizes, elements, effects, backends, threads, schemes
     #[command(after_help = STATUSES)]
     Bench(BenchArguments),
+    /// Print what a shell needs to complete sinew's words, to be put where the shell looks
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Write manual pages: sinew.1, sinew-run.1 and so on
+    Man {
+        /// The folder to write them into, made if it is not there
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+    },
 }
 
 impl Command {
@@ -71,6 +88,7 @@ impl Command {
             Command::Hard(arguments) => arguments.backend != BackendName::Cpu,
             Command::Bench(arguments) => arguments.backends.contains(&"gpu".to_string()),
             Command::Check(_) | Command::Mesh(_) | Command::Modes(_) => false,
+            Command::Completions { .. } | Command::Man { .. } => false,
         }
     }
 }
@@ -78,7 +96,7 @@ impl Command {
 /// Which scene.
 #[derive(Args)]
 pub struct SceneArguments {
-    /// The scene file (.ron)
+    /// The scene file (.ron); - reads it from the standard input
     pub scene: PathBuf,
     /// Put a value into the scene, such as materials.tissue.density=1060; may be given several times
     #[arg(long, value_name = "PATH=VALUE")]
@@ -91,7 +109,12 @@ pub struct SceneArguments {
 impl SceneArguments {
     /// Reads the scene.
     pub fn load(&self) -> Result<SceneFile, Diagnostics> {
-        SceneFile::load_allowing(&self.scene, &self.set, allowed(self.allow_outside))
+        let allowed = allowed(self.allow_outside);
+        match self.scene == Path::new("-") {
+            // files that it names are looked for where the command is called
+            true => SceneFile::read_allowing("standard input", std::io::stdin(), Path::new(""), &self.set, allowed),
+            false => SceneFile::load_allowing(&self.scene, &self.set, allowed),
+        }
     }
 }
 
@@ -185,11 +208,14 @@ pub struct RunArguments {
     #[command(flatten)]
     pub how: HowArguments,
     /// The folder to write into, in place of an earlier run's output [default: out/NAME-OF-THE-SCENE]
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// Go on from a snapshot of the same scene, see output.snapshots_every; writes into out/NAME-OF-THE-SCENE-resumed
     #[arg(long, value_name = "FILE")]
     pub resume: Option<PathBuf>,
+    /// Print the summary as JSON, and nothing else on the standard output
+    #[arg(long)]
+    pub json: bool,
 }
 
 #[derive(Args)]
@@ -227,7 +253,7 @@ pub struct AccuracyArguments {
     #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub threads: u16,
     /// The folder to write into, in place of an earlier study [default: out/NAME-OF-THE-SCENE-accuracy]
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
 
@@ -252,7 +278,7 @@ pub struct HardArguments {
     #[arg(long, value_enum, default_value_t = BackendName::Auto)]
     pub backend: BackendName,
     /// A folder for hard.md, hard.csv and hard.json
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
 
@@ -289,7 +315,7 @@ pub struct BenchArguments {
     #[arg(long, value_name = "S", default_value_t = 0.5)]
     pub seconds: f64,
     /// A folder for bench.csv, bench.json, bench.md and the plots
-    #[arg(long, value_name = "DIR")]
+    #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     /// An earlier bench.json: cases that take over a tenth longer now are told, and the status is 1
     #[arg(long, value_name = "FILE")]
@@ -385,7 +411,8 @@ impl HowArguments {
 
 /// Where the outputs of a scene go when nobody says where.
 pub fn default_folder(scene: &Path) -> PathBuf {
-    Path::new("out").join(scene.file_stem().unwrap_or(scene.as_os_str()))
+    let name = if scene == Path::new("-") { "stdin".as_ref() } else { scene.file_stem().unwrap_or(scene.as_os_str()) };
+    Path::new("out").join(name)
 }
 
 fn direction(text: &str) -> Result<Vec3, String> {

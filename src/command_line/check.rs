@@ -11,6 +11,7 @@ use sinew::components::Block;
 use sinew::components::Cadence;
 use sinew::systems::Registry;
 use sinew::{BackendChoice, Error, Options, Simulation};
+use std::path::Path;
 
 /// Shows all that is wrong, and a line of verdict.
 pub fn command(arguments: &CheckArguments) -> Outcome {
@@ -26,7 +27,7 @@ pub fn command(arguments: &CheckArguments) -> Outcome {
     if arguments.json {
         let text =
             serde_json::to_string_pretty(&facts(&mut simulation)?).map_err(|error| Failure::Silent(error.into()))?;
-        return terminal::say(&format!("{text}\n"));
+        return terminal::hand_out(&format!("{text}\n"));
     }
     let warnings = if diagnostics.is_empty() { String::new() } else { format!(", with {}", count_of(&diagnostics)) };
     terminal::say(&format!("sound{warnings}: {}", verdict(&mut simulation)?))
@@ -78,16 +79,36 @@ fn verdict(simulation: &mut Simulation) -> Result<String, Error> {
     Ok(lines)
 }
 
+/// What `sinew run --verbose` says before the first step.
+pub fn details(simulation: &mut Simulation, folder: &Path) -> Result<String, Error> {
+    let summary = simulation.summary("not run")?;
+    let systems: Vec<&str> = summary.systems.iter().map(|system| system.name.as_str()).collect();
+    let stability = match summary.equilibrium {
+        None => stability::at_start(&summary),
+        Some(_) => String::new(),
+    };
+    Ok(format!(
+        "{}: {}\nread and built in {}\nsystems: {}\n{stability}writes into {}: {}\n",
+        summary.backend,
+        summary.backend_because,
+        quantity(summary.setup_seconds, "s"),
+        systems.join(", "),
+        sinew::shell_word(folder),
+        outputs(simulation, summary.planned_steps).join(", ")
+    ))
+}
+
 /// The files of a run, and how long those that grow become.
 fn outputs(simulation: &Simulation, steps: u64) -> Vec<String> {
     // the start, each time that it is due, and the end
-    let rows = |every: f64| Cadence::new(every, simulation.time_step()).count(steps);
+    let whole_steps = |every: f64| Cadence::new(every, simulation.time_step()).count(steps);
+    let rows = |every: f64| Cadence::new(every, simulation.time_step()).rows(steps);
     let scene = simulation.scene();
-    let mut files = vec![format!("fields.pvd ({})", counted(rows(scene.fields_every()), "frame"))];
+    let mut files = vec![format!("fields.pvd ({})", counted(whole_steps(scene.fields_every()), "frame"))];
     files.extend(scene.output.energies_every.map(|every| format!("energy.csv ({} rows)", count(rows(every)))));
     // none of the start, one of the end
     let snapshots = scene.output.snapshots_every.filter(|_| !scene.is_static());
-    files.extend(snapshots.map(|every| counted(rows(every) - 1, "snapshot")));
+    files.extend(snapshots.map(|every| counted(whole_steps(every) - 1, "snapshot")));
     for (name, probe) in &scene.probes {
         let every = probe.every.unwrap_or_else(|| scene.fields_every());
         files.push(format!("probe_{name}.csv ({} rows)", count(rows(every))));

@@ -16,9 +16,9 @@ pub fn command(arguments: &ExplainArguments) -> Outcome {
     let explanation = progress::during("reading meshes, building the simulation", work)?;
     if arguments.json {
         let text = serde_json::to_string_pretty(&explanation).map_err(|error| Failure::Silent(error.into()))?;
-        return terminal::say(&format!("{text}\n"));
+        return terminal::hand_out(&format!("{text}\n"));
     }
-    terminal::say(&with_headings(&explanation.to_string(), Paint::of_stdout()))
+    terminal::hand_out(&with_headings(&explanation.to_string(), Paint::of_stdout()))
 }
 
 /// On the backend that a run would take; a GPU that is asked for need not be there.

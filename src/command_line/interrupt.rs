@@ -26,7 +26,7 @@ pub fn listen() {
             }
         }
         FIRST.get_or_init(Instant::now);
-        terminal::aside("\ninterrupted: finishing what is begun (again: stop at once)\n");
+        terminal::note("\ninterrupted: finishing what is begun (again: stop at once)\n");
     };
     // where no handler can be set, Ctrl-C kills as it always does
     let _ = ctrlc::set_handler(heard);

@@ -43,7 +43,7 @@ impl Progress {
                 bar.set_message(at);
                 bar.set_position((100.0 * share) as u64);
             }
-            None => terminal::aside(&format!("{:3.0} %  {at}\n", 100.0 * share)),
+            None => terminal::note(&format!("{:3.0} %  {at}\n", 100.0 * share)),
         }
         self.told = Instant::now();
     }
@@ -63,7 +63,7 @@ impl Progress {
                 bar.set_length(all);
                 bar.set_position(done);
             }
-            None => terminal::aside(&format!("{:3.0} %  {at}\n", 100.0 * done as f64 / all.max(1) as f64)),
+            None => terminal::note(&format!("{:3.0} %  {at}\n", 100.0 * done as f64 / all.max(1) as f64)),
         }
         self.told = Instant::now();
     }

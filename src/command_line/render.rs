@@ -65,10 +65,10 @@ fn source(what: &Path, outside: bool) -> Result<(PathBuf, Picture, Outcome), Fai
     let folder = default_folder(what);
     let picture = scene.scene.picture.clone();
     let Some(reason) = why_run(&scene, &folder) else {
-        terminal::aside(&format!("drawing {}, which is newer than the scene\n", folder.display()));
+        terminal::note(&format!("drawing {}, which is newer than the scene\n", folder.display()));
         return Ok((folder, picture, Ok(())));
     };
-    terminal::aside(&format!("running {} first: {reason}\n", what.display()));
+    terminal::note(&format!("running {} first: {reason}\n", what.display()));
     let (_, ended) = run::run(&scene, &RunOptions::default(), &folder, None)?;
     match ended {
         Err(Failure::Interrupted) => Err(Failure::Interrupted),

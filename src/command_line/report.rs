@@ -81,24 +81,24 @@ fn speeds(summary: &Summary, page: &mut Page) {
         true => counted(summary.steps, "step"),
         false => format!("{} of {}", counted(summary.steps, "step"), summary.planned_steps),
     };
-    let (simulated, run) = (quantity(summary.simulated, "s"), quantity(summary.run_seconds, "s"));
+    let (simulated, solving) = (quantity(summary.simulated, "s"), quantity(summary.solving_seconds, "s"));
     match &summary.equilibrium {
         None => {
-            page.row("run", format!("{steps}, {simulated} simulated in {run}: {}", speed(summary.real_time_factor)))
+            let speed = speed(summary.real_time_factor);
+            page.row("solving", format!("{steps}, {simulated} simulated in {solving}: {speed}"));
         }
         Some(found) => {
             let steps = counted(summary.steps, "pseudo-step");
-            page.row("run", format!("{steps} in {run}; loads grew over the first {}", found.load_steps));
+            page.row("solving", format!("{steps} in {solving}; loads grew over the first {}", found.load_steps));
         }
     }
     if summary.steps > 0 {
         let each = quantity(summary.seconds_a_step, "s");
         let element = quantity(summary.nanoseconds_an_element_and_step * 1e-9, "s");
-        page.row(
-            "",
-            format!("{each} a step, {element} an element and step; {} before", quantity(summary.setup_seconds, "s")),
-        );
+        page.row("", format!("{each} a step, {element} an element and step"));
     }
+    let (before, writing) = (quantity(summary.setup_seconds, "s"), quantity(summary.writing_seconds, "s"));
+    page.row("beside it", format!("{before} of reading and building, {writing} of observing and writing"));
     match summary.ended.as_str() {
         "finished" => {}
         "interrupted" => page.row("ended", "interrupted; what was written until then is whole"),
@@ -123,7 +123,7 @@ fn systems(summary: &Summary, page: &mut Page) {
     let lines = all.iter().map(|(name, seconds, because)| {
         let time = match seconds {
             Some(seconds) => {
-                let share = 100.0 * seconds / summary.run_seconds.max(f64::MIN_POSITIVE);
+                let share = 100.0 * seconds / summary.solving_seconds.max(f64::MIN_POSITIVE);
                 format!("{:>8}  {share:3.0} %", quantity(*seconds, "s"))
             }
             None => "on the device  ".into(),
@@ -231,5 +231,5 @@ fn outputs(folder: &Path, page: &mut Page) {
     others.sort_unstable();
     let fields = format!("fields.pvd ({})", counted(frames as u64, "frame"));
     page.row("outputs", format!("{}: {fields}, {}", folder.display(), others.join(", ")));
-    page.row("see it", format!("sinew render {}", folder.display()));
+    page.row("see it", format!("sinew render {}", sinew::shell_word(folder)));
 }

@@ -4,7 +4,8 @@ use super::arguments::{RunArguments, default_folder};
 use super::failure::Failure;
 use super::progress::{self, Progress};
 use super::terminal::{self, Paint};
-use super::{Outcome, interrupt, report};
+use super::wording::quantity;
+use super::{Outcome, check, interrupt, report};
 use sinew::output::{Folder, OutputError, replace, summary};
 use sinew::{BackendChoice, Error, Options, SceneFile, Simulation, Snapshot, Summary};
 use std::io::Write;
@@ -33,11 +34,17 @@ pub fn command(arguments: &RunArguments) -> Outcome {
     let options = arguments.how.options();
     let mut outcome = run(&scene, &options, &folder, from.as_ref());
     if let Some((cpu, why)) = after_the_gpu(&options, &outcome) {
-        terminal::aside(&format!("{why}\n`--backend auto` takes the CPU then, from the start\n"));
+        terminal::note(&format!("{why}\n`--backend auto` takes the CPU then, from the start\n"));
         outcome = run(&scene, &cpu, &folder, from.as_ref());
     }
     let (summary, ended) = outcome?;
-    terminal::say(&report::text(&summary, &scene, &folder, Paint::of_stdout()))?;
+    match arguments.json {
+        false => terminal::say(&report::text(&summary, &scene, &folder, Paint::of_stdout()))?,
+        true => {
+            let text = summary::text(&summary).map_err(|reason| Failure::Silent(std::io::Error::other(reason)))?;
+            terminal::hand_out(&format!("{text}\n"))?;
+        }
+    }
     ended
 }
 
@@ -93,6 +100,9 @@ pub fn run(
     let copy = folder.claim(SCENE)?;
     replace(&copy, |file| file.write_all(scene.text().as_bytes()).map_err(OutputError::system("write", &copy)))?;
     simulation.write_into(&mut folder)?;
+    if terminal::is_verbose() {
+        terminal::detail(&check::details(&mut simulation, path)?);
+    }
     interrupt::listen();
     let ended = steps(&mut simulation, scene.scene.duration);
     let finished = finish(&mut simulation, &mut folder, &ended);
@@ -119,7 +129,7 @@ fn go_on_from(snapshot: &Snapshot, simulation: &mut Simulation) -> Outcome {
 fn steps(simulation: &mut Simulation, duration: f64) -> Outcome {
     simulation.observe()?;
     let mut progress = Progress::begin(simulation.planned_steps(), duration, simulation.scene().is_static());
-    let mut chunk = 1;
+    let (mut chunk, mut changes) = (1, 0);
     let mut advance = || {
         // how many steps there are changes when the step does
         while !simulation.is_finished() && simulation.step_count() < simulation.planned_steps() {
@@ -128,6 +138,7 @@ fn steps(simulation: &mut Simulation, duration: f64) -> Outcome {
             }
             let started = Instant::now();
             simulation.advance_towards_end(chunk)?;
+            tell_of_changes(simulation, &mut changes);
             let share = CHUNK.as_secs_f64() / started.elapsed().as_secs_f64().max(1e-9);
             // at most four times more: a chunk without output says little of one with it
             chunk = ((chunk as f64 * share.clamp(0.1, 4.0)) as u64).clamp(1, 1 << 20);
@@ -143,6 +154,16 @@ fn steps(simulation: &mut Simulation, duration: f64) -> Outcome {
     ended
 }
 
+/// Says that the step has changed, where details are wanted.
+fn tell_of_changes(simulation: &Simulation, known: &mut u64) {
+    let changes = simulation.step_history().map_or(0, |history| history.changes);
+    if changes != *known {
+        *known = changes;
+        let (step, time) = (quantity(simulation.time_step(), "s"), quantity(simulation.time(), "s"));
+        terminal::detail(&format!("t = {time}: the step is {step}\n"));
+    }
+}
+
 /// Writes what stands at the end: the summary, and the nodes if their state means something.
 fn finish(simulation: &mut Simulation, folder: &mut Folder, ended: &Outcome) -> Result<Summary, Failure> {
     let word = match ended {
@@ -151,13 +172,13 @@ fn finish(simulation: &mut Simulation, folder: &mut Folder, ended: &Outcome) -> 
         Err(Failure::Engine(error)) => error.to_string(),
         Err(_) => "failed".to_string(),
     };
-    let summed = simulation.summary(&word)?;
     // a run that broke down ends in numbers that mean nothing, one that found no equilibrium in none that was asked for;
     // the fields hold the last good state
     let meaningless = |error: &Error| matches!(error, Error::Unstable(_) | Error::NotConverged(_));
     if !matches!(ended, Err(Failure::Engine(error)) if meaningless(error)) {
         simulation.write_nodes(folder)?;
     }
+    let summed = simulation.summary(&word)?;
     summary::write(&folder.claim("summary.json")?, &summed)?;
     Ok(summed)
 }

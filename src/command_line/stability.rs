@@ -1,5 +1,6 @@
 //! The stable step in words: what sets it, what is taken of it, and how it went.
 
+use super::terminal;
 use super::wording::{counted, digits, quantity};
 use sinew::Summary;
 use std::fmt::Write;
@@ -13,7 +14,11 @@ pub fn at_start(summary: &Summary) -> String {
         "elements that set it: the usual element is stable up to {} (half of the volume needs no smaller step)",
         quantity(stability.bound.usual, "s")
     );
-    for worst in &stability.bound.worst {
+    let worst = &stability.bound.worst;
+    // of a regular mesh one is as good as the other
+    let alike = worst.iter().all(|other| other.bound <= (1.0 + ALIKE) * worst[0].bound);
+    let shown = if alike && worst.len() > 1 && !terminal::is_verbose() { 1 } else { worst.len() };
+    for worst in &worst[..shown] {
         let _ = writeln!(
             text,
             "  element {} of {}: {}, costs {} times the steps; without it and those above {} times the step",
@@ -24,8 +29,14 @@ pub fn at_start(summary: &Summary) -> String {
             digits(worst.gain)
         );
     }
+    if shown < worst.len() {
+        let _ = writeln!(text, "  and at least {} more like it (-v lists them)", worst.len() - 1);
+    }
     text
 }
+
+/// Elements whose bounds differ by less than this share are alike.
+const ALIKE: f64 = 0.01;
 
 /// Bound, true limit and what is taken of it.
 fn bounds(summary: &Summary) -> String {

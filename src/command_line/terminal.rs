@@ -2,9 +2,42 @@
 
 use super::failure::Failure;
 use std::io::{ErrorKind, IsTerminal, Write};
+use std::sync::atomic::{AtomicU8, Ordering};
 
-/// Says a result on stdout. That nobody listens any more (`sinew explain scene.ron | head`) is no failure.
+/// How much is said.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Voice {
+    /// Warnings, errors, and what programs read.
+    Quiet,
+    /// Reports and progress, too.
+    Usual,
+    /// What is done meanwhile, too.
+    Verbose,
+}
+
+static VOICE: AtomicU8 = AtomicU8::new(Voice::Usual as u8);
+
+/// From now on so much is said.
+pub fn speak(voice: Voice) {
+    VOICE.store(voice as u8, Ordering::Relaxed);
+}
+
+fn speaks(voice: Voice) -> bool {
+    VOICE.load(Ordering::Relaxed) >= voice as u8
+}
+
+/// Whether details are wanted.
+pub fn is_verbose() -> bool {
+    speaks(Voice::Verbose)
+}
+
+/// Says what came out on stdout, unless it is to be quiet.
 pub fn say(text: &str) -> Result<(), Failure> {
+    if speaks(Voice::Usual) { hand_out(text) } else { Ok(()) }
+}
+
+/// Puts what was asked for on stdout. That nobody listens any more (`sinew explain scene.ron | head`) is no failure.
+pub fn hand_out(text: &str) -> Result<(), Failure> {
     let mut stdout = std::io::stdout().lock();
     match stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::Silent(error)),
@@ -12,14 +45,28 @@ pub fn say(text: &str) -> Result<(), Failure> {
     }
 }
 
-/// Says something beside the result, on stderr; where that is closed there is nobody to tell.
+/// Warns, or says what went wrong, on stderr; where that is closed there is nobody to tell.
 pub fn aside(text: &str) {
     let _ = std::io::stderr().lock().write_all(text.as_bytes());
 }
 
-/// Whether somebody looks at stderr.
+/// Says on stderr how it goes, unless it is to be quiet.
+pub fn note(text: &str) {
+    if speaks(Voice::Usual) {
+        aside(text);
+    }
+}
+
+/// Says on stderr what is done, where that is wanted.
+pub fn detail(text: &str) {
+    if is_verbose() {
+        aside(text);
+    }
+}
+
+/// Whether somebody looks at stderr and wants to see how it goes.
 pub fn is_watched() -> bool {
-    std::io::stderr().is_terminal()
+    speaks(Voice::Usual) && std::io::stderr().is_terminal()
 }
 
 /// Colours, on terminals whose user has not switched them off (<https://no-color.org>).

@@ -24,16 +24,20 @@ pub struct Probe {
 pub struct Observed(pub bool);
 
 /// How often something is observed: at the start, and at the first step that is not earlier than each multiple of an
-/// interval.
+/// interval; in every step, if that is longer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cadence {
     /// The interval (s).
     interval: f64,
-    /// The interval in steps, at least 1; infinite: never.
+    /// The interval in steps; infinite: never.
     steps: f64,
     /// A step, and how many intervals had passed by then: from there they are counted.
     since: (u64, f64),
 }
+
+/// What rounding may leave of a whole number of intervals, and of steps.
+const WHOLE_INTERVALS: f64 = 1e-9;
+const WHOLE_STEPS: f64 = 1e-6;
 
 impl Default for Cadence {
     fn default() -> Self {
@@ -44,14 +48,14 @@ impl Default for Cadence {
 impl Cadence {
     /// From an interval and the time step (s).
     pub fn new(interval: f64, time_step: f64) -> Self {
-        Self { interval, steps: (interval / time_step).max(1.0), since: (0, 0.0) }
+        Self { interval, steps: interval / time_step, since: (0, 0.0) }
     }
 
     /// Goes on with steps of another length (s) from the beginning of `step`.
     pub fn change_step(&mut self, step: u64, time_step: f64) {
         if self.steps.is_finite() {
             self.since = (step, self.passed(step));
-            self.steps = (self.interval / time_step).max(1.0);
+            self.steps = self.interval / time_step;
         }
     }
 
@@ -59,7 +63,7 @@ impl Cadence {
     pub fn go_on(&mut self, (step, time): (u64, f64), time_step: f64) {
         if self.steps.is_finite() {
             self.since = (step, time / self.interval);
-            self.steps = (self.interval / time_step).max(1.0);
+            self.steps = self.interval / time_step;
         }
     }
 
@@ -71,8 +75,8 @@ impl Cadence {
     /// The first step after `step` that is observed.
     pub fn next_after(&self, step: u64) -> u64 {
         // a time that is a whole number of steps is met in spite of rounding
-        let multiple = (self.passed(step) + 1e-9).floor() + 1.0;
-        let from_there = ((multiple - self.since.1) * self.steps - 1e-6).ceil();
+        let multiple = (self.passed(step) + WHOLE_INTERVALS).floor() + 1.0;
+        let from_there = ((multiple - self.since.1) * self.steps - WHOLE_STEPS).ceil();
         // an interval that never passes ends at the largest number
         self.since.0.saturating_add(from_there as u64).max(step + 1)
     }
@@ -87,10 +91,35 @@ impl Cadence {
         (after / self.steps).floor() > (before / self.steps).floor()
     }
 
+    /// How many steps a step that is observed goes beyond the time that is asked for; 0 where that is a whole number of steps,
+    /// in spite of rounding, or less than one.
+    pub fn overshoot(&self, step: u64) -> f64 {
+        let passed = self.passed(step);
+        let beyond = (passed - (passed + WHOLE_INTERVALS).floor()) * self.steps;
+        if beyond > WHOLE_STEPS && self.steps > 1.0 { beyond } else { 0.0 }
+    }
+
+    /// The multiple of the interval (s) that is met within or at the end of a step that is observed, as it would be written
+    /// down; `None` where every step is observed.
+    pub fn time_asked(&self, step: u64) -> Option<f64> {
+        let time = (self.passed(step) + WHOLE_INTERVALS + WHOLE_STEPS / self.steps).floor() * self.interval;
+        // 3 · 0.1 is 0.30000000000000004
+        (self.steps > 1.0).then(|| format!("{time:.14e}").parse().unwrap_or(time))
+    }
+
+    /// How many rows a table has after `steps` steps, those of the start and of the end included.
+    pub fn rows(&self, steps: u64) -> u64 {
+        if self.steps <= 1.0 {
+            return steps.saturating_add(1);
+        }
+        let whole = (self.passed(steps) + WHOLE_INTERVALS).floor() as u64 + 1;
+        if self.overshoot(steps) > 0.0 { whole + 1 } else { whole }
+    }
+
     /// How many observations `steps` steps bring, the start and the end included.
     pub fn count(&self, steps: u64) -> u64 {
-        let whole = (steps as f64 / self.steps + 1e-9).floor() as u64 + 1;
-        if self.is_due(steps) { whole } else { whole + 1 }
+        let whole = (steps as f64 / self.steps + WHOLE_INTERVALS).floor() as u64;
+        whole.saturating_add(if self.is_due(steps) { 1 } else { 2 }).min(steps.saturating_add(1))
     }
 }
 

@@ -153,7 +153,7 @@ impl<'a> BlockView<'a> {
         state.points().iter().map(|point| point.share * measure(&point.kinematics)).sum()
     }
 
-    fn direction(&self, row: usize, from: &FamilyDirection<f64>) -> [f64; 3] {
+    pub(super) fn direction(&self, row: usize, from: &FamilyDirection<f64>) -> [f64; 3] {
         match (from, self.fibre_direction) {
             (FamilyDirection::Uniform(a), _) => *a,
             (FamilyDirection::Varying(place), Some(all)) => {

@@ -3,9 +3,11 @@
 
 mod block;
 mod element;
+mod measures;
 
 pub use block::{BlockView, nodal_volume_change};
 pub use element::{ElementState, PointKinematics};
+pub use measures::principal_values;
 
 use crate::components::*;
 use crate::elements::{Element, PressureFrom};

@@ -7,8 +7,8 @@ use crate::error::Error;
 use crate::evaluation::BlockView;
 use bevy_ecs::prelude::*;
 
-/// The columns of `energy.csv`.
-pub(super) const HEADER: [&str; 9] = [
+/// All columns.
+const HEADER: [&str; 9] = [
     "time (s)",
     "kinetic (J)",
     "strain (J)",
@@ -20,12 +20,15 @@ pub(super) const HEADER: [&str; 9] = [
     "internal work (J)",
 ];
 
-/// Columns without those of booked work.
-pub(super) const HELD: usize = 5;
+/// The columns of `energy.csv`; a static analysis books no work.
+pub fn energy_header(at_rest: bool) -> &'static [&'static str] {
+    if at_rest { &HEADER[..5] } else { &HEADER }
+}
 
-pub(super) fn row(time: f64, e: &Energies) -> Vec<f64> {
+/// What stands in them after the time.
+pub(super) fn values(e: &Energies) -> Vec<f64> {
     let booked = [e.load_work, e.damping_loss, e.constraint_work, e.internal_work];
-    let held = [time, e.kinetic, e.strain, e.hourglass, e.removed];
+    let held = [e.kinetic, e.strain, e.hourglass, e.removed];
     held.into_iter().chain(booked.into_iter().flatten()).collect()
 }
 

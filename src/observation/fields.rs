@@ -4,8 +4,7 @@ use crate::backend::cpu::{Cpu, ROWS_A_TASK};
 use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::error::Error;
-use crate::evaluation::{BlockView, node_count, von_mises_and_pressure};
-use crate::output::{Array, Frame, Series, Values};
+use crate::evaluation::{BlockView, node_count};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -94,71 +93,4 @@ fn elements_of(world: &World, entity: Entity) -> Vec<ElementRow> {
         Some(world.resource::<Cpu>().map(view.block.count.div_ceil(ROWS_A_TASK), task).concat())
     })();
     all.unwrap_or_default()
-}
-
-/// Writes the fields of all bodies as one frame; or what of them is not finite, and nothing is written.
-pub fn write(world: &mut World, series: &mut Series) -> Result<Option<String>, Error> {
-    let mut bodies: Vec<(Label, Entity)> =
-        world.query_filtered::<(&Label, Entity), With<Authoring>>().iter(world).map(|(l, e)| (l.clone(), e)).collect();
-    bodies.sort();
-    let (mut points, mut tets, mut hexes, mut all) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    for (_, body) in &bodies {
-        let fields = body_fields(world, *body)?;
-        let (Some(authoring), Some(rest)) = (world.get::<Authoring>(*body), world.get::<RestPosition>(*body)) else {
-            continue;
-        };
-        let first = points.len() as u32;
-        points.extend(authoring.node_rows.iter().map(|&row| rest.0[row as usize]));
-        tets.extend(authoring.tets.iter().map(|nodes| nodes.map(|node| node + first)));
-        hexes.extend(authoring.hexes.iter().map(|nodes| nodes.map(|node| node + first)));
-        all.push((authoring.tets.len(), fields));
-    }
-    let node_vectors = |of: fn(&BodyFields) -> &Vec<DVec3>| -> Vec<f32> {
-        all.iter().flat_map(|(_, fields)| of(fields)).flat_map(|v| v.as_vec3().to_array()).collect()
-    };
-    // tetrahedra of all bodies come before the hexahedra of all bodies
-    let elements: Vec<(&BodyFields, usize)> =
-        (all.iter().flat_map(|(tets, fields)| (0..*tets).map(move |e| (fields, e))))
-            .chain(all.iter().flat_map(|(tets, fields)| (*tets..fields.alive.len()).map(move |e| (fields, e))))
-            .collect();
-    let of_elements = |of: &dyn Fn(&BodyFields, usize) -> f64| -> Vec<f32> {
-        elements.iter().map(|(fields, element)| of(fields, *element) as f32).collect()
-    };
-    let (displacement, velocity) = (node_vectors(|f| &f.displacement), node_vectors(|f| &f.velocity));
-    let ratio = of_elements(&|f, e| f.volume_ratio[e]);
-    let von_mises = of_elements(&|f, e| von_mises_and_pressure(&f.stress[e]).0);
-    let pressure = of_elements(&|f, e| von_mises_and_pressure(&f.stress[e]).1);
-    let stress: Vec<f32> = elements.iter().flat_map(|(f, e)| f.stress[*e].map(|s| s as f32)).collect();
-    let real = [
-        ("displacement", &displacement),
-        ("velocity", &velocity),
-        ("J", &ratio),
-        ("von_mises", &von_mises),
-        ("pressure", &pressure),
-        ("stress", &stress),
-    ];
-    if let Some((name, _)) = real.iter().find(|(_, values)| values.iter().any(|value| !value.is_finite())) {
-        return Ok(Some(format!("the field {name}")));
-    }
-    let alive: Vec<u8> = elements.iter().map(|(f, e)| f.alive[*e]).collect();
-    let scalar = |name, values| Array { name, components: 1, values: Values::F32(values) };
-    let frame = Frame {
-        time: world.resource::<Clock>().time(),
-        points: &points,
-        tets: &tets,
-        hexes: &hexes,
-        point_arrays: vec![
-            Array { name: "displacement", components: 3, values: Values::F32(&displacement) },
-            Array { name: "velocity", components: 3, values: Values::F32(&velocity) },
-        ],
-        cell_arrays: vec![
-            scalar("J", &ratio),
-            scalar("von_mises", &von_mises),
-            scalar("pressure", &pressure),
-            Array { name: "stress", components: 6, values: Values::F32(&stress) },
-            Array { name: "alive", components: 1, values: Values::U8(&alive) },
-        ],
-    };
-    series.write(&frame)?;
-    Ok(None)
 }

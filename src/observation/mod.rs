@@ -1,20 +1,27 @@
 //! Looking at a run: probes, energies, fields and guards, when they are due. Reads only.
 
+mod element_fields;
 mod energies;
 mod fields;
+mod frame;
 mod guards;
 mod look;
 mod overlaps;
 mod probes;
 mod rounding;
+mod tables;
+mod track;
 
-pub use energies::{energies, mass};
-pub use fields::{BodyFields, body_fields, internal_forces, write as write_fields};
+pub use energies::{energies, energy_header, mass};
+pub use fields::{BodyFields, body_fields, internal_forces};
+pub use frame::{WrittenFields, write as write_fields};
 pub use guards::{Watch, begin as begin_to_guard};
 pub use look::{Look, WatchKernels, look};
 pub use probes::{header, observe_probe};
 pub use rounding::{Rounding, shortest_edge};
+pub use track::Track;
 
+use self::track::Moment;
 use crate::components::*;
 use crate::error::{Criterion, Error, Instability};
 use crate::output::{Folder, Lock, OutputError, Series, Table};
@@ -23,6 +30,7 @@ use bevy_ecs::prelude::*;
 use std::collections::{BTreeMap, VecDeque};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Steps between two looks for numbers that are not finite and for elements turned inside out, at most, on the host. On a
 /// GPU its kernels look in every step, and the host asks them in every 256 at least; where systems of one's own run on the
@@ -36,8 +44,8 @@ pub const DEVICE_GUARD_STEPS: u64 = 256;
 pub struct Observer {
     /// How often fields are written.
     pub fields: Cadence,
-    /// How often energies are taken; `None`: not at all.
-    pub energy: Option<Cadence>,
+    /// How energies are taken; `None`: not at all.
+    pub energy: Option<Track>,
     /// How often snapshots are written; `None`: never.
     pub snapshots: Option<Cadence>,
     /// How the guards look.
@@ -57,13 +65,20 @@ pub struct Observer {
     pub to_rest: bool,
     on_the_way: f64,
     files: Option<Files>,
-    probes: Vec<(Entity, String, Cadence)>,
+    probes: Vec<Watched>,
     /// What each probe saw last: time (s) and values.
     pub latest: BTreeMap<String, (f64, Vec<f64>)>,
-    /// The energies as they were observed last.
-    pub energies: Option<Energies>,
     /// Time up to which all was well (s).
     pub good_until: f64,
+    /// What observing and writing has taken so far, guards left out.
+    pub writing: Duration,
+}
+
+/// A probe that is observed.
+struct Watched {
+    entity: Entity,
+    name: String,
+    track: Track,
 }
 
 struct Files {
@@ -75,37 +90,54 @@ struct Files {
     convergence: Option<Table>,
 }
 
-/// The columns of `convergence.csv`.
-const CONVERGENCE: [&str; 5] = ["step", "load share", "residual", "remaining motion", "damping"];
+/// The columns of `convergence.csv`, plain numbers all.
+pub const CONVERGENCE: [&str; 5] = ["step", "load share", "residual", "remaining motion", "damping"];
 
 impl Observer {
     /// Observes the probes of a world.
     pub fn watch_probes(&mut self, world: &mut World) {
-        let mut probes: Vec<(Entity, String, Cadence)> = world
+        let mut probes: Vec<Watched> = world
             .query::<(Entity, &Label, &Probe)>()
             .iter(world)
-            .map(|(entity, label, probe)| (entity, label.0.clone(), probe.every))
+            .map(|(entity, label, probe)| Watched { entity, name: label.0.clone(), track: Track::new(probe.every) })
             .collect();
-        probes.sort_by(|a, b| a.1.cmp(&b.1));
+        probes.sort_by(|a, b| a.name.cmp(&b.name));
         self.probes = probes;
     }
 
-    /// Goes on with steps of the clock's new length; the run ends with `last_step`.
-    pub fn change_step(&mut self, clock: &Clock, last_step: u64) {
-        let probes = self.probes.iter_mut().map(|(_, _, cadence)| cadence);
-        for cadence in probes.chain(&mut self.energy).chain(&mut self.snapshots).chain([&mut self.fields]) {
-            cadence.change_step(clock.step, clock.time_step);
-        }
+    fn tracks(&self) -> impl Iterator<Item = &Track> {
+        self.probes.iter().map(|probe| &probe.track).chain(&self.energy)
+    }
+
+    fn cadences(&mut self) -> impl Iterator<Item = &mut Cadence> {
+        let tracks = self.probes.iter_mut().map(|probe| &mut probe.track).chain(&mut self.energy);
+        tracks.map(|track| &mut track.every).chain(&mut self.snapshots).chain([&mut self.fields])
+    }
+
+    /// Will go on with steps of another length (s) from here; the run ends with `last_step`. The clock and the columns are still
+    /// those of the last step.
+    ///
+    /// # Errors
+    /// What the GPU says; that what is observed is not finite.
+    pub fn change_step(&mut self, world: &mut World, time_step: f64, last_step: u64) -> Result<(), Error> {
+        let step = world.resource::<Clock>().step;
+        self.cadences().for_each(|cadence| cadence.change_step(step, time_step));
         self.last_step = last_step;
+        // a longer step may go beyond a time that is asked for
+        self.keep_what_precedes(world)
     }
 
     /// Goes on at the clock's time, wherever steps had another length before.
-    pub fn go_on(&mut self, clock: &Clock, last_step: u64) {
-        let probes = self.probes.iter_mut().map(|(_, _, cadence)| cadence);
-        for cadence in probes.chain(&mut self.energy).chain(&mut self.snapshots).chain([&mut self.fields]) {
-            cadence.go_on(clock.since, clock.time_step);
-        }
+    ///
+    /// # Errors
+    /// What the GPU says; that what is observed is not finite.
+    pub fn go_on(&mut self, world: &mut World, last_step: u64) -> Result<(), Error> {
+        let clock = *world.resource::<Clock>();
+        self.cadences().for_each(|cadence| cadence.go_on(clock.since, clock.time_step));
+        self.probes.iter_mut().map(|probe| &mut probe.track).chain(&mut self.energy).for_each(Track::forget);
         self.last_step = last_step;
+        // rows within the next step are as they would have been
+        self.keep_what_precedes(world)
     }
 
     /// Writes all that is observed from now on into a folder.
@@ -116,14 +148,10 @@ impl Observer {
         let series = Series::create(folder)?;
         let energies = match self.energy {
             None => None,
-            Some(_) => {
-                // a static analysis books no work
-                let columns = if self.to_rest { energies::HELD } else { energies::HEADER.len() };
-                Some(Table::create(&folder.claim("energy.csv")?, &energies::HEADER[..columns])?)
-            }
+            Some(_) => Some(Table::create(&folder.claim("energy.csv")?, energy_header(self.to_rest))?),
         };
         let mut probes = BTreeMap::new();
-        for (entity, name, _) in &self.probes {
+        for Watched { entity, name, .. } in &self.probes {
             let Some(probe) = world.get::<Probe>(*entity) else { continue };
             let path = folder.claim(&format!("probe_{name}.csv"))?;
             probes.insert(name.clone(), Table::create(&path, &header(probe.what))?);
@@ -144,10 +172,9 @@ impl Observer {
         if !self.to_rest {
             due = due.min((step / self.watch.limits.every + 1) * self.watch.limits.every);
         }
-        let cadences =
-            self.energy.iter().chain(&self.snapshots).chain(self.probes.iter().map(|(_, _, cadence)| cadence));
-        for cadence in cadences.chain([&self.fields]).filter(|_| !self.to_rest) {
-            due = due.min(cadence.next_after(step));
+        if !self.to_rest {
+            let files = self.snapshots.iter().chain([&self.fields]).map(|cadence| cadence.next_after(step));
+            due = self.tracks().map(|track| track.next_look(step)).chain(files).fold(due, u64::min);
         }
         if step < self.last_step { due.min(self.last_step) } else { due }
     }
@@ -204,15 +231,14 @@ impl Observer {
     /// That the simulation broke down, or that files cannot be written.
     pub fn observe(&mut self, world: &mut World) -> Result<(), Error> {
         let clock = *world.resource::<Clock>();
-        let last = clock.step == self.last_step;
-        let to_rest = self.to_rest;
-        let due = |cadence: Cadence| last || cadence.is_due(clock.step) && (clock.step == 0 || !to_rest);
+        let (last, to_rest) = (clock.step == self.last_step, self.to_rest);
         match guards::find(world, self.good_until, &self.watch)? {
             None => {}
             // the steps since the last look at the residual will be taken back
             Some(_) if clock.relaxation.is_some() => return Ok(()),
             Some(found) => return Err(Error::Unstable(Box::new(found))),
         }
+        let due = |cadence: Cadence| !to_rest && cadence.is_due(clock.step);
         let shown = last || self.files.is_some() && (due(self.fields) || self.snapshots.is_some_and(due));
         if shown && let Some(found) = guards::find_in_result(world, self.good_until, &self.watch)? {
             return Err(Error::Unstable(Box::new(found)));
@@ -222,7 +248,13 @@ impl Observer {
             guards::weigh(world, self.good_until, &self.watch)?;
             self.looked_at = Some(clock.step);
         }
-        self.observe_when(due, world)
+        let moment = match to_rest {
+            false => Moment::Step(clock.step, last),
+            true if last || clock.step == 0 => Moment::Rest,
+            // steps on the way are no times of the scene
+            true => return Ok(self.good_until = clock.time()),
+        };
+        self.observe_at(moment, world)
     }
 
     /// Observes what is due at the present time of a static analysis whose loads still grow.
@@ -233,7 +265,7 @@ impl Observer {
         let clock = *world.resource::<Clock>();
         let (before, now) = (self.on_the_way, clock.time() / clock.time_step);
         self.on_the_way = now.max(before);
-        self.observe_when(|cadence| cadence.lies_between(before, now), world)
+        self.observe_at(Moment::OnTheWay(before, now), world)
     }
 
     /// Refuses results that are not finite.
@@ -251,48 +283,5 @@ impl Observer {
         let broken =
             guards::instability(world, &self.watch, "all bodies".into(), found, cause, criterion, self.good_until);
         Err(Error::Unstable(Box::new(broken)))
-    }
-
-    fn observe_when(&mut self, due: impl Fn(Cadence) -> bool + Copy, world: &mut World) -> Result<(), Error> {
-        let clock = *world.resource::<Clock>();
-        let probes: Vec<(Entity, String)> = self
-            .probes
-            .iter()
-            .filter(|(_, _, cadence)| due(*cadence))
-            .map(|(entity, name, _)| (*entity, name.clone()))
-            .collect();
-        for (entity, name) in probes {
-            let values = observe_probe(world, entity)?;
-            self.finite(world, values.iter().copied(), || format!("the probe {name}"))?;
-            let values = probes::with_peaks(world, entity, &name, values);
-            if let Some(table) = self.files.as_mut().and_then(|files| files.probes.get_mut(&name)) {
-                let mut row = vec![clock.time()];
-                row.extend(&values);
-                table.row(&row)?;
-            }
-            self.latest.insert(name, (clock.time(), values));
-        }
-        if self.energy.is_some_and(due) {
-            let energies = energies(world)?;
-            let row = energies::row(clock.time(), &energies);
-            self.finite(world, row.iter().copied(), || "the energies".into())?;
-            if let Some(table) = self.files.as_mut().and_then(|files| files.energies.as_mut()) {
-                table.row(&row)?;
-            }
-            self.energies = Some(energies);
-        }
-        if due(self.fields)
-            && let Some(files) = &mut self.files
-        {
-            match fields::write(world, &mut files.series)? {
-                None => {}
-                Some(what) => self.finite(world, [f64::NAN].into_iter(), || what.clone())?,
-            }
-        }
-        if due(self.fields) && (self.files.is_some() || clock.step == 0) {
-            overlaps::look(world)?;
-        }
-        self.good_until = clock.time();
-        Ok(())
     }
 }

@@ -13,14 +13,31 @@ pub struct Node {
     pub position: DVec3,
     /// Displacement (m).
     pub displacement: DVec3,
-    /// Internal force (N): what the deformed elements resist with.
+    /// Internal force F of M ü = R − F (N): what it takes to hold the node against its deformed elements.
     pub force: DVec3,
     /// Lumped mass (kg).
     pub mass: f64,
 }
 
-/// The columns: SI units throughout.
-const HEADER: [&str; 11] = ["id", "X", "Y", "Z", "ux", "uy", "uz", "fx", "fy", "fz", "mass"];
+/// The columns, each with its unit.
+pub const COLUMNS: [(&str, &str); 11] = [
+    ("id", "1"),
+    ("X", "m"),
+    ("Y", "m"),
+    ("Z", "m"),
+    ("ux", "m"),
+    ("uy", "m"),
+    ("uz", "m"),
+    ("fx", "N"),
+    ("fy", "N"),
+    ("fz", "N"),
+    ("mass", "kg"),
+];
+
+/// The name of a body's file, where there are so many bodies.
+pub fn file_name(body: &str, bodies: usize) -> String {
+    if bodies == 1 { "nodes.csv".into() } else { format!("nodes_{body}.csv") }
+}
 
 /// Writes the table, one row a node, with as many digits as give each number back exactly.
 pub fn write(path: &Path, nodes: impl IntoIterator<Item = Node>) -> Result<(), OutputError> {
@@ -30,7 +47,7 @@ pub fn write(path: &Path, nodes: impl IntoIterator<Item = Node>) -> Result<(), O
     };
     replace(path, |file| {
         let mut table = csv::WriterBuilder::new().has_headers(false).from_writer(file);
-        table.write_record(HEADER).map_err(refused)?;
+        table.write_record(COLUMNS.map(|(name, _)| name)).map_err(refused)?;
         for Node { id, position: x, displacement: u, force: f, mass } in nodes {
             table.serialize((id, x.x, x.y, x.z, u.x, u.y, u.z, f.x, f.y, f.z, mass)).map_err(refused)?;
         }

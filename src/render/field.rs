@@ -26,7 +26,7 @@ enum Pick {
 }
 
 /// What is known of arrays: name in the file, other name, what it is, its length in words, unit, middle.
-const KNOWN: [(&str, &str, &str, &str, Option<f32>); 7] = [
+const KNOWN: [(&str, &str, &str, &str, Option<f32>); 14] = [
     ("displacement", "", "displacement", "m", None),
     ("velocity", "speed", "speed", "m/s", None),
     ("von_mises", "", "von Mises stress", "Pa", None),
@@ -34,6 +34,13 @@ const KNOWN: [(&str, &str, &str, &str, Option<f32>); 7] = [
     ("J", "volume_ratio", "volume ratio J", "", Some(1.0)),
     ("stress", "", "Cauchy stress", "Pa", Some(0.0)),
     ("alive", "", "alive", "", None),
+    ("reaction", "", "reaction", "N", None),
+    ("internal_force", "", "internal force", "N", None),
+    ("external_force", "", "external force", "N", None),
+    ("green_strain", "", "Green-Lagrange strain", "", Some(0.0)),
+    ("energy_density", "", "energy density", "J/m³", None),
+    ("fibre_stretch", "", "stretch of fibres", "", Some(1.0)),
+    ("hourglass_share", "", "share of hourglass control", "", None),
 ];
 
 const AXES: [&str; 3] = ["x", "y", "z"];

@@ -50,22 +50,39 @@ impl SceneFile {
     pub fn load_allowing(path: impl AsRef<Path>, sets: &[String], allowed: Allowed) -> Result<Self, Diagnostics> {
         let path = path.as_ref();
         let name = path.display().to_string();
-        let unreadable = |error| Diagnostics::of(format!("cannot read the scene {name}: {error}"));
+        let file = std::fs::File::open(path)
+            .map_err(|error| Diagnostics::of(format!("cannot read the scene {name}: {error}")))?;
+        let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
+        let mut scene = Self::read_allowing(&name, file, &folder, sets, allowed)?;
+        scene.path = path.to_path_buf();
+        Ok(scene)
+    }
+
+    /// As [`Self::load_allowing`], from whatever can be read, the standard input for instance; `folder` is what mesh files are
+    /// relative to.
+    ///
+    /// # Errors
+    /// As [`Self::load`].
+    pub fn read_allowing(
+        name: &str,
+        from: impl Read,
+        folder: &Path,
+        sets: &[String],
+        allowed: Allowed,
+    ) -> Result<Self, Diagnostics> {
         let mut bytes = Vec::new();
         // one byte more than is allowed tells that there are too many, be it a device without end
-        let file = std::fs::File::open(path).map_err(unreadable)?;
-        file.take(limits::TEXT_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+        from.take(limits::TEXT_BYTES as u64 + 1)
+            .read_to_end(&mut bytes)
+            .map_err(|error| Diagnostics::of(format!("cannot read the scene {name}: {error}")))?;
         if bytes.len() > limits::TEXT_BYTES {
-            return Err(Diagnostics::of(too_long(&name)));
+            return Err(Diagnostics::of(too_long(name)));
         }
         let text = String::from_utf8(bytes).map_err(|error| {
             let at = error.utf8_error().valid_up_to();
             Diagnostics::of(format!("the scene {name} is not a text in UTF-8 (byte {at}); is it the right file?"))
         })?;
-        let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
-        let mut scene = Self::from_text_allowing(&name, &text, &folder, sets, allowed)?;
-        scene.path = path.to_path_buf();
-        Ok(scene)
+        Self::from_text_allowing(name, &text, folder, sets, allowed)
     }
 
     /// As [`Self::load`], for a text that need not be a file; `folder` is what mesh files are relative to.

@@ -10,6 +10,7 @@ use crate::scene::schema::Scene;
 use crate::{SceneFile, systems::Registry};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+use std::time::Instant;
 
 impl Simulation {
     /// The world. On the GPU its columns may be older than the device's: the functions below bring what they return.
@@ -175,14 +176,21 @@ impl Simulation {
     /// # Errors
     /// Files that cannot be written; what the GPU says.
     pub fn write_nodes(&mut self, folder: &mut Folder) -> Result<(), Error> {
+        let started = Instant::now();
+        let written = self.write_all_nodes(folder);
+        self.elapsed += started.elapsed();
+        self.world.resource_mut::<Observer>().writing += started.elapsed();
+        written
+    }
+
+    fn write_all_nodes(&mut self, folder: &mut Folder) -> Result<(), Error> {
         let names: Vec<String> = self.scene.bodies.keys().cloned().collect();
         for name in &names {
             let (rest, displacements) = (self.rest_positions(name)?, self.displacements(name)?);
             let forces = self.internal_forces(name)?;
             crate::observation::mass(&mut self.world)?;
             let body = self.body(name)?;
-            let file = if names.len() == 1 { "nodes.csv".into() } else { format!("nodes_{name}.csv") };
-            let path = folder.claim(&file)?;
+            let path = folder.claim(&nodes::file_name(name, names.len()))?;
             let (Some(authoring), Some(mass)) = (self.world.get::<Authoring>(body), self.world.get::<Mass>(body))
             else {
                 continue;

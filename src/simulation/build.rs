@@ -21,7 +21,7 @@ use crate::backend::gpu::Gpu;
 use crate::backend::kernel::KernelId;
 use crate::components::*;
 use crate::error::Error;
-use crate::observation::{Observer, Watch, WatchKernels};
+use crate::observation::{Observer, Track, Watch, WatchKernels, WrittenFields};
 use crate::scene::schema::Analysis;
 use crate::scene::{Diagnostics, SceneFile};
 use crate::snapshot::{Keeping, identity};
@@ -56,6 +56,7 @@ impl Simulation {
         let (nodes, elements) = counts(&assembly);
         let observer = observer(scene, &clock, steps, &mut world);
         world.insert_resource(observer);
+        world.insert_resource(WrittenFields::from(&scene.scene.output));
         let mut hosts: Vec<HostSystem> = schedule.iter().map(|entry| (entry.system.host)()).collect();
         let mut access = Vec::new();
         for system in &mut hosts {
@@ -297,7 +298,7 @@ fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> 
     let every = |time: f64| Cadence::new(time, clock.time_step);
     let mut observer = Observer::default();
     observer.fields = every(scene.scene.fields_every());
-    observer.energy = scene.scene.output.energies_every.map(every);
+    observer.energy = scene.scene.output.energies_every.map(|time| Track::new(every(time)));
     observer.snapshots = scene.scene.output.snapshots_every.filter(|_| !scene.scene.is_static()).map(every);
     observer.watch = Watch {
         limits: scene.scene.guards.clone(),

@@ -6,8 +6,8 @@ use crate::error::{Error, Instability, LastGood};
 use crate::observation::{Observer, write_fields};
 use crate::output::Series;
 use crate::snapshot::Snapshot;
-use std::path::Path;
-use std::time::Duration;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 /// The series of the last states before a breakdown, in the output folder.
 const LAST_STATES: &str = "last_states";
@@ -38,6 +38,7 @@ impl Simulation {
         let mut observer = self.world.resource_mut::<Observer>();
         (observer.good_until, observer.looked_at) = (clock.time(), None);
         observer.window.clear();
+        observer.writing = Duration::ZERO;
         Ok(())
     }
 
@@ -61,9 +62,11 @@ impl Simulation {
         if folder.is_none() && !window {
             return Ok(());
         }
+        let started = Instant::now();
         let snapshot = self.snapshot()?;
         if let Some(folder) = folder {
             snapshot.write(&folder.join(snapshot.file_name()))?;
+            self.world.resource_mut::<Observer>().writing += started.elapsed();
         }
         if window {
             self.world.resource_mut::<Observer>().keep_state(snapshot);
@@ -88,17 +91,18 @@ impl Simulation {
         let (time, step, snapshot) = (good.time(), good.step(), good.file_name());
         found.put(&mut self.world)?;
         write_fields(&mut self.world, &mut series)?;
-        broken.last_good = Some(LastGood { time, step, snapshot, series: format!("{LAST_STATES}.pvd") });
+        let series = format!("{LAST_STATES}.pvd");
+        broken.last_good = Some(LastGood { time, step, snapshot, series, folder });
         Ok(())
     }
 
     /// Writes the last state kept in memory into the output folder: what a GPU that failed has left. Its name, if there is one and it can
     /// be written.
-    pub(super) fn leave_last_snapshot(&self) -> Option<String> {
+    pub(super) fn leave_last_snapshot(&self) -> Option<PathBuf> {
         let observer = self.world.get_resource::<Observer>()?;
         let (folder, state) = (observer.folder()?, observer.window.back()?);
         let name = state.file_name();
         state.write(&folder.join(&name)).ok()?;
-        Some(name)
+        Some(folder.join(&name))
     }
 }

@@ -11,6 +11,8 @@ mod growth;
 mod keep;
 mod mass_scaling;
 mod modes;
+mod names;
+mod node_set;
 mod options;
 mod outputs;
 mod pace;
@@ -34,6 +36,8 @@ mod watch;
 
 pub use follow::StepHistory;
 pub use modes::Mode;
+pub use names::{FieldName, Names};
+pub use node_set::{NodeSet, NodeState};
 pub use options::{BackendChoice, Options};
 pub use relax::Equilibrium;
 pub use stable_step::Stability;

@@ -6,20 +6,24 @@ use crate::scene::schema::Curve;
 use crate::scene::syntax::Path;
 use crate::scene::{Diagnostics, SceneFile};
 
+/// What is written at whole steps, where tables have rows at times.
+const FILES: &str = "VTU files";
+
 /// Complains of outputs that no disk should be asked for; `steps` is what the scene lasts.
 pub(super) fn check(scene: &SceneFile, clock: &Clock, steps: u64, diagnostics: &mut Diagnostics) {
     let scene = &scene.scene;
     // a static analysis observes while loads grow
     let steps = clock.relaxation.map_or(steps, |relaxation| (1.0 / relaxation.growth).round() as u64);
     let mut at_most = |most: u64, what: &str, every: f64, path: Path| {
-        let found = Cadence::new(every, clock.time_step).count(steps);
+        let cadence = Cadence::new(every, clock.time_step);
+        let found = if what == FILES { cadence.count(steps) } else { cadence.rows(steps) };
         if found > most {
             let message = format!("a run would write {found} {what}");
             diagnostics.error_at(path, message).note(format!("at most {most} are allowed: write them less often"));
         }
     };
     let output = Path::default().name("output");
-    at_most(FRAMES, "VTU files", scene.fields_every(), output.name("fields_every"));
+    at_most(FRAMES, FILES, scene.fields_every(), output.name("fields_every"));
     if let Some(every) = scene.output.energies_every {
         at_most(ROWS, "rows of energies", every, output.name("energies_every"));
     }

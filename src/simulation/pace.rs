@@ -8,6 +8,7 @@ use crate::components::Clock;
 use crate::error::Error;
 use crate::observation::Observer;
 use crate::snapshot::{Snapshot, SnapshotError};
+use bevy_ecs::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -54,7 +55,7 @@ impl Simulation {
         // the scene may last longer than that of the snapshot
         let last_step = clock.step_nearest(self.scene.duration);
         self.facts.steps = last_step;
-        self.world.resource_mut::<Observer>().go_on(&clock, last_step);
+        self.world.resource_scope(|world, mut observer: Mut<Observer>| observer.go_on(world, last_step))?;
         if let (Some(follower), Some(found)) = (&mut self.follower, pace.found)
             && !follower.take_up(found, &mut self.world)
         {

@@ -136,7 +136,7 @@ impl Simulation {
         looked?;
         if reached {
             self.world.resource_mut::<Observer>().last_step = self.step_count();
-            self.observe()?;
+            self.observe_in_time()?;
         }
         Ok(())
     }

@@ -9,7 +9,7 @@ use crate::components::*;
 use crate::error::{Error, GpuFailure};
 use crate::observation::Observer;
 use bevy_ecs::prelude::*;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 impl Simulation {
     /// Takes one step.
@@ -142,6 +142,14 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn observe(&mut self) -> Result<(), Error> {
+        let started = Instant::now();
+        let observed = self.observe_in_time();
+        self.elapsed += started.elapsed();
+        observed
+    }
+
+    /// [`Simulation::observe`] as a part of a run whose time is taken.
+    pub(super) fn observe_in_time(&mut self) -> Result<(), Error> {
         let observed = self.world.resource_scope(|world, mut observer: Mut<Observer>| observer.observe(world));
         observed.map_err(|error| self.note(error))
     }
@@ -277,8 +285,10 @@ impl Entry {
             return Ok(());
         }
         let started = Instant::now();
+        let writing = |world: &World| world.get_resource::<Observer>().map_or(Duration::ZERO, |seen| seen.writing);
+        let before = writing(world);
         let result = system.run((), world);
-        self.time += started.elapsed();
+        self.time += started.elapsed().saturating_sub(writing(world) - before);
         self.runs += 1;
         match result {
             Ok(result) => result,

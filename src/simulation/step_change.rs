@@ -58,12 +58,12 @@ impl Simulation {
         let world = &mut self.world;
         bring_to_host(world, |_, name| COLUMNS.contains(&name))?;
         let before = *world.resource::<Clock>();
+        world.resource_scope(|world, mut observer: Mut<Observer>| observer.change_step(world, time_step, last_step))?;
         world.resource_mut::<Clock>().change_step(time_step);
         let now = *world.resource::<Clock>();
         scale_steps(world, now.time_step / before.time_step);
         relax_on(world, &now)?;
         remove_in_time(world, &now);
-        world.resource_mut::<Observer>().change_step(&now, last_step);
         for entry in &mut self.entries {
             if let Job::Host { beat, .. } = &mut entry.job {
                 beat.change_step(now.step, before.time_step, now.time_step);

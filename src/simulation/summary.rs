@@ -14,6 +14,8 @@ use std::collections::BTreeMap;
 /// What a run amounted to; `summary.json` is this.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
+    /// The version of sinew.
+    pub version: &'static str,
     /// The scene's title.
     pub title: String,
     /// Where it ran.
@@ -48,13 +50,17 @@ pub struct Summary {
     pub simulated: f64,
     /// Time from the scene to the first step (s).
     pub setup_seconds: f64,
-    /// Time for all steps, observation included (s).
+    /// Time from the first step to the last, solving and writing (s).
     pub run_seconds: f64,
-    /// Run time over simulated time; below 1 is faster than life.
+    /// Of it what steps took, guards and looks at the stable step included (s).
+    pub solving_seconds: f64,
+    /// Of it what observing and writing took: tables, fields, snapshots, `nodes.csv` (s).
+    pub writing_seconds: f64,
+    /// Solving time over simulated time; below 1 is faster than life.
     pub real_time_factor: f64,
-    /// Run time a step (s).
+    /// Solving time a step (s).
     pub seconds_a_step: f64,
-    /// Run time an element and step (ns).
+    /// Solving time an element and step (ns).
     pub nanoseconds_an_element_and_step: f64,
     /// The systems in their order.
     pub systems: Vec<SystemTime>,
@@ -80,6 +86,12 @@ pub struct Summary {
     pub failure: Option<crate::Instability>,
     /// How it ended: `finished`, `interrupted`, or what went wrong.
     pub ended: String,
+    /// Who has which number in the files, and what their columns are.
+    pub names: super::names::Names,
+    /// The unit of each number of this summary that is no count, by its place: `energies.kinetic` is in J.
+    pub units: BTreeMap<&'static str, &'static str>,
+    /// The scene with all its values, those that were left out too.
+    pub parameters: serde_json::Value,
 }
 
 /// Elements of a block that were turned inside out in a run and are left to recover.
@@ -122,7 +134,7 @@ pub struct SystemTime {
     pub because: String,
     /// `host` or `device`.
     pub on: &'static str,
-    /// Time on the host (s); kernels run beside it and are not timed here.
+    /// Time on the host without observing and writing (s); kernels run beside it and are not timed here.
     pub seconds: Option<f64>,
     /// How often it ran on the host.
     pub runs: Option<u64>,
@@ -148,10 +160,13 @@ impl Simulation {
             .map(|(block, alive)| alive[..block.count].iter().filter(|&&alive| alive == 0).count())
             .sum();
         let (steps, run) = (self.step_count(), self.elapsed.as_secs_f64());
+        let writing = self.world.resource::<Observer>().writing.as_secs_f64();
+        let solving = (run - writing).max(0.0);
         let (first, since) = self.began;
-        let a_step = run / steps.saturating_sub(first).max(1) as f64;
+        let a_step = solving / steps.saturating_sub(first).max(1) as f64;
         let facts = &self.facts;
         Ok(Summary {
+            version: env!("CARGO_PKG_VERSION"),
             title: self.scene.title.clone(),
             backend: facts.backend.clone(),
             backend_because: facts.why.clone(),
@@ -173,7 +188,9 @@ impl Simulation {
             simulated: self.time(),
             setup_seconds: facts.setup.as_secs_f64(),
             run_seconds: run,
-            real_time_factor: run / (self.time() - since).max(f64::MIN_POSITIVE),
+            solving_seconds: solving,
+            writing_seconds: writing,
+            real_time_factor: solving / (self.time() - since).max(f64::MIN_POSITIVE),
             seconds_a_step: a_step,
             nanoseconds_an_element_and_step: a_step * 1e9 / facts.elements.max(1) as f64,
             systems: self.entries.iter().map(|entry| system_time(entry, facts.on_gpu)).collect(),
@@ -188,6 +205,9 @@ impl Simulation {
             guards: self.guards(),
             failure: self.failure.clone(),
             ended: ended.into(),
+            names: super::names::Names::of(&self.scene),
+            units: super::names::UNITS.into_iter().collect(),
+            parameters: super::names::parameters(&self.scene),
         })
     }
 }

@@ -11,3 +11,4 @@ mod locked;
 mod renders;
 mod runs;
 mod threads;
+mod words;

@@ -85,7 +85,7 @@ def study(sinew, problem, references):
                     probes = {name: value for name, (_, value) in summary["probes"].items()}
                     value = formula(probes, cells)
                     row |= {"value": value, "error": value / reference["value"] - 1, "steps": summary["steps"],
-                            "seconds": summary["run_seconds"]}
+                            "seconds": summary["solving_seconds"]}
                 print({k: row.get(k) for k in ["problem", "quantity", "elements", "cells", "value", "error", "seconds", "why_not"]}, flush=True)
                 yield row
 

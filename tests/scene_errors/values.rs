@@ -280,6 +280,17 @@ fn times_and_curves_are_checked() {
         ("0.5,", "0,", r"3:15: error: `duration` must be above 0, found 0 s"),
         (
             "duration: 0.5,",
+            "duration: 0.5, output: (fields: [Displacement, Reaction, FibreStretch, Reaction]),",
+            r"3:62: error: no material has fibres whose stretch could be written | add `fibres` or `exponential_fibres` to a material, or leave `FibreStretch` out
+3:76: error: `Reaction` is there twice | name each field once",
+        ),
+        (
+            "duration: 0.5,",
+            "duration: 0.5, output: (fields: [Displacement]), picture: (field: VonMises),",
+            r"3:37: warning: `sinew render` would not find the scene's `picture: (field: VonMises)`: `VonMises` is not among `fields` | add it, if you want pictures",
+        ),
+        (
+            "duration: 0.5,",
             "duration: 0.5, integration: (step: 0, safety: 1.5),",
             r"3:40: error: `step` must be above 0, found 0 s
 3:51: error: `safety` must be above 0 and at most 1, found 1.5 | it is the share of the stable step that is taken; 0.9 when left out",

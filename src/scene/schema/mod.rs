@@ -4,6 +4,7 @@ mod accuracy;
 mod action;
 mod body;
 mod material;
+mod output;
 mod scene;
 mod selection;
 
@@ -15,17 +16,17 @@ pub use material::{
     ArrudaBoyce, Direction, Elasticity, ExponentialFibres, Fibres, Inversion, Material, MooneyRivlin, Ogden, OgdenTerm,
     OwnLaw, Prony, PronyTerm, ViscousIntegrator,
 };
-pub use scene::{
-    Analysis, EnergyGuard, Field, Guard, Guards, Integration, Output, Picture, Scene, StepBound, WhenUnstable,
-};
+pub use output::{Output, OutputField};
+pub use scene::{Analysis, EnergyGuard, Field, Guard, Guards, Integration, Picture, Scene, StepBound, WhenUnstable};
 pub use selection::{Probe, Quantity, Select};
 
 /// The texts of these files: what a field means is told in the words it is documented with.
-pub const TEXT: [&str; 6] = [
+pub const TEXT: [&str; 7] = [
     include_str!("scene.rs"),
     include_str!("body.rs"),
     include_str!("material.rs"),
     include_str!("action.rs"),
     include_str!("selection.rs"),
+    include_str!("output.rs"),
     include_str!("accuracy.rs"),
 ];

@@ -1,6 +1,6 @@
 //! The whole scene, its time step, its outputs, its picture.
 
-use super::{Accuracy, Body, Constraint, Load, Material, Probe, Removal};
+use super::{Accuracy, Body, Constraint, Load, Material, Output, Probe, Removal};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -152,18 +152,6 @@ pub enum WhenUnstable {
 
 fn most_added_mass() -> f64 {
     0.05
-}
-
-/// What is written, and how often.
-#[derive(Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
-#[serde(deny_unknown_fields, default)]
-pub struct Output {
-    /// Time between VTU files (s); a twentieth of the duration when left out, in a static analysis all of it.
-    pub fields_every: Option<f64>,
-    /// Time between rows of `energy.csv` (s). Naming it also books the work of all forces in every step.
-    pub energies_every: Option<f64>,
-    /// Time between snapshots (s), from which `sinew run --resume` goes on; none when left out.
-    pub snapshots_every: Option<f64>,
 }
 
 /// What is looked at during a run, and what ends it.

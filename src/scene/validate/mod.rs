@@ -8,6 +8,7 @@ mod limits;
 mod material;
 mod names;
 mod numbers;
+mod output;
 mod select;
 mod time;
 
@@ -31,6 +32,7 @@ pub fn validate(file: &SceneFile, diagnostics: &mut Diagnostics) -> bool {
     action::validate(&file.scene, &mut judge);
     time::validate(&file.scene, &mut judge);
     analysis::validate(&file.scene, &mut judge);
+    output::validate(&file.scene, &mut judge);
     true
 }
 

@@ -1,0 +1,167 @@
+//! One frame of a series: the mesh, who is who in it, and the fields that the scene asks for.
+
+use super::element_fields::{ElementFields, ElementRows};
+use super::fields::internal_forces;
+use crate::backend::cpu::Cpu;
+use crate::backend::device::bring_to_host;
+use crate::components::*;
+use crate::error::Error;
+use crate::output::{Array, Frame, Series, Values};
+use crate::scene::schema::{Output, OutputField};
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+/// Which fields are written, and whether removed elements are, too. A resource.
+#[derive(Resource, Clone, Debug, Default)]
+pub struct WrittenFields {
+    /// The fields.
+    pub fields: Vec<OutputField>,
+    /// Whether elements stay in the files when they are removed.
+    pub removed_elements: bool,
+}
+
+impl From<&Output> for WrittenFields {
+    fn from(output: &Output) -> Self {
+        Self { fields: output.fields().to_vec(), removed_elements: output.removed_elements }
+    }
+}
+
+/// What goes into a frame, body after body.
+#[derive(Default)]
+struct Parts {
+    points: Vec<DVec3>,
+    /// Numbers of bodies and nodes, one a point.
+    point_body: Vec<u32>,
+    node: Vec<i64>,
+    /// A field of nodes each.
+    vectors: Vec<Vec<f32>>,
+    tets: Cells<4>,
+    hexes: Cells<8>,
+}
+
+/// Cells of one shape.
+struct Cells<const N: usize> {
+    corners: Vec<[u32; N]>,
+    rows: ElementRows,
+}
+
+impl<const N: usize> Default for Cells<N> {
+    fn default() -> Self {
+        Self { corners: Vec::new(), rows: ElementRows::default() }
+    }
+}
+
+/// Writes all bodies as one frame; or what of them is not finite, and nothing is written.
+///
+/// # Errors
+/// What the GPU says; files that cannot be written.
+pub fn write(world: &mut World, series: &mut Series) -> Result<Option<String>, Error> {
+    let wanted = world.get_resource::<WrittenFields>().cloned().unwrap_or_default();
+    let of_nodes: Vec<OutputField> = wanted.fields.iter().copied().filter(|field| field.is_of_nodes()).collect();
+    let elements = ElementFields::new(&wanted, world)?;
+    let mut bodies: Vec<(Label, Entity)> =
+        world.query_filtered::<(&Label, Entity), With<Authoring>>().iter(world).map(|(l, e)| (l.clone(), e)).collect();
+    bodies.sort();
+    let mut parts = Parts { vectors: vec![Vec::new(); of_nodes.len()], ..Parts::default() };
+    for (number, (_, body)) in bodies.iter().enumerate() {
+        for (field, values) in of_nodes.iter().zip(&mut parts.vectors) {
+            let vectors = node_vectors(*field, *body, world)?;
+            values.extend(vectors.into_iter().flat_map(|vector| vector.as_vec3().to_array()));
+        }
+        let (Some(authoring), Some(rest)) = (world.get::<Authoring>(*body), world.get::<RestPosition>(*body)) else {
+            continue;
+        };
+        let first = parts.points.len() as u32;
+        parts.points.extend(authoring.node_rows.iter().map(|&row| rest.0[row as usize]));
+        parts.point_body.resize(parts.points.len(), number as u32);
+        parts.node.extend((0..authoring.node_rows.len()).map(|place| authoring.node_ids.of(place) as i64));
+        let found = elements.of_body(number as u32, *body, world);
+        let tets = authoring.tets.len();
+        add(&mut parts.tets, &authoring.tets, 0, first, &found);
+        add(&mut parts.hexes, &authoring.hexes, tets, first, &found);
+    }
+    put_together(&wanted, &of_nodes, &elements, parts, world, series)
+}
+
+/// Adds the cells of a body that are written; its elements of this shape begin at `from`.
+fn add<const N: usize>(
+    cells: &mut Cells<N>,
+    corners: &[[u32; N]],
+    from: usize,
+    first: u32,
+    found: &super::element_fields::BodyElements<'_>,
+) {
+    for (place, nodes) in corners.iter().enumerate() {
+        if found.put(from + place, &mut cells.rows) {
+            cells.corners.push(nodes.map(|node| node + first));
+        }
+    }
+}
+
+fn put_together(
+    wanted: &WrittenFields,
+    of_nodes: &[OutputField],
+    elements: &ElementFields,
+    parts: Parts,
+    world: &World,
+    series: &mut Series,
+) -> Result<Option<String>, Error> {
+    // tetrahedra of all bodies come before the hexahedra of all bodies
+    let cells = parts.tets.rows.and(parts.hexes.rows);
+    let columns = elements.columns(&cells);
+    let points = of_nodes.iter().zip(&parts.vectors).map(|(field, values)| (field.array().to_string(), 3, values));
+    let cell_fields = columns.iter().map(|column| (column.name.clone(), column.components, &column.values));
+    let real: Vec<(String, usize, &Vec<f32>)> = points.chain(cell_fields).collect();
+    if let Some((name, ..)) = real.iter().find(|(.., values)| values.iter().any(|value| !value.is_finite())) {
+        return Ok(Some(format!("the field {name}")));
+    }
+    let (of_points, of_cells) = real.split_at(of_nodes.len());
+    let mut point_arrays: Vec<Array<'_>> =
+        of_points.iter().map(|(n, c, v)| Array { name: n, components: *c, values: Values::F32(v) }).collect();
+    point_arrays.push(Array { name: "body", components: 1, values: Values::U32(&parts.point_body) });
+    point_arrays.push(Array { name: "node", components: 1, values: Values::I64(&parts.node) });
+    let mut cell_arrays: Vec<Array<'_>> =
+        of_cells.iter().map(|(n, c, v)| Array { name: n, components: *c, values: Values::F32(v) }).collect();
+    if wanted.removed_elements {
+        cell_arrays.push(Array { name: "alive", components: 1, values: Values::U8(&cells.alive) });
+    }
+    cell_arrays.push(Array { name: "body", components: 1, values: Values::U32(&cells.body) });
+    cell_arrays.push(Array { name: "material", components: 1, values: Values::U32(&cells.material) });
+    cell_arrays.push(Array { name: "element", components: 1, values: Values::I64(&cells.element) });
+    let time = world.resource::<Clock>().time();
+    let (tets, hexes) = (&*parts.tets.corners, &*parts.hexes.corners);
+    let frame = Frame { time, points: &parts.points, tets, hexes, point_arrays, cell_arrays };
+    // parts of a file are compressed side by side
+    world.resource::<Cpu>().confine(|| series.write(&frame))?;
+    Ok(None)
+}
+
+/// A field of a body's nodes in the author's order.
+fn node_vectors(field: OutputField, body: Entity, world: &mut World) -> Result<Vec<DVec3>, Error> {
+    let columns: &[&str] = match field {
+        OutputField::InternalForce => return internal_forces(world, body),
+        OutputField::Displacement => &[Displacement::NAME],
+        OutputField::Velocity => &[DisplacementStep::NAME],
+        OutputField::ExternalForce => &[ExternalForce::NAME],
+        _ => &[InternalForce::NAME, ExternalForce::NAME],
+    };
+    bring_to_host(world, |entity, name| entity == body && columns.contains(&name))?;
+    let rate = world.resource::<Clock>().rate();
+    let entity = world.entity(body);
+    let vector = |reals: Option<&Reals>, row: usize| reals.map_or(DVec3::ZERO, |reals| reals.vector(row));
+    let external = |row: usize| vector(entity.get::<ExternalForce>().map(|f| &f.0), row);
+    let axes = entity.get::<ConstrainedAxes>();
+    let reaction = |row: usize| {
+        let force = vector(entity.get::<InternalForce>().map(|f| &f.0), row) - external(row);
+        let held = |axis: u32| f64::from(axes.map_or(0, |axes| axes[row]) >> axis & 1);
+        force * DVec3::new(held(0), held(1), held(2))
+    };
+    let value = |row: usize| match field {
+        OutputField::Displacement => vector(entity.get::<Displacement>().map(|u| &u.0), row),
+        OutputField::Velocity => vector(entity.get::<DisplacementStep>().map(|d| &d.0), row) * rate,
+        OutputField::ExternalForce => external(row),
+        _ => reaction(row),
+    };
+    let Some(authoring) = entity.get::<Authoring>() else { return Ok(Vec::new()) };
+    Ok(authoring.node_rows.iter().map(|&row| value(row as usize)).collect())
+}
