@@ -1,11 +1,13 @@
 //! The solver that this crate is: a scene file, run in many ways.
 
 mod calibration;
+mod curvature;
 mod effects;
 mod ladder;
 mod march;
 mod variant;
 
+use super::advice::percent;
 use super::configuration::{Configuration, Digits, Factor, Place};
 use super::solver::{Choices, Cost, Refusal, Solution, Solver};
 use crate::assembly::mesh_of;
@@ -17,23 +19,13 @@ use crate::scene::schema::{Load, MeshSource, Share, ViscousIntegrator};
 use crate::{BackendChoice, Options, Simulation};
 use calibration::Calibration;
 use march::{Looks, refusal};
-use variant::{Finer, cells, finer, names_elements, variant, written};
+use std::time::Instant;
+use variant::{Finer, cells, divides, finer, names_elements, variant, written};
 
-/// How fine meshes can be against the scene's.
-const MESHES: [Factor; 12] = [
-    Factor::new(1, 4),
-    Factor::new(1, 3),
-    Factor::new(1, 2),
-    Factor::new(2, 3),
-    Factor::new(3, 4),
-    Factor::ONE,
-    Factor::new(3, 2),
-    Factor::new(2, 1),
-    Factor::new(3, 1),
-    Factor::new(4, 1),
-    Factor::new(6, 1),
-    Factor::new(8, 1),
-];
+/// How fine meshes can be against the scene's: each has twice the cells of the one before.
+const MESHES: [Factor; 6] =
+    [Factor::new(1, 4), Factor::new(1, 2), Factor::ONE, Factor::new(2, 1), Factor::new(4, 1), Factor::new(8, 1)];
+
 /// How a study runs a scene.
 #[derive(Clone, Debug)]
 pub struct Engine<'a> {
@@ -46,6 +38,10 @@ pub struct Engine<'a> {
     interrupted: fn() -> bool,
     looks: Option<Looks>,
     known: Vec<(Configuration, Calibration)>,
+    /// Meshes that the scene can have, once they are known.
+    meshes: Option<Vec<Factor>>,
+    /// When everything is cut off.
+    end: Option<Instant>,
     /// Kinds of elements that all bodies can have, once they are known.
     kinds: Option<Vec<ElementKind>>,
 }
@@ -63,6 +59,8 @@ impl<'a> Engine<'a> {
             interrupted,
             looks: None,
             known: Vec::new(),
+            meshes: None,
+            end: None,
             kinds: None,
         }
     }
@@ -131,24 +129,75 @@ impl<'a> Engine<'a> {
         Ok(kinds)
     }
 
-    fn meshes(&self) -> Vec<Factor> {
+    /// How fine meshes can be: coarser ones have all nodes that the scene speaks of.
+    fn sound_meshes(&mut self) -> Result<Vec<Factor>, Refusal> {
+        if let Some(known) = &self.meshes {
+            return Ok(known.clone());
+        }
         let scene = &self.file.scene;
         let fits = |factor: &Factor| match finer(scene) {
             Finer::Cut => factor.down == 1 && factor.up.is_power_of_two(),
-            Finer::Cells => {
-                let mut counts = scene.bodies.values().flat_map(|body| cells(&body.mesh));
-                counts.all(|count| factor.times(count).is_some())
-            }
+            Finer::Cells => scene.bodies.values().all(|body| divides(&body.mesh, *factor)),
         };
-        MESHES.into_iter().filter(|factor| factor.value() <= self.finest && fits(factor)).collect()
+        let own = self.base(self.kinds.as_deref().unwrap_or_default());
+        let mut meshes = Vec::new();
+        for mesh in MESHES.into_iter().filter(|factor| factor.value() <= self.finest && fits(factor)) {
+            self.check_time()?;
+            let kind = Configuration { mesh, place: Place::Cpu, ..own.clone() };
+            let sound = || Simulation::new(&variant(self.file, &kind, None), &self.options(&kind)).is_ok();
+            if mesh >= Factor::ONE || sound() {
+                meshes.push(mesh);
+            }
+        }
+        self.meshes = Some(meshes.clone());
+        Ok(meshes)
+    }
+
+    /// Those of the meshes that have a single layer of cells where the scene's own has more.
+    fn single_layers(&self) -> Vec<Factor> {
+        let counts: Vec<u32> = self.file.scene.bodies.values().flat_map(|body| cells(&body.mesh)).collect();
+        let single = |factor: &Factor| counts.iter().any(|&count| count > 1 && factor.times(count) == Some(1));
+        let meshes = self.meshes.iter().flatten().copied();
+        meshes.filter(|factor| *factor < Factor::ONE && single(factor)).collect()
+    }
+
+    /// What time is left (s).
+    fn time_left(&self) -> f64 {
+        self.end.map_or(f64::INFINITY, |end| end.saturating_duration_since(Instant::now()).as_secs_f64())
+    }
+
+    fn check_time(&self) -> Result<(), Refusal> {
+        match ((self.interrupted)(), self.time_left() <= 0.0) {
+            (true, _) => Err(Refusal::Interrupted),
+            (false, true) => Err(Refusal::TooLong),
+            (false, false) => Ok(()),
+        }
+    }
+
+    /// What finer meshes do not show: elements are cut, and the surface stays the polyhedron it is.
+    fn unseen(&self) -> Result<Vec<String>, Refusal> {
+        let scene = &self.file.scene;
+        if finer(scene) != Finer::Cut {
+            return Ok(Vec::new());
+        }
+        let mut unseen = Vec::new();
+        for (name, body) in &scene.bodies {
+            let mesh = mesh_of(body, self.file).map_err(|error| Refusal::Refused(error.to_string()))?;
+            if let Some(share) = curvature::left_out(&mesh) {
+                unseen.push(format!(
+                    "this is the error against a body with the flat faces of {name}'s mesh: finer meshes cut its elements and \
+                     keep its surface. If that stands for a curved one, faces and surface hold about {} of the volume between \
+                     them, and what that changes is not seen here: a finer mesh from where this one was made would show it",
+                    percent(share)
+                ));
+            }
+        }
+        Ok(unseen)
     }
 
     fn notes(&self) -> Vec<String> {
         let scene = &self.file.scene;
         let mut notes = Vec::new();
-        if finer(scene) == Finer::Cut {
-            notes.push("meshes are made finer by cutting elements: curved outlines stay the polygons they are".into());
-        }
         let each = |load: &Load| matches!(load, Load::NodalForce { share: Share::Each, .. });
         if let Some(number) = scene.loads.iter().position(each) {
             notes.push(format!(
@@ -190,7 +239,9 @@ impl Solver for Engine<'_> {
         let both = [ViscousIntegrator::Exact, ViscousIntegrator::BackwardEuler];
         Ok(Choices {
             elements,
-            meshes: self.meshes(),
+            meshes: self.sound_meshes()?,
+            single_layers: self.single_layers(),
+            step_is_fixed: scene.integration.step.is_some(),
             steps: if scene.is_static() { Vec::new() } else { vec![2, 4] },
             digits: vec![Digits::Plain, Digits::Compensated, Digits::Double],
             hourglass: if hexes { vec![0.5, 2.0] } else { Vec::new() },
@@ -199,6 +250,7 @@ impl Solver for Engine<'_> {
             places,
             quantities: self.looks.as_ref().map(Looks::names).unwrap_or_default(),
             effects: if self.effects { effects::effects(scene) } else { Vec::new() },
+            unseen: self.unseen()?,
             notes: self.notes(),
             base,
         })
@@ -212,19 +264,26 @@ impl Solver for Engine<'_> {
     }
 
     fn solve(&mut self, configuration: &Configuration) -> Result<Solution, Refusal> {
+        let started = Instant::now();
         let options = self.options(configuration);
         let looks = match &self.looks {
             Some(looks) => looks.clone(),
             None => return Err(Refusal::Refused("nothing has been predicted yet".into())),
         };
-        if self.file.scene.is_static() {
-            let scene = variant(self.file, configuration, None);
-            return march::solve(&scene, &options, &looks, &self.interrupted);
-        }
-        let largest = self.step(configuration, &options)?;
-        let step = looks.fitting(self.file.scene.duration, largest / f64::from(configuration.step));
-        let scene = variant(self.file, configuration, Some(step));
-        march::solve(&scene, &options, &looks, &self.interrupted)
+        let step = if self.file.scene.is_static() {
+            None
+        } else {
+            let largest = self.step(configuration, &options)?;
+            Some(looks.fitting(self.file.scene.duration, largest / f64::from(configuration.step)))
+        };
+        let scene = variant(self.file, configuration, step);
+        let solution = march::solve(&scene, &options, &looks, &|| self.check_time())?;
+        self.learn(configuration, &solution, started.elapsed().as_secs_f64());
+        Ok(solution)
+    }
+
+    fn until(&mut self, end: Instant) {
+        self.end = Some(end);
     }
 }
 
