@@ -6,7 +6,7 @@
 //! refinement     which meshes a reference is made of  work      the runs and their time
 //! reference      what errors are measured against     quantities, oscillation, field, points: what is compared
 //! richardson     the limit of small cells             findings  orders, parts of the error, verdict
-//! estimate       how far the scene as written is off
+//! estimate       how far the scene as written is off  outlook   what a larger budget would add
 //! pareto         who is worth the price               advice    what to do, in sentences
 //! engine         the solver that this crate is        tables, plot: what is written
 //! ```
@@ -19,6 +19,7 @@ pub mod field;
 pub mod files;
 pub mod findings;
 pub mod oscillation;
+mod outlook;
 pub mod pareto;
 pub mod plan;
 pub mod plot;

@@ -1,8 +1,10 @@
-//! Which meshes a reference is made of: each of twice the cells of the one before, as fine as time allows.
+//! A reference from finer and finer meshes: each of twice the cells of the one before, as fine as time allows.
 
 use super::configuration::{Configuration, Digits, Factor, Place};
+use super::estimate::Refined;
 use super::plan::{Fate, Planned, Varied};
-use super::solver::{Choices, Refusal, Solver};
+use super::reference::Reference;
+use super::solver::{Choices, Refusal, Solution, Solver};
 use super::study::Row;
 use crate::mesh::ElementKind;
 
@@ -76,7 +78,7 @@ pub fn finer(choices: &Choices, rows: &[Planned], place: usize) -> Option<usize>
 
 /// Of rows that ran, those that a reference can be made of: the three finest of which each has twice the cells of the one
 /// before, or two.
-pub fn finished(choices: &Choices, rows: &[&Row]) -> Vec<usize> {
+fn finished(choices: &Choices, rows: &[&Row]) -> Vec<usize> {
     let all = places(choices, rows.iter().map(|row| &row.configuration));
     let done: Vec<usize> = all.into_iter().filter(|&place| rows[place].measured().is_some()).collect();
     let mesh = |place: &usize| rows[*place].configuration.mesh;
@@ -91,6 +93,42 @@ pub fn finished(choices: &Choices, rows: &[&Row]) -> Vec<usize> {
     // two meshes of which the finer is the scene's own say more of it than three coarser ones
     let coarse = finest(&three) < finest(&two).filter(|&mesh| mesh <= Factor::ONE);
     if coarse { two } else { three.or(two) }.unwrap_or_default()
+}
+
+/// The runs that a reference is made of, if one is wanted.
+pub fn refined(choices: &Choices, rows: &[Row], solutions: &[Option<Solution>], wanted: bool) -> Refined {
+    let all: Vec<&Row> = rows.iter().collect();
+    let places = if wanted { finished(choices, &all) } else { Vec::new() };
+    let meshes = places.iter().map(|&place| rows[place].configuration.mesh).collect();
+    let own = places.iter().filter_map(|&place| solutions[place].clone()).collect();
+    Refined { places, meshes, solutions: own }
+}
+
+/// A reference from runs on finer and finer meshes. What they all have in common is no part of what they differ by: rounding, and
+/// a step that does not become smaller with the cells, are added to its uncertainty.
+pub fn made(refined: &Refined, choices: &Choices, rows: &[Row], solutions: &[Option<Solution>]) -> Option<Reference> {
+    let sizes: Vec<f64> = refined.meshes.iter().map(|mesh| 1.0 / mesh.value()).collect();
+    let list: Vec<&Solution> = refined.solutions.iter().collect();
+    let way = rows.get(*refined.places.first()?).map(|row| &row.configuration)?;
+    let meshes: Vec<String> = refined.meshes.iter().map(ToString::to_string).collect();
+    let (element, digits) = (way.element_name(), way.digits);
+    let told =
+        format!("made here: meshes {} of {element}, {digits}, extrapolated to cells of no size", meshes.join(", "));
+    let mut reference = Reference::of_meshes(&sizes, &list, told)?;
+    let solution = |is: &dyn Fn(&Row) -> bool| {
+        rows.iter().zip(solutions).find(|(row, _)| is(row)).and_then(|(_, solution)| solution.as_ref())
+    };
+    let Some(written) = solution(&|row| row.varied == Varied::Nothing) else { return Some(reference) };
+    let double = solution(&|row| row.varied == Varied::Digits && row.configuration.digits == Digits::Double);
+    if let Some(double) = double.filter(|_| way.digits != Digits::Double) {
+        reference = reference.blurred_by(written, double, 1.0);
+    }
+    let quarter = solution(&|row| row.varied == Varied::Step && row.configuration.step == 4);
+    if let Some(quarter) = quarter.filter(|_| choices.step_is_fixed) {
+        // of second order: a quarter of the step leaves a sixteenth of its error
+        reference = reference.blurred_by(written, quarter, 16.0 / 15.0);
+    }
+    Some(reference)
 }
 
 /// Places of the configurations that a reference can be made of, by mesh.

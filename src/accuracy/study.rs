@@ -1,12 +1,13 @@
 //! A study: everything a plan holds is run, measured against a reference, and summed up.
 
-use super::configuration::{Configuration, Digits, Factor};
-use super::estimate::{Estimate, Refined, estimates};
+use super::configuration::Configuration;
+use super::estimate::{Estimate, estimates};
 use super::findings::{Findings, findings};
+use super::outlook::more;
 use super::pareto::front;
 use super::plan::{Fate, Plan, Planned, REFERENCE_SHARE, Varied, plan};
 use super::reference::{Error, FIELD, Reference, Source};
-use super::refinement;
+use super::refinement::{self, made, refined};
 use super::solver::{Choices, Cost, Refusal, Solution, Solver};
 use super::work::{Clock, Work};
 use crate::scene::suggest::{choice, list};
@@ -178,7 +179,8 @@ pub fn study(solver: &mut dyn Solver, settings: &Settings, watch: &mut dyn Watch
         done[place] = Some(work.run(&plan.rows[place], needed(place)));
     }
     // what has run tells better what a finer mesh would take
-    let mut finest = plan.reference.last().copied();
+    let came_to_an_end = |place: &usize| done[*place].as_ref().is_some_and(|(_, solution)| solution.is_some());
+    let mut finest = plan.reference.last().copied().filter(came_to_an_end);
     while let Some(place) = finest.and_then(|place| refinement::finer(&choices, &plan.rows, place)) {
         finest = work.run_if_it_fits(&plan.rows[place], true, REFERENCE_SHARE).map(|run| {
             done[place] = Some(run);
@@ -240,77 +242,6 @@ const PLANNING: Duration = Duration::from_secs(10);
 
 /// Why there is no reference though one was planned.
 const TOO_FEW: &str = "fewer than two of the meshes it is made of came to an end";
-
-/// The runs that a reference is made of, if one is wanted.
-fn refined(choices: &Choices, rows: &[Row], solutions: &[Option<Solution>], wanted: bool) -> Refined {
-    let all: Vec<&Row> = rows.iter().collect();
-    let places = if wanted { refinement::finished(choices, &all) } else { Vec::new() };
-    let meshes = places.iter().map(|&place| rows[place].configuration.mesh).collect();
-    let own = places.iter().filter_map(|&place| solutions[place].clone()).collect();
-    Refined { places, meshes, solutions: own }
-}
-
-/// A reference from runs on finer and finer meshes. What they all have in common is no part of what they differ by: rounding, and
-/// a step that does not become smaller with the cells, are added to its uncertainty.
-fn made(refined: &Refined, choices: &Choices, rows: &[Row], solutions: &[Option<Solution>]) -> Option<Reference> {
-    let sizes: Vec<f64> = refined.meshes.iter().map(|mesh| 1.0 / mesh.value()).collect();
-    let list: Vec<&Solution> = refined.solutions.iter().collect();
-    let way = rows.get(*refined.places.first()?).map(|row| &row.configuration)?;
-    let meshes: Vec<String> = refined.meshes.iter().map(ToString::to_string).collect();
-    let (element, digits) = (way.element_name(), way.digits);
-    let told =
-        format!("made here: meshes {} of {element}, {digits}, extrapolated to cells of no size", meshes.join(", "));
-    let mut reference = Reference::of_meshes(&sizes, &list, told)?;
-    let solution = |is: &dyn Fn(&Row) -> bool| {
-        rows.iter().zip(solutions).find(|(row, _)| is(row)).and_then(|(_, solution)| solution.as_ref())
-    };
-    let Some(written) = solution(&|row| row.varied == Varied::Nothing) else { return Some(reference) };
-    let double = solution(&|row| row.varied == Varied::Digits && row.configuration.digits == Digits::Double);
-    if let Some(double) = double.filter(|_| way.digits != Digits::Double) {
-        reference = reference.blurred_by(written, double, 1.0);
-    }
-    let quarter = solution(&|row| row.varied == Varied::Step && row.configuration.step == 4);
-    if let Some(quarter) = quarter.filter(|_| choices.step_is_fixed) {
-        // of second order: a quarter of the step leaves a sixteenth of its error
-        reference = reference.blurred_by(written, quarter, 16.0 / 15.0);
-    }
-    Some(reference)
-}
-
-/// The scene itself or the next finer mesh of a reference, whichever is cheaper, if it was left out: what it would cost.
-fn more(work: &mut Work<'_>, choices: &Choices, plan: &Plan, rows: &[Row], source: Source) -> Option<String> {
-    let left_out = |place: &usize| matches!(rows[*place].outcome, Outcome::LeftOut(_));
-    let mut all: Vec<(f64, usize)> = Vec::new();
-    for place in (0..rows.len()).filter(left_out) {
-        all.extend(work.now(&plan.rows[place]).map(|cost| (cost.seconds, place)));
-    }
-    let finer = |&&(_, place): &&(f64, usize)| {
-        let row = &rows[place].configuration;
-        place == 0 || (row.mesh >= Factor::ONE && *row == refinement::way(choices, row.mesh))
-    };
-    let next = all.iter().filter(finer).min_by(|a, b| a.0.total_cmp(&b.0));
-    let (seconds, place) = next.filter(|_| matches!(source, Source::SelfMade | Source::None))?;
-    let budget = rounded_up(plan.budget + 1.15 * seconds);
-    Some(format!("--budget {budget} would add `{}`, which takes about {}", rows[*place].label, time(*seconds)))
-}
-
-/// A budget as somebody would type it: `90s`, `12min`, `3h`.
-fn rounded_up(seconds: f64) -> String {
-    match seconds {
-        s if s < 180.0 => format!("{:.0}s", (s / 10.0).ceil() * 10.0),
-        s if s < 10800.0 => format!("{:.0}min", (s / 60.0).ceil()),
-        s => format!("{:.0}h", (s / 3600.0).ceil()),
-    }
-}
-
-/// Seconds, minutes or hours.
-fn time(seconds: f64) -> String {
-    match seconds {
-        s if s < 180.0 => format!("{s:.0} s"),
-        s if s < 10800.0 => format!("{:.0} min", s / 60.0),
-        s => format!("{:.0} h", s / 3600.0),
-    }
-}
 
 /// Where a row stands in the plot: wall time per simulated second, and the error that can be vouched for. What solves
 /// another problem stands nowhere.
