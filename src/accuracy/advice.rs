@@ -102,7 +102,8 @@ fn spending(split: &Split) -> Option<String> {
 fn better(rows: &[(&Row, Error, f64)]) -> Option<String> {
     let (_, written, time) = rows.iter().find(|(row, ..)| row.varied == Varied::Nothing)?;
     let better = rows.iter().filter(|(row, error, t)| {
-        row.on_front && *t < 0.7 * time && error.error <= written.error && (error.is_clear() || written.is_clear())
+        let surely = error.is_clear() || error.at_most() <= written.error - written.uncertainty;
+        row.on_front && *t < 0.7 * time && error.error <= written.error && surely
     });
     let (row, error, t) = better.min_by(|a, b| a.2.total_cmp(&b.2))?;
     let (error, written) = (told(error), told(written));
@@ -114,7 +115,7 @@ fn better(rows: &[(&Row, Error, f64)]) -> Option<String> {
 
 /// An error in words; what the reference cannot tell from none is said to be below a bound.
 pub fn told(error: &Error) -> String {
-    if error.is_clear() { percent(error.error) } else { format!("below {}", percent(error.vouched())) }
+    if error.is_clear() { percent(error.error) } else { format!("below {}", percent(error.at_most())) }
 }
 
 /// A share in percent with two digits: `0.34 %`, `12 %`, `2.3e-5 %`.

@@ -29,6 +29,15 @@ impl Factor {
         f64::from(self.up) / f64::from(self.down.max(1))
     }
 
+    /// Twice as many cells along an edge.
+    pub fn times_two(self) -> Self {
+        if self.down.is_multiple_of(2) {
+            Factor::new(self.up, self.down / 2)
+        } else {
+            Factor::new(2 * self.up, self.down)
+        }
+    }
+
     /// A number of cells times this; `None` when that is no whole number.
     pub fn times(self, cells: u32) -> Option<u32> {
         let product = cells.checked_mul(self.up)?;

@@ -1,6 +1,6 @@
 //! Displacement fields on different meshes against each other.
 
-use super::richardson::extrapolate;
+use super::richardson::{extrapolate, extrapolate_two, gain_of_two};
 use super::solver::{BodyField, Field};
 use crate::mesh::Locator;
 use glam::DVec3;
@@ -104,6 +104,19 @@ impl FieldReference {
             return Some(Self { parts: vec![fine], gain: 0.0, uncertainty, order });
         }
         Some(Self { parts: vec![middle, fine], gain, uncertainty, order })
+    }
+
+    /// From two meshes with cells of `sizes`, descending, as [`FieldReference::of_three`] from three.
+    pub fn of_two(sizes: [f64; 2], fields: [Field; 2], nested: bool) -> Option<Self> {
+        let [middle, fine] = fields;
+        let apart = Self::given(fine.clone(), 0.0).error_of(&middle)?.all();
+        let doubt = |apart: f64| extrapolate_two(sizes, [&[apart], &[0.0]], |value| value[0].abs()).uncertainty;
+        let gain = gain_of_two(sizes);
+        if !nested {
+            let uncertainty = apart.map(|apart| doubt(apart) + gain * apart);
+            return Some(Self { parts: vec![fine], gain: 0.0, uncertainty, order: None });
+        }
+        Some(Self { parts: vec![middle, fine], gain, uncertainty: apart.map(doubt), order: None })
     }
 
     /// How far a field is from this one; `None` where they have no nodes, bodies or times in common, or where nothing moves.

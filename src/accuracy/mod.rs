@@ -3,8 +3,10 @@
 //! ```text
 //! configuration  one way to solve a scene            solver    what a study needs of whoever solves it
 //! plan           what is varied, what fits            study     runs the plan
+//! refinement     which meshes a reference is made of  work      the runs and their time
 //! reference      what errors are measured against     quantities, oscillation, field, points: what is compared
 //! richardson     the limit of small cells             findings  orders, parts of the error, verdict
+//! estimate       how far the scene as written is off  outlook   what a larger budget would add
 //! pareto         who is worth the price               advice    what to do, in sentences
 //! engine         the solver that this crate is        tables, plot: what is written
 //! ```
@@ -12,16 +14,19 @@
 pub mod advice;
 pub mod configuration;
 pub mod engine;
+pub mod estimate;
 pub mod field;
 pub mod files;
 pub mod findings;
 pub mod oscillation;
+mod outlook;
 pub mod pareto;
 pub mod plan;
 pub mod plot;
 pub mod points;
 pub mod quantities;
 pub mod reference;
+pub mod refinement;
 pub mod richardson;
 pub mod solver;
 pub mod study;
@@ -30,6 +35,7 @@ mod work;
 
 pub use configuration::{Configuration, Digits, Factor, Place};
 pub use engine::Engine;
+pub use estimate::Estimate;
 pub use findings::{Findings, Verdict};
 pub use plan::{Fate, Plan, Varied};
 pub use reference::Reference;

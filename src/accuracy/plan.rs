@@ -1,12 +1,13 @@
 //! What a study will run: everything is predicted first, and what does not fit into the budget is left out by name.
 
-use super::configuration::{Configuration, Digits, Factor, Place};
+use super::configuration::{Configuration, Digits, Place};
+use super::refinement;
 use super::solver::{Choices, Cost, Refusal, Solver};
 use serde::Serialize;
-use std::cmp::Reverse;
+use std::time::Instant;
 
-/// The share of the budget that the configurations themselves may claim before the reference takes the rest.
-const ROWS_SHARE: f64 = 0.4;
+/// The share of the time that the meshes of a reference may take.
+pub const REFERENCE_SHARE: f64 = 0.75;
 
 /// What a configuration varies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -15,6 +16,8 @@ pub enum Varied {
     Nothing,
     /// Element and mesh.
     Mesh,
+    /// The mesh, in the way that a reference is made, where that is not the scene's own.
+    Refinement,
     /// The time step.
     Step,
     /// The number type.
@@ -68,46 +71,85 @@ pub struct Planned {
 /// What a study will run.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// Three meshes, ascending, that a reference is made of; none where it comes from elsewhere or does not fit.
-    pub reference: Vec<Planned>,
-    /// Why there is no reference, where one was to be made.
-    pub no_reference: Option<String>,
     /// The configurations, in the order in which they are shown.
     pub rows: Vec<Planned>,
+    /// Those of them that a reference is made of, from the coarsest mesh on; none where it comes from elsewhere or nothing fits.
+    pub reference: Vec<usize>,
+    /// Why there is no reference, where one was to be made.
+    pub no_reference: Option<String>,
     /// The order in which they run, by their places in `rows`: who ends a study early, or a budget that is spent before it was
     /// predicted to be, leaves the most telling ones done.
     pub order: Vec<usize>,
-    /// What all that runs takes, as predicted (s).
+    /// What all that runs takes, and what was spent before, as predicted (s).
     pub predicted: f64,
     /// What it may take (s).
     pub budget: f64,
 }
 
-/// Predicts everything and chooses what fits into `budget` (s).
-///
-/// # Errors
-/// That somebody wants the study to end.
-pub fn plan(solver: &mut dyn Solver, choices: &Choices, budget: f64, make_reference: bool) -> Result<Plan, Refusal> {
-    let mut rows = Vec::new();
-    for (varied, configuration) in variations(choices) {
+impl Planned {
+    /// A configuration that is left out until there is time for it.
+    pub(super) fn of(
+        solver: &mut dyn Solver,
+        varied: Varied,
+        configuration: Configuration,
+        base: &Configuration,
+    ) -> Result<Self, Refusal> {
         let fate = match solver.predict(&configuration) {
             Ok(cost) => Fate::LeftOut(cost),
             Err(Refusal::Interrupted) => return Err(Refusal::Interrupted),
+            Err(Refusal::TooLong) => Fate::Refused("there was no time to predict it".into()),
             Err(Refusal::Refused(why) | Refusal::Broke(why)) => Fate::Refused(why),
         };
-        let label = configuration.label(&choices.base);
-        rows.push(Planned { varied, configuration, label, fate });
+        let label = configuration.label(base);
+        Ok(Planned { varied, configuration, label, fate })
     }
-    let modest: f64 = rows.iter().filter(|row| row.configuration.mesh <= Factor::ONE).map(seconds).sum();
-    let mut plan = Plan { reference: Vec::new(), no_reference: None, rows, order: Vec::new(), predicted: 0.0, budget };
+}
+
+/// Predicts everything and chooses what fits into `budget` (s), of which predictions and all else since `started` have taken
+/// their part.
+///
+/// # Errors
+/// That somebody wants the study to end.
+pub fn plan(
+    solver: &mut dyn Solver,
+    choices: &Choices,
+    (budget, started): (f64, Instant),
+    make_reference: bool,
+) -> Result<Plan, Refusal> {
+    let mut rows = Vec::new();
+    for (varied, configuration) in variations(choices) {
+        rows.push(Planned::of(solver, varied, configuration, &choices.base)?);
+    }
     if make_reference {
-        reference(solver, choices, &mut plan, budget - modest.min(ROWS_SHARE * budget))?;
+        refinement::add(solver, choices, &mut rows)?;
     }
-    plan.predicted = plan.reference.iter().map(seconds).sum();
+    let predicted = started.elapsed().as_secs_f64();
+    let mut plan = Plan { rows, reference: Vec::new(), no_reference: None, order: Vec::new(), predicted, budget };
+    // the scene as it is written comes before everything else, unless it takes all there is
+    let left = budget - predicted;
+    let written = plan.rows.first().map_or(0.0, seconds);
+    if make_reference {
+        let left = if written <= left { left - written } else { left };
+        match refinement::choose(choices, &plan.rows, REFERENCE_SHARE * left) {
+            Ok(chosen) => plan.reference = chosen,
+            Err(why) => plan.no_reference = Some(why),
+        }
+    }
+    // single layers of cells are for a reference alone: what they say of a body with more layers is luck
+    let single = |planned: &Planned| choices.single_layers.contains(&planned.configuration.mesh);
+    let mut kept = Vec::new();
+    for (place, planned) in std::mem::take(&mut plan.rows).into_iter().enumerate() {
+        let member = plan.reference.iter_mut().find(|member| **member == place);
+        if member.is_some() || !single(&planned) {
+            member.into_iter().for_each(|member| *member = kept.len());
+            kept.push(planned);
+        }
+    }
+    plan.rows = kept;
     let mut order: Vec<usize> = (0..plan.rows.len()).collect();
     order.sort_by(|&a, &b| {
-        let key = |row: &Planned| (urgency(row.varied), seconds(row));
-        let ((a, cost_a), (b, cost_b)) = (key(&plan.rows[a]), key(&plan.rows[b]));
+        let key = |place: usize| (plan.urgency(place), seconds(&plan.rows[place]));
+        let ((a, cost_a), (b, cost_b)) = (key(a), key(b));
         a.cmp(&b).then(cost_a.total_cmp(&cost_b))
     });
     for &place in &order {
@@ -121,12 +163,23 @@ pub fn plan(solver: &mut dyn Solver, choices: &Choices, budget: f64, make_refere
     Ok(plan)
 }
 
-/// What is given a place in the budget first: the scene itself, then what is about as cheap, then other meshes by cost.
-fn urgency(varied: Varied) -> u8 {
-    match varied {
-        Varied::Nothing => 0,
-        Varied::Mesh => 2,
-        _ => 1,
+impl Plan {
+    /// How many of `order` come before a finer mesh for the reference is thought of: the scene itself, what the reference is made
+    /// of, the number type and the step.
+    pub(super) fn basis(&self) -> usize {
+        self.order.iter().take_while(|&&place| self.urgency(place) <= 2).count()
+    }
+
+    /// What is given a place in the budget first: the scene itself, then what the reference is made of, then the number type and
+    /// the step, then what is about as cheap as the scene, then other meshes by cost.
+    fn urgency(&self, place: usize) -> u8 {
+        match self.rows[place].varied {
+            Varied::Nothing => 0,
+            _ if self.reference.contains(&place) => 1,
+            Varied::Step | Varied::Digits => 2,
+            Varied::Mesh | Varied::Refinement => 4,
+            _ => 3,
+        }
     }
 }
 
@@ -153,7 +206,7 @@ fn variations(choices: &Choices) -> Vec<(Varied, Configuration)> {
         false => choices.elements.iter().map(|kind| Some(*kind)).collect(),
     };
     for element in elements {
-        for mesh in rows_of_meshes(&choices.meshes) {
+        for &mesh in &choices.meshes {
             add(Varied::Mesh, &|c| (c.element, c.mesh) = (element, mesh));
         }
     }
@@ -178,82 +231,7 @@ fn variations(choices: &Choices) -> Vec<(Varied, Configuration)> {
     list
 }
 
-/// The meshes of rows: halved and doubled ones, whose nodes meet; where the scene's cells cannot be halved, a third.
-fn rows_of_meshes(all: &[Factor]) -> Vec<Factor> {
-    let halves = |factor: &&Factor| factor.up.is_power_of_two() && factor.down.is_power_of_two();
-    let mut rows: Vec<Factor> = all.iter().filter(halves).copied().collect();
-    if !rows.iter().any(|&factor| factor < Factor::ONE) {
-        rows.extend(all.iter().filter(|&&factor| factor == Factor::new(1, 3)));
-    }
-    rows.sort();
-    rows
-}
-
-/// Whether each mesh's nodes are nodes of the next.
-pub fn nested(meshes: [Factor; 3]) -> bool {
-    let [a, b, c] = meshes;
-    let whole = |coarse: Factor, fine: Factor| (fine.up * coarse.down).is_multiple_of(fine.down * coarse.up);
-    whole(a, b) && whole(b, c)
-}
-
-/// Chooses three meshes of the best element, f64, a quarter of the step: those whose finest is finest, as far as they fit
-/// into `share` (s).
-fn reference(solver: &mut dyn Solver, choices: &Choices, plan: &mut Plan, share: f64) -> Result<(), Refusal> {
-    let mut candidates = triples(&choices.meshes);
-    // coarse ones follow no power of the cell size yet
-    candidates.sort_by_key(|&[a, b, c]| (Reverse(c), !nested([a, b, c]), Reverse(b), Reverse(a)));
-    let (mut least, mut why) = (f64::INFINITY, "the meshes of the scene come in fewer than three sizes".to_string());
-    for meshes in candidates {
-        let mut three = Vec::new();
-        for mesh in meshes {
-            let configuration = best(choices, mesh);
-            match solver.predict(&configuration) {
-                Ok(cost) => {
-                    let label = format!("reference, mesh {mesh}");
-                    three.push(Planned { varied: Varied::Nothing, configuration, label, fate: Fate::Run(cost) });
-                }
-                Err(Refusal::Interrupted) => return Err(Refusal::Interrupted),
-                Err(Refusal::Refused(reason) | Refusal::Broke(reason)) => why = reason,
-            }
-        }
-        let cost: f64 = three.iter().map(seconds).sum();
-        if three.len() == 3 && cost <= share {
-            plan.reference = three;
-            return Ok(());
-        }
-        if three.len() == 3 && cost < least {
-            least = cost;
-        }
-    }
-    if least.is_finite() {
-        let budget = (least / (1.0 - ROWS_SHARE)).ceil();
-        why = format!("the smallest one takes {least:.1} s; --budget {budget} would do");
-    }
-    plan.no_reference = Some(why);
-    Ok(())
-}
-
 /// What the step is divided by where time must not err.
 fn finest_step(choices: &Choices) -> u32 {
     choices.steps.iter().copied().max().unwrap_or(1)
-}
-
-/// The most accurate way there is to solve the scene on a mesh.
-fn best(choices: &Choices, mesh: Factor) -> Configuration {
-    let element = choices.elements.last().copied().or(choices.base.element);
-    let viscous = choices.viscous.first().copied().or(choices.base.viscous);
-    let (step, digits, place) = (finest_step(choices), Digits::Double, Place::Cpu);
-    Configuration { element, mesh, step, digits, viscous, place, ..choices.base.clone() }
-}
-
-/// All sets of three meshes that lie far enough apart.
-fn triples(meshes: &[Factor]) -> Vec<[Factor; 3]> {
-    let apart = |a: Factor, b: Factor| b.value() > 1.2 * a.value();
-    let mut found = Vec::new();
-    for &a in meshes {
-        for &b in meshes.iter().filter(|&&b| apart(a, b)) {
-            found.extend(meshes.iter().filter(|&&c| apart(b, c)).map(|&c| [a, b, c]));
-        }
-    }
-    found
 }

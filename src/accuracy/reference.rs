@@ -1,9 +1,9 @@
 //! What solutions are measured against: numbers that an author gives, files of an earlier run, or a solution made for it.
 
-use super::field::FieldReference;
+use super::field::{FieldReference, same_mesh};
 use super::points::PointReference;
-use super::quantities::{distance, mean_square, readings};
-use super::richardson::extrapolate;
+use super::quantities::{Reading, distance, mean_square, readings};
+use super::richardson::{Limit, extrapolate, extrapolate_two};
 use super::solver::{Field, Solution};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -24,7 +24,7 @@ pub enum Source {
     Values,
     /// Files of an earlier run.
     Files,
-    /// Made for this study from three meshes.
+    /// Made for this study from three meshes, or two.
     SelfMade,
     /// There is none.
     None,
@@ -68,14 +68,28 @@ pub struct Error {
 }
 
 impl Error {
+    /// The most that it can be.
+    pub fn at_most(&self) -> f64 {
+        self.error + self.uncertainty
+    }
+
     /// Whether it is the solution's error and not the reference's.
     pub fn is_clear(&self) -> bool {
         self.error > CLEARLY * self.uncertainty
     }
 
-    /// What can be vouched for: the error, or what the reference cannot tell from none.
+    /// The size by which configurations are ranked: the error, or what the reference cannot tell from none.
     pub fn vouched(&self) -> f64 {
         self.error.max(CLEARLY * self.uncertainty)
+    }
+}
+
+/// The limit of results on two or three meshes.
+fn limit(sizes: &[f64], values: &[&[f64]]) -> Option<Limit> {
+    match (sizes, values) {
+        (&[a, b, c], &[one, two, three]) => Some(extrapolate([a, b, c], [one, two, three], mean_square)),
+        (&[a, b], &[one, two]) => Some(extrapolate_two([a, b], [one, two], mean_square)),
+        _ => None,
     }
 }
 
@@ -110,24 +124,45 @@ impl Reference {
         self
     }
 
-    /// From solutions on three meshes with cells of `sizes`, descending; `nested`: nodes of each are nodes of the next.
-    pub fn of_three(sizes: [f64; 3], solutions: &[Solution; 3], nested: bool) -> Self {
-        let [coarse, middle, fine] = [0, 1, 2].map(|i| readings(&solutions[i]));
+    /// From solutions on two or three meshes with cells of `sizes`, descending, each mesh's nodes nodes of the next: extrapolated
+    /// to cells of no size. `told`: a sentence on them. `None` for another number of meshes.
+    pub fn of_meshes(sizes: &[f64], solutions: &[&Solution], told: String) -> Option<Self> {
+        let all: Vec<BTreeMap<String, Reading>> = solutions.iter().map(|solution| readings(solution)).collect();
+        let (finest, coarser) = all.split_last()?;
         let mut entries = BTreeMap::new();
-        for (name, finest) in &fine {
-            let (Some(a), Some(b)) = (coarse.get(name), middle.get(name)) else { continue };
-            if a.values.len() != finest.values.len() || b.values.len() != finest.values.len() {
+        for (name, reading) in finest {
+            let mut values: Vec<&[f64]> = Vec::new();
+            values.extend(coarser.iter().filter_map(|readings| Some(readings.get(name)?.values.as_slice())));
+            values.push(&reading.values);
+            if values.len() < all.len() || values.iter().any(|list| list.len() != reading.values.len()) {
                 continue;
             }
-            let limit = extrapolate(sizes, [&a.values, &b.values, &finest.values], mean_square);
-            let (scale, order) = (Some(finest.scale), limit.order);
+            let limit = limit(sizes, &values)?;
+            let (scale, order) = (Some(reading.scale), limit.order);
             entries.insert(name.clone(), Entry { values: limit.values, uncertainty: limit.uncertainty, scale, order });
         }
         let fields: Option<Vec<Field>> = solutions.iter().map(|solution| solution.field.clone()).collect();
-        let fields: Option<[Field; 3]> = fields.and_then(|fields| fields.try_into().ok());
-        let field = fields.and_then(|fields| FieldReference::of_three(sizes, fields, nested));
-        let told = "made here: three meshes, f64, a quarter of the step, extrapolated to cells of no size".to_string();
-        Self { source: Source::SelfMade, told, entries, field, points: None }
+        let field = fields.and_then(|fields| match (sizes, fields.len()) {
+            (&[a, b, c], 3) => FieldReference::of_three([a, b, c], <[Field; 3]>::try_from(fields).ok()?, true),
+            (&[a, b], 2) => FieldReference::of_two([a, b], <[Field; 2]>::try_from(fields).ok()?, true),
+            _ => None,
+        });
+        Some(Self { source: Source::SelfMade, told, entries, field, points: None })
+    }
+
+    /// The same, more uncertain by `times` the distance of two solutions on one mesh.
+    pub fn blurred_by(mut self, a: &Solution, b: &Solution, times: f64) -> Self {
+        let (one, other) = (readings(a), readings(b));
+        for (name, entry) in &mut self.entries {
+            let (Some(one), Some(other)) = (one.get(name), other.get(name)) else { continue };
+            let apart = times * distance(&one.values, &other.values);
+            entry.uncertainty += if apart.is_finite() { apart } else { 0.0 };
+        }
+        let apart = a.field.as_ref().zip(b.field.as_ref()).and_then(|(a, b)| same_mesh(a, b));
+        if let (Some(field), Some(apart)) = (&mut self.field, apart) {
+            field.uncertainty.iter_mut().zip(apart.all()).for_each(|(own, apart)| *own += times * apart);
+        }
+        self
     }
 
     /// The errors of a solution, by quantity.

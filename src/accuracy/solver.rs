@@ -6,6 +6,7 @@ use crate::scene::schema::ViscousIntegrator;
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::time::Instant;
 
 /// Solves a scene in many ways.
 pub trait Solver {
@@ -26,6 +27,9 @@ pub trait Solver {
     /// # Errors
     /// Why there is no solution.
     fn solve(&mut self, configuration: &Configuration) -> Result<Solution, Refusal>;
+
+    /// From now on nothing may take longer than until then: what is not done is cut off with [`Refusal::TooLong`].
+    fn until(&mut self, _: Instant) {}
 }
 
 /// What can be varied in a scene.
@@ -37,10 +41,15 @@ pub struct Choices {
     pub elements: Vec<ElementKind>,
     /// How fine meshes can be, ascending; all of one shape, so that errors follow a power of the cell size.
     pub meshes: Vec<Factor>,
+    /// Those of them that have a single layer of cells where the scene's own mesh has more: what they say does not follow the
+    /// power of the cell size that the others follow.
+    pub single_layers: Vec<Factor>,
     /// What the step can be divided by; empty where there is no step to choose.
     pub steps: Vec<u32>,
     /// Number types.
     pub digits: Vec<Digits>,
+    /// Whether the scene names its step: it does not become smaller with the cells as long as it is stable.
+    pub step_is_fixed: bool,
     /// Hourglass stiffness against the scene's; empty where there is none to change.
     pub hourglass: Vec<f64>,
     /// Ways to carry viscous history on; empty without viscosity.
@@ -53,6 +62,8 @@ pub struct Choices {
     pub quantities: Vec<String>,
     /// Effects that can be switched off, in words.
     pub effects: Vec<String>,
+    /// What errors measured on finer meshes do not contain, one sentence each.
+    pub unseen: Vec<String>,
     /// What the author should know about the study, one sentence each.
     pub notes: Vec<String>,
 }
@@ -75,6 +86,8 @@ pub enum Refusal {
     Refused(String),
     /// It began and broke down.
     Broke(String),
+    /// It was cut off: it was not done when its time was over.
+    TooLong,
     /// Somebody wants the study to end.
     Interrupted,
 }

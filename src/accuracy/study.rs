@@ -1,21 +1,26 @@
 //! A study: everything a plan holds is run, measured against a reference, and summed up.
 
-use super::configuration::{Configuration, Factor};
+use super::configuration::Configuration;
+use super::estimate::{Estimate, estimates};
 use super::findings::{Findings, findings};
+use super::outlook::more;
 use super::pareto::front;
-use super::plan::{Fate, Plan, Planned, Varied, nested, plan};
+use super::plan::{Fate, Plan, Planned, REFERENCE_SHARE, Varied, plan};
 use super::reference::{Error, FIELD, Reference, Source};
+use super::refinement::{self, made, refined};
 use super::solver::{Choices, Cost, Refusal, Solution, Solver};
-use super::work::Work;
+use super::work::{Clock, Work};
 use crate::scene::suggest::{choice, list};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// What is asked of a study.
 #[derive(Clone, Debug)]
 pub struct Settings {
-    /// Wall time it may take (s).
+    /// When it began: reading the scene and looking for mistakes take part of the budget.
+    pub started: Instant,
+    /// Wall time it may take from then on (s).
     pub budget: f64,
     /// The error that is good enough, relative.
     pub target: f64,
@@ -27,6 +32,8 @@ pub struct Settings {
 
 /// What happens while a study runs.
 pub trait Watch {
+    /// Costs are being predicted.
+    fn predicts(&mut self) {}
     /// Everything has been predicted.
     fn planned(&mut self, plan: &Plan);
     /// A configuration begins: its name, what it should take (s), its number and how many there are.
@@ -111,8 +118,14 @@ pub struct Study {
     pub reference: String,
     /// Its uncertainty in the quantity judged by, relative.
     pub reference_uncertainty: Option<f64>,
-    /// The runs that it was made of.
-    pub made_of: Vec<Row>,
+    /// How far the scene as it is written is off, by quantity; the quantity judged by first.
+    pub estimates: Vec<Estimate>,
+    /// What these do not contain, one sentence each.
+    pub unseen: Vec<String>,
+    /// What a larger budget would add, in a sentence.
+    pub more: Option<String>,
+    /// The runs that the reference was made of, by their places in `rows`, from the coarsest mesh on.
+    pub made_of: Vec<usize>,
     /// The configurations.
     pub rows: Vec<Row>,
     /// What follows.
@@ -148,34 +161,54 @@ impl Row {
 /// # Errors
 /// That the scene as it is written cannot be solved, or that a quantity is asked for that it does not have.
 pub fn study(solver: &mut dyn Solver, settings: &Settings, watch: &mut dyn Watch) -> Result<Study, Refusal> {
-    let started = Instant::now();
+    let clock = Clock { started: settings.started, budget: settings.budget };
+    // a budget too small for anything still has a plan that says so
+    solver.until(clock.end().max(Instant::now() + PLANNING));
+    watch.predicts();
     let choices = solver.choices()?;
     check_names(&choices, settings)?;
-    let plan = plan(solver, &choices, settings.budget, settings.reference.is_none())?;
+    let plan = plan(solver, &choices, (clock.budget, clock.started), settings.reference.is_none())?;
     watch.planned(&plan);
-    let running = plan.rows.iter().filter(|row| matches!(row.fate, Fate::Run(_))).count() + plan.reference.len();
-    let mut work = Work::new(solver, watch, settings.budget, running);
+    let running = plan.rows.iter().filter(|row| matches!(row.fate, Fate::Run(_))).count();
+    let mut work = Work::new(solver, watch, clock, running);
+    let needed = |place: usize| place == 0 || plan.reference.contains(&place);
 
-    let (made_of, mut three): (Vec<Row>, Vec<Option<Solution>>) =
-        plan.reference.iter().map(|planned| work.run(planned)).unzip();
-    let sizes: Vec<f64> = plan.reference.iter().map(|p| 1.0 / p.configuration.mesh.value()).collect();
-    let meshes: Vec<Factor> = plan.reference.iter().map(|p| p.configuration.mesh).collect();
-    let three: Option<Vec<Solution>> = three.drain(..).collect();
-    let made = three.and_then(|three| <[Solution; 3]>::try_from(three).ok());
-    let reference = match (&settings.reference, made, <[f64; 3]>::try_from(sizes), <[Factor; 3]>::try_from(meshes)) {
-        (Some(given), ..) => given.clone(),
-        (None, Some(three), Ok(sizes), Ok(meshes)) => Reference::of_three(sizes, &three, nested(meshes)),
-        _ => Reference::none(plan.no_reference.as_deref().unwrap_or("its runs did not come to an end")),
-    };
-
-    let mut done: Vec<(usize, (Row, Option<Solution>))> = Vec::new();
-    for &place in &plan.order {
-        let (mut row, solution) = work.run(&plan.rows[place]);
-        row.errors = solution.as_ref().map(|solution| reference.errors(solution)).unwrap_or_default();
-        done.push((place, (row, solution)));
+    let mut done: Vec<Option<(Row, Option<Solution>)>> = plan.rows.iter().map(|_| None).collect();
+    let (basis, rest) = plan.order.split_at(plan.basis());
+    for &place in basis {
+        done[place] = Some(work.run(&plan.rows[place], needed(place)));
     }
-    done.sort_by_key(|(place, _)| *place);
-    let (mut rows, solutions): (Vec<Row>, Vec<Option<Solution>>) = done.into_iter().map(|(_, done)| done).unzip();
+    // what has run tells better what a finer mesh would take
+    let came_to_an_end = |place: &usize| done[*place].as_ref().is_some_and(|(_, solution)| solution.is_some());
+    let mut finest = plan.reference.last().copied().filter(came_to_an_end);
+    while let Some(place) = finest.and_then(|place| refinement::finer(&choices, &plan.rows, place)) {
+        finest = work.run_if_it_fits(&plan.rows[place], true, REFERENCE_SHARE).map(|run| {
+            done[place] = Some(run);
+            place
+        });
+    }
+    for &place in rest {
+        if done[place].is_none() {
+            done[place] = Some(work.run(&plan.rows[place], needed(place)));
+        }
+    }
+    for &place in &plan.order {
+        let ran = done[place].as_ref().is_some_and(|(_, solution)| solution.is_some());
+        if !ran && let Some(run) = work.run_if_it_fits(&plan.rows[place], needed(place), 1.0) {
+            done[place] = Some(run);
+        }
+    }
+    let (mut rows, solutions): (Vec<Row>, Vec<Option<Solution>>) = done.into_iter().flatten().unzip();
+    let refined = refined(&choices, &rows, &solutions, settings.reference.is_none());
+    let reference = match &settings.reference {
+        Some(given) => given.clone(),
+        None => made(&refined, &choices, &rows, &solutions)
+            .unwrap_or_else(|| Reference::none(plan.no_reference.as_deref().unwrap_or(TOO_FEW))),
+    };
+    for (row, solution) in rows.iter_mut().zip(&solutions) {
+        row.errors = solution.as_ref().map(|solution| reference.errors(solution)).unwrap_or_default();
+    }
+    let more = more(&mut work, &choices, &plan, &rows, reference.source);
     let interrupted = work.is_interrupted();
     let judged_by = judged_by(settings, &rows);
     let points: Vec<(f64, f64)> = rows.iter().map(|row| point(row, &judged_by)).collect();
@@ -186,20 +219,29 @@ pub fn study(solver: &mut dyn Solver, settings: &Settings, watch: &mut dyn Watch
     let known = rows.iter().find_map(|row| row.errors.get(&judged_by));
     Ok(Study {
         reference_uncertainty: known.map(|error| error.uncertainty),
+        estimates: estimates(&rows, &solutions, &reference, &refined, &judged_by),
+        unseen: if reference.source == Source::SelfMade { choices.unseen } else { Vec::new() },
+        more,
         judged_by,
         target: settings.target,
         budget: settings.budget,
         predicted: plan.predicted,
-        took: started.elapsed().as_secs_f64(),
+        took: clock.started.elapsed().as_secs_f64(),
         source: reference.source,
         reference: reference.told,
-        made_of,
+        made_of: refined.places,
         rows,
         findings,
         notes: choices.notes,
         interrupted,
     })
 }
+
+/// Predictions may take this long, whatever the budget.
+const PLANNING: Duration = Duration::from_secs(10);
+
+/// Why there is no reference though one was planned.
+const TOO_FEW: &str = "fewer than two of the meshes it is made of came to an end";
 
 /// Where a row stands in the plot: wall time per simulated second, and the error that can be vouched for. What solves
 /// another problem stands nowhere.

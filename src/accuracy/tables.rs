@@ -97,7 +97,8 @@ fn unknown(part: &str, source: Source, at_rest: bool) -> String {
 
 /// All rows and all quantities, for programs: one line a configuration.
 pub fn csv(study: &Study) -> String {
-    let rows = || study.made_of.iter().map(|row| ("reference", row)).chain(study.rows.iter().map(|row| ("study", row)));
+    let part = |place| if study.made_of.contains(&place) { "reference" } else { "study" };
+    let rows = || study.rows.iter().enumerate().map(|(place, row)| (part(place), row));
     let quantities: BTreeSet<&String> = study.rows.iter().flat_map(|row| row.errors.keys()).collect();
     let mut writer = csv::Writer::from_writer(Vec::new());
     let mut header: Vec<String> = [
@@ -192,6 +193,12 @@ pub fn effects_csv(study: &Study) -> String {
 /// A page on the study, with the plot beside it.
 pub fn markdown(study: &Study, title: &str, command: &str) -> String {
     let mut text = format!("# What accuracy costs: {title}\n\n`{command}`\n\n![error against time](accuracy.png)\n\n");
+    for estimate in &study.estimates {
+        text += &format!("**{}** as written: {}.\n\n", estimate.quantity, estimate.sentence());
+    }
+    for sentence in &study.unseen {
+        text += &format!("Not contained: {sentence}.\n\n");
+    }
     for sentence in &study.findings.advice {
         text += &format!("{sentence}\n");
     }

@@ -222,8 +222,8 @@ pub struct RunArguments {
 pub struct AccuracyArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// Wall time the study may take, in seconds; what does not fit is left out by name
-    #[arg(long, value_name = "SECONDS", default_value = "60", value_parser = above_zero)]
+    /// Wall time the study may take, such as 60s, 10min or 2h; a plain number is seconds. What does not fit is left out by name
+    #[arg(long, value_name = "TIME", default_value = "50s", value_parser = wall_time)]
     pub budget: f64,
     /// The finest mesh to try, in the scene's cells along an edge: 2 has half the cell size
     #[arg(long, value_name = "TIMES", value_parser = above_zero)]
@@ -438,10 +438,30 @@ fn above_zero(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "a number above 0 is wanted, such as 60".into())
 }
 
+/// Seconds from `60`, `60s`, `1.5 min`, `500ms`, `2h`.
+fn wall_time(text: &str) -> Result<f64, String> {
+    const UNITS: [(&str, f64); 5] = [("ms", 1e-3), ("min", 60.0), ("s", 1.0), ("m", 60.0), ("h", 3600.0)];
+    let text = text.trim();
+    let found = UNITS.iter().find_map(|(unit, size)| Some((text.strip_suffix(unit)?, *size)));
+    let (number, size) = found.unwrap_or((text, 1.0));
+    let seconds = above_zero(number.trim_end()).map(|number| number * size).ok();
+    let seconds = seconds.filter(|seconds| seconds.is_finite() && *seconds > 0.0);
+    seconds.ok_or_else(|| {
+        "a time above 0 is wanted, such as 60s, 10min or 2h; a number above 0 is wanted of seconds".into()
+    })
+}
+
+/// A share from `1%` or `0.01`. A plain number from 1 on is asked back about: who types 5 means 5 %, not 500 %.
 fn share(text: &str) -> Result<f64, String> {
     let (number, factor) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
-    let number = above_zero(number.trim()).map(|number| number * factor);
-    number.map_err(|_| "an error above 0 is wanted, such as 1% or 0.01".into())
+    let number = above_zero(number.trim()).map_err(|_| "an error above 0 is wanted, such as 1% or 0.01".to_string())?;
+    if factor == 1.0 && number >= 1.0 {
+        let (percent, plain) = (100.0 * number, number / 100.0);
+        return Err(format!(
+            "{number} would be {percent} %: for {number} % write {number}% or {plain}, else {percent}%"
+        ));
+    }
+    Ok(number * factor)
 }
 
 fn time(text: &str) -> Result<f64, String> {

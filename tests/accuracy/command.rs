@@ -48,12 +48,24 @@ impl Place {
 #[test]
 fn a_study_tells_its_plan_ranks_and_writes_everything() {
     let place = Place::new();
-    let (status, said, aside) = place.study(&["--budget", "120", "--finest", "2", "--effects"]);
+    let (status, said, aside) = place.study(&["--budget", "2min", "--finest", "2", "--effects"]);
     assert_eq!(status, 0, "{said}{aside}");
-    for words in ["plan: ", "of at most 120 s", "as written", "reference, mesh"] {
+    for words in ["plan: ", "of at most 120 s", "as written", "for the reference"] {
         assert!(aside.contains(words), "{words:?} is not in\n{aside}");
     }
-    for words in ["Small block", "advice", "order", "effects", "gravity", "damping", "target", "as written"] {
+    for words in [
+        "Small block",
+        "answer",
+        "as written: off by",
+        "at most",
+        "advice",
+        "order",
+        "effects",
+        "gravity",
+        "damping",
+        "target",
+        "as written",
+    ] {
         assert!(said.contains(words), "{words:?} is not in\n{said}");
     }
     let json: serde_json::Value = serde_json::from_str(&place.read("out/block-accuracy/accuracy.json")).unwrap();
@@ -82,6 +94,7 @@ fn the_status_says_whether_the_target_is_met() {
     // the block sags by some millimetres, whatever the mesh
     assert_eq!(study("-1", &["--target", "1%"]).0, 5);
     assert_eq!(study("-1", &["--target", "200%"]).0, 0);
+    assert_eq!(study("-1", &["--target", "5 %"]).0, 5);
     assert_eq!(study("-1", &[]).0, 0, "nobody asked for a target");
     let (status, said, _) = place.study(&["--budget", "1e-9", "--target", "1%"]);
     assert_eq!(status, 6, "{said}");
@@ -128,6 +141,10 @@ fn mistakes_end_with_2_before_anything_runs() {
         (&["--set", "duration=-1"][..], "`duration` must be above 0"),
         (&["--target", "none"], "such as 1% or 0.01"),
         (&["--budget", "0"], "a number above 0 is wanted"),
+        (&["--budget", "0s"], "a time above 0 is wanted, such as 60s, 10min or 2h"),
+        (&["--budget", "60 days"], "a time above 0 is wanted"),
+        (&["--budget", "1e308h"], "a time above 0 is wanted"),
+        (&["--target", "5"], "5 would be 500 %: for 5 % write 5% or 0.05, else 500%"),
         (&["--by", "top.uy.speed"], "no quantity `top.uy.speed`"),
         (&["--reference", "nowhere.csv"], "nowhere.csv"),
         (&["--set", "accuracy=(reference: Values({\"tap.uz\": 1}))"], "no quantity `tap.uz`"),

@@ -92,7 +92,9 @@ impl Solver for MadeUp {
             base: base(),
             elements: vec![ElementKind::Tet4, ElementKind::Hex8],
             meshes: [(1, 2), (1, 1), (2, 1), (4, 1)].map(|(up, down)| Factor::new(up, down)).to_vec(),
+            single_layers: vec![],
             steps: vec![2, 4],
+            step_is_fixed: false,
             digits: vec![Digits::Plain, Digits::Compensated, Digits::Double],
             hourglass: vec![0.5],
             viscous: vec![],
@@ -100,6 +102,7 @@ impl Solver for MadeUp {
             places: vec![],
             quantities: vec!["tip.uz".into()],
             effects: vec!["gravity".into()],
+            unseen: vec![],
             notes: vec![],
         })
     }

@@ -1,6 +1,7 @@
 //! The study of accuracy against time: its parts on made-up problems whose answer is known, and the command on a small scene.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod answers;
 mod command;
 mod extrapolation;
 mod interpolation;

@@ -5,7 +5,8 @@ use sinew::accuracy::plot::{place, png, svg};
 use sinew::accuracy::{Settings, Study, study};
 
 fn made() -> Study {
-    let settings = Settings { budget: 1e9, target: 0.01, judged_by: None, reference: None };
+    let started = std::time::Instant::now();
+    let settings = Settings { started, budget: 1e9, target: 0.01, judged_by: None, reference: None };
     study(&mut MadeUp { seconds: 1e-4, ..MadeUp::default() }, &settings, &mut Nobody).unwrap()
 }
 

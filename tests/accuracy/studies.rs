@@ -4,9 +4,10 @@ use crate::made_up::{MadeUp, Nobody};
 use sinew::accuracy::study::Outcome;
 use sinew::accuracy::{Reference, Refusal, Row, Settings, Study, Varied, Verdict, study, tables};
 use std::collections::BTreeMap;
+use std::time::Instant;
 
 fn settings() -> Settings {
-    Settings { budget: 1e9, target: 0.01, judged_by: None, reference: None }
+    Settings { started: Instant::now(), budget: 1e9, target: 0.01, judged_by: None, reference: None }
 }
 
 fn run(solver: &mut MadeUp, settings: &Settings) -> Study {
@@ -46,8 +47,8 @@ fn the_made_reference_finds_the_truth_within_its_uncertainty() {
     // space 4 %, time 1e-4, rounding 1e-6, measured against the finest mesh's own value
     assert!((error.error - 0.0401).abs() < error.uncertainty + 2e-4, "{error:?}");
     assert!(error.is_clear(), "{error:?}");
-    assert_eq!(study.made_of.len(), 3);
-    assert!(study.made_of.iter().all(|row| row.configuration.step == 4), "a quarter of the step");
+    let made_of: Vec<&str> = study.made_of.iter().map(|&place| study.rows[place].label.as_str()).collect();
+    assert_eq!(made_of, ["as written", "mesh ×2", "mesh ×4"], "runs of the study itself, each of twice the cells");
 }
 
 #[test]
@@ -158,8 +159,12 @@ fn what_does_not_fit_into_the_budget_is_a_row_that_says_so() {
 
 #[test]
 fn a_reference_that_does_not_fit_says_which_budget_would_do() {
-    let study = run(&mut MadeUp::default(), &Settings { budget: 0.5, ..settings() });
-    assert!(study.reference.starts_with("none: ") && study.reference.contains("--budget"), "{}", study.reference);
+    // a mesh takes 6.4 ms times the fourth power of its fineness
+    let study = run(&mut MadeUp::default(), &Settings { budget: 1e-3, ..settings() });
+    assert!(study.reference.starts_with("none: "), "{}", study.reference);
+    let more = study.more.clone().unwrap();
+    assert!(more.starts_with("--budget ") && more.contains("would add `as written`"), "{more}");
+    assert!(study.estimates.is_empty(), "{:?}", study.estimates);
     assert_eq!(study.findings.verdict, Verdict::CannotTell);
     assert!(study.findings.advice[0].contains("Without a reference"), "{:?}", study.findings.advice);
     assert!(study.rows.iter().any(|row| row.measured().is_some()), "times are measured all the same");

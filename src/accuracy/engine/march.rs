@@ -15,6 +15,10 @@ pub const FIELDS: u64 = 10;
 const ENERGIES_A_FIELD: u64 = 4;
 /// Runs shorter than this are timed again (s).
 const SHORT: f64 = 0.1;
+/// Between two looks at the clock at most so long (s), by what steps have taken so far.
+const BREATH: f64 = 0.25;
+/// Steps before the clock is looked at for the first time, and at least between two looks.
+const FIRST: u64 = 40;
 /// How often.
 const AGAIN: u32 = 3;
 
@@ -86,11 +90,11 @@ pub fn solve(
     scene: &SceneFile,
     options: &Options,
     looks: &Looks,
-    interrupted: &dyn Fn() -> bool,
+    check_time: &dyn Fn() -> Result<(), Refusal>,
 ) -> Result<Solution, Refusal> {
     let mut simulation = Simulation::new(scene, options).map_err(refusal)?;
     let mut run = Run { looks, channels: BTreeMap::new(), field: Field::default(), seconds: 0.0 };
-    run.through(&mut simulation, scene, interrupted)?;
+    run.through(&mut simulation, scene, check_time)?;
     let mut solution = run.solution(&mut simulation, scene)?;
     drop(simulation);
     while solution.seconds < SHORT && solution.timed < AGAIN {
@@ -129,7 +133,7 @@ impl Run<'_> {
         &mut self,
         simulation: &mut Simulation,
         scene: &SceneFile,
-        interrupted: &dyn Fn() -> bool,
+        check_time: &dyn Fn() -> Result<(), Refusal>,
     ) -> Result<(), Refusal> {
         for (name, body) in &scene.scene.bodies {
             let mesh = mesh_of(body, scene).map_err(|error| Refusal::Refused(error.to_string()))?;
@@ -139,10 +143,8 @@ impl Run<'_> {
         let all = simulation.planned_steps();
         if scene.scene.is_static() {
             while !simulation.is_finished() && simulation.step_count() < all {
-                if interrupted() {
-                    return Err(Refusal::Interrupted);
-                }
-                let steps = (all - simulation.step_count()).min(2000);
+                check_time()?;
+                let steps = (all - simulation.step_count()).min(self.in_a_breath(simulation));
                 self.seconds += timed(simulation, steps)?;
             }
             return self.look(simulation, self.looks.count, scene.scene.duration);
@@ -150,15 +152,20 @@ impl Run<'_> {
         for look in 0..=self.looks.count {
             let target = all * look / self.looks.count;
             while simulation.step_count() < target {
-                if interrupted() {
-                    return Err(Refusal::Interrupted);
-                }
-                let steps = (target - simulation.step_count()).min(2000);
+                check_time()?;
+                let steps = (target - simulation.step_count()).min(self.in_a_breath(simulation));
                 self.seconds += timed(simulation, steps)?;
             }
             self.look(simulation, look, target as f64 * simulation.time_step())?;
         }
         Ok(())
+    }
+
+    /// Steps between two looks at the clock.
+    fn in_a_breath(&self, simulation: &Simulation) -> u64 {
+        let each = self.seconds / simulation.step_count().max(1) as f64;
+        let steps = if each > 0.0 { (BREATH / each) as u64 } else { FIRST };
+        steps.clamp(FIRST, 2000)
     }
 
     fn look(&mut self, simulation: &mut Simulation, look: u64, time: f64) -> Result<(), Refusal> {

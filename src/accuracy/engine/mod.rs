@@ -1,9 +1,11 @@
 //! The solver that this crate is: a scene file, run in many ways.
 
 mod calibration;
+mod curvature;
 mod effects;
 mod ladder;
 mod march;
+mod meshes;
 mod variant;
 
 use super::configuration::{Configuration, Digits, Factor, Place};
@@ -17,23 +19,9 @@ use crate::scene::schema::{Load, MeshSource, Share, ViscousIntegrator};
 use crate::{BackendChoice, Options, Simulation};
 use calibration::Calibration;
 use march::{Looks, refusal};
-use variant::{Finer, cells, finer, names_elements, variant, written};
+use std::time::Instant;
+use variant::{names_elements, variant, written};
 
-/// How fine meshes can be against the scene's.
-const MESHES: [Factor; 12] = [
-    Factor::new(1, 4),
-    Factor::new(1, 3),
-    Factor::new(1, 2),
-    Factor::new(2, 3),
-    Factor::new(3, 4),
-    Factor::ONE,
-    Factor::new(3, 2),
-    Factor::new(2, 1),
-    Factor::new(3, 1),
-    Factor::new(4, 1),
-    Factor::new(6, 1),
-    Factor::new(8, 1),
-];
 /// How a study runs a scene.
 #[derive(Clone, Debug)]
 pub struct Engine<'a> {
@@ -46,6 +34,10 @@ pub struct Engine<'a> {
     interrupted: fn() -> bool,
     looks: Option<Looks>,
     known: Vec<(Configuration, Calibration)>,
+    /// Meshes that the scene can have, once they are known.
+    meshes: Option<Vec<Factor>>,
+    /// When everything is cut off.
+    end: Option<Instant>,
     /// Kinds of elements that all bodies can have, once they are known.
     kinds: Option<Vec<ElementKind>>,
 }
@@ -63,6 +55,8 @@ impl<'a> Engine<'a> {
             interrupted,
             looks: None,
             known: Vec::new(),
+            meshes: None,
+            end: None,
             kinds: None,
         }
     }
@@ -131,24 +125,22 @@ impl<'a> Engine<'a> {
         Ok(kinds)
     }
 
-    fn meshes(&self) -> Vec<Factor> {
-        let scene = &self.file.scene;
-        let fits = |factor: &Factor| match finer(scene) {
-            Finer::Cut => factor.down == 1 && factor.up.is_power_of_two(),
-            Finer::Cells => {
-                let mut counts = scene.bodies.values().flat_map(|body| cells(&body.mesh));
-                counts.all(|count| factor.times(count).is_some())
-            }
-        };
-        MESHES.into_iter().filter(|factor| factor.value() <= self.finest && fits(factor)).collect()
+    /// What time is left (s).
+    fn time_left(&self) -> f64 {
+        self.end.map_or(f64::INFINITY, |end| end.saturating_duration_since(Instant::now()).as_secs_f64())
+    }
+
+    fn check_time(&self) -> Result<(), Refusal> {
+        match ((self.interrupted)(), self.time_left() <= 0.0) {
+            (true, _) => Err(Refusal::Interrupted),
+            (false, true) => Err(Refusal::TooLong),
+            (false, false) => Ok(()),
+        }
     }
 
     fn notes(&self) -> Vec<String> {
         let scene = &self.file.scene;
         let mut notes = Vec::new();
-        if finer(scene) == Finer::Cut {
-            notes.push("meshes are made finer by cutting elements: curved outlines stay the polygons they are".into());
-        }
         let each = |load: &Load| matches!(load, Load::NodalForce { share: Share::Each, .. });
         if let Some(number) = scene.loads.iter().position(each) {
             notes.push(format!(
@@ -190,7 +182,9 @@ impl Solver for Engine<'_> {
         let both = [ViscousIntegrator::Exact, ViscousIntegrator::BackwardEuler];
         Ok(Choices {
             elements,
-            meshes: self.meshes(),
+            meshes: self.sound_meshes()?,
+            single_layers: self.single_layers(),
+            step_is_fixed: scene.integration.step.is_some(),
             steps: if scene.is_static() { Vec::new() } else { vec![2, 4] },
             digits: vec![Digits::Plain, Digits::Compensated, Digits::Double],
             hourglass: if hexes { vec![0.5, 2.0] } else { Vec::new() },
@@ -199,6 +193,7 @@ impl Solver for Engine<'_> {
             places,
             quantities: self.looks.as_ref().map(Looks::names).unwrap_or_default(),
             effects: if self.effects { effects::effects(scene) } else { Vec::new() },
+            unseen: self.unseen()?,
             notes: self.notes(),
             base,
         })
@@ -212,19 +207,26 @@ impl Solver for Engine<'_> {
     }
 
     fn solve(&mut self, configuration: &Configuration) -> Result<Solution, Refusal> {
+        let started = Instant::now();
         let options = self.options(configuration);
         let looks = match &self.looks {
             Some(looks) => looks.clone(),
             None => return Err(Refusal::Refused("nothing has been predicted yet".into())),
         };
-        if self.file.scene.is_static() {
-            let scene = variant(self.file, configuration, None);
-            return march::solve(&scene, &options, &looks, &self.interrupted);
-        }
-        let largest = self.step(configuration, &options)?;
-        let step = looks.fitting(self.file.scene.duration, largest / f64::from(configuration.step));
-        let scene = variant(self.file, configuration, Some(step));
-        march::solve(&scene, &options, &looks, &self.interrupted)
+        let step = if self.file.scene.is_static() {
+            None
+        } else {
+            let largest = self.step(configuration, &options)?;
+            Some(looks.fitting(self.file.scene.duration, largest / f64::from(configuration.step)))
+        };
+        let scene = variant(self.file, configuration, step);
+        let solution = march::solve(&scene, &options, &looks, &|| self.check_time())?;
+        self.learn(configuration, &solution, started.elapsed().as_secs_f64());
+        Ok(solution)
+    }
+
+    fn until(&mut self, end: Instant) {
+        self.end = Some(end);
     }
 }
 

@@ -66,6 +66,17 @@ pub fn cells(mesh: &MeshSource) -> Vec<u32> {
     }
 }
 
+/// Whether a generated mesh can have so many times its cells and keep its shape: a lens of an odd number of cells through has
+/// no sharp rim.
+pub fn divides(mesh: &MeshSource, factor: Factor) -> bool {
+    let whole = cells(mesh).into_iter().all(|count| factor.times(count).is_some());
+    let rim = match mesh {
+        MeshSource::Lens { through, .. } => factor.times(*through).is_some_and(|new| new % 2 == *through % 2),
+        _ => true,
+    };
+    whole && (rim || factor > Factor::ONE)
+}
+
 /// Gives a scene other meshes. Factors have been chosen so that cells stay whole.
 fn remesh(scene: &mut Scene, factor: Factor, element: Option<ElementKind>) {
     let way = finer(scene);

@@ -17,6 +17,7 @@ use sinew::systems::Registry;
 use sinew::{SceneFile, Simulation};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 use watch::Teller;
 
 /// The error that is good enough when nobody says which.
@@ -24,6 +25,7 @@ const TARGET: f64 = 0.01;
 
 /// Studies a scene, says what came out, writes it into a folder.
 pub fn command(arguments: &AccuracyArguments) -> Outcome {
+    let started = Instant::now();
     let file = arguments.scene.load()?;
     let diagnostics =
         progress::during("reading meshes, looking for mistakes", || Simulation::check(&file, &Registry::default()));
@@ -37,7 +39,7 @@ pub fn command(arguments: &AccuracyArguments) -> Outcome {
     let mut engine = Engine::new(&file, arguments.options(), gpu, arguments.effects, interrupt::is_asked)
         .up_to(arguments.finest.unwrap_or(f64::INFINITY));
     interrupt::listen();
-    let made = settings(arguments, &file, &mut engine)
+    let made = settings(arguments, &file, started, &mut engine)
         .and_then(|settings| study(&mut engine, &settings, &mut Teller::default()).map_err(failure));
     interrupt::rest();
     let study = made?;
@@ -67,11 +69,17 @@ fn failure(refusal: Refusal) -> Failure {
     match refusal {
         Refusal::Refused(why) => Failure::Options(why),
         Refusal::Broke(why) => Failure::Broke(why),
+        Refusal::TooLong => Failure::Options("the scene could not even be read and prepared in its --budget".into()),
         Refusal::Interrupted => Failure::Interrupted,
     }
 }
 
-fn settings(arguments: &AccuracyArguments, file: &SceneFile, engine: &mut Engine<'_>) -> Result<Settings, Failure> {
+fn settings(
+    arguments: &AccuracyArguments,
+    file: &SceneFile,
+    started: Instant,
+    engine: &mut Engine<'_>,
+) -> Result<Settings, Failure> {
     let wanted = &file.scene.accuracy;
     let mut paths = arguments.reference.clone();
     let mut reference = None;
@@ -94,6 +102,7 @@ fn settings(arguments: &AccuracyArguments, file: &SceneFile, engine: &mut Engine
         reference = reference.map(|reference| reference.off_by(&wanted.uncertainty));
     }
     Ok(Settings {
+        started,
         budget: arguments.budget,
         target: arguments.target.or(wanted.target).unwrap_or(TARGET),
         judged_by: arguments.by.clone().or_else(|| wanted.judged_by.clone()),
@@ -107,7 +116,7 @@ fn command_line(arguments: &AccuracyArguments) -> String {
     for set in &arguments.scene.set {
         line += &format!(" --set '{set}'");
     }
-    line += &format!(" --budget {}", arguments.budget);
+    line += &format!(" --budget {}s", arguments.budget);
     for path in &arguments.reference {
         line += &format!(" --reference {}", path.display());
     }

@@ -13,7 +13,21 @@ const LONGEST: usize = 60;
 pub fn text(study: &Study, title: &str, folder: &Path, paint: Paint) -> String {
     let mut text = format!("{}\n", paint.bold(&format!("What accuracy costs: {title}")));
     text += &table(study, paint);
-    text += &format!("\nreference  {}\n", study.reference);
+    text.push('\n');
+    for (number, estimate) in study.estimates.iter().enumerate() {
+        let heading = if number == 0 { "answer" } else { "" };
+        let value =
+            estimate.value.as_ref().map_or(String::new(), |(value, unit)| format!(" {}", quantity(*value, unit)));
+        let line = format!("{}{value} as written: {}", estimate.quantity, estimate.sentence());
+        text += &format!("{heading:10} {}\n", if number == 0 { paint.bold(&line) } else { line });
+    }
+    for sentence in &study.unseen {
+        text += &format!("{:10} {sentence}\n", if study.estimates.is_empty() { "answer" } else { "" });
+    }
+    if let Some(more) = &study.more {
+        text += &format!("{:10} {more}\n", "more");
+    }
+    text += &format!("reference  {}\n", study.reference);
     if let Some(uncertainty) = study.reference_uncertainty.filter(|uncertainty| *uncertainty > 0.0) {
         text += &format!("           off by {} at most, by its own account\n", percent(uncertainty));
     }

@@ -14,12 +14,36 @@ pub struct Teller {
     begun: String,
 }
 
+impl Teller {
+    fn spin(&mut self, what: String) {
+        if terminal::is_watched() {
+            let bar = ProgressBar::new_spinner().with_message(what);
+            bar.enable_steady_tick(Duration::from_millis(120));
+            self.bar = Some(bar);
+        }
+    }
+
+    fn still(&mut self) {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+    }
+}
+
 impl Watch for Teller {
+    fn predicts(&mut self) {
+        self.spin("predicting what each way to solve the scene takes".into());
+    }
+
     fn planned(&mut self, plan: &Plan) {
+        self.still();
         let budget = quantity(plan.budget, "s");
         let mut text = format!("plan: {} of at most {budget}\n", quantity(plan.predicted, "s"));
-        for planned in plan.reference.iter().chain(&plan.rows) {
+        for (place, planned) in plan.rows.iter().enumerate() {
             let (mark, what) = match &planned.fate {
+                Fate::Run(cost) if plan.reference.contains(&place) => {
+                    (" ", format!("{}, for the reference", quantity(cost.seconds, "s")))
+                }
                 Fate::Run(cost) => (" ", quantity(cost.seconds, "s")),
                 Fate::LeftOut(cost) => ("-", format!("left out: predicted {}", quantity(cost.seconds, "s"))),
                 Fate::Refused(why) => ("!", format!("refused: {why}")),
@@ -34,17 +58,11 @@ impl Watch for Teller {
 
     fn begins(&mut self, label: &str, seconds: f64, number: usize, all: usize) {
         self.begun = format!("{number} of {all}: {label}, about {}", quantity(seconds, "s"));
-        if terminal::is_watched() {
-            let bar = ProgressBar::new_spinner().with_message(self.begun.clone());
-            bar.enable_steady_tick(Duration::from_millis(120));
-            self.bar = Some(bar);
-        }
+        self.spin(self.begun.clone());
     }
 
     fn ended(&mut self, _: &str, outcome: &Outcome) {
-        if let Some(bar) = self.bar.take() {
-            bar.finish_and_clear();
-        }
+        self.still();
         let how = match outcome {
             Outcome::Done(measured) => format!("{} of steps", quantity(measured.seconds, "s")),
             Outcome::LeftOut(why) => why.clone(),
