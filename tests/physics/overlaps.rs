@@ -6,8 +6,11 @@ use sinew::output::Folder;
 use sinew::{Options, SceneFile, Simulation};
 use std::path::Path;
 
-/// A cube of .1 m in each of these places, what is done to them, and what a run of .1 s warns of.
-fn warned(options: &Options, elements: &str, cells: &[(u32, f64, [f64; 3])], rest: &str) -> Vec<Notice> {
+/// A cube: cells along an edge, its length (m), and where it stands (m).
+type Cube = (u32, f64, [f64; 3]);
+
+/// What a run of .1 s of cubes, and of what is done to them, warns of.
+fn warned(options: &Options, elements: &str, cells: &[Cube], rest: &str) -> Vec<Notice> {
     let bodies: String = cells
         .iter()
         .enumerate()
@@ -37,7 +40,7 @@ fn warned(options: &Options, elements: &str, cells: &[(u32, f64, [f64; 3])], res
 
 #[test]
 fn bodies_that_overlap_at_the_start_are_warned_of_once_and_those_beside_each_other_are_not() {
-    let cases: [(&str, &[(u32, f64, [f64; 3])], bool); 8] = [
+    let cases: [(&str, &[Cube], bool); 8] = [
         ("apart", &[(2, 0.1, [0.0; 3]), (3, 0.1, [0.2, 0.0, 0.0])], false),
         ("face on face", &[(2, 0.1, [0.0; 3]), (3, 0.1, [0.1, 0.0, 0.0])], false),
         ("edge on face", &[(2, 0.1, [0.0; 3]), (3, 0.1, [0.1, 0.05, 0.0])], false),
@@ -62,8 +65,7 @@ fn bodies_that_overlap_at_the_start_are_warned_of_once_and_those_beside_each_oth
 /// The second cube goes through the first, from .05 m beside it at 3 m/s; the third stays where it is, out of their way.
 #[test]
 fn a_body_that_passes_through_another_is_warned_of_when_it_gets_there() {
-    let cells: [(u32, f64, [f64; 3]); 3] =
-        [(2, 0.1, [0.0; 3]), (3, 0.1, [0.15, 0.02, 0.01]), (1, 0.1, [0.0, 0.0, 0.5])];
+    let cells: [Cube; 3] = [(2, 0.1, [0.0; 3]), (3, 0.1, [0.15, 0.02, 0.01]), (1, 0.1, [0.0, 0.0, 0.5])];
     let moves = "constraints: [Prescribed(body: \"b1\", on: All, displacement: (-0.3, 0, 0), curve: Ramp(end: 0.1))]";
     for run in &configurations() {
         let told = warned(&run.options, "Hex8", &cells, moves);
@@ -75,7 +77,7 @@ fn a_body_that_passes_through_another_is_warned_of_when_it_gets_there() {
 
 #[test]
 fn elements_that_are_gone_overlap_with_nothing() {
-    let cells: [(u32, f64, [f64; 3]); 2] = [(2, 0.1, [0.0; 3]), (2, 0.1, [0.15, 0.0, 0.0])];
+    let cells: [Cube; 2] = [(2, 0.1, [0.0; 3]), (2, 0.1, [0.15, 0.0, 0.0])];
     let moves = "constraints: [Prescribed(body: \"b1\", on: All, displacement: (-0.1, 0, 0), curve: Ramp(end: 0.1))]";
     let all = [configurations().remove(0)];
     let gone =
