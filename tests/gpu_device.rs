@@ -165,9 +165,10 @@ fn a_gpu_lost_in_a_run_leaves_what_was_observed_before() {
     assert!((0.49..0.62).contains(&failure.good_until) && failure.time >= 0.59, "{text}");
     assert!(text.contains("the GPU was lost") && text.contains("s are kept"), "{text}");
     // the last state that was on the host can be gone on from, on the CPU
-    let name = failure.snapshot.clone().unwrap();
-    assert!(text.contains(&format!("--resume {}", name.display())), "{text}");
-    let kept = sinew::Snapshot::read(&path.join(name)).unwrap();
+    let file = failure.snapshot.clone().unwrap();
+    assert!(text.contains(&format!("--resume {}", sinew::shell_word(&file))), "{text}");
+    assert!(file.starts_with(&path), "{}", file.display());
+    let kept = sinew::Snapshot::read(&file).unwrap();
     let cpu = sinew::Options { backend: sinew::BackendChoice::Cpu, ..sinew::Options::default() };
     let mut rest = sinew::Simulation::new(&scene, &cpu).unwrap();
     rest.restore(&kept).unwrap();

@@ -1,6 +1,6 @@
 //! One frame of a series: the mesh, who is who in it, and the fields that the scene asks for.
 
-use super::element_fields::{ElementFields, ElementRows};
+use super::element_fields::{BodyElements, ElementFields, ElementRows};
 use super::fields::internal_forces;
 use crate::backend::cpu::Cpu;
 use crate::backend::device::bring_to_host;
@@ -84,13 +84,7 @@ pub fn write(world: &mut World, series: &mut Series) -> Result<Option<String>, E
 }
 
 /// Adds the cells of a body that are written; its elements of this shape begin at `from`.
-fn add<const N: usize>(
-    cells: &mut Cells<N>,
-    corners: &[[u32; N]],
-    from: usize,
-    first: u32,
-    found: &super::element_fields::BodyElements<'_>,
-) {
+fn add<const N: usize>(cells: &mut Cells<N>, corners: &[[u32; N]], from: usize, first: u32, found: &BodyElements<'_>) {
     for (place, nodes) in corners.iter().enumerate() {
         if found.put(from + place, &mut cells.rows) {
             cells.corners.push(nodes.map(|node| node + first));

@@ -251,8 +251,11 @@ impl Observer {
         let moment = match to_rest {
             false => Moment::Step(clock.step, last),
             true if last || clock.step == 0 => Moment::Rest,
-            // steps on the way are no times of the scene
-            true => return Ok(self.good_until = clock.time()),
+            true => {
+                // steps on the way are no times of the scene
+                self.good_until = clock.time();
+                return Ok(());
+            }
         };
         self.observe_at(moment, world)
     }

@@ -1,7 +1,7 @@
 //! Fields of VTU files: each once, and such as the scene has.
 
 use super::{Judge, scene};
-use crate::scene::schema::{Field, OutputField, Scene};
+use crate::scene::schema::{Field, Material, OutputField, Scene};
 
 pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
     let path = scene("output").name("fields");
@@ -10,7 +10,7 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
         if fields[..i].contains(field) {
             judge.out.error_at(path.index(i), format!("`{field:?}` is there twice")).note("name each field once");
         }
-        if *field == OutputField::FibreStretch && !scene_.materials.values().any(|m| has_fibres(m)) {
+        if *field == OutputField::FibreStretch && !scene_.materials.values().any(has_fibres) {
             judge
                 .out
                 .error_at(path.index(i), "no material has fibres whose stretch could be written")
@@ -38,6 +38,6 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
     }
 }
 
-fn has_fibres(material: &crate::scene::schema::Material) -> bool {
+fn has_fibres(material: &Material) -> bool {
     material.fibres.is_some() || material.exponential_fibres.as_ref().is_some_and(|families| !families.is_empty())
 }
