@@ -1,8 +1,11 @@
 //! A scene at work: the world, its schedule, its clock.
 
 mod access;
+mod adapt;
+mod added_mass;
 mod beat;
 mod build;
+mod costly;
 pub mod explain;
 mod follow;
 mod frequency;
@@ -10,6 +13,7 @@ mod fuse;
 mod growth;
 mod keep;
 mod mass_scaling;
+mod nodal;
 mod options;
 mod outputs;
 mod pace;
