@@ -71,7 +71,8 @@ impl Simulation {
         let best = follower.wanted(step_of(follower.hope(seen)), seen);
         let taken = if pressing { follower.wanted(limit, seen).min(clock.time_step) } else { clock.time_step };
         let found = &mut follower.found;
-        found.overpaid += (clock.step - found.looked_at.min(clock.step)) as f64 * (1.0 - clock.time_step / best).max(0.0);
+        found.overpaid +=
+            (clock.step - found.looked_at.min(clock.step)) as f64 * (1.0 - clock.time_step / best).max(0.0);
         if !(best > WORTH.0 * taken) {
             found.overpaid = 0.0;
             return Ok(false);
@@ -83,10 +84,8 @@ impl Simulation {
         if !(left * (1.0 / taken - 1.0 / best) > found.price) || !(vague || found.overpaid >= found.price) {
             return Ok(false);
         }
-        // what is found is worth as much as it has been worth so long
-        let horizon = left.min((clock.time() - found.known_time).max(FINDING * clock.time_step));
         let cheap = seen.square;
-        let steps = |at_most: f64| horizon / follower.wanted(step_of(at_most.min(cheap)), seen);
+        let steps = |at_most: f64| left / follower.wanted(step_of(at_most.min(cheap)), seen);
         bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
         let Some(largest) = largest_worth(&mut self.world, ACCURACY, Some(&steps)) else { return Ok(false) };
         for block in &mut follower.watched {
@@ -95,7 +94,7 @@ impl Simulation {
         seen.square = largest.at_most.min(cheap);
         let pays = follower.wanted(step_of(seen.square), seen) > WORTH.0 * taken;
         let found = &mut follower.found;
-        (found.known, found.known_at, found.known_time) = (seen.square, clock.step, clock.time());
+        (found.known, found.known_at) = (seen.square, clock.step);
         (found.seen, found.overpaid) = (Some(*seen), 0.0);
         found.price = if pays { FINDING } else { (2.0 * found.price).min(DEAREST * FINDING) };
         follower.history.sharp_looks += 1;

@@ -1,8 +1,8 @@
 //! How much mass may be added: told of above a share of all mass, an error above what the scene allows.
 
+use super::Simulation;
 use super::follow::Follower;
 use super::mass_scaling::{self, Additions};
-use super::Simulation;
 use crate::assembly::StableStep;
 use crate::components::*;
 use crate::error::{Criterion, Error, Instability};
@@ -53,9 +53,9 @@ pub(super) fn at_the_start(
         return None;
     }
     if share > WORTH_TELLING {
-        diagnostics
-            .warn_at("integration.when_unstable", told)
-            .note("motion is slowed where mass is added; a smaller `step` needs less, and a smaller `most` allows less");
+        diagnostics.warn_at("integration.when_unstable", told).note(
+            "motion is slowed where mass is added; a smaller `step` needs less, and a smaller `most` allows less",
+        );
     }
     mass_scaling::insert_columns(precision, world);
     additions.make(world);

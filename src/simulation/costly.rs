@@ -40,7 +40,8 @@ pub(super) fn warn_of_costly(stability: &Stability, world: &mut World, diagnosti
             ));
         }
         Some(_) if stability.found_from == "iterated" => {
-            warning.note("that is by the highest frequency of all elements together; by these alone it would be smaller");
+            warning
+                .note("that is by the highest frequency of all elements together; by these alone it would be smaller");
         }
         _ => {}
     }

@@ -1,13 +1,13 @@
 //! The stable step followed during the run: a cheap bound every few steps, and what the scene wants done about it.
 //! When the highest frequency itself is found is in [`adapt`](super::adapt) and [`policies`](super::policies).
 
+use super::Simulation;
 use super::frequency::PRODUCT;
 use super::mass_scaling;
 use super::nodal::NodalMeans;
 use super::rounding::warn_of_rounding;
 use super::stable_step::Stability;
 use super::watch::{Seen, Watched};
-use super::Simulation;
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::Error;
@@ -62,8 +62,7 @@ pub(super) struct Follower {
     pub safety: f64,
     /// The step takes nothing but the bound of the elements for granted: it never grows beyond that.
     by_elements: bool,
-    /// The scene's own step, which it never grows beyond (s), and its share of the stable one at the start; else 0.
-    own: f64,
+    /// The share of the stable step at the start that the scene's own one is; else 0.
     own_share: f64,
     pub duration: f64,
     pub first: f64,
@@ -79,10 +78,11 @@ pub(super) struct Found {
     /// The step before which is looked next, and that of the last look.
     pub next: u64,
     pub looked_at: u64,
-    /// The highest ω² when it was found last (1/s²): in which step, when (s), and what was seen then.
+    /// The step that the scene or the program wants, which it never grows beyond (s).
+    pub own: Option<f64>,
+    /// The highest ω² when it was found last (1/s²): in which step, and what was seen then.
     pub known: f64,
     pub known_at: u64,
-    pub known_time: f64,
     pub seen: Option<Seen>,
     /// Steps taken since then that a step as large as may be would have saved, and how many have to be saved by the next finding.
     pub overpaid: f64,
@@ -112,7 +112,6 @@ impl Follower {
             policy,
             safety: integration.safety,
             by_elements: stability.stays_with_elements,
-            own: integration.step.unwrap_or(f64::INFINITY),
             own_share: integration.step.map_or(0.0, |step| step / limit),
             duration: scene.duration,
             first: step,
@@ -120,9 +119,9 @@ impl Follower {
             found: Found {
                 next: if at_once { 0 } else { LOOKS.0 },
                 looked_at: 0,
+                own: integration.step,
                 known: square_of(limit),
                 known_at: 0,
-                known_time: 0.0,
                 seen: None,
                 overpaid: 0.0,
                 price: FINDING,
@@ -146,7 +145,7 @@ impl Follower {
     /// The largest step that may be taken when so much is stable (s).
     pub fn wanted(&self, limit: f64, seen: &Seen) -> f64 {
         let elements = if self.by_elements { self.safety * step_of(seen.at_rest) } else { f64::INFINITY };
-        (self.safety * limit).min(elements).min(self.own)
+        (self.safety * limit).min(elements).min(self.found.own.unwrap_or(f64::INFINITY))
     }
 }
 

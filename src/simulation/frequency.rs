@@ -51,11 +51,7 @@ pub(super) fn largest_eigenvalue(world: &mut World, accuracy: f64) -> Option<Lar
 /// The same, where there are `steps` known only so well as is worth the products: that is how many will be taken when the eigenvalue is
 /// at most so large, and [`PRODUCT`] what a product costs. It ends where the steps that all further products could save, were θ the eigenvalue, are fewer
 /// than they cost; before the first where even nothing to resist motion would save too little.
-pub(super) fn largest_worth(
-    world: &mut World,
-    accuracy: f64,
-    steps: Option<&dyn Fn(f64) -> f64>,
-) -> Option<Largest> {
+pub(super) fn largest_worth(world: &mut World, accuracy: f64, steps: Option<&dyn Fn(f64) -> f64>) -> Option<Largest> {
     let bodies = bodies(world);
     let roots = roots_of_mass(world, &bodies);
     let free = roots.iter().filter(|&&root| root > 0.0).count();
@@ -132,7 +128,9 @@ fn lanczos(
         let along = dot(&image, &vector);
         let back = if diagonal.is_empty() { 0.0 } else { length };
         diagonal.push(along);
-        if diagonal.len() % BETWEEN_STOPS == 0 && !worth_more(largest_of_tridiagonal(&diagonal, &beside), diagonal.len()) {
+        if diagonal.len() % BETWEEN_STOPS == 0
+            && !worth_more(largest_of_tridiagonal(&diagonal, &beside), diagonal.len())
+        {
             break;
         }
         scale = scale.max(along.abs());
@@ -245,9 +243,14 @@ mod tests {
             let eigenvalue = |i: usize| 0.5 - 0.5 * (std::f64::consts::PI * (i as f64 + 0.5) / size as f64).cos();
             let largest = eigenvalue(size - 1);
             let luck = (1.648 * (size as f64).sqrt() / BAD_LUCK).ln();
-            let found = lanczos(noise(&vec![1.0; size]), products, |x, image| {
-                (0..size).for_each(|i| image[i] = eigenvalue(i) * x[i]);
-            }, |_, _| true);
+            let found = lanczos(
+                noise(&vec![1.0; size]),
+                products,
+                |x, image| {
+                    (0..size).for_each(|i| image[i] = eigenvalue(i) * x[i]);
+                },
+                |_, _| true,
+            );
             let found = found.map_or(0.0, |found| found.largest);
             let margin = (luck / (2.0 * products as f64 - 1.0)).powi(2);
             assert!(found <= largest * (1.0 + 1e-12) && found >= (1.0 - margin) * largest, "{products}: {found}");
@@ -259,9 +262,14 @@ mod tests {
         // it converges within some products, and what rounding brings back of it stays at most as large
         let size = 5000;
         let eigenvalue = |i: usize| if i == 17 { 10.0 } else { (i % 100) as f64 / 100.0 };
-        let found = lanczos(noise(&vec![1.0; size]), 100, |x, image| {
-            (0..size).for_each(|i| image[i] = eigenvalue(i) * x[i]);
-        }, |_, _| true);
+        let found = lanczos(
+            noise(&vec![1.0; size]),
+            100,
+            |x, image| {
+                (0..size).for_each(|i| image[i] = eigenvalue(i) * x[i]);
+            },
+            |_, _| true,
+        );
         let found = found.map_or(0.0, |found| found.largest);
         assert!((found / 10.0 - 1.0).abs() < 1e-12, "{found}");
     }
@@ -269,7 +277,12 @@ mod tests {
     #[test]
     fn a_space_that_is_exhausted_gives_the_eigenvalue_itself() {
         let eigenvalues = [3.0, 1.0, 3.0, 2.0, 0.0];
-        let found = lanczos(noise(&[1.0; 5]), 50, |x, image| (0..5).for_each(|i| image[i] = eigenvalues[i] * x[i]), |_, _| true);
+        let found = lanczos(
+            noise(&[1.0; 5]),
+            50,
+            |x, image| (0..5).for_each(|i| image[i] = eigenvalues[i] * x[i]),
+            |_, _| true,
+        );
         assert!(found.is_some_and(|found| found.exhausted && (found.largest - 3.0).abs() < 1e-9));
     }
 }

@@ -1,11 +1,11 @@
 //! What is done when the stable step becomes smaller than a step that stays: the policies of `integration.when_unstable`.
 
+use super::Simulation;
 use super::follow::{Follower, square_of, step_of};
 use super::mass_scaling::{self, Additions};
 use super::stable_step::{ACCURACY, limit_now};
 use super::tangent::Tangent;
 use super::watch::Seen;
-use super::Simulation;
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::Error;
@@ -52,7 +52,7 @@ impl Simulation {
         }
         seen.square = square_of(limit);
         let found = &mut follower.found;
-        (found.known, found.known_at, found.known_time) = (seen.square, self.step_count(), self.time());
+        (found.known, found.known_at) = (seen.square, self.step_count());
         found.seen = Some(*seen);
         follower.history.sharp_looks += 1;
         Ok(true)

@@ -35,7 +35,7 @@ pub struct Stability {
     pub beyond: Option<f64>,
     /// Products with the stiffness by which the highest frequency was sought; 0: it was not.
     pub products: usize,
-    /// What the step was found from: `elements`, `nodes` or `iterated`.
+    /// What the step was found from: `elements`, `nodes`, `iterated`, or `scene` where it is the scene's own.
     pub found_from: &'static str,
     /// Why from that.
     pub because: String,
@@ -49,6 +49,16 @@ pub struct Stability {
 }
 
 impl Stability {
+    /// What the step was found from.
+    pub fn in_words(&self) -> &'static str {
+        match self.found_from {
+            "iterated" => "the highest frequency of all elements",
+            "nodes" => "the bound by nodes",
+            "scene" => "the scene",
+            _ => "the stiffest element",
+        }
+    }
+
     /// Of a static analysis.
     pub fn of_rest(bound: StableStep) -> Self {
         Self {
@@ -99,6 +109,14 @@ pub(super) fn choose(
     // rounding of means must not take what the elements alone allow
     let certain = step_of(bound_at_rest(world)).max(heavier);
     let stays = reason_to_stay(&scene.scene);
+    if integration.bound == StepBound::Iterated
+        && scene.scene.when_unstable() == WhenUnstable::Adapt
+        && let Some(reason) = stays
+    {
+        diagnostics
+            .warn_at("integration.bound", reason)
+            .note("`bound: Auto` stays with the stiffest element, which is safe");
+    }
     let found = seek(&scene.scene, certain, stays.is_none(), world);
     // the bounds are certain as well: at rest the best of all
     let limit = step_of(found.at_most).max(certain);
@@ -109,6 +127,7 @@ pub(super) fn choose(
         _ if certain > heavier => ("nodes", certain),
         _ => ("elements", heavier),
     };
+    let found_from = if integration.step.is_some() { "scene" } else { found_from };
     let stability = Stability {
         bound,
         by_nodes: Some(certain),
@@ -182,7 +201,7 @@ fn seek(scene: &Scene, certain: f64, adapts: bool, world: &mut World) -> Largest
 fn because(scene: &Scene, certain: f64, stable_step: f64, found: &Largest, stays: Option<&str>) -> String {
     let integration = &scene.integration;
     if integration.step.is_some() {
-        return "the scene says which step is taken".into();
+        return "its own step".into();
     }
     match (integration.bound, stays) {
         (StepBound::Elements, _) => "bound: Elements".into(),

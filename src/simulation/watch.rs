@@ -156,7 +156,9 @@ impl Watched {
         let task = |task: usize| {
             let mut found = start.clone();
             for strain in self.strains(world, task).unwrap_or_default() {
-                visit(&mut found, strain.row, self.growth.at(strain.size) + strain.more, strain.speed);
+                // beyond all that was tried: as much as f32 can keep
+                let growth = (self.growth.at(strain.size) + strain.more).min(f64::from(f32::MAX));
+                visit(&mut found, strain.row, growth, strain.speed);
             }
             found
         };
