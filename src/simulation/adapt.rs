@@ -22,6 +22,8 @@ const WORTH: (f64, f64) = (1.1, 1.25);
 const VAGUE: f64 = 2.0;
 /// Steps between two findings where it does.
 const REST: u64 = 100;
+/// So many findings, and one more for so many steps, come as soon as the cheap bound calls for smaller steps.
+const FIRST: (u64, u64) = (4, 1000);
 /// Where elements have gone, ω² may have fallen to this share.
 const HOPE: f64 = 0.6;
 /// How dear a finding may become, in findings.
@@ -45,12 +47,19 @@ impl Simulation {
             return Err(self.too_small(follower, wanted));
         }
         let calm = (clock.time_step * STRAIN_A_STEP / seen.speed).max(SMALLEST_FOR_STRAIN * wanted);
-        let smaller = clock.time_step > follower.most() * limit || clock.time_step > 2.0 * calm;
-        let larger = wanted.min(calm) > if found { WORTH.0 } else { WORTH.1 } * clock.time_step;
+        let fast = clock.time_step > 2.0 * calm;
+        // a jump is over after a step
+        let too_fast = fast && follower.found.fast;
+        let smaller = clock.time_step > follower.most() * limit || too_fast;
+        // on the word of the cheap bound only back to where it was, or where it is certain
+        let may = found || follower.found.slowed || follower.has_lost(&seen);
+        let larger = may && wanted.min(calm) > if found { WORTH.0 } else { WORTH.1 } * clock.time_step;
+        follower.found.fast = fast;
         if !(smaller || larger) {
             return Ok(());
         }
-        let wanted = wanted.min(calm);
+        follower.found.slowed = too_fast || follower.found.slowed && calm < wanted;
+        let wanted = if too_fast || follower.found.slowed { wanted.min(calm) } else { wanted };
         let left = follower.duration - clock.time();
         // the scene ends with a whole step
         let (new, last) = match (left / wanted - 1e-6).ceil() {
@@ -81,7 +90,9 @@ impl Simulation {
         let vague = clock.time_step > VAGUE * step_of(seen.square)
             && (clock.step >= found.known_at + REST || follower.history.sharp_looks == 0);
         let left = follower.duration - clock.time();
-        if !(left * (1.0 / taken - 1.0 / best) > found.price) || !(vague || found.overpaid >= found.price) {
+        // the first are not waited for: the cheap bound knows sizes of strains and not their directions
+        let first = pressing && follower.history.sharp_looks < FIRST.0 + clock.step / FIRST.1;
+        if !(left * (1.0 / taken - 1.0 / best) > found.price) || !(first || vague || found.overpaid >= found.price) {
             return Ok(false);
         }
         let cheap = seen.square;

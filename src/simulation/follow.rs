@@ -87,6 +87,9 @@ pub(super) struct Found {
     /// Steps taken since then that a step as large as may be would have saved, and how many have to be saved by the next finding.
     pub overpaid: f64,
     pub price: f64,
+    /// Strains changed fast at the last look, and the step is smaller for that.
+    pub fast: bool,
+    pub slowed: bool,
 }
 
 /// The same with how it went, for snapshots.
@@ -125,6 +128,8 @@ impl Follower {
                 seen: None,
                 overpaid: 0.0,
                 price: FINDING,
+                fast: false,
+                slowed: false,
             },
             history: StepHistory {
                 smallest: step,
@@ -179,12 +184,11 @@ impl Follower {
         self.found.seen.is_some_and(|before| seen.alive < before.alive)
     }
 
-    /// The bound of ω² by nodes (1/s²): of all elements as they are, or of what was found and how far they have grown since.
-    fn by_nodes(&self, world: &World, known: f64) -> f64 {
-        let mut means = NodalMeans::<2>::new();
+    /// The bound of ω² by nodes as elements are now (1/s²).
+    fn by_nodes(&self, world: &World) -> f64 {
+        let mut means = NodalMeans::<1>::new();
         self.watched.iter().for_each(|block| block.bring_to_nodes(world, &mut means));
-        let [own, more] = means.largest(world);
-        own.min(known + more)
+        means.largest(world)[0]
     }
 
     /// The step before which is looked next: sooner where strains change fast and where the step is close to the limit.
@@ -254,8 +258,7 @@ impl Simulation {
             seen.square = seen.of_elements;
         }
         if clock.time_step > follower.most() * step_of(seen.square) {
-            let known = if lost { f64::INFINITY } else { follower.found.known };
-            seen.square = seen.square.min(follower.by_nodes(&self.world, known));
+            seen.square = seen.square.min(follower.by_nodes(&self.world));
         }
         if lost && matches!(follower.policy, WhenUnstable::ScaleMass { .. }) {
             // what was added to removed elements goes with them

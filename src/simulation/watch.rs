@@ -117,12 +117,10 @@ impl Watched {
         growths.into_iter().flatten().for_each(|(row, growth)| self.known_growth[row] = growth);
     }
 
-    /// Brings the elements to the means of nodes: their bounds of ω² as they are now, and by how much these have grown since the frequency
-    /// of all was found last (1/s²).
-    pub fn bring_to_nodes(&self, world: &World, means: &mut NodalMeans<2>) {
+    /// Brings the elements to the means of nodes, with their bounds of ω² as they are now (1/s²).
+    pub fn bring_to_nodes(&self, world: &World, means: &mut NodalMeans<1>) {
         let growths = self.growths(world, Vec::new(), |found, row, growth, _| {
-            let more = (growth - f64::from(self.known_growth[row])).max(0.0);
-            found.push((row, self.masses[row], [self.squares[row] * growth, self.squares[row] * more]));
+            found.push((row, self.masses[row], [self.squares[row] * growth]));
         });
         means.add(world, self.entity, growths.into_iter().flatten());
     }
