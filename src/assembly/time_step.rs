@@ -56,13 +56,23 @@ pub(super) fn square_frequency<'a>(
     entity: Entity,
     block: &'a Block,
 ) -> Option<impl Fn(usize) -> f64 + Sync + 'a> {
+    square_frequency_of(world, entity, block, |number| number)
+}
+
+/// The same, of rest shapes whose numbers are made so.
+fn square_frequency_of<'a>(
+    world: &'a World,
+    entity: Entity,
+    block: &'a Block,
+    made: impl Fn(f64) -> f64 + Sync + 'a,
+) -> Option<impl Fn(usize) -> f64 + Sync + 'a> {
     let stiffness = stiffness(world, block.material);
     let shape = world.get::<RestShape>(entity)?;
     Some(move |row: usize| {
         let mut rest = [0.0; MOST_ROWS];
         with_element_of!(block, E => {
             for k in 0..E::ROWS {
-                rest[k] = shape.get(lane_place(row, E::ROWS, k));
+                rest[k] = made(shape.get(lane_place(row, E::ROWS, k)));
             }
             E::frequency_bound(&rest, &stiffness)
         })
@@ -81,6 +91,25 @@ pub fn square_frequencies(world: &World, entity: Entity) -> Vec<(f64, f64)> {
         if volume > 0.0 { (frequency(row), volume) } else { (0.0, 0.0) }
     };
     world.resource::<Cpu>().confine(|| (0..block.count).into_par_iter().map(of_row).collect())
+}
+
+/// A number with the digits that f32 has.
+fn short(number: f64) -> f64 {
+    f64::from(number as f32)
+}
+
+/// Squared frequency bound (1/s²) and mass (kg) of all elements of a block, both 0 of removed ones: the same whatever precision the
+/// world is in, computed in f64 from shapes that f32 has, too.
+pub fn alike_in_any_precision(world: &World, entity: Entity) -> Vec<(f64, f64)> {
+    let Some(block) = world.get::<Block>(entity) else { return Vec::new() };
+    let frequency = square_frequency_of(world, entity, block, short);
+    let (Some(frequency), Some(shape)) = (frequency, world.get::<RestShape>(entity)) else { return Vec::new() };
+    let density = world.get::<Density>(block.material).map_or(0.0, |density| density.0);
+    let of_row = |row: usize| {
+        let volume = short(rest_volume(block, row, shape));
+        if volume > 0.0 { (frequency(row), density * volume) } else { (0.0, 0.0) }
+    };
+    (0..block.count).into_par_iter().map(of_row).collect()
 }
 
 /// An element, by how quick it is.

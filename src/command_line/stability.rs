@@ -9,6 +9,9 @@ use std::fmt::Write;
 pub fn at_start(summary: &Summary) -> String {
     let stability = &summary.stability;
     let mut text = format!("stable step: {}\n", bounds(summary));
+    if let Some(taken) = taken_from(summary) {
+        let _ = writeln!(text, "  {taken}");
+    }
     let _ = writeln!(
         text,
         "elements that set it: the usual element is stable up to {} (half of the volume needs no smaller step)",
@@ -38,22 +41,33 @@ pub fn at_start(summary: &Summary) -> String {
 /// Elements whose bounds differ by less than this share are alike.
 const ALIKE: f64 = 0.01;
 
-/// Bound, true limit and what is taken of it.
+/// Bounds, true limit and what is taken of it.
 fn bounds(summary: &Summary) -> String {
     let (body, element) = &summary.stable_step_element;
     let stability = &summary.stability;
     let mut text = format!("{}, set by element {element} of {body}", quantity(stability.bound.time_step, "s"));
     if let (Some(limit), Some(share)) = (stability.limit, summary.share_of_limit) {
-        let from = if stability.found_from == "iterated" { ", from which it is taken" } else { "" };
-        let _ = write!(text, "; true limit: {}{from}; the step is {} of it", quantity(limit, "s"), digits(share));
+        if let Some(by_nodes) = stability.by_nodes.filter(|by_nodes| *by_nodes > 1.001 * stability.bound.time_step) {
+            let _ = write!(text, "; by nodes {}", quantity(by_nodes, "s"));
+        }
+        let sought = if stability.products == 0 { "not sought, at least " } else { "" };
+        let _ = write!(text, "; true limit: {sought}{}; the step is {} of it", quantity(limit, "s"), digits(share));
     }
     text
+}
+
+/// What the step is taken from, and why.
+fn taken_from(summary: &Summary) -> Option<String> {
+    let stability = &summary.stability;
+    stability.limit?;
+    Some(format!("taken from {}: {}", stability.in_words(), stability.because))
 }
 
 /// The step of a run, and how it went.
 pub fn of_run(summary: &Summary) -> Vec<String> {
     let first = quantity(summary.stability.step, "s");
     let mut lines = vec![format!("{first}; stable up to {}", bounds(summary))];
+    lines.extend(taken_from(summary));
     let Some(history) = &summary.step_history else { return lines };
     if history.changes > 0 {
         lines.push(format!(

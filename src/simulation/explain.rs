@@ -32,6 +32,8 @@ pub struct Explanation {
     pub nodes: usize,
     /// Elements of all bodies.
     pub elements: usize,
+    /// The first step (s), what it is taken from and why; `None` in a static analysis.
+    pub time_step: Option<String>,
     /// The systems in the order of a step.
     pub systems: Vec<SystemInUse>,
     /// Systems that the scene does not call for.
@@ -248,6 +250,10 @@ impl Simulation {
             },
             nodes: self.facts.nodes,
             elements: self.facts.elements,
+            time_step: self.facts.stability.limit.map(|_| {
+                let stability = &self.facts.stability;
+                format!("{:.3e} s by {}: {}", stability.step, stability.in_words(), stability.because)
+            }),
             systems,
             systems_off,
             parts: effects::parts(&self.scene, self.facts.precision, on_gpu, &mut self.world),

@@ -1,16 +1,17 @@
-//! The stable step followed during the run: a cheap bound every few steps, the highest frequency itself when that comes
-//! close, and what the scene wants done about it.
+//! The stable step followed during the run: a cheap bound every few steps, and what the scene wants done about it.
+//! When the highest frequency itself is found is in [`adapt`](super::adapt) and [`policies`](super::policies).
 
-use super::policies::WORTH;
+use super::Simulation;
+use super::frequency::PRODUCT;
+use super::mass_scaling;
+use super::nodal::NodalMeans;
 use super::rounding::warn_of_rounding;
-use super::stable_step::{ACCURACY, Stability, limits};
-use super::tangent::Tangent;
+use super::stable_step::Stability;
 use super::watch::{Seen, Watched};
-use super::{Simulation, mass_scaling};
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::Error;
-use crate::scene::schema::{Scene, StepBound, WhenUnstable};
+use crate::scene::schema::{Scene, WhenUnstable};
 use base64::Engine;
 use base64::prelude::BASE64_STANDARD;
 use bevy_ecs::prelude::*;
@@ -24,16 +25,9 @@ const LOOKS: (u64, u64) = (16, 256);
 /// or less. The stable step of what is squeezed shrinks twice as fast as it, and a twentieth is left when it counts as close.
 const STRAIN: (f64, f64) = (0.01, 0.25);
 /// No more than that between two looks, however close they come: what falls flat must not pass through zero unseen.
-const MOST_STRAIN: f64 = 0.5;
-/// The highest frequency is found so many times, and once more for so many steps: each costs about a hundred steps. Beyond
-/// that the cheap bound is taken at its word.
-const SHARP_LOOKS: (u64, u64) = (4, 1000);
-/// A step that is so many times the stable one by the cheap bound tells of its limits rather than of the step.
-pub(super) const VAGUE: f64 = 2.0;
-/// Steps between two findings beyond that, where the cheap bound is as far off or has made the step as much smaller.
-const REST: u64 = 100;
-/// The highest frequency is found anew for a larger step when the bound of the elements has fallen to this share.
-const RELIEF: f64 = 0.6;
+const MOST_STRAIN: f64 = 0.15;
+/// What finding the highest frequency costs, in steps: some 48 products.
+pub(super) const FINDING: f64 = 48.0 * PRODUCT;
 
 /// How the step went during the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -68,20 +62,44 @@ pub(super) struct Follower {
     pub safety: f64,
     /// The step takes nothing but the bound of the elements for granted: it never grows beyond that.
     by_elements: bool,
-    /// The scene's own step, which it never grows beyond (s), and its share of the stable one at the start; else 0.
-    own: f64,
+    /// The share of the stable step at the start that the scene's own one is; else 0.
     own_share: f64,
     pub duration: f64,
     pub first: f64,
-    pub next: u64,
     pub watched: Vec<Watched>,
-    /// The highest ω² when it was found last (1/s²), in which step, and what was seen then.
+    pub found: Found,
+    pub history: StepHistory,
+}
+
+/// What has been found so far.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Found {
+    /// The step before which is looked next, and that of the last look.
+    pub next: u64,
+    pub looked_at: u64,
+    /// The step that the scene or the program wants, which it never grows beyond (s).
+    pub own: Option<f64>,
+    /// The highest ω² when it was found last (1/s²): in which step, and what was seen then.
     pub known: f64,
     pub known_at: u64,
-    seen: Option<Seen>,
-    /// Whether the step was made smaller on the word of the cheap bound.
-    pub guessed: bool,
-    pub history: StepHistory,
+    pub seen: Option<Seen>,
+    /// Steps taken since then that a step as large as may be would have saved, and how many have to be saved by the next finding.
+    pub overpaid: f64,
+    pub price: f64,
+    /// Strains changed fast at the last look, and the step is smaller for that.
+    pub fast: bool,
+    pub slowed: bool,
+}
+
+/// The same with how it went, for snapshots.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Followed {
+    found: Found,
+    history: StepHistory,
+    /// Of each block, as base64 of f32; none before the first look.
+    growths: Vec<String>,
 }
 
 impl Follower {
@@ -90,28 +108,35 @@ impl Follower {
         let (limit, integration) = (stability.limit?, &scene.integration);
         let step = world.resource::<Clock>().time_step;
         let added = if scene.scales_mass() { mass_scaling::weigh(world).mass } else { 0.0 };
-        // a scene's own step may need elements to go before they do harm
-        let next = if step > limit && scene.when_unstable() == WhenUnstable::Remove { 0 } else { LOOKS.0 };
+        let policy = scene.when_unstable();
+        // what begins deformed, or at once, must not go unseen; a scene's own step may need elements to go before they do harm
+        let at_once = policy == WhenUnstable::Adapt || step > limit && policy == WhenUnstable::Remove;
         Some(Self {
-            policy: scene.when_unstable(),
+            policy,
             safety: integration.safety,
-            by_elements: integration.bound == StepBound::Elements,
-            own: integration.step.unwrap_or(f64::INFINITY),
+            by_elements: stability.stays_with_elements,
             own_share: integration.step.map_or(0.0, |step| step / limit),
             duration: scene.duration,
             first: step,
-            next,
             watched: Vec::new(),
-            known: square_of(limit),
-            known_at: 0,
-            seen: None,
-            guessed: false,
+            found: Found {
+                next: if at_once { 0 } else { LOOKS.0 },
+                looked_at: 0,
+                own: integration.step,
+                known: square_of(limit),
+                known_at: 0,
+                seen: None,
+                overpaid: 0.0,
+                price: FINDING,
+                fast: false,
+                slowed: false,
+            },
             history: StepHistory {
                 smallest: step,
                 largest: step,
                 added_mass: added,
                 added_share: added / initial_mass,
-                beyond_since: (step > limit && scene.when_unstable() == WhenUnstable::Watch).then_some(0.0),
+                beyond_since: (step > limit && policy == WhenUnstable::Watch).then_some(0.0),
                 ..StepHistory::default()
             },
         })
@@ -125,62 +150,65 @@ impl Follower {
     /// The largest step that may be taken when so much is stable (s).
     pub fn wanted(&self, limit: f64, seen: &Seen) -> f64 {
         let elements = if self.by_elements { self.safety * step_of(seen.at_rest) } else { f64::INFINITY };
-        (self.safety * limit).min(elements).min(self.own)
+        (self.safety * limit).min(elements).min(self.found.own.unwrap_or(f64::INFINITY))
     }
-}
-
-/// What has been found so far, for snapshots.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Found {
-    next: u64,
-    known: f64,
-    known_at: u64,
-    seen: Option<Seen>,
-    guessed: bool,
-    history: StepHistory,
-    /// Of each block, as base64 of f32; none before the first look.
-    growths: Vec<String>,
 }
 
 impl Follower {
     /// What has been found so far.
-    pub fn found(&self) -> Found {
+    pub fn followed(&self) -> Followed {
         let growth = |block: &Watched| {
             let bytes: Vec<u8> = block.known_growth().iter().flat_map(|growth| growth.to_le_bytes()).collect();
             BASE64_STANDARD.encode(bytes)
         };
-        Found {
-            next: self.next,
-            known: self.known,
-            known_at: self.known_at,
-            seen: self.seen,
-            guessed: self.guessed,
-            // time on a clock on the wall is no part of the state
-            history: StepHistory { seconds: 0.0, ..self.history },
-            growths: self.watched.iter().map(growth).collect(),
-        }
+        let growths = self.watched.iter().map(growth).collect();
+        // time on a clock on the wall is no part of the state
+        let history = StepHistory { seconds: 0.0, ..self.history };
+        Followed { found: self.found.clone(), history, growths }
     }
 
     /// Goes on from what had been found; false where it does not fit the world.
-    pub fn take_up(&mut self, found: Found, world: &mut World) -> bool {
-        self.watched = if found.growths.is_empty() { Vec::new() } else { Watched::all(world) };
+    pub fn take_up(&mut self, followed: Followed, world: &mut World) -> bool {
+        self.watched = if followed.growths.is_empty() { Vec::new() } else { Watched::all(world) };
         let growth = |text: &String| {
             let bytes = BASE64_STANDARD.decode(text).ok()?;
             Some(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect::<Vec<f32>>())
         };
-        let growths: Option<Vec<Vec<f32>>> = found.growths.iter().map(growth).collect();
+        let growths: Option<Vec<Vec<f32>>> = followed.growths.iter().map(growth).collect();
         let Some(growths) = growths.filter(|growths| growths.len() == self.watched.len()) else { return false };
         let fits = self.watched.iter_mut().zip(growths).all(|(block, growth)| block.take_known_growth(growth));
-        (self.next, self.known, self.known_at) = (found.next, found.known, found.known_at);
-        (self.seen, self.guessed, self.history) = (found.seen, found.guessed, found.history);
-        fits && self.known.is_finite()
+        (self.found, self.history) = (followed.found, followed.history);
+        fits && self.found.known.is_finite()
     }
-}
 
-/// How many elements there were at the last finding.
-fn before_alive(follower: &Follower) -> usize {
-    follower.seen.map_or(usize::MAX, |seen| seen.alive)
+    /// Elements have gone since the highest frequency was found: their mass has gone with them, and what was found holds no more.
+    pub fn has_lost(&self, seen: &Seen) -> bool {
+        self.found.seen.is_some_and(|before| seen.alive < before.alive)
+    }
+
+    /// The bound of ω² by nodes as elements are now (1/s²).
+    fn by_nodes(&self, world: &World) -> f64 {
+        let mut means = NodalMeans::<1>::new();
+        self.watched.iter().for_each(|block| block.bring_to_nodes(world, &mut means));
+        means.largest(world)[0]
+    }
+
+    /// The step before which is looked next: sooner where strains change fast and where the step is close to the limit.
+    fn next_look(&self, step: u64, seen: &Seen, clock: &Clock, signals: &Signals) -> u64 {
+        // far below the limit more may happen unseen
+        let room = self.most() * step_of(seen.square) / clock.time_step - 1.0;
+        let strain = (STRAIN.1 * room).clamp(STRAIN.0, STRAIN.1);
+        let calm = ((strain / seen.speed) as u64).min(step / 2);
+        // what is no number, or inside out, has no speed
+        let least =
+            if seen.speed.is_finite() { ((MOST_STRAIN / seen.speed) as u64).clamp(1, LOOKS.0) } else { LOOKS.0 };
+        let apart = calm.clamp(least.min(step.max(1)), LOOKS.1);
+        // what begins to act, or acts faster, is known beforehand
+        let piece = LOOKS.0 as f64 * clock.time_step;
+        let quickens = signals.quickens(clock.time() - piece, clock.time(), (LOOKS.1 / LOOKS.0) as u32);
+        let steps = quickens.map(|time| ((time - clock.time()) / clock.time_step).ceil() as u64);
+        step + apart.min(steps.unwrap_or(u64::MAX).max(least))
+    }
 }
 
 /// 2/ω.
@@ -201,13 +229,13 @@ impl Simulation {
 
     /// The next step before which the stable step is looked at.
     pub(super) fn next_follow(&self) -> u64 {
-        self.follower.as_ref().map_or(u64::MAX, |follower| follower.next)
+        self.follower.as_ref().map_or(u64::MAX, |follower| follower.found.next)
     }
 
     /// Looks at the stable step if it is time, and does what the scene wants done.
     pub(super) fn follow(&mut self) -> Result<(), Error> {
         let step = self.step_count();
-        let Some(mut follower) = self.follower.take_if(|follower| follower.next <= step) else { return Ok(()) };
+        let Some(mut follower) = self.follower.take_if(|follower| follower.found.next <= step) else { return Ok(()) };
         let started = Instant::now();
         let looked = self.look_with(&mut follower);
         follower.history.seconds += started.elapsed().as_secs_f64();
@@ -222,74 +250,33 @@ impl Simulation {
             follower.watched = Watched::all(&mut self.world);
         }
         let step = self.step_count();
-        let all = follower.watched.iter().map(|block| block.look(&self.world, follower.known));
+        let all = follower.watched.iter().map(|block| block.look(&self.world, follower.found.known));
         let mut seen = all.fold(Seen::NOTHING, Seen::and);
         follower.history.looks += 1;
         warn_of_rounding(&follower.watched, &mut self.world);
-        let time_step = self.world.resource::<Clock>().time_step;
-        // far below the limit more may happen unseen
-        let room = follower.most() * step_of(seen.square) / time_step - 1.0;
-        let strain = (STRAIN.1 * room).clamp(STRAIN.0, STRAIN.1);
-        let calm = ((strain / seen.speed) as u64).min(step / 2);
-        // what is no number, or inside out, has no speed
-        let least =
-            if seen.speed.is_finite() { ((MOST_STRAIN / seen.speed) as u64).clamp(1, LOOKS.0) } else { LOOKS.0 };
-        follower.next = step + calm.clamp(least, LOOKS.1);
-        if seen.alive < before_alive(follower) && matches!(follower.policy, WhenUnstable::ScaleMass { .. }) {
+        let clock = *self.world.resource::<Clock>();
+        let lost = follower.has_lost(&seen);
+        if lost {
+            seen.square = seen.of_elements;
+        }
+        if clock.time_step > follower.most() * step_of(seen.square) {
+            seen.square = seen.square.min(follower.by_nodes(&self.world));
+        }
+        if lost && matches!(follower.policy, WhenUnstable::ScaleMass { .. }) {
             // what was added to removed elements goes with them
             bring_to_host(&mut self.world, |_, name| [Mass::NAME, FictitiousMass::NAME].contains(&name))?;
             mass_scaling::weigh(&mut self.world);
             send_to_device(&mut self.world, |_, name| name == FictitiousMass::NAME)?;
         }
-        if !seen.speed.is_finite() || seen.alive == 0 {
-            // what is no number is the guards' business
-            return Ok(());
-        }
-        let pressing = time_step > follower.most() * step_of(seen.square);
-        let before = follower.seen.unwrap_or(seen);
-        let relieved = seen.of_elements < RELIEF * before.of_elements || seen.alive < before.alive;
-        let may_grow =
-            follower.policy == WhenUnstable::Adapt && time_step * WORTH < follower.wanted(f64::INFINITY, &seen);
-        let affordable = follower.history.sharp_looks < SHARP_LOOKS.0 + step / SHARP_LOOKS.1;
-        let better = affordable && (pressing || follower.guessed || relieved && may_grow);
-        let worth_it = match follower.policy {
-            // far off the cheap bound says nothing, and steps made small on its word cost more than the finding
-            WhenUnstable::Adapt => {
-                let made_small = follower.guessed && VAGUE * time_step < step_of(follower.known);
-                (made_small || time_step > VAGUE * step_of(seen.square)) && step >= follower.known_at + REST
-            }
-            WhenUnstable::Watch => false,
-            // mass is not added and elements are not removed on its word
-            WhenUnstable::ScaleMass { .. } | WhenUnstable::Remove => pressing,
-        };
-        if better || worth_it {
-            bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
-            if let Some(found) = limits(&mut self.world, ACCURACY) {
-                for block in &mut follower.watched {
-                    block.remember(&self.world);
-                }
-                (follower.known, follower.known_at) = (square_of(found.safe), step);
-                seen.square = follower.known;
-                follower.seen = Some(seen);
-                follower.guessed = false;
-                follower.history.sharp_looks += 1;
+        follower.found.next = follower.next_look(step, &seen, &clock, self.world.resource::<Signals>());
+        // what is no number is the guards' business
+        if seen.speed.is_finite() && seen.alive > 0 {
+            match follower.policy {
+                WhenUnstable::Adapt => self.adapt(follower, seen)?,
+                _ => self.hold(follower, seen)?,
             }
         }
-        follower.seen.get_or_insert(seen);
-        match follower.policy {
-            WhenUnstable::Adapt => self.adapt(follower, &seen, time_step),
-            WhenUnstable::Watch => {
-                if time_step > step_of(follower.known) {
-                    let now = self.time();
-                    follower.history.beyond_since.get_or_insert(now);
-                    // told once; the guards see to the rest
-                    follower.next = u64::MAX;
-                }
-                Ok(())
-            }
-            _ if follower.known_at != step || time_step <= follower.most() * step_of(seen.square) => Ok(()),
-            WhenUnstable::ScaleMass { .. } => self.make_heavier(follower, time_step),
-            WhenUnstable::Remove => self.remove_quickest(follower, &seen),
-        }
+        follower.found.looked_at = step;
+        Ok(())
     }
 }

@@ -7,6 +7,9 @@
 //!
 //! so with a chance of δ of being wrong λ ≤ θ/(1 − ε), √ε = ln(1.648 √n/δ)/(2k − 1). Where the recursion exhausts the
 //! space, θ = λ.
+//!
+//! The margin goes by the number of products, whatever the start: one that knows the eigenvector shows θ sooner, but nothing above it
+//! can be ruled out with fewer. So what is saved is products whose margin buys too little: see [`largest_worth`].
 
 use super::tangent::Tangent;
 use crate::components::*;
@@ -23,18 +26,32 @@ const EXHAUSTED: f64 = 1e-7;
 /// the vectors would take half as long as the products.
 const KEPT_BELOW: usize = 20;
 
+/// What a product costs, in steps. It is one evaluation of all forces in f64 by the kernel of all effects, and the recursion.
+pub(super) const PRODUCT: f64 = 2.0;
+/// Products between two places at which the recursion may end early. The chance δ is that of each of them.
+const BETWEEN_STOPS: usize = 4;
+
 /// The largest eigenvalue of M⁻¹K.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Largest {
     /// The Ritz value: never above the eigenvalue (1/s²).
     pub at_least: f64,
-    /// With the margin: never below it (1/s²).
+    /// With the margin: never below it (1/s²); infinite after few products.
     pub at_most: f64,
+    /// Products taken.
+    pub products: usize,
 }
 
 /// The largest eigenvalue of M⁻¹K at the present state with held axes, known to the share `accuracy`. The columns on the
 /// host must be up to date: see [`Tangent::COLUMNS`]. `None` where nothing can move, or forces are no numbers.
 pub(super) fn largest_eigenvalue(world: &mut World, accuracy: f64) -> Option<Largest> {
+    largest_worth(world, accuracy, None)
+}
+
+/// The same, where there are `steps` known only so well as is worth the products: that is how many will be taken when the eigenvalue is
+/// at most so large, and [`PRODUCT`] what a product costs. It ends where the steps that all further products could save, were θ the eigenvalue, are fewer
+/// than they cost; before the first where even nothing to resist motion would save too little.
+pub(super) fn largest_worth(world: &mut World, accuracy: f64, steps: Option<&dyn Fn(f64) -> f64>) -> Option<Largest> {
     let bodies = bodies(world);
     let roots = roots_of_mass(world, &bodies);
     let free = roots.iter().filter(|&&root| root > 0.0).count();
@@ -44,27 +61,49 @@ pub(super) fn largest_eigenvalue(world: &mut World, accuracy: f64) -> Option<Lar
     let luck = (1.648 * (free as f64).sqrt() / BAD_LUCK).ln();
     // products that make the margin small enough
     let enough = (0.5 * (luck / accuracy.sqrt() + 1.0)).ceil() as usize;
+    let at_most = |ritz: f64, products: usize| {
+        let margin = if products > 0 { (luck / (2.0 * products as f64 - 1.0)).powi(2) } else { f64::INFINITY };
+        if margin < MOST_MARGIN { ritz / (1.0 - margin) * (1.0 + OF_DIFFERENCES) } else { f64::INFINITY }
+    };
+    let worth_more = |ritz: f64, products: usize| {
+        let Some(steps) = steps else { return true };
+        let all = |more: usize| PRODUCT * more as f64 + steps(at_most(ritz, products + more));
+        let now = all(0);
+        (1..=enough - products.min(enough)).any(|more| !(all(more) >= now))
+    };
+    if !worth_more(0.0, 0) {
+        return Some(Largest { at_least: 0.0, at_most: f64::INFINITY, products: 0 });
+    }
     let mut tangent = Tangent::at_present(world, &bodies)?;
-    let found = lanczos(noise(&roots), enough, |x, image| {
+    let times = |x: &[f64], image: &mut [f64]| {
         let u: Vec<f64> = x.iter().zip(&roots).map(|(x, root)| x * root).collect();
         tangent.times(&u, image);
         image.iter_mut().zip(&roots).for_each(|(force, root)| *force *= root);
-    })?;
-    let margin = match found.exhausted {
-        true => 0.0,
-        false => (luck / (2.0 * enough as f64 - 1.0)).powi(2).min(0.99),
     };
-    let at_most = found.largest / (1.0 - margin) * (1.0 + OF_DIFFERENCES);
-    Some(Largest { at_least: found.largest, at_most })
+    let found = lanczos(noise(&roots), enough, times, worth_more)?;
+    let at_most = match found.exhausted {
+        true => found.largest * (1.0 + OF_DIFFERENCES),
+        false => at_most(found.largest, found.products),
+    };
+    Some(Largest { at_least: found.largest, at_most, products: found.products })
 }
+
+/// A margin so large says nothing.
+const MOST_MARGIN: f64 = 0.99;
 
 struct Ritz {
     largest: f64,
+    products: usize,
     exhausted: bool,
 }
 
-/// The largest Ritz value after `products` products; `None` when it is no positive number.
-fn lanczos(start: Vec<f64>, products: usize, mut times: impl FnMut(&[f64], &mut [f64])) -> Option<Ritz> {
+/// The largest Ritz value after `products` products, or as soon as more are not worth it; `None` when it is no positive number.
+fn lanczos(
+    start: Vec<f64>,
+    products: usize,
+    mut times: impl FnMut(&[f64], &mut [f64]),
+    worth_more: impl Fn(f64, usize) -> bool,
+) -> Option<Ritz> {
     let size = start.len();
     let dimensions = start.iter().filter(|&&x| x != 0.0).count();
     let keep = dimensions <= KEPT_BELOW * products;
@@ -89,6 +128,11 @@ fn lanczos(start: Vec<f64>, products: usize, mut times: impl FnMut(&[f64], &mut 
         let along = dot(&image, &vector);
         let back = if diagonal.is_empty() { 0.0 } else { length };
         diagonal.push(along);
+        if diagonal.len() % BETWEEN_STOPS == 0
+            && !worth_more(largest_of_tridiagonal(&diagonal, &beside), diagonal.len())
+        {
+            break;
+        }
         scale = scale.max(along.abs());
         for i in 0..size {
             image[i] -= along * vector[i] + back * previous[i];
@@ -107,7 +151,7 @@ fn lanczos(start: Vec<f64>, products: usize, mut times: impl FnMut(&[f64], &mut 
         }
     }
     let largest = largest_of_tridiagonal(&diagonal, &beside);
-    (largest.is_finite() && largest > 0.0).then_some(Ritz { largest, exhausted })
+    (largest.is_finite() && largest > 0.0).then_some(Ritz { largest, products: diagonal.len(), exhausted })
 }
 
 /// Bodies in a fixed order.
@@ -199,9 +243,14 @@ mod tests {
             let eigenvalue = |i: usize| 0.5 - 0.5 * (std::f64::consts::PI * (i as f64 + 0.5) / size as f64).cos();
             let largest = eigenvalue(size - 1);
             let luck = (1.648 * (size as f64).sqrt() / BAD_LUCK).ln();
-            let found = lanczos(noise(&vec![1.0; size]), products, |x, image| {
-                (0..size).for_each(|i| image[i] = eigenvalue(i) * x[i]);
-            });
+            let found = lanczos(
+                noise(&vec![1.0; size]),
+                products,
+                |x, image| {
+                    (0..size).for_each(|i| image[i] = eigenvalue(i) * x[i]);
+                },
+                |_, _| true,
+            );
             let found = found.map_or(0.0, |found| found.largest);
             let margin = (luck / (2.0 * products as f64 - 1.0)).powi(2);
             assert!(found <= largest * (1.0 + 1e-12) && found >= (1.0 - margin) * largest, "{products}: {found}");
@@ -213,9 +262,14 @@ mod tests {
         // it converges within some products, and what rounding brings back of it stays at most as large
         let size = 5000;
         let eigenvalue = |i: usize| if i == 17 { 10.0 } else { (i % 100) as f64 / 100.0 };
-        let found = lanczos(noise(&vec![1.0; size]), 100, |x, image| {
-            (0..size).for_each(|i| image[i] = eigenvalue(i) * x[i]);
-        });
+        let found = lanczos(
+            noise(&vec![1.0; size]),
+            100,
+            |x, image| {
+                (0..size).for_each(|i| image[i] = eigenvalue(i) * x[i]);
+            },
+            |_, _| true,
+        );
         let found = found.map_or(0.0, |found| found.largest);
         assert!((found / 10.0 - 1.0).abs() < 1e-12, "{found}");
     }
@@ -223,7 +277,12 @@ mod tests {
     #[test]
     fn a_space_that_is_exhausted_gives_the_eigenvalue_itself() {
         let eigenvalues = [3.0, 1.0, 3.0, 2.0, 0.0];
-        let found = lanczos(noise(&[1.0; 5]), 50, |x, image| (0..5).for_each(|i| image[i] = eigenvalues[i] * x[i]));
+        let found = lanczos(
+            noise(&[1.0; 5]),
+            50,
+            |x, image| (0..5).for_each(|i| image[i] = eigenvalues[i] * x[i]),
+            |_, _| true,
+        );
         assert!(found.is_some_and(|found| found.exhausted && (found.largest - 3.0).abs() < 1e-9));
     }
 }

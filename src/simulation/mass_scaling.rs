@@ -1,7 +1,7 @@
 //! Mass scaling: elements that need a smaller step than is wanted are made heavier. Gravity, damping and the mass that is
 //! reported stay those of the real mass; only what resists acceleration grows.
 
-use crate::assembly::square_frequencies;
+use crate::assembly::{alike_in_any_precision, author_of};
 use crate::components::*;
 use crate::evaluation::{lane_place, node_count, rest_volume};
 use bevy_ecs::prelude::*;
@@ -33,11 +33,7 @@ impl Light {
 pub(super) fn step_for(world: &mut World, most: f64, least: f64, usual: f64) -> f64 {
     let mut elements = Vec::new();
     for block in blocks(world) {
-        let squares = square_frequencies(world, block).into_iter().enumerate();
-        let there = squares.filter(|(_, (_, volume))| *volume > 0.0);
-        elements.extend(
-            there.map(|(row, (square, _))| Light { mass: mass_of(world, block, row), bound: 2.0 / square.sqrt() }),
-        );
+        elements.extend(there(world, block).map(|(_, element)| element));
     }
     let all: f64 = elements.iter().map(|element| element.mass).sum();
     let added = |step: f64| elements.iter().map(|element| element.added(step)).sum::<f64>();
@@ -68,16 +64,59 @@ pub(super) fn insert_columns(precision: Precision, world: &mut World) {
     }
 }
 
-/// Makes elements of a block so heavy that they are stable up to a step (s); `bounds` are rows and what they are stable up
-/// to as they are, with what was added before. What their nodes weigh must be summed anew: [`weigh`].
-pub(super) fn make_heavier(world: &mut World, block: Entity, bounds: &[(usize, f64)], step: f64) {
-    let added: Vec<(usize, f64)> = {
-        let Some(column) = world.get::<AddedMass>(block) else { return };
-        let total = |row: usize| mass_of(world, block, row) + column.0[row];
-        bounds.iter().map(|&(row, bound)| (row, Light { mass: total(row), bound }.added(step))).collect()
-    };
-    if let Some(mut column) = world.get_mut::<AddedMass>(block) {
-        added.into_iter().for_each(|(row, added)| column.0[row] += added);
+/// Elements of a block that are there at rest, by their rows: without what was added.
+fn there(world: &World, block: Entity) -> impl Iterator<Item = (usize, Light)> {
+    let elements = alike_in_any_precision(world, block).into_iter().enumerate();
+    let there = elements.filter(|(_, (_, mass))| *mass > 0.0);
+    there.map(|(row, (square, mass))| (row, Light { mass, bound: 2.0 / square.sqrt() }))
+}
+
+/// What has to be added to elements so that they are stable up to a step.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Additions {
+    /// Block, row, mass (kg) that comes on top of what was added before.
+    elements: Vec<(Entity, usize, f64)>,
+}
+
+impl Additions {
+    /// For all elements at rest, to which nothing was added yet.
+    pub fn at_rest(world: &mut World, step: f64) -> Self {
+        let mut additions = Self::default();
+        for block in blocks(world) {
+            additions.elements.extend(there(world, block).map(|(row, element)| (block, row, element.added(step))));
+        }
+        additions
+    }
+
+    /// For elements of a block: rows, and what they are stable up to as they are, with what was added before.
+    pub fn and(&mut self, world: &World, block: Entity, bounds: &[(usize, f64)], step: f64) {
+        let needed = |&(row, bound): &(usize, f64)| {
+            let (mass, _) = heavy_mass(world, block, row)?;
+            Some((block, row, Light { mass, bound }.added(step)))
+        };
+        self.elements.extend(bounds.iter().filter_map(needed));
+    }
+
+    /// All of it (kg); infinite where one is no number.
+    pub fn mass(&self) -> f64 {
+        let mass: f64 = self.elements.iter().map(|(_, _, added)| added).sum();
+        if mass.is_nan() { f64::INFINITY } else { mass }
+    }
+
+    /// Body and author's number of the element that needs most.
+    pub fn most_needy(&self, world: &World) -> (String, u64) {
+        let order = |added: f64| if added.is_nan() { f64::INFINITY } else { added };
+        let most = self.elements.iter().max_by(|a, b| order(a.2).total_cmp(&order(b.2)));
+        most.and_then(|&(block, row, _)| author_of(world, block, row)).unwrap_or_default()
+    }
+
+    /// Adds it. What nodes weigh must be summed anew: [`weigh`].
+    pub fn make(&self, world: &mut World) {
+        for &(block, row, added) in &self.elements {
+            if let Some(mut column) = world.get_mut::<AddedMass>(block) {
+                column.0[row] += added;
+            }
+        }
     }
 }
 
@@ -129,20 +168,23 @@ fn spread(world: &World, entity: Entity, nodes: &mut [f64]) -> f64 {
     sum
 }
 
-/// Real mass of an element (kg).
+/// Real mass of an element (kg), as the world's precision has it.
 fn mass_of(world: &World, entity: Entity, row: usize) -> f64 {
     let (Some(block), Some(shape)) = (world.get::<Block>(entity), world.get::<RestShape>(entity)) else { return 0.0 };
     let density = world.get::<Density>(block.material).map_or(0.0, |density| density.0);
     density * rest_volume(block, row, shape)
 }
 
-/// How much heavier an element is than it was: real and added mass over the real one.
-pub(super) fn heaviness(world: &World, entity: Entity, row: usize) -> f64 {
+/// The mass that an element's nodes move with for it (kg), and how many times its real one that is; `None` of one that is not there.
+pub(super) fn heavy_mass(world: &World, entity: Entity, row: usize) -> Option<(f64, f64)> {
     let real = mass_of(world, entity, row);
-    match world.get::<AddedMass>(entity) {
-        Some(added) if real > 0.0 => (real + added.0[row]) / real,
-        _ => 1.0,
-    }
+    let added = world.get::<AddedMass>(entity).map_or(0.0, |added| added.0[row]);
+    (real > 0.0).then(|| (real + added, (real + added) / real))
+}
+
+/// Real mass of all elements (kg).
+pub(super) fn mass_of_all(world: &mut World) -> f64 {
+    blocks(world).into_iter().map(|block| there(world, block).map(|(_, element)| element.mass).sum::<f64>()).sum()
 }
 
 /// Blocks in a fixed order.

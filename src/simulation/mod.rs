@@ -1,8 +1,11 @@
 //! A scene at work: the world, its schedule, its clock.
 
 mod access;
+mod adapt;
+mod added_mass;
 mod beat;
 mod build;
+mod costly;
 pub mod explain;
 mod follow;
 mod frequency;
@@ -12,6 +15,7 @@ mod keep;
 mod mass_scaling;
 mod modes;
 mod names;
+mod nodal;
 mod node_set;
 mod options;
 mod outputs;

@@ -1,7 +1,7 @@
 //! What a simulation remembers of its pace, beside the clock: for snapshots, so that what goes on from one takes the same steps.
 
 use super::beat::Beat;
-use super::follow::Found;
+use super::follow::Followed;
 use super::step_change::relax_as;
 use super::{Job, Simulation};
 use crate::components::Clock;
@@ -19,7 +19,7 @@ struct Pace {
     /// When systems on the host run next, by name.
     beats: BTreeMap<String, Beat>,
     /// What is known of the stable step.
-    found: Option<Found>,
+    found: Option<Followed>,
 }
 
 impl Simulation {
@@ -31,7 +31,7 @@ impl Simulation {
         };
         let pace = Pace {
             beats: self.entries.iter().filter_map(beat).collect(),
-            found: self.follower.as_ref().map(|follower| follower.found()),
+            found: self.follower.as_ref().map(|follower| follower.followed()),
         };
         let text = ron::to_string(&pace).map_err(|error| SnapshotError::Senseless(error.to_string()))?;
         snapshot.set_pace(text);

@@ -1,13 +1,15 @@
 //! The step of a scene: what is stable at the start, and what of it is taken.
 
-use super::frequency::largest_eigenvalue;
+use super::costly::warn_of_costly;
+use super::follow::step_of;
+use super::frequency::{Largest, PRODUCT, largest_eigenvalue, largest_worth};
+use super::nodal::bound_at_rest;
 use super::tangent::Tangent;
-use super::{Simulation, mass_scaling};
-use crate::assembly::{StableStep, StepSetter, square_frequencies, stable_step};
+use super::{Simulation, added_mass};
+use crate::assembly::{StableStep, stable_step};
 use crate::backend::device::bring_to_host;
-use crate::components::*;
 use crate::error::Error;
-use crate::scene::schema::{Scene, StepBound, WhenUnstable};
+use crate::scene::schema::{Inversion, Scene, StepBound, WhenUnstable};
 use crate::scene::{Diagnostics, SceneFile};
 use bevy_ecs::prelude::*;
 use serde::Serialize;
@@ -16,47 +18,67 @@ use serde::Serialize;
 pub(super) const ACCURACY: f64 = 0.04;
 /// The same where a scene's own step lies within the margin.
 const SHARP: f64 = 0.005;
-/// Elements that make the step so many times smaller than a usual one needs are told of.
-const COSTLY: f64 = 10.0;
-/// More added mass than this share is always told of.
-const WORTH_TELLING: f64 = 0.05;
 
 /// What is known of the stable step at the start.
 #[derive(Clone, Debug, Serialize)]
 pub struct Stability {
     /// The bound, and the elements that set it.
     pub bound: StableStep,
-    /// The largest stable step by the highest frequency of all bodies as they are held (s): never above the true limit,
-    /// and at least 0.97 of it. `None` in a static analysis, whose steps are no motion.
+    /// The bound by nodes (s): elements weighed by their mass where they meet, never below that of the stiffest element. `None` in a
+    /// static analysis.
+    pub by_nodes: Option<f64>,
+    /// The largest stable step that is known of all bodies as they are held (s): never above the true limit. `None` in a static
+    /// analysis, whose steps are no motion.
     pub limit: Option<f64>,
-    /// What the step was found from: `elements` or `iterated`.
+    /// A step that is beyond the true limit for certain, or at it (s), where the highest frequency was sought: with 48 products
+    /// `limit` is at least 0.97 of it.
+    pub beyond: Option<f64>,
+    /// Products with the stiffness by which the highest frequency was sought; 0: it was not.
+    pub products: usize,
+    /// What the step was found from: `elements`, `nodes`, `iterated`, or `scene` where it is the scene's own.
     pub found_from: &'static str,
+    /// Why from that.
+    pub because: String,
     /// The stable step by that (s).
     pub stable_step: f64,
     /// The first step that is taken (s).
     pub step: f64,
+    /// Whether the step stays with what the elements alone allow.
+    #[serde(skip)]
+    pub(super) stays_with_elements: bool,
 }
 
 impl Stability {
+    /// What the step was found from.
+    pub fn in_words(&self) -> &'static str {
+        match self.found_from {
+            "iterated" => "the highest frequency of all elements",
+            "nodes" => "the bound by nodes",
+            "scene" => "the scene",
+            _ => "the stiffest element",
+        }
+    }
+
     /// Of a static analysis.
     pub fn of_rest(bound: StableStep) -> Self {
-        Self { stable_step: bound.time_step, step: 0.0, bound, limit: None, found_from: "elements" }
+        Self {
+            stable_step: bound.time_step,
+            step: 0.0,
+            bound,
+            by_nodes: None,
+            limit: None,
+            beyond: None,
+            products: 0,
+            found_from: "elements",
+            because: "steps to rest are no motion".into(),
+            stays_with_elements: true,
+        }
     }
 }
 
-/// The largest step that is stable at the present state (s), from below, and what cannot be far above it.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Limits {
-    /// Never above the true limit.
-    pub safe: f64,
-    /// Never below it.
-    pub certainly_unstable: f64,
-}
-
-/// The true limit of the present state; the bound of the elements is taken where it is better.
-pub(super) fn limits(world: &mut World, accuracy: f64) -> Option<Limits> {
-    let found = largest_eigenvalue(world, accuracy)?;
-    Some(Limits { safe: 2.0 / found.at_most.sqrt(), certainly_unstable: 2.0 / found.at_least.sqrt() })
+/// The true limit of the present state, from below (s).
+pub(super) fn limit_now(world: &mut World, accuracy: f64) -> Option<f64> {
+    largest_eigenvalue(world, accuracy).map(|found| step_of(found.at_most))
 }
 
 impl Simulation {
@@ -67,7 +89,7 @@ impl Simulation {
     /// What the GPU says.
     pub fn stable_limit(&mut self) -> Result<Option<f64>, Error> {
         bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
-        Ok(limits(&mut self.world, ACCURACY).map(|found| found.safe))
+        Ok(limit_now(&mut self.world, ACCURACY))
     }
 }
 
@@ -78,31 +100,56 @@ pub(super) fn choose(
     diagnostics: &mut Diagnostics,
 ) -> Option<(Stability, f64, u64)> {
     let bound = found_bound(world, diagnostics)?;
-    warn_of_costly(&bound, diagnostics);
     let integration = &scene.scene.integration;
     // what the elements are stable up to, once they are made heavier where the scene wants that
     let heavier = match scene.scene.when_unstable() {
-        WhenUnstable::ScaleMass { most } => scale_mass(scene, &bound, most, world, diagnostics),
+        WhenUnstable::ScaleMass { most } => added_mass::at_the_start(scene, &bound, most, world, diagnostics)?,
         _ => bound.time_step,
     };
-    let mut limits = limits(world, ACCURACY);
-    // a step of the scene's own may lie within the margin
-    if let (Some(step), Some(known)) = (integration.step, &limits)
-        && step > known.safe.max(heavier)
-        && step < known.certainly_unstable
+    // rounding of means must not take what the elements alone allow
+    let certain = step_of(bound_at_rest(world)).max(heavier);
+    let stays = reason_to_stay(&scene.scene);
+    if integration.bound == StepBound::Iterated
+        && scene.scene.when_unstable() == WhenUnstable::Adapt
+        && let Some(reason) = stays
     {
-        limits = self::limits(world, SHARP);
+        diagnostics
+            .warn_at("integration.bound", reason)
+            .note("`bound: Auto` stays with the stiffest element, which is safe");
     }
-    // the bound is certain as well: at rest the better of both counts
-    let limit = limits.map_or(heavier, |found| found.safe.max(heavier));
+    let found = seek(&scene.scene, certain, stays.is_none(), world);
+    // the bounds are certain as well: at rest the best of all
+    let limit = step_of(found.at_most).max(certain);
     let (found_from, stable_step) = match integration.bound {
         StepBound::Elements => ("elements", heavier),
-        StepBound::Iterated => ("iterated", limit),
+        StepBound::Auto if stays.is_some() => ("elements", heavier),
+        _ if limit > certain => ("iterated", limit),
+        _ if certain > heavier => ("nodes", certain),
+        _ => ("elements", heavier),
     };
-    let mut stability = Stability { bound, limit: Some(limit), found_from, stable_step, step: 0.0 };
+    let found_from = if integration.step.is_some() { "scene" } else { found_from };
+    let stability = Stability {
+        bound,
+        by_nodes: Some(certain),
+        limit: Some(limit),
+        beyond: (found.at_least > 0.0).then(|| step_of(found.at_least)),
+        products: found.products,
+        found_from,
+        because: because(&scene.scene, certain, stable_step, &found, stays),
+        stable_step,
+        step: 0.0,
+        stays_with_elements: match integration.bound {
+            StepBound::Elements => true,
+            StepBound::Auto => stays.is_some(),
+            StepBound::Iterated => false,
+        },
+    };
     let (time_step, steps) = taken(&scene.scene, &stability, diagnostics);
-    stability.step = time_step;
-    if steps > 1e15 {
+    let stability = Stability { step: time_step, ..stability };
+    if integration.step.is_none() {
+        warn_of_costly(&stability, world, diagnostics);
+    }
+    if !(steps <= 1e15) {
         let duration = scene.scene.duration;
         diagnostics.error_at(
             "duration",
@@ -113,49 +160,71 @@ pub(super) fn choose(
     Some((stability, time_step, steps as u64))
 }
 
-/// Makes elements heavier for the step that the scene wants, or for the largest that so much added mass allows. What all
-/// elements are stable up to then (s).
-fn scale_mass(
-    scene: &SceneFile,
-    bound: &StableStep,
-    most: f64,
-    world: &mut World,
-    diagnostics: &mut Diagnostics,
-) -> f64 {
-    let integration = &scene.scene.integration;
-    let wanted = match integration.step {
-        Some(step) => (step / integration.safety).max(bound.time_step),
-        None => mass_scaling::step_for(world, most, bound.time_step, bound.usual),
-    };
-    let precision = match world.query::<&Mass>().iter(world).next() {
-        Some(Mass(Reals::F32(_))) => Precision::F32,
-        _ => Precision::F64,
-    };
-    mass_scaling::insert_columns(precision, world);
-    let mut blocks: Vec<Entity> = world.query_filtered::<Entity, With<Block>>().iter(world).collect();
-    blocks.sort();
-    for block in blocks {
-        let squares = square_frequencies(world, block).into_iter().enumerate();
-        let bounds: Vec<(usize, f64)> = squares.map(|(row, (square, _))| (row, 2.0 / square.sqrt())).collect();
-        mass_scaling::make_heavier(world, block, &bounds, wanted);
+/// Why the step that is found by default stays with what the elements allow: what needs the room between that and the true limit.
+fn reason_to_stay(scene: &Scene) -> Option<&'static str> {
+    let removes = scene.materials.values().any(|material| material.inversion() == Inversion::Remove);
+    match scene.when_unstable() {
+        WhenUnstable::Adapt if removes || !scene.removal.is_empty() => {
+            Some("elements that are removed take their mass with them, which raises the highest frequency at once")
+        }
+        WhenUnstable::Adapt => None,
+        WhenUnstable::Watch => Some("the step does not follow where frequencies rise (when_unstable: Watch)"),
+        WhenUnstable::ScaleMass { .. } => Some("elements are made heavier one by one (when_unstable: ScaleMass)"),
+        WhenUnstable::Remove => Some("elements go that need a smaller step (when_unstable: Remove)"),
     }
-    let added = mass_scaling::weigh(world).mass;
-    let all: f64 =
-        world.query::<&Mass>().iter(world).map(|mass| (0..mass.len()).map(|i| mass.get(i)).sum::<f64>()).sum();
-    let share = added / all;
-    // rounding of what just fits is no reason to warn
-    if share > most * (1.0 + 1e-6) || share > WORTH_TELLING {
-        diagnostics
-            .warn_at(
-                "integration.when_unstable",
-                format!("{added:.3e} kg are added for a stable step of {wanted:.3e} s: {:.1} % of all mass", 100.0 * share),
-            )
-            .note(format!(
-                "motion is slowed where mass is added; a smaller `step` needs less, and without `step` no more than `most` \
-                 ({most}) is added"
-            ));
+}
+
+/// The highest frequency of all bodies as they are held, as well as the scene needs it; `certain` (s) is stable anyway.
+fn seek(scene: &Scene, certain: f64, adapts: bool, world: &mut World) -> Largest {
+    let integration = &scene.integration;
+    let nothing = Largest { at_least: 0.0, at_most: f64::INFINITY, products: 0 };
+    let found = match (integration.step, integration.bound) {
+        // certainly stable: nothing depends on more
+        (Some(step), StepBound::Auto) if step <= certain && adapts => return nothing,
+        (None, StepBound::Auto) if adapts => {
+            let steps = |at_most: f64| scene.duration / (integration.safety * step_of(at_most).max(certain));
+            largest_worth(world, ACCURACY, Some(&steps))
+        }
+        _ => largest_eigenvalue(world, ACCURACY),
+    };
+    let found = found.unwrap_or(nothing);
+    // a step of the scene's own may lie within the margin
+    match integration.step {
+        Some(step) if step > step_of(found.at_most).max(certain) && step < step_of(found.at_least) => {
+            largest_eigenvalue(world, SHARP).unwrap_or(found)
+        }
+        _ => found,
     }
-    wanted
+}
+
+/// Why the step is found from what it is found from.
+fn because(scene: &Scene, certain: f64, stable_step: f64, found: &Largest, stays: Option<&str>) -> String {
+    let integration = &scene.integration;
+    if integration.step.is_some() {
+        return "its own step".into();
+    }
+    match (integration.bound, stays) {
+        (StepBound::Elements, _) => "bound: Elements".into(),
+        (StepBound::Iterated, _) => "bound: Iterated".into(),
+        (StepBound::Auto, Some(reason)) => reason.into(),
+        (StepBound::Auto, None) => {
+            let steps = |stable: f64| (scene.duration / (integration.safety * stable)).ceil();
+            let costs = PRODUCT * found.products as f64;
+            match stable_step > certain {
+                true => format!(
+                    "{:.0} steps in place of {:.0}, for {} products with the stiffness, which cost about {costs:.0}",
+                    steps(stable_step),
+                    steps(certain),
+                    found.products
+                ),
+                false => format!(
+                    "{:.0} steps are too few for the highest frequency to be worth seeking further ({} products)",
+                    steps(certain),
+                    found.products
+                ),
+            }
+        }
+    }
 }
 
 /// The bound of all elements, if it is one.
@@ -200,37 +269,4 @@ fn taken(scene: &Scene, stability: &Stability, diagnostics: &mut Diagnostics) ->
         }
     }
     (step, (duration / step).round().max(1.0))
-}
-
-/// Warns of elements that cost much more than usual ones.
-fn warn_of_costly(bound: &StableStep, diagnostics: &mut Diagnostics) {
-    if bound.cost() < COSTLY {
-        return;
-    }
-    let (body, element) = bound.culprit();
-    let warning = diagnostics.warn_at(
-        "bodies",
-        format!(
-            "element {element} of {body} makes the step {:.0} times smaller than half of the tissue needs: {:.2e} s instead \
-             of {:.2e} s",
-            bound.cost(),
-            bound.time_step,
-            bound.usual
-        ),
-    );
-    for worst in &bound.worst {
-        warning.note(setter(worst));
-    }
-    warning.note(
-        "look at the mesh and the material there, or have such elements made heavier: integration: (when_unstable: ScaleMass())",
-    );
-}
-
-/// An element that sets the step, in a line.
-fn setter(worst: &StepSetter) -> String {
-    let StepSetter { body, element, bound, cost, gain } = worst;
-    format!(
-        "element {element} of {body}: stable up to {bound:.3e} s, {cost:.4} times below the usual; without it and those \
-         before it the step could be {gain:.4} times longer"
-    )
 }

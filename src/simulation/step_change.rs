@@ -37,7 +37,7 @@ const WRITTEN: [&str; 6] = [
 
 impl Simulation {
     /// Takes steps of another length (s) from the present one on, whatever is stable; the scene ends with the last whole
-    /// step in its duration.
+    /// step in its duration. Where the step follows what is stable, it becomes no larger than this from then on.
     ///
     /// # Errors
     /// A step that is no positive number; a static analysis, whose steps are no motion; what the GPU says.
@@ -47,6 +47,9 @@ impl Simulation {
             return Err(Error::Options(format!("{time_step} s is no step that this simulation can take")));
         }
         let left = ((self.scene.duration - clock.time()) / time_step).round().max(0.0);
+        if let Some(follower) = &mut self.follower {
+            follower.found.own = Some(time_step);
+        }
         self.change_step(time_step, clock.step + left as u64)
     }
 

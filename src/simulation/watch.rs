@@ -1,7 +1,8 @@
 //! How much quicker elements can have become: a cheap bound, from how far they are deformed now.
 
 use super::growth::Growth;
-use super::mass_scaling::heaviness;
+use super::mass_scaling::heavy_mass;
+use super::nodal::NodalMeans;
 use crate::assembly::square_frequencies;
 use crate::backend::cpu::{BlockLaw, Cpu, Strain, StrainColumns, strains};
 use crate::components::*;
@@ -19,6 +20,8 @@ pub(super) struct Watched {
     growth: Growth,
     /// Of each element the bound of ω² at rest (1/s²).
     pub squares: Vec<f64>,
+    /// The mass that its nodes move with for each (kg), with what was added.
+    masses: Vec<f64>,
     /// The shortest distance between two nodes of an element at rest (m).
     pub shortest_edge: f64,
     /// The growth of ω² when the frequency of all was found last.
@@ -66,7 +69,8 @@ impl Watched {
             let block = world.get::<Block>(entity)?;
             let rest = world.get::<RestPosition>(block.body)?;
             let shortest_edge = shortest_edge(block, world.get::<Connectivity>(entity)?, rest);
-            let mut watched = Self { entity, growth, squares: Vec::new(), shortest_edge, known_growth: Vec::new() };
+            let (squares, masses, known_growth) = (Vec::new(), Vec::new(), Vec::new());
+            let mut watched = Self { entity, growth, squares, masses, shortest_edge, known_growth };
             watched.weigh(world);
             watched.known_growth = vec![1.0; watched.squares.len()];
             Some(watched)
@@ -77,7 +81,11 @@ impl Watched {
     /// Takes the bounds at rest anew, with the mass that was added by now.
     pub fn weigh(&mut self, world: &World) {
         let squares = square_frequencies(world, self.entity).into_iter().enumerate();
-        self.squares = squares.map(|(row, (square, _))| square / heaviness(world, self.entity, row)).collect();
+        let of_row = |(row, (square, _)): (usize, (f64, f64))| {
+            let (mass, heavier) = heavy_mass(world, self.entity, row).unwrap_or((0.0, 1.0));
+            (square / heavier, mass)
+        };
+        (self.squares, self.masses) = squares.map(of_row).unzip();
     }
 
     /// The growth of ω² of each element when the frequency of all was found last.
@@ -100,8 +108,9 @@ impl Watched {
         let of_growths = self.growths(world, Seen::NOTHING, |seen, row, growth, speed| {
             let own = self.squares[row] * growth;
             let ratio = (growth / f64::from(self.known_growth[row])).max(1.0);
-            let (square, at_rest) = (own.min(known * ratio), self.squares[row]);
-            *seen = seen.and(Seen { square, of_elements: own, at_rest, speed, alive: 1 });
+            // numbers that snapshots can hold
+            let (square, at_rest) = (own.min(known * ratio).min(f64::MAX), self.squares[row]);
+            *seen = seen.and(Seen { square, of_elements: own.min(f64::MAX), at_rest, speed, alive: 1 });
         });
         of_growths.into_iter().fold(Seen::NOTHING, Seen::and)
     }
@@ -110,6 +119,24 @@ impl Watched {
     pub fn remember(&mut self, world: &World) {
         let growths = self.growths(world, Vec::new(), |found, row, growth, _| found.push((row, growth as f32)));
         growths.into_iter().flatten().for_each(|(row, growth)| self.known_growth[row] = growth);
+    }
+
+    /// Brings the elements to the means of nodes, with their bounds of ω² as they are now (1/s²).
+    pub fn bring_to_nodes(&self, world: &World, means: &mut NodalMeans<1>) {
+        let growths = self.growths(world, Vec::new(), |found, row, growth, _| {
+            found.push((row, self.masses[row], [self.squares[row] * growth]));
+        });
+        means.add(world, self.entity, growths.into_iter().flatten());
+    }
+
+    /// What ω² of each element that is there counts for as it is now (1/s²), with its row: its own bound, or what was `known` of all
+    /// (1/s²) times its growth since.
+    pub fn counts_for(&self, world: &World, known: f64) -> Vec<(usize, f64)> {
+        let found = self.growths(world, Vec::new(), |found, row, growth, _| {
+            let ratio = (growth / f64::from(self.known_growth[row])).max(1.0);
+            found.push((row, (self.squares[row] * growth).min(known * ratio)));
+        });
+        found.into_iter().flatten().collect()
     }
 
     /// The bound of ω² of each element that is there, as it is now (1/s²), with its row.
@@ -131,7 +158,9 @@ impl Watched {
         let task = |task: usize| {
             let mut found = start.clone();
             for strain in self.strains(world, task).unwrap_or_default() {
-                visit(&mut found, strain.row, self.growth.at(strain.size) + strain.more, strain.speed);
+                // beyond all that was tried: as much as f32 can keep
+                let growth = (self.growth.at(strain.size) + strain.more).min(f64::from(f32::MAX));
+                visit(&mut found, strain.row, growth, strain.speed);
             }
             found
         };

@@ -10,6 +10,7 @@ mod columns;
 mod configurations;
 mod conservation;
 mod copies;
+mod default_bound;
 mod determinism;
 mod elements;
 mod endings;

@@ -118,6 +118,29 @@ fn is_never_above_the_true_one_and_close_to_it_for_every_element_and_law() {
     println!("the step found over the true limit: {least:.4} to {largest:.6}");
 }
 
+/// The bound by nodes is as certain as that of the elements, and never smaller.
+#[test]
+fn of_nodes_is_between_that_of_the_stiffest_element_and_the_true_one() {
+    let mut larger = 0;
+    for (number, elements) in ELEMENTS.iter().enumerate() {
+        for (other, material) in MATERIALS.iter().enumerate() {
+            let text = scene(elements, material, other % 2 == 0);
+            let run = &configurations()[(number + other) % 2];
+            let found = run.start_in(&text, Path::new("examples")).summary("").unwrap().stability;
+            let mut reference = configurations()[0].start_in(&text, Path::new("examples"));
+            let (by_nodes, by_elements, limit) =
+                (found.by_nodes.unwrap(), found.bound.time_step, dense(&mut reference));
+            assert!(
+                by_nodes >= by_elements && by_nodes <= limit * (1.0 + 1e-6),
+                "{}, {elements}, {material}: {by_nodes} of {limit}, elements {by_elements}",
+                run.name
+            );
+            larger += usize::from(by_nodes > 1.05 * by_elements);
+        }
+    }
+    assert!(larger > 10, "{larger} of them larger than that of the elements");
+}
+
 #[test]
 fn knows_of_fibres_that_are_slack_but_may_pull_at_any_moment() {
     let material = "neo_hookean: Young(young: 3e3, poisson: 0.45), fibres: (eta: 1e5, direction: Along(1, 0, 0), tension_only: TENSION)";

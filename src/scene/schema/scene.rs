@@ -124,8 +124,11 @@ impl Default for Integration {
 /// What the stable step is found from.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
 pub enum StepBound {
-    /// The stiffest element alone: certain, and up to twice smaller than need be.
+    /// The larger of the step that is certain by elements and nodes and that by the highest frequency, which is found as well as
+    /// is worth it, where the step adapts; else that of the stiffest element.
     #[default]
+    Auto,
+    /// The stiffest element alone: certain, and many times smaller than need be where elements differ.
     Elements,
     /// The highest frequency of all bodies as they are held, by Lanczos' recursion.
     Iterated,
@@ -142,7 +145,8 @@ pub enum WhenUnstable {
     Watch,
     /// Elements that need a smaller step are made heavier, at the start and during the run.
     ScaleMass {
-        /// Share of the mass that may be added: more is warned of. Without `step` the step is as large as this allows.
+        /// Share of the mass that may be added: more is an error at the start and ends a run. Without `step` the step is as large as
+        /// this allows.
         #[serde(default = "most_added_mass")]
         most: f64,
     },

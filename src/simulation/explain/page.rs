@@ -10,6 +10,9 @@ impl Display for Explanation {
         }
         writeln!(f, "{} nodes, {} elements", self.nodes, self.elements)?;
         writeln!(f, "on {}, {}: {}", self.backend, self.precision, self.backend_because)?;
+        if let Some(time_step) = &self.time_step {
+            writeln!(f, "steps of {time_step}")?;
+        }
         writeln!(f, "\nSystems, in the order of a step")?;
         self.systems.iter().try_for_each(|system| write_system(system, self.on_gpu, f))?;
         if !self.systems_off.is_empty() {
