@@ -90,9 +90,11 @@ fn page(name: &str, report: &MeshReport, mesh: &Mesh) -> String {
         format!("{}, {}", counted(report.surface_faces as u64, "face"), counted(report.surface_nodes as u64, "node")),
     );
     line("unit", units(report));
-    for set in &report.sets {
-        let box_of = format!("between {} and {}", place(set.min), place(set.max));
-        line("set", format!("{:?}: {} {}, {box_of}", set.name, count(set.count as u64), set.of));
+    // the nodes of a set of faces or elements have its name, too
+    for sets in report.sets.chunk_by(|a, b| a.name == b.name) {
+        let parts: Vec<String> = sets.iter().map(|set| format!("{} {}", count(set.count as u64), set.of)).collect();
+        let set = &sets[0];
+        line("set", format!("{:?}: {}, between {} and {}", set.name, parts.join(", "), place(set.min), place(set.max)));
     }
     if report.sets.is_empty() {
         line("sets", "none: constraints and loads can be placed by Plane, Box, Sphere, Surface or Nodes".into());
