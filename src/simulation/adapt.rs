@@ -82,7 +82,7 @@ impl Simulation {
         let found = &mut follower.found;
         found.overpaid +=
             (clock.step - found.looked_at.min(clock.step)) as f64 * (1.0 - clock.time_step / best).max(0.0);
-        if !(best > WORTH.0 * taken) {
+        if best.is_nan() || best <= WORTH.0 * taken {
             found.overpaid = 0.0;
             return Ok(false);
         }
@@ -92,7 +92,9 @@ impl Simulation {
         let left = follower.duration - clock.time();
         // the first are not waited for: the cheap bound knows sizes of strains and not their directions
         let first = pressing && follower.history.sharp_looks < FIRST.0 + clock.step / FIRST.1;
-        if !(left * (1.0 / taken - 1.0 / best) > found.price) || !(first || vague || found.overpaid >= found.price) {
+        let due = first || vague || found.overpaid >= found.price;
+        let pays_back = left * (1.0 / taken - 1.0 / best) > found.price;
+        if !(due && pays_back) {
             return Ok(false);
         }
         let cheap = seen.square;

@@ -16,7 +16,7 @@ const ROUNDING: f64 = 1e-6;
 
 /// Whether so large a share of all mass is more than `most`; also what is no number.
 fn too_much(share: f64, most: f64) -> bool {
-    !(share <= most * (1.0 + ROUNDING))
+    share.is_nan() || share > most * (1.0 + ROUNDING)
 }
 
 /// Makes elements heavier for the step that the scene wants, or for the largest that so much added mass allows. What all elements are

@@ -17,7 +17,7 @@ const PROPOSED: f64 = 0.05;
 pub(super) fn warn_of_costly(stability: &Stability, world: &mut World, diagnostics: &mut Diagnostics) {
     let (bound, stable) = (&stability.bound, stability.stable_step);
     let cost = bound.usual / stable;
-    if !(cost >= COSTLY) {
+    if cost.is_nan() || cost < COSTLY {
         return;
     }
     let (body, element) = bound.culprit();

@@ -69,7 +69,7 @@ pub(super) fn largest_worth(world: &mut World, accuracy: f64, steps: Option<&dyn
         let Some(steps) = steps else { return true };
         let all = |more: usize| PRODUCT * more as f64 + steps(at_most(ritz, products + more));
         let now = all(0);
-        (1..=enough - products.min(enough)).any(|more| !(all(more) >= now))
+        (1..=enough - products.min(enough)).any(|more| all(more) < now)
     };
     if !worth_more(0.0, 0) {
         return Some(Largest { at_least: 0.0, at_most: f64::INFINITY, products: 0 });

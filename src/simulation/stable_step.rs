@@ -149,7 +149,7 @@ pub(super) fn choose(
     if integration.step.is_none() {
         warn_of_costly(&stability, world, diagnostics);
     }
-    if !(steps <= 1e15) {
+    if steps.is_nan() || steps > 1e15 {
         let duration = scene.scene.duration;
         diagnostics.error_at(
             "duration",
