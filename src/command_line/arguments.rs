@@ -1,5 +1,11 @@
 //! The words of the command line.
 
+mod before_a_run;
+mod suites;
+
+pub use before_a_run::{MeshArguments, ModesArguments};
+pub use suites::{BenchArguments, HardArguments};
+
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::Vec3;
 use sinew::backend::gpu::Choice;
@@ -133,54 +139,6 @@ pub struct CheckArguments {
     pub json: bool,
 }
 
-/// What `sinew mesh` is told.
-#[derive(Args)]
-pub struct MeshArguments {
-    /// A mesh file (Gmsh, VTK, VTU), or a scene file (.ron), whose bodies are shown as it places them
-    #[arg(value_name = "FILE|SCENE")]
-    pub what: PathBuf,
-    /// Put a value into the scene first; may be given several times
-    #[arg(long, value_name = "PATH=VALUE")]
-    pub set: Vec<String>,
-    /// Let the scene name files outside its own folder
-    #[arg(long)]
-    pub allow_outside: bool,
-    /// Turn inverted elements of a mesh file the right way round
-    #[arg(long)]
-    pub flip_inverted: bool,
-    /// Print JSON instead of a page; no picture
-    #[arg(long)]
-    pub json: bool,
-    /// Draw no picture
-    #[arg(long)]
-    pub no_picture: bool,
-    /// The folder for the picture and fields.pvd, in place of earlier ones [default: out/NAME-mesh]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-}
-
-/// What `sinew modes` is told.
-#[derive(Args)]
-pub struct ModesArguments {
-    #[command(flatten)]
-    pub scene: SceneArguments,
-    /// How many modes
-    #[arg(long, value_name = "N", default_value_t = 8, value_parser = clap::value_parser!(u16).range(1..=100))]
-    pub count: u16,
-    /// CPU threads; 0 is one a core, or a single one for small bodies
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
-    pub threads: u16,
-    /// Print JSON instead of a table; no picture
-    #[arg(long)]
-    pub json: bool,
-    /// Draw no picture
-    #[arg(long)]
-    pub no_picture: bool,
-    /// The folder for the animation and fields.pvd, in place of earlier ones [default: out/NAME-OF-THE-SCENE-modes]
-    #[arg(long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-}
-
 /// How to run it.
 #[derive(Args)]
 pub struct HowArguments {
@@ -264,62 +222,6 @@ impl AccuracyArguments {
         let (gpu, precision, threads) = (self.gpu.clone(), self.precision, self.threads);
         HowArguments { backend, gpu, precision, threads, scheme: SchemeName::Patches }.options()
     }
-}
-
-#[derive(Args)]
-pub struct HardArguments {
-    /// The cases, such as H05 or buckling [default: all]
-    #[arg(value_name = "CASE")]
-    pub cases: Vec<String>,
-    /// In full size, with finer meshes, longer runs and timed gates; else in a size for everyday
-    #[arg(long)]
-    pub full: bool,
-    /// Where: auto is the CPU in f64 and f32, and a GPU if there is any, a software one too
-    #[arg(long, value_enum, default_value_t = BackendName::Auto)]
-    pub backend: BackendName,
-    /// A folder for hard.md, hard.csv and hard.json
-    #[arg(short, long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-}
-
-#[derive(Args)]
-pub struct BenchArguments {
-    /// Cells along each edge of the cubes
-    #[arg(long, value_name = "N,..", value_delimiter = ',', default_values_t = [10, 20, 30], value_parser = clap::value_parser!(u32).range(1..=200))]
-    pub cells: Vec<u32>,
-    /// Element types
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["tet4".to_string(), "hex8".to_string()], value_parser = ["tet4", "tet4-nodal-pressure", "hex8", "hex8-mean-dilatation"])]
-    pub elements: Vec<String>,
-    /// Effects beside neo-Hookean elasticity
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["none".to_string(), "fibres-viscosity".to_string()], value_parser = ["none", "fibres", "viscosity", "fibres-viscosity"])]
-    pub effects: Vec<String>,
-    /// Where
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["cpu".to_string()], value_parser = ["cpu", "gpu"])]
-    pub backends: Vec<String>,
-    /// Number types; GPUs have f32 only
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["f32".to_string()], value_parser = ["f32", "f64"])]
-    pub precisions: Vec<String>,
-    /// CPU threads [default: 1 and one a core]
-    #[arg(long, value_name = "N,..", value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub threads: Vec<u16>,
-    /// Vector registers of the CPU: the widest it has, AVX2 also where there is AVX-512, or what any machine has
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["widest".to_string()], value_parser = ["widest", "avx2", "portable"])]
-    pub instructions: Vec<String>,
-    /// How element forces are summed
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["patches".to_string(), "two-pass".to_string()], value_parser = ["patches", "two-pass"])]
-    pub schemes: Vec<String>,
-    /// Whether systems share kernels and loops where they can, or are kept apart
-    #[arg(long, value_name = "WORD,..", value_delimiter = ',', default_values_t = ["on".to_string()], value_parser = ["on", "off"])]
-    pub fuse: Vec<String>,
-    /// Seconds for each case
-    #[arg(long, value_name = "S", default_value_t = 0.5)]
-    pub seconds: f64,
-    /// A folder for bench.csv, bench.json, bench.md and the plots
-    #[arg(short, long, value_name = "DIR")]
-    pub out: Option<PathBuf>,
-    /// An earlier bench.json: cases that take over a tenth longer now are told, and the status is 1
-    #[arg(long, value_name = "FILE")]
-    pub compare: Option<PathBuf>,
 }
 
 #[derive(Args)]
