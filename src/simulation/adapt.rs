@@ -92,9 +92,9 @@ impl Simulation {
         let left = follower.duration - clock.time();
         // the first are not waited for: the cheap bound knows sizes of strains and not their directions
         let first = pressing && follower.history.sharp_looks < FIRST.0 + clock.step / FIRST.1;
-        let due = first || vague || found.overpaid >= found.price;
+        let due = vague || found.overpaid >= found.price;
         let pays_back = left * (1.0 / taken - 1.0 / best) > found.price;
-        if !(due && pays_back) {
+        if !(first || due && pays_back) {
             return Ok(false);
         }
         let cheap = seen.square;

@@ -26,7 +26,7 @@ fn the_highest_frequency_is_sought_where_that_saves_more_than_it_costs() {
     assert_eq!((long.found_from, long.stable_step), ("iterated", iterated.stable_step), "{}", long.because);
     // a run of some steps takes what costs nothing: certain all the same
     assert_eq!((short.found_from, short.products), ("nodes", 0), "{}", short.because);
-    assert!(short.stable_step > 1.05 * elements.stable_step && short.stable_step <= iterated.stable_step, "{short:?}");
+    assert!(short.stable_step > elements.stable_step && short.stable_step <= iterated.stable_step, "{short:?}");
     // in between as many products as are worth it
     let between = found(&block(0.5, ""));
     assert!(between.products > 0 && between.products < iterated.products, "{between:?}");
