@@ -225,23 +225,6 @@ impl Signals {
         }
     }
 
-    /// The end of the first of some pieces of time after `now`, each as long as the one before it from `before` (s), in which a signal
-    /// changes more than twice as much as then; what it changes by at all counts from a ten-thousandth of it on.
-    pub fn quickens(&self, before: f64, now: f64, pieces: u32) -> Option<f64> {
-        let length = now - before;
-        let curve = |source: &Signal| match source {
-            Signal::Load { curve, .. } | Signal::Motion { curve, .. } => curve.clone(),
-        };
-        let first_of = |curve: Curve| {
-            let values: Vec<f64> = (0..=pieces).map(|k| curve.value(now + f64::from(k) * length)).collect();
-            let largest = values.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-            let usual = 2.0 * (curve.value(now) - curve.value(before)).abs() + 1e-4 * largest;
-            values.windows(2).position(|pair| (pair[1] - pair[0]).abs() > usual)
-        };
-        let first = self.sources.iter().map(curve).filter_map(first_of).min()?;
-        Some(now + (first + 1) as f64 * length)
-    }
-
     /// Whether nodes have been moved as told by a jump until a time (s).
     pub fn have_jumped(&self, until: f64) -> bool {
         self.sources.iter().any(|source| {

@@ -1,117 +1,55 @@
-//! The step follows what is stable: smaller on the word of the cheap bound, and by the highest frequency itself where finding that
-//! is worth it.
-//!
-//! Nobody knows how long what is found will hold. So the smaller steps are paid for until they have cost as much as a finding would
-//! have, and then it is found (a rented ski is bought when the rent has come to its price: never more than twice of what would have been
-//! best); not where what is left of the run is too short to bring that back. Who finds that nothing was to be gained waits twice as
-//! long the next time.
+//! The step follows what is stable: smaller on the word of the cheap bound, and by the highest frequency itself where that comes
+//! close.
 
 use super::Simulation;
-use super::follow::{FINDING, Follower, step_of};
-use super::frequency::largest_worth;
-use super::stable_step::ACCURACY;
-use super::tangent::Tangent;
+use super::follow::{Follower, step_of};
 use super::watch::Seen;
-use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::error::{Criterion, Error, Instability};
 
-/// Larger by less is not worth a change, and on the word of the cheap bound.
-const WORTH: (f64, f64) = (1.1, 1.25);
+/// Larger by less is not worth a change.
+const WORTH: f64 = 1.1;
+/// The highest frequency is found so many times, and once more for so many steps: each costs about a hundred steps. Beyond
+/// that the cheap bound is taken at its word.
+const FINDINGS: (u64, u64) = (4, 1000);
 /// A step that is so many times the stable one by the cheap bound tells of its limits rather than of the step.
 const VAGUE: f64 = 2.0;
-/// Steps between two findings where it does.
+/// Steps between two findings beyond that, where the cheap bound is as far off or has made the step as much smaller.
 const REST: u64 = 100;
-/// So many findings, and one more for so many steps, come as soon as the cheap bound calls for smaller steps.
-const FIRST: (u64, u64) = (4, 1000);
-/// Where elements have gone, ω² may have fallen to this share.
-const HOPE: f64 = 0.6;
-/// How dear a finding may become, in findings.
-const DEAREST: f64 = 16.0;
+/// The highest frequency is found anew for a larger step when the bound of the elements has fallen to this share.
+const RELIEF: f64 = 0.6;
 /// A step so many times smaller than the first is given up.
 const LEAST: f64 = 1e-4;
-/// Strains change by at most so much in a step: more than that, and what resists them is another from one step to the next. Steps
-/// become smaller by half of it or more, and for it alone no smaller than a share of what is stable.
-const STRAIN_A_STEP: f64 = 0.1;
-const SMALLEST_FOR_STRAIN: f64 = 0.02;
 
 impl Simulation {
     /// Makes the step smaller where it must be, and larger where that is worth while.
     pub(super) fn adapt(&mut self, follower: &mut Follower, mut seen: Seen) -> Result<(), Error> {
         let clock = *self.world.resource::<Clock>();
-        let found = self.find_if_worth(follower, &mut seen, &clock)?;
+        let known_now = follower.calls_for_a_finding(&seen, &clock) && self.find(follower, &mut seen)?;
         follower.found.seen.get_or_insert(seen);
-        let limit = if found { step_of(seen.square) } else { follower.cheap_limit(&seen) };
+        // far off the cheap bound may say anything: until the true limit is found, a quarter of the last has to do
+        let bound = step_of(seen.square);
+        let limit = if known_now { bound } else { bound.max(step_of(follower.found.known) / (VAGUE * VAGUE)) };
         let wanted = follower.wanted(limit, &seen);
+        let smaller = clock.time_step > follower.most() * limit;
+        if !(smaller || known_now && wanted > WORTH * clock.time_step) {
+            return Ok(());
+        }
         if wanted < LEAST * follower.first {
             return Err(self.too_small(follower, wanted));
         }
-        let calm = (clock.time_step * STRAIN_A_STEP / seen.speed).max(SMALLEST_FOR_STRAIN * wanted);
-        let fast = clock.time_step > 2.0 * calm;
-        // a jump is over after a step
-        let too_fast = fast && follower.found.fast;
-        let smaller = clock.time_step > follower.most() * limit || too_fast;
-        // on the word of the cheap bound only back to where it was, or where it is certain
-        let may = found || follower.found.slowed || follower.has_lost(&seen);
-        let larger = may && wanted.min(calm) > if found { WORTH.0 } else { WORTH.1 } * clock.time_step;
-        follower.found.fast = fast;
-        if !(smaller || larger) {
-            return Ok(());
-        }
-        follower.found.slowed = too_fast || follower.found.slowed && calm < wanted;
-        let wanted = if too_fast || follower.found.slowed { wanted.min(calm) } else { wanted };
         let left = follower.duration - clock.time();
         // the scene ends with a whole step
         let (new, last) = match (left / wanted - 1e-6).ceil() {
             steps if steps >= 1.0 => (left / steps, clock.step + steps as u64),
             _ => (wanted, self.planned_steps()),
         };
+        follower.found.guessed |= !known_now;
         let history = &mut follower.history;
         history.changes += 1;
         history.smallest = history.smallest.min(new);
         history.largest = history.largest.max(new);
         self.change_step(new, last)
-    }
-
-    /// Finds the highest frequency if that is worth it; whether it did.
-    fn find_if_worth(&mut self, follower: &mut Follower, seen: &mut Seen, clock: &Clock) -> Result<bool, Error> {
-        let limit = follower.cheap_limit(seen);
-        let pressing = clock.time_step > follower.most() * limit;
-        let best = follower.wanted(step_of(follower.hope(seen)), seen);
-        let taken = if pressing { follower.wanted(limit, seen).min(clock.time_step) } else { clock.time_step };
-        let found = &mut follower.found;
-        found.overpaid +=
-            (clock.step - found.looked_at.min(clock.step)) as f64 * (1.0 - clock.time_step / best).max(0.0);
-        if best.is_nan() || best <= WORTH.0 * taken {
-            found.overpaid = 0.0;
-            return Ok(false);
-        }
-        // far off the cheap bound says nothing
-        let vague = clock.time_step > VAGUE * step_of(seen.square)
-            && (clock.step >= found.known_at + REST || follower.history.sharp_looks == 0);
-        let left = follower.duration - clock.time();
-        // the first are not waited for: the cheap bound knows sizes of strains and not their directions
-        let first = pressing && follower.history.sharp_looks < FIRST.0 + clock.step / FIRST.1;
-        let due = vague || found.overpaid >= found.price;
-        let pays_back = left * (1.0 / taken - 1.0 / best) > found.price;
-        if !(first || due && pays_back) {
-            return Ok(false);
-        }
-        let cheap = seen.square;
-        let steps = |at_most: f64| left / follower.wanted(step_of(at_most.min(cheap)), seen);
-        bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
-        let Some(largest) = largest_worth(&mut self.world, ACCURACY, Some(&steps)) else { return Ok(false) };
-        for block in &mut follower.watched {
-            block.remember(&self.world);
-        }
-        seen.square = largest.at_most.min(cheap);
-        let pays = follower.wanted(step_of(seen.square), seen) > WORTH.0 * taken;
-        let found = &mut follower.found;
-        (found.known, found.known_at) = (seen.square, clock.step);
-        (found.seen, found.overpaid) = (Some(*seen), 0.0);
-        found.price = if pays { FINDING } else { (2.0 * found.price).min(DEAREST * FINDING) };
-        follower.history.sharp_looks += 1;
-        Ok(true)
     }
 
     /// The stable step has gone to nothing.
@@ -150,18 +88,18 @@ impl Simulation {
 }
 
 impl Follower {
-    /// What is stable by the cheap bound (s); where that is far off it may say anything: until the true limit is found, a quarter of the
-    /// last has to do.
-    fn cheap_limit(&self, seen: &Seen) -> f64 {
-        let bound = step_of(seen.square);
-        if self.has_lost(seen) { bound } else { bound.max(step_of(self.found.known) / (VAGUE * VAGUE)) }
-    }
-
-    /// ω² at best (1/s²): as it was when it was found, less where elements have become softer or have gone.
-    fn hope(&self, seen: &Seen) -> f64 {
-        let Some(before) = &self.found.seen else { return self.found.known };
-        let softer = (seen.of_elements / before.of_elements).min(1.0);
-        let fewer = if self.has_lost(seen) { HOPE } else { 1.0 };
-        self.found.known * softer.min(fewer)
+    /// Whether the highest frequency is to be found now.
+    fn calls_for_a_finding(&self, seen: &Seen, clock: &Clock) -> bool {
+        let (time_step, found) = (clock.time_step, &self.found);
+        let pressing = time_step > self.most() * step_of(seen.square);
+        let before = found.seen.unwrap_or(*seen);
+        let relieved = seen.of_elements < RELIEF * before.of_elements || seen.alive < before.alive;
+        let may_grow = time_step * WORTH < self.wanted(f64::INFINITY, seen);
+        let affordable = self.history.sharp_looks < FINDINGS.0 + clock.step / FINDINGS.1;
+        let better = affordable && (pressing || found.guessed || relieved && may_grow);
+        // far off the cheap bound says nothing, and steps made small on its word cost more than the finding
+        let made_small = found.guessed && VAGUE * time_step < step_of(found.known);
+        let vague = made_small || time_step > VAGUE * step_of(seen.square);
+        better || vague && clock.step >= found.known_at + REST
     }
 }

@@ -2,9 +2,7 @@
 //! When the highest frequency itself is found is in [`adapt`](super::adapt) and [`policies`](super::policies).
 
 use super::Simulation;
-use super::frequency::PRODUCT;
 use super::mass_scaling;
-use super::nodal::NodalMeans;
 use super::rounding::warn_of_rounding;
 use super::stable_step::Stability;
 use super::watch::{Seen, Watched};
@@ -25,9 +23,7 @@ const LOOKS: (u64, u64) = (16, 256);
 /// or less. The stable step of what is squeezed shrinks twice as fast as it, and a twentieth is left when it counts as close.
 const STRAIN: (f64, f64) = (0.01, 0.25);
 /// No more than that between two looks, however close they come: what falls flat must not pass through zero unseen.
-const MOST_STRAIN: f64 = 0.15;
-/// What finding the highest frequency costs, in steps: some 48 products.
-pub(super) const FINDING: f64 = 48.0 * PRODUCT;
+const MOST_STRAIN: f64 = 0.5;
 
 /// How the step went during the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -75,21 +71,16 @@ pub(super) struct Follower {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Found {
-    /// The step before which is looked next, and that of the last look.
+    /// The step before which is looked next.
     pub next: u64,
-    pub looked_at: u64,
     /// The step that the scene or the program wants, which it never grows beyond (s).
     pub own: Option<f64>,
     /// The highest ω² when it was found last (1/s²): in which step, and what was seen then.
     pub known: f64,
     pub known_at: u64,
     pub seen: Option<Seen>,
-    /// Steps taken since then that a step as large as may be would have saved, and how many have to be saved by the next finding.
-    pub overpaid: f64,
-    pub price: f64,
-    /// Strains changed fast at the last look, and the step is smaller for that.
-    pub fast: bool,
-    pub slowed: bool,
+    /// Whether the step was made smaller on the word of the cheap bound.
+    pub guessed: bool,
 }
 
 /// The same with how it went, for snapshots.
@@ -109,8 +100,8 @@ impl Follower {
         let step = world.resource::<Clock>().time_step;
         let added = if scene.scales_mass() { mass_scaling::weigh(world).mass } else { 0.0 };
         let policy = scene.when_unstable();
-        // what begins deformed, or at once, must not go unseen; a scene's own step may need elements to go before they do harm
-        let at_once = policy == WhenUnstable::Adapt || step > limit && policy == WhenUnstable::Remove;
+        // a scene's own step may need elements to go before they do harm
+        let at_once = step > limit && policy == WhenUnstable::Remove;
         Some(Self {
             policy,
             safety: integration.safety,
@@ -121,15 +112,11 @@ impl Follower {
             watched: Vec::new(),
             found: Found {
                 next: if at_once { 0 } else { LOOKS.0 },
-                looked_at: 0,
                 own: integration.step,
                 known: square_of(limit),
                 known_at: 0,
                 seen: None,
-                overpaid: 0.0,
-                price: FINDING,
-                fast: false,
-                slowed: false,
+                guessed: false,
             },
             history: StepHistory {
                 smallest: step,
@@ -186,15 +173,8 @@ impl Follower {
         self.found.seen.is_some_and(|before| seen.alive < before.alive)
     }
 
-    /// The bound of ω² by nodes as elements are now (1/s²).
-    fn by_nodes(&self, world: &World) -> f64 {
-        let mut means = NodalMeans::<1>::new();
-        self.watched.iter().for_each(|block| block.bring_to_nodes(world, &mut means));
-        means.largest(world)[0]
-    }
-
     /// The step before which is looked next: sooner where strains change fast and where the step is close to the limit.
-    fn next_look(&self, step: u64, seen: &Seen, clock: &Clock, signals: &Signals) -> u64 {
+    fn next_look(&self, step: u64, seen: &Seen, clock: &Clock) -> u64 {
         // far below the limit more may happen unseen
         let room = self.most() * step_of(seen.square) / clock.time_step - 1.0;
         let strain = (STRAIN.1 * room).clamp(STRAIN.0, STRAIN.1);
@@ -202,12 +182,7 @@ impl Follower {
         // what is no number, or inside out, has no speed
         let least =
             if seen.speed.is_finite() { ((MOST_STRAIN / seen.speed) as u64).clamp(1, LOOKS.0) } else { LOOKS.0 };
-        let apart = calm.clamp(least.min(step.max(1)), LOOKS.1);
-        // what begins to act, or acts faster, is known beforehand
-        let piece = LOOKS.0 as f64 * clock.time_step;
-        let quickens = signals.quickens(clock.time() - piece, clock.time(), (LOOKS.1 / LOOKS.0) as u32);
-        let steps = quickens.map(|time| ((time - clock.time()) / clock.time_step).ceil() as u64);
-        step + apart.min(steps.unwrap_or(u64::MAX).max(least))
+        step + calm.clamp(least, LOOKS.1)
     }
 }
 
@@ -259,16 +234,13 @@ impl Simulation {
         if lost {
             seen.square = seen.of_elements;
         }
-        if clock.time_step > follower.most() * step_of(seen.square) {
-            seen.square = seen.square.min(follower.by_nodes(&self.world));
-        }
         if lost && matches!(follower.policy, WhenUnstable::ScaleMass { .. }) {
             // what was added to removed elements goes with them
             bring_to_host(&mut self.world, |_, name| [Mass::NAME, FictitiousMass::NAME].contains(&name))?;
             mass_scaling::weigh(&mut self.world);
             send_to_device(&mut self.world, |_, name| name == FictitiousMass::NAME)?;
         }
-        follower.found.next = follower.next_look(step, &seen, &clock, self.world.resource::<Signals>());
+        follower.found.next = follower.next_look(step, &seen, &clock);
         // what is no number is the guards' business
         if seen.speed.is_finite() && seen.alive > 0 {
             match follower.policy {
@@ -276,7 +248,6 @@ impl Simulation {
                 _ => self.hold(follower, seen)?,
             }
         }
-        follower.found.looked_at = step;
         Ok(())
     }
 }

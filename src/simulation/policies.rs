@@ -44,7 +44,7 @@ impl Simulation {
     }
 
     /// Finds the highest frequency; whether there is one.
-    fn find(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<bool, Error> {
+    pub(super) fn find(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<bool, Error> {
         bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
         let Some(limit) = limit_now(&mut self.world, ACCURACY) else { return Ok(false) };
         for block in &mut follower.watched {
@@ -53,7 +53,7 @@ impl Simulation {
         seen.square = square_of(limit);
         let found = &mut follower.found;
         (found.known, found.known_at) = (seen.square, self.step_count());
-        found.seen = Some(*seen);
+        (found.seen, found.guessed) = (Some(*seen), false);
         follower.history.sharp_looks += 1;
         Ok(true)
     }

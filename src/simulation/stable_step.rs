@@ -160,7 +160,7 @@ pub(super) fn choose(
     Some((stability, time_step, steps as u64))
 }
 
-/// Why the step that is found by default stays with what the elements allow: what needs the room between that and the true limit.
+/// Why `bound: Auto` stays with what the elements allow: what needs the room between that and the true limit.
 fn reason_to_stay(scene: &Scene) -> Option<&'static str> {
     let removes = scene.materials.values().any(|material| material.inversion() == Inversion::Remove);
     match scene.when_unstable() {

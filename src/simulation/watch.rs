@@ -2,7 +2,6 @@
 
 use super::growth::Growth;
 use super::mass_scaling::heavy_mass;
-use super::nodal::NodalMeans;
 use crate::assembly::square_frequencies;
 use crate::backend::cpu::{BlockLaw, Cpu, Strain, StrainColumns, strains};
 use crate::components::*;
@@ -20,8 +19,6 @@ pub(super) struct Watched {
     growth: Growth,
     /// Of each element the bound of ω² at rest (1/s²).
     pub squares: Vec<f64>,
-    /// The mass that its nodes move with for each (kg), with what was added.
-    masses: Vec<f64>,
     /// The shortest distance between two nodes of an element at rest (m).
     pub shortest_edge: f64,
     /// The growth of ω² when the frequency of all was found last.
@@ -69,8 +66,7 @@ impl Watched {
             let block = world.get::<Block>(entity)?;
             let rest = world.get::<RestPosition>(block.body)?;
             let shortest_edge = shortest_edge(block, world.get::<Connectivity>(entity)?, rest);
-            let (squares, masses, known_growth) = (Vec::new(), Vec::new(), Vec::new());
-            let mut watched = Self { entity, growth, squares, masses, shortest_edge, known_growth };
+            let mut watched = Self { entity, growth, squares: Vec::new(), shortest_edge, known_growth: Vec::new() };
             watched.weigh(world);
             watched.known_growth = vec![1.0; watched.squares.len()];
             Some(watched)
@@ -81,11 +77,8 @@ impl Watched {
     /// Takes the bounds at rest anew, with the mass that was added by now.
     pub fn weigh(&mut self, world: &World) {
         let squares = square_frequencies(world, self.entity).into_iter().enumerate();
-        let of_row = |(row, (square, _)): (usize, (f64, f64))| {
-            let (mass, heavier) = heavy_mass(world, self.entity, row).unwrap_or((0.0, 1.0));
-            (square / heavier, mass)
-        };
-        (self.squares, self.masses) = squares.map(of_row).unzip();
+        let heavier = |row: usize| heavy_mass(world, self.entity, row).map_or(1.0, |(_, heavier)| heavier);
+        self.squares = squares.map(|(row, (square, _))| square / heavier(row)).collect();
     }
 
     /// The growth of ω² of each element when the frequency of all was found last.
@@ -119,14 +112,6 @@ impl Watched {
     pub fn remember(&mut self, world: &World) {
         let growths = self.growths(world, Vec::new(), |found, row, growth, _| found.push((row, growth as f32)));
         growths.into_iter().flatten().for_each(|(row, growth)| self.known_growth[row] = growth);
-    }
-
-    /// Brings the elements to the means of nodes, with their bounds of ω² as they are now (1/s²).
-    pub fn bring_to_nodes(&self, world: &World, means: &mut NodalMeans<1>) {
-        let growths = self.growths(world, Vec::new(), |found, row, growth, _| {
-            found.push((row, self.masses[row], [self.squares[row] * growth]));
-        });
-        means.add(world, self.entity, growths.into_iter().flatten());
     }
 
     /// What ω² of each element that is there counts for as it is now (1/s²), with its row: its own bound, or what was `known` of all

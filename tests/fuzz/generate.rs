@@ -242,7 +242,7 @@ fn integration(statics: bool, r: &mut Rng) -> String {
         all.push(format!("bound: {}", one_of(r, &["Elements", "Iterated"])));
     }
     if r.u8(..3) == 0 && !statics {
-        let mass = format!("ScaleMass(most: {:?})", size(r, 0.01, 3.0));
+        let mass = format!("ScaleMass(most: {:?})", size(r, 0.01, 1.0));
         all.push(format!("when_unstable: {}", one_of(r, &["Adapt", "Watch", "Remove", &mass, &mass])));
     }
     if r.u8(..4) == 0 {

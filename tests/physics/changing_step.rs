@@ -50,7 +50,7 @@ fn pace_of(simulation: &mut Simulation) -> String {
 #[test]
 fn what_goes_on_after_the_step_has_changed_gives_the_same_bits() {
     for run in configurations() {
-        let text = squeezed("when_unstable: Adapt", 0.4, "Hex8");
+        let text = squeezed("bound: Iterated, when_unstable: Adapt", 0.4, "Hex8");
         let mut whole = run.start(&text);
         whole.advance_to(1.0).unwrap();
         let before = whole.step_history().unwrap().changes;

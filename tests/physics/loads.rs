@@ -155,7 +155,7 @@ fn curves_are_their_formulas() {
 /// Forces in step n are those of the curve at its beginning, n Δt.
 /// Of many values in a window of a step of 1e-4 s about the step's beginning; the first window begins there.
 fn mean_over_the_step(formula: fn(f64) -> f64, step: u64) -> f64 {
-    const COUNT: u32 = 2000;
+    const COUNT: u32 = 20_000;
     let middle = step as f64 * 1e-4;
     let (from, to) = (if step == 0 { 0.0 } else { middle - 0.5e-4 }, middle + 0.5e-4);
     (0..COUNT).map(|i| formula(from + (to - from) * (f64::from(i) + 0.5) / f64::from(COUNT))).sum::<f64>()

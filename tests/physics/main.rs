@@ -3,6 +3,7 @@
 //! E = 3000 Pa, ν = .45, ρ = 1000 kg/m³ (so μ = 1034.4828, λ = 9310.3448, κ = 10000 Pa) unless a file says otherwise.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod auto_bound;
 mod bars;
 mod changing_step;
 mod clock_and_limit;
@@ -10,7 +11,6 @@ mod columns;
 mod configurations;
 mod conservation;
 mod copies;
-mod default_bound;
 mod determinism;
 mod elements;
 mod endings;

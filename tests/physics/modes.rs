@@ -17,7 +17,8 @@ fn axial_frequencies_of_a_held_bar_are_those_of_the_wave_equation() {
     let text = scene("(20, 1, 1)", "Hex8", held);
     for configuration in configurations() {
         let mut simulation = configuration.start(&text);
-        let modes = simulation.modes(3).unwrap();
+        // the third would be one in which the corners of a section move apart
+        let modes = simulation.modes(2).unwrap();
         let (speed, h) = ((11379.310344827587_f64 / 1000.0).sqrt(), 0.1 / 20.0);
         for (number, mode) in modes.iter().enumerate() {
             let wave_number = (2.0 * number as f64 + 1.0) * std::f64::consts::FRAC_PI_2 / 0.1;

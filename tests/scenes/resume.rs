@@ -117,7 +117,7 @@ fn hard_cases_resume_at_every_snapshot() {
 #[test]
 fn scenes_that_ended_wrongly_resume_at_every_snapshot() {
     all(in_folder("tests/endings", &[]), 6);
-    let scaled = ["constraints[1].displacement=(0,0,-0.06)", "integration.when_unstable=ScaleMass(most: 10)"];
+    let scaled = ["constraints[1].displacement=(0,0,-0.06)", "integration.when_unstable=ScaleMass(most: 1)"];
     let scenes = in_folder("tests/endings", &[]).into_iter().filter(|(name, _)| name == "resume_with_scaled_mass.ron");
     let path = format!("{}/tests/endings/resume_with_scaled_mass.ron", env!("CARGO_MANIFEST_DIR"));
     let scaled =
