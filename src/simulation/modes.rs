@@ -35,7 +35,7 @@ pub struct Mode {
     pub frequency: f64,
     /// ‖(K − ω²M) φ‖ as a share, in the norm of the mass: the frequency is known to half its square over the gap to the next.
     pub residual: f64,
-    /// Shares of all mass that move along x, y and z (effective modal masses).
+    /// Shares of all mass that is free to move along x, y and z (effective modal masses).
     pub effective_mass: [f64; 3],
     /// The shape of each body in the author's order, of any amplitude (the largest displacement is 1).
     #[serde(skip)]
@@ -72,10 +72,11 @@ impl Simulation {
     }
 
     fn mode(&self, pair: Pair, bodies: &[Entity], roots: &[f64], top: f64) -> Mode {
-        let share: f64 = roots.iter().filter(|root| **root > 0.0).map(|root| 1.0 / (root * root)).sum::<f64>() / 3.0;
         let along = |axis: usize| {
-            let rows = pair.vector.iter().zip(roots).skip(axis).step_by(3).filter(|(_, root)| **root > 0.0);
-            rows.map(|(x, root)| x / root).sum::<f64>().powi(2) / share
+            let rows = || pair.vector.iter().zip(roots).skip(axis).step_by(3).filter(|(_, root)| **root > 0.0);
+            let all: f64 = rows().map(|(_, root)| 1.0 / (root * root)).sum();
+            let moves = rows().map(|(x, root)| x / root).sum::<f64>().powi(2);
+            if all > 0.0 { moves / all } else { 0.0 }
         };
         let largest = pair.vector.chunks(3).zip(roots.chunks(3)).map(|(x, root)| moved(x, root).length());
         let largest = largest.fold(f64::MIN_POSITIVE, f64::max);

@@ -131,7 +131,7 @@ pub const UNITS: [(&str, &str); 58] = [
     ("energies.internal_work", "J"),
     ("mass", "kg"),
     ("removed_mass", "kg"),
-    ("guards.floor", "J"),
+    ("guards.rounding", "J"),
     ("guards.at_start", "J"),
     ("guards.scale", "J"),
     ("guards.imbalance", "1"),

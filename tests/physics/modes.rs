@@ -26,7 +26,7 @@ fn axial_frequencies_of_a_held_bar_are_those_of_the_wave_equation() {
             near("frequency", mode.frequency, lumped, lumped, configuration.bound(1e-6, 1e-4));
         }
         near("the wave equation's", modes[0].frequency, 8.4333, 8.4333, 1e-3);
-        // a quarter of a sine moves 8/π² of the mass; the clamped layer has a fortieth of it
+        // a quarter of a sine moves 8/π² of the mass, of which the clamped layer has a fortieth
         near("effective mass", modes[0].effective_mass[0], 8.0 / std::f64::consts::PI.powi(2) / 0.975, 1.0, 2e-3);
     }
 }

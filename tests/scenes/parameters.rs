@@ -31,7 +31,7 @@ fn text(schedule: &str, parameters: &str) -> SceneFile {
     let text = format!(
         r#"(duration: 0.1, integration: (step: 0.01, beyond_stable_step: true),
         bodies: {{"cube": (mesh: Box(size: (1, 1, 1), cells: (1, 1, 1)), material: "gel")}},
-        materials: {{"gel": (density: 1000, neo_hookean: Young(young: 3, poisson: 0.3))}},
+        materials: {{"gel": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.3))}},
         schedule: ["element_forces", "gather", "integrate"{schedule}, "observe"],
         parameters: {{{parameters}}})"#
     );

@@ -9,7 +9,7 @@ use std::path::Path;
 /// Snapshots of a scene, its end included.
 const SNAPSHOTS: u64 = 6;
 /// Elements times steps that a scene is run for, on the CPU and on a GPU, which may be one in software.
-const WORK: (u64, u64) = (100_000, 15_000);
+const WORK: (u64, u64) = (40_000, 6_000);
 
 fn options() -> Vec<Options> {
     let of = |backend, precision| Options { backend, precision, threads: 1, ..Options::default() };
