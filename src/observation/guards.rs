@@ -74,8 +74,9 @@ fn turned_inside_out(authoring: &Authoring, block: Entity, row: usize) -> (Strin
 fn seen_inside_out(parts: &[(Entity, BlockSums)], world: &World) -> Option<(String, String, Criterion)> {
     parts.iter().find_map(|(entity, sums)| {
         let ends = world.get::<OnInversion>(*entity) == Some(&OnInversion(Inversion::Stop));
-        // without elements J is infinite; what is no number is not above 0
-        let body = world.get::<Block>(*entity).filter(|_| ends && !(sums.least_volume_ratio > 0.0))?.body;
+        // without elements J is infinite
+        let inside_out = sums.least_volume_ratio <= 0.0 || sums.least_volume_ratio.is_nan();
+        let body = world.get::<Block>(*entity).filter(|_| ends && inside_out)?.body;
         let (what, criterion) = turned_inside_out(world.get::<Authoring>(body)?, *entity, sums.row as usize);
         Some((label(world, body), what, criterion))
     })

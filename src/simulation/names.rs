@@ -85,13 +85,15 @@ pub fn parameters(scene: &Scene) -> serde_json::Value {
 }
 
 /// Units of the summary's numbers that are no counts; `*` stands for any name.
-pub const UNITS: [(&str, &str); 58] = [
+pub const UNITS: &[(&str, &str)] = &[
     ("stable_step", "s"),
     ("stability.bound.time_step", "s"),
     ("stability.bound.usual", "s"),
     ("stability.bound.worst.bound", "s"),
     ("stability.bound.worst.cost", "1"),
     ("stability.bound.worst.gain", "1"),
+    ("stability.beyond", "s"),
+    ("stability.by_nodes", "s"),
     ("stability.limit", "s"),
     ("stability.stable_step", "s"),
     ("stability.step", "s"),

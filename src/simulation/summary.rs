@@ -206,7 +206,7 @@ impl Simulation {
             failure: self.failure.clone(),
             ended: ended.into(),
             names: super::names::Names::of(&self.scene),
-            units: super::names::UNITS.into_iter().collect(),
+            units: super::names::UNITS.iter().copied().collect(),
             parameters: super::names::parameters(&self.scene),
         })
     }
