@@ -9,6 +9,7 @@
 //! highest frequency is known. Nodes that are held along all axes do not move and do not count.
 
 use super::mass_scaling::heavy_mass;
+use super::watch::Watched;
 use crate::assembly::square_frequencies;
 use crate::components::*;
 use crate::evaluation::{lane_place, node_count};
@@ -61,6 +62,23 @@ impl<const N: usize> NodalMeans<N> {
     }
 }
 
+/// For each axis of the bodies' nodes, one body after the other, the square of the mean of ω² of the elements there as they are now, over
+/// the largest: where the highest frequency may be.
+pub(super) fn weights_now(world: &mut World, watched: &mut [Watched], bodies: &[Entity]) -> Vec<f64> {
+    let mut means = NodalMeans::<1>::new();
+    for block in watched {
+        let entity = block.entity;
+        let of_row = |(row, square, _): (usize, f64, f64)| Some((row, heavy_mass(world, entity, row)?.0, [square]));
+        let elements: Vec<_> = block.now(world).into_iter().filter_map(of_row).collect();
+        means.add(world, entity, elements.into_iter());
+    }
+    let [largest] = means.largest(world);
+    let weight =
+        |([sum], mass): &([f64; 1], f64)| if *mass > 0.0 { (sum / mass / largest).powi(2).min(1.0) } else { 0.0 };
+    let of_body = |body| means.bodies.get(body).into_iter().flatten().map(weight);
+    bodies.iter().flat_map(of_body).flat_map(|weight| [weight; 3]).collect()
+}
+
 /// The bound of ω² of all bodies at rest (1/s²), with the mass that was added.
 pub(super) fn bound_at_rest(world: &mut World) -> f64 {
     let mut blocks: Vec<Entity> = world.query_filtered::<Entity, With<Block>>().iter(world).collect();
@@ -74,4 +92,26 @@ pub(super) fn bound_at_rest(world: &mut World) -> f64 {
         means.add(world, block, square_frequencies(world, block).into_iter().enumerate().filter_map(of_row));
     }
     means.largest(world)[0]
+}
+
+/// How much stiffer an element may have become before it counts as one that was added: what is tried.
+const STIFFER: [f64; 6] = [0.0, 1.0, 1.1, 1.3, 2.0, 4.0];
+
+/// A bound of ω² of all bodies as they are deformed now (1/s²); it was `known` when it was found last, or is infinite. For any r the elements
+/// that are at most r times stiffer than then stay below r times what was known, and the others are added to that as a whole:
+/// r = 0 is the bound by nodes. The least of some r; `None` where nothing moves by itself.
+pub(super) fn bound_now(world: &mut World, watched: &mut [Watched], known: f64) -> Option<f64> {
+    let mut means = NodalMeans::<{ STIFFER.len() }>::new();
+    for block in watched {
+        let entity = block.entity;
+        let of_row = |(row, square, ratio): (usize, f64, f64)| {
+            let (mass, _) = heavy_mass(world, entity, row)?;
+            Some((row, mass, STIFFER.map(|stiffer| if ratio > stiffer { square } else { 0.0 })))
+        };
+        let elements: Vec<_> = block.now(world).into_iter().filter_map(of_row).collect();
+        means.add(world, entity, elements.into_iter());
+    }
+    let bounds = means.largest(world).into_iter().zip(STIFFER);
+    let bounds = bounds.map(|(added, stiffer)| if stiffer > 0.0 { stiffer * known + added } else { added });
+    Some(bounds.fold(f64::INFINITY, f64::min)).filter(|bound| *bound > 0.0)
 }

@@ -107,7 +107,9 @@ pub(super) fn choose(
         _ => bound.time_step,
     };
     // rounding of means must not take what the elements alone allow
-    let certain = step_of(bound_at_rest(world)).max(heavier);
+    let by_nodes = step_of(bound_at_rest(world));
+    // where nothing moves by itself, anything is stable: the elements' step is as good as any
+    let certain = if by_nodes.is_finite() { by_nodes.max(heavier) } else { heavier };
     let stays = reason_to_stay(&scene.scene);
     if integration.bound == StepBound::Iterated
         && scene.scene.when_unstable() == WhenUnstable::Adapt
