@@ -45,8 +45,8 @@ pub use error::{Error, GpuFailure, Instability, NotConverged, shell_word};
 pub use scene::SceneFile;
 pub use simulation::explain;
 pub use simulation::{
-    BackendChoice, Equilibrium, FieldName, Inversions, Mode, Names, NodeSet, NodeState, Options, Simulation, Stability,
-    StepHistory, Summary, SystemTime,
+    BackendChoice, Equilibrium, FieldName, Inversions, Mode, Names, NodeSet, NodeState, Options, Preload, Simulation,
+    Stability, StepHistory, Summary, SystemTime,
 };
 pub use snapshot::Snapshot;
 

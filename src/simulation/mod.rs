@@ -23,6 +23,7 @@ mod pace;
 mod parameters;
 mod plausible;
 mod policies;
+mod preload;
 mod relax;
 mod residual;
 mod rounding;
@@ -43,6 +44,7 @@ pub use modes::Mode;
 pub use names::{FieldName, Names};
 pub use node_set::{NodeSet, NodeState};
 pub use options::{BackendChoice, Options};
+pub use preload::Preload;
 pub use relax::Equilibrium;
 pub use stable_step::Stability;
 pub use summary::{Inversions, Summary, SystemTime};
@@ -62,6 +64,10 @@ pub struct Simulation {
     scene: Scene,
     facts: Facts,
     relaxing: Option<relax::Relaxing>,
+    /// What is to bring the bodies to rest before the first step.
+    settling: Option<Box<Simulation>>,
+    /// What that took.
+    preload: Option<Preload>,
     follower: Option<follow::Follower>,
     elapsed: Duration,
     /// Step and time (s) from which `elapsed` counts: of the start, or of a snapshot that was gone on from.

@@ -132,6 +132,20 @@ pub(super) fn relax_as(world: &mut World, clock: &Clock) -> Result<(), Error> {
     Ok(())
 }
 
+/// The memories of blocks that have stood as they stand for long: each has come to its aim, aim·S, which takes αS from the
+/// stress whatever the step is. They must be 0 before.
+pub(super) fn relax_fully(world: &mut World) {
+    let blocks: Vec<Entity> = world.query_filtered::<Entity, With<ViscousMemory>>().iter(world).collect();
+    for entity in blocks {
+        let Some(law) = world.get::<BlockLaw<f64>>(entity) else { continue };
+        let aims = [&law.prony, &law.volumetric].map(|terms| terms.iter().map(|term| term.aim).collect::<Vec<f64>>());
+        let memories = moved_memory(world, entity, &aims);
+        if let (Some(memories), Some(mut memory)) = (memories, world.get_mut::<ViscousMemory>(entity)) {
+            memories.into_iter().for_each(|(place, value)| memory.set(place, value));
+        }
+    }
+}
+
 /// Viscous blocks, with the coefficients of their terms and of their volumetric terms for a step.
 fn coefficients(world: &mut World, clock: &Clock) -> Vec<(Entity, [Vec<PronyTerm<f64>>; 2])> {
     let blocks: Vec<Entity> = world.query_filtered::<Entity, With<ViscousMemory>>().iter(world).collect();

@@ -34,6 +34,7 @@ mod output_fields;
 mod overlaps;
 mod points;
 mod precision;
+mod preload;
 mod probes;
 mod programs;
 mod random;

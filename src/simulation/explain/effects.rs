@@ -6,7 +6,7 @@ use crate::backend::user_law::Findings;
 use crate::components::*;
 use crate::materials::{Elastic, ElasticLaw, ExponentialFibre, Fibres, UserLaw};
 use crate::math::LANES;
-use crate::scene::schema::{Inversion, Scene};
+use crate::scene::schema::{InitialState, Inversion, Scene};
 use bevy_ecs::prelude::*;
 
 /// All blocks, then all bodies.
@@ -174,6 +174,12 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> 
             name: "relaxation",
             on: entity.contains::<FictitiousMass>().then(|| "to rest, with masses and damping chosen for it".into()),
             turned_on_by: "`analysis: Static()`".into(),
+        },
+        Effect {
+            name: "equilibrium at the start",
+            on: (scene.start != InitialState::Undeformed && !scene.is_static())
+                .then(|| "a static analysis brings it to rest before the first step".into()),
+            turned_on_by: "`start: Equilibrium()`".into(),
         },
         Effect {
             name: "compensated sum",
