@@ -31,6 +31,9 @@ pub enum Error {
     /// A static analysis found no equilibrium. Outputs up to the last observation are kept.
     #[error("{0}")]
     NotConverged(Box<NotConverged>),
+    /// No unloaded shape was found.
+    #[error(transparent)]
+    NotUnloaded(Box<NotUnloaded>),
     /// A snapshot that cannot be taken, read, or gone on from.
     #[error(transparent)]
     Snapshot(#[from] SnapshotError),
@@ -191,6 +194,23 @@ impl std::fmt::Display for NotConverged {
 }
 
 impl std::error::Error for NotConverged {}
+
+/// How near the search for an unloaded shape came, and why it ended.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "no unloaded shape was found: after {iterations} iterations loaded nodes are {largest:.3e} m from where they should be at most, \
+     where {allowed:.3e} m are allowed; {why}"
+)]
+pub struct NotUnloaded {
+    /// Static analyses that came to an end.
+    pub iterations: usize,
+    /// The least that the largest distance has been (m).
+    pub largest: f64,
+    /// What is allowed (m).
+    pub allowed: f64,
+    /// Why it ended.
+    pub why: String,
+}
 
 impl From<Diagnostics> for Error {
     fn from(diagnostics: Diagnostics) -> Self {

@@ -37,6 +37,7 @@ mod stretch;
 mod summary;
 mod surface;
 mod tangent;
+mod unload;
 mod watch;
 
 pub use follow::StepHistory;
@@ -48,6 +49,7 @@ pub use preload::Preload;
 pub use relax::Equilibrium;
 pub use stable_step::Stability;
 pub use summary::{Inversions, Summary, SystemTime};
+pub use unload::{Unloaded, Unloading, UnloadingStep, unload};
 
 use crate::backend::kernel::KernelId;
 use crate::scene::Diagnostics;

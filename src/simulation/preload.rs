@@ -47,7 +47,7 @@ pub(super) fn settling(scene: &SceneFile, options: &Options) -> Result<Option<Bo
 
 /// The scene whose equilibrium is sought; `None` where none is. What belongs to the motion only is left out: systems of one's
 /// own take part from the first step on.
-fn at_rest(scene: &Scene) -> Option<Scene> {
+pub(super) fn at_rest(scene: &Scene) -> Option<Scene> {
     let InitialState::Equilibrium { tolerance, max_steps, load_steps } = scene.start else { return None };
     if scene.is_static() {
         return None;

@@ -45,6 +45,7 @@ mod statics;
 mod strains;
 mod tables;
 mod true_limit;
+mod unload;
 mod unstable_elements;
 mod user_laws;
 mod viscosity;

@@ -112,6 +112,13 @@ pub enum InitialState {
     },
 }
 
+impl InitialState {
+    /// At equilibrium, sought as usual.
+    pub fn equilibrium() -> Self {
+        Self::Equilibrium { tolerance: None, max_steps: most_steps(), load_steps: None }
+    }
+}
+
 fn most_steps() -> u64 {
     200_000
 }
