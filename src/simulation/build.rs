@@ -53,6 +53,7 @@ impl Simulation {
         else {
             return Err(diagnostics.into());
         };
+        super::step_change::remember_the_start(&mut world);
         let (nodes, elements) = counts(&assembly);
         let observer = observer(scene, &clock, steps, &mut world);
         world.insert_resource(observer);

@@ -6,6 +6,7 @@ mod added_mass;
 mod beat;
 mod build;
 mod costly;
+mod damped_step;
 pub mod explain;
 mod follow;
 mod frequency;

@@ -8,8 +8,9 @@
 //! brings little: beside elements of usual size it counts for that much less. The same holds of what is added to a stiffness whose
 //! highest frequency is known. Nodes that are held along all axes do not move and do not count.
 
+use super::damped_step::square_with_damping;
 use super::mass_scaling::heavy_mass;
-use crate::assembly::square_frequencies;
+use crate::assembly::undamped_square_frequencies;
 use crate::components::*;
 use crate::evaluation::{lane_place, node_count};
 use bevy_ecs::prelude::*;
@@ -71,7 +72,8 @@ pub(super) fn bound_at_rest(world: &mut World) -> f64 {
             let (mass, heavier) = heavy_mass(world, block, row)?;
             (volume > 0.0).then_some((row, mass, [square / heavier]))
         };
-        means.add(world, block, square_frequencies(world, block).into_iter().enumerate().filter_map(of_row));
+        means.add(world, block, undamped_square_frequencies(world, block).into_iter().enumerate().filter_map(of_row));
     }
-    means.largest(world)[0]
+    let square = means.largest(world)[0];
+    square_with_damping(square, world)
 }

@@ -1,5 +1,6 @@
 //! How much quicker elements can have become: a cheap bound, from how far they are deformed now.
 
+use super::damped_step::{growth_with_damping, is_damped};
 use super::growth::Growth;
 use super::mass_scaling::heavy_mass;
 use crate::assembly::square_frequencies;
@@ -23,6 +24,8 @@ pub(super) struct Watched {
     pub shortest_edge: f64,
     /// The growth of ω² when the frequency of all was found last.
     known_growth: Vec<f32>,
+    /// Whether anything is damped in proportion to its stiffness.
+    is_damped: bool,
 }
 
 /// What a look at all elements shows.
@@ -61,12 +64,14 @@ impl Watched {
     pub fn all(world: &mut World) -> Vec<Self> {
         let mut blocks: Vec<Entity> = world.query_filtered::<Entity, With<Block>>().iter(world).collect();
         blocks.sort();
+        let is_damped = is_damped(world);
         let watched = |&entity: &Entity| {
             let growth = Growth::of(world.get::<BlockLaw<f64>>(entity)?);
             let block = world.get::<Block>(entity)?;
             let rest = world.get::<RestPosition>(block.body)?;
             let shortest_edge = shortest_edge(block, world.get::<Connectivity>(entity)?, rest);
-            let mut watched = Self { entity, growth, squares: Vec::new(), shortest_edge, known_growth: Vec::new() };
+            let (squares, known_growth) = (Vec::new(), Vec::new());
+            let mut watched = Self { entity, growth, squares, shortest_edge, known_growth, is_damped };
             watched.weigh(world);
             watched.known_growth = vec![1.0; watched.squares.len()];
             Some(watched)
@@ -144,7 +149,8 @@ impl Watched {
             let mut found = start.clone();
             for strain in self.strains(world, task).unwrap_or_default() {
                 // beyond all that was tried: as much as f32 can keep
-                let growth = (self.growth.at(strain.size) + strain.more).min(f64::from(f32::MAX));
+                let growth = growth_with_damping(self.growth.at(strain.size) + strain.more, self.is_damped);
+                let growth = growth.min(f64::from(f32::MAX));
                 visit(&mut found, strain.row, growth, strain.speed);
             }
             found

@@ -42,6 +42,7 @@ mod refined_lists;
 mod removal;
 mod snapshots;
 mod statics;
+mod stiffness_damping;
 mod strains;
 mod tables;
 mod true_limit;

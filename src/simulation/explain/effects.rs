@@ -44,6 +44,7 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
     let families = world.get::<ExponentialFibres>(block.material);
     let prony = world.get::<Prony>(block.material);
     let damping = world.get::<Damping>(block.material);
+    let stiffness_damping = world.get::<StiffnessDamping>(block.material);
     let at_rest = world.resource::<Clock>().relaxation.is_some();
     let mut effects = vec![
         Effect {
@@ -88,6 +89,14 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
             turned_on_by: match at_rest {
                 true => "a transient analysis".into(),
                 false => in_material("damping"),
+            },
+        },
+        Effect {
+            name: "stiffness damping",
+            on: stiffness_damping.filter(|_| !at_rest).map(|time| format!("β = {} s", time.0)),
+            turned_on_by: match at_rest {
+                true => "a transient analysis".into(),
+                false => in_material("stiffness_damping"),
             },
         },
         Effect {
