@@ -1,5 +1,5 @@
 // Forces of deformed elements on their corners; twin of systems/element_forces.rs. two_pass.wgsl or patches.wgsl sums them.
-// The element's and the material's fragments say how, note_inverted or remove_inverted what becomes of J < 0; isochoric_stress and viscous_pressure are generated.
+// The element's and the material's fragments say how, note_inverted or remove_inverted what becomes of J < LEAST_J; LEAST_J, isochoric_stress and viscous_pressure are generated.
 @group(0) @binding(0) var<storage, read> rest_shape: array<f32>;
 
 // N
@@ -11,7 +11,7 @@ fn forces_of(element: u32) -> array<vec3<f32>, NODES> {
     for (var point = 0u; point < POINTS; point++) {
         let at = at_point(e, point);
         let k = elastic_kinematics(at.gradient);
-        inverted = inverted || (e.volume > 0.0 && k.true_j < 0.0);
+        inverted = inverted || (e.volume > 0.0 && k.true_j < LEAST_J);
         let pressure = viscous_pressure(element, point, point_pressure(mean, k));
         let stress = elastic_first_stress(at.gradient, k, isochoric_stress(element, point, k), pressure);
         forces = add_stress(forces, point, at, stress);

@@ -31,6 +31,9 @@ pub enum Error {
     /// A static analysis found no equilibrium. Outputs up to the last observation are kept.
     #[error("{0}")]
     NotConverged(Box<NotConverged>),
+    /// No unloaded shape was found.
+    #[error(transparent)]
+    NotUnloaded(Box<NotUnloaded>),
     /// A snapshot that cannot be taken, read, or gone on from.
     #[error(transparent)]
     Snapshot(#[from] SnapshotError),
@@ -160,15 +163,18 @@ pub struct NotConverged {
     pub stalled_at: Option<u64>,
     /// The residual and where it is largest.
     pub equilibrium: Equilibrium,
+    /// Whether it is the one from which a motion was to begin (`start: Equilibrium()`).
+    pub at_start: bool,
 }
 
 impl std::fmt::Display for NotConverged {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Equilibrium { residual, tolerance, scale, remaining_motion, worst, setbacks, .. } = &self.equilibrium;
         let (body, node, force) = worst;
+        let (of, before) = if self.at_start { ("`start`", "the motion cannot begin: ") } else { ("the analysis", "") };
         write!(
             f,
-            "no equilibrium after {} steps: the residual is {residual:.2e} of loads and reactions ({scale:.3e} N) where \
+            "{before}no equilibrium after {} steps: the residual is {residual:.2e} of loads and reactions ({scale:.3e} N) where \
              {tolerance:.0e} is allowed, and nodes have about {remaining_motion:.1e} of their displacements still to go. \
              The largest force that nothing balances is {force:.3e} N, at node {node} of body {body}",
             self.steps
@@ -179,15 +185,32 @@ impl std::fmt::Display for NotConverged {
         match self.stalled_at {
             Some(step) => write!(
                 f,
-                ". It has not fallen since step {step}: run in f64, raise the `tolerance` of the analysis, or see whether \
+                ". It has not fallen since step {step}: run in f64, raise the `tolerance` of {of}, or see whether \
                  the body is held and can bear its loads"
             ),
-            None => write!(f, ". Allow more `max_steps`, or raise the `tolerance` of the analysis"),
+            None => write!(f, ". Allow more `max_steps`, or raise the `tolerance` of {of}"),
         }
     }
 }
 
 impl std::error::Error for NotConverged {}
+
+/// How near the search for an unloaded shape came, and why it ended.
+#[derive(Debug, thiserror::Error)]
+#[error(
+    "no unloaded shape was found: after {iterations} iterations loaded nodes are {largest:.3e} m from where they should be at most, \
+     where {allowed:.3e} m are allowed; {why}"
+)]
+pub struct NotUnloaded {
+    /// Static analyses that came to an end.
+    pub iterations: usize,
+    /// The least that the largest distance has been (m).
+    pub largest: f64,
+    /// What is allowed (m).
+    pub allowed: f64,
+    /// Why it ended.
+    pub why: String,
+}
 
 impl From<Diagnostics> for Error {
     fn from(diagnostics: Diagnostics) -> Self {

@@ -41,12 +41,12 @@ pub use bevy_ecs;
 pub use glam;
 pub use serde;
 
-pub use error::{Error, GpuFailure, Instability, NotConverged, shell_word};
+pub use error::{Error, GpuFailure, Instability, NotConverged, NotUnloaded, shell_word};
 pub use scene::SceneFile;
 pub use simulation::explain;
 pub use simulation::{
-    BackendChoice, Equilibrium, FieldName, Inversions, Mode, Names, NodeSet, NodeState, Options, Simulation, Stability,
-    StepHistory, Summary, SystemTime,
+    BackendChoice, Equilibrium, FieldName, Inversions, Mode, Names, NodeSet, NodeState, Options, Preload, Simulation,
+    Stability, StepHistory, Summary, SystemTime, Unloaded, Unloading, UnloadingStep, unload,
 };
 pub use snapshot::Snapshot;
 

@@ -5,13 +5,14 @@ use super::registry::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::block_kernel::{BlockKernels, CornersAt};
 use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, Inside, run_block, run_block_fast};
-use crate::backend::kernel::Kernel;
+use crate::backend::kernel::{Fragment, Kernel};
 use crate::backend::patch_lists::pack;
 use crate::backend::step::{step_number, with_step};
 use crate::components::*;
 use crate::elements::Element;
 use crate::error::missing;
 use crate::evaluation::{ElementState, node_count, with_element_of};
+use crate::materials::FLATTEST;
 use crate::math::SimdScalar;
 use crate::scene::schema::Inversion;
 use crate::shader;
@@ -105,13 +106,13 @@ impl BlockPartsItem<'_, '_> {
         let block = self.block;
         let length = patch_length(block.kind);
         let rows = patches.iter().flat_map(|patch| patch * length..block.count.min((patch + 1) * length));
-        let is_inverted = |row: &usize| {
-            ElementState::of(block, *row, self.connectivity, self.shape, displacement, self.law).is_inverted()
-        };
+        let state = |row: usize| ElementState::of(block, row, self.connectivity, self.shape, displacement, self.law);
+        let is_inverted = |row: &usize| state(*row).is_inverted();
         match (self.policy, &mut self.removal) {
             _ if patches.is_empty() => {}
             (Some(OnInversion(Inversion::Remove)), Some(removal)) => {
-                rows.filter(is_inverted).for_each(|row| remove(row, clock.step + 1, removal));
+                let flat = rows.filter(|row| state(*row).is_flatter_than(FLATTEST));
+                flat.for_each(|row| remove(row, clock.step + 1, removal));
             }
             // rounding may hide from f64 what the kernel saw
             _ if self.inverted[0] == u32::MAX => {
@@ -181,14 +182,21 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
         let kernel = match world.get::<OnInversion>(block.entity) {
             Some(OnInversion(Inversion::Remove)) => kernel
                 .fragment(shader!("remove_inverted"))
+                .fragment(least_volume_ratio(FLATTEST))
                 .bind(RemovalStep::NAME, buffers.column(block.entity, RemovalStep::NAME)),
             _ => kernel
                 .fragment(shader!("note_inverted"))
+                .fragment(least_volume_ratio(0.0))
                 .bind(FirstInverted::NAME, buffers.column(block.entity, FirstInverted::NAME)),
         };
         kernels.push(block.with_stress(with_step(kernel, world), corners, buffers));
     }
     kernels
+}
+
+/// Below which J elements count as inverted.
+fn least_volume_ratio(least: f64) -> Fragment {
+    Fragment::new("generated: least volume ratio", format!("const LEAST_J: f32 = {least:e};\n"))
 }
 
 fn two_pass(block: &BlockKernels) -> Kernel {

@@ -81,9 +81,15 @@ fn scenes_in_the_readme_are_sound() {
 #[test]
 fn links_and_paths_in_the_guides_lead_somewhere() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-    for guide in
-        ["README.md", "docs/physics.md", "docs/systems.md", "docs/laws.md", "docs/scene.md", "docs/real_time.md"]
-    {
+    for guide in [
+        "README.md",
+        "docs/physics.md",
+        "docs/systems.md",
+        "docs/laws.md",
+        "docs/scene.md",
+        "docs/real_time.md",
+        "docs/unloading.md",
+    ] {
         let text = std::fs::read_to_string(root.join(guide)).unwrap();
         let folder = root.join(guide).parent().unwrap().to_path_buf();
         for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {

@@ -131,7 +131,7 @@ pub fn insert_laws(precision: Precision, world: &mut World) {
         let fibres = fibres.and_then(|fibres| directions.next().map(|from| (fibres, from)));
         let families = world.get::<ExponentialFibres>(block.material).map_or(Vec::new(), |all| all.0.clone());
         let prony = world.get::<Prony>(block.material);
-        let [terms, volumetric] = prony.map_or([vec![], vec![]], |prony| prony.coefficients(&clock));
+        let [terms, volumetric] = memory_terms(world, block.material, &clock);
         let law = BlockLaw {
             elastic,
             fibres,
@@ -146,6 +146,7 @@ pub fn insert_laws(precision: Precision, world: &mut World) {
             entity.insert(law.rounded::<f32>());
         }
         entity.insert(law);
+        entity.remove::<ViscousMemory>();
         if memory > 0 {
             entity.insert(ViscousMemory(Reals::zeros(precision, memory)));
         }

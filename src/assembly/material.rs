@@ -1,7 +1,7 @@
 //! Materials: entities with a component for every effect.
 
 use super::user_laws;
-use crate::components::{Damping, Density, ExponentialFibres, Label, Prony};
+use crate::components::{Damping, Density, ExponentialFibres, Label, Prony, StiffnessDamping};
 use crate::materials::{
     ArrudaBoyce, ExponentialFibre, Fibres, Linear, MooneyRivlin, NeoHookean, Ogden, StVenantKirchhoff, StableNeoHookean,
 };
@@ -47,6 +47,9 @@ pub(super) fn spawn(
         if let Some(rate) = material.damping {
             entity.insert(Damping(rate));
         }
+        if let Some(time) = material.stiffness_damping {
+            entity.insert(StiffnessDamping(time));
+        }
         spawned.insert(name.clone(), entity.id());
     }
     spawned
@@ -66,6 +69,7 @@ pub(super) fn called_for(material: &Material) -> Material {
     }
     material.prony = material.prony.filter(|prony| !(prony.terms.is_empty() && prony.volumetric.is_empty()));
     material.damping = material.damping.filter(|&rate| rate != 0.0);
+    material.stiffness_damping = material.stiffness_damping.filter(|&time| time != 0.0);
     material
 }
 

@@ -10,8 +10,10 @@ use std::sync::OnceLock;
 
 /// A mesh where the author wants it, with its surface when somebody asks for it.
 pub struct PlacedMesh {
-    /// The mesh, in the author's numbering.
+    /// The mesh at rest, in the author's numbering.
     pub mesh: Mesh,
+    /// Where its points are in the shape in which selections are made, where that is another one.
+    shown: Option<Vec<DVec3>>,
     surface: OnceLock<Vec<SurfaceFace>>,
 }
 
@@ -21,9 +23,14 @@ impl PlacedMesh {
         self.surface.get_or_init(|| self.mesh.surface())
     }
 
-    /// The lowest and the largest coordinates (m).
+    /// Where points are (m) in the shape in which selections are made: that of the scene's mesh.
+    pub fn points(&self) -> &[DVec3] {
+        self.shown.as_ref().unwrap_or(&self.mesh.points)
+    }
+
+    /// The lowest and the largest coordinates there (m).
     pub fn extent(&self) -> (DVec3, DVec3) {
-        crate::mesh::extent(self.mesh.points.iter().copied())
+        crate::mesh::extent(self.points().iter().copied())
     }
 
     /// Length of the bounding box's diagonal (m).
@@ -92,6 +99,30 @@ fn too_many(elements: u64, scene: &SceneFile) -> MeshError {
     MeshError::Parameter { name: "the mesh", parameter: "number of elements", value: elements.to_string(), allowed }
 }
 
+/// Where the points of a body's mesh are at rest (m), if that is not where the mesh has them.
+fn rest_points(name: &str, body: &Body, scene: &SceneFile, mesh: &Mesh) -> Result<Option<Vec<DVec3>>, String> {
+    let (points, of) = match (scene.rest_shapes.get(name), &body.rest_shape) {
+        (Some(points), _) => (points.clone(), "given"),
+        (None, None) => return Ok(None),
+        (None, Some(file)) => {
+            let path = mesh_file(scene, file).map_err(|error| error.to_string())?;
+            let rest = Mesh::read(path, false).map_err(|error| error.to_string())?;
+            if (&rest.tets, &rest.hexes) != (&mesh.tets, &mesh.hexes) {
+                return Err(format!(
+                    "the elements of {file} are not those of the mesh: a rest shape has the same points and elements in the \
+                     same order, after `refine` and `copies`"
+                ));
+            }
+            (rest.points, file.as_str())
+        }
+    };
+    let (found, wanted) = (points.len(), mesh.points.len());
+    match found == wanted {
+        true => Ok(Some(points)),
+        false => Err(format!("the rest shape ({of}) has {found} points, the mesh has {wanted}")),
+    }
+}
+
 /// The meshes of all bodies; complaints of all of them.
 pub(super) fn meshes(scene: &SceneFile, diagnostics: &mut Diagnostics) -> Vec<(String, PlacedMesh)> {
     let mut all = 0;
@@ -122,7 +153,20 @@ pub(super) fn meshes(scene: &SceneFile, diagnostics: &mut Diagnostics) -> Vec<(S
                     diagnostics.warn_at(path.as_str(), format!("the mesh of {name}: {note}"));
                 }
                 mesh.repeat(body.copies, body.apart);
-                meshes.push((name.clone(), PlacedMesh { mesh, surface: OnceLock::new() }));
+                let shown = match rest_points(name, body, scene, &mesh) {
+                    Ok(rest) => rest.map(|rest| std::mem::replace(&mut mesh.points, rest)),
+                    Err(message) => {
+                        diagnostics.error_at(format!("bodies.\"{name}\".rest_shape").as_str(), message);
+                        continue;
+                    }
+                };
+                if shown.is_some() {
+                    for finding in &mesh.soundness().errors {
+                        let message = format!("the rest shape of {name}: {finding}");
+                        diagnostics.error_at(format!("bodies.\"{name}\"").as_str(), message);
+                    }
+                }
+                meshes.push((name.clone(), PlacedMesh { mesh, shown, surface: OnceLock::new() }));
             }
         }
     }

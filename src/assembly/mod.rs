@@ -26,7 +26,10 @@ pub use patches::insert_forces;
 pub use relaxation::load_steps;
 pub use removal::step_of;
 pub use select::Selection;
-pub use time_step::{StableStep, StepSetter, alike_in_any_precision, author_of, square_frequencies, stable_step};
+pub use time_step::{
+    StableStep, StepSetter, alike_in_any_precision, author_of, damped, damping_time, square_frequencies, stable_step,
+    undamped_square_frequencies,
+};
 
 use crate::components::*;
 use crate::scene::SceneFile;

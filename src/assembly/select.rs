@@ -125,11 +125,11 @@ fn where_it_is(placed: &PlacedMesh, select: &Select) -> Vec<String> {
     )];
     let mesh = &placed.mesh;
     let nearest = distance_to(select).and_then(|distance| {
-        let all = mesh.points.iter().map(|&point| distance(point)).enumerate();
+        let all = placed.points().iter().map(|&point| distance(point)).enumerate();
         all.min_by(|a, b| a.1.total_cmp(&b.1))
     });
     if let Some((row, distance)) = nearest {
-        let (id, at) = (mesh.point_ids.of(row), mesh.points[row]);
+        let (id, at) = (mesh.point_ids.of(row), placed.points()[row]);
         let place = format!("({:.4}, {:.4}, {:.4})", at.x, at.y, at.z);
         notes.push(match distance > 0.0 {
             true => format!("the nearest node is {id} at {place}, {distance:.3e} m off"),
@@ -202,7 +202,7 @@ fn nodes(placed: &PlacedMesh, select: &Select) -> Vec<bool> {
     let mut marks = vec![false; mesh.points.len()];
     let mut mark = |node: u32| marks[node as usize] = true;
     if let Some(inside) = contains(placed, select) {
-        return mesh.points.iter().map(|&x| inside(x)).collect();
+        return placed.points().iter().map(|&x| inside(x)).collect();
     }
     match select {
         Select::Set(name) => {
@@ -278,7 +278,7 @@ fn all_nodes(placed: &PlacedMesh, select: &Select) -> Vec<bool> {
 }
 
 fn face_normal(placed: &PlacedMesh, face: &SurfaceFace) -> DVec3 {
-    let [a, b, c, d] = face.nodes.map(|node| placed.mesh.points[node as usize]);
+    let [a, b, c, d] = face.nodes.map(|node| placed.points()[node as usize]);
     (c - a).cross(d - b).try_normalize().unwrap_or_else(|| (b - a).cross(c - a).normalize_or_zero())
 }
 
@@ -315,5 +315,5 @@ fn elements(placed: &PlacedMesh, select: &Select) -> Vec<bool> {
 /// The mean of an element's nodes.
 pub fn centroid(placed: &PlacedMesh, element: usize) -> DVec3 {
     let nodes = placed.mesh.element(element);
-    nodes.iter().map(|&node| placed.mesh.points[node as usize]).sum::<DVec3>() / nodes.len() as f64
+    nodes.iter().map(|&node| placed.points()[node as usize]).sum::<DVec3>() / nodes.len() as f64
 }

@@ -59,6 +59,24 @@ pub(super) fn square_frequency<'a>(
     square_frequency_of(world, entity, block, |number| number)
 }
 
+/// β of a block's damping (s); 0 where there is none, and in a static analysis.
+pub fn damping_time(world: &World, block: &Block) -> f64 {
+    let moves = world.get_resource::<Clock>().is_none_or(|clock| clock.relaxation.is_none());
+    let damping = world.get::<StiffnessDamping>(block.material).filter(|_| moves);
+    damping.map_or(0.0, |damping| damping.0)
+}
+
+/// ω² (1/s²) that without damping would allow the same step 2/ω as an ω² with damping β (s): 4/Δt² of Δt =
+/// (2/ω)(√(1 + ξ²) − ξ), ξ = βω/2. It grows faster than ω².
+pub fn damped(square: f64, beta: f64) -> f64 {
+    if beta <= 0.0 {
+        return square;
+    }
+    // written so that nothing cancels: Δt = 4/ω² / (β + √(β² + 4/ω²))
+    let half = 0.5 * beta * square.sqrt();
+    square * (half + (1.0 + half * half).sqrt()).powi(2)
+}
+
 /// The same, of rest shapes whose numbers are made so.
 fn square_frequency_of<'a>(
     world: &'a World,
@@ -79,8 +97,16 @@ fn square_frequency_of<'a>(
     })
 }
 
-/// Squared frequency bound (1/s²) and volume (m³) of all elements of a block; both 0 of removed ones.
+/// Squared frequency bound (1/s²) and volume (m³) of all elements of a block; both 0 of removed ones. With damping proportional to
+/// stiffness it is that of the same step, see [`damped`].
 pub fn square_frequencies(world: &World, entity: Entity) -> Vec<(f64, f64)> {
+    let beta = world.get::<Block>(entity).map_or(0.0, |block| damping_time(world, block));
+    let undamped = undamped_square_frequencies(world, entity).into_iter();
+    undamped.map(|(square, volume)| (damped(square, beta), volume)).collect()
+}
+
+/// The same as if nothing were damped.
+pub fn undamped_square_frequencies(world: &World, entity: Entity) -> Vec<(f64, f64)> {
     let Some(block) = world.get::<Block>(entity) else { return Vec::new() };
     let (Some(frequency), Some(shape)) = (square_frequency(world, entity, block), world.get::<RestShape>(entity))
     else {
@@ -105,9 +131,10 @@ pub fn alike_in_any_precision(world: &World, entity: Entity) -> Vec<(f64, f64)> 
     let frequency = square_frequency_of(world, entity, block, short);
     let (Some(frequency), Some(shape)) = (frequency, world.get::<RestShape>(entity)) else { return Vec::new() };
     let density = world.get::<Density>(block.material).map_or(0.0, |density| density.0);
+    let beta = damping_time(world, block);
     let of_row = |row: usize| {
         let volume = short(rest_volume(block, row, shape));
-        if volume > 0.0 { (frequency(row), density * volume) } else { (0.0, 0.0) }
+        if volume > 0.0 { (damped(frequency(row), beta), density * volume) } else { (0.0, 0.0) }
     };
     (0..block.count).into_par_iter().map(of_row).collect()
 }

@@ -3,7 +3,7 @@
 mod before_a_run;
 mod suites;
 
-pub use before_a_run::{MeshArguments, ModesArguments};
+pub use before_a_run::{MeshArguments, ModesArguments, UnloadArguments};
 pub use suites::{BenchArguments, HardArguments};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -61,6 +61,9 @@ pub enum Command {
     /// Find the lowest natural frequencies of a scene and their shapes, with a proposal for damping and ramps
     #[command(after_help = STATUSES)]
     Modes(ModesArguments),
+    /// Find the unloaded shape of a scene whose meshes show its bodies loaded, as scans do
+    #[command(after_help = STATUSES)]
+    Unload(UnloadArguments),
     /// Show what accuracy costs in time: solve a scene in many ways, time each, measure each against a reference
     #[command(after_help = STATUSES)]
     Accuracy(AccuracyArguments),
@@ -93,7 +96,7 @@ impl Command {
             Command::Accuracy(arguments) => arguments.backend != BackendName::Cpu,
             Command::Hard(arguments) => arguments.backend != BackendName::Cpu,
             Command::Bench(arguments) => arguments.backends.contains(&"gpu".to_string()),
-            Command::Check(_) | Command::Mesh(_) | Command::Modes(_) => false,
+            Command::Check(_) | Command::Mesh(_) | Command::Modes(_) | Command::Unload(_) => false,
             Command::Completions { .. } | Command::Man { .. } => false,
         }
     }

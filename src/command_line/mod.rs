@@ -18,6 +18,7 @@ mod report;
 mod run;
 mod stability;
 mod terminal;
+mod unload;
 mod wording;
 
 use arguments::{Arguments, Command};
@@ -41,6 +42,7 @@ pub fn main() -> ExitCode {
         Command::Run(arguments) => run::command(&arguments),
         Command::Check(arguments) => check::command(&arguments),
         Command::Modes(arguments) => modes::command(&arguments),
+        Command::Unload(arguments) => unload::command(&arguments),
         Command::Mesh(arguments) => mesh::command(&arguments),
         Command::Explain(arguments) => explain::command(&arguments),
         Command::Render(arguments) => render::command(&arguments),

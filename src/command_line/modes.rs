@@ -16,6 +16,8 @@ use std::path::Path;
 const DRAWN: f64 = 0.1;
 /// Damping of the lowest mode that brings to rest quickly and hardly changes what is faster, as a share of the critical one.
 const SHARE: f64 = 0.2;
+/// β in stable steps that makes the stable step half as long: the highest frequency then has so much of the critical damping.
+const HALVES: f64 = 0.75;
 /// Periods of the lowest mode over which a ramp hardly rings: with the 3-4-5 polynomial its overshoot is below 1 %.
 const PERIODS: f64 = 5.0;
 
@@ -34,7 +36,8 @@ pub fn command(arguments: &ModesArguments) -> Outcome {
         let text = serde_json::to_string_pretty(&modes).map_err(|error| Failure::Silent(error.into()))?;
         return terminal::say(&format!("{text}\n"));
     }
-    terminal::say(&table(&modes))?;
+    let limit = simulation.stable_limit()?;
+    terminal::say(&table(&modes, limit))?;
     if arguments.no_picture || modes.is_empty() {
         return Ok(());
     }
@@ -46,8 +49,8 @@ pub fn command(arguments: &ModesArguments) -> Outcome {
     terminal::say(&format!("see them    {}; in ParaView {folder}/fields.pvd, a mode a frame\n", animation.display()))
 }
 
-/// A line for each mode, and what follows from the lowest.
-fn table(modes: &[Mode]) -> String {
+/// A line for each mode, and what follows from the lowest; `limit` is the stable step (s).
+fn table(modes: &[Mode], limit: Option<f64>) -> String {
     let mut text = String::from("mode  frequency     period        moves of all mass along x, y, z\n");
     for (number, mode) in modes.iter().enumerate() {
         let masses = mode.effective_mass.map(|share| format!("{:3.0} %", 100.0 * share)).join("  ");
@@ -70,6 +73,18 @@ fn table(modes: &[Mode]) -> String {
         digits(critical),
         digits(SHARE * critical)
     );
+    if let Some(limit) = limit {
+        // ξ = βω/2, and Δt = √(β² + Δt₀²) − β
+        let (quiet, beta) = (HALVES * limit, 2.0 * SHARE / (std::f64::consts::TAU * lowest));
+        text += &format!(
+            "            stiffness_damping: {} (s) quietens what is fastest, for steps half as long; {} damps the lowest as much as \
+             {} (1/s) does,\n            and all that is faster more, for steps {} times shorter\n",
+            digits(quiet),
+            digits(beta),
+            digits(SHARE * critical),
+            digits((beta.hypot(limit) + beta) / limit)
+        );
+    }
     text += &format!(
         "ramps       curve: Smooth(end: {}) or longer loads it as if at rest ({PERIODS} periods of the lowest)\n",
         digits(PERIODS / lowest)

@@ -20,7 +20,12 @@ pub fn text(summary: &Summary, scene: &SceneFile, folder: &Path, paint: Paint) -
     page.row("meshes", format!("{nodes}, {elements}"));
     match &summary.equilibrium {
         None => page.rows("time step", stability::of_run(summary)),
-        Some(found) => equilibrium(found, &mut page),
+        Some(found) => equilibrium(found, "rest", &mut page),
+    }
+    if let Some(preload) = &summary.preload {
+        let (steps, time) = (counted(preload.steps, "pseudo-step"), quantity(preload.seconds, "s"));
+        page.row("preload", format!("at rest before the first step, after {steps} in {time}"));
+        equilibrium(&preload.equilibrium, "", &mut page);
     }
     speeds(summary, &mut page);
     systems(summary, &mut page);
@@ -52,15 +57,14 @@ impl Page {
     }
 }
 
-fn equilibrium(found: &Equilibrium, page: &mut Page) {
+fn equilibrium(found: &Equilibrium, heading: &str, page: &mut Page) {
     let scale = quantity(found.scale, "N");
     let rounding = match found.rounding > 0.1 * found.tolerance {
         true => format!(", of it some {} by rounding", digits(found.rounding)),
         false => String::new(),
     };
-    let word = if found.reached { "rest" } else { "no rest" };
     page.row(
-        word,
+        if found.reached { heading } else { "no rest" },
         format!(
             "residual {} of loads and reactions ({scale}), sought {:.0e}{rounding}",
             digits(found.residual),

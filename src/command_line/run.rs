@@ -7,6 +7,7 @@ use super::terminal::{self, Paint};
 use super::wording::quantity;
 use super::{Outcome, check, interrupt, report};
 use sinew::output::{Folder, OutputError, replace, summary};
+use sinew::scene::schema::InitialState;
 use sinew::{BackendChoice, Error, Options, SceneFile, Simulation, Snapshot, Summary};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -92,6 +93,9 @@ pub fn run(
     terminal::aside(&simulation.warnings().render(Paint::of_stderr().is_on()));
     if let Some(snapshot) = from {
         go_on_from(snapshot, &mut simulation)?;
+    }
+    if from.is_none() && scene.scene.start != InitialState::Undeformed {
+        progress::during("bringing the bodies to rest", || simulation.settle())?;
     }
     let mut folder = Folder::create_for(path, &scene.path.display().to_string())?;
     for picture in PICTURES {

@@ -13,6 +13,10 @@ pub struct Density(pub f64);
 #[derive(Component, Clone, Copy, Debug)]
 pub struct Damping(pub f64);
 
+/// Stiffness-proportional damping: time β of the stress β Ṡ (s).
+#[derive(Component, Clone, Copy, Debug)]
+pub struct StiffnessDamping(pub f64);
+
 /// Families of fibres that stiffen exponentially.
 #[derive(Component, Clone, Debug)]
 pub struct ExponentialFibres(pub Vec<ExponentialFibre<f64>>);
@@ -42,4 +46,15 @@ impl Prony {
         [&self.terms, &self.volumetric]
             .map(|terms| terms.iter().map(|&(alpha, tau)| make(alpha, tau, clock.time_step)).collect())
     }
+}
+
+/// The terms of all that a material remembers, for the clock's step: of the isochoric stress and of the pressure, those of
+/// viscosity first. A static analysis has no rates.
+pub fn memory_terms(world: &World, material: Entity, clock: &Clock) -> [Vec<PronyTerm<f64>>; 2] {
+    let prony = world.get::<Prony>(material);
+    let mut terms = prony.map_or([vec![], vec![]], |prony| prony.coefficients(clock));
+    if let Some(damping) = world.get::<StiffnessDamping>(material).filter(|_| clock.relaxation.is_none()) {
+        terms.iter_mut().for_each(|terms| terms.push(PronyTerm::damping(damping.0, clock.time_step)));
+    }
+    terms
 }

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | body | node columns ([`nodes`]), [`Corners`], [`ElementForce`], [`Authoring`] |
 //! | element block: one element type, one material, one body | [`Block`], [`Connectivity`], [`Patches`], [`RestShape`] and, where called for, [`FibreDirection`], [`ViscousMemory`], [`NodalVolumeChange`], [`Alive`], [`RemovalStep`] |
-//! | material | [`Density`], an [elastic law](crate::materials::ElasticLaw), [`Fibres`](crate::materials::Fibres), [`ExponentialFibres`], [`Prony`], [`Damping`]: an effect exists when its component does |
+//! | material | [`Density`], an [elastic law](crate::materials::ElasticLaw), [`Fibres`](crate::materials::Fibres), [`ExponentialFibres`], [`Prony`], [`Damping`], [`StiffnessDamping`]: an effect exists when its component does |
 //! | constraint, load, removal | [`Fixed`], [`Prescribed`], [`Gravity`], [`NodalForce`], [`Pressure`], [`Traction`], [`RemovalCriterion`] with the rows they act on |
 //! | probe | [`Probe`] |
 
@@ -30,7 +30,7 @@ pub use column::{Column, ColumnAccess, Precision, Reals, Role, all_columns};
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
 pub use guard::{GuardMemory, Notice, Seen};
 pub use load::{FaceCorners, Gravity, NodalForce, Pressure, Traction};
-pub use material::{Damping, Density, ExponentialFibres, Prony};
+pub use material::{Damping, Density, ExponentialFibres, Prony, StiffnessDamping, memory_terms};
 pub use nodes::{
     Authoring, ConstrainedAxes, Corners, DampingCoefficient, Displacement, DisplacementCompensation, DisplacementStep,
     ElementForce, ExternalForce, FictitiousMass, FirstNonFinite, InternalForce, Mass, MiddleDisplacement, NodeSums,

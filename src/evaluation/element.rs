@@ -77,7 +77,12 @@ impl ElementState {
 
     /// Whether it is turned inside out at one of its points.
     pub fn is_inverted(&self) -> bool {
-        self.volume > 0.0 && self.points().iter().any(|point| point.kinematics.true_j < 0.0)
+        self.is_flatter_than(0.0)
+    }
+
+    /// Whether J is below a value at one of its points.
+    pub fn is_flatter_than(&self, least: f64) -> bool {
+        self.volume > 0.0 && self.points().iter().any(|point| point.kinematics.true_j < least)
     }
 
     /// Nodal forces (N) for a first Piola-Kirchhoff stress (Pa) at each point.

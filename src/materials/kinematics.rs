@@ -6,6 +6,10 @@ use crate::math::{Mat3, Real, Sym3, dot_plus, minor};
 /// as inverted when J ≤ 0 and the run stops; what lies between is far beyond any tissue.
 pub const J_FLOOR: f64 = 1e-3;
 
+/// Elements that go when they are turned inside out (`inversion: Remove`) go when J falls below this: squeezed flatter, they need steps
+/// so small, and push so hard where a step passes over J = 0, that what they do is no tissue's doing.
+pub const FLATTEST: f64 = 0.02;
+
 /// Strain measures at a point, all computed from ∇u: F = I + ∇u would throw away the digits of a small ∇u.
 #[derive(Clone, Copy, Debug)]
 pub struct Kinematics<R> {

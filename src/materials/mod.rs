@@ -23,7 +23,7 @@ pub(crate) use elastic::each_elastic_law;
 pub use elastic::{Elastic, ElasticLaw};
 pub use exponential_fibres::ExponentialFibre;
 pub use fibres::Fibres;
-pub use kinematics::{J_FLOOR, Kinematics};
+pub use kinematics::{FLATTEST, J_FLOOR, Kinematics};
 pub use linear::Linear;
 pub use mooney_rivlin::MooneyRivlin;
 pub use neo_hookean::NeoHookean;

@@ -41,6 +41,17 @@ impl PronyTerm<f64> {
         Self { stress: rate * alpha, memory: tau / (time_step + tau), rate, aim: alpha }
     }
 
+    /// Damping proportional to stiffness, written as a term: −Υ = (β/Δt)(S − q), q the stress of the step before. So S − Υ =
+    /// S + β Ṡ, the rate taken over the last step.
+    pub fn damping(beta: f64, time_step: f64) -> Self {
+        Self { stress: -beta / time_step, memory: beta / time_step, rate: 1.0, aim: 1.0 }
+    }
+
+    /// Whether it is one of [`damping`](Self::damping): those of viscosity take from the stress.
+    pub fn is_damping(&self) -> bool {
+        self.stress < 0.0
+    }
+
     /// What has relaxed after a long time, Υ = αS, whatever the history; q stays as it is.
     pub fn long_term(alpha: f64) -> Self {
         Self { stress: alpha, memory: 0.0, rate: 0.0, aim: 0.0 }

@@ -205,7 +205,10 @@ fn held_by(seen: &Look, world: &World) -> Held {
         let prony = world.get::<Block>(*entity).and_then(|block| world.get::<Prony>(block.material));
         let share = |terms: &[(f64, f64)]| terms.iter().map(|(alpha, _)| alpha).sum::<f64>();
         let relaxed = prony.map_or(0.0, |prony| share(&prony.terms).max(share(&prony.volumetric)));
-        held.viscous |= relaxed > 0.0;
+        let damped = world
+            .get::<Block>(*entity)
+            .is_some_and(|block| world.entity(block.material).contains::<StiffnessDamping>());
+        held.viscous |= relaxed > 0.0 || damped;
         held.lasting += (1.0 - relaxed) * sums.strain + sums.hourglass;
         held.all += sums.strain + sums.hourglass;
     }

@@ -6,6 +6,7 @@
 //! | `fields.pvd`, `fields_000000.vtu` ... | [`Series`], one VTU file a [`Frame`] |
 //! | `energy.csv`, one table a probe | [`Table`] |
 //! | `nodes.csv` | [`nodes::write`] |
+//! | `unloaded.msh` | [`write_gmsh`] |
 //! | `summary.json` | [`summary::write`] |
 //!
 //! Every file is readable at every moment: whole files are written under another name and renamed, files that grow do so
@@ -15,6 +16,7 @@ mod atomic;
 mod error;
 mod finite;
 mod folder;
+mod gmsh;
 mod lock;
 pub mod nodes;
 mod pvd;
@@ -26,6 +28,7 @@ pub use atomic::replace;
 pub use error::OutputError;
 pub use finite::not_finite;
 pub use folder::Folder;
+pub use gmsh::write as write_gmsh;
 pub use lock::Lock;
 pub use nodes::Node;
 pub use pvd::{FIELDS, Series};

@@ -8,7 +8,9 @@ use super::schema::Scene;
 use super::set;
 use super::source::Source;
 use super::syntax::{Span, Tree, parse};
+use glam::DVec3;
 use ron::extensions::Extensions;
+use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -24,6 +26,9 @@ pub struct SceneFile {
     pub folder: PathBuf,
     /// What the scene may ask for.
     pub allowed: Allowed,
+    /// Where nodes of bodies are at rest (m), in the author's order, where a program knows better than the scene: in place of
+    /// what `rest_shape` says.
+    pub rest_shapes: BTreeMap<String, Vec<DVec3>>,
     source: Arc<Source>,
     tree: Arc<Tree>,
 }
@@ -128,7 +133,15 @@ impl SceneFile {
         mistakes.extend(wrong_words);
         let (source, tree) = (Arc::new(source), Arc::new(tree));
         let mut diagnostics = Diagnostics::new(Arc::clone(&source), Arc::clone(&tree));
-        let file = |scene| Self { scene, path: name.into(), folder: folder.to_path_buf(), allowed, source, tree };
+        let file = |scene| Self {
+            scene,
+            path: name.into(),
+            folder: folder.to_path_buf(),
+            allowed,
+            rest_shapes: BTreeMap::new(),
+            source,
+            tree,
+        };
         if mistakes.is_empty() {
             match options().from_str::<Scene>(diagnostics.text()) {
                 Ok(scene) => return Ok(file(scene)),

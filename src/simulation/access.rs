@@ -74,6 +74,7 @@ impl Simulation {
     /// # Errors
     /// No such body; what the GPU says.
     pub fn displacements(&mut self, body: &str) -> Result<Vec<DVec3>, Error> {
+        self.settle()?;
         let body = self.body(body)?;
         crate::backend::device::bring_to_host(&mut self.world, |entity, name| {
             entity == body && name == Displacement::NAME
@@ -103,6 +104,7 @@ impl Simulation {
     /// # Errors
     /// No such body; what the GPU says.
     pub fn fields(&mut self, body: &str) -> Result<crate::observation::BodyFields, Error> {
+        self.settle()?;
         let body = self.body(body)?;
         crate::observation::body_fields(&mut self.world, body)
     }
@@ -112,6 +114,7 @@ impl Simulation {
     /// # Errors
     /// No such body; what the GPU says.
     pub fn internal_forces(&mut self, body: &str) -> Result<Vec<DVec3>, Error> {
+        self.settle()?;
         let body = self.body(body)?;
         crate::observation::internal_forces(&mut self.world, body)
     }
@@ -139,6 +142,7 @@ impl Simulation {
     /// # Errors
     /// What the GPU says.
     pub fn energies(&mut self) -> Result<Energies, Error> {
+        self.settle()?;
         crate::observation::energies(&mut self.world)
     }
 
@@ -147,6 +151,7 @@ impl Simulation {
     /// # Errors
     /// No such probe; what the GPU says.
     pub fn probe(&mut self, name: &str) -> Result<Vec<f64>, Error> {
+        self.settle()?;
         let probes: Vec<(Entity, String)> = self
             .world
             .query_filtered::<(Entity, &Label), With<Probe>>()

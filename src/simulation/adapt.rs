@@ -8,6 +8,7 @@
 //! stiffest now: some products show it to a few per cent.
 
 use super::Simulation;
+use super::damped_step::square_with_damping;
 use super::follow::{Follower, step_of};
 use super::frequency::{PRODUCT, bodies, largest_near};
 use super::nodal;
@@ -87,7 +88,7 @@ impl Simulation {
             block.remember(world);
         }
         // bounds hold as well
-        seen.square = seen.square.min(SHOWN * shown);
+        seen.square = seen.square.min(square_with_damping(SHOWN * shown, world));
         follower.shape = Some(shape);
         follower.found.take(seen);
         follower.history.sharp_looks += 1;

@@ -53,6 +53,7 @@ impl Simulation {
         else {
             return Err(diagnostics.into());
         };
+        super::step_change::remember_the_start(&mut world);
         let (nodes, elements) = counts(&assembly);
         let observer = observer(scene, &clock, steps, &mut world);
         world.insert_resource(observer);
@@ -127,6 +128,7 @@ impl Simulation {
             setup: started.elapsed(),
             warnings: diagnostics,
         };
+        let settling = super::preload::settling(scene, options)?;
         let follower = Follower::new(&scene.scene, &facts.stability, facts.initial_mass, &mut world);
         Ok(Self {
             world,
@@ -134,6 +136,8 @@ impl Simulation {
             scene: scene.scene.clone(),
             facts,
             relaxing,
+            settling,
+            preload: None,
             follower,
             elapsed: Duration::ZERO,
             began: (0, 0.0),
@@ -258,11 +262,12 @@ pub(super) fn check(scene: &SceneFile, registry: &Registry) -> Diagnostics {
 
 /// The clock with its step, what is known of the stable step, and how many steps the scene lasts.
 fn clock(scene: &SceneFile, world: &mut World, diagnostics: &mut Diagnostics) -> Option<(Clock, Stability, u64)> {
-    if let Analysis::Static { max_steps, load_steps, .. } = scene.scene.analysis {
+    if let Analysis::Static { max_steps, load_steps, at, .. } = scene.scene.analysis {
         let bound = stable_step::found_bound(world, diagnostics)?;
         let load_steps = load_steps.unwrap_or_else(|| crate::assembly::load_steps(world));
         let growth = 1.0 / load_steps as f64;
-        let relaxation = Relaxation { end: scene.scene.duration, since: (0, 0.0), growth, damping: 0.0, gain: 1.0 };
+        let relaxation =
+            Relaxation { end: at.unwrap_or(scene.scene.duration), since: (0, 0.0), growth, damping: 0.0, gain: 1.0 };
         let clock = Clock { relaxation: Some(relaxation), ..Clock::with_step(scene.scene.duration * growth) };
         return Some((clock, Stability::of_rest(bound), max_steps));
     }

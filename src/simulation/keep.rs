@@ -18,6 +18,7 @@ impl Simulation {
     /// # Errors
     /// That it is a static analysis; what the GPU says.
     pub fn snapshot(&mut self) -> Result<Snapshot, Error> {
+        self.settle()?;
         let mut snapshot = Snapshot::take(&mut self.world)?;
         self.note_pace(&mut snapshot)?;
         Ok(snapshot)
@@ -30,6 +31,7 @@ impl Simulation {
     /// That the snapshot is of another simulation (then nothing has changed); what the GPU says.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Error> {
         snapshot.put(&mut self.world)?;
+        (self.settling, self.preload) = (None, None);
         self.take_up_pace(snapshot)?;
         let clock = *self.world.resource::<Clock>();
         self.began = (clock.step, clock.time());

@@ -6,6 +6,7 @@ mod added_mass;
 mod beat;
 mod build;
 mod costly;
+mod damped_step;
 pub mod explain;
 mod follow;
 mod frequency;
@@ -23,6 +24,7 @@ mod pace;
 mod parameters;
 mod plausible;
 mod policies;
+mod preload;
 mod relax;
 mod residual;
 mod rounding;
@@ -36,6 +38,7 @@ mod stretch;
 mod summary;
 mod surface;
 mod tangent;
+mod unload;
 mod watch;
 
 pub use follow::StepHistory;
@@ -43,9 +46,11 @@ pub use modes::Mode;
 pub use names::{FieldName, Names};
 pub use node_set::{NodeSet, NodeState};
 pub use options::{BackendChoice, Options};
+pub use preload::Preload;
 pub use relax::Equilibrium;
 pub use stable_step::Stability;
 pub use summary::{Inversions, Summary, SystemTime};
+pub use unload::{Unloaded, Unloading, UnloadingStep, unload};
 
 use crate::backend::kernel::KernelId;
 use crate::scene::Diagnostics;
@@ -62,6 +67,10 @@ pub struct Simulation {
     scene: Scene,
     facts: Facts,
     relaxing: Option<relax::Relaxing>,
+    /// What is to bring the bodies to rest before the first step.
+    settling: Option<Box<Simulation>>,
+    /// What that took.
+    preload: Option<Preload>,
     follower: Option<follow::Follower>,
     elapsed: Duration,
     /// Step and time (s) from which `elapsed` counts: of the start, or of a snapshot that was gone on from.

@@ -49,6 +49,7 @@ impl Simulation {
     /// # Errors
     /// What the GPU says; states whose forces are no numbers.
     pub fn modes(&mut self, count: usize) -> Result<Vec<Mode>, Error> {
+        self.settle()?;
         bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
         let bodies = bodies(&mut self.world);
         let roots = roots_of_mass(&self.world, &bodies);

@@ -8,9 +8,10 @@
 //! brings little: beside elements of usual size it counts for that much less. The same holds of what is added to a stiffness whose
 //! highest frequency is known. Nodes that are held along all axes do not move and do not count.
 
+use super::damped_step::square_with_damping;
 use super::mass_scaling::heavy_mass;
 use super::watch::Watched;
-use crate::assembly::square_frequencies;
+use crate::assembly::undamped_square_frequencies;
 use crate::components::*;
 use crate::evaluation::{lane_place, node_count};
 use bevy_ecs::prelude::*;
@@ -89,9 +90,10 @@ pub(super) fn bound_at_rest(world: &mut World) -> f64 {
             let (mass, heavier) = heavy_mass(world, block, row)?;
             (volume > 0.0).then_some((row, mass, [square / heavier]))
         };
-        means.add(world, block, square_frequencies(world, block).into_iter().enumerate().filter_map(of_row));
+        means.add(world, block, undamped_square_frequencies(world, block).into_iter().enumerate().filter_map(of_row));
     }
-    means.largest(world)[0]
+    let square = means.largest(world)[0];
+    square_with_damping(square, world)
 }
 
 /// How much stiffer an element may have become before it counts as one that was added: what is tried.
@@ -99,8 +101,12 @@ const STIFFER: [f64; 6] = [0.0, 1.0, 1.1, 1.3, 2.0, 4.0];
 
 /// A bound of ω² of all bodies as they are deformed now (1/s²); it was `known` when it was found last, or is infinite. For any r the elements
 /// that are at most r times stiffer than then stay below r times what was known, and the others are added to that as a whole:
-/// r = 0 is the bound by nodes. The least of some r; `None` where nothing moves by itself.
+/// r = 0 is the bound by nodes. The least of some r; `None` where nothing moves by itself,
+/// and where damping goes with stiffness: what it does to a step does not add up so.
 pub(super) fn bound_now(world: &mut World, watched: &mut [Watched], known: f64) -> Option<f64> {
+    if watched.iter().any(|block| block.is_damped) {
+        return None;
+    }
     let mut means = NodalMeans::<{ STIFFER.len() }>::new();
     for block in watched {
         let entity = block.entity;

@@ -125,6 +125,7 @@ impl Simulation {
     /// # Errors
     /// A set of another simulation; what the GPU says.
     pub fn node_state(&mut self, nodes: &NodeSet) -> Result<Vec<NodeState>, Error> {
+        self.settle()?;
         use crate::components::{Column, Reals};
         let wanted = [Displacement::NAME, DisplacementStep::NAME, Mass::NAME];
         crate::backend::device::bring_to_host(&mut self.world, |entity, name| {

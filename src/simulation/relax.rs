@@ -254,6 +254,7 @@ impl Relaxing {
             steps,
             stalled_at: (steps < self.most_steps).then_some(self.best.0),
             equilibrium: self.equilibrium.clone(),
+            at_start: false,
         }))
     }
 }

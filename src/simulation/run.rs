@@ -25,6 +25,7 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn advance_to(&mut self, time: f64) -> Result<(), Error> {
+        self.settle()?;
         loop {
             self.follow_in_time()?;
             let clock = *self.world.resource::<Clock>();
@@ -43,6 +44,7 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn advance_towards_end(&mut self, count: u64) -> Result<(), Error> {
+        self.settle()?;
         let target = self.step_count().saturating_add(count);
         while !self.is_finished() && self.step_count() < target {
             self.follow_in_time()?;
@@ -63,6 +65,7 @@ impl Simulation {
     /// That the simulation broke down or found no equilibrium (the world keeps the state in which this was noticed), that the GPU failed, or that
     /// outputs could not be written.
     pub fn advance(&mut self, count: u64) -> Result<(), Error> {
+        self.settle()?;
         let started = Instant::now();
         let target = self.step_count() + count;
         let result = self.on_threads(|simulation| simulation.steps_to(target));
@@ -142,6 +145,7 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn observe(&mut self) -> Result<(), Error> {
+        self.settle()?;
         let started = Instant::now();
         let observed = self.observe_in_time();
         self.elapsed += started.elapsed();

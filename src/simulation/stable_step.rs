@@ -1,6 +1,7 @@
 //! The step of a scene: what is stable at the start, and what of it is taken.
 
 use super::costly::warn_of_costly;
+use super::damped_step::with_damping;
 use super::follow::step_of;
 use super::frequency::{Largest, PRODUCT, largest_eigenvalue, largest_worth};
 use super::nodal::bound_at_rest;
@@ -78,7 +79,7 @@ impl Stability {
 
 /// The true limit of the present state, from below (s).
 pub(super) fn limit_now(world: &mut World, accuracy: f64) -> Option<f64> {
-    largest_eigenvalue(world, accuracy).map(|found| step_of(found.at_most))
+    largest_eigenvalue(world, accuracy).map(|found| step_of(with_damping(found, world).at_most))
 }
 
 impl Simulation {
@@ -189,11 +190,11 @@ fn seek(scene: &Scene, certain: f64, adapts: bool, world: &mut World) -> Largest
         }
         _ => largest_eigenvalue(world, ACCURACY),
     };
-    let found = found.unwrap_or(nothing);
+    let found = with_damping(found.unwrap_or(nothing), world);
     // a step of the scene's own may lie within the margin
     match integration.step {
         Some(step) if step > step_of(found.at_most).max(certain) && step < step_of(found.at_least) => {
-            largest_eigenvalue(world, SHARP).unwrap_or(found)
+            largest_eigenvalue(world, SHARP).map_or(found, |sharp| with_damping(sharp, world))
         }
         _ => found,
     }

@@ -132,12 +132,36 @@ pub(super) fn relax_as(world: &mut World, clock: &Clock) -> Result<(), Error> {
     Ok(())
 }
 
+/// Bodies that start deformed have been so for a step: damping remembers the stress that they start with. Memories must be 0 before.
+pub(super) fn remember_the_start(world: &mut World) {
+    remember(world, |term| if term.is_damping() { term.aim } else { 0.0 });
+}
+
+/// The memories of blocks that have stood as they stand for long: each has come to its aim, aim·S, which takes αS from the
+/// stress whatever the step is. They must be 0 before.
+pub(super) fn relax_fully(world: &mut World) {
+    remember(world, |term| term.aim);
+}
+
+/// Puts memories to so many times the present stress.
+fn remember(world: &mut World, times: fn(&PronyTerm<f64>) -> f64) {
+    let blocks: Vec<Entity> = world.query_filtered::<Entity, With<ViscousMemory>>().iter(world).collect();
+    for entity in blocks {
+        let Some(law) = world.get::<BlockLaw<f64>>(entity) else { continue };
+        let times = [&law.prony, &law.volumetric].map(|terms| terms.iter().map(times).collect::<Vec<f64>>());
+        let memories = moved_memory(world, entity, &times);
+        if let (Some(memories), Some(mut memory)) = (memories, world.get_mut::<ViscousMemory>(entity)) {
+            memories.into_iter().for_each(|(place, value)| memory.set(place, value));
+        }
+    }
+}
+
 /// Viscous blocks, with the coefficients of their terms and of their volumetric terms for a step.
 fn coefficients(world: &mut World, clock: &Clock) -> Vec<(Entity, [Vec<PronyTerm<f64>>; 2])> {
     let blocks: Vec<Entity> = world.query_filtered::<Entity, With<ViscousMemory>>().iter(world).collect();
     let of_block = |entity: Entity| {
         let material = world.get::<Block>(entity)?.material;
-        Some((entity, world.get::<Prony>(material)?.coefficients(clock)))
+        Some((entity, memory_terms(world, material, clock)))
     };
     blocks.into_iter().filter_map(of_block).collect()
 }

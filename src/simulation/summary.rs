@@ -68,6 +68,9 @@ pub struct Summary {
     pub traffic: Option<Traffic>,
     /// The equilibrium of a static analysis.
     pub equilibrium: Option<super::Equilibrium>,
+    /// What bringing the bodies to rest before the first step took; `None` where that was not asked for, and in a run that
+    /// has gone on from a snapshot.
+    pub preload: Option<super::Preload>,
     /// Energies at the end (J).
     pub energies: Energies,
     /// Mass at the start (kg).
@@ -196,6 +199,7 @@ impl Simulation {
             systems: self.entries.iter().map(|entry| system_time(entry, facts.on_gpu)).collect(),
             traffic: self.world.get_resource::<Device>().map(Device::traffic),
             equilibrium: self.equilibrium().cloned(),
+            preload: self.preload.clone(),
             energies,
             mass: facts.initial_mass,
             removed_mass: facts.initial_mass - mass,

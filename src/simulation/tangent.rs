@@ -146,7 +146,9 @@ fn at_an_instant(law: &BlockLaw<f64>) -> BlockLaw<f64> {
     let mut law = law.clone();
     // a term without a rate is relaxed for good: that of a static analysis
     for term in law.prony.iter_mut().chain(&mut law.volumetric).filter(|term| term.rate > 0.0) {
-        (term.stress, term.rate) = (0.0, 0.0);
+        // what damps is no force of a state at rest
+        let memory = if term.is_damping() { 0.0 } else { term.memory };
+        (term.stress, term.memory, term.rate) = (0.0, memory, 0.0);
     }
     law.fibres.iter_mut().for_each(|(fibres, _)| fibres.tension_only = 0.0);
     law.exponential.iter_mut().for_each(|(family, _)| family.tension_only = 0.0);

@@ -1,5 +1,6 @@
 //! How much quicker elements can have become: a cheap bound, from how far they are deformed now.
 
+use super::damped_step::{growth_with_damping, is_damped};
 use super::growth::Growth;
 use super::mass_scaling::heavy_mass;
 use crate::assembly::square_frequencies;
@@ -28,6 +29,8 @@ pub(super) struct Watched {
     tasks: Vec<(f64, f64)>,
     /// How many elements were there when that was summed up.
     counted: usize,
+    /// Whether anything is damped in proportion to its stiffness.
+    pub is_damped: bool,
 }
 
 /// What a look at all elements shows.
@@ -80,14 +83,16 @@ impl Watched {
     pub fn all(world: &mut World) -> Vec<Self> {
         let mut blocks: Vec<Entity> = world.query_filtered::<Entity, With<Block>>().iter(world).collect();
         blocks.sort();
+        let is_damped = is_damped(world);
         let watched = |&entity: &Entity| {
             let growth = Growth::of(world.get::<BlockLaw<f64>>(entity)?);
             let block = world.get::<Block>(entity)?;
             let rest = world.get::<RestPosition>(block.body)?;
             let shortest_edge = shortest_edge(block, world.get::<Connectivity>(entity)?, rest);
-            let known_growth = vec![1.0; block.count];
             let (squares, tasks) = (Vec::new(), Vec::new());
-            let mut watched = Self { entity, growth, squares, shortest_edge, known_growth, tasks, counted: 0 };
+            let known_growth = vec![1.0; block.count];
+            let mut watched =
+                Self { entity, growth, squares, shortest_edge, known_growth, tasks, counted: 0, is_damped };
             watched.weigh(world);
             Some(watched)
         };
@@ -188,7 +193,7 @@ impl Watched {
     fn growth_of(&self, size: f64, squeeze: f64, more: f64) -> [f64; 2] {
         // as much as f32 can keep
         [self.growth.own(size), self.growth.of_all(size, squeeze)]
-            .map(|growth| (growth + more).min(f64::from(f32::MAX)))
+            .map(|growth| growth_with_damping(growth + more, self.is_damped).min(f64::from(f32::MAX)))
     }
 
     /// Tries the law as far as an element is deformed now.

@@ -3,7 +3,7 @@
 use crate::backend::cpu::BlockLaw;
 use crate::components::*;
 use crate::materials::ElasticLaw;
-use crate::scene::schema::Scene;
+use crate::scene::schema::{InitialState, Scene};
 use bevy_ecs::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -19,6 +19,10 @@ pub fn identity(scene: &Scene, world: &mut World) -> Identity {
     let mut parts = Identity::new();
     let mut add = |name: &str, hash: u64| parts.insert(name.into(), format!("{hash:016x}"));
     add("bodies", of_text(&scene.bodies));
+    // what it does is in the columns, unless nothing has been done yet
+    if scene.start != InitialState::default() {
+        add("start", of_text(&scene.start));
+    }
     add("constraints", of_text(&scene.constraints));
     add("loads", of_text(&scene.loads));
     add("removal", of_text(&scene.removal));

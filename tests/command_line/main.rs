@@ -11,4 +11,5 @@ mod locked;
 mod renders;
 mod runs;
 mod threads;
+mod unloads;
 mod words;

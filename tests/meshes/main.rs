@@ -10,3 +10,4 @@ mod samples_vtk;
 mod shared;
 mod shipped;
 mod soundness;
+mod written;

@@ -42,7 +42,7 @@ error: unknown field `densty`
   │                    ^^^^^^ not a field of Material
   │
   = did you mean `density`?
-  = allowed: density, linear, st_venant_kirchhoff, neo_hookean, stable_neo_hookean, mooney_rivlin, ogden, arruda_boyce, law, fibres, exponential_fibres, prony, damping, inversion
+  = allowed: density, linear, st_venant_kirchhoff, neo_hookean, stable_neo_hookean, mooney_rivlin, ogden, arruda_boyce, law, fibres, exponential_fibres, prony, damping, stiffness_damping, inversion
 
 error: `elements` cannot be `Hex20`
   ┌─ cube.ron:8:74

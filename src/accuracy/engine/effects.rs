@@ -28,11 +28,14 @@ fn list(scene: &Scene) -> Vec<Effect> {
         let of = |what: &str| if scene.materials.len() == 1 { what.to_string() } else { format!("{what} of {name}") };
         // what a material has beyond an elastic law: name, whether it is there, how it goes
         type Part = (&'static str, bool, fn(&mut crate::scene::schema::Material));
-        let parts: [Part; 4] = [
+        let parts: [Part; 5] = [
             ("fibres", material.fibres.is_some(), |m| m.fibres = None),
             ("exponential fibres", material.exponential_fibres.is_some(), |m| m.exponential_fibres = None),
             ("viscosity", material.prony.is_some(), |m| m.prony = None),
             ("damping", material.damping.is_some_and(|rate| rate > 0.0), |m| m.damping = None),
+            ("stiffness damping", material.stiffness_damping.is_some_and(|time| time > 0.0), |m| {
+                m.stiffness_damping = None
+            }),
         ];
         for (what, there, off) in parts {
             let key = name.clone();

@@ -5,7 +5,9 @@ use super::ladder::climb;
 use crate::accuracy::configuration::{Configuration, Digits, Factor, Place};
 use crate::mesh::ElementKind;
 use crate::scene::SceneFile;
-use crate::scene::schema::{Analysis, Axis, Constraint, Load, MeshSource, Probe, Quantity, Scene, Select};
+use crate::scene::schema::{
+    Analysis, Axis, Constraint, InitialState, Load, MeshSource, Probe, Quantity, Scene, Select,
+};
 
 /// The residual that searches for equilibrium in f64 end with.
 const TOLERANCE: f64 = 1e-8;
@@ -135,11 +137,17 @@ pub fn variant(file: &SceneFile, configuration: &Configuration, step: Option<f64
     if let Some(effect) = &configuration.without {
         switch_off(scene, effect);
     }
-    if let Analysis::Static { tolerance, .. } = &mut scene.analysis
-        && configuration.digits == Digits::Double
-    {
-        // what is left of the way to rest must not be taken for an error of the mesh
-        *tolerance = Some(tolerance.map_or(TOLERANCE, |asked| asked.min(TOLERANCE)));
+    // what is left of the way to rest must not be taken for an error of the mesh
+    let sharpen = |tolerance: &mut Option<f64>| {
+        if configuration.digits == Digits::Double {
+            *tolerance = Some(tolerance.map_or(TOLERANCE, |asked| asked.min(TOLERANCE)));
+        }
+    };
+    if let Analysis::Static { tolerance, .. } = &mut scene.analysis {
+        sharpen(tolerance);
+    }
+    if let InitialState::Equilibrium { tolerance, .. } = &mut scene.start {
+        sharpen(tolerance);
     }
     scene.output.fields_every = Some(scene.duration);
     scene.output.energies_every = None;

@@ -8,7 +8,7 @@ mod stress;
 use super::{BlockLaw, Cpu, Factors, NodeColumns, move_nodes};
 use crate::components::{FamilyDirection, Patches};
 use crate::elements::{Element, MOST_NODES, PressureFrom};
-use crate::materials::{Elastic, ElasticLaw, NeoHookean};
+use crate::materials::{Elastic, ElasticLaw, FLATTEST, NeoHookean};
 use crate::math::{LANES, Real, Scratch, SimdScalar};
 use at_hand::{AtHand, part, parts};
 use fetch::{AHEAD, NEAR};
@@ -334,6 +334,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
             PressureFrom::Nodes => theta,
         };
         let mut forces = E::no_forces(zero);
+        let least = zero.constant(if self.inverted_go { FLATTEST } else { 0.0 });
         let mut worst = zero.constant(f64::MIN);
         for point in 0..E::POINTS {
             let state = E::at_point(
@@ -344,7 +345,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
             );
             let (stress, j) = self.stress(simd, law, group, at, point, &state.gradient, shared);
             E::add_stress(&mut forces, point, &state, &stress);
-            worst = worst.max(-j);
+            worst = worst.max(least - j);
         }
         let worst = worst * T::load(simd, &rest_shape[E::VOLUME_ROW][at..]);
         let mut out = [[zero; 3]; MOST_NODES];

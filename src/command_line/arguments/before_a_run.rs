@@ -1,4 +1,4 @@
-//! The words of what is looked at before a run: meshes and natural modes.
+//! The words of what is done before a run: meshes, natural modes, unloaded shapes.
 
 use super::SceneArguments;
 use clap::Args;
@@ -50,4 +50,30 @@ pub struct ModesArguments {
     /// The folder for the animation and fields.pvd, in place of earlier ones [default: out/NAME-OF-THE-SCENE-modes]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+}
+
+/// What `sinew unload` is told.
+#[derive(Args)]
+pub struct UnloadArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// How far loaded nodes may be from the mesh, as a share of the diagonal of the box around all bodies
+    #[arg(long, value_name = "SHARE", default_value_t = 1e-4, value_parser = share)]
+    pub tolerance: f64,
+    /// Static analyses at most
+    #[arg(long, value_name = "N", default_value_t = 40, value_parser = clap::value_parser!(u16).range(1..=10000))]
+    pub most: u16,
+    /// CPU threads; 0 is one a core, or a single one for small bodies
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    pub threads: u16,
+    /// The folder for the unloaded meshes and the scene, in place of earlier ones [default: out/NAME-OF-THE-SCENE-unloaded]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(share) if share > 0.0 && share < 1.0 => Ok(share),
+        _ => Err("a number above 0 and below 1 is wanted, such as 1e-4".into()),
+    }
 }

@@ -10,6 +10,10 @@ use serde::{Deserialize, Serialize};
 pub struct Body {
     /// Where the mesh comes from.
     pub mesh: MeshSource,
+    /// A mesh file with the same points and elements that says where they are at rest (m), its path relative to the scene file;
+    /// `mesh` is then a loaded shape, in which selections are made.
+    #[serde(default)]
+    pub rest_shape: Option<String>,
     /// The name of the material of all elements that `regions` does not name.
     pub material: String,
     /// Parts made of another material; a later entry wins.

@@ -46,6 +46,9 @@ pub struct Material {
     /// Mass-proportional damping: rate c of the force -c M v (1/s).
     #[serde(default)]
     pub damping: Option<f64>,
+    /// Stiffness-proportional damping: time β of the stress β Ṡ, S the stress without viscosity (s).
+    #[serde(default)]
+    pub stiffness_damping: Option<f64>,
     /// What becomes of elements that are turned inside out; left out, `Recover` where the material can, else `Stop`.
     #[serde(default)]
     pub inversion: Option<Inversion>,
@@ -69,6 +72,7 @@ impl Material {
             ("an elastic law that ends at J = 0", self.stable_neo_hookean.is_none()),
             ("fibres", self.fibres.is_some()),
             ("exponential_fibres", self.exponential_fibres.is_some()),
+            ("stiffness_damping", self.stiffness_damping.is_some_and(|time| time != 0.0)),
             ("terms of prony", self.prony.as_ref().is_some_and(|prony| !prony.terms.is_empty())),
         ];
         needs.into_iter().find(|(_, there)| *there).map(|(what, _)| what)

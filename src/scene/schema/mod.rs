@@ -17,7 +17,9 @@ pub use material::{
     OwnLaw, Prony, PronyTerm, ViscousIntegrator,
 };
 pub use output::{Output, OutputField};
-pub use scene::{Analysis, EnergyGuard, Field, Guard, Guards, Integration, Picture, Scene, StepBound, WhenUnstable};
+pub use scene::{
+    Analysis, EnergyGuard, Field, Guard, Guards, InitialState, Integration, Picture, Scene, StepBound, WhenUnstable,
+};
 pub use selection::{Probe, Quantity, Select};
 
 /// The texts of these files: what a field means is told in the words it is documented with.

@@ -17,6 +17,9 @@ pub struct Scene {
     /// Motion over time, or rest under what acts at the end.
     #[serde(default)]
     pub analysis: Analysis,
+    /// How bodies stand when the motion begins.
+    #[serde(default)]
+    pub start: InitialState,
     /// The bodies, by name.
     pub bodies: BTreeMap<String, Body>,
     /// The materials, by name.
@@ -70,7 +73,7 @@ pub enum Analysis {
     /// Motion over time.
     #[default]
     Transient,
-    /// Equilibrium under loads and motions as their curves stand at `duration`.
+    /// Equilibrium under loads and motions as their curves stand at `duration`, or at another time.
     Static {
         /// The residual that is small enough, as a share of loads and reactions; 1e-6 in f64 and 1e-5 in f32 when left
         /// out.
@@ -82,7 +85,38 @@ pub enum Analysis {
         /// Pseudo-steps over which loads and motions grow; found from the mesh when left out.
         #[serde(default)]
         load_steps: Option<u64>,
+        /// The time whose loads and motions act (s); `duration` when left out.
+        #[serde(default)]
+        at: Option<f64>,
     },
+}
+
+/// How bodies stand when the motion begins.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub enum InitialState {
+    /// As each body's own `start` says: undeformed where it says nothing.
+    #[default]
+    Undeformed,
+    /// At rest under loads and motions as their curves stand at t = 0, found by a static analysis before the first step.
+    Equilibrium {
+        /// As of a static analysis.
+        #[serde(default)]
+        tolerance: Option<f64>,
+        /// As of a static analysis.
+        #[serde(default = "most_steps")]
+        max_steps: u64,
+        /// As of a static analysis.
+        #[serde(default)]
+        load_steps: Option<u64>,
+    },
+}
+
+impl InitialState {
+    /// At equilibrium, sought as usual.
+    pub fn equilibrium() -> Self {
+        Self::Equilibrium { tolerance: None, max_steps: most_steps(), load_steps: None }
+    }
 }
 
 fn most_steps() -> u64 {

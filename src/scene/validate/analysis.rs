@@ -1,13 +1,40 @@
-//! Static analyses: their numbers, and what of a scene has no meaning at rest.
+//! Static analyses and motions that begin at equilibrium: their numbers, and what of a scene has no meaning at rest.
 
 use super::{Judge, scene, show};
 use crate::scene::limits::PSEUDO_STEPS;
-use crate::scene::schema::{Analysis, Constraint, Inversion, Quantity, Scene};
+use crate::scene::schema::{Analysis, Constraint, InitialState, Inversion, Load, Quantity, Scene};
+use crate::scene::syntax::Path;
 use glam::DVec3;
 
 pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
-    let Analysis::Static { tolerance, max_steps, load_steps } = scene_.analysis else { return };
+    start(scene_, judge);
+    let Analysis::Static { tolerance, max_steps, load_steps, at } = scene_.analysis else { return };
     let path = scene("analysis");
+    numbers(&path, tolerance, max_steps, load_steps, judge);
+    if let Some(at) = at {
+        judge.not_negative(&path.name("at"), at, "s");
+    }
+    if !scene_.removal.is_empty() {
+        judge
+            .out
+            .error_at(scene("removal"), "a static analysis cannot remove elements")
+            .note("which ones go depends on the way to rest, and pseudo-steps are no way that a body takes")
+            .note("leave `removal` out, or use `analysis: Transient`");
+    }
+    for (name, material) in &scene_.materials {
+        if material.inversion == Some(Inversion::Remove) {
+            judge
+                .out
+                .error_at(scene("materials").name(name).name("inversion"), "a static analysis cannot remove elements")
+                .note("allowed: Stop, and Recover for stable_neo_hookean");
+        }
+    }
+    meaningless(scene_, judge);
+    held(scene_, &path, judge);
+}
+
+/// How well equilibrium is sought, and how long.
+fn numbers(path: &Path, tolerance: Option<f64>, max_steps: u64, load_steps: Option<u64>, judge: &mut Judge) {
     if let Some(tolerance) = tolerance
         && (tolerance <= 0.0 || tolerance >= 1.0)
     {
@@ -32,22 +59,42 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
         }
         _ => {}
     }
-    if !scene_.removal.is_empty() {
-        judge
-            .out
-            .error_at(scene("removal"), "a static analysis cannot remove elements")
-            .note("which ones go depends on the way to rest, and pseudo-steps are no way that a body takes")
-            .note("leave `removal` out, or use `analysis: Transient`");
+}
+
+/// A motion that begins at equilibrium.
+fn start(scene_: &Scene, judge: &mut Judge) {
+    let InitialState::Equilibrium { tolerance, max_steps, load_steps } = scene_.start else { return };
+    let path = scene("start");
+    if scene_.is_static() {
+        judge.out.warn_at(&path, "a static analysis ignores `start`: it seeks an equilibrium anyway");
+        return;
     }
-    for (name, material) in &scene_.materials {
-        if material.inversion == Some(Inversion::Remove) {
+    numbers(&path, tolerance, max_steps, load_steps, judge);
+    for (name, body) in &scene_.bodies {
+        let body_path = scene("bodies").name(name);
+        let own = [
+            ("start", body.start.is_some()),
+            ("velocity", body.velocity != DVec3::ZERO),
+            ("spin", body.spin != DVec3::ZERO),
+        ];
+        for (field, _) in own.iter().filter(|(_, there)| *there) {
             judge
                 .out
-                .error_at(scene("materials").name(name).name("inversion"), "a static analysis cannot remove elements")
-                .note("allowed: Stop, and Recover for stable_neo_hookean");
+                .error_at(body_path.name(*field), format!("`{field}` has no meaning beside `start: Equilibrium()`"))
+                .note("bodies begin at rest where loads and constraints hold them; leave one of the two out");
         }
     }
-    meaningless(scene_, judge);
+    let curves = scene_.loads.iter().map(Load::curve).chain(scene_.constraints.iter().filter_map(Constraint::curve));
+    if curves.map(|curve| curve.value(0.0)).all(|factor| factor == 0.0) {
+        judge.out.warn_at(&path, "nothing acts at t = 0: bodies start undeformed").note(
+            "curves count as they stand at 0: a ramp that begins there is 0; a load without `curve` acts in full",
+        );
+    }
+    held(scene_, &path, judge);
+}
+
+/// Who is held by nothing is at rest only by chance.
+fn held(scene_: &Scene, path: &Path, judge: &mut Judge) {
     for name in scene_.bodies.keys() {
         let holds = |constraint: &Constraint| {
             let (Constraint::Fixed { body, .. } | Constraint::Prescribed { body, .. }) = constraint;
@@ -56,7 +103,7 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
         if !scene_.constraints.iter().any(holds) {
             judge
                 .out
-                .warn_at(&path, format!("nothing holds the body {name:?}: it is at rest only where its loads balance"))
+                .warn_at(path, format!("nothing holds the body {name:?}: it is at rest only where its loads balance"))
                 .note("add `Fixed(...)` or `Prescribed(...)` under `constraints`");
         }
     }

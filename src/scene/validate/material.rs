@@ -54,12 +54,15 @@ fn validate_material(judge: &mut Judge, path: &Path, name: &str, material: &Mate
     if let Some(damping) = material.damping {
         judge.not_negative(&path.name("damping"), damping, "s⁻¹");
     }
+    if let Some(time) = material.stiffness_damping {
+        judge.not_negative(&path.name("stiffness_damping"), time, "s");
+    }
     if let (Some(Inversion::Recover), Some(because)) = (material.inversion, material.cannot_recover_because_of()) {
         let message = format!("the material `{name}` cannot recover from inversion: it has {because}");
         judge
             .out
             .error_at(path.name("inversion"), message)
-            .note("can recover: stable_neo_hookean without fibres, exponential_fibres and terms of prony")
+            .note("can recover: stable_neo_hookean without fibres, exponential_fibres, stiffness_damping and terms of prony")
             .note("allowed for all others: Stop, Remove");
     }
 }

@@ -6,7 +6,7 @@ use crate::backend::user_law::Findings;
 use crate::components::*;
 use crate::materials::{Elastic, ElasticLaw, ExponentialFibre, Fibres, UserLaw};
 use crate::math::LANES;
-use crate::scene::schema::{Inversion, Scene};
+use crate::scene::schema::{InitialState, Inversion, Scene};
 use bevy_ecs::prelude::*;
 
 /// All blocks, then all bodies.
@@ -44,6 +44,7 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
     let families = world.get::<ExponentialFibres>(block.material);
     let prony = world.get::<Prony>(block.material);
     let damping = world.get::<Damping>(block.material);
+    let stiffness_damping = world.get::<StiffnessDamping>(block.material);
     let at_rest = world.resource::<Clock>().relaxation.is_some();
     let mut effects = vec![
         Effect {
@@ -88,6 +89,14 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
             turned_on_by: match at_rest {
                 true => "a transient analysis".into(),
                 false => in_material("damping"),
+            },
+        },
+        Effect {
+            name: "stiffness damping",
+            on: stiffness_damping.filter(|_| !at_rest).map(|time| format!("β = {} s", time.0)),
+            turned_on_by: match at_rest {
+                true => "a transient analysis".into(),
+                false => in_material("stiffness_damping"),
             },
         },
         Effect {
@@ -174,6 +183,12 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> 
             name: "relaxation",
             on: entity.contains::<FictitiousMass>().then(|| "to rest, with masses and damping chosen for it".into()),
             turned_on_by: "`analysis: Static()`".into(),
+        },
+        Effect {
+            name: "equilibrium at the start",
+            on: (scene.start != InitialState::Undeformed && !scene.is_static())
+                .then(|| "a static analysis brings it to rest before the first step".into()),
+            turned_on_by: "`start: Equilibrium()`".into(),
         },
         Effect {
             name: "compensated sum",

@@ -1,0 +1,117 @@
+//! A mesh as a Gmsh file (format 2.2, text): the format that holds all that a mesh of sinew has, named sets of points, faces and
+//! elements, numbers, and vectors of elements, and that other programs read.
+
+use super::{OutputError, replace};
+use crate::mesh::Mesh;
+use std::collections::BTreeSet;
+use std::fs::File;
+use std::io::{BufWriter, Result, Write};
+use std::path::Path;
+
+/// Gmsh's numbers of element types.
+const POINT: u32 = 15;
+const TRIANGLE: u32 = 2;
+const QUAD: u32 = 3;
+const TET: u32 = 4;
+const HEX: u32 = 5;
+
+/// Writes a mesh; the file appears when it is complete. Numbers are written with as many digits as give each back exactly.
+///
+/// # Errors
+/// What the system says.
+pub fn write(path: &Path, mesh: &Mesh) -> std::result::Result<(), OutputError> {
+    replace(path, |file| write_to(file, mesh).map_err(OutputError::system("write", path)))
+}
+
+/// A named set: its dimension, its number, and its cells as type and rows of points; those of elements as their rows.
+struct Group<'a> {
+    name: &'a str,
+    dimension: u8,
+    cells: Vec<(u32, Vec<u32>)>,
+    elements: &'a [u32],
+}
+
+fn groups(mesh: &Mesh) -> Vec<Group<'_>> {
+    let mut all = Vec::new();
+    for (name, elements) in &mesh.element_sets {
+        all.push(Group { name, dimension: 3, cells: Vec::new(), elements });
+    }
+    for (name, faces) in &mesh.face_sets {
+        let cell = |face: &[u32; 4]| match face[3] == face[2] {
+            true => (TRIANGLE, face[..3].to_vec()),
+            false => (QUAD, face.to_vec()),
+        };
+        all.push(Group { name, dimension: 2, cells: faces.iter().map(cell).collect(), elements: &[] });
+    }
+    for (name, nodes) in &mesh.node_sets {
+        // faces and elements of the name bring their points
+        let faces = mesh.face_sets.get(name).into_iter().flatten().flatten();
+        let elements = mesh.element_sets.get(name).into_iter().flatten();
+        let brought: BTreeSet<u32> = faces.chain(elements.flat_map(|&e| mesh.element(e as usize))).copied().collect();
+        let left: Vec<(u32, Vec<u32>)> =
+            nodes.iter().filter(|node| !brought.contains(node)).map(|&node| (POINT, vec![node])).collect();
+        if !left.is_empty() {
+            all.push(Group { name, dimension: 0, cells: left, elements: &[] });
+        }
+    }
+    all
+}
+
+fn write_to(file: &mut BufWriter<File>, mesh: &Mesh) -> Result<()> {
+    let groups = groups(mesh);
+    writeln!(file, "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$PhysicalNames\n{}", groups.len())?;
+    for (place, group) in groups.iter().enumerate() {
+        writeln!(file, "{} {} \"{}\"", group.dimension, place + 1, group.name)?;
+    }
+    writeln!(file, "$EndPhysicalNames\n$Nodes\n{}", mesh.points.len())?;
+    for (row, point) in mesh.points.iter().enumerate() {
+        writeln!(file, "{} {:?} {:?} {:?}", mesh.point_ids.of(row), point.x, point.y, point.z)?;
+    }
+    writeln!(file, "$EndNodes\n$Elements\n{}", cell_count(mesh, &groups))?;
+    for row in 0..mesh.element_count() {
+        write_element(file, mesh, row, 0)?;
+    }
+    let last = (0..mesh.element_count()).map(|row| mesh.element_ids.of(row)).max().unwrap_or(0);
+    let mut number = last;
+    for (place, group) in groups.iter().enumerate() {
+        for &row in group.elements {
+            // once more, for the group
+            write_element(file, mesh, row as usize, place + 1)?;
+        }
+        for (kind, rows) in &group.cells {
+            number += 1;
+            write_cell(file, mesh, (number, *kind, place + 1), rows)?;
+        }
+    }
+    writeln!(file, "$EndElements")?;
+    for (name, vectors) in &mesh.element_vectors {
+        writeln!(file, "$ElementData\n1\n\"{name}\"\n1\n0\n3\n0\n3\n{}", vectors.len())?;
+        for (row, v) in vectors.iter().enumerate() {
+            writeln!(file, "{} {:?} {:?} {:?}", mesh.element_ids.of(row), v.x, v.y, v.z)?;
+        }
+        writeln!(file, "$EndElementData")?;
+    }
+    Ok(())
+}
+
+fn cell_count(mesh: &Mesh, groups: &[Group<'_>]) -> usize {
+    mesh.element_count() + groups.iter().map(|group| group.cells.len() + group.elements.len()).sum::<usize>()
+}
+
+fn write_element(file: &mut BufWriter<File>, mesh: &Mesh, row: usize, group: usize) -> Result<()> {
+    let kind = if row < mesh.tets.len() { TET } else { HEX };
+    write_cell(file, mesh, (mesh.element_ids.of(row), kind, group), mesh.element(row))
+}
+
+fn write_cell(
+    file: &mut BufWriter<File>,
+    mesh: &Mesh,
+    (number, kind, group): (u64, u32, usize),
+    rows: &[u32],
+) -> Result<()> {
+    write!(file, "{number} {kind} 2 {group} {group}")?;
+    for &row in rows {
+        write!(file, " {}", mesh.point_ids.of(row as usize))?;
+    }
+    writeln!(file)
+}

@@ -1,0 +1,181 @@
+//! `start: Equilibrium()`: bodies are at rest under what acts at t = 0 before the first step is taken.
+//!
+//! A static analysis of the same scene at t = 0, with the same precision on the same backend, finds where they stand. It is
+//! made with the simulation and runs when the first state is asked for, so that nothing is sought where a snapshot is gone
+//! on from.
+
+use super::step_change::relax_fully;
+use super::{Equilibrium, Options, Simulation};
+use crate::backend::device::{bring_to_host, send_to_device};
+use crate::components::*;
+use crate::error::{Error, NotConverged};
+use crate::scene::SceneFile;
+use crate::scene::schema::{Analysis, InitialState, Integration, Inversion, Output, Scene};
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+use serde::Serialize;
+use std::time::Instant;
+
+/// What bringing the bodies to rest before the first step took.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Preload {
+    /// The equilibrium from which the motion begins.
+    pub equilibrium: Equilibrium,
+    /// Pseudo-steps that led there.
+    pub steps: u64,
+    /// How long that took (s).
+    pub seconds: f64,
+}
+
+/// What is taken over from the static analysis; forces for those who observe the start.
+const TAKEN: [&str; 4] = [Displacement::NAME, DisplacementCompensation::NAME, InternalForce::NAME, ExternalForce::NAME];
+
+/// What the start of a motion reads, and what taking over writes.
+const WRITTEN: [&str; 5] =
+    [Displacement::NAME, DisplacementCompensation::NAME, InternalForce::NAME, ExternalForce::NAME, ViscousMemory::NAME];
+
+/// The static analysis that is to bring a scene's bodies to rest, where it wants that.
+///
+/// # Errors
+/// As [`Simulation::new`].
+pub(super) fn settling(scene: &SceneFile, options: &Options) -> Result<Option<Box<Simulation>>, Error> {
+    let Some(at_rest) = at_rest(&scene.scene) else { return Ok(None) };
+    let mut file = scene.clone();
+    file.scene = at_rest;
+    Ok(Some(Box::new(Simulation::new(&file, options)?)))
+}
+
+/// The scene whose equilibrium is sought; `None` where none is. What belongs to the motion only is left out: systems of one's
+/// own take part from the first step on.
+pub(super) fn at_rest(scene: &Scene) -> Option<Scene> {
+    let InitialState::Equilibrium { tolerance, max_steps, load_steps } = scene.start else { return None };
+    if scene.is_static() {
+        return None;
+    }
+    let Integration { safety, bound, compensated, .. } = scene.integration;
+    let mut scene = Scene {
+        analysis: Analysis::Static { tolerance, max_steps, load_steps, at: Some(0.0) },
+        start: InitialState::Undeformed,
+        removal: Vec::new(),
+        probes: Default::default(),
+        integration: Integration { safety, bound, compensated, ..Integration::default() },
+        schedule: None,
+        parameters: Default::default(),
+        output: Output::default(),
+        ..scene.clone()
+    };
+    for body in scene.bodies.values_mut() {
+        (body.velocity, body.spin, body.start) = (DVec3::ZERO, DVec3::ZERO, None);
+    }
+    for material in scene.materials.values_mut() {
+        material.inversion = material.inversion.filter(|policy| *policy != Inversion::Remove);
+    }
+    Some(scene)
+}
+
+impl Simulation {
+    /// Brings the bodies to rest where the scene says `start: Equilibrium()` and no step has been taken; else does nothing.
+    /// Who steps, observes or asks for a state need not call it: that does.
+    ///
+    /// # Errors
+    /// That there is no equilibrium, or none was found; what the GPU says. Then no step is taken.
+    pub fn settle(&mut self) -> Result<(), Error> {
+        let Some(mut analysis) = self.settling.take() else { return Ok(()) };
+        let started = Instant::now();
+        if let Err(error) = analysis.find_equilibrium() {
+            // who asks again gets no motion from elsewhere
+            self.settling = Some(analysis);
+            return Err(at_start(error));
+        }
+        let equilibrium = analysis.equilibrium().cloned().unwrap_or_default();
+        let steps = analysis.step_count();
+        self.stand_as(&mut analysis.world)?;
+        self.preload = Some(Preload { equilibrium, steps, seconds: started.elapsed().as_secs_f64() });
+        Ok(())
+    }
+
+    /// What settling took; `None` where it was not asked for or has not been done yet.
+    pub fn preload(&self) -> Option<&Preload> {
+        self.preload.as_ref()
+    }
+
+    fn find_equilibrium(&mut self) -> Result<(), Error> {
+        self.finish()?;
+        match self.equilibrium() {
+            Some(found) if !found.reached => Err(Error::NotConverged(Box::new(NotConverged {
+                steps: self.step_count(),
+                stalled_at: None,
+                equilibrium: found.clone(),
+                at_start: true,
+            }))),
+            _ => Ok(()),
+        }
+    }
+
+    /// Bodies stand where they do in another world, at rest and relaxed; guards and the stable step begin with that.
+    fn stand_as(&mut self, other: &mut World) -> Result<(), Error> {
+        bring_to_host(other, |_, name| TAKEN.contains(&name))?;
+        let bodies: Vec<(Entity, Label)> = bodies(&mut self.world);
+        let others = self::bodies(other);
+        for (body, label) in bodies {
+            let Some(&(from, _)) = others.iter().find(|(_, other)| *other == label) else { continue };
+            take::<Displacement>(&mut self.world, body, other, from, |column| &mut column.0);
+            take::<DisplacementCompensation>(&mut self.world, body, other, from, |column| &mut column.0);
+            take::<InternalForce>(&mut self.world, body, other, from, |column| &mut column.0);
+            take::<ExternalForce>(&mut self.world, body, other, from, |column| &mut column.0);
+            if let Some(mut lost) = self.world.get_mut::<DisplacementCompensation>(body) {
+                // at rest the step is exact
+                (lost.len() / 2..lost.len()).for_each(|i| lost.set(i, 0.0));
+            }
+        }
+        relax_fully(&mut self.world);
+        send_to_device(&mut self.world, |_, name| WRITTEN.contains(&name))?;
+        crate::observation::begin_to_guard(&mut self.world)?;
+        if let Some(follower) = &mut self.follower {
+            // the step was found for bodies that are not deformed
+            follower.found.next = 0;
+        }
+        Ok(())
+    }
+}
+
+fn bodies(world: &mut World) -> Vec<(Entity, Label)> {
+    let mut query = world.query_filtered::<(Entity, &Label), With<Authoring>>();
+    query.iter(world).map(|(entity, label)| (entity, label.clone())).collect()
+}
+
+/// Takes over a column of vectors, of which a node may have several, node by node.
+fn take<C: Column + Clone>(
+    world: &mut World,
+    body: Entity,
+    other: &World,
+    from: Entity,
+    numbers: fn(&mut C) -> &mut Reals,
+) {
+    let rows = |world: &World, entity| world.get::<Authoring>(entity).map(|authoring| authoring.node_rows.clone());
+    let (Some(to_rows), Some(from_rows)) = (rows(world, body), rows(other, from)) else { return };
+    let Some(mut source) = other.get::<C>(from).cloned() else { return };
+    let Some(mut column) = world.get_mut::<C>(body) else { return };
+    let (source, target) = (numbers(&mut source), numbers(&mut column));
+    let nodes = to_rows.len();
+    for part in 0..target.len() / (3 * nodes.max(1)) {
+        for (&to, &from) in to_rows.iter().zip(&from_rows) {
+            target.set_vector(part * nodes + to as usize, source.vector(part * nodes + from as usize));
+        }
+    }
+}
+
+/// The same error, which says that it is of the start.
+fn at_start(error: Error) -> Error {
+    match error {
+        Error::NotConverged(mut found) => {
+            found.at_start = true;
+            Error::NotConverged(found)
+        }
+        Error::Unstable(mut broken) => {
+            broken.what = format!("on the way to the equilibrium of the start, {}", broken.what);
+            Error::Unstable(broken)
+        }
+        other => other,
+    }
+}
