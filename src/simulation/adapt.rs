@@ -51,8 +51,6 @@ impl Simulation {
         if gives_up(follower, seen) {
             return Err(self.too_small(follower, stable));
         }
-        // a jump is over when it is seen
-        follower.found.jumped |= self.world.resource::<Signals>().have_jumped(clock.time());
         let wanted = stable.min(follower.seen_to_come(stable, seen, &clock));
         let smaller = clock.time_step > follower.most() * limit || clock.time_step > WORTH * wanted;
         let change = smaller || wanted > WORTH * clock.time_step;
@@ -161,10 +159,9 @@ impl Follower {
     }
 
     /// The step with which strains that change quickly are seen to come (s), where `stable` would be; none smaller where the step is
-    /// the author's, or nodes have been moved by a jump.
+    /// the author's.
     fn seen_to_come(&self, stable: f64, seen: &Seen, clock: &Clock) -> f64 {
         match self.found.own {
-            _ if self.found.jumped => f64::INFINITY,
             Some(_) => f64::INFINITY,
             None => (clock.time_step * FASTEST / seen.speed).max(stable / SLOWEST),
         }

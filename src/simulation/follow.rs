@@ -22,8 +22,12 @@ const LOOKS: (u64, u64) = (16, 256);
 /// Between two looks strains change by so much, at the present speed: close to the limit, and where the step is half of it
 /// or less. The stable step of what is squeezed shrinks twice as fast as it, and a twentieth is left when it counts as close.
 const STRAIN: (f64, f64) = (0.01, 0.25);
-/// No more than that between two looks, however close they come.
-const MOST_STRAIN: f64 = 0.2;
+/// No more than that between two looks, however close they come: where the step may be near the true limit, and where it stays with
+/// what the elements alone allow.
+const MOST_STRAIN: (f64, f64) = (0.2, 0.5);
+/// A change of strain in a step, relative to present lengths, from which on motion counts as violent: the room between what the
+/// elements alone allow and the true limit is then needed, for what a look cannot foresee and for the balance of energy.
+const VIOLENT: f64 = 0.02;
 
 /// How the step went during the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -88,8 +92,8 @@ pub(super) struct Found {
     /// have been lost so since it was found.
     pub losing: f64,
     pub lost: f64,
-    /// Whether nodes have been moved by a jump.
-    pub jumped: bool,
+    /// Whether strains have changed so fast that the step stays with what the elements alone allow: see [`VIOLENT`].
+    pub violent: bool,
 }
 
 impl Found {
@@ -136,7 +140,7 @@ impl Follower {
                 seen: None,
                 losing: 0.0,
                 lost: 0.0,
-                jumped: false,
+                violent: false,
             },
             shape: None,
             history: StepHistory {
@@ -155,9 +159,14 @@ impl Follower {
         0.5 * (1.0 + self.safety.max(self.own_share).min(1.0))
     }
 
+    /// Whether the step stays with what the elements alone allow.
+    pub fn stays_with_elements(&self) -> bool {
+        self.by_elements || self.found.violent
+    }
+
     /// The largest step that may be taken when so much is stable (s).
     pub fn wanted(&self, limit: f64, seen: &Seen) -> f64 {
-        let elements = if self.by_elements { self.safety * step_of(seen.at_rest) } else { f64::INFINITY };
+        let elements = if self.stays_with_elements() { self.safety * step_of(seen.at_rest) } else { f64::INFINITY };
         (self.safety * limit).min(elements).min(self.found.own.unwrap_or(f64::INFINITY))
     }
 }
@@ -196,8 +205,9 @@ impl Follower {
         let room = self.most() * step_of(seen.square) / clock.time_step - 1.0;
         let strain = (STRAIN.1 * room).clamp(STRAIN.0, STRAIN.1);
         // what is no number, or inside out, has no speed
-        let speed = if seen.speed.is_finite() { seen.speed } else { MOST_STRAIN };
-        let least = ((MOST_STRAIN / speed) as u64).clamp(1, LOOKS.0);
+        let most = if self.stays_with_elements() { MOST_STRAIN.1 } else { MOST_STRAIN.0 };
+        let speed = if seen.speed.is_finite() { seen.speed } else { most };
+        let least = ((most / speed) as u64).clamp(1, LOOKS.0);
         let calm =
             ((strain / speed) as u64).clamp(least, LOOKS.1).min(step.saturating_sub(self.found.quickened).max(1));
         let until = |time: f64| ((time - clock.time()) / clock.time_step).ceil();
@@ -277,6 +287,7 @@ impl Simulation {
         }
         // what is no number is the guards' business
         let sound = seen.speed.is_finite() && seen.alive > 0;
+        follower.found.violent |= seen.speed >= VIOLENT;
         follower.found.next = step + LOOKS.0;
         if sound {
             match follower.policy {

@@ -10,7 +10,7 @@ use super::{Simulation, added_mass};
 use crate::assembly::{StableStep, stable_step};
 use crate::backend::device::bring_to_host;
 use crate::error::Error;
-use crate::scene::schema::{Inversion, Scene, StepBound, WhenUnstable};
+use crate::scene::schema::{Constraint, Curve, Inversion, Scene, StepBound, WhenUnstable};
 use crate::scene::{Diagnostics, SceneFile};
 use bevy_ecs::prelude::*;
 use serde::Serialize;
@@ -166,7 +166,12 @@ pub(super) fn choose(
 /// Why `bound: Auto` stays with what the elements allow: what needs the room between that and the true limit.
 fn reason_to_stay(scene: &Scene) -> Option<&'static str> {
     let removes = scene.materials.values().any(|material| material.inversion() == Inversion::Remove);
+    let jumps =
+        |constraint: &Constraint| matches!(constraint, Constraint::Prescribed { curve: Curve::Step { .. }, .. });
     match scene.when_unstable() {
+        WhenUnstable::Adapt if scene.constraints.iter().any(jumps) => {
+            Some("nodes are moved by a jump, whose work is told only in steps of one length")
+        }
         WhenUnstable::Adapt if removes || !scene.removal.is_empty() => {
             Some("elements that are removed take their mass with them, which raises the highest frequency at once")
         }
