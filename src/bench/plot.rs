@@ -1,8 +1,8 @@
 //! ns an element and step against the number of elements, as SVG.
 
 use super::{Case, Record};
-use crate::accuracy::plot::axis::Axis;
-use crate::accuracy::plot::svg::Svg;
+use crate::plot::axis::Axis;
+use crate::plot::svg::Svg;
 
 const FRAME: [f64; 4] = [84.0, 64.0, 800.0, 560.0];
 pub(super) const COLOURS: [&str; 8] =

@@ -2,8 +2,8 @@
 
 use super::plot::{COLOURS, count};
 use super::{Case, Record, Row};
-use crate::accuracy::plot::axis::Axis;
-use crate::accuracy::plot::svg::Svg;
+use crate::plot::axis::Axis;
+use crate::plot::svg::Svg;
 
 const FRAME: [f64; 4] = [84.0, 84.0, 800.0, 560.0];
 const INK: &str = "#2c323a";

@@ -3,12 +3,12 @@
 use super::arguments::BenchArguments;
 use super::failure::Failure;
 use super::{Outcome, interrupt, terminal};
-use sinew::accuracy::plot::png;
 use sinew::bench::{
     Effects, Machine, Plan, Record, compare, cpu_to_gpu, csv, line, markdown, measure, split_to_fused, svg,
 };
 use sinew::mesh::ElementKind;
 use sinew::output::{Folder, OutputError, replace, summary};
+use sinew::plot::png;
 use std::io::Write;
 use std::path::Path;
 
