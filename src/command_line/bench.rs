@@ -109,7 +109,7 @@ fn write(path: &Path, record: &Record) -> Outcome {
     };
     put("bench.csv", csv(record).as_bytes())?;
     put("bench.md", markdown(record).as_bytes())?;
-    let plots = [("bench", Some(svg(record))), ("cpu_to_gpu", cpu_to_gpu(record)), ("fused", split_to_fused(record))];
+    let plots = [("bench", svg(record)), ("cpu_to_gpu", cpu_to_gpu(record)), ("fused", split_to_fused(record))];
     for (name, plot) in plots {
         let Some(plot) = plot else { continue };
         put(&format!("{name}.svg"), plot.as_bytes())?;

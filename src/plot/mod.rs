@@ -8,6 +8,7 @@
 
 pub(crate) mod axis;
 mod labels;
+pub(crate) mod panels;
 mod pixels;
 pub(crate) mod svg;
 

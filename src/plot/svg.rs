@@ -125,6 +125,16 @@ impl Svg {
         );
     }
 
+    /// A filled outline through points, nearly clear or not.
+    pub fn band(&mut self, points: &[(f64, f64)], colour: &str, opacity: f64) {
+        if points.len() < 3 {
+            return;
+        }
+        let points: Vec<String> = points.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
+        let points = points.join(" ");
+        let _ = writeln!(self.text, "<polygon points=\"{points}\" fill=\"{colour}\" fill-opacity=\"{opacity}\"/>");
+    }
+
     /// A line of text with a white edge, so that it can be read on lines.
     pub fn label(&mut self, (x, y): (f64, f64), text: &str, size: f64, colour: &str) {
         let text = escaped(text);

@@ -152,7 +152,10 @@ impl Strip {
     fn put(&mut self, at: usize, sheet: Sheet) {
         let Some(sheets) = self.sheets.get_mut(at) else { return };
         let place = sheets.partition_point(|other| other.nearness >= sheet.nearness);
-        if place < SHEETS {
+        // on a side that two triangles share both of them are met, at the same distance but for rounding
+        let same = |other: &Sheet| (other.nearness - sheet.nearness).abs() <= 2e-6 * sheet.nearness;
+        let met = sheets.get(place).is_some_and(same) || place > 0 && same(&sheets[place - 1]);
+        if place < SHEETS && !met {
             sheets.copy_within(place..SHEETS - 1, place + 1);
             sheets[place] = sheet;
         }

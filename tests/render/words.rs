@@ -162,12 +162,19 @@ fn a_cut_is_closed_and_has_the_area_of_its_polygon() {
             let middle = corners.iter().sum::<Vec2>() / corners.len() as f32;
             let colour = seen.at(middle.x as usize, middle.y as usize);
             assert!(coloured(colour), "{colour:?}");
-            // all of one colour, as the plane is: no hole, nothing before it; the outline is darker
+            // all of one colour, as the plane is: no hole, nothing before it; its outline is darker
             let like = |c: [u8; 3]| c.iter().zip(colour).all(|(a, b)| a.abs_diff(b) <= 3);
-            let rim = corners.len() as f32 * corners[0].distance(corners[1]);
-            let found = seen.count(coloured) as f32;
-            assert!((found - exact).abs() < 0.01 * exact + 0.5 * rim, "{tets} {normal}: {found} pixels, not {exact}");
-            assert!((seen.count(like) as f32 - exact).abs() < 0.01 * exact + 1.5 * rim, "{tets} {normal}: holes");
+            let round: f32 = (0..corners.len()).map(|row| corners[row].distance(next(row))).sum();
+            let found = seen.count(like) as f32;
+            let rim = if normal == DVec3::X { 1.5 * round } else { 0.5 * round };
+            assert!(
+                (found + rim / 2.0 - exact).abs() < 0.01 * exact + rim / 2.0,
+                "{tets} {normal}: {found}, not {exact}"
+            );
+            if normal == DVec3::X {
+                let found = seen.count(coloured) as f32;
+                assert!((found - exact).abs() < 0.01 * exact, "{tets}: {found} pixels, not {exact}");
+            }
         }
     }
 }
@@ -195,9 +202,11 @@ fn the_ghost_is_the_shape_at_rest_and_can_be_seen_through() {
     assert!(coloured(right) && !coloured(left), "{left:?} {right:?}");
     let darker = behind[0].abs_diff(left[0]);
     assert!(darker > 4 && darker < 80, "{left:?} before {behind:?}");
-    assert!(with.count(|c| c[0] < 190 && !coloured(c)) > 100, "no outline");
+    let lines = |seen: &Seen| seen.places(|c| c[0] < 190 && !coloured(c)).iter().filter(|at| at.0 < SIZE.0 / 2).count();
+    assert!(lines(&with) > 100, "no outline");
+    // only what is seen has to fit: without it the box fills the picture
     let without = seen(&folder, Picture { ghost: false, ..how });
-    assert_eq!(without.count(|c| !coloured(c) && c[0] < 200), 0);
+    assert!(without.count(coloured) > 2 * with.count(coloured));
 }
 
 #[test]
@@ -258,9 +267,9 @@ fn a_material_that_is_seen_through_shows_what_it_holds() {
     let rest = |opacity: f64| Opacity { body: None, material: Some("rest".into()), opacity };
     let (closed, thin, gone) = (middle(vec![]), middle(vec![rest(0.2)]), middle(vec![rest(0.0)]));
     assert!(closed.0 < 0 && thin.0 > 20 && gone.0 > thin.0, "{closed:?} {thin:?} {gone:?}");
-    // nothing but the core is left: one side of five
+    // nothing but the core is left, and fills the picture as the whole did
     let share = gone.1 as f32 / closed.1 as f32;
-    assert!((share - 0.04).abs() < 0.012, "{share}");
+    assert!((share - 1.0).abs() < 0.05, "{share}");
     // the last entry that fits counts
     let body = Opacity { body: Some("box".into()), material: None, opacity: 0.5 };
     assert_eq!(
@@ -271,7 +280,7 @@ fn a_material_that_is_seen_through_shows_what_it_holds() {
 
 #[test]
 fn surfaces_that_were_bared_have_their_own_tint() {
-    let tinted = |[r, g, b]: [u8; 3]| r > g.saturating_add(15) && r > b.saturating_add(15);
+    let tinted = |[r, g, b]: [u8; 3]| r > g.saturating_add(15) && r > b.saturating_add(15) && b > 60;
     for kept in [false, true] {
         let goes: fn(DVec3) -> bool = |at| at.x > 2.0 && at.y < 2.0 && at.z > 3.0;
         let folder = Run { removed: Some((goes, kept)), ..BOX }.write(&format!("bared_{kept}"));
