@@ -58,7 +58,7 @@ fn values_are_put_into_the_picture_of_a_run_and_into_any_of_a_scene() {
     refused("duration=3", &["only its `picture` can be changed"]);
     refused("picture.zoom=0", &["--set:1:", "`zoom` must be from 0.01 to 1000, found 0"]);
     refused("picture.range=(2, 1)", &["`range` is empty: from 2 to 1"]);
-    refused("picture.zum=1", &["unknown field `zum`", "did you mean `zoom`?"]);
+    refused("picture.zom=1", &["unknown field `zom`", "did you mean `zoom`?"]);
     refused(
         "picture.opacity=[(body: \"blok\", opacity: 2)]",
         &["there is no body `blok`", "`block`", "between 0 and 1"],
@@ -96,4 +96,22 @@ fn what_cannot_be_drawn_is_told() {
     place.sinew(&["render", "out/block", "--size", "10x10"]).wants(2, &["320 by 240"]);
     place.sinew(&["render", "out/block", "--no-animation", "--to", "x.png"]).wants(2, &["cannot be used with"]);
     place.sinew(&["render", "out/block", "--to", "nowhere/a.png"]).wants(3, &["nowhere/a.png"]);
+}
+
+#[test]
+fn modes_swing_with_their_number_and_frequency_and_relative_amplitudes() {
+    let place = Place::new();
+    place.done(&["modes", "block.ron", "--count", "2"]);
+    let mut decoder = gif::DecodeOptions::new();
+    decoder.set_color_output(gif::ColorOutput::Indexed);
+    let file = fs::File::open(place.path("out/block-modes/animation.gif")).unwrap();
+    let mut decoder = decoder.read_info(file).unwrap();
+    let mut frames = 0;
+    while decoder.read_next_frame().unwrap().is_some() {
+        frames += 1;
+    }
+    assert_eq!(frames, 2 * 16, "two modes, a period each");
+    // what colours is a plain number from 0 to 1: the shape's own length means nothing
+    let said = place.done(&["render", "out/block-modes", "--no-animation", "--field", "relative_amplitude"]);
+    assert!(said.contains("relative_amplitude"), "{said}");
 }

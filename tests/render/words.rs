@@ -322,3 +322,32 @@ fn a_body_casts_a_soft_shadow_on_the_ground_unless_told_not_to() {
     assert!(dark > 500 && all.iter().all(|at| depth(at) < 90), "{dark}");
     assert_eq!(depth(&(2, 2)), 0);
 }
+
+#[test]
+fn captions_stand_below_their_frames_and_shapes_swing_through_their_rest() {
+    let folder = Run { displacement: Vec3::new(0.0, 0.0, 4.0), ..BOX }.write("swing");
+    let out = |name: &str| folder.join(name);
+    let how = |name: &str, caption: Option<&str>| Options {
+        field: Some("von_mises".into()),
+        captions: caption.map(String::from).into_iter().collect(),
+        ..Options::new(plain(), out(name))
+    };
+    let bytes = |options: &Options| {
+        draw(&folder, options).unwrap();
+        std::fs::read(&options.out).unwrap()
+    };
+    let named = bytes(&how("named.png", Some("mode 3, 0.28 Hz")));
+    assert!(named != bytes(&how("time.png", None)) && named != bytes(&how("other.png", Some("mode 3, 0.29 Hz"))));
+    assert_eq!(named, bytes(&how("again.png", Some("mode 3, 0.28 Hz"))));
+    let swing = Options { swing: 4, animate: true, ..how("swing.gif", None) };
+    assert_eq!(draw(&folder, &swing).unwrap().frames, 4);
+    let mut decoder = gif::DecodeOptions::new();
+    decoder.set_color_output(gif::ColorOutput::RGBA);
+    let mut decoder = decoder.read_info(std::fs::File::open(&swing.out).unwrap()).unwrap();
+    // at rest, up, at rest, down: only what differs is in a frame
+    let mut tops = Vec::new();
+    while let Some(frame) = decoder.read_next_frame().unwrap() {
+        tops.push((frame.top, frame.height));
+    }
+    assert!(tops.len() == 4 && tops[1].0 < tops[3].0, "{tops:?}");
+}

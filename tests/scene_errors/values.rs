@@ -277,9 +277,9 @@ fn bodies_selections_and_pictures_are_checked() {
         (
             "duration: 0.5,",
             r#"duration: 0.5, picture: (opacity: [(body: "cub", opacity: 0.5), (material: "bone", opacity: 1.5)]),"#,
-            r"3:51: error: there is no body `cub` | did you mean `cube`?
-3:102: error: `opacity` must be between 0 and 1, found 1.5
-3:84: error: there is no material `bone` | allowed: tissue",
+            r"3:47: error: there is no body `cub` | did you mean `cube`? | allowed: cube
+3:80: error: there is no material `bone` | allowed: tissue
+3:97: error: `opacity` must be between 0 and 1, found 1.5",
         ),
         (
             r#"material: "tissue""#,
