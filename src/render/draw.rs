@@ -82,12 +82,16 @@ pub fn draw_with_progress(
     let size = (how.size.0 as usize, how.size.1 as usize);
     let (left_top, right_bottom) = stage(size);
     let (mut seen, mut fit) = (Seen::default(), Fit::new(&View::from(how), left_top, right_bottom));
+    let mut keys_of_all = Vec::new();
     for (row, (_, path)) in series.frames.iter().enumerate() {
         let mut state = reader.read(path)?;
         state.look(&reader, &mut seen, &mut fit);
         if options.swing > 0 {
             state.scale(-1.0);
             state.look(&reader, &mut seen, &mut fit);
+        }
+        if row <= last {
+            keys_of_all = [keys_of_all, state.keys(&reader)].into_iter().max_by_key(Vec::len).unwrap_or_default();
         }
         progress(row + 1, total);
     }
@@ -106,7 +110,8 @@ pub fn draw_with_progress(
             state.scale((TAU * phase as f32 / phases as f32).sin());
         }
         let caption = options.captions.get(row).cloned().unwrap_or_else(|| series.caption(*time));
-        let keys = state.keys(&reader);
+        // the legend of an animation does not change on the way
+        let keys = if options.animate { keys_of_all.clone() } else { state.keys(&reader) };
         let picture = Picture {
             layers: reader.layers(&state, how.edges),
             scale,

@@ -67,9 +67,11 @@ pub fn draw(image: &mut Image, picture: &Picture<'_>, camera: &Camera) -> Result
         svg.line((0.0, 0.5), (layout.width, 0.5), "#c9cfd6", 1.0, "");
     }
     let column = column(&mut svg, picture, &layout);
-    // narrow pictures leave less for the bar, so that its last number does not run into the caption
-    let half = (0.23 * layout.width).min(layout.width / 2.0 - column - 2.2 * layout.em).max(0.1 * layout.width);
-    let (left, right) = ((layout.width / 2.0 - half).round(), (layout.width / 2.0 + half).round());
+    // between axes and caption; narrow pictures leave less for the bar, and not in the middle
+    let (least, most) = (5.2 * layout.em, layout.width - column - 1.6 * layout.em);
+    let half = (0.23 * layout.width).min((most - least) / 2.0).max(2.0 * layout.em);
+    let middle = (layout.width / 2.0).min(most - half).max(least + half);
+    let (left, right) = ((middle - half).round(), (middle + half).round());
     bar(&mut svg, picture, &layout, (left, right));
     axes(&mut svg, camera, &layout);
     let page = overlay(&svg.finish())?;

@@ -19,9 +19,11 @@ struct Run {
     value: fn(DVec3) -> f32,
     /// Which elements are of the material `core`.
     core: fn(DVec3) -> bool,
-    /// Which elements go in a second frame, and whether the file keeps them.
-    removed: Option<(fn(DVec3) -> bool, bool)>,
+    removed: Option<Removed>,
 }
+
+/// Which elements go in a second frame, and whether the file keeps them.
+type Removed = (fn(DVec3) -> bool, bool);
 
 const BOX: Run =
     Run { cells: [5; 3], tets: false, displacement: Vec3::ZERO, value: |_| 1.0, core: |_| false, removed: None };

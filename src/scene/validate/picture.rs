@@ -22,7 +22,8 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
     }
     if let Some((low, high)) = picture.range {
         // colours are looked up in single precision
-        if !((low as f32) < high as f32) {
+        let rises = (low as f32) < high as f32;
+        if !rises {
             let message = format!("`range` is empty: from {} to {}", show(low), show(high));
             let note = "the value of the first colour, and a larger one of the last: (0, 0.02), in the field's SI unit";
             judge.out.error_at(path.name("range"), message).note(note);
