@@ -29,6 +29,7 @@ pub mod math;
 pub mod mesh;
 pub mod observation;
 pub mod output;
+pub mod plot;
 pub mod render;
 pub mod scene;
 mod simulation;

@@ -64,15 +64,16 @@ fn imports_run_one_way() {
     let inputs = ["mesh", "scene"];
     let data = ["math", "components", "elements", "materials"];
     // what each part may name; itself and `error` (which knows every part's errors) are always allowed
-    let allowed: [(&str, Vec<&str>); 15] = [
+    let allowed: [(&str, Vec<&str>); 16] = [
         ("src/math", vec![]),
+        ("src/plot", vec![]),
         ("src/mesh", vec![]),
         ("src/scene", vec!["mesh"]),
         ("src/materials", vec!["math"]),
         ("src/elements", vec!["math"]),
         ("src/components", [&inputs[..], &["math", "elements", "materials"]].concat()),
         ("src/output", vec!["mesh"]),
-        ("src/render", vec!["mesh", "output", "scene"]),
+        ("src/render", vec!["mesh", "output", "plot", "scene"]),
         ("src/backend", [&inputs[..], &data, &["evaluation"]].concat()),
         ("src/evaluation", [&inputs[..], &data, &["backend"]].concat()),
         ("src/assembly", [&inputs[..], &data, &["backend", "evaluation", "systems"]].concat()),
@@ -82,7 +83,10 @@ fn imports_run_one_way() {
             "systems",
             [&inputs[..], &data, &["backend", "evaluation", "observation", "assembly", "output", "snapshot"]].concat(),
         ),
-        ("src/accuracy", [&inputs[..], &["components", "materials", "backend", "assembly", "observation"]].concat()),
+        (
+            "src/accuracy",
+            [&inputs[..], &["components", "materials", "backend", "assembly", "observation", "plot"]].concat(),
+        ),
     ];
     let parts = [
         "math",
@@ -92,6 +96,7 @@ fn imports_run_one_way() {
         "elements",
         "components",
         "output",
+        "plot",
         "snapshot",
         "render",
         "backend",

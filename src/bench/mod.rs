@@ -38,6 +38,9 @@ pub struct Row {
     pub ns_per_element_step: f64,
     /// The median of the blocks (ns).
     pub median_ns: f64,
+    /// What three quarters of the blocks stay below (ns); records of before do not have it.
+    #[serde(default)]
+    pub third_quartile_ns: Option<f64>,
     /// Elements computed in a second, by the best.
     pub updates_per_s: f64,
     /// How many times as long the plain two-pass scheme takes in the same run; where it was measured beside.
@@ -122,6 +125,7 @@ pub fn measure(group: &[Case], seconds: f64, machine: &[Machine]) -> Result<Vec<
             nodes,
             ns_per_element_step: nanoseconds(times[0]),
             median_ns: nanoseconds(times[times.len() / 2]),
+            third_quartile_ns: Some(nanoseconds(times[times.len() * 3 / 4])),
             updates_per_s: 1.0 / per_element,
             two_pass_ratio: None,
             flops: cost.flops,

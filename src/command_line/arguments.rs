@@ -243,6 +243,9 @@ pub struct RenderArguments {
     /// An output folder, or a scene file; a scene is run first where its output is missing or older than it
     #[arg(value_name = "SCENE|OUT")]
     pub what: PathBuf,
+    /// Put a value into the scene, such as picture.zoom=2; of an output folder into its picture. May be given several times
+    #[arg(long, value_name = "PATH=VALUE")]
+    pub set: Vec<String>,
     /// Let the scene name files outside its own folder
     #[arg(long)]
     pub allow_outside: bool,
@@ -250,7 +253,7 @@ pub struct RenderArguments {
     /// displacement.z or stress.xy [default: the scene's]
     #[arg(long, value_name = "NAME")]
     pub field: Option<String>,
-    /// Where the eye stands, seen from the middle of the scene: three numbers [default: the scene's]
+    /// Where the eye stands, seen from what it looks at: three numbers [default: the scene's]
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub from: Option<Vec3>,
     /// Width and height in pixels [default: the scene's]

@@ -3,12 +3,12 @@
 use super::arguments::BenchArguments;
 use super::failure::Failure;
 use super::{Outcome, interrupt, terminal};
-use sinew::accuracy::plot::png;
 use sinew::bench::{
     Effects, Machine, Plan, Record, compare, cpu_to_gpu, csv, line, markdown, measure, split_to_fused, svg,
 };
 use sinew::mesh::ElementKind;
 use sinew::output::{Folder, OutputError, replace, summary};
+use sinew::plot::png;
 use std::io::Write;
 use std::path::Path;
 
@@ -109,7 +109,7 @@ fn write(path: &Path, record: &Record) -> Outcome {
     };
     put("bench.csv", csv(record).as_bytes())?;
     put("bench.md", markdown(record).as_bytes())?;
-    let plots = [("bench", Some(svg(record))), ("cpu_to_gpu", cpu_to_gpu(record)), ("fused", split_to_fused(record))];
+    let plots = [("bench", svg(record)), ("cpu_to_gpu", cpu_to_gpu(record)), ("fused", split_to_fused(record))];
     for (name, plot) in plots {
         let Some(plot) = plot else { continue };
         put(&format!("{name}.svg"), plot.as_bytes())?;

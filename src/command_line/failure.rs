@@ -21,7 +21,7 @@ pub enum Failure {
     /// A reference too coarse to tell; likewise.
     TargetUnclear,
     /// A plot could not be drawn.
-    Plot(sinew::accuracy::plot::PlotError),
+    Plot(sinew::plot::PlotError),
     /// The result could not be said.
     Silent(std::io::Error),
     /// Ctrl-C; what there is to say has been said.

@@ -7,11 +7,12 @@ use super::wording::{count, counted, digits, quantity};
 use super::{Outcome, terminal};
 use sinew::SceneFile;
 use sinew::assembly::mesh_of;
-use sinew::glam::{DVec3, Vec3};
+use sinew::glam::DVec3;
 use sinew::mesh::quality::BINS;
 use sinew::mesh::{Mesh, MeshReport};
 use sinew::output::{Array, Folder, Frame, Series, Values};
 use sinew::render::{Options, draw};
+use sinew::scene::schema::{Colours, Picture};
 use std::path::Path;
 
 /// The longest bar of a histogram.
@@ -176,15 +177,8 @@ fn picture(meshes: &[(String, Mesh)], path: &Path) -> Result<std::path::PathBuf,
         ],
     };
     Series::create(&folder)?.write(&frame)?;
-    let options = Options {
-        field: "quality".into(),
-        from: Vec3::new(1.0, -2.0, 0.8),
-        size: (960, 720),
-        at: None,
-        animate: false,
-        out,
-        range: Some((0.0, 1.0)),
-        edges: true,
-    };
+    let how = Picture { range: Some((0.0, 1.0)), colours: Colours::Elements, ..Picture::default() };
+    let (field, captions) = (Some("quality".into()), vec!["at rest".into()]);
+    let options = Options { field, captions, ..Options::new(how, out) };
     Ok(draw(path, &options)?.out)
 }

@@ -8,12 +8,15 @@ use super::{Outcome, progress, terminal};
 use sinew::components::Authoring;
 use sinew::glam::DVec3;
 use sinew::output::{Array, Folder, Frame, Series, Values};
-use sinew::render::{Options as Picture, draw};
+use sinew::render::{Options as Drawing, draw};
+use sinew::scene::schema::Picture;
 use sinew::{BackendChoice, Mode, Options, Simulation};
 use std::path::Path;
 
 /// How large the largest displacement of a drawn mode is, as a share of the scene's size.
 const DRAWN: f64 = 0.1;
+/// Pictures of each mode, over one period.
+const PICTURES_A_MODE: usize = 16;
 /// Damping of the lowest mode that brings to rest quickly and hardly changes what is faster, as a share of the critical one.
 const SHARE: f64 = 0.2;
 /// β in stable steps that makes the stable step half as long: the highest frequency then has so much of the critical damping.
@@ -108,30 +111,36 @@ fn draw_modes(simulation: &mut Simulation, modes: &[Mode], path: &Path) -> Resul
     }
     let (low, high) = sinew::mesh::extent(points.iter().copied());
     let size = DRAWN * (high - low).length();
-    let alive = vec![1_u8; tets.len() + hexes.len()];
     let mut series = Series::create(&folder)?;
     for (number, mode) in modes.iter().enumerate() {
         let shape = bodies.iter().flat_map(|body| mode.shapes.get(body).into_iter().flatten());
         let displacement: Vec<f32> = shape.flat_map(|u: &DVec3| (*u * size).as_vec3().to_array()).collect();
+        let lengths = displacement.chunks_exact(3).map(|u| u[0].hypot(u[1]).hypot(u[2]));
+        let largest = lengths.clone().fold(f32::MIN_POSITIVE, f32::max);
+        let amplitude: Vec<f32> = lengths.map(|length| length / largest).collect();
+        let array = |name, components, values| Array { name, components, values: Values::F32(values) };
         series.write(&Frame {
             time: (number + 1) as f64,
             points: &points,
             tets: &tets,
             hexes: &hexes,
-            point_arrays: vec![Array { name: "displacement", components: 3, values: Values::F32(&displacement) }],
-            cell_arrays: vec![Array { name: "alive", components: 1, values: Values::U8(&alive) }],
+            point_arrays: vec![array("displacement", 3, &displacement), array("relative_amplitude", 1, &amplitude)],
+            cell_arrays: Vec::new(),
         })?;
     }
-    let picture = &simulation.scene().picture;
-    let options = Picture {
-        field: "displacement".into(),
-        from: picture.from.as_vec3(),
-        size: picture.size,
-        at: None,
+    let caption = |(number, mode): (usize, &Mode)| match mode.frequency {
+        0.0 => format!("mode {}, rigid", number + 1),
+        frequency => format!("mode {}, {} Hz", number + 1, digits(frequency)),
+    };
+    // a shape that swings is whole
+    let (range, opacity) = (Some((0.0, 1.0)), Vec::new());
+    let picture = Picture { range, ghost: true, cut: None, opacity, ..simulation.scene().picture.clone() };
+    let options = Drawing {
+        field: Some("relative_amplitude".into()),
         animate: true,
-        out,
-        range: None,
-        edges: true,
+        captions: modes.iter().enumerate().map(caption).collect(),
+        swing: PICTURES_A_MODE,
+        ..Drawing::new(picture, out)
     };
     Ok(draw(path, &options)?.out)
 }

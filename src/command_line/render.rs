@@ -7,7 +7,8 @@ use super::terminal;
 use super::{Outcome, progress};
 use sinew::output::Lock;
 use sinew::render::{Options, draw_with_progress};
-use sinew::scene::schema::{Field, MeshSource, Picture};
+use sinew::scene::schema::{MeshSource, Picture, Scene};
+use sinew::scene::validate_picture;
 use sinew::{Options as RunOptions, SceneFile};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -16,23 +17,17 @@ use std::time::SystemTime;
 /// Draws.
 pub fn command(arguments: &RenderArguments) -> Outcome {
     let files = files(arguments)?;
-    let (folder, picture, ended) = source(&arguments.what, arguments.allow_outside)?;
+    let (folder, mut picture, ended) = source(arguments)?;
     let _lock = match files.iter().any(|(_, file)| file.is_none()) {
         true => Some(Lock::of_pictures(&folder, "sinew render")?),
         false => None,
     };
+    picture.from = arguments.from.map_or(picture.from, |from| from.as_dvec3());
+    picture.size = arguments.size.unwrap_or(picture.size);
     for (animate, file) in files {
-        let options = Options {
-            field: arguments.field.clone().unwrap_or_else(|| field_name(picture.field).into()),
-            from: arguments.from.unwrap_or_else(|| picture.from.as_vec3()),
-            size: arguments.size.unwrap_or(picture.size),
-            at: arguments.at,
-            animate,
-            out: file.unwrap_or_else(|| folder.join(PICTURES[usize::from(animate)])),
-            range: None,
-            edges: true,
-        };
-        draw(&folder, &options)?;
+        let out = file.unwrap_or_else(|| folder.join(PICTURES[usize::from(animate)]));
+        let (field, at) = (arguments.field.clone(), arguments.at);
+        draw(&folder, &Options { field, at, animate, ..Options::new(picture.clone(), out) })?;
     }
     ended
 }
@@ -52,20 +47,15 @@ fn files(arguments: &RenderArguments) -> Result<Vec<(bool, Option<PathBuf>)>, Fa
 }
 
 /// The folder to draw, how its scene wants to be drawn, and how the run ended where one was needed.
-fn source(what: &Path, outside: bool) -> Result<(PathBuf, Picture, Outcome), Failure> {
+fn source(arguments: &RenderArguments) -> Result<(PathBuf, Picture, Outcome), Failure> {
+    let what = &arguments.what;
     if what.is_dir() {
-        if !what.join("sinew.json").exists() {
-            let text = format!("{} is no output folder of sinew (it has no sinew.json)", what.display());
-            return Err(Failure::Options(text));
-        }
-        let picture = SceneFile::load(what.join(SCENE), &[]).map(|scene| scene.scene.picture).unwrap_or_default();
-        return Ok((what.to_path_buf(), picture, Ok(())));
+        return Ok((what.clone(), picture_of(what, &arguments.set)?, Ok(())));
     }
-    let scene = SceneFile::load_allowing(what, &[], allowed(outside))?;
-    let folder = default_folder(what);
-    let picture = scene.scene.picture.clone();
+    let scene = SceneFile::load_allowing(what, &arguments.set, allowed(arguments.allow_outside))?;
+    let (folder, picture) = (default_folder(what), checked(&scene)?);
     let Some(reason) = why_run(&scene, &folder) else {
-        terminal::note(&format!("drawing {}, which is newer than the scene\n", folder.display()));
+        terminal::note(&format!("drawing {}, which is of this scene\n", folder.display()));
         return Ok((folder, picture, Ok(())));
     };
     terminal::note(&format!("running {} first: {reason}\n", what.display()));
@@ -77,6 +67,44 @@ fn source(what: &Path, outside: bool) -> Result<(PathBuf, Picture, Outcome), Fai
     }
 }
 
+/// How the scene of an output folder wants to be drawn, with values put into that.
+fn picture_of(folder: &Path, set: &[String]) -> Result<Picture, Failure> {
+    if !folder.join("sinew.json").exists() {
+        let text = format!("{} is no output folder of sinew (it has no sinew.json)", folder.display());
+        return Err(Failure::Options(text));
+    }
+    let path = folder.join(SCENE);
+    if set.is_empty() {
+        // what is no run, a mesh for instance, has no scene
+        return Ok(SceneFile::load(path, &[]).map(|scene| scene.scene.picture).unwrap_or_default());
+    }
+    if !path.exists() {
+        return Err(Failure::Options(format!("{} has no {SCENE} that --set could put a value into", folder.display())));
+    }
+    let (run, wanted) = (SceneFile::load(&path, &[])?, SceneFile::load(&path, set)?);
+    match is_the_same_run(&run.scene, &wanted.scene) {
+        true => checked(&wanted),
+        false => Err(Failure::Options(format!(
+            "--set: {} is drawn as it was run, and only its `picture` can be changed, such as picture.zoom=2; name the scene \
+             to have it run with another value",
+            folder.display()
+        ))),
+    }
+}
+
+/// The picture of a scene, if its values make sense.
+fn checked(scene: &SceneFile) -> Result<Picture, Failure> {
+    let mut found = scene.diagnostics();
+    validate_picture(scene, &mut found);
+    if found.has_errors() { Err(found.into()) } else { Ok(scene.scene.picture.clone()) }
+}
+
+/// Whether scenes differ in how they are drawn at most.
+fn is_the_same_run(one: &Scene, other: &Scene) -> bool {
+    let one = Scene { picture: other.picture.clone(), ..one.clone() };
+    one == *other
+}
+
 /// Why a scene has to be run before it can be drawn.
 fn why_run(scene: &SceneFile, folder: &Path) -> Option<String> {
     let changed = |path: &Path| fs::metadata(path).and_then(|data| data.modified()).unwrap_or(SystemTime::UNIX_EPOCH);
@@ -84,10 +112,11 @@ fn why_run(scene: &SceneFile, folder: &Path) -> Option<String> {
     if !drawn.exists() || !folder.join("fields.pvd").exists() {
         return Some(format!("{} has no output of it", folder.display()));
     }
-    let written = changed(&drawn);
-    if changed(&scene.path) > written {
-        return Some(format!("it has changed since {} was written", folder.display()));
+    let run = SceneFile::load(folder.join(SCENE), &[]);
+    if !run.is_ok_and(|run| is_the_same_run(&run.scene, &scene.scene)) {
+        return Some(format!("{} was written of another, or with other values", folder.display()));
     }
+    let written = changed(&drawn);
     let meshes = scene.scene.bodies.values().filter_map(|body| match &body.mesh {
         MeshSource::File { path, .. } => scene.file(path).ok(),
         _ => None,
@@ -115,15 +144,6 @@ fn draw(folder: &Path, options: &Options) -> Outcome {
         1 => format!("t = {:.4} s", drawn.time),
         frames => format!("{frames} frames until t = {:.4} s", drawn.time),
     };
-    terminal::say(&format!("{}  {}, {frames}\n", drawn.out.display(), options.field))
-}
-
-fn field_name(field: Field) -> &'static str {
-    match field {
-        Field::Displacement => "displacement",
-        Field::Speed => "speed",
-        Field::VonMises => "von_mises",
-        Field::Pressure => "pressure",
-        Field::VolumeRatio => "volume_ratio",
-    }
+    let field = options.field.as_deref().unwrap_or(options.picture.field.array());
+    terminal::say(&format!("{}  {field}, {frames}\n", drawn.out.display()))
 }

@@ -1,6 +1,7 @@
 //! What can go wrong while pictures are made.
 
 use crate::output::OutputError;
+use crate::plot::PlotError;
 use crate::scene::limits::PICTURE;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -46,20 +47,20 @@ pub enum RenderError {
         /// All names that could be asked for.
         known: Vec<String>,
     },
-    /// The eye's direction is no direction.
-    #[error("the picture is to be seen from {from:?}, which is no direction; it needs three numbers, not all zero")]
-    From {
-        /// The direction asked for.
-        from: [f32; 3],
+    /// Something that the picture is to be drawn with makes no sense.
+    #[error("`picture`: {0}")]
+    Picture(String),
+    /// The names of bodies and materials are not known, so that none can be seen through.
+    #[error("{}: which bodies and materials are to be seen through is not known: {reason}", path.display())]
+    Names {
+        /// The file with the names.
+        path: PathBuf,
+        /// What is wrong.
+        reason: String,
     },
-    /// The range of colours is empty.
-    #[error("the colours are to span {low} to {high}; the first number must be below the second")]
-    Range {
-        /// The lower end.
-        low: f32,
-        /// The upper end.
-        high: f32,
-    },
+    /// The legend could not be drawn.
+    #[error("the legend cannot be drawn: {0}")]
+    Legend(#[from] PlotError),
     /// The picture is too small or too large.
     #[error(
         "a picture of {} by {} pixels; allowed are {} by {} to {} by {}",

@@ -14,6 +14,8 @@ pub struct Field {
     pub unit: &'static str,
     /// Left out: only the size matters. Else the value between two sides, 0 for a pressure.
     pub centre: Option<f32>,
+    /// Whether its values may be averaged.
+    pub real: bool,
     array: String,
     pick: Pick,
 }
@@ -26,7 +28,7 @@ enum Pick {
 }
 
 /// What is known of arrays: name in the file, other name, what it is, its length in words, unit, middle.
-const KNOWN: [(&str, &str, &str, &str, Option<f32>); 14] = [
+const KNOWN: [(&str, &str, &str, &str, Option<f32>); 16] = [
     ("displacement", "", "displacement", "m", None),
     ("velocity", "speed", "speed", "m/s", None),
     ("von_mises", "", "von Mises stress", "Pa", None),
@@ -41,6 +43,8 @@ const KNOWN: [(&str, &str, &str, &str, Option<f32>); 14] = [
     ("energy_density", "", "energy density", "J/m³", None),
     ("fibre_stretch", "", "stretch of fibres", "", Some(1.0)),
     ("hourglass_share", "", "share of hourglass control", "", None),
+    ("relative_amplitude", "", "relative amplitude", "", None),
+    ("quality", "", "quality", "", None),
 ];
 
 const AXES: [&str; 3] = ["x", "y", "z"];
@@ -76,7 +80,8 @@ impl Field {
             None => known.map_or(Some(0.0).filter(|_| pick != Pick::Length), |known| known.4),
         };
         let unit = known.map_or("", |known| known.3);
-        Ok(Field { place: entry.place, quantity, unit, centre, array: array.to_string(), pick })
+        let real = entry.is_real();
+        Ok(Field { place: entry.place, quantity, unit, centre, real, array: array.to_string(), pick })
     }
 
     /// The field in a frame, one number a point or cell.

@@ -49,6 +49,13 @@ pub struct FrameFile {
 /// Ends the head and begins the data.
 const DATA: &[u8] = b"<AppendedData encoding=\"raw\">";
 
+impl Entry {
+    /// Whether its values are real numbers, not names or numbers of things.
+    pub fn is_real(&self) -> bool {
+        self.kind.starts_with("Float")
+    }
+}
+
 impl FrameFile {
     /// Opens a file and reads its head.
     pub fn open(path: &Path) -> Result<FrameFile, RenderError> {

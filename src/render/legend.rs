@@ -1,62 +1,146 @@
-//! The colour bar with its numbers, the time, and the axes.
+//! The colour bar with its numbers, the time, what surfaces mean, and the axes.
 
+use super::RenderError;
 use super::camera::Camera;
+use super::colour;
 use super::image::Image;
+use super::light::Light;
 use super::picture::Picture;
-use super::text::{Anchor, Letters};
-use glam::{Vec2, Vec3};
+use crate::plot::overlay;
+use crate::plot::svg::Svg;
+use glam::Vec3;
 
-const INK: [u8; 3] = [44, 50, 58];
+/// The ground of the legend where surfaces end above it.
+pub const PANEL: [u8; 3] = [247, 248, 250];
+const INK: &str = "#20262e";
 /// Red, green and blue for x, y and z.
-const AXES: [(&str, Vec3, [u8; 3]); 3] =
-    [("x", Vec3::X, [200, 62, 77]), ("y", Vec3::Y, [66, 145, 82]), ("z", Vec3::Z, [52, 104, 178])];
+const AXES: [(&str, Vec3, &str); 3] = [("x", Vec3::X, "#c03447"), ("y", Vec3::Y, "#2f7d45"), ("z", Vec3::Z, "#2a5ea8")];
 
-/// Height of the legend at the bottom of a picture of the given width and height (pixels).
-pub fn height(size: (usize, usize)) -> f32 {
-    let letters = Letters::new(size);
-    (letters.height() * 2 + bar_height(&letters) + 3 * gap(&letters)) as f32
+/// What the legend explains beside colours.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Key {
+    /// Surfaces that were bared when elements were removed.
+    Bared,
+    /// The shape at rest.
+    Ghost,
 }
 
-fn gap(letters: &Letters) -> i32 {
-    letters.height() * 2 / 5
+/// Sizes of a legend (pixels).
+struct Layout {
+    /// Of letters.
+    em: f64,
+    width: f64,
+    height: f64,
 }
 
-fn bar_height(letters: &Letters) -> i32 {
-    letters.height() * 7 / 10
+impl Layout {
+    fn new((width, height): (usize, usize)) -> Layout {
+        let em = (0.025 * (height.min(width * 3 / 4)) as f64).max(13.0);
+        Layout { em, width: width as f64, height: (4.6 * em).ceil() }
+    }
+
+    /// About the width of a text.
+    fn wide(&self, text: &str) -> f64 {
+        0.56 * self.em * text.chars().count() as f64
+    }
+
+    /// The base line of the last line.
+    fn base(&self) -> f64 {
+        self.height - 0.85 * self.em
+    }
+}
+
+/// The row of a picture where its legend begins.
+pub fn top(size: (usize, usize)) -> usize {
+    size.1.saturating_sub(Layout::new(size).height as usize)
 }
 
 /// Draws all of it into a finished picture.
-pub fn draw(image: &mut Image, picture: &Picture<'_>, camera: &Camera) {
-    let letters = Letters::new((image.width, image.height));
-    let (width, bottom, margin) = (image.width as i32, image.height as i32 - gap(&letters), letters.height());
-    // narrow pictures leave less for the bar, so that its last number does not run into the caption
-    let caption = picture.caption.chars().count() as i32 * letters.width();
-    let half = (width * 23 / 100).min(width / 2 - margin - caption - 3 * letters.width()).max(width / 10);
-    bar(image, picture, &letters, (width / 2 - half, width / 2 + half), bottom);
-    letters.write(image, picture.caption, (width - margin, bottom - letters.height()), Anchor::Right, INK);
-    axes(image, camera, &letters);
+///
+/// # Errors
+/// That letters cannot be drawn.
+pub fn draw(image: &mut Image, picture: &Picture<'_>, camera: &Camera) -> Result<(), RenderError> {
+    let size = (image.width, image.height);
+    let (layout, top) = (Layout::new(size), top(size));
+    let mut svg = Svg::clear((layout.width, layout.height));
+    if picture.panel {
+        svg.line((0.0, 0.5), (layout.width, 0.5), "#c9cfd6", 1.0, "");
+    }
+    let column = column(&mut svg, picture, &layout);
+    // between axes and caption; narrow pictures leave less for the bar, and not in the middle
+    let (least, most) = (5.2 * layout.em, layout.width - column - 1.6 * layout.em);
+    let half = (0.23 * layout.width).min((most - least) / 2.0).max(2.0 * layout.em);
+    let middle = (layout.width / 2.0).min(most - half).max(least + half);
+    let (left, right) = ((middle - half).round(), (middle + half).round());
+    bar(&mut svg, picture, &layout, (left, right));
+    axes(&mut svg, camera, &layout);
+    let page = overlay(&svg.finish())?;
+    let below = image.pixels.iter_mut().skip(top * size.0);
+    for (pixel, [red, green, blue, cover]) in below.zip(page) {
+        for (old, new) in pixel.iter_mut().zip([red, green, blue]) {
+            *old = new + ((u16::from(*old) * u16::from(255 - cover) + 127) / 255) as u8;
+        }
+    }
+    Ok(())
+}
+
+/// The caption and what surfaces mean, at the right; how wide that is.
+fn column(svg: &mut Svg, picture: &Picture<'_>, layout: &Layout) -> f64 {
+    let (em, right) = (layout.em, layout.width - 0.8 * layout.em);
+    svg.strong((right, layout.base()), picture.caption, em, INK, "end");
+    let texts = picture.keys.iter().map(|key| layout.wide(key.words().0)).fold(0.0, f64::max) * 0.9;
+    let left = right - texts - 1.5 * em;
+    for (line, key) in picture.keys.iter().enumerate() {
+        let (text, fill) = key.words();
+        let base = layout.base() - 1.4 * em * (line + 1) as f64;
+        let swatch =
+            [left.round() + 0.5, (base - 0.8 * em).round() + 0.5, (left + 1.1 * em).round() + 0.5, base.round() + 0.5];
+        svg.area(swatch, &fill);
+        svg.frame(swatch, "#59626e");
+        svg.strong((left + 1.5 * em, base), text, em, INK, "start");
+    }
+    let keys = if picture.keys.is_empty() { 0.0 } else { layout.width - left };
+    f64::max(layout.wide(picture.caption) + 0.8 * em, keys)
+}
+
+impl Key {
+    /// What it is called, and the colour of its swatch.
+    fn words(self) -> (&'static str, String) {
+        let light = Light::new();
+        let hex = |light: Vec3| {
+            let [red, green, blue] = colour::bytes(light);
+            format!("#{red:02x}{green:02x}{blue:02x}")
+        };
+        match self {
+            Key::Bared => ("bared by removal", hex(light.bared(Vec3::splat(0.2)))),
+            Key::Ghost => ("shape at rest", hex(light.ghost().lerp(Vec3::ONE, 0.75))),
+        }
+    }
 }
 
 /// The bar from `left` to `right`, its numbers below and what it means above.
-fn bar(image: &mut Image, picture: &Picture<'_>, letters: &Letters, (left, right): (i32, i32), bottom: i32) {
-    let foot = bottom - letters.height() - gap(letters) / 2;
-    let head = foot - bar_height(letters);
+fn bar(svg: &mut Svg, picture: &Picture<'_>, layout: &Layout, (left, right): (f64, f64)) {
+    let em = layout.em;
+    let (foot, head) = ((layout.base() - 1.2 * em).round(), (layout.base() - 2.0 * em).round());
     let (low, high) = picture.scale.range;
-    for x in left..right {
-        let share = (x - left) as f32 / (right - left - 1) as f32;
+    let columns = (right - left) as usize;
+    for column in 0..columns {
+        let share = column as f32 / (columns - 1).max(1) as f32;
         let colour = picture.scale.srgb(low + (high - low) * share).to_array().map(|c| (c * 255.0).round() as u8);
-        (head..foot).for_each(|y| image.set(x, y, colour));
+        let at = left + column as f64;
+        svg.area([at, head, at + 1.0, foot], &format!("#{:02x}{:02x}{:02x}", colour[0], colour[1], colour[2]));
     }
+    svg.frame([left - 0.5, head - 0.5, right + 0.5, foot + 0.5], "#59626e");
     let (prefix, factor) = if picture.unit.is_empty() { ("", 1.0) } else { prefix(low.abs().max(high.abs())) };
     let (low, high) = (f64::from(low) * factor, f64::from(high) * factor);
-    for (value, text) in ticks(low, high, ((right - left) / letters.width()) as usize) {
-        let x = left + ((value - low) / (high - low) * f64::from(right - left - 1)).round() as i32;
-        (foot..foot + gap(letters) / 2).for_each(|y| image.set(x, y, INK));
-        letters.write(image, &text, (x, foot + gap(letters) / 2), Anchor::Middle, INK);
+    for (value, text) in ticks(low, high, ((right - left) / (0.56 * em)) as usize) {
+        let x = left + ((value - low) / (high - low) * (right - left - 1.0)).round() + 0.5;
+        svg.line((x, foot), (x, foot + 0.28 * em), INK, 1.0, "");
+        svg.strong((x, layout.base()), &text, em, INK, "middle");
     }
     let unit = if picture.unit.is_empty() { String::new() } else { format!(" ({prefix}{})", picture.unit) };
     let line = format!("{}{unit}", picture.quantity);
-    letters.write(image, &line, ((left + right) / 2, head - gap(letters) / 2 - letters.height()), Anchor::Middle, INK);
+    svg.strong(((left + right) / 2.0, head - 0.45 * em), &line, em, INK, "middle");
 }
 
 /// The prefix that gives a number one to three digits before the point, and the factor that belongs to it.
@@ -89,18 +173,20 @@ fn ticks(low: f64, high: f64, letters: usize) -> Vec<(f64, String)> {
 }
 
 /// The directions of x, y and z in the lower left corner, the nearest drawn last.
-fn axes(image: &mut Image, camera: &Camera, letters: &Letters) {
-    let length = letters.height() as f32 * 1.45;
-    let origin = Vec2::new(length * 1.75, image.height as f32 - length * 1.6);
+fn axes(svg: &mut Svg, camera: &Camera, layout: &Layout) {
+    let em = layout.em;
+    let length = 1.5 * em;
+    let origin = (2.4 * em, layout.height - 2.3 * em);
     let mut axes = AXES.map(|(name, axis, colour)| (name, camera.turn(axis), colour));
     axes.sort_by(|a, b| a.1.z.total_cmp(&b.1.z));
     for (name, axis, colour) in axes {
-        let flat = Vec2::new(axis.x, -axis.y);
-        image.stroke(origin, origin + flat * length, letters.height() as f32 * 0.14, colour);
+        let (x, y) = (f64::from(axis.x), -f64::from(axis.y));
+        let end = (origin.0 + x * length, origin.1 + y * length);
+        svg.line(origin, end, colour, 0.13 * em, "");
         // an axis that points at the eye still has its letter beside it
-        let place = origin + flat * length + flat.normalize_or(Vec2::new(0.7, 0.7)) * letters.height() as f32 * 0.6;
-        let corner = (place.x.round() as i32, place.y.round() as i32 - letters.height() / 2);
-        letters.write(image, name, corner, Anchor::Middle, colour);
+        let flat = x.hypot(y);
+        let (x, y) = if flat > 1e-3 { (x / flat, y / flat) } else { (0.7, 0.7) };
+        svg.strong((end.0 + 0.55 * em * x, end.1 + 0.55 * em * y + 0.3 * em), name, em, colour, "middle");
     }
 }
 

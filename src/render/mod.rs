@@ -1,11 +1,14 @@
 //! Pictures of a run, drawn on the CPU: the deformed surface, shaded, coloured by a field, with its mesh, a colour bar,
-//! the time and the axes. No graphics driver is needed, and the same input gives the same bytes everywhere.
+//! the time and the axes; cut open, seen through, before its shape at rest, as a scene's `picture` says it. No graphics driver
+//! is needed, and the same input gives the same bytes everywhere.
 //!
 //! ```text
 //! series   fields.pvd -> frames                frame    one VTU file -> points, cells, arrays
 //! surface  cells, alive -> outer faces         field    a field's name -> values, their name and unit
+//! section  cells, a plane -> polygons          nodal    values of cells -> averages at nodes
+//! groups   bodies, materials -> opacity        state    a frame -> layers of faces
 //! range    values -> what the colours span     camera   where the eye stands
-//! picture  all of that -> image                raster, normals, light, colour, legend, text
+//! picture  all of that -> image                triangles, raster, normals, light, occlusion, colour, legend
 //! encode   images -> PNG                       animation, palette -> GIF
 //! ```
 
@@ -17,21 +20,30 @@ mod encode;
 mod error;
 mod field;
 mod frame;
+mod groups;
 mod image;
 mod legend;
 mod light;
+mod nodal;
 mod normals;
+mod occlusion;
 mod palette;
 mod picture;
+mod plane;
 mod range;
 mod raster;
+mod section;
 mod series;
+mod state;
 mod surface;
-mod text;
+mod triangles;
 
-pub use camera::{Camera, Fit};
+pub use camera::{Camera, Fit, View};
 pub use colour::{Map, Scale};
 pub use draw::{Drawn, Options, draw, draw_with_progress};
 pub use error::RenderError;
 pub use image::Image;
-pub use picture::{Colouring, Picture, paint};
+pub use legend::Key;
+pub use picture::{Colouring, Layer, Lines, Picture, paint, stage};
+pub use plane::Plane;
+pub use raster::Finish;

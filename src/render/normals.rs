@@ -19,6 +19,28 @@ pub fn of_corners(vertices: &[Vec3], faces: &[[u32; 4]]) -> Vec<[Vec3; 4]> {
     (0..faces.len()).map(|face| faces[face].map(|point| corner(face, point))).collect()
 }
 
+/// Which sides of each face are borders or creases of more than 40°: bit 0 the side from its first corner to its second.
+pub fn creases(vertices: &[Vec3], faces: &[[u32; 4]]) -> Vec<u8> {
+    let own: Vec<Vec3> = faces.iter().map(|face| area_vector(vertices, face).normalize_or_zero()).collect();
+    let mut sides: Vec<([u32; 2], u32, u8)> = Vec::with_capacity(4 * faces.len());
+    for (row, face) in faces.iter().enumerate() {
+        let count = corners(face).count();
+        for side in 0..count {
+            let (a, b) = (face[side], face[(side + 1) % count]);
+            sides.push(([a.min(b), a.max(b)], row as u32, side as u8));
+        }
+    }
+    sides.sort_unstable();
+    let mut found = vec![0; faces.len()];
+    for same in sides.chunk_by(|a, b| a.0 == b.0) {
+        let smooth = |other: &([u32; 2], u32, u8)| own[same[0].1 as usize].dot(own[other.1 as usize]) >= CREASE;
+        if same.len() != 2 || !same.iter().all(smooth) {
+            same.iter().for_each(|(_, row, side)| found[*row as usize] |= 1 << side);
+        }
+    }
+    found
+}
+
 /// The normal of a face times its area.
 fn area_vector(vertices: &[Vec3], face: &[u32; 4]) -> Vec3 {
     let [a, b, c, d] = face.map(|point| vertices[point as usize]);
@@ -85,5 +107,14 @@ mod tests {
             assert!(normals[0][0].distance(Vec3::Z) < 1e-6);
             assert_eq!(normals[0][1].distance(normals[1][0]) < 1e-6, smooth);
         }
+    }
+
+    #[test]
+    fn the_edges_of_a_box_are_creases_and_those_within_its_sides_are_not() {
+        // two squares in a plane and one upright at their end
+        let points = [(0, 0, 0), (1, 0, 0), (2, 0, 0), (0, 1, 0), (1, 1, 0), (2, 1, 0), (2, 0, 1), (2, 1, 1)];
+        let vertices = points.map(|(x, y, z)| Vec3::new(x as f32, y as f32, z as f32));
+        let found = creases(&vertices, &[[0, 1, 4, 3], [1, 2, 5, 4], [2, 6, 7, 5]]);
+        assert_eq!(found, [0b1101, 0b0111, 0b1111]);
     }
 }

@@ -12,7 +12,7 @@ pub struct Palette {
 }
 
 /// How many colours may be kept as they are.
-const MOST_KEPT: usize = 64;
+const MOST_KEPT: usize = 28;
 /// The index that leaves a pixel as it was.
 pub const UNCHANGED: u8 = 255;
 

@@ -1,23 +1,22 @@
 //! One picture from one state.
 
+use super::RenderError;
 use super::camera::Camera;
 use super::colour::{self, Scale};
 use super::image::Image;
-use super::legend;
+use super::legend::{self, Key};
 use super::light::{self, Light};
-use super::normals;
-use super::raster::{Look, Strip, Triangle};
+use super::occlusion::{Caster, Ground, Sky};
+use super::plane::Plane;
+use super::raster::{Finish, Look, Strip};
+use super::triangles::{self, FINE, thickness};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 /// What a picture shows.
 pub struct Picture<'a> {
-    /// Positions (m); those that no face names are ignored.
-    pub vertices: &'a [Vec3],
-    /// Faces, counter-clockwise seen from outside: rows of `vertices`; a triangle repeats its last point.
-    pub faces: &'a [[u32; 4]],
-    /// What gives the colour.
-    pub values: Colouring<'a>,
+    /// The surfaces in it.
+    pub layers: Vec<Layer<'a>>,
     /// Which value has which colour.
     pub scale: Scale,
     /// What is coloured: "von Mises stress".
@@ -26,8 +25,32 @@ pub struct Picture<'a> {
     pub unit: &'a str,
     /// A line in the corner, the time for instance.
     pub caption: &'a str,
-    /// Whether the elements' edges are drawn.
-    pub edges: bool,
+    /// What the legend explains beside colours.
+    pub keys: &'a [Key],
+    /// Takes away what lies beyond it.
+    pub plane: Option<Plane>,
+    /// Soft shadows: the direction that is up, of length 1, and where the ground is along it (m).
+    pub ground: Option<(Vec3, f32)>,
+    /// Whether surfaces end above the legend.
+    pub panel: bool,
+}
+
+/// Surfaces of one kind.
+pub struct Layer<'a> {
+    /// Positions (m); those that no face names are ignored.
+    pub vertices: &'a [Vec3],
+    /// Faces, counter-clockwise seen from outside: rows of `vertices`; a triangle repeats its last point.
+    pub faces: &'a [[u32; 4]],
+    /// What gives the colour.
+    pub values: Colouring<'a>,
+    /// What they are made of.
+    pub finish: Finish,
+    /// Which sides of faces are drawn as lines.
+    pub lines: Lines<'a>,
+    /// The normal of all of them, where that is known.
+    pub flat: Option<Vec3>,
+    /// Whether the picture's plane cuts them.
+    pub cut: bool,
 }
 
 /// Values that give the colour.
@@ -37,55 +60,123 @@ pub enum Colouring<'a> {
     Vertices(&'a [f32]),
     /// One a face.
     Faces(&'a [f32]),
+    /// One a corner of each face.
+    Corners(&'a [[f32; 4]]),
+    /// None.
+    Nothing,
 }
 
-/// Samples along each side of a pixel.
-const FINE: usize = 3;
-/// Pixel rows that are drawn at a time, by one core.
-const ROWS: usize = 24;
+/// Which sides of faces are drawn as lines.
+#[derive(Clone, Copy)]
+pub enum Lines<'a> {
+    /// None.
+    None,
+    /// All: the elements' edges.
+    All,
+    /// Of each face those with a bit: bit 0 the side from its first corner to its second, and so on.
+    Sides(&'a [u8]),
+}
+
+/// Pixel rows that are drawn at a time by one core, and fewer where much is known of each sample.
+const ROWS: [usize; 2] = [24, 8];
+/// The share of light that is left where no sky is seen, of surfaces and of the ground.
+const DARKEST: [f32; 2] = [0.42, 0.5];
 
 /// Draws a picture of the given width and height (pixels).
-pub fn paint(picture: &Picture<'_>, camera: &Camera, (width, height): (usize, usize)) -> Image {
-    let triangles = triangles(picture, camera, height);
+///
+/// # Errors
+/// That the legend cannot be drawn.
+pub fn paint(picture: &Picture<'_>, camera: &Camera, (width, height): (usize, usize)) -> Result<Image, RenderError> {
+    let triangles = triangles::of(picture, camera, height);
     let ramp = picture.scale.ramp();
     let lights = Light::new();
     let look = Look { ramp: &ramp, light: &lights, edge: 0.35 * FINE as f32 * thickness(height) };
+    let shade = Shade::new(picture, camera, &lights);
+    let sheets = triangles.iter().any(|triangle| matches!(triangle.finish, Finish::Sheet(_) | Finish::Ghost));
+    let rows = ROWS[usize::from(sheets)];
+    let end = if picture.panel { legend::top((width, height)) } else { height };
     // forty samples deep within two: no surface that we see well is that steep
     let step = 1.0 + 40.0 / (camera.focal() * FINE as f32);
     let mut image = Image::new(width, height, [255; 3]);
-    image.pixels.par_chunks_mut(width * ROWS).enumerate().for_each(|(number, pixels)| {
+    image.pixels.par_chunks_mut(width * rows).enumerate().for_each(|(number, pixels)| {
         // one pixel row more on either side, for the outline
-        let top = number * ROWS * FINE;
+        let top = number * rows * FINE;
         let margin = FINE.min(top);
-        let mut strip = Strip::new(width * FINE, top - margin, (ROWS + 2) * FINE);
-        triangles.iter().for_each(|triangle| strip.draw(triangle, &look));
+        let mut strip = Strip::new(width * FINE, top - margin, (rows + 2) * FINE, sheets);
+        if number * rows < end {
+            triangles.iter().for_each(|triangle| strip.draw(triangle, &look));
+        }
         for (row, pixels) in pixels.chunks_mut(width).enumerate() {
-            let behind = light::background((number * ROWS + row) as f32 / height as f32);
+            let line = number * rows + row;
+            if line >= end {
+                pixels.fill(legend::PANEL);
+                continue;
+            }
+            let behind = light::background(line as f32 / height as f32);
             for (column, pixel) in pixels.iter_mut().enumerate() {
-                *pixel = colour::bytes(mean(&strip, column * FINE, row * FINE + margin, behind, step));
+                let place = Vec2::new(column as f32 + 0.5, line as f32 + 0.5);
+                *pixel = colour::bytes(mean(&strip, (column, row * FINE + margin), place, behind, step, &shade));
             }
         }
     });
-    legend::draw(&mut image, picture, camera);
-    image
+    legend::draw(&mut image, picture, camera)?;
+    Ok(image)
 }
 
-/// How much wider lines and letters are than in a small picture.
-fn thickness(height: usize) -> f32 {
-    (height as f32 / 720.0).max(1.0)
+/// Soft shadows of a picture, if it has any.
+struct Shade<'a> {
+    camera: &'a Camera,
+    sky: Option<(Sky, Ground)>,
 }
+
+impl Shade<'_> {
+    fn new<'a>(picture: &Picture<'_>, camera: &'a Camera, light: &Light) -> Shade<'a> {
+        let sky = picture.ground.and_then(|ground| {
+            let casters: Vec<Caster> = triangles::casters(picture);
+            let sky = Sky::new(&casters, ground.0, camera.turn_back(light.key()))?;
+            let below = sky.ground(ground);
+            Some((sky, below))
+        });
+        Shade { camera, sky }
+    }
+
+    /// The share of light on the ground at a pixel.
+    fn on_ground(&self, pixel: Vec2) -> f32 {
+        let seen = self.sky.as_ref().map_or(1.0, |(_, ground)| ground.seen(self.camera.eye(), self.camera.ray(pixel)));
+        DARKEST[1] + (1.0 - DARKEST[1]) * seen
+    }
+
+    /// The share of light on a surface at a pixel, of known nearness (1/m) and normal as the eye sees it.
+    fn on_surface(&self, pixel: Vec2, nearness: f32, normal: Vec3) -> f32 {
+        let Some((sky, _)) = &self.sky else { return 1.0 };
+        let point = self.camera.eye() + self.camera.ray(pixel) / nearness;
+        DARKEST[0] + (1.0 - DARKEST[0]) * sky.seen(point, self.camera.turn_back(normal))
+    }
+}
+
+/// The samples of a pixel, the middle one first.
+const MIDDLE_FIRST: [(usize, usize); FINE * FINE] =
+    [(1, 1), (1, 0), (0, 1), (2, 1), (1, 2), (0, 0), (2, 0), (0, 2), (2, 2)];
 
 /// The mean of a pixel's samples; samples at the rim of what is in front are darker and make its outline.
-fn mean(strip: &Strip, column: usize, row: usize, behind: Vec3, step: f32) -> Vec3 {
+fn mean(strip: &Strip, (column, row): (usize, usize), pixel: Vec2, behind: Vec3, step: f32, shade: &Shade<'_>) -> Vec3 {
+    let sample = |(x, y): (usize, usize)| (row + y) * strip.width + column * FINE + x;
+    let solid = MIDDLE_FIRST.map(sample).into_iter().find(|at| strip.nearness[*at] > 0.0);
+    // shadows are soft: one look for the whole pixel will do
+    let shadow = solid.map_or(1.0, |at| shade.on_surface(pixel, strip.nearness[at], strip.normal[at]));
+    let full = MIDDLE_FIRST.iter().all(|place| strip.nearness[sample(*place)] > 0.0);
+    let ground = if full { behind } else { behind * shade.on_ground(pixel) };
     let mut sum = Vec3::ZERO;
-    for y in row..row + FINE {
-        for x in column..column + FINE {
-            let at = y * strip.width + x;
-            sum += match strip.nearness[at] {
-                0.0 => behind,
-                _ => strip.light[at] * if rim(strip, x, y, step) { 0.45 } else { 1.0 },
-            };
-        }
+    for place in MIDDLE_FIRST {
+        let at = sample(place);
+        let light = match strip.nearness[at] {
+            0.0 => ground,
+            _ => {
+                let rim = rim(strip, column * FINE + place.0, row + place.1, step);
+                strip.light[at] * shadow * if rim { 0.45 } else { 1.0 }
+            }
+        };
+        sum += strip.through_sheets(at, light);
     }
     sum / (FINE * FINE) as f32
 }
@@ -98,72 +189,9 @@ fn rim(strip: &Strip, x: usize, y: usize, step: f32) -> bool {
     right || left || beyond(x, y + 2) || (y >= 2 && beyond(x, y - 2))
 }
 
-/// All faces in triangles, in samples. A quadrilateral is four triangles about its middle, so that none of its diagonals is
-/// favoured.
-fn triangles(picture: &Picture<'_>, camera: &Camera, height: usize) -> Vec<Triangle> {
-    let places: Vec<Vec3> = picture.vertices.par_iter().map(|point| sampled(camera.project(*point))).collect();
-    let normals = normals::of_corners(picture.vertices, picture.faces);
-    let mut triangles = Vec::with_capacity(picture.faces.len() * 4);
-    for (row, face) in picture.faces.iter().enumerate() {
-        let corners = face.map(|point| places[point as usize]);
-        if !corners.iter().all(|corner| corner.is_finite() && corner.z > 0.0) {
-            continue;
-        }
-        let values = match picture.values {
-            Colouring::Vertices(values) => face.map(|point| values[point as usize]),
-            Colouring::Faces(values) => [values[row]; 4],
-        };
-        let away = area(&corners) > 0.0;
-        let normals = normals[row].map(|normal| camera.turn(if away { -normal } else { normal }));
-        let ink = if picture.edges { ink(&corners, height) } else { 0.0 };
-        if face[2] == face[3] {
-            triangles.push(Triangle {
-                places: [corners[0], corners[1], corners[2]],
-                normals: [normals[0], normals[1], normals[2]],
-                values: [values[0], values[1], values[2]],
-                edges: [ink > 0.0; 3],
-                ink,
-            });
-            continue;
-        }
-        let points = face.map(|point| picture.vertices[point as usize]);
-        let middle = sampled(camera.project(points.iter().sum::<Vec3>() / 4.0));
-        let (normal, value) = (normals.iter().sum::<Vec3>(), values.iter().sum::<f32>() / 4.0);
-        for side in 0..4 {
-            let next = (side + 1) % 4;
-            triangles.push(Triangle {
-                places: [middle, corners[side], corners[next]],
-                normals: [normal.normalize_or(Vec3::Z), normals[side], normals[next]],
-                values: [value, values[side], values[next]],
-                edges: [ink > 0.0, false, false],
-                ink,
-            });
-        }
-    }
-    triangles
-}
-
-fn sampled(place: Vec3) -> Vec3 {
-    (place.truncate() * FINE as f32).extend(place.z)
-}
-
-/// Twice the signed area of a face in the picture; positive when it turns its back (rows count downwards).
-fn area(corners: &[Vec3; 4]) -> f32 {
-    let [a, b, c, d] = corners.map(Vec3::truncate);
-    let triangle = (b - a).perp_dot(c - a);
-    triangle + (c - a).perp_dot(d - a)
-}
-
-/// How dark the edges of a face are: they fade when elements become so small that lines would cover them.
-fn ink(corners: &[Vec3; 4], height: usize) -> f32 {
-    let [a, b, c, d] = corners.map(Vec3::truncate);
-    let longest = [a.distance(b), b.distance(c), c.distance(d), d.distance(a)].into_iter().fold(0.0, f32::max);
-    let pixels = longest / FINE as f32 / thickness(height);
-    0.62 * ((pixels - 2.5) / 9.0).clamp(0.0, 1.0)
-}
-
 /// The part of a picture that the body may fill, the rest is the legend's (left and top, right and bottom, in pixels).
 pub fn stage((width, height): (usize, usize)) -> (Vec2, Vec2) {
-    let (margin, below) = (height as f32 * 0.045, legend::height((width, height)));
-    (Vec2::splat(margin), Vec2::new(width as f32 - margin, height as f32 - below - margin * 0.5))
+    let margin = height as f32 * 0.045;
+    let bottom = legend::top((width, height)) as f32 - margin * 0.5;
+    (Vec2::splat(margin), Vec2::new(width as f32 - margin, bottom))
 }

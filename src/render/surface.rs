@@ -19,8 +19,9 @@ struct Face {
 const NONE: u32 = u32::MAX;
 
 /// Faces seen from outside, VTK's order of corners.
-const TET: [[usize; 4]; 4] = [[0, 2, 1, 1], [0, 1, 3, 3], [1, 2, 3, 3], [2, 0, 3, 3]];
-const HEX: [[usize; 4]; 6] = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+pub const TET: [[usize; 4]; 4] = [[0, 2, 1, 1], [0, 1, 3, 3], [1, 2, 3, 3], [2, 0, 3, 3]];
+/// The same of a hexahedron.
+pub const HEX: [[usize; 4]; 6] = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
 
 impl Faces {
     /// The faces of a mesh: `corners` holds four a tetrahedron, then eight a hexahedron.
@@ -36,20 +37,9 @@ impl Faces {
         for (cell, corners) in hex_corners.chunks_exact(8).enumerate() {
             HEX.iter().for_each(|face| add(tets + cell, corners, face));
         }
-        let key = |face: &Face| {
-            let mut key = face.points;
-            key.sort_unstable();
-            // a triangle's double must not depend on where the cell begins to count
-            if face.points[2] == face.points[3] {
-                let mut three = [face.points[0], face.points[1], face.points[2]];
-                three.sort_unstable();
-                key = [three[0], three[1], three[2], three[2]];
-            }
-            key
-        };
-        faces.par_sort_unstable_by_key(|face| (key(face), face.cell));
+        faces.par_sort_unstable_by_key(|face| (key(face.points), face.cell));
         faces.dedup_by(|later, first| {
-            let same = first.beyond == NONE && key(later) == key(first);
+            let same = first.beyond == NONE && key(later.points) == key(first.points);
             if same {
                 first.beyond = later.cell;
             }
@@ -58,24 +48,74 @@ impl Faces {
         Faces { faces }
     }
 
-    /// The faces between what is alive and what is not, or nothing; each with its living cell. Without `alive`, all cells
-    /// are.
-    pub fn surface(&self, alive: Option<&[f32]>) -> (Vec<[u32; 4]>, Vec<u32>) {
-        let lives = |cell: u32| cell != NONE && alive.is_none_or(|alive| alive[cell as usize] != 0.0);
-        let mut outer = (Vec::new(), Vec::new());
+    /// The faces between what is there and what is not, and between one group of cells and another, in which case they are
+    /// those of the lower group. `group`: which one a cell belongs to; none when it is not there. `skin`: the faces that the
+    /// bodies began with, in order.
+    pub fn surface(&self, group: impl Fn(u32) -> Option<u8>, skin: Option<&Skin>) -> Vec<Outer> {
+        let of = |cell: u32| if cell == NONE { None } else { group(cell) };
+        let mut outer = Vec::new();
         for face in &self.faces {
-            let [a, b, c, d] = face.points;
-            let (points, cell) = match (lives(face.cell), lives(face.beyond)) {
-                (true, false) => (face.points, face.cell),
-                (false, true) if c == d => ([a, c, b, b], face.beyond),
-                (false, true) => ([a, d, c, b], face.beyond),
-                _ => continue,
+            let (own, other) = (of(face.cell), of(face.beyond));
+            // a gap beyond, or a group that hides less
+            let first = match (own, other) {
+                (Some(own), Some(other)) if own == other => continue,
+                (Some(own), Some(other)) => own < other,
+                (Some(_), None) => true,
+                (None, Some(_)) => false,
+                (None, None) => continue,
             };
-            outer.0.push(points);
-            outer.1.push(cell);
+            let [a, b, c, d] = face.points;
+            let (points, cell) = match first {
+                true => (face.points, face.cell),
+                false if c == d => ([a, c, b, b], face.beyond),
+                false => ([a, d, c, b], face.beyond),
+            };
+            let open = own.is_none() || other.is_none();
+            let gone = face.beyond != NONE || skin.is_some_and(|skin| !skin.has(face.points));
+            outer.push(Outer { points, cell, group: of(cell).unwrap_or(0), bared: open && gone });
         }
         outer
     }
+
+    /// The faces with one cell.
+    pub fn skin(&self) -> Skin {
+        // faces are in order of their keys already
+        Skin(self.faces.iter().filter(|face| face.beyond == NONE).map(|face| key(face.points)).collect())
+    }
+}
+
+/// A face that is seen, with its cell.
+pub struct Outer {
+    /// Counter-clockwise seen from outside; a triangle repeats its last point.
+    pub points: [u32; 4],
+    /// The cell whose face it is.
+    pub cell: u32,
+    /// The group of that cell.
+    pub group: u8,
+    /// Whether it came to be seen because a cell is gone.
+    pub bared: bool,
+}
+
+/// Faces by their points, in order.
+pub struct Skin(Vec<[u32; 4]>);
+
+impl Skin {
+    fn has(&self, points: [u32; 4]) -> bool {
+        self.0.binary_search(&key(points)).is_ok()
+    }
+}
+
+/// The same for all faces with the same points.
+fn key(points: [u32; 4]) -> [u32; 4] {
+    let mut key = points;
+    // a triangle's double must not depend on where the cell begins to count
+    if points[2] == points[3] {
+        key[..3].sort_unstable();
+        key[3] = key[2];
+    } else {
+        key.sort_unstable();
+    }
+    key
 }
 
 #[cfg(test)]
@@ -91,25 +131,41 @@ mod tests {
             (0..12).map(|row| Vec3::new((row / 4) as f32, (row / 2 % 2) as f32, (row % 2) as f32)).collect();
         let cube = |x: u32| [0, 4, 6, 2, 1, 5, 7, 3].map(|corner| 4 * x + corner);
         let faces = Faces::new(&[cube(0), cube(1)].concat(), 0);
-        assert_eq!(faces.surface(None).0.len(), 10);
+        let surface = |alive: [f32; 2]| faces.surface(|cell| (alive[cell as usize] != 0.0).then_some(0), None);
+        assert_eq!(surface([1.0; 2]).len(), 10);
+        assert!(surface([1.0; 2]).iter().all(|face| !face.bared));
         for (alive, middle) in [([1.0, 0.0], 0.5), ([0.0, 1.0], 1.5)] {
-            let (outer, cells) = faces.surface(Some(&alive));
-            assert_eq!(outer.len(), 6);
-            assert!(cells.iter().all(|&cell| alive[cell as usize] == 1.0));
-            for face in outer {
+            let outer = surface(alive);
+            assert_eq!((outer.len(), outer.iter().filter(|face| face.bared).count()), (6, 1));
+            assert!(outer.iter().all(|face| alive[face.cell as usize] == 1.0));
+            for face in outer.into_iter().map(|face| face.points) {
                 let [a, b, c, d] = face.map(|point| points[point as usize] - Vec3::new(middle, 0.5, 0.5));
                 assert!((c - a).cross(d - b).dot(a + b + c + d) > 0.0, "{face:?}");
             }
         }
-        assert_eq!(faces.surface(Some(&[0.0, 0.0])).0.len(), 0);
+        assert_eq!(surface([0.0, 0.0]).len(), 0);
+        // files from which removed cells are left out: the surface of before tells
+        let (skin, left) = (faces.skin(), Faces::new(&cube(0), 0));
+        let bared = |skin| left.surface(|_| Some(0), skin).iter().filter(|face| face.bared).count();
+        assert_eq!((bared(Some(&skin)), bared(None)), (1, 0));
     }
 
     #[test]
     fn a_face_shared_by_two_tetrahedra_is_inside() {
         let faces = Faces::new(&[0, 1, 2, 3, 1, 4, 2, 3], 2);
-        let (outer, _) = faces.surface(None);
+        let outer = faces.surface(|_| Some(0), None);
         assert_eq!(outer.len(), 6);
-        assert!(outer.iter().all(|face| face[2] == face[3]));
-        assert_eq!(faces.surface(Some(&[0.0, 1.0])).0.len(), 4);
+        assert!(outer.iter().all(|face| face.points[2] == face.points[3]));
+        assert_eq!(faces.surface(|cell| (cell == 1).then_some(0), None).len(), 4);
+    }
+
+    #[test]
+    fn a_face_between_two_groups_is_that_of_the_lower_one() {
+        let faces = Faces::new(&[0, 1, 2, 3, 1, 4, 2, 3], 2);
+        for lower in 0..2 {
+            let outer = faces.surface(|cell| Some(u8::from(cell != lower)), None);
+            assert_eq!((outer.len(), outer.iter().filter(|face| face.group == 0).count()), (7, 4));
+            assert!(outer.iter().all(|face| !face.bared && (face.group == 0) == (face.cell == lower)));
+        }
     }
 }

@@ -22,6 +22,10 @@ pub const TERMS: usize = 100;
 pub const NAME_BYTES: usize = 100;
 /// Pixels of a picture in width and in height: there must be room for its legend.
 pub const PICTURE: [std::ops::RangeInclusive<u32>; 2] = [320..=8192, 240..=8192];
+/// Magnifications of a picture: beyond, single precision would show.
+pub const ZOOM: std::ops::RangeInclusive<f64> = 0.01..=1000.0;
+/// Entries of a picture's `opacity`.
+pub const OPACITIES: usize = 100;
 /// Times that a mesh is refined: each makes eight elements of one, ten a billion.
 pub const MOST_REFINEMENT: u32 = 9;
 

@@ -19,4 +19,4 @@ pub use diagnostic::{Diagnostic, Diagnostics, Severity, TextFile};
 pub use limits::Allowed;
 pub use load::SceneFile;
 pub use suggest::{choice, list, nearest};
-pub use validate::validate;
+pub use validate::{validate, validate_picture};

@@ -13,6 +13,7 @@ use crate::error::Error;
 use crate::scene::schema::{Constraint, Curve, Inversion, Scene, StepBound, WhenUnstable};
 use crate::scene::{Diagnostics, SceneFile};
 use bevy_ecs::prelude::*;
+use glam::DVec3;
 use serde::Serialize;
 
 /// The true limit is known to the share of half of this.

@@ -1,8 +1,9 @@
 //! The plot: well-formed, with all that belongs into it, and labels that do not lie on each other.
 
 use crate::made_up::{MadeUp, Nobody};
-use sinew::accuracy::plot::{place, png, svg};
+use sinew::accuracy::plot::svg;
 use sinew::accuracy::{Settings, Study, study};
+use sinew::plot::{place, png};
 
 fn made() -> Study {
     let started = std::time::Instant::now();

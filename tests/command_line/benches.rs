@@ -61,7 +61,8 @@ fn row(backend: &str, cells: u32, fuse: bool, ns: f64, gpu_ns: Option<f64>, adap
         elements: u64::from(cells).pow(3),
         nodes: u64::from(cells + 1).pow(3),
         ns_per_element_step: ns,
-        median_ns: ns,
+        median_ns: 1.1 * ns,
+        third_quartile_ns: Some(1.2 * ns),
         updates_per_s: 1e9 / ns,
         two_pass_ratio: None,
         flops: 1.0,
@@ -76,22 +77,46 @@ fn row(backend: &str, cells: u32, fuse: bool, ns: f64, gpu_ns: Option<f64>, adap
 }
 
 #[test]
-fn figures_name_the_device_and_say_so_where_it_is_a_program() {
-    let software = Some("llvmpipe (software, Vulkan, Mesa)");
-    let rows = [10, 20]
-        .iter()
-        .flat_map(|&n| [row("cpu", n, true, 40.0, None, None), row("gpu", n, true, 80.0, Some(70.0), software)])
-        .collect();
-    let mut record = Record { machine: Vec::new(), rows };
-    let figure = cpu_to_gpu(&record).unwrap();
-    assert!(figure.contains("llvmpipe") && figure.contains("A PROGRAM ON THE CPU"), "{figure}");
-    assert!(figure.contains("Hex8, fibres-viscosity: 1 × f32 two-pass / GPU two-pass"), "{figure}");
+fn a_software_gpu_is_drawn_apart_from_all_else_and_compared_with_nothing() {
+    let (software, card) = (Some("llvmpipe (software, Vulkan, Mesa)"), Some("Some card (discrete, Vulkan, driver)"));
+    let rows = |adapter| {
+        let rows = |n| [row("cpu", n, true, 40.0, None, None), row("gpu", n, true, 80.0, Some(70.0), adapter)];
+        Record { machine: Vec::new(), rows: [10, 20].into_iter().flat_map(rows).collect() }
+    };
+    let mut record = rows(software);
+    assert!(cpu_to_gpu(&record).is_none(), "a program on the CPU is no GPU");
+    let figure = cpu_to_gpu(&rows(card)).unwrap();
+    assert!(figure.contains("Some card") && figure.contains("1 × f32, two-pass"), "{figure}");
     assert!(split_to_fused(&record).is_none(), "nothing was kept apart");
 
-    record.rows.push(row("gpu", 10, false, 88.0, Some(73.5), Some("Some card (discrete, Vulkan, driver)")));
-    record.rows.retain(|row| row.case.is_gpu());
-    assert!(cpu_to_gpu(&record).is_none(), "there is no CPU to compare with");
+    // the card joins the CPU's panel, the program has one of its own
+    record.rows.push(row("gpu", 10, true, 9.0, None, card));
+    let figure = svg(&record).unwrap();
+    let (own, apart) = ("Hex8, fibres-viscosity<", "Hex8, fibres-viscosity: a software GPU<");
+    assert!(figure.matches(own).count() == 1 && figure.matches(apart).count() == 1, "{figure}");
+    assert!(figure.contains("llvmpipe (software, Vulkan, Mesa), a program on the CPU: no measure of GPUs"), "{figure}");
+    // what was measured at several sizes has a band from the best to the third quartile
+    assert_eq!(figure.matches("<polygon").count(), 2, "{figure}");
+
+    record.rows.push(row("gpu", 10, false, 88.0, Some(73.5), software));
+    record.rows.retain(|row| row.case.is_gpu() && row.adapter.as_deref() == software);
     let figure = split_to_fused(&record).unwrap();
     assert!(figure.contains("GPU, two-pass, whole step") && figure.contains("GPU, two-pass, kernels"), "{figure}");
-    assert!(svg(&record).contains("two-pass, split"), "both are lines of their own");
+    assert!(svg(&record).unwrap().contains("two-pass, split"), "both are lines of their own");
+}
+
+#[test]
+fn no_panel_has_more_than_five_lines() {
+    let mut record = Record { machine: Vec::new(), rows: Vec::new() };
+    for threads in 1..=12 {
+        for cells in [10, 20] {
+            let mut row = row("cpu", cells, true, 40.0 / threads as f64, None, None);
+            row.case.threads = threads;
+            record.rows.push(row);
+        }
+    }
+    let figure = svg(&record).unwrap();
+    let panels: Vec<&str> = figure.split(" of 3)").collect();
+    assert_eq!(panels.len(), 4, "{figure}");
+    assert_eq!(figure.matches("<polyline").count(), 12);
 }

@@ -14,10 +14,61 @@ fn a_scene_is_run_only_when_its_output_is_missing_or_older() {
     assert_eq!(picture[16..24], [0, 0, 1, 64, 0, 0, 0, 240], "the scene says how large");
     assert!(fs::read(place.path("out/block/animation.gif")).unwrap().starts_with(b"GIF89a"));
 
-    place.sinew(&["render", "block.ron", "--no-animation"]).wants(0, &["drawing out/block, which is newer"]);
-    let later = std::time::SystemTime::now() + std::time::Duration::from_secs(10);
-    fs::File::options().write(true).open(place.path("block.ron")).unwrap().set_modified(later).unwrap();
-    place.sinew(&["render", "block.ron", "--no-animation"]).wants(0, &["running block.ron first: it has changed"]);
+    let drawn = "drawing out/block, which is of this scene";
+    place.sinew(&["render", "block.ron", "--no-animation"]).wants(0, &[drawn]);
+    let text = fs::read_to_string(place.path("block.ron")).unwrap();
+    fs::write(place.path("block.ron"), text.replace("size: (320, 240)", "size: (400, 300)")).unwrap();
+    place.sinew(&["render", "block.ron", "--no-animation"]).wants(0, &[drawn]);
+    assert_eq!(fs::read(place.path("out/block/picture.png")).unwrap()[16..24], [0, 0, 1, 144, 0, 0, 1, 44]);
+    fs::write(place.path("block.ron"), text.replace("damping: 5", "damping: 6")).unwrap();
+    let again = "running block.ron first: out/block was written of another, or with other values";
+    place.sinew(&["render", "block.ron", "--no-animation"]).wants(0, &[again]);
+}
+
+#[test]
+fn values_are_put_into_the_picture_of_a_run_and_into_any_of_a_scene() {
+    let place = Place::new();
+    place.done(&["run", "block.ron", "--backend", "cpu"]);
+    let picture = |arguments: &[&str]| {
+        place.done(&[&["render", "out/block", "--no-animation"], arguments].concat());
+        fs::read(place.path("out/block/picture.png")).unwrap()
+    };
+    let before = picture(&[]);
+    let set = |value: &str| picture(&["--set", value]);
+    for value in [
+        "picture.zoom=2",
+        "picture.range=(0, 9)",
+        "picture.ghost=true",
+        "picture.cut=(point: (0.05, 0.05, 0.05), normal: (0, -1, 0))",
+        "picture.opacity=[(body: \"block\", opacity: 0.4)]",
+        "picture.opacity=[(material: \"tissue\", opacity: 0.4)]",
+        "picture.up=(1, 0, 0)",
+        "picture.look_at=(0.1, 0, 0)",
+        "picture.colours=Elements",
+        "picture.edges=false",
+        "picture.shadow=false",
+        "picture.field=Displacement",
+    ] {
+        assert!(set(value) != before, "{value} changes nothing");
+    }
+    assert!(picture(&[]) == before);
+    let refused = |value: &str, wanted: &[&str]| {
+        place.sinew(&["render", "out/block", "--set", value]).wants(2, wanted);
+    };
+    refused("duration=3", &["only its `picture` can be changed"]);
+    refused("picture.zoom=0", &["--set:1:", "`zoom` must be from 0.01 to 1000, found 0"]);
+    refused("picture.range=(2, 1)", &["`range` is empty: from 2 to 1"]);
+    refused("picture.zom=1", &["unknown field `zom`", "did you mean `zoom`?"]);
+    refused(
+        "picture.opacity=[(body: \"blok\", opacity: 2)]",
+        &["there is no body `blok`", "`block`", "between 0 and 1"],
+    );
+    let ran = place.sinew(&["render", "block.ron", "--no-animation", "--set", "picture.zoom=3"]);
+    ran.wants(0, &["drawing out/block, which is of this scene"]);
+    let ran = place.sinew(&["render", "block.ron", "--no-animation", "--set", "duration=0.1"]);
+    ran.wants(0, &["running block.ron first: out/block was written of another"]);
+    assert!(ran.said.contains("t = 0.1000 s"), "{}", ran.said);
+    place.sinew(&["render", "block.ron", "--set", "picture.from=(0, 0, 0)"]).wants(2, &["`from` has no direction"]);
 }
 
 #[test]
@@ -46,4 +97,22 @@ fn what_cannot_be_drawn_is_told() {
     place.sinew(&["render", "out/block", "--size", "10x10"]).wants(2, &["320 by 240"]);
     place.sinew(&["render", "out/block", "--no-animation", "--to", "x.png"]).wants(2, &["cannot be used with"]);
     place.sinew(&["render", "out/block", "--to", "nowhere/a.png"]).wants(3, &["nowhere/a.png"]);
+}
+
+#[test]
+fn modes_swing_with_their_number_and_frequency_and_relative_amplitudes() {
+    let place = Place::new();
+    place.done(&["modes", "block.ron", "--count", "2"]);
+    let mut decoder = gif::DecodeOptions::new();
+    decoder.set_color_output(gif::ColorOutput::Indexed);
+    let file = fs::File::open(place.path("out/block-modes/animation.gif")).unwrap();
+    let mut decoder = decoder.read_info(file).unwrap();
+    let mut frames = 0;
+    while decoder.read_next_frame().unwrap().is_some() {
+        frames += 1;
+    }
+    assert_eq!(frames, 2 * 16, "two modes, a period each");
+    // what colours is a plain number from 0 to 1: the shape's own length means nothing
+    let said = place.done(&["render", "out/block-modes", "--no-animation", "--field", "relative_amplitude"]);
+    assert!(said.contains("relative_amplitude"), "{said}");
 }

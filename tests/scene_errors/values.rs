@@ -267,6 +267,21 @@ fn bodies_selections_and_pictures_are_checked() {
 3:56: error: `from` has no direction: its length is 0 | its length does not matter, but it must point somewhere: (0, 0, 1)",
         ),
         (
+            "duration: 0.5,",
+            "duration: 0.5, picture: (up: (0, 0, 0), zoom: -1, range: (2, 1), cut: (point: (0, 0, 0), normal: (0, 0, 0))),",
+            r"3:34: error: `up` has no direction: its length is 0 | its length does not matter, but it must point somewhere: (0, 0, 1)
+3:51: error: `zoom` must be from 0.01 to 1000, found -1
+3:62: error: `range` is empty: from 2 to 1 | the value of the first colour, and a larger one of the last: (0, 0.02), in the field's SI unit
+3:102: error: `normal` has no direction: its length is 0 | its length does not matter, but it must point somewhere: (0, 0, 1)",
+        ),
+        (
+            "duration: 0.5,",
+            r#"duration: 0.5, picture: (opacity: [(body: "cub", opacity: 0.5), (material: "bone", opacity: 1.5)]),"#,
+            r"3:47: error: there is no body `cub` | did you mean `cube`? | allowed: cube
+3:80: error: there is no material `bone` | allowed: tissue
+3:97: error: `opacity` must be between 0 and 1, found 1.5",
+        ),
+        (
             r#"material: "tissue""#,
             r#"material: "tissue", regions: [(on: Elements([]), material: "tissue")]"#,
             r"10:48: error: `Elements` has an empty list: it selects nothing",

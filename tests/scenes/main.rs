@@ -6,6 +6,7 @@ mod bar;
 mod column;
 mod cube;
 mod lens;
+mod lobe;
 mod parameters;
 mod resume;
 mod shipped;

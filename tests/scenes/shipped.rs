@@ -8,8 +8,9 @@ use sinew::systems::Registry;
 use sinew::{BackendChoice, Options, Simulation};
 
 /// The scenes, and what makes each of them short and coarse.
-const SCENES: [(&str, &[&str]); 7] = [
+const SCENES: [(&str, &[&str]); 8] = [
     ("cube_under_gravity", &["bodies.cube.mesh.cells=(5, 5, 5)", "duration=0.3"]),
+    ("retracted_lobe", &["bodies.lobe.mesh.across=8", "duration=0.3"]),
     ("stretched_bar", &["bodies.bar.mesh.cells=(20, 2, 2)", "duration=0.5"]),
     ("training_set", &["bodies.tissue.copies=4", "probes.last.on=Set(\"copy 3\")", "duration=0.02"]),
     ("twisted_column", &["bodies.column.mesh.cells=(4, 4, 16)", "duration=1.2"]),

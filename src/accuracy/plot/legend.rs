@@ -1,7 +1,7 @@
 //! What colours and marks mean.
 
-use super::svg::Svg;
 use super::{FAINT, FRAME, FRONT, INK, LAW, OTHER, Point, is_mesh};
+use crate::plot::svg::Svg;
 
 /// Colours that people with every kind of sight can tell apart (M. Okabe, K. Ito 2008), by element.
 const COLOURS: [(&str, &str); 4] =

@@ -1,21 +1,15 @@
 //! The work-precision plot: error against wall time per simulated second, both logarithmic, as SVG and as PNG.
 
-pub(crate) mod axis;
-mod labels;
 mod legend;
-mod picture;
-pub(crate) mod svg;
-
-pub use labels::{Area, Spot, place};
-pub use picture::{PlotError, png};
 
 use super::advice::{percent, seconds};
 use super::plan::Varied;
 use super::reference::CLEARLY;
 use super::study::{Row, Study};
-use axis::Axis;
+use crate::plot::axis::Axis;
+use crate::plot::svg::Svg;
+use crate::plot::{Area, LETTERS, place, width};
 use legend::{colour, legend};
-use svg::Svg;
 
 /// Width and height (pixels).
 pub const SIZE: (f64, f64) = (1120.0, 700.0);
@@ -150,8 +144,8 @@ fn lines(svg: &mut Svg, study: &Study, points: &[Point<'_>], x: &Axis, y: &Axis,
 /// `None` where the target is outside the plot.
 fn target_words(study: &Study, points: &[Point<'_>], x: &Axis, y: &Axis) -> Option<(String, Area)> {
     let text = format!("target {}", percent(study.target));
-    let (wide, base) = (labels::width(&text), y.at(study.target) - 5.0);
-    let area = |left: f64| [left, base - labels::LETTERS, left + wide, base + 3.0];
+    let (wide, base) = (width(&text), y.at(study.target) - 5.0);
+    let area = |left: f64| [left, base - LETTERS, left + wide, base + 3.0];
     let free = |area: &Area| {
         points.iter().map(|point| (x.at(point.time), y.at(point.error))).all(|(across, down)| {
             across < area[0] - 12.0 || across > area[2] + 12.0 || down < area[1] - 12.0 || down > area[3] + 12.0
@@ -208,11 +202,11 @@ fn marks(svg: &mut Svg, points: &[Point<'_>], x: &Axis, y: &Axis, words: Option<
             _ => LAW,
         };
         if spot.far {
-            let middle = spot.x + 0.5 * labels::width(name);
-            let end = (at(point).0.clamp(spot.x, middle + 0.5 * labels::width(name)), spot.y - 4.0);
+            let middle = spot.x + 0.5 * width(name);
+            let end = (at(point).0.clamp(spot.x, middle + 0.5 * width(name)), spot.y - 4.0);
             svg.line(at(point), end, "#b4bbc4", 0.8, "");
         }
-        svg.label((spot.x, spot.y), name, labels::LETTERS, ink);
+        svg.label((spot.x, spot.y), name, LETTERS, ink);
     }
 }
 

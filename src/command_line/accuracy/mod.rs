@@ -12,6 +12,7 @@ use sinew::accuracy::engine::has_gpu;
 use sinew::accuracy::{Engine, Reference, Refusal, Settings, Study, Verdict, files, plot, study, tables};
 use sinew::backend::gpu::Choice;
 use sinew::output::{Folder, OutputError, replace, summary};
+use sinew::plot::png;
 use sinew::scene::schema::AccuracyReference;
 use sinew::systems::Registry;
 use sinew::{SceneFile, Simulation};
@@ -134,7 +135,7 @@ fn command_line(arguments: &AccuracyArguments) -> String {
 
 fn write(study: &Study, folder: &mut Folder, file: &SceneFile, title: &str, command: &str) -> Outcome {
     let drawing = plot::svg(study, title);
-    let picture = plot::png(&drawing, 2.0).map_err(Failure::Plot)?;
+    let picture = png(&drawing, 2.0).map_err(Failure::Plot)?;
     let mut files: Vec<(&str, Vec<u8>)> = vec![
         ("accuracy.csv", tables::csv(study).into_bytes()),
         ("accuracy.md", tables::markdown(study, title, command).into_bytes()),

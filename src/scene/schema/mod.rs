@@ -5,6 +5,7 @@ mod action;
 mod body;
 mod material;
 mod output;
+mod picture;
 mod scene;
 mod selection;
 
@@ -17,18 +18,18 @@ pub use material::{
     OwnLaw, Prony, PronyTerm, ViscousIntegrator,
 };
 pub use output::{Output, OutputField};
-pub use scene::{
-    Analysis, EnergyGuard, Field, Guard, Guards, InitialState, Integration, Picture, Scene, StepBound, WhenUnstable,
-};
+pub use picture::{Colours, Cut, Field, Opacity, Picture};
+pub use scene::{Analysis, EnergyGuard, Guard, Guards, InitialState, Integration, Scene, StepBound, WhenUnstable};
 pub use selection::{Probe, Quantity, Select};
 
 /// The texts of these files: what a field means is told in the words it is documented with.
-pub const TEXT: [&str; 7] = [
+pub const TEXT: [&str; 8] = [
     include_str!("scene.rs"),
     include_str!("body.rs"),
     include_str!("material.rs"),
     include_str!("action.rs"),
     include_str!("selection.rs"),
     include_str!("output.rs"),
+    include_str!("picture.rs"),
     include_str!("accuracy.rs"),
 ];

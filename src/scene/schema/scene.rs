@@ -1,7 +1,6 @@
-//! The whole scene, its time step, its outputs, its picture.
+//! The whole scene, its time step, its guards.
 
-use super::{Accuracy, Body, Constraint, Load, Material, Output, Probe, Removal};
-use glam::DVec3;
+use super::{Accuracy, Body, Constraint, Load, Material, Output, Picture, Probe, Removal};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -238,39 +237,6 @@ impl Default for EnergyGuard {
     fn default() -> Self {
         Self { warn: 0.01, stop: 0.05 }
     }
-}
-
-/// How a scene is drawn.
-#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
-#[serde(deny_unknown_fields, default)]
-pub struct Picture {
-    /// The field that gives the colour.
-    pub field: Field,
-    /// Where the eye stands, seen from the middle of the scene.
-    pub from: DVec3,
-    /// Width and height (pixels).
-    pub size: (u32, u32),
-}
-
-impl Default for Picture {
-    fn default() -> Self {
-        Self { field: Field::Displacement, from: DVec3::new(1.0, -2.0, 0.8), size: (960, 720) }
-    }
-}
-
-/// A field to colour by.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
-pub enum Field {
-    /// Length of the displacement (m).
-    Displacement,
-    /// Length of the velocity (m/s).
-    Speed,
-    /// von Mises stress (Pa).
-    VonMises,
-    /// Pressure, the negative mean stress (Pa).
-    Pressure,
-    /// Volume ratio J.
-    VolumeRatio,
 }
 
 impl Scene {

@@ -1,11 +1,11 @@
-//! Bodies and their meshes, and the picture.
+//! Bodies and their meshes.
 
 use super::{Judge, scene, select};
 use crate::mesh::generators::cells_around;
 use crate::scene::beside::Outside;
-use crate::scene::limits::{MOST_COPIES, MOST_REFINEMENT, PICTURE};
+use crate::scene::limits::{MOST_COPIES, MOST_REFINEMENT};
 use crate::scene::load::SceneFile;
-use crate::scene::schema::{AccuracyReference, MeshSource, Picture, Start};
+use crate::scene::schema::{AccuracyReference, MeshSource, Start};
 use crate::scene::suggest::{choice, list};
 use crate::scene::syntax::Path;
 
@@ -45,7 +45,6 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
             select::validate(judge, &path.name("regions").index(i).name("on"), &region.on);
         }
     }
-    picture(judge, &file.scene.picture);
     accuracy(file, judge);
 }
 
@@ -209,16 +208,4 @@ fn mesh_file(file: &SceneFile, judge: &mut Judge, path: &Path, name: &str) {
 pub(super) fn tell_outside(judge: &mut Judge, path: &Path, outside: &Outside) {
     let message = format!("`{}` lies outside the scene's folder", outside.name);
     judge.out.error_at(path, message).note(Outside::HOW);
-}
-
-fn picture(judge: &mut Judge, picture: &Picture) {
-    let path = scene("picture");
-    for (i, pixels) in [picture.size.0, picture.size.1].into_iter().enumerate() {
-        let (allowed, what) = (&PICTURE[i], ["wide", "high"][i]);
-        if !allowed.contains(&pixels) {
-            let allowed = format!("from {} to {} pixels {what}", allowed.start(), allowed.end());
-            judge.must(&path.name("size").index(i), &allowed, pixels);
-        }
-    }
-    judge.has_direction(&path.name("from"), picture.from);
 }

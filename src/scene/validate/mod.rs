@@ -9,6 +9,7 @@ mod material;
 mod names;
 mod numbers;
 mod output;
+mod picture;
 mod select;
 mod time;
 
@@ -33,7 +34,13 @@ pub fn validate(file: &SceneFile, diagnostics: &mut Diagnostics) -> bool {
     time::validate(&file.scene, &mut judge);
     analysis::validate(&file.scene, &mut judge);
     output::validate(&file.scene, &mut judge);
+    picture::validate(&file.scene, &mut judge);
     true
+}
+
+/// Adds what is wrong with how a scene is drawn, and nothing else: of a scene that has been run already.
+pub fn validate_picture(file: &SceneFile, diagnostics: &mut Diagnostics) {
+    picture::validate(&file.scene, &mut Judge { out: diagnostics });
 }
 
 /// Notes mistakes of the common kinds.

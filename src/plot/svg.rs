@@ -11,13 +11,20 @@ pub struct Svg {
 const FONTS: &str = "Ubuntu, 'Segoe UI', 'Helvetica Neue', Arial, sans-serif";
 
 impl Svg {
-    /// An empty page of a width and height (pixels).
+    /// An empty white page of a width and height (pixels).
     pub fn new((width, height): (f64, f64)) -> Self {
+        let mut page = Self::clear((width, height));
+        let _ = writeln!(page.text, "<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>");
+        page
+    }
+
+    /// An empty page that can be seen through.
+    pub fn clear((width, height): (f64, f64)) -> Self {
         let mut text = String::new();
-        let _ = write!(
+        let _ = writeln!(
             text,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
-             font-family=\"{FONTS}\">\n<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>\n"
+             font-family=\"{FONTS}\">"
         );
         Self { text }
     }
@@ -108,6 +115,26 @@ impl Svg {
         );
     }
 
+    /// A line of strong letters: light ones would be lost on a picture.
+    pub fn strong(&mut self, (x, y): (f64, f64), text: &str, size: f64, colour: &str, anchor: &str) {
+        let (text, stroke) = (escaped(text), 0.035 * size);
+        let _ = writeln!(
+            self.text,
+            "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{size:.1}\" fill=\"{colour}\" stroke=\"{colour}\" \
+             stroke-width=\"{stroke:.2}\" text-anchor=\"{anchor}\">{text}</text>"
+        );
+    }
+
+    /// A filled outline through points, nearly clear or not.
+    pub fn band(&mut self, points: &[(f64, f64)], colour: &str, opacity: f64) {
+        if points.len() < 3 {
+            return;
+        }
+        let points: Vec<String> = points.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
+        let points = points.join(" ");
+        let _ = writeln!(self.text, "<polygon points=\"{points}\" fill=\"{colour}\" fill-opacity=\"{opacity}\"/>");
+    }
+
     /// A line of text with a white edge, so that it can be read on lines.
     pub fn label(&mut self, (x, y): (f64, f64), text: &str, size: f64, colour: &str) {
         let text = escaped(text);
@@ -129,6 +156,8 @@ impl Svg {
     }
 }
 
+/// Text as XML takes it, which knows no control characters.
 fn escaped(text: &str) -> String {
+    let text: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

@@ -1,9 +1,12 @@
 //! Pictures of a series that the crate's own writers made. They stay in the target folder's `tmp/render`, to be looked at.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod words;
+
 use glam::{DQuat, DVec3, Vec3};
 use sinew::output::{Array, Folder, Frame, Series, Values};
-use sinew::render::{Colouring, Fit, Options, Picture, RenderError, Scale, draw, paint};
+use sinew::render::{Colouring, Finish, Fit, Layer, Lines, Options, Picture, RenderError, Scale, View, draw, paint};
+use sinew::scene::schema;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
@@ -106,8 +109,7 @@ fn example(name: &str, frames: usize) -> PathBuf {
 }
 
 fn options(out: PathBuf) -> Options {
-    let (field, from) = ("von_mises".to_string(), Vec3::new(1.0, -2.0, 0.8));
-    Options { field, from, size: (960, 720), at: None, animate: false, out, range: None, edges: true }
+    Options { field: Some("von_mises".into()), ..Options::new(schema::Picture::default(), out) }
 }
 
 /// Width and rows of RGB bytes.
@@ -140,14 +142,16 @@ fn a_series_becomes_a_picture() {
 fn other_fields_sizes_and_directions_can_be_drawn() {
     let folder = example("others", 3);
     for (field, size, from, edges) in [
-        ("displacement", (1440, 1080), Vec3::new(1.0, -2.0, 0.8), true),
-        ("pressure", (960, 720), Vec3::new(-1.0, -1.5, 1.2), true),
-        ("displacement.z", (320, 240), Vec3::NEG_Y, false),
-        ("stress.xy", (640, 640), Vec3::Z, true),
-        ("alive", (400, 900), Vec3::X, true),
+        ("displacement", (1440, 1080), DVec3::new(1.0, -2.0, 0.8), true),
+        ("pressure", (960, 720), DVec3::new(-1.0, -1.5, 1.2), true),
+        ("displacement.z", (320, 240), DVec3::NEG_Y, false),
+        ("stress.xy", (640, 640), DVec3::Z, true),
+        ("alive", (400, 900), DVec3::X, true),
     ] {
         let out = folder.join(format!("{field}.png"));
-        draw(&folder, &Options { field: field.into(), size, from, edges, ..options(out.clone()) }).unwrap();
+        let picture = schema::Picture { size, from, edges, ..schema::Picture::default() };
+        let field = Some(field.to_string());
+        draw(&folder, &Options { picture, field, ..options(out.clone()) }).unwrap();
         assert_eq!(read_png(&out).0, size.0 as usize);
     }
 }
@@ -155,7 +159,8 @@ fn other_fields_sizes_and_directions_can_be_drawn() {
 #[test]
 fn an_animation_has_all_frames_and_loops() {
     let folder = example("animation", 21);
-    let small = Options { animate: true, size: (480, 360), ..options(folder.join("all.gif")) };
+    let picture = schema::Picture { size: (480, 360), ..schema::Picture::default() };
+    let small = Options { animate: true, picture, ..options(folder.join("all.gif")) };
     assert_eq!(draw(&folder, &small).unwrap().frames, 21);
     let first = fs::read(&small.out).unwrap();
     draw(&folder, &small).unwrap();
@@ -190,14 +195,30 @@ fn square(y: f32) -> [Vec3; 4] {
 
 /// Squares seen from -y, each with one value all over.
 fn squares(places: &[f32], values: &[f32], scale: Scale, edges: bool) -> sinew::render::Image {
-    let vertices: Vec<Vec3> = places.iter().flat_map(|y| square(*y)).collect();
-    let faces: Vec<[u32; 4]> =
-        (0..places.len() as u32).map(|row| [0, 1, 2, 3].map(|corner| 4 * row + corner)).collect();
-    let (vertices, faces, values) = (&*vertices, &*faces, Colouring::Faces(values));
-    let picture = Picture { vertices, faces, values, scale, quantity: "value", unit: "", caption: "", edges };
-    let mut fit = Fit::new(Vec3::NEG_Y, LEFT_TOP, RIGHT_BOTTOM);
+    let lines = if edges { Lines::All } else { Lines::None };
+    let finish = Finish::Plain;
+    painted(&places.iter().zip(values).map(|(y, value)| (*y, *value, finish)).collect::<Vec<_>>(), scale, lines)
+}
+
+/// Squares seen from -y: where they are along y, their value and what they are made of.
+fn painted(squares: &[(f32, f32, Finish)], scale: Scale, lines: Lines<'_>) -> sinew::render::Image {
+    let corners: Vec<[Vec3; 4]> = squares.iter().map(|(y, ..)| square(*y)).collect();
+    let values: Vec<[f32; 1]> = squares.iter().map(|(_, value, _)| [*value]).collect();
+    let layers = (0..squares.len()).map(|row| Layer {
+        vertices: &corners[row],
+        faces: &[[0, 1, 2, 3]],
+        values: Colouring::Faces(&values[row]),
+        finish: squares[row].2,
+        lines,
+        flat: None,
+        cut: true,
+    });
+    let (layers, keys) = (layers.collect(), &[]);
+    let (plane, ground, panel) = (None, None, false);
+    let picture = Picture { layers, scale, quantity: "value", unit: "", caption: "", keys, plane, ground, panel };
+    let mut fit = Fit::new(&View::upright(Vec3::NEG_Y), LEFT_TOP, RIGHT_BOTTOM);
     square(0.0).into_iter().for_each(|vertex| fit.see(vertex));
-    paint(&picture, &fit.camera().unwrap(), (400, 400))
+    paint(&picture, &fit.camera().unwrap(), (400, 400)).unwrap()
 }
 
 const UNIT: Scale = Scale { range: (0.0, 1.0), centre: None };
@@ -231,6 +252,35 @@ fn element_edges_are_drawn_when_asked_for() {
     // the outline darkens these pixels in both, the edge darkens them once more
     let differ = (102..298).filter(|&x| (100..104).any(|y| with.at(x, y)[1] + 5 < without.at(x, y)[1])).count();
     assert!(differ > 190, "{differ}");
+}
+
+#[test]
+fn what_is_seen_through_blends_by_its_opacity() {
+    // light mixes linearly: what a screen shows of it does not
+    let light = |pixel: [u8; 3]| pixel.map(|c| (f64::from(c) / 255.0).powf(2.2));
+    let seen = |squares: &[(f32, f32, Finish)]| light(painted(squares, UNIT, Lines::None).at(200, 200));
+    let (near, far) = (seen(&[(-0.1, 0.2, Finish::Plain)]), seen(&[(0.1, 0.9, Finish::Plain)]));
+    for opacity in [0.25, 0.6] {
+        for order in [[0, 1], [1, 0]] {
+            let squares = [(-0.1, 0.2, Finish::Sheet(opacity)), (0.1, 0.9, Finish::Plain)];
+            let both = seen(&order.map(|row: usize| squares[row]));
+            for channel in 0..3 {
+                let blend = far[channel] + (near[channel] - far[channel]) * f64::from(opacity);
+                assert!((both[channel] - blend).abs() < 0.02, "{opacity}: {both:?}, {near:?} before {far:?}");
+            }
+        }
+    }
+    // sheets are put in order of their distance, whatever order they come in
+    let sheets = [(-0.2, 0.0, Finish::Sheet(0.5)), (0.0, 1.0, Finish::Sheet(0.5)), (0.2, 0.5, Finish::Sheet(0.5))];
+    let once = seen(&sheets);
+    for order in [[2, 0, 1], [1, 2, 0]] {
+        assert_eq!(seen(&order.map(|row: usize| sheets[row])), once);
+    }
+    // and what is solid hides them
+    assert_eq!(
+        seen(&[(0.1, 0.2, Finish::Sheet(0.5)), (-0.1, 0.9, Finish::Plain)]),
+        seen(&[(-0.1, 0.9, Finish::Plain)])
+    );
 }
 
 #[test]
@@ -271,14 +321,14 @@ fn a_run_that_broke_can_still_be_drawn() {
         let (points, tets, hexes) = (&bar.points, &bar.tets, &bar.hexes);
         series.write(&Frame { time, points, tets, hexes, point_arrays, cell_arrays: vec![] }).unwrap();
         let out = folder.join(format!("{time}.png"));
-        let drawn = draw(&folder, &Options { field: "displacement".into(), ..options(out) }).unwrap();
+        let drawn = draw(&folder, &Options { field: Some("displacement".into()), ..options(out) }).unwrap();
         assert!(drawn.range.1 < 1.0, "{:?}", drawn.range);
     }
     let bodies = fs::read_to_string(folder.join("fields.pvd")).unwrap();
     let only_broken: String =
         bodies.lines().filter(|line| !line.contains("00.vtu") && !line.contains("01.vtu")).collect();
     fs::write(folder.join("fields.pvd"), only_broken).unwrap();
-    let refused = draw(&folder, &Options { field: "displacement".into(), ..options(folder.join("no.png")) });
+    let refused = draw(&folder, &Options { field: Some("displacement".into()), ..options(folder.join("no.png")) });
     assert!(matches!(refused, Err(RenderError::Nothing { .. })), "{refused:?}");
 }
 
@@ -287,7 +337,7 @@ fn what_cannot_be_drawn_is_said() {
     let folder = example("wrong", 2);
     let good = options(folder.join("none.png"));
     let text = |options: &Options| draw(&folder, options).unwrap_err().to_string();
-    let said = text(&Options { field: "strain".into(), ..good.clone() });
+    let said = text(&Options { field: Some("strain".into()), ..good.clone() });
     assert!(
         said.starts_with("no field \"strain\" in ") && said.contains("; there are: displacement, displacement.x,"),
         "{said}"
@@ -295,10 +345,24 @@ fn what_cannot_be_drawn_is_said() {
     assert!(
         said.ends_with("von_mises, pressure, stress.xx, stress.yy, stress.zz, stress.xy, stress.yz, stress.xz, alive")
     );
-    assert!(text(&Options { field: "stress".into(), ..good.clone() }).starts_with("no field \"stress\""));
-    assert!(text(&Options { from: Vec3::ZERO, ..good.clone() }).contains("which is no direction"));
-    assert!(text(&Options { size: (960, 4), ..good.clone() }).contains("960 by 4 pixels; allowed are 320 by 240 to"));
-    assert!(text(&Options { range: Some((1.0, 1.0)), ..good.clone() }).contains("span 1 to 1"));
+    assert!(text(&Options { field: Some("stress".into()), ..good.clone() }).starts_with("no field \"stress\""));
+    let how = schema::Picture::default;
+    let told = |picture: schema::Picture| text(&Options { picture, ..good.clone() });
+    assert!(
+        told(schema::Picture { from: DVec3::ZERO, ..how() }).contains("`from` is [0, 0, 0], which is no direction")
+    );
+    assert!(told(schema::Picture { up: DVec3::NAN, ..how() }).contains("`up`"));
+    assert!(told(schema::Picture { size: (960, 4), ..how() }).contains("960 by 4 pixels; allowed are 320 by 240 to"));
+    assert!(told(schema::Picture { range: Some((1.0, 1.0)), ..how() }).contains("`range` is from 1 to 1"));
+    assert!(told(schema::Picture { range: Some((0.0, f64::NAN)), ..how() }).contains("`range`"));
+    assert!(told(schema::Picture { zoom: f64::NAN, ..how() }).contains("`zoom` is NaN; allowed are 0.01 to 1000"));
+    assert!(told(schema::Picture { look_at: Some(DVec3::INFINITY), ..how() }).contains("`look_at`"));
+    let cut = |normal| Some(schema::Cut { point: DVec3::ZERO, normal });
+    assert!(told(schema::Picture { cut: cut(DVec3::ZERO), ..how() }).contains("`cut.normal`"));
+    let opacity =
+        |opacity, body: Option<&str>| vec![schema::Opacity { body: body.map(String::from), material: None, opacity }];
+    assert!(told(schema::Picture { opacity: opacity(1.5, None), ..how() }).contains("not between 0 and 1"));
+    assert!(told(schema::Picture { opacity: opacity(0.5, Some("skin")), ..how() }).contains("summary.json"));
     assert!(matches!(draw(&folder.join("nowhere"), &good), Err(RenderError::NoSeries { .. })));
     let frame = folder.join("fields_000001.vtu");
     let whole = fs::read(&frame).unwrap();
@@ -306,7 +370,8 @@ fn what_cannot_be_drawn_is_said() {
     for cut in [0, 10, 900, 2000, whole.len() / 2, whole.len() - 60] {
         fs::write(&frame, &whole[..cut]).unwrap();
         assert!(
-            draw(&folder, &Options { size: (320, 240), ..good.clone() }).is_err() || cut > whole.len() - 100,
+            draw(&folder, &Options { picture: schema::Picture { size: (320, 240), ..how() }, ..good.clone() }).is_err()
+                || cut > whole.len() - 100,
             "{cut}"
         );
     }
@@ -314,7 +379,7 @@ fn what_cannot_be_drawn_is_said() {
         let mut damaged = whole.clone();
         damaged[at] ^= 0x5a;
         fs::write(&frame, &damaged).unwrap();
-        let _ = draw(&folder, &Options { size: (320, 240), ..good.clone() });
+        let _ = draw(&folder, &Options { picture: schema::Picture { size: (320, 240), ..how() }, ..good.clone() });
     }
     assert!(draw(&folder, &Options { out: folder.join("no/such/folder.png"), ..good }).is_err());
 }
