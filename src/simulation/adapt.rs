@@ -18,8 +18,10 @@ use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::error::{Criterion, Error, Instability};
 
-/// Larger by less is not worth a change.
-const WORTH: f64 = 1.25;
+/// Larger by less is not worth a change: when the highest frequency has been found; and by bounds, which come and go.
+const WORTH: (f64, f64) = (1.25, 2.0);
+/// Steps become at most so many times longer at once: the balance of energy is that of steps of like length.
+const LONGER: f64 = 2.0;
 /// Products by which the highest frequency is found anew: the first time, and from a shape that is known.
 const PRODUCTS: (usize, usize) = (20, 8);
 /// ω² may be so many times what they show.
@@ -42,7 +44,8 @@ impl Simulation {
         }
         let gives_up =
             |follower: &Follower, seen: &Seen| follower.wanted(step_of(seen.square), seen) < LEAST * follower.first;
-        if follower.is_finding_worth(seen, &clock) || gives_up(follower, seen) {
+        let finds = follower.is_finding_worth(seen, &clock) || gives_up(follower, seen);
+        if finds {
             self.estimate(follower, seen)?;
         }
         follower.found.seen.get_or_insert(*seen);
@@ -51,9 +54,10 @@ impl Simulation {
         if gives_up(follower, seen) {
             return Err(self.too_small(follower, stable));
         }
-        let wanted = stable.min(follower.seen_to_come(stable, seen, &clock));
-        let smaller = clock.time_step > follower.most() * limit || clock.time_step > WORTH * wanted;
-        let change = smaller || wanted > WORTH * clock.time_step;
+        let seen_to_come = follower.seen_to_come(stable, seen, &clock);
+        let wanted = stable.min(seen_to_come).min(LONGER * clock.time_step);
+        let smaller = clock.time_step > follower.most() * limit || clock.time_step > WORTH.0 * wanted;
+        let change = smaller || wanted >= if finds { WORTH.0 } else { WORTH.1 } * clock.time_step;
         let taken = if change { wanted } else { clock.time_step };
         follower.found.losing = (1.0 - taken / follower.hoped_for(seen, &clock)).max(0.0);
         if !change {
@@ -120,10 +124,12 @@ impl Simulation {
                 1.0 / LEAST,
                 follower.first
             ),
-            cause:
-                "tissue that is squeezed flat or stiffens without end (remove such elements by VolumeRatioBelow, or \
-                    when_unstable: Remove)"
+            cause: match self.world.resource::<Signals>().have_jumped(self.time()) {
+                true => "a prescribed motion that jumps (use a ramp: `curve: Smooth(end: ...)` or `Ramp(end: ...)`)".into(),
+                false => "tissue that is squeezed flat or stiffens without end (remove such elements by VolumeRatioBelow, or \
+                          when_unstable: Remove)"
                     .into(),
+            },
             good_until: self.time(),
             criterion: Criterion {
                 value: Some(wanted),

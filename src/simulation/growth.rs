@@ -15,7 +15,7 @@
 
 use crate::backend::cpu::{BlockLaw, sizes, with_identity};
 use crate::components::FamilyDirection;
-use crate::materials::{Elastic, ExponentialFibre};
+use crate::materials::{Elastic, ElasticLaw, ExponentialFibre};
 use crate::math::Mat3;
 
 /// Stretches that laws are tried at: each so many times the one before.
@@ -36,6 +36,8 @@ pub(super) struct Growth {
     law: BlockLaw<f64>,
     /// What [`tangents`] gives at rest (Pa).
     rest: [f64; 4],
+    /// Whether the law ends at J = 0: see [`StrainColumns`](crate::backend::cpu::StrainColumns).
+    pub ends: bool,
     /// How many of the stretches it was tried at; what was not is not needed yet.
     tried: usize,
     /// By size, of an element alone.
@@ -55,7 +57,9 @@ impl Growth {
         let varying = law.varying_families();
         let mut law = law.clone();
         let families = std::mem::take(&mut law.exponential);
-        Self { law, rest, tried: 0, own: Table::new(), waves: Table::new(), families, varying }
+        let alone = law.fibres.is_none() && families.is_empty() && law.prony.is_empty();
+        let ends = !(alone && matches!(law.elastic, ElasticLaw::Linear(_) | ElasticLaw::StableNeoHookean(_)));
+        Self { law, rest, ends, tried: 0, own: Table::new(), waves: Table::new(), families, varying }
     }
 
     /// Tries the law at all stretches up to a size and a squeeze (see [`Strain`](crate::backend::cpu::Strain)): before
@@ -90,7 +94,7 @@ impl Growth {
         let ratio = |i: usize| if self.rest[i] > 0.0 { found[i] / self.rest[i] } else { 1.0 };
         let mut gradient = Mat3::zero(0.0);
         (0..3).for_each(|i| gradient.0[i][i] = stretches[i] - 1.0);
-        let [first, inverse, _] = sizes(&with_identity(&gradient));
+        let [first, inverse, _] = sizes(&with_identity(&gradient), self.ends);
         // max forgets what is no number
         let own = (0..3).map(ratio).fold(0.0, |most: f64, ratio| if ratio.is_nan() { ratio } else { most.max(ratio) });
         [first.max(inverse), own, ratio(3)]
@@ -259,7 +263,7 @@ fn largest_eigenvalue(a: &[[f64; 9]; 9]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::materials::{ElasticLaw, Linear, NeoHookean};
+    use crate::materials::{Linear, NeoHookean};
 
     fn law(elastic: ElasticLaw<f64>) -> BlockLaw<f64> {
         BlockLaw { elastic, fibres: None, exponential: vec![], prony: vec![], volumetric: vec![], reproject: false }

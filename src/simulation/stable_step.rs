@@ -167,8 +167,12 @@ pub(super) fn choose(
 /// Why `bound: Auto` stays with what the elements allow: what needs the room between that and the true limit.
 fn reason_to_stay(scene: &Scene) -> Option<&'static str> {
     let removes = scene.materials.values().any(|material| material.inversion() == Inversion::Remove);
-    let jumps =
-        |constraint: &Constraint| matches!(constraint, Constraint::Prescribed { curve: Curve::Step { .. }, .. });
+    let jumps = |constraint: &Constraint| match constraint {
+        Constraint::Prescribed { curve: Curve::Step { .. }, displacement, gradient, rotation, .. } => {
+            gradient.iter().chain([displacement, rotation]).any(|moved| *moved != DVec3::ZERO)
+        }
+        _ => false,
+    };
     match scene.when_unstable() {
         WhenUnstable::Adapt if scene.constraints.iter().any(jumps) => {
             Some("nodes are moved by a jump, whose work is told only in steps of one length")

@@ -250,7 +250,8 @@ impl Watched {
         macro_rules! run {
             ($T:ty) => {{
                 let (displacement, step, rest_shape) = (u.slice(), d.slice(), shape.slice());
-                let columns = StrainColumns::<$T> { displacement, step, connectivity, rest_shape };
+                let ends = self.growth.ends;
+                let columns = StrainColumns::<$T> { displacement, step, connectivity, rest_shape, ends };
                 with_element_of!(block, E => strains::<E, $T>(cpu, &columns, groups, more, visit))
             }};
         }

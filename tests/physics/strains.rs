@@ -37,6 +37,7 @@ fn all(simulation: &Simulation, body: Entity) -> Vec<Strain> {
             step: world.get::<DisplacementStep>(body).unwrap().slice(),
             connectivity: world.get::<Connectivity>(entity).unwrap(),
             rest_shape: world.get::<RestShape>(entity).unwrap().slice(),
+            ends: true,
         };
         let groups = 0..block.count.div_ceil(LANES);
         let stretch = |_: usize, c: [f64; 6]| c[0];

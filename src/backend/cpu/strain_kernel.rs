@@ -18,6 +18,9 @@ pub struct StrainColumns<'a, T> {
     pub connectivity: &'a [u32],
     /// Rest shapes.
     pub rest_shape: &'a [T],
+    /// Whether the law ends at J = 0, so that it pushes without bound where C is nearly singular: else what is said of C⁻¹ is of
+    /// cof C = J² C⁻¹.
+    pub ends: bool,
 }
 
 /// An element's deformation; the largest of its integration points.
@@ -77,7 +80,8 @@ impl<E: Element, T: SimdScalar> WithSimd for Groups<'_, E, T> {
             let mut at = 0;
             while at < LANES {
                 let rows = more.map(|more| (more, group * LANES + at, &mut largest[at..]));
-                let [size, squeeze, speed, astray] = register::<E, T, S>(simd, [&u, &d], shape, at, rows);
+                let [size, squeeze, speed, astray] =
+                    register::<E, T, S>(simd, [&u, &d], (shape, columns.ends), at, rows);
                 T::store(size, &mut sizes[at..]);
                 T::store(squeeze, &mut squeezes[at..]);
                 T::store(speed, &mut speeds[at..]);
@@ -106,7 +110,7 @@ impl<E: Element, T: SimdScalar> WithSimd for Groups<'_, E, T> {
 fn register<E: Element, T: SimdScalar, S: Simd>(
     simd: S,
     [u, d]: [&[[[T; LANES]; 3]; MOST_NODES]; 2],
-    shape: &[T],
+    (shape, ends): (&[T], bool),
     at: usize,
     mut rows: Option<(OfStretch<'_>, usize, &mut [f64])>,
 ) -> [T::Vector<S>; 4] {
@@ -139,7 +143,7 @@ fn register<E: Element, T: SimdScalar, S: Simd>(
                 largest[lane] = largest[lane].max(more(*row + lane, c));
             }
         }
-        let [first, inverse, squeezed] = sizes(&f);
+        let [first, inverse, squeezed] = sizes(&f, ends);
         let relative = change_of_strain(&f, &change.gradient).sqrt() * inverse;
         size = size.max(first.max(inverse));
         squeeze = squeeze.max(squeezed);
@@ -161,9 +165,9 @@ pub(crate) fn with_identity<R: Real>(gradient: &Mat3<R>) -> [[R; 3]; 3] {
 }
 
 /// tr C/3, tr C⁻¹/3 and a bound of the largest eigenvalue of C⁻¹ (see [`Strain::squeeze`]): |F|², and cof F over J, which lose no
-/// digits where C is nearly singular.
+/// digits where C is nearly singular. Of cof C in place of C⁻¹ where a law does not end at J = 0.
 #[inline(always)]
-pub(crate) fn sizes<R: Real>(f: &[[R; 3]; 3]) -> [R; 3] {
+pub(crate) fn sizes<R: Real>(f: &[[R; 3]; 3], ends: bool) -> [R; 3] {
     let third = f[0][0].constant(1.0 / 3.0);
     let zero = f[0][0].constant(0.0);
     let (mut first, mut j) = (zero, zero);
@@ -190,7 +194,8 @@ pub(crate) fn sizes<R: Real>(f: &[[R; 3]; 3]) -> [R; 3] {
         square = along.mul_add(along, square);
         square = (across + across).mul_add(across, square);
     }
-    let per_square = f[0][0].constant(1.0) / (j * j);
+    let one = f[0][0].constant(1.0);
+    let per_square = if ends { one / (j * j) } else { one };
     let deviator = (square * f[0][0].constant(2.0 / 3.0)).sqrt() * per_square;
     [first * third, mean * per_square, mean * per_square + deviator]
 }
@@ -236,7 +241,7 @@ mod tests {
     fn sizes_are_traces_of_c_and_of_its_inverse() {
         // stretches 2, 3 and ¼, turned about z by 90°
         let f = [[0.0, -3.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 0.25]];
-        let [first, inverse, _] = sizes(&f);
+        let [first, inverse, _] = sizes(&f, true);
         assert!((first - (4.0 + 9.0 + 0.0625) / 3.0_f64).abs() < 1e-14);
         assert!((inverse - (0.25 + 1.0 / 9.0 + 16.0) / 3.0_f64).abs() < 1e-14);
         assert_eq!(right_cauchy_green(&f), [4.0, 9.0, 0.0625, 0.0, 0.0, 0.0]);
@@ -244,8 +249,9 @@ mod tests {
 
     #[test]
     fn squeeze_is_the_inverse_square_of_the_stretch_where_one_axis_is_squeezed() {
-        let [.., squeeze] = sizes(&[[0.5, 0.0, 0.0], [0.0, 0.0, -1.25], [0.0, 1.25, 0.0]]);
-        assert!((squeeze - 4.0_f64).abs() < 1e-14);
+        let f = [[0.5, 0.0, 0.0], [0.0, 0.0, -1.25], [0.0, 1.25, 0.0]];
+        let [[.., of_inverse], [.., of_cofactor]] = [sizes(&f, true), sizes(&f, false)];
+        assert!((of_inverse - 4.0_f64).abs() < 1e-14 && (of_cofactor - 1.25_f64.powi(4)).abs() < 1e-14);
     }
 
     #[test]
