@@ -20,7 +20,7 @@ use crate::error::{Criterion, Error, Instability};
 
 /// Larger by less is not worth a change: when the highest frequency has been found; and by bounds, which come and go.
 const WORTH: (f64, f64) = (1.25, 2.0);
-/// Steps become at most so many times longer at once: the balance of energy is that of steps of like length.
+/// Where motion is violent steps become at most so many times longer at once: the balance of energy is that of steps of like length.
 const LONGER: f64 = 2.0;
 /// Products by which the highest frequency is found anew: the first time, and from a shape that is known.
 const PRODUCTS: (usize, usize) = (20, 8);
@@ -39,9 +39,6 @@ impl Simulation {
         let clock = *self.world.resource::<Clock>();
         let found = &mut follower.found;
         found.lost += found.losing * clock.step.saturating_sub(found.looked) as f64;
-        if clock.time_step > follower.most() * step_of(seen.square) {
-            self.sharpen(follower, seen);
-        }
         let gives_up =
             |follower: &Follower, seen: &Seen| follower.wanted(step_of(seen.square), seen) < LEAST * follower.first;
         let finds = follower.is_finding_worth(seen, &clock) || gives_up(follower, seen);
@@ -55,7 +52,8 @@ impl Simulation {
             return Err(self.too_small(follower, stable));
         }
         let seen_to_come = follower.seen_to_come(stable, seen, &clock);
-        let wanted = stable.min(seen_to_come).min(LONGER * clock.time_step);
+        let longest = if follower.found.violent { LONGER * clock.time_step } else { f64::INFINITY };
+        let wanted = stable.min(seen_to_come).min(longest);
         let smaller = clock.time_step > follower.most() * limit || clock.time_step > WORTH.0 * wanted;
         let change = smaller || wanted >= if finds { WORTH.0 } else { WORTH.1 } * clock.time_step;
         let taken = if change { wanted } else { clock.time_step };
@@ -95,14 +93,6 @@ impl Simulation {
         follower.found.take(seen);
         follower.history.sharp_looks += 1;
         Ok(())
-    }
-
-    /// A certain bound that is sharper, from each element by itself: see [`nodal::bound_now`].
-    pub(super) fn sharpen(&mut self, follower: &mut Follower, seen: &mut Seen) {
-        let known = if follower.has_lost(seen) { f64::INFINITY } else { follower.found.known };
-        if let Some(bound) = nodal::bound_now(&mut self.world, &mut follower.watched, known) {
-            seen.square = seen.square.min(bound);
-        }
     }
 
     /// The stable step has gone to nothing.

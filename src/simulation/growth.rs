@@ -59,7 +59,18 @@ impl Growth {
         let families = std::mem::take(&mut law.exponential);
         let alone = law.fibres.is_none() && families.is_empty() && law.prony.is_empty();
         let ends = !(alone && matches!(law.elastic, ElasticLaw::Linear(_) | ElasticLaw::StableNeoHookean(_)));
-        Self { law, rest, ends, tried: 0, own: Table::new(), waves: Table::new(), families, varying }
+        let mut new = Self { law, rest, ends, tried: 0, own: Table::new(), waves: Table::new(), families, varying };
+        // what is pressed flat or through itself is no limit there
+        for stretch in FLAT.into_iter().filter(|_| !ends) {
+            for stretches in [[stretch, 1.0, 1.0], [1.0, stretch, 1.0]] {
+                let [size, own, waves] = new.tried_at(stretches);
+                new.own.points.push((size, own));
+                new.waves.points.push((size, waves));
+            }
+        }
+        new.own.sort();
+        new.waves.sort();
+        new
     }
 
     /// Tries the law at all stretches up to a size and a squeeze (see [`Strain`](crate::backend::cpu::Strain)): before
@@ -71,7 +82,10 @@ impl Growth {
         while self.tried < STRETCHES && ((s * s + 2.0 / s) / 3.0 <= size || s * s <= squeeze) {
             self.tried += 1;
             s = STRETCH_RATIO.powi(self.tried as i32);
+            // those of one direction alone are small by the measure of a law that does not end: they have been tried
+            let count = if self.ends { SAMPLES } else { SAMPLES - ALONE };
             let found = samples(s).map(|stretches| self.tried_at(stretches));
+            let found = &found[..count];
             if found.iter().flatten().any(|number| !number.is_finite()) {
                 // where numbers end there is nothing to try
                 self.tried = STRETCHES;
@@ -167,12 +181,16 @@ fn bucket(size: f64) -> usize {
     ((size.to_bits() >> 46) as usize).saturating_sub((1.0_f64.to_bits() >> 46) as usize)
 }
 
-/// How many of the samples are pulled; the others are squeezed.
+/// How many samples there are of a stretch; the first of them are pulled, the others squeezed, the last in one direction alone.
+const SAMPLES: usize = 9;
 const PULLED: usize = 2;
+const ALONE: usize = 2;
+/// Stretches in one direction alone at which laws that do not end at J = 0 are tried.
+const FLAT: [f64; 9] = [0.8, 0.6, 0.4, 0.2, 0.1, 0.0, -0.2, -0.5, -1.0];
 
 /// Principal stretches that are tried: of constant volume pulled, squeezed and sheared, along the fibres and across, and of
 /// one direction alone.
-fn samples(s: f64) -> [[f64; 3]; 9] {
+fn samples(s: f64) -> [[f64; 3]; SAMPLES] {
     let (r, root) = (1.0 / s, s.sqrt());
     let thin = 1.0 / root;
     [

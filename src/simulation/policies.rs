@@ -22,9 +22,6 @@ impl Simulation {
     /// Does what the scene wants done where the step stays.
     pub(super) fn hold(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<(), Error> {
         let (step, time_step) = (self.step_count(), self.world.resource::<Clock>().time_step);
-        if time_step > follower.most() * step_of(seen.square) {
-            self.sharpen(follower, seen);
-        }
         let pressing = time_step > follower.most() * step_of(seen.square);
         // mass is not added and elements are not removed on the word of the cheap bound
         let watches = follower.policy == WhenUnstable::Watch;

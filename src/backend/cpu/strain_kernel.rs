@@ -19,7 +19,7 @@ pub struct StrainColumns<'a, T> {
     /// Rest shapes.
     pub rest_shape: &'a [T],
     /// Whether the law ends at J = 0, so that it pushes without bound where C is nearly singular: else what is said of C⁻¹ is of
-    /// cof C = J² C⁻¹.
+    /// cof C = J² C⁻¹, and is 1 + (1 − J)² at least.
     pub ends: bool,
 }
 
@@ -165,7 +165,7 @@ pub(crate) fn with_identity<R: Real>(gradient: &Mat3<R>) -> [[R; 3]; 3] {
 }
 
 /// tr C/3, tr C⁻¹/3 and a bound of the largest eigenvalue of C⁻¹ (see [`Strain::squeeze`]): |F|², and cof F over J, which lose no
-/// digits where C is nearly singular. Of cof C in place of C⁻¹ where a law does not end at J = 0.
+/// digits where C is nearly singular. Where a law does not end at J = 0, of cof C in place of C⁻¹, and 1 + (1 − J)² at least.
 #[inline(always)]
 pub(crate) fn sizes<R: Real>(f: &[[R; 3]; 3], ends: bool) -> [R; 3] {
     let third = f[0][0].constant(1.0 / 3.0);
@@ -195,9 +195,9 @@ pub(crate) fn sizes<R: Real>(f: &[[R; 3]; 3], ends: bool) -> [R; 3] {
         square = (across + across).mul_add(across, square);
     }
     let one = f[0][0].constant(1.0);
-    let per_square = if ends { one / (j * j) } else { one };
+    let (per_square, least) = if ends { (one / (j * j), zero) } else { (one, (one - j).mul_add(one - j, one)) };
     let deviator = (square * f[0][0].constant(2.0 / 3.0)).sqrt() * per_square;
-    [first * third, mean * per_square, mean * per_square + deviator]
+    [first * third, (mean * per_square).max(least), (mean * per_square + deviator).max(least)]
 }
 
 /// (AᵀB)_ij.
