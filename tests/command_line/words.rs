@@ -104,7 +104,7 @@ fn tips_can_be_followed() {
     // a run that breaks down late enough leaves a state to go on from, and says how
     let set = [
         "--set",
-        "loads=[NodalForce(on: Set(\"z1\"), force: (0, 0, -9), curve: Ramp(end: 0.2))]",
+        "loads=[NodalForce(on: Set(\"z1\"), force: (0, 0, -30), curve: Ramp(end: 0.2))]",
         "--set",
         "guards.every=4",
     ];

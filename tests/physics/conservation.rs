@@ -119,7 +119,7 @@ fn energy_balances() {
             let mut simulation = run.start(&format!(
                 "(duration: 0.3, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3), elements: {elements}), material: \"m\", {spin})}},
                 materials: {{\"m\": (density: 1000, {effects} neo_hookean: Young(young: 3e3, poisson: 0.45))}},
-                constraints: [{constraints}], loads: [{loads}], output: (energies_every: 0.01), integration: (safety: 0.6))"
+                constraints: [{constraints}], loads: [{loads}], output: (energies_every: 0.01), integration: (bound: Elements, safety: 0.6))"
             ));
             let start = {
                 // ½ m v² of the start, lumped as the engine has it

@@ -37,14 +37,18 @@ fn all(simulation: &Simulation, body: Entity) -> Vec<Strain> {
             step: world.get::<DisplacementStep>(body).unwrap().slice(),
             connectivity: world.get::<Connectivity>(entity).unwrap(),
             rest_shape: world.get::<RestShape>(entity).unwrap().slice(),
+            ends: true,
         };
         let groups = 0..block.count.div_ceil(LANES);
         let stretch = |_: usize, c: [f64; 6]| c[0];
+        let mut found = Vec::new();
+        let mut visit = |some: &[Strain]| found.extend_from_slice(some);
         if block.simple {
-            strains::<E::Simple, T>(world.resource::<Cpu>(), &columns, groups, Some(&stretch))
+            strains::<E::Simple, T>(world.resource::<Cpu>(), &columns, groups, Some(&stretch), &mut visit);
         } else {
-            strains::<E, T>(world.resource::<Cpu>(), &columns, groups, Some(&stretch))
+            strains::<E, T>(world.resource::<Cpu>(), &columns, groups, Some(&stretch), &mut visit);
         }
+        found
     }
     let world = simulation.world();
     let entity = world.get::<Authoring>(body).unwrap().blocks[0];
