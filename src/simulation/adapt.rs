@@ -74,15 +74,15 @@ impl Simulation {
         self.change_step(new, last)
     }
 
-    /// Finds the highest frequency from what was known of it.
-    fn estimate(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<(), Error> {
+    /// Finds the highest frequency from what was known of it; whether there is one.
+    pub(super) fn estimate(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<bool, Error> {
         bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
         let world = &mut self.world;
         let bodies = bodies(world);
         let weights = nodal::weights_now(world, &mut follower.watched, &bodies);
         let products = follower.products();
         let Some((shown, shape)) = largest_near(world, follower.shape.as_deref(), &weights, products) else {
-            return Ok(());
+            return Ok(false);
         };
         for block in &mut follower.watched {
             block.remember(world);
@@ -92,7 +92,7 @@ impl Simulation {
         follower.shape = Some(shape);
         follower.found.take(seen);
         follower.history.sharp_looks += 1;
-        Ok(())
+        Ok(true)
     }
 
     /// The stable step has gone to nothing.

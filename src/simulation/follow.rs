@@ -22,9 +22,8 @@ const LOOKS: (u64, u64) = (16, 256);
 /// Between two looks strains change by so much, at the present speed: close to the limit, and where the step is half of it
 /// or less. The stable step of what is squeezed shrinks twice as fast as it, and a twentieth is left when it counts as close.
 const STRAIN: (f64, f64) = (0.01, 0.25);
-/// No more than that between two looks, however close they come: where the step may be near the true limit, and where it stays with
-/// what the elements alone allow.
-const MOST_STRAIN: (f64, f64) = (0.2, 0.5);
+/// No more than that between two looks, however close they come.
+const MOST_STRAIN: f64 = 0.2;
 /// A change of strain in a step, relative to present lengths, from which on motion counts as violent: the room between what the
 /// elements alone allow and the true limit is then needed, for what a look cannot foresee and for the balance of energy.
 const VIOLENT: f64 = 0.02;
@@ -205,9 +204,8 @@ impl Follower {
         let room = self.most() * step_of(seen.square) / clock.time_step - 1.0;
         let strain = (STRAIN.1 * room).clamp(STRAIN.0, STRAIN.1);
         // what is no number, or inside out, has no speed
-        let most = if self.stays_with_elements() { MOST_STRAIN.1 } else { MOST_STRAIN.0 };
-        let speed = if seen.speed.is_finite() { seen.speed } else { most };
-        let least = ((most / speed) as u64).clamp(1, LOOKS.0);
+        let speed = if seen.speed.is_finite() { seen.speed } else { MOST_STRAIN };
+        let least = ((MOST_STRAIN / speed) as u64).clamp(1, LOOKS.0);
         let calm =
             ((strain / speed) as u64).clamp(least, LOOKS.1).min(step.saturating_sub(self.found.quickened).max(1));
         let until = |time: f64| ((time - clock.time()) / clock.time_step).ceil();

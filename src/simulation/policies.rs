@@ -13,8 +13,8 @@ use crate::scene::schema::WhenUnstable;
 
 /// Elements go together whose ω² is at least this share of the largest.
 const NEARLY: f64 = 0.8;
-/// Who only watches finds the highest frequency so many times, and once more for so many steps.
-const FINDINGS: (u64, u64) = (4, 1000);
+/// Who only watches finds the highest frequency so many times, and once more for so many steps: each takes some tens.
+const FINDINGS: (u64, u64) = (8, 200);
 /// How often mass is added in one step of the run by what counts; then by the elements' own bounds, which are certain.
 const ROUNDS: usize = 4;
 
@@ -26,7 +26,10 @@ impl Simulation {
         // mass is not added and elements are not removed on the word of the cheap bound
         let watches = follower.policy == WhenUnstable::Watch;
         let affordable = follower.history.sharp_looks < FINDINGS.0 + step / FINDINGS.1;
-        let found = pressing && (affordable || !watches) && self.find(follower, seen)?;
+        let found = match watches {
+            true => pressing && affordable && self.estimate(follower, seen)?,
+            false => pressing && self.find(follower, seen)?,
+        };
         follower.found.seen.get_or_insert(*seen);
         match follower.policy {
             WhenUnstable::Watch if time_step > step_of(follower.found.known) => {

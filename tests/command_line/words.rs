@@ -104,7 +104,7 @@ fn tips_can_be_followed() {
     // a run that breaks down late enough leaves a state to go on from, and says how
     let set = [
         "--set",
-        "loads=[NodalForce(on: Set(\"z1\"), force: (0, 0, -30), curve: Ramp(end: 0.2))]",
+        "loads=[Gravity(acceleration: (0, 0, -9000), curve: Step(start: 0.1))]",
         "--set",
         "guards.every=4",
     ];
