@@ -182,7 +182,7 @@ impl Follower {
     /// Goes on from what had been found; false where it does not fit the world.
     pub fn take_up(&mut self, followed: Followed, world: &mut World) -> bool {
         self.watched = if followed.growths.is_empty() { Vec::new() } else { Watched::all(world) };
-        let growths: Option<Vec<Vec<f32>>> = followed.growths.iter().map(|text| numbers_of(text)).collect();
+        let growths: Option<Vec<Vec<f32>>> = followed.growths.iter().map(numbers_of).collect();
         let Some(growths) = growths.filter(|growths| growths.len() == self.watched.len()) else { return false };
         let fits = self.watched.iter_mut().zip(growths).all(|(block, growth)| block.take_known_growth(growth, world));
         let shape = followed.shape.as_deref().map(numbers_of);

@@ -375,11 +375,11 @@ mod tests {
         let eigenvalue = |i: usize| (i % 37) as f64;
         let mut kept = Vec::new();
         let times = |x: &[f64], image: &mut [f64]| (0..500).for_each(|i| image[i] = eigenvalue(i) * x[i]);
-        let found = lanczos(noise(&[1.0; 500]), 12, Some(&mut kept), times, |_, _| true).unwrap();
-        let shares = eigenvector(&found);
+        let found = lanczos(noise(&[1.0; 500]), 12, Some(&mut kept), times, |_, _| true);
+        let (largest, shares) = found.map_or((0.0, Vec::new()), |found| (found.largest, eigenvector(&found)));
         let ritz: Vec<f64> =
             (0..500).map(|i| shares.iter().zip(&kept).map(|(share, basis)| share * basis[i]).sum()).collect();
         let quotient = (0..500).map(|i| eigenvalue(i) * ritz[i] * ritz[i]).sum::<f64>() / dot(&ritz, &ritz);
-        assert!((quotient / found.largest - 1.0).abs() < 1e-6, "{quotient}, not {}", found.largest);
+        assert!((quotient / largest - 1.0).abs() < 1e-6, "{quotient}, not {largest}");
     }
 }

@@ -255,10 +255,11 @@ impl Watched {
                 with_element_of!(block, E => strains::<E, $T>(cpu, &columns, groups, more, visit))
             }};
         }
-        Some(match u.0 {
+        match u.0 {
             Reals::F32(_) => run!(f32),
             Reals::F64(_) => run!(f64),
-        })
+        }
+        Some(())
     }
 
     fn direction(&self, row: usize, from: &FamilyDirection<f64>, fibres: Option<&Reals>) -> [f64; 3] {
