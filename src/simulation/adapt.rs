@@ -19,7 +19,9 @@ use crate::components::*;
 use crate::error::{Criterion, Error, Instability};
 
 /// Larger by less is not worth a change: when the highest frequency has been found; and by bounds, which come and go.
-const WORTH: (f64, f64) = (1.25, 2.0);
+const LARGER: (f64, f64) = (1.05, 2.0);
+/// A step so many times the wanted one is made smaller.
+const SMALLER: f64 = 1.25;
 /// Where motion is violent steps become at most so many times longer at once: the balance of energy is that of steps of like length.
 const LONGER: f64 = 2.0;
 /// Products by which the highest frequency is found anew: the first time, and from a shape that is known.
@@ -54,10 +56,11 @@ impl Simulation {
         let seen_to_come = follower.seen_to_come(stable, seen, &clock);
         let longest = if follower.found.violent { LONGER * clock.time_step } else { f64::INFINITY };
         let wanted = stable.min(seen_to_come).min(longest);
-        let smaller = clock.time_step > follower.most() * limit || clock.time_step > WORTH.0 * wanted;
-        let change = smaller || wanted >= if finds { WORTH.0 } else { WORTH.1 } * clock.time_step;
+        let smaller = clock.time_step > follower.most() * limit || clock.time_step > SMALLER * wanted;
+        let change = smaller || wanted >= if finds { LARGER.0 } else { LARGER.1 } * clock.time_step;
         let taken = if change { wanted } else { clock.time_step };
-        follower.found.losing = (1.0 - taken / follower.hoped_for(seen, &clock)).max(0.0);
+        let hoped_for = follower.hoped_for(seen, &clock);
+        follower.found.losing = if hoped_for < LARGER.0 * taken { 0.0 } else { 1.0 - taken / hoped_for };
         if !change {
             return Ok(());
         }

@@ -284,7 +284,7 @@ impl Simulation {
             send_to_device(&mut self.world, |_, name| name == FictitiousMass::NAME)?;
         }
         // what is no number is the guards' business
-        let sound = seen.speed.is_finite() && seen.alive > 0;
+        let sound = seen.speed.is_finite() && seen.of_elements > 0.0;
         follower.found.violent |= seen.speed >= VIOLENT;
         follower.found.next = step + LOOKS.0;
         if sound {

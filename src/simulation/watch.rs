@@ -3,22 +3,26 @@
 use super::damped_step::{growth_with_damping, is_damped};
 use super::growth::Growth;
 use super::mass_scaling::heavy_mass;
-use crate::assembly::square_frequencies;
+use crate::assembly::{SquaresAtRest, square_frequencies};
 use crate::backend::cpu::{BlockLaw, Cpu, Strain, StrainColumns, strains};
 use crate::components::*;
-use crate::evaluation::{lane_place, rest_volume, with_element_of};
+use crate::evaluation::{lane_place, node_count, rest_volume, with_element_of};
 use crate::math::LANES;
 use crate::observation::shortest_edge;
 use bevy_ecs::prelude::*;
 
 /// Elements looked at in one task: what is found of them stays in the core's cache.
 const ROWS_A_TASK: usize = 512;
+/// Tasks whose elements are looked at one by one together.
+const TASKS_AT_ONCE: usize = 8;
+/// What elements come to is known to this: their ω², and how much stiffer they have become.
+const NEARLY: f64 = 1.1;
 
 /// The elements of a block, and what is known of their frequencies.
 pub(super) struct Watched {
     pub entity: Entity,
     growth: Growth,
-    /// Of each element the bound of ω² at rest (1/s²).
+    /// Of each element the bound of ω² at rest (1/s²); 0 where all its nodes are held: it does not move by itself.
     pub squares: Vec<f64>,
     /// The shortest distance between two nodes of an element at rest (m).
     pub shortest_edge: f64,
@@ -68,14 +72,14 @@ impl Seen {
     }
 }
 
-/// What the elements of a task come to.
-#[derive(Clone, Copy, Default)]
-struct Widest {
-    size: f64,
-    squeeze: f64,
-    more: f64,
-    speed: f64,
-    alive: usize,
+/// Whether a node of an element can move by itself.
+fn moves(world: &World, entity: Entity, row: usize) -> bool {
+    let (Some(block), Some(connectivity)) = (world.get::<Block>(entity), world.get::<Connectivity>(entity)) else {
+        return true;
+    };
+    let (corners, held) = (node_count(block.kind), world.get::<ConstrainedAxes>(block.body));
+    let node = |corner: usize| connectivity[lane_place(row, corners, corner)] as usize;
+    held.is_none_or(|held| (0..corners).any(|corner| held[node(corner)] & 7 != 7))
 }
 
 impl Watched {
@@ -96,14 +100,21 @@ impl Watched {
             watched.weigh(world);
             Some(watched)
         };
-        blocks.iter().filter_map(watched).collect()
+        let all = blocks.iter().filter_map(watched).collect();
+        // from here on bodies may change
+        world.remove_resource::<SquaresAtRest>();
+        all
     }
 
     /// Takes the bounds at rest anew, with the mass that was added by now.
     pub fn weigh(&mut self, world: &World) {
         let squares = square_frequencies(world, self.entity).into_iter().enumerate();
         let heavier = |row: usize| heavy_mass(world, self.entity, row).map_or(1.0, |(_, heavier)| heavier);
-        self.squares = squares.map(|(row, (square, _))| square / heavier(row)).collect();
+        let of_row = |(row, (square, _)): (usize, (f64, f64))| match moves(world, self.entity, row) {
+            true => square / heavier(row),
+            false => 0.0,
+        };
+        self.squares = squares.map(of_row).collect();
         self.sum_up(world);
     }
 
@@ -115,7 +126,8 @@ impl Watched {
         let is_there = |row: &usize| rest_volume(block, *row, shape) > 0.0;
         let count = self.squares.len();
         let of_task = |task: usize| {
-            let rows = (task * ROWS_A_TASK..count.min((task + 1) * ROWS_A_TASK)).filter(is_there);
+            let rows = task * ROWS_A_TASK..count.min((task + 1) * ROWS_A_TASK);
+            let rows = rows.filter(is_there).filter(|&row| self.squares[row] > 0.0);
             rows.fold((0.0_f64, f64::INFINITY), |(most, least), row| {
                 (most.max(self.squares[row]), least.min(f64::from(self.known_growth[row])))
             })
@@ -139,35 +151,73 @@ impl Watched {
         fits
     }
 
-    /// Looks at all elements. What those of a task come to is taken together: the largest of each number, whichever element has it.
+    /// Looks at all elements: first at what those of a task come to were one of them the largest in everything, then at one after the
+    /// other where that comes to most.
     pub fn look(&mut self, world: &World) -> Seen {
         let (cpu, count) = (world.resource::<Cpu>(), self.squares.len());
-        let widest = cpu.map(count.div_ceil(ROWS_A_TASK), |task| {
-            let mut widest = Widest::default();
-            self.strains(world, task, &mut |strains| {
-                for strain in strains {
-                    widest.size = widest.size.max(strain.size);
-                    widest.squeeze = widest.squeeze.max(strain.squeeze);
-                    widest.more = widest.more.max(strain.more);
-                    widest.speed = widest.speed.max(strain.speed);
-                }
-                widest.alive += strains.len();
-            });
-            widest
-        });
-        let most = |of: fn(&Widest) -> f64| widest.iter().map(of).fold(1.0, f64::max);
+        let nothing = Strain { row: 0, size: 1.0, squeeze: 1.0, speed: 0.0, more: 0.0 };
+        let widest = |task: usize| self.strains(world, task, None).unwrap_or((nothing, 0));
+        let widest = cpu.map(count.div_ceil(ROWS_A_TASK), widest);
+        let most = |of: fn(&Strain) -> f64| widest.iter().map(|(most, _)| of(most)).fold(1.0, f64::max);
         self.growth.reach(most(|task| task.size), most(|task| task.squeeze));
-        if widest.iter().map(|task| task.alive).sum::<usize>() != self.counted {
+        if widest.iter().map(|(_, alive)| alive).sum::<usize>() != self.counted {
             self.sum_up(world);
         }
-        let tasks = widest.iter().zip(&self.tasks).filter(|(widest, _)| widest.alive > 0);
-        let seen = tasks.map(|(widest, (at_rest, least_known))| {
-            let [own, of_all] = self.growth_of(widest.size, widest.squeeze, widest.more);
-            let (own, ratio) = ((at_rest * own).min(f64::MAX), (of_all / least_known).max(1.0));
-            let (speed, alive) = (widest.speed, widest.alive);
-            Seen { square: f64::INFINITY, of_elements: own, at_rest: *at_rest, ratio, speed, alive }
-        });
-        seen.fold(Seen::NOTHING, Seen::and)
+        let tasks = widest.iter().zip(&self.tasks).enumerate().filter(|(_, ((_, alive), _))| *alive > 0);
+        let tasks: Vec<(usize, Seen)> = tasks
+            .map(|(task, (&(widest, alive), &(at_rest, least_known)))| {
+                let [own, of_all] = self.growth_of(widest.size, widest.squeeze, widest.more);
+                let (of_elements, ratio) = ((at_rest * own).min(f64::MAX), (of_all / least_known).max(1.0));
+                (task, Seen { square: f64::INFINITY, of_elements, at_rest, ratio, speed: widest.speed, alive })
+            })
+            .collect();
+        self.refine(world, tasks)
+    }
+
+    /// Looks at elements one by one in those tasks that may come to most.
+    fn refine(&self, world: &World, mut tasks: Vec<(usize, Seen)>) -> Seen {
+        let at_rest = tasks.iter().fold(0.0_f64, |most, (_, task)| most.max(task.at_rest));
+        let most = |task: &Seen| (task.of_elements / at_rest).max(task.ratio);
+        tasks.sort_by(|(_, a), (_, b)| most(b).total_cmp(&most(a)));
+        // what is known to come to so much at least, and all others
+        let mut seen = Seen { of_elements: at_rest, ..Seen::NOTHING };
+        let mut others = Seen::NOTHING;
+        let mut left = tasks.into_iter();
+        loop {
+            let mut chosen = Vec::new();
+            for (task, at_most) in left.by_ref() {
+                if at_most.of_elements > NEARLY * seen.of_elements || at_most.ratio > NEARLY * seen.ratio {
+                    chosen.push((task, at_most));
+                } else {
+                    others = others.and(at_most);
+                }
+                if chosen.len() == TASKS_AT_ONCE {
+                    break;
+                }
+            }
+            if chosen.is_empty() {
+                return seen.and(others);
+            }
+            let found = world.resource::<Cpu>().map(chosen.len(), |i| self.one_by_one(world, chosen[i]));
+            seen = found.into_iter().fold(seen, Seen::and);
+        }
+    }
+
+    /// What the elements of a task come to that may all together come to `at_most`.
+    fn one_by_one(&self, world: &World, (task, at_most): (usize, Seen)) -> Seen {
+        let (mut of_elements, mut ratio) = (0.0_f64, 1.0_f64);
+        self.strains(
+            world,
+            task,
+            Some(&mut |strains: &[Strain]| {
+                for strain in strains.iter().filter(|strain| self.squares[strain.row] > 0.0) {
+                    let [own, of_all] = self.growth_of(strain.size, strain.squeeze, strain.more);
+                    of_elements = of_elements.max(self.squares[strain.row] * own);
+                    ratio = ratio.max(of_all / f64::from(self.known_growth[strain.row]));
+                }
+            }),
+        );
+        Seen { of_elements, ratio, ..at_most }
     }
 
     /// Remembers the present growth, now that the frequency of all is known.
@@ -227,14 +277,14 @@ impl Watched {
     ) -> Vec<R> {
         let task = |task: usize| {
             let mut found = start.clone();
-            self.strains(world, task, &mut |strains| strains.iter().for_each(|strain| visit(&mut found, strain)));
+            self.strains(world, task, Some(&mut |strains| strains.iter().for_each(|strain| visit(&mut found, strain))));
             found
         };
         world.resource::<Cpu>().map(self.squares.len().div_ceil(ROWS_A_TASK), task)
     }
 
-    /// Visits the elements of a task that are there; `None` where the world has them no longer.
-    fn strains(&self, world: &World, task: usize, visit: &mut dyn FnMut(&[Strain])) -> Option<()> {
+    /// Visits the elements of a task that are there; what they come to, and how many they are. `None` where the world has them no longer.
+    fn strains(&self, world: &World, task: usize, visit: Option<&mut dyn FnMut(&[Strain])>) -> Option<(Strain, usize)> {
         let block = world.get::<Block>(self.entity)?;
         let (u, d) = (world.get::<Displacement>(block.body)?, world.get::<DisplacementStep>(block.body)?);
         let (connectivity, shape) = (world.get::<Connectivity>(self.entity)?, world.get::<RestShape>(self.entity)?);
@@ -255,11 +305,10 @@ impl Watched {
                 with_element_of!(block, E => strains::<E, $T>(cpu, &columns, groups, more, visit))
             }};
         }
-        match u.0 {
+        Some(match u.0 {
             Reals::F32(_) => run!(f32),
             Reals::F64(_) => run!(f64),
-        }
-        Some(())
+        })
     }
 
     fn direction(&self, row: usize, from: &FamilyDirection<f64>, fibres: Option<&Reals>) -> [f64; 3] {

@@ -42,66 +42,91 @@ pub struct Strain {
 /// What is asked for beside: a number from an element's row and its C (xx, yy, zz, xy, yz, xz).
 pub type OfStretch<'a> = &'a (dyn Fn(usize, [f64; 6]) -> f64 + Sync);
 
-/// Visits the elements of some groups that are there, in their order, some at a time.
+/// Visits the elements of some groups that are there, in their order, some at a time. What they come to, were one of them the largest in
+/// everything (its row says nothing), and how many they are.
 pub fn strains<E: Element, T: SimdScalar>(
     cpu: &Cpu,
     columns: &StrainColumns<'_, T>,
     groups: Range<usize>,
     more: Option<OfStretch<'_>>,
-    visit: &mut dyn FnMut(&[Strain]),
-) {
+    visit: Option<&mut dyn FnMut(&[Strain])>,
+) -> (Strain, usize) {
     cpu.dispatch(Groups::<E, T> { columns, groups, more, visit, element: PhantomData })
 }
 
-struct Groups<'a, E, T> {
+struct Groups<'a, 'v, E, T> {
     columns: &'a StrainColumns<'a, T>,
     groups: Range<usize>,
     more: Option<OfStretch<'a>>,
-    visit: &'a mut dyn FnMut(&[Strain]),
+    visit: Option<&'v mut dyn FnMut(&[Strain])>,
     element: PhantomData<E>,
 }
 
-impl<E: Element, T: SimdScalar> WithSimd for Groups<'_, E, T> {
-    type Output = ();
+impl<E: Element, T: SimdScalar> WithSimd for Groups<'_, '_, E, T> {
+    type Output = (Strain, usize);
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        let Self { columns, groups, more, visit, .. } = self;
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let Self { columns, groups, more, mut visit, .. } = self;
+        let (zero, one) = (T::splat(simd, T::default()), T::splat(simd, T::from_f64(1.0)));
+        // size, squeeze, speed, what is no number, and how many are there
+        let mut widest = [one, one, zero, zero, zero];
+        let mut more_of_all = 0.0_f64;
         for group in groups {
             let nodes = &columns.connectivity[group * E::NODES * LANES..(group + 1) * E::NODES * LANES];
             let shape = &columns.rest_shape[group * E::ROWS * LANES..(group + 1) * E::ROWS * LANES];
             let u = group_vectors::<E, T>(nodes, columns.displacement);
             let d = group_vectors::<E, T>(nodes, columns.step);
-            let mut sizes = [T::default(); LANES];
-            let mut squeezes = [T::default(); LANES];
-            let mut speeds = [T::default(); LANES];
-            let mut lost = [T::default(); LANES];
-            let mut largest = [0.0_f64; LANES];
+            let (mut lanes, mut largest) = ([[T::default(); LANES]; 4], [0.0_f64; LANES]);
             let mut at = 0;
             while at < LANES {
                 let rows = more.map(|more| (more, group * LANES + at, &mut largest[at..]));
-                let [size, squeeze, speed, astray] =
-                    register::<E, T, S>(simd, [&u, &d], (shape, columns.ends), at, rows);
-                T::store(size, &mut sizes[at..]);
-                T::store(squeeze, &mut squeezes[at..]);
-                T::store(speed, &mut speeds[at..]);
-                T::store(astray, &mut lost[at..]);
+                let found = register::<E, T, S>(simd, [&u, &d], (shape, columns.ends), at, rows);
+                let volume = T::load(simd, &shape[E::VOLUME_ROW * LANES + at..]);
+                widest[0] = widest[0].max(volume.if_positive(found[0], one));
+                widest[1] = widest[1].max(volume.if_positive(found[1], one));
+                widest[2] = widest[2].max(volume.if_positive(found[2], zero));
+                widest[3] += volume.if_positive(found[3], zero);
+                widest[4] += volume.if_positive(one, zero);
+                if visit.is_some() {
+                    (0..4).for_each(|i| T::store(found[i], &mut lanes[i][at..]));
+                }
                 at += T::width::<S>();
+            }
+            if visit.is_none() && more.is_none() {
+                continue;
             }
             let mut found = [Strain { row: 0, size: 1.0, squeeze: 1.0, speed: 0.0, more: 0.0 }; LANES];
             let mut count = 0;
-            for lane in 0..LANES {
-                if shape[E::VOLUME_ROW * LANES + lane] <= T::default() {
-                    continue;
-                }
-                let number = |of: T| if lost[lane] == T::default() { of.to_f64() } else { f64::INFINITY };
-                let [size, squeeze, speed] = [sizes[lane], squeezes[lane], speeds[lane]].map(number);
+            for lane in (0..LANES).filter(|lane| shape[E::VOLUME_ROW * LANES + lane] > T::default()) {
+                let [size, squeeze, speed] = sound(lanes.map(|of| of[lane]));
                 found[count] = Strain { row: group * LANES + lane, size, squeeze, speed, more: largest[lane] };
+                more_of_all = more_of_all.max(largest[lane]);
                 count += 1;
             }
-            visit(&found[..count]);
+            if let Some(visit) = &mut visit {
+                visit(&found[..count]);
+            }
         }
+        let mut all = Strain { row: 0, size: 1.0, squeeze: 1.0, speed: 0.0, more: more_of_all };
+        let mut count = 0.0;
+        let mut lanes = [[T::default(); LANES]; 5];
+        (0..5).for_each(|i| T::store(widest[i], &mut lanes[i]));
+        for lane in 0..T::width::<S>() {
+            let [size, squeeze, speed] = sound([0, 1, 2, 3].map(|i: usize| lanes[i][lane]));
+            all.size = all.size.max(size);
+            all.squeeze = all.squeeze.max(squeeze);
+            all.speed = all.speed.max(speed);
+            count += lanes[4][lane].to_f64();
+        }
+        (all, count as usize)
     }
+}
+
+/// Size, squeeze and speed; infinite where they are no numbers.
+fn sound<T: SimdScalar>([size, squeeze, speed, astray]: [T; 4]) -> [f64; 3] {
+    let number = |of: T| if astray == T::default() { of.to_f64() } else { f64::INFINITY };
+    [size, squeeze, speed].map(number)
 }
 
 /// Size, squeeze and speed of a register full of elements, and what is not 0 where either is no number. `rows`: what more is asked for, of
