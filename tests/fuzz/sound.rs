@@ -1,9 +1,10 @@
 //! Whether what is called a result is one: checked anew, from positions and what the scene says.
 
 use sinew::Simulation;
-use sinew::components::{Alive, Authoring, Block, Label};
+use sinew::components::{Alive, Authoring, Block, DisplacementStep, Label};
 use sinew::evaluation::node_count;
 use sinew::glam::{DMat3, DVec3};
+use sinew::materials::FLATTEST;
 use sinew::scene::schema::{ElementKind, Inversion};
 
 /// What is wrong with a finished run, if anything.
@@ -25,16 +26,24 @@ pub fn check(simulation: &mut Simulation) -> Result<(), String> {
                 return Err(format!("status 0 with {} as the {what} of node {node} of {body}", numbers[node]));
             }
         }
+        if !simulation.scene().is_static() {
+            // brings what steps carry on from a GPU
+            simulation.snapshot().map_err(|e| e.to_string())?;
+        }
         inside_out(simulation, &body, &rest, &moved)?;
     }
     Ok(())
 }
 
-/// Elements that are there although they are inside out and must not be.
+/// Elements that are there although they are inside out and must not be. What is to be removed goes in the step that begins with it
+/// flatter than [`FLATTEST`]: what has become so in the last step is still there.
 fn inside_out(simulation: &mut Simulation, body: &str, rest: &[DVec3], moved: &[DVec3]) -> Result<(), String> {
     let entity = simulation.body(body).map_err(|e| e.to_string())?;
     let (world, scene) = (simulation.world(), simulation.scene());
     let Some(authoring) = world.get::<Authoring>(entity) else { return Ok(()) };
+    let Some(last) = world.get::<DisplacementStep>(entity) else { return Ok(()) };
+    let before: Vec<DVec3> =
+        moved.iter().zip(&authoring.node_rows).map(|(u, &row)| *u - last.vector(row as usize)).collect();
     for (element, &(place, row)) in authoring.element_rows.iter().enumerate() {
         let entity = authoring.blocks[place as usize];
         let Some(block) = world.get::<Block>(entity) else { continue };
@@ -48,10 +57,14 @@ fn inside_out(simulation: &mut Simulation, body: &str, rest: &[DVec3], moved: &[
             _ => &authoring.hexes[element - authoring.tets.len()],
         };
         let of = |numbers: &[DVec3]| corners.iter().map(|&node| numbers[node as usize]).collect::<Vec<_>>();
+        let (moved, least) = match inversion {
+            Some(Inversion::Remove) => (&before[..], FLATTEST),
+            _ => (moved, 0.0),
+        };
         for gradient in gradients(block.kind, &of(rest), &of(moved)) {
             let j = (DMat3::IDENTITY + gradient).determinant();
             // a volume that is nothing to what single precision leaves of it may have either sign
-            if j < -1e-5 * size(&gradient) || !j.is_finite() {
+            if j < least - 1e-5 * size(&gradient) || !j.is_finite() {
                 return Err(format!("status 0 with element {element} of {body} inside out: J = {j:.3e}"));
             }
         }
