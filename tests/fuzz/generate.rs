@@ -1,7 +1,7 @@
 //! Whole scenes made up from a seed: small, sound, with every feature that a scene can have. Every other one is violent: loads and
 //! motions far beyond what holds it, steps that are too large, guards that hardly look.
 
-use crate::dice::{Dice, number, one_of, size, vector};
+use crate::dice::{Dice, Temper, number, one_of, size, vector};
 use fastrand::Rng;
 use std::fmt::Write;
 
@@ -11,8 +11,8 @@ pub struct Made {
     pub text: String,
     /// Whether elements go, or turn inside out, as soon as a number passes a limit: what rounding may decide.
     pub decides: bool,
-    /// Whether it is violent.
-    pub violent: bool,
+    /// How violent it is.
+    pub temper: Temper,
 }
 
 /// The scene of a seed, and where known the step that is stable at the start (s): then it may have a step of its own.
@@ -41,8 +41,9 @@ pub fn scene(seed: u64, duration: f64, stable: Option<f64>) -> Made {
         let _ = write!(text, "removal: [{removal}], ");
     }
     let mild = integration(statics, r);
+    let temper = r.temper;
     let steps = match r.wild() {
-        Some(wild) if !statics => violent_steps(mild, stable, wild),
+        Some(wild) if !statics => violent_steps(mild, stable, temper, wild),
         _ => mild,
     };
     let _ = write!(text, "integration: ({steps}), ");
@@ -53,7 +54,7 @@ pub fn scene(seed: u64, duration: f64, stable: Option<f64>) -> Made {
     }
     let every = r.u64(1..80);
     let guards = match r.wild() {
-        Some(wild) => violent_guards(every, !text.contains("beyond_stable_step"), wild),
+        Some(wild) => violent_guards(every, !text.contains("beyond_stable_step"), temper, wild),
         None => format!("every: {every}"),
     };
     let _ = write!(text, "guards: ({guards}), ");
@@ -70,9 +71,8 @@ pub fn scene(seed: u64, duration: f64, stable: Option<f64>) -> Made {
         // what stands at several places in equilibrium, or at the edge of one, rounding may decide
         decides = true;
     }
-    let violent = r.wild().is_some();
     // violent motion multiplies what rounding leaves, up to the size of the body and beyond
-    Made { text, decides: decides || violent, violent }
+    Made { text, decides: decides || temper != Temper::Mild, temper }
 }
 
 /// A body, and what must be known to act on it.
@@ -136,7 +136,7 @@ impl Geometry {
                 let _ = write!(text, ", {}", what(r));
             }
         };
-        let (velocity, spin) = (0.3 * r.far_beyond(1e3), 5.0 * r.beyond(1e3));
+        let (velocity, spin) = (0.3 * r.beyond(1e3), 5.0 * r.beyond(1e3));
         let (gradient, scrambled) = (0.1 * r.beyond(12.0), 0.02 * size * r.beyond(20.0));
         add(r, 4, &|r| format!("velocity: {}", vector(r, velocity)));
         add(r, 6, &|r| format!("spin: {}", vector(r, spin)));
@@ -181,9 +181,8 @@ fn curve(duration: f64, r: &mut Dice) -> String {
     let mut time = || duration * number(r, 0.0, 1.0);
     let (a, b) = (time(), time());
     // all at once, and so late that only the last look can see it
-    let late = r.wildly(6).then(|| duration * (1.0 - 10_f64.powf(-1.0 - 2.0 * r.wild_share())));
-    if let Some(start) = late {
-        return format!(", curve: Step(start: {start:?})");
+    if let Some(share) = r.late() {
+        return format!(", curve: Step(start: {:?})", share * duration);
     }
     let (start, end) = (a.min(b), a.max(b) + 1e-3 * duration);
     match r.u8(..6) {
@@ -277,9 +276,14 @@ fn integration(statics: bool, r: &mut Rng) -> String {
 
 /// How steps are taken in a violent scene: much as in a mild one, or with mass scaled, or of a length of its own, below what is stable
 /// or just beyond it.
-fn violent_steps(mild: String, stable: Option<f64>, wild: &mut Rng) -> String {
-    let kind = wild.u8(..8);
-    let (share, most) = (number(wild, 0.3, 1.0), size(wild, 0.02, 1.0));
+fn violent_steps(mild: String, stable: Option<f64>, temper: Temper, wild: &mut Rng) -> String {
+    let kind = match temper {
+        Temper::Heavy => wild.u8(2..4),
+        Temper::Late => wild.u8(..6),
+        _ => wild.u8(..8),
+    };
+    let share = number(wild, 0.3, 1.0);
+    let most = if temper == Temper::Heavy { number(wild, 0.2, 1.0) } else { size(wild, 0.02, 1.0) };
     let own = |share: f64| stable.map_or(String::new(), |stable| format!(", step: {:?}", share * stable));
     match kind {
         0 | 1 => mild,
@@ -292,9 +296,9 @@ fn violent_steps(mild: String, stable: Option<f64>, wild: &mut Rng) -> String {
 }
 
 /// How a violent scene is guarded: often so seldom that only the look at the end sees anything.
-fn violent_guards(every: u64, may_be_off: bool, wild: &mut Rng) -> String {
+fn violent_guards(every: u64, may_be_off: bool, temper: Temper, wild: &mut Rng) -> String {
     let every = if wild.bool() { 1000 } else { every };
-    match wild.u8(..4) {
+    match wild.u8(..if temper == Temper::Late { 2 } else { 4 }) {
         0 if may_be_off => format!("every: {every}, off: [Energy]"),
         1 => format!("every: {every}, energy: (stop: {:?})", size(wild, 0.01, 1e4)),
         _ => format!("every: {every}"),
