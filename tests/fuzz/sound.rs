@@ -1,7 +1,7 @@
 //! Whether what is called a result is one: checked anew, from positions and what the scene says.
 
 use sinew::Simulation;
-use sinew::components::{Alive, Authoring, Block, DisplacementStep, Label};
+use sinew::components::{Alive, Authoring, Block, DisplacementStep, Label, Precision};
 use sinew::evaluation::node_count;
 use sinew::glam::{DMat3, DVec3};
 use sinew::materials::FLATTEST;
@@ -55,6 +55,8 @@ fn inside_out(simulation: &mut Simulation, body: &str, rest: &[DVec3], moved: &[
         };
         let of = |numbers: &[DVec3]| corners.iter().map(|&node| numbers[node as usize]).collect::<Vec<_>>();
         let (moved, least) = match inversion {
+            // of what has gone far in the last step nobody can tell where it was
+            Some(Inversion::Remove) if goes_too_far(&of(rest), &of(moved), last.precision()) => continue,
             Some(Inversion::Remove) => (&before[..], FLATTEST),
             _ => (moved, 0.0),
         };
@@ -67,6 +69,14 @@ fn inside_out(simulation: &mut Simulation, body: &str, rest: &[DVec3], moved: &[
         }
     }
     Ok(())
+}
+
+/// Whether the last digits of an element's displacements are more than a thousandth of its size.
+fn goes_too_far(rest: &[DVec3], moved: &[DVec3], precision: Precision) -> bool {
+    let digit = if precision == Precision::F32 { f64::from(f32::EPSILON) } else { f64::EPSILON };
+    let edge = rest[1..].iter().map(|x| (*x - rest[0]).length()).fold(f64::INFINITY, f64::min);
+    let far = moved.iter().map(|u| u.length()).fold(0.0, f64::max);
+    far * digit > 1e-3 * edge
 }
 
 /// What det(1 + ∇u) would be were all its products of one sign.
