@@ -55,7 +55,7 @@ pub fn run(scene: &SceneFile, backend: BackendChoice, folder: Option<&str>) -> R
         simulation.write_into(&mut Folder::create(Path::new(path))?)?;
         simulation.observe()?;
     }
-    simulation.advance(simulation.planned_steps())?;
+    simulation.finish()?;
 
     let summary = simulation.summary("finished")?;
     println!("{}: {} steps in {:.2} s", summary.backend, summary.steps, summary.run_seconds);

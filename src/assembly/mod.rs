@@ -27,8 +27,8 @@ pub use relaxation::load_steps;
 pub use removal::step_of;
 pub use select::Selection;
 pub use time_step::{
-    StableStep, StepSetter, alike_in_any_precision, author_of, damped, damping_time, square_frequencies, stable_step,
-    undamped_square_frequencies,
+    SquaresAtRest, StableStep, StepSetter, alike_in_any_precision, author_of, damped, damping_time, square_frequencies,
+    stable_step, undamped_square_frequencies,
 };
 
 use crate::components::*;

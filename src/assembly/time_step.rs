@@ -8,6 +8,7 @@ use crate::evaluation::{lane_place, rest_volume, with_element_of};
 use bevy_ecs::prelude::*;
 use rayon::prelude::*;
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// How many of the elements that set the step are named.
 pub const NAMED: usize = 10;
@@ -105,8 +106,15 @@ pub fn square_frequencies(world: &World, entity: Entity) -> Vec<(f64, f64)> {
     undamped.map(|(square, volume)| (damped(square, beta), volume)).collect()
 }
 
+/// What [`undamped_square_frequencies`] found of each block when the step was chosen, until the run looks at elements for the first time.
+#[derive(Resource, Default)]
+pub struct SquaresAtRest(BTreeMap<Entity, Vec<(f64, f64)>>);
+
 /// The same as if nothing were damped.
 pub fn undamped_square_frequencies(world: &World, entity: Entity) -> Vec<(f64, f64)> {
+    if let Some(known) = world.get_resource::<SquaresAtRest>().and_then(|known| known.0.get(&entity)) {
+        return known.clone();
+    }
     let Some(block) = world.get::<Block>(entity) else { return Vec::new() };
     let (Some(frequency), Some(shape)) = (square_frequency(world, entity, block), world.get::<RestShape>(entity))
     else {
@@ -151,6 +159,10 @@ struct Ranked {
 pub fn stable_step(world: &mut World) -> Option<StableStep> {
     let mut blocks: Vec<Entity> = world.query_filtered::<Entity, With<Block>>().iter(world).collect();
     blocks.sort();
+    world.remove_resource::<SquaresAtRest>();
+    let known = blocks.iter().map(|&block| (block, undamped_square_frequencies(world, block)));
+    let known = SquaresAtRest(known.collect());
+    world.insert_resource(known);
     let mut all: Vec<Ranked> = Vec::new();
     for block in blocks {
         let elements = square_frequencies(world, block).into_iter().enumerate();

@@ -109,14 +109,9 @@ pub fn run(
     }
     interrupt::listen();
     let ended = steps(&mut simulation, scene.scene.duration);
-    let finished = finish(&mut simulation, &mut folder, &ended);
+    let finished = finish(&mut simulation, &mut folder, ended);
     interrupt::rest();
-    match (ended, finished) {
-        (ended, Ok(summary)) => Ok((summary, ended)),
-        // what broke the run explains why it cannot be summed up
-        (Err(failure), Err(_)) => Err(failure),
-        (Ok(()), Err(failure)) => Err(failure),
-    }
+    finished
 }
 
 /// Goes on from a snapshot, if there is anything left to do.
@@ -168,21 +163,36 @@ fn tell_of_changes(simulation: &Simulation, known: &mut u64) {
     }
 }
 
-/// Writes what stands at the end: the summary, and the nodes if their state means something.
-fn finish(simulation: &mut Simulation, folder: &mut Folder, ended: &Outcome) -> Result<Summary, Failure> {
-    let word = match ended {
+/// Writes what stands at the end: the nodes if their state means something, and the summary, which says of a result that is no
+/// number what it says of a run that broke down.
+fn finish(simulation: &mut Simulation, folder: &mut Folder, ended: Outcome) -> Result<(Summary, Outcome), Failure> {
+    // a run that broke down ends in numbers that mean nothing, one that found no equilibrium in none that was asked for;
+    // the fields hold the last good state
+    let meaningless = |error: &Error| matches!(error, Error::Unstable(_) | Error::NotConverged(_));
+    let ended = match ended {
+        Err(Failure::Engine(error)) if meaningless(&error) => Err(Failure::Engine(error)),
+        ended => match simulation.write_nodes(folder) {
+            Ok(()) => ended,
+            Err(error) if meaningless(&error) => Err(error.into()),
+            Err(error) => return Err(ended.err().unwrap_or_else(|| error.into())),
+        },
+    };
+    let word = match &ended {
         Ok(()) => "finished".to_string(),
         Err(Failure::Interrupted) => "interrupted".to_string(),
         Err(Failure::Engine(error)) => error.to_string(),
         Err(_) => "failed".to_string(),
     };
-    // a run that broke down ends in numbers that mean nothing, one that found no equilibrium in none that was asked for;
-    // the fields hold the last good state
-    let meaningless = |error: &Error| matches!(error, Error::Unstable(_) | Error::NotConverged(_));
-    if !matches!(ended, Err(Failure::Engine(error)) if meaningless(error)) {
-        simulation.write_nodes(folder)?;
+    match (sum_up(simulation, folder, &word), ended) {
+        (Ok(summary), ended) => Ok((summary, ended)),
+        // what broke the run explains why it cannot be summed up
+        (Err(_), Err(failure)) | (Err(failure), Ok(())) => Err(failure),
     }
-    let summed = simulation.summary(&word)?;
+}
+
+/// Writes the summary.
+fn sum_up(simulation: &mut Simulation, folder: &mut Folder, ended: &str) -> Result<Summary, Failure> {
+    let summed = simulation.summary(ended)?;
     summary::write(&folder.claim("summary.json")?, &summed)?;
     Ok(summed)
 }

@@ -225,6 +225,14 @@ impl Signals {
         }
     }
 
+    /// The first time after one (s) from which on a load or a motion may be quicker than ever before.
+    pub fn quickens_after(&self, time: f64) -> Option<f64> {
+        let curves = self.sources.iter().map(|source| match source {
+            Signal::Load { curve, .. } | Signal::Motion { curve, .. } => curve,
+        });
+        curves.filter_map(|curve| curve.quickens_after(time)).reduce(f64::min)
+    }
+
     /// Whether nodes have been moved as told by a jump until a time (s).
     pub fn have_jumped(&self, until: f64) -> bool {
         self.sources.iter().any(|source| {

@@ -59,6 +59,24 @@ impl Curve {
         corners.map(|at| at - std::mem::replace(&mut before, at)).reduce(f64::min)
     }
 
+    /// The first time after one (s) at which the curve begins to move, or to move more than twice as fast as ever before.
+    pub fn quickens_after(&self, time: f64) -> Option<f64> {
+        match self {
+            Curve::Table(points) => {
+                let mut fastest = 0.0_f64;
+                let quicker = points.windows(2).filter_map(|pair| {
+                    let rate = ((pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0)).abs();
+                    let quicker = rate > 2.0 * fastest;
+                    fastest = fastest.max(rate);
+                    quicker.then_some(pair[0].0)
+                });
+                quicker.into_iter().find(|corner| *corner > time)
+            }
+            Curve::Step { start, end } => [Some(*start), *end].into_iter().flatten().find(|corner| *corner > time),
+            Curve::Ramp { start, .. } | Curve::Smooth { start, .. } => Some(*start).filter(|start| *start > time),
+        }
+    }
+
     /// The first time after one at which two pieces of the curve meet (s).
     fn corner_after(&self, time: f64) -> Option<f64> {
         let first = |corners: [Option<f64>; 2]| corners.into_iter().flatten().find(|corner| *corner > time);
@@ -111,6 +129,16 @@ mod tests {
     fn constant_curve_is_one_exactly() {
         assert_eq!(Curve::default().mean((0.0, 1e-3)), 1.0);
         assert_eq!(Curve::default().mean((0.1, 0.1 + 1e-3)), 1.0);
+    }
+
+    #[test]
+    fn a_curve_quickens_where_it_begins_and_where_it_is_twice_as_fast() {
+        let table = Curve::Table(vec![(0.0, 0.0), (1.0, 0.0), (2.0, 1.0), (3.0, 0.0), (4.0, 3.0), (5.0, 5.0)]);
+        let all: Vec<f64> = std::iter::successors(table.quickens_after(-1.0), |&at| table.quickens_after(at)).collect();
+        assert_eq!(all, [1.0, 3.0]);
+        assert_eq!(Curve::Smooth { start: 0.5, end: 1.0 }.quickens_after(0.0), Some(0.5));
+        assert_eq!(Curve::Smooth { start: 0.5, end: 1.0 }.quickens_after(0.5), None);
+        assert_eq!(Curve::Step { start: 0.0, end: Some(2.0) }.quickens_after(0.0), Some(2.0));
     }
 
     #[test]

@@ -279,12 +279,14 @@ impl Observer {
         what: impl Fn() -> String,
     ) -> Result<(), Error> {
         let Some(value) = values.find(|value| !value.is_finite()) else { return Ok(()) };
-        let found = format!("{} would be {value}", what());
+        Err(self.refused(world, "all bodies", format!("{} would be {value}", what()), Criterion::of("result")))
+    }
+
+    /// That a result of a body, or of all, cannot be handed out because it is not finite.
+    pub fn refused(&self, world: &World, body: &str, found: String, criterion: Criterion) -> Error {
         let cause = "numbers beyond what can be expressed: loads, moduli or motions too large, or a system of one's own that \
                      writes what is no number";
-        let criterion = Criterion::of("result");
-        let broken =
-            guards::instability(world, &self.watch, "all bodies".into(), found, cause, criterion, self.good_until);
-        Err(Error::Unstable(Box::new(broken)))
+        let broken = guards::instability(world, &self.watch, body.into(), found, cause, criterion, self.good_until);
+        Error::Unstable(Box::new(broken))
     }
 }

@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use crate::components::*;
-use crate::error::Error;
+use crate::error::{Criterion, Error};
 use crate::observation::Observer;
 use crate::output::{Folder, Node, nodes};
 use crate::scene::Diagnostics;
@@ -33,7 +33,8 @@ impl Simulation {
         self.world.resource::<Clock>().step
     }
 
-    /// Steps that the scene lasts.
+    /// Steps that the scene lasts, with the step as it is now: their number changes when the step follows what is stable
+    /// ([`Simulation::finish`] goes to the end whatever happens to it).
     pub fn planned_steps(&self) -> u64 {
         self.facts.steps
     }
@@ -179,13 +180,13 @@ impl Simulation {
     /// Writes `nodes.csv` (of several bodies `nodes_NAME.csv` each): the present state in the author's numbering.
     ///
     /// # Errors
-    /// Files that cannot be written; what the GPU says.
+    /// That a node is nowhere, or the force on it no number; files that cannot be written; what the GPU says.
     pub fn write_nodes(&mut self, folder: &mut Folder) -> Result<(), Error> {
         let started = Instant::now();
         let written = self.write_all_nodes(folder);
         self.elapsed += started.elapsed();
         self.world.resource_mut::<Observer>().writing += started.elapsed();
-        written
+        written.map_err(|error| self.note(error))
     }
 
     fn write_all_nodes(&mut self, folder: &mut Folder) -> Result<(), Error> {
@@ -209,7 +210,9 @@ impl Simulation {
             };
             if let Some(place) = (0..rest.len()).find(|&i| !displacements[i].is_finite() || !forces[i].is_finite()) {
                 let node = authoring.node_ids.of(place);
-                return Err(Error::Options(format!("nodes.csv is not written: node {node} of {name} is not finite")));
+                let found = format!("the place of node {node}, or the force on it, is no finite number");
+                let criterion = Criterion { node: Some(node), ..Criterion::of("result") };
+                return Err(self.world.resource::<Observer>().refused(&self.world, name, found, criterion));
             }
             nodes::write(&path, authoring.node_rows.iter().enumerate().map(node))?;
         }

@@ -1,42 +1,68 @@
-//! The step follows what is stable: smaller on the word of the cheap bound, and by the highest frequency itself where that comes
-//! close.
+//! The step follows what is stable: smaller on the word of certain bounds, and by the highest frequency itself once that is worth
+//! its cost.
+//!
+//! Bounds that hold whatever was not looked at are cheap and too small. What is lost by them is counted, in steps, against a step
+//! that the last finding would allow were nothing stiffer; when as much is lost as a finding costs, and what is left of the run can
+//! gain as much again, the highest frequency is found (as one who rents skis until the rents have come to their price: at most
+//! twice the best that foresight could do). It is found from the shape that was quickest last and from where elements are
+//! stiffest now: some products show it to a few per cent.
 
 use super::Simulation;
+use super::damped_step::square_with_damping;
 use super::follow::{Follower, step_of};
+use super::frequency::{PRODUCT, bodies, largest_near};
+use super::nodal;
+use super::tangent::Tangent;
 use super::watch::Seen;
+use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::error::{Criterion, Error, Instability};
 
-/// Larger by less is not worth a change.
-const WORTH: f64 = 1.1;
-/// The highest frequency is found so many times, and once more for so many steps: each costs about a hundred steps. Beyond
-/// that the cheap bound is taken at its word.
-const FINDINGS: (u64, u64) = (4, 1000);
-/// A step that is so many times the stable one by the cheap bound tells of its limits rather than of the step.
-const VAGUE: f64 = 2.0;
-/// Steps between two findings beyond that, where the cheap bound is as far off or has made the step as much smaller.
-const REST: u64 = 100;
-/// The highest frequency is found anew for a larger step when the bound of the elements has fallen to this share.
-const RELIEF: f64 = 0.6;
+/// Larger by less is not worth a change: when the highest frequency has been found; and by bounds, which come and go.
+const LARGER: (f64, f64) = (1.05, 2.0);
+/// A step so many times the wanted one is made smaller.
+const SMALLER: f64 = 1.25;
+/// Where motion is violent steps become at most so many times longer at once: the balance of energy is that of steps of like length.
+const LONGER: f64 = 2.0;
+/// Products by which the highest frequency is found anew: the first time, and from a shape that is known.
+const PRODUCTS: (usize, usize) = (20, 8);
+/// ω² may be so many times what they show.
+const SHOWN: f64 = 1.1;
+/// Strains change by at most so much in a step, relative to present lengths: what follows must see it come.
+const FASTEST: f64 = 0.5;
+/// Strains make a step at most so many times smaller than it would be.
+const SLOWEST: f64 = 20.0;
 /// A step so many times smaller than the first is given up.
 const LEAST: f64 = 1e-4;
 
 impl Simulation {
     /// Makes the step smaller where it must be, and larger where that is worth while.
-    pub(super) fn adapt(&mut self, follower: &mut Follower, mut seen: Seen) -> Result<(), Error> {
+    pub(super) fn adapt(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<(), Error> {
         let clock = *self.world.resource::<Clock>();
-        let known_now = follower.calls_for_a_finding(&seen, &clock) && self.find(follower, &mut seen)?;
-        follower.found.seen.get_or_insert(seen);
-        // far off the cheap bound may say anything: until the true limit is found, a quarter of the last has to do
-        let bound = step_of(seen.square);
-        let limit = if known_now { bound } else { bound.max(step_of(follower.found.known) / (VAGUE * VAGUE)) };
-        let wanted = follower.wanted(limit, &seen);
-        let smaller = clock.time_step > follower.most() * limit;
-        if !(smaller || known_now && wanted > WORTH * clock.time_step) {
-            return Ok(());
+        let found = &mut follower.found;
+        found.lost += found.losing * clock.step.saturating_sub(found.looked) as f64;
+        let gives_up =
+            |follower: &Follower, seen: &Seen| follower.wanted(step_of(seen.square), seen) < LEAST * follower.first;
+        let finds = follower.is_finding_worth(seen, &clock) || gives_up(follower, seen);
+        if finds {
+            self.estimate(follower, seen)?;
         }
-        if wanted < LEAST * follower.first {
-            return Err(self.too_small(follower, wanted));
+        follower.found.seen.get_or_insert(*seen);
+        let limit = step_of(seen.square);
+        let stable = follower.wanted(limit, seen);
+        if gives_up(follower, seen) {
+            return Err(self.too_small(follower, stable));
+        }
+        let seen_to_come = follower.seen_to_come(stable, seen, &clock);
+        let longest = if follower.found.violent { LONGER * clock.time_step } else { f64::INFINITY };
+        let wanted = stable.min(seen_to_come).min(longest);
+        let smaller = clock.time_step > follower.most() * limit || clock.time_step > SMALLER * wanted;
+        let change = smaller || wanted >= if finds { LARGER.0 } else { LARGER.1 } * clock.time_step;
+        let taken = if change { wanted } else { clock.time_step };
+        let hoped_for = follower.hoped_for(seen, &clock);
+        follower.found.losing = if hoped_for < LARGER.0 * taken { 0.0 } else { 1.0 - taken / hoped_for };
+        if !change {
+            return Ok(());
         }
         let left = follower.duration - clock.time();
         // the scene ends with a whole step
@@ -44,7 +70,6 @@ impl Simulation {
             steps if steps >= 1.0 => (left / steps, clock.step + steps as u64),
             _ => (wanted, self.planned_steps()),
         };
-        follower.found.guessed |= !known_now;
         let history = &mut follower.history;
         history.changes += 1;
         history.smallest = history.smallest.min(new);
@@ -52,11 +77,32 @@ impl Simulation {
         self.change_step(new, last)
     }
 
+    /// Finds the highest frequency from what was known of it; whether there is one.
+    pub(super) fn estimate(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<bool, Error> {
+        bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
+        let world = &mut self.world;
+        let bodies = bodies(world);
+        let weights = nodal::weights_now(world, &mut follower.watched, &bodies);
+        let products = follower.products();
+        let Some((shown, shape)) = largest_near(world, follower.shape.as_deref(), &weights, products) else {
+            return Ok(false);
+        };
+        for block in &mut follower.watched {
+            block.remember(world);
+        }
+        // bounds hold as well
+        seen.square = seen.square.min(square_with_damping(SHOWN * shown, world));
+        follower.shape = Some(shape);
+        follower.found.take(seen);
+        follower.history.sharp_looks += 1;
+        Ok(true)
+    }
+
     /// The stable step has gone to nothing.
-    fn too_small(&self, follower: &Follower, wanted: f64) -> Error {
-        let worst = follower.watched.iter().flat_map(|block| {
+    fn too_small(&self, follower: &mut Follower, wanted: f64) -> Error {
+        let worst = follower.watched.iter_mut().flat_map(|block| {
             let elements = block.now(&self.world).into_iter();
-            elements.map(|(row, square)| (square, block.entity, row))
+            elements.map(|(row, square, _)| (square, block.entity, row))
         });
         let worst = worst.max_by(|a, b| a.0.total_cmp(&b.0));
         let named = worst.and_then(|(_, entity, row)| crate::assembly::author_of(&self.world, entity, row));
@@ -71,10 +117,12 @@ impl Simulation {
                 1.0 / LEAST,
                 follower.first
             ),
-            cause:
-                "tissue that is squeezed flat or stiffens without end (remove such elements by VolumeRatioBelow, or \
-                    when_unstable: Remove)"
+            cause: match self.world.resource::<Signals>().have_jumped(self.time()) {
+                true => "a prescribed motion that jumps (use a ramp: `curve: Smooth(end: ...)` or `Ramp(end: ...)`)".into(),
+                false => "tissue that is squeezed flat or stiffens without end (remove such elements by VolumeRatioBelow, or \
+                          when_unstable: Remove)"
                     .into(),
+            },
             good_until: self.time(),
             criterion: Criterion {
                 value: Some(wanted),
@@ -88,18 +136,33 @@ impl Simulation {
 }
 
 impl Follower {
+    /// The step that could be taken were the highest frequency found anew, as far as that can be guessed: were nothing stiffer than
+    /// when it was found, and less so what has become less stiff (s).
+    fn hoped_for(&self, seen: &Seen, clock: &Clock) -> f64 {
+        let relief = self.found.seen.map_or(1.0, |before| (seen.of_elements / before.of_elements).min(1.0));
+        let stable = self.wanted(step_of(self.found.known * relief), seen);
+        stable.min(self.seen_to_come(stable, seen, clock))
+    }
+
+    /// With how many products the highest frequency is found.
+    fn products(&self) -> usize {
+        if self.shape.is_some() { PRODUCTS.1 } else { PRODUCTS.0 }
+    }
+
     /// Whether the highest frequency is to be found now.
-    fn calls_for_a_finding(&self, seen: &Seen, clock: &Clock) -> bool {
-        let (time_step, found) = (clock.time_step, &self.found);
-        let pressing = time_step > self.most() * step_of(seen.square);
-        let before = found.seen.unwrap_or(*seen);
-        let relieved = seen.of_elements < RELIEF * before.of_elements || seen.alive < before.alive;
-        let may_grow = time_step * WORTH < self.wanted(f64::INFINITY, seen);
-        let affordable = self.history.sharp_looks < FINDINGS.0 + clock.step / FINDINGS.1;
-        let better = affordable && (pressing || found.guessed || relieved && may_grow);
-        // far off the cheap bound says nothing, and steps made small on its word cost more than the finding
-        let made_small = found.guessed && VAGUE * time_step < step_of(found.known);
-        let vague = made_small || time_step > VAGUE * step_of(seen.square);
-        better || vague && clock.step >= found.known_at + REST
+    fn is_finding_worth(&self, seen: &Seen, clock: &Clock) -> bool {
+        let cost = PRODUCT * self.products() as f64;
+        let (now, then) = (self.wanted(step_of(seen.square), seen), self.hoped_for(seen, clock));
+        let left = (self.duration - clock.time()) / now;
+        self.found.lost >= cost && left * (1.0 - now / then) >= cost
+    }
+
+    /// The step with which strains that change quickly are seen to come (s), where `stable` would be; none smaller where the step is
+    /// the author's.
+    fn seen_to_come(&self, stable: f64, seen: &Seen, clock: &Clock) -> f64 {
+        match self.found.own {
+            Some(_) => f64::INFINITY,
+            None => (clock.time_step * FASTEST / seen.speed).max(stable / SLOWEST),
+        }
     }
 }

@@ -309,7 +309,7 @@ fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> 
         limits: scene.scene.guards.clone(),
         beyond: scene.scene.integration.beyond_stable_step && clock.relaxation.is_none(),
         foreign: false,
-        removal: !scene.scene.removal.is_empty(),
+        removal: world.query::<&Alive>().iter(world).next().is_some(),
     };
     observer.to_rest = clock.relaxation.is_some();
     observer.last_step = if clock.relaxation.is_some() { u64::MAX } else { steps };

@@ -16,14 +16,17 @@ use bevy_ecs::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
-/// Steps between two looks at all elements: at least, and at most; and no more than half of all steps so far, because what
-/// begins smoothly becomes faster.
+/// Steps between two looks at all elements: where strains change slowly at least, and at most; and no more than have been taken since
+/// the beginning or since loads and motions last became quicker, because what begins smoothly becomes faster.
 const LOOKS: (u64, u64) = (16, 256);
 /// Between two looks strains change by so much, at the present speed: close to the limit, and where the step is half of it
 /// or less. The stable step of what is squeezed shrinks twice as fast as it, and a twentieth is left when it counts as close.
 const STRAIN: (f64, f64) = (0.01, 0.25);
-/// No more than that between two looks, however close they come: what falls flat must not pass through zero unseen.
-const MOST_STRAIN: f64 = 0.5;
+/// No more than that between two looks, however close they come.
+const MOST_STRAIN: f64 = 0.2;
+/// A change of strain in a step, relative to present lengths, from which on motion counts as violent: the room between what the
+/// elements alone allow and the true limit is then needed, for what a look cannot foresee and for the balance of energy.
+const VIOLENT: f64 = 0.02;
 
 /// How the step went during the run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -64,6 +67,8 @@ pub(super) struct Follower {
     pub first: f64,
     pub watched: Vec<Watched>,
     pub found: Found,
+    /// The shape of what is quickest, when it was found last: see [`largest_near`](super::frequency::largest_near).
+    pub shape: Option<Vec<f32>>,
     pub history: StepHistory,
 }
 
@@ -73,14 +78,29 @@ pub(super) struct Follower {
 pub(super) struct Found {
     /// The step before which is looked next.
     pub next: u64,
+    /// The step of the last look.
+    pub looked: u64,
+    /// The step in which loads and motions became quicker last.
+    pub quickened: u64,
     /// The step that the scene or the program wants, which it never grows beyond (s).
     pub own: Option<f64>,
-    /// The highest ω² when it was found last (1/s²): in which step, and what was seen then.
+    /// The highest ω² when it was found last (1/s²), and what was seen then.
     pub known: f64,
-    pub known_at: u64,
     pub seen: Option<Seen>,
-    /// Whether the step was made smaller on the word of the cheap bound.
-    pub guessed: bool,
+    /// The share of each step that is lost because the highest ω² is not found anew, as far as that can be guessed; and steps that
+    /// have been lost so since it was found.
+    pub losing: f64,
+    pub lost: f64,
+    /// Whether strains have changed so fast that the step stays with what the elements alone allow: see [`VIOLENT`].
+    pub violent: bool,
+}
+
+impl Found {
+    /// Takes what was seen as known.
+    pub fn take(&mut self, seen: &Seen) {
+        (self.known, self.seen) = (seen.square, Some(*seen));
+        (self.lost, self.losing) = (0.0, 0.0);
+    }
 }
 
 /// The same with how it went, for snapshots.
@@ -91,6 +111,8 @@ pub(super) struct Followed {
     history: StepHistory,
     /// Of each block, as base64 of f32; none before the first look.
     growths: Vec<String>,
+    /// The shape of what is quickest, in the same way.
+    shape: Option<String>,
 }
 
 impl Follower {
@@ -100,8 +122,6 @@ impl Follower {
         let step = world.resource::<Clock>().time_step;
         let added = if scene.scales_mass() { mass_scaling::weigh(world).mass } else { 0.0 };
         let policy = scene.when_unstable();
-        // a scene's own step may need elements to go before they do harm
-        let at_once = step > limit && policy == WhenUnstable::Remove;
         Some(Self {
             policy,
             safety: integration.safety,
@@ -111,13 +131,17 @@ impl Follower {
             first: step,
             watched: Vec::new(),
             found: Found {
-                next: if at_once { 0 } else { LOOKS.0 },
+                next: 0,
+                looked: 0,
+                quickened: 0,
                 own: integration.step,
                 known: square_of(limit),
-                known_at: 0,
                 seen: None,
-                guessed: false,
+                losing: 0.0,
+                lost: 0.0,
+                violent: false,
             },
+            shape: None,
             history: StepHistory {
                 smallest: step,
                 largest: step,
@@ -134,9 +158,14 @@ impl Follower {
         0.5 * (1.0 + self.safety.max(self.own_share).min(1.0))
     }
 
+    /// Whether the step stays with what the elements alone allow.
+    pub fn stays_with_elements(&self) -> bool {
+        self.by_elements || self.found.violent
+    }
+
     /// The largest step that may be taken when so much is stable (s).
     pub fn wanted(&self, limit: f64, seen: &Seen) -> f64 {
-        let elements = if self.by_elements { self.safety * step_of(seen.at_rest) } else { f64::INFINITY };
+        let elements = if self.stays_with_elements() { self.safety * step_of(seen.at_rest) } else { f64::INFINITY };
         (self.safety * limit).min(elements).min(self.found.own.unwrap_or(f64::INFINITY))
     }
 }
@@ -144,28 +173,23 @@ impl Follower {
 impl Follower {
     /// What has been found so far.
     pub fn followed(&self) -> Followed {
-        let growth = |block: &Watched| {
-            let bytes: Vec<u8> = block.known_growth().iter().flat_map(|growth| growth.to_le_bytes()).collect();
-            BASE64_STANDARD.encode(bytes)
-        };
-        let growths = self.watched.iter().map(growth).collect();
+        let growths = self.watched.iter().map(|block| text_of(block.known_growth())).collect();
         // time on a clock on the wall is no part of the state
         let history = StepHistory { seconds: 0.0, ..self.history };
-        Followed { found: self.found.clone(), history, growths }
+        Followed { found: self.found.clone(), history, growths, shape: self.shape.as_deref().map(text_of) }
     }
 
     /// Goes on from what had been found; false where it does not fit the world.
     pub fn take_up(&mut self, followed: Followed, world: &mut World) -> bool {
         self.watched = if followed.growths.is_empty() { Vec::new() } else { Watched::all(world) };
-        let growth = |text: &String| {
-            let bytes = BASE64_STANDARD.decode(text).ok()?;
-            Some(bytes.chunks_exact(4).map(|b| f32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect::<Vec<f32>>())
-        };
-        let growths: Option<Vec<Vec<f32>>> = followed.growths.iter().map(growth).collect();
+        let growths: Option<Vec<Vec<f32>>> = followed.growths.iter().map(numbers_of).collect();
         let Some(growths) = growths.filter(|growths| growths.len() == self.watched.len()) else { return false };
-        let fits = self.watched.iter_mut().zip(growths).all(|(block, growth)| block.take_known_growth(growth));
-        (self.found, self.history) = (followed.found, followed.history);
-        fits && self.found.known.is_finite()
+        let fits = self.watched.iter_mut().zip(growths).all(|(block, growth)| block.take_known_growth(growth, world));
+        let shape = followed.shape.as_deref().map(numbers_of);
+        let sound = shape != Some(None);
+        (self.found, self.history, self.shape) = (followed.found, followed.history, shape.flatten());
+        let numbers = [self.found.known, self.found.lost, self.found.losing];
+        fits && sound && numbers.iter().all(|number| number.is_finite())
     }
 
     /// Elements have gone since the highest frequency was found: their mass has gone with them, and what was found holds no more.
@@ -173,17 +197,36 @@ impl Follower {
         self.found.seen.is_some_and(|before| seen.alive < before.alive)
     }
 
-    /// The step before which is looked next: sooner where strains change fast and where the step is close to the limit.
-    fn next_look(&self, step: u64, seen: &Seen, clock: &Clock) -> u64 {
+    /// The step before which is looked next: sooner where strains change fast, where the step is close to the limit, and before loads
+    /// and motions become quicker, `quicker` (s).
+    fn next_look(&mut self, step: u64, seen: &Seen, clock: &Clock, quicker: Option<f64>) -> u64 {
         // far below the limit more may happen unseen
         let room = self.most() * step_of(seen.square) / clock.time_step - 1.0;
         let strain = (STRAIN.1 * room).clamp(STRAIN.0, STRAIN.1);
-        let calm = ((strain / seen.speed) as u64).min(step / 2);
         // what is no number, or inside out, has no speed
-        let least =
-            if seen.speed.is_finite() { ((MOST_STRAIN / seen.speed) as u64).clamp(1, LOOKS.0) } else { LOOKS.0 };
-        step + calm.clamp(least, LOOKS.1)
+        let speed = if seen.speed.is_finite() { seen.speed } else { MOST_STRAIN };
+        let least = ((MOST_STRAIN / speed) as u64).clamp(1, LOOKS.0);
+        let calm =
+            ((strain / speed) as u64).clamp(least, LOOKS.1).min(step.saturating_sub(self.found.quickened).max(1));
+        let until = |time: f64| ((time - clock.time()) / clock.time_step).ceil();
+        match quicker.map(until).filter(|steps| *steps < calm as f64) {
+            Some(steps) => {
+                self.found.quickened = step + steps as u64;
+                self.found.quickened.max(step + 1)
+            }
+            None => step + calm,
+        }
     }
+}
+
+/// Numbers as base64, for snapshots.
+fn text_of(numbers: &[f32]) -> String {
+    BASE64_STANDARD.encode(numbers.iter().flat_map(|number| number.to_le_bytes()).collect::<Vec<u8>>())
+}
+
+fn numbers_of(text: impl AsRef<str>) -> Option<Vec<f32>> {
+    let bytes = BASE64_STANDARD.decode(text.as_ref()).ok()?;
+    Some(bytes.as_chunks().0.iter().map(|bytes| f32::from_le_bytes(*bytes)).collect())
 }
 
 /// 2/ω.
@@ -225,29 +268,38 @@ impl Simulation {
             follower.watched = Watched::all(&mut self.world);
         }
         let step = self.step_count();
-        let all = follower.watched.iter().map(|block| block.look(&self.world, follower.found.known));
-        let mut seen = all.fold(Seen::NOTHING, Seen::and);
+        let mut seen = Seen::NOTHING;
+        for block in &mut follower.watched {
+            seen = seen.and(block.look(&self.world));
+        }
         follower.history.looks += 1;
         warn_of_rounding(&follower.watched, &mut self.world);
-        let clock = *self.world.resource::<Clock>();
         let lost = follower.has_lost(&seen);
-        if lost {
-            seen.square = seen.of_elements;
-        }
+        // what was found of more elements says nothing
+        seen.square = if lost { seen.of_elements } else { seen.of_elements.min(follower.found.known * seen.ratio) };
         if lost && matches!(follower.policy, WhenUnstable::ScaleMass { .. }) {
             // what was added to removed elements goes with them
             bring_to_host(&mut self.world, |_, name| [Mass::NAME, FictitiousMass::NAME].contains(&name))?;
             mass_scaling::weigh(&mut self.world);
             send_to_device(&mut self.world, |_, name| name == FictitiousMass::NAME)?;
         }
-        follower.found.next = follower.next_look(step, &seen, &clock);
         // what is no number is the guards' business
-        if seen.speed.is_finite() && seen.alive > 0 {
+        let sound = seen.speed.is_finite() && seen.of_elements > 0.0;
+        follower.found.violent |= seen.speed >= VIOLENT;
+        follower.found.next = step + LOOKS.0;
+        if sound {
             match follower.policy {
-                WhenUnstable::Adapt => self.adapt(follower, seen)?,
-                _ => self.hold(follower, seen)?,
+                WhenUnstable::Adapt => self.adapt(follower, &mut seen)?,
+                _ => self.hold(follower, &mut seen)?,
             }
         }
+        // by the step that is taken from here on, unless it is known already
+        if follower.found.next == step + LOOKS.0 {
+            let clock = *self.world.resource::<Clock>();
+            let quicker = self.world.resource::<Signals>().quickens_after(clock.time());
+            follower.found.next = follower.next_look(step, &seen, &clock, quicker);
+        }
+        follower.found.looked = step;
         Ok(())
     }
 }

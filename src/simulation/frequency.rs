@@ -42,6 +42,16 @@ pub(super) struct Largest {
     pub products: usize,
 }
 
+/// ln(1.648 √n/δ) for so many free axes.
+fn luck(free: usize) -> f64 {
+    (1.648 * (free as f64).sqrt() / BAD_LUCK).ln()
+}
+
+/// Products that make the margin so small.
+fn products_enough(free: usize, accuracy: f64) -> usize {
+    (0.5 * (luck(free) / accuracy.sqrt() + 1.0)).ceil() as usize
+}
+
 /// The largest eigenvalue of M⁻¹K at the present state with held axes, known to the share `accuracy`. The columns on the
 /// host must be up to date: see [`Tangent::COLUMNS`]. `None` where nothing can move, or forces are no numbers.
 pub(super) fn largest_eigenvalue(world: &mut World, accuracy: f64) -> Option<Largest> {
@@ -58,9 +68,7 @@ pub(super) fn largest_worth(world: &mut World, accuracy: f64, steps: Option<&dyn
     if free == 0 {
         return None;
     }
-    let luck = (1.648 * (free as f64).sqrt() / BAD_LUCK).ln();
-    // products that make the margin small enough
-    let enough = (0.5 * (luck / accuracy.sqrt() + 1.0)).ceil() as usize;
+    let (luck, enough) = (luck(free), products_enough(free, accuracy));
     let at_most = |ritz: f64, products: usize| {
         let margin = if products > 0 { (luck / (2.0 * products as f64 - 1.0)).powi(2) } else { f64::INFINITY };
         if margin < MOST_MARGIN { ritz / (1.0 - margin) * (1.0 + OF_DIFFERENCES) } else { f64::INFINITY }
@@ -80,12 +88,78 @@ pub(super) fn largest_worth(world: &mut World, accuracy: f64, steps: Option<&dyn
         tangent.times(&u, image);
         image.iter_mut().zip(&roots).for_each(|(force, root)| *force *= root);
     };
-    let found = lanczos(noise(&roots), enough, times, worth_more)?;
+    let found = lanczos(noise(&roots), enough, None, times, worth_more)?;
     let at_most = match found.exhausted {
         true => found.largest * (1.0 + OF_DIFFERENCES),
         false => at_most(found.largest, found.products),
     };
     Some(Largest { at_least: found.largest, at_most, products: found.products })
+}
+
+/// The share of a start that is noise, beside the shape that was known.
+const NOISE: f64 = 0.3;
+
+/// The largest eigenvalue of M⁻¹K at the present state, at least (1/s²), by few `products` from a start near its eigenvector: the
+/// `shape` that was found last, and noise where `weights` (of each axis) say that it may be now. With the new shape, √M u of all axes in
+/// f32. The columns on the host must be up to date: see [`Tangent::COLUMNS`]. `None` where nothing can move, or forces are no numbers.
+pub(super) fn largest_near(
+    world: &mut World,
+    shape: Option<&[f32]>,
+    weights: &[f64],
+    products: usize,
+) -> Option<(f64, Vec<f32>)> {
+    let bodies = bodies(world);
+    let roots = roots_of_mass(world, &bodies);
+    let scaled = |mut vector: Vec<f64>, to: f64| {
+        let length = dot(&vector, &vector).sqrt();
+        vector.iter_mut().for_each(|x| *x *= if length > 0.0 { to / length } else { 0.0 });
+        vector
+    };
+    let weighed = noise(&roots).iter().zip(weights).map(|(noise, weight)| noise * weight).collect();
+    let mut start = scaled(weighed, if shape.is_some() { NOISE } else { 1.0 });
+    if let Some(shape) = shape.filter(|shape| shape.len() == roots.len()) {
+        // axes that are held by now have no part
+        let known = shape.iter().zip(&roots).map(|(&x, &root)| if root > 0.0 { f64::from(x) } else { 0.0 }).collect();
+        start.iter_mut().zip(scaled(known, 1.0)).for_each(|(x, known)| *x += known);
+    }
+    let mut tangent = Tangent::at_present(world, &bodies)?;
+    let times = |x: &[f64], image: &mut [f64]| {
+        let u: Vec<f64> = x.iter().zip(&roots).map(|(x, root)| x * root).collect();
+        tangent.times(&u, image);
+        image.iter_mut().zip(&roots).for_each(|(force, root)| *force *= root);
+    };
+    let mut kept = Vec::new();
+    let found = lanczos(start, products, Some(&mut kept), times, |_, _| true)?;
+    let mut ritz = vec![0.0; roots.len()];
+    for (share, vector) in eigenvector(&found).iter().zip(&kept) {
+        ritz.iter_mut().zip(vector).for_each(|(x, basis)| *x += share * basis);
+    }
+    Some((found.largest, ritz.into_iter().map(|x| x as f32).collect()))
+}
+
+/// The eigenvector of the largest eigenvalue of the recursion's tridiagonal matrix: by inverse iteration beside it.
+fn eigenvector(found: &Ritz) -> Vec<f64> {
+    let count = found.diagonal.len();
+    let shift = found.largest * (1.0 + 1e-9);
+    let mut x = vec![1.0; count];
+    for _ in 0..4 {
+        // (T − shift) x, all of whose pivots are negative: Thomas' algorithm
+        let mut pivots = vec![0.0; count];
+        for i in 0..count {
+            let off = if i > 0 { found.beside[i - 1] } else { 0.0 };
+            pivots[i] = found.diagonal[i] - shift - if i > 0 { off * off / pivots[i - 1] } else { 0.0 };
+            if i > 0 {
+                x[i] -= off / pivots[i - 1] * x[i - 1];
+            }
+        }
+        for i in (0..count).rev() {
+            let next = if i + 1 < count { found.beside[i] * x[i + 1] } else { 0.0 };
+            x[i] = (x[i] - next) / pivots[i];
+        }
+        let length = dot(&x, &x).sqrt();
+        x.iter_mut().for_each(|x| *x /= length);
+    }
+    x
 }
 
 /// A margin so large says nothing.
@@ -95,19 +169,25 @@ struct Ritz {
     largest: f64,
     products: usize,
     exhausted: bool,
+    /// The tridiagonal matrix.
+    diagonal: Vec<f64>,
+    beside: Vec<f64>,
 }
 
-/// The largest Ritz value after `products` products, or as soon as more are not worth it; `None` when it is no positive number.
+/// The largest Ritz value after `products` products, or as soon as more are not worth it; `None` when it is no positive number. `all`
+/// takes the vectors of the recursion.
 fn lanczos(
     start: Vec<f64>,
     products: usize,
+    all: Option<&mut Vec<Vec<f64>>>,
     mut times: impl FnMut(&[f64], &mut [f64]),
     worth_more: impl Fn(f64, usize) -> bool,
 ) -> Option<Ritz> {
     let size = start.len();
     let dimensions = start.iter().filter(|&&x| x != 0.0).count();
-    let keep = dimensions <= KEPT_BELOW * products;
-    let mut kept: Vec<Vec<f64>> = Vec::new();
+    let keep = all.is_some() || dimensions <= KEPT_BELOW * products;
+    let mut own = Vec::new();
+    let kept: &mut Vec<Vec<f64>> = all.unwrap_or(&mut own);
     let (mut previous, mut vector, mut image) = (vec![0.0; size], start, vec![0.0; size]);
     let (mut diagonal, mut beside): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     let (mut exhausted, mut scale) = (false, 0.0_f64);
@@ -143,7 +223,7 @@ fn lanczos(
             kept.push(previous.clone());
             // twice is enough (Parlett 1980)
             for _ in 0..2 {
-                for basis in &kept {
+                for basis in kept.iter() {
                     let part = dot(basis, &vector);
                     vector.iter_mut().zip(basis).for_each(|(x, b)| *x -= part * b);
                 }
@@ -151,7 +231,8 @@ fn lanczos(
         }
     }
     let largest = largest_of_tridiagonal(&diagonal, &beside);
-    (largest.is_finite() && largest > 0.0).then_some(Ritz { largest, products: diagonal.len(), exhausted })
+    let products = diagonal.len();
+    (largest.is_finite() && largest > 0.0).then_some(Ritz { largest, products, exhausted, diagonal, beside })
 }
 
 /// Bodies in a fixed order.
@@ -246,6 +327,7 @@ mod tests {
             let found = lanczos(
                 noise(&vec![1.0; size]),
                 products,
+                None,
                 |x, image| {
                     (0..size).for_each(|i| image[i] = eigenvalue(i) * x[i]);
                 },
@@ -265,6 +347,7 @@ mod tests {
         let found = lanczos(
             noise(&vec![1.0; size]),
             100,
+            None,
             |x, image| {
                 (0..size).for_each(|i| image[i] = eigenvalue(i) * x[i]);
             },
@@ -280,9 +363,23 @@ mod tests {
         let found = lanczos(
             noise(&[1.0; 5]),
             50,
+            None,
             |x, image| (0..5).for_each(|i| image[i] = eigenvalues[i] * x[i]),
             |_, _| true,
         );
         assert!(found.is_some_and(|found| found.exhausted && (found.largest - 3.0).abs() < 1e-9));
+    }
+
+    #[test]
+    fn the_eigenvector_of_the_recursion_gives_its_eigenvalue() {
+        let eigenvalue = |i: usize| (i % 37) as f64;
+        let mut kept = Vec::new();
+        let times = |x: &[f64], image: &mut [f64]| (0..500).for_each(|i| image[i] = eigenvalue(i) * x[i]);
+        let found = lanczos(noise(&[1.0; 500]), 12, Some(&mut kept), times, |_, _| true);
+        let (largest, shares) = found.map_or((0.0, Vec::new()), |found| (found.largest, eigenvector(&found)));
+        let ritz: Vec<f64> =
+            (0..500).map(|i| shares.iter().zip(&kept).map(|(share, basis)| share * basis[i]).sum()).collect();
+        let quotient = (0..500).map(|i| eigenvalue(i) * ritz[i] * ritz[i]).sum::<f64>() / dot(&ritz, &ritz);
+        assert!((quotient / largest - 1.0).abs() < 1e-6, "{quotient}, not {largest}");
     }
 }

@@ -4,32 +4,46 @@
 //! the tangent ∂P/∂F of its law. For a deformation of the size s = max(tr C, tr C⁻¹)/3 the table holds the largest
 //! eigenvalue of ∂P/∂F that was met at smaller or equal sizes among [`samples`], over that at rest: of the whole, of the
 //! volumetric part, and of the isochoric part along changes that keep the volume (across F⁻ᵀ), whichever has grown most.
-//! Elements that average the pressure feel these parts to different shares. Exponential fibres stiffen by so much more that what
+//! Elements that average the pressure feel these parts to different shares.
+//!
+//! That bounds an element's own frequency. The highest of all bodies may rise more, because what was not the stiffest change of F at rest
+//! may become it: waves through tissue squeezed to λ have its height to cross, and ω² grows with λ⁻². So for what was known of all
+//! there is a second table: the largest (a⊗b) : ∂P/∂F : (a⊗b) along the axes, for plane waves, by the largest eigenvalue of C⁻¹.
+//!
+//! Exponential fibres stiffen by so much more that what
 //! they add is computed along their own directions.
 
 use crate::backend::cpu::{BlockLaw, sizes, with_identity};
 use crate::components::FamilyDirection;
-use crate::materials::{Elastic, ExponentialFibre};
+use crate::materials::{Elastic, ElasticLaw, ExponentialFibre};
 use crate::math::Mat3;
 
-/// Stretches that laws are tried at.
-const STRETCHES: usize = 16;
-/// The largest of them.
-const LARGEST_STRETCH: f64 = 5.0;
+/// Stretches that laws are tried at: each so many times the one before.
+const STRETCH_RATIO: f64 = 1.106;
+/// How many of them: up to a thousand.
+const STRETCHES: usize = 69;
+/// Beyond all that was tried ω² is taken to grow with the square of the size, up to this.
+const MOST_GROWTH: f64 = 1e30;
 /// Components of ∇u are changed by so much for a difference.
 const CHANGE: f64 = 1e-6;
 /// Multiplications by which the largest eigenvalue of a tangent is found, to a per mille where it stands out.
 const MULTIPLICATIONS: usize = 40;
 
-/// Growth of ω² of a law, by the size of the deformation.
+/// Growth of ω² of a law, by how far it is deformed.
 #[derive(Clone, Debug)]
 pub(super) struct Growth {
-    /// Size and growth, both ascending.
-    points: Vec<(f64, f64)>,
-    /// The first of them in each [`bucket`] of sizes, or else behind it.
-    first: Vec<usize>,
-    /// The largest eigenvalue of the isochoric part at rest (Pa).
-    isochoric: f64,
+    /// The law without its exponential fibres.
+    law: BlockLaw<f64>,
+    /// What [`tangents`] gives at rest (Pa).
+    rest: [f64; 4],
+    /// Whether the law ends at J = 0: see [`StrainColumns`](crate::backend::cpu::StrainColumns).
+    pub ends: bool,
+    /// How many of the stretches it was tried at; what was not is not needed yet.
+    tried: usize,
+    /// By size, of an element alone.
+    own: Table,
+    /// By squeeze, of plane waves.
+    waves: Table,
     /// Exponential fibres, and where they have their directions from.
     pub families: Vec<(ExponentialFibre<f64>, FamilyDirection<f64>)>,
     /// Families whose directions differ from element to element, quadratic ones included.
@@ -43,26 +57,71 @@ impl Growth {
         let varying = law.varying_families();
         let mut law = law.clone();
         let families = std::mem::take(&mut law.exponential);
-        let of_sample = |stretches: [f64; 3]| {
-            let found = tangents(&law, &stretches);
-            let ratio = |i: usize| if rest[i] > 0.0 { found[i] / rest[i] } else { 1.0 };
-            let mut gradient = Mat3::zero(0.0);
-            (0..3).for_each(|i| gradient.0[i][i] = stretches[i] - 1.0);
-            let [first, inverse] = sizes(&with_identity(&gradient));
-            (first.max(inverse), ratio(0).max(ratio(1)).max(ratio(2)))
-        };
-        let mut points: Vec<(f64, f64)> = samples().map(of_sample).collect();
-        points.retain(|(size, growth)| size.is_finite() && growth.is_finite());
-        points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let mut largest = 1.0_f64;
-        for (_, growth) in &mut points {
-            largest = largest.max(*growth);
-            *growth = largest;
+        let alone = law.fibres.is_none() && families.is_empty() && law.prony.is_empty();
+        let ends = !(alone && matches!(law.elastic, ElasticLaw::Linear(_) | ElasticLaw::StableNeoHookean(_)));
+        let mut new = Self { law, rest, ends, tried: 0, own: Table::new(), waves: Table::new(), families, varying };
+        // what is pressed flat or through itself is no limit there
+        for stretch in FLAT.into_iter().filter(|_| !ends) {
+            for stretches in [[stretch, 1.0, 1.0], [1.0, stretch, 1.0]] {
+                let [size, own, waves] = new.tried_at(stretches);
+                new.own.points.push((size, own));
+                new.waves.points.push((size, waves));
+            }
         }
-        points.insert(0, (1.0, 1.0));
-        let beyond = points.last().map_or(0, |(size, _)| bucket(*size) + 1);
-        let first = (0..=beyond).map(|b| points.partition_point(|(size, _)| bucket(*size) < b)).collect();
-        Self { points, first, isochoric: rest[0], families, varying }
+        new.own.sort();
+        new.waves.sort();
+        new
+    }
+
+    /// Tries the law at all stretches up to a size and a squeeze (see [`Strain`](crate::backend::cpu::Strain)): before
+    /// [`Growth::own`] or [`Growth::of_all`] is asked for that.
+    pub fn reach(&mut self, size: f64, squeeze: f64) {
+        let before = self.tried;
+        let mut s = STRETCH_RATIO.powi(self.tried as i32);
+        // the least size of samples of a stretch s is (s² + 2/s)/3; one more, so that all up to this are between two
+        while self.tried < STRETCHES && ((s * s + 2.0 / s) / 3.0 <= size || s * s <= squeeze) {
+            self.tried += 1;
+            s = STRETCH_RATIO.powi(self.tried as i32);
+            // those of one direction alone are small by the measure of a law that does not end: they have been tried
+            let count = if self.ends { SAMPLES } else { SAMPLES - ALONE };
+            let found = samples(s).map(|stretches| self.tried_at(stretches));
+            let found = &found[..count];
+            if found.iter().flatten().any(|number| !number.is_finite()) {
+                // where numbers end there is nothing to try
+                self.tried = STRETCHES;
+                break;
+            }
+            found.iter().for_each(|&[size, own, _]| self.own.points.push((size, own)));
+            // those that are pulled are squeezed less, and stiffer for another reason
+            let waves = found[PULLED..].iter().fold(1.0, |most: f64, [.., waves]| most.max(*waves));
+            self.waves.points.push((s * s, waves));
+        }
+        if self.tried > before {
+            self.own.sort();
+            self.waves.sort();
+        }
+    }
+
+    /// Size of a sample, and the growth of an element alone and of plane waves.
+    fn tried_at(&self, stretches: [f64; 3]) -> [f64; 3] {
+        let found = tangents(&self.law, &stretches);
+        let ratio = |i: usize| if self.rest[i] > 0.0 { found[i] / self.rest[i] } else { 1.0 };
+        let mut gradient = Mat3::zero(0.0);
+        (0..3).for_each(|i| gradient.0[i][i] = stretches[i] - 1.0);
+        let [first, inverse, _] = sizes(&with_identity(&gradient), self.ends);
+        // max forgets what is no number
+        let own = (0..3).map(ratio).fold(0.0, |most: f64, ratio| if ratio.is_nan() { ratio } else { most.max(ratio) });
+        [first.max(inverse), own, ratio(3)]
+    }
+
+    /// Growth of an element's own ω² at most without exponential fibres, for a size within [`Growth::reach`].
+    pub fn own(&self, size: f64) -> f64 {
+        self.own.at(size)
+    }
+
+    /// The same of ω² of all bodies, for a size and a squeeze.
+    pub fn of_all(&self, size: f64, squeeze: f64) -> f64 {
+        self.own.at(size).max(self.waves.at(squeeze))
     }
 
     /// What a family of exponential fibres adds to the growth, for a C and its direction: k₁ e^x (4 (1 + 2x) M + 2Ē) with
@@ -75,11 +134,36 @@ impl Growth {
         let exponent = (family.k2 * strain * strain).min(40.0);
         let tangent = family.k1 * exponent.exp() * (4.0 * (1.0 + 2.0 * exponent) * measure + 2.0 * strain);
         // at rest it is part of what growth is measured by
-        ((tangent - 4.0 * family.k1) / self.isochoric).max(0.0)
+        ((tangent - 4.0 * family.k1) / self.rest[0]).max(0.0)
+    }
+}
+
+/// Growth by how far something is deformed, as straight pieces that never fall.
+#[derive(Clone, Debug)]
+struct Table {
+    /// Deformation and growth, both ascending.
+    points: Vec<(f64, f64)>,
+    /// The first of them in each [`bucket`] of deformations, or else behind it.
+    first: Vec<usize>,
+}
+
+impl Table {
+    fn new() -> Self {
+        Self { points: vec![(1.0, 1.0)], first: vec![0, 1] }
     }
 
-    /// Growth of ω² at most without exponential fibres, for a deformation of a size; infinite beyond all that was tried.
-    pub fn at(&self, size: f64) -> f64 {
+    fn sort(&mut self) {
+        self.points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let mut largest = 1.0_f64;
+        for (_, growth) in &mut self.points {
+            largest = largest.max(*growth);
+            *growth = largest;
+        }
+        let beyond = self.points.last().map_or(0, |(size, _)| bucket(*size) + 1);
+        self.first = (0..=beyond).map(|b| self.points.partition_point(|(size, _)| bucket(*size) < b)).collect();
+    }
+
+    fn at(&self, size: f64) -> f64 {
         let mut after = self.first.get(bucket(size)).copied().unwrap_or(self.points.len());
         while self.points.get(after).is_some_and(|(s, _)| *s < size) {
             after += 1;
@@ -87,7 +171,7 @@ impl Growth {
         match (after.checked_sub(1).map(|i| self.points[i]), self.points.get(after)) {
             (Some((s0, g0)), Some(&(s1, g1))) => g0 + (g1 - g0) * (size - s0) / (s1 - s0),
             (None, _) => 1.0,
-            (Some(_), None) => f64::INFINITY,
+            (Some((s, g)), None) => (g * (size / s) * (size / s)).min(MOST_GROWTH),
         }
     }
 }
@@ -97,30 +181,34 @@ fn bucket(size: f64) -> usize {
     ((size.to_bits() >> 46) as usize).saturating_sub((1.0_f64.to_bits() >> 46) as usize)
 }
 
+/// How many samples there are of a stretch; the first of them are pulled, the others squeezed, the last in one direction alone.
+const SAMPLES: usize = 9;
+const PULLED: usize = 2;
+const ALONE: usize = 2;
+/// Stretches in one direction alone at which laws that do not end at J = 0 are tried.
+const FLAT: [f64; 9] = [0.8, 0.6, 0.4, 0.2, 0.1, 0.0, -0.2, -0.5, -1.0];
+
 /// Principal stretches that are tried: of constant volume pulled, squeezed and sheared, along the fibres and across, and of
 /// one direction alone.
-fn samples() -> impl Iterator<Item = [f64; 3]> {
-    (1..=STRETCHES).flat_map(|k| {
-        let s = LARGEST_STRETCH.powf(k as f64 / STRETCHES as f64);
-        let (r, root) = (1.0 / s, s.sqrt());
-        let thin = 1.0 / root;
-        [
-            [s, thin, thin],
-            [thin, s, thin],
-            [r, root, root],
-            [root, r, root],
-            [s, r, 1.0],
-            [r, s, 1.0],
-            [1.0, s, r],
-            [r, 1.0, 1.0],
-            [1.0, r, 1.0],
-        ]
-    })
+fn samples(s: f64) -> [[f64; 3]; SAMPLES] {
+    let (r, root) = (1.0 / s, s.sqrt());
+    let thin = 1.0 / root;
+    [
+        [s, thin, thin],
+        [thin, s, thin],
+        [r, root, root],
+        [root, r, root],
+        [s, r, 1.0],
+        [r, s, 1.0],
+        [1.0, s, r],
+        [r, 1.0, 1.0],
+        [1.0, r, 1.0],
+    ]
 }
 
 /// The largest eigenvalues (Pa) of ∂P/∂F for F with these diagonals and fibres along x: of the isochoric stress along changes
-/// that keep the volume, of the volumetric stress, and of both together.
-fn tangents(law: &BlockLaw<f64>, stretches: &[f64; 3]) -> [f64; 3] {
+/// that keep the volume, of the volumetric stress, and of both together; then the largest (a⊗b) : ∂P/∂F : (a⊗b) along the axes.
+fn tangents(law: &BlockLaw<f64>, stretches: &[f64; 3]) -> [f64; 4] {
     let mut gradient = Mat3::zero(0.0);
     (0..3).for_each(|i| gradient.0[i][i] = stretches[i] - 1.0);
     let stresses = |gradient: &Mat3<f64>| {
@@ -157,7 +245,8 @@ fn tangents(law: &BlockLaw<f64>, stretches: &[f64; 3]) -> [f64; 3] {
     let [isochoric, volumetric] = tangents;
     let whole: [[f64; 9]; 9] = std::array::from_fn(|i| std::array::from_fn(|j| isochoric[i][j] + volumetric[i][j]));
     let keeping = across(&isochoric, stretches);
-    [largest_eigenvalue(&keeping), largest_eigenvalue(&volumetric), largest_eigenvalue(&whole)]
+    let wave = (0..9).fold(0.0_f64, |most, i| most.max(whole[i][i]));
+    [largest_eigenvalue(&keeping), largest_eigenvalue(&volumetric), largest_eigenvalue(&whole), wave]
 }
 
 /// A tangent along changes of F across F⁻ᵀ: (1 − n nᵀ) A (1 − n nᵀ).
@@ -192,7 +281,7 @@ fn largest_eigenvalue(a: &[[f64; 9]; 9]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::materials::{ElasticLaw, Linear, NeoHookean};
+    use crate::materials::{Linear, NeoHookean};
 
     fn law(elastic: ElasticLaw<f64>) -> BlockLaw<f64> {
         BlockLaw { elastic, fibres: None, exponential: vec![], prony: vec![], volumetric: vec![], reproject: false }
@@ -200,25 +289,30 @@ mod tests {
 
     #[test]
     fn a_linear_law_never_stiffens_and_a_neo_hookean_one_with_the_size_of_the_deformation() {
-        let linear = Growth::of(&law(ElasticLaw::Linear(Linear { shear: 1e3, bulk: 1e4 })));
-        assert!((linear.at(4.0) - 1.0).abs() < 1e-6);
-        let soft = Growth::of(&law(ElasticLaw::NeoHookean(NeoHookean { shear: 1e3, bulk: 1e5 })));
+        let mut linear = Growth::of(&law(ElasticLaw::Linear(Linear { shear: 1e3, bulk: 1e4 })));
+        linear.reach(4.0, 9.0);
+        assert!((linear.of_all(4.0, 9.0) - 1.0).abs() < 1e-6);
+        let mut soft = Growth::of(&law(ElasticLaw::NeoHookean(NeoHookean { shear: 1e3, bulk: 1e5 })));
+        soft.reach(10.0, 10.0);
         // at constant volume the volumetric part is κ tr C⁻¹, 3κ at rest: the size itself; isochoric parts and changes of
         // volume add to it
         for size in [1.5_f64, 3.0, 6.0] {
-            let growth = soft.at(size);
+            let growth = soft.own(size);
             println!("{size}: {growth}");
             assert!(growth > 0.9 * size && growth < 4.0 * size, "{size}: {growth}");
         }
-        assert!(soft.at(1e3).is_infinite() && soft.at(f64::INFINITY).is_infinite());
-        assert_eq!((soft.at(1.0), soft.at(0.999)), (1.0, 1.0));
+        // beyond what was tried it goes on, and stays a number
+        assert!(soft.own(1e3) > soft.own(10.0) && soft.own(f64::INFINITY) == MOST_GROWTH);
+        assert_eq!((soft.own(1.0), soft.own(0.999)), (1.0, 1.0));
+        // waves through what is squeezed to half its height are twice as quick
+        assert!((4.0..4.5).contains(&soft.of_all(1.0, 4.0)), "{}", soft.of_all(1.0, 4.0));
         for k in 0..2000 {
             let size = 1.0 + 4e-3 * f64::from(k);
-            let after = soft.points.partition_point(|(s, _)| *s < size);
-            let (s0, g0) = soft.points[after.max(1) - 1];
-            let (s1, g1) = soft.points[after];
+            let after = soft.own.points.partition_point(|(s, _)| *s < size);
+            let (s0, g0) = soft.own.points[after.max(1) - 1];
+            let (s1, g1) = soft.own.points[after];
             let between = if after == 0 { 1.0 } else { g0 + (g1 - g0) * (size - s0) / (s1 - s0) };
-            assert_eq!(soft.at(size), between, "{size}");
+            assert_eq!(soft.own(size), between, "{size}");
         }
     }
 

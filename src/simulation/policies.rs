@@ -13,21 +13,24 @@ use crate::scene::schema::WhenUnstable;
 
 /// Elements go together whose ω² is at least this share of the largest.
 const NEARLY: f64 = 0.8;
-/// Who only watches finds the highest frequency so many times, and once more for so many steps.
-const FINDINGS: (u64, u64) = (4, 1000);
+/// Who only watches finds the highest frequency so many times, and once more for so many steps: each takes some tens.
+const FINDINGS: (u64, u64) = (8, 200);
 /// How often mass is added in one step of the run by what counts; then by the elements' own bounds, which are certain.
 const ROUNDS: usize = 4;
 
 impl Simulation {
     /// Does what the scene wants done where the step stays.
-    pub(super) fn hold(&mut self, follower: &mut Follower, mut seen: Seen) -> Result<(), Error> {
+    pub(super) fn hold(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<(), Error> {
         let (step, time_step) = (self.step_count(), self.world.resource::<Clock>().time_step);
         let pressing = time_step > follower.most() * step_of(seen.square);
         // mass is not added and elements are not removed on the word of the cheap bound
         let watches = follower.policy == WhenUnstable::Watch;
         let affordable = follower.history.sharp_looks < FINDINGS.0 + step / FINDINGS.1;
-        let found = pressing && (affordable || !watches) && self.find(follower, &mut seen)?;
-        follower.found.seen.get_or_insert(seen);
+        let found = match watches {
+            true => pressing && affordable && self.estimate(follower, seen)?,
+            false => pressing && self.find(follower, seen)?,
+        };
+        follower.found.seen.get_or_insert(*seen);
         match follower.policy {
             WhenUnstable::Watch if time_step > step_of(follower.found.known) => {
                 let now = self.time();
@@ -38,7 +41,7 @@ impl Simulation {
             }
             _ if !found || time_step <= follower.most() * step_of(seen.square) => Ok(()),
             WhenUnstable::ScaleMass { most } => self.make_heavier(follower, time_step, most),
-            WhenUnstable::Remove => self.remove_quickest(follower, &seen),
+            WhenUnstable::Remove => self.remove_quickest(follower),
             WhenUnstable::Watch | WhenUnstable::Adapt => Ok(()),
         }
     }
@@ -51,9 +54,7 @@ impl Simulation {
             block.remember(&self.world);
         }
         seen.square = square_of(limit);
-        let found = &mut follower.found;
-        (found.known, found.known_at) = (seen.square, self.step_count());
-        (found.seen, found.guessed) = (Some(*seen), false);
+        follower.found.take(seen);
         follower.history.sharp_looks += 1;
         Ok(true)
     }
@@ -67,9 +68,10 @@ impl Simulation {
             // what is known of all is worth more than the bound of an element, until it leads nowhere
             let known = if round < ROUNDS { follower.found.known } else { f64::INFINITY };
             let mut additions = Additions::default();
-            for block in &follower.watched {
-                let squares = block.counts_for(&self.world, known).into_iter();
-                let bounds: Vec<(usize, f64)> = squares.map(|(row, square)| (row, step_of(square))).collect();
+            for block in &mut follower.watched {
+                let squares = block.now(&self.world).into_iter();
+                let bounds: Vec<(usize, f64)> =
+                    squares.map(|(row, square, ratio)| (row, step_of(square.min(known * ratio)))).collect();
                 additions.and(&self.world, block.entity, &bounds, wanted);
             }
             self.may_add(&additions, follower, most)?;
@@ -95,13 +97,18 @@ impl Simulation {
 
     /// Removes the elements with the highest frequencies, as many as are nearly as quick as the quickest; others follow if
     /// that is not enough.
-    fn remove_quickest(&mut self, follower: &mut Follower, seen: &Seen) -> Result<(), Error> {
+    fn remove_quickest(&mut self, follower: &mut Follower) -> Result<(), Error> {
         let step = self.step_count();
         bring_to_host(&mut self.world, |_, name| [Alive::NAME, RemovalStep::NAME].contains(&name))?;
-        for block in &follower.watched {
-            let quick = block.now(&self.world).into_iter().filter(|(_, square)| *square >= NEARLY * seen.of_elements);
-            let quick: Vec<usize> = quick.map(|(row, _)| row).collect();
-            if let Some(mut due) = self.world.get_mut::<RemovalStep>(block.entity) {
+        let mut all = Vec::new();
+        for block in &mut follower.watched {
+            all.push((block.entity, block.now(&self.world)));
+        }
+        let quickest = all.iter().flat_map(|(_, rows)| rows).fold(0.0_f64, |most, (_, square, _)| most.max(*square));
+        for (entity, rows) in all {
+            let quick = rows.into_iter().filter(|(_, square, _)| *square >= NEARLY * quickest);
+            let quick: Vec<usize> = quick.map(|(row, ..)| row).collect();
+            if let Some(mut due) = self.world.get_mut::<RemovalStep>(entity) {
                 quick.iter().for_each(|&row| due[row] = u32::try_from(step + 1).unwrap_or(u32::MAX));
                 follower.history.removed += quick.len() as u64;
             }

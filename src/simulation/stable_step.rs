@@ -10,9 +10,10 @@ use super::{Simulation, added_mass};
 use crate::assembly::{StableStep, stable_step};
 use crate::backend::device::bring_to_host;
 use crate::error::Error;
-use crate::scene::schema::{Inversion, Scene, StepBound, WhenUnstable};
+use crate::scene::schema::{Constraint, Curve, Inversion, Scene, StepBound, WhenUnstable};
 use crate::scene::{Diagnostics, SceneFile};
 use bevy_ecs::prelude::*;
+use glam::DVec3;
 use serde::Serialize;
 
 /// The true limit is known to the share of half of this.
@@ -108,7 +109,9 @@ pub(super) fn choose(
         _ => bound.time_step,
     };
     // rounding of means must not take what the elements alone allow
-    let certain = step_of(bound_at_rest(world)).max(heavier);
+    let by_nodes = step_of(bound_at_rest(world));
+    // where nothing moves by itself, anything is stable: the elements' step is as good as any
+    let certain = if by_nodes.is_finite() { by_nodes.max(heavier) } else { heavier };
     let stays = reason_to_stay(&scene.scene);
     if integration.bound == StepBound::Iterated
         && scene.scene.when_unstable() == WhenUnstable::Adapt
@@ -164,7 +167,16 @@ pub(super) fn choose(
 /// Why `bound: Auto` stays with what the elements allow: what needs the room between that and the true limit.
 fn reason_to_stay(scene: &Scene) -> Option<&'static str> {
     let removes = scene.materials.values().any(|material| material.inversion() == Inversion::Remove);
+    let jumps = |constraint: &Constraint| match constraint {
+        Constraint::Prescribed { curve: Curve::Step { .. }, displacement, gradient, rotation, .. } => {
+            gradient.iter().chain([displacement, rotation]).any(|moved| *moved != DVec3::ZERO)
+        }
+        _ => false,
+    };
     match scene.when_unstable() {
+        WhenUnstable::Adapt if scene.constraints.iter().any(jumps) => {
+            Some("nodes are moved by a jump, whose work is told only in steps of one length")
+        }
         WhenUnstable::Adapt if removes || !scene.removal.is_empty() => {
             Some("elements that are removed take their mass with them, which raises the highest frequency at once")
         }

@@ -3,40 +3,51 @@
 use super::damped_step::{growth_with_damping, is_damped};
 use super::growth::Growth;
 use super::mass_scaling::heavy_mass;
-use crate::assembly::square_frequencies;
-use crate::backend::cpu::{BlockLaw, Cpu, Strain, StrainColumns, strains};
+use crate::assembly::{SquaresAtRest, square_frequencies};
+use crate::backend::cpu::{BlockLaw, Cpu, Strain, StrainColumns, Visit, strains};
 use crate::components::*;
-use crate::evaluation::{lane_place, with_element_of};
+use crate::evaluation::{lane_place, node_count, rest_volume, with_element_of};
 use crate::math::LANES;
 use crate::observation::shortest_edge;
 use bevy_ecs::prelude::*;
 
 /// Elements looked at in one task: what is found of them stays in the core's cache.
 const ROWS_A_TASK: usize = 512;
+/// Tasks whose elements are looked at one by one together.
+const TASKS_AT_ONCE: usize = 8;
+/// What elements come to is known to this: their ω², and how much stiffer they have become.
+const NEARLY: f64 = 1.1;
 
 /// The elements of a block, and what is known of their frequencies.
 pub(super) struct Watched {
     pub entity: Entity,
     growth: Growth,
-    /// Of each element the bound of ω² at rest (1/s²).
+    /// Of each element the bound of ω² at rest (1/s²); 0 where all its nodes are held: it does not move by itself.
     pub squares: Vec<f64>,
     /// The shortest distance between two nodes of an element at rest (m).
     pub shortest_edge: f64,
-    /// The growth of ω² when the frequency of all was found last.
+    /// The growth of ω² of all, by each element, when that was found last.
     known_growth: Vec<f32>,
+    /// Of the elements of each task that are there: the largest bound at rest (1/s²), and the least growth of ω² of all
+    /// when that was found.
+    tasks: Vec<(f64, f64)>,
+    /// How many elements were there when that was summed up.
+    counted: usize,
     /// Whether anything is damped in proportion to its stiffness.
-    is_damped: bool,
+    pub is_damped: bool,
 }
 
 /// What a look at all elements shows.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Seen {
-    /// ω² of all at most (1/s²).
+    /// ω² of all at most (1/s²): by the elements alone, or by what was known of all.
     pub square: f64,
     /// The largest bound of ω² of an element at rest, times its growth (1/s²).
     pub of_elements: f64,
     /// The largest bound of ω² of an element at rest (1/s²).
     pub at_rest: f64,
+    /// The most that the stiffness of an element has grown since the frequency of all was found.
+    pub ratio: f64,
     /// The fastest deformation in a step: the largest change of strain, relative to the present lengths.
     pub speed: f64,
     /// Elements that are there.
@@ -44,19 +55,31 @@ pub(super) struct Seen {
 }
 
 impl Seen {
-    pub const NOTHING: Self = Self { square: 0.0, of_elements: 0.0, at_rest: 0.0, speed: 0.0, alive: 0 };
+    pub const NOTHING: Self =
+        Self { square: f64::INFINITY, of_elements: 0.0, at_rest: 0.0, ratio: 1.0, speed: 0.0, alive: 0 };
 
     /// Of both together.
     pub fn and(self, other: Self) -> Self {
         Self {
-            square: self.square.max(other.square),
+            square: f64::INFINITY,
             of_elements: self.of_elements.max(other.of_elements),
             at_rest: self.at_rest.max(other.at_rest),
+            ratio: self.ratio.max(other.ratio),
             // max forgets what is no number
             speed: if other.speed.is_nan() { f64::INFINITY } else { self.speed.max(other.speed) },
             alive: self.alive + other.alive,
         }
     }
+}
+
+/// Whether a node of an element can move by itself.
+fn moves(world: &World, entity: Entity, row: usize) -> bool {
+    let (Some(block), Some(connectivity)) = (world.get::<Block>(entity), world.get::<Connectivity>(entity)) else {
+        return true;
+    };
+    let (corners, held) = (node_count(block.kind), world.get::<ConstrainedAxes>(block.body));
+    let node = |corner: usize| connectivity[lane_place(row, corners, corner)] as usize;
+    held.is_none_or(|held| (0..corners).any(|corner| held[node(corner)] & 7 != 7))
 }
 
 impl Watched {
@@ -70,20 +93,47 @@ impl Watched {
             let block = world.get::<Block>(entity)?;
             let rest = world.get::<RestPosition>(block.body)?;
             let shortest_edge = shortest_edge(block, world.get::<Connectivity>(entity)?, rest);
-            let (squares, known_growth) = (Vec::new(), Vec::new());
-            let mut watched = Self { entity, growth, squares, shortest_edge, known_growth, is_damped };
+            let (squares, tasks) = (Vec::new(), Vec::new());
+            let known_growth = vec![1.0; block.count];
+            let mut watched =
+                Self { entity, growth, squares, shortest_edge, known_growth, tasks, counted: 0, is_damped };
             watched.weigh(world);
-            watched.known_growth = vec![1.0; watched.squares.len()];
             Some(watched)
         };
-        blocks.iter().filter_map(watched).collect()
+        let all = blocks.iter().filter_map(watched).collect();
+        // from here on bodies may change
+        world.remove_resource::<SquaresAtRest>();
+        all
     }
 
     /// Takes the bounds at rest anew, with the mass that was added by now.
     pub fn weigh(&mut self, world: &World) {
         let squares = square_frequencies(world, self.entity).into_iter().enumerate();
         let heavier = |row: usize| heavy_mass(world, self.entity, row).map_or(1.0, |(_, heavier)| heavier);
-        self.squares = squares.map(|(row, (square, _))| square / heavier(row)).collect();
+        let of_row = |(row, (square, _)): (usize, (f64, f64))| match moves(world, self.entity, row) {
+            true => square / heavier(row),
+            false => 0.0,
+        };
+        self.squares = squares.map(of_row).collect();
+        self.sum_up(world);
+    }
+
+    /// What tasks come to, of the elements that are there.
+    fn sum_up(&mut self, world: &World) {
+        let (Some(block), Some(shape)) = (world.get::<Block>(self.entity), world.get::<RestShape>(self.entity)) else {
+            return;
+        };
+        let is_there = |row: &usize| rest_volume(block, *row, shape) > 0.0;
+        let count = self.squares.len();
+        let of_task = |task: usize| {
+            let rows = task * ROWS_A_TASK..count.min((task + 1) * ROWS_A_TASK);
+            let rows = rows.filter(is_there).filter(|&row| self.squares[row] > 0.0);
+            rows.fold((0.0_f64, f64::INFINITY), |(most, least), row| {
+                (most.max(self.squares[row]), least.min(f64::from(self.known_growth[row])))
+            })
+        };
+        self.tasks = (0..count.div_ceil(ROWS_A_TASK)).map(of_task).collect();
+        self.counted = (0..count).filter(is_there).count();
     }
 
     /// The growth of ω² of each element when the frequency of all was found last.
@@ -92,74 +142,149 @@ impl Watched {
     }
 
     /// Takes it from a snapshot; false where it is none of these elements.
-    pub fn take_known_growth(&mut self, growth: Vec<f32>) -> bool {
-        // what is squeezed flat has grown without end
+    pub fn take_known_growth(&mut self, growth: Vec<f32>, world: &World) -> bool {
         let fits = growth.len() == self.squares.len();
         if fits {
             self.known_growth = growth;
+            self.sum_up(world);
         }
         fits
     }
 
-    /// Looks at all elements; ω² of all was `known` (1/s²) when it was found last.
-    pub fn look(&self, world: &World, known: f64) -> Seen {
-        let of_growths = self.growths(world, Seen::NOTHING, |seen, row, growth, speed| {
-            let own = self.squares[row] * growth;
-            let ratio = (growth / f64::from(self.known_growth[row])).max(1.0);
-            // numbers that snapshots can hold
-            let (square, at_rest) = (own.min(known * ratio).min(f64::MAX), self.squares[row]);
-            *seen = seen.and(Seen { square, of_elements: own.min(f64::MAX), at_rest, speed, alive: 1 });
-        });
-        of_growths.into_iter().fold(Seen::NOTHING, Seen::and)
+    /// Looks at all elements: first at what those of a task come to were one of them the largest in everything, then at one after the
+    /// other where that comes to most.
+    pub fn look(&mut self, world: &World) -> Seen {
+        let (cpu, count) = (world.resource::<Cpu>(), self.squares.len());
+        let nothing = Strain { row: 0, size: 1.0, squeeze: 1.0, speed: 0.0, more: 0.0 };
+        let widest = |task: usize| self.strains(world, task, None).unwrap_or((nothing, 0));
+        let widest = cpu.map(count.div_ceil(ROWS_A_TASK), widest);
+        let most = |of: fn(&Strain) -> f64| widest.iter().map(|(most, _)| of(most)).fold(1.0, f64::max);
+        self.growth.reach(most(|task| task.size), most(|task| task.squeeze));
+        if widest.iter().map(|(_, alive)| alive).sum::<usize>() != self.counted {
+            self.sum_up(world);
+        }
+        let tasks = widest.iter().zip(&self.tasks).enumerate().filter(|(_, ((_, alive), _))| *alive > 0);
+        let tasks: Vec<(usize, Seen)> = tasks
+            .map(|(task, (&(widest, alive), &(at_rest, least_known)))| {
+                let [own, of_all] = self.growth_of(widest.size, widest.squeeze, widest.more);
+                let (of_elements, ratio) = ((at_rest * own).min(f64::MAX), (of_all / least_known).max(1.0));
+                (task, Seen { square: f64::INFINITY, of_elements, at_rest, ratio, speed: widest.speed, alive })
+            })
+            .collect();
+        self.refine(world, tasks)
+    }
+
+    /// Looks at elements one by one in those tasks that may come to most.
+    fn refine(&self, world: &World, mut tasks: Vec<(usize, Seen)>) -> Seen {
+        let at_rest = tasks.iter().fold(0.0_f64, |most, (_, task)| most.max(task.at_rest));
+        let most = |task: &Seen| (task.of_elements / at_rest).max(task.ratio);
+        tasks.sort_by(|(_, a), (_, b)| most(b).total_cmp(&most(a)));
+        // what is known to come to so much at least, and all others
+        let mut seen = Seen { of_elements: at_rest, ..Seen::NOTHING };
+        let mut others = Seen::NOTHING;
+        let mut left = tasks.into_iter();
+        loop {
+            let mut chosen = Vec::new();
+            for (task, at_most) in left.by_ref() {
+                if at_most.of_elements > NEARLY * seen.of_elements || at_most.ratio > NEARLY * seen.ratio {
+                    chosen.push((task, at_most));
+                } else {
+                    others = others.and(at_most);
+                }
+                if chosen.len() == TASKS_AT_ONCE {
+                    break;
+                }
+            }
+            if chosen.is_empty() {
+                return seen.and(others);
+            }
+            let found = world.resource::<Cpu>().map(chosen.len(), |i| self.one_by_one(world, chosen[i]));
+            seen = found.into_iter().fold(seen, Seen::and);
+        }
+    }
+
+    /// What the elements of a task come to that may all together come to `at_most`.
+    fn one_by_one(&self, world: &World, (task, at_most): (usize, Seen)) -> Seen {
+        let (mut of_elements, mut ratio) = (0.0_f64, 1.0_f64);
+        self.strains(
+            world,
+            task,
+            Some(&mut |strains: &[Strain]| {
+                for strain in strains.iter().filter(|strain| self.squares[strain.row] > 0.0) {
+                    let [own, of_all] = self.growth_of(strain.size, strain.squeeze, strain.more);
+                    of_elements = of_elements.max(self.squares[strain.row] * own);
+                    ratio = ratio.max(of_all / f64::from(self.known_growth[strain.row]));
+                }
+            }),
+        );
+        Seen { of_elements, ratio, ..at_most }
     }
 
     /// Remembers the present growth, now that the frequency of all is known.
     pub fn remember(&mut self, world: &World) {
-        let growths = self.growths(world, Vec::new(), |found, row, growth, _| found.push((row, growth as f32)));
+        self.reach_all(world);
+        let growths = self.growths(world, Vec::new(), |found, row, [_, of_all]| found.push((row, of_all as f32)));
         growths.into_iter().flatten().for_each(|(row, growth)| self.known_growth[row] = growth);
+        self.sum_up(world);
     }
 
-    /// What ω² of each element that is there counts for as it is now (1/s²), with its row: its own bound, or what was `known` of all
-    /// (1/s²) times its growth since.
-    pub fn counts_for(&self, world: &World, known: f64) -> Vec<(usize, f64)> {
-        let found = self.growths(world, Vec::new(), |found, row, growth, _| {
-            let ratio = (growth / f64::from(self.known_growth[row])).max(1.0);
-            found.push((row, (self.squares[row] * growth).min(known * ratio)));
+    /// Of each element that is there: its row, the bound of its own ω² as it is now (1/s²), and how much stiffer it has become since the
+    /// frequency of all was found.
+    pub fn now(&mut self, world: &World) -> Vec<(usize, f64, f64)> {
+        self.reach_all(world);
+        let found = self.growths(world, Vec::new(), |found, row, [own, of_all]| {
+            let ratio = (of_all / f64::from(self.known_growth[row])).max(1.0);
+            found.push((row, self.squares[row] * own, ratio));
         });
         found.into_iter().flatten().collect()
     }
 
-    /// The bound of ω² of each element that is there, as it is now (1/s²), with its row.
-    pub fn now(&self, world: &World) -> Vec<(usize, f64)> {
-        let found =
-            self.growths(world, Vec::new(), |found, row, growth, _| found.push((row, self.squares[row] * growth)));
-        found.into_iter().flatten().collect()
+    /// Growth of an element's own ω², and of that of all.
+    fn growth_of(&self, size: f64, squeeze: f64, more: f64) -> [f64; 2] {
+        // as much as f32 can keep
+        [self.growth.own(size), self.growth.of_all(size, squeeze)]
+            .map(|growth| growth_with_damping(growth + more, self.is_damped).min(f64::from(f32::MAX)))
     }
 
-    /// Visits all elements that are there with row, growth of ω² and speed of deformation: each of several threads begins with
-    /// `start`, and what they made of it comes in the order of rows.
+    /// Tries the law as far as an element is deformed now.
+    fn reach_all(&mut self, world: &World) {
+        let widest = self.each_task(world, [1.0_f64; 2], |[size, squeeze], strain| {
+            (*size, *squeeze) = (size.max(strain.size), squeeze.max(strain.squeeze));
+        });
+        let most = |i: usize| widest.iter().fold(1.0, |most: f64, task| most.max(task[i]));
+        self.growth.reach(most(0), most(1));
+    }
+
+    /// Visits all elements that are there with row and both growths of ω².
     fn growths<R: Clone + Send + Sync>(
         &self,
         world: &World,
         start: R,
-        visit: impl Fn(&mut R, usize, f64, f64) + Sync + Send,
+        visit: impl Fn(&mut R, usize, [f64; 2]) + Sync + Send,
     ) -> Vec<R> {
-        let (cpu, count) = (world.resource::<Cpu>(), self.squares.len());
-        let task = |task: usize| {
-            let mut found = start.clone();
-            for strain in self.strains(world, task).unwrap_or_default() {
-                // beyond all that was tried: as much as f32 can keep
-                let growth = growth_with_damping(self.growth.at(strain.size) + strain.more, self.is_damped);
-                let growth = growth.min(f64::from(f32::MAX));
-                visit(&mut found, strain.row, growth, strain.speed);
-            }
-            found
-        };
-        cpu.map(count.div_ceil(ROWS_A_TASK), task)
+        self.each_task(world, start, |found, strain| {
+            visit(found, strain.row, self.growth_of(strain.size, strain.squeeze, strain.more));
+        })
     }
 
-    /// Of the elements of a task; `None` where the world has them no longer.
-    fn strains(&self, world: &World, task: usize) -> Option<Vec<Strain>> {
+    /// Visits all elements that are there: each of several threads begins with `start`, and what they made of it comes in the order of
+    /// rows.
+    fn each_task<R: Clone + Send + Sync>(
+        &self,
+        world: &World,
+        start: R,
+        visit: impl Fn(&mut R, &Strain) + Sync + Send,
+    ) -> Vec<R> {
+        let task = |task: usize| {
+            let mut found = start.clone();
+            self.strains(world, task, Some(&mut |strains| strains.iter().for_each(|strain| visit(&mut found, strain))));
+            found
+        };
+        world.resource::<Cpu>().map(self.squares.len().div_ceil(ROWS_A_TASK), task)
+    }
+
+    /// Visits the elements of a task that are there; what they come to, and how many they are. `None` where the world has them no longer.
+    fn strains(&self, world: &World, task: usize, visit: Option<Visit<'_>>) -> Option<(Strain, usize)> {
         let block = world.get::<Block>(self.entity)?;
         let (u, d) = (world.get::<Displacement>(block.body)?, world.get::<DisplacementStep>(block.body)?);
         let (connectivity, shape) = (world.get::<Connectivity>(self.entity)?, world.get::<RestShape>(self.entity)?);
@@ -175,8 +300,9 @@ impl Watched {
         macro_rules! run {
             ($T:ty) => {{
                 let (displacement, step, rest_shape) = (u.slice(), d.slice(), shape.slice());
-                let columns = StrainColumns::<$T> { displacement, step, connectivity, rest_shape };
-                with_element_of!(block, E => strains::<E, $T>(cpu, &columns, groups, more))
+                let ends = self.growth.ends;
+                let columns = StrainColumns::<$T> { displacement, step, connectivity, rest_shape, ends };
+                with_element_of!(block, E => strains::<E, $T>(cpu, &columns, groups, more, visit))
             }};
         }
         Some(match u.0 {

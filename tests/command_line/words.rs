@@ -102,12 +102,8 @@ fn tips_can_be_followed() {
     let said = place.done(&[&["run", "my block.ron"], &SHORT[..]].concat());
     assert!(said.contains("sinew render 'out/my block'"), "{said}");
     // a run that breaks down late enough leaves a state to go on from, and says how
-    let set = [
-        "--set",
-        "loads=[NodalForce(on: Set(\"z1\"), force: (0, 0, -9), curve: Ramp(end: 0.2))]",
-        "--set",
-        "guards.every=4",
-    ];
+    let set =
+        ["--set", "loads=[Gravity(acceleration: (0, 0, -9000), curve: Step(start: 0.1))]", "--set", "guards.every=4"];
     let ended = place.sinew(&[&["run", "my block.ron", "--backend", "cpu"], &set[..]].concat());
     ended.wants(1, &["--resume 'out/my block/snapshot_"]);
     let file = ended.complained.split("--resume '").nth(1).unwrap().split('\'').next().unwrap().to_string();

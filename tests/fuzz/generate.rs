@@ -1,5 +1,7 @@
-//! Whole scenes made up from a seed: small, sound, with every feature that a scene can have.
+//! Whole scenes made up from a seed: small, sound, with every feature that a scene can have. Every other one is violent: loads and
+//! motions far beyond what holds it, steps that are too large, guards that hardly look.
 
+use crate::dice::{Dice, Temper, number, one_of, size, vector};
 use fastrand::Rng;
 use std::fmt::Write;
 
@@ -9,12 +11,14 @@ pub struct Made {
     pub text: String,
     /// Whether elements go, or turn inside out, as soon as a number passes a limit: what rounding may decide.
     pub decides: bool,
+    /// How violent it is.
+    pub temper: Temper,
 }
 
-/// The scene of a seed.
-pub fn scene(seed: u64, duration: f64) -> Made {
-    let mut rng = Rng::with_seed(seed);
-    let r = &mut rng;
+/// The scene of a seed, and where known the step that is stable at the start (s): then it may have a step of its own.
+pub fn scene(seed: u64, duration: f64, stable: Option<f64>) -> Made {
+    let mut dice = Dice::of(seed);
+    let r = &mut dice;
     let mut text = format!("(duration: {duration:?}, ");
     let statics = r.u8(..12) == 0;
     if statics {
@@ -25,7 +29,7 @@ pub fn scene(seed: u64, duration: f64) -> Made {
     let _ = write!(text, "bodies: {{{}}}, ", described.join(", "));
     let (materials, mut decides) = materials(r);
     let _ = write!(text, "materials: {{{materials}}}, ");
-    let some = |r: &mut Rng, most: u8, make: &dyn Fn(&mut Rng) -> String| {
+    let some = |r: &mut Dice, most: u8, make: &dyn Fn(&mut Dice) -> String| {
         (0..r.u8(..=most)).map(|_| make(r)).collect::<Vec<_>>().join(", ")
     };
     let constraints = some(r, 3, &|r| constraint(&bodies, duration, statics, r));
@@ -36,13 +40,24 @@ pub fn scene(seed: u64, duration: f64) -> Made {
         decides |= removal.contains("Above") || removal.contains("Below");
         let _ = write!(text, "removal: [{removal}], ");
     }
-    let _ = write!(text, "integration: ({}), ", integration(statics, r));
+    let mild = integration(statics, r);
+    let temper = r.temper;
+    let steps = match r.wild() {
+        Some(wild) if !statics => violent_steps(mild, stable, temper, wild),
+        _ => mild,
+    };
+    let _ = write!(text, "integration: ({steps}), ");
     decides |= text.contains("when_unstable: Remove");
     let _ = write!(text, "fuse: {}, ", r.bool());
     if !statics && r.u8(..3) > 0 {
         let _ = write!(text, "output: (energies_every: {:?}), ", duration * number(r, 0.01, 0.4));
     }
-    let _ = write!(text, "guards: (every: {}), ", r.u64(1..80));
+    let every = r.u64(1..80);
+    let guards = match r.wild() {
+        Some(wild) => violent_guards(every, !text.contains("beyond_stable_step"), temper, wild),
+        None => format!("every: {every}"),
+    };
+    let _ = write!(text, "guards: ({guards}), ");
     text.push(')');
     // of a row of its own, so that all else of a seed stays as it was
     let mut later = Rng::with_seed(seed ^ 0x5eed);
@@ -56,25 +71,8 @@ pub fn scene(seed: u64, duration: f64) -> Made {
         // what stands at several places in equilibrium, or at the edge of one, rounding may decide
         decides = true;
     }
-    Made { text, decides }
-}
-
-fn number(r: &mut Rng, least: f64, most: f64) -> f64 {
-    least + (most - least) * r.f64()
-}
-
-/// Anything between two numbers, each power of ten alike.
-fn size(r: &mut Rng, least: f64, most: f64) -> f64 {
-    (number(r, least.ln(), most.ln())).exp()
-}
-
-fn vector(r: &mut Rng, most: f64) -> String {
-    let mut one = || if r.u8(..4) == 0 { 0.0 } else { number(r, -most, most) };
-    format!("({:?}, {:?}, {:?})", one(), one(), one())
-}
-
-fn one_of<'a>(r: &mut Rng, all: &[&'a str]) -> &'a str {
-    all[r.usize(..all.len())]
+    // violent motion multiplies what rounding leaves, up to the size of the body and beyond
+    Made { text, decides: decides || temper != Temper::Mild, temper }
 }
 
 /// A body, and what must be known to act on it.
@@ -86,7 +84,7 @@ struct Geometry {
 }
 
 impl Geometry {
-    fn of(number_of_it: usize, r: &mut Rng) -> Self {
+    fn of(number_of_it: usize, r: &mut Dice) -> Self {
         let size = size(r, 1e-3, 1.0);
         let kind = one_of(r, &["Tet4", "Tet4NodalPressure", "Hex8", "Hex8MeanDilatation"]);
         let cells = |r: &mut Rng| (r.u8(1..=3), r.u8(1..=3), r.u8(1..=3));
@@ -133,20 +131,25 @@ impl Geometry {
         let name = format!("b{number_of_it}");
         let mut text =
             format!("\"{name}\": (mesh: {mesh}, material: \"m\", translate: ({:?}, 0, 0)", 20.0 * number_of_it as f64);
-        let mut add = |r: &mut Rng, one_in: u8, what: &dyn Fn(&mut Rng) -> String| {
+        let mut add = |r: &mut Dice, one_in: u8, what: &dyn Fn(&mut Dice) -> String| {
             if r.u8(..one_in) == 0 {
                 let _ = write!(text, ", {}", what(r));
             }
         };
-        add(r, 4, &|r| format!("velocity: {}", vector(r, 0.3)));
-        add(r, 6, &|r| format!("spin: {}", vector(r, 5.0)));
+        let (velocity, spin) = (0.3 * r.beyond(1e3), 5.0 * r.beyond(1e3));
+        let (gradient, scrambled) = (0.1 * r.beyond(12.0), 0.02 * size * r.beyond(20.0));
+        add(r, 4, &|r| format!("velocity: {}", vector(r, velocity)));
+        add(r, 6, &|r| format!("spin: {}", vector(r, spin)));
         add(r, 8, &|r| format!("copies: 2, apart: ({:?}, 0, 0)", size * number(r, 1.5, 3.0)));
         add(r, 10, &|r| format!("refine: {}", r.u8(..=1)));
         add(r, 6, &|r| format!("rotate: {}", vector(r, 90.0)));
         add(r, 6, &|r| format!("hourglass: {:?}", number(r, 0.5, 2.0)));
         add(r, 6, &|r| match r.bool() {
-            true => format!("start: Affine(gradient: ({}, {}, {}))", vector(r, 0.1), vector(r, 0.1), vector(r, 0.1)),
-            false => format!("start: Scrambled(amplitude: {:?}, seed: {})", 0.02 * size, r.u8(..)),
+            true => {
+                let [x, y, z] = [0; 3].map(|_| vector(r, gradient));
+                format!("start: Affine(gradient: ({x}, {y}, {z}))")
+            }
+            false => format!("start: Scrambled(amplitude: {scrambled:?}, seed: {})", r.u8(..)),
         });
         add(r, 5, &|r| format!("regions: [(on: {}, material: \"n\")]", place(size, r)));
         text.push(')');
@@ -174,9 +177,13 @@ fn place(size: f64, r: &mut Rng) -> String {
     }
 }
 
-fn curve(duration: f64, r: &mut Rng) -> String {
+fn curve(duration: f64, r: &mut Dice) -> String {
     let mut time = || duration * number(r, 0.0, 1.0);
     let (a, b) = (time(), time());
+    // all at once, and so late that only the last look can see it
+    if let Some(share) = r.late() {
+        return format!(", curve: Step(start: {:?})", share * duration);
+    }
     let (start, end) = (a.min(b), a.max(b) + 1e-3 * duration);
     match r.u8(..6) {
         0 => String::new(),
@@ -197,38 +204,42 @@ fn axes(r: &mut Rng) -> &'static str {
     one_of(r, &["", "", ", axes: [X]", ", axes: [Y, Z]", ", axes: [X, Z]"])
 }
 
-fn constraint(bodies: &[Geometry], duration: f64, statics: bool, r: &mut Rng) -> String {
+fn constraint(bodies: &[Geometry], duration: f64, statics: bool, r: &mut Dice) -> String {
     let body = &bodies[r.usize(..bodies.len())];
     let head = format!("body: \"{}\", on: {}{}", body.name, place(body.size, r), axes(r));
     if r.bool() || statics && r.bool() {
         return format!("Fixed({head})");
     }
     let mut further = String::new();
+    // up to right through the body, and more than a turn
+    let (far, turned, strained) = (r.far_beyond(20.0), r.beyond(10.0), r.beyond(20.0));
     if r.u8(..3) > 0 {
-        let _ = write!(further, ", displacement: {}", vector(r, 0.3 * body.size));
+        let _ = write!(further, ", displacement: {}", vector(r, 0.3 * body.size * far));
     }
     if r.u8(..3) == 0 {
-        let _ = write!(further, ", rotation: {}, center: {}", vector(r, 60.0), vector(r, body.size));
+        let _ = write!(further, ", rotation: {}, center: {}", vector(r, 60.0 * turned), vector(r, body.size));
     }
     if r.u8(..4) == 0 {
-        let _ = write!(further, ", gradient: ({}, {}, {})", vector(r, 0.2), vector(r, 0.2), vector(r, 0.2));
+        let [x, y, z] = [0; 3].map(|_| vector(r, 0.2 * strained));
+        let _ = write!(further, ", gradient: ({x}, {y}, {z})");
     }
     format!("Prescribed({head}{further}{})", curve(duration, r))
 }
 
-fn load(bodies: &[Geometry], duration: f64, r: &mut Rng) -> String {
+fn load(bodies: &[Geometry], duration: f64, r: &mut Dice) -> String {
     let body = &bodies[r.usize(..bodies.len())];
     let on = format!("body: \"{}\", on: {}", body.name, place(body.size, r));
     let course = curve(duration, r);
+    let great = r.far_beyond(1e6);
     match r.u8(..5) {
         0 => format!(
             "NodalForce({on}, force: {}, share: {}{course})",
-            vector(r, 100.0 * body.size * body.size),
+            vector(r, 100.0 * great * body.size * body.size),
             one_of(r, &["Each", "Total"])
         ),
-        1 => format!("Pressure({on}, pressure: {:?}{course})", number(r, -300.0, 300.0)),
-        2 => format!("Traction({on}, traction: {}{course})", vector(r, 300.0)),
-        _ => format!("Gravity(body: \"{}\", acceleration: {}{course})", body.name, vector(r, 10.0)),
+        1 => format!("Pressure({on}, pressure: {:?}{course})", great * number(r, -300.0, 300.0)),
+        2 => format!("Traction({on}, traction: {}{course})", vector(r, 300.0 * great)),
+        _ => format!("Gravity(body: \"{}\", acceleration: {}{course})", body.name, vector(r, 10.0 * great)),
     }
 }
 
@@ -261,6 +272,37 @@ fn integration(statics: bool, r: &mut Rng) -> String {
         all.push("compensated: false".into());
     }
     all.join(", ")
+}
+
+/// How steps are taken in a violent scene: much as in a mild one, or with mass scaled, or of a length of its own, below what is stable
+/// or just beyond it.
+fn violent_steps(mild: String, stable: Option<f64>, temper: Temper, wild: &mut Rng) -> String {
+    let kind = match temper {
+        Temper::Heavy => wild.u8(2..4),
+        Temper::Late => wild.u8(..6),
+        _ => wild.u8(..8),
+    };
+    let share = number(wild, 0.3, 1.0);
+    let most = if temper == Temper::Heavy { number(wild, 0.2, 1.0) } else { size(wild, 0.02, 1.0) };
+    let own = |share: f64| stable.map_or(String::new(), |stable| format!(", step: {:?}", share * stable));
+    match kind {
+        0 | 1 => mild,
+        2 => format!("when_unstable: ScaleMass(most: {most:?})"),
+        3 => format!("when_unstable: ScaleMass(most: {most:?}){}", own(1.3 * share)),
+        4 => format!("when_unstable: Watch{}", own(share)),
+        5 => format!("when_unstable: {}{}", one_of(wild, &["Adapt", "Remove"]), own(share)),
+        _ => format!("beyond_stable_step: true, when_unstable: Watch{}", own(1.1 + share)),
+    }
+}
+
+/// How a violent scene is guarded: often so seldom that only the look at the end sees anything.
+fn violent_guards(every: u64, may_be_off: bool, temper: Temper, wild: &mut Rng) -> String {
+    let every = if wild.bool() { 1000 } else { every };
+    match wild.u8(..if temper == Temper::Late { 2 } else { 4 }) {
+        0 if may_be_off => format!("every: {every}, off: [Energy]"),
+        1 => format!("every: {every}, energy: (stop: {:?})", size(wild, 0.01, 1e4)),
+        _ => format!("every: {every}"),
+    }
 }
 
 /// Two materials, `m` and `n`; and whether elements go when they turn inside out.

@@ -6,6 +6,7 @@
 //! the same inputs. What breaks something is kept in the folder `sinew-fuzz` of the system's temporary files.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod dice;
 mod generate;
 mod memory;
 mod mutate;
@@ -16,6 +17,7 @@ mod samples;
 #[allow(dead_code)]
 mod samples_vtk;
 mod seeds;
+mod sound;
 mod targets;
 mod whole;
 

@@ -65,3 +65,20 @@ fn pulse_between_steps_is_not_lost() {
         assert!(warned.contains("loads[0].curve") || warned.contains("the curve changes within"), "{warned}");
     }
 }
+
+/// A plate is pushed down through the whole block: what is flattened goes, the step follows, and the energy that goes with it is booked.
+#[test]
+fn flattened_elements_are_removed_and_the_run_goes_on() {
+    for configuration in configurations() {
+        let (mut simulation, ended) = run("inversion_remove_breaks_down", &[], &configuration);
+        ended.unwrap_or_else(|error| panic!("{}: {error}", configuration.name));
+        let summary = simulation.summary("finished").unwrap();
+        let (removed, energies) = (summary.removed_elements, summary.energies);
+        println!("{}: {removed} removed, {} J, {} steps", configuration.name, energies.removed, summary.steps);
+        assert!((10..48).contains(&removed), "{}: {removed} removed", configuration.name);
+        assert!(energies.removed.is_finite() && energies.removed > 0.0 && energies.strain.is_finite());
+        let warnings = &simulation.guards().warnings;
+        let of_energy = warnings.iter().find(|warning| warning.criterion == "energy");
+        assert!(of_energy.is_none(), "{}: {of_energy:?}", configuration.name);
+    }
+}

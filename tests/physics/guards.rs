@@ -119,7 +119,8 @@ fn energy_from_nothing_is_warned_of_and_ends_the_run_at_the_limits_of_the_scene(
             let forged = forged(&mut simulation, good);
             simulation.restore(&forged).unwrap();
             let ended = simulation.advance(600);
-            let warned = simulation.guards().warnings;
+            let mut warned = simulation.guards().warnings;
+            warned.retain(|notice| notice.criterion == "energy");
             if ends {
                 let broken = broken(ended);
                 assert_eq!(broken.criterion.name, "energy");
@@ -279,7 +280,7 @@ fn last_states_before_a_breakdown_are_written_and_can_be_gone_on_from() {
         let text = "(duration: 1, bodies: {\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (2, 2, 2), elements: Tet4), material: \"m\")},
             materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))},
             constraints: [Fixed(on: Set(\"z0\"))],
-            loads: [Gravity(acceleration: (0, 0, -2000), curve: Step(start: 0.4))], guards: (every: 4, window: 2))";
+            loads: [Gravity(acceleration: (0, 0, -2000), curve: Step(start: 0.6))], guards: (every: 4, window: 2))";
         let folder = tempfile::tempdir().unwrap();
         let mut simulation = run.start(text);
         simulation.write_into(&mut Folder::create(folder.path()).unwrap()).unwrap();

@@ -37,14 +37,22 @@ fn all(simulation: &Simulation, body: Entity) -> Vec<Strain> {
             step: world.get::<DisplacementStep>(body).unwrap().slice(),
             connectivity: world.get::<Connectivity>(entity).unwrap(),
             rest_shape: world.get::<RestShape>(entity).unwrap().slice(),
+            ends: true,
         };
         let groups = 0..block.count.div_ceil(LANES);
         let stretch = |_: usize, c: [f64; 6]| c[0];
-        if block.simple {
-            strains::<E::Simple, T>(world.resource::<Cpu>(), &columns, groups, Some(&stretch))
-        } else {
-            strains::<E, T>(world.resource::<Cpu>(), &columns, groups, Some(&stretch))
-        }
+        let mut found = Vec::new();
+        let mut visit = |some: &[Strain]| found.extend_from_slice(some);
+        let (cpu, visit) = (world.resource::<Cpu>(), Some(&mut visit as &mut dyn FnMut(&[Strain])));
+        let (widest, count) = match block.simple {
+            true => strains::<E::Simple, T>(cpu, &columns, groups, Some(&stretch), visit),
+            false => strains::<E, T>(cpu, &columns, groups, Some(&stretch), visit),
+        };
+        assert_eq!(count, found.len());
+        let most = |of: fn(&Strain) -> f64| found.iter().map(of).fold(0.0, f64::max);
+        let expected = [most(|s| s.size), most(|s| s.squeeze), most(|s| s.speed), most(|s| s.more)];
+        assert_eq!([widest.size, widest.squeeze, widest.speed, widest.more], expected);
+        found
     }
     let world = simulation.world();
     let entity = world.get::<Authoring>(body).unwrap().blocks[0];

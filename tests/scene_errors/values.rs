@@ -378,6 +378,11 @@ fn times_and_curves_are_checked() {
         ),
         (
             "duration: 0.5,",
+            "duration: 0.5, accuracy: (target: 5),",
+            r"3:39: warning: an error of 500 % is allowed here: 5 % would be 0.05",
+        ),
+        (
+            "duration: 0.5,",
             r#"duration: 0.5, parameters: {"wind": (speed: inf, of: [1, NaN, 1e99])},"#,
             r"3:49: error: `speed` must be finite, found inf
 3:62: error: `of` must be finite, found NaN

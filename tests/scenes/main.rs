@@ -5,6 +5,7 @@ mod accuracy;
 mod bar;
 mod column;
 mod cube;
+mod golden;
 mod lens;
 mod lobe;
 mod parameters;
@@ -28,7 +29,7 @@ fn reference() -> Options {
 /// The scene's simulation in f64, at its end.
 fn run(name: &str, sets: &[&str]) -> Simulation {
     let mut simulation = Simulation::new(&scene(name, sets), &reference()).unwrap();
-    simulation.advance(simulation.planned_steps()).unwrap();
+    simulation.finish().unwrap();
     simulation
 }
 

@@ -18,6 +18,9 @@ pub struct StrainColumns<'a, T> {
     pub connectivity: &'a [u32],
     /// Rest shapes.
     pub rest_shape: &'a [T],
+    /// Whether the law ends at J = 0, so that it pushes without bound where C is nearly singular: else what is said of C⁻¹ is of
+    /// cof C = J² C⁻¹, and is 1 + (1 − J)² at least.
+    pub ends: bool,
 }
 
 /// An element's deformation; the largest of its integration points.
@@ -27,6 +30,9 @@ pub struct Strain {
     pub row: usize,
     /// max(tr C, tr C⁻¹)/3: 1 at rest; infinite for what is flat, or no number.
     pub size: f64,
+    /// At least the largest eigenvalue of C⁻¹, the inverse square of the least stretch, and no more than that where one axis is squeezed:
+    /// tr C⁻¹/3 + √(2/3 D : D) with its deviator D; infinite for what is flat, or no number.
+    pub squeeze: f64,
     /// √(ΔE : ΔE) tr C⁻¹/3 with the change ΔE of Green's strain in a step; infinite for what is no number.
     pub speed: f64,
     /// What was asked for of its C.
@@ -36,75 +42,110 @@ pub struct Strain {
 /// What is asked for beside: a number from an element's row and its C (xx, yy, zz, xy, yz, xz).
 pub type OfStretch<'a> = &'a (dyn Fn(usize, [f64; 6]) -> f64 + Sync);
 
-/// Strains of the elements of some groups that are there, in their order.
+/// Takes some elements at a time.
+pub type Visit<'a> = &'a mut dyn FnMut(&[Strain]);
+
+/// Visits the elements of some groups that are there, in their order, some at a time. What they come to, were one of them the largest in
+/// everything (its row says nothing), and how many they are.
 pub fn strains<E: Element, T: SimdScalar>(
     cpu: &Cpu,
     columns: &StrainColumns<'_, T>,
     groups: Range<usize>,
     more: Option<OfStretch<'_>>,
-) -> Vec<Strain> {
-    cpu.dispatch(Groups::<E, T> { columns, groups, more, element: PhantomData })
+    visit: Option<Visit<'_>>,
+) -> (Strain, usize) {
+    cpu.dispatch(Groups::<E, T> { columns, groups, more, visit, element: PhantomData })
 }
 
-struct Groups<'a, E, T> {
+struct Groups<'a, 'v, E, T> {
     columns: &'a StrainColumns<'a, T>,
     groups: Range<usize>,
     more: Option<OfStretch<'a>>,
+    visit: Option<Visit<'v>>,
     element: PhantomData<E>,
 }
 
-impl<E: Element, T: SimdScalar> WithSimd for Groups<'_, E, T> {
-    type Output = Vec<Strain>;
+impl<E: Element, T: SimdScalar> WithSimd for Groups<'_, '_, E, T> {
+    type Output = (Strain, usize);
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Vec<Strain> {
-        let Self { columns, groups, more, .. } = self;
-        let mut found = Vec::with_capacity(groups.len() * LANES);
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
+        let Self { columns, groups, more, mut visit, .. } = self;
+        let (zero, one) = (T::splat(simd, T::default()), T::splat(simd, T::from_f64(1.0)));
+        // size, squeeze, speed, what is no number, and how many are there
+        let mut widest = [one, one, zero, zero, zero];
+        let mut more_of_all = 0.0_f64;
         for group in groups {
             let nodes = &columns.connectivity[group * E::NODES * LANES..(group + 1) * E::NODES * LANES];
             let shape = &columns.rest_shape[group * E::ROWS * LANES..(group + 1) * E::ROWS * LANES];
             let u = group_vectors::<E, T>(nodes, columns.displacement);
             let d = group_vectors::<E, T>(nodes, columns.step);
-            let mut sizes = [T::default(); LANES];
-            let mut speeds = [T::default(); LANES];
-            let mut lost = [T::default(); LANES];
-            let mut largest = [0.0_f64; LANES];
+            let (mut lanes, mut largest) = ([[T::default(); LANES]; 4], [0.0_f64; LANES]);
             let mut at = 0;
             while at < LANES {
                 let rows = more.map(|more| (more, group * LANES + at, &mut largest[at..]));
-                let [size, speed, astray] = register::<E, T, S>(simd, [&u, &d], shape, at, rows);
-                T::store(size, &mut sizes[at..]);
-                T::store(speed, &mut speeds[at..]);
-                T::store(astray, &mut lost[at..]);
+                let found = register::<E, T, S>(simd, [&u, &d], (shape, columns.ends), at, rows);
+                let volume = T::load(simd, &shape[E::VOLUME_ROW * LANES + at..]);
+                widest[0] = widest[0].max(volume.if_positive(found[0], one));
+                widest[1] = widest[1].max(volume.if_positive(found[1], one));
+                widest[2] = widest[2].max(volume.if_positive(found[2], zero));
+                widest[3] += volume.if_positive(found[3], zero);
+                widest[4] += volume.if_positive(one, zero);
+                if visit.is_some() {
+                    (0..4).for_each(|i| T::store(found[i], &mut lanes[i][at..]));
+                }
                 at += T::width::<S>();
             }
-            for lane in 0..LANES {
-                if shape[E::VOLUME_ROW * LANES + lane] <= T::default() {
-                    continue;
-                }
-                let number = |of: T| if lost[lane] == T::default() { of.to_f64() } else { f64::INFINITY };
-                let (size, speed) = (number(sizes[lane]), number(speeds[lane]));
-                found.push(Strain { row: group * LANES + lane, size, speed, more: largest[lane] });
+            if visit.is_none() && more.is_none() {
+                continue;
+            }
+            let mut found = [Strain { row: 0, size: 1.0, squeeze: 1.0, speed: 0.0, more: 0.0 }; LANES];
+            let mut count = 0;
+            for lane in (0..LANES).filter(|lane| shape[E::VOLUME_ROW * LANES + lane] > T::default()) {
+                let [size, squeeze, speed] = sound(lanes.map(|of| of[lane]));
+                found[count] = Strain { row: group * LANES + lane, size, squeeze, speed, more: largest[lane] };
+                more_of_all = more_of_all.max(largest[lane]);
+                count += 1;
+            }
+            if let Some(visit) = &mut visit {
+                visit(&found[..count]);
             }
         }
-        found
+        let mut all = Strain { row: 0, size: 1.0, squeeze: 1.0, speed: 0.0, more: more_of_all };
+        let mut count = 0.0;
+        let mut lanes = [[T::default(); LANES]; 5];
+        (0..5).for_each(|i| T::store(widest[i], &mut lanes[i]));
+        for lane in 0..T::width::<S>() {
+            let [size, squeeze, speed] = sound([0, 1, 2, 3].map(|i: usize| lanes[i][lane]));
+            all.size = all.size.max(size);
+            all.squeeze = all.squeeze.max(squeeze);
+            all.speed = all.speed.max(speed);
+            count += lanes[4][lane].to_f64();
+        }
+        (all, count as usize)
     }
 }
 
-/// Size and speed of a register full of elements, and what is not 0 where either is no number. `rows`: what more is asked for, of
+/// Size, squeeze and speed; infinite where they are no numbers.
+fn sound<T: SimdScalar>([size, squeeze, speed, astray]: [T; 4]) -> [f64; 3] {
+    let number = |of: T| if astray == T::default() { of.to_f64() } else { f64::INFINITY };
+    [size, squeeze, speed].map(number)
+}
+
+/// Size, squeeze and speed of a register full of elements, and what is not 0 where either is no number. `rows`: what more is asked for, of
 /// which row on, and where it goes.
 #[inline(always)]
 fn register<E: Element, T: SimdScalar, S: Simd>(
     simd: S,
     [u, d]: [&[[[T; LANES]; 3]; MOST_NODES]; 2],
-    shape: &[T],
+    (shape, ends): (&[T], bool),
     at: usize,
     mut rows: Option<(OfStretch<'_>, usize, &mut [f64])>,
-) -> [T::Vector<S>; 3] {
+) -> [T::Vector<S>; 4] {
     let u = E::prepare(&corner_registers::<E, T, S>(simd, u, at));
     let d = E::prepare(&corner_registers::<E, T, S>(simd, d, at));
     let zero = T::splat(simd, T::default());
-    let (mut size, mut speed, mut astray) = (zero, zero, zero);
+    let (mut size, mut squeeze, mut speed, mut astray) = (zero, zero, zero, zero);
     for point in 0..E::POINTS {
         let state = E::at_point(
             &u,
@@ -130,14 +171,15 @@ fn register<E: Element, T: SimdScalar, S: Simd>(
                 largest[lane] = largest[lane].max(more(*row + lane, c));
             }
         }
-        let [first, inverse] = sizes(&f);
+        let [first, inverse, squeezed] = sizes(&f, ends);
         let relative = change_of_strain(&f, &change.gradient).sqrt() * inverse;
         size = size.max(first.max(inverse));
+        squeeze = squeeze.max(squeezed);
         speed = speed.max(relative);
         // what is no number, or infinite, stays none
         astray += (inverse + relative) * zero;
     }
-    [size, speed, astray]
+    [size, squeeze, speed, astray]
 }
 
 /// F = I + ∇u.
@@ -150,25 +192,40 @@ pub(crate) fn with_identity<R: Real>(gradient: &Mat3<R>) -> [[R; 3]; 3] {
     f
 }
 
-/// tr C/3 and tr C⁻¹/3: |F|² and |cof F|²/J², which lose no digits where C is nearly singular.
+/// tr C/3, tr C⁻¹/3 and a bound of the largest eigenvalue of C⁻¹ (see [`Strain::squeeze`]): |F|², and cof F over J, which lose no
+/// digits where C is nearly singular. Where a law does not end at J = 0, of cof C in place of C⁻¹, and 1 + (1 − J)² at least.
 #[inline(always)]
-pub(crate) fn sizes<R: Real>(f: &[[R; 3]; 3]) -> [R; 2] {
+pub(crate) fn sizes<R: Real>(f: &[[R; 3]; 3], ends: bool) -> [R; 3] {
     let third = f[0][0].constant(1.0 / 3.0);
     let zero = f[0][0].constant(0.0);
-    let (mut first, mut second, mut j) = (zero, zero, zero);
+    let (mut first, mut j) = (zero, zero);
+    let mut cofactors = [[zero; 3]; 3];
     for a in 0..3 {
         let (b, c) = ((a + 1) % 3, (a + 2) % 3);
         for i in 0..3 {
             let (k, l) = ((i + 1) % 3, (i + 2) % 3);
-            let cofactor = f[b][k].mul_add(f[c][l], -(f[b][l] * f[c][k]));
+            cofactors[a][i] = f[b][k].mul_add(f[c][l], -(f[b][l] * f[c][k]));
             first = f[a][i].mul_add(f[a][i], first);
-            second = cofactor.mul_add(cofactor, second);
             if a == 0 {
-                j = f[a][i].mul_add(cofactor, j);
+                j = f[a][i].mul_add(cofactors[a][i], j);
             }
         }
     }
-    [first * third, second / (j * j) * third]
+    let inverse = [0, 1, 2].map(
+        #[inline(always)]
+        |i| product(&cofactors, &cofactors, i, i),
+    );
+    let mean = (inverse[0] + inverse[1] + inverse[2]) * third;
+    let mut square = zero;
+    for i in 0..3 {
+        let (along, across) = (inverse[i] - mean, product(&cofactors, &cofactors, i, (i + 1) % 3));
+        square = along.mul_add(along, square);
+        square = (across + across).mul_add(across, square);
+    }
+    let one = f[0][0].constant(1.0);
+    let (per_square, least) = if ends { (one / (j * j), zero) } else { (one, (one - j).mul_add(one - j, one)) };
+    let deviator = (square * f[0][0].constant(2.0 / 3.0)).sqrt() * per_square;
+    [first * third, (mean * per_square).max(least), (mean * per_square + deviator).max(least)]
 }
 
 /// (AᵀB)_ij.
@@ -212,10 +269,17 @@ mod tests {
     fn sizes_are_traces_of_c_and_of_its_inverse() {
         // stretches 2, 3 and ¼, turned about z by 90°
         let f = [[0.0, -3.0, 0.0], [2.0, 0.0, 0.0], [0.0, 0.0, 0.25]];
-        let [first, inverse] = sizes(&f);
+        let [first, inverse, _] = sizes(&f, true);
         assert!((first - (4.0 + 9.0 + 0.0625) / 3.0_f64).abs() < 1e-14);
         assert!((inverse - (0.25 + 1.0 / 9.0 + 16.0) / 3.0_f64).abs() < 1e-14);
         assert_eq!(right_cauchy_green(&f), [4.0, 9.0, 0.0625, 0.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn squeeze_is_the_inverse_square_of_the_stretch_where_one_axis_is_squeezed() {
+        let f = [[0.5, 0.0, 0.0], [0.0, 0.0, -1.25], [0.0, 1.25, 0.0]];
+        let [[.., of_inverse], [.., of_cofactor]] = [sizes(&f, true), sizes(&f, false)];
+        assert!((of_inverse - 4.0_f64).abs() < 1e-14 && (of_cofactor - 1.25_f64.powi(4)).abs() < 1e-14);
     }
 
     #[test]

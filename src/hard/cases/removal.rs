@@ -24,11 +24,12 @@ pub fn islands(trial: &mut Trial<'_>) -> Result<(), Error> {
     let mut heights = Vec::new();
     let interval = simulation.planned_steps() / 5;
     for _ in 0..3 {
-        heights.push(below(&mut simulation, 0.0201)?.1.z);
+        heights.push((simulation.time(), below(&mut simulation, 0.0201)?.1.z));
         simulation.advance(interval)?;
     }
-    let time = interval as f64 * simulation.time_step();
-    let acceleration = (heights[2] - 2.0 * heights[1] + heights[0]) / (time * time);
+    // steps need not be of one length
+    let speed = |i: usize| (heights[i + 1].1 - heights[i].1) / (heights[i + 1].0 - heights[i].0);
+    let acceleration = 2.0 * (speed(1) - speed(0)) / (heights[2].0 - heights[0].0);
     trial.near("acceleration of the island", acceleration, -9.81, trial.bound(1e-7, 1e-3));
     simulation.finish()?;
     let summary = simulation.summary("finished")?;

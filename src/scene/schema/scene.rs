@@ -159,9 +159,9 @@ impl Default for Integration {
 pub enum StepBound {
     /// The larger of the step that is certain by elements and nodes and that by the highest frequency, which is found as well as
     /// is worth it, where the step adapts; else that of the stiffest element.
+    #[default]
     Auto,
     /// The stiffest element alone: certain, and many times smaller than need be where elements differ.
-    #[default]
     Elements,
     /// The highest frequency of all bodies as they are held, by Lanczos' recursion.
     Iterated,

@@ -52,7 +52,12 @@ fn accuracy(file: &SceneFile, judge: &mut Judge) {
     let wanted = &file.scene.accuracy;
     let path = scene("accuracy");
     if let Some(target) = wanted.target {
-        judge.above_zero(&path.name("target"), target, "");
+        let own = path.name("target");
+        judge.above_zero(&own, target, "");
+        if target >= 1.0 && target.is_finite() {
+            let (percent, plain) = (100.0 * target, target / 100.0);
+            judge.out.warn_at(own, format!("an error of {percent} % is allowed here: {target} % would be {plain}"));
+        }
     }
     for (quantity, &size) in &wanted.uncertainty {
         let own = path.name("uncertainty").name(quantity);

@@ -1,0 +1,72 @@
+//! The same bits as before: hashes of how the shipped scenes end, kept in `golden.ron`.
+//!
+//! What is meant to change no numbers changes none of these; a commit that changes one says why, and writes them anew:
+//! `SINEW_GOLDEN=write cargo test --test scenes golden`. Instruction sets that the machine has not are told of and left as they are.
+
+use super::scene;
+use super::shipped::SCENES;
+use sinew::backend::cpu::{Cpu, Instructions};
+use sinew::components::Precision;
+use sinew::{BackendChoice, Options, Simulation};
+use std::collections::{BTreeMap, BTreeSet};
+use std::hash::Hasher;
+use twox_hash::XxHash64;
+
+/// By scene, precision and instruction set.
+type Hashes = BTreeMap<String, BTreeMap<String, String>>;
+
+fn path() -> String {
+    format!("{}/tests/scenes/golden.ron", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Of all that a run ends with: displacements and forces of all bodies in the author's order, and how many steps it took.
+fn hash(simulation: &mut Simulation) -> String {
+    let mut hasher = XxHash64::with_seed(0);
+    hasher.write_u64(simulation.step_count());
+    hasher.write_u64(simulation.time().to_bits());
+    let bodies: Vec<String> = simulation.scene().bodies.keys().cloned().collect();
+    for body in bodies {
+        let vectors = [simulation.displacements(&body).unwrap(), simulation.internal_forces(&body).unwrap()];
+        for vector in vectors.iter().flatten() {
+            vector.to_array().iter().for_each(|number| hasher.write_u64(number.to_bits()));
+        }
+    }
+    format!("{:016x}", hasher.finish())
+}
+
+#[test]
+fn golden_hashes_of_shipped_scenes() {
+    let mut kept: Hashes = ron::from_str(&std::fs::read_to_string(path()).unwrap_or_else(|_| "{}".into())).unwrap();
+    let writes = std::env::var("SINEW_GOLDEN").is_ok_and(|what| what == "write");
+    let (mut wrong, mut there) = (Vec::new(), BTreeSet::new());
+    for (name, sets) in SCENES {
+        let scene = scene(name, sets);
+        for precision in [Precision::F32, Precision::F64] {
+            for instructions in [Instructions::Widest, Instructions::Avx2, Instructions::Portable] {
+                let options =
+                    Options { backend: BackendChoice::Cpu, precision, instructions, threads: 2, ..Options::default() };
+                let mut simulation = Simulation::new(&scene, &options).unwrap();
+                let set = simulation.world().resource::<Cpu>().instruction_set();
+                let of_scene = kept.entry(format!("{name} {precision:?}")).or_default();
+                if !there.insert((name, precision as u8, set.clone())) {
+                    continue;
+                }
+                simulation.finish().unwrap_or_else(|error| panic!("{name}: {error}"));
+                let now = hash(&mut simulation);
+                if writes {
+                    of_scene.insert(set, now);
+                } else if of_scene.get(&set) != Some(&now) {
+                    wrong.push(format!("{name} {precision:?} {set}: {now}, was {:?}", of_scene.get(&set)));
+                }
+            }
+        }
+    }
+    let sets: BTreeSet<&String> = there.iter().map(|(.., set)| set).collect();
+    let left: BTreeSet<&String> = kept.values().flat_map(BTreeMap::keys).filter(|set| !sets.contains(set)).collect();
+    println!("compared: {sets:?}; not on this machine: {left:?}");
+    if writes {
+        let pretty = ron::ser::PrettyConfig::default();
+        std::fs::write(path(), ron::ser::to_string_pretty(&kept, pretty).unwrap() + "\n").unwrap();
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
