@@ -36,21 +36,26 @@ pub fn system() -> System {
 fn boundary(
     signals: Res<Signals>,
     constraints: Query<(&Prescribed, &OfBody)>,
-    mut bodies: Query<(&Displacement, Option<&DisplacementCompensation>, &mut DisplacementStep, &mut FirstNonFinite)>,
+    mut bodies: Query<(
+        &Displacement,
+        Option<&DisplacementCompensation>,
+        &mut DisplacementStep,
+        Option<&mut PreviousPrescribedStep>,
+    )>,
 ) {
     for (prescribed, body) in &constraints {
-        let Ok((displacement, compensation, mut step, mut noticed)) = bodies.get_mut(body.0) else {
+        let Ok((displacement, compensation, mut step, mut previous)) = bodies.get_mut(body.0) else {
             missing("a column of a body");
             continue;
         };
-        let kept = noticed.get_mut(before_at(displacement.len() / 3)..).unwrap_or_default();
+        let previous = previous.as_mut().map_or(&mut [][..], |previous| previous.as_mut_slice());
         let rows = &signals.values()[prescribed.signal..prescribed.signal + 3];
         match &mut step.0 {
             Reals::F32(step) => {
-                move_rows(prescribed, rows, 0, displacement.slice(), compensation.map(|c| c.slice()), step, kept)
+                move_rows(prescribed, rows, 0, displacement.slice(), compensation.map(|c| c.slice()), step, previous)
             }
             Reals::F64(step) => {
-                move_rows(prescribed, rows, 0, displacement.slice(), compensation.map(|c| c.slice()), step, kept)
+                move_rows(prescribed, rows, 0, displacement.slice(), compensation.map(|c| c.slice()), step, previous)
             }
         }
     }
@@ -64,7 +69,7 @@ pub(super) fn move_rows<T: Scalar>(
     displacement: &[T],
     compensation: Option<&[T]>,
     step: &mut [T],
-    kept: &mut [u32],
+    previous: &mut [f32],
 ) {
     let own = places_within(&prescribed.rows, first, step.len() / 3);
     for (&row, arm) in prescribed.rows[own.clone()].iter().zip(&prescribed.arms[own]) {
@@ -74,9 +79,9 @@ pub(super) fn move_rows<T: Scalar>(
             let place = 3 * row + axis;
             let target = T::from_f64(x * arm.x + y * arm.y + z * arm.z + shift);
             let lost = compensation.map_or(T::default(), |c| c[place]);
-            // for the work that integrate books
-            if let Some(kept) = kept.get_mut(place) {
-                *kept = (step[place].to_f64() as f32).to_bits();
+            // for the work that integrate accumulates
+            if let Some(previous) = previous.get_mut(place) {
+                *previous = step[place].to_f64() as f32;
             }
             step[place] = (target - displacement[place]) + lost;
         }
@@ -115,14 +120,16 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
                 "fn lost_of(node: u32, axis: u32) -> f32 {\n    return 0.0;\n}\n",
             ))
         };
-        let at = before_at(nodes as usize);
-        let booked = world.get::<FirstNonFinite>(body).is_some_and(|noticed| noticed.len() > at);
-        stage = if booked {
-            let noticed = buffers.column(body, FirstNonFinite::NAME);
-            let at = Fragment::new("generated: where steps are kept", format!("const BEFORE_AT: u32 = {at}u;\n"));
-            stage.shared(shader!("kept_step")).shared(at).column(FirstNonFinite::NAME, noticed)
+        stage = if world.get::<PreviousPrescribedStep>(body).is_some() {
+            let diagnostics = buffers.column(body, PreviousPrescribedStep::NAME);
+            let place = place_in_buffer::<PreviousPrescribedStep>(body, world);
+            let place = Fragment::new(
+                "generated: where previous steps lie",
+                format!("const PREVIOUS_PRESCRIBED_AT: u32 = {place}u;\n"),
+            );
+            stage.shared(shader!("previous_prescribed_step")).shared(place).column(FirstNonFinite::BUFFER, diagnostics)
         } else {
-            stage.shared(Fragment::new("generated: nothing is booked", "fn keep_step(at: u32) {}\n"))
+            stage.shared(Fragment::new("generated: previous steps are not kept", "fn keep_previous_step(at: u32) {}\n"))
         };
         stages.push(stage.with_step(world));
     }

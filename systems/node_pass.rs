@@ -29,16 +29,15 @@ pub(super) struct BodyColumns {
     step: &'static mut DisplacementStep,
     compensation: Option<&'static mut DisplacementCompensation>,
     work: Option<&'static mut Work>,
-    noticed: &'static mut FirstNonFinite,
+    first_non_finite: &'static mut FirstNonFinite,
+    internal_work: Option<&'static mut InternalWork>,
+    previous_prescribed: Option<&'static mut PreviousPrescribedStep>,
 }
 
 impl BodyColumnsItem<'_, '_> {
     /// All rows, in the run's precision.
     pub(super) fn columns<T: SimdScalar>(&mut self) -> NodeColumns<'_, T> {
         let nodes = self.axes.len();
-        // sums and steps stand only where not all work is booked
-        let words = self.noticed.0.get_mut(SPENT_AT..).unwrap_or_default();
-        let (sums, kept) = words.split_at_mut(words.len().min(before_at(nodes) - SPENT_AT));
         NodeColumns {
             first: 0,
             mass: self.mass.slice(),
@@ -51,15 +50,15 @@ impl BodyColumnsItem<'_, '_> {
             step: self.step.slice_mut(),
             compensation: self.compensation.as_mut().map(|c| c.slice_mut().split_at_mut(3 * nodes).into()),
             work: self.work.as_mut().map(|w| w.slice_mut()),
-            sums,
-            kept,
+            internal_work: self.internal_work.as_mut().map_or(&mut [], |work| work.as_mut_slice()),
+            previous_prescribed: self.previous_prescribed.as_mut().map_or(&mut [], |step| step.as_mut_slice()),
         }
     }
 
     /// Notes the lowest row of a node whose displacement is no longer finite; `u32::MAX`: none.
     pub(super) fn note_astray(&mut self, row: u32, clock: &Clock) {
-        if row != u32::MAX && self.noticed[0] == u32::MAX {
-            (self.noticed[0], self.noticed[1]) = (row, step_number(clock));
+        if row != u32::MAX && self.first_non_finite[0] == u32::MAX {
+            self.first_non_finite.copy_from_slice(&[row, step_number(clock)]);
         }
     }
 }
@@ -163,7 +162,7 @@ impl OnRows<'_> {
         }
         for (set, motion) in &self.motions {
             let lost = rows.compensation.as_ref().map(|[of_u, _]| &**of_u);
-            boundary::move_rows(set, motion, first, rows.u, lost, rows.step, rows.kept);
+            boundary::move_rows(set, motion, first, rows.u, lost, rows.step, rows.previous_prescribed);
         }
     }
 }

@@ -7,7 +7,7 @@ mod items;
 use super::Buffers;
 use super::kernel::{BufferId, Fragment, Kernel, Layout, MostBuffers, Uniform, uniform};
 use super::step::{step_fragments, step_in_a_uniform};
-use crate::components::{Column, Displacement, ElementForce, Mass, SPENT_ROWS};
+use crate::components::{Column, Displacement, ElementForce, Mass, GROUP_ROWS};
 use crate::shader;
 use bevy_ecs::prelude::*;
 use fused::Fused;
@@ -259,7 +259,7 @@ pub(super) fn many_steps(stages: &[&NodeStage], invocations: usize, buffers: &mu
 /// The kernel of a block's patches, of so many invocations in all, that moves the nodes inside each of them: the stages of a whole
 /// step of these nodes.
 pub(super) fn patch_step(stages: &[&NodeStage], invocations: u32, buffers: &mut dyn Buffers) -> Kernel {
-    let least = format!("const LEAST_INSIDE: u32 = {SPENT_ROWS}u;\n");
+    let least = format!("const LEAST_INSIDE: u32 = {GROUP_ROWS}u;\n");
     let node = &stages[stages.len() - 1];
     let rows = NodePass { count: node.nodes, first: node.within.start };
     Fused::of(stages)

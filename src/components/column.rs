@@ -147,6 +147,9 @@ pub trait Column: Component<Mutability = Mutable> {
     const NAME: &'static str;
     /// What it is to the state.
     const ROLE: Role;
+    /// The buffer on a device in which it lies: of its own name, or one that an entity's columns share, one after the other as they
+    /// are declared; kernels may have few buffers.
+    const BUFFER: &'static str;
     /// The bytes.
     fn bytes(&self) -> &[u8];
     /// The bytes, to write.
@@ -160,6 +163,8 @@ pub struct ColumnAccess {
     pub name: &'static str,
     /// What it is to the state.
     pub role: Role,
+    /// The buffer on a device in which it lies.
+    pub buffer: &'static str,
     /// Its bytes on the host.
     pub bytes: fn(&World, Entity) -> Option<&[u8]>,
     /// Writes its bytes on the host.
@@ -174,6 +179,7 @@ impl ColumnAccess {
         Self {
             name: C::NAME,
             role: C::ROLE,
+            buffer: C::BUFFER,
             bytes: |world, entity| world.get::<C>(entity).map(|column| column.bytes()),
             write: |world, entity, bytes| {
                 if let Some(mut column) = world.get_mut::<C>(entity) {
@@ -185,14 +191,28 @@ impl ColumnAccess {
     }
 }
 
+/// The columns of one buffer in the order in which they lie there.
+pub fn columns_in(buffer: &str) -> impl Iterator<Item = ColumnAccess> {
+    all_columns().into_iter().filter(move |column| column.buffer == buffer)
+}
+
+/// Where an entity's column begins in its buffer on a device, in words of four bytes.
+pub fn place_in_buffer<C: Column>(entity: Entity, world: &World) -> usize {
+    let before = columns_in(C::BUFFER).take_while(|column| column.name != C::NAME);
+    before.filter_map(|column| (column.bytes)(world, entity)).map(<[u8]>::len).sum::<usize>() / 4
+}
+
 /// Every kind of column there is, as the modules declare them.
 pub fn all_columns() -> Vec<ColumnAccess> {
     [super::nodes::accesses(), super::block::accesses()].concat()
 }
 
-/// Declares components that are columns, each with its name and its [`Role`]; and a function `accesses` that lists them.
+/// Declares components that are columns, each with its name, its [`Role`] and, where that is not its own, its buffer; and a function
+/// `accesses` that lists them.
 macro_rules! columns {
-    ($($(#[$doc:meta])* $name:ident($type:ty) = $word:literal, $role:ident;)*) => {
+    (@buffer $word:literal) => { $word };
+    (@buffer $word:literal $buffer:literal) => { $buffer };
+    ($($(#[$doc:meta])* $name:ident($type:ty) = $word:literal, $role:ident $(, in $buffer:literal)?;)*) => {
         $(
             $(#[$doc])*
             #[derive(bevy_ecs::prelude::Component, Clone, Debug)]
@@ -201,6 +221,7 @@ macro_rules! columns {
             impl $crate::components::Column for $name {
                 const NAME: &'static str = $word;
                 const ROLE: $crate::components::Role = $crate::components::Role::$role;
+                const BUFFER: &'static str = $crate::components::column::columns!(@buffer $word $($buffer)?);
                 fn bytes(&self) -> &[u8] {
                     $crate::components::column::AsBytes::as_bytes(&self.0)
                 }
@@ -248,16 +269,7 @@ impl AsBytes for Reals {
     }
 }
 
-impl AsBytes for Vec<f64> {
-    fn as_bytes(&self) -> &[u8] {
-        bytemuck::cast_slice(self)
-    }
-    fn as_bytes_mut(&mut self) -> &mut [u8] {
-        bytemuck::cast_slice_mut(self)
-    }
-}
-
-impl AsBytes for Vec<u32> {
+impl<T: bytemuck::Pod> AsBytes for Vec<T> {
     fn as_bytes(&self) -> &[u8] {
         bytemuck::cast_slice(self)
     }
