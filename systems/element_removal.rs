@@ -55,6 +55,7 @@ fn element_removal(
     criteria: Query<&RemovalCriterion>,
     densities: Query<(&Density, Option<&Damping>)>,
     mut blocks: Query<BlockQuery>,
+    others: Query<(&Block, &Connectivity, &RestShape), Without<Alive>>,
     mut bodies: Query<(&Authoring, &Displacement, &DisplacementStep, &mut Mass, Option<&mut DampingCoefficient>)>,
     mut pressures: Query<(&mut Pressure, &OfBody), Without<Traction>>,
     mut tractions: Query<(&mut Traction, &OfBody), Without<Pressure>>,
@@ -112,13 +113,11 @@ fn element_removal(
             missing("a column of a body");
             continue;
         };
-        weigh(authoring, &blocks, &densities, &mut mass, damping.as_deref_mut());
+        weigh(authoring, (&blocks, &others), &densities, &mut mass, damping.as_deref_mut());
+        // elements of blocks that lose none are always there
         let alive = |(block, row): (u32, u32)| {
-            authoring
-                .blocks
-                .get(block as usize)
-                .and_then(|&block| blocks.get(block).ok())
-                .map_or(0, |b| b.8[row as usize])
+            let block = authoring.blocks.get(block as usize).and_then(|&block| blocks.get(block).ok());
+            block.map_or(1, |block| block.8[row as usize])
         };
         let of_body = |of: &OfBody| of.0 == body;
         for (mut load, _) in pressures.iter_mut().filter(|(_, of)| of_body(of)) {
@@ -157,14 +156,19 @@ fn kinetic_energy(state: &ElementState, density: f64, step: &Reals, time_step: f
 /// Sums the mass and damping of a body's nodes from the elements that are left.
 fn weigh(
     authoring: &Authoring,
-    blocks: &Query<BlockQuery>,
+    (blocks, others): (&Query<BlockQuery>, &Query<(&Block, &Connectivity, &RestShape), Without<Alive>>),
     materials: &Query<(&Density, Option<&Damping>)>,
     mass: &mut Mass,
     damping: Option<&mut DampingCoefficient>,
 ) {
     let count = mass.len();
     let (mut masses, mut coefficients) = (vec![0.0; count], vec![0.0; count]);
-    for (_, block, connectivity, shape, ..) in authoring.blocks.iter().filter_map(|&block| blocks.get(block).ok()) {
+    let parts = |&entity: &Entity| match blocks.get(entity) {
+        Ok((_, block, connectivity, shape, ..)) => Some((block, connectivity, shape)),
+        // those that lose no elements weigh, too
+        Err(_) => others.get(entity).ok(),
+    };
+    for (block, connectivity, shape) in authoring.blocks.iter().filter_map(parts) {
         let Ok((density, rate)) = materials.get(block.material) else {
             missing("a column of a body");
             continue;

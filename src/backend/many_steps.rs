@@ -61,9 +61,10 @@ pub fn take_small_bodies(
         let kernel = width(&blocks, most_elements, world, buffers).and_then(|width| {
             let step = whole_step(&blocks, body, stages, world);
             let step: Vec<&NodeStage> = step.iter().collect();
-            // one more for the records of the steps
+            // the records of the steps are a storage buffer in place of a uniform one
             let most = buffers.most_buffers();
-            let most = MostBuffers { storage: most.storage.saturating_sub(1), ..most };
+            let (storage, together) = (most.storage.saturating_sub(1), most.together.saturating_sub(1));
+            let most = MostBuffers { storage, together, ..most };
             match node_stage::why_apart(&step, most) {
                 None => Ok(node_stage::many_steps(&step, width, buffers)),
                 Some(reason) => Err(reason),

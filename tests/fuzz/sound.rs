@@ -1,7 +1,7 @@
 //! Whether what is called a result is one: checked anew, from positions and what the scene says.
 
 use sinew::Simulation;
-use sinew::components::{Alive, Authoring, Block, DisplacementStep, Label};
+use sinew::components::{Alive, Authoring, Block, DisplacementStep, Label, Precision};
 use sinew::evaluation::node_count;
 use sinew::glam::{DMat3, DVec3};
 use sinew::materials::FLATTEST;
@@ -54,14 +54,17 @@ fn inside_out(simulation: &mut Simulation, body: &str, rest: &[DVec3], moved: &[
             _ => &authoring.hexes[element - authoring.tets.len()],
         };
         let of = |numbers: &[DVec3]| corners.iter().map(|&node| numbers[node as usize]).collect::<Vec<_>>();
+        let after = moved;
         let (moved, least) = match inversion {
             Some(Inversion::Remove) => (&before[..], FLATTEST),
             _ => (moved, 0.0),
         };
+        let lost = lost(&of(rest), &of(after), last.precision());
         for gradient in gradients(block.kind, &of(rest), &of(moved)) {
             let j = (DMat3::IDENTITY + gradient).determinant();
-            // a volume that is nothing to what single precision leaves of it may have either sign
-            if j < least - 1e-5 * size(&gradient) || !j.is_finite() {
+            // a volume that is nothing to what single precision leaves of it, or rounding of displacements, may have either sign
+            let (size, largest) = (size(&gradient, 0.0), size(&gradient, lost));
+            if j < least - 1e-5 * size - (largest - size) || !j.is_finite() {
                 return Err(format!("status 0 with element {element} of {body} inside out: J = {j:.3e}"));
             }
         }
@@ -69,9 +72,16 @@ fn inside_out(simulation: &mut Simulation, body: &str, rest: &[DVec3], moved: &[
     Ok(())
 }
 
-/// What det(1 + ∇u) would be were all its products of one sign.
-fn size(gradient: &DMat3) -> f64 {
-    let [x, y, z] = [0, 1, 2].map(|i| gradient.col(i).abs() + DMat3::IDENTITY.col(i));
+/// What the last digits of an element's displacements may make of each component of ∇u.
+fn lost(rest: &[DVec3], moved: &[DVec3], precision: Precision) -> f64 {
+    let digit = if precision == Precision::F32 { f64::from(f32::EPSILON) } else { f64::EPSILON };
+    let edge = rest[1..].iter().map(|x| (*x - rest[0]).length()).fold(f64::INFINITY, f64::min);
+    4.0 * digit * moved.iter().map(|u| u.length()).fold(0.0, f64::max) / edge
+}
+
+/// What det(1 + ∇u) would be were all its products of one sign, and each component of ∇u larger by so much.
+fn size(gradient: &DMat3, lost: f64) -> f64 {
+    let [x, y, z] = [0, 1, 2].map(|i| gradient.col(i).abs() + DMat3::IDENTITY.col(i) + lost);
     let minor = |a: usize, b: usize| y[a] * z[b] + y[b] * z[a];
     x[0] * minor(1, 2) + x[1] * minor(0, 2) + x[2] * minor(0, 1)
 }
@@ -131,6 +141,7 @@ fn the_check_knows_an_element_that_is_inside_out() {
             assert!((found - wanted).to_cols_array().iter().all(|x| x.abs() < 1e-12), "{kind:?}: {found}");
         }
     }
-    assert!((DMat3::IDENTITY + wanted).determinant() < -1e-5 * size(&wanted));
-    assert_eq!(size(&DMat3::from_diagonal(DVec3::new(1.0, 2.0, -3.0))), 2.0 * 3.0 * 4.0);
+    assert!((DMat3::IDENTITY + wanted).determinant() < -1e-5 * size(&wanted, 0.0));
+    assert_eq!(size(&DMat3::from_diagonal(DVec3::new(1.0, 2.0, -3.0)), 0.0), 2.0 * 3.0 * 4.0);
+    assert_eq!(size(&DMat3::ZERO, 1.0), 8.0 + 4.0 + 4.0);
 }

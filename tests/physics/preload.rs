@@ -166,8 +166,10 @@ fn where_there_is_no_equilibrium_no_step_is_taken() {
         // turned inside out by more than it bears, however slowly
         let crushed = block("Hex8", "start: Equilibrium(),", "", "")
             .replace("displacement: (0.01, 0, 0)", "displacement: (0, 0, -0.2)");
-        let (simulation, error) = error_of(&run, &crushed.replace("axes: [X]", "axes: [Z]"));
+        let (mut simulation, error) = error_of(&run, &crushed.replace("axes: [X]", "axes: [Z]"));
         assert!(error.contains("on the way to the equilibrium of the start"), "{error}");
+        let again = simulation.advance(1).expect_err("the second time as the first").to_string();
+        assert!(again.contains("on the way to the equilibrium of the start"), "{again}");
         assert_eq!(simulation.step_count(), 0);
     }
 }

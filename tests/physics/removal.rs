@@ -167,6 +167,37 @@ fn faces_of_removed_elements_bear_no_load() {
     }
 }
 
+/// Only one of two materials may lose elements: the elements of the other weigh what they weighed and bear what they bore.
+#[test]
+fn elements_of_another_material_stay_as_they_are() {
+    for run in &configurations() {
+        for load in [
+            "Traction(on: Plane(normal: (0, 0, 1), at: 1), traction: (0, 0, -10))",
+            "Pressure(on: Plane(normal: (0, 0, 1), at: 1), pressure: 10)",
+        ] {
+            // the first cell is squeezed to nothing, all others stay as they are
+            let mut simulation = run.start(&format!(
+                "(duration: 0.2, bodies: {{\"b\": (mesh: Box(size: (6, 1, 1), cells: (6, 1, 1), elements: Hex8), material: \"m\",
+                    regions: [(on: Box(min: (0, 0, 0), max: (2, 1, 1)), material: \"soft\")])}},
+                materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45)),
+                    \"soft\": (density: 1000, linear: Young(young: 3e3, poisson: 0.45), inversion: Remove)}},
+                constraints: [Prescribed(on: Plane(normal: (1, 0, 0), at: 0), displacement: (0.99, 0, 0),
+                        curve: Ramp(end: 0.05)), Prescribed(on: Not(Plane(normal: (1, 0, 0), at: 0)))],
+                loads: [{load}], integration: (step: 1e-3))"
+            ));
+            simulation.advance(40).unwrap();
+            let before = masses(&mut simulation, "b");
+            near(&format!("{}: mass before", run.name), before.iter().sum(), 6000.0, 6000.0, run.bound(1e-12, 1e-6));
+            simulation.advance(20).unwrap();
+            assert_eq!(simulation.summary("finished").unwrap().removed_elements, 1, "{}", run.name);
+            let after = masses(&mut simulation, "b");
+            near(&format!("{}: mass after", run.name), after.iter().sum(), 5000.0, 6000.0, run.bound(1e-12, 1e-6));
+            let net = external_forces(&mut simulation, "b").iter().sum::<DVec3>().z;
+            near(&format!("{}: load after", run.name), net, -50.0, 60.0, run.bound(1e-12, 1e-6));
+        }
+    }
+}
+
 #[test]
 fn energy_that_goes_with_elements_is_booked() {
     for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
