@@ -49,13 +49,16 @@ type BlockQuery<'a> = (
     &'a mut RemovedEnergy,
 );
 
+/// Of a block that loses no elements, what it weighs by.
+type StayingBlock<'a> = (&'a Block, &'a Connectivity, &'a RestShape);
+
 fn element_removal(
     clock: Res<Clock>,
     cpu: Res<Cpu>,
     criteria: Query<&RemovalCriterion>,
     densities: Query<(&Density, Option<&Damping>)>,
     mut blocks: Query<BlockQuery>,
-    others: Query<(&Block, &Connectivity, &RestShape), Without<Alive>>,
+    others: Query<StayingBlock, Without<Alive>>,
     mut bodies: Query<(&Authoring, &Displacement, &DisplacementStep, &mut Mass, Option<&mut DampingCoefficient>)>,
     mut pressures: Query<(&mut Pressure, &OfBody), Without<Traction>>,
     mut tractions: Query<(&mut Traction, &OfBody), Without<Pressure>>,
@@ -156,7 +159,7 @@ fn kinetic_energy(state: &ElementState, density: f64, step: &Reals, time_step: f
 /// Sums the mass and damping of a body's nodes from the elements that are left.
 fn weigh(
     authoring: &Authoring,
-    (blocks, others): (&Query<BlockQuery>, &Query<(&Block, &Connectivity, &RestShape), Without<Alive>>),
+    (blocks, others): (&Query<BlockQuery>, &Query<StayingBlock, Without<Alive>>),
     materials: &Query<(&Density, Option<&Damping>)>,
     mass: &mut Mass,
     damping: Option<&mut DampingCoefficient>,

@@ -4,7 +4,7 @@ use super::damped_step::{growth_with_damping, is_damped};
 use super::growth::Growth;
 use super::mass_scaling::heavy_mass;
 use crate::assembly::{SquaresAtRest, square_frequencies};
-use crate::backend::cpu::{BlockLaw, Cpu, Strain, StrainColumns, strains};
+use crate::backend::cpu::{BlockLaw, Cpu, Strain, StrainColumns, Visit, strains};
 use crate::components::*;
 use crate::evaluation::{lane_place, node_count, rest_volume, with_element_of};
 use crate::math::LANES;
@@ -284,7 +284,7 @@ impl Watched {
     }
 
     /// Visits the elements of a task that are there; what they come to, and how many they are. `None` where the world has them no longer.
-    fn strains(&self, world: &World, task: usize, visit: Option<&mut dyn FnMut(&[Strain])>) -> Option<(Strain, usize)> {
+    fn strains(&self, world: &World, task: usize, visit: Option<Visit<'_>>) -> Option<(Strain, usize)> {
         let block = world.get::<Block>(self.entity)?;
         let (u, d) = (world.get::<Displacement>(block.body)?, world.get::<DisplacementStep>(block.body)?);
         let (connectivity, shape) = (world.get::<Connectivity>(self.entity)?, world.get::<RestShape>(self.entity)?);

@@ -42,6 +42,9 @@ pub struct Strain {
 /// What is asked for beside: a number from an element's row and its C (xx, yy, zz, xy, yz, xz).
 pub type OfStretch<'a> = &'a (dyn Fn(usize, [f64; 6]) -> f64 + Sync);
 
+/// Takes some elements at a time.
+pub type Visit<'a> = &'a mut dyn FnMut(&[Strain]);
+
 /// Visits the elements of some groups that are there, in their order, some at a time. What they come to, were one of them the largest in
 /// everything (its row says nothing), and how many they are.
 pub fn strains<E: Element, T: SimdScalar>(
@@ -49,7 +52,7 @@ pub fn strains<E: Element, T: SimdScalar>(
     columns: &StrainColumns<'_, T>,
     groups: Range<usize>,
     more: Option<OfStretch<'_>>,
-    visit: Option<&mut dyn FnMut(&[Strain])>,
+    visit: Option<Visit<'_>>,
 ) -> (Strain, usize) {
     cpu.dispatch(Groups::<E, T> { columns, groups, more, visit, element: PhantomData })
 }
@@ -58,7 +61,7 @@ struct Groups<'a, 'v, E, T> {
     columns: &'a StrainColumns<'a, T>,
     groups: Range<usize>,
     more: Option<OfStretch<'a>>,
-    visit: Option<&'v mut dyn FnMut(&[Strain])>,
+    visit: Option<Visit<'v>>,
     element: PhantomData<E>,
 }
 
