@@ -1,14 +1,16 @@
 //! `integrate`: moves the nodes. `shaders/integrate.wgsl` is its twin.
 
-use super::node_pass::{BodyColumns, move_body};
+use super::node_system::{Before, NodeSystem};
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::Cpu;
+use crate::backend::cpu::{Cpu, Factors, NodeColumns, move_nodes};
 use crate::backend::kernel::Fragment;
 use crate::backend::node_stage::NodeStage;
 use crate::components::*;
+use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
+use std::sync::atomic::Ordering;
 
 /// Central differences in velocity form, damping centred: with a = cΔt/(2m),
 /// d ← ((1 − a) d + Δt² (R − F)/m)/(1 + a), u ← u + d.
@@ -22,20 +24,34 @@ use bevy_ecs::prelude::*;
 /// In a static analysis the same recursion relaxes: the mass is [`FictitiousMass`], a is one number for all nodes, and
 /// forces are multiplied with a gain ([`Relaxation`]).
 pub fn system() -> System {
-    System::built_in(
+    System::built_in_nodes::<Body>(
         "integrate",
         Phase::Integrate,
         "moves the nodes by one step of central differences",
         "bodies",
         |world| super::registry::count::<Displacement>(world, "body", "bodies"),
-        integrate,
     )
     .on_nodes(stages)
 }
 
-fn integrate(clock: Res<Clock>, cpu: Res<Cpu>, mut bodies: Query<BodyColumns>) {
-    for mut body in &mut bodies {
-        move_body(&cpu, (&clock, true), &mut body, None, None);
+impl NodeSystem for Body {
+    type Columns = (
+        (&'static Mass, Option<&'static FictitiousMass>, Option<&'static DampingCoefficient>),
+        (&'static InternalForce, Option<&'static ExternalForce>, &'static ConstrainedAxes),
+        (&'static mut Displacement, &'static mut DisplacementStep, Option<&'static mut DisplacementCompensation>),
+        (Option<&'static mut Work>, Option<&'static mut InternalWork>, Option<&'static PreviousPrescribedStep>),
+        &'static mut FirstNonFinite,
+    );
+    type Prepared = Clock;
+
+    fn prepare(&self, before: &Before<'_>) -> Clock {
+        *before.clock
+    }
+
+    fn act<T: SimdScalar>(&self, clock: &Clock, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        if let Some(row) = move_nodes(cpu, nodes, &Factors::of(clock)) {
+            nodes.non_finite.fetch_min(row, Ordering::Relaxed);
+        }
     }
 }
 
@@ -55,7 +71,8 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
         let most = buffers.most_buffers().storage;
         let mut stage = |call: &'static str, columns: &[&'static str]| {
             let stage = NodeStage::new("integrate", call, body, count, shader!("integrate")).with_step(world);
-            let stage = with_optional(stage, [damped, worked], compensated, relaxed, (guarded, previous)).loaded(external);
+            let stage =
+                with_optional(stage, [damped, worked], compensated, relaxed, (guarded, previous)).loaded(external);
             let stage = columns.iter().fold(stage, |stage, &name| {
                 let column = match name {
                     Mass::NAME if fictitious => FictitiousMass::NAME,
@@ -127,8 +144,7 @@ fn with_optional(
             }
         };
     } else {
-        without +=
-            "fn add_internal_work(node: u32, before: vec3<f32>, after: vec3<f32>, constrained: vec3<bool>, inner: vec3<f32>) {}\n";
+        without += "fn add_internal_work(node: u32, before: vec3<f32>, after: vec3<f32>, constrained: vec3<bool>, inner: vec3<f32>) {}\n";
     }
     if compensated {
         fragments.push(shader!("displacement_compensation"));

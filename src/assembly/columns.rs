@@ -31,6 +31,7 @@ pub(super) fn insert_node_columns(
     let scene = &assembly.scene.scene;
     let mut entity = world.entity_mut(body);
     entity.insert((
+        Body,
         RestPosition(rest),
         Displacement(vectors()),
         DisplacementStep(vectors()),

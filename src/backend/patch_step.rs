@@ -6,7 +6,7 @@ use super::kernel::Kernel;
 use super::many_steps::{Dispatched, block_of, bodies};
 use super::node_stage::{self, NodeStage};
 use super::patch_lists::{BATCH_GROUPS, WEBGPU_WORKGROUP_MEMORY, workgroup_memory};
-use crate::components::{Corners, Patches, GROUP_ROWS};
+use crate::components::{Corners, GROUP_ROWS, Patches};
 use crate::math::LANES;
 use crate::shader;
 use bevy_ecs::prelude::*;

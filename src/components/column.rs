@@ -150,6 +150,8 @@ pub trait Column: Component<Mutability = Mutable> {
     /// The buffer on a device in which it lies: of its own name, or one that an entity's columns share, one after the other as they
     /// are declared; kernels may have few buffers.
     const BUFFER: &'static str;
+    /// What its numbers are in shaders: `f32` or `u32`.
+    const WORD: &'static str;
     /// The bytes.
     fn bytes(&self) -> &[u8];
     /// The bytes, to write.
@@ -165,6 +167,8 @@ pub struct ColumnAccess {
     pub role: Role,
     /// The buffer on a device in which it lies.
     pub buffer: &'static str,
+    /// What its numbers are in shaders.
+    pub word: &'static str,
     /// Its bytes on the host.
     pub bytes: fn(&World, Entity) -> Option<&[u8]>,
     /// Writes its bytes on the host.
@@ -180,6 +184,7 @@ impl ColumnAccess {
             name: C::NAME,
             role: C::ROLE,
             buffer: C::BUFFER,
+            word: C::WORD,
             bytes: |world, entity| world.get::<C>(entity).map(|column| column.bytes()),
             write: |world, entity, bytes| {
                 if let Some(mut column) = world.get_mut::<C>(entity) {
@@ -222,6 +227,7 @@ macro_rules! columns {
                 const NAME: &'static str = $word;
                 const ROLE: $crate::components::Role = $crate::components::Role::$role;
                 const BUFFER: &'static str = $crate::components::column::columns!(@buffer $word $($buffer)?);
+                const WORD: &'static str = <$type as $crate::components::column::AsBytes>::WORD;
                 fn bytes(&self) -> &[u8] {
                     $crate::components::column::AsBytes::as_bytes(&self.0)
                 }
@@ -252,8 +258,28 @@ macro_rules! columns {
 }
 pub(crate) use columns;
 
+/// Numbers that columns are made of.
+pub trait Word: bytemuck::Pod {
+    /// What they are in shaders; of those that only the host has, what they would be.
+    const WORD: &'static str;
+}
+
+impl Word for f32 {
+    const WORD: &'static str = "f32";
+}
+
+impl Word for f64 {
+    const WORD: &'static str = "f32";
+}
+
+impl Word for u32 {
+    const WORD: &'static str = "u32";
+}
+
 /// What columns are made of.
 pub trait AsBytes {
+    /// What the numbers are in shaders.
+    const WORD: &'static str;
     /// The bytes.
     fn as_bytes(&self) -> &[u8];
     /// The bytes, to write.
@@ -261,6 +287,7 @@ pub trait AsBytes {
 }
 
 impl AsBytes for Reals {
+    const WORD: &'static str = "f32";
     fn as_bytes(&self) -> &[u8] {
         self.bytes()
     }
@@ -269,7 +296,8 @@ impl AsBytes for Reals {
     }
 }
 
-impl<T: bytemuck::Pod> AsBytes for Vec<T> {
+impl<T: Word> AsBytes for Vec<T> {
+    const WORD: &'static str = T::WORD;
     fn as_bytes(&self) -> &[u8] {
         bytemuck::cast_slice(self)
     }

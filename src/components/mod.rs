@@ -45,6 +45,10 @@ use bevy_ecs::prelude::*;
 #[derive(Component, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Label(pub String);
 
+/// That an entity is a body, with nodes that move.
+#[derive(Component, Clone, Copy, Debug)]
+pub struct Body;
+
 /// The body that a block, constraint, load or probe belongs to.
 #[derive(Component, Clone, Copy, Debug)]
 pub struct OfBody(pub Entity);

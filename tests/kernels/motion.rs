@@ -210,7 +210,7 @@ fn compensated_sums_keep_what_f32_would_lose() {
     const TIMES: u32 = 20_000;
     let exact = f64::from(0.01_f32) + f64::from(TIMES) * f64::from(step);
     let plain = (0..TIMES).fold(0.01_f32, |u, _| u + step);
-    let integrate = Registry::default().get("integrate").unwrap().device;
+    let integrate = Registry::default().get("integrate").unwrap().device.clone();
     run_kernels(gpu, world, |world, buffers| integrate.kernels(world, buffers), TIMES);
     // the plain sum rounds every step by up to half an ulp of u: a step of 1.3 ulp becomes one of 1 ulp
     assert!((f64::from(plain) / exact - 1.0).abs() > 1e-4);

@@ -1,12 +1,20 @@
 //! What moves nodes, and how it is shared out among tasks.
 
 use crate::components::{GROUP_ROWS, WORK_NUMBERS};
-use crate::math::SimdScalar;
+use crate::math::{Scalar, SimdScalar};
+use glam::DVec3;
+use std::sync::atomic::AtomicU32;
 
 /// Some rows of a body's node columns, which no other task has; layouts as in [`components`](crate::components).
 pub struct NodeColumns<'a, T> {
     /// Row of the first node.
     pub first: usize,
+    /// Where nodes are at rest (m).
+    pub rest: &'a [DVec3],
+    /// Forces of all elements of the body (N), of which [`Corners`](crate::components::Corners) tells whose they are.
+    pub element_force: &'a [T],
+    /// The lowest row of a node whose displacement is no longer finite; `u32::MAX`: none.
+    pub non_finite: &'a AtomicU32,
     /// Mass that weighs (kg).
     pub mass: &'a [T],
     /// Mass that is slow to move (kg): in a static analysis another one.
@@ -44,6 +52,9 @@ impl<T: SimdScalar> NodeColumns<'_, T> {
             let (internal, external) = spare.split_at_mut(self.internal.len());
             task(&mut NodeColumns {
                 first: self.first,
+                rest: self.rest,
+                element_force: self.element_force,
+                non_finite: self.non_finite,
                 mass: self.mass,
                 inertia: self.inertia,
                 internal,
@@ -61,6 +72,27 @@ impl<T: SimdScalar> NodeColumns<'_, T> {
     }
 }
 
+impl<T: Scalar> NodeColumns<'_, T> {
+    /// Displacement of one of these nodes (m).
+    pub fn displacement(&self, row: usize) -> DVec3 {
+        DVec3::from_array([0, 1, 2].map(|i| self.u[3 * row + i].to_f64()))
+    }
+
+    /// Where one of these nodes is (m).
+    pub fn place(&self, row: usize) -> DVec3 {
+        self.rest[row] + self.displacement(row)
+    }
+
+    /// Adds to the load on one of these nodes (N); nothing where the body has no loads.
+    pub fn add_load(&mut self, row: usize, force: DVec3) {
+        if let Some(external) = self.external.as_deref_mut() {
+            for (load, part) in external[3 * row..3 * row + 3].iter_mut().zip(force.to_array()) {
+                *load = T::from_f64(load.to_f64() + part);
+            }
+        }
+    }
+}
+
 impl<'a, T> NodeColumns<'a, T> {
     /// How many nodes.
     pub fn rows(&self) -> usize {
@@ -72,6 +104,9 @@ impl<'a, T> NodeColumns<'a, T> {
         let places = 2 * self.places_until(rows);
         let taken = NodeColumns {
             first: self.first,
+            rest: first(&mut self.rest, rows),
+            element_force: self.element_force,
+            non_finite: self.non_finite,
             mass: first(&mut self.mass, rows),
             inertia: first(&mut self.inertia, rows),
             internal: first_mut(&mut self.internal, 3 * rows),
@@ -141,6 +176,9 @@ mod tests {
             let mut part = || parts.next().unwrap_or_default();
             let mut rest = NodeColumns {
                 first: 0,
+                rest: &[],
+                element_force: &[],
+                non_finite: &AtomicU32::new(u32::MAX),
                 mass: &read,
                 inertia: &read,
                 internal: part(),
