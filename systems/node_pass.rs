@@ -82,11 +82,6 @@ impl NodePass {
         Self { systems }
     }
 
-    /// The same after forces are summed, as nodes inside a patch of elements go through it.
-    pub(super) fn after_gather(&self) -> Self {
-        Self { systems: self.systems.iter().copied().filter(|(phase, _)| *phase != Phase::Gather).collect() }
-    }
-
     /// Whether forces are made in it, used, and not needed any more.
     pub(super) fn has_forces_of_its_own(&self) -> bool {
         let has = |wanted: Phase| self.systems.iter().any(|(phase, _)| *phase == wanted);
@@ -106,16 +101,26 @@ impl NodePass {
         before: &Before<'_>,
     ) -> BoundSystems<'a> {
         let mut all = Vec::new();
-        for ((_, system), callers) in self.systems.iter().zip(callers) {
-            system.bind(callers, body, before, &mut all);
+        for ((phase, system), callers) in self.systems.iter().zip(callers) {
+            system.bind(callers, body, before, *phase, &mut all);
         }
         all
     }
 }
 
 /// Does what bound systems do to some rows, one after the other.
-pub(super) fn act<T: OfRun>(systems: &BoundSystems<'_>, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
-    for system in systems {
+fn act<T: OfRun>(systems: &BoundSystems<'_>, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+    for (_, system) in systems {
+        T::act(system.as_ref(), cpu, nodes);
+    }
+}
+
+/// The same where the forces of elements are summed already.
+pub(super) fn act_after_gather<T: OfRun>(systems: &BoundSystems<'_>, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+    if let Some(external) = nodes.external.as_deref_mut() {
+        external.fill(T::default());
+    }
+    for (_, system) in systems.iter().filter(|(phase, _)| *phase != Phase::Gather) {
         T::act(system.as_ref(), cpu, nodes);
     }
 }

@@ -1,6 +1,6 @@
 //! What a node system is: what a system does to nodes, row by row, in passes that it shares with its neighbours in the step.
 
-use super::registry::HostSystem;
+use super::registry::{HostSystem, Phase};
 use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::components::*;
 use crate::math::SimdScalar;
@@ -81,13 +81,13 @@ impl OfRun for f64 {
 type Callers<'w, 's, S> = Query<'w, 's, (Entity, &'static S, Option<&'static OfBody>)>;
 
 /// Systems bound to a body, in their order.
-pub(super) type BoundSystems<'a> = Vec<Box<dyn OnRows + 'a>>;
+pub(super) type BoundSystems<'a> = Vec<(Phase, Box<dyn OnRows + 'a>)>;
 
 /// A node system without its type: how a pass finds what calls for it, and what it touches.
 #[derive(Clone, Copy)]
 pub struct NodeRows {
     parameter: fn() -> DynParamBuilder<'static>,
-    bind: for<'a> fn(&'a mut DynSystemParam<'_, '_>, Entity, &Before<'_>, &mut BoundSystems<'a>),
+    bind: for<'a> fn(&'a mut DynSystemParam<'_, '_>, Entity, &Before<'_>, Phase, &mut BoundSystems<'a>),
     touches: fn() -> HostSystem,
 }
 
@@ -115,9 +115,10 @@ impl NodeRows {
         callers: &'a mut DynSystemParam<'_, '_>,
         body: Entity,
         before: &Before<'_>,
+        phase: Phase,
         all: &mut BoundSystems<'a>,
     ) {
-        (self.bind)(callers, body, before, all);
+        (self.bind)(callers, body, before, phase, all);
     }
 
     /// A system that does nothing and touches what this one does: for the order in which systems may run.
@@ -130,13 +131,14 @@ fn bind<'a, S: NodeSystem>(
     callers: &'a mut DynSystemParam<'_, '_>,
     body: Entity,
     before: &Before<'_>,
+    phase: Phase,
     all: &mut BoundSystems<'a>,
 ) {
     let callers = callers.downcast_mut::<Callers<'a, 'a, S>>();
     debug_assert!(callers.is_some(), "the parameter of another system");
     for (entity, system, of) in callers.into_iter().flat_map(|callers| callers.iter_inner()) {
         if of.map_or(entity, |of| of.0) == body {
-            all.push(Box::new(Bound { system, prepared: system.prepare(before) }));
+            all.push((phase, Box::new(Bound { system, prepared: system.prepare(before) })));
         }
     }
 }

@@ -2,7 +2,7 @@
 //! they are in the core's cache, those that patches share when all patches are done.
 
 use super::element_forces::{BlockParts, Precise};
-use super::node_pass::{BodyColumns, BodyColumnsItem, NodePass, act, move_rows};
+use super::node_pass::{BodyColumns, BodyColumnsItem, NodePass, act_after_gather, move_rows};
 use super::node_system::{Before, BoundSystems, OfRun};
 use super::registry::HostSystem;
 use crate::backend::cpu::{Cpu, Inside, NodeColumns, ROWS_A_TASK};
@@ -14,10 +14,8 @@ use std::sync::atomic::AtomicU32;
 
 /// `element_forces` and a pass over the nodes as one.
 pub(crate) fn patch_pass(pass: NodePass, world: &mut World) -> HostSystem {
-    let (then, whole) = (pass.after_gather(), pass);
     let parameters = (
-        whole.parameters(),
-        then.parameters(),
+        pass.parameters(),
         ParamBuilder::resource::<Cpu>(),
         ParamBuilder::resource::<Clock>(),
         ParamBuilder::resource::<Signals>(),
@@ -27,7 +25,6 @@ pub(crate) fn patch_pass(pass: NodePass, world: &mut World) -> HostSystem {
     );
     let system = parameters.build_state(world).build_system(
         move |mut callers: Vec<DynSystemParam>,
-              mut callers_then: Vec<DynSystemParam>,
               cpu: Res<Cpu>,
               clock: Res<Clock>,
               signals: Res<Signals>,
@@ -40,11 +37,10 @@ pub(crate) fn patch_pass(pass: NodePass, world: &mut World) -> HostSystem {
                 let step = Step {
                     cpu: &cpu,
                     clock: &clock,
-                    observed: observed.0 || !whole.has_forces_of_its_own(),
+                    observed: observed.0 || !pass.has_forces_of_its_own(),
                     blocks: &authoring.blocks,
                     first_shared: corners.first_shared,
-                    inside: then.bind(&mut callers_then, body.body, &before),
-                    others: whole.bind(&mut callers, body.body, &before),
+                    systems: pass.bind(&mut callers, body.body, &before),
                 };
                 match body.u.precision() {
                     Precision::F32 => step.take::<f32>(&mut body, &mut force, &mut blocks),
@@ -64,10 +60,8 @@ struct Step<'a> {
     observed: bool,
     blocks: &'a [Entity],
     first_shared: usize,
-    /// What is done to nodes inside a patch, whose forces the patch has summed.
-    inside: BoundSystems<'a>,
-    /// What is done to all others.
-    others: BoundSystems<'a>,
+    /// What is done to nodes; to those inside a patch as soon as that has summed their forces.
+    systems: BoundSystems<'a>,
 }
 
 impl Step<'_> {
@@ -84,12 +78,7 @@ impl Step<'_> {
         };
         let rows: Vec<Vec<u32>> = self.blocks.iter().map(|&entity| patches(blocks, entity)).collect();
         let (mut inside, shared) = inside_patches(body.columns::<T>(&[], &non_finite), &rows);
-        let then = |nodes: &mut NodeColumns<'_, T>| {
-            if let Some(external) = nodes.external.as_deref_mut() {
-                external.fill(T::default());
-            }
-            act(&self.inside, self.cpu, nodes);
-        };
+        let then = |nodes: &mut NodeColumns<'_, T>| act_after_gather(&self.systems, self.cpu, nodes);
         let mut found = Vec::new();
         for (&entity, nodes) in self.blocks.iter().zip(&mut inside) {
             let inside = Inside { nodes, then: &then, observed: self.observed };
@@ -118,7 +107,7 @@ impl Step<'_> {
             shared.take(self.first_shared);
         }
         left.extend(shared.tasks(ROWS_A_TASK));
-        move_rows(self.cpu, self.observed, left, &self.others);
+        move_rows(self.cpu, self.observed, left, &self.systems);
         body.note_non_finite(non_finite, self.clock);
     }
 }
