@@ -23,6 +23,7 @@ pub fn system() -> System {
 impl NodeSystem for Corners {
     type Columns = (&'static ElementForce, &'static mut InternalForce, Option<&'static mut ExternalForce>);
     type Prepared = ();
+    const SUMS_FORCES: bool = true;
 
     fn prepare(&self, _: &Before<'_>) {}
 

@@ -43,6 +43,7 @@ impl NodeSystem for Body {
         &'static mut FirstNonFinite,
     );
     type Prepared = Clock;
+    const MOVES_NODES: bool = true;
 
     fn prepare(&self, before: &Before<'_>) -> Clock {
         *before.clock

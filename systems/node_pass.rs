@@ -2,7 +2,7 @@
 //! core's cache. On a GPU the same is one kernel (src/backend/node_stage.rs).
 
 use super::node_system::{Before, BoundSystems, NodeRows, OfRun};
-use super::registry::{HostSystem, Phase};
+use super::registry::HostSystem;
 use crate::backend::cpu::{Cpu, NodeColumns, ROWS_A_TASK};
 use crate::backend::step::step_number;
 use crate::components::*;
@@ -73,24 +73,23 @@ impl BodyColumnsItem<'_, '_> {
 /// The node systems of a pass, in their order.
 #[derive(Clone, Default)]
 pub(crate) struct NodePass {
-    systems: Vec<(Phase, NodeRows)>,
+    systems: Vec<NodeRows>,
 }
 
 impl NodePass {
     /// Of systems that follow one another in a step.
-    pub(crate) fn new(systems: Vec<(Phase, NodeRows)>) -> Self {
+    pub(crate) fn new(systems: Vec<NodeRows>) -> Self {
         Self { systems }
     }
 
     /// Whether forces are made in it, used, and not needed any more.
     pub(super) fn has_forces_of_its_own(&self) -> bool {
-        let has = |wanted: Phase| self.systems.iter().any(|(phase, _)| *phase == wanted);
-        has(Phase::Gather) && has(Phase::Integrate)
+        self.systems.iter().any(|system| system.sums_forces) && self.systems.iter().any(|system| system.moves_nodes)
     }
 
     /// What it asks the world for.
     pub(super) fn parameters(&self) -> Vec<bevy_ecs::system::DynParamBuilder<'static>> {
-        self.systems.iter().map(|(_, system)| system.parameter()).collect()
+        self.systems.iter().map(NodeRows::parameter).collect()
     }
 
     /// Binds all that calls for its systems on a body to a step.
@@ -101,8 +100,8 @@ impl NodePass {
         before: &Before<'_>,
     ) -> BoundSystems<'a> {
         let mut all = Vec::new();
-        for ((phase, system), callers) in self.systems.iter().zip(callers) {
-            system.bind(callers, body, before, *phase, &mut all);
+        for (system, callers) in self.systems.iter().zip(callers) {
+            system.bind(callers, body, before, &mut all);
         }
         all
     }
@@ -110,7 +109,7 @@ impl NodePass {
 
 /// Does what bound systems do to some rows, one after the other.
 fn act<T: OfRun>(systems: &BoundSystems<'_>, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
-    for (_, system) in systems {
+    for system in systems {
         T::act(system.as_ref(), cpu, nodes);
     }
 }
@@ -120,7 +119,7 @@ pub(super) fn act_after_gather<T: OfRun>(systems: &BoundSystems<'_>, cpu: &Cpu, 
     if let Some(external) = nodes.external.as_deref_mut() {
         external.fill(T::default());
     }
-    for (_, system) in systems.iter().filter(|(phase, _)| *phase != Phase::Gather) {
+    for system in systems.iter().filter(|system| !system.sums_forces()) {
         T::act(system.as_ref(), cpu, nodes);
     }
 }

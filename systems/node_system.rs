@@ -1,6 +1,6 @@
 //! What a node system is: what a system does to nodes, row by row, in passes that it shares with its neighbours in the step.
 
-use super::registry::{HostSystem, Phase};
+use super::registry::HostSystem;
 use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::components::*;
 use crate::math::SimdScalar;
@@ -18,6 +18,10 @@ pub trait NodeSystem: Component {
     type Columns: QueryData + 'static;
     /// What a step needs beside the component.
     type Prepared: Send + Sync;
+    /// Whether it sums the forces of elements and clears the loads of the last step: for nodes inside a patch, that has done so.
+    const SUMS_FORCES: bool = false;
+    /// Whether it uses these sums up, by moving the nodes.
+    const MOVES_NODES: bool = false;
 
     /// Finds out what this step needs, before any node of the body moves.
     fn prepare(&self, before: &Before<'_>) -> Self::Prepared;
@@ -43,6 +47,7 @@ pub struct Before<'a> {
 pub(super) trait OnRows: Sync {
     fn single(&self, cpu: &Cpu, nodes: &mut NodeColumns<'_, f32>);
     fn double(&self, cpu: &Cpu, nodes: &mut NodeColumns<'_, f64>);
+    fn sums_forces(&self) -> bool;
 }
 
 struct Bound<'a, S: NodeSystem> {
@@ -56,6 +61,9 @@ impl<S: NodeSystem> OnRows for Bound<'_, S> {
     }
     fn double(&self, cpu: &Cpu, nodes: &mut NodeColumns<'_, f64>) {
         self.system.act(&self.prepared, cpu, nodes);
+    }
+    fn sums_forces(&self) -> bool {
+        S::SUMS_FORCES
     }
 }
 
@@ -81,14 +89,18 @@ impl OfRun for f64 {
 type Callers<'w, 's, S> = Query<'w, 's, (Entity, &'static S, Option<&'static OfBody>)>;
 
 /// Systems bound to a body, in their order.
-pub(super) type BoundSystems<'a> = Vec<(Phase, Box<dyn OnRows + 'a>)>;
+pub(super) type BoundSystems<'a> = Vec<Box<dyn OnRows + 'a>>;
 
 /// A node system without its type: how a pass finds what calls for it, and what it touches.
 #[derive(Clone, Copy)]
 pub struct NodeRows {
     parameter: fn() -> DynParamBuilder<'static>,
-    bind: for<'a> fn(&'a mut DynSystemParam<'_, '_>, Entity, &Before<'_>, Phase, &mut BoundSystems<'a>),
+    bind: for<'a> fn(&'a mut DynSystemParam<'_, '_>, Entity, &Before<'_>, &mut BoundSystems<'a>),
     touches: fn() -> HostSystem,
+    /// See [`NodeSystem::SUMS_FORCES`].
+    pub sums_forces: bool,
+    /// See [`NodeSystem::MOVES_NODES`].
+    pub moves_nodes: bool,
 }
 
 impl NodeRows {
@@ -101,6 +113,8 @@ impl NodeRows {
                 let nothing = |_: Query<S::Columns>, _: Callers<S>, _: Res<Clock>, _: Res<Signals>| Ok(());
                 Box::new(IntoSystem::into_system(nothing))
             },
+            sums_forces: S::SUMS_FORCES,
+            moves_nodes: S::MOVES_NODES,
         }
     }
 
@@ -115,10 +129,9 @@ impl NodeRows {
         callers: &'a mut DynSystemParam<'_, '_>,
         body: Entity,
         before: &Before<'_>,
-        phase: Phase,
         all: &mut BoundSystems<'a>,
     ) {
-        (self.bind)(callers, body, before, phase, all);
+        (self.bind)(callers, body, before, all);
     }
 
     /// A system that does nothing and touches what this one does: for the order in which systems may run.
@@ -131,14 +144,13 @@ fn bind<'a, S: NodeSystem>(
     callers: &'a mut DynSystemParam<'_, '_>,
     body: Entity,
     before: &Before<'_>,
-    phase: Phase,
     all: &mut BoundSystems<'a>,
 ) {
     let callers = callers.downcast_mut::<Callers<'a, 'a, S>>();
     debug_assert!(callers.is_some(), "the parameter of another system");
     for (entity, system, of) in callers.into_iter().flat_map(|callers| callers.iter_inner()) {
         if of.map_or(entity, |of| of.0) == body {
-            all.push((phase, Box::new(Bound { system, prepared: system.prepare(before) })));
+            all.push(Box::new(Bound { system, prepared: system.prepare(before) }));
         }
     }
 }

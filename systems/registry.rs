@@ -48,10 +48,10 @@ pub enum OnHost {
 
 impl OnHost {
     /// The system, by itself in a pass if it is one of nodes.
-    pub fn alone(&self, phase: Phase, world: &mut World) -> HostSystem {
+    pub fn alone(&self, world: &mut World) -> HostSystem {
         match self {
             OnHost::System(make) => make(),
-            OnHost::Nodes(rows) => node_pass(NodePass::new(vec![(phase, *rows)]), world),
+            OnHost::Nodes(rows) => node_pass(NodePass::new(vec![*rows]), world),
         }
     }
 

@@ -215,10 +215,7 @@ fn entries(
                 Job::Host { system: host, beat, observes: first.system.observes, reads, writes }
             }
             (None, _) => {
-                let of_nodes = group.iter().filter_map(|&place| {
-                    let system = schedule[place].system;
-                    Some((system.phase, system.host.nodes()?))
-                });
+                let of_nodes = group.iter().filter_map(|&place| schedule[place].system.host.nodes());
                 let nodes = NodePass::new(of_nodes.collect());
                 let mut system = match first.system.name == ELEMENT_FORCES {
                     true => patch_pass(nodes, world),

@@ -40,8 +40,9 @@ fn with_elements(groups: Vec<Vec<usize>>, schedule: &[Scheduled<'_>]) -> Vec<Vec
         _ => false,
     };
     for group in groups {
-        let phases = |group: &[usize]| [group[0], group[group.len() - 1]].map(|place| schedule[place].system.phase);
-        let whole = phases(&group) == [Phase::Gather, Phase::Integrate];
+        let of_nodes = |place: &usize| schedule[*place].system.host.nodes();
+        let whole = of_nodes(&group[0]).is_some_and(|first| first.sums_forces)
+            && group.iter().filter_map(of_nodes).any(|system| system.moves_nodes);
         match together.last_mut().filter(|before| whole && of_elements(before)) {
             Some(before) => before.extend(group),
             None => together.push(group),
