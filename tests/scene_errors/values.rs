@@ -379,7 +379,7 @@ fn times_and_curves_are_checked() {
         (
             "duration: 0.5,",
             "duration: 0.5, accuracy: (target: 5),",
-            r"3:40: warning: an error of 500 % is allowed here: 5 % would be 0.05",
+            r"3:39: warning: an error of 500 % is allowed here: 5 % would be 0.05",
         ),
         (
             "duration: 0.5,",
