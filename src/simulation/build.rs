@@ -13,6 +13,7 @@ use super::schedule::{Scheduled, check_names, resolve};
 use super::scheme::{fit_workgroups, sum_forces};
 use super::stable_step::{self, Stability};
 use super::step_kernels::step_kernels;
+use super::touched::{columns_of, writes};
 use super::{Entry, Facts, Job, Member, Options, Simulation};
 use crate::assembly::{Assembly, assemble, assemble_in_time, insert_laws};
 use crate::backend::cpu::Cpu;
@@ -26,7 +27,6 @@ use crate::scene::schema::Analysis;
 use crate::scene::{Diagnostics, SceneFile};
 use crate::snapshot::{Keeping, identity};
 use crate::systems::{ELEMENT_FORCES, HostSystem, NodePass, OnHost, Phase, Registry, System, node_pass, patch_pass};
-use bevy_ecs::component::ComponentId;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemAccess;
 use std::time::{Duration, Instant};
@@ -367,32 +367,6 @@ fn keeping(
         precision,
         written: custom().flat_map(|(_, access)| columns_of(access, world).1).collect(),
         systems: custom().filter_map(|(entry, _)| Some((entry.system.name.clone(), entry.system.state?))).collect(),
-    }
-}
-
-/// The columns that a system reads and writes, by its own access set.
-fn columns_of(access: &SystemAccess, world: &World) -> (Vec<&'static str>, Vec<&'static str>) {
-    let names = |touched: fn(&SystemAccess, ComponentId) -> bool| {
-        let columns = all_columns().into_iter();
-        columns.filter(|c| (c.id)(world).is_some_and(|id| touched(access, id))).map(|c| c.name).collect()
-    };
-    (names(reads), names(writes))
-}
-
-/// An exclusive system may touch everything.
-fn reads(access: &SystemAccess, id: ComponentId) -> bool {
-    match access {
-        SystemAccess::None => false,
-        SystemAccess::Shared(set) => set.combined_access().has_read(id),
-        SystemAccess::Exclusive => true,
-    }
-}
-
-fn writes(access: &SystemAccess, id: ComponentId) -> bool {
-    match access {
-        SystemAccess::None => false,
-        SystemAccess::Shared(set) => set.combined_access().has_write(id),
-        SystemAccess::Exclusive => true,
     }
 }
 
