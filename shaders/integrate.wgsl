@@ -1,10 +1,10 @@
 // Central differences in velocity form; twin of systems/integrate.rs. What a body has no column for is a line generated in
-// place of a fragment: damped, coefficient_of, book_work, spend, add_up_spent, add_to_step, add_step, forget_step.
+// place of a fragment: damped, coefficient_of, book_work, add_internal_work, add_up_internal_work, add_to_step, add_step, forget_step.
 @group(0) @binding(1) var<storage, read> mass: array<f32>; // fictitious in a static analysis
 @group(0) @binding(3) var<storage, read> constrained_axes: array<u32>;
 @group(0) @binding(4) var<storage, read_write> displacement: array<f32>;
 @group(0) @binding(5) var<storage, read_write> displacement_step: array<f32>;
-@group(0) @binding(6) var<storage, read_write> first_non_finite: array<atomic<u32>>;
+@group(0) @binding(6) var<storage, read_write> node_diagnostics: array<atomic<u32>>;
 
 fn step_of(node: u32) -> vec3<f32> {
     let at = 3u * node;
@@ -35,7 +35,7 @@ fn push(node: u32) -> vec3<f32> {
         let constrained = constrained_at(node);
         after = select(add_to_step(node, before, change), before, constrained);
         book_work(node, before, after, constrained, inner, outer);
-        spend(node, before, after, constrained, inner);
+        add_internal_work(node, before, after, constrained, inner);
     } else {
         forget_step(node);
     }
@@ -56,8 +56,8 @@ fn move_on(node: u32, d: vec3<f32>) {
     let exponent = vec3<u32>(0x7f800000u);
     if any((bitcast<vec3<u32>>(u) & exponent) == exponent) {
         // the lowest node of the first step in which there is one: later steps find an earlier one noted
-        if atomicMin(&first_non_finite[1], step.number) >= step.number {
-            atomicMin(&first_non_finite[0], node);
+        if atomicMin(&node_diagnostics[1], step.number) >= step.number {
+            atomicMin(&node_diagnostics[0], node);
         }
     }
 }

@@ -10,8 +10,8 @@ struct Step {
     relaxation: f32, // a = cΔt/2 of a static analysis
     booked: f32, // share of a step's work that is booked: the time between the middles over Δt
     observed: u32, // 1 in steps after which somebody may look at forces
-    reserved_0: u32,
-    reserved_1: u32,
-    reserved_2: u32,
+    reserved: u32,
+    time: f32, // at the beginning of the step (s)
+    time_step: f32, // Δt (s)
     signals: array<vec4<f32>, SIGNALS>,
 }

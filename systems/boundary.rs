@@ -1,13 +1,14 @@
 //! `boundary`: where constrained nodes go in this step. `shaders/boundary.wgsl` is its twin.
 
+use super::node_system::{Before, NodeSystem};
 use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
+use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::kernel::{Fragment, Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
-use crate::error::missing;
-use crate::math::Scalar;
+use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
 
@@ -15,7 +16,7 @@ use bevy_ecs::prelude::*;
 /// constrained axes, and `integrate` adds it as it adds all others. Fixed axes have a step of 0 from the start and need no
 /// work.
 pub fn system() -> System {
-    System::built_in(
+    System::built_in_nodes::<Prescribed>(
         "boundary",
         Phase::Boundary,
         "says where fixed and prescribed nodes go",
@@ -28,57 +29,40 @@ pub fn system() -> System {
                 (some, None) | (None, some) => some,
             }
         },
-        boundary,
     )
     .on_nodes(stages)
 }
 
-fn boundary(
-    signals: Res<Signals>,
-    constraints: Query<(&Prescribed, &OfBody)>,
-    mut bodies: Query<(&Displacement, Option<&DisplacementCompensation>, &mut DisplacementStep, &mut FirstNonFinite)>,
-) {
-    for (prescribed, body) in &constraints {
-        let Ok((displacement, compensation, mut step, mut noticed)) = bodies.get_mut(body.0) else {
-            missing("a column of a body");
-            continue;
-        };
-        let kept = noticed.get_mut(before_at(displacement.len() / 3)..).unwrap_or_default();
-        let rows = &signals.values()[prescribed.signal..prescribed.signal + 3];
-        match &mut step.0 {
-            Reals::F32(step) => {
-                move_rows(prescribed, rows, 0, displacement.slice(), compensation.map(|c| c.slice()), step, kept)
-            }
-            Reals::F64(step) => {
-                move_rows(prescribed, rows, 0, displacement.slice(), compensation.map(|c| c.slice()), step, kept)
-            }
-        }
-    }
-}
+impl NodeSystem for Prescribed {
+    type Columns = (
+        &'static Displacement,
+        Option<&'static DisplacementCompensation>,
+        &'static mut DisplacementStep,
+        Option<&'static mut PreviousPrescribedStep>,
+    );
+    /// Rows of A and b.
+    type Prepared = [[f64; 4]; 3];
 
-/// Where those nodes from row `first` on go that the columns have.
-pub(super) fn move_rows<T: Scalar>(
-    prescribed: &Prescribed,
-    motion: &[[f64; 4]],
-    first: usize,
-    displacement: &[T],
-    compensation: Option<&[T]>,
-    step: &mut [T],
-    kept: &mut [u32],
-) {
-    let own = places_within(&prescribed.rows, first, step.len() / 3);
-    for (&row, arm) in prescribed.rows[own.clone()].iter().zip(&prescribed.arms[own]) {
-        let row = row as usize - first;
-        for axis in (0..3).filter(|axis| prescribed.axes >> axis & 1 == 1) {
-            let [x, y, z, shift] = motion[axis];
-            let place = 3 * row + axis;
-            let target = T::from_f64(x * arm.x + y * arm.y + z * arm.z + shift);
-            let lost = compensation.map_or(T::default(), |c| c[place]);
-            // for the work that integrate books
-            if let Some(kept) = kept.get_mut(place) {
-                *kept = (step[place].to_f64() as f32).to_bits();
+    fn prepare(&self, before: &Before<'_>) -> [[f64; 4]; 3] {
+        [0, 1, 2].map(|axis| before.signals.values()[self.signal + axis])
+    }
+
+    fn act<T: SimdScalar>(&self, motion: &[[f64; 4]; 3], _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        let lost = nodes.compensation.as_ref().map(|[of_u, _]| &**of_u);
+        let own = places_within(&self.rows, nodes.first, nodes.axes.len());
+        for (&row, arm) in self.rows[own.clone()].iter().zip(&self.arms[own]) {
+            let row = row as usize - nodes.first;
+            for axis in (0..3).filter(|axis| self.axes >> axis & 1 == 1) {
+                let [x, y, z, shift] = motion[axis];
+                let place = 3 * row + axis;
+                let target = T::from_f64(x * arm.x + y * arm.y + z * arm.z + shift);
+                let lost = lost.map_or(T::default(), |lost| lost[place]);
+                // for the work that integrate accumulates
+                if let Some(previous) = nodes.previous_prescribed.get_mut(place) {
+                    *previous = nodes.step[place].to_f64() as f32;
+                }
+                nodes.step[place] = (target - nodes.u[place]) + lost;
             }
-            step[place] = (target - displacement[place]) + lost;
         }
     }
 }
@@ -115,14 +99,16 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
                 "fn lost_of(node: u32, axis: u32) -> f32 {\n    return 0.0;\n}\n",
             ))
         };
-        let at = before_at(nodes as usize);
-        let booked = world.get::<FirstNonFinite>(body).is_some_and(|noticed| noticed.len() > at);
-        stage = if booked {
-            let noticed = buffers.column(body, FirstNonFinite::NAME);
-            let at = Fragment::new("generated: where steps are kept", format!("const BEFORE_AT: u32 = {at}u;\n"));
-            stage.shared(shader!("kept_step")).shared(at).column(FirstNonFinite::NAME, noticed)
+        stage = if world.get::<PreviousPrescribedStep>(body).is_some() {
+            let diagnostics = buffers.column(body, PreviousPrescribedStep::NAME);
+            let place = place_in_buffer::<PreviousPrescribedStep>(body, world);
+            let place = Fragment::new(
+                "generated: where previous steps lie",
+                format!("const PREVIOUS_PRESCRIBED_AT: u32 = {place}u;\n"),
+            );
+            stage.shared(shader!("previous_prescribed_step")).shared(place).column(FirstNonFinite::BUFFER, diagnostics)
         } else {
-            stage.shared(Fragment::new("generated: nothing is booked", "fn keep_step(at: u32) {}\n"))
+            stage.shared(Fragment::new("generated: previous steps are not kept", "fn keep_previous_step(at: u32) {}\n"))
         };
         stages.push(stage.with_step(world));
     }

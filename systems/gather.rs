@@ -1,37 +1,36 @@
 //! `gather`: sums element forces at the nodes. `shaders/gather.wgsl` is its twin.
 
+use super::node_system::{Before, NodeSystem};
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::{Cpu, ROWS_A_TASK};
+use crate::backend::cpu::{Cpu, NodeColumns, ROWS_A_TASK};
 use crate::backend::kernel::Fragment;
 use crate::backend::node_stage::NodeStage;
 use crate::components::*;
-use crate::math::{LANES, Scalar};
+use crate::math::{LANES, Scalar, SimdScalar};
 use crate::shader;
 use bevy_ecs::prelude::*;
 
 /// Each node sums its own corners in a fixed order: the same bits for any number of threads, and no atomics. Also clears
 /// the external forces, to which the loads of this step then add.
 pub fn system() -> System {
-    System::built_in(
-        "gather",
-        Phase::Gather,
-        "sums element forces at the nodes",
-        "bodies",
-        |world| super::registry::count::<Corners>(world, "body with elements", "bodies with elements"),
-        gather,
-    )
+    System::built_in_nodes::<Corners>("gather", Phase::Gather, "sums element forces at the nodes", "bodies", |world| {
+        super::registry::count::<Corners>(world, "body with elements", "bodies with elements")
+    })
     .on_nodes(stages)
 }
 
-fn gather(cpu: Res<Cpu>, mut bodies: Query<(&Corners, &ElementForce, &mut InternalForce, Option<&mut ExternalForce>)>) {
-    for (corners, element_force, mut internal, external) in &mut bodies {
-        match &mut internal.0 {
-            Reals::F32(internal) => sum_corners(&cpu, corners, element_force.slice(), internal),
-            Reals::F64(internal) => sum_corners(&cpu, corners, element_force.slice(), internal),
-        }
-        if let Some(mut external) = external {
-            external.bytes_mut().fill(0);
+impl NodeSystem for Corners {
+    type Columns = (&'static ElementForce, &'static mut InternalForce, Option<&'static mut ExternalForce>);
+    type Prepared = ();
+    const SUMS_FORCES: bool = true;
+
+    fn prepare(&self, _: &Before<'_>) {}
+
+    fn act<T: SimdScalar>(&self, (): &(), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        sum_at(self, nodes.element_force, nodes.first, nodes.internal);
+        if let Some(external) = nodes.external.as_deref_mut() {
+            external.fill(T::default());
         }
     }
 }
@@ -43,7 +42,7 @@ pub(crate) fn sum_corners<T: Scalar>(cpu: &Cpu, corners: &Corners, element_force
 }
 
 /// The sums of the nodes from row `first` on that a column has.
-pub(super) fn sum_at<T: Scalar>(corners: &Corners, element_force: &[T], first: usize, internal: &mut [T]) {
+fn sum_at<T: Scalar>(corners: &Corners, element_force: &[T], first: usize, internal: &mut [T]) {
     if corners.stride == 1 {
         sum_at_stride::<T, 1>(corners, element_force, first, internal);
     } else {

@@ -1,12 +1,12 @@
 //! `gravity`: mass times acceleration on every node. `shaders/gravity.wgsl` is its twin.
 
+use super::node_system::{Before, NodeSystem};
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::Cpu;
+use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::kernel::{Uniform, uniform};
 use crate::backend::node_stage::NodeStage;
 use crate::components::*;
-use crate::error::missing;
 use crate::math::{LANES, SimdScalar};
 use crate::shader;
 use bevy_ecs::prelude::*;
@@ -14,39 +14,29 @@ use pulp::{Simd, WithSimd};
 
 /// Adds m g to the external forces.
 pub fn system() -> System {
-    System::built_in(
+    System::built_in_nodes::<Gravity>(
         "gravity",
         Phase::Loads,
         "adds mass times acceleration to the external forces",
         "`Gravity(...)` under `loads`",
         |world| super::registry::count::<Gravity>(world, "gravity load", "gravity loads"),
-        gravity,
     )
     .on_nodes(stages)
 }
 
-fn gravity(
-    cpu: Res<Cpu>,
-    signals: Res<Signals>,
-    loads: Query<(&Gravity, &OfBody)>,
-    mut bodies: Query<(&Mass, &mut ExternalForce)>,
-) {
-    for (load, body) in &loads {
-        let Ok((mass, mut external)) = bodies.get_mut(body.0) else {
-            missing("a column of a body");
-            continue;
-        };
-        let acceleration = signals.values()[load.signal];
-        match &mut external.0 {
-            Reals::F32(external) => pull(&cpu, mass.slice(), acceleration, external),
-            Reals::F64(external) => pull(&cpu, mass.slice(), acceleration, external),
+impl NodeSystem for Gravity {
+    type Columns = (&'static Mass, &'static mut ExternalForce);
+    type Prepared = [f64; 4];
+
+    fn prepare(&self, before: &Before<'_>) -> [f64; 4] {
+        before.signals.values()[self.signal]
+    }
+
+    fn act<T: SimdScalar>(&self, acceleration: &[f64; 4], cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        if let Some(external) = nodes.external.as_deref_mut() {
+            cpu.dispatch_widest(Pull { mass: nodes.mass, acceleration: acceleration.map(T::from_f64), external });
         }
     }
-}
-
-/// Pulls at all nodes that the columns have.
-pub(super) fn pull<T: SimdScalar>(cpu: &Cpu, mass: &[T], acceleration: [f64; 4], external: &mut [T]) {
-    cpu.dispatch_widest(Pull { mass, acceleration: acceleration.map(T::from_f64), external });
 }
 
 struct Pull<'a, T> {

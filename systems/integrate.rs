@@ -1,14 +1,16 @@
 //! `integrate`: moves the nodes. `shaders/integrate.wgsl` is its twin.
 
-use super::node_pass::{BodyColumns, move_body};
+use super::node_system::{Before, NodeSystem};
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::Cpu;
+use crate::backend::cpu::{Cpu, Factors, NodeColumns, move_nodes};
 use crate::backend::kernel::Fragment;
 use crate::backend::node_stage::NodeStage;
 use crate::components::*;
+use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
+use std::sync::atomic::Ordering;
 
 /// Central differences in velocity form, damping centred: with a = cΔt/(2m),
 /// d ← ((1 − a) d + Δt² (R − F)/m)/(1 + a), u ← u + d.
@@ -22,20 +24,35 @@ use bevy_ecs::prelude::*;
 /// In a static analysis the same recursion relaxes: the mass is [`FictitiousMass`], a is one number for all nodes, and
 /// forces are multiplied with a gain ([`Relaxation`]).
 pub fn system() -> System {
-    System::built_in(
+    System::built_in_nodes::<Body>(
         "integrate",
         Phase::Integrate,
         "moves the nodes by one step of central differences",
         "bodies",
         |world| super::registry::count::<Displacement>(world, "body", "bodies"),
-        integrate,
     )
     .on_nodes(stages)
 }
 
-fn integrate(clock: Res<Clock>, cpu: Res<Cpu>, mut bodies: Query<BodyColumns>) {
-    for mut body in &mut bodies {
-        move_body(&cpu, (&clock, true), &mut body, None, None);
+impl NodeSystem for Body {
+    type Columns = (
+        (&'static Mass, Option<&'static FictitiousMass>, Option<&'static DampingCoefficient>),
+        (&'static InternalForce, Option<&'static ExternalForce>, &'static ConstrainedAxes),
+        (&'static mut Displacement, &'static mut DisplacementStep, Option<&'static mut DisplacementCompensation>),
+        (Option<&'static mut Work>, Option<&'static mut InternalWork>, Option<&'static PreviousPrescribedStep>),
+        &'static mut FirstNonFinite,
+    );
+    type Prepared = Clock;
+    const MOVES_NODES: bool = true;
+
+    fn prepare(&self, before: &Before<'_>) -> Clock {
+        *before.clock
+    }
+
+    fn act<T: SimdScalar>(&self, clock: &Clock, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        if let Some(row) = move_nodes(cpu, nodes, &Factors::of(clock)) {
+            nodes.non_finite.fetch_min(row, Ordering::Relaxed);
+        }
     }
 }
 
@@ -46,27 +63,32 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
     let mut stages = Vec::new();
     for (body, count, optional) in bodies {
         let relaxed = world.get_resource::<Clock>().is_some_and(|clock| clock.relaxation.is_some());
-        let noticed = world.get::<FirstNonFinite>(body).map_or(0, |noticed| noticed.len());
-        let (spent, at) = (noticed > SPENT_AT, before_at(count as usize));
-        let kept = (noticed > at).then_some(at);
+        let guarded = world.get::<InternalWork>(body).map(|_| place_in_buffer::<InternalWork>(body, world));
+        let previous = world.get::<PreviousPrescribedStep>(body);
+        let previous = previous.map(|_| place_in_buffer::<PreviousPrescribedStep>(body, world));
         let fictitious = world.get::<FictitiousMass>(body).is_some();
         let compensated = world.get::<DisplacementCompensation>(body).is_some();
         let [external, damped, worked] = optional;
         let most = buffers.most_buffers().storage;
         let mut stage = |call: &'static str, columns: &[&'static str]| {
             let stage = NodeStage::new("integrate", call, body, count, shader!("integrate")).with_step(world);
-            let stage = with_optional(stage, [damped, worked], compensated, relaxed, (spent, kept)).loaded(external);
+            let stage =
+                with_optional(stage, [damped, worked], compensated, relaxed, (guarded, previous)).loaded(external);
             let stage = columns.iter().fold(stage, |stage, &name| {
-                let kept_in = if fictitious && name == Mass::NAME { FictitiousMass::NAME } else { name };
-                stage.column(name, buffers.column(body, kept_in))
+                let column = match name {
+                    Mass::NAME if fictitious => FictitiousMass::NAME,
+                    FirstNonFinite::BUFFER => FirstNonFinite::NAME,
+                    _ => name,
+                };
+                stage.column(name, buffers.column(body, column))
             });
-            if spent && call != "integrate_move" { stage.finish("add_up_spent") } else { stage }
+            if guarded.is_some() && call != "integrate_move" { stage.finish("add_up_internal_work") } else { stage }
         };
         let mut push = vec![Mass::NAME, InternalForce::NAME, ConstrainedAxes::NAME, DisplacementStep::NAME];
         push.extend(external.then_some(ExternalForce::NAME));
         push.extend(damped.then_some(DampingCoefficient::NAME));
         push.extend(worked.then_some(Work::NAME));
-        let mut displace = vec![Displacement::NAME, FirstNonFinite::NAME];
+        let mut displace = vec![Displacement::NAME, FirstNonFinite::BUFFER];
         let lost = compensated.then_some(DisplacementCompensation::NAME);
         if push.len() + displace.len() + usize::from(compensated) <= most {
             push.extend(displace);
@@ -74,7 +96,7 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
             stages.push(stage("integrate", &push));
         } else {
             displace.extend([DisplacementStep::NAME, ConstrainedAxes::NAME]);
-            push.extend(spent.then_some(FirstNonFinite::NAME));
+            push.extend(guarded.map(|_| InternalWork::BUFFER));
             push.extend(lost);
             displace.extend(lost);
             stages.push(stage("integrate_push", &push));
@@ -90,7 +112,7 @@ fn with_optional(
     [damped, worked]: [bool; 2],
     compensated: bool,
     relaxed: bool,
-    (spent, kept): (bool, Option<usize>),
+    (guarded, previous): (Option<usize>, Option<usize>),
 ) -> NodeStage {
     let mut without = String::new();
     let mut fragments = Vec::new();
@@ -111,20 +133,19 @@ fn with_optional(
         without += "fn book_work(node: u32, before: vec3<f32>, after: vec3<f32>, constrained: vec3<bool>, \
                     inner: vec3<f32>, outer: vec3<f32>) {}\n";
     }
-    if spent {
-        fragments.push(shader!("spent"));
-        without += &format!("const SPENT_AT: u32 = {SPENT_AT}u;\nconst SPENT_ROWS: u32 = {SPENT_ROWS}u;\n");
+    if let Some(at) = guarded {
+        fragments.push(shader!("internal_work"));
+        without += &format!("const INTERNAL_WORK_AT: u32 = {at}u;\nconst GROUP_ROWS: u32 = {GROUP_ROWS}u;\n");
         without += "fn step_before(node: u32) -> vec3<f32> {\n";
-        without += &match kept {
+        without += &match previous {
             None => "    return vec3<f32>(0.0);\n}\n".to_string(),
             Some(at) => {
-                let word = |i: usize| format!("bitcast<f32>(atomicLoad(&first_non_finite[{}u + 3u * node]))", at + i);
+                let word = |i: usize| format!("bitcast<f32>(atomicLoad(&node_diagnostics[{}u + 3u * node]))", at + i);
                 format!("    return vec3<f32>({}, {}, {});\n}}\n", word(0), word(1), word(2))
             }
         };
     } else {
-        without +=
-            "fn spend(node: u32, before: vec3<f32>, after: vec3<f32>, constrained: vec3<bool>, inner: vec3<f32>) {}\n";
+        without += "fn add_internal_work(node: u32, before: vec3<f32>, after: vec3<f32>, constrained: vec3<bool>, inner: vec3<f32>) {}\n";
     }
     if compensated {
         fragments.push(shader!("displacement_compensation"));

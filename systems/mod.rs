@@ -14,8 +14,8 @@
 //! observe          all, read only               -> probes, energies, guards, files
 //! ```
 //!
-//! Neighbours that work node by node share a pass (`node_pass`), with `element_forces` before them for the nodes inside a patch
-//! (`patch_pass`; on a GPU `src/backend/patch_step.rs`).
+//! What works node by node is a [`NodeSystem`], and so may be a user's: neighbours of a step share a pass (`node_pass`), with
+//! `element_forces` before them for the nodes inside a patch (`patch_pass`; on a GPU `src/backend/patch_step.rs`).
 
 mod boundary;
 mod element_forces;
@@ -26,6 +26,8 @@ mod integrate;
 mod nodal_force;
 mod nodal_volume;
 mod node_pass;
+mod node_stages;
+mod node_system;
 mod observe;
 mod patch_pass;
 mod pressure;
@@ -35,10 +37,11 @@ mod traction;
 pub(crate) use element_forces::ELEMENT_FORCES;
 pub(crate) use gather::sum_corners;
 pub(crate) use nodal_volume::means_of;
-pub(crate) use node_pass::{is_a_pass, node_pass};
+pub(crate) use node_pass::{NodePass, node_pass};
+pub use node_system::{Before, NodeRows, NodeSystem};
 pub use observe::{add_watch_columns, watch_kernels};
 pub(crate) use patch_pass::patch_pass;
-pub use registry::{DescribeKernels, HostSystem, OnDevice, Outcome, Phase, Registry, System};
+pub use registry::{DescribeKernels, HostSystem, OnDevice, OnHost, Outcome, Phase, Registry, System};
 
 /// Places in `rows`, which ascend, of those among `count` from row `first` on.
 fn places_within(rows: &[u32], first: usize, count: usize) -> std::ops::Range<usize> {

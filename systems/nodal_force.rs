@@ -1,55 +1,46 @@
 //! `nodal_force`: forces on chosen nodes. `shaders/nodal_force.wgsl` is its twin.
 
+use super::node_system::{Before, NodeSystem};
 use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
+use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::kernel::{Fragment, Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
-use crate::error::missing;
-use crate::math::Scalar;
+use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
 
 /// Adds a force to each of the load's nodes that has mass: a parked node bears nothing.
 pub fn system() -> System {
-    System::built_in(
+    System::built_in_nodes::<NodalForce>(
         "nodal_force",
         Phase::Loads,
         "adds forces on chosen nodes to the external forces",
         "`NodalForce(...)` under `loads`",
         |world| super::registry::count::<NodalForce>(world, "nodal force", "nodal forces"),
-        nodal_force,
     )
     .on_nodes(stages)
 }
 
-fn nodal_force(
-    signals: Res<Signals>,
-    loads: Query<(&NodalForce, &OfBody)>,
-    mut bodies: Query<(&Mass, &mut ExternalForce)>,
-) {
-    for (load, body) in &loads {
-        let Ok((mass, mut external)) = bodies.get_mut(body.0) else {
-            missing("a column of a body");
-            continue;
-        };
-        let force = signals.values()[load.signal];
-        match &mut external.0 {
-            Reals::F32(external) => push(load, force, 0, mass.slice(), external),
-            Reals::F64(external) => push(load, force, 0, mass.slice(), external),
-        }
-    }
-}
+impl NodeSystem for NodalForce {
+    type Columns = (&'static Mass, &'static mut ExternalForce);
+    type Prepared = [f64; 4];
 
-/// Pushes those nodes from row `first` on that the columns have.
-pub(super) fn push<T: Scalar>(load: &NodalForce, force: [f64; 4], first: usize, mass: &[T], external: &mut [T]) {
-    for place in places_within(&load.rows, first, mass.len()) {
-        let row = load.rows[place] as usize - first;
-        if mass[row] > T::default() {
-            let factor = T::from_f64(load.factors.get(place).copied().unwrap_or(1.0));
-            for i in 0..3 {
-                external[3 * row + i] += factor * T::from_f64(force[i]);
+    fn prepare(&self, before: &Before<'_>) -> [f64; 4] {
+        before.signals.values()[self.signal]
+    }
+
+    fn act<T: SimdScalar>(&self, force: &[f64; 4], _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        let Some(external) = nodes.external.as_deref_mut() else { return };
+        for place in places_within(&self.rows, nodes.first, nodes.mass.len()) {
+            let row = self.rows[place] as usize - nodes.first;
+            if nodes.mass[row] > T::default() {
+                let factor = T::from_f64(self.factors.get(place).copied().unwrap_or(1.0));
+                for i in 0..3 {
+                    external[3 * row + i] += factor * T::from_f64(force[i]);
+                }
             }
         }
     }

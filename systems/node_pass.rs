@@ -1,24 +1,23 @@
 //! Neighbouring systems of a step that work node by node, in one pass over the nodes: what one writes the next finds in the
 //! core's cache. On a GPU the same is one kernel (src/backend/node_stage.rs).
 
+use super::node_system::{Before, BoundSystems, NodeRows, OfRun};
 use super::registry::HostSystem;
-use super::{boundary, gather, gravity, nodal_force, pressure, traction};
-use crate::backend::cpu::{Cpu, Factors, NodeColumns, ROWS_A_TASK, move_nodes};
+use crate::backend::cpu::{Cpu, NodeColumns, ROWS_A_TASK};
 use crate::backend::step::step_number;
 use crate::components::*;
 use crate::error::Error;
-use crate::math::SimdScalar;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
-use bevy_ecs::system::{IntoSystem, SystemParam};
-use std::sync::atomic::{AtomicU32, Ordering};
+use bevy_ecs::system::{DynSystemParam, ParamBuilder, SystemParamBuilder};
+use std::sync::atomic::AtomicU32;
 
-/// What nodes have, and what the last system of a pass, `integrate`, moves.
+/// What nodes have.
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub(super) struct BodyColumns {
-    body: Entity,
-    rest: &'static RestPosition,
+    pub(super) body: Entity,
+    pub(super) rest: &'static RestPosition,
     mass: &'static Mass,
     fictitious: Option<&'static FictitiousMass>,
     internal: &'static mut InternalForce,
@@ -29,18 +28,24 @@ pub(super) struct BodyColumns {
     step: &'static mut DisplacementStep,
     compensation: Option<&'static mut DisplacementCompensation>,
     work: Option<&'static mut Work>,
-    noticed: &'static mut FirstNonFinite,
+    first_non_finite: &'static mut FirstNonFinite,
+    internal_work: Option<&'static mut InternalWork>,
+    previous_prescribed: Option<&'static mut PreviousPrescribedStep>,
 }
 
 impl BodyColumnsItem<'_, '_> {
     /// All rows, in the run's precision.
-    pub(super) fn columns<T: SimdScalar>(&mut self) -> NodeColumns<'_, T> {
+    pub(super) fn columns<'a, T: OfRun>(
+        &'a mut self,
+        element_force: &'a [T],
+        non_finite: &'a AtomicU32,
+    ) -> NodeColumns<'a, T> {
         let nodes = self.axes.len();
-        // sums and steps stand only where not all work is booked
-        let words = self.noticed.0.get_mut(SPENT_AT..).unwrap_or_default();
-        let (sums, kept) = words.split_at_mut(words.len().min(before_at(nodes) - SPENT_AT));
         NodeColumns {
             first: 0,
+            rest: &self.rest.0,
+            element_force,
+            non_finite,
             mass: self.mass.slice(),
             inertia: self.fictitious.map_or(self.mass.slice(), |fictitious| fictitious.slice()),
             internal: self.internal.slice_mut(),
@@ -51,184 +56,127 @@ impl BodyColumnsItem<'_, '_> {
             step: self.step.slice_mut(),
             compensation: self.compensation.as_mut().map(|c| c.slice_mut().split_at_mut(3 * nodes).into()),
             work: self.work.as_mut().map(|w| w.slice_mut()),
-            sums,
-            kept,
+            internal_work: self.internal_work.as_mut().map_or(&mut [], |work| work.as_mut_slice()),
+            previous_prescribed: self.previous_prescribed.as_mut().map_or(&mut [], |step| step.as_mut_slice()),
         }
     }
 
     /// Notes the lowest row of a node whose displacement is no longer finite; `u32::MAX`: none.
-    pub(super) fn note_astray(&mut self, row: u32, clock: &Clock) {
-        if row != u32::MAX && self.noticed[0] == u32::MAX {
-            (self.noticed[0], self.noticed[1]) = (row, step_number(clock));
+    pub(super) fn note_non_finite(&mut self, row: AtomicU32, clock: &Clock) {
+        let row = row.into_inner();
+        if row != u32::MAX && self.first_non_finite[0] == u32::MAX {
+            self.first_non_finite.copy_from_slice(&[row, step_number(clock)]);
         }
     }
 }
 
-/// Takes nodes through `before` and moves them, a task's rows at a time; without `observed` their forces go nowhere else. Returns the
-/// lowest row whose displacement is no longer finite; `u32::MAX`: none.
-pub(super) fn move_rows<T: SimdScalar>(
+/// The node systems of a pass, in their order.
+#[derive(Clone, Default)]
+pub(crate) struct NodePass {
+    systems: Vec<NodeRows>,
+}
+
+impl NodePass {
+    /// Of systems that follow one another in a step.
+    pub(crate) fn new(systems: Vec<NodeRows>) -> Self {
+        Self { systems }
+    }
+
+    /// Whether forces are made in it, used, and not needed any more.
+    pub(super) fn has_forces_of_its_own(&self) -> bool {
+        self.systems.iter().any(|system| system.sums_forces) && self.systems.iter().any(|system| system.moves_nodes)
+    }
+
+    /// What it asks the world for.
+    pub(super) fn parameters(&self) -> Vec<bevy_ecs::system::DynParamBuilder<'static>> {
+        self.systems.iter().map(NodeRows::parameter).collect()
+    }
+
+    /// Binds all that calls for its systems on a body to a step.
+    pub(super) fn bind<'a>(
+        &self,
+        callers: &'a mut [DynSystemParam<'_, '_>],
+        body: Entity,
+        before: &Before<'_>,
+    ) -> BoundSystems<'a> {
+        let mut all = Vec::new();
+        for (system, callers) in self.systems.iter().zip(callers) {
+            system.bind(callers, body, before, &mut all);
+        }
+        all
+    }
+}
+
+/// Does what bound systems do to some rows, one after the other.
+fn act<T: OfRun>(systems: &BoundSystems<'_>, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+    for system in systems {
+        T::act(system.as_ref(), cpu, nodes);
+    }
+}
+
+/// The same where the forces of elements are summed already.
+pub(super) fn act_after_gather<T: OfRun>(systems: &BoundSystems<'_>, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+    if let Some(external) = nodes.external.as_deref_mut() {
+        external.fill(T::default());
+    }
+    for system in systems.iter().filter(|system| !system.sums_forces()) {
+        T::act(system.as_ref(), cpu, nodes);
+    }
+}
+
+/// Node systems as one pass over all nodes, in their order.
+pub(crate) fn node_pass(pass: NodePass, world: &mut World) -> HostSystem {
+    let parameters = (
+        pass.parameters(),
+        ParamBuilder::resource::<Cpu>(),
+        ParamBuilder::resource::<Clock>(),
+        ParamBuilder::resource::<Signals>(),
+        ParamBuilder::resource::<Observed>(),
+        ParamBuilder::query::<(BodyColumns, Option<&ElementForce>)>(),
+    );
+    let system = parameters.build_state(world).build_system(
+        move |mut callers: Vec<DynSystemParam>,
+              cpu: Res<Cpu>,
+              clock: Res<Clock>,
+              signals: Res<Signals>,
+              observed: Res<Observed>,
+              mut bodies: Query<(BodyColumns, Option<&ElementForce>)>|
+              -> Result<(), Error> {
+            let observed = observed.0 || !pass.has_forces_of_its_own();
+            for (mut body, force) in &mut bodies {
+                let before = Before { clock: &clock, signals: &signals, rest: body.rest, displacement: &body.u };
+                let systems = pass.bind(&mut callers, body.body, &before);
+                match body.u.precision() {
+                    Precision::F32 => move_all::<f32>((&cpu, &clock, observed), &mut body, force, &systems),
+                    Precision::F64 => move_all::<f64>((&cpu, &clock, observed), &mut body, force, &systems),
+                }
+            }
+            Ok(())
+        },
+    );
+    Box::new(system)
+}
+
+fn move_all<T: OfRun>(
+    (cpu, clock, observed): (&Cpu, &Clock, bool),
+    body: &mut BodyColumnsItem<'_, '_>,
+    force: Option<&ElementForce>,
+    systems: &BoundSystems<'_>,
+) {
+    let non_finite = AtomicU32::new(u32::MAX);
+    let tasks = body.columns::<T>(force.map_or(&[], |force| force.slice()), &non_finite).tasks(ROWS_A_TASK);
+    move_rows(cpu, observed, tasks, systems);
+    body.note_non_finite(non_finite, clock);
+}
+
+/// Takes nodes through systems, a task's rows at a time; without `observed` their forces go nowhere else.
+pub(super) fn move_rows<T: OfRun>(
     cpu: &Cpu,
-    factors: &Factors<T>,
     observed: bool,
     tasks: Vec<NodeColumns<'_, T>>,
-    before: impl Fn(&mut NodeColumns<'_, T>) + Sync + Send,
-) -> u32 {
-    let astray = AtomicU32::new(u32::MAX);
-    cpu.for_each(tasks.into_iter(), |mut rows| {
-        rows.with_forces(observed, |rows| {
-            before(rows);
-            if let Some(row) = move_nodes(cpu, rows, factors) {
-                astray.fetch_min(row, Ordering::Relaxed);
-            }
-        });
-    });
-    astray.into_inner()
-}
-
-/// Moves all nodes of a body, which each sums its forces first, where it does, and takes what acts on it.
-pub(super) fn move_body(
-    cpu: &Cpu,
-    (clock, observed): (&Clock, bool),
-    body: &mut BodyColumnsItem<'_, '_>,
-    gather: Option<(&Corners, &ElementForce)>,
-    on_rows: Option<&OnRows<'_>>,
+    systems: &BoundSystems<'_>,
 ) {
-    let astray = match body.u.precision() {
-        Precision::F32 => move_all::<f32>(cpu, (clock, observed), body, gather, on_rows),
-        Precision::F64 => move_all::<f64>(cpu, (clock, observed), body, gather, on_rows),
-    };
-    body.note_astray(astray, clock);
-}
-
-fn move_all<T: SimdScalar>(
-    cpu: &Cpu,
-    (clock, observed): (&Clock, bool),
-    body: &mut BodyColumnsItem<'_, '_>,
-    gather: Option<(&Corners, &ElementForce)>,
-    on_rows: Option<&OnRows<'_>>,
-) -> u32 {
-    let tasks = body.columns::<T>().tasks(ROWS_A_TASK);
-    move_rows(cpu, &Factors::of(clock), observed, tasks, |rows| {
-        if let Some((corners, force)) = gather {
-            gather::sum_at(corners, force.slice(), rows.first, rows.internal);
-        }
-        if let Some(on_rows) = on_rows {
-            on_rows.act(cpu, rows);
-        }
-    })
-}
-
-/// The systems that a pass can hold, in whatever order the phases allow; it must hold the first and the last.
-const OF_A_PASS: [&str; 7] = ["gather", "gravity", "nodal_force", "pressure", "traction", "boundary", "integrate"];
-
-/// Whether these systems, which follow one another in a step, can be one pass on the CPU.
-pub(crate) fn is_a_pass(systems: &[&str]) -> bool {
-    let ends = ["gather", "integrate"].iter().all(|end| systems.contains(end));
-    ends && systems.iter().all(|system| OF_A_PASS.contains(system))
-}
-
-/// Loads and motions of a body, for some of its rows at a time.
-#[derive(Default)]
-pub(super) struct OnRows<'a> {
-    loads: Vec<RowLoad<'a>>,
-    motions: Vec<(&'a Prescribed, &'a [[f64; 4]])>,
-}
-
-enum RowLoad<'a> {
-    Gravity([f64; 4]),
-    NodalForce(&'a NodalForce, [f64; 4]),
-    /// With the areas of its faces as they are at the beginning of the pass.
-    Pressure(&'a Pressure, f64, Reals),
-    Traction(&'a Traction, [f64; 4]),
-}
-
-impl OnRows<'_> {
-    /// Sums the loads afresh, and says where constrained nodes go.
-    pub(super) fn act<T: SimdScalar>(&self, cpu: &Cpu, rows: &mut NodeColumns<'_, T>) {
-        let first = rows.first;
-        if let Some(external) = rows.external.as_deref_mut() {
-            external.fill(T::default());
-            for load in &self.loads {
-                match load {
-                    RowLoad::Gravity(acceleration) => gravity::pull(cpu, rows.mass, *acceleration, external),
-                    RowLoad::NodalForce(load, force) => {
-                        nodal_force::push(load, *force, first, rows.mass, external);
-                    }
-                    RowLoad::Pressure(load, pressure, areas) => {
-                        pressure::push(&load.faces, *pressure, areas, first, external);
-                    }
-                    RowLoad::Traction(load, traction) => traction::pull(&load.faces, *traction, first, external),
-                }
-            }
-        }
-        for (set, motion) in &self.motions {
-            let lost = rows.compensation.as_ref().map(|[of_u, _]| &**of_u);
-            boundary::move_rows(set, motion, first, rows.u, lost, rows.step, rows.kept);
-        }
-    }
-}
-
-/// Loads and motions of bodies.
-#[derive(SystemParam)]
-pub(super) struct OnBodies<'w, 's> {
-    signals: Res<'w, Signals>,
-    gravities: Query<'w, 's, (&'static Gravity, &'static OfBody)>,
-    forces: Query<'w, 's, (&'static NodalForce, &'static OfBody)>,
-    pressures: Query<'w, 's, (&'static Pressure, &'static OfBody)>,
-    tractions: Query<'w, 's, (&'static Traction, &'static OfBody)>,
-    prescribed: Query<'w, 's, (&'static Prescribed, &'static OfBody)>,
-}
-
-impl OnBodies<'_, '_> {
-    /// What these systems, in their order, do to the rows of a body.
-    pub(super) fn of(&self, systems: &[String], columns: &BodyColumnsItem<'_, '_>) -> OnRows<'_> {
-        let (values, body) = (self.signals.values(), columns.body);
-        let mut rows = OnRows::default();
-        for system in systems {
-            match system.as_str() {
-                "gravity" => {
-                    let own = self.gravities.iter().filter(|(_, of)| of.0 == body);
-                    rows.loads.extend(own.map(|(load, _)| RowLoad::Gravity(values[load.signal])));
-                }
-                "nodal_force" => {
-                    let own = self.forces.iter().filter(|(_, of)| of.0 == body);
-                    rows.loads.extend(own.map(|(load, _)| RowLoad::NodalForce(load, values[load.signal])));
-                }
-                "pressure" => {
-                    let own = self.pressures.iter().filter(|(_, of)| of.0 == body);
-                    rows.loads.extend(own.map(|(load, _)| {
-                        let areas = pressure::areas(&load.faces, columns.rest, &columns.u);
-                        RowLoad::Pressure(load, values[load.signal][0], areas)
-                    }));
-                }
-                "traction" => {
-                    let own = self.tractions.iter().filter(|(_, of)| of.0 == body);
-                    rows.loads.extend(own.map(|(load, _)| RowLoad::Traction(load, values[load.signal])));
-                }
-                "boundary" => {
-                    let own = self.prescribed.iter().filter(|(_, of)| of.0 == body);
-                    rows.motions.extend(own.map(|(set, _)| (set, &values[set.signal..set.signal + 3])));
-                }
-                _ => {}
-            }
-        }
-        rows
-    }
-}
-
-/// Several systems as one, in their order.
-pub(crate) fn node_pass(systems: Vec<String>) -> HostSystem {
-    let pass = move |cpu: Res<Cpu>,
-                     clock: Res<Clock>,
-                     observed: Res<Observed>,
-                     on_bodies: OnBodies,
-                     mut bodies: Query<(BodyColumns, Option<&Corners>, Option<&ElementForce>)>|
-          -> Result<(), Error> {
-        for (mut body, corners, force) in &mut bodies {
-            let on_rows = on_bodies.of(&systems, &body);
-            move_body(&cpu, (&clock, observed.0), &mut body, corners.zip(force), Some(&on_rows));
-        }
-        Ok(())
-    };
-    Box::new(IntoSystem::into_system(pass))
+    cpu.for_each(tasks.into_iter(), |mut rows| {
+        rows.with_forces(observed, |rows| act(systems, cpu, rows));
+    });
 }

@@ -2,7 +2,7 @@
 //! [`Observer`](crate::observation::Observer). On a GPU the guards have kernels, `shaders/watch_nodes.wgsl` and
 //! `shaders/watch_elements.wgsl`, that run when they are due only.
 
-use super::registry::{OnDevice, Phase, System};
+use super::registry::{OnDevice, OnHost, Phase, System};
 use crate::backend::Buffers;
 use crate::backend::block_kernel::BlockKernels;
 use crate::backend::kernel::{Kernel, Uniform, uniform};
@@ -20,7 +20,7 @@ pub fn system() -> System {
         does: "probes, energies, fields and guards, when they are due".into(),
         called_for_by: "every scene",
         because: |_| Some("guards look for inverted elements and lost numbers".into()),
-        host: Box::new(|| Box::new(IntoSystem::into_system(observe))),
+        host: OnHost::System(Box::new(|| Box::new(IntoSystem::into_system(observe)))),
         device: OnDevice::None,
         observes: true,
         every: 1,

@@ -2,37 +2,55 @@
 //! they are in the core's cache, those that patches share when all patches are done.
 
 use super::element_forces::{BlockParts, Precise};
-use super::gather::sum_at;
-use super::node_pass::{BodyColumns, BodyColumnsItem, OnBodies, OnRows, move_rows};
+use super::node_pass::{BodyColumns, BodyColumnsItem, NodePass, act_after_gather, move_rows};
+use super::node_system::{Before, BoundSystems, OfRun};
 use super::registry::HostSystem;
-use crate::backend::cpu::{Cpu, Factors, Inside, NodeColumns, ROWS_A_TASK};
+use crate::backend::cpu::{Cpu, Inside, NodeColumns, ROWS_A_TASK};
 use crate::components::*;
 use crate::error::Error;
 use bevy_ecs::prelude::*;
-use bevy_ecs::system::IntoSystem;
+use bevy_ecs::system::{DynSystemParam, ParamBuilder, SystemParamBuilder};
 use std::sync::atomic::AtomicU32;
 
-/// `element_forces` and others as one, in their order.
-pub(crate) fn patch_pass(systems: Vec<String>) -> HostSystem {
-    let pass = move |cpu: Res<Cpu>,
-                     clock: Res<Clock>,
-                     observed: Res<Observed>,
-                     on_bodies: OnBodies,
-                     mut blocks: Query<BlockParts>,
-                     mut bodies: Query<(BodyColumns, &Authoring, &Corners, &mut ElementForce)>|
-          -> Result<(), Error> {
-        for (mut body, authoring, corners, mut force) in &mut bodies {
-            let on_rows = &on_bodies.of(&systems, &body);
-            let step =
-                Step { cpu: &cpu, clock: &clock, observed: observed.0, blocks: &authoring.blocks, corners, on_rows };
-            match body.u.precision() {
-                Precision::F32 => step.take::<f32>(&mut body, &mut force, &mut blocks),
-                Precision::F64 => step.take::<f64>(&mut body, &mut force, &mut blocks),
+/// `element_forces` and a pass over the nodes as one.
+pub(crate) fn patch_pass(pass: NodePass, world: &mut World) -> HostSystem {
+    let parameters = (
+        pass.parameters(),
+        ParamBuilder::resource::<Cpu>(),
+        ParamBuilder::resource::<Clock>(),
+        ParamBuilder::resource::<Signals>(),
+        ParamBuilder::resource::<Observed>(),
+        ParamBuilder::query::<BlockParts>(),
+        ParamBuilder::query::<(BodyColumns, &Authoring, &Corners, &mut ElementForce)>(),
+    );
+    let system = parameters.build_state(world).build_system(
+        move |mut callers: Vec<DynSystemParam>,
+              cpu: Res<Cpu>,
+              clock: Res<Clock>,
+              signals: Res<Signals>,
+              observed: Res<Observed>,
+              mut blocks: Query<BlockParts>,
+              mut bodies: Query<(BodyColumns, &Authoring, &Corners, &mut ElementForce)>|
+              -> Result<(), Error> {
+            for (mut body, authoring, corners, mut force) in &mut bodies {
+                let before = Before { clock: &clock, signals: &signals, rest: body.rest, displacement: &body.u };
+                let step = Step {
+                    cpu: &cpu,
+                    clock: &clock,
+                    observed: observed.0 || !pass.has_forces_of_its_own(),
+                    blocks: &authoring.blocks,
+                    first_shared: corners.first_shared,
+                    systems: pass.bind(&mut callers, body.body, &before),
+                };
+                match body.u.precision() {
+                    Precision::F32 => step.take::<f32>(&mut body, &mut force, &mut blocks),
+                    Precision::F64 => step.take::<f64>(&mut body, &mut force, &mut blocks),
+                }
             }
-        }
-        Ok(())
-    };
-    Box::new(IntoSystem::into_system(pass))
+            Ok(())
+        },
+    );
+    Box::new(system)
 }
 
 /// A step of one body.
@@ -41,30 +59,30 @@ struct Step<'a> {
     clock: &'a Clock,
     observed: bool,
     blocks: &'a [Entity],
-    corners: &'a Corners,
-    on_rows: &'a OnRows<'a>,
+    first_shared: usize,
+    /// What is done to nodes; to those inside a patch as soon as that has summed their forces.
+    systems: BoundSystems<'a>,
 }
 
 impl Step<'_> {
-    fn take<T: Precise>(
+    fn take<T: Precise + OfRun>(
         &self,
         body: &mut BodyColumnsItem<'_, '_>,
         force: &mut ElementForce,
         blocks: &mut Query<BlockParts>,
     ) {
-        let factors = Factors::<T>::of(self.clock);
-        let astray = AtomicU32::new(u32::MAX);
+        let non_finite = AtomicU32::new(u32::MAX);
         let patches = |blocks: &Query<BlockParts>, entity: Entity| -> Vec<u32> {
             let parts = blocks.get(entity).ok();
             parts.and_then(|block| block.patches).map_or(Vec::new(), |patches| patches.inside.clone())
         };
         let rows: Vec<Vec<u32>> = self.blocks.iter().map(|&entity| patches(blocks, entity)).collect();
-        let (mut inside, shared) = inside_patches(body.columns::<T>(), &rows);
-        let act = |rows: &mut NodeColumns<'_, T>| self.on_rows.act(self.cpu, rows);
+        let (mut inside, shared) = inside_patches(body.columns::<T>(&[], &non_finite), &rows);
+        let then = |nodes: &mut NodeColumns<'_, T>| act_after_gather(&self.systems, self.cpu, nodes);
         let mut found = Vec::new();
         for (&entity, nodes) in self.blocks.iter().zip(&mut inside) {
-            let inside = Inside { nodes, before: &act, factors: &factors, observed: self.observed, astray: &astray };
-            let displacement = (&*shared.u, self.corners.first_shared);
+            let inside = Inside { nodes, then: &then, observed: self.observed };
+            let displacement = (&*shared.u, self.first_shared);
             let patches = blocks
                 .get_mut(entity)
                 .map_or(Vec::new(), |mut block| block.run(self.cpu, displacement, force.slice_mut(), Some(inside)));
@@ -76,7 +94,7 @@ impl Step<'_> {
             }
         }
         // nodes of patches in which elements were inverted are where they were
-        let mut shared = body.columns::<T>();
+        let mut shared = body.columns::<T>(force.slice(), &non_finite);
         let mut left = Vec::new();
         if found.iter().any(|(_, found)| !found.is_empty()) {
             for (patches, (_, found)) in rows.iter().zip(&found) {
@@ -86,15 +104,11 @@ impl Step<'_> {
                 }
             }
         } else {
-            shared.take(self.corners.first_shared);
+            shared.take(self.first_shared);
         }
         left.extend(shared.tasks(ROWS_A_TASK));
-        let forces = force.slice();
-        let others = move_rows(self.cpu, &factors, self.observed, left, |rows| {
-            sum_at(self.corners, forces, rows.first, rows.internal);
-            self.on_rows.act(self.cpu, rows);
-        });
-        body.note_astray(astray.into_inner().min(others), self.clock);
+        move_rows(self.cpu, self.observed, left, &self.systems);
+        body.note_non_finite(non_finite, self.clock);
     }
 }
 

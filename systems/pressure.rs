@@ -1,14 +1,16 @@
 //! `pressure`: a pressure that follows the surface. `shaders/pressure.wgsl` is its twin.
 
+use super::node_system::{Before, NodeSystem};
 use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
+use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::face_kernel::{FaceLoad, face_loads};
 use crate::backend::kernel::{Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
 use crate::error::missing;
-use crate::math::Scalar;
+use crate::math::{Scalar, SimdScalar};
 use crate::shader;
 use bevy_ecs::prelude::*;
 
@@ -17,38 +19,47 @@ use bevy_ecs::prelude::*;
 /// Each loaded node sums what its own faces bring, in a fixed order. A face of a removed element bears no load, and the
 /// surface that removal uncovers is not loaded.
 pub fn system() -> System {
-    System::built_in(
+    System::built_in_nodes::<Pressure>(
         "pressure",
         Phase::Loads,
         "adds pressures that follow the surface to the external forces",
         "`Pressure(...)` under `loads`",
         |world| super::registry::count::<Pressure>(world, "pressure", "pressures"),
-        pressure,
     )
     .on_nodes(stages)
 }
 
-fn pressure(
-    signals: Res<Signals>,
-    loads: Query<(&Pressure, &OfBody)>,
-    mut bodies: Query<(&RestPosition, &Displacement, &mut ExternalForce)>,
-) {
-    for (load, body) in &loads {
-        let Ok((rest, displacement, mut external)) = bodies.get_mut(body.0) else {
-            missing("a column of a body");
-            continue;
-        };
-        let pressure = signals.values()[load.signal][0];
-        let areas = areas(&load.faces, rest, displacement);
-        match &mut external.0 {
-            Reals::F32(external) => push(&load.faces, pressure, &areas, 0, external),
-            Reals::F64(external) => push(&load.faces, pressure, &areas, 0, external),
+impl NodeSystem for Pressure {
+    type Columns = (&'static RestPosition, &'static Displacement, &'static mut ExternalForce);
+    /// The pressure (Pa), and the areas of its faces at the beginning of the pass.
+    type Prepared = (f64, Reals);
+
+    fn prepare(&self, before: &Before<'_>) -> (f64, Reals) {
+        (before.signals.values()[self.signal][0], areas(&self.faces, before.rest, before.displacement))
+    }
+
+    fn act<T: SimdScalar>(&self, (pressure, areas): &(f64, Reals), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        let (faces, first) = (&self.faces, nodes.first);
+        let Some(external) = nodes.external.as_deref_mut() else { return };
+        let (areas, pressure) = (areas.slice::<T>(), T::from_f64(*pressure));
+        for i in places_within(&faces.rows, first, external.len() / 3) {
+            let mut sum = [T::default(); 3];
+            for &corner in &faces.corners[faces.starts[i] as usize..faces.starts[i + 1] as usize] {
+                let area = &areas[3 * corner as usize..3 * corner as usize + 3];
+                for i in 0..3 {
+                    sum[i] += area[i];
+                }
+            }
+            let row = faces.rows[i] as usize - first;
+            for i in 0..3 {
+                external[3 * row + i] -= pressure * sum[i];
+            }
         }
     }
 }
 
 /// Area vectors of each face's corners (m²), twelve numbers a face: of all faces before any node moves.
-pub(super) fn areas(faces: &FaceCorners, rest: &RestPosition, displacement: &Displacement) -> Reals {
+fn areas(faces: &FaceCorners, rest: &RestPosition, displacement: &Displacement) -> Reals {
     match &displacement.0 {
         Reals::F32(u) => Reals::F32(areas_of(faces, rest, u)),
         Reals::F64(u) => Reals::F64(areas_of(faces, rest, u)),
@@ -68,24 +79,6 @@ fn areas_of<T: Scalar>(faces: &FaceCorners, rest: &RestPosition, displacement: &
         areas.extend_from_slice(of_face.as_flattened());
     }
     areas
-}
-
-/// Pushes those nodes from row `first` on that the column has.
-pub(super) fn push<T: Scalar>(faces: &FaceCorners, pressure: f64, areas: &Reals, first: usize, external: &mut [T]) {
-    let (areas, pressure) = (areas.slice::<T>(), T::from_f64(pressure));
-    for i in places_within(&faces.rows, first, external.len() / 3) {
-        let mut sum = [T::default(); 3];
-        for &corner in &faces.corners[faces.starts[i] as usize..faces.starts[i + 1] as usize] {
-            let area = &areas[3 * corner as usize..3 * corner as usize + 3];
-            for i in 0..3 {
-                sum[i] += area[i];
-            }
-        }
-        let row = faces.rows[i] as usize - first;
-        for i in 0..3 {
-            external[3 * row + i] -= pressure * sum[i];
-        }
-    }
 }
 
 /// ∫ N_a n dA over a face: the area vector that falls to each corner. A triangle repeats its last node.

@@ -1,12 +1,18 @@
 //! What a system is, and the list of those that a scene may name.
 
+use super::node_pass::{NodePass, node_pass};
+use super::node_stages::derived_stages;
+use super::node_system::{NodeRows, NodeSystem};
 use crate::backend::Buffers;
+use crate::backend::kernel::Fragment;
 use crate::backend::kernel::Kernel;
-use crate::backend::node_stage::{DescribeStages, node_kernels};
+use crate::backend::node_stage::{DescribeStages, NodeStage, node_kernels};
+use crate::components::{Body, OfBody};
 use crate::error::Error;
 use crate::snapshot::StateAccess;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::IntoSystem;
+use std::sync::Arc;
 
 /// Where in the step a system has its place. A schedule may leave phases out but not turn them round.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -32,11 +38,37 @@ pub enum Phase {
 /// A system on the host: what the CPU backend runs, and what custom systems are on both backends.
 pub type HostSystem = Box<dyn bevy_ecs::system::System<In = (), Out = Result<(), Error>>>;
 
+/// What a system is on the host.
+pub enum OnHost {
+    /// A system by itself.
+    System(Box<dyn Fn() -> HostSystem + Send + Sync>),
+    /// Something to each node, in passes that it may share with its neighbours in the step.
+    Nodes(NodeRows),
+}
+
+impl OnHost {
+    /// The system, by itself in a pass if it is one of nodes.
+    pub fn alone(&self, world: &mut World) -> HostSystem {
+        match self {
+            OnHost::System(make) => make(),
+            OnHost::Nodes(rows) => node_pass(NodePass::new(vec![*rows]), world),
+        }
+    }
+
+    /// What it does to each node, if that is what it does.
+    pub fn nodes(&self) -> Option<NodeRows> {
+        match self {
+            OnHost::Nodes(rows) => Some(*rows),
+            OnHost::System(_) => None,
+        }
+    }
+}
+
 /// Describes the kernels of a system for a world, bound to buffers.
 pub type DescribeKernels = fn(&mut World, &mut dyn Buffers) -> Vec<Kernel>;
 
 /// What a system does on a GPU.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone)]
 pub enum OnDevice {
     /// Nothing: it runs on the host.
     None,
@@ -74,8 +106,8 @@ pub struct System {
     pub called_for_by: &'static str,
     /// Why the world needs it; `None` when it does not. A schedule that a scene writes out must hold all that are needed.
     pub because: fn(&mut World) -> Option<String>,
-    /// Makes the system that runs on the host.
-    pub host: Box<dyn Fn() -> HostSystem + Send + Sync>,
+    /// What runs on the host.
+    pub host: OnHost,
     /// Describes the kernels that do the same on a GPU.
     pub device: OnDevice,
     /// Whether it fetches what it reads from the device by itself, and says when it next has to run.
@@ -133,7 +165,7 @@ impl System {
             does: does.into(),
             called_for_by: "its name in the scene's `schedule`",
             because: |_| None,
-            host: Box::new(move || Box::new(IntoSystem::into_system(system.clone().map(O::outcome)))),
+            host: OnHost::System(Box::new(move || Box::new(IntoSystem::into_system(system.clone().map(O::outcome))))),
             device: OnDevice::None,
             observes: false,
             every: 1,
@@ -183,6 +215,50 @@ impl System {
         self
     }
 
+    /// A system of one's own that works node by node, each entity with an `S` on its body: see [`NodeSystem`]. It shares passes with
+    /// its neighbours in the step. It runs only when a scene's schedule names it.
+    pub fn of_nodes<S: NodeSystem>(name: impl Into<String>, phase: Phase, does: impl Into<String>) -> Self {
+        let nothing = |_: &World| ();
+        Self { host: OnHost::Nodes(NodeRows::of::<S>()), ..Self::custom(name, phase, does, nothing) }
+    }
+
+    /// With its twin on a GPU, a WGSL text that holds `fn NAME(node: u32)` of the system's name, and `path` under which errors name it.
+    /// Without it the system runs on the host.
+    ///
+    /// The text finds each of its [columns](NodeSystem::Columns) under its name, as `array<f32>` (or `array<u32>`), three numbers a
+    /// vector, and `rest_position` likewise; what the scene gave in a uniform `parameters`; `step.time` and `step.time_step` (s); and,
+    /// with [`ExternalForce`](crate::components::ExternalForce) among the columns, `add_load(node, force)` in place of that.
+    pub fn with_shader<S: NodeSystem + serde::Serialize>(mut self, path: &'static str, text: &'static str) -> Self {
+        let name = self.name.clone();
+        self.device = OnDevice::Stages(Arc::new(move |world, buffers| {
+            derived_stages::<S>(&name, &Fragment::new(path, text), world, buffers)
+        }));
+        self
+    }
+
+    /// A system of nodes that takes parameters from the scene: what stands under its name in `parameters` is read as an `S` for each
+    /// body. What does not fit is an error when the scene is loaded.
+    pub fn on_each_body<S: NodeSystem + Clone + serde::de::DeserializeOwned>(mut self) -> Self {
+        self.parameters = Some(|value, world| {
+            let system: S = value.into_rust().map_err(|error| error.to_string())?;
+            let bodies: Vec<Entity> = world.query_filtered::<Entity, With<Body>>().iter(world).collect();
+            world.spawn_batch(bodies.into_iter().map(|body| (system.clone(), OfBody(body))).collect::<Vec<_>>());
+            Ok(())
+        });
+        self
+    }
+
+    /// A built-in system of nodes.
+    pub(crate) fn built_in_nodes<S: NodeSystem>(
+        name: &str,
+        phase: Phase,
+        does: &str,
+        called_for_by: &'static str,
+        because: fn(&mut World) -> Option<String>,
+    ) -> Self {
+        Self { called_for_by, because, custom: false, ..Self::of_nodes::<S>(name, phase, does) }
+    }
+
     /// A built-in system.
     pub(crate) fn built_in<M>(
         name: &str,
@@ -202,8 +278,11 @@ impl System {
     }
 
     /// With what it does to nodes, in kernels that neighbours may share.
-    pub(crate) fn on_nodes(mut self, stages: DescribeStages) -> Self {
-        self.device = OnDevice::Stages(stages);
+    pub(crate) fn on_nodes(
+        mut self,
+        stages: impl Fn(&mut World, &mut dyn Buffers) -> Vec<NodeStage> + Send + Sync + 'static,
+    ) -> Self {
+        self.device = OnDevice::Stages(Arc::new(stages));
         self
     }
 }

@@ -1,58 +1,54 @@
 //! `traction`: dead loads on the surface. `shaders/traction.wgsl` is its twin.
 
+use super::node_system::{Before, NodeSystem};
 use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
+use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::face_kernel::{FaceLoad, face_loads};
 use crate::backend::kernel::{Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
-use crate::error::missing;
-use crate::math::Scalar;
+use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
 
 /// Adds the force per rest area, in a direction that does not follow the surface. A face of a removed element bears none.
 pub fn system() -> System {
-    System::built_in(
+    System::built_in_nodes::<Traction>(
         "traction",
         Phase::Loads,
         "adds dead loads on the surface to the external forces",
         "`Traction(...)` under `loads`",
         |world| super::registry::count::<Traction>(world, "traction", "tractions"),
-        traction,
     )
     .on_nodes(stages)
 }
 
-fn traction(signals: Res<Signals>, loads: Query<(&Traction, &OfBody)>, mut bodies: Query<&mut ExternalForce>) {
-    for (load, body) in &loads {
-        let Ok(mut external) = bodies.get_mut(body.0) else {
-            missing("a column of a body");
-            continue;
-        };
-        let traction = signals.values()[load.signal];
-        match &mut external.0 {
-            Reals::F32(external) => pull(&load.faces, traction, 0, external),
-            Reals::F64(external) => pull(&load.faces, traction, 0, external),
-        }
-    }
-}
+impl NodeSystem for Traction {
+    type Columns = &'static mut ExternalForce;
+    type Prepared = [f64; 4];
 
-/// Pulls at the nodes from row `first` on that a column has.
-pub(super) fn pull<T: Scalar>(faces: &FaceCorners, traction: [f64; 4], first: usize, external: &mut [T]) {
-    let traction = [0, 1, 2].map(|i| T::from_f64(traction[i]));
-    for i in places_within(&faces.rows, first, external.len() / 3) {
-        let mut area = T::default();
-        for &corner in &faces.corners[faces.starts[i] as usize..faces.starts[i + 1] as usize] {
-            let (face, corner) = (corner as usize / 4, corner as usize % 4);
-            if faces.alive[face] == 1 {
-                area += T::from_f64(faces.areas[face][corner]);
+    fn prepare(&self, before: &Before<'_>) -> [f64; 4] {
+        before.signals.values()[self.signal]
+    }
+
+    fn act<T: SimdScalar>(&self, traction: &[f64; 4], _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        let (faces, first) = (&self.faces, nodes.first);
+        let Some(external) = nodes.external.as_deref_mut() else { return };
+        let traction = [0, 1, 2].map(|i| T::from_f64(traction[i]));
+        for i in places_within(&faces.rows, first, external.len() / 3) {
+            let mut area = T::default();
+            for &corner in &faces.corners[faces.starts[i] as usize..faces.starts[i + 1] as usize] {
+                let (face, corner) = (corner as usize / 4, corner as usize % 4);
+                if faces.alive[face] == 1 {
+                    area += T::from_f64(faces.areas[face][corner]);
+                }
             }
-        }
-        let at = 3 * (faces.rows[i] as usize - first);
-        for (force, traction) in external[at..at + 3].iter_mut().zip(traction) {
-            *force += traction * area;
+            let at = 3 * (faces.rows[i] as usize - first);
+            for (force, traction) in external[at..at + 3].iter_mut().zip(traction) {
+                *force += traction * area;
+            }
         }
     }
 }

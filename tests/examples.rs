@@ -6,9 +6,13 @@
 mod custom_system;
 #[path = "../examples/embed.rs"]
 mod embed;
+#[allow(dead_code)]
+#[path = "../examples/host_system.rs"]
+mod host_system;
 #[path = "../examples/latency.rs"]
 mod latency;
 
+use sinew::systems::Registry;
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
 
 #[test]
@@ -25,15 +29,37 @@ fn a_touched_lens_pushes_back() {
     assert!(felt > 1e-5 && felt < 1e-2, "{felt} N");
 }
 
+/// A system of one's own shares the pass of those of the engine, on both backends, and does what a system on the host does.
 #[test]
-fn custom_system_pulls_alike_on_both_backends() {
+fn custom_system_shares_a_pass_and_pulls_alike_on_both_backends_and_on_the_host() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/magnet.ron");
     let scene = SceneFile::load(path, &["duration=0.3".into()]).unwrap();
-    let cpu = custom_system::run(&scene, BackendChoice::Cpu, None).unwrap();
-    assert!(cpu > 1e-3, "the gel rises by {cpu} m only");
+    let (of_nodes, on_host) = (custom_system::registry(), host_system::registry());
+    let run = |registry: &Registry, backend| custom_system::run(&scene, registry, backend, None).unwrap();
+    let shared = |simulation: &mut Simulation| {
+        let summary = simulation.summary("finished").unwrap();
+        summary.systems.iter().any(|pass| {
+            pass.name.contains("gather + magnet + boundary + integrate")
+                || pass.name.contains("gather + magnet + integrate")
+        })
+    };
+    let (mut cpu, mut host) = (run(&of_nodes, BackendChoice::Cpu), run(&on_host, BackendChoice::Cpu));
+    assert!(shared(&mut cpu) && !shared(&mut host));
+    let bulge = custom_system::bulge(&mut cpu).unwrap();
+    assert!(bulge > 1e-3, "the gel rises by {bulge} m only");
+    assert_eq!(cpu.displacements("gel").unwrap(), host.displacements("gel").unwrap());
     if sinew::backend::gpu::gpu_or_reason().is_some() {
-        let gpu = custom_system::run(&scene, BackendChoice::Gpu, None).unwrap();
-        assert!((gpu - cpu).abs() < 1e-4 * cpu, "{gpu} m on the GPU, {cpu} m on the CPU");
+        for (registry, shares) in [(&of_nodes, true), (&on_host, false)] {
+            let mut gpu = run(registry, BackendChoice::Gpu);
+            assert_eq!(shared(&mut gpu), shares);
+            // what shares a pass brings nothing to the host
+            let summary = gpu.summary("finished").unwrap();
+            let brought =
+                summary.systems.iter().filter(|pass| pass.name.contains("magnet")).map(|pass| pass.brought.len());
+            assert_eq!(brought.sum::<usize>() == 0, shares);
+            let gpu = custom_system::bulge(&mut gpu).unwrap();
+            assert!((gpu - bulge).abs() < 1e-4 * bulge, "{gpu} m on the GPU, {bulge} m on the CPU");
+        }
     }
 }
 
@@ -72,7 +98,7 @@ fn scenes_in_the_readme_are_sound() {
     for text in scenes {
         let scene = SceneFile::from_text("README", text, std::path::Path::new("."), &[]);
         let scene = scene.unwrap_or_else(|wrong| panic!("{}", wrong.render(false)));
-        let found = Simulation::check(&scene, &sinew::systems::Registry::default());
+        let found = Simulation::check(&scene, &Registry::default());
         assert!(found.is_empty(), "{}", found.render(false));
     }
 }

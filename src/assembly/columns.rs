@@ -31,6 +31,7 @@ pub(super) fn insert_node_columns(
     let scene = &assembly.scene.scene;
     let mut entity = world.entity_mut(body);
     entity.insert((
+        Body,
         RestPosition(rest),
         Displacement(vectors()),
         DisplacementStep(vectors()),
@@ -45,13 +46,15 @@ pub(super) fn insert_node_columns(
     }
     // pseudo-steps to rest do no work worth booking
     let moved = scene.constraints.iter().any(|constraint| matches!(constraint, Constraint::Prescribed { .. }));
-    let mut noticed = vec![u32::MAX; 2];
     if !scene.is_static() && scene.output.energies_every.is_some() {
         entity.insert(Work(Reals::zeros(precision, WORK_NUMBERS * count)));
     } else if !scene.is_static() && !scene.guards.off.contains(&Guard::Energy) {
-        noticed.resize(before_at(count) + if moved { 3 * count } else { 0 }, 0);
+        entity.insert(InternalWork::zero(count));
+        if moved {
+            entity.insert(PreviousPrescribedStep(vec![0.0; 3 * count]));
+        }
     }
-    entity.insert(FirstNonFinite(noticed));
+    entity.insert(FirstNonFinite(vec![u32::MAX; 2]));
     let used =
         std::iter::once(&scene.bodies[name].material).chain(scene.bodies[name].regions.iter().map(|r| &r.material));
     let damped = used.into_iter().any(|material| scene.materials[material].damping.is_some_and(|rate| rate != 0.0));

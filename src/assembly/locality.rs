@@ -1,7 +1,7 @@
 //! Renumbering: neighbours in space become neighbours in memory. Elements and nodes in a file's order cost 1.7 times the
 //! step at 135 thousand tetrahedra and 4.3 times at a million.
 
-use crate::components::SPENT_ROWS;
+use crate::components::GROUP_ROWS;
 use crate::mesh::Mesh;
 use glam::DVec3;
 
@@ -77,7 +77,7 @@ fn spread(x: u64) -> u64 {
 }
 
 /// For each of the author's nodes its new row. `patches` are elements, each a list of nodes. First come, patch by patch, the
-/// nodes that no other patch has, if a patch has at least [`SPENT_ROWS`] such; then those that patches share, and last
+/// nodes that no other patch has, if a patch has at least [`GROUP_ROWS`] such; then those that patches share, and last
 /// nodes without elements; each in the order in which elements first touch them.
 pub fn node_rows<'a>(node_count: usize, patches: impl Iterator<Item = impl Iterator<Item = &'a [u32]>>) -> Vec<u32> {
     let mut last = vec![u32::MAX; node_count];
@@ -103,7 +103,7 @@ pub fn node_rows<'a>(node_count: usize, patches: impl Iterator<Item = impl Itera
     };
     for nodes in &touched {
         let inside = || nodes.iter().filter(|&&node| patches_of[node as usize] == 1);
-        if inside().count() >= SPENT_ROWS {
+        if inside().count() >= GROUP_ROWS {
             inside().for_each(|&node| give(&mut rows[node as usize]));
         }
     }
@@ -169,7 +169,7 @@ mod tests {
         let mut next = 0;
         for nodes in &of_patches {
             let inside = nodes.iter().filter(|&&row| patches_of[row as usize] == 1).count();
-            assert!(inside >= SPENT_ROWS, "{inside}");
+            assert!(inside >= GROUP_ROWS, "{inside}");
             assert!(nodes[..inside].iter().zip(next..).all(|(&row, wanted)| row == wanted));
             next += inside as u32;
         }

@@ -106,7 +106,7 @@ fn find_inside(patches: &mut Patches, corners: &mut Corners) {
     for ends in patches.starts.windows(2) {
         let nodes = patches.nodes[ends[0] as usize..ends[1] as usize].iter().zip(next..);
         let inside = nodes.take_while(|&(&node, wanted)| node as usize == wanted && alone(wanted)).count();
-        let inside = if inside < SPENT_ROWS { 0 } else { inside };
+        let inside = if inside < GROUP_ROWS { 0 } else { inside };
         patches.inside.push(inside as u32);
         next += inside;
     }

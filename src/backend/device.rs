@@ -7,6 +7,7 @@ use crate::components::*;
 use crate::error::Error;
 use bevy_ecs::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Truth {
@@ -17,6 +18,8 @@ enum Truth {
 
 struct DeviceColumn {
     buffer: BufferId,
+    /// Its bytes there.
+    place: Range<u64>,
     truth: Truth,
     access: ColumnAccess,
 }
@@ -148,7 +151,7 @@ impl Device {
     fn upload(&mut self, world: &World, key: Key) -> Result<(), Error> {
         let Some(column) = self.columns.get_mut(&key) else { return Ok(()) };
         let Some(bytes) = (column.access.bytes)(world, key.0) else { return Ok(()) };
-        self.gpu.upload(column.buffer, 0, bytes)?;
+        self.gpu.upload(column.buffer, column.place.start, bytes)?;
         column.truth = Truth::Both;
         self.traffic.up += bytes.len() as u64;
         Ok(())
@@ -168,8 +171,9 @@ pub fn bring_to_host(world: &mut World, wanted: impl Fn(Entity, &'static str) ->
     let Some(mut device) = world.remove_resource::<Device>() else { return Ok(()) };
     let started = std::time::Instant::now();
     let keys = device.keys_of(Truth::Device, |key, _| wanted(key.0, key.1));
-    let buffers: Vec<BufferId> = keys.iter().map(|key| device.columns[key].buffer).collect();
-    let result = if buffers.is_empty() { Ok(Vec::new()) } else { device.gpu.download(&buffers) };
+    let range = |column: &DeviceColumn| (column.buffer, column.place.start, column.place.end - column.place.start);
+    let ranges: Vec<(BufferId, u64, u64)> = keys.iter().map(|key| range(&device.columns[key])).collect();
+    let result = if ranges.is_empty() { Ok(Vec::new()) } else { device.gpu.download_ranges(&ranges) };
     let result = result.map(|downloads| {
         for (key, bytes) in keys.iter().zip(downloads) {
             if let Some(column) = device.columns.get_mut(key) {
@@ -232,14 +236,25 @@ impl Buffers for Binder<'_> {
         if let Some(column) = self.device.columns.get(&(entity, name)) {
             return column.buffer;
         }
-        let Some(&(length, access)) = self.sizes.get(&(entity, name)) else {
+        let Some(&(_, access)) = self.sizes.get(&(entity, name)) else {
             self.failure
                 .get_or_insert(Error::Options(format!("a kernel asks for the column {name} of an entity without it")));
             return BufferId::NONE;
         };
-        let buffer = self.create(name, &[], length, BufferKind::Storage);
-        self.device.columns.insert((entity, name), DeviceColumn { buffer, truth: Truth::Host, access });
-        self.fresh.push((entity, name));
+        let mut end = 0;
+        let mut places = Vec::new();
+        for column in columns_in(access.buffer) {
+            if let Some(&(length, _)) = self.sizes.get(&(entity, column.name)) {
+                places.push((column, end..end + length as u64));
+                end += length as u64;
+            }
+        }
+        let buffer = self.create(access.buffer, &[], end as usize, BufferKind::Storage);
+        for (access, place) in places {
+            let key = (entity, access.name);
+            self.device.columns.insert(key, DeviceColumn { buffer, place, truth: Truth::Host, access });
+            self.fresh.push(key);
+        }
         buffer
     }
 

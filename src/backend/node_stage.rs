@@ -7,23 +7,24 @@ mod items;
 use super::Buffers;
 use super::kernel::{BufferId, Fragment, Kernel, Layout, MostBuffers, Uniform, uniform};
 use super::step::{step_fragments, step_in_a_uniform};
-use crate::components::{Column, Displacement, ElementForce, Mass, SPENT_ROWS};
+use crate::components::{Column, Displacement, ElementForce, GROUP_ROWS, Mass};
 use crate::shader;
 use bevy_ecs::prelude::*;
 use fused::Fused;
 use std::borrow::Cow;
 use std::ops::Range;
+use std::sync::Arc;
 
 /// Describes what a system does to nodes, body by body, bound to buffers.
-pub type DescribeStages = fn(&mut World, &mut dyn Buffers) -> Vec<NodeStage>;
+pub type DescribeStages = Arc<dyn Fn(&mut World, &mut dyn Buffers) -> Vec<NodeStage> + Send + Sync>;
 
 /// What a system does to the nodes of one body: a WGSL function of a row, which kernels call.
 #[derive(Clone, Debug)]
 pub struct NodeStage {
     body: Entity,
-    system: &'static str,
+    system: Cow<'static, str>,
     /// The WGSL function: of a node, of a place in `rows` and the node there, or of a patch and an invocation.
-    call: &'static str,
+    call: Cow<'static, str>,
     /// Called by all invocations of a workgroup after that, with their place in it and their row.
     finish: Option<&'static str>,
     nodes: u32,
@@ -50,11 +51,17 @@ enum Rows {
 
 impl NodeStage {
     /// For each of the body's nodes calls `call(node)`, which `fragment` declares.
-    pub fn new(system: &'static str, call: &'static str, body: Entity, nodes: u32, fragment: Fragment) -> Self {
+    pub fn new(
+        system: impl Into<Cow<'static, str>>,
+        call: impl Into<Cow<'static, str>>,
+        body: Entity,
+        nodes: u32,
+        fragment: Fragment,
+    ) -> Self {
         Self {
             body,
-            system,
-            call,
+            system: system.into(),
+            call: call.into(),
             finish: None,
             nodes,
             within: 0..nodes,
@@ -145,7 +152,7 @@ impl NodeStage {
     }
 
     /// Binds what no other stage uses.
-    pub fn bind(mut self, variable: &'static str, buffer: BufferId) -> Self {
+    pub fn bind(mut self, variable: impl Into<Cow<'static, str>>, buffer: BufferId) -> Self {
         self.bindings.push((variable.into(), buffer));
         self
     }
@@ -259,7 +266,7 @@ pub(super) fn many_steps(stages: &[&NodeStage], invocations: usize, buffers: &mu
 /// The kernel of a block's patches, of so many invocations in all, that moves the nodes inside each of them: the stages of a whole
 /// step of these nodes.
 pub(super) fn patch_step(stages: &[&NodeStage], invocations: u32, buffers: &mut dyn Buffers) -> Kernel {
-    let least = format!("const LEAST_INSIDE: u32 = {SPENT_ROWS}u;\n");
+    let least = format!("const LEAST_INSIDE: u32 = {GROUP_ROWS}u;\n");
     let node = &stages[stages.len() - 1];
     let rows = NodePass { count: node.nodes, first: node.within.start };
     Fused::of(stages)

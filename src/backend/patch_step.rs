@@ -6,7 +6,7 @@ use super::kernel::Kernel;
 use super::many_steps::{Dispatched, block_of, bodies};
 use super::node_stage::{self, NodeStage};
 use super::patch_lists::{BATCH_GROUPS, WEBGPU_WORKGROUP_MEMORY, workgroup_memory};
-use crate::components::{Corners, Patches, SPENT_ROWS};
+use crate::components::{Corners, GROUP_ROWS, Patches};
 use crate::math::LANES;
 use crate::shader;
 use bevy_ecs::prelude::*;
@@ -65,7 +65,7 @@ fn of_body(
     }
     let first_shared = world.get::<Corners>(body).map_or(0, |corners| corners.first_shared) as u32;
     if first_shared == 0 {
-        return Err(format!("no patch has {SPENT_ROWS} nodes that no other has"));
+        return Err(format!("no patch has {GROUP_ROWS} nodes that no other has"));
     }
     // of all nodes: those that stay may look at those that move
     if let Some(reason) = node_stage::why_apart(&of_nodes, node_stage::MOST_SHARED) {

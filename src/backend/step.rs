@@ -28,11 +28,11 @@ pub struct Step {
     /// 1 in steps after which somebody may look at forces, else 0: kernels need not leave them in memory.
     pub observed: u32,
     /// Unused: slots for signals begin at a multiple of 16 bytes.
-    pub reserved_0: u32,
-    /// Unused.
-    pub reserved_1: u32,
-    /// Unused.
-    pub reserved_2: u32,
+    pub reserved: u32,
+    /// Time at the beginning of the step (s).
+    pub time: f32,
+    /// Δt (s).
+    pub time_step: f32,
 }
 
 uniform!(Step {
@@ -45,9 +45,9 @@ uniform!(Step {
     relaxation,
     booked,
     observed,
-    reserved_0,
-    reserved_1,
-    reserved_2
+    reserved,
+    time,
+    time_step
 });
 
 impl Step {
@@ -65,9 +65,9 @@ impl Step {
             relaxation: damping as f32,
             booked: (between / dt) as f32,
             observed: 1,
-            reserved_0: 0,
-            reserved_1: 0,
-            reserved_2: 0,
+            reserved: 0,
+            time: clock.time() as f32,
+            time_step: dt as f32,
         }
     }
 }

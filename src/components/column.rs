@@ -147,6 +147,11 @@ pub trait Column: Component<Mutability = Mutable> {
     const NAME: &'static str;
     /// What it is to the state.
     const ROLE: Role;
+    /// The buffer on a device in which it lies: of its own name, or one that an entity's columns share, one after the other as they
+    /// are declared; kernels may have few buffers.
+    const BUFFER: &'static str;
+    /// What its numbers are in shaders: `f32` or `u32`.
+    const WORD: &'static str;
     /// The bytes.
     fn bytes(&self) -> &[u8];
     /// The bytes, to write.
@@ -160,6 +165,10 @@ pub struct ColumnAccess {
     pub name: &'static str,
     /// What it is to the state.
     pub role: Role,
+    /// The buffer on a device in which it lies.
+    pub buffer: &'static str,
+    /// What its numbers are in shaders.
+    pub word: &'static str,
     /// Its bytes on the host.
     pub bytes: fn(&World, Entity) -> Option<&[u8]>,
     /// Writes its bytes on the host.
@@ -174,6 +183,8 @@ impl ColumnAccess {
         Self {
             name: C::NAME,
             role: C::ROLE,
+            buffer: C::BUFFER,
+            word: C::WORD,
             bytes: |world, entity| world.get::<C>(entity).map(|column| column.bytes()),
             write: |world, entity, bytes| {
                 if let Some(mut column) = world.get_mut::<C>(entity) {
@@ -185,14 +196,28 @@ impl ColumnAccess {
     }
 }
 
+/// The columns of one buffer in the order in which they lie there.
+pub fn columns_in(buffer: &str) -> impl Iterator<Item = ColumnAccess> {
+    all_columns().into_iter().filter(move |column| column.buffer == buffer)
+}
+
+/// Where an entity's column begins in its buffer on a device, in words of four bytes.
+pub fn place_in_buffer<C: Column>(entity: Entity, world: &World) -> usize {
+    let before = columns_in(C::BUFFER).take_while(|column| column.name != C::NAME);
+    before.filter_map(|column| (column.bytes)(world, entity)).map(<[u8]>::len).sum::<usize>() / 4
+}
+
 /// Every kind of column there is, as the modules declare them.
 pub fn all_columns() -> Vec<ColumnAccess> {
     [super::nodes::accesses(), super::block::accesses()].concat()
 }
 
-/// Declares components that are columns, each with its name and its [`Role`]; and a function `accesses` that lists them.
+/// Declares components that are columns, each with its name, its [`Role`] and, where that is not its own, its buffer; and a function
+/// `accesses` that lists them.
 macro_rules! columns {
-    ($($(#[$doc:meta])* $name:ident($type:ty) = $word:literal, $role:ident;)*) => {
+    (@buffer $word:literal) => { $word };
+    (@buffer $word:literal $buffer:literal) => { $buffer };
+    ($($(#[$doc:meta])* $name:ident($type:ty) = $word:literal, $role:ident $(, in $buffer:literal)?;)*) => {
         $(
             $(#[$doc])*
             #[derive(bevy_ecs::prelude::Component, Clone, Debug)]
@@ -201,6 +226,8 @@ macro_rules! columns {
             impl $crate::components::Column for $name {
                 const NAME: &'static str = $word;
                 const ROLE: $crate::components::Role = $crate::components::Role::$role;
+                const BUFFER: &'static str = $crate::components::column::columns!(@buffer $word $($buffer)?);
+                const WORD: &'static str = <$type as $crate::components::column::AsBytes>::WORD;
                 fn bytes(&self) -> &[u8] {
                     $crate::components::column::AsBytes::as_bytes(&self.0)
                 }
@@ -231,8 +258,28 @@ macro_rules! columns {
 }
 pub(crate) use columns;
 
+/// Numbers that columns are made of.
+pub trait Word: bytemuck::Pod {
+    /// What they are in shaders; of those that only the host has, what they would be.
+    const WORD: &'static str;
+}
+
+impl Word for f32 {
+    const WORD: &'static str = "f32";
+}
+
+impl Word for f64 {
+    const WORD: &'static str = "f32";
+}
+
+impl Word for u32 {
+    const WORD: &'static str = "u32";
+}
+
 /// What columns are made of.
 pub trait AsBytes {
+    /// What the numbers are in shaders.
+    const WORD: &'static str;
     /// The bytes.
     fn as_bytes(&self) -> &[u8];
     /// The bytes, to write.
@@ -240,6 +287,7 @@ pub trait AsBytes {
 }
 
 impl AsBytes for Reals {
+    const WORD: &'static str = "f32";
     fn as_bytes(&self) -> &[u8] {
         self.bytes()
     }
@@ -248,16 +296,8 @@ impl AsBytes for Reals {
     }
 }
 
-impl AsBytes for Vec<f64> {
-    fn as_bytes(&self) -> &[u8] {
-        bytemuck::cast_slice(self)
-    }
-    fn as_bytes_mut(&mut self) -> &mut [u8] {
-        bytemuck::cast_slice_mut(self)
-    }
-}
-
-impl AsBytes for Vec<u32> {
+impl<T: Word> AsBytes for Vec<T> {
+    const WORD: &'static str = T::WORD;
     fn as_bytes(&self) -> &[u8] {
         bytemuck::cast_slice(self)
     }

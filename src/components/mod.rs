@@ -26,15 +26,15 @@ pub use block::{
     patch_groups, patch_length,
 };
 pub use clock::{Clock, Relaxation, Signal, Signals};
-pub use column::{Column, ColumnAccess, Precision, Reals, Role, all_columns};
+pub use column::{Column, ColumnAccess, Precision, Reals, Role, all_columns, columns_in, place_in_buffer};
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
 pub use guard::{GuardMemory, Notice, Seen};
 pub use load::{FaceCorners, Gravity, NodalForce, Pressure, Traction};
 pub use material::{Damping, Density, ExponentialFibres, Prony, StiffnessDamping, memory_terms};
 pub use nodes::{
     Authoring, ConstrainedAxes, Corners, DampingCoefficient, Displacement, DisplacementCompensation, DisplacementStep,
-    ElementForce, ExternalForce, FictitiousMass, FirstNonFinite, InternalForce, Mass, MiddleDisplacement, NodeSums,
-    RestPosition, SPENT_AT, SPENT_ROWS, WORK_NUMBERS, Work, before_at,
+    ElementForce, ExternalForce, FictitiousMass, FirstNonFinite, GROUP_ROWS, InternalForce, InternalWork, Mass,
+    MiddleDisplacement, NodeSums, PreviousPrescribedStep, RestPosition, WORK_NUMBERS, Work,
 };
 pub use observation::{Cadence, Energies, Observed, Probe};
 pub use patches::{Patches, Scheme};
@@ -44,6 +44,10 @@ use bevy_ecs::prelude::*;
 /// What the scene's author calls an entity.
 #[derive(Component, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Label(pub String);
+
+/// That an entity is a body, with nodes that move.
+#[derive(Component, Clone, Copy, Debug)]
+pub struct Body;
 
 /// The body that a block, constraint, load or probe belongs to.
 #[derive(Component, Clone, Copy, Debug)]

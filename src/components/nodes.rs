@@ -37,12 +37,16 @@ columns! {
     /// the last step along constrained axes (m), which `boundary` writes over: [`WORK_NUMBERS`] a node. Exists when
     /// energies are asked for.
     Work(Reals) = "work", State;
-    /// What the integrator notices in passing. First the lowest row of a node whose displacement was found not finite, and the
-    /// step in which it was: the first in which there was one; `u32::MAX`: none. In a motion without [`Work`], from [`SPENT_AT`] on, the work against internal forces since the start: with a place for each
-    /// [`SPENT_ROWS`] nodes and one more, sums over those that move together, as bits of f32, and what rounding has left out of them (J). With prescribed nodes, from
-    /// [`before_at`] on, a vector a node: bits of the last step (m) along prescribed axes, which `boundary` has written over.
-    /// One column: kernels may have few.
-    FirstNonFinite(Vec<u32>) = "first_non_finite", State;
+    /// Two numbers: the lowest row of a node whose displacement was found not finite, and the step in which it was: the first in
+    /// which there was one; `u32::MAX`: none.
+    FirstNonFinite(Vec<u32>) = "first_non_finite", State, in "node_diagnostics";
+    /// Work against internal forces since the start (J), in f32 whatever the run's precision: two numbers for each [`GROUP_ROWS`]
+    /// nodes and two more, a sum over nodes that move together and what rounding has left out of it. Exists in a motion without
+    /// [`Work`] whose energy is guarded.
+    InternalWork(Vec<f32>) = "internal_work", State, in "node_diagnostics";
+    /// Displacement of the last step along prescribed axes (m), which `boundary` has written over in [`DisplacementStep`], in f32
+    /// whatever the run's precision: a vector a node. Exists with [`InternalWork`] where nodes are prescribed.
+    PreviousPrescribedStep(Vec<f32>) = "previous_prescribed_step", State, in "node_diagnostics";
     /// Displacement in the middle of the last step (m), a vector a node: for the guards on a GPU.
     MiddleDisplacement(Reals) = "middle_displacement", Scratch;
     /// What each 64 nodes come to, four words each: bits of ½ m d² (kg m²) and of the longest step's square (m²), its row, bits of
@@ -54,15 +58,19 @@ columns! {
     ElementForce(Reals) = "element_force", Scratch;
 }
 
-/// Where sums of work begin in [`FirstNonFinite`].
-pub const SPENT_AT: usize = 4;
+/// Nodes to a sum in [`InternalWork`]: no less are moved together, so that who moves some has a sum of its own.
+pub const GROUP_ROWS: usize = 16;
 
-/// Nodes to a place there: no less are moved together, so that who moves some has a place of its own.
-pub const SPENT_ROWS: usize = 16;
+impl InternalWork {
+    /// Of a body with so many nodes, none of which has moved yet.
+    pub fn zero(nodes: usize) -> Self {
+        Self(vec![0.0; 2 * (nodes.div_ceil(GROUP_ROWS) + 1)])
+    }
 
-/// Where the last steps along prescribed axes begin in [`FirstNonFinite`] of a body with so many nodes.
-pub const fn before_at(nodes: usize) -> usize {
-    SPENT_AT + 2 * (nodes.div_ceil(SPENT_ROWS) + 1)
+    /// The work (J).
+    pub fn total(&self) -> f64 {
+        self.iter().map(|&part| f64::from(part)).sum()
+    }
 }
 
 /// Numbers a node in [`Work`].

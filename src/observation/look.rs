@@ -63,11 +63,10 @@ pub fn look(world: &mut World) -> Result<Look, Error> {
 
 /// Work against internal forces (J) of all bodies, as it is booked.
 fn spent(world: &mut World) -> Result<f64, Error> {
-    bring_to_host(world, |_, name| name == FirstNonFinite::NAME || name == Work::NAME)?;
+    bring_to_host(world, |_, name| name == InternalWork::NAME || name == Work::NAME)?;
     let mut sum = 0.0;
-    for (noticed, mass, work) in world.query::<(&FirstNonFinite, &Mass, Option<&Work>)>().iter(world) {
-        let sums = noticed.get(SPENT_AT..noticed.len().min(before_at(mass.len()))).unwrap_or_default();
-        sum += sums.iter().map(|&bits| f64::from(f32::from_bits(bits))).sum::<f64>();
+    for (guarded, work) in world.query::<(Option<&InternalWork>, Option<&Work>)>().iter(world) {
+        sum += guarded.map_or(0.0, InternalWork::total);
         if let Some(work) = work {
             sum += (0..work.len() / WORK_NUMBERS).map(|row| work.get(WORK_NUMBERS * row + 3)).sum::<f64>();
         }

@@ -13,6 +13,7 @@ use super::schedule::{Scheduled, check_names, resolve};
 use super::scheme::{fit_workgroups, sum_forces};
 use super::stable_step::{self, Stability};
 use super::step_kernels::step_kernels;
+use super::touched::{columns_of, writes};
 use super::{Entry, Facts, Job, Member, Options, Simulation};
 use crate::assembly::{Assembly, assemble, assemble_in_time, insert_laws};
 use crate::backend::cpu::Cpu;
@@ -25,8 +26,7 @@ use crate::observation::{Observer, Track, Watch, WatchKernels, WrittenFields};
 use crate::scene::schema::Analysis;
 use crate::scene::{Diagnostics, SceneFile};
 use crate::snapshot::{Keeping, identity};
-use crate::systems::{ELEMENT_FORCES, HostSystem, Phase, Registry, System, node_pass, patch_pass};
-use bevy_ecs::component::ComponentId;
+use crate::systems::{ELEMENT_FORCES, HostSystem, NodePass, OnHost, Phase, Registry, System, node_pass, patch_pass};
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemAccess;
 use std::time::{Duration, Instant};
@@ -58,10 +58,15 @@ impl Simulation {
         let observer = observer(scene, &clock, steps, &mut world);
         world.insert_resource(observer);
         world.insert_resource(WrittenFields::from(&scene.scene.output));
-        let mut hosts: Vec<HostSystem> = schedule.iter().map(|entry| (entry.system.host)()).collect();
+        let mut hosts = Vec::new();
         let mut access = Vec::new();
-        for system in &mut hosts {
+        for entry in &schedule {
+            let mut system = match &entry.system.host {
+                OnHost::System(make) => make(),
+                OnHost::Nodes(rows) => rows.touches(),
+            };
             access.push(system.initialize(&mut world));
+            hosts.push(system);
         }
         add_called_for_columns(&schedule, &access, &assembly, &mut world);
         let relaxing = relaxing(scene, options.precision, &mut world);
@@ -112,7 +117,12 @@ impl Simulation {
         }
         let mut observer = world.resource_mut::<Observer>();
         (observer.watch.foreign, observer.on_gpu) = (foreign, on_gpu);
-        let custom = schedule.iter().any(|entry| entry.system.custom);
+        // what shares passes leaves no step to the host
+        let alone = |entry: &Scheduled<'_>| match on_gpu {
+            true => !entry.system.device.is_some(),
+            false => entry.system.host.nodes().is_none(),
+        };
+        let custom = schedule.iter().any(|entry| entry.system.custom && alone(entry));
         observer.all_on_device = on_gpu && !custom;
         let facts = Facts {
             on_gpu,
@@ -199,16 +209,23 @@ fn entries(
         let first = &schedule[group[0]];
         let job = match (kernels, hosts[group[0]].take()) {
             (Some(kernels), _) => Job::Kernels(kernels),
-            (None, Some(host)) if group.len() == 1 => {
+            (None, Some(host)) if group.len() == 1 && first.system.host.nodes().is_none() => {
                 let (reads, writes) = columns_of(&access[group[0]], world);
                 let beat = Beat::new(first.every, first.interval);
                 Job::Host { system: host, beat, observes: first.system.observes, reads, writes }
             }
             (None, _) => {
-                let pass = if first.system.name == ELEMENT_FORCES { patch_pass } else { node_pass };
-                let mut system = pass(names.clone());
-                let (reads, writes) = columns_of(&system.initialize(world), world);
-                Job::Host { system, beat: Beat::new(1, None), observes: false, reads, writes }
+                let of_nodes = group.iter().filter_map(|&place| schedule[place].system.host.nodes());
+                let nodes = NodePass::new(of_nodes.collect());
+                let mut system = match first.system.name == ELEMENT_FORCES {
+                    true => patch_pass(nodes, world),
+                    false => node_pass(nodes, world),
+                };
+                system.initialize(world);
+                let touched = group.iter().map(|&place| columns_of(&access[place], world));
+                let (reads, writes): (Vec<_>, Vec<_>) = touched.unzip();
+                let beat = Beat::new(first.every, first.interval);
+                Job::Host { system, beat, observes: false, reads: reads.concat(), writes: writes.concat() }
             }
         };
         let phase = systems.iter().map(|system| system.phase).max().unwrap_or(first.system.phase);
@@ -325,8 +342,7 @@ fn add_called_for_columns(
     world: &mut World,
 ) {
     let Some(external) = world.component_id::<ExternalForce>() else { return };
-    let custom =
-        schedule.iter().zip(access).filter(|(entry, _)| !entry.system.device.is_some() && !entry.system.observes);
+    let custom = schedule.iter().zip(access).filter(|(entry, _)| entry.system.custom);
     if custom.into_iter().any(|(_, access)| writes(access, external)) {
         for body in assembly.bodies.values() {
             let length = world.get::<Displacement>(body.entity).map_or(0, |u| u.len());
@@ -351,32 +367,6 @@ fn keeping(
         precision,
         written: custom().flat_map(|(_, access)| columns_of(access, world).1).collect(),
         systems: custom().filter_map(|(entry, _)| Some((entry.system.name.clone(), entry.system.state?))).collect(),
-    }
-}
-
-/// The columns that a system reads and writes, by its own access set.
-fn columns_of(access: &SystemAccess, world: &World) -> (Vec<&'static str>, Vec<&'static str>) {
-    let names = |touched: fn(&SystemAccess, ComponentId) -> bool| {
-        let columns = all_columns().into_iter();
-        columns.filter(|c| (c.id)(world).is_some_and(|id| touched(access, id))).map(|c| c.name).collect()
-    };
-    (names(reads), names(writes))
-}
-
-/// An exclusive system may touch everything.
-fn reads(access: &SystemAccess, id: ComponentId) -> bool {
-    match access {
-        SystemAccess::None => false,
-        SystemAccess::Shared(set) => set.combined_access().has_read(id),
-        SystemAccess::Exclusive => true,
-    }
-}
-
-fn writes(access: &SystemAccess, id: ComponentId) -> bool {
-    match access {
-        SystemAccess::None => false,
-        SystemAccess::Shared(set) => set.combined_access().has_write(id),
-        SystemAccess::Exclusive => true,
     }
 }
 

@@ -1,7 +1,7 @@
 //! Which neighbours of a schedule share one pass: over the nodes, or on the CPU over patches of elements and then the other nodes.
 
 use super::schedule::Scheduled;
-use crate::systems::{ELEMENT_FORCES, OnDevice, Phase, is_a_pass};
+use crate::systems::{ELEMENT_FORCES, OnDevice, Phase};
 use bevy_ecs::system::SystemAccess;
 
 /// The places of the scheduled systems in the order in which they run, those together that share a pass. Without `fuse`
@@ -15,26 +15,22 @@ pub fn groups(schedule: &[Scheduled<'_>], access: &[SystemAccess], fuse: bool, o
         return order.into_iter().map(|place| vec![place]).collect();
     }
     for place in (0..schedule.len()).filter(|&place| schedule[place].system.phase == Phase::Boundary).rev() {
-        put_off(place, &mut order, schedule, access);
+        put_off(place, &mut order, schedule, access, on_gpu);
     }
+    let of_nodes = |place: usize| is_of_nodes(schedule, place, on_gpu);
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for place in order {
-        match groups.last_mut().filter(|group| is_of_nodes(schedule, place) && is_of_nodes(schedule, group[0])) {
+        match groups.last_mut().filter(|group| of_nodes(place) && of_nodes(group[0])) {
             Some(group) => group.push(place),
             None => groups.push(vec![place]),
         }
     }
-    let names = |group: &[usize]| -> Vec<&str> { group.iter().map(|&i| schedule[i].system.name.as_str()).collect() };
-    let kept = |group: Vec<usize>| match on_gpu || is_a_pass(&names(&group)) {
-        true => vec![group],
-        false => group.into_iter().map(|place| vec![place]).collect(),
-    };
-    let groups = groups.into_iter().flat_map(kept);
-    if on_gpu { groups.collect() } else { with_elements(groups, schedule) }
+    if on_gpu { groups } else { with_elements(groups, schedule) }
 }
 
-/// On the CPU the forces of elements belong to the pass that follows them: nodes inside a patch move with it.
-fn with_elements(groups: impl Iterator<Item = Vec<usize>>, schedule: &[Scheduled<'_>]) -> Vec<Vec<usize>> {
+/// On the CPU the forces of elements belong to the pass that follows them, where that sums them and moves nodes: those inside a patch
+/// move with it.
+fn with_elements(groups: Vec<Vec<usize>>, schedule: &[Scheduled<'_>]) -> Vec<Vec<usize>> {
     let mut together: Vec<Vec<usize>> = Vec::new();
     let of_elements = |group: &[usize]| match group {
         [place] => {
@@ -44,7 +40,10 @@ fn with_elements(groups: impl Iterator<Item = Vec<usize>>, schedule: &[Scheduled
         _ => false,
     };
     for group in groups {
-        match together.last_mut().filter(|before| group.len() > 1 && of_elements(before)) {
+        let of_nodes = |place: &usize| schedule[*place].system.host.nodes();
+        let whole = of_nodes(&group[0]).is_some_and(|first| first.sums_forces)
+            && group.iter().filter_map(of_nodes).any(|system| system.moves_nodes);
+        match together.last_mut().filter(|before| whole && of_elements(before)) {
             Some(before) => before.extend(group),
             None => together.push(group),
         }
@@ -52,19 +51,23 @@ fn with_elements(groups: impl Iterator<Item = Vec<usize>>, schedule: &[Scheduled
     together
 }
 
-/// Whether the engine's own system of that place works node by node, in every step.
-fn is_of_nodes(schedule: &[Scheduled<'_>], place: usize) -> bool {
-    let Scheduled { system, every, .. } = &schedule[place];
-    matches!(system.device, OnDevice::Stages(_)) && !system.custom && *every == 1
+/// Whether the system of that place works node by node, in every step.
+fn is_of_nodes(schedule: &[Scheduled<'_>], place: usize, on_gpu: bool) -> bool {
+    let Scheduled { system, every, interval, .. } = &schedule[place];
+    let of_nodes = match on_gpu {
+        true => matches!(system.device, OnDevice::Stages(_)),
+        false => system.host.nodes().is_some(),
+    };
+    of_nodes && *every == 1 && interval.is_none()
 }
 
 /// Moves a system on to just before the first that it must not be exchanged with, if that one works node by node too.
-fn put_off(place: usize, order: &mut [usize], schedule: &[Scheduled<'_>], access: &[SystemAccess]) {
+fn put_off(place: usize, order: &mut [usize], schedule: &[Scheduled<'_>], access: &[SystemAccess], on_gpu: bool) {
     let Some(from) = order.iter().position(|&other| other == place) else { return };
     let blocks = |&other: &usize| !may_be_exchanged(&access[place], &access[other]);
     let Some(steps) = order[from + 1..].iter().position(blocks) else { return };
     let to = from + 1 + steps;
-    if is_of_nodes(schedule, place) && is_of_nodes(schedule, order[to]) {
+    if is_of_nodes(schedule, place, on_gpu) && is_of_nodes(schedule, order[to], on_gpu) {
         order[from..to].rotate_left(1);
     }
 }

@@ -38,6 +38,7 @@ mod stretch;
 mod summary;
 mod surface;
 mod tangent;
+mod touched;
 mod unload;
 mod watch;
 

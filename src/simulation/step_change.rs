@@ -14,7 +14,7 @@ use bevy_ecs::prelude::*;
 
 /// What a change reads or writes.
 const COLUMNS: [&str; 9] = [
-    FirstNonFinite::NAME,
+    PreviousPrescribedStep::NAME,
     Displacement::NAME,
     DisplacementStep::NAME,
     DisplacementCompensation::NAME,
@@ -30,7 +30,7 @@ const WRITTEN: [&str; 6] = [
     DisplacementStep::NAME,
     DisplacementCompensation::NAME,
     Work::NAME,
-    FirstNonFinite::NAME,
+    PreviousPrescribedStep::NAME,
     ViscousMemory::NAME,
     RemovalStep::NAME,
 ];
@@ -84,17 +84,17 @@ fn scale_steps(world: &mut World, factor: f64) {
         &'a mut DisplacementStep,
         Option<&'a mut DisplacementCompensation>,
         Option<&'a mut Work>,
-        &'a mut FirstNonFinite,
+        Option<&'a mut PreviousPrescribedStep>,
     );
-    for (mut step, lost, work, mut noticed) in world.query::<Steps>().iter_mut(world) {
+    for (mut step, lost, work, mut previous) in world.query::<Steps>().iter_mut(world) {
         let nodes = step.len() / 3;
         (0..3 * nodes).for_each(|i| scale(&mut step, i));
         if let Some(mut lost) = lost {
             // after those of the displacements those of the steps
             (3 * nodes..6 * nodes).for_each(|i| scale(&mut lost, i));
         }
-        for bits in noticed.get_mut(before_at(nodes)..).unwrap_or_default() {
-            *bits = ((factor * f64::from(f32::from_bits(*bits))) as f32).to_bits();
+        for step in previous.iter_mut().flat_map(|previous| previous.iter_mut()) {
+            *step = (factor * f64::from(*step)) as f32;
         }
         if let Some(mut work) = work {
             (0..nodes).flat_map(|node| (4..7).map(move |i| WORK_NUMBERS * node + i)).for_each(|i| scale(&mut work, i));

@@ -18,7 +18,7 @@ pub(super) fn step_kernels(
     let mut kernels: Vec<Vec<Kernel>> = Vec::new();
     let mut stages: Vec<Vec<NodeStage>> = Vec::new();
     for group in groups {
-        kernels.push(match group[0].device {
+        kernels.push(match &group[0].device {
             OnDevice::Kernels(describe) => describe(world, buffers),
             OnDevice::None | OnDevice::Stages(_) => Vec::new(),
         });
@@ -51,7 +51,7 @@ pub(super) fn step_kernels(
 fn stages_of(systems: &[&System], world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
     let mut stages = Vec::new();
     for system in systems {
-        if let OnDevice::Stages(describe) = system.device {
+        if let OnDevice::Stages(describe) = &system.device {
             stages.extend(describe(world, buffers));
         }
     }

@@ -300,7 +300,7 @@ pub fn shared_kernels(systems: &[&str], world: &mut World, buffers: &mut dyn Buf
 
 /// Kernels of bodies that take many steps in a dispatch: however many elements they have, if only their patches allow it.
 pub fn small_bodies(of_nodes: &[&str], world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
-    let forces = Registry::default().get("element_forces").unwrap().device;
+    let forces = Registry::default().get("element_forces").unwrap().device.clone();
     let mut elements = forces.kernels(world, buffers);
     let mut stages = stages_of(of_nodes, world, buffers);
     take_small_bodies(usize::MAX, &mut elements, &mut stages, world, buffers).0
@@ -312,7 +312,7 @@ pub fn inner_nodes(
     world: &mut World,
     buffers: &mut dyn Buffers,
 ) -> (Vec<Kernel>, Vec<Kernel>, Vec<Dispatched>) {
-    let forces = Registry::default().get("element_forces").unwrap().device;
+    let forces = Registry::default().get("element_forces").unwrap().device.clone();
     let mut elements = forces.kernels(world, buffers);
     let mut stages = stages_of(of_nodes, world, buffers);
     let mut told = step_by_step("patches are to move their nodes", world);
@@ -324,7 +324,7 @@ fn stages_of(systems: &[&str], world: &mut World, buffers: &mut dyn Buffers) -> 
     let registry = Registry::default();
     let mut stages = Vec::new();
     for system in systems.iter().filter_map(|name| registry.get(name)) {
-        match ((system.because)(world), system.device) {
+        match ((system.because)(world), &system.device) {
             (Some(_), OnDevice::Stages(describe)) => stages.extend(describe(world, buffers)),
             (_, device) => assert!(!matches!(device, OnDevice::Kernels(_)), "{}", system.name),
         }

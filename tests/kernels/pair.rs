@@ -47,7 +47,7 @@ pub fn run_all(systems: &[&str], effects: &Effects, step: u64, change: impl Fn(&
         if system.phase > sinew::systems::Phase::Integrate {
             on_host.resource_mut::<Clock>().step += 1;
         }
-        let mut body = (system.host)();
+        let mut body = system.host.alone(on_host);
         body.initialize(on_host);
         body.run((), on_host).unwrap().unwrap();
     }

@@ -140,10 +140,9 @@ fn energy_from_nothing_is_warned_of_and_ends_the_run_at_the_limits_of_the_scene(
 fn forged(simulation: &mut Simulation, good: Snapshot) -> Snapshot {
     simulation.restore(&good).unwrap();
     let world = simulation.world_mut();
-    let bodies: Vec<Entity> = world.query_filtered::<Entity, With<FirstNonFinite>>().iter(world).collect();
+    let bodies: Vec<Entity> = world.query_filtered::<Entity, With<InternalWork>>().iter(world).collect();
     for body in bodies {
-        let mut noticed = world.get_mut::<FirstNonFinite>(body).unwrap();
-        noticed.0.get_mut(SPENT_AT..).unwrap_or_default().iter_mut().for_each(|word| *word = (-1.0_f32).to_bits());
+        world.get_mut::<InternalWork>(body).unwrap().fill(-1.0);
     }
     simulation.snapshot().unwrap()
 }

@@ -6,8 +6,7 @@ use bevy_ecs::prelude::*;
 use glam::DVec3;
 use sinew::backend::device::{Device, bring_to_host, send_to_device};
 use sinew::components::{
-    Column, DisplacementStep, ExternalForce, FirstNonFinite, InternalForce, Mass, Patches, Precision, RemovalStep,
-    SPENT_AT, before_at,
+    Column, DisplacementStep, ExternalForce, InternalForce, InternalWork, Mass, Patches, Precision, RemovalStep,
 };
 use sinew::systems::{Phase, Registry, System};
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
@@ -96,9 +95,7 @@ fn small_bodies(run: &Configuration, effect: &str, output: &str, fuse: bool) -> 
     let spent = ["a", "b"].map(|body| {
         let body = simulation.body(body).unwrap();
         let body = simulation.world().entity(body);
-        let end = before_at(body.get::<Mass>().unwrap().len());
-        let words = body.get::<FirstNonFinite>().unwrap().get(SPENT_AT..end).unwrap_or_default();
-        words.iter().map(|&word| f64::from(f32::from_bits(word))).sum()
+        body.get::<InternalWork>().map_or(0.0, InternalWork::total)
     });
     ([0, 1, 2].map(|i| after[i] - before[i]), ends, spent)
 }
@@ -322,12 +319,10 @@ fn on_a_gpu(run: &Configuration, text: &str, steps: u64, fuse: bool) -> Run {
     let world = simulation.world_mut();
     let nodes = world.get::<Mass>(body).unwrap().len();
     // −0, which a sum of anything with it is not
-    let untouched = (-0.0_f32).to_bits();
-    let places = SPENT_AT..before_at(nodes);
-    if let Some(words) = world.get_mut::<FirstNonFinite>(body).unwrap().0.get_mut(places.clone()) {
-        words.fill(untouched);
+    if let Some(mut work) = world.get_mut::<InternalWork>(body) {
+        work.fill(-0.0);
     }
-    send_to_device(world, |_, name| name == FirstNonFinite::NAME).unwrap();
+    send_to_device(world, |_, name| name == InternalWork::NAME).unwrap();
     // a place for each sixty-four nodes, and for each of the first two sixty-fours of invocations that a patch gives nodes to
     let inside: Vec<u32> = world.query::<&Patches>().iter(world).flat_map(|patches| patches.inside.clone()).collect();
     let inside: Vec<usize> = inside.into_iter().filter(|_| fuse).map(|nodes| nodes as usize).collect();
@@ -341,10 +336,11 @@ fn on_a_gpu(run: &Configuration, text: &str, steps: u64, fuse: bool) -> Run {
     let dispatches = (dispatches(&mut simulation) - before) / steps;
     let ends = simulation.displacements("a").unwrap();
     bring_to_host(simulation.world_mut(), |_, _| true).unwrap();
-    let words = simulation.world().get::<FirstNonFinite>(body).unwrap().0.get(places).unwrap_or_default();
-    let spent = words.iter().map(|&word| f64::from(f32::from_bits(word))).sum();
-    let touched = words.chunks(2).filter(|sum| sum[0] != untouched).count();
-    let expected = if words.is_empty() { 0 } else { expected };
+    let work = simulation.world().get::<InternalWork>(body);
+    let spent = work.map_or(0.0, InternalWork::total);
+    let touched = |sum: &&[f32]| sum[0].to_bits() != (-0.0_f32).to_bits();
+    let touched = work.map_or(0, |work| work.chunks(2).filter(touched).count());
+    let expected = if work.is_none() { 0 } else { expected };
     Run { ends, dispatches, spent, places: [touched, expected] }
 }
 

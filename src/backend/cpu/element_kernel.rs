@@ -5,7 +5,7 @@ mod effects;
 mod fetch;
 mod stress;
 
-use super::{BlockLaw, Cpu, Factors, NodeColumns, move_nodes};
+use super::{BlockLaw, Cpu, NodeColumns};
 use crate::components::{FamilyDirection, Patches};
 use crate::elements::{Element, MOST_NODES, PressureFrom};
 use crate::materials::{Elastic, ElasticLaw, FLATTEST, NeoHookean};
@@ -14,7 +14,6 @@ use at_hand::{AtHand, part, parts};
 use fetch::{AHEAD, NEAR};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
-use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
 use stress::InRegisters;
 
@@ -44,18 +43,14 @@ pub struct BlockColumns<'a, 'n, T> {
     pub inside: Option<Inside<'a, 'n, T>>,
 }
 
-/// The nodes inside patches, and how they move. Where a patch has an element with J < 0 they stay where they are.
+/// The nodes inside patches, and what follows for them. Where a patch has an element with J < 0 they stay as they are.
 pub struct Inside<'a, 'n, T> {
     /// Of each patch, perhaps none.
     pub nodes: &'a mut [NodeColumns<'n, T>],
-    /// What is done to them, whose internal forces are known, before they move.
-    pub before: &'a (dyn Fn(&mut NodeColumns<'_, T>) + Sync),
-    /// What a step multiplies with.
-    pub factors: &'a Factors<T>,
+    /// What is done to them as soon as their internal forces are known.
+    pub then: &'a (dyn Fn(&mut NodeColumns<'_, T>) + Sync),
     /// Whether somebody may look at their forces afterwards.
     pub observed: bool,
-    /// The lowest row whose displacement is no longer finite; `u32::MAX`: none.
-    pub astray: &'a AtomicU32,
 }
 
 /// Fills in the forces of a block and carries its viscous history on by one step. Returns the patches that have elements
@@ -149,9 +144,7 @@ impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
         let mut memories = columns.memory.chunks_mut((patch * memory_an_element).max(1));
         let tasks = parts(columns.force, columns.patches, patch * 3 * E::NODES, patch * E::NODES);
         let (inside, then) = match columns.inside {
-            Some(Inside { nodes, before, factors, observed, astray }) => {
-                (nodes, Some((before, factors, observed, astray)))
-            }
+            Some(Inside { nodes, then, observed }) => (nodes, Some((then, observed))),
             None => (&mut [][..], None),
         };
         let mut inside = inside.iter_mut();
@@ -192,13 +185,10 @@ impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
                 })
             };
             let is_inverted = match (inside, then) {
-                (Some(inside), Some((before, factors, observed, astray))) => inside.with_forces(observed, |inside| {
+                (Some(inside), Some((then, observed))) => inside.with_forces(observed, |inside| {
                     let is_inverted = run(patch, Some(inside));
                     if !is_inverted {
-                        before(inside);
-                        if let Some(row) = move_nodes(cpu, inside, factors) {
-                            astray.fetch_min(row, Ordering::Relaxed);
-                        }
+                        then(inside);
                     }
                     is_inverted
                 }),

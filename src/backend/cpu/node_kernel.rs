@@ -115,14 +115,14 @@ impl<T: SimdScalar> Task<'_, '_, T> {
             lanes
         };
         let finite = lanes(chunk.astray).iter().all(|&lane| lane == T::default());
-        if columns.sums.is_empty() {
+        if columns.internal_work.is_empty() {
             return (0.0, finite);
         }
         let mut spent: f64 = lanes(chunk.spent).iter().map(|lane| lane.to_f64()).sum();
         // along prescribed axes the last step was kept apart
         for (row, axes) in (from..to).map(|row| (row, columns.axes[row])).filter(|&(_, axes)| axes != 0) {
             for at in (0..3).filter(|i| axes >> i & 1 == 1).map(|i| 3 * row + i) {
-                let last = columns.kept.get(at).map_or(0.0, |&bits| f64::from(f32::from_bits(bits)));
+                let last = columns.previous_prescribed.get(at).map_or(0.0, |&step| f64::from(step));
                 spent += columns.internal[at].to_f64() * (last + columns.step[at].to_f64());
             }
         }

@@ -96,7 +96,7 @@ impl Fused {
         let own = own.into_iter().map(|(name, buffer)| (name.into(), buffer));
         self.bindings.extend(stage.bindings.iter().cloned().chain(own).map(|(name, buffer)| (now(&name), buffer)));
         self.layouts.extend(stage.layouts.iter().map(|(name, layout)| (now(name), *layout)));
-        let call = now(&stage.call.into());
+        let call = now(&stage.call);
         match (&stage.rows, single) {
             (Rows::Patch, _) => self.sums += &format!("    {call}(number, local, kept);\n"),
             (Rows::All, _) => self.calls += &format!("    {call}(node);\n"),
@@ -156,7 +156,7 @@ impl Fused {
         rows: NodePass,
         buffers: &mut dyn Buffers,
     ) -> Kernel {
-        let mut systems: Vec<&str> = stages.iter().map(|stage| stage.system).collect();
+        let mut systems: Vec<&str> = stages.iter().map(|stage| stage.system.as_ref()).collect();
         systems.dedup();
         let mut text = String::new();
         for (number, (name, (writes, of))) in self.columns.iter().enumerate() {

@@ -4,7 +4,7 @@ use super::Buffer;
 use crate::backend::Buffers;
 use crate::backend::gpu::GpuLimits;
 use crate::backend::kernel::{BufferId, DESKTOP_WORKGROUP, MostBuffers};
-use crate::components::{Corners, Label, Patches, RestPosition, all_columns};
+use crate::components::{Corners, Label, Patches, RestPosition, all_columns, columns_in};
 use bevy_ecs::prelude::*;
 use std::collections::BTreeMap;
 
@@ -106,9 +106,11 @@ impl Buffers for Counter<'_> {
         if let Some(&id) = self.columns.get(&(entity, name)) {
             return id;
         }
-        let bytes = self.sizes.bytes.get(&(entity, name)).copied().unwrap_or(0);
-        let id = self.add(self.sizes.name_of(entity), name.into(), "column", bytes);
-        self.columns.insert((entity, name), id);
+        let buffer = all_columns().into_iter().find(|column| column.name == name).map_or(name, |column| column.buffer);
+        let there: Vec<&'static str> = columns_in(buffer).map(|column| column.name).collect();
+        let bytes = there.iter().filter_map(|&name| self.sizes.bytes.get(&(entity, name))).sum();
+        let id = self.add(self.sizes.name_of(entity), buffer.into(), "column", bytes);
+        self.columns.extend(there.into_iter().map(|name| ((entity, name), id)));
         id
     }
 

@@ -1,12 +1,20 @@
 //! What moves nodes, and how it is shared out among tasks.
 
-use crate::components::{SPENT_ROWS, WORK_NUMBERS};
-use crate::math::SimdScalar;
+use crate::components::{GROUP_ROWS, WORK_NUMBERS};
+use crate::math::{Scalar, SimdScalar};
+use glam::DVec3;
+use std::sync::atomic::AtomicU32;
 
 /// Some rows of a body's node columns, which no other task has; layouts as in [`components`](crate::components).
 pub struct NodeColumns<'a, T> {
     /// Row of the first node.
     pub first: usize,
+    /// Where nodes are at rest (m).
+    pub rest: &'a [DVec3],
+    /// Forces of all elements of the body (N), of which [`Corners`](crate::components::Corners) tells whose they are.
+    pub element_force: &'a [T],
+    /// The lowest row of a node whose displacement is no longer finite; `u32::MAX`: none.
+    pub non_finite: &'a AtomicU32,
     /// Mass that weighs (kg).
     pub mass: &'a [T],
     /// Mass that is slow to move (kg): in a static analysis another one.
@@ -27,11 +35,11 @@ pub struct NodeColumns<'a, T> {
     pub compensation: Option<[&'a mut [T]; 2]>,
     /// Work booked.
     pub work: Option<&'a mut [T]>,
-    /// Work against internal forces: a place for each row that is a multiple of [`SPENT_ROWS`], and one at the end of all; none
-    /// where the whole work is booked.
-    pub sums: &'a mut [u32],
-    /// Bits of the last steps (m) along prescribed axes; none where nothing is moved as told or all work is booked.
-    pub kept: &'a mut [u32],
+    /// Work against internal forces: a sum and its remainder for each row that is a multiple of [`GROUP_ROWS`], and one at the end
+    /// of all; none where the whole work is accumulated.
+    pub internal_work: &'a mut [f32],
+    /// The last steps (m) along prescribed axes; none where nothing is prescribed or the whole work is accumulated.
+    pub previous_prescribed: &'a mut [f32],
 }
 
 impl<T: SimdScalar> NodeColumns<'_, T> {
@@ -44,6 +52,9 @@ impl<T: SimdScalar> NodeColumns<'_, T> {
             let (internal, external) = spare.split_at_mut(self.internal.len());
             task(&mut NodeColumns {
                 first: self.first,
+                rest: self.rest,
+                element_force: self.element_force,
+                non_finite: self.non_finite,
                 mass: self.mass,
                 inertia: self.inertia,
                 internal,
@@ -54,10 +65,31 @@ impl<T: SimdScalar> NodeColumns<'_, T> {
                 step: &mut *self.step,
                 compensation: self.compensation.as_mut().map(|both| both.each_mut().map(|all| &mut **all)),
                 work: self.work.as_deref_mut(),
-                sums: &mut *self.sums,
-                kept: &mut *self.kept,
+                internal_work: &mut *self.internal_work,
+                previous_prescribed: &mut *self.previous_prescribed,
             })
         })
+    }
+}
+
+impl<T: Scalar> NodeColumns<'_, T> {
+    /// Displacement of one of these nodes (m).
+    pub fn displacement(&self, row: usize) -> DVec3 {
+        DVec3::from_array([0, 1, 2].map(|i| self.u[3 * row + i].to_f64()))
+    }
+
+    /// Where one of these nodes is (m).
+    pub fn place(&self, row: usize) -> DVec3 {
+        self.rest[row] + self.displacement(row)
+    }
+
+    /// Adds to the load on one of these nodes (N); nothing where the body has no loads.
+    pub fn add_load(&mut self, row: usize, force: DVec3) {
+        if let Some(external) = self.external.as_deref_mut() {
+            for (load, part) in external[3 * row..3 * row + 3].iter_mut().zip(force.to_array()) {
+                *load = T::from_f64(load.to_f64() + part);
+            }
+        }
     }
 }
 
@@ -72,6 +104,9 @@ impl<'a, T> NodeColumns<'a, T> {
         let places = 2 * self.places_until(rows);
         let taken = NodeColumns {
             first: self.first,
+            rest: first(&mut self.rest, rows),
+            element_force: self.element_force,
+            non_finite: self.non_finite,
             mass: first(&mut self.mass, rows),
             inertia: first(&mut self.inertia, rows),
             internal: first_mut(&mut self.internal, 3 * rows),
@@ -82,8 +117,8 @@ impl<'a, T> NodeColumns<'a, T> {
             step: first_mut(&mut self.step, 3 * rows),
             compensation: self.compensation.as_mut().map(|both| both.each_mut().map(|all| first_mut(all, 3 * rows))),
             work: self.work.as_mut().map(|all| first_mut(all, WORK_NUMBERS * rows)),
-            sums: first_mut(&mut self.sums, places),
-            kept: first_mut(&mut self.kept, 3 * rows),
+            internal_work: first_mut(&mut self.internal_work, places),
+            previous_prescribed: first_mut(&mut self.previous_prescribed, 3 * rows),
         };
         self.first += rows;
         taken
@@ -99,15 +134,15 @@ impl<'a, T> NodeColumns<'a, T> {
         tasks
     }
 
-    /// Places in `sums` of the rows before one.
+    /// Sums of work of the rows before one.
     fn places_until(&self, row: usize) -> usize {
-        (self.first + row).div_ceil(SPENT_ROWS) - self.first.div_ceil(SPENT_ROWS)
+        (self.first + row).div_ceil(GROUP_ROWS) - self.first.div_ceil(GROUP_ROWS)
     }
 
     /// The place to which the work of rows from `row` on is added: theirs, or the last of this task.
-    pub(super) fn sum_of(&mut self, row: usize) -> Option<&mut [u32]> {
-        let place = self.places_until(row).min((self.sums.len() / 2).checked_sub(1)?);
-        Some(&mut self.sums[2 * place..2 * place + 2])
+    pub(super) fn sum_of(&mut self, row: usize) -> Option<&mut [f32]> {
+        let place = self.places_until(row).min((self.internal_work.len() / 2).checked_sub(1)?);
+        Some(&mut self.internal_work[2 * place..2 * place + 2])
     }
 }
 
@@ -128,18 +163,22 @@ fn first_mut<'a, X>(all: &mut &'a mut [X], count: usize) -> &'a mut [X] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::components::InternalWork;
 
-    /// However rows are shared out, in parts of no less than [`SPENT_ROWS`] but for the last, every task has a place of its own.
+    /// However rows are shared out, in parts of no less than [`GROUP_ROWS`] but for the last, every task has a place of its own.
     #[test]
     fn every_task_has_a_place_for_its_work() {
         let nodes = 1003;
         for cuts in [vec![16, 33, 49, 65, 1000], vec![1002], vec![31, 992]] {
-            let (mut floats, mut words) = (vec![0.0_f32; 4 * 3 * nodes], vec![0_u32; 2 * (nodes.div_ceil(16) + 1)]);
+            let (mut floats, mut work) = (vec![0.0_f32; 4 * 3 * nodes], InternalWork::zero(nodes));
             let (read, axes) = (vec![1.0; nodes], vec![0; nodes]);
             let mut parts = floats.chunks_mut(3 * nodes);
             let mut part = || parts.next().unwrap_or_default();
             let mut rest = NodeColumns {
                 first: 0,
+                rest: &[],
+                element_force: &[],
+                non_finite: &AtomicU32::new(u32::MAX),
                 mass: &read,
                 inertia: &read,
                 internal: part(),
@@ -150,17 +189,17 @@ mod tests {
                 step: part(),
                 compensation: None,
                 work: None,
-                sums: &mut words,
-                kept: &mut [],
+                internal_work: &mut work,
+                previous_prescribed: &mut [],
             };
             let mut places = 0;
             for cut in cuts {
                 let mut task = rest.take(cut - rest.first);
                 assert!(task.sum_of(0).is_some() && task.sum_of(task.rows() - 1).is_some(), "until {cut}");
-                places += task.sums.len() / 2;
+                places += task.internal_work.len() / 2;
             }
             assert!(rest.sum_of(0).is_some());
-            assert_eq!(places + rest.sums.len() / 2, nodes.div_ceil(16) + 1);
+            assert_eq!(places + rest.internal_work.len() / 2, nodes.div_ceil(16) + 1);
         }
     }
 }

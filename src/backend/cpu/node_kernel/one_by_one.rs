@@ -48,13 +48,12 @@ fn compensated_add<T: Scalar>(sum: &mut T, lost: &mut T, change: T) {
     *sum = rounded;
 }
 
-/// Adds to a number that is kept as two of f32, as bits.
-pub(super) fn add_to_sum(sum: &mut [u32], part: f64) {
+/// Adds to a number that is kept as two of f32.
+pub(super) fn add_to_sum(sum: &mut [f32], part: f64) {
     let [high, low, ..] = sum else { return };
-    let total = f64::from(f32::from_bits(*high)) + f64::from(f32::from_bits(*low)) + part;
-    let rounded = total as f32;
-    *high = rounded.to_bits();
-    *low = ((total - f64::from(rounded)) as f32).to_bits();
+    let total = f64::from(*high) + f64::from(*low) + part;
+    *high = total as f32;
+    *low = (total - f64::from(*high)) as f32;
 }
 
 /// What moves one node.
@@ -64,8 +63,8 @@ pub(super) struct OneNode<T> {
     damping: T,
     internal: [T; 3],
     external: [T; 3],
-    /// Bits of the last step (m), which prescribed axes need.
-    kept: Option<[u32; 3]>,
+    /// The last step (m), which prescribed axes need.
+    previous_prescribed: Option<[f32; 3]>,
 }
 
 impl<T: Scalar> OneNode<T> {
@@ -77,7 +76,7 @@ impl<T: Scalar> OneNode<T> {
             damping: columns.damping.map_or(T::default(), |all| all[row]),
             internal: three(columns.internal),
             external: columns.external.as_deref().map_or([T::default(); 3], three),
-            kept: columns.kept.get(3 * row..3 * row + 3).map(|bits| [bits[0], bits[1], bits[2]]),
+            previous_prescribed: columns.previous_prescribed.get(3 * row..3 * row + 3).map(|d| [d[0], d[1], d[2]]),
         }
     }
 }
@@ -113,8 +112,8 @@ pub(super) fn move_node<T: Scalar>(
         }
         sum.go(i, constrained);
         let step = sum.step[i];
-        let last = match node.kept {
-            Some(bits) if constrained => T::from_f64(f64::from(f32::from_bits(bits[i]))),
+        let last = match node.previous_prescribed {
+            Some(previous) if constrained => T::from_f64(f64::from(previous[i])),
             _ => before,
         };
         spent += internal * (last + step);

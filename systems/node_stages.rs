@@ -1,0 +1,113 @@
+//! What a node system of one's own is on a GPU: a stage of the kernels of nodes, put together from what the system touches and
+//! what the scene gave as its parameters.
+
+use super::node_system::{NodeRows, NodeSystem};
+use crate::backend::Buffers;
+use crate::backend::kernel::Fragment;
+use crate::backend::node_stage::{NodeStage, rows_of};
+use crate::components::*;
+use bevy_ecs::prelude::*;
+use bevy_ecs::system::SystemAccess;
+use serde_json::Value;
+use std::fmt::Write;
+
+/// One stage for each entity that calls for the system.
+pub(super) fn derived_stages<S: NodeSystem + serde::Serialize>(
+    name: &str,
+    shader: &Fragment,
+    world: &mut World,
+    buffers: &mut dyn Buffers,
+) -> Vec<NodeStage> {
+    let touched = touched::<S>(world);
+    let rest = reads_rest::<S>(world);
+    let callers: Vec<(Entity, Value)> = world
+        .query::<(Entity, &S, Option<&OfBody>)>()
+        .iter(world)
+        .map(|(entity, system, of)| (of.map_or(entity, |of| of.0), serde_json::to_value(system).unwrap_or(Value::Null)))
+        .collect();
+    let mut stages = Vec::new();
+    for (body, parameters) in callers {
+        let (mut declared, bytes) = uniform_of(&parameters);
+        let mut stage = NodeStage::new(name.to_string(), name.to_string(), body, rows_of(body, world), shader.clone());
+        let mut loaded = false;
+        for (column, writes) in touched.iter().filter(|(column, _)| (column.bytes)(world, body).is_some()) {
+            stage = stage.column(column.name, buffers.column(body, column.name));
+            if column.name == ExternalForce::NAME {
+                loaded = true;
+                continue;
+            }
+            let access = if *writes { "read_write" } else { "read" };
+            let _ = writeln!(
+                declared,
+                "@group(0) @binding(0) var<storage, {access}> {}: array<{}>;",
+                column.name, column.word
+            );
+        }
+        if let (true, Some(at_rest)) = (rest, world.get::<RestPosition>(body)) {
+            let points: Vec<[f32; 3]> = at_rest.0.iter().map(|x| x.as_vec3().to_array()).collect();
+            declared += "@group(0) @binding(0) var<storage, read> rest_position: array<f32>;\n";
+            let points = buffers.constants("rest_position".into(), bytemuck::cast_slice(&points));
+            stage = stage.bind("rest_position", points);
+        }
+        if !bytes.is_empty() {
+            stage = stage.bind("parameters", buffers.uniform(format!("parameters of {name}"), &bytes));
+        }
+        let declared = Fragment::new(format!("generated: what {name} touches"), declared);
+        stages.push(stage.own(declared).with_step(world).loaded(loaded));
+    }
+    stages
+}
+
+/// The columns that a system touches, and whether it writes them.
+fn touched<S: NodeSystem>(world: &mut World) -> Vec<(ColumnAccess, bool)> {
+    let SystemAccess::Shared(set) = NodeRows::of::<S>().touches().initialize(world) else { return Vec::new() };
+    let access = set.combined_access();
+    let of_column = |column: ColumnAccess| {
+        let id = (column.id)(world)?;
+        (access.has_read(id) || access.has_write(id)).then(|| (column, access.has_write(id)))
+    };
+    all_columns().into_iter().filter_map(of_column).collect()
+}
+
+fn reads_rest<S: NodeSystem>(world: &mut World) -> bool {
+    let SystemAccess::Shared(set) = NodeRows::of::<S>().touches().initialize(world) else { return false };
+    world.component_id::<RestPosition>().is_some_and(|id| set.combined_access().has_read(id))
+}
+
+/// Declares a uniform `parameters` that holds what the scene gave, and gives its bytes: numbers, truth values, and vectors of two to
+/// four numbers, each member on a multiple of 16 bytes. None where there are none.
+fn uniform_of(parameters: &Value) -> (String, Vec<u8>) {
+    let (mut members, mut bytes) = (String::new(), Vec::new());
+    for (member, value) in parameters.as_object().into_iter().flatten() {
+        let Some((of, words)) = member_of(value) else {
+            let _ = writeln!(members, "    // {member} is nothing that a shader can have");
+            continue;
+        };
+        let _ = writeln!(members, "    @align(16) {member}: {of},");
+        bytes.extend(words.iter().flat_map(|word| word.to_le_bytes()));
+        bytes.resize(bytes.len().next_multiple_of(16), 0);
+    }
+    if bytes.is_empty() {
+        return (String::new(), bytes);
+    }
+    let declared =
+        format!("struct Parameters {{\n{members}}}\n@group(0) @binding(0) var<uniform> parameters: Parameters;\n");
+    (declared, bytes)
+}
+
+/// What a value is in WGSL, and its words.
+fn member_of(value: &Value) -> Option<(String, Vec<u32>)> {
+    let real = |value: &Value| Some((value.as_f64()? as f32).to_bits());
+    match value {
+        Value::Bool(value) => Some(("u32".into(), vec![u32::from(*value)])),
+        Value::Number(number) if number.is_u64() => Some(("u32".into(), vec![u32::try_from(number.as_u64()?).ok()?])),
+        Value::Number(number) if number.is_i64() => {
+            Some(("i32".into(), vec![i32::try_from(number.as_i64()?).ok()?.cast_unsigned()]))
+        }
+        Value::Number(_) => Some(("f32".into(), vec![real(value)?])),
+        Value::Array(parts) if (2..=4).contains(&parts.len()) => {
+            Some((format!("vec{}<f32>", parts.len()), parts.iter().map(real).collect::<Option<_>>()?))
+        }
+        _ => None,
+    }
+}

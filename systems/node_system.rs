@@ -1,0 +1,156 @@
+//! What a node system is: what a system does to nodes, row by row, in passes that it shares with its neighbours in the step.
+
+use super::registry::HostSystem;
+use crate::backend::cpu::{Cpu, NodeColumns};
+use crate::components::*;
+use crate::math::SimdScalar;
+use bevy_ecs::prelude::*;
+use bevy_ecs::query::QueryData;
+use bevy_ecs::system::{DynParamBuilder, DynSystemParam, IntoSystem, ParamBuilder};
+
+/// What a system does to the nodes of a body, row by row. Its component calls for it: each entity that has one and
+/// [`OfBody`] acts on that body, and a body that has one itself is acted on.
+///
+/// Neighbours of a step share a pass: a task takes some rows through all of them, one after the other. So a system sees no rows but its
+/// own there; what it needs of others it finds out beforehand, in [`prepare`](Self::prepare).
+pub trait NodeSystem: Component {
+    /// The node columns that it reads (`&Mass`) and writes (`&mut ExternalForce`), as a bevy query names them.
+    type Columns: QueryData + 'static;
+    /// What a step needs beside the component.
+    type Prepared: Send + Sync;
+    /// Whether it sums the forces of elements and clears the loads of the last step: for nodes inside a patch, that has done so.
+    const SUMS_FORCES: bool = false;
+    /// Whether it uses these sums up, by moving the nodes.
+    const MOVES_NODES: bool = false;
+
+    /// Finds out what this step needs, before any node of the body moves.
+    fn prepare(&self, before: &Before<'_>) -> Self::Prepared;
+
+    /// Does it to some rows of the body, which no other task has.
+    fn act<T: SimdScalar>(&self, prepared: &Self::Prepared, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>);
+}
+
+/// A body before a pass begins, and the step that it is in.
+#[derive(Clone, Copy, Debug)]
+pub struct Before<'a> {
+    /// The clock, at the beginning of the step.
+    pub clock: &'a Clock,
+    /// Values of loads and motions in this step.
+    pub signals: &'a Signals,
+    /// Where nodes are at rest (m).
+    pub rest: &'a RestPosition,
+    /// Displacements at the beginning of the step (m).
+    pub displacement: &'a Displacement,
+}
+
+/// A node system bound to a step.
+pub(super) trait OnRows: Sync {
+    fn single(&self, cpu: &Cpu, nodes: &mut NodeColumns<'_, f32>);
+    fn double(&self, cpu: &Cpu, nodes: &mut NodeColumns<'_, f64>);
+    fn sums_forces(&self) -> bool;
+}
+
+struct Bound<'a, S: NodeSystem> {
+    system: &'a S,
+    prepared: S::Prepared,
+}
+
+impl<S: NodeSystem> OnRows for Bound<'_, S> {
+    fn single(&self, cpu: &Cpu, nodes: &mut NodeColumns<'_, f32>) {
+        self.system.act(&self.prepared, cpu, nodes);
+    }
+    fn double(&self, cpu: &Cpu, nodes: &mut NodeColumns<'_, f64>) {
+        self.system.act(&self.prepared, cpu, nodes);
+    }
+    fn sums_forces(&self) -> bool {
+        S::SUMS_FORCES
+    }
+}
+
+/// A number type of a run.
+pub(super) trait OfRun: SimdScalar {
+    /// Does what a bound system does to some rows.
+    fn act(system: &dyn OnRows, cpu: &Cpu, nodes: &mut NodeColumns<'_, Self>);
+}
+
+impl OfRun for f32 {
+    fn act(system: &dyn OnRows, cpu: &Cpu, nodes: &mut NodeColumns<'_, f32>) {
+        system.single(cpu, nodes);
+    }
+}
+
+impl OfRun for f64 {
+    fn act(system: &dyn OnRows, cpu: &Cpu, nodes: &mut NodeColumns<'_, f64>) {
+        system.double(cpu, nodes);
+    }
+}
+
+/// What calls for a system, and the body that it acts on.
+type Callers<'w, 's, S> = Query<'w, 's, (Entity, &'static S, Option<&'static OfBody>)>;
+
+/// Systems bound to a body, in their order.
+pub(super) type BoundSystems<'a> = Vec<Box<dyn OnRows + 'a>>;
+
+/// A node system without its type: how a pass finds what calls for it, and what it touches.
+#[derive(Clone, Copy)]
+pub struct NodeRows {
+    parameter: fn() -> DynParamBuilder<'static>,
+    bind: for<'a> fn(&'a mut DynSystemParam<'_, '_>, Entity, &Before<'_>, &mut BoundSystems<'a>),
+    touches: fn() -> HostSystem,
+    /// See [`NodeSystem::SUMS_FORCES`].
+    pub sums_forces: bool,
+    /// See [`NodeSystem::MOVES_NODES`].
+    pub moves_nodes: bool,
+}
+
+impl NodeRows {
+    /// That of a system.
+    pub fn of<S: NodeSystem>() -> Self {
+        Self {
+            parameter: || DynParamBuilder::new::<Callers<S>>(ParamBuilder),
+            bind: bind::<S>,
+            touches: || {
+                let nothing = |_: Query<S::Columns>, _: Callers<S>, _: Res<Clock>, _: Res<Signals>| Ok(());
+                Box::new(IntoSystem::into_system(nothing))
+            },
+            sums_forces: S::SUMS_FORCES,
+            moves_nodes: S::MOVES_NODES,
+        }
+    }
+
+    /// What a pass asks the world for, to find what calls for the system.
+    pub(super) fn parameter(&self) -> DynParamBuilder<'static> {
+        (self.parameter)()
+    }
+
+    /// Binds what calls for the system on a body to a step.
+    pub(super) fn bind<'a>(
+        &self,
+        callers: &'a mut DynSystemParam<'_, '_>,
+        body: Entity,
+        before: &Before<'_>,
+        all: &mut BoundSystems<'a>,
+    ) {
+        (self.bind)(callers, body, before, all);
+    }
+
+    /// A system that does nothing and touches what this one does: for the order in which systems may run.
+    pub(crate) fn touches(&self) -> HostSystem {
+        (self.touches)()
+    }
+}
+
+fn bind<'a, S: NodeSystem>(
+    callers: &'a mut DynSystemParam<'_, '_>,
+    body: Entity,
+    before: &Before<'_>,
+    all: &mut BoundSystems<'a>,
+) {
+    let callers = callers.downcast_mut::<Callers<'a, 'a, S>>();
+    debug_assert!(callers.is_some(), "the parameter of another system");
+    for (entity, system, of) in callers.into_iter().flat_map(|callers| callers.iter_inner()) {
+        if of.map_or(entity, |of| of.0) == body {
+            all.push(Box::new(Bound { system, prepared: system.prepare(before) }));
+        }
+    }
+}
