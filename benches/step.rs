@@ -1,7 +1,7 @@
 //! What a step costs on one thread, what a large body costs to set up, and how much memory it takes.
 //!
-//! `cargo bench --bench step` prints ns an element and step beside criterion's own figures. `cargo bench --bench step -- 10`
-//! runs the small ones only, `-- guards` what the guards cost (with SINEW_BENCH_GPU set, on the GPU in f32).
+//! `cargo bench --bench step` prints ns an element and step beside criterion's own figures. `cargo bench --bench step
+//! -- 10` runs the small ones only, `-- guards` what the guards cost (with SINEW_BENCH_GPU set, on the GPU in f32).
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use criterion::{Criterion, Throughput};
@@ -119,8 +119,8 @@ impl<'a> Group<'a> {
 /// Steps that are timed at once.
 const BLOCK: u64 = 8;
 
-/// What the guards of every run cost: blocks of steps with and without booked work by turns, the best of each, so that other
-/// work on the machine does not count; and a look, of which there is one in 256 steps.
+/// What the guards of every run cost: blocks of steps with and without booked work by turns, the best of each, so that
+/// other work on the machine does not count; and a look, of which there is one in 256 steps.
 fn guards() {
     let gpu = std::env::var_os("SINEW_BENCH_GPU").is_some();
     let configurations = [("f32", Precision::F32, gpu), ("f64", Precision::F64, false)];

@@ -1,8 +1,8 @@
-//! A system of one's own: a magnet that circles above a gel and pulls what is near. It works node by node and shares passes with the
-//! engine's own systems, on both backends.
+//! A system of one's own: a magnet that circles above a gel and pulls what is near. It works node by node and shares
+//! passes with the engine's own systems, on both backends.
 //!
-//! `cargo run --release --example custom_system [FOLDER]` runs examples/magnet.ron on the CPU and, if there is one, on the
-//! GPU, prints what each pass cost, and writes what a run writes into FOLDER, for `sinew render` and ParaView.
+//! `cargo run --release --example custom_system [FOLDER]` runs examples/magnet.ron on the CPU and, if there is one, on
+//! the GPU, prints what each pass cost, and writes what a run writes into FOLDER, for `sinew render` and ParaView.
 
 use sinew::backend::cpu::{Cpu, NodeColumns};
 use sinew::backend::gpu::NoGpu;

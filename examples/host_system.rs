@@ -1,8 +1,8 @@
-//! A system of one's own that only the host can do: the magnet of examples/custom_system.rs as a bevy system, which sees whole columns.
-//! On a GPU these travel to the host and back in every step.
+//! A system of one's own that only the host can do: the magnet of examples/custom_system.rs as a bevy system, which
+//! sees whole columns. On a GPU these travel to the host and back in every step.
 //!
-//! `cargo run --release --example host_system` runs examples/magnet.ron on the CPU and, if there is one, on the GPU, and prints what
-//! the system cost.
+//! `cargo run --release --example host_system` runs examples/magnet.ron on the CPU and, if there is one, on the GPU,
+//! and prints what the system cost.
 
 use sinew::backend::gpu::NoGpu;
 use sinew::bevy_ecs::prelude::*;

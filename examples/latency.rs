@@ -1,9 +1,9 @@
 //! How long a touch takes: where a tool is goes in, what it feels comes out, step by step.
 //!
-//! `cargo run --release --example latency [SCENE] [THREADS]` touches a lens (scenes/lens_pressed.ron without its pressure) with a ball that
-//! goes up and down, and prints how long one step and how long a millisecond of simulated time take: the median, what 99 in
-//! 100 stay below, and the longest. A scene's curves are known beforehand; what only the moment knows comes in through a
-//! resource that the program writes between steps and a system of its own reads.
+//! `cargo run --release --example latency [SCENE] [THREADS]` touches a lens (scenes/lens_pressed.ron without its
+//! pressure) with a ball that goes up and down, and prints how long one step and how long a millisecond of simulated
+//! time take: the median, what 99 in 100 stay below, and the longest. A scene's curves are known beforehand; what only
+//! the moment knows comes in through a resource that the program writes between steps and a system of its own reads.
 
 use sinew::bevy_ecs::prelude::*;
 use sinew::components::{Displacement, ExternalForce, RestPosition};

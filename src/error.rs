@@ -90,7 +90,8 @@ pub struct Instability {
 /// What ended a run, for programs.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Criterion {
-    /// `not_finite`, `inverted`, `energy`, `step` for a stable step that has gone to nothing, or `result` for a result that is not finite.
+    /// `not_finite`, `inverted`, `energy`, `step` for a stable step that has gone to nothing, or `result` for a result
+    /// that is not finite.
     pub name: &'static str,
     /// What was found, where it is a number.
     pub value: Option<f64>,
@@ -218,7 +219,8 @@ impl From<Diagnostics> for Error {
     }
 }
 
-/// Something that the engine itself has put in place is not there: in builds for debugging that ends the program with its name.
+/// Something that the engine itself has put in place is not there: in builds for debugging that ends the program with
+/// its name.
 pub(crate) fn missing(what: &str) {
     debug_assert!(false, "a broken invariant: {what} is missing");
 }

@@ -1,9 +1,9 @@
 //! Sinew: a data-oriented soft-tissue engine.
 //!
-//! Total Lagrangian explicit finite elements (Comas et al. 2008) as entities, components and ordered systems. A scene in
-//! RON becomes a [`Simulation`]: bodies, materials, constraints and loads are entities of a `bevy_ecs` world, what is
-//! numerous is a column of a component, and the step is a schedule of [`systems`] that run on the CPU or, as kernels put
-//! together from what the scene calls for, on a GPU.
+//! Total Lagrangian explicit finite elements (Comas et al. 2008) as entities, components and ordered systems. A scene
+//! in RON becomes a [`Simulation`]: bodies, materials, constraints and loads are entities of a `bevy_ecs` world, what
+//! is numerous is a column of a component, and the step is a schedule of [`systems`] that run on the CPU or, as kernels
+//! put together from what the scene calls for, on a GPU.
 //!
 //! ```no_run
 //! # fn main() -> Result<(), sinew::Error> {
@@ -53,8 +53,8 @@ pub use snapshot::Snapshot;
 
 /// What systems of one's own are written with: `use sinew::prelude::*;`.
 ///
-/// The derive macros of bevy_ecs name their crate `bevy_ecs`; it is among these, so that `#[derive(Resource)]` compiles in a
-/// crate that depends on sinew alone. Those of serde need `#[serde(crate = "sinew::serde")]` there.
+/// The derive macros of bevy_ecs name their crate `bevy_ecs`; it is among these, so that `#[derive(Resource)]` compiles
+/// in a crate that depends on sinew alone. Those of serde need `#[serde(crate = "sinew::serde")]` there.
 pub mod prelude {
     pub use crate::components::{Clock, Displacement, DisplacementStep, ExternalForce, Mass, RestPosition};
     pub use crate::systems::{Phase, Registry, System};

@@ -1,5 +1,6 @@
 //! `element_forces`: what deformed elements exert on their corners. The kernel is put together from
-//! `shaders/element_forces.wgsl`, the element's file, one file an effect of the material, and `patches.wgsl` or `two_pass.wgsl`.
+//! `shaders/element_forces.wgsl`, the element's file, one file an effect of the material, and `patches.wgsl` or
+//! `two_pass.wgsl`.
 
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
@@ -75,8 +76,8 @@ fn element_forces(
 }
 
 impl BlockPartsItem<'_, '_> {
-    /// Runs the block's kernel: from displacements (m), from a row of the body on, to element forces (N). Returns the patches
-    /// that have elements with J < 0.
+    /// Runs the block's kernel: from displacements (m), from a row of the body on, to element forces (N). Returns the
+    /// patches that have elements with J < 0.
     pub(super) fn run<'a, T: Precise>(
         &'a mut self,
         cpu: &Cpu,

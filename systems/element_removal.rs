@@ -16,13 +16,13 @@ use crate::shader;
 use bevy_ecs::prelude::*;
 use std::borrow::Cow;
 
-/// Criteria are looked at in every tenth step: a wave passes a tenth of an element's height in a step, and to look costs
-/// as much as the forces.
+/// Criteria are looked at in every tenth step: a wave passes a tenth of an element's height in a step, and to look
+/// costs as much as the forces.
 pub const CRITERION_STEPS: u64 = 10;
 
 /// At the end of a step, elements go whose time has come or that pass a limit. Their volume and hourglass stiffness
-/// become zero, so that they exert nothing; what their nodes weigh is summed anew, and nodes without elements are parked;
-/// faces of removed elements bear no load. The energy they held is booked.
+/// become zero, so that they exert nothing; what their nodes weigh is summed anew, and nodes without elements are
+/// parked; faces of removed elements bear no load. The energy they held is booked.
 pub fn system() -> System {
     System::built_in(
         "element_removal",
@@ -327,7 +327,8 @@ fn mass_kernel(block: &BlockKernels, first: bool, world: &World, buffers: &mut d
     })
 }
 
-/// For each of a body's nodes the places, in the rest shapes of a block, of the volumes of the elements that meet there.
+/// For each of a body's nodes the places, in the rest shapes of a block, of the volumes of the elements that meet
+/// there.
 fn volumes_at_nodes(block: &Block, connectivity: &[u32], count: usize) -> (Vec<u32>, Vec<u32>) {
     let nodes = node_count(block.kind);
     let mut pairs: Vec<(u32, u32)> = Vec::with_capacity(block.count * nodes);

@@ -11,8 +11,8 @@ use crate::math::{LANES, Scalar, SimdScalar};
 use crate::shader;
 use bevy_ecs::prelude::*;
 
-/// Each node sums its own corners in a fixed order: the same bits for any number of threads, and no atomics. Also clears
-/// the external forces, to which the loads of this step then add.
+/// Each node sums its own corners in a fixed order: the same bits for any number of threads, and no atomics. Also
+/// clears the external forces, to which the loads of this step then add.
 pub fn system() -> System {
     System::built_in_nodes::<Corners>("gather", Phase::Gather, "sums element forces at the nodes", "bodies", |world| {
         super::registry::count::<Corners>(world, "body with elements", "bodies with elements")

@@ -18,8 +18,8 @@ use std::sync::atomic::Ordering;
 /// The first step starts half way, d ← (1 − a) d + ½Δt² (R − F)/m with d = v₀Δt, so that free fall is exact. Stable iff
 /// ωΔt ≤ 2 for any damping. The classical form with three coefficients loses 2 to 10 % in f32, this one 1e-6; with
 /// [`DisplacementCompensation`] the sum of steps is as good as in f64. Where Δt changes, d is scaled to the new one
-/// beforehand, and forces act over the mean of both, (Δt + Δt')/2 in place of Δt in the push and in a. Constrained axes take the step that `boundary`
-/// wrote; nodes without mass are parked.
+/// beforehand, and forces act over the mean of both, (Δt + Δt')/2 in place of Δt in the push and in a. Constrained axes
+/// take the step that `boundary` wrote; nodes without mass are parked.
 ///
 /// In a static analysis the same recursion relaxes: the mass is [`FictitiousMass`], a is one number for all nodes, and
 /// forces are multiplied with a gain ([`Relaxation`]).

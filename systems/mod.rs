@@ -14,8 +14,9 @@
 //! observe          all, read only               -> probes, energies, guards, files
 //! ```
 //!
-//! What works node by node is a [`NodeSystem`], and so may be a user's: neighbours of a step share a pass (`node_pass`), with
-//! `element_forces` before them for the nodes inside a patch (`patch_pass`; on a GPU `src/backend/patch_step.rs`).
+//! What works node by node is a [`NodeSystem`], and so may be a user's: neighbours of a step share a pass
+//! (`node_pass`), with `element_forces` before them for the nodes inside a patch (`patch_pass`; on a GPU
+//! `src/backend/patch_step.rs`).
 
 mod boundary;
 mod element_forces;

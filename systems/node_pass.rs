@@ -1,5 +1,5 @@
-//! Neighbouring systems of a step that work node by node, in one pass over the nodes: what one writes the next finds in the
-//! core's cache. On a GPU the same is one kernel (src/backend/node_stage.rs).
+//! Neighbouring systems of a step that work node by node, in one pass over the nodes: what one writes the next finds in
+//! the core's cache. On a GPU the same is one kernel (src/backend/node_stage.rs).
 
 use super::node_system::{Before, BoundSystems, NodeRows, OfRun};
 use super::registry::HostSystem;

@@ -1,5 +1,5 @@
-//! What a node system of one's own is on a GPU: a stage of the kernels of nodes, put together from what the system touches and
-//! what the scene gave as its parameters.
+//! What a node system of one's own is on a GPU: a stage of the kernels of nodes, put together from what the system
+//! touches and what the scene gave as its parameters.
 
 use super::node_system::{NodeRows, NodeSystem};
 use crate::backend::Buffers;
@@ -74,8 +74,8 @@ fn reads_rest<S: NodeSystem>(world: &mut World) -> bool {
     world.component_id::<RestPosition>().is_some_and(|id| set.combined_access().has_read(id))
 }
 
-/// Declares a uniform `parameters` that holds what the scene gave, and gives its bytes: numbers, truth values, and vectors of two to
-/// four numbers, each member on a multiple of 16 bytes. None where there are none.
+/// Declares a uniform `parameters` that holds what the scene gave, and gives its bytes: numbers, truth values, and
+/// vectors of two to four numbers, each member on a multiple of 16 bytes. None where there are none.
 fn uniform_of(parameters: &Value) -> (String, Vec<u8>) {
     let (mut members, mut bytes) = (String::new(), Vec::new());
     for (member, value) in parameters.as_object().into_iter().flatten() {

@@ -1,4 +1,5 @@
-//! What a node system is: what a system does to nodes, row by row, in passes that it shares with its neighbours in the step.
+//! What a node system is: what a system does to nodes, row by row, in passes that it shares with its neighbours in the
+//! step.
 
 use super::registry::HostSystem;
 use crate::backend::cpu::{Cpu, NodeColumns};
@@ -11,14 +12,15 @@ use bevy_ecs::system::{DynParamBuilder, DynSystemParam, IntoSystem, ParamBuilder
 /// What a system does to the nodes of a body, row by row. Its component calls for it: each entity that has one and
 /// [`OfBody`] acts on that body, and a body that has one itself is acted on.
 ///
-/// Neighbours of a step share a pass: a task takes some rows through all of them, one after the other. So a system sees no rows but its
-/// own there; what it needs of others it finds out beforehand, in [`prepare`](Self::prepare).
+/// Neighbours of a step share a pass: a task takes some rows through all of them, one after the other. So a system sees
+/// no rows but its own there; what it needs of others it finds out beforehand, in [`prepare`](Self::prepare).
 pub trait NodeSystem: Component {
     /// The node columns that it reads (`&Mass`) and writes (`&mut ExternalForce`), as a bevy query names them.
     type Columns: QueryData + 'static;
     /// What a step needs beside the component.
     type Prepared: Send + Sync;
-    /// Whether it sums the forces of elements and clears the loads of the last step: for nodes inside a patch, that has done so.
+    /// Whether it sums the forces of elements and clears the loads of the last step: for nodes inside a patch, that has
+    /// done so.
     const SUMS_FORCES: bool = false;
     /// Whether it uses these sums up, by moving the nodes.
     const MOVES_NODES: bool = false;

@@ -1,5 +1,5 @@
-//! `element_forces` and the systems of nodes that follow it, in one pass over the patches: the nodes inside a patch move while
-//! they are in the core's cache, those that patches share when all patches are done.
+//! `element_forces` and the systems of nodes that follow it, in one pass over the patches: the nodes inside a patch
+//! move while they are in the core's cache, those that patches share when all patches are done.
 
 use super::element_forces::{BlockParts, Precise};
 use super::node_pass::{BodyColumns, BodyColumnsItem, NodePass, act_after_gather, move_rows};

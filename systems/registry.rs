@@ -104,7 +104,8 @@ pub struct System {
     pub does: String,
     /// What in a scene calls for it.
     pub called_for_by: &'static str,
-    /// Why the world needs it; `None` when it does not. A schedule that a scene writes out must hold all that are needed.
+    /// Why the world needs it; `None` when it does not. A schedule that a scene writes out must hold all that are
+    /// needed.
     pub because: fn(&mut World) -> Option<String>,
     /// What runs on the host.
     pub host: OnHost,
@@ -148,11 +149,11 @@ impl Outcome for Result<(), Error> {
 
 impl System {
     /// A system of one's own, run on the host on both backends, once a step. `system` is any bevy system function: its
-    /// queries say which columns it reads (they are brought to the host before it runs) and which it writes (they go back
-    /// to the device after). It runs only when a scene's schedule names it.
+    /// queries say which columns it reads (they are brought to the host before it runs) and which it writes (they go
+    /// back to the device after). It runs only when a scene's schedule names it.
     ///
-    /// It returns nothing or a `Result<(), Error>`, whose error ends the run. `system` is called through a function without
-    /// captures, so that each simulation gets its own copy.
+    /// It returns nothing or a `Result<(), Error>`, whose error ends the run. `system` is called through a function
+    /// without captures, so that each simulation gets its own copy.
     pub fn custom<M, O: Outcome>(
         name: impl Into<String>,
         phase: Phase,
@@ -175,8 +176,8 @@ impl System {
         }
     }
 
-    /// A custom system that takes parameters from the scene: what stands under its name in `parameters` is read as a `P`,
-    /// which the system finds as `Res<P>`. What does not fit is an error when the scene is loaded.
+    /// A custom system that takes parameters from the scene: what stands under its name in `parameters` is read as a
+    /// `P`, which the system finds as `Res<P>`. What does not fit is an error when the scene is loaded.
     ///
     /// Numbers, texts, truth values, lists and structs can be read; a field that may be left out needs
     /// `#[serde(default)]`. The name `every` is taken: it is the time between two runs (s).
@@ -189,9 +190,10 @@ impl System {
         self
     }
 
-    /// A custom system whose resource `S` belongs to the state of a simulation: snapshots hold it, and what goes on from one
-    /// has it back. `S` is anything that RON can hold, infinite numbers too; it is put into the world by the system's parameters or by
-    /// [`Simulation::world_mut`](crate::Simulation::world_mut). A system's `Local`s are not kept.
+    /// A custom system whose resource `S` belongs to the state of a simulation: snapshots hold it, and what goes on
+    /// from one has it back. `S` is anything that RON can hold, infinite numbers too; it is put into the world by the
+    /// system's parameters or by [`Simulation::world_mut`](crate::Simulation::world_mut). A system's `Local`s are not
+    /// kept.
     pub fn with_state<S: Resource + serde::Serialize + serde::de::DeserializeOwned>(mut self) -> Self {
         self.state = Some(StateAccess {
             keep: |world| {
@@ -207,27 +209,28 @@ impl System {
         self
     }
 
-    /// Runs a custom system in every `steps`-th step only: on the GPU the columns travel that much less often. `every` in
-    /// the scene's parameters goes before it. Loads last for one step: a system that adds forces in every tenth step
+    /// Runs a custom system in every `steps`-th step only: on the GPU the columns travel that much less often. `every`
+    /// in the scene's parameters goes before it. Loads last for one step: a system that adds forces in every tenth step
     /// pushes in every tenth step.
     pub fn every(mut self, steps: u64) -> Self {
         self.every = steps.max(1);
         self
     }
 
-    /// A system of one's own that works node by node, each entity with an `S` on its body: see [`NodeSystem`]. It shares passes with
-    /// its neighbours in the step. It runs only when a scene's schedule names it.
+    /// A system of one's own that works node by node, each entity with an `S` on its body: see [`NodeSystem`]. It
+    /// shares passes with its neighbours in the step. It runs only when a scene's schedule names it.
     pub fn of_nodes<S: NodeSystem>(name: impl Into<String>, phase: Phase, does: impl Into<String>) -> Self {
         let nothing = |_: &World| ();
         Self { host: OnHost::Nodes(NodeRows::of::<S>()), ..Self::custom(name, phase, does, nothing) }
     }
 
-    /// With its twin on a GPU, a WGSL text that holds `fn NAME(node: u32)` of the system's name, and `path` under which errors name it.
-    /// Without it the system runs on the host.
+    /// With its twin on a GPU, a WGSL text that holds `fn NAME(node: u32)` of the system's name, and `path` under which
+    /// errors name it. Without it the system runs on the host.
     ///
-    /// The text finds each of its [columns](NodeSystem::Columns) under its name, as `array<f32>` (or `array<u32>`), three numbers a
-    /// vector, and `rest_position` likewise; what the scene gave in a uniform `parameters`; `step.time` and `step.time_step` (s); and,
-    /// with [`ExternalForce`](crate::components::ExternalForce) among the columns, `add_load(node, force)` in place of that.
+    /// The text finds each of its [columns](NodeSystem::Columns) under its name, as `array<f32>` (or `array<u32>`),
+    /// three numbers a vector, and `rest_position` likewise; what the scene gave in a uniform `parameters`; `step.time`
+    /// and `step.time_step` (s); and, with [`ExternalForce`](crate::components::ExternalForce) among the columns,
+    /// `add_load(node, force)` in place of that.
     pub fn with_shader<S: NodeSystem + serde::Serialize>(mut self, path: &'static str, text: &'static str) -> Self {
         let name = self.name.clone();
         self.device = OnDevice::Stages(Arc::new(move |world, buffers| {
@@ -236,8 +239,8 @@ impl System {
         self
     }
 
-    /// A system of nodes that takes parameters from the scene: what stands under its name in `parameters` is read as an `S` for each
-    /// body. What does not fit is an error when the scene is loaded.
+    /// A system of nodes that takes parameters from the scene: what stands under its name in `parameters` is read as an
+    /// `S` for each body. What does not fit is an error when the scene is loaded.
     pub fn on_each_body<S: NodeSystem + Clone + serde::de::DeserializeOwned>(mut self) -> Self {
         self.parameters = Some(|value, world| {
             let system: S = value.into_rust().map_err(|error| error.to_string())?;

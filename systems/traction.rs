@@ -13,7 +13,8 @@ use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
 
-/// Adds the force per rest area, in a direction that does not follow the surface. A face of a removed element bears none.
+/// Adds the force per rest area, in a direction that does not follow the surface. A face of a removed element bears
+/// none.
 pub fn system() -> System {
     System::built_in_nodes::<Traction>(
         "traction",

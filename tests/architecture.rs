@@ -1,4 +1,5 @@
-//! The shape of the code: imports run one way, wgpu lives in one place, files stay small, a system is where its name says.
+//! The shape of the code: imports run one way, wgpu lives in one place, files stay small, a system is where its name
+//! says.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use std::collections::BTreeMap;

@@ -29,7 +29,8 @@ fn a_touched_lens_pushes_back() {
     assert!(felt > 1e-5 && felt < 1e-2, "{felt} N");
 }
 
-/// A system of one's own shares the pass of those of the engine, on both backends, and does what a system on the host does.
+/// A system of one's own shares the pass of those of the engine, on both backends, and does what a system on the host
+/// does.
 #[test]
 fn custom_system_shares_a_pass_and_pulls_alike_on_both_backends_and_on_the_host() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/magnet.ron");
@@ -63,7 +64,8 @@ fn custom_system_shares_a_pass_and_pulls_alike_on_both_backends_and_on_the_host(
     }
 }
 
-/// F = diag(λ, t, t), J = λt²: σ = μ exp(b(Ī₁ − 3)) J^(−5/3) dev(FFᵀ) + κ(J − 1); t from σ₂₂ = 0, then the force is σ₁₁ t² A.
+/// F = diag(λ, t, t), J = λt²: σ = μ exp(b(Ī₁ − 3)) J^(−5/3) dev(FFᵀ) + κ(J − 1); t from σ₂₂ = 0, then the force is σ₁₁
+/// t² A.
 #[test]
 fn own_law_pulls_a_strip_as_its_closed_form_says_on_both_backends() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/own_law.ron");

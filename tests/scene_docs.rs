@@ -6,7 +6,8 @@ use std::path::Path;
 
 const REFERENCE: &str = include_str!("../docs/scene.md");
 
-/// The names of all fields and variants: what has a comment with three slashes or stands in an enum, and is no function.
+/// The names of all fields and variants: what has a comment with three slashes or stands in an enum, and is no
+/// function.
 fn words_of_the_schema() -> Vec<&'static str> {
     let mut words = Vec::new();
     let mut inside = false;

@@ -1,5 +1,5 @@
-//! Meshes of other people, in the folder that the variable `SINEW_MESHES` names: each is simulated, or refused for a good
-//! reason. Without the variable nothing is looked at, and the test says so.
+//! Meshes of other people, in the folder that the variable `SINEW_MESHES` names: each is simulated, or refused for a
+//! good reason. Without the variable nothing is looked at, and the test says so.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use sinew::components::Precision;

@@ -78,8 +78,8 @@ pub fn estimates(
     names.into_iter().filter_map(estimate).collect()
 }
 
-/// The error of a row and the most that it can be, both carried to the scene's own mesh where the row has a coarser one: by the
-/// order that shows, or 1; the most stays the most, since it can but fall.
+/// The error of a row and the most that it can be, both carried to the scene's own mesh where the row has a coarser
+/// one: by the order that shows, or 1; the most stays the most, since it can but fall.
 fn as_written(row: &Row, error: Error, order: Option<f64>) -> [f64; 2] {
     let finer = (1.0 / row.configuration.mesh.value()).max(1.0);
     [error.error / finer.powf(order.unwrap_or(1.0)), error.at_most()]

@@ -5,8 +5,8 @@ use super::solver::{BodyField, Field};
 use crate::mesh::Locator;
 use glam::DVec3;
 
-/// How far outside of the reference's mesh a node may lie and still be compared, in element sizes: outlines of curved bodies
-/// are polygons that differ from mesh to mesh.
+/// How far outside of the reference's mesh a node may lie and still be compared, in element sizes: outlines of curved
+/// bodies are polygons that differ from mesh to mesh.
 const OUTSIDE: f64 = 0.5;
 
 /// A field that others are measured against.
@@ -56,8 +56,8 @@ impl FieldReference {
         Self { parts: vec![field], gain: 0.0, uncertainty: [uncertainty; 3], order: None }
     }
 
-    /// From three meshes with cells of `sizes`, descending. `nested`: each coarser mesh's nodes are nodes of the finer ones;
-    /// only then is the limit extrapolated, since elsewhere interpolation would spoil what extrapolation gains.
+    /// From three meshes with cells of `sizes`, descending. `nested`: each coarser mesh's nodes are nodes of the finer
+    /// ones; only then is the limit extrapolated, since elsewhere interpolation would spoil what extrapolation gains.
     pub fn of_three(sizes: [f64; 3], fields: [Field; 3], nested: bool) -> Option<Self> {
         let [coarse, middle, fine] = fields;
         let sample = sample(&coarse, &[&middle, &fine])?;
@@ -119,7 +119,8 @@ impl FieldReference {
         Some(Self { parts: vec![middle, fine], gain, uncertainty: apart.map(doubt), order: None })
     }
 
-    /// How far a field is from this one; `None` where they have no nodes, bodies or times in common, or where nothing moves.
+    /// How far a field is from this one; `None` where they have no nodes, bodies or times in common, or where nothing
+    /// moves.
     pub fn error_of(&self, field: &Field) -> Option<FieldError> {
         let parts: Vec<&Field> = self.parts.iter().collect();
         let mut sample = sample(field, &parts)?;

@@ -9,8 +9,8 @@ use std::path::{Path, PathBuf};
 /// No result is larger, and squares of numbers must stay numbers.
 const LARGEST: f64 = 1e100;
 
-/// Reads tables, or all tables of output folders, as a reference for looks at `looks` times from 0 to `duration` (s); with 0
-/// looks only the end counts, whenever that was.
+/// Reads tables, or all tables of output folders, as a reference for looks at `looks` times from 0 to `duration` (s);
+/// with 0 looks only the end counts, whenever that was.
 ///
 /// # Errors
 /// What cannot be read, with its file and what is wanted instead.

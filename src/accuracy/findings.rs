@@ -113,7 +113,8 @@ impl Facts<'_> {
         self.rows.iter().position(|row| row.varied == Varied::Nothing && row.measured().is_some())
     }
 
-    /// Rows that differ from the scene as it is written in the mesh alone, and have its elements; with it, finer and finer.
+    /// Rows that differ from the scene as it is written in the mesh alone, and have its elements; with it, finer and
+    /// finer.
     fn meshes(&self, element: &str) -> Vec<usize> {
         let of = |row: &Row| matches!(row.varied, Varied::Nothing | Varied::Mesh) && row.measured().is_some();
         let mut found: Vec<usize> = (0..self.rows.len())
@@ -209,7 +210,8 @@ impl Facts<'_> {
         Split { total, space, space_is_a_bound, time, round_off, model, hourglass, stays }
     }
 
-    /// What the error comes to with cells of no size; `None` where that cannot be told from 0 or from what is not known.
+    /// What the error comes to with cells of no size; `None` where that cannot be told from 0 or from what is not
+    /// known.
     fn model(&self, written: usize) -> Option<f64> {
         let rows = self.meshes(&self.rows[written].configuration.element_name());
         let [.., a, b, c] = rows[..] else { return None };

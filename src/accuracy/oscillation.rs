@@ -12,8 +12,8 @@ pub struct Oscillation {
 /// How far a signal must leave its mean before the next passage counts, as a share of its range.
 const HYSTERESIS: f64 = 0.1;
 
-/// The oscillation in a signal about its mean; `None` where it does not pass its mean upwards at least three times (two whole
-/// periods). Passages are found by a straight line between samples, extremes by a parabola through three.
+/// The oscillation in a signal about its mean; `None` where it does not pass its mean upwards at least three times (two
+/// whole periods). Passages are found by a straight line between samples, extremes by a parabola through three.
 pub fn oscillation(times: &[f64], values: &[f64]) -> Option<Oscillation> {
     let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
     let low = values.iter().copied().fold(f64::INFINITY, f64::min);

@@ -8,7 +8,8 @@ use super::solver::Choices;
 use super::study::{Outcome, Row};
 use super::work::Work;
 
-/// The scene itself or the next finer mesh of a reference, whichever is cheaper, if it was left out: what it would cost.
+/// The scene itself or the next finer mesh of a reference, whichever is cheaper, if it was left out: what it would
+/// cost.
 pub fn more(work: &mut Work<'_>, choices: &Choices, plan: &Plan, rows: &[Row], source: Source) -> Option<String> {
     let left_out = |place: &usize| matches!(rows[*place].outcome, Outcome::LeftOut(_));
     let mut all: Vec<(f64, usize)> = Vec::new();

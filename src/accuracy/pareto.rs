@@ -1,7 +1,7 @@
 //! Which configurations are worth their price.
 
-/// Marks the points (time, error) that no other point beats in both: the Pareto front. Of equal points the first is on it;
-/// points that are not finite are not.
+/// Marks the points (time, error) that no other point beats in both: the Pareto front. Of equal points the first is on
+/// it; points that are not finite are not.
 pub fn front(points: &[(f64, f64)]) -> Vec<bool> {
     let finite = |(time, error): (f64, f64)| time.is_finite() && error.is_finite();
     let beats = |a: (f64, f64), b: (f64, f64)| a.0 <= b.0 && a.1 <= b.1 && a != b;

@@ -37,8 +37,8 @@ pub enum Varied {
 }
 
 impl Varied {
-    /// Whether it solves the same problem in another way, and may be ranked with the others; another law or an effect less
-    /// is another problem.
+    /// Whether it solves the same problem in another way, and may be ranked with the others; another law or an effect
+    /// less is another problem.
     pub fn is_ranked(self) -> bool {
         !matches!(self, Varied::Law | Varied::Effect)
     }
@@ -73,12 +73,13 @@ pub struct Planned {
 pub struct Plan {
     /// The configurations, in the order in which they are shown.
     pub rows: Vec<Planned>,
-    /// Those of them that a reference is made of, from the coarsest mesh on; none where it comes from elsewhere or nothing fits.
+    /// Those of them that a reference is made of, from the coarsest mesh on; none where it comes from elsewhere or
+    /// nothing fits.
     pub reference: Vec<usize>,
     /// Why there is no reference, where one was to be made.
     pub no_reference: Option<String>,
-    /// The order in which they run, by their places in `rows`: who ends a study early, or a budget that is spent before it was
-    /// predicted to be, leaves the most telling ones done.
+    /// The order in which they run, by their places in `rows`: who ends a study early, or a budget that is spent before
+    /// it was predicted to be, leaves the most telling ones done.
     pub order: Vec<usize>,
     /// What all that runs takes, and what was spent before, as predicted (s).
     pub predicted: f64,
@@ -105,8 +106,8 @@ impl Planned {
     }
 }
 
-/// Predicts everything and chooses what fits into `budget` (s), of which predictions and all else since `started` have taken
-/// their part.
+/// Predicts everything and chooses what fits into `budget` (s), of which predictions and all else since `started` have
+/// taken their part.
 ///
 /// # Errors
 /// That somebody wants the study to end.
@@ -164,14 +165,14 @@ pub fn plan(
 }
 
 impl Plan {
-    /// How many of `order` come before a finer mesh for the reference is thought of: the scene itself, what the reference is made
-    /// of, the number type and the step.
+    /// How many of `order` come before a finer mesh for the reference is thought of: the scene itself, what the
+    /// reference is made of, the number type and the step.
     pub(super) fn basis(&self) -> usize {
         self.order.iter().take_while(|&&place| self.urgency(place) <= 2).count()
     }
 
-    /// What is given a place in the budget first: the scene itself, then what the reference is made of, then the number type and
-    /// the step, then what is about as cheap as the scene, then other meshes by cost.
+    /// What is given a place in the budget first: the scene itself, then what the reference is made of, then the number
+    /// type and the step, then what is about as cheap as the scene, then other meshes by cost.
     fn urgency(&self, place: usize) -> u8 {
         match self.rows[place].varied {
             Varied::Nothing => 0,

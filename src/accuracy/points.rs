@@ -18,8 +18,8 @@ pub struct PointReference {
 }
 
 impl PointReference {
-    /// Relative distance of a field from the points at the end, over the nodes that lie where a point lies: mass-weighted root
-    /// mean square, and the largest. `None` where no node does, or where nothing moves.
+    /// Relative distance of a field from the points at the end, over the nodes that lie where a point lies:
+    /// mass-weighted root mean square, and the largest. `None` where no node does, or where nothing moves.
     pub fn error_of(&self, field: &Field) -> Option<[f64; 2]> {
         let (mut away, mut length, mut worst, mut top) = (0.0, 0.0, 0.0f64, 0.0f64);
         for (name, body) in &field.bodies {

@@ -4,7 +4,8 @@ use super::oscillation::oscillation;
 use super::solver::{Channel, Solution};
 use std::collections::BTreeMap;
 
-/// Below this share of its largest value over time a final value is measured against that largest value instead of itself.
+/// Below this share of its largest value over time a final value is measured against that largest value instead of
+/// itself.
 const FADED: f64 = 0.01;
 
 /// A quantity of a solution.

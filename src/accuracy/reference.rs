@@ -1,4 +1,5 @@
-//! What solutions are measured against: numbers that an author gives, files of an earlier run, or a solution made for it.
+//! What solutions are measured against: numbers that an author gives, files of an earlier run, or a solution made for
+//! it.
 
 use super::field::{FieldReference, same_mesh};
 use super::points::PointReference;
@@ -124,8 +125,8 @@ impl Reference {
         self
     }
 
-    /// From solutions on two or three meshes with cells of `sizes`, descending, each mesh's nodes nodes of the next: extrapolated
-    /// to cells of no size. `told`: a sentence on them. `None` for another number of meshes.
+    /// From solutions on two or three meshes with cells of `sizes`, descending, each mesh's nodes nodes of the next:
+    /// extrapolated to cells of no size. `told`: a sentence on them. `None` for another number of meshes.
     pub fn of_meshes(sizes: &[f64], solutions: &[&Solution], told: String) -> Option<Self> {
         let all: Vec<BTreeMap<String, Reading>> = solutions.iter().map(|solution| readings(solution)).collect();
         let (finest, coarser) = all.split_last()?;

@@ -11,9 +11,9 @@ use crate::mesh::ElementKind;
 /// How many meshes are extrapolated.
 const ENOUGH: usize = 3;
 
-/// How the scene is solved on the meshes of a reference: its own way, so that these runs are rows of the study too, with two
-/// exceptions. Tetrahedra that lock get a pressure at their nodes. Searches for rest are made in f64, where what the search
-/// leaves undone cannot be taken for an error of the mesh.
+/// How the scene is solved on the meshes of a reference: its own way, so that these runs are rows of the study too,
+/// with two exceptions. Tetrahedra that lock get a pressure at their nodes. Searches for rest are made in f64, where
+/// what the search leaves undone cannot be taken for an error of the mesh.
 pub fn way(choices: &Choices, mesh: Factor) -> Configuration {
     let base = &choices.base;
     let pressure = Some(ElementKind::Tet4NodalPressure).filter(|kind| choices.elements.contains(kind));
@@ -43,8 +43,8 @@ fn is_doubling(mesh: Factor) -> bool {
     mesh.up.is_power_of_two() && mesh.down.is_power_of_two()
 }
 
-/// The rows of a plan that a reference is made of, from the coarsest on, as fine as fits into `share` (s): three meshes that end
-/// with the scene's own or a finer one; else two such; else three or two coarser ones.
+/// The rows of a plan that a reference is made of, from the coarsest on, as fine as fits into `share` (s): three meshes
+/// that end with the scene's own or a finer one; else two such; else three or two coarser ones.
 pub fn choose(choices: &Choices, rows: &[Planned], share: f64) -> Result<Vec<usize>, String> {
     let all = places(choices, rows.iter().map(|row| &row.configuration));
     let cost = |place: usize| match rows[place].fate {
@@ -76,8 +76,8 @@ pub fn finer(choices: &Choices, rows: &[Planned], place: usize) -> Option<usize>
     rows.iter().position(|row| row.configuration == wanted)
 }
 
-/// Of rows that ran, those that a reference can be made of: the three finest of which each has twice the cells of the one
-/// before, or two.
+/// Of rows that ran, those that a reference can be made of: the three finest of which each has twice the cells of the
+/// one before, or two.
 fn finished(choices: &Choices, rows: &[&Row]) -> Vec<usize> {
     let all = places(choices, rows.iter().map(|row| &row.configuration));
     let done: Vec<usize> = all.into_iter().filter(|&place| rows[place].measured().is_some()).collect();
@@ -104,8 +104,8 @@ pub fn refined(choices: &Choices, rows: &[Row], solutions: &[Option<Solution>], 
     Refined { places, meshes, solutions: own }
 }
 
-/// A reference from runs on finer and finer meshes. What they all have in common is no part of what they differ by: rounding, and
-/// a step that does not become smaller with the cells, are added to its uncertainty.
+/// A reference from runs on finer and finer meshes. What they all have in common is no part of what they differ by:
+/// rounding, and a step that does not become smaller with the cells, are added to its uncertainty.
 pub fn made(refined: &Refined, choices: &Choices, rows: &[Row], solutions: &[Option<Solution>]) -> Option<Reference> {
     let sizes: Vec<f64> = refined.meshes.iter().map(|mesh| 1.0 / mesh.value()).collect();
     let list: Vec<&Solution> = refined.solutions.iter().collect();

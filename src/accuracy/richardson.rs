@@ -1,7 +1,7 @@
 //! Richardson's extrapolation: from three meshes to the limit of infinitely small cells, with its uncertainty.
 //!
-//! Where a result q behaves as q(h) = q₀ + C hᵖ, three cell sizes determine p, C and q₀ (L. F. Richardson 1911; P. J. Roache,
-//! *Verification and Validation in Computational Science and Engineering*, 1998).
+//! Where a result q behaves as q(h) = q₀ + C hᵖ, three cell sizes determine p, C and q₀ (L. F. Richardson 1911; P. J.
+//! Roache, *Verification and Validation in Computational Science and Engineering*, 1998).
 
 /// Orders at which three results count as following a power of the cell size.
 const CREDIBLE: std::ops::RangeInclusive<f64> = 0.5..=4.0;
@@ -9,13 +9,14 @@ const CREDIBLE: std::ops::RangeInclusive<f64> = 0.5..=4.0;
 const FORMAL: f64 = 2.0;
 /// The order that two results are taken to have, which cannot show theirs: that of displacements beside clamped edges.
 const ASSUMED: f64 = 1.0;
-/// How many times the spread of three results is uncertain that follow no power of the cell size, and how many times their
-/// difference that of two (Roache's factor of safety).
+/// How many times the spread of three results is uncertain that follow no power of the cell size, and how many times
+/// their difference that of two (Roache's factor of safety).
 const LOST: f64 = 3.0;
 /// The least share of the extrapolated step that is taken for uncertain (Roache's factor 1.25 for three meshes).
 const FLOOR: f64 = 0.25;
-/// Rates at which differences grow from doubling to doubling where elements lock: displacements then grow with the square of the
-/// cells along an edge, and no faster (with some room). What grows faster is a first difference that happens to be small.
+/// Rates at which differences grow from doubling to doubling where elements lock: displacements then grow with the
+/// square of the cells along an edge, and no faster (with some room). What grows faster is a first difference that
+/// happens to be small.
 const LOCKED: std::ops::RangeInclusive<f64> = 1.0..=4.5;
 
 /// A limit and how well it is known.
@@ -29,16 +30,15 @@ pub struct Limit {
     pub order: Option<f64>,
 }
 
-/// Extrapolates three results to cell size 0: `results[i]` was had with cells of size `sizes[i]`, descending. `norm` measures
-/// differences.
+/// Extrapolates three results to cell size 0: `results[i]` was had with cells of size `sizes[i]`, descending. `norm`
+/// measures differences.
 ///
 /// Where the observed order p is credible, the limit is the extrapolation by it, and its uncertainty is how far the
-/// extrapolation by another order lies from it, but at least a quarter of the extrapolated step. The other order is the formal
-/// one, 2, where p is below it; where p is above it, which is luck and no convergence, it lies as far below, twice over, down
-/// to 1. Elsewhere nothing is
-/// extrapolated: the limit is the finest result, and its uncertainty three times the largest distance between the three. Where
-/// the second difference is larger than the first by no more than locking elements make it, results run apart, and two more
-/// doublings at the same rate are added to that distance.
+/// extrapolation by another order lies from it, but at least a quarter of the extrapolated step. The other order is the
+/// formal one, 2, where p is below it; where p is above it, which is luck and no convergence, it lies as far below,
+/// twice over, down to 1. Elsewhere nothing is extrapolated: the limit is the finest result, and its uncertainty three
+/// times the largest distance between the three. Where the second difference is larger than the first by no more than
+/// locking elements make it, results run apart, and two more doublings at the same rate are added to that distance.
 pub fn extrapolate(sizes: [f64; 3], results: [&[f64]; 3], norm: impl Fn(&[f64]) -> f64) -> Limit {
     let [coarse, middle, fine] = results;
     let (first, second) = (difference(coarse, middle), difference(middle, fine));
@@ -63,8 +63,8 @@ pub fn extrapolate(sizes: [f64; 3], results: [&[f64]; 3], norm: impl Fn(&[f64]) 
     Limit { values, uncertainty, order: Some(order) }
 }
 
-/// Extrapolates two results, as [`extrapolate`] does three: by order 1, since they show none. The uncertainty is twice their
-/// difference; the error of the finer one is then at most three times the difference, enough down to order 0.42.
+/// Extrapolates two results, as [`extrapolate`] does three: by order 1, since they show none. The uncertainty is twice
+/// their difference; the error of the finer one is then at most three times the difference, enough down to order 0.42.
 pub fn extrapolate_two(sizes: [f64; 2], results: [&[f64]; 2], norm: impl Fn(&[f64]) -> f64) -> Limit {
     let [middle, fine] = results;
     let last = difference(middle, fine);

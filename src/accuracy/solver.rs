@@ -37,12 +37,13 @@ pub trait Solver {
 pub struct Choices {
     /// The scene as it is written.
     pub base: Configuration,
-    /// Kinds of elements that its meshes can have, each before those that are more accurate; empty when they cannot change.
+    /// Kinds of elements that its meshes can have, each before those that are more accurate; empty when they cannot
+    /// change.
     pub elements: Vec<ElementKind>,
     /// How fine meshes can be, ascending; all of one shape, so that errors follow a power of the cell size.
     pub meshes: Vec<Factor>,
-    /// Those of them that have a single layer of cells where the scene's own mesh has more: what they say does not follow the
-    /// power of the cell size that the others follow.
+    /// Those of them that have a single layer of cells where the scene's own mesh has more: what they say does not
+    /// follow the power of the cell size that the others follow.
     pub single_layers: Vec<Factor>,
     /// What the step can be divided by; empty where there is no step to choose.
     pub steps: Vec<u32>,

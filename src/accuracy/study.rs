@@ -24,7 +24,8 @@ pub struct Settings {
     pub budget: f64,
     /// The error that is good enough, relative.
     pub target: f64,
-    /// The quantity that configurations are judged by; `None`: the displacement field, or the first that has a reference.
+    /// The quantity that configurations are judged by; `None`: the displacement field, or the first that has a
+    /// reference.
     pub judged_by: Option<String>,
     /// What to measure against; `None`: a reference made for the study.
     pub reference: Option<Reference>,

@@ -54,8 +54,9 @@ impl<'a> Work<'a> {
         self.interrupted
     }
 
-    /// Runs a configuration if it is to run; its row, and its solution if there is one. `needed`: what a reference is made of, or
-    /// the scene itself, may take what time there is; all else is cut off when it takes much longer than predicted.
+    /// Runs a configuration if it is to run; its row, and its solution if there is one. `needed`: what a reference is
+    /// made of, or the scene itself, may take what time there is; all else is cut off when it takes much longer than
+    /// predicted.
     pub fn run(&mut self, planned: &Planned, needed: bool) -> (Row, Option<Solution>) {
         let cost = match &planned.fate {
             Fate::Refused(why) => return (Row::of(planned, Outcome::Refused(why.clone())), None),
@@ -93,7 +94,8 @@ impl<'a> Work<'a> {
         (Row::of(planned, outcome), solution)
     }
 
-    /// Runs what did not fit into the plan if it fits into a share of the time that is left after all; `None` where it does not.
+    /// Runs what did not fit into the plan if it fits into a share of the time that is left after all; `None` where it
+    /// does not.
     pub fn run_if_it_fits(&mut self, planned: &Planned, needed: bool, share: f64) -> Option<(Row, Option<Solution>)> {
         if self.interrupted || !matches!(planned.fate, Fate::LeftOut(_)) {
             return None;

@@ -1,13 +1,13 @@
-//! Renumbering: neighbours in space become neighbours in memory. Elements and nodes in a file's order cost 1.7 times the
-//! step at 135 thousand tetrahedra and 4.3 times at a million.
+//! Renumbering: neighbours in space become neighbours in memory. Elements and nodes in a file's order cost 1.7 times
+//! the step at 135 thousand tetrahedra and 4.3 times at a million.
 
 use crate::components::GROUP_ROWS;
 use crate::mesh::Mesh;
 use glam::DVec3;
 
-/// Elements of a block, author's rows, so that each `patch` of them, one after the other, has few nodes: cut in halves across
-/// the longest side, at whole patches, until a patch is left (recursive coordinate bisection, Berger and Bokhari 1987). Within
-/// a patch they follow a space-filling curve through their centroids (Morton's).
+/// Elements of a block, author's rows, so that each `patch` of them, one after the other, has few nodes: cut in halves
+/// across the longest side, at whole patches, until a patch is left (recursive coordinate bisection, Berger and Bokhari
+/// 1987). Within a patch they follow a space-filling curve through their centroids (Morton's).
 ///
 /// Copies of a mesh, which may stand in the same place, follow one another.
 pub fn element_order(mesh: &Mesh, elements: Vec<u32>, copies: usize, patch: usize) -> Vec<u32> {
@@ -76,9 +76,9 @@ fn spread(x: u64) -> u64 {
     (x | x << 2) & 0x1249_2492_4924_9249
 }
 
-/// For each of the author's nodes its new row. `patches` are elements, each a list of nodes. First come, patch by patch, the
-/// nodes that no other patch has, if a patch has at least [`GROUP_ROWS`] such; then those that patches share, and last
-/// nodes without elements; each in the order in which elements first touch them.
+/// For each of the author's nodes its new row. `patches` are elements, each a list of nodes. First come, patch by
+/// patch, the nodes that no other patch has, if a patch has at least [`GROUP_ROWS`] such; then those that patches
+/// share, and last nodes without elements; each in the order in which elements first touch them.
 pub fn node_rows<'a>(node_count: usize, patches: impl Iterator<Item = impl Iterator<Item = &'a [u32]>>) -> Vec<u32> {
     let mut last = vec![u32::MAX; node_count];
     let mut patches_of = vec![0_u32; node_count];

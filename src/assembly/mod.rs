@@ -52,8 +52,8 @@ pub struct Assembly<'a> {
     pub materials: BTreeMap<String, Entity>,
 }
 
-/// Puts a scene's world together, without a time step yet. Complaints go to `diagnostics`. `None` when the bodies cannot be
-/// made; there may be errors all the same when they can.
+/// Puts a scene's world together, without a time step yet. Complaints go to `diagnostics`. `None` when the bodies
+/// cannot be made; there may be errors all the same when they can.
 pub fn assemble<'a>(
     scene: &'a SceneFile,
     precision: Precision,

@@ -6,8 +6,8 @@ use crate::math::LANES;
 use crate::mesh::ElementKind;
 use bevy_ecs::prelude::*;
 
-/// Neighbours of a block, patch by patch, in the order in which they are stored: the lanes of a group come from all over
-/// the patch, so that they seldom share a node and need not wait for each other's sums.
+/// Neighbours of a block, patch by patch, in the order in which they are stored: the lanes of a group come from all
+/// over the patch, so that they seldom share a node and need not wait for each other's sums.
 pub fn strided(mut elements: Vec<u32>, kind: ElementKind) -> Vec<u32> {
     for patch in elements.chunks_mut(patch_length(kind)) {
         let groups = patch.len().div_ceil(LANES);
@@ -36,8 +36,8 @@ pub fn cut(kind: ElementKind, connectivity: &[u32]) -> Patches {
     patches
 }
 
-/// Gives a body its element forces, the gather's map and each block its place among the forces, as a scheme has them. It may
-/// be called again for another scheme.
+/// Gives a body its element forces, the gather's map and each block its place among the forces, as a scheme has them.
+/// It may be called again for another scheme.
 pub fn insert_forces(scheme: Scheme, body: Entity, world: &mut World) {
     let Some(count) = world.get::<RestPosition>(body).map(|rest| rest.0.len()) else { return };
     let Some(blocks) = world.get::<Authoring>(body).map(|authoring| authoring.blocks.clone()) else { return };

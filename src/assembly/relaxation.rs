@@ -12,12 +12,12 @@ const FEWEST_LOAD_STEPS: u64 = 100;
 /// Pseudo-steps for each element between what is held and what is farthest from it: a push passes about an element in a
 /// step, and must be able to spread while it grows.
 const STEPS_AN_ELEMENT: f64 = 5.0;
-/// The same where nodes are moved as told, in times that a shear wave takes through an element: what is turned or bent by
-/// them must follow, or comes to rest elsewhere.
+/// The same where nodes are moved as told, in times that a shear wave takes through an element: what is turned or bent
+/// by them must follow, or comes to rest elsewhere.
 const SHEAR_STEPS_AN_ELEMENT: f64 = 10.0;
 
-/// Gives every body [`FictitiousMass`]: each element weighs ω²Δt²/4 of its mass, ω its frequency bound, so that Δt is the
-/// bound of the stable step of all elements, whatever their size, stiffness and density.
+/// Gives every body [`FictitiousMass`]: each element weighs ω²Δt²/4 of its mass, ω its frequency bound, so that Δt is
+/// the bound of the stable step of all elements, whatever their size, stiffness and density.
 pub(super) fn insert_fictitious_masses(assembly: &Assembly<'_>, world: &mut World) {
     let time_step = world.resource::<Clock>().time_step;
     for parts in assembly.bodies.values() {
@@ -44,8 +44,8 @@ pub(super) fn insert_fictitious_masses(assembly: &Assembly<'_>, world: &mut Worl
     }
 }
 
-/// Pseudo-steps over which loads should grow: by the elements that lie between nodes that are held or moved and the node
-/// farthest from any of them. A body that nothing holds counts from its first node.
+/// Pseudo-steps over which loads should grow: by the elements that lie between nodes that are held or moved and the
+/// node farthest from any of them. A body that nothing holds counts from its first node.
 pub fn load_steps(world: &mut World) -> u64 {
     let bodies: Vec<(Vec<Entity>, Vec<u32>)> = world
         .query::<(&Authoring, &ConstrainedAxes)>()

@@ -13,8 +13,8 @@ use glam::{DMat3, DVec3};
 /// Elements that a complaint names.
 const NAMED: usize = 10;
 
-/// Moves the nodes of bodies with a `start` of their own, and looks whether their elements bear it. A static analysis starts
-/// at rest.
+/// Moves the nodes of bodies with a `start` of their own, and looks whether their elements bear it. A static analysis
+/// starts at rest.
 pub(super) fn deform(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
     if assembly.scene.scene.is_static() {
         return;
@@ -51,7 +51,8 @@ fn noise(number: u64) -> f64 {
     ((bits ^ (bits >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
 }
 
-/// Elements that start flat or inside out are an error where they stop the run, and worth a warning where they are removed.
+/// Elements that start flat or inside out are an error where they stop the run, and worth a warning where they are
+/// removed.
 fn complain(name: &str, body: Entity, world: &World, diagnostics: &mut Diagnostics) {
     let (Some(authoring), Some(u)) = (world.get::<Authoring>(body), world.get::<Displacement>(body)) else { return };
     for (place, &block) in authoring.blocks.iter().enumerate() {

@@ -98,15 +98,16 @@ fn square_frequency_of<'a>(
     })
 }
 
-/// Squared frequency bound (1/s²) and volume (m³) of all elements of a block; both 0 of removed ones. With damping proportional to
-/// stiffness it is that of the same step, see [`damped`].
+/// Squared frequency bound (1/s²) and volume (m³) of all elements of a block; both 0 of removed ones. With damping
+/// proportional to stiffness it is that of the same step, see [`damped`].
 pub fn square_frequencies(world: &World, entity: Entity) -> Vec<(f64, f64)> {
     let beta = world.get::<Block>(entity).map_or(0.0, |block| damping_time(world, block));
     let undamped = undamped_square_frequencies(world, entity).into_iter();
     undamped.map(|(square, volume)| (damped(square, beta), volume)).collect()
 }
 
-/// What [`undamped_square_frequencies`] found of each block when the step was chosen, until the run looks at elements for the first time.
+/// What [`undamped_square_frequencies`] found of each block when the step was chosen, until the run looks at elements
+/// for the first time.
 #[derive(Resource, Default)]
 pub struct SquaresAtRest(BTreeMap<Entity, Vec<(f64, f64)>>);
 
@@ -132,8 +133,8 @@ fn short(number: f64) -> f64 {
     f64::from(number as f32)
 }
 
-/// Squared frequency bound (1/s²) and mass (kg) of all elements of a block, both 0 of removed ones: the same whatever precision the
-/// world is in, computed in f64 from shapes that f32 has, too.
+/// Squared frequency bound (1/s²) and mass (kg) of all elements of a block, both 0 of removed ones: the same whatever
+/// precision the world is in, computed in f64 from shapes that f32 has, too.
 pub fn alike_in_any_precision(world: &World, entity: Entity) -> Vec<(f64, f64)> {
     let Some(block) = world.get::<Block>(entity) else { return Vec::new() };
     let frequency = square_frequency_of(world, entity, block, short);

@@ -1,4 +1,5 @@
-//! What kernels of an element block have in common: the element type's and the material's fragments, constants, buffers.
+//! What kernels of an element block have in common: the element type's and the material's fragments, constants,
+//! buffers.
 
 use super::Buffers;
 use super::cpu::BlockLaw;
@@ -115,8 +116,8 @@ impl BlockKernels {
         }
     }
 
-    /// A kernel with the block's element type, strain measures and laws of stress and energy without history; a thread for
-    /// each element.
+    /// A kernel with the block's element type, strain measures and laws of stress and energy without history; a thread
+    /// for each element.
     pub fn kernel(&self, entry: &'static str) -> Kernel {
         self.with_law(self.of_columns(entry)).bind("displacement", self.columns[0])
     }

@@ -23,9 +23,9 @@ pub use reflect::{Binding, BindingKind, Member};
 /// Name of the uniform variable that holds the step's record; the GPU layer binds it, a kernel must not.
 pub const STEP_VARIABLE: &str = "step";
 
-/// Name of the storage variable that holds the records of all steps of a submission: a kernel that declares it is dispatched once
-/// a submission. It is a struct of their number, padding up to 16 bytes, and the records, of whole sixteens of bytes. The GPU
-/// layer binds it, a kernel must not.
+/// Name of the storage variable that holds the records of all steps of a submission: a kernel that declares it is
+/// dispatched once a submission. It is a struct of their number, padding up to 16 bytes, and the records, of whole
+/// sixteens of bytes. The GPU layer binds it, a kernel must not.
 pub const STEP_RECORDS_VARIABLE: &str = "step_records";
 
 /// How many buffers a kernel may use.

@@ -11,8 +11,8 @@ use crate::math::LANES;
 use crate::shader;
 use bevy_ecs::prelude::*;
 
-/// Elements of the largest body that takes many steps in a dispatch: about a patch of tetrahedra, which one workgroup sums in any case
-/// (docs/performance.md).
+/// Elements of the largest body that takes many steps in a dispatch: about a patch of tetrahedra, which one workgroup
+/// sums in any case (docs/performance.md).
 pub const MOST_ELEMENTS: usize = 1024;
 
 /// Invocations of the largest workgroup: a core's registers are then all in use. More elements take turns.
@@ -45,8 +45,8 @@ pub fn step_by_step(because: &str, world: &mut World) -> Vec<Dispatched> {
     bodies(world).into_iter().map(of_body).collect()
 }
 
-/// The kernels of bodies of at most so many elements: takes what they put together out of `elements`, all kernels of the element
-/// forces, and `stages`, all else that a step does.
+/// The kernels of bodies of at most so many elements: takes what they put together out of `elements`, all kernels of
+/// the element forces, and `stages`, all else that a step does.
 pub fn take_small_bodies(
     most_elements: usize,
     elements: &mut Vec<Kernel>,
@@ -91,8 +91,8 @@ fn whole_step(blocks: &[&Kernel], body: Entity, stages: &[NodeStage], world: &Wo
     elements.chain(stages.iter().filter(|stage| stage.body() == body).cloned()).collect()
 }
 
-/// How many invocations the workgroup of a body has, or why many steps in a dispatch are not for it: all by count, before anything
-/// is put together.
+/// How many invocations the workgroup of a body has, or why many steps in a dispatch are not for it: all by count,
+/// before anything is put together.
 fn width(blocks: &[&Kernel], most_elements: usize, world: &World, buffers: &dyn Buffers) -> Result<usize, String> {
     const BATCH: usize = BATCH_GROUPS * LANES;
     let parts: Vec<(&Block, &Patches)> = blocks

@@ -1,5 +1,5 @@
-//! Systems that work node by node: each in a kernel of its own, or neighbours of a step in one. Of small bodies the element forces
-//! come into that kernel, too, which then takes many steps.
+//! Systems that work node by node: each in a kernel of its own, or neighbours of a step in one. Of small bodies the
+//! element forces come into that kernel, too, which then takes many steps.
 
 mod fused;
 mod items;
@@ -193,9 +193,9 @@ struct NodePass {
 }
 uniform!(NodePass { count, first });
 
-/// Kernels of stages that follow one another in a step. Those of one body share as few kernels as can be: none in which a
-/// stage reads of other nodes what another writes, and none with more storage buffers than the device has for a kernel. With
-/// `fuse` false each has its own.
+/// Kernels of stages that follow one another in a step. Those of one body share as few kernels as can be: none in which
+/// a stage reads of other nodes what another writes, and none with more storage buffers than the device has for a
+/// kernel. With `fuse` false each has its own.
 pub fn node_kernels(stages: Vec<NodeStage>, fuse: bool, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let mut bodies: Vec<Entity> = Vec::new();
     for stage in &stages {
@@ -250,7 +250,8 @@ fn node_pass(stages: &[&NodeStage], buffers: &mut dyn Buffers) -> Kernel {
     kernel.fragment(shader!("row")).fragment(shader!("node_pass")).threads(count - first)
 }
 
-/// The same in one workgroup of so many invocations (a multiple of 128), for all steps of a submission: the stages of a whole step.
+/// The same in one workgroup of so many invocations (a multiple of 128), for all steps of a submission: the stages of a
+/// whole step.
 pub(super) fn many_steps(stages: &[&NodeStage], invocations: usize, buffers: &mut dyn Buffers) -> Kernel {
     let width = format!("const INVOCATIONS: u32 = {invocations}u;\n");
     let rows = NodePass { count: stages[0].nodes, first: 0 };
@@ -263,8 +264,8 @@ pub(super) fn many_steps(stages: &[&NodeStage], invocations: usize, buffers: &mu
         .threads(invocations as u32)
 }
 
-/// The kernel of a block's patches, of so many invocations in all, that moves the nodes inside each of them: the stages of a whole
-/// step of these nodes.
+/// The kernel of a block's patches, of so many invocations in all, that moves the nodes inside each of them: the stages
+/// of a whole step of these nodes.
 pub(super) fn patch_step(stages: &[&NodeStage], invocations: u32, buffers: &mut dyn Buffers) -> Kernel {
     let least = format!("const LEAST_INSIDE: u32 = {GROUP_ROWS}u;\n");
     let node = &stages[stages.len() - 1];

@@ -38,9 +38,9 @@ pub struct PatchLists {
 }
 uniform!(PatchLists { count, rounds, corners, nodes, inside });
 
-/// The patches of a block in one buffer: where each patch's nodes begin; for each batch and corner how many rounds there are,
-/// a byte each; each corner's place and round, two a word; the nodes; how many of them are inside. About 8 bytes a tetrahedron and 16 a
-/// hexahedron.
+/// The patches of a block in one buffer: where each patch's nodes begin; for each batch and corner how many rounds
+/// there are, a byte each; each corner's place and round, two a word; the nodes; how many of them are inside. About 8
+/// bytes a tetrahedron and 16 a hexahedron.
 pub struct PackedPatches {
     /// Where what begins.
     pub lists: PatchLists,
@@ -92,8 +92,8 @@ impl PackedPatches {
 /// Packs the patches of a block.
 ///
 /// # Errors
-/// Why no workgroup can sum them: a patch of too many nodes, or too many elements around one node. Then the scheme of two
-/// passes remains.
+/// Why no workgroup can sum them: a patch of too many nodes, or too many elements around one node. Then the scheme of
+/// two passes remains.
 pub fn pack(block: &Block, patches: &Patches) -> Result<PackedPatches, String> {
     let (kind, count) = (block.kind, patches.count());
     let corners = node_count(kind);

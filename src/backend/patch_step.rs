@@ -12,9 +12,9 @@ use crate::shader;
 use bevy_ecs::prelude::*;
 use std::ops::Range;
 
-/// The kernels of blocks whose patches move the nodes inside them: takes what they put together out of `elements`, all kernels of
-/// the element forces, and leaves the other nodes to `stages`, the one pass over the nodes that follows. `dispatched`, all bodies,
-/// hears of it.
+/// The kernels of blocks whose patches move the nodes inside them: takes what they put together out of `elements`, all
+/// kernels of the element forces, and leaves the other nodes to `stages`, the one pass over the nodes that follows.
+/// `dispatched`, all bodies, hears of it.
 pub fn take_inner_nodes(
     elements: &mut Vec<Kernel>,
     stages: &mut Vec<NodeStage>,
@@ -92,7 +92,8 @@ fn of_body(
     Ok((steps.into_iter().map(put_together).collect(), first_shared))
 }
 
-/// The rows inside the patches of a kernel's block, if there are any; or why a workgroup has no room for what is done with them.
+/// The rows inside the patches of a kernel's block, if there are any; or why a workgroup has no room for what is done
+/// with them.
 fn rows_inside(kernel: &Kernel, world: &World) -> Result<Option<Range<u32>>, String> {
     let patches = kernel.block.and_then(|block| world.get::<Patches>(block));
     let (Some((_, block)), Some(patches)) = (block_of(kernel, world), patches) else { return Ok(None) };

@@ -8,8 +8,8 @@ use bevy_ecs::prelude::*;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Step {
-    /// Δt times the time between the middles of the last and of this step, which is Δt but in the first step and after a
-    /// change of Δt; times the gain of a static analysis (s²).
+    /// Δt times the time between the middles of the last and of this step, which is Δt but in the first step and after
+    /// a change of Δt; times the gain of a static analysis (s²).
     pub force_factor: f32,
     /// Half the time between the middles, in the first step Δt/2 (s).
     pub half_step: f32,
@@ -82,8 +82,8 @@ fn slots(signals: &Signals) -> usize {
     signals.values().len().max(1)
 }
 
-/// One step's record for the device; the signals must have been evaluated for the step. `observed`: whether somebody may look
-/// at forces after it.
+/// One step's record for the device; the signals must have been evaluated for the step. `observed`: whether somebody
+/// may look at forces after it.
 pub fn record(clock: &Clock, signals: &Signals, observed: bool) -> Vec<u8> {
     let mut bytes = Step { observed: observed.into(), ..Step::of(clock) }.bytes();
     for slot in signals.values() {

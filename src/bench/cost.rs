@@ -26,8 +26,8 @@ pub fn cost(case: &Case, elements: u64, nodes: u64) -> Cost {
     let viscous = matches!(case.effects, Effects::Viscosity | Effects::FibresViscosity);
     let points = with_element!(kind, E => E::POINTS) as f64;
     let history = if viscous { 2.0 * 6.0 * points * number } else { 0.0 };
-    // steps, displacements and their lost digits read and written, mass read and constraints; apart, forces and loads are
-    // written and read, loads also cleared
+    // steps, displacements and their lost digits read and written, mass read and constraints; apart, forces and loads
+    // are written and read, loads also cleared
     let compensated = if case.precision == "f64" { 0.0 } else { 12.0 };
     let forces_of_node = if case.fuse { 0.0 } else { 6.0 + 9.0 };
     let of_node = (12.0 + compensated + forces_of_node + 2.0) * number + 4.0;
@@ -36,7 +36,8 @@ pub fn cost(case: &Case, elements: u64, nodes: u64) -> Cost {
         // nodes of a patch: those of a cube of so many elements
         let cells = (patch_groups(kind) * LANES) as f64 / super::elements_a_cell(kind) as f64;
         let of_patches = (1.0 + 1.0 / cells.cbrt()).powi(3) * a_node;
-        // those inside move with it: their displacements are there, their forces are neither written nor looked up and read
+        // those inside move with it: their displacements are there, their forces are neither written nor looked up and
+        // read
         let inside = if case.fuse { (1.0 - 1.0 / cells.cbrt()).powi(3) * a_node } else { 0.0 };
         // on a GPU a byte a corner of each batch says how often corners take turns
         let batches = if case.is_gpu() { patch_batches(kind) as f64 } else { 0.0 };

@@ -22,8 +22,8 @@ pub fn adapter(simulation: &mut Simulation) -> Option<String> {
     Some(device.gpu().report().to_string())
 }
 
-/// Time of a step's kernels on the GPU's own clock (s), the best of some windows; `None` on the CPU and on devices without
-/// such a clock.
+/// Time of a step's kernels on the GPU's own clock (s), the best of some windows; `None` on the CPU and on devices
+/// without such a clock.
 pub fn kernel_seconds(simulation: &mut Simulation, steps: u64) -> Result<Option<f64>, Error> {
     let mut best: Option<f64> = None;
     for _ in 0..WINDOWS {

@@ -1,5 +1,5 @@
-//! What a step costs: cubes of many sizes, elements, effects, backends, threads and schemes, timed by turns, so that ratios
-//! within one run hold on a busy machine too.
+//! What a step costs: cubes of many sizes, elements, effects, backends, threads and schemes, timed by turns, so that
+//! ratios within one run hold on a busy machine too.
 
 mod case;
 mod compare;
@@ -45,7 +45,8 @@ pub struct Row {
     pub updates_per_s: f64,
     /// How many times as long the plain two-pass scheme takes in the same run; where it was measured beside.
     pub two_pass_ratio: Option<f64>,
-    /// Arithmetic of an element and step (floating-point operations), counted by running the kernel on numbers that count.
+    /// Arithmetic of an element and step (floating-point operations), counted by running the kernel on numbers that
+    /// count.
     pub flops: f64,
     /// Bytes that a step has to move for each element if every column is moved once, counted from the columns.
     pub bytes: f64,
@@ -55,13 +56,14 @@ pub struct Row {
     pub peak_share: Option<f64>,
     /// From the scene to the first step (s).
     pub setup_s: f64,
-    /// Largest memory of the process while the case ran (bytes), where the system tells; all cases of a group are in memory
-    /// together.
+    /// Largest memory of the process while the case ran (bytes), where the system tells; all cases of a group are in
+    /// memory together.
     pub memory_peak: Option<u64>,
     /// The GPU it ran on, if it did.
     #[serde(default)]
     pub adapter: Option<String>,
-    /// Time of all kernels of a step on the GPU's own clock, over elements (ns); each in a pass of its own, as clocks want it.
+    /// Time of all kernels of a step on the GPU's own clock, over elements (ns); each in a pass of its own, as clocks
+    /// want it.
     #[serde(default)]
     pub gpu_ns: Option<f64>,
 }

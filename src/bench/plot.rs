@@ -27,8 +27,8 @@ pub(super) fn is_software(row: &Row) -> bool {
     row.adapter.as_ref().is_some_and(|adapter| adapter.contains("software"))
 }
 
-/// Adds a point to the line of a name, in the panel of a row's element and effects. What ran on a software GPU has panels of
-/// its own, with axes of their own: it tells nothing of GPUs, and nothing beside CPUs.
+/// Adds a point to the line of a name, in the panel of a row's element and effects. What ran on a software GPU has
+/// panels of its own, with axes of their own: it tells nothing of GPUs, and nothing beside CPUs.
 pub(super) fn add(panels: &mut Vec<Panel>, row: &Row, name: String, point: Point) {
     let Case { element, effects, .. } = &row.case;
     let software = is_software(row);

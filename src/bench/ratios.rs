@@ -1,11 +1,12 @@
-//! Figures 3 and 4 of Comas et al. 2008 with our figures, as SVG: CPU against GPU, and systems kept apart against fused ones.
+//! Figures 3 and 4 of Comas et al. 2008 with our figures, as SVG: CPU against GPU, and systems kept apart against fused
+//! ones.
 
 use super::plot::{add, band, is_software, remark};
 use super::{Case, Record, Row};
 use crate::plot::panels::{Panel, Point, Rise, Words, svg};
 
-/// How many times as long a step takes on the CPU as on the GPU, over degrees of freedom; `None` where one of them was not
-/// measured. A software GPU does not count: it is a program on the CPU.
+/// How many times as long a step takes on the CPU as on the GPU, over degrees of freedom; `None` where one of them was
+/// not measured. A software GPU does not count: it is a program on the CPU.
 pub fn cpu_to_gpu(record: &Record) -> Option<String> {
     let mut panels: Vec<Panel> = Vec::new();
     for gpu in record.rows.iter().filter(|row| row.case.is_gpu() && !is_software(row)) {

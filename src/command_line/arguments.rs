@@ -55,7 +55,8 @@ pub enum Command {
     /// Draw a scene or the output of a run
     #[command(after_help = STATUSES)]
     Render(RenderArguments),
-    /// Show what a mesh is and where it lies: extents, sets, quality, likely units; of a mesh file or of a scene's bodies
+    /// Show what a mesh is and where it lies: extents, sets, quality, likely units; of a mesh file or of a scene's
+    /// bodies
     #[command(after_help = STATUSES)]
     Mesh(MeshArguments),
     /// Find the lowest natural frequencies of a scene and their shapes, with a proposal for damping and ramps
@@ -157,7 +158,8 @@ pub struct HowArguments {
     /// CPU threads; 0 is one a core, or a single one for small bodies. Results are the same for any number
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub threads: u16,
-    /// How element forces are summed: patch by patch in cache or a GPU's workgroup memory, or in two passes over memory, to compare with
+    /// How element forces are summed: patch by patch in cache or a GPU's workgroup memory, or in two passes over
+    /// memory, to compare with
     #[arg(long, value_enum, default_value_t = SchemeName::Patches)]
     pub scheme: SchemeName,
 }
@@ -183,7 +185,8 @@ pub struct RunArguments {
 pub struct AccuracyArguments {
     #[command(flatten)]
     pub scene: SceneArguments,
-    /// Wall time the study may take, such as 60s, 10min or 2h; a plain number is seconds. What does not fit is left out by name
+    /// Wall time the study may take, such as 60s, 10min or 2h; a plain number is seconds. What does not fit is left out
+    /// by name
     #[arg(long, value_name = "TIME", default_value = "50s", value_parser = wall_time)]
     pub budget: f64,
     /// The finest mesh to try, in the scene's cells along an edge: 2 has half the cell size
@@ -243,7 +246,8 @@ pub struct RenderArguments {
     /// An output folder, or a scene file; a scene is run first where its output is missing or older than it
     #[arg(value_name = "SCENE|OUT")]
     pub what: PathBuf,
-    /// Put a value into the scene, such as picture.zoom=2; of an output folder into its picture. May be given several times
+    /// Put a value into the scene, such as picture.zoom=2; of an output folder into its picture. May be given several
+    /// times
     #[arg(long, value_name = "PATH=VALUE")]
     pub set: Vec<String>,
     /// Let the scene name files outside its own folder

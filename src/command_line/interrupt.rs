@@ -9,7 +9,8 @@ static ASKED: AtomicBool = AtomicBool::new(false);
 static AT_WORK: AtomicBool = AtomicBool::new(false);
 static FIRST: OnceLock<Instant> = OnceLock::new();
 
-/// Wrappers such as `timeout` signal a program and then its whole group: what follows within this time is the same request.
+/// Wrappers such as `timeout` signal a program and then its whole group: what follows within this time is the same
+/// request.
 const SAME_REQUEST: Duration = Duration::from_millis(300);
 
 /// From now on until [`rest`], Ctrl-C (and a request of the system to end) only asks; see [`is_asked`].

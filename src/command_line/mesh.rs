@@ -1,4 +1,5 @@
-//! `sinew mesh`: what a mesh is and where it lies, of a mesh file or of the bodies of a scene, with a picture of its quality.
+//! `sinew mesh`: what a mesh is and where it lies, of a mesh file or of the bodies of a scene, with a picture of its
+//! quality.
 
 use super::arguments::{MeshArguments, allowed, default_folder};
 use super::failure::Failure;

@@ -1,4 +1,5 @@
-//! `sinew modes`: the lowest natural frequencies of a scene and their shapes, and what damping and ramps follow from them.
+//! `sinew modes`: the lowest natural frequencies of a scene and their shapes, and what damping and ramps follow from
+//! them.
 
 use super::arguments::{ModesArguments, default_folder};
 use super::failure::Failure;
@@ -17,9 +18,11 @@ use std::path::Path;
 const DRAWN: f64 = 0.1;
 /// Pictures of each mode, over one period.
 const PICTURES_A_MODE: usize = 16;
-/// Damping of the lowest mode that brings to rest quickly and hardly changes what is faster, as a share of the critical one.
+/// Damping of the lowest mode that brings to rest quickly and hardly changes what is faster, as a share of the critical
+/// one.
 const SHARE: f64 = 0.2;
-/// β in stable steps that makes the stable step half as long: the highest frequency then has so much of the critical damping.
+/// β in stable steps that makes the stable step half as long: the highest frequency then has so much of the critical
+/// damping.
 const HALVES: f64 = 0.75;
 /// Periods of the lowest mode over which a ramp hardly rings: with the 3-4-5 polynomial its overshoot is below 1 %.
 const PERIODS: f64 = 5.0;

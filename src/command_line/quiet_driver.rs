@@ -2,8 +2,8 @@
 
 /// Mesa's device-select layer looks for a Wayland session when Vulkan is opened, and where there is none (servers,
 /// containers) libwayland writes "error: XDG_RUNTIME_DIR is invalid" on stderr, twice, as if the run had failed. Sinew
-/// ranks devices itself and does not need the layer; it can only be switched off from outside, by the environment that a
-/// process begins with. So the process begins again, once.
+/// ranks devices itself and does not need the layer; it can only be switched off from outside, by the environment that
+/// a process begins with. So the process begins again, once.
 #[cfg(target_os = "linux")]
 pub fn restart_if_noisy() {
     use std::os::unix::process::CommandExt;

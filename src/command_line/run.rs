@@ -163,11 +163,11 @@ fn tell_of_changes(simulation: &Simulation, known: &mut u64) {
     }
 }
 
-/// Writes what stands at the end: the nodes if their state means something, and the summary, which says of a result that is no
-/// number what it says of a run that broke down.
+/// Writes what stands at the end: the nodes if their state means something, and the summary, which says of a result
+/// that is no number what it says of a run that broke down.
 fn finish(simulation: &mut Simulation, folder: &mut Folder, ended: Outcome) -> Result<(Summary, Outcome), Failure> {
-    // a run that broke down ends in numbers that mean nothing, one that found no equilibrium in none that was asked for;
-    // the fields hold the last good state
+    // a run that broke down ends in numbers that mean nothing, one that found no equilibrium in none that was asked
+    // for; the fields hold the last good state
     let meaningless = |error: &Error| matches!(error, Error::Unstable(_) | Error::NotConverged(_));
     let ended = match ended {
         Err(Failure::Engine(error)) if meaningless(&error) => Err(Failure::Engine(error)),

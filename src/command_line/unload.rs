@@ -54,7 +54,8 @@ fn line(step: &UnloadingStep) -> String {
     format!("{:>9}  {largest:<16}  {mean:<12}  {}\n", step.number, step.steps)
 }
 
-/// Writes the unloaded meshes, a copy of each file that the scene names, and the scene that begins with them; their names.
+/// Writes the unloaded meshes, a copy of each file that the scene names, and the scene that begins with them; their
+/// names.
 fn write(scene: &SceneFile, found: &Unloaded, path: &Path) -> Result<Vec<String>, Failure> {
     let mut folder = Folder::create_for(path, &scene.path.display().to_string())?;
     let (mut names, mut sets) = (Vec::new(), Vec::new());

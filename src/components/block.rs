@@ -1,6 +1,6 @@
-//! Element blocks: one element type, one material, one body. Columns hold groups of [`LANES`](crate::math::LANES) elements:
-//! number `k` of element `e` stands at (e / LANES · numbers + k) · LANES + e mod LANES. The last group is filled up with
-//! elements of no volume. Elements stand patch by patch, neighbours together.
+//! Element blocks: one element type, one material, one body. Columns hold groups of [`LANES`](crate::math::LANES)
+//! elements: number `k` of element `e` stands at (e / LANES · numbers + k) · LANES + e mod LANES. The last group is
+//! filled up with elements of no volume. Elements stand patch by patch, neighbours together.
 
 use super::Reals;
 use super::column::columns;
@@ -56,20 +56,21 @@ columns! {
     RemovalStep(Vec<u32>) = "removal_step", State;
     /// Elastic and hourglass energy (J) that each element held when it was removed. Exists with [`Alive`].
     RemovedEnergy(Reals) = "removed_energy", State;
-    /// Volume at rest (m³) of each element that is there, and that times θ, by which its law measures the change of volume.
-    /// Exists with [`NodalVolumeChange`].
+    /// Volume at rest (m³) of each element that is there, and that times θ, by which its law measures the change of
+    /// volume. Exists with [`NodalVolumeChange`].
     ElementVolume(Reals) = "element_volume", Scratch;
-    /// θ of each node of the body: the mean over the block's elements around it, by rest volume. Exists for elements with
-    /// averaged nodal pressure.
+    /// θ of each node of the body: the mean over the block's elements around it, by rest volume. Exists for elements
+    /// with averaged nodal pressure.
     NodalVolumeChange(Reals) = "nodal_volume_change", Scratch;
-    /// What each 64 elements come to, four words each: bits of the elastic and the hourglass energy (J) and of the smallest
-    /// J, and its row. For the guards on a GPU.
+    /// What each 64 elements come to, four words each: bits of the elastic and the hourglass energy (J) and of the
+    /// smallest J, and its row. For the guards on a GPU.
     ElementSums(Vec<u32>) = "element_sums", Scratch;
-    /// Two numbers: the lowest row of an element found with J < 0, by the kernel itself in every step, and the step in which it
-    /// was: the first in which there was one; `u32::MAX`: none. Elements that are removed for it ([`OnInversion`]) are not noted here.
+    /// Two numbers: the lowest row of an element found with J < 0, by the kernel itself in every step, and the step in
+    /// which it was: the first in which there was one; `u32::MAX`: none. Elements that are removed for it
+    /// ([`OnInversion`]) are not noted here.
     FirstInverted(Vec<u32>) = "first_inverted", State;
-    /// Mass that was added to each element so that the step may be as large as it is (kg), in f64 whatever the run's precision.
-    /// Exists where the scene has mass scaled.
+    /// Mass that was added to each element so that the step may be as large as it is (kg), in f64 whatever the run's
+    /// precision. Exists where the scene has mass scaled.
     AddedMass(Vec<f64>) = "added_mass", State;
 }
 
@@ -86,12 +87,13 @@ pub const fn patch_length(kind: ElementKind) -> usize {
     patch_groups(kind) * crate::math::LANES
 }
 
-/// When each element goes at the latest (s); infinite: never by time. Exists with [`RemovalStep`] where elements go by time.
+/// When each element goes at the latest (s); infinite: never by time. Exists with [`RemovalStep`] where elements go by
+/// time.
 #[derive(Component, Clone, Debug)]
 pub struct RemovalTime(pub Vec<f64>);
 
-/// Which elements of a block meet in a node: `elements[starts[i]..starts[i + 1]]` are rows of elements around node row `i`,
-/// ascending. Exists with [`NodalVolumeChange`].
+/// Which elements of a block meet in a node: `elements[starts[i]..starts[i + 1]]` are rows of elements around node row
+/// `i`, ascending. Exists with [`NodalVolumeChange`].
 #[derive(Component, Clone, Debug)]
 pub struct BlockCorners {
     /// Where each node's elements begin; one number more than nodes.

@@ -28,7 +28,8 @@ impl Clock {
         Self { step: 0, time_step, since: (0, 0.0), before: time_step, relaxation: None }
     }
 
-    /// Whether it can be the clock of a motion: steps are positive and finite, and Δt is what it is since a step that was taken.
+    /// Whether it can be the clock of a motion: steps are positive and finite, and Δt is what it is since a step that
+    /// was taken.
     pub fn is_sound(&self) -> bool {
         let step = |step: f64| step.is_finite() && step > 0.0;
         let since = self.since.0 <= self.step && self.since.1.is_finite() && self.since.1 >= 0.0;
@@ -42,8 +43,8 @@ impl Clock {
         self.since.0.saturating_add(steps as u64).max(self.step)
     }
 
-    /// Time at the beginning of a step (s), which must not lie before the last change of Δt: the time of the change and so
-    /// many steps, exact however long the run.
+    /// Time at the beginning of a step (s), which must not lie before the last change of Δt: the time of the change and
+    /// so many steps, exact however long the run.
     pub fn time_at(&self, step: u64) -> f64 {
         self.since.1 + step.saturating_sub(self.since.0) as f64 * self.time_step
     }
@@ -58,8 +59,8 @@ impl Clock {
         }
     }
 
-    /// The times (s) from the middle of the step before to the middle of a step, which must not lie before the last change of
-    /// Δt: over them forces at its beginning change velocities. The first such window begins with the motion.
+    /// The times (s) from the middle of the step before to the middle of a step, which must not lie before the last
+    /// change of Δt: over them forces at its beginning change velocities. The first such window begins with the motion.
     pub fn window_at(&self, step: u64) -> (f64, f64) {
         let there = Self { step, ..*self };
         let end = self.time_at(step) + 0.5 * self.time_step;
@@ -203,8 +204,8 @@ impl Signals {
         slot
     }
 
-    /// Evaluates all signals for a step: of loads the mean over a window (s), see [`Clock::window_at`], of motions where they
-    /// are at the end of the step (s).
+    /// Evaluates all signals for a step: of loads the mean over a window (s), see [`Clock::window_at`], of motions
+    /// where they are at the end of the step (s).
     pub fn evaluate(&mut self, window: (f64, f64), end: f64) {
         self.fill(|curve, of| match of {
             Use::Load => curve.mean(window),

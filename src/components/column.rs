@@ -127,8 +127,8 @@ impl Reals {
     }
 }
 
-/// What a column is to the state of a simulation. Every column names its role where it is declared, so that snapshots cannot
-/// forget one.
+/// What a column is to the state of a simulation. Every column names its role where it is declared, so that snapshots
+/// cannot forget one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
     /// Carried on from step to step: part of every snapshot.
@@ -147,8 +147,8 @@ pub trait Column: Component<Mutability = Mutable> {
     const NAME: &'static str;
     /// What it is to the state.
     const ROLE: Role;
-    /// The buffer on a device in which it lies: of its own name, or one that an entity's columns share, one after the other as they
-    /// are declared; kernels may have few buffers.
+    /// The buffer on a device in which it lies: of its own name, or one that an entity's columns share, one after the
+    /// other as they are declared; kernels may have few buffers.
     const BUFFER: &'static str;
     /// What its numbers are in shaders: `f32` or `u32`.
     const WORD: &'static str;
@@ -212,8 +212,8 @@ pub fn all_columns() -> Vec<ColumnAccess> {
     [super::nodes::accesses(), super::block::accesses()].concat()
 }
 
-/// Declares components that are columns, each with its name, its [`Role`] and, where that is not its own, its buffer; and a function
-/// `accesses` that lists them.
+/// Declares components that are columns, each with its name, its [`Role`] and, where that is not its own, its buffer;
+/// and a function `accesses` that lists them.
 macro_rules! columns {
     (@buffer $word:literal) => { $word };
     (@buffer $word:literal $buffer:literal) => { $buffer };

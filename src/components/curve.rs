@@ -7,7 +7,8 @@ pub(super) fn smooth(s: f64) -> f64 {
     s * s * s * (10.0 + s * (6.0 * s - 15.0))
 }
 
-/// √(3/5): where Gauss and Legendre's rule of three points has its outer ones; exact for polynomials of the fifth degree.
+/// √(3/5): where Gauss and Legendre's rule of three points has its outer ones; exact for polynomials of the fifth
+/// degree.
 const OUTER: f64 = 0.774_596_669_241_483_4;
 
 impl Curve {
@@ -35,8 +36,9 @@ impl Curve {
         }
     }
 
-    /// The mean of the factor over a window of time (s), to rounding: each piece between two corners is a polynomial of the fifth
-    /// degree at most. So a pulse between two steps is not lost, and its impulse does not depend on where steps lie.
+    /// The mean of the factor over a window of time (s), to rounding: each piece between two corners is a polynomial of
+    /// the fifth degree at most. So a pulse between two steps is not lost, and its impulse does not depend on where
+    /// steps lie.
     pub fn mean(&self, (from, to): (f64, f64)) -> f64 {
         let (mut at, mut sum) = (from, 0.0);
         while let Some(corner) = self.corner_after(at).filter(|corner| *corner < to) {
@@ -51,15 +53,16 @@ impl Curve {
         }
     }
 
-    /// The least time between two corners (s), if there are two: what is finer than steps is seen as a mean by loads, and at
-    /// the ends of steps by motions.
+    /// The least time between two corners (s), if there are two: what is finer than steps is seen as a mean by loads,
+    /// and at the ends of steps by motions.
     pub fn finest(&self) -> Option<f64> {
         let mut corners = std::iter::successors(self.corner_after(f64::NEG_INFINITY), |&at| self.corner_after(at));
         let mut before = corners.next()?;
         corners.map(|at| at - std::mem::replace(&mut before, at)).reduce(f64::min)
     }
 
-    /// The first time after one (s) at which the curve begins to move, or to move more than twice as fast as ever before.
+    /// The first time after one (s) at which the curve begins to move, or to move more than twice as fast as ever
+    /// before.
     pub fn quickens_after(&self, time: f64) -> Option<f64> {
         match self {
             Curve::Table(points) => {

@@ -4,7 +4,8 @@ use bevy_ecs::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What the guards, and probes that hold peaks, have seen so far; part of the state, so that what goes on from a snapshot stops where it would have.
+/// What the guards, and probes that hold peaks, have seen so far; part of the state, so that what goes on from a
+/// snapshot stops where it would have.
 #[derive(Resource, Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct GuardMemory {

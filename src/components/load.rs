@@ -49,8 +49,8 @@ pub struct FaceCorners {
     pub corners: Vec<u32>,
     /// Nodes of each face, outward normal by the right hand; a triangle repeats its last node.
     pub faces: Vec<[u32; 4]>,
-    /// The element behind each face: place of its block in the body's list, and its row there. A removed element's faces
-    /// bear no load.
+    /// The element behind each face: place of its block in the body's list, and its row there. A removed element's
+    /// faces bear no load.
     pub elements: Vec<(u32, u32)>,
     /// Rest area of each face that falls to each of its corners (m²).
     pub areas: Vec<[f64; 4]>,

@@ -35,8 +35,8 @@ pub struct Prony {
 }
 
 impl Prony {
-    /// Coefficients of the recursions for the clock's step, of the isochoric stress and of the pressure; in a static analysis
-    /// of what remains in the long term.
+    /// Coefficients of the recursions for the clock's step, of the isochoric stress and of the pressure; in a static
+    /// analysis of what remains in the long term.
     pub fn coefficients(&self, clock: &Clock) -> [Vec<PronyTerm<f64>>; 2] {
         let make = match self.integrator {
             _ if clock.relaxation.is_some() => |alpha, _, _| PronyTerm::long_term(alpha),
@@ -48,8 +48,8 @@ impl Prony {
     }
 }
 
-/// The terms of all that a material remembers, for the clock's step: of the isochoric stress and of the pressure, those of
-/// viscosity first. A static analysis has no rates.
+/// The terms of all that a material remembers, for the clock's step: of the isochoric stress and of the pressure, those
+/// of viscosity first. A static analysis has no rates.
 pub fn memory_terms(world: &World, material: Entity, clock: &Clock) -> [Vec<PronyTerm<f64>>; 2] {
     let prony = world.get::<Prony>(material);
     let mut terms = prony.map_or([vec![], vec![]], |prony| prony.coefficients(clock));

@@ -16,14 +16,14 @@ columns! {
     /// Displacement of the last step, u_n − u_{n−1} (m), a vector a node: velocity in the middle of the step times Δt.
     /// On constrained axes `boundary` writes the step to come here.
     DisplacementStep(Reals) = "displacement_step", State;
-    /// What rounding has made of the displacements too much (m), a vector a node, and then what of their steps, likewise.
-    /// Exists in f32 where sums are compensated.
+    /// What rounding has made of the displacements too much (m), a vector a node, and then what of their steps,
+    /// likewise. Exists in f32 where sums are compensated.
     DisplacementCompensation(Reals) = "displacement_compensation", State;
     /// Lumped mass (kg), a number a node; 0 parks the node.
     Mass(Reals) = "mass", State;
-    /// Mass (kg) that resists acceleration in place of the real one, which only weighs then: in static analyses the mass
-    /// that makes every element's bound of the stable step the same, else the real one and what was added to it where a
-    /// scene has mass scaled. A number a node.
+    /// Mass (kg) that resists acceleration in place of the real one, which only weighs then: in static analyses the
+    /// mass that makes every element's bound of the stable step the same, else the real one and what was added to it
+    /// where a scene has mass scaled. A number a node.
     FictitiousMass(Reals) = "fictitious_mass", State;
     /// Σ c m over a node's elements (kg/s): damping rate times mass. Exists when a material is damped.
     DampingCoefficient(Reals) = "damping_coefficient", State;
@@ -33,28 +33,29 @@ columns! {
     ExternalForce(Reals) = "external_force", State;
     /// Bits 0, 1, 2: the node does not move freely along x, y, z.
     ConstrainedAxes(Vec<u32>) = "constrained_axes", Given;
-    /// Work done on or by a node since the start (J): by loads, against damping, by constraints, by internal forces; then
-    /// the last step along constrained axes (m), which `boundary` writes over: [`WORK_NUMBERS`] a node. Exists when
-    /// energies are asked for.
+    /// Work done on or by a node since the start (J): by loads, against damping, by constraints, by internal forces;
+    /// then the last step along constrained axes (m), which `boundary` writes over: [`WORK_NUMBERS`] a node. Exists
+    /// when energies are asked for.
     Work(Reals) = "work", State;
-    /// Two numbers: the lowest row of a node whose displacement was found not finite, and the step in which it was: the first in
-    /// which there was one; `u32::MAX`: none.
+    /// Two numbers: the lowest row of a node whose displacement was found not finite, and the step in which it was: the
+    /// first in which there was one; `u32::MAX`: none.
     FirstNonFinite(Vec<u32>) = "first_non_finite", State, in "node_diagnostics";
-    /// Work against internal forces since the start (J), in f32 whatever the run's precision: two numbers for each [`GROUP_ROWS`]
-    /// nodes and two more, a sum over nodes that move together and what rounding has left out of it. Exists in a motion without
-    /// [`Work`] whose energy is guarded.
+    /// Work against internal forces since the start (J), in f32 whatever the run's precision: two numbers for each
+    /// [`GROUP_ROWS`] nodes and two more, a sum over nodes that move together and what rounding has left out of it.
+    /// Exists in a motion without [`Work`] whose energy is guarded.
     InternalWork(Vec<f32>) = "internal_work", State, in "node_diagnostics";
-    /// Displacement of the last step along prescribed axes (m), which `boundary` has written over in [`DisplacementStep`], in f32
-    /// whatever the run's precision: a vector a node. Exists with [`InternalWork`] where nodes are prescribed.
+    /// Displacement of the last step along prescribed axes (m), which `boundary` has written over in
+    /// [`DisplacementStep`], in f32 whatever the run's precision: a vector a node. Exists with [`InternalWork`] where
+    /// nodes are prescribed.
     PreviousPrescribedStep(Vec<f32>) = "previous_prescribed_step", State, in "node_diagnostics";
     /// Displacement in the middle of the last step (m), a vector a node: for the guards on a GPU.
     MiddleDisplacement(Reals) = "middle_displacement", Scratch;
-    /// What each 64 nodes come to, four words each: bits of ½ m d² (kg m²) and of the longest step's square (m²), its row, bits of
-    /// the square of the largest displacement (m²).
+    /// What each 64 nodes come to, four words each: bits of ½ m d² (kg m²) and of the longest step's square (m²), its
+    /// row, bits of the square of the largest displacement (m²).
     NodeSums(Vec<u32>) = "node_sums", Scratch;
     /// Forces of all elements (N), all blocks of the body one after the other: a vector for each node of each patch
-    /// ([`Patches`](super::Patches)), which those that move with their patch do not use; in the scheme of two passes those on corners, in each group of
-    /// [`LANES`](crate::math::LANES) elements by corner, component, element.
+    /// ([`Patches`](super::Patches)), which those that move with their patch do not use; in the scheme of two passes
+    /// those on corners, in each group of [`LANES`](crate::math::LANES) elements by corner, component, element.
     ElementForce(Reals) = "element_force", Scratch;
 }
 
@@ -76,8 +77,8 @@ impl InternalWork {
 /// Numbers a node in [`Work`].
 pub const WORK_NUMBERS: usize = 7;
 
-/// Which corners of elements meet in a node: the gather's map, in compressed rows. `corners[starts[i]..starts[i + 1]]` are
-/// places in [`ElementForce`] of the x component; y and z follow `stride` and twice that later.
+/// Which corners of elements meet in a node: the gather's map, in compressed rows. `corners[starts[i]..starts[i + 1]]`
+/// are places in [`ElementForce`] of the x component; y and z follow `stride` and twice that later.
 #[derive(Component, Clone, Debug)]
 pub struct Corners {
     /// One more than nodes.

@@ -18,8 +18,8 @@ pub struct Probe {
     pub peak: bool,
 }
 
-/// Whether somebody may look at forces after the present step: if not, one pass over the nodes keeps them at hand and leaves
-/// [`InternalForce`](super::InternalForce) and [`ExternalForce`](super::ExternalForce) as they were.
+/// Whether somebody may look at forces after the present step: if not, one pass over the nodes keeps them at hand and
+/// leaves [`InternalForce`](super::InternalForce) and [`ExternalForce`](super::ExternalForce) as they were.
 #[derive(Resource, Clone, Copy, Debug)]
 pub struct Observed(pub bool);
 
@@ -91,16 +91,16 @@ impl Cadence {
         (after / self.steps).floor() > (before / self.steps).floor()
     }
 
-    /// How many steps a step that is observed goes beyond the time that is asked for; 0 where that is a whole number of steps,
-    /// in spite of rounding, or less than one.
+    /// How many steps a step that is observed goes beyond the time that is asked for; 0 where that is a whole number of
+    /// steps, in spite of rounding, or less than one.
     pub fn overshoot(&self, step: u64) -> f64 {
         let passed = self.passed(step);
         let beyond = (passed - (passed + WHOLE_INTERVALS).floor()) * self.steps;
         if beyond > WHOLE_STEPS && self.steps > 1.0 { beyond } else { 0.0 }
     }
 
-    /// The multiple of the interval (s) that is met within or at the end of a step that is observed, as it would be written
-    /// down; `None` where every step is observed.
+    /// The multiple of the interval (s) that is met within or at the end of a step that is observed, as it would be
+    /// written down; `None` where every step is observed.
     pub fn time_asked(&self, step: u64) -> Option<f64> {
         let time = (self.passed(step) + WHOLE_INTERVALS + WHOLE_STEPS / self.steps).floor() * self.interval;
         // 3 · 0.1 is 0.30000000000000004

@@ -5,26 +5,27 @@ use bevy_ecs::prelude::*;
 /// How the forces of elements are summed at the nodes. Results differ by rounding only.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Scheme {
-    /// Patch by patch in cache or in a workgroup's memory, then over the patches that share a node: a tenth to a third of the traffic with memory.
+    /// Patch by patch in cache or in a workgroup's memory, then over the patches that share a node: a tenth to a third
+    /// of the traffic with memory.
     #[default]
     Patches,
-    /// Every element writes the forces on its corners, every node sums them: the paper's two kernels. To compare with, and
-    /// what a GPU runs of a mesh whose patches do not fit a workgroup.
+    /// Every element writes the forces on its corners, every node sums them: the paper's two kernels. To compare with,
+    /// and what a GPU runs of a mesh whose patches do not fit a workgroup.
     TwoPass,
 }
 
-/// The nodes of each of a block's patches, which are [`patch_groups`](super::patch_groups) groups of elements one after the
-/// other. A patch's forces are summed at its own nodes, and [`ElementForce`](super::ElementForce) has a vector for each of
-/// them; what patches share is summed by the gather.
+/// The nodes of each of a block's patches, which are [`patch_groups`](super::patch_groups) groups of elements one after
+/// the other. A patch's forces are summed at its own nodes, and [`ElementForce`](super::ElementForce) has a vector for
+/// each of them; what patches share is summed by the gather.
 #[derive(Component, Clone, Debug, Default)]
 pub struct Patches {
     /// Where each patch's nodes begin; one number more than patches.
     pub starts: Vec<u32>,
     /// Rows of the body's node columns, ascending in each patch.
     pub nodes: Vec<u32>,
-    /// How many of each patch's nodes, its first ones, are in no other patch and stand one after the other, from patch to patch
-    /// of all blocks of the body: those that can move as soon as the patch's forces are known. None or at least
-    /// [`GROUP_ROWS`](super::GROUP_ROWS).
+    /// How many of each patch's nodes, its first ones, are in no other patch and stand one after the other, from patch
+    /// to patch of all blocks of the body: those that can move as soon as the patch's forces are known. None or at
+    /// least [`GROUP_ROWS`](super::GROUP_ROWS).
     pub inside: Vec<u32>,
     /// Elements' corners as places among their patch's nodes; laid out as [`Connectivity`](super::Connectivity).
     pub connectivity: Vec<u16>,

@@ -4,19 +4,21 @@ use super::{Element, MOST_NODES, MOST_ROWS, PointState, PressureFrom, Stiffness,
 use crate::math::{Mat3, Real, dot, dot_plus};
 use glam::{DMat3, DVec3};
 
-/// Trilinear hexahedron with the mean gradients b_a (Flanagan & Belytschko 1981) and total Lagrangian hourglass control.
-/// Its WGSL twin is `shaders/hex8.wgsl`.
+/// Trilinear hexahedron with the mean gradients b_a (Flanagan & Belytschko 1981) and total Lagrangian hourglass
+/// control. Its WGSL twin is `shaders/hex8.wgsl`.
 ///
-/// f_a = V P b_a + k Σ_m γ_ma q_m with q_m = Σ_a γ_ma u_a and γ_m = Γ_m − b·(XᵀΓ_m): no force for any homogeneous F, and
-/// objective. Its scale k = E V Σ(b·b)/72 matches pure bending at every Poisson's ratio; the usual λ + 2μ locks as ν → ½.
+/// f_a = V P b_a + k Σ_m γ_ma q_m with q_m = Σ_a γ_ma u_a and γ_m = Γ_m − b·(XᵀΓ_m): no force for any homogeneous F,
+/// and objective. Its scale k = E V Σ(b·b)/72 matches pure bending at every Poisson's ratio; the usual λ + 2μ locks as
+/// ν → ½.
 ///
-/// Displacements are taken apart into seven modes: the signs ξ, η, ζ of the nodes and the four Γ, ηζ, ζξ, ξη and ξηζ. So are the
-/// mean gradients, b_a = Σ_m s_ma β_m, which need six of them: V b_a = ∂V/∂X_a, and a hexahedron's volume does not depend
-/// on the mode ξηζ of its corners. The sums Γ·u that hourglass control needs come with ∇u = Σ_m (Σ_a s_ma u_a) ⊗ β_m.
+/// Displacements are taken apart into seven modes: the signs ξ, η, ζ of the nodes and the four Γ, ηζ, ζξ, ξη and ξηζ.
+/// So are the mean gradients, b_a = Σ_m s_ma β_m, which need six of them: V b_a = ∂V/∂X_a, and a hexahedron's volume
+/// does not depend on the mode ξηζ of its corners. The sums Γ·u that hourglass control needs come with ∇u = Σ_m (Σ_a
+/// s_ma u_a) ⊗ β_m.
 ///
-/// γ is never stored: with h_m = XᵀΓ_m, q_m = Γ_m·u − ∇u h_m, and its force folds into the stress.
-/// Rest shape: β of the modes (1/m), volume (m³), k (N/m), h_m (m). In a parallelepiped the last three β and all h_m are zero: it has
-/// 11 numbers in place of 32. `SLOPES`, how many β there are, is 3 or 6.
+/// γ is never stored: with h_m = XᵀΓ_m, q_m = Γ_m·u − ∇u h_m, and its force folds into the stress. Rest shape: β of the
+/// modes (1/m), volume (m³), k (N/m), h_m (m). In a parallelepiped the last three β and all h_m are zero: it has 11
+/// numbers in place of 32. `SLOPES`, how many β there are, is 3 or 6.
 #[derive(Clone, Copy, Debug)]
 pub struct Hexahedron<const SLOPES: usize>;
 
@@ -120,8 +122,8 @@ pub(super) fn spread<R: Real>([x, y, z, yz, zx, xy, xyz]: [R; MODES]) -> [R; MOS
     ]
 }
 
-/// Stores a component of forces on nodes 1 to 7, and on node 0 what balances them: forces that rounding keeps from adding up
-/// to nothing hold stiff motion awake (a cantilever at rest in f32 had residuals 1.3 times as large).
+/// Stores a component of forces on nodes 1 to 7, and on node 0 what balances them: forces that rounding keeps from
+/// adding up to nothing hold stiff motion awake (a cantilever at rest in f32 had residuals 1.3 times as large).
 #[inline(always)]
 pub(super) fn balanced<R: Real>(forces: [R; MOST_NODES], mut store: impl FnMut(usize, R)) {
     let mut sum = forces[1];
@@ -270,8 +272,8 @@ impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
             hourglass_sign(m, a) - b[a].dot(arm)
         };
         let square: f64 = (0..4).flat_map(|m| (0..8).map(move |a| (m, a))).map(|(m, a)| gamma(m, a).powi(2)).sum();
-        // the largest eigenvalue of Σ γ γᵀ is below its trace, and is the trace's quarter when the four are orthogonal and
-        // equally long, as in every parallelepiped
+        // the largest eigenvalue of Σ γ γᵀ is below its trace, and is the trace's quarter when the four are orthogonal
+        // and equally long, as in every parallelepiped
         let mut largest_row: f64 = 0.0;
         let mut overlap: f64 = 0.0;
         for m in 0..4 {

@@ -5,13 +5,13 @@ use super::{Element, MOST_NODES, MOST_ROWS, PointState, PressureFrom, Stiffness,
 use crate::math::{Mat3, Real, dot, minor};
 use glam::{DMat3, DVec3};
 
-/// Trilinear hexahedron with 2×2×2 Gauss points for what changes shape, and one pressure from its mean volume (Nagtegaal,
-/// Parks & Rice 1974; Simo, Taylor & Pister 1985): it neither locks as ν → ½ nor has hourglass modes, and costs some six
-/// times the stress work of [`Hex8`](super::Hex8). Its WGSL twin is `shaders/hex8_mean_dilatation.wgsl`.
+/// Trilinear hexahedron with 2×2×2 Gauss points for what changes shape, and one pressure from its mean volume
+/// (Nagtegaal, Parks & Rice 1974; Simo, Taylor & Pister 1985): it neither locks as ν → ½ nor has hourglass modes, and
+/// costs some six times the stress work of [`Hex8`](super::Hex8). Its WGSL twin is `shaders/hex8_mean_dilatation.wgsl`.
 ///
-/// Energy V U(θ̄) + Σ_q V_q Ψ_iso(F_q), θ̄ = Σ V_q θ_q / V; forces are its exact derivative. Positions and displacements
-/// are kept as coefficients of the modes ξ, η, ζ, ηζ, ζξ, ξη, ξηζ, so that a common displacement never enters.
-/// Rest shape: those of X (m, rows 0 to 20), volume (21), 1 while the element is there (22).
+/// Energy V U(θ̄) + Σ_q V_q Ψ_iso(F_q), θ̄ = Σ V_q θ_q / V; forces are its exact derivative. Positions and
+/// displacements are kept as coefficients of the modes ξ, η, ζ, ηζ, ζξ, ξη, ξηζ, so that a common displacement never
+/// enters. Rest shape: those of X (m, rows 0 to 20), volume (21), 1 while the element is there (22).
 #[derive(Clone, Copy, Debug)]
 pub struct Hex8MeanDilatation;
 

@@ -24,9 +24,10 @@ pub const MOST_POINTS: usize = 8;
 
 /// A kind of element.
 ///
-/// What an element knows of its shape at rest is a column of [`ROWS`](Element::ROWS) numbers, made once in `f64`; `shape`
-/// below gives them by row. Row [`VOLUME_ROW`](Element::VOLUME_ROW) is the rest volume (m³). All forces are proportional to
-/// rows that removal can zero: an element whose volume and [`FORCE_ROW`](Element::FORCE_ROW) are zero exerts nothing.
+/// What an element knows of its shape at rest is a column of [`ROWS`](Element::ROWS) numbers, made once in `f64`;
+/// `shape` below gives them by row. Row [`VOLUME_ROW`](Element::VOLUME_ROW) is the rest volume (m³). All forces are
+/// proportional to rows that removal can zero: an element whose volume and [`FORCE_ROW`](Element::FORCE_ROW) are zero
+/// exerts nothing.
 ///
 /// Forces are made in four strides: displacements are prepared, each integration point gives its gradient, stresses are
 /// added point by point, and what they come to is stored corner by corner.
@@ -54,8 +55,8 @@ pub trait Element: Copy + Send + Sync + 'static {
     /// What stresses add up to before it is spread over the corners.
     type Forces<R: Real>: Copy;
 
-    /// The rest shape from the nodes' rest positions (m); `young` is the small-strain Young's modulus (Pa) that hourglass
-    /// control is scaled by.
+    /// The rest shape from the nodes' rest positions (m); `young` is the small-strain Young's modulus (Pa) that
+    /// hourglass control is scaled by.
     fn rest_shape(points: &[DVec3], young: f64) -> [f64; MOST_ROWS];
 
     /// Whether it can have that shape: the nodes' rest positions (m).

@@ -5,7 +5,8 @@ use crate::math::{Mat3, Real, dot};
 use glam::{DMat3, DVec3};
 
 /// Linear tetrahedron: one constant gradient. It locks near incompressibility (a bar under gravity at ν = 0.49 with
-/// 20×4×4 cells is 46 % too stiff): see [`Tet4NodalPressure`](super::Tet4NodalPressure). Its WGSL twin is `shaders/tet4.wgsl`.
+/// 20×4×4 cells is 46 % too stiff): see [`Tet4NodalPressure`](super::Tet4NodalPressure). Its WGSL twin is
+/// `shaders/tet4.wgsl`.
 ///
 /// Rest shape: gradients of nodes 1 to 3 (rows 0 to 8; node 0 has their negative sum), volume (row 9).
 #[derive(Clone, Copy, Debug)]

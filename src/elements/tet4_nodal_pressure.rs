@@ -4,12 +4,13 @@ use super::{Element, MOST_NODES, MOST_ROWS, PointState, PressureFrom, Stiffness,
 use crate::math::{Mat3, Real};
 use glam::DVec3;
 
-/// [`Tet4`] whose pressure is the mean of its nodes' pressures, which come from the volume around each node (Bonet & Burton
-/// 1998; Joldes, Wittek & Miller 2009): a bar under gravity at ν = 0.49 with 20×4×4 cells is 8 % too stiff instead of 46 %.
+/// [`Tet4`] whose pressure is the mean of its nodes' pressures, which come from the volume around each node (Bonet &
+/// Burton 1998; Joldes, Wittek & Miller 2009): a bar under gravity at ν = 0.49 with 20×4×4 cells is 8 % too stiff
+/// instead of 46 %.
 ///
-/// The volumetric energy is Σ_a V_a U(θ_a) with θ_a the mean of θ over the elements of a's block, each by a quarter of its
-/// rest volume. Forces are its exact derivative, so energy is kept; and since U is convex the frequency is at most that of
-/// [`Tet4`]. Means are taken within a block, so pressures stay apart where materials meet.
+/// The volumetric energy is Σ_a V_a U(θ_a) with θ_a the mean of θ over the elements of a's block, each by a quarter of
+/// its rest volume. Forces are its exact derivative, so energy is kept; and since U is convex the frequency is at most
+/// that of [`Tet4`]. Means are taken within a block, so pressures stay apart where materials meet.
 #[derive(Clone, Copy, Debug)]
 pub struct Tet4NodalPressure;
 

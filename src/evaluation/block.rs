@@ -165,8 +165,8 @@ impl<'a> BlockView<'a> {
     }
 }
 
-/// Mean θ of the block's elements around each node of its body, by rest volume; 0 where there are none. Twin in f64 of the
-/// system `nodal_volume`.
+/// Mean θ of the block's elements around each node of its body, by rest volume; 0 where there are none. Twin in f64 of
+/// the system `nodal_volume`.
 pub fn nodal_volume_change(view: &BlockView<'_>, cpu: &Cpu, corners: &BlockCorners) -> Reals {
     let count = view.block.count;
     let of_element = |row: usize| {

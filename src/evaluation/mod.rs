@@ -1,5 +1,5 @@
-//! What the state of a body is, computed on the host in f64 from its columns: for outputs, probes and removal. Reads only;
-//! viscous memory is looked at, not carried on.
+//! What the state of a body is, computed on the host in f64 from its columns: for outputs, probes and removal. Reads
+//! only; viscous memory is looked at, not carried on.
 
 mod block;
 mod element;

@@ -1,5 +1,5 @@
-//! What today's physics does not reach, and why. A row that is better than told here is as much a finding as one that is
-//! worse: the tests ask for exactly these.
+//! What today's physics does not reach, and why. A row that is better than told here is as much a finding as one that
+//! is worse: the tests ask for exactly these.
 
 use super::{Configuration, Verdict};
 use crate::mesh::ElementKind;

@@ -1,4 +1,5 @@
-//! The hard cases: what must stay stable, or fail honestly. `sinew hard` runs them; `docs/stability.md` is their record.
+//! The hard cases: what must stay stable, or fail honestly. `sinew hard` runs them; `docs/stability.md` is their
+//! record.
 //!
 //! A case is a scene in `scenes/hard/` (its gates stand at its head) and a function that runs it in a configuration and
 //! measures. Nothing is dropped: a case that ends in an honest failure where it should pass is shown as that.

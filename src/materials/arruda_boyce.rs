@@ -27,8 +27,8 @@ const LARGEST_CHANGE: f64 = 100.0;
 const SERIES: [f64; 5] = [1.0 / 2.0, 1.0 / 20.0, 11.0 / 1050.0, 19.0 / 7000.0, 519.0 / 673_750.0];
 
 impl<R: Real> ArrudaBoyce<R> {
-    /// Ψ_iso/μ and its derivative by Ī₁, for Ī₁ = 3 + `change`. Ī₁ⁱ − 3ⁱ = (Ī₁ − 3) qᵢ, q₁ = 1, qᵢ₊₁ = Ī₁ qᵢ + 3ⁱ: nothing
-    /// cancels at small strains.
+    /// Ψ_iso/μ and its derivative by Ī₁, for Ī₁ = 3 + `change`. Ī₁ⁱ − 3ⁱ = (Ī₁ − 3) qᵢ, q₁ = 1, qᵢ₊₁ = Ī₁ qᵢ + 3ⁱ:
+    /// nothing cancels at small strains.
     #[inline(always)]
     fn series(&self, change: R) -> (R, R) {
         let i1 = self.shear.constant(3.0) + change;

@@ -8,9 +8,9 @@ use crate::math::{Mat3, Real, Sym3, dot_plus};
 
 /// An isotropic elastic law over the numbers `R`: Ψ = Ψ_iso + U(θ), so that S = S_iso + U'(θ) ∂θ/∂E.
 ///
-/// θ measures the change of volume; it is J − 1 unless the law says otherwise. Elements that do not lock take the pressure
-/// U'(θ) from means of θ. The WGSL twin of a law has functions of the same names with `elastic_` before them; those that
-/// have a default here have it in `shaders/finite_strain.wgsl` and `shaders/volume_ratio.wgsl`.
+/// θ measures the change of volume; it is J − 1 unless the law says otherwise. Elements that do not lock take the
+/// pressure U'(θ) from means of θ. The WGSL twin of a law has functions of the same names with `elastic_` before them;
+/// those that have a default here have it in `shaders/finite_strain.wgsl` and `shaders/volume_ratio.wgsl`.
 pub trait Elastic<R: Real>: Copy + Send + Sync {
     /// The same law over other numbers.
     type Of<Q: Real>: Elastic<Q>;
@@ -30,8 +30,9 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
         gradient.plus_identity_times(&isochoric.plus(&self.volumetric(k, pressure)))
     }
 
-    /// First Piola-Kirchhoff stress (Pa) and J where nothing but this law and one family of fibres acts, along `fibres.1` at
-    /// rest; with its own pressure, or one that the element gives (Pa). A law that knows a shorter way than by S takes it.
+    /// First Piola-Kirchhoff stress (Pa) and J where nothing but this law and one family of fibres acts, along
+    /// `fibres.1` at rest; with its own pressure, or one that the element gives (Pa). A law that knows a shorter way
+    /// than by S takes it.
     #[inline(always)]
     fn stress_at_once(
         &self,
@@ -51,8 +52,8 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
         )
     }
 
-    /// The same where something becomes of S_iso (Pa), fibres and all: `relax` says what, and adds the second stress it gets (Pa), that
-    /// of the pressure. Fibres come with a⊗a of their direction.
+    /// The same where something becomes of S_iso (Pa), fibres and all: `relax` says what, and adds the second stress it
+    /// gets (Pa), that of the pressure. Fibres come with a⊗a of their direction.
     #[inline(always)]
     fn stress_relaxed(
         &self,

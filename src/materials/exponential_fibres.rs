@@ -9,9 +9,9 @@ const LARGEST_EXPONENT: f64 = 40.0;
 /// One family: Ψ = k₁/(2k₂) (exp(k₂ Ē²) − 1), Ē = κ_d (Ī₁ − 3) + (1 − 3κ_d)(Ī₄ − 1) (Gasser, Ogden & Holzapfel
 /// 2006; with κ_d = 0 Holzapfel, Gasser & Ogden 2000; its WGSL twin is `shaders/exponential_fibres.wgsl`).
 ///
-/// Families add to an isotropic law, their ground substance: with the neo-Hookean law they are the authors' model, whose
-/// c is μ there. Ē is the strain of the family. At small strains a family is as stiff as [`Fibres`](super::Fibres) of
-/// η = k₁ (1 − 3κ_d)².
+/// Families add to an isotropic law, their ground substance: with the neo-Hookean law they are the authors' model,
+/// whose c is μ there. Ē is the strain of the family. At small strains a family is as stiff as
+/// [`Fibres`](super::Fibres) of η = k₁ (1 − 3κ_d)².
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct ExponentialFibre<T> {

@@ -6,8 +6,8 @@ use crate::math::{Mat3, Real, Sym3, dot_plus, minor};
 /// as inverted when J ≤ 0 and the run stops; what lies between is far beyond any tissue.
 pub const J_FLOOR: f64 = 1e-3;
 
-/// Elements that go when they are turned inside out (`inversion: Remove`) go when J falls below this: squeezed flatter, they need steps
-/// so small, and push so hard where a step passes over J = 0, that what they do is no tissue's doing.
+/// Elements that go when they are turned inside out (`inversion: Remove`) go when J falls below this: squeezed flatter,
+/// they need steps so small, and push so hard where a step passes over J = 0, that what they do is no tissue's doing.
 pub const FLATTEST: f64 = 0.02;
 
 /// Strain measures at a point, all computed from ∇u: F = I + ∇u would throw away the digits of a small ∇u.
@@ -17,7 +17,8 @@ pub struct Kinematics<R> {
     pub green_strain: Sym3<R>,
     /// det C · C⁻¹.
     pub adjugate_c: Sym3<R>,
-    /// J − 1, exact to rounding for small ∇u, at least [`J_FLOOR`] − 1 unless made [`of_any_volume`](Self::of_any_volume).
+    /// J − 1, exact to rounding for small ∇u, at least [`J_FLOOR`] − 1 unless made
+    /// [`of_any_volume`](Self::of_any_volume).
     pub volume_change: R,
     /// J, at least [`J_FLOOR`].
     pub j: R,
@@ -45,16 +46,16 @@ impl<R: Real> Kinematics<R> {
         Self { green_strain, adjugate_c: c.adjugate(), volume_change, j, true_j: one + change, j_m23 }
     }
 
-    /// The same for laws that are defined for every F: J − 1 as it is, also below [`J_FLOOR`] − 1. What has a power of J or
-    /// C⁻¹ in it keeps its floor.
+    /// The same for laws that are defined for every F: J − 1 as it is, also below [`J_FLOOR`] − 1. What has a power of
+    /// J or C⁻¹ in it keeps its floor.
     #[inline(always)]
     pub fn of_any_volume(gradient: &Mat3<R>) -> Self {
         Self { volume_change: volume_change(gradient), ..Self::new(gradient) }
     }
 
     /// Strain measures of the linear theory: ε = ½(∇u + ∇uᵀ) as `green_strain`, tr ε as change of volume, and no
-    /// difference between the body at rest and deformed: C = I. Whether an element is inside out it does not know: J as it is
-    /// is that of F, as for all laws.
+    /// difference between the body at rest and deformed: C = I. Whether an element is inside out it does not know: J as
+    /// it is is that of F, as for all laws.
     #[inline(always)]
     pub fn linear(gradient: &Mat3<R>) -> Self {
         let h = &gradient.0;
@@ -129,7 +130,8 @@ pub(super) fn twice_green_strain<R: Real>(gradient: &Mat3<R>) -> [R; 6] {
     twice
 }
 
-/// J − 1 = tr K + first row of ∇u · first row of K less what both have, with K = cof F − I: exact to rounding for small ∇u.
+/// J − 1 = tr K + first row of ∇u · first row of K less what both have, with K = cof F − I: exact to rounding for small
+/// ∇u.
 #[inline(always)]
 pub(super) fn volume_change<R: Real>(gradient: &Mat3<R>) -> R {
     let h = &gradient.0;

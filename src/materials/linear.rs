@@ -4,8 +4,8 @@ use super::{Elastic, Kinematics};
 use crate::math::{Mat3, Real, Sym3};
 use bevy_ecs::component::Component;
 
-/// Ψ = μ dev ε:dev ε + κ/2 (tr ε)² with ε = ½(∇u + ∇uᵀ): the linear theory (Hooke; e.g. Bonet & Wood 2008, ch. 6; its WGSL
-/// twin is `shaders/linear.wgsl`).
+/// Ψ = μ dev ε:dev ε + κ/2 (tr ε)² with ε = ½(∇u + ∇uᵀ): the linear theory (Hooke; e.g. Bonet & Wood 2008, ch. 6; its
+/// WGSL twin is `shaders/linear.wgsl`).
 ///
 /// P = S = ∂Ψ/∂ε, without a difference between rest and deformed: right while strains **and rotations** stay below some
 /// per cent. A rigid rotation by φ makes a strain of 1 − cos φ.

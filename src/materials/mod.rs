@@ -1,7 +1,7 @@
 //! Constitutive laws: stress at a point from the displacement gradient.
 //!
-//! A law is one Rust file with its WGSL twin of the same stem in `shaders/`. Isochoric stresses add up, viscosity takes its
-//! share of their sum, the volumetric stress comes last: S = S_vol + S_iso − Υ.
+//! A law is one Rust file with its WGSL twin of the same stem in `shaders/`. Isochoric stresses add up, viscosity takes
+//! its share of their sum, the volumetric stress comes last: S = S_vol + S_iso − Υ.
 
 mod arruda_boyce;
 mod elastic;

@@ -36,9 +36,9 @@ impl<R: Real> Elastic<R> for NeoHookean<R> {
         k.adjugate_c.times_coaxial(&deviator).scaled(factor)
     }
 
-    /// With H = ∇u and cof F = I + K, K = tr H I − Hᵀ + cof H: P = μ' F − q cof F + s (F a)⊗a, where μ' = μJ^(−2/3),
-    /// s = 2η(Ī₄ − 1)J^(−2/3) and q = (μ' tr C + s I₄)/(3J) − p. Terms of the size of μ cancel: what is left is written out, with
-    /// H + Hᵀ first, so that small strains keep their digits. A third less work than by way of S.
+    /// With H = ∇u and cof F = I + K, K = tr H I − Hᵀ + cof H: P = μ' F − q cof F + s (F a)⊗a, where μ' = μJ^(−2/3), s
+    /// = 2η(Ī₄ − 1)J^(−2/3) and q = (μ' tr C + s I₄)/(3J) − p. Terms of the size of μ cancel: what is left is written
+    /// out, with H + Hᵀ first, so that small strains keep their digits. A third less work than by way of S.
     #[inline(always)]
     fn stress_at_once(
         &self,
@@ -108,8 +108,8 @@ impl<R: Real> Elastic<R> for NeoHookean<R> {
     }
 
     /// With T = 2E and D = adj C − I = tr T I − T + adj T: S_iso = d I − (μ' − d) D + s (a⊗a − I₄/(3J²) (I + D)), where
-    /// d = μ'(3(J² − 1) − tr T)/(3J²) is what is left of terms of the size of μ; the pressure adds p/J (I + D). Little waits for s,
-    /// which comes last.
+    /// d = μ'(3(J² − 1) − tr T)/(3J²) is what is left of terms of the size of μ; the pressure adds p/J (I + D). Little
+    /// waits for s, which comes last.
     #[inline(always)]
     fn stress_relaxed(
         &self,

@@ -10,8 +10,8 @@ pub const OGDEN_TERMS: usize = 4;
 /// Below this squared stretch the logarithm is taken there: the square of [`J_FLOOR`](super::J_FLOOR).
 const STRETCH_FLOOR: f64 = super::J_FLOOR * super::J_FLOOR;
 
-/// Ψ_iso = Σ_p μ_p/α_p (λ̄₁^α_p + λ̄₂^α_p + λ̄₃^α_p − 3) with λ̄ = J^(−1/3) λ, U = κ/2 (J − 1)² (Ogden 1972; Holzapfel 2000, §6.5;
-/// its WGSL twin is `shaders/ogden.wgsl`).
+/// Ψ_iso = Σ_p μ_p/α_p (λ̄₁^α_p + λ̄₂^α_p + λ̄₃^α_p − 3) with λ̄ = J^(−1/3) λ, U = κ/2 (J − 1)² (Ogden 1972; Holzapfel
+/// 2000, §6.5; its WGSL twin is `shaders/ogden.wgsl`).
 ///
 /// At small strains its shear modulus is ½ Σ μ_p α_p. Programs that write 2μ_p/α_p² instead of μ_p/α_p (Abaqus) mean by
 /// their μ_p what is here ½ μ_p α_p.
@@ -67,8 +67,8 @@ impl<R: Real> Elastic<R> for Ogden<R> {
         }
     }
 
-    /// Σᵢ τᵢ/λᵢ² Nᵢ⊗Nᵢ, τᵢ = Σ_p μ_p (λ̄ᵢ^α_p − mean): of the eigenvalues of E, by e^(α ln λ̄) − 1, which keeps the digits
-    /// of a small strain.
+    /// Σᵢ τᵢ/λᵢ² Nᵢ⊗Nᵢ, τᵢ = Σ_p μ_p (λ̄ᵢ^α_p − mean): of the eigenvalues of E, by e^(α ln λ̄) − 1, which keeps the
+    /// digits of a small strain.
     #[inline(always)]
     fn isochoric(&self, k: &Kinematics<R>) -> Sym3<R> {
         let (strains, axes) = k.green_strain.eigen();

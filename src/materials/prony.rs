@@ -2,8 +2,8 @@
 
 use crate::math::{Real, Sym3};
 
-/// One term of a Prony series: the share α of a stress relaxes with the time τ. The stress is S_iso, or the pressure, whose
-/// history is one number a term.
+/// One term of a Prony series: the share α of a stress relaxes with the time τ. The stress is S_iso, or the pressure,
+/// whose history is one number a term.
 ///
 /// S_iso is reduced by Υ, and six numbers q a term carry the history (Comas et al. 2008, eqs. 1 to 4; the WGSL
 /// twin is `shaders/prony.wgsl`). Both integrators are the same linear recursion with other coefficients:
@@ -41,8 +41,8 @@ impl PronyTerm<f64> {
         Self { stress: rate * alpha, memory: tau / (time_step + tau), rate, aim: alpha }
     }
 
-    /// Damping proportional to stiffness, written as a term: −Υ = (β/Δt)(S − q), q the stress of the step before. So S − Υ =
-    /// S + β Ṡ, the rate taken over the last step.
+    /// Damping proportional to stiffness, written as a term: −Υ = (β/Δt)(S − q), q the stress of the step before. So S
+    /// − Υ = S + β Ṡ, the rate taken over the last step.
     pub fn damping(beta: f64, time_step: f64) -> Self {
         Self { stress: -beta / time_step, memory: beta / time_step, rate: 1.0, aim: 1.0 }
     }

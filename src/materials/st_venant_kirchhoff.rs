@@ -7,8 +7,8 @@ use bevy_ecs::component::Component;
 /// Ψ = μ dev E:dev E + κ/2 (tr E)²: Hooke's law in Green's strain (Bonet & Wood 2008, §6.4; its WGSL twin is
 /// `shaders/st_venant_kirchhoff.wgsl`).
 ///
-/// Right for large rotations with small strains. Squeezed it softens, and below a stretch of 1/√3 = .58 pushes back ever
-/// less, down to nothing at 0: choose another law there. θ is tr E, which a shear changes too: so near
+/// Right for large rotations with small strains. Squeezed it softens, and below a stretch of 1/√3 = .58 pushes back
+/// ever less, down to nothing at 0: choose another law there. θ is tr E, which a shear changes too: so near
 /// incompressibility it stiffens in shear as no rubber does.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 #[repr(C)]

@@ -4,16 +4,18 @@ use super::{Elastic, Kinematics};
 use crate::math::{Mat3, Real, Sym3, minor};
 use bevy_ecs::component::Component;
 
-/// Ψ = m/2 (I₁ − 3) + l/2 (J − a)² − m/2 ln(I₁ + 1) with I₁ = tr C, m = 4/3 μ, l = λ + 5/6 μ, a = 1 + 3m/(4l) (Smith, de Goes &
-/// Kim 2018, eqs. 13 to 16; its WGSL twin is `shaders/stable_neo_hookean.wgsl`): μ and λ = κ − 2/3 μ are those of small strains.
+/// Ψ = m/2 (I₁ − 3) + l/2 (J − a)² − m/2 ln(I₁ + 1) with I₁ = tr C, m = 4/3 μ, l = λ + 5/6 μ, a = 1 + 3m/(4l) (Smith,
+/// de Goes & Kim 2018, eqs. 13 to 16; its WGSL twin is `shaders/stable_neo_hookean.wgsl`): μ and λ = κ − 2/3 μ are
+/// those of small strains.
 ///
-/// Nothing in it is divided by J: P = m I₁/(I₁ + 1) F + l (J − a) cof F is finite and smooth for every F, flat and inside
-/// out too, and F = R alone, a rotation, is without stress. So tissue that has been turned inside out turns back.
+/// Nothing in it is divided by J: P = m I₁/(I₁ + 1) F + l (J − a) cof F is finite and smooth for every F, flat and
+/// inside out too, and F = R alone, a rotation, is without stress. So tissue that has been turned inside out turns
+/// back.
 ///
-/// Here it is the same Ψ up to a constant, in parts of which none has a stress at rest, so that f32 keeps the digits of a small
-/// strain: U = κ/2 (J − 1)², which elements may average, and
-/// Ψ_iso = m/2 (I₁ − 3) − m/2 ln((I₁ + 1)/4) − 3m/4 (J − 1) + m/16 (J − 1)²,
-/// at small strains μ dev ε:dev ε as of the other laws. At large ones it answers to the volume, too.
+/// Here it is the same Ψ up to a constant, in parts of which none has a stress at rest, so that f32 keeps the digits of
+/// a small strain: U = κ/2 (J − 1)², which elements may average, and Ψ_iso = m/2 (I₁ − 3) − m/2 ln((I₁ + 1)/4) − 3m/4
+/// (J − 1) + m/16 (J − 1)², at small strains μ dev ε:dev ε as of the other laws. At large ones it answers to the
+/// volume, too.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct StableNeoHookean<T: Send + Sync + 'static> {
@@ -52,8 +54,8 @@ impl<R: Real> Elastic<R> for StableNeoHookean<R> {
         Kinematics::of_any_volume(gradient)
     }
 
-    /// With A = I + ∇u: growth A + 3m/4 (A − cof A) + (p + m/8 (J − 1)) cof A. Of `isochoric` counts what effects have made of
-    /// S_iso, nothing without effects: C⁻¹ does not exist at J = 0.
+    /// With A = I + ∇u: growth A + 3m/4 (A − cof A) + (p + m/8 (J − 1)) cof A. Of `isochoric` counts what effects have
+    /// made of S_iso, nothing without effects: C⁻¹ does not exist at J = 0.
     #[inline(always)]
     fn first_stress(&self, gradient: &Mat3<R>, k: &Kinematics<R>, isochoric: &Sym3<R>, pressure: R) -> Mat3<R> {
         let h = &gradient.0;

@@ -32,8 +32,8 @@ impl<R: Real> Rotation<R> {
 }
 
 impl<R: Real> Sym3<R> {
-    /// Eigenvalues, and the unit eigenvector of each, both to a few ε of the largest entry. Jacobi's cyclic rotations: the
-    /// entries off the diagonal fall quadratically, and four sweeps (f64: five) bring them below ε.
+    /// Eigenvalues, and the unit eigenvector of each, both to a few ε of the largest entry. Jacobi's cyclic rotations:
+    /// the entries off the diagonal fall quadratically, and four sweeps (f64: five) bring them below ε.
     #[inline(always)]
     pub fn eigen(&self) -> ([R; 3], [[R; 3]; 3]) {
         let [mut xx, mut yy, mut zz, mut xy, mut yz, mut xz] = self.0;

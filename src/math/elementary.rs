@@ -1,5 +1,5 @@
-//! Exponential and logarithm over any [`Real`], without a branch: arithmetic and a few moved bits, so that a register of
-//! numbers costs what one does, and the GPU's twin (`shaders/elementary.wgsl`) makes the same digits.
+//! Exponential and logarithm over any [`Real`], without a branch: arithmetic and a few moved bits, so that a register
+//! of numbers costs what one does, and the GPU's twin (`shaders/elementary.wgsl`) makes the same digits.
 
 use super::Real;
 

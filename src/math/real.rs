@@ -42,8 +42,8 @@ pub trait Real:
     /// (m, k) with x = m·2^k, m in [√½, √2), k whole, for a normal x > 0: its bits.
     fn mantissa_and_exponent(self) -> (Self, Self);
 
-    /// Does a task out of line, with the instructions that this kind of number has: compiled once for the kind of number,
-    /// not once more at each place.
+    /// Does a task out of line, with the instructions that this kind of number has: compiled once for the kind of
+    /// number, not once more at each place.
     fn apart<T: Task<Self>>(self, task: T) -> T::Output;
 
     /// |x|.

@@ -29,7 +29,8 @@ impl<T: SimdScalar> Default for Scratch<T> {
     }
 }
 
-/// Columns of the rows `at`, a row a lane: instructions of each machine where there are better ones than one number at a time.
+/// Columns of the rows `at`, a row a lane: instructions of each machine where there are better ones than one number at
+/// a time.
 #[inline(always)]
 pub(super) fn load_f32s<S: Simd>(simd: S, rows: &Rows<f32>, at: &[u16]) -> [S::f32s; 4] {
     #[cfg(target_arch = "x86_64")]

@@ -86,8 +86,8 @@ impl<'a> Locator<'a> {
         (x + self.boxes[0] * (y + self.boxes[1] * z)) as u32
     }
 
-    /// Where a point lies (m). A point outside of the mesh is taken to the nearest place of the element that it is least
-    /// outside of, among those near it; `None` when there is none within two boxes (about two elements).
+    /// Where a point lies (m). A point outside of the mesh is taken to the nearest place of the element that it is
+    /// least outside of, among those near it; `None` when there is none within two boxes (about two elements).
     pub fn locate(&self, x: DVec3) -> Option<Location> {
         let at = self.cell(x);
         let mut best: Option<Location> = None;

@@ -84,7 +84,8 @@ pub fn hex_smallest_altitude(p: [DVec3; 8]) -> f64 {
 }
 
 impl Mesh {
-    /// The corners of a tetrahedron (m). Panics on a row of `points` that does not exist; [`Mesh::soundness`] finds those.
+    /// The corners of a tetrahedron (m). Panics on a row of `points` that does not exist; [`Mesh::soundness`] finds
+    /// those.
     pub fn tet_corners(&self, row: usize) -> [DVec3; 4] {
         self.tets[row].map(|point| self.points[point as usize])
     }

@@ -1,6 +1,7 @@
 //! Meshes as authors give them: points, elements and named sets in the author's order and numbering.
 //!
-//! A [`Mesh`] is what generators make and files hold; the engine renumbers it for locality when a body is built from it.
+//! A [`Mesh`] is what generators make and files hold; the engine renumbers it for locality when a body is built from
+//! it.
 
 mod error;
 pub mod generators;
@@ -64,8 +65,8 @@ pub struct Mesh {
     pub element_ids: Ids,
     /// Named sets of points (rows of `points`, ascending, each once).
     pub node_sets: BTreeMap<String, Vec<u32>>,
-    /// Lists of points by their numbers, with their rows (ascending, each once): [`Mesh::refine`] adds the new points between
-    /// them, as it does to named sets.
+    /// Lists of points by their numbers, with their rows (ascending, each once): [`Mesh::refine`] adds the new points
+    /// between them, as it does to named sets.
     pub point_lists: BTreeMap<Vec<u64>, Vec<u32>>,
     /// Named sets of surface faces: rows of `points`; a triangle repeats its last point.
     pub face_sets: BTreeMap<String, Vec<[u32; 4]>>,

@@ -26,8 +26,8 @@ pub fn mean_ratio(p: [DVec3; 4]) -> f64 {
     if sum > 0.0 { volume.signum() * 12.0 * (3.0 * volume.abs()).powf(2.0 / 3.0) / sum } else { 0.0 }
 }
 
-/// Scaled Jacobian of a hexahedron (Knupp 2000): the least of its corners' determinants over the lengths of their edges: 1 for
-/// a cuboid.
+/// Scaled Jacobian of a hexahedron (Knupp 2000): the least of its corners' determinants over the lengths of their
+/// edges: 1 for a cuboid.
 pub fn scaled_jacobian(p: [DVec3; 8]) -> f64 {
     const NEIGHBOURS: [[usize; 3]; 8] =
         [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]];

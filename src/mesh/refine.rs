@@ -7,8 +7,8 @@ use std::collections::{BTreeSet, HashMap};
 /// Edges of a tetrahedron by its corners; [`INNER`] counts them in this order.
 const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 
-/// The octahedron in the middle of a tetrahedron, cut along one of its diagonals: two edges of [`EDGES`] whose middles the
-/// diagonal joins, and the other four around it, right-handed.
+/// The octahedron in the middle of a tetrahedron, cut along one of its diagonals: two edges of [`EDGES`] whose middles
+/// the diagonal joins, and the other four around it, right-handed.
 const INNER: [([usize; 2], [usize; 4]); 3] = [([0, 5], [1, 2, 4, 3]), ([1, 4], [2, 0, 3, 5]), ([2, 3], [0, 1, 5, 4])];
 
 /// Corners of a hexahedron (VTK order) by bits: 1 upper in the first direction, 2 in the second, 4 in the third.
@@ -21,9 +21,9 @@ impl Mesh {
     /// Cuts every element into eight, so many times over. Edges are halved where they are: a curved outline stays the
     /// polygon it is.
     ///
-    /// Points keep their rows and numbers, new ones follow. The parts of an element bear its number, its vectors and its
-    /// sets. A new point belongs to a set of points, or to a list of them, when the face, element or edge it lies on does
-    /// (with faces of the surface tried first).
+    /// Points keep their rows and numbers, new ones follow. The parts of an element bear its number, its vectors and
+    /// its sets. A new point belongs to a set of points, or to a list of them, when the face, element or edge it lies
+    /// on does (with faces of the surface tried first).
     ///
     /// # Errors
     /// More elements or points than 32 bits count.
@@ -139,9 +139,9 @@ impl Middles {
         parts().unwrap_or_default()
     }
 
-    /// Adds to a set of points the new ones that belong to it: those on the faces of its own, else on faces of the surface,
-    /// else also in elements, that have all their corners in it; and those between points of the set of which one is on none
-    /// of these.
+    /// Adds to a set of points the new ones that belong to it: those on the faces of its own, else on faces of the
+    /// surface, else also in elements, that have all their corners in it; and those between points of the set of which
+    /// one is on none of these.
     fn join(&self, near: &Near<'_>, set: &mut Vec<u32>, own: Option<&Vec<[u32; 4]>>) {
         if set.len() < 2 {
             return;
@@ -225,8 +225,8 @@ fn key(parents: &[u32]) -> [u32; 8] {
     key
 }
 
-/// Eight tetrahedra in the place of one, right-handed if it is: one in each corner, and four around the shortest diagonal of
-/// the octahedron between them.
+/// Eight tetrahedra in the place of one, right-handed if it is: one in each corner, and four around the shortest
+/// diagonal of the octahedron between them.
 fn eight_tets(tet: &[u32; 4], middles: &mut Middles) -> [[u32; 4]; 8] {
     let m = EDGES.map(|[a, b]| middles.of(&[tet[a], tet[b]]));
     let length = |&([a, b], _): &([usize; 2], [usize; 4])| {

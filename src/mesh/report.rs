@@ -1,5 +1,5 @@
-//! What a mesh is, in short: where it lies, what it consists of, its named sets, how good its elements are, and what its unit of
-//! length could be.
+//! What a mesh is, in short: where it lies, what it consists of, its named sets, how good its elements are, and what
+//! its unit of length could be.
 
 use super::{Mesh, quality::Quality};
 use glam::DVec3;

@@ -1,4 +1,5 @@
-//! Guards: what kernels found wrong in passing, and what a look at energies and elements shows, told in the author's words.
+//! Guards: what kernels found wrong in passing, and what a look at energies and elements shows, told in the author's
+//! words.
 
 use super::look::{Look, look, look_at_result};
 use super::rounding::Rounding;
@@ -26,7 +27,8 @@ pub struct Watch {
     pub limits: Guards,
     /// Whether it insists on a step beyond the stable one.
     pub beyond: bool,
-    /// Whether systems of the scene's own write more than external forces: energy is theirs to make, and only warned of.
+    /// Whether systems of the scene's own write more than external forces: energy is theirs to make, and only warned
+    /// of.
     pub foreign: bool,
     /// Whether elements may go and take energy with them: what is lost then is no error.
     pub removal: bool,
@@ -106,16 +108,17 @@ fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || a > b { a } else { b }
 }
 
-/// What is wrong with the present state itself. Kernels notice what is turned inside out when they next take its forces: of a
-/// state that is handed out as a result, and of the last one, that would be too late.
+/// What is wrong with the present state itself. Kernels notice what is turned inside out when they next take its
+/// forces: of a state that is handed out as a result, and of the last one, that would be too late.
 pub(super) fn find_in_result(world: &mut World, good_until: f64, watch: &Watch) -> Result<Option<Instability>, Error> {
     let parts = look_at_result(world)?;
     let found = seen_inside_out(&parts, world);
     Ok(found.map(|(body, what, criterion)| instability(world, watch, body, what, INVERTED, criterion, good_until)))
 }
 
-/// Looks at energies and elements. Warns of what passes a limit, each once, and ends the run where elements hold more energy
-/// than was spent on them: so a step beyond the stable one shows that does not run away, because large motion holds it.
+/// Looks at energies and elements. Warns of what passes a limit, each once, and ends the run where elements hold more
+/// energy than was spent on them: so a step beyond the stable one shows that does not run away, because large motion
+/// holds it.
 pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch) -> Result<(), Error> {
     let seen = look(world)?;
     if let Some((what, value)) = not_finite(&seen, world) {
@@ -160,8 +163,9 @@ pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch) -> Result
     Err(Error::Unstable(Box::new(broken)))
 }
 
-/// Energy (J) that has come from nothing since the start (negative: gone), and what elements hold. Of viscous parts only
-/// what remains in the long term is known to be held; the rest may have been lost, so nothing is said of energy that went.
+/// Energy (J) that has come from nothing since the start (negative: gone), and what elements hold. Of viscous parts
+/// only what remains in the long term is known to be held; the rest may have been lost, so nothing is said of energy
+/// that went.
 fn balance(memory: &mut GuardMemory, seen: &Look, watch: &Watch, world: &World) -> (f64, f64) {
     let Held { lasting: held, all, viscous } = held_by(seen, world);
     memory.scale = memory.scale.max(all).max(seen.spent.abs());

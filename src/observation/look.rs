@@ -1,5 +1,5 @@
-//! What the guards look at: energies of parts, the smallest J, the fastest node. On the CPU by vector kernels, on the GPU by
-//! kernels whose sums of sixty-four rows each are brought to the host.
+//! What the guards look at: energies of parts, the smallest J, the fastest node. On the CPU by vector kernels, on the
+//! GPU by kernels whose sums of sixty-four rows each are brought to the host.
 
 use crate::backend::cpu::{BlockLaw, BlockSums, Cpu, WatchedColumns, run_watch};
 use crate::backend::device::{Device, bring_to_host};

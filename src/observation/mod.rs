@@ -32,9 +32,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Duration;
 
-/// Steps between two looks for numbers that are not finite and for elements turned inside out, at most, on the host. On a
-/// GPU its kernels look in every step, and the host asks them in every 256 at least; where systems of one's own run on the
-/// host meanwhile, in every 16 there, too.
+/// Steps between two looks for numbers that are not finite and for elements turned inside out, at most, on the host. On
+/// a GPU its kernels look in every step, and the host asks them in every 256 at least; where systems of one's own run
+/// on the host meanwhile, in every 16 there, too.
 pub const HOST_GUARD_STEPS: u64 = 16;
 /// The same where all systems run on the device.
 pub const DEVICE_GUARD_STEPS: u64 = 256;
@@ -114,8 +114,8 @@ impl Observer {
         tracks.map(|track| &mut track.every).chain(&mut self.snapshots).chain([&mut self.fields])
     }
 
-    /// Will go on with steps of another length (s) from here; the run ends with `last_step`. The clock and the columns are still
-    /// those of the last step.
+    /// Will go on with steps of another length (s) from here; the run ends with `last_step`. The clock and the columns
+    /// are still those of the last step.
     ///
     /// # Errors
     /// What the GPU says; that what is observed is not finite.

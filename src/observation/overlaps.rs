@@ -1,5 +1,5 @@
-//! Bodies that are where others are. Nothing keeps bodies apart as long as there is no contact: what they do to each other
-//! then is nothing, and that must be known.
+//! Bodies that are where others are. Nothing keeps bodies apart as long as there is no contact: what they do to each
+//! other then is nothing, and that must be known.
 
 use crate::backend::device::bring_to_host;
 use crate::components::*;
@@ -12,8 +12,8 @@ use glam::DVec3;
 const OVERLAP: &str = "overlap";
 /// Pairs of bodies that are told; who has more knows what is wrong.
 const MOST_PAIRS: usize = 100;
-/// How deep in its own element, as a share of the way from its surface to its middle, a point must be that lies in another
-/// body: what only touches does not overlap, nor do curved surfaces whose facets differ.
+/// How deep in its own element, as a share of the way from its surface to its middle, a point must be that lies in
+/// another body: what only touches does not overlap, nor do curved surfaces whose facets differ.
 const DEPTH: f64 = 0.05;
 
 /// Where two bodies overlap.
@@ -35,8 +35,8 @@ struct Placed<'a> {
     high: DVec3,
 }
 
-/// Looks for pairs of bodies that overlap, and warns once of each. Boxes around bodies are compared first: those of one body,
-/// or apart from each other, take no time.
+/// Looks for pairs of bodies that overlap, and warns once of each. Boxes around bodies are compared first: those of one
+/// body, or apart from each other, take no time.
 ///
 /// # Errors
 /// What the GPU says.
@@ -95,7 +95,8 @@ fn place(world: &World, entity: Entity) -> Option<Placed<'_>> {
     Some(Placed { label: &world.get::<Label>(entity)?.0, authoring, points, low, high })
 }
 
-/// The elements of a body that are there and reach into a box, with their places in the author's order and those of their nodes.
+/// The elements of a body that are there and reach into a box, with their places in the author's order and those of
+/// their nodes.
 struct NearBox {
     mesh: Mesh,
     elements: Vec<usize>,
@@ -138,8 +139,8 @@ fn near(world: &World, body: &Placed<'_>, low: DVec3, high: DVec3) -> NearBox {
     NearBox { mesh, elements, nodes, low, high }
 }
 
-/// Whether a point below the surface of one body lies in an element of the other. Where the elements near the box leave off
-/// counts as surface, too: what is in there is in the body all the same.
+/// Whether a point below the surface of one body lies in an element of the other. Where the elements near the box leave
+/// off counts as surface, too: what is in there is in the body all the same.
 fn overlap(one: &NearBox, other: &NearBox, of: &Placed<'_>, with: &Placed<'_>) -> Option<Overlap> {
     if one.elements.is_empty() || other.elements.is_empty() {
         return None;

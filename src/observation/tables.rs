@@ -9,7 +9,8 @@ use bevy_ecs::prelude::*;
 use std::time::Instant;
 
 impl Observer {
-    /// Observes all that is due. The guards have looked before: a GPU has nothing left to do, and what this takes is its own.
+    /// Observes all that is due. The guards have looked before: a GPU has nothing left to do, and what this takes is
+    /// its own.
     pub(super) fn observe_at(&mut self, moment: Moment, world: &mut World) -> Result<(), Error> {
         let started = Instant::now();
         let observed = self.observe_all(moment, world);

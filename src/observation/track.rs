@@ -1,8 +1,8 @@
 //! Rows of a table at the times that are asked for, which lie between steps.
 //!
 //! A step ends where it ends. Of a time that is asked for within a step, what is observed at both ends of it is
-//! interpolated linearly, whose error is of second order in Δt as that of the steps themselves. The last row is that of the
-//! end, whether that is asked for or not.
+//! interpolated linearly, whose error is of second order in Δt as that of the steps themselves. The last row is that of
+//! the end, whether that is asked for or not.
 
 use crate::components::Cadence;
 
@@ -24,7 +24,8 @@ impl Track {
         Self { every, before: None }
     }
 
-    /// The next step, after `step`, at whose end it has to be observed: that of a time that is asked for, or the one before.
+    /// The next step, after `step`, at whose end it has to be observed: that of a time that is asked for, or the one
+    /// before.
     pub fn next_look(&self, step: u64) -> u64 {
         let due = self.every.next_after(step);
         if due > step + 1 && self.every.overshoot(due) > 0.0 { due - 1 } else { due }
@@ -78,8 +79,8 @@ pub(super) enum Moment {
     Step(u64, bool),
     /// At the start or at the end of a static analysis.
     Rest,
-    /// On the way there, while loads grow: from a time to a time, in steps that need not be whole. What is observed is no
-    /// equilibrium, and has the time it is observed at.
+    /// On the way there, while loads grow: from a time to a time, in steps that need not be whole. What is observed is
+    /// no equilibrium, and has the time it is observed at.
     OnTheWay(f64, f64),
 }
 

@@ -5,8 +5,8 @@ use std::fs::{self, File};
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-/// Writes a file under the name `NAME.partial` beside its own and renames it when it is complete: whoever looks at `path`
-/// sees the old file or the new one, never a part. A failed attempt takes its part away again.
+/// Writes a file under the name `NAME.partial` beside its own and renames it when it is complete: whoever looks at
+/// `path` sees the old file or the new one, never a part. A failed attempt takes its part away again.
 pub fn replace(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> Result<(), OutputError>,

@@ -21,8 +21,8 @@ pub struct Folder {
 }
 
 impl Folder {
-    /// Makes the folder, or takes one that is empty (hidden files aside) or holds an earlier output, which is removed: the
-    /// files that sinew writes and no other.
+    /// Makes the folder, or takes one that is empty (hidden files aside) or holds an earlier output, which is removed:
+    /// the files that sinew writes and no other.
     ///
     /// # Errors
     /// A folder with anything else in it, one that another process writes into, or the system refuses.
@@ -63,8 +63,8 @@ impl Folder {
         &self.path
     }
 
-    /// The path of a file in the folder. A name that sinew does not know of itself (a probe's table) is noted in the mark, so
-    /// that the next run can clear it. Claim names when a run begins: each one rewrites the mark.
+    /// The path of a file in the folder. A name that sinew does not know of itself (a probe's table) is noted in the
+    /// mark, so that the next run can clear it. Claim names when a run begins: each one rewrites the mark.
     pub fn claim(&mut self, name: &str) -> Result<PathBuf, OutputError> {
         if !is_plain(name) || name == MARK {
             return Err(OutputError::FileName { name: name.to_string() });
@@ -90,8 +90,9 @@ fn names_in(path: &Path) -> Result<BTreeSet<String>, OutputError> {
     Ok(names)
 }
 
-/// Removes the files of the previous run. Names are taken from what is in the folder, so that no list can point elsewhere;
-/// the mark stays until it is written anew, so that a run that breaks meanwhile leaves a folder that is still known.
+/// Removes the files of the previous run. Names are taken from what is in the folder, so that no list can point
+/// elsewhere; the mark stays until it is written anew, so that a run that breaks meanwhile leaves a folder that is
+/// still known.
 fn clear(folder: &Path, names: &BTreeSet<String>) -> Result<(), OutputError> {
     let mark = fs::read_to_string(folder.join(MARK)).unwrap_or_default();
     let mark: Value = serde_json::from_str(&mark).unwrap_or_default();

@@ -1,5 +1,5 @@
-//! A mesh as a Gmsh file (format 2.2, text): the format that holds all that a mesh of sinew has, named sets of points, faces and
-//! elements, numbers, and vectors of elements, and that other programs read.
+//! A mesh as a Gmsh file (format 2.2, text): the format that holds all that a mesh of sinew has, named sets of points,
+//! faces and elements, numbers, and vectors of elements, and that other programs read.
 
 use super::{OutputError, replace};
 use crate::mesh::Mesh;
@@ -15,7 +15,8 @@ const QUAD: u32 = 3;
 const TET: u32 = 4;
 const HEX: u32 = 5;
 
-/// Writes a mesh; the file appears when it is complete. Numbers are written with as many digits as give each back exactly.
+/// Writes a mesh; the file appears when it is complete. Numbers are written with as many digits as give each back
+/// exactly.
 ///
 /// # Errors
 /// What the system says.

@@ -1,5 +1,5 @@
-//! Who writes into an output folder: one process at a time. The system lets go of a lock when its process ends, however it
-//! ends; nothing is left to be cleared away by hand.
+//! Who writes into an output folder: one process at a time. The system lets go of a lock when its process ends, however
+//! it ends; nothing is left to be cleared away by hand.
 
 use super::OutputError;
 use serde_json::{Value, json};

@@ -9,8 +9,9 @@
 //! | `unloaded.msh` | [`write_gmsh`] |
 //! | `summary.json` | [`summary::write`] |
 //!
-//! Every file is readable at every moment: whole files are written under another name and renamed, files that grow do so
-//! by whole rows. One process at a time writes into a folder: [`Folder`] holds a [`Lock`]. A run that is interrupted leaves what it had written until then.
+//! Every file is readable at every moment: whole files are written under another name and renamed, files that grow do
+//! so by whole rows. One process at a time writes into a folder: [`Folder`] holds a [`Lock`]. A run that is interrupted
+//! leaves what it had written until then.
 
 mod atomic;
 mod error;

@@ -11,8 +11,8 @@ pub const FIELDS: &str = "fields.pvd";
 const HEAD: &str = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n  <Collection>\n";
 const TAIL: &str = "  </Collection>\n</VTKFile>\n";
 
-/// A growing series of frames. `fields.pvd` is complete after every frame: the closing tags are written over with the new
-/// line and themselves, in one call, so that a long series costs no more a frame than a short one.
+/// A growing series of frames. `fields.pvd` is complete after every frame: the closing tags are written over with the
+/// new line and themselves, in one call, so that a long series costs no more a frame than a short one.
 pub struct Series {
     folder: PathBuf,
     name: String,

@@ -17,8 +17,8 @@ pub fn write<T: Serialize>(path: &Path, summary: &T) -> Result<(), OutputError> 
 
 /// A summary as JSON.
 ///
-/// JSON has no NaN and no infinity. A number that is not finite becomes `null`, and the key `not_finite` of the outermost
-/// object says which ones and what they were: a run that broke still tells how.
+/// JSON has no NaN and no infinity. A number that is not finite becomes `null`, and the key `not_finite` of the
+/// outermost object says which ones and what they were: a run that broke still tells how.
 ///
 /// # Errors
 /// What cannot stand in JSON.

@@ -24,8 +24,8 @@ impl Table {
         Ok(table)
     }
 
-    /// Appends a row of as many numbers as the header has names. Numbers get as many digits as give them back exactly; what
-    /// is not finite stands as `NaN`, `inf` or `-inf`.
+    /// Appends a row of as many numbers as the header has names. Numbers get as many digits as give them back exactly;
+    /// what is not finite stands as `NaN`, `inf` or `-inf`.
     pub fn row(&mut self, numbers: &[f64]) -> Result<(), OutputError> {
         if numbers.len() != self.columns {
             let (path, columns) = (self.path.clone(), self.columns);

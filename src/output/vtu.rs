@@ -1,4 +1,5 @@
-//! One frame as a VTU file (VTK XML, unstructured grid): appended raw data in zlib blocks, as ParaView writes it itself.
+//! One frame as a VTU file (VTK XML, unstructured grid): appended raw data in zlib blocks, as ParaView writes it
+//! itself.
 
 use super::{OutputError, replace};
 use flate2::Compression;
@@ -169,8 +170,8 @@ impl Writer<'_> {
         writeln!(self.file, "{:OFFSET_ROOM$}/>", "")
     }
 
-    /// Writes one array and tells where it begins. Its head: number of blocks, bytes a block, bytes of the last block when
-    /// that is shorter, then the compressed size of each block.
+    /// Writes one array and tells where it begins. Its head: number of blocks, bytes a block, bytes of the last block
+    /// when that is shorter, then the compressed size of each block.
     fn array(&mut self, bytes: &[u8]) -> std::io::Result<u64> {
         let place = self.file.stream_position()? - self.data;
         let blocks = bytes.par_chunks(BLOCK).map(compress).collect::<std::io::Result<Vec<_>>>()?;

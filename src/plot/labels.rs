@@ -26,8 +26,8 @@ fn overlap(a: &Area, b: &Area) -> bool {
     a[0] < b[2] && b[0] < a[2] && a[1] < b[3] && b[1] < a[3]
 }
 
-/// Places labels beside their points, in order; those that come first have the better places. `taken`: what is there already,
-/// the points themselves for instance; `page`: where labels may stand. `None` for a label that has no place.
+/// Places labels beside their points, in order; those that come first have the better places. `taken`: what is there
+/// already, the points themselves for instance; `page`: where labels may stand. `None` for a label that has no place.
 pub fn place(labels: &[((f64, f64), &str)], mut taken: Vec<Area>, page: Area) -> Vec<Option<Spot>> {
     let mut spots = Vec::new();
     for &((x, y), text) in labels {

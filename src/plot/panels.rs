@@ -1,4 +1,5 @@
-//! Small multiples: panels beside each other, each of a few lines over a logarithmic axis, with a band where a line has noise.
+//! Small multiples: panels beside each other, each of a few lines over a logarithmic axis, with a band where a line has
+//! noise.
 
 use super::axis::Axis;
 use super::svg::Svg;

@@ -6,8 +6,8 @@ use crate::output::{OutputError, replace};
 use std::io::Write;
 use std::path::Path;
 
-/// Hundredths of a second that each of so many pictures is shown: four seconds for all together, but 10 to 25 pictures a
-/// second; less only when two seconds cannot be filled otherwise.
+/// Hundredths of a second that each of so many pictures is shown: four seconds for all together, but 10 to 25 pictures
+/// a second; less only when two seconds cannot be filled otherwise.
 pub fn delay(frames: usize) -> u16 {
     let frames = frames.max(1) as u16;
     (400 / frames).clamp(4, 10).max(200u16.div_ceil(frames)).min(50)
@@ -29,8 +29,8 @@ pub fn pictures(frames: usize) -> usize {
     frames + typical(frames).len()
 }
 
-/// Writes an animation that loops for ever; the file appears when it is complete. `picture` draws a picture of the series;
-/// some are drawn twice, because the colours have to be chosen first.
+/// Writes an animation that loops for ever; the file appears when it is complete. `picture` draws a picture of the
+/// series; some are drawn twice, because the colours have to be chosen first.
 pub fn write_gif(
     path: &Path,
     frames: usize,

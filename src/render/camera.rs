@@ -109,9 +109,9 @@ impl Fit {
         self.ground
     }
 
-    /// The camera, or nothing when there is no point. The planes through the eye that bound the view touch the points; of
-    /// the narrower direction both, and in the other one the points are in the middle. With a point to look at, that is
-    /// in the middle, and one plane touches. Zoom is a longer lens: the eye stays.
+    /// The camera, or nothing when there is no point. The planes through the eye that bound the view touch the points;
+    /// of the narrower direction both, and in the other one the points are in the middle. With a point to look at, that
+    /// is in the middle, and one plane touches. Zoom is a longer lens: the eye stays.
     pub fn camera(&self) -> Option<Camera> {
         let (near, far) = self.depth;
         if near < far {
@@ -134,8 +134,8 @@ impl Fit {
 }
 
 impl Camera {
-    /// Where a point appears (pixels), and the inverse of its distance along the line of sight (1/m), negative behind the
-    /// eye.
+    /// Where a point appears (pixels), and the inverse of its distance along the line of sight (1/m), negative behind
+    /// the eye.
     pub fn project(&self, point: Vec3) -> Vec3 {
         let seen = self.axes * (point - self.eye);
         let inverse = -1.0 / seen.z;
@@ -148,7 +148,8 @@ impl Camera {
         self.eye
     }
 
-    /// What lies at a pixel: the eye and so many times this (m), with the distance along the line of sight as the number.
+    /// What lies at a pixel: the eye and so many times this (m), with the distance along the line of sight as the
+    /// number.
     pub fn ray(&self, pixel: Vec2) -> Vec3 {
         let aside = (pixel - self.middle) / self.focal;
         self.axes.transpose() * Vec3::new(aside.x, -aside.y, -1.0)

@@ -3,8 +3,8 @@
 use super::colour;
 use glam::Vec3;
 
-/// A key light from the upper left, a weaker one from the right, some light from everywhere and a small gloss. Directions
-/// as the eye sees them: to the right, up, towards the eye.
+/// A key light from the upper left, a weaker one from the right, some light from everywhere and a small gloss.
+/// Directions as the eye sees them: to the right, up, towards the eye.
 pub struct Light {
     key: Vec3,
     fill: Vec3,

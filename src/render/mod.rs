@@ -1,6 +1,6 @@
 //! Pictures of a run, drawn on the CPU: the deformed surface, shaded, coloured by a field, with its mesh, a colour bar,
-//! the time and the axes; cut open, seen through, before its shape at rest, as a scene's `picture` says it. No graphics driver
-//! is needed, and the same input gives the same bytes everywhere.
+//! the time and the axes; cut open, seen through, before its shape at rest, as a scene's `picture` says it. No graphics
+//! driver is needed, and the same input gives the same bytes everywhere.
 //!
 //! ```text
 //! series   fields.pvd -> frames                frame    one VTU file -> points, cells, arrays

@@ -1,4 +1,5 @@
-//! Values of elements averaged at nodes: over the elements of one material around a node, weighted by their volume at rest.
+//! Values of elements averaged at nodes: over the elements of one material around a node, weighted by their volume at
+//! rest.
 
 use super::RenderError;
 use super::frame::{FrameFile, Place};

@@ -5,8 +5,8 @@ use glam::Vec3;
 /// Cosine of the largest angle between neighbouring faces that still look like one smooth surface (40°).
 const CREASE: f32 = 0.766;
 
-/// One normal for each corner of each face (a triangle repeats its last point): the mean of the normals of the faces around
-/// that point which lie within 40° of the face's own.
+/// One normal for each corner of each face (a triangle repeats its last point): the mean of the normals of the faces
+/// around that point which lie within 40° of the face's own.
 pub fn of_corners(vertices: &[Vec3], faces: &[[u32; 4]]) -> Vec<[Vec3; 4]> {
     let own: Vec<Vec3> = faces.iter().map(|face| area_vector(vertices, face)).collect();
     let around = Around::new(vertices.len(), faces);
@@ -19,7 +19,8 @@ pub fn of_corners(vertices: &[Vec3], faces: &[[u32; 4]]) -> Vec<[Vec3; 4]> {
     (0..faces.len()).map(|face| faces[face].map(|point| corner(face, point))).collect()
 }
 
-/// Which sides of each face are borders or creases of more than 40°: bit 0 the side from its first corner to its second.
+/// Which sides of each face are borders or creases of more than 40°: bit 0 the side from its first corner to its
+/// second.
 pub fn creases(vertices: &[Vec3], faces: &[[u32; 4]]) -> Vec<u8> {
     let own: Vec<Vec3> = faces.iter().map(|face| area_vector(vertices, face).normalize_or_zero()).collect();
     let mut sides: Vec<([u32; 2], u32, u8)> = Vec::with_capacity(4 * faces.len());

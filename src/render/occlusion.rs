@@ -1,5 +1,5 @@
-//! Soft shadows: how much of a wide sky each point sees. The sky is some directions about up and the key light; along each, a
-//! map says how far the nearest surface is.
+//! Soft shadows: how much of a wide sky each point sees. The sky is some directions about up and the key light; along
+//! each, a map says how far the nearest surface is.
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;

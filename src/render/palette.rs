@@ -17,9 +17,9 @@ const MOST_KEPT: usize = 28;
 pub const UNCHANGED: u8 = 255;
 
 impl Palette {
-    /// Chooses colours for some pictures. Those that fill more than a thousandth of them (background, letters) stay as they
-    /// are. Of the others, the group of colours with the largest error is cut in two at its mean, along its longest side,
-    /// until there are 255 colours; each group is represented by its mean.
+    /// Chooses colours for some pictures. Those that fill more than a thousandth of them (background, letters) stay as
+    /// they are. Of the others, the group of colours with the largest error is cut in two at its mean, along its
+    /// longest side, until there are 255 colours; each group is represented by its mean.
     pub fn new<'a>(images: impl IntoIterator<Item = &'a Image>) -> Palette {
         let mut counts = HashMap::<[u8; 3], u64>::new();
         for pixel in images.into_iter().flat_map(|image| &image.pixels) {

@@ -17,8 +17,8 @@ impl Seen {
     }
 
     /// A scale for what was seen: from the value that one in two hundred lies below to that which one in two hundred
-    /// exceeds, so that a few outliers do not wash out the rest. Sizes begin at 0; fields with a middle that have values on
-    /// both sides of it span as much on either side.
+    /// exceeds, so that a few outliers do not wash out the rest. Sizes begin at 0; fields with a middle that have
+    /// values on both sides of it span as much on either side.
     pub fn scale(mut self, centre: Option<f32>, sizes: bool) -> Scale {
         let (mut low, mut high) = (self.percentile(0.005), self.percentile(0.995));
         if sizes && low >= 0.0 {

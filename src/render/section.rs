@@ -20,14 +20,14 @@ pub struct Section {
 /// A corner: its place (m), how far it is beyond the plane (m), and its value.
 type Corner = (Vec3, f32, f32);
 
-/// Pairs of a tetrahedron's corners whose edges are cut when one of it, the first, is alone on its side, and the corner that
-/// is opposite to the face between an edge and the next.
+/// Pairs of a tetrahedron's corners whose edges are cut when one of it, the first, is alone on its side, and the corner
+/// that is opposite to the face between an edge and the next.
 const ALONE: [[usize; 3]; 4] = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
 
 impl Section {
-    /// Adds a tetrahedron or a hexahedron with its corners in VTK's order. A hexahedron is taken as 24 tetrahedra about its
-    /// middle and those of its faces, which is how faces are drawn: the cut of a cell meets those of its neighbours and the
-    /// surface without a gap.
+    /// Adds a tetrahedron or a hexahedron with its corners in VTK's order. A hexahedron is taken as 24 tetrahedra about
+    /// its middle and those of its faces, which is how faces are drawn: the cut of a cell meets those of its neighbours
+    /// and the surface without a gap.
     pub fn add(&mut self, plane: &Plane, points: &[Vec3], values: &[f32]) {
         let corner = |row: usize| (points[row], plane.beyond(points[row]), values[row]);
         let sides = (0..points.len()).map(|row| plane.beyond(points[row]));
@@ -178,8 +178,8 @@ mod tests {
         }
     }
 
-    /// The lines in z = 0.4 between the six tetrahedra about the diagonal of a unit cube: each side of it is cut along the
-    /// lines from (0.4, 0.4) to where a diagonal or an edge of the cube's surface passes.
+    /// The lines in z = 0.4 between the six tetrahedra about the diagonal of a unit cube: each side of it is cut along
+    /// the lines from (0.4, 0.4) to where a diagonal or an edge of the cube's surface passes.
     fn between_tets() -> f32 {
         let middle = glam::Vec2::splat(0.4);
         let ends = [(0.0, 0.0), (0.4, 0.0), (1.0, 0.4), (1.0, 1.0), (0.4, 1.0), (0.0, 0.4)];

@@ -48,9 +48,9 @@ impl Faces {
         Faces { faces }
     }
 
-    /// The faces between what is there and what is not, and between one group of cells and another, in which case they are
-    /// those of the lower group. `group`: which one a cell belongs to; none when it is not there. `skin`: the faces that the
-    /// bodies began with, in order.
+    /// The faces between what is there and what is not, and between one group of cells and another, in which case they
+    /// are those of the lower group. `group`: which one a cell belongs to; none when it is not there. `skin`: the faces
+    /// that the bodies began with, in order.
     pub fn surface(&self, group: impl Fn(u32) -> Option<u8>, skin: Option<&Skin>) -> Vec<Outer> {
         let of = |cell: u32| if cell == NONE { None } else { group(cell) };
         let mut outer = Vec::new();

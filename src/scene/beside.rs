@@ -20,8 +20,8 @@ const HOW: &str =
     "put it into the folder or below, or allow it: --allow-outside, in a program Allowed { outside: true, .. }";
 
 impl SceneFile {
-    /// Where a file is that the scene names, its path relative to the scene's folder. Links are followed: what counts is
-    /// where a file really is.
+    /// Where a file is that the scene names, its path relative to the scene's folder. Links are followed: what counts
+    /// is where a file really is.
     ///
     /// # Errors
     /// The file lies outside the folder, and that is not [allowed](super::limits::Allowed::outside).

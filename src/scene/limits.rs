@@ -17,8 +17,8 @@ pub const ACTIONS: usize = 10_000;
 pub const TABLE_POINTS: usize = 100_000;
 /// Terms of each of a material's series (viscosity, families of fibres).
 pub const TERMS: usize = 100;
-/// Bytes of a name in UTF-8, of a body, material, set or probe: files are named after some, and no file name may have more
-/// than 255.
+/// Bytes of a name in UTF-8, of a body, material, set or probe: files are named after some, and no file name may have
+/// more than 255.
 pub const NAME_BYTES: usize = 100;
 /// Pixels of a picture in width and in height: there must be room for its legend.
 pub const PICTURE: [std::ops::RangeInclusive<u32>; 2] = [320..=8192, 240..=8192];
@@ -55,7 +55,8 @@ pub(super) const FAULTS: usize = 1000;
 /// What whoever loads a scene allows it. Scenes of strangers are best read with the default, or less.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Allowed {
-    /// Whether the scene may name files outside its own folder: by an absolute path, by `..`, or by a link that leads out.
+    /// Whether the scene may name files outside its own folder: by an absolute path, by `..`, or by a link that leads
+    /// out.
     pub outside: bool,
     /// The most elements of all bodies together, after `refine`; [`ELEMENTS`] at most.
     pub elements: u64,

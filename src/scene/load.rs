@@ -26,8 +26,8 @@ pub struct SceneFile {
     pub folder: PathBuf,
     /// What the scene may ask for.
     pub allowed: Allowed,
-    /// Where nodes of bodies are at rest (m), in the author's order, where a program knows better than the scene: in place of
-    /// what `rest_shape` says.
+    /// Where nodes of bodies are at rest (m), in the author's order, where a program knows better than the scene: in
+    /// place of what `rest_shape` says.
     pub rest_shapes: BTreeMap<String, Vec<DVec3>>,
     source: Arc<Source>,
     tree: Arc<Tree>,
@@ -63,8 +63,8 @@ impl SceneFile {
         Ok(scene)
     }
 
-    /// As [`Self::load_allowing`], from whatever can be read, the standard input for instance; `folder` is what mesh files are
-    /// relative to.
+    /// As [`Self::load_allowing`], from whatever can be read, the standard input for instance; `folder` is what mesh
+    /// files are relative to.
     ///
     /// # Errors
     /// As [`Self::load`].

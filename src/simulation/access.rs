@@ -33,8 +33,8 @@ impl Simulation {
         self.world.resource::<Clock>().step
     }
 
-    /// Steps that the scene lasts, with the step as it is now: their number changes when the step follows what is stable
-    /// ([`Simulation::finish`] goes to the end whatever happens to it).
+    /// Steps that the scene lasts, with the step as it is now: their number changes when the step follows what is
+    /// stable ([`Simulation::finish`] goes to the end whatever happens to it).
     pub fn planned_steps(&self) -> u64 {
         self.facts.steps
     }

@@ -1,11 +1,11 @@
-//! The step follows what is stable: smaller on the word of certain bounds, and by the highest frequency itself once that is worth
-//! its cost.
+//! The step follows what is stable: smaller on the word of certain bounds, and by the highest frequency itself once
+//! that is worth its cost.
 //!
-//! Bounds that hold whatever was not looked at are cheap and too small. What is lost by them is counted, in steps, against a step
-//! that the last finding would allow were nothing stiffer; when as much is lost as a finding costs, and what is left of the run can
-//! gain as much again, the highest frequency is found (as one who rents skis until the rents have come to their price: at most
-//! twice the best that foresight could do). It is found from the shape that was quickest last and from where elements are
-//! stiffest now: some products show it to a few per cent.
+//! Bounds that hold whatever was not looked at are cheap and too small. What is lost by them is counted, in steps,
+//! against a step that the last finding would allow were nothing stiffer; when as much is lost as a finding costs, and
+//! what is left of the run can gain as much again, the highest frequency is found (as one who rents skis until the
+//! rents have come to their price: at most twice the best that foresight could do). It is found from the shape that was
+//! quickest last and from where elements are stiffest now: some products show it to a few per cent.
 
 use super::Simulation;
 use super::damped_step::square_with_damping;
@@ -22,7 +22,8 @@ use crate::error::{Criterion, Error, Instability};
 const LARGER: (f64, f64) = (1.05, 2.0);
 /// A step so many times the wanted one is made smaller.
 const SMALLER: f64 = 1.25;
-/// Where motion is violent steps become at most so many times longer at once: the balance of energy is that of steps of like length.
+/// Where motion is violent steps become at most so many times longer at once: the balance of energy is that of steps of
+/// like length.
 const LONGER: f64 = 2.0;
 /// Products by which the highest frequency is found anew: the first time, and from a shape that is known.
 const PRODUCTS: (usize, usize) = (20, 8);
@@ -136,8 +137,8 @@ impl Simulation {
 }
 
 impl Follower {
-    /// The step that could be taken were the highest frequency found anew, as far as that can be guessed: were nothing stiffer than
-    /// when it was found, and less so what has become less stiff (s).
+    /// The step that could be taken were the highest frequency found anew, as far as that can be guessed: were nothing
+    /// stiffer than when it was found, and less so what has become less stiff (s).
     fn hoped_for(&self, seen: &Seen, clock: &Clock) -> f64 {
         let relief = self.found.seen.map_or(1.0, |before| (seen.of_elements / before.of_elements).min(1.0));
         let stable = self.wanted(step_of(self.found.known * relief), seen);
@@ -157,8 +158,8 @@ impl Follower {
         self.found.lost >= cost && left * (1.0 - now / then) >= cost
     }
 
-    /// The step with which strains that change quickly are seen to come (s), where `stable` would be; none smaller where the step is
-    /// the author's.
+    /// The step with which strains that change quickly are seen to come (s), where `stable` would be; none smaller
+    /// where the step is the author's.
     fn seen_to_come(&self, stable: f64, seen: &Seen, clock: &Clock) -> f64 {
         match self.found.own {
             Some(_) => f64::INFINITY,

@@ -19,8 +19,8 @@ fn too_much(share: f64, most: f64) -> bool {
     share.is_nan() || share > most * (1.0 + ROUNDING)
 }
 
-/// Makes elements heavier for the step that the scene wants, or for the largest that so much added mass allows. What all elements are
-/// stable up to then (s); `None` where that is too much.
+/// Makes elements heavier for the step that the scene wants, or for the largest that so much added mass allows. What
+/// all elements are stable up to then (s); `None` where that is too much.
 pub(super) fn at_the_start(
     scene: &SceneFile,
     bound: &StableStep,
@@ -64,8 +64,8 @@ pub(super) fn at_the_start(
 }
 
 impl Simulation {
-    /// Whether mass may be added in the run, beside what was: an error where that is more than the scene allows, a warning where it is
-    /// much. Nothing has been added yet.
+    /// Whether mass may be added in the run, beside what was: an error where that is more than the scene allows, a
+    /// warning where it is much. Nothing has been added yet.
     pub(super) fn may_add(&mut self, additions: &Additions, follower: &Follower, most: f64) -> Result<(), Error> {
         let added = follower.history.added_mass + additions.mass();
         let share = added / self.facts.initial_mass;

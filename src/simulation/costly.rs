@@ -13,7 +13,8 @@ const HELPS: f64 = 1.5;
 /// The share of mass that is proposed to be added.
 const PROPOSED: f64 = 0.05;
 
-/// Warns of them, where the step that is taken is so small: what the highest frequency of all shows to be harmless is not told of.
+/// Warns of them, where the step that is taken is so small: what the highest frequency of all shows to be harmless is
+/// not told of.
 pub(super) fn warn_of_costly(stability: &Stability, world: &mut World, diagnostics: &mut Diagnostics) {
     let (bound, stable) = (&stability.bound, stability.stable_step);
     let cost = bound.usual / stable;

@@ -1,12 +1,12 @@
 //! What damping proportional to stiffness makes of the stable step.
 //!
-//! The damping stress is that of the step before the present displacements: with C = βK the recursion
-//! u⁺ − 2u + u⁻ = −Δt² M⁻¹ K (u + (β/Δt)(u − u⁻)) has the characteristic polynomial z² − (2 − Ω² − bΩ²) z + 1 − bΩ²,
-//! Ω = ωΔt, b = β/Δt. It is stable while Ω² (1 + 2b) ≤ 4: Δt ≤ √(β² + 4/ω²) − β = (2/ω)(√(1 + ξ²) − ξ), ξ = βω/2 (the other
+//! The damping stress is that of the step before the present displacements: with C = βK the recursion u⁺ − 2u + u⁻ =
+//! −Δt² M⁻¹ K (u + (β/Δt)(u − u⁻)) has the characteristic polynomial z² − (2 − Ω² − bΩ²) z + 1 − bΩ², Ω = ωΔt, b =
+//! β/Δt. It is stable while Ω² (1 + 2b) ≤ 4: Δt ≤ √(β² + 4/ω²) − β = (2/ω)(√(1 + ξ²) − ξ), ξ = βω/2 (the other
 //! condition, bΩ² ≤ 2, is weaker).
 //!
-//! Of several materials xᵀ(Δt² K + 2Δt Σ β_e K_e) x ≤ 4 xᵀMx is wanted: the largest β of all is safe with a bound of all of K, and
-//! elements' own bounds may take their own β, for K_e ≤ ω_e² M_e.
+//! Of several materials xᵀ(Δt² K + 2Δt Σ β_e K_e) x ≤ 4 xᵀMx is wanted: the largest β of all is safe with a bound of
+//! all of K, and elements' own bounds may take their own β, for K_e ≤ ω_e² M_e.
 
 use super::frequency::Largest;
 use crate::assembly::{damped, damping_time};
@@ -31,8 +31,8 @@ pub(super) fn with_damping(found: Largest, world: &mut World) -> Largest {
     Largest { at_least: damped(found.at_least, least), at_most: damped(found.at_most, most), ..found }
 }
 
-/// By how much ω² with damping may have grown when that without it has grown so many times: it grows faster, by no more than the
-/// square.
+/// By how much ω² with damping may have grown when that without it has grown so many times: it grows faster, by no more
+/// than the square.
 pub(super) fn growth_with_damping(growth: f64, is_damped: bool) -> f64 {
     if is_damped { growth.max(growth * growth) } else { growth }
 }

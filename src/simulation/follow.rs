@@ -16,16 +16,19 @@ use bevy_ecs::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
-/// Steps between two looks at all elements: where strains change slowly at least, and at most; and no more than have been taken since
-/// the beginning or since loads and motions last became quicker, because what begins smoothly becomes faster.
+/// Steps between two looks at all elements: where strains change slowly at least, and at most; and no more than have
+/// been taken since the beginning or since loads and motions last became quicker, because what begins smoothly becomes
+/// faster.
 const LOOKS: (u64, u64) = (16, 256);
-/// Between two looks strains change by so much, at the present speed: close to the limit, and where the step is half of it
-/// or less. The stable step of what is squeezed shrinks twice as fast as it, and a twentieth is left when it counts as close.
+/// Between two looks strains change by so much, at the present speed: close to the limit, and where the step is half of
+/// it or less. The stable step of what is squeezed shrinks twice as fast as it, and a twentieth is left when it counts
+/// as close.
 const STRAIN: (f64, f64) = (0.01, 0.25);
 /// No more than that between two looks, however close they come.
 const MOST_STRAIN: f64 = 0.2;
-/// A change of strain in a step, relative to present lengths, from which on motion counts as violent: the room between what the
-/// elements alone allow and the true limit is then needed, for what a look cannot foresee and for the balance of energy.
+/// A change of strain in a step, relative to present lengths, from which on motion counts as violent: the room between
+/// what the elements alone allow and the true limit is then needed, for what a look cannot foresee and for the balance
+/// of energy.
 const VIOLENT: f64 = 0.02;
 
 /// How the step went during the run.
@@ -87,8 +90,8 @@ pub(super) struct Found {
     /// The highest ω² when it was found last (1/s²), and what was seen then.
     pub known: f64,
     pub seen: Option<Seen>,
-    /// The share of each step that is lost because the highest ω² is not found anew, as far as that can be guessed; and steps that
-    /// have been lost so since it was found.
+    /// The share of each step that is lost because the highest ω² is not found anew, as far as that can be guessed; and
+    /// steps that have been lost so since it was found.
     pub losing: f64,
     pub lost: f64,
     /// Whether strains have changed so fast that the step stays with what the elements alone allow: see [`VIOLENT`].
@@ -153,7 +156,8 @@ impl Follower {
         })
     }
 
-    /// The share of the stable step beyond which a step counts as too large: half of what was left at the start is used up.
+    /// The share of the stable step beyond which a step counts as too large: half of what was left at the start is used
+    /// up.
     pub fn most(&self) -> f64 {
         0.5 * (1.0 + self.safety.max(self.own_share).min(1.0))
     }
@@ -192,13 +196,14 @@ impl Follower {
         fits && sound && numbers.iter().all(|number| number.is_finite())
     }
 
-    /// Elements have gone since the highest frequency was found: their mass has gone with them, and what was found holds no more.
+    /// Elements have gone since the highest frequency was found: their mass has gone with them, and what was found
+    /// holds no more.
     pub fn has_lost(&self, seen: &Seen) -> bool {
         self.found.seen.is_some_and(|before| seen.alive < before.alive)
     }
 
-    /// The step before which is looked next: sooner where strains change fast, where the step is close to the limit, and before loads
-    /// and motions become quicker, `quicker` (s).
+    /// The step before which is looked next: sooner where strains change fast, where the step is close to the limit,
+    /// and before loads and motions become quicker, `quicker` (s).
     fn next_look(&mut self, step: u64, seen: &Seen, clock: &Clock, quicker: Option<f64>) -> u64 {
         // far below the limit more may happen unseen
         let room = self.most() * step_of(seen.square) / clock.time_step - 1.0;

@@ -1,15 +1,16 @@
 //! The largest frequency of all bodies at the present state, by Lanczos' recursion on M^(−½) K M^(−½).
 //!
-//! What k products show of the largest eigenvalue λ is a Ritz value θ ≤ λ. How much below it may be is known for a start
-//! without preference (Kuczyński & Woźniakowski 1992, theorem 4.2): whatever the matrix,
+//! What k products show of the largest eigenvalue λ is a Ritz value θ ≤ λ. How much below it may be is known for a
+//! start without preference (Kuczyński & Woźniakowski 1992, theorem 4.2): whatever the matrix,
 //!
 //! P(θ < (1 − ε) λ) ≤ 1.648 √n exp(−(2k − 1) √ε),
 //!
 //! so with a chance of δ of being wrong λ ≤ θ/(1 − ε), √ε = ln(1.648 √n/δ)/(2k − 1). Where the recursion exhausts the
 //! space, θ = λ.
 //!
-//! The margin goes by the number of products, whatever the start: one that knows the eigenvector shows θ sooner, but nothing above it
-//! can be ruled out with fewer. So what is saved is products whose margin buys too little: see [`largest_worth`].
+//! The margin goes by the number of products, whatever the start: one that knows the eigenvector shows θ sooner, but
+//! nothing above it can be ruled out with fewer. So what is saved is products whose margin buys too little: see
+//! [`largest_worth`].
 
 use super::tangent::Tangent;
 use crate::components::*;
@@ -21,12 +22,13 @@ const BAD_LUCK: f64 = 1e-6;
 const OF_DIFFERENCES: f64 = 1e-5;
 /// The space is exhausted when what is left is so small, as a share of the eigenvalue.
 const EXHAUSTED: f64 = 1e-7;
-/// Vectors are kept, to be orthogonal to rounding, where there are at most so many free axes for each product: the space can be
-/// exhausted there. In larger ones rounding repeats eigenvalues that were found, which adds none above the largest (Paige 1980), and
-/// the vectors would take half as long as the products.
+/// Vectors are kept, to be orthogonal to rounding, where there are at most so many free axes for each product: the
+/// space can be exhausted there. In larger ones rounding repeats eigenvalues that were found, which adds none above the
+/// largest (Paige 1980), and the vectors would take half as long as the products.
 const KEPT_BELOW: usize = 20;
 
-/// What a product costs, in steps. It is one evaluation of all forces in f64 by the kernel of all effects, and the recursion.
+/// What a product costs, in steps. It is one evaluation of all forces in f64 by the kernel of all effects, and the
+/// recursion.
 pub(super) const PRODUCT: f64 = 2.0;
 /// Products between two places at which the recursion may end early. The chance δ is that of each of them.
 const BETWEEN_STOPS: usize = 4;
@@ -52,15 +54,16 @@ fn products_enough(free: usize, accuracy: f64) -> usize {
     (0.5 * (luck(free) / accuracy.sqrt() + 1.0)).ceil() as usize
 }
 
-/// The largest eigenvalue of M⁻¹K at the present state with held axes, known to the share `accuracy`. The columns on the
-/// host must be up to date: see [`Tangent::COLUMNS`]. `None` where nothing can move, or forces are no numbers.
+/// The largest eigenvalue of M⁻¹K at the present state with held axes, known to the share `accuracy`. The columns on
+/// the host must be up to date: see [`Tangent::COLUMNS`]. `None` where nothing can move, or forces are no numbers.
 pub(super) fn largest_eigenvalue(world: &mut World, accuracy: f64) -> Option<Largest> {
     largest_worth(world, accuracy, None)
 }
 
-/// The same, where there are `steps` known only so well as is worth the products: that is how many will be taken when the eigenvalue is
-/// at most so large, and [`PRODUCT`] what a product costs. It ends where the steps that all further products could save, were θ the eigenvalue, are fewer
-/// than they cost; before the first where even nothing to resist motion would save too little.
+/// The same, where there are `steps` known only so well as is worth the products: that is how many will be taken when
+/// the eigenvalue is at most so large, and [`PRODUCT`] what a product costs. It ends where the steps that all further
+/// products could save, were θ the eigenvalue, are fewer than they cost; before the first where even nothing to resist
+/// motion would save too little.
 pub(super) fn largest_worth(world: &mut World, accuracy: f64, steps: Option<&dyn Fn(f64) -> f64>) -> Option<Largest> {
     let bodies = bodies(world);
     let roots = roots_of_mass(world, &bodies);
@@ -99,9 +102,10 @@ pub(super) fn largest_worth(world: &mut World, accuracy: f64, steps: Option<&dyn
 /// The share of a start that is noise, beside the shape that was known.
 const NOISE: f64 = 0.3;
 
-/// The largest eigenvalue of M⁻¹K at the present state, at least (1/s²), by few `products` from a start near its eigenvector: the
-/// `shape` that was found last, and noise where `weights` (of each axis) say that it may be now. With the new shape, √M u of all axes in
-/// f32. The columns on the host must be up to date: see [`Tangent::COLUMNS`]. `None` where nothing can move, or forces are no numbers.
+/// The largest eigenvalue of M⁻¹K at the present state, at least (1/s²), by few `products` from a start near its
+/// eigenvector: the `shape` that was found last, and noise where `weights` (of each axis) say that it may be now. With
+/// the new shape, √M u of all axes in f32. The columns on the host must be up to date: see [`Tangent::COLUMNS`]. `None`
+/// where nothing can move, or forces are no numbers.
 pub(super) fn largest_near(
     world: &mut World,
     shape: Option<&[f32]>,
@@ -174,8 +178,8 @@ struct Ritz {
     beside: Vec<f64>,
 }
 
-/// The largest Ritz value after `products` products, or as soon as more are not worth it; `None` when it is no positive number. `all`
-/// takes the vectors of the recursion.
+/// The largest Ritz value after `products` products, or as soon as more are not worth it; `None` when it is no positive
+/// number. `all` takes the vectors of the recursion.
 fn lanczos(
     start: Vec<f64>,
     products: usize,
@@ -258,8 +262,8 @@ pub(super) fn roots_of_mass(world: &World, bodies: &[Entity]) -> Vec<f64> {
     roots
 }
 
-/// A start that prefers no direction, the same everywhere: independent numbers of a normal distribution (Marsaglia's polar
-/// form of Box & Muller's).
+/// A start that prefers no direction, the same everywhere: independent numbers of a normal distribution (Marsaglia's
+/// polar form of Box & Muller's).
 pub(super) fn noise(roots: &[f64]) -> Vec<f64> {
     let mut state = 1_u64;
     let mut next = || {

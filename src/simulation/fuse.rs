@@ -1,4 +1,5 @@
-//! Which neighbours of a schedule share one pass: over the nodes, or on the CPU over patches of elements and then the other nodes.
+//! Which neighbours of a schedule share one pass: over the nodes, or on the CPU over patches of elements and then the
+//! other nodes.
 
 use super::schedule::Scheduled;
 use crate::systems::{ELEMENT_FORCES, OnDevice, Phase};
@@ -28,8 +29,8 @@ pub fn groups(schedule: &[Scheduled<'_>], access: &[SystemAccess], fuse: bool, o
     if on_gpu { groups } else { with_elements(groups, schedule) }
 }
 
-/// On the CPU the forces of elements belong to the pass that follows them, where that sums them and moves nodes: those inside a patch
-/// move with it.
+/// On the CPU the forces of elements belong to the pass that follows them, where that sums them and moves nodes: those
+/// inside a patch move with it.
 fn with_elements(groups: Vec<Vec<usize>>, schedule: &[Scheduled<'_>]) -> Vec<Vec<usize>> {
     let mut together: Vec<Vec<usize>> = Vec::new();
     let of_elements = |group: &[usize]| match group {

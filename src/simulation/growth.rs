@@ -1,14 +1,15 @@
 //! How much stiffer a law can have become, by how far it is deformed: what makes frequencies rise during a run.
 //!
-//! In total Lagrangian form an element's gradients and volume stay those at rest, so all that can raise its frequencies is
-//! the tangent ∂P/∂F of its law. For a deformation of the size s = max(tr C, tr C⁻¹)/3 the table holds the largest
-//! eigenvalue of ∂P/∂F that was met at smaller or equal sizes among [`samples`], over that at rest: of the whole, of the
-//! volumetric part, and of the isochoric part along changes that keep the volume (across F⁻ᵀ), whichever has grown most.
-//! Elements that average the pressure feel these parts to different shares.
+//! In total Lagrangian form an element's gradients and volume stay those at rest, so all that can raise its frequencies
+//! is the tangent ∂P/∂F of its law. For a deformation of the size s = max(tr C, tr C⁻¹)/3 the table holds the largest
+//! eigenvalue of ∂P/∂F that was met at smaller or equal sizes among [`samples`], over that at rest: of the whole, of
+//! the volumetric part, and of the isochoric part along changes that keep the volume (across F⁻ᵀ), whichever has grown
+//! most. Elements that average the pressure feel these parts to different shares.
 //!
-//! That bounds an element's own frequency. The highest of all bodies may rise more, because what was not the stiffest change of F at rest
-//! may become it: waves through tissue squeezed to λ have its height to cross, and ω² grows with λ⁻². So for what was known of all
-//! there is a second table: the largest (a⊗b) : ∂P/∂F : (a⊗b) along the axes, for plane waves, by the largest eigenvalue of C⁻¹.
+//! That bounds an element's own frequency. The highest of all bodies may rise more, because what was not the stiffest
+//! change of F at rest may become it: waves through tissue squeezed to λ have its height to cross, and ω² grows with
+//! λ⁻². So for what was known of all there is a second table: the largest (a⊗b) : ∂P/∂F : (a⊗b) along the axes, for
+//! plane waves, by the largest eigenvalue of C⁻¹.
 //!
 //! Exponential fibres stiffen by so much more that what
 //! they add is computed along their own directions.
@@ -124,8 +125,8 @@ impl Growth {
         self.own.at(size).max(self.waves.at(squeeze))
     }
 
-    /// What a family of exponential fibres adds to the growth, for a C and its direction: k₁ e^x (4 (1 + 2x) M + 2Ē) with
-    /// x = k₂Ē² and M = κ_d tr C + (1 − 3κ_d) I₄, which bounds its part of ∂P/∂F, over the isochoric part at rest.
+    /// What a family of exponential fibres adds to the growth, for a C and its direction: k₁ e^x (4 (1 + 2x) M + 2Ē)
+    /// with x = k₂Ē² and M = κ_d tr C + (1 − 3κ_d) I₄, which bounds its part of ∂P/∂F, over the isochoric part at rest.
     pub fn of_family(&self, family: &ExponentialFibre<f64>, c: [f64; 6], [x, y, z]: [f64; 3]) -> f64 {
         let along = c[0] * x * x + c[1] * y * y + c[2] * z * z + 2.0 * (c[3] * x * y + c[4] * y * z + c[5] * x * z);
         let trace = c[0] + c[1] + c[2];
@@ -181,15 +182,16 @@ fn bucket(size: f64) -> usize {
     ((size.to_bits() >> 46) as usize).saturating_sub((1.0_f64.to_bits() >> 46) as usize)
 }
 
-/// How many samples there are of a stretch; the first of them are pulled, the others squeezed, the last in one direction alone.
+/// How many samples there are of a stretch; the first of them are pulled, the others squeezed, the last in one
+/// direction alone.
 const SAMPLES: usize = 9;
 const PULLED: usize = 2;
 const ALONE: usize = 2;
 /// Stretches in one direction alone at which laws that do not end at J = 0 are tried.
 const FLAT: [f64; 9] = [0.8, 0.6, 0.4, 0.2, 0.1, 0.0, -0.2, -0.5, -1.0];
 
-/// Principal stretches that are tried: of constant volume pulled, squeezed and sheared, along the fibres and across, and of
-/// one direction alone.
+/// Principal stretches that are tried: of constant volume pulled, squeezed and sheared, along the fibres and across,
+/// and of one direction alone.
 fn samples(s: f64) -> [[f64; 3]; SAMPLES] {
     let (r, root) = (1.0 / s, s.sqrt());
     let thin = 1.0 / root;
@@ -206,8 +208,9 @@ fn samples(s: f64) -> [[f64; 3]; SAMPLES] {
     ]
 }
 
-/// The largest eigenvalues (Pa) of ∂P/∂F for F with these diagonals and fibres along x: of the isochoric stress along changes
-/// that keep the volume, of the volumetric stress, and of both together; then the largest (a⊗b) : ∂P/∂F : (a⊗b) along the axes.
+/// The largest eigenvalues (Pa) of ∂P/∂F for F with these diagonals and fibres along x: of the isochoric stress along
+/// changes that keep the volume, of the volumetric stress, and of both together; then the largest (a⊗b) : ∂P/∂F : (a⊗b)
+/// along the axes.
 fn tangents(law: &BlockLaw<f64>, stretches: &[f64; 3]) -> [f64; 4] {
     let mut gradient = Mat3::zero(0.0);
     (0..3).for_each(|i| gradient.0[i][i] = stretches[i] - 1.0);
@@ -294,8 +297,8 @@ mod tests {
         assert!((linear.of_all(4.0, 9.0) - 1.0).abs() < 1e-6);
         let mut soft = Growth::of(&law(ElasticLaw::NeoHookean(NeoHookean { shear: 1e3, bulk: 1e5 })));
         soft.reach(10.0, 10.0);
-        // at constant volume the volumetric part is κ tr C⁻¹, 3κ at rest: the size itself; isochoric parts and changes of
-        // volume add to it
+        // at constant volume the volumetric part is κ tr C⁻¹, 3κ at rest: the size itself; isochoric parts and changes
+        // of volume add to it
         for size in [1.5_f64, 3.0, 6.0] {
             let growth = soft.own(size);
             println!("{size}: {growth}");

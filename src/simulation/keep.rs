@@ -24,8 +24,8 @@ impl Simulation {
         Ok(snapshot)
     }
 
-    /// Goes back, or on, to the state of a snapshot. Steps from there give the same bits as they did, or would have done,
-    /// when it was taken, on the same backend; a snapshot of the CPU in f32 also fits the GPU, whose bits differ.
+    /// Goes back, or on, to the state of a snapshot. Steps from there give the same bits as they did, or would have
+    /// done, when it was taken, on the same backend; a snapshot of the CPU in f32 also fits the GPU, whose bits differ.
     ///
     /// # Errors
     /// That the snapshot is of another simulation (then nothing has changed); what the GPU says.
@@ -44,8 +44,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// What the guards have seen so far: the largest imbalance of energy, hourglass energies, the smallest J, the fastest
-    /// node, and what they warned of.
+    /// What the guards have seen so far: the largest imbalance of energy, hourglass energies, the smallest J, the
+    /// fastest node, and what they warned of.
     pub fn guards(&self) -> GuardMemory {
         self.world.get_resource::<GuardMemory>().cloned().unwrap_or_default()
     }
@@ -55,8 +55,8 @@ impl Simulation {
         self.failure.as_ref()
     }
 
-    /// Keeps the state at the end of the last step, in a file or in memory, if that is due: not sooner, for systems that
-    /// stand after `observe` belong to the step too.
+    /// Keeps the state at the end of the last step, in a file or in memory, if that is due: not sooner, for systems
+    /// that stand after `observe` belong to the step too.
     pub(super) fn keep_what_is_due(&mut self) -> Result<(), Error> {
         let step = self.step_count();
         let observer = self.world.resource::<Observer>();
@@ -76,8 +76,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Writes the last states that passed all guards into the output folder, as fields and as snapshots, and the state in
-    /// which the breakdown was noticed, if all of it can be written. The world keeps that state.
+    /// Writes the last states that passed all guards into the output folder, as fields and as snapshots, and the state
+    /// in which the breakdown was noticed, if all of it can be written. The world keeps that state.
     pub(super) fn leave_last_states(&mut self, broken: &mut Instability) -> Result<(), Error> {
         let observer = self.world.resource::<Observer>();
         let Some(folder) = observer.folder().map(Path::to_path_buf) else { return Ok(()) };
@@ -98,8 +98,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Writes the last state kept in memory into the output folder: what a GPU that failed has left. Its name, if there is one and it can
-    /// be written.
+    /// Writes the last state kept in memory into the output folder: what a GPU that failed has left. Its name, if there
+    /// is one and it can be written.
     pub(super) fn leave_last_snapshot(&self) -> Option<PathBuf> {
         let observer = self.world.get_resource::<Observer>()?;
         let (folder, state) = (observer.folder()?, observer.window.back()?);

@@ -1,5 +1,5 @@
-//! Mass scaling: elements that need a smaller step than is wanted are made heavier. Gravity, damping and the mass that is
-//! reported stay those of the real mass; only what resists acceleration grows.
+//! Mass scaling: elements that need a smaller step than is wanted are made heavier. Gravity, damping and the mass that
+//! is reported stay those of the real mass; only what resists acceleration grows.
 
 use crate::assembly::{alike_in_any_precision, author_of};
 use crate::components::*;
@@ -175,7 +175,8 @@ fn mass_of(world: &World, entity: Entity, row: usize) -> f64 {
     density * rest_volume(block, row, shape)
 }
 
-/// The mass that an element's nodes move with for it (kg), and how many times its real one that is; `None` of one that is not there.
+/// The mass that an element's nodes move with for it (kg), and how many times its real one that is; `None` of one that
+/// is not there.
 pub(super) fn heavy_mass(world: &World, entity: Entity, row: usize) -> Option<(f64, f64)> {
     let real = mass_of(world, entity, row);
     let added = world.get::<AddedMass>(entity).map_or(0.0, |added| added.0[row]);

@@ -1,9 +1,11 @@
-//! The lowest natural frequencies of all bodies as they are held, and their shapes: the lowest eigenpairs of M^(−½) K M^(−½) at
-//! the present state, matrix-free, by subspace iteration with a Chebyshev filter (Zhou, Saad, Tiago & Chelikowsky 2006).
+//! The lowest natural frequencies of all bodies as they are held, and their shapes: the lowest eigenpairs of M^(−½) K
+//! M^(−½) at the present state, matrix-free, by subspace iteration with a Chebyshev filter (Zhou, Saad, Tiago &
+//! Chelikowsky 2006).
 //!
-//! The filter is a polynomial that is at most 1 on what is not wanted, [a, b], and grows as fast as any below a. With b the bound of the
-//! largest eigenvalue that the stable step is found from and a a Ritz value above those that are wanted, a few filters of some
-//! hundred products each separate the lowest modes, also where several have the same frequency (as bending of a square bar).
+//! The filter is a polynomial that is at most 1 on what is not wanted, [a, b], and grows as fast as any below a. With b
+//! the bound of the largest eigenvalue that the stable step is found from and a a Ritz value above those that are
+//! wanted, a few filters of some hundred products each separate the lowest modes, also where several have the same
+//! frequency (as bending of a square bar).
 
 use super::Simulation;
 use super::frequency::{bodies, dot, largest_eigenvalue, noise, roots_of_mass};
@@ -33,7 +35,8 @@ const RIGID: f64 = 1e-9;
 pub struct Mode {
     /// Its frequency (Hz); 0 of rigid motion.
     pub frequency: f64,
-    /// ‖(K − ω²M) φ‖ as a share, in the norm of the mass: the frequency is known to half its square over the gap to the next.
+    /// ‖(K − ω²M) φ‖ as a share, in the norm of the mass: the frequency is known to half its square over the gap to the
+    /// next.
     pub residual: f64,
     /// Shares of all mass that is free to move along x, y and z (effective modal masses).
     pub effective_mass: [f64; 3],
@@ -43,8 +46,8 @@ pub struct Mode {
 }
 
 impl Simulation {
-    /// The `count` lowest natural modes at the present state, bodies as they are held, viscosity as for sudden motion, without
-    /// damping. None where nothing can move. Costs some thousand evaluations of the forces.
+    /// The `count` lowest natural modes at the present state, bodies as they are held, viscosity as for sudden motion,
+    /// without damping. None where nothing can move. Costs some thousand evaluations of the forces.
     ///
     /// # Errors
     /// What the GPU says; states whose forces are no numbers.
@@ -211,8 +214,8 @@ fn combine(vectors: &[Vec<f64>], rotation: &[Vec<f64>]) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Eigenvalues of a small symmetric matrix, ascending, and its eigenvectors as columns: Jacobi's cyclic rotations (Golub & Van
-/// Loan 2013, §8.5).
+/// Eigenvalues of a small symmetric matrix, ascending, and its eigenvectors as columns: Jacobi's cyclic rotations
+/// (Golub & Van Loan 2013, §8.5).
 fn eigen(mut matrix: Vec<Vec<f64>>) -> (Vec<f64>, Vec<Vec<f64>>) {
     let size = matrix.len();
     let mut vectors: Vec<Vec<f64>> = (0..size).map(|i| (0..size).map(|j| f64::from(i == j)).collect()).collect();

@@ -1,12 +1,14 @@
-//! A bound of all frequencies by nodes: as certain as that of the stiffest element, never a smaller step, and nearly as cheap.
+//! A bound of all frequencies by nodes: as certain as that of the stiffest element, never a smaller step, and nearly as
+//! cheap.
 //!
 //! An element's bound says K_e ≤ ω_e² M_e, with the lumped mass m_e/n at each of its n nodes. Summed over all elements,
 //!
 //! xᵀKx ≤ Σ_e ω_e² m_e/n Σ_{a of e} |x_a|² = Σ_a |x_a|² Σ_{e at a} ω_e² m_e/n,
 //!
-//! so ω² of all is at most the largest mean of ω_e² over the elements that meet in a node, by the mass that each brings there. A sliver
-//! brings little: beside elements of usual size it counts for that much less. The same holds of what is added to a stiffness whose
-//! highest frequency is known. Nodes that are held along all axes do not move and do not count.
+//! so ω² of all is at most the largest mean of ω_e² over the elements that meet in a node, by the mass that each brings
+//! there. A sliver brings little: beside elements of usual size it counts for that much less. The same holds of what is
+//! added to a stiffness whose highest frequency is known. Nodes that are held along all axes do not move and do not
+//! count.
 
 use super::damped_step::square_with_damping;
 use super::mass_scaling::heavy_mass;
@@ -61,8 +63,8 @@ impl NodalMeans {
     }
 }
 
-/// For each axis of the bodies' nodes, one body after the other, the square of the mean of ω² of the elements there as they are now, over
-/// the largest: where the highest frequency may be.
+/// For each axis of the bodies' nodes, one body after the other, the square of the mean of ω² of the elements there as
+/// they are now, over the largest: where the highest frequency may be.
 pub(super) fn weights_now(world: &mut World, watched: &mut [Watched], bodies: &[Entity]) -> Vec<f64> {
     let mut means = NodalMeans::new();
     for block in watched {

@@ -8,10 +8,10 @@ use glam::DVec3;
 
 /// Some nodes of one body, for systems of one's own.
 ///
-/// Nodes have three orders: the numbers that the author knows them by (those of the mesh file), their places in the author's
-/// order (rows of [`Simulation::displacements`], corners of [`Simulation::surface_triangles`]), and the engine's rows in
-/// columns of components, which are sorted for speed. A set is made from numbers or places and holds rows, so that nobody has
-/// to translate by hand; and it knows its body, so that no other body's nodes can be meant.
+/// Nodes have three orders: the numbers that the author knows them by (those of the mesh file), their places in the
+/// author's order (rows of [`Simulation::displacements`], corners of [`Simulation::surface_triangles`]), and the
+/// engine's rows in columns of components, which are sorted for speed. A set is made from numbers or places and holds
+/// rows, so that nobody has to translate by hand; and it knows its body, so that no other body's nodes can be meant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NodeSet {
     body: Entity,

@@ -1,4 +1,5 @@
-//! What a simulation remembers of its pace, beside the clock: for snapshots, so that what goes on from one takes the same steps.
+//! What a simulation remembers of its pace, beside the clock: for snapshots, so that what goes on from one takes the
+//! same steps.
 
 use super::beat::Beat;
 use super::follow::Followed;

@@ -1,5 +1,5 @@
-//! Numbers a thousand times off tissue: most come from another unit (mm for m, g/cm³ for kg/m³, kPa for Pa). A line each; nothing
-//! is refused, for there are steel balls and whales.
+//! Numbers a thousand times off tissue: most come from another unit (mm for m, g/cm³ for kg/m³, kPa for Pa). A line
+//! each; nothing is refused, for there are steel balls and whales.
 
 use crate::assembly::Assembly;
 use crate::backend::cpu::BlockLaw;

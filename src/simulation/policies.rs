@@ -1,4 +1,5 @@
-//! What is done when the stable step becomes smaller than a step that stays: the policies of `integration.when_unstable`.
+//! What is done when the stable step becomes smaller than a step that stays: the policies of
+//! `integration.when_unstable`.
 
 use super::Simulation;
 use super::follow::{Follower, square_of, step_of};
@@ -95,8 +96,8 @@ impl Simulation {
         send_to_device(&mut self.world, |_, name| name == FictitiousMass::NAME)
     }
 
-    /// Removes the elements with the highest frequencies, as many as are nearly as quick as the quickest; others follow if
-    /// that is not enough.
+    /// Removes the elements with the highest frequencies, as many as are nearly as quick as the quickest; others follow
+    /// if that is not enough.
     fn remove_quickest(&mut self, follower: &mut Follower) -> Result<(), Error> {
         let step = self.step_count();
         bring_to_host(&mut self.world, |_, name| [Alive::NAME, RemovalStep::NAME].contains(&name))?;

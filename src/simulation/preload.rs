@@ -1,8 +1,8 @@
 //! `start: Equilibrium()`: bodies are at rest under what acts at t = 0 before the first step is taken.
 //!
-//! A static analysis of the same scene at t = 0, with the same precision on the same backend, finds where they stand. It is
-//! made with the simulation and runs when the first state is asked for, so that nothing is sought where a snapshot is gone
-//! on from.
+//! A static analysis of the same scene at t = 0, with the same precision on the same backend, finds where they stand.
+//! It is made with the simulation and runs when the first state is asked for, so that nothing is sought where a
+//! snapshot is gone on from.
 
 use super::step_change::relax_fully;
 use super::{Equilibrium, Options, Simulation};
@@ -45,8 +45,8 @@ pub(super) fn settling(scene: &SceneFile, options: &Options) -> Result<Option<Bo
     Ok(Some(Box::new(Simulation::new(&file, options)?)))
 }
 
-/// The scene whose equilibrium is sought; `None` where none is. What belongs to the motion only is left out: systems of one's
-/// own take part from the first step on.
+/// The scene whose equilibrium is sought; `None` where none is. What belongs to the motion only is left out: systems of
+/// one's own take part from the first step on.
 pub(super) fn at_rest(scene: &Scene) -> Option<Scene> {
     let InitialState::Equilibrium { tolerance, max_steps, load_steps } = scene.start else { return None };
     if scene.is_static() {
@@ -74,8 +74,8 @@ pub(super) fn at_rest(scene: &Scene) -> Option<Scene> {
 }
 
 impl Simulation {
-    /// Brings the bodies to rest where the scene says `start: Equilibrium()` and no step has been taken; else does nothing.
-    /// Who steps, observes or asks for a state need not call it: that does.
+    /// Brings the bodies to rest where the scene says `start: Equilibrium()` and no step has been taken; else does
+    /// nothing. Who steps, observes or asks for a state need not call it: that does.
     ///
     /// # Errors
     /// That there is no equilibrium, or none was found; what the GPU says. Then no step is taken.

@@ -1,9 +1,9 @@
 //! Dynamic relaxation: pseudo-steps to equilibrium, their damping chosen anew from what the last ones did.
 //!
 //! Every [`LOOK`] steps the residual is taken, the lowest frequency of the motion is estimated by the Rayleigh quotient
-//! ω² = Δuᵀ ΔF / Δuᵀ M Δu of what has changed since the last look, and all nodes are damped critically for it,
-//! c = 2ω (Underwood 1983). Forces count less where elements are squeezed, which raises the highest frequency. Steps that
-//! end in numbers that are not finite or in elements turned inside out are taken back.
+//! ω² = Δuᵀ ΔF / Δuᵀ M Δu of what has changed since the last look, and all nodes are damped critically for it, c = 2ω
+//! (Underwood 1983). Forces count less where elements are squeezed, which raises the highest frequency. Steps that end
+//! in numbers that are not finite or in elements turned inside out are taken back.
 
 use super::Simulation;
 use super::residual::{Motion, Residual, State};
@@ -25,8 +25,8 @@ const MOST_SETBACKS: u32 = 10;
 const MOST_DAMPING: f64 = 1.0;
 /// Motion that tells of frequencies makes forces so many times what rounding makes.
 const CLEAR_OF_ROUNDING: f64 = 10.0;
-/// What rounding may make of the residual, in units of its estimate: lightly damped, it keeps stiff motion awake (seen: up
-/// to 4.3).
+/// What rounding may make of the residual, in units of its estimate: lightly damped, it keeps stiff motion awake (seen:
+/// up to 4.3).
 const ROUNDING: f64 = 6.0;
 /// What the remaining motion may be, in tolerances of the residual: it errs on the side of too much.
 const MOTION: f64 = 10.0;
@@ -229,8 +229,9 @@ impl Relaxing {
         found.worst = residual.worst_in_words(world);
     }
 
-    /// Goes back to the last look, from where forces count half. While loads still grow, it goes back to the start, where
-    /// they grow at a quarter of the pace: what has been pushed too suddenly may have taken a way that leads elsewhere.
+    /// Goes back to the last look, from where forces count half. While loads still grow, it goes back to the start,
+    /// where they grow at a quarter of the pace: what has been pushed too suddenly may have taken a way that leads
+    /// elsewhere.
     fn take_back(&mut self, world: &mut World, mut relaxation: Relaxation, step: u64) -> Result<(), Error> {
         if self.settled_at.is_none() {
             self.before.forget();

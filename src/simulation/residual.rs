@@ -29,8 +29,8 @@ pub(super) struct Residual {
     pub square: f64,
     /// ‖R‖² over free axes and ‖F − R‖² over held ones (N²).
     pub scale_square: f64,
-    /// What rounding of the displacements may be of `square` (N²): a node's stiffness, which its fictitious mass bounds,
-    /// times the last digit of its largest displacement.
+    /// What rounding of the displacements may be of `square` (N²): a node's stiffness, which its fictitious mass
+    /// bounds, times the last digit of its largest displacement.
     pub rounding_square: f64,
     /// Rounding of a number, as a share of it.
     pub digit: f64,
@@ -145,7 +145,8 @@ impl State {
 /// What has changed from one state to another, along free axes.
 #[derive(Default)]
 pub(super) struct Motion {
-    /// The Rayleigh quotient of the change, as an angular frequency (1/s); `None` when nothing moved, or against no force.
+    /// The Rayleigh quotient of the change, as an angular frequency (1/s); `None` when nothing moved, or against no
+    /// force.
     pub frequency: Option<f64>,
     /// Work against the change of internal forces (J); below 0 where bodies give way, as a column that buckles.
     pub work: f64,

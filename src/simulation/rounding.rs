@@ -9,8 +9,8 @@ const MOST_NOISE: f64 = 1e-4;
 /// Half of the last digit of a number in f32, relative to it.
 const HALF_DIGIT: f64 = 1.0 / (1 << 24) as f64;
 
-/// Warns of each body, once, where displacements u in f32 are so large that rounding makes strains of u·2⁻²⁴/h, h being the shortest
-/// edge. Displacements on the host must be up to date.
+/// Warns of each body, once, where displacements u in f32 are so large that rounding makes strains of u·2⁻²⁴/h, h being
+/// the shortest edge. Displacements on the host must be up to date.
 pub(super) fn warn_of_rounding(watched: &[Watched], world: &mut World) {
     for block in watched {
         let Some((body, largest)) = largest_rounded(block, world) else { continue };

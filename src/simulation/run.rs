@@ -62,8 +62,8 @@ impl Simulation {
     /// analysis stops where it finds equilibrium; there further calls do nothing.
     ///
     /// # Errors
-    /// That the simulation broke down or found no equilibrium (the world keeps the state in which this was noticed), that the GPU failed, or that
-    /// outputs could not be written.
+    /// That the simulation broke down or found no equilibrium (the world keeps the state in which this was noticed),
+    /// that the GPU failed, or that outputs could not be written.
     pub fn advance(&mut self, count: u64) -> Result<(), Error> {
         self.settle()?;
         let started = Instant::now();

@@ -42,8 +42,8 @@ pub fn check_names(names: &[String], registry: &Registry, diagnostics: &mut Diag
     }
 }
 
-/// The systems of a scene in order: those it names, as far as there are such, or those it needs. That one is missing which
-/// it needs goes to `diagnostics`.
+/// The systems of a scene in order: those it names, as far as there are such, or those it needs. That one is missing
+/// which it needs goes to `diagnostics`.
 pub fn resolve<'a>(
     names: Option<&[String]>,
     registry: &'a Registry,

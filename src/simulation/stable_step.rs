@@ -26,14 +26,14 @@ const SHARP: f64 = 0.005;
 pub struct Stability {
     /// The bound, and the elements that set it.
     pub bound: StableStep,
-    /// The bound by nodes (s): elements weighed by their mass where they meet, never below that of the stiffest element. `None` in a
-    /// static analysis.
+    /// The bound by nodes (s): elements weighed by their mass where they meet, never below that of the stiffest
+    /// element. `None` in a static analysis.
     pub by_nodes: Option<f64>,
-    /// The largest stable step that is known of all bodies as they are held (s): never above the true limit. `None` in a static
-    /// analysis, whose steps are no motion.
+    /// The largest stable step that is known of all bodies as they are held (s): never above the true limit. `None` in
+    /// a static analysis, whose steps are no motion.
     pub limit: Option<f64>,
-    /// A step that is beyond the true limit for certain, or at it (s), where the highest frequency was sought: with 48 products
-    /// `limit` is at least 0.97 of it.
+    /// A step that is beyond the true limit for certain, or at it (s), where the highest frequency was sought: with 48
+    /// products `limit` is at least 0.97 of it.
     pub beyond: Option<f64>,
     /// Products with the stiffness by which the highest frequency was sought; 0: it was not.
     pub products: usize,
@@ -84,8 +84,9 @@ pub(super) fn limit_now(world: &mut World, accuracy: f64) -> Option<f64> {
 }
 
 impl Simulation {
-    /// The largest step that is stable at the present state (s), by the highest frequency of all bodies as they are held:
-    /// never above the true limit, and at least 0.97 of it. `None` where nothing can move. Costs some hundred steps.
+    /// The largest step that is stable at the present state (s), by the highest frequency of all bodies as they are
+    /// held: never above the true limit, and at least 0.97 of it. `None` where nothing can move. Costs some hundred
+    /// steps.
     ///
     /// # Errors
     /// What the GPU says.

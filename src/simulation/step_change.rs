@@ -36,8 +36,8 @@ const WRITTEN: [&str; 6] = [
 ];
 
 impl Simulation {
-    /// Takes steps of another length (s) from the present one on, whatever is stable; the scene ends with the last whole
-    /// step in its duration. Where the step follows what is stable, it becomes no larger than this from then on.
+    /// Takes steps of another length (s) from the present one on, whatever is stable; the scene ends with the last
+    /// whole step in its duration. Where the step follows what is stable, it becomes no larger than this from then on.
     ///
     /// # Errors
     /// A step that is no positive number; a static analysis, whose steps are no motion; what the GPU says.
@@ -102,8 +102,8 @@ fn scale_steps(world: &mut World, factor: f64) {
     }
 }
 
-/// The recursions of viscous materials take the coefficients of the new step. The memory of the exact one, H − φS, holds a
-/// coefficient of the old step too: what it stands for stays the same.
+/// The recursions of viscous materials take the coefficients of the new step. The memory of the exact one, H − φS,
+/// holds a coefficient of the old step too: what it stands for stays the same.
 fn relax_on(world: &mut World, clock: &Clock) -> Result<(), Error> {
     for (entity, [terms, volumetric]) in coefficients(world, clock) {
         let Some(law) = world.get::<BlockLaw<f64>>(entity) else { continue };
@@ -132,13 +132,14 @@ pub(super) fn relax_as(world: &mut World, clock: &Clock) -> Result<(), Error> {
     Ok(())
 }
 
-/// Bodies that start deformed have been so for a step: damping remembers the stress that they start with. Memories must be 0 before.
+/// Bodies that start deformed have been so for a step: damping remembers the stress that they start with. Memories must
+/// be 0 before.
 pub(super) fn remember_the_start(world: &mut World) {
     remember(world, |term| if term.is_damping() { term.aim } else { 0.0 });
 }
 
-/// The memories of blocks that have stood as they stand for long: each has come to its aim, aim·S, which takes αS from the
-/// stress whatever the step is. They must be 0 before.
+/// The memories of blocks that have stood as they stand for long: each has come to its aim, aim·S, which takes αS from
+/// the stress whatever the step is. They must be 0 before.
 pub(super) fn relax_fully(world: &mut World) {
     remember(world, |term| term.aim);
 }

@@ -8,8 +8,9 @@ use crate::backend::patch_step::take_inner_nodes;
 use crate::systems::{OnDevice, Phase, System};
 use bevy_ecs::prelude::*;
 
-/// The kernels of each group of systems that share a pass (those of systems by themselves are groups, too), and how each body's
-/// steps are dispatched. A kernel that sums forces and moves nodes is among those of the group that moves the nodes.
+/// The kernels of each group of systems that share a pass (those of systems by themselves are groups, too), and how
+/// each body's steps are dispatched. A kernel that sums forces and moves nodes is among those of the group that moves
+/// the nodes.
 pub(super) fn step_kernels(
     groups: &[Vec<&System>],
     world: &mut World,
@@ -58,8 +59,8 @@ fn stages_of(systems: &[&System], world: &mut World, buffers: &mut dyn Buffers) 
     stages
 }
 
-/// The places of element forces and of the pass over the nodes that follows at once; else what is in the way of moving nodes as soon
-/// as the forces on them are known. What only looks does so between steps.
+/// The places of element forces and of the pass over the nodes that follows at once; else what is in the way of moving
+/// nodes as soon as the forces on them are known. What only looks does so between steps.
 fn elements_then_nodes(groups: &[Vec<&System>]) -> Result<[usize; 2], String> {
     let mut places = (0..groups.len()).filter(|&place| !groups[place][0].observes);
     let elements = places.find(|&place| is_forces(&groups[place])).ok_or("it has no element forces")?;
@@ -70,8 +71,8 @@ fn elements_then_nodes(groups: &[Vec<&System>]) -> Result<[usize; 2], String> {
     }
 }
 
-/// The same where a step is nothing else that changes anything; else what is in the way of taking steps one after the other in a
-/// kernel.
+/// The same where a step is nothing else that changes anything; else what is in the way of taking steps one after the
+/// other in a kernel.
 fn nothing_but_elements_then_nodes(groups: &[Vec<&System>]) -> Result<[usize; 2], String> {
     let changing = groups.iter().filter(|group| !group[0].observes);
     match { changing }.find(|group| !is_forces(group) && !is_pass(group)) {

@@ -68,8 +68,8 @@ pub struct Summary {
     pub traffic: Option<Traffic>,
     /// The equilibrium of a static analysis.
     pub equilibrium: Option<super::Equilibrium>,
-    /// What bringing the bodies to rest before the first step took; `None` where that was not asked for, and in a run that
-    /// has gone on from a snapshot.
+    /// What bringing the bodies to rest before the first step took; `None` where that was not asked for, and in a run
+    /// that has gone on from a snapshot.
     pub preload: Option<super::Preload>,
     /// Energies at the end (J).
     pub energies: Energies,

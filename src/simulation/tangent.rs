@@ -1,5 +1,5 @@
-//! Internal forces of all bodies in f64, whatever the run's precision and wherever it runs, and by their differences the
-//! tangent stiffness at the present state. Reads the world only.
+//! Internal forces of all bodies in f64, whatever the run's precision and wherever it runs, and by their differences
+//! the tangent stiffness at the present state. Reads the world only.
 
 use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, run_block};
 use crate::components::*;
@@ -8,8 +8,8 @@ use crate::systems::{means_of, sum_corners};
 use bevy_ecs::prelude::*;
 use std::borrow::Cow;
 
-/// How far displacements are changed for a difference, as a share of the height of the flattest element: curvature of the
-/// law is then below 1e-6 of its slope, and rounding in f64 as well.
+/// How far displacements are changed for a difference, as a share of the height of the flattest element: curvature of
+/// the law is then below 1e-6 of its slope, and rounding in f64 as well.
 const CHANGE: f64 = 1e-7;
 
 /// Internal forces of all bodies as a function of all displacements, bodies one after the other.
@@ -140,8 +140,8 @@ impl<'w> BlockForces<'w> {
     }
 }
 
-/// A law as it answers to what is sudden: stresses relaxed so far are there, nothing relaxes further, and fibres that could
-/// be pulled taut at any moment push back as well.
+/// A law as it answers to what is sudden: stresses relaxed so far are there, nothing relaxes further, and fibres that
+/// could be pulled taut at any moment push back as well.
 fn at_an_instant(law: &BlockLaw<f64>) -> BlockLaw<f64> {
     let mut law = law.clone();
     // a term without a rate is relaxed for good: that of a static analysis

@@ -1,9 +1,10 @@
-//! The unloaded shape of bodies whose meshes show them loaded, as scans do: X such that the equilibrium under the loads stands
-//! where the mesh has its nodes.
+//! The unloaded shape of bodies whose meshes show them loaded, as scans do: X such that the equilibrium under the loads
+//! stands where the mesh has its nodes.
 //!
-//! The fixed-point iteration X ← X − (x(X) − x̄) of Sellier 2011, x̄ the loaded shape and x(X) the equilibrium of a body with
-//! the rest shape X, made faster by least squares over what the last iterations did (Anderson 1965; for blood vessels Bols et al.
-//! 2013). Of one iteration back that is Aitken's rule, with which Rausch, Genet & Humphrey 2017 do it; five take a third of the iterations.
+//! The fixed-point iteration X ← X − (x(X) − x̄) of Sellier 2011, x̄ the loaded shape and x(X) the equilibrium of a
+//! body with the rest shape X, made faster by least squares over what the last iterations did (Anderson 1965; for blood
+//! vessels Bols et al. 2013). Of one iteration back that is Aitken's rule, with which Rausch, Genet & Humphrey 2017 do
+//! it; five take a third of the iterations.
 
 use super::preload::at_rest;
 use super::{Options, Simulation};
@@ -23,8 +24,8 @@ const PATIENCE: usize = 8;
 /// How an unloaded shape is sought.
 #[derive(Clone, Copy, Debug)]
 pub struct Unloading {
-    /// How far loaded nodes may be from where they should be at most, as a share of the bodies' size (the diagonal of the box
-    /// around them).
+    /// How far loaded nodes may be from where they should be at most, as a share of the bodies' size (the diagonal of
+    /// the box around them).
     pub tolerance: f64,
     /// Static analyses at most.
     pub most: usize,
@@ -63,8 +64,8 @@ pub struct Unloaded {
 /// Positions of all bodies' nodes, one after the other.
 type Shape = Vec<DVec3>;
 
-/// Finds the unloaded shape of all bodies of a scene whose meshes show them loaded: by what acts at t = 0, or where the scene
-/// is a static analysis at its time. `tell` is called after each iteration.
+/// Finds the unloaded shape of all bodies of a scene whose meshes show them loaded: by what acts at t = 0, or where the
+/// scene is a static analysis at its time. `tell` is called after each iteration.
 ///
 /// # Errors
 /// What is wrong with the scene; that none was found, with the distance that was reached; what the GPU says.
@@ -141,8 +142,8 @@ impl<'a> Search<'a> {
         self.nodes.iter().map(|(name, &count)| (name.clone(), take(count))).collect()
     }
 
-    /// Finds how far the equilibrium of the present rest shape is from the loaded one; `None` where there is none and the shape
-    /// has been moved half of the way back.
+    /// Finds how far the equilibrium of the present rest shape is from the loaded one; `None` where there is none and
+    /// the shape has been moved half of the way back.
     fn look(&mut self, iterations: &[UnloadingStep]) -> Result<Option<UnloadingStep>, Error> {
         let (placed, steps) = match self.equilibrium() {
             Ok(found) => found,
@@ -178,8 +179,8 @@ impl<'a> Search<'a> {
         Ok(Some(UnloadingStep { number, largest, mean_square: square.sqrt(), steps }))
     }
 
-    /// Moves the rest shape by its distances, less what the changes before show to be undone by that: those weights of changes that
-    /// leave the least of the distances.
+    /// Moves the rest shape by its distances, less what the changes before show to be undone by that: those weights of
+    /// changes that leave the least of the distances.
     fn improve(&mut self) {
         let Some(((rest, distances), earlier)) = self.tried.split_last() else { return };
         let changes: Vec<(Shape, Shape)> = earlier

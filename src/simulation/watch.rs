@@ -151,8 +151,8 @@ impl Watched {
         fits
     }
 
-    /// Looks at all elements: first at what those of a task come to were one of them the largest in everything, then at one after the
-    /// other where that comes to most.
+    /// Looks at all elements: first at what those of a task come to were one of them the largest in everything, then at
+    /// one after the other where that comes to most.
     pub fn look(&mut self, world: &World) -> Seen {
         let (cpu, count) = (world.resource::<Cpu>(), self.squares.len());
         let nothing = Strain { row: 0, size: 1.0, squeeze: 1.0, speed: 0.0, more: 0.0 };
@@ -228,8 +228,8 @@ impl Watched {
         self.sum_up(world);
     }
 
-    /// Of each element that is there: its row, the bound of its own ω² as it is now (1/s²), and how much stiffer it has become since the
-    /// frequency of all was found.
+    /// Of each element that is there: its row, the bound of its own ω² as it is now (1/s²), and how much stiffer it has
+    /// become since the frequency of all was found.
     pub fn now(&mut self, world: &World) -> Vec<(usize, f64, f64)> {
         self.reach_all(world);
         let found = self.growths(world, Vec::new(), |found, row, [own, of_all]| {
@@ -267,8 +267,8 @@ impl Watched {
         })
     }
 
-    /// Visits all elements that are there: each of several threads begins with `start`, and what they made of it comes in the order of
-    /// rows.
+    /// Visits all elements that are there: each of several threads begins with `start`, and what they made of it comes
+    /// in the order of rows.
     fn each_task<R: Clone + Send + Sync>(
         &self,
         world: &World,
@@ -283,7 +283,8 @@ impl Watched {
         world.resource::<Cpu>().map(self.squares.len().div_ceil(ROWS_A_TASK), task)
     }
 
-    /// Visits the elements of a task that are there; what they come to, and how many they are. `None` where the world has them no longer.
+    /// Visits the elements of a task that are there; what they come to, and how many they are. `None` where the world
+    /// has them no longer.
     fn strains(&self, world: &World, task: usize, visit: Option<Visit<'_>>) -> Option<(Strain, usize)> {
         let block = world.get::<Block>(self.entity)?;
         let (u, d) = (world.get::<Displacement>(block.body)?, world.get::<DisplacementStep>(block.body)?);

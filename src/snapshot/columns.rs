@@ -39,7 +39,8 @@ pub struct StateColumn {
     pub access: ColumnAccess,
 }
 
-/// The columns of a world's state in a fixed order: all whose [`Role`] says so. `further`: columns that custom systems write.
+/// The columns of a world's state in a fixed order: all whose [`Role`] says so. `further`: columns that custom systems
+/// write.
 pub fn state_columns(world: &mut World, further: &[&'static str]) -> Vec<StateColumn> {
     let accesses = all_columns();
     let mut columns = Vec::new();

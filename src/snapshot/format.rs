@@ -10,8 +10,8 @@
 //! | ... | the columns, one after the other as the head lists them |
 //! | 8 | XXH64 of all that stands before |
 //!
-//! Numbers are little-endian; columns have the byte order that the head names. Nothing is allocated by what the head claims:
-//! lengths are compared with what is there.
+//! Numbers are little-endian; columns have the byte order that the head names. Nothing is allocated by what the head
+//! claims: lengths are compared with what is there.
 
 use super::{Head, SnapshotError};
 use std::fs::File;
@@ -61,10 +61,12 @@ fn front(front: &[u8; FRONT]) -> Result<(usize, u64), SnapshotError> {
     Ok((word(12) as usize, u64::from(word(16)) | u64::from(word(20)) << 32))
 }
 
-/// Reads the bytes of a file, if it begins as a snapshot and is as long as it says: nothing else of it is touched before.
+/// Reads the bytes of a file, if it begins as a snapshot and is as long as it says: nothing else of it is touched
+/// before.
 ///
 /// # Errors
-/// What cannot be read; what is no file, as a device or a pipe; bytes that do not begin as a snapshot, or of another length.
+/// What cannot be read; what is no file, as a device or a pipe; bytes that do not begin as a snapshot, or of another
+/// length.
 pub fn read_file(path: &Path) -> Result<Vec<u8>, SnapshotError> {
     let refused = |source| SnapshotError::Read { path: path.to_path_buf(), source };
     // opening a pipe would wait for a writer

@@ -10,8 +10,8 @@ use std::collections::BTreeMap;
 use std::hash::Hasher;
 use twox_hash::XxHash64;
 
-/// Hashes of a simulation's parts as texts, by the part's name in scenes. Titles, probes, outputs, pictures and guards are no
-/// parts: they may differ.
+/// Hashes of a simulation's parts as texts, by the part's name in scenes. Titles, probes, outputs, pictures and guards
+/// are no parts: they may differ.
 pub type Identity = BTreeMap<String, String>;
 
 /// The identity of a scene and the world that was made of it, before its first step.

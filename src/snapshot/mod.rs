@@ -1,9 +1,10 @@
-//! Snapshots: the whole state of a simulation between two steps, to go back to it, to keep it in a file, and to go on from it
-//! in another process. What goes on from a snapshot gives the same bits as what was never interrupted, on the same backend.
+//! Snapshots: the whole state of a simulation between two steps, to go back to it, to keep it in a file, and to go on
+//! from it in another process. What goes on from a snapshot gives the same bits as what was never interrupted, on the
+//! same backend.
 //!
-//! A snapshot holds the columns that steps carry on (compensation, viscous memory, removed elements and booked work among
-//! them), the clock, and the state that custom systems [declare](crate::systems::System::with_state). What a scene says stays
-//! in the scene: a snapshot fits only simulations of the same [`Identity`].
+//! A snapshot holds the columns that steps carry on (compensation, viscous memory, removed elements and booked work
+//! among them), the clock, and the state that custom systems [declare](crate::systems::System::with_state). What a
+//! scene says stays in the scene: a snapshot fits only simulations of the same [`Identity`].
 
 mod columns;
 mod error;
@@ -106,7 +107,8 @@ impl Snapshot {
     /// Puts the state into a world of the same identity.
     ///
     /// # Errors
-    /// What does not fit; then the world is as it was. A custom system's state that cannot be taken back; what the GPU says.
+    /// What does not fit; then the world is as it was. A custom system's state that cannot be taken back; what the GPU
+    /// says.
     pub fn put(&self, world: &mut World) -> Result<(), Error> {
         let Some(keeping) = world.remove_resource::<Keeping>() else { return Err(SnapshotError::Static.into()) };
         let put = put(self, world, &keeping);

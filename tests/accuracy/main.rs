@@ -1,4 +1,5 @@
-//! The study of accuracy against time: its parts on made-up problems whose answer is known, and the command on a small scene.
+//! The study of accuracy against time: its parts on made-up problems whose answer is known, and the command on a small
+//! scene.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod answers;

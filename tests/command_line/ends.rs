@@ -104,7 +104,8 @@ fn a_run_that_breaks_down_ends_with_1_and_keeps_what_it_wrote() {
     place.done(&["render", "out/block", "--no-animation"]);
 }
 
-/// In the last step tetrahedra that may go are drawn out to 1e21 of their size and inside out: nodes have a place, forces overflow.
+/// In the last step tetrahedra that may go are drawn out to 1e21 of their size and inside out: nodes have a place,
+/// forces overflow.
 #[test]
 fn a_result_that_is_no_number_ends_with_1_and_a_summary() {
     let place = Place::with_scene(

@@ -1,4 +1,5 @@
-//! Random numbers of made-up scenes: a row for what they hold, and of violent ones another for how far beyond all measure that is.
+//! Random numbers of made-up scenes: a row for what they hold, and of violent ones another for how far beyond all
+//! measure that is.
 
 use fastrand::Rng;
 use std::ops::{Deref, DerefMut};
@@ -61,8 +62,8 @@ impl Dice {
         self.wild.as_mut()
     }
 
-    /// What to multiply with what goes on all the time: 1 in mild scenes and now and then in others; else up to `most`, each power of
-    /// ten alike.
+    /// What to multiply with what goes on all the time: 1 in mild scenes and now and then in others; else up to `most`,
+    /// each power of ten alike.
     pub fn beyond(&mut self, most: f64) -> f64 {
         match self.temper {
             Temper::Mild | Temper::Late => 1.0,
@@ -71,8 +72,8 @@ impl Dice {
         }
     }
 
-    /// The same of what has a course in time: seldom so much that single precision ends, which is what is left of the 1e30 that a
-    /// scene may hold.
+    /// The same of what has a course in time: seldom so much that single precision ends, which is what is left of the
+    /// 1e30 that a scene may hold.
     pub fn far_beyond(&mut self, most: f64) -> f64 {
         let temper = self.temper;
         match temper {
@@ -88,7 +89,8 @@ impl Dice {
         if wild.u8(..5) < 2 { 1.0 } else { size(wild, 1.0, most) }
     }
 
-    /// When a course in time begins at once and so late that only the last look can see it, as a share of the whole; if it does.
+    /// When a course in time begins at once and so late that only the last look can see it, as a share of the whole; if
+    /// it does.
     pub fn late(&mut self) -> Option<f64> {
         let temper = self.temper;
         let tens = match temper {

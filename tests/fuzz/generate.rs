@@ -1,11 +1,12 @@
-//! Whole scenes made up from a seed: small, sound, with every feature that a scene can have. Every other one is violent: loads and
-//! motions far beyond what holds it, steps that are too large, guards that hardly look.
+//! Whole scenes made up from a seed: small, sound, with every feature that a scene can have. Every other one is
+//! violent: loads and motions far beyond what holds it, steps that are too large, guards that hardly look.
 
 use crate::dice::{Dice, Temper, number, one_of, size, vector};
 use fastrand::Rng;
 use std::fmt::Write;
 
-/// A scene of a seed. Times in it are shares of `duration` (s), so that the same scene can be had for as many steps as wanted.
+/// A scene of a seed. Times in it are shares of `duration` (s), so that the same scene can be had for as many steps as
+/// wanted.
 pub struct Made {
     /// The text.
     pub text: String,
@@ -274,8 +275,8 @@ fn integration(statics: bool, r: &mut Rng) -> String {
     all.join(", ")
 }
 
-/// How steps are taken in a violent scene: much as in a mild one, or with mass scaled, or of a length of its own, below what is stable
-/// or just beyond it.
+/// How steps are taken in a violent scene: much as in a mild one, or with mass scaled, or of a length of its own, below
+/// what is stable or just beyond it.
 fn violent_steps(mild: String, stable: Option<f64>, temper: Temper, wild: &mut Rng) -> String {
     let kind = match temper {
         Temper::Heavy => wild.u8(2..4),

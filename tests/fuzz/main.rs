@@ -1,9 +1,10 @@
 //! Hostile input: whatever a file holds, it is read or refused, with no panic, no endless wait, and no memory out of
 //! proportion to it.
 //!
-//! Inputs are mutants of sound files and of those in `corpus/`, which broke something once or come close to a limit. The
-//! variable `SINEW_FUZZ` says how many (a million takes an hour), `SINEW_FUZZ_SEED` where to begin; the same numbers give
-//! the same inputs. What breaks something is kept in the folder `sinew-fuzz` of the system's temporary files.
+//! Inputs are mutants of sound files and of those in `corpus/`, which broke something once or come close to a limit.
+//! The variable `SINEW_FUZZ` says how many (a million takes an hour), `SINEW_FUZZ_SEED` where to begin; the same
+//! numbers give the same inputs. What breaks something is kept in the folder `sinew-fuzz` of the system's temporary
+//! files.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod dice;

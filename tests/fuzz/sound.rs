@@ -32,8 +32,8 @@ pub fn check(simulation: &mut Simulation) -> Result<(), String> {
     Ok(())
 }
 
-/// Elements that are there although they are inside out and must not be. What is to be removed goes in the step that begins with it
-/// flatter than [`FLATTEST`]: what has become so in the last step is still there.
+/// Elements that are there although they are inside out and must not be. What is to be removed goes in the step that
+/// begins with it flatter than [`FLATTEST`]: what has become so in the last step is still there.
 fn inside_out(simulation: &mut Simulation, body: &str, rest: &[DVec3], moved: &[DVec3]) -> Result<(), String> {
     let entity = simulation.body(body).map_err(|e| e.to_string())?;
     let (world, scene) = (simulation.world(), simulation.scene());
@@ -62,7 +62,8 @@ fn inside_out(simulation: &mut Simulation, body: &str, rest: &[DVec3], moved: &[
         let lost = lost(&of(rest), &of(after), last.precision());
         for gradient in gradients(block.kind, &of(rest), &of(moved)) {
             let j = (DMat3::IDENTITY + gradient).determinant();
-            // a volume that is nothing to what single precision leaves of it, or rounding of displacements, may have either sign
+            // a volume that is nothing to what single precision leaves of it, or rounding of displacements, may have
+            // either sign
             let (size, largest) = (size(&gradient, 0.0), size(&gradient, lost));
             if j < least - 1e-5 * size - (largest - size) || !j.is_finite() {
                 return Err(format!("status 0 with element {element} of {body} inside out: J = {j:.3e}"));
@@ -86,8 +87,8 @@ fn size(gradient: &DMat3, lost: f64) -> f64 {
     x[0] * minor(1, 2) + x[1] * minor(0, 2) + x[2] * minor(0, 1)
 }
 
-/// ∇u where an element of a kind looks at it: of tetrahedra the one there is, of hexahedra at eight Gauss points, or the mean of those
-/// by volume.
+/// ∇u where an element of a kind looks at it: of tetrahedra the one there is, of hexahedra at eight Gauss points, or
+/// the mean of those by volume.
 fn gradients(kind: ElementKind, rest: &[DVec3], moved: &[DVec3]) -> Vec<DMat3> {
     if rest.len() == 4 {
         let edges = |at: &[DVec3]| DMat3::from_cols(at[1] - at[0], at[2] - at[0], at[3] - at[0]);

@@ -1,8 +1,8 @@
 //! Whole runs of made-up scenes: what must hold of each, whatever it is.
 //!
-//! A run ends well or says why it did not; what it calls a result is finite, and no element of it is inside out that must not
-//! be. The same bits come from any number of threads, from passes shared or apart, and from what goes on from a snapshot.
-//! Other sums of forces, number types and backends agree but for rounding, where no threshold decides.
+//! A run ends well or says why it did not; what it calls a result is finite, and no element of it is inside out that
+//! must not be. The same bits come from any number of threads, from passes shared or apart, and from what goes on from
+//! a snapshot. Other sums of forces, number types and backends agree but for rounding, where no threshold decides.
 
 use crate::dice::Temper;
 use crate::{generate, number, sound};
@@ -73,8 +73,8 @@ fn run(scene: &SceneFile, options: &Options) -> Result<Run, String> {
     finished(&mut simulation, ended)
 }
 
-/// The same from snapshot to snapshot, each taken up by another simulation: at some steps, and where what is known of the stable step
-/// has changed.
+/// The same from snapshot to snapshot, each taken up by another simulation: at some steps, and where what is known of
+/// the stable step has changed.
 fn run_in_parts(scene: &SceneFile, options: &Options, whole: &Run, rng: &mut Rng) -> Result<Run, String> {
     let mut simulation = start(scene, options)?;
     let places = [rng.u64(1..5), rng.u64(1..=whole.steps.max(1)), whole.steps / 2, whole.steps.saturating_sub(1)];
@@ -103,8 +103,8 @@ fn run_in_parts(scene: &SceneFile, options: &Options, whole: &Run, rng: &mut Rng
     finished(&mut simulation, ended)
 }
 
-/// Runs into an output folder, as the command does. Of a run that broke down, what is left goes on from the last good state just as it
-/// did; of any other, all can be written at the end but what is no number.
+/// Runs into an output folder, as the command does. Of a run that broke down, what is left goes on from the last good
+/// state just as it did; of any other, all can be written at the end but what is no number.
 fn run_into_a_folder(scene: &SceneFile, options: &Options, whole: &Run) -> Result<(), String> {
     let place = tempfile::tempdir().map_err(|e| e.to_string())?;
     let mut folder = Folder::create(place.path()).map_err(|e| e.to_string())?;
@@ -186,7 +186,8 @@ fn near(what: &str, a: &Run, b: &Run, most: f64) -> Result<(), String> {
         // near a limit rounding may decide
         return Ok(());
     }
-    // where rounding has decided when a step that follows became another, what differs is the error of the scheme itself
+    // where rounding has decided when a step that follows became another, what differs is the error of the scheme
+    // itself
     let alike = a.steps == b.steps && (a.time_step - b.time_step).abs() <= 1e-9 * a.time_step;
     let most = if alike { most } else { most.max(0.05) };
     let apart = apart(&a.displacements, &b.displacements);
@@ -205,7 +206,8 @@ enum Ending {
     BrokeDown,
 }
 
-/// The scene of a seed, or where that is refused in words the first of some further ones that is not; `None` where all are.
+/// The scene of a seed, or where that is refused in words the first of some further ones that is not; `None` where all
+/// are.
 fn made_of(seed: u64, rng: &mut Rng) -> Result<Option<(generate::Made, SceneFile)>, String> {
     for further in 0..TRIALS {
         if let Some(made) = one_of(seed + (further << 40), rng)? {
@@ -316,7 +318,8 @@ fn made_up_scenes_keep_their_word() {
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 
-/// One scene of a seed, to look at, and what becomes of it: `SINEW_FUZZ_SHOW=17 cargo test --test fuzz show -- --nocapture`.
+/// One scene of a seed, to look at, and what becomes of it: `SINEW_FUZZ_SHOW=17 cargo test --test fuzz show --
+/// --nocapture`.
 #[test]
 fn show_a_scene() {
     let seed = number("SINEW_FUZZ_SHOW", 0) as u64;

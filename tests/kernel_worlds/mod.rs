@@ -298,7 +298,8 @@ pub fn shared_kernels(systems: &[&str], world: &mut World, buffers: &mut dyn Buf
     node_kernels(stages, true, buffers)
 }
 
-/// Kernels of bodies that take many steps in a dispatch: however many elements they have, if only their patches allow it.
+/// Kernels of bodies that take many steps in a dispatch: however many elements they have, if only their patches allow
+/// it.
 pub fn small_bodies(of_nodes: &[&str], world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let forces = Registry::default().get("element_forces").unwrap().device.clone();
     let mut elements = forces.kernels(world, buffers);

@@ -9,8 +9,8 @@ use sinew::evaluation::{ElementState, extinguish, lane_place, node_count, point_
 use sinew::mesh::ElementKind;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// For each number of a body's element forces that a block writes the rows of the elements in it: one in the scheme of two
-/// passes, in patches all that meet in a node.
+/// For each number of a body's element forces that a block writes the rows of the elements in it: one in the scheme of
+/// two passes, in patches all that meet in a node.
 fn summed(world: &World, block: Entity) -> BTreeMap<usize, Vec<usize>> {
     let (data, patches) = (world.get::<Block>(block).unwrap(), world.get::<Patches>(block));
     let nodes = node_count(data.kind);
@@ -45,8 +45,8 @@ fn clear_others(pair: &mut Pair) {
     }
 }
 
-/// Compares forces in which n elements are summed: Σ of their magnitudes, each as many times as it `counts`, to the roundings
-/// of each and n of the sum, whose order differs.
+/// Compares forces in which n elements are summed: Σ of their magnitudes, each as many times as it `counts`, to the
+/// roundings of each and n of the sum, whose order differs.
 fn agree_in_force(pair: &mut Pair, roundings: f64, counts: impl Fn(&World, Entity, usize) -> f64) {
     clear_others(pair);
     let mut bounds = BTreeMap::new();
@@ -253,7 +253,8 @@ fn inverted_elements_are_removed_alike() {
     }
 }
 
-/// A node's θ is a mean of up to 24 products, each of θ (|∇u| ≤ h to 16 roundings) and a volume; the sums err by 24 more.
+/// A node's θ is a mean of up to 24 products, each of θ (|∇u| ≤ h to 16 roundings) and a volume; the sums err by 24
+/// more.
 #[test]
 fn volumes_around_nodes_change_alike() {
     let effects = Effects { averaged: true, ..Effects::default() };

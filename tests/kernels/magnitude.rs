@@ -7,8 +7,9 @@ use sinew::evaluation::{ElementState, lane_place, node_count, row_count};
 use sinew::materials::Elastic;
 use sinew::mesh::ElementKind;
 
-/// Σ|tᵢ| of the forces on an element's corners and of its stress. With ∇u = h, stresses are sums of moduli times strains
-/// h + hᵀ + hᵀh, times C⁻¹ and powers of J; rounding of O(1) intermediate values (C, J) counts with the moduli times
+/// Σ|tᵢ| of the forces on an element's corners and of its stress. With ∇u = h, stresses are sums of moduli times
+/// strains h + hᵀ + hᵀh, times C⁻¹ and powers of J; rounding of O(1) intermediate values (C, J) counts with the moduli
+/// times
 /// |h|, that of strains likewise. A force is V P g, in the hexahedron plus k q.
 pub struct Magnitude {
     pub stress: f64,
@@ -72,9 +73,10 @@ fn natural_gradients(number: impl Fn(usize) -> f64) -> f64 {
     (0..8).flat_map(inverse).fold(0.0, f64::max)
 }
 
-/// The longest way from displacements to a corner's force: a gradient (8 roundings), strains and J (8), a cube root (10),
-/// two laws (20), viscosity (8), F S (6), a force and the sum of all (16). Eight points with gradients in natural coordinates
-/// (∂X/∂ξ 3, its adjugate and determinant 6, a division 3) and a sum over them (8) stay within what is left.
+/// The longest way from displacements to a corner's force: a gradient (8 roundings), strains and J (8), a cube root
+/// (10), two laws (20), viscosity (8), F S (6), a force and the sum of all (16). Eight points with gradients in natural
+/// coordinates (∂X/∂ξ 3, its adjugate and determinant 6, a division 3) and a sum over them (8) stay within what is
+/// left.
 pub const ROUNDINGS: f64 = 96.0;
 
 /// What Ogden's law adds to it: twelve rotations (6 each), logarithms (12) and exponentials (16).

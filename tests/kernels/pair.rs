@@ -23,7 +23,8 @@ pub fn run(system: &str, effects: &Effects, step: u64, change: impl Fn(&mut Worl
     run_all(&[system], effects, step, change)
 }
 
-/// The same with several systems of nodes, which share kernels on the GPU; those that the scene does not call for are left out.
+/// The same with several systems of nodes, which share kernels on the GPU; those that the scene does not call for are
+/// left out.
 pub fn run_all(systems: &[&str], effects: &Effects, step: u64, change: impl Fn(&mut World)) -> Option<Pair> {
     let gpu = gpu_or_reason()?;
     let world = || {
@@ -88,7 +89,8 @@ impl Pair {
         self.before.world()
     }
 
-    /// Compares a column of real numbers: `bound` gives, for a number of an entity, the difference that rounding explains.
+    /// Compares a column of real numbers: `bound` gives, for a number of an entity, the difference that rounding
+    /// explains.
     pub fn agree<C: Component + std::ops::Deref<Target = Reals>>(
         &mut self,
         bound: impl Fn(&Self, Entity, usize) -> f64,

@@ -1,7 +1,7 @@
 //! Generators against exact volumes and areas.
 //!
-//! A ball of radii a, b, c has 4π/3·abc; a lens of two caps of height h on a circle of radius a has πh/3·(3a² + h²); a mesh
-//! inscribed into a smooth surface misses a share of the volume that falls with the square of the cell size.
+//! A ball of radii a, b, c has 4π/3·abc; a lens of two caps of height h on a circle of radius a has πh/3·(3a² + h²); a
+//! mesh inscribed into a smooth surface misses a share of the volume that falls with the square of the cell size.
 
 use glam::DVec3;
 use sinew::mesh::generators::{box_mesh, cylinder_mesh, ellipsoid_mesh, hexahedron_mesh, lens_mesh, tube_mesh};

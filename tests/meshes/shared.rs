@@ -1,4 +1,5 @@
-//! Meshes of other projects, in the folder that the variable SINEW_MESHES names. Each is read, or refused with a reason.
+//! Meshes of other projects, in the folder that the variable SINEW_MESHES names. Each is read, or refused with a
+//! reason.
 
 use sinew::mesh::Mesh;
 use std::path::Path;

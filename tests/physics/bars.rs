@@ -1,11 +1,11 @@
 //! Bars in motion: closed forms 4, 6 and 7. L = .1 m, section .01 × .01 m.
 //!
-//! Clamped-free, frequencies: axial √((λ+2μ)/ρ)/(4L) = 8.4333 Hz with lateral motion held, √(E/ρ)/(4L) = 4.3301 Hz slender;
-//! bending .5596 √(E I/(ρ A))/L² = .27980 Hz. They are counted from zeros of the motion's projection on the mode.
-//! What discretisation changes: lumped masses ω h²k²/24 = (π/80)²/6 = 2.6e-4 at 20 cells, less what the time step gives back;
-//! a bar of finite width ½(νπ/(2L))² (b² + h²)/12 = 4e-4; Timoshenko's beam ½ (1.8751/L)² (I/A)(1 + E/(kG)) = .66 %.
-//! Spinning at ω = 2π rad/s about its middle: σ = ½ρω²(L/2)² = 49.348 Pa there. Hitting at v = .01 m/s with lateral motion
-//! held: σ = −ρ c v = −33.7332 Pa, at the other end after L/c = .0296444 s.
+//! Clamped-free, frequencies: axial √((λ+2μ)/ρ)/(4L) = 8.4333 Hz with lateral motion held, √(E/ρ)/(4L) = 4.3301 Hz
+//! slender; bending .5596 √(E I/(ρ A))/L² = .27980 Hz. They are counted from zeros of the motion's projection on the
+//! mode. What discretisation changes: lumped masses ω h²k²/24 = (π/80)²/6 = 2.6e-4 at 20 cells, less what the time step
+//! gives back; a bar of finite width ½(νπ/(2L))² (b² + h²)/12 = 4e-4; Timoshenko's beam ½ (1.8751/L)² (I/A)(1 + E/(kG))
+//! = .66 %. Spinning at ω = 2π rad/s about its middle: σ = ½ρω²(L/2)² = 49.348 Pa there. Hitting at v = .01 m/s with
+//! lateral motion held: σ = −ρ c v = −33.7332 Pa, at the other end after L/c = .0296444 s.
 
 use crate::columns::{masses, velocities};
 use crate::configurations::{ELEMENTS, configurations, near};
@@ -79,9 +79,9 @@ fn clamped_beam_swings_at_0_2798_hertz() {
     }
 }
 
-/// Stiff (E = 3e4 Pa), so that it hardly lengthens (.1 %: the spin falls by that), and viscous, so that it comes to rest
-/// within its own length. Across, the load of its own width is ρω² b²/12 = .33 Pa.
-/// f32: u is rounded to 6e-8·.1 m, over h = .005 m and κ = 1e5 Pa: .1 Pa from each of three strains, .6 % together.
+/// Stiff (E = 3e4 Pa), so that it hardly lengthens (.1 %: the spin falls by that), and viscous, so that it comes to
+/// rest within its own length. Across, the load of its own width is ρω² b²/12 = .33 Pa. f32: u is rounded to 6e-8·.1 m,
+/// over h = .005 m and κ = 1e5 Pa: .1 Pa from each of three strains, .6 % together.
 #[test]
 fn spinning_bar_bears_its_centrifugal_load() {
     for run in configurations() {

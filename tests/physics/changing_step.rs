@@ -209,8 +209,8 @@ fn what_goes_by_time_and_what_is_observed_keeps_its_times() {
     }
 }
 
-/// Tetrahedra between walls, squeezed to .3: the stable step shrinks by a tenth while strains change by a twentieth, and what was found
-/// to be stable by a twentieth was not any more when it was looked at again.
+/// Tetrahedra between walls, squeezed to .3: the stable step shrinks by a tenth while strains change by a twentieth,
+/// and what was found to be stable by a twentieth was not any more when it was looked at again.
 #[test]
 fn a_step_close_to_the_limit_is_looked_at_before_it_is_beyond_it() {
     for run in configurations() {

@@ -1,4 +1,5 @@
-//! The clock, and the limit of the time step (H29): .99 of it runs, more is refused, or caught and not handed out as a result.
+//! The clock, and the limit of the time step (H29): .99 of it runs, more is refused, or caught and not handed out as a
+//! result.
 
 use crate::configurations::{configurations, near, scene_of};
 use sinew::{Error, Simulation};
@@ -44,8 +45,8 @@ fn just_below_the_limit_a_free_block_runs_on() {
     }
 }
 
-/// The true limit of a block of many elements is above what the elements alone show; 1.02 of what was found (at least 0.98
-/// of the true one) may still run, more may not.
+/// The true limit of a block of many elements is above what the elements alone show; 1.02 of what was found (at least
+/// 0.98 of the true one) may still run, more may not.
 #[test]
 fn up_to_the_true_limit_of_all_elements_a_block_runs_on_and_not_beyond() {
     for run in &configurations()[..2] {

@@ -1,8 +1,9 @@
 //! What must stay the same: momentum, angular momentum, energy; and free fall.
 //!
-//! Central differences keep Σ m v and Σ m x × v (x at the end, v in the middle of a step) exactly when elements exert no net
-//! force and no net moment: what is left is rounding, 1e-10 in f64 and 1e-4 in f32 (gate G4). The balance of energy (gate
-//! G2) uses booked work: |KE + IE + HG + losses − W − E₀| below 1 % in f64, 2 % in f32 of the largest term.
+//! Central differences keep Σ m v and Σ m x × v (x at the end, v in the middle of a step) exactly when elements exert
+//! no net force and no net moment: what is left is rounding, 1e-10 in f64 and 1e-4 in f32 (gate G4). The balance of
+//! energy (gate G2) uses booked work: |KE + IE + HG + losses − W − E₀| below 1 % in f64, 2 % in f32 of the largest
+//! term.
 
 use crate::columns::{masses, positions, velocities};
 use crate::configurations::{ELEMENTS, configurations, near};

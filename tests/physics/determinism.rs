@@ -1,7 +1,7 @@
 //! The same scene gives the same bits (gate G6), any numbering the same motion, f32 the motion of f64.
 //!
-//! Bounds: a shuffled mesh sums the same forces in another order: eps a step, 60 steps, moduli 1e4: 1e-12 of the displacement
-//! in f64, 1e-4 in f32; f32 against f64 likewise 1e-4.
+//! Bounds: a shuffled mesh sums the same forces in another order: eps a step, 60 steps, moduli 1e4: 1e-12 of the
+//! displacement in f64, 1e-4 in f32; f32 against f64 likewise 1e-4.
 
 use crate::configurations::{Configuration, configurations};
 use crate::grids::{Grid, bits, grid};

@@ -1,8 +1,9 @@
 //! Elements, one macro: ∇u of every affine field, exact volumes, the patch test, rigid rotations.
 //!
-//! Bounds: for points of the size L = 1 the gradient is a sum of 8 products u b with |b| up to 2/L on the distorted shapes
-//! here: 8·2·eps·|u| < 1e-14 in f64, 1e-5 in f32. A rotation's Green strain is the cancellation of entries of size 2 rounded
-//! to eps: some 4 eps in E, and κ + 2μ = 1.2e4 Pa times 3 entries of it in S: 5e-11 Pa in f64, 2e-2 Pa in f32 at worst.
+//! Bounds: for points of the size L = 1 the gradient is a sum of 8 products u b with |b| up to 2/L on the distorted
+//! shapes here: 8·2·eps·|u| < 1e-14 in f64, 1e-5 in f32. A rotation's Green strain is the cancellation of entries of
+//! size 2 rounded to eps: some 4 eps in E, and κ + 2μ = 1.2e4 Pa times 3 entries of it in S: 5e-11 Pa in f64, 2e-2 Pa
+//! in f32 at worst.
 
 use crate::configurations::configurations;
 use crate::grids::{Grid, grid};
@@ -225,10 +226,10 @@ elements! {
 
 /// Closed form 8, H31: interior nodes of a distorted mesh feel nothing of any homogeneous deformation.
 ///
-/// With both kinds in one body the layers next to the interface keep equal parallelograms for its faces: a bilinear face
-/// gives each of its nodes a quarter, two triangles a third and a sixth, and these agree only summed over equal faces.
-/// Bounds: a node sums 24 forces of the size (κ + 2μ) A = 1.2e4 N, each right to 8 eps: 5e-11 of that in f64 at most; in f32
-/// displacements too are rounded: 24·8·6e-8 = 1e-5.
+/// With both kinds in one body the layers next to the interface keep equal parallelograms for its faces: a bilinear
+/// face gives each of its nodes a quarter, two triangles a third and a sixth, and these agree only summed over equal
+/// faces. Bounds: a node sums 24 forces of the size (κ + 2μ) A = 1.2e4 N, each right to 8 eps: 5e-11 of that in f64 at
+/// most; in f32 displacements too are rounded: 24·8·6e-8 = 1e-5.
 #[test]
 fn patch_test_leaves_interior_nodes_without_force() {
     let mut random = Random(15);

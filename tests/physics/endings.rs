@@ -46,7 +46,8 @@ fn exact_rigid_rotation_is_no_breakdown_and_no_warning() {
     }
 }
 
-/// Gravity by a trapezium of 100 m/s² with flanks of .01 s: an impulse of 10 m/s with its centre at .105 s, and free flight.
+/// Gravity by a trapezium of 100 m/s² with flanks of .01 s: an impulse of 10 m/s with its centre at .105 s, and free
+/// flight.
 #[test]
 fn pulse_between_steps_is_not_lost() {
     let (velocity, centre) = (10.0, 0.105);
@@ -66,7 +67,8 @@ fn pulse_between_steps_is_not_lost() {
     }
 }
 
-/// A plate is pushed down through the whole block: what is flattened goes, the step follows, and the energy that goes with it is booked.
+/// A plate is pushed down through the whole block: what is flattened goes, the step follows, and the energy that goes
+/// with it is booked.
 #[test]
 fn flattened_elements_are_removed_and_the_run_goes_on() {
     for configuration in configurations() {

@@ -1,8 +1,8 @@
 //! Static analyses against closed forms, each ending with a residual below its tolerance.
 //!
-//! Cantilever and column as in `statics`. Column in 1-D strain under a pressure or a dead load p on top: P(λ) = −p, the same
-//! λ everywhere, exact on any mesh. Bar stretched to λ with its sides free (closed form 1): t, σ and P at λ = 1.5 and 0.7.
-//! A residual of 1e-6 leaves displacements within some 1e-5 of rest, one of 1e-5 (f32) within 1e-4.
+//! Cantilever and column as in `statics`. Column in 1-D strain under a pressure or a dead load p on top: P(λ) = −p, the
+//! same λ everywhere, exact on any mesh. Bar stretched to λ with its sides free (closed form 1): t, σ and P at λ = 1.5
+//! and 0.7. A residual of 1e-6 leaves displacements within some 1e-5 of rest, one of 1e-5 (f32) within 1e-4.
 
 use crate::configurations::{Configuration, configurations, near, scene_of};
 use crate::grids::grid;
@@ -139,8 +139,8 @@ fn stretched_and_squeezed_bars_pull_as_the_law_says() {
     }
 }
 
-/// Heights of 1:100. A transient run must take the smallest element's step; to rest it takes 16/ω of the slowest motion at
-/// the best damping, which leaves (1 + 16)e^(−16) = 2e-6.
+/// Heights of 1:100. A transient run must take the smallest element's step; to rest it takes 16/ω of the slowest motion
+/// at the best damping, which leaves (1 + 16)e^(−16) = 2e-6.
 #[test]
 fn graded_mesh_costs_a_fraction_of_the_steps_of_motion() {
     let ratio = 100_f64.powf(1.0 / 19.0);
@@ -161,8 +161,8 @@ fn graded_mesh_costs_a_fraction_of_the_steps_of_motion() {
     }
 }
 
-/// H11: lower half 1e4 times as stiff. In 1-D strain each half has its own exact stretch; the mean over the lower half's five
-/// layers of nodes above the held one is 0.6 of the interface's displacement.
+/// H11: lower half 1e4 times as stiff. In 1-D strain each half has its own exact stretch; the mean over the lower
+/// half's five layers of nodes above the held one is 0.6 of the interface's displacement.
 #[test]
 fn interface_of_stiff_and_soft_goes_where_the_series_says() {
     let stiff = "\"stiff\": (density: 1000, neo_hookean: Young(young: 3e7, poisson: 0.45)),";

@@ -1,8 +1,9 @@
-//! H23 of the hard cases: far from the origin nothing changes. A mesh that lies 10 km away swings as at the origin; a body that
-//! flies 10 km keeps its strains in f64.
+//! H23 of the hard cases: far from the origin nothing changes. A mesh that lies 10 km away swings as at the origin; a
+//! body that flies 10 km keeps its strains in f64.
 //!
-//! Rest shapes are differences of f64 coordinates: 1e4 m leave 2e-12 m, a strain of 4e-10 in cells of 5 mm. Displacements in
-//! f32 have 24 bits: after 1e4 m of flight they are known to 5e-4 m, which is why f64 is for such flights, and f32 warns.
+//! Rest shapes are differences of f64 coordinates: 1e4 m leave 2e-12 m, a strain of 4e-10 in cells of 5 mm.
+//! Displacements in f32 have 24 bits: after 1e4 m of flight they are known to 5e-4 m, which is why f64 is for such
+//! flights, and f32 warns.
 
 use crate::configurations::{Configuration, ELEMENTS, configurations, near};
 use sinew::Simulation;

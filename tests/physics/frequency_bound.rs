@@ -1,8 +1,8 @@
 //! The bound of the highest frequency against the eigenvalues of single elements.
 //!
-//! ω² ≤ (n/ρ)(λ tr G + (2μ + 8η/3) λ_max(G)) plus what hourglass control adds; equal for a cube of Hex8. The stiffness is
-//! the central difference of the forces at rest (h = 1e-6: errs by h² and eps/h, below 1e-8), its eigenvalues those of
-//! Jacobi's rotations.
+//! ω² ≤ (n/ρ)(λ tr G + (2μ + 8η/3) λ_max(G)) plus what hourglass control adds; equal for a cube of Hex8. The stiffness
+//! is the central difference of the forces at rest (h = 1e-6: errs by h² and eps/h, below 1e-8), its eigenvalues those
+//! of Jacobi's rotations.
 
 use crate::elements::{NEO_HOOKEAN, YOUNG, corners, distorted, forces, isochoric};
 use crate::random::Random;

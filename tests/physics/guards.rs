@@ -1,5 +1,5 @@
-//! The guards: looks see what energies and fields say, limits end a run and warn, and nothing that is no number is found
-//! late or written.
+//! The guards: looks see what energies and fields say, limits end a run and warn, and nothing that is no number is
+//! found late or written.
 
 use crate::configurations::{configurations, scene_of};
 use sinew::bevy_ecs::prelude::*;
@@ -231,8 +231,8 @@ fn a_jump_of_all_the_length_ends_the_run_and_asks_for_a_ramp() {
     }
 }
 
-/// The ends of a bar are pushed through their cells within one look, one after the other: the first is named, whichever has
-/// the lower number.
+/// The ends of a bar are pushed through their cells within one look, one after the other: the first is named, whichever
+/// has the lower number.
 #[test]
 fn the_first_element_that_turns_inside_out_is_named() {
     for run in configurations() {

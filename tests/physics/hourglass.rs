@@ -1,8 +1,8 @@
 //! Hourglass control of the one-point hexahedron.
 //!
-//! f = k Σ γ γᵀ u, energy ½ k Σ |γᵀu|². None for any homogeneous F, turned with the body, and so scaled that bending is right
-//! at every Poisson's ratio: tip deflection over Timoshenko's for 1 | 2 | 4 elements through the thickness of a cantilever
-//! ten times as long as thick (square section, cubes).
+//! f = k Σ γ γᵀ u, energy ½ k Σ |γᵀu|². None for any homogeneous F, turned with the body, and so scaled that bending is
+//! right at every Poisson's ratio: tip deflection over Timoshenko's for 1 | 2 | 4 elements through the thickness of a
+//! cantilever ten times as long as thick (square section, cubes).
 
 use crate::elements::{YOUNG, corners, displacements, distorted};
 use crate::random::Random;
@@ -60,8 +60,8 @@ fn control_turns_with_the_body_and_stores_its_energy() {
     }
 }
 
-/// V b_a = ∂V/∂X_a, and V is linear in each corner: a difference over a whole edge has no error but rounding, some 1e-15 of
-/// sums of 8 products below 4.
+/// V b_a = ∂V/∂X_a, and V is linear in each corner: a difference over a whole edge has no error but rounding, some
+/// 1e-15 of sums of 8 products below 4.
 #[test]
 fn mean_gradients_are_those_of_the_volume() {
     let mut random = Random(23);

@@ -1,4 +1,5 @@
-//! Tissue under the stable neo-Hookean law squeezed to almost nothing (H07). What is turned inside out, H08 to H10, is in `tests/hard.rs`.
+//! Tissue under the stable neo-Hookean law squeezed to almost nothing (H07). What is turned inside out, H08 to H10, is
+//! in `tests/hard.rs`.
 //!
 //! A cube of .1 m, damped at 40/s: its slowest motion, of some 15 rad/s, dies in a second to 1e-6 of itself. What is
 //! farther than 1e-3 of the cube from its place after that is held there by a false equilibrium.
@@ -26,9 +27,10 @@ fn confined_stress(stretch: f64) -> f64 {
     m * square / (square + 1.0) * stretch + l * (stretch - 1.0 - 0.75 * m / l)
 }
 
-/// Confined the bound of 1 % is the case's. Free the homogeneous state is not the only one: a block squeezed by more than half
-/// wrinkles, so all that is asked is that it comes back. (Of 2×2×2 cells of Tet4 it does not: a corner ends on the wrong side of its
-/// neighbours, with J > 0 in all of them. Nothing here knows that tissue cannot pass through tissue.)
+/// Confined the bound of 1 % is the case's. Free the homogeneous state is not the only one: a block squeezed by more
+/// than half wrinkles, so all that is asked is that it comes back. (Of 2×2×2 cells of Tet4 it does not: a corner ends
+/// on the wrong side of its neighbours, with J > 0 in all of them. Nothing here knows that tissue cannot pass through
+/// tissue.)
 #[test]
 fn cube_squeezed_by_95_percent_pushes_as_the_law_says_and_comes_back() {
     let sides = "Fixed(on: Plane(normal: (1, 0, 0), at: 0.1), axes: [X]), Fixed(on: Plane(normal: (0, 1, 0), at: 0.1), axes: [Y]),";
@@ -131,7 +133,8 @@ fn mirrored_cube_stands_up_again() {
     }
 }
 
-/// The linear theory does not see it: 1 + tr ∇u is .4 where det F is −.95. Guards and removal look at det F, for every law.
+/// The linear theory does not see it: 1 + tr ∇u is .4 where det F is −.95. Guards and removal look at det F, for every
+/// law.
 #[test]
 fn elements_of_the_linear_law_are_inside_out_where_their_volume_is() {
     let linear = "linear: Young(young: 3e3, poisson: 0.45)";

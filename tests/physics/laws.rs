@@ -114,8 +114,8 @@ fn stress_does_not_see_rotations<L: Law>() {
     assert!(worst32 < 1e3 * f64::from(f32::EPSILON), "f32: {worst32:e}");
 }
 
-/// A strain of 1e-6 is right to 1e-5 in both precisions: what is left out is of the order of the strain, and f32 keeps its
-/// digits because nothing is computed from F.
+/// A strain of 1e-6 is right to 1e-5 in both precisions: what is left out is of the order of the strain, and f32 keeps
+/// its digits because nothing is computed from F.
 fn small_strains_obey_hooke<L: Law>() {
     let mut random = Random(3);
     for _ in 0..100 {

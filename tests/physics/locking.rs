@@ -1,8 +1,8 @@
 //! Near incompressibility: a bar of .1 × .02 × .02 m, clamped at x = 0, hangs under gravity; μ = 1e4 Pa, ν = .49.
 //!
-//! Reference: its end sinks by 73.85 ± .05 mm, by two independent implicit codes with quadratic hexahedra (FElupe 73.80,
-//! CalculiX 73.90; docs/accuracy.md).
-//! With 20 × 4 × 4 cells plain tetrahedra must show their locking, and the other kinds what they are for.
+//! Reference: its end sinks by 73.85 ± .05 mm, by two independent implicit codes with quadratic hexahedra (FElupe
+//! 73.80, CalculiX 73.90; docs/accuracy.md). With 20 × 4 × 4 cells plain tetrahedra must show their locking, and the
+//! other kinds what they are for.
 
 use crate::configurations::{ELEMENTS, configurations};
 use crate::locking::Bound::{Above, Below};

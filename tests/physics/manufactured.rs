@@ -1,8 +1,9 @@
-//! Orders of convergence, by a manufactured solution with a body force (finite strain, neo-Hookean, μ = 1154, κ = 2500 Pa).
+//! Orders of convergence, by a manufactured solution with a body force (finite strain, neo-Hookean, μ = 1154, κ = 2500
+//! Pa).
 //!
-//! u(X) = a sin(πX/L₁) sin(πY/L₂) sin(πZ/L₃) in a block whose surface is held; ∂u/∂X reaches a third. The body force that
-//! makes it the equilibrium is b = −Div P(∇u), with P = μ J^(−2/3) (F − tr C/3 F⁻ᵀ) + κ (J − 1) J F⁻ᵀ written out here
-//! once more, differentiated by differences in f64 (error 1e-8). A custom system applies ρ⁻¹ m b at the nodes.
+//! u(X) = a sin(πX/L₁) sin(πY/L₂) sin(πZ/L₃) in a block whose surface is held; ∂u/∂X reaches a third. The body force
+//! that makes it the equilibrium is b = −Div P(∇u), with P = μ J^(−2/3) (F − tr C/3 F⁻ᵀ) + κ (J − 1) J F⁻ᵀ written out
+//! here once more, differentiated by differences in f64 (error 1e-8). A custom system applies ρ⁻¹ m b at the nodes.
 //!
 //! Errors are in the L2 norm weighted with the nodes' masses, relative to u. Doubling the cells in each direction must
 //! divide them by four: order 2. Stored are the orders that were found in f64; f32 agrees to what rounding leaves.
@@ -22,8 +23,9 @@ const SHEAR: f64 = 1153.846;
 const BULK: f64 = 2500.0;
 const DENSITY: f64 = 1000.0;
 
-/// Elements, and the order from 6 to 12 cells along each edge as found in f64. (Loads gathered at the nodes, without the
-/// smoothing of shape functions, make the errors of hexahedra larger than those of tetrahedra here; the order is the same.)
+/// Elements, and the order from 6 to 12 cells along each edge as found in f64. (Loads gathered at the nodes, without
+/// the smoothing of shape functions, make the errors of hexahedra larger than those of tetrahedra here; the order is
+/// the same.)
 const ORDERS: [(&str, f64); 4] =
     [("Tet4", 1.921), ("Tet4NodalPressure", 1.964), ("Hex8", 2.068), ("Hex8MeanDilatation", 2.072)];
 

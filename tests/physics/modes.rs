@@ -9,8 +9,8 @@ fn scene(cells: &str, elements: &str, constraints: &str) -> String {
     )
 }
 
-/// Lateral motion held, the bar is a column in one-dimensional strain: f_k = (2k − 1)/(4 L) √((λ + 2μ)/ρ), 8.4333 Hz. With n linear
-/// elements and lumped masses f_h = (c/(π h)) sin(ω h/(2c)), too low by (ω h/c)²/24.
+/// Lateral motion held, the bar is a column in one-dimensional strain: f_k = (2k − 1)/(4 L) √((λ + 2μ)/ρ), 8.4333 Hz.
+/// With n linear elements and lumped masses f_h = (c/(π h)) sin(ω h/(2c)), too low by (ω h/c)²/24.
 #[test]
 fn axial_frequencies_of_a_held_bar_are_those_of_the_wave_equation() {
     let held = "Fixed(on: Plane(normal: (1, 0, 0), at: 0)), Fixed(on: All, axes: [Y, Z])";
@@ -31,7 +31,8 @@ fn axial_frequencies_of_a_held_bar_are_those_of_the_wave_equation() {
     }
 }
 
-/// Bending: .27980 and 1.75345 Hz, each twice; Euler and Bernoulli's, which a bar ten times longer than thick misses by 1 and 8 %.
+/// Bending: .27980 and 1.75345 Hz, each twice; Euler and Bernoulli's, which a bar ten times longer than thick misses by
+/// 1 and 8 %.
 #[test]
 fn bending_frequencies_come_in_pairs() {
     let text = scene("(40, 4, 4)", "Hex8", "Fixed(on: Plane(normal: (1, 0, 0), at: 0))");

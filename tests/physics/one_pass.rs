@@ -1,5 +1,5 @@
-//! Systems that share a pass over the nodes give what they give by themselves: on the CPU the same bits; on a GPU, where
-//! compilers may round sums otherwise, 1e-5 of the displacement after 200 steps.
+//! Systems that share a pass over the nodes give what they give by themselves: on the CPU the same bits; on a GPU,
+//! where compilers may round sums otherwise, 1e-5 of the displacement after 200 steps.
 
 use crate::configurations::{Configuration, configurations, scene_of};
 use bevy_ecs::prelude::*;
@@ -64,8 +64,8 @@ fn a_shared_pass_changes_nothing() {
     }
 }
 
-/// Steps, dispatches and submissions of two small bodies on a GPU (one of more elements than invocations, one of more nodes), where they are in the end, and the work against internal forces
-/// (J) that the guards go by.
+/// Steps, dispatches and submissions of two small bodies on a GPU (one of more elements than invocations, one of more
+/// nodes), where they are in the end, and the work against internal forces (J) that the guards go by.
 fn small_bodies(run: &Configuration, effect: &str, output: &str, fuse: bool) -> ([u64; 3], Vec<DVec3>, [f64; 2]) {
     let text = format!(
         "(duration: 10, bodies: {{
@@ -221,8 +221,8 @@ fn forces(internal: Query<&InternalForce>, external: Query<&ExternalForce>) -> V
     internal.iter().flat_map(|force| force.vectors()).chain(external.iter().flat_map(|force| force.vectors())).collect()
 }
 
-/// Between steps after which nobody looks they go nowhere; a system of one's own finds them in every step, whoever takes steps
-/// after the last, and a probe when it is due.
+/// Between steps after which nobody looks they go nowhere; a system of one's own finds them in every step, whoever
+/// takes steps after the last, and a probe when it is due.
 #[test]
 fn forces_are_there_for_whoever_looks() {
     #[derive(Resource, Default)]
@@ -323,7 +323,8 @@ fn on_a_gpu(run: &Configuration, text: &str, steps: u64, fuse: bool) -> Run {
         work.fill(-0.0);
     }
     send_to_device(world, |_, name| name == InternalWork::NAME).unwrap();
-    // a place for each sixty-four nodes, and for each of the first two sixty-fours of invocations that a patch gives nodes to
+    // a place for each sixty-four nodes, and for each of the first two sixty-fours of invocations that a patch gives
+    // nodes to
     let inside: Vec<u32> = world.query::<&Patches>().iter(world).flat_map(|patches| patches.inside.clone()).collect();
     let inside: Vec<usize> = inside.into_iter().filter(|_| fuse).map(|nodes| nodes as usize).collect();
     let of_patches: usize = inside.iter().map(|&nodes| nodes.div_ceil(64).min(2)).sum();
@@ -344,8 +345,8 @@ fn on_a_gpu(run: &Configuration, text: &str, steps: u64, fuse: bool) -> Run {
     Run { ends, dispatches, spent, places: [touched, expected] }
 }
 
-/// The same operations in the same order, but compilers may contract them otherwise: see above. What is counted is a dispatch a
-/// block and one for the nodes that patches share, beside those of systems that stay apart.
+/// The same operations in the same order, but compilers may contract them otherwise: see above. What is counted is a
+/// dispatch a block and one for the nodes that patches share, beside those of systems that stay apart.
 #[test]
 fn on_a_gpu_nodes_inside_patches_go_where_they_go_with_all_others() {
     let Some(run) = configurations().into_iter().find(|run| run.options.backend == BackendChoice::Gpu) else { return };

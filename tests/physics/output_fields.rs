@@ -1,8 +1,8 @@
-//! Fields in VTU files against closed forms: F = R U with U = diag(1.2, 0.9, 1.1) and R a turn by 30 degrees about z, which every
-//! kind of element represents exactly; and a block that is pulled until it rests.
+//! Fields in VTU files against closed forms: F = R U with U = diag(1.2, 0.9, 1.1) and R a turn by 30 degrees about z,
+//! which every kind of element represents exactly; and a block that is pulled until it rests.
 //!
-//! Bounds: files hold f32, 6e-8 of a number each; displacements in f32 are rounded, and strains of order .1 lose a digit: 1e-6 in
-//! f64, 2e-5 in f32. A search for rest ends at 1e-6 (f32: 1e-5) of the forces.
+//! Bounds: files hold f32, 6e-8 of a number each; displacements in f32 are rounded, and strains of order .1 lose a
+//! digit: 1e-6 in f64, 2e-5 in f32. A search for rest ends at 1e-6 (f32: 1e-5) of the forces.
 
 use crate::configurations::{ELEMENTS, configurations, near};
 use crate::frames::{Frame, run_into};

@@ -62,7 +62,8 @@ fn bodies_that_overlap_at_the_start_are_warned_of_once_and_those_beside_each_oth
     }
 }
 
-/// The second cube goes through the first, from .05 m beside it at 3 m/s; the third stays where it is, out of their way.
+/// The second cube goes through the first, from .05 m beside it at 3 m/s; the third stays where it is, out of their
+/// way.
 #[test]
 fn a_body_that_passes_through_another_is_warned_of_when_it_gets_there() {
     let cells: [Cube; 3] = [(2, 0.1, [0.0; 3]), (3, 0.1, [0.15, 0.02, 0.01]), (1, 0.1, [0.0, 0.0, 0.5])];

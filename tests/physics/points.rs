@@ -1,11 +1,10 @@
 //! One material point: a cube of 1 m, one Hex8 or six Tet4, deformed as told. Closed forms 1 to 3.
 //!
-//! Uniaxial (lateral stretch t solves (μ/3) J^(−5/3) (λ² − t²) = κ (J − 1)): σ = 3κ(J − 1), P = σ J/λ.
-//! Simple shear γ = .4 with fibres at θ in the plane: σ12 as listed. Step shear at 45° relaxing: σ12(t) = S12 (1 − α + α e^(−t/τ)).
-//! The lateral stretch is solved for here to all digits, and the figures compared with those listed.
-//! P from the kernel (what its nodes feel on a face of 1 m²), σ from the host's evaluation in f64.
-//! Bounds: figures are given to 1e-4 Pa, so 1e-7 of κ; f32 rounds E to 6e-8 of entries up to 3: 1e-5 of (κ + 2μ + 4η)
-//! = 2e4 Pa.
+//! Uniaxial (lateral stretch t solves (μ/3) J^(−5/3) (λ² − t²) = κ (J − 1)): σ = 3κ(J − 1), P = σ J/λ. Simple shear γ =
+//! .4 with fibres at θ in the plane: σ12 as listed. Step shear at 45° relaxing: σ12(t) = S12 (1 − α + α e^(−t/τ)). The
+//! lateral stretch is solved for here to all digits, and the figures compared with those listed. P from the kernel
+//! (what its nodes feel on a face of 1 m²), σ from the host's evaluation in f64. Bounds: figures are given to 1e-4 Pa,
+//! so 1e-7 of κ; f32 rounds E to 6e-8 of entries up to 3: 1e-5 of (κ + 2μ + 4η) = 2e4 Pa.
 
 use crate::configurations::{Configuration, ELEMENTS, configurations, near};
 use sinew::Simulation;
@@ -133,8 +132,8 @@ fn sheared_fibres_relax_as_in_the_closed_form() {
     }
 }
 
-/// Fibres along x, stretched by λ at constant volume: S_f = 2 Ψ' (a⊗a − I₄/3 C⁻¹) with Ψ' = k₁ E exp(k₂ E²), E = λ² − 1, so
-/// that σ_xx − σ_yy = μ(λ² − 1/λ) + 2 Ψ' λ². With `fibres` of η beside them 2η(λ² − 1) λ² comes on top.
+/// Fibres along x, stretched by λ at constant volume: S_f = 2 Ψ' (a⊗a − I₄/3 C⁻¹) with Ψ' = k₁ E exp(k₂ E²), E = λ² −
+/// 1, so that σ_xx − σ_yy = μ(λ² − 1/λ) + 2 Ψ' λ². With `fibres` of η beside them 2η(λ² − 1) λ² comes on top.
 #[test]
 fn exponential_fibres_pull_in_a_scene_with_and_without_other_fibres() {
     let (k1, k2, eta, stretch) = (400.0, 0.6, 300.0, 1.3f64);

@@ -1,6 +1,7 @@
-//! f32 against f64, over 1e5 steps: a cantilever that swings under its weight and comes to rest, at the stable step and at a
-//! twentieth of it. Displacements and steps are sums: at a small step each change has few digits in common with the sum it
-//! is added to, and plain f32 loses them, always to the same side. Compensated sums (six numbers a node) keep them.
+//! f32 against f64, over 1e5 steps: a cantilever that swings under its weight and comes to rest, at the stable step and
+//! at a twentieth of it. Displacements and steps are sums: at a small step each change has few digits in common with
+//! the sum it is added to, and plain f32 loses them, always to the same side. Compensated sums (six numbers a node)
+//! keep them.
 //!
 //! Bounds: compensated 1e-6 of the largest displacement at every observation. Plain f32 must show a difference at the
 //! small step, or compensation is for nothing.

@@ -1,18 +1,19 @@
 //! Motions that begin at equilibrium: at rest where a static analysis says, and staying there.
 //!
-//! Bar under its own weight with ν = 0, held at z = 0: u(z) = ρ g (L z − z²/2)/E, exact at the nodes of linear elements. At
-//! strains of 3e-5 the law's own curvature changes that by as much. Tetrahedra weigh on nodes of one height differently: of them
-//! the mean over a layer counts, which is right to second order.
-//! A residual of 1e-6 leaves displacements within some 1e-5 of rest, one of 1e-5 (f32) within 1e-4 (`equilibrium`): let go, they
-//! swing as far to the other side, the slowest motion's end twice as far as the mean. Its energy is the square of that: 1e-9
-//! and 1e-7 of the strain energy.
+//! Bar under its own weight with ν = 0, held at z = 0: u(z) = ρ g (L z − z²/2)/E, exact at the nodes of linear
+//! elements. At strains of 3e-5 the law's own curvature changes that by as much. Tetrahedra weigh on nodes of one
+//! height differently: of them the mean over a layer counts, which is right to second order. A residual of 1e-6 leaves
+//! displacements within some 1e-5 of rest, one of 1e-5 (f32) within 1e-4 (`equilibrium`): let go, they swing as far to
+//! the other side, the slowest motion's end twice as far as the mean. Its energy is the square of that: 1e-9 and 1e-7
+//! of the strain energy.
 
 use crate::configurations::{Configuration, ELEMENTS, configurations, near, scene_of};
 use crate::grids::bits;
 use sinew::{Error, Simulation, Snapshot};
 use std::path::Path;
 
-/// A block with fibres, viscosity and gravity, squeezed by a pressure and by nodes that are moved already; `further` comes last.
+/// A block with fibres, viscosity and gravity, squeezed by a pressure and by nodes that are moved already; `further`
+/// comes last.
 fn block(elements: &str, start: &str, integrator: &str, further: &str) -> String {
     format!(
         "(duration: 0.4, {start}

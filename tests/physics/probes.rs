@@ -1,4 +1,5 @@
-//! Probes of forces and moments against balance, selections by cylinder and ellipsoid against counting, peaks against tables.
+//! Probes of forces and moments against balance, selections by cylinder and ellipsoid against counting, peaks against
+//! tables.
 
 use crate::configurations::{configurations, near, scene_of};
 use sinew::glam::DVec3;

@@ -43,7 +43,8 @@ fn count(elements: &str, refine: u32, on: &str) -> f64 {
 #[test]
 fn what_lies_between_named_nodes_is_named_and_nothing_else() {
     for elements in ["Hex8", "Hex8MeanDilatation"] {
-        // 3 × 3 × 2 nodes, x fastest: an edge, two nodes without one, a face, a face and a node apart from it, an element
+        // 3 × 3 × 2 nodes, x fastest: an edge, two nodes without one, a face, a face and a node apart from it, an
+        // element
         for (on, once, twice) in [
             ("Nodes([0, 1])", 3.0, 5.0),
             ("Nodes([0, 4])", 2.0, 2.0),

@@ -1,7 +1,8 @@
 //! Removal: when elements go, what is left, what is booked (H17, H18).
 //!
 //! Mass: what is gone is ρ V of the elements gone, to 1e-6. Energy: KE + IE + HG + removed − W below 1e-4 of W: work is
-//! booked to (ωΔt)²/12 with Δt = 1e-3 s and ω < 30/s. An island falls with g: Σ m v grows by Σ m g Δt a step, to rounding (1e-10, 1e-4 in f32).
+//! booked to (ωΔt)²/12 with Δt = 1e-3 s and ω < 30/s. An island falls with g: Σ m v grows by Σ m g Δt a step, to
+//! rounding (1e-10, 1e-4 in f32).
 
 use crate::columns::{external_forces, masses, velocities};
 use crate::configurations::{Configuration, ELEMENTS, configurations, near};
@@ -167,7 +168,8 @@ fn faces_of_removed_elements_bear_no_load() {
     }
 }
 
-/// Only one of two materials may lose elements: the elements of the other weigh what they weighed and bear what they bore.
+/// Only one of two materials may lose elements: the elements of the other weigh what they weighed and bear what they
+/// bore.
 #[test]
 fn elements_of_another_material_stay_as_they_are() {
     for run in &configurations() {
@@ -211,8 +213,8 @@ fn energy_that_goes_with_elements_is_booked() {
         let work = e.load_work.unwrap();
         assert!(e.removed > 0.05 * work, "{e:?}");
         let sum = e.kinetic + e.strain + e.hourglass + e.removed - work - e.constraint_work.unwrap();
-        // around the hole nodal means are taken anew, of fewer elements: the energy of those that stay jumps by what their
-        // volumes differed by, and nobody books that
+        // around the hole nodal means are taken anew, of fewer elements: the energy of those that stay jumps by what
+        // their volumes differed by, and nobody books that
         let allowed = if elements == "Tet4NodalPressure" { 5e-3 } else { 1e-4 };
         near(&format!("{}, {elements}", run.name), sum, 0.0, work, allowed);
     }

@@ -1,12 +1,12 @@
 //! At rest, by damping: closed form 5.
 //!
-//! Cantilever .1 × .01 × .01 m under F = 1e-5 N at its tip: w = F L³/(3 E I) + F L/(k G A) = 1.344633e-3 m. One cube through
-//! the thickness gives .996 of it (see `hourglass`), bound .5 % around that.
-//! Column in 1-D strain: u = ρ g L²/(2 (λ + 2μ)) = 4.310455e-3 m at g = 9.81 m/s² if the law were linear; exact at the nodes
-//! of linear elements. At g/1000 strains are 1e-4, and so is the error; at 9.81 m/s² the law's own P(λ) = ρ g (L − X) is
-//! solved and integrated: elements take it at their middles, which errs by h²/24 ∂³u/∂X³ ~ (1/20)²/24·(.09)² ~ 1e-6 of u.
-//! Tetrahedra weigh on nodes of one height differently (corners have 1 to 6 of them): within a cell's height h they sag by
-//! up to ρ g h²/(2M) = (h/L)² u = 2.5e-3 u more or less, which cancels over a layer but for second order: 1e-4 of u.
+//! Cantilever .1 × .01 × .01 m under F = 1e-5 N at its tip: w = F L³/(3 E I) + F L/(k G A) = 1.344633e-3 m. One cube
+//! through the thickness gives .996 of it (see `hourglass`), bound .5 % around that. Column in 1-D strain: u = ρ g
+//! L²/(2 (λ + 2μ)) = 4.310455e-3 m at g = 9.81 m/s² if the law were linear; exact at the nodes of linear elements. At
+//! g/1000 strains are 1e-4, and so is the error; at 9.81 m/s² the law's own P(λ) = ρ g (L − X) is solved and
+//! integrated: elements take it at their middles, which errs by h²/24 ∂³u/∂X³ ~ (1/20)²/24·(.09)² ~ 1e-6 of u.
+//! Tetrahedra weigh on nodes of one height differently (corners have 1 to 6 of them): within a cell's height h they sag
+//! by up to ρ g h²/(2M) = (h/L)² u = 2.5e-3 u more or less, which cancels over a layer but for second order: 1e-4 of u.
 
 use crate::configurations::{ELEMENTS, configurations, near};
 

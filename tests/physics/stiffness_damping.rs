@@ -1,10 +1,10 @@
 //! Damping proportional to stiffness: C = βK, a mode of angular frequency ω decays with ξ = βω/2.
 //!
-//! Bar of 20 hexahedra in 1-D strain (lateral motion held), clamped at z = 0, ν = 0: a chain of lumped masses with modes sin(κ z),
-//! κ = (2n − 1)π/2L, ω = (2c/h) sin(κh/2), c² = E/ρ. Let go from u = ε z, all modes swing; mode n is what the mass-weighted
-//! product with its shape leaves, exactly. From peak to peak it falls by e^(−2πξ/√(1−ξ²)).
-//! The damping stress is that of the last step, so the amplitude falls by √(1 − βω²Δt) a step, not e^(−βω²Δt/2): ξ is larger by a share
-//! βω²Δt/4 at most, 1e-3 here. Its stable step is Δt = (2/ω)(√(1 + ξ²) − ξ) for the largest ω.
+//! Bar of 20 hexahedra in 1-D strain (lateral motion held), clamped at z = 0, ν = 0: a chain of lumped masses with
+//! modes sin(κ z), κ = (2n − 1)π/2L, ω = (2c/h) sin(κh/2), c² = E/ρ. Let go from u = ε z, all modes swing; mode n is
+//! what the mass-weighted product with its shape leaves, exactly. From peak to peak it falls by e^(−2πξ/√(1−ξ²)). The
+//! damping stress is that of the last step, so the amplitude falls by √(1 − βω²Δt) a step, not e^(−βω²Δt/2): ξ is
+//! larger by a share βω²Δt/4 at most, 1e-3 here. Its stable step is Δt = (2/ω)(√(1 + ξ²) − ξ) for the largest ω.
 
 use crate::configurations::{Configuration, ELEMENTS, configurations, near};
 use crate::grids::bits;

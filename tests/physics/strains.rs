@@ -1,7 +1,8 @@
-//! What the stable step is followed by: how far and how fast elements are deformed, under an affine motion that has closed forms.
+//! What the stable step is followed by: how far and how fast elements are deformed, under an affine motion that has
+//! closed forms.
 //!
-//! Bounds: traces of C⁻¹ of a deformation with J = 0.5 to 2 are some thirty products, each rounded: 1e-13 in f64, 3e-5 in f32, whose
-//! displacements are rounded too.
+//! Bounds: traces of C⁻¹ of a deformation with J = 0.5 to 2 are some thirty products, each rounded: 1e-13 in f64, 3e-5
+//! in f32, whose displacements are rounded too.
 
 use crate::configurations::{ELEMENTS, configurations, near};
 use glam::{DMat3, DVec3};

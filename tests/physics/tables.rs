@@ -1,7 +1,7 @@
 //! Tables have rows at the times that are asked for, whatever the steps are.
 //!
-//! A body that flies without a force is where v t says at any time: linear interpolation is exact, and bounds are those of rounding
-//! (f32: 2e-7 of a displacement a step, compensated). Under gravity the error is that of a chord, g Δt²/8.
+//! A body that flies without a force is where v t says at any time: linear interpolation is exact, and bounds are those
+//! of rounding (f32: 2e-7 of a displacement a step, compensated). Under gravity the error is that of a chord, g Δt²/8.
 
 use crate::configurations::{configurations, near};
 use std::path::Path;

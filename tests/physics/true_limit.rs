@@ -1,5 +1,5 @@
-//! The stable step by Lanczos' recursion against all eigenvalues of small meshes: never above the true limit, and at least
-//! 0.97 of it, for every kind of element and every law, at rest and deformed, held and free.
+//! The stable step by Lanczos' recursion against all eigenvalues of small meshes: never above the true limit, and at
+//! least 0.97 of it, for every kind of element and every law, at rest and deformed, held and free.
 //!
 //! The true limit is 2/ω of the dense M⁻¹K, whose columns are central differences of the internal forces that the host
 //! finds element by element (another code than the one the recursion runs; h = 1e-6 of an edge errs by 1e-9).

@@ -1,8 +1,9 @@
 //! Unloaded shapes of loaded ones: a known rest shape is loaded far, and found again from where it then stands.
 //!
-//! Cantilever 0.1 × 0.01 × 0.01 m under its own weight, E so that its tip sinks by 30 % of the length: a body bent so far
-//! turns by some 23°, so that neither straightening it by −u(x̄) nor a linear analysis finds the rest shape. The equilibrium is
-//! a smooth function of the rest shape, whose inverse is about the identity: rest nodes err by about what loaded nodes do.
+//! Cantilever 0.1 × 0.01 × 0.01 m under its own weight, E so that its tip sinks by 30 % of the length: a body bent so
+//! far turns by some 23°, so that neither straightening it by −u(x̄) nor a linear analysis finds the rest shape. The
+//! equilibrium is a smooth function of the rest shape, whose inverse is about the identity: rest nodes err by about
+//! what loaded nodes do.
 
 use crate::configurations::{Configuration, configurations, scene_of};
 use glam::DVec3;

@@ -51,7 +51,8 @@ fn thin_element_is_named_with_what_it_costs() {
         assert_eq!(worst.len(), 3);
         let warnings = simulation.warnings().render(false);
         assert!(warnings.contains("element 12 of b makes the step"), "{warnings}");
-        // beside elements of usual size it weighs so little that added mass would help less than what all elements allow together
+        // beside elements of usual size it weighs so little that added mass would help less than what all elements
+        // allow together
         assert!(!warnings.contains("ScaleMass"), "{warnings}");
         let alone = start(0, thin, "integration: (bound: Elements)").unwrap();
         let warnings = alone.warnings().render(false);

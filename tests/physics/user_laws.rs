@@ -63,7 +63,8 @@ fn our_own_wgsl_read_as_a_users_law_is_the_rust_law() {
     is_the_rust_law(text, &[("shear", 1000.0), ("locking_stretch", 1.7), bulk], &rust);
 }
 
-/// Ψ = 2μ/α² Σ(λ̄^α − 1), Ogden's law with one term, written with eigenvalues: what a law in principal stretches looks like.
+/// Ψ = 2μ/α² Σ(λ̄^α − 1), Ogden's law with one term, written with eigenvalues: what a law in principal stretches looks
+/// like.
 #[test]
 fn a_law_in_principal_stretches_is_ogdens() {
     let text = "struct Law { mu: f32, alpha: f32, bulk: f32 } @group(0) @binding(0) var<uniform> elastic: Law;
@@ -114,8 +115,8 @@ loads: [Gravity(acceleration: (0, 0, -200))])"#
     )
 }
 
-/// On every backend and element a whole run under our own WGSL as a user's law goes as under the Rust law; on the GPU, where
-/// the text is the same, to the bit.
+/// On every backend and element a whole run under our own WGSL as a user's law goes as under the Rust law; on the GPU,
+/// where the text is the same, to the bit.
 #[test]
 fn a_run_under_a_law_of_ones_own_goes_as_under_the_same_law_built_in() {
     let built_in = "neo_hookean: Moduli(shear: 1034.4828, bulk: 1e4)";

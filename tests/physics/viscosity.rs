@@ -1,9 +1,9 @@
 //! The viscous recursions against the convolution that they stand for.
 //!
-//! Υ(t) = α (S(t) − H(t)), H = ∫ e^(−(t−s)/τ) Ṡ ds. S jumps within the step before the first, so that after a jump
-//! H = φ S e^(−nh) with h = Δt/τ, φ = (1 − e^(−h))/h, exactly; for S = r t: H = r τ (1 − e^(−t/τ)).
-//! Bounds: `Exact` makes only rounding: n steps of contraction e^(−h) keep it below eps/h: 1e-13 for h ≥ .01 in f64. In f32
-//! an increment below one ulp is lost: with h = 1.7e-4 that is half an ulp/h = 3.5e-4 at worst, 1e-4 in the middle.
+//! Υ(t) = α (S(t) − H(t)), H = ∫ e^(−(t−s)/τ) Ṡ ds. S jumps within the step before the first, so that after a jump H =
+//! φ S e^(−nh) with h = Δt/τ, φ = (1 − e^(−h))/h, exactly; for S = r t: H = r τ (1 − e^(−t/τ)). Bounds: `Exact` makes
+//! only rounding: n steps of contraction e^(−h) keep it below eps/h: 1e-13 for h ≥ .01 in f64. In f32 an increment
+//! below one ulp is lost: with h = 1.7e-4 that is half an ulp/h = 3.5e-4 at worst, 1e-4 in the middle.
 
 use crate::configurations::configurations;
 use crate::grids::bits;

@@ -18,9 +18,9 @@ fn cube(run: &Configuration, elements: &str, material: &str, told: &str) -> Simu
     ))
 }
 
-/// Blown up to λ = 1.1 in all directions in the first step, p = p₀ (1 − Σα + Σ α φ e^(−nh)), n steps after that one, to rounding:
-/// 1e-12 of p₀ in f64. In f32 an increment below half an ulp is lost, which with h = .1 and .0025 costs 3e-8/h of the memory.
-/// Isochoric terms change nothing: there is no isochoric stress.
+/// Blown up to λ = 1.1 in all directions in the first step, p = p₀ (1 − Σα + Σ α φ e^(−nh)), n steps after that one, to
+/// rounding: 1e-12 of p₀ in f64. In f32 an increment below half an ulp is lost, which with h = .1 and .0025 costs
+/// 3e-8/h of the memory. Isochoric terms change nothing: there is no isochoric stress.
 #[test]
 fn pressure_relaxes_as_its_terms_say() {
     let (step, terms) = (0.005, [(0.3, 0.05), (0.2, 2.0)]);

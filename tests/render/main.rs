@@ -1,4 +1,5 @@
-//! Pictures of a series that the crate's own writers made. They stay in the target folder's `tmp/render`, to be looked at.
+//! Pictures of a series that the crate's own writers made. They stay in the target folder's `tmp/render`, to be looked
+//! at.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod words;

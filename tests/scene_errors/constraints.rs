@@ -1,4 +1,5 @@
-//! Constraints on the same nodes and axes: `Prescribed` moves them, whichever comes first, and who writes a `Fixed` there is told.
+//! Constraints on the same nodes and axes: `Prescribed` moves them, whichever comes first, and who writes a `Fixed`
+//! there is told.
 
 use sinew::systems::Registry;
 use sinew::{SceneFile, Simulation};

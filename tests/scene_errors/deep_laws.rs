@@ -1,5 +1,5 @@
-//! Laws of one's own that are too deep or too much: told at their place, in no time, and with no stack overflowing. A test
-//! thread has two megabytes of stack; the command has eight.
+//! Laws of one's own that are too deep or too much: told at their place, in no time, and with no stack overflowing. A
+//! test thread has two megabytes of stack; the command has eight.
 
 use sinew::systems::Registry;
 use sinew::{SceneFile, Simulation};

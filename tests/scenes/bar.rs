@@ -14,7 +14,8 @@ const ALONG: [&str; 6] = [
     "probes.middle.every=0.1",
 ];
 
-/// Energy per rest volume (Pa) of a bar stretched by `l` along its fibres and by `t` across: μ/2 (Ī₁ − 3) + η/2 (Ī₄ − 1)²
+/// Energy per rest volume (Pa) of a bar stretched by `l` along its fibres and by `t` across: μ/2 (Ī₁ − 3) + η/2 (Ī₄ −
+/// 1)²
 /// + κ/2 (J − 1)², the isochoric part times `share`.
 fn energy(l: f64, t: f64, share: f64) -> f64 {
     let (mu, kappa, eta) = (3000.0 / 2.9, 10000.0, 2000.0);

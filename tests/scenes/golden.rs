@@ -1,7 +1,8 @@
 //! The same bits as before: hashes of how the shipped scenes end, kept in `golden.ron`.
 //!
 //! What is meant to change no numbers changes none of these; a commit that changes one says why, and writes them anew:
-//! `SINEW_GOLDEN=write cargo test --test scenes golden`. Instruction sets that the machine has not are told of and left as they are.
+//! `SINEW_GOLDEN=write cargo test --test scenes golden`. Instruction sets that the machine has not are told of and left
+//! as they are.
 
 use super::scene;
 use super::shipped::SCENES;
@@ -19,7 +20,8 @@ fn path() -> String {
     format!("{}/tests/scenes/golden.ron", env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Of all that a run ends with: displacements and forces of all bodies in the author's order, and how many steps it took.
+/// Of all that a run ends with: displacements and forces of all bodies in the author's order, and how many steps it
+/// took.
 fn hash(simulation: &mut Simulation) -> String {
     let mut hasher = XxHash64::with_seed(0);
     hasher.write_u64(simulation.step_count());

@@ -17,7 +17,8 @@ fn forceps_and_bed_bear_the_weight_and_no_element_is_crushed() {
     assert!(ratios.iter().all(|ratio| *ratio > 0.1), "{:?}", ratios.iter().copied().fold(f64::INFINITY, f64::min));
 }
 
-/// An element between nodes of the forceps is crushed; it moves nobody, and another that is crushed beside it is one of a thousand.
+/// An element between nodes of the forceps is crushed; it moves nobody, and another that is crushed beside it is one of
+/// a thousand.
 #[test]
 fn what_is_crushed_between_the_forceps_does_not_shorten_the_step() {
     let simulation = run("retracted_lobe", &["bodies.lobe.mesh.across=10"]);

@@ -37,14 +37,15 @@ pub struct Calibration {
     beside: f64,
 }
 
-/// The kind of a configuration: all of it that changes what an element and step costs, and how many steps a search takes.
+/// The kind of a configuration: all of it that changes what an element and step costs, and how many steps a search
+/// takes.
 fn kind_of(configuration: &Configuration) -> Configuration {
     Configuration { mesh: Factor::ONE, step: 1, hourglass: 1.0, ..configuration.clone() }
 }
 
 impl Engine<'_> {
-    /// What a configuration costs, by its kind's calibration: elements grow with the third power of the mesh, steps with the
-    /// first.
+    /// What a configuration costs, by its kind's calibration: elements grow with the third power of the mesh, steps
+    /// with the first.
     pub(super) fn cost(&mut self, configuration: &Configuration) -> Result<Cost, Refusal> {
         let known = self.calibrate(configuration)?;
         let finer = configuration.mesh.value() / known.mesh.value();
@@ -138,9 +139,9 @@ impl Engine<'_> {
         Ok(Calibration { mesh, elements: summary.elements as f64, step, steps: 0.0, seconds_a_step, beside })
     }
 
-    /// How many steps a search for equilibrium takes on the scene's own mesh. Nobody knows before: it is gone through, or as far
-    /// as time allows, on a mesh that stands for the others. Kinds that differ in the element or the law take what the scene's
-    /// own kind takes with the same number type.
+    /// How many steps a search for equilibrium takes on the scene's own mesh. Nobody knows before: it is gone through,
+    /// or as far as time allows, on a mesh that stands for the others. Kinds that differ in the element or the law take
+    /// what the scene's own kind takes with the same number type.
     fn steps_of_a_search(&mut self, kind: &Configuration) -> Result<f64, Refusal> {
         let own = self.base(self.kinds.as_deref().unwrap_or_default());
         let digits = Configuration { digits: kind.digits, place: kind.place, ..kind_of(&own) };

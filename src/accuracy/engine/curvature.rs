@@ -4,27 +4,27 @@ use crate::mesh::Mesh;
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// Angles between neighbouring faces (degrees) at which their edge is taken for part of a rounded surface: smaller ones are flat,
-/// larger ones are edges of the body itself.
+/// Angles between neighbouring faces (degrees) at which their edge is taken for part of a rounded surface: smaller ones
+/// are flat, larger ones are edges of the body itself.
 const ROUNDED: std::ops::RangeInclusive<f64> = 2.0..=60.0;
 
 /// The share of a surface's edges from which on it is taken for curved.
 const CURVED: f64 = 0.25;
 
-/// A face of the surface: its middle (m), outward normal of length 1, and half of its area times the mean distance that a curvature
-/// of 1/m would have between the face and a surface through its corners (m³ · m).
+/// A face of the surface: its middle (m), outward normal of length 1, and half of its area times the mean distance that
+/// a curvature of 1/m would have between the face and a surface through its corners (m³ · m).
 struct Face {
     middle: DVec3,
     normal: DVec3,
     lens: f64,
 }
 
-/// The volume between the faces of a mesh and a smooth surface through its corners, as a share of the mesh's own volume; `None`
-/// where its faces are flat or meet at edges.
+/// The volume between the faces of a mesh and a smooth surface through its corners, as a share of the mesh's own
+/// volume; `None` where its faces are flat or meet at edges.
 ///
-/// Where faces meet at an angle θ and their middles are d apart, the curvature is κ = θ / d; over a face of area A whose corners are
-/// r away from its middle (root mean square) the surface then lies κ r² · 3/8 off on the mean, on a quadrilateral κ r² / 3. For a
-/// sphere of 20 triangles that gives 42 % of its volume, and 40 % are true.
+/// Where faces meet at an angle θ and their middles are d apart, the curvature is κ = θ / d; over a face of area A
+/// whose corners are r away from its middle (root mean square) the surface then lies κ r² · 3/8 off on the mean, on a
+/// quadrilateral κ r² / 3. For a sphere of 20 triangles that gives 42 % of its volume, and 40 % are true.
 pub fn left_out(mesh: &Mesh) -> Option<f64> {
     let mut edges: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
     let mut faces = Vec::new();

@@ -10,7 +10,8 @@ const OGDEN_ALPHA: f64 = 4.0;
 /// The locking stretch of the chains of an Arruda-Boyce law on the ladder.
 const LOCKING_STRETCH: f64 = 2.0;
 
-/// Laws that a scene's materials can have instead of theirs: those that not all of them have, where all have one of the list.
+/// Laws that a scene's materials can have instead of theirs: those that not all of them have, where all have one of the
+/// list.
 pub fn laws(scene: &Scene) -> Vec<String> {
     if scene.materials.values().any(|material| small_strain_moduli(material).is_none()) {
         return Vec::new();
@@ -52,7 +53,8 @@ fn chain_factor(locking_stretch: f64) -> f64 {
     materials::ArrudaBoyce { shear: 1.0, locking_stretch, bulk: 1.0 }.small_strain_moduli()[0]
 }
 
-/// Gives all materials of a scene another law of the same moduli at small strains. A Mooney-Rivlin law gets equal constants.
+/// Gives all materials of a scene another law of the same moduli at small strains. A Mooney-Rivlin law gets equal
+/// constants.
 pub fn climb(scene: &mut Scene, word: &str) {
     for material in scene.materials.values_mut() {
         let Some((shear, bulk)) = small_strain_moduli(material) else { continue };

@@ -32,7 +32,8 @@ pub struct Looks {
 }
 
 impl Looks {
-    /// For a scene that has been prepared; `steps` is how many the coarsest step takes: looks must not make it much finer.
+    /// For a scene that has been prepared; `steps` is how many the coarsest step takes: looks must not make it much
+    /// finer.
     pub fn new(scene: &SceneFile, reactions: &[(String, crate::scene::schema::Probe, Vec<Axis>)], steps: u64) -> Self {
         let grain = FIELDS * ENERGIES_A_FIELD;
         let count = if steps < 10 * grain { FIELDS } else { (steps / 10 / grain).clamp(1, 10) * grain };

@@ -43,8 +43,8 @@ pub struct Engine<'a> {
 }
 
 impl<'a> Engine<'a> {
-    /// For a scene that is sound. `options` say how the scene as it is written runs; `gpu`, whether to compare with a GPU;
-    /// `effects`, whether to switch effects off; `interrupted`, whether somebody wants the study to end.
+    /// For a scene that is sound. `options` say how the scene as it is written runs; `gpu`, whether to compare with a
+    /// GPU; `effects`, whether to switch effects off; `interrupted`, whether somebody wants the study to end.
     pub fn new(file: &'a SceneFile, options: Options, gpu: bool, effects: bool, interrupted: fn() -> bool) -> Self {
         Self {
             file,
@@ -66,8 +66,8 @@ impl<'a> Engine<'a> {
         Self { finest, ..self }
     }
 
-    /// Looks at numbers over time that all configurations share: as many intervals, from the start to the end; 0 of a search
-    /// for equilibrium.
+    /// Looks at numbers over time that all configurations share: as many intervals, from the start to the end; 0 of a
+    /// search for equilibrium.
     ///
     /// # Errors
     /// That the scene as it is written cannot be run.
@@ -153,8 +153,8 @@ impl<'a> Engine<'a> {
 }
 
 impl Engine<'_> {
-    /// The step that the scene wants (s). One that it names itself is kept where it is stable, and for the scene as it is
-    /// written, which may be meant to go beyond.
+    /// The step that the scene wants (s). One that it names itself is kept where it is stable, and for the scene as it
+    /// is written, which may be meant to go beyond.
     fn step(&self, configuration: &Configuration, options: &Options) -> Result<f64, Refusal> {
         let integration = &self.file.scene.integration;
         let own = self.base(self.kinds.as_deref().unwrap_or_default());

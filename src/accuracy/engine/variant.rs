@@ -68,8 +68,8 @@ pub fn cells(mesh: &MeshSource) -> Vec<u32> {
     }
 }
 
-/// Whether a generated mesh can have so many times its cells and keep its shape: a lens of an odd number of cells through has
-/// no sharp rim.
+/// Whether a generated mesh can have so many times its cells and keep its shape: a lens of an odd number of cells
+/// through has no sharp rim.
 pub fn divides(mesh: &MeshSource, factor: Factor) -> bool {
     let whole = cells(mesh).into_iter().all(|count| factor.times(count).is_some());
     let rim = match mesh {
@@ -117,8 +117,8 @@ fn remesh(scene: &mut Scene, factor: Factor, element: Option<ElementKind>) {
     }
 }
 
-/// The scene that a configuration means, with nothing observed on the way; `step` is the time step (s), `None` to have it
-/// found.
+/// The scene that a configuration means, with nothing observed on the way; `step` is the time step (s), `None` to have
+/// it found.
 pub fn variant(file: &SceneFile, configuration: &Configuration, step: Option<f64>) -> SceneFile {
     let mut file = file.clone();
     let scene = &mut file.scene;
@@ -160,7 +160,8 @@ pub fn variant(file: &SceneFile, configuration: &Configuration, step: Option<f64
     file
 }
 
-/// Probes for the reactions of constraints that no probe of the scene observes: name, probe, and the axes that are held.
+/// Probes for the reactions of constraints that no probe of the scene observes: name, probe, and the axes that are
+/// held.
 pub fn reactions(scene: &Scene) -> Vec<(String, Probe, Vec<Axis>)> {
     let mut found = Vec::new();
     let many = scene.constraints.len() > 1;

@@ -140,8 +140,8 @@ fn lines(svg: &mut Svg, study: &Study, points: &[Point<'_>], x: &Axis, y: &Axis,
     }
 }
 
-/// The words on the target and where they stand: at the left end of its line, or at the right one where a point is in the way.
-/// `None` where the target is outside the plot.
+/// The words on the target and where they stand: at the left end of its line, or at the right one where a point is in
+/// the way. `None` where the target is outside the plot.
 fn target_words(study: &Study, points: &[Point<'_>], x: &Axis, y: &Axis) -> Option<(String, Area)> {
     let text = format!("target {}", percent(study.target));
     let (wide, base) = (width(&text), y.at(study.target) - 5.0);

@@ -53,8 +53,8 @@ pub struct Inside<'a, 'n, T> {
     pub observed: bool,
 }
 
-/// Fills in the forces of a block and carries its viscous history on by one step. Returns the patches that have elements
-/// with J < 0, ascending.
+/// Fills in the forces of a block and carries its viscous history on by one step. Returns the patches that have
+/// elements with J < 0, ascending.
 ///
 /// One kernel an element type for all laws and effects, which asks for them at each point.
 pub fn run_block<E: Element, T: SimdScalar>(
@@ -66,8 +66,8 @@ pub fn run_block<E: Element, T: SimdScalar>(
     Block::<E, T> { cpu, columns, law, groups_a_patch, element: PhantomData }.run::<_, ASK>(&law.elastic)
 }
 
-/// The same in f32, where speed counts, with a kernel of its own for what is asked for most: the neo-Hookean law with each
-/// combination of fibres and viscosity, and three laws with neither. What a material lacks is not even asked for.
+/// The same in f32, where speed counts, with a kernel of its own for what is asked for most: the neo-Hookean law with
+/// each combination of fibres and viscosity, and three laws with neither. What a material lacks is not even asked for.
 pub fn run_block_fast<E: Element>(
     cpu: &Cpu,
     columns: BlockColumns<'_, '_, f32>,
@@ -86,8 +86,8 @@ pub fn run_block_fast<E: Element>(
     }
 }
 
-/// Whether a law's kernel in f32 is one that has fibres, and one that has viscosity, and nothing that it need not have; `None`: it
-/// is the one that asks for each effect.
+/// Whether a law's kernel in f32 is one that has fibres, and one that has viscosity, and nothing that it need not have;
+/// `None`: it is the one that asks for each effect.
 pub fn kernel_effects(law: &BlockLaw<f32>) -> Option<[bool; 2]> {
     let effects = [law.fibres.is_some(), !law.prony.is_empty()];
     let others = !law.exponential.is_empty() || !law.volumetric.is_empty() || law.reproject;

@@ -5,8 +5,8 @@ use crate::materials::{Elastic, ElasticLaw, ExponentialFibre, Fibres, PronyTerm}
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 
-/// All that a block's kernel needs of its material, in the kernel's precision. What the material does not have is `None`
-/// or empty, and costs nothing.
+/// All that a block's kernel needs of its material, in the kernel's precision. What the material does not have is
+/// `None` or empty, and costs nothing.
 #[derive(Component, Clone, Debug)]
 pub struct BlockLaw<T: Scalar> {
     /// Isotropic elasticity.

@@ -105,8 +105,8 @@ impl Cpu {
         format!("CPU ({} thread{plural}, {})", self.threads, self.instruction_set())
     }
 
-    /// Runs a task with the machine's vector registers, of 256 bits where it has wider ones too: most kernels are not worth
-    /// their code a third time.
+    /// Runs a task with the machine's vector registers, of 256 bits where it has wider ones too: most kernels are not
+    /// worth their code a third time.
     pub(crate) fn dispatch<O: pulp::WithSimd>(&self, task: O) -> O::Output {
         match self.arch {
             #[cfg(target_arch = "x86_64")]

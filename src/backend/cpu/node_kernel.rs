@@ -53,7 +53,8 @@ impl<T: SimdScalar> WithSimd for Task<'_, '_, T> {
 const CHUNK: usize = 64;
 
 impl<T: SimdScalar> Task<'_, '_, T> {
-    /// Any nodes, one after the other. Returns the work against internal forces (J), and whether displacements are finite.
+    /// Any nodes, one after the other. Returns the work against internal forces (J), and whether displacements are
+    /// finite.
     fn one_by_one(&mut self, from: usize, to: usize) -> (f64, bool) {
         let (mut spent, mut finite) = (0.0, true);
         for row in from..to {
@@ -71,8 +72,8 @@ impl<T: SimdScalar> Task<'_, '_, T> {
         (spent, finite)
     }
 
-    /// At most [`CHUNK`] nodes with mass whose work is not booked: the same operations in the same order as one by one, for
-    /// registers full of components.
+    /// At most [`CHUNK`] nodes with mass whose work is not booked: the same operations in the same order as one by one,
+    /// for registers full of components.
     #[inline(always)]
     fn chunk<S: Simd>(&mut self, simd: S, from: usize, to: usize) -> (f64, bool) {
         let factors = self.factors;

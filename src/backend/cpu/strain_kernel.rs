@@ -1,4 +1,5 @@
-//! How far the elements of a block are deformed, and how fast; a register full at a time. The stable step is followed by it.
+//! How far the elements of a block are deformed, and how fast; a register full at a time. The stable step is followed
+//! by it.
 
 use super::Cpu;
 use super::element_kernel::{corner_registers, group_vectors};
@@ -18,8 +19,8 @@ pub struct StrainColumns<'a, T> {
     pub connectivity: &'a [u32],
     /// Rest shapes.
     pub rest_shape: &'a [T],
-    /// Whether the law ends at J = 0, so that it pushes without bound where C is nearly singular: else what is said of C⁻¹ is of
-    /// cof C = J² C⁻¹, and is 1 + (1 − J)² at least.
+    /// Whether the law ends at J = 0, so that it pushes without bound where C is nearly singular: else what is said of
+    /// C⁻¹ is of cof C = J² C⁻¹, and is 1 + (1 − J)² at least.
     pub ends: bool,
 }
 
@@ -30,8 +31,8 @@ pub struct Strain {
     pub row: usize,
     /// max(tr C, tr C⁻¹)/3: 1 at rest; infinite for what is flat, or no number.
     pub size: f64,
-    /// At least the largest eigenvalue of C⁻¹, the inverse square of the least stretch, and no more than that where one axis is squeezed:
-    /// tr C⁻¹/3 + √(2/3 D : D) with its deviator D; infinite for what is flat, or no number.
+    /// At least the largest eigenvalue of C⁻¹, the inverse square of the least stretch, and no more than that where one
+    /// axis is squeezed: tr C⁻¹/3 + √(2/3 D : D) with its deviator D; infinite for what is flat, or no number.
     pub squeeze: f64,
     /// √(ΔE : ΔE) tr C⁻¹/3 with the change ΔE of Green's strain in a step; infinite for what is no number.
     pub speed: f64,
@@ -45,8 +46,8 @@ pub type OfStretch<'a> = &'a (dyn Fn(usize, [f64; 6]) -> f64 + Sync);
 /// Takes some elements at a time.
 pub type Visit<'a> = &'a mut dyn FnMut(&[Strain]);
 
-/// Visits the elements of some groups that are there, in their order, some at a time. What they come to, were one of them the largest in
-/// everything (its row says nothing), and how many they are.
+/// Visits the elements of some groups that are there, in their order, some at a time. What they come to, were one of
+/// them the largest in everything (its row says nothing), and how many they are.
 pub fn strains<E: Element, T: SimdScalar>(
     cpu: &Cpu,
     columns: &StrainColumns<'_, T>,
@@ -132,8 +133,8 @@ fn sound<T: SimdScalar>([size, squeeze, speed, astray]: [T; 4]) -> [f64; 3] {
     [size, squeeze, speed].map(number)
 }
 
-/// Size, squeeze and speed of a register full of elements, and what is not 0 where either is no number. `rows`: what more is asked for, of
-/// which row on, and where it goes.
+/// Size, squeeze and speed of a register full of elements, and what is not 0 where either is no number. `rows`: what
+/// more is asked for, of which row on, and where it goes.
 #[inline(always)]
 fn register<E: Element, T: SimdScalar, S: Simd>(
     simd: S,

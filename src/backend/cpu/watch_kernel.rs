@@ -1,5 +1,5 @@
-//! What a block's elements come to: energies, and the one that is squeezed most; a register full at a time. Looked at every
-//! so many steps by the guards; `shaders/watch_elements.wgsl` is its twin.
+//! What a block's elements come to: energies, and the one that is squeezed most; a register full at a time. Looked at
+//! every so many steps by the guards; `shaders/watch_elements.wgsl` is its twin.
 
 use super::element_kernel::{corner_registers, group_vectors};
 use super::{BlockLaw, Cpu};

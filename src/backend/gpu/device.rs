@@ -100,8 +100,8 @@ impl Gpu {
         &self.report
     }
 
-    /// Gives the device up, as when a driver resets it: all that follows is [`GpuError::Lost`]. For trying out what a program
-    /// does then.
+    /// Gives the device up, as when a driver resets it: all that follows is [`GpuError::Lost`]. For trying out what a
+    /// program does then.
     pub fn destroy(&mut self) {
         self.device.destroy();
     }
@@ -153,7 +153,8 @@ impl Gpu {
             Ok(_) => Ok(()),
             Err(PollError::Timeout) => Err(GpuError::TimedOut(PATIENCE.as_secs())),
             Err(other) => {
-                // what a lost device was handed was never submitted, and it says so when it is asked without a number only
+                // what a lost device was handed was never submitted, and it says so when it is asked without a number
+                // only
                 let _ = self.device.poll(PollType::Poll);
                 self.check("waiting for the GPU")?;
                 Err(GpuError::Device { during: "waiting for the GPU".to_owned(), message: other.to_string() })

@@ -19,8 +19,8 @@ const RECORD_ALIGNMENT: u64 = 256;
 /// Bytes of the number of records before packed records, with the padding behind it.
 pub(super) const PACKED_HEADER: usize = 16;
 
-/// The records of one submission's steps, one 256-byte slot each (several, where a record is longer); and their number and all of
-/// them one after the other, for kernels that run all those steps in one dispatch.
+/// The records of one submission's steps, one 256-byte slot each (several, where a record is longer); and their number
+/// and all of them one after the other, for kernels that run all those steps in one dispatch.
 pub(super) struct StepRecords {
     buffer: Buffer,
     packed: Buffer,
@@ -211,7 +211,8 @@ impl Gpu {
 }
 
 impl Batch<'_> {
-    /// Calls `run` for every kernel of every step with the offset of the step's record; once for those that run all steps.
+    /// Calls `run` for every kernel of every step with the offset of the step's record; once for those that run all
+    /// steps.
     fn each(&self, mut run: impl FnMut(&Prepared, u32)) {
         for step in 0..self.steps {
             for kernel in self.kernels.iter().filter(|kernel| step == 0 || kernel.packed_record.is_none()) {

@@ -95,7 +95,8 @@ pub fn compose(fragments: &[Fragment]) -> Result<Composed, KernelError> {
     Ok(Composed { source: sources.into_text(), bindings, entries, module, structs })
 }
 
-/// Fragments of different authors may use the same `@binding` number: buffers are bound by name, numbers are given here.
+/// Fragments of different authors may use the same `@binding` number: buffers are bound by name, numbers are given
+/// here.
 fn number_bindings(module: &mut Module) {
     let bound = module.global_variables.iter_mut().filter(|(_, variable)| variable.binding.is_some());
     for (number, (_, variable)) in bound.enumerate() {

@@ -207,8 +207,8 @@ fn places(rows: &[u32], nodes: &Range<u32>) -> Vec<u32> {
     places
 }
 
-/// How forces get from who sums them and who adds to them to who uses them: through memory, or, where one kernel does both,
-/// in the invocation's own registers.
+/// How forces get from who sums them and who adds to them to who uses them: through memory, or, where one kernel does
+/// both, in the invocation's own registers.
 fn forces_between(stages: &[&NodeStage]) -> Vec<Fragment> {
     let calls = |name: &str| stages.iter().any(|stage| stage.columns.iter().any(|(column, _)| *column == name));
     let (inner, outer) = (calls(InternalForce::NAME), calls(ExternalForce::NAME));

@@ -1,5 +1,5 @@
-//! WGSL texts as lists of declarations, as far as putting kernels together needs it: the engine's own fragments begin every
-//! declaration at the beginning of a line.
+//! WGSL texts as lists of declarations, as far as putting kernels together needs it: the engine's own fragments begin
+//! every declaration at the beginning of a line.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -66,7 +66,8 @@ pub struct UnloadArguments {
     /// CPU threads; 0 is one a core, or a single one for small bodies
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = clap::value_parser!(u16).range(0..=1024))]
     pub threads: u16,
-    /// The folder for the unloaded meshes and the scene, in place of earlier ones [default: out/NAME-OF-THE-SCENE-unloaded]
+    /// The folder for the unloaded meshes and the scene, in place of earlier ones [default:
+    /// out/NAME-OF-THE-SCENE-unloaded]
     #[arg(short, long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }

@@ -75,8 +75,9 @@ pub fn crushed_cube(trial: &mut Trial<'_>) -> Result<(), Error> {
         let back = come_back(&mut simulation)?;
         trial.most(format!("what stays of the displacement, {name}"), back, 1e-3);
     }
-    // at a Poisson's ratio of .45 the law lets a free point give way at .106 of its height: there the equilibrium beside rest ends, and the
-    // only one left is a point without volume. It may spring back or be given up, but not rest elsewhere
+    // at a Poisson's ratio of .45 the law lets a free point give way at .106 of its height: there the equilibrium
+    // beside rest ends, and the only one left is a point without volume. It may spring back or be given up, but not
+    // rest elsewhere
     let soft = [pressed_free, vec!["materials.tissue.neo_hookean=Young(young: 3000, poisson: 0.45)".into()]].concat();
     if !trial.is_thorough() {
         return Ok(());

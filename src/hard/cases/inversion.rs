@@ -17,7 +17,8 @@ fn left(simulation: &mut Simulation, length: f64) -> Result<f64, Error> {
 /// H05.
 pub fn release(trial: &mut Trial<'_>) -> Result<(), Error> {
     let short = if trial.is_thorough() { "duration=0.5" } else { "duration=0.3" };
-    // in twenty periods cells come to be squeezed to a twentieth: at .1 energy comes from nothing there, at .03 none does
+    // in twenty periods cells come to be squeezed to a twentieth: at .1 energy comes from nothing there, at .03 none
+    // does
     let sets = if trial.full { vec!["integration.safety=0.03".into()] } else { vec![short.into()] };
     let mut simulation = trial.start(&sets)?;
     trial.run(&mut simulation, 0.1)?;

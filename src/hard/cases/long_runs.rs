@@ -47,8 +47,8 @@ pub fn long_run(trial: &mut Trial<'_>) -> Result<(), Error> {
 /// Steps that are looked at.
 const WINDOW: u64 = 1500;
 
-/// Frequency (Hz) from the zero crossings of the top's displacement, and the mean energy (J), over the next steps, looked at every so
-/// many.
+/// Frequency (Hz) from the zero crossings of the top's displacement, and the mean energy (J), over the next steps,
+/// looked at every so many.
 fn ringing(simulation: &mut Simulation, every: u64) -> Result<(f64, f64), Error> {
     let mut crossings = Vec::new();
     let (mut before, mut energy, mut looks) = (0.0, 0.0, 0);

@@ -23,8 +23,8 @@ pub fn mixed_patch(trial: &mut Trial<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// Two layers of hexahedra below two of tetrahedra, their inner nodes moved but for those where they meet: there faces of four
-/// corners lie against pairs of triangles, and share their forces only where all lie in one plane, in rows.
+/// Two layers of hexahedra below two of tetrahedra, their inner nodes moved but for those where they meet: there faces
+/// of four corners lie against pairs of triangles, and share their forces only where all lie in one plane, in rows.
 fn mesh() -> String {
     let place = |at: [usize; 3]| {
         let [x, y, z] = at;

@@ -45,7 +45,8 @@ impl Law {
         self.free_with_sides(stretch).1
     }
 
-    /// The stretch across and the stress (Pa), followed from rest: further on, other stretches across are free of stress too.
+    /// The stretch across and the stress (Pa), followed from rest: further on, other stretches across are free of
+    /// stress too.
     pub fn free_with_sides(&self, stretch: f64) -> (f64, f64) {
         const STEPS: i32 = 200;
         let mut across = 1.0;

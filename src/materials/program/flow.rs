@@ -1,4 +1,5 @@
-//! Branches and loops without control flow: every element does everything, and what it should not have done is not chosen.
+//! Branches and loops without control flow: every element does everything, and what it should not have done is not
+//! chosen.
 
 use super::Untranslatable;
 use super::translate::{Frame, Result, Translator};

@@ -1,5 +1,5 @@
-//! A graph as a straight line of instructions over numbered slots, which a machine without branches can walk for a whole
-//! register of elements at a time.
+//! A graph as a straight line of instructions over numbered slots, which a machine without branches can walk for a
+//! whole register of elements at a time.
 
 use super::Untranslatable;
 use super::graph::{Binary, Graph, Id, Node, Unary};

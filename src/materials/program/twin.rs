@@ -52,8 +52,8 @@ impl Twin {
     }
 }
 
-/// Where a declaration of a constant has got to. naga folds numbers of no type yet to all the digits of `f64`, numbers of
-/// type `f64` not at all: so constants keep the former.
+/// Where a declaration of a constant has got to. naga folds numbers of no type yet to all the digits of `f64`, numbers
+/// of type `f64` not at all: so constants keep the former.
 #[derive(Default)]
 enum Constant {
     #[default]

@@ -1,5 +1,5 @@
-//! What an expression stands for while a function is translated: numbers of the graph, whole numbers and truths that are
-//! known, and arrangements of these.
+//! What an expression stands for while a function is translated: numbers of the graph, whole numbers and truths that
+//! are known, and arrangements of these.
 
 use super::graph::{Binary, Graph, Id};
 

@@ -7,7 +7,8 @@ use glam::DVec3;
 
 /// A cuboid with one corner in the origin.
 ///
-/// `size`: its edges (m); `cells`: cells along each of them. Sets of faces and nodes: `x0`, `x1`, `y0`, `y1`, `z0`, `z1`.
+/// `size`: its edges (m); `cells`: cells along each of them. Sets of faces and nodes: `x0`, `x1`, `y0`, `y1`, `z0`,
+/// `z1`.
 pub fn box_mesh(size: DVec3, cells: (u32, u32, u32), elements: ElementKind) -> Result<Mesh, MeshError> {
     positive("Box", "size.x", size.x)?;
     positive("Box", "size.y", size.y)?;

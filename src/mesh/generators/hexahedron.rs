@@ -12,8 +12,8 @@ const NEIGHBOURS: [[usize; 3]; 8] =
 /// A box mapped trilinearly onto eight corners: edges and lines of cells stay straight, faces may be twisted.
 ///
 /// `corners` (m) in VTK order: four round the bottom, counter-clockwise seen from the top, then the four above them;
-/// `cells`: along the edges 0–1, 0–3 and 0–4. Sets of faces and nodes: `x0`, `x1` where these edges begin and end, in the
-/// same way `y0`, `y1`, `z0`, `z1`.
+/// `cells`: along the edges 0–1, 0–3 and 0–4. Sets of faces and nodes: `x0`, `x1` where these edges begin and end, in
+/// the same way `y0`, `y1`, `z0`, `z1`.
 pub fn hexahedron_mesh(corners: [DVec3; 8], cells: (u32, u32, u32), elements: ElementKind) -> Result<Mesh, MeshError> {
     for (i, corner) in corners.into_iter().enumerate() {
         let refuse = |value: String, allowed: &str| {

@@ -11,13 +11,13 @@ const INNER: DVec3 = DVec3::new(0.6, 0.6, 0.75);
 
 /// A biconvex lens about the origin, its axis along z: two spherical caps on a common circle in the plane z = 0.
 ///
-/// `diameter` of the common circle, `thickness` on the axis (m); `across`: cells across the diameter, `through`: through
-/// the thickness. The top and bottom of the grid become the middle of each cap, its four sides the band around the rim,
-/// so that cells do not lose their thickness there. The sharp rim is met exactly when `through` is even; an odd number
-/// leaves a blunt edge of one cell.
+/// `diameter` of the common circle, `thickness` on the axis (m); `across`: cells across the diameter, `through`:
+/// through the thickness. The top and bottom of the grid become the middle of each cap, its four sides the band around
+/// the rim, so that cells do not lose their thickness there. The sharp rim is met exactly when `through` is even; an
+/// odd number leaves a blunt edge of one cell.
 ///
-/// Sets of faces and nodes: `front` (faces of the cap z > 0), `back` (z < 0), `rim` (the band of the grid's sides, part of
-/// both caps; with an odd `through` the blunt edge belongs to `rim` alone).
+/// Sets of faces and nodes: `front` (faces of the cap z > 0), `back` (z < 0), `rim` (the band of the grid's sides, part
+/// of both caps; with an odd `through` the blunt edge belongs to `rim` alone).
 pub fn lens_mesh(
     diameter: f64,
     thickness: f64,

@@ -1,8 +1,9 @@
 //! Maps from squares and cubes to discs and balls.
 //!
-//! Every map is ρ·((1 − ρ)·c·q̂ + ρ·s(q̂)) with ρ = max |q|, q̂ = q/ρ: near the middle the square itself (times c), on its
-//! rim the round shape s, in between a blend. Smooth maps with a formula of their own (the elliptical one, for instance)
-//! flatten the corner cells of a fine grid; here only the angle at the corner point itself is nearly straight.
+//! Every map is ρ·((1 − ρ)·c·q̂ + ρ·s(q̂)) with ρ = max |q|, q̂ = q/ρ: near the middle the square itself (times c), on
+//! its rim the round shape s, in between a blend. Smooth maps with a formula of their own (the elliptical one, for
+//! instance) flatten the corner cells of a fine grid; here only the angle at the corner point itself is nearly
+//! straight.
 
 use glam::{DVec2, DVec3};
 use std::f64::consts::FRAC_PI_4;

@@ -7,9 +7,9 @@ use glam::DVec3;
 
 /// A tube about the z axis that stands on z = 0, from the x axis on counter-clockwise.
 ///
-/// `inner`, `outer` radius, `height` (m); `angle` (degrees, above 0, at most 360): 360 closes the ring; `cells`: through
-/// the wall, around and along the axis. Sets of faces and nodes: `inner`, `outer`, `bottom`, `top`; of a sector also
-/// `start` (in the plane y = 0) and `end`.
+/// `inner`, `outer` radius, `height` (m); `angle` (degrees, above 0, at most 360): 360 closes the ring; `cells`:
+/// through the wall, around and along the axis. Sets of faces and nodes: `inner`, `outer`, `bottom`, `top`; of a sector
+/// also `start` (in the plane y = 0) and `end`.
 pub fn tube_mesh(
     inner: f64,
     outer: f64,

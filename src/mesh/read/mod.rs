@@ -14,9 +14,10 @@ const FORMATS: &str = "sinew reads Gmsh (formats 1, 2.x, 4.1), legacy VTK and VT
 impl Mesh {
     /// Reads a mesh file: Gmsh 1, 2.x or 4.1, legacy VTK, or VTU, each as text or binary.
     ///
-    /// Physical groups become named sets, and so does integer cell data of at most 64 values (`NAME=VALUE`); cell data of three
-    /// components become vectors of elements. A file that lists all its elements inside out is turned round with a note;
-    /// `flip_inverted` does the same to single elements. What cannot be simulated is an error with all findings.
+    /// Physical groups become named sets, and so does integer cell data of at most 64 values (`NAME=VALUE`); cell data
+    /// of three components become vectors of elements. A file that lists all its elements inside out is turned round
+    /// with a note; `flip_inverted` does the same to single elements. What cannot be simulated is an error with all
+    /// findings.
     pub fn read(path: impl AsRef<Path>, flip_inverted: bool) -> Result<Mesh, MeshError> {
         let path = path.as_ref();
         let bytes = std::fs::read(path).map_err(|source| MeshError::Unreadable { file: path.into(), source })?;

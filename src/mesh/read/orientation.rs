@@ -4,8 +4,9 @@ use crate::mesh::Mesh;
 use crate::mesh::measure::{hex_determinants, tet_volume};
 
 impl Mesh {
-    /// Turns elements that list their points in the other order: all of a kind if the whole file does so, single ones if
-    /// `flip_inverted` is set. A folded hexahedron, positive at one corner and negative at another, cannot be turned.
+    /// Turns elements that list their points in the other order: all of a kind if the whole file does so, single ones
+    /// if `flip_inverted` is set. A folded hexahedron, positive at one corner and negative at another, cannot be
+    /// turned.
     pub(in crate::mesh) fn orient(&mut self, flip_inverted: bool) {
         let tets: Vec<usize> = (0..self.tets.len()).filter(|&row| tet_volume(self.tet_corners(row)) < 0.0).collect();
         let inside_out = |&row: &usize| hex_determinants(self.hex_corners(row)).iter().all(|&value| value < 0.0);

@@ -10,8 +10,8 @@ use roxmltree::Node;
 use std::cell::Cell;
 use std::collections::BTreeMap;
 
-/// Numbers that a file may hold for each of its bytes. Compressed meshes come to two; arrays that share appended data, or
-/// are compressed to next to nothing, could come to any number.
+/// Numbers that a file may hold for each of its bytes. Compressed meshes come to two; arrays that share appended data,
+/// or are compressed to next to nothing, could come to any number.
 const NUMBERS_A_BYTE: usize = 20;
 /// Numbers that a file of any size may hold.
 const FEWEST_NUMBERS: usize = 1 << 20;

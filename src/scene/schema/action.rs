@@ -95,7 +95,8 @@ pub enum Load {
         /// Whether each node gets the force, or all together.
         #[serde(default)]
         share: Share,
-        /// What the force is multiplied with on the first and on the last of the body's copies; on those between evenly.
+        /// What the force is multiplied with on the first and on the last of the body's copies; on those between
+        /// evenly.
         #[serde(default)]
         per_copy: Option<(f64, f64)>,
         /// Course in time.

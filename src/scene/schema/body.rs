@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 pub struct Body {
     /// Where the mesh comes from.
     pub mesh: MeshSource,
-    /// A mesh file with the same points and elements that says where they are at rest (m), its path relative to the scene file;
-    /// `mesh` is then a loaded shape, in which selections are made.
+    /// A mesh file with the same points and elements that says where they are at rest (m), its path relative to the
+    /// scene file; `mesh` is then a loaded shape, in which selections are made.
     #[serde(default)]
     pub rest_shape: Option<String>,
     /// The name of the material of all elements that `regions` does not name.
@@ -43,7 +43,8 @@ pub struct Body {
     /// Angular velocity at the start about the centre of mass (rad/s).
     #[serde(default)]
     pub spin: DVec3,
-    /// How the body is deformed at the start, at rest and let go; nodes keep their place along axes that are held or moved.
+    /// How the body is deformed at the start, at rest and let go; nodes keep their place along axes that are held or
+    /// moved.
     #[serde(default)]
     pub start: Option<Start>,
     /// Multiplies the hourglass stiffness of one-point hexahedra; 0 leaves their hourglass modes free.

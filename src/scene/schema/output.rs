@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 pub struct Output {
     /// Time between VTU files (s); a twentieth of the duration when left out, in a static analysis all of it.
     pub fields_every: Option<f64>,
-    /// Which fields VTU files hold; displacement, velocity, J, von Mises stress, pressure and Cauchy stress when left out.
+    /// Which fields VTU files hold; displacement, velocity, J, von Mises stress, pressure and Cauchy stress when left
+    /// out.
     pub fields: Option<Vec<OutputField>>,
     /// Write elements that have been removed, too, with an array `alive` that tells them from the others.
     pub removed_elements: bool,
@@ -25,8 +26,8 @@ pub enum OutputField {
     Displacement,
     /// Velocity of each node (m/s), in the middle of the step that led there.
     Velocity,
-    /// What holds each node along axes that are fixed or moved as told: internal less external force (N) at the beginning
-    /// of the step that led there; 0 along free axes.
+    /// What holds each node along axes that are fixed or moved as told: internal less external force (N) at the
+    /// beginning of the step that led there; 0 along free axes.
     Reaction,
     /// F of M ü = R − F (N): what it takes to hold each node against its deformed elements.
     InternalForce,
@@ -105,7 +106,8 @@ impl OutputField {
         }
     }
 
-    /// Numbers a node or element: 1, 3 (a vector, or three from the largest to the smallest) or 6 (xx, yy, zz, xy, yz, xz).
+    /// Numbers a node or element: 1, 3 (a vector, or three from the largest to the smallest) or 6 (xx, yy, zz, xy, yz,
+    /// xz).
     pub fn components(self) -> usize {
         use OutputField::*;
         match self {

@@ -97,7 +97,8 @@ pub enum InitialState {
     /// As each body's own `start` says: undeformed where it says nothing.
     #[default]
     Undeformed,
-    /// At rest under loads and motions as their curves stand at t = 0, found by a static analysis before the first step.
+    /// At rest under loads and motions as their curves stand at t = 0, found by a static analysis before the first
+    /// step.
     Equilibrium {
         /// As of a static analysis.
         #[serde(default)]
@@ -132,8 +133,8 @@ pub struct Integration {
     pub safety: f64,
     /// What the stable step is found from.
     pub bound: StepBound,
-    /// What is done when deformation makes the stable step smaller than the step. `Adapt` when left out; `Watch` where a
-    /// scene insists on a step beyond the stable one.
+    /// What is done when deformation makes the stable step smaller than the step. `Adapt` when left out; `Watch` where
+    /// a scene insists on a step beyond the stable one.
     pub when_unstable: Option<WhenUnstable>,
     /// Take a `step` beyond the stable one all the same. The guards watch it, and cannot be switched off.
     pub beyond_stable_step: bool,
@@ -157,8 +158,8 @@ impl Default for Integration {
 /// What the stable step is found from.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
 pub enum StepBound {
-    /// The larger of the step that is certain by elements and nodes and that by the highest frequency, which is found as well as
-    /// is worth it, where the step adapts; else that of the stiffest element.
+    /// The larger of the step that is certain by elements and nodes and that by the highest frequency, which is found
+    /// as well as is worth it, where the step adapts; else that of the stiffest element.
     #[default]
     Auto,
     /// The stiffest element alone: certain, and many times smaller than need be where elements differ.
@@ -178,8 +179,8 @@ pub enum WhenUnstable {
     Watch,
     /// Elements that need a smaller step are made heavier, at the start and during the run.
     ScaleMass {
-        /// Share of the mass that may be added: more is an error at the start and ends a run. Without `step` the step is as large as
-        /// this allows.
+        /// Share of the mass that may be added: more is an error at the start and ends a run. Without `step` the step
+        /// is as large as this allows.
         #[serde(default = "most_added_mass")]
         most: f64,
     },

@@ -1,4 +1,5 @@
-//! Whether a scene has more of anything than is allowed. Looked at first: all else may take its time with what is too much.
+//! Whether a scene has more of anything than is allowed. Looked at first: all else may take its time with what is too
+//! much.
 
 use super::{Judge, scene};
 use crate::scene::limits::{ACTIONS, BODIES, MOST_REFINEMENT, NAME_BYTES, TABLE_POINTS, TERMS};

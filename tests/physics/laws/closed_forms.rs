@@ -26,8 +26,8 @@ fn nominal<L: Law>(stretches: DVec3) -> f64 {
     p.x_axis.x - p.z_axis.z * stretches.z / stretches.x
 }
 
-/// Incompressible tension in one and in two directions and pure shear of Ogden's law, P = Σ μ (λ^(α−1) − λ₃^α/λ), from which
-/// (Holzapfel 2000, §6.5) the Mooney-Rivlin law follows with α = 2, −2 and μ = 2c₁₀, −2c₀₁.
+/// Incompressible tension in one and in two directions and pure shear of Ogden's law, P = Σ μ (λ^(α−1) − λ₃^α/λ), from
+/// which (Holzapfel 2000, §6.5) the Mooney-Rivlin law follows with α = 2, −2 and μ = 2c₁₀, −2c₀₁.
 #[test]
 fn ogden_and_mooney_rivlin_pull_as_in_the_incompressible_closed_forms() {
     let closed = |terms: &[(f64, f64)], stretch: f64, third: f64| -> f64 {
@@ -51,8 +51,8 @@ fn ogden_and_mooney_rivlin_pull_as_in_the_incompressible_closed_forms() {
 }
 
 /// Tension of the eight-chain law, P = 2 ∂Ψ/∂I₁ (λ − λ^(−2)), with ∂Ψ/∂I₁ from the inverse Langevin function itself:
-/// μ/6 · λ_m/λ_c · ℒ⁻¹(λ_c/λ_m), λ_c = √(I₁/3), normalised as the series is (its first term is ½). Five terms are good to
-/// 3e-4 while λ_c is below .45 λ_m (the sixth is ⅔ (λ_c/λ_m)¹⁰ of the first).
+/// μ/6 · λ_m/λ_c · ℒ⁻¹(λ_c/λ_m), λ_c = √(I₁/3), normalised as the series is (its first term is ½). Five terms are good
+/// to 3e-4 while λ_c is below .45 λ_m (the sixth is ⅔ (λ_c/λ_m)¹⁰ of the first).
 #[test]
 fn arruda_boyce_is_the_inverse_langevin_function() {
     let langevin = |b: f64| b.tanh().recip() - b.recip();
@@ -186,8 +186,8 @@ fn no_gradient_makes_a_nan() {
     }
 }
 
-/// P = m I₁/(I₁ + 1) F + l (J − a) cof F by the formula of Smith, de Goes & Kim (2018), for deformations of which a third is
-/// inside out and a sixth flat. The bound of f32: some ten roundings of terms of the size of (m + l) |F|⁵.
+/// P = m I₁/(I₁ + 1) F + l (J − a) cof F by the formula of Smith, de Goes & Kim (2018), for deformations of which a
+/// third is inside out and a sixth flat. The bound of f32: some ten roundings of terms of the size of (m + l) |F|⁵.
 #[test]
 fn stable_neo_hookean_has_the_stress_of_its_source_at_every_deformation() {
     let (m, lambda) = (4.0 / 3.0 * SHEAR, BULK - 2.0 / 3.0 * SHEAR);
@@ -220,8 +220,8 @@ fn stable_neo_hookean_has_the_stress_of_its_source_at_every_deformation() {
     assert!(worst32 < 10.0 * f64::from(f32::EPSILON), "f32 {worst32:e}");
 }
 
-/// P = ∂Ψ/∂F beyond J = 0, too; and only rotations are without stress: from a hundred wild starts, most of them inside out,
-/// steps against the stress end in one. The mirrored states of laws with |J|^(2/3) in them do not exist.
+/// P = ∂Ψ/∂F beyond J = 0, too; and only rotations are without stress: from a hundred wild starts, most of them inside
+/// out, steps against the stress end in one. The mirrored states of laws with |J|^(2/3) in them do not exist.
 #[test]
 fn stable_neo_hookean_turns_everything_back_to_a_rotation() {
     let mut random = Random(12);

@@ -44,7 +44,8 @@ fn exponential(family: ExponentialFibre<f64>, f: DMat3, a: DVec3) -> (DMat3, f64
     (matrix(&family.isochoric(&k, a.to_array())), family.energy(&k, a.to_array()))
 }
 
-/// Along fibres stretched to λ at constant volume, E = λ² − 1: S = 2k₁ E exp(k₂E²)·2/3 along and Ψ = k₁/(2k₂)(exp(k₂E²) − 1).
+/// Along fibres stretched to λ at constant volume, E = λ² − 1: S = 2k₁ E exp(k₂E²)·2/3 along and Ψ = k₁/(2k₂)(exp(k₂E²)
+/// − 1).
 #[test]
 fn exponential_fibres_stiffen_as_their_formula_says() {
     for (k1, k2, stretch) in [(1000.0, 0.8, 1.1_f64), (996.6, 524.6, 1.05), (50.0, 10.0, 1.3)] {

@@ -1,5 +1,5 @@
-//! The neo-Hookean law's short ways, P straight from ∇u without viscosity and S_iso and P from 2E with it, against the way
-//! by S that any law can go. M = 1.5e4 Pa is the sum of all moduli.
+//! The neo-Hookean law's short ways, P straight from ∇u without viscosity and S_iso and P from 2E with it, against the
+//! way by S that any law can go. M = 1.5e4 Pa is the sum of all moduli.
 
 use super::{ALL_MODULI, BULK, ETA, SHEAR};
 use crate::random::{Random, gradient};
@@ -49,8 +49,8 @@ fn differences<R: Scalar>(found: &Found<R>, expected: &Found<f64>) -> [f64; 3] {
     ]
 }
 
-/// For J in [.5, 2] and |∇u| < .6 C⁻¹ is below (1.6²)²·3/J² = 80, S below 80 M and P below 3 times that; some 30 roundings of
-/// terms of that size stay below 1e4 eps M = 2e-12 M.
+/// For J in [.5, 2] and |∇u| < .6 C⁻¹ is below (1.6²)²·3/J² = 80, S below 80 M and P below 3 times that; some 30
+/// roundings of terms of that size stay below 1e4 eps M = 2e-12 M.
 #[test]
 fn short_ways_give_what_the_long_way_gives() {
     let mut random = Random(11);
@@ -64,8 +64,9 @@ fn short_ways_give_what_the_long_way_gives() {
     assert!(worst.iter().all(|&worst| worst < 2e-12), "{worst:?}");
 }
 
-/// Without rotation every term that does not cancel exactly is of the size of ∇u, so that rounding is in proportion to it: 30
-/// roundings of terms up to M |∇u|, half an eps each, where strains stay below a tenth. ∇u has f32's numbers in both precisions.
+/// Without rotation every term that does not cancel exactly is of the size of ∇u, so that rounding is in proportion to
+/// it: 30 roundings of terms up to M |∇u|, half an eps each, where strains stay below a tenth. ∇u has f32's numbers in
+/// both precisions.
 #[test]
 fn small_strains_keep_their_digits_in_f32() {
     let mut random = Random(12);

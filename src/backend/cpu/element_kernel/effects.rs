@@ -130,7 +130,8 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
     }
 }
 
-/// Takes Υ of a term away, its part of the present stress from the `share` that is left of it, and carries its memory on.
+/// Takes Υ of a term away, its part of the present stress from the `share` that is left of it, and carries its memory
+/// on.
 #[inline(always)]
 fn relax_by<T: SimdScalar, S: Simd>(
     simd: S,

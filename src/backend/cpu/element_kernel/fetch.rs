@@ -1,5 +1,5 @@
-//! What a kernel needs next, asked of memory before it is needed: of columns that are read in pieces of some kilobytes the core finds
-//! out too late what comes next.
+//! What a kernel needs next, asked of memory before it is needed: of columns that are read in pieces of some kilobytes
+//! the core finds out too late what comes next.
 
 use super::Patch;
 use crate::elements::Element;
@@ -7,7 +7,8 @@ use crate::materials::Elastic;
 use crate::math::{LANES, SimdScalar};
 use prefetch_index::prefetch_index;
 
-/// Bytes of rest shapes up to which a block is taken to lie in some cache, where asking beforehand costs a hundredth and gains nothing.
+/// Bytes of rest shapes up to which a block is taken to lie in some cache, where asking beforehand costs a hundredth
+/// and gains nothing.
 pub(super) const NEAR: usize = 8 << 20;
 
 /// How many groups of elements beforehand: 2 to 8 are alike (docs/performance.md).

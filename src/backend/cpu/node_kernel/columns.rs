@@ -35,8 +35,8 @@ pub struct NodeColumns<'a, T> {
     pub compensation: Option<[&'a mut [T]; 2]>,
     /// Work booked.
     pub work: Option<&'a mut [T]>,
-    /// Work against internal forces: a sum and its remainder for each row that is a multiple of [`GROUP_ROWS`], and one at the end
-    /// of all; none where the whole work is accumulated.
+    /// Work against internal forces: a sum and its remainder for each row that is a multiple of [`GROUP_ROWS`], and one
+    /// at the end of all; none where the whole work is accumulated.
     pub internal_work: &'a mut [f32],
     /// The last steps (m) along prescribed axes; none where nothing is prescribed or the whole work is accumulated.
     pub previous_prescribed: &'a mut [f32],
@@ -165,7 +165,8 @@ mod tests {
     use super::*;
     use crate::components::InternalWork;
 
-    /// However rows are shared out, in parts of no less than [`GROUP_ROWS`] but for the last, every task has a place of its own.
+    /// However rows are shared out, in parts of no less than [`GROUP_ROWS`] but for the last, every task has a place of
+    /// its own.
     #[test]
     fn every_task_has_a_place_for_its_work() {
         let nodes = 1003;

@@ -6,8 +6,8 @@ use crate::math::Scalar;
 /// What a step multiplies forces and damping with.
 #[derive(Clone, Copy)]
 pub struct Factors<T> {
-    /// Δt times the time between the middles of the last and of this step (see [`Clock::between_middles`]), times the gain
-    /// of a static analysis (s²).
+    /// Δt times the time between the middles of the last and of this step (see [`Clock::between_middles`]), times the
+    /// gain of a static analysis (s²).
     pub(super) force: T,
     /// Half the time between the middles, in the first step Δt/2 (s).
     pub(super) half_step: T,
