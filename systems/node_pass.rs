@@ -9,15 +9,15 @@ use crate::components::*;
 use crate::error::Error;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
-use bevy_ecs::system::{DynSystemParam, ParamBuilder, SystemParamBuilder};
+use bevy_ecs::system::{DynParamBuilder, DynSystemParam, ParamBuilder, SystemParam, SystemParamBuilder};
 use std::sync::atomic::AtomicU32;
 
 /// What nodes have.
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub(super) struct BodyColumns {
-    pub(super) body: Entity,
-    pub(super) rest: &'static RestPosition,
+    body: Entity,
+    rest: &'static RestPosition,
     mass: &'static Mass,
     fictitious: Option<&'static FictitiousMass>,
     internal: &'static mut InternalForce,
@@ -70,6 +70,22 @@ impl BodyColumnsItem<'_, '_> {
     }
 }
 
+/// What a pass asks of the step that it is in.
+#[derive(SystemParam)]
+pub(super) struct InStep<'w> {
+    pub(super) cpu: Res<'w, Cpu>,
+    pub(super) clock: Res<'w, Clock>,
+    signals: Res<'w, Signals>,
+    observed: Res<'w, Observed>,
+}
+
+impl InStep<'_> {
+    /// Whether somebody may look at the forces of a pass after it.
+    pub(super) fn observes(&self, pass: &NodePass) -> bool {
+        self.observed.0 || !pass.has_forces_of_its_own()
+    }
+}
+
 /// The node systems of a pass, in their order.
 #[derive(Clone, Default)]
 pub(crate) struct NodePass {
@@ -83,12 +99,12 @@ impl NodePass {
     }
 
     /// Whether forces are made in it, used, and not needed any more.
-    pub(super) fn has_forces_of_its_own(&self) -> bool {
+    fn has_forces_of_its_own(&self) -> bool {
         self.systems.iter().any(|system| system.sums_forces) && self.systems.iter().any(|system| system.moves_nodes)
     }
 
     /// What it asks the world for.
-    pub(super) fn parameters(&self) -> Vec<bevy_ecs::system::DynParamBuilder<'static>> {
+    pub(super) fn parameters(&self) -> Vec<DynParamBuilder<'static>> {
         self.systems.iter().map(NodeRows::parameter).collect()
     }
 
@@ -96,12 +112,13 @@ impl NodePass {
     pub(super) fn bind<'a>(
         &self,
         callers: &'a mut [DynSystemParam<'_, '_>],
-        body: Entity,
-        before: &Before<'_>,
+        step: &InStep<'_>,
+        body: &BodyColumnsItem<'_, '_>,
     ) -> BoundSystems<'a> {
+        let before = Before { clock: &step.clock, signals: &step.signals, rest: body.rest, displacement: &body.u };
         let mut all = Vec::new();
         for (system, callers) in self.systems.iter().zip(callers) {
-            system.bind(callers, body, before, &mut all);
+            system.bind(callers, body.body, &before, &mut all);
         }
         all
     }
@@ -128,45 +145,39 @@ pub(super) fn act_after_gather<T: OfRun>(systems: &BoundSystems<'_>, cpu: &Cpu, 
 pub(crate) fn node_pass(pass: NodePass, world: &mut World) -> HostSystem {
     let parameters = (
         pass.parameters(),
-        ParamBuilder::resource::<Cpu>(),
-        ParamBuilder::resource::<Clock>(),
-        ParamBuilder::resource::<Signals>(),
-        ParamBuilder::resource::<Observed>(),
+        ParamBuilder::of::<InStep>(),
         ParamBuilder::query::<(BodyColumns, Option<&ElementForce>)>(),
     );
-    let system = parameters.build_state(world).build_system(
+    let mut system = parameters.build_state(world).build_system(
         move |mut callers: Vec<DynSystemParam>,
-              cpu: Res<Cpu>,
-              clock: Res<Clock>,
-              signals: Res<Signals>,
-              observed: Res<Observed>,
+              step: InStep,
               mut bodies: Query<(BodyColumns, Option<&ElementForce>)>|
               -> Result<(), Error> {
-            let observed = observed.0 || !pass.has_forces_of_its_own();
+            let observed = step.observes(&pass);
             for (mut body, force) in &mut bodies {
-                let before = Before { clock: &clock, signals: &signals, rest: body.rest, displacement: &body.u };
-                let systems = pass.bind(&mut callers, body.body, &before);
+                let systems = pass.bind(&mut callers, &step, &body);
                 match body.u.precision() {
-                    Precision::F32 => move_all::<f32>((&cpu, &clock, observed), &mut body, force, &systems),
-                    Precision::F64 => move_all::<f64>((&cpu, &clock, observed), &mut body, force, &systems),
+                    Precision::F32 => move_all::<f32>((&step, observed), &mut body, force, &systems),
+                    Precision::F64 => move_all::<f64>((&step, observed), &mut body, force, &systems),
                 }
             }
             Ok(())
         },
     );
+    system.initialize(world);
     Box::new(system)
 }
 
 fn move_all<T: OfRun>(
-    (cpu, clock, observed): (&Cpu, &Clock, bool),
+    (step, observed): (&InStep<'_>, bool),
     body: &mut BodyColumnsItem<'_, '_>,
     force: Option<&ElementForce>,
     systems: &BoundSystems<'_>,
 ) {
     let non_finite = AtomicU32::new(u32::MAX);
     let tasks = body.columns::<T>(force.map_or(&[], |force| force.slice()), &non_finite).tasks(ROWS_A_TASK);
-    move_rows(cpu, observed, tasks, systems);
-    body.note_non_finite(non_finite, clock);
+    move_rows(&step.cpu, observed, tasks, systems);
+    body.note_non_finite(non_finite, &step.clock);
 }
 
 /// Takes nodes through systems, a task's rows at a time; without `observed` their forces go nowhere else.

@@ -7,7 +7,6 @@ use crate::backend::kernel::Fragment;
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
 use bevy_ecs::prelude::*;
-use bevy_ecs::system::SystemAccess;
 use serde_json::Value;
 use std::fmt::Write;
 
@@ -18,8 +17,13 @@ pub(super) fn derived_stages<S: NodeSystem + serde::Serialize>(
     world: &mut World,
     buffers: &mut dyn Buffers,
 ) -> Vec<NodeStage> {
-    let touched = touched::<S>(world);
-    let rest = reads_rest::<S>(world);
+    let access = NodeRows::of::<S>().touches().initialize(world);
+    let touched = Touched(&access);
+    let rest = world.component_id::<RestPosition>().is_some_and(|rest| touched.reads(rest));
+    let written: Vec<&str> = touched.written_columns(world).iter().map(|column| column.name).collect();
+    // a column that shares its buffer has no name of its own there
+    let alone = |column: &ColumnAccess| column.buffer == column.name;
+    let columns: Vec<ColumnAccess> = touched.read_columns(world).into_iter().filter(alone).collect();
     let callers: Vec<(Entity, Value)> = world
         .query::<(Entity, &S, Option<&OfBody>)>()
         .iter(world)
@@ -30,18 +34,14 @@ pub(super) fn derived_stages<S: NodeSystem + serde::Serialize>(
         let (mut declared, bytes) = uniform_of(&parameters);
         let mut stage = NodeStage::new(name.to_string(), name.to_string(), body, rows_of(body, world), shader.clone());
         let mut loaded = false;
-        for (column, writes) in touched.iter().filter(|(column, _)| (column.bytes)(world, body).is_some()) {
-            stage = stage.column(column.name, buffers.column(body, column.name));
-            if column.name == ExternalForce::NAME {
-                loaded = true;
-                continue;
+        for ColumnAccess { name, word, .. } in columns.iter().filter(|column| (column.bytes)(world, body).is_some()) {
+            stage = stage.column(name, buffers.column(body, name));
+            loaded |= *name == ExternalForce::NAME;
+            // forces are in registers where the kernel makes and uses them: functions know where
+            if ![InternalForce::NAME, ExternalForce::NAME].contains(name) {
+                let access = if written.contains(name) { "read_write" } else { "read" };
+                let _ = writeln!(declared, "@group(0) @binding(0) var<storage, {access}> {name}: array<{word}>;");
             }
-            let access = if *writes { "read_write" } else { "read" };
-            let _ = writeln!(
-                declared,
-                "@group(0) @binding(0) var<storage, {access}> {}: array<{}>;",
-                column.name, column.word
-            );
         }
         if let (true, Some(at_rest)) = (rest, world.get::<RestPosition>(body)) {
             let points: Vec<[f32; 3]> = at_rest.0.iter().map(|x| x.as_vec3().to_array()).collect();
@@ -56,22 +56,6 @@ pub(super) fn derived_stages<S: NodeSystem + serde::Serialize>(
         stages.push(stage.own(declared).with_step(world).loaded(loaded));
     }
     stages
-}
-
-/// The columns that a system touches, and whether it writes them.
-fn touched<S: NodeSystem>(world: &mut World) -> Vec<(ColumnAccess, bool)> {
-    let SystemAccess::Shared(set) = NodeRows::of::<S>().touches().initialize(world) else { return Vec::new() };
-    let access = set.combined_access();
-    let of_column = |column: ColumnAccess| {
-        let id = (column.id)(world)?;
-        (access.has_read(id) || access.has_write(id)).then(|| (column, access.has_write(id)))
-    };
-    all_columns().into_iter().filter_map(of_column).collect()
-}
-
-fn reads_rest<S: NodeSystem>(world: &mut World) -> bool {
-    let SystemAccess::Shared(set) = NodeRows::of::<S>().touches().initialize(world) else { return false };
-    world.component_id::<RestPosition>().is_some_and(|id| set.combined_access().has_read(id))
 }
 
 /// Declares a uniform `parameters` that holds what the scene gave, and gives its bytes: numbers, truth values, and

@@ -2,8 +2,8 @@
 //! move while they are in the core's cache, those that patches share when all patches are done.
 
 use super::element_forces::{BlockParts, Precise};
-use super::node_pass::{BodyColumns, BodyColumnsItem, NodePass, act_after_gather, move_rows};
-use super::node_system::{Before, BoundSystems, OfRun};
+use super::node_pass::{BodyColumns, BodyColumnsItem, InStep, NodePass, act_after_gather, move_rows};
+use super::node_system::{BoundSystems, OfRun};
 use super::registry::HostSystem;
 use crate::backend::cpu::{Cpu, Inside, NodeColumns, ROWS_A_TASK};
 use crate::components::*;
@@ -16,45 +16,39 @@ use std::sync::atomic::AtomicU32;
 pub(crate) fn patch_pass(pass: NodePass, world: &mut World) -> HostSystem {
     let parameters = (
         pass.parameters(),
-        ParamBuilder::resource::<Cpu>(),
-        ParamBuilder::resource::<Clock>(),
-        ParamBuilder::resource::<Signals>(),
-        ParamBuilder::resource::<Observed>(),
+        ParamBuilder::of::<InStep>(),
         ParamBuilder::query::<BlockParts>(),
         ParamBuilder::query::<(BodyColumns, &Authoring, &Corners, &mut ElementForce)>(),
     );
-    let system = parameters.build_state(world).build_system(
+    let mut system = parameters.build_state(world).build_system(
         move |mut callers: Vec<DynSystemParam>,
-              cpu: Res<Cpu>,
-              clock: Res<Clock>,
-              signals: Res<Signals>,
-              observed: Res<Observed>,
+              step: InStep,
               mut blocks: Query<BlockParts>,
               mut bodies: Query<(BodyColumns, &Authoring, &Corners, &mut ElementForce)>|
               -> Result<(), Error> {
             for (mut body, authoring, corners, mut force) in &mut bodies {
-                let before = Before { clock: &clock, signals: &signals, rest: body.rest, displacement: &body.u };
-                let step = Step {
-                    cpu: &cpu,
-                    clock: &clock,
-                    observed: observed.0 || !pass.has_forces_of_its_own(),
+                let of_body = StepOfBody {
+                    cpu: &step.cpu,
+                    clock: &step.clock,
+                    observed: step.observes(&pass),
                     blocks: &authoring.blocks,
                     first_shared: corners.first_shared,
-                    systems: pass.bind(&mut callers, body.body, &before),
+                    systems: pass.bind(&mut callers, &step, &body),
                 };
                 match body.u.precision() {
-                    Precision::F32 => step.take::<f32>(&mut body, &mut force, &mut blocks),
-                    Precision::F64 => step.take::<f64>(&mut body, &mut force, &mut blocks),
+                    Precision::F32 => of_body.take::<f32>(&mut body, &mut force, &mut blocks),
+                    Precision::F64 => of_body.take::<f64>(&mut body, &mut force, &mut blocks),
                 }
             }
             Ok(())
         },
     );
+    system.initialize(world);
     Box::new(system)
 }
 
 /// A step of one body.
-struct Step<'a> {
+struct StepOfBody<'a> {
     cpu: &'a Cpu,
     clock: &'a Clock,
     observed: bool,
@@ -64,7 +58,7 @@ struct Step<'a> {
     systems: BoundSystems<'a>,
 }
 
-impl Step<'_> {
+impl StepOfBody<'_> {
     fn take<T: Precise + OfRun>(
         &self,
         body: &mut BodyColumnsItem<'_, '_>,

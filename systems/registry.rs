@@ -160,13 +160,18 @@ impl System {
         does: impl Into<String>,
         system: impl IntoSystem<(), O, M> + Clone + Send + Sync + 'static,
     ) -> Self {
+        let host = move || -> HostSystem { Box::new(IntoSystem::into_system(system.clone().map(O::outcome))) };
+        Self::new(name, phase, does, OnHost::System(Box::new(host)))
+    }
+
+    fn new(name: impl Into<String>, phase: Phase, does: impl Into<String>, host: OnHost) -> Self {
         Self {
             name: name.into(),
             phase,
             does: does.into(),
             called_for_by: "its name in the scene's `schedule`",
             because: |_| None,
-            host: OnHost::System(Box::new(move || Box::new(IntoSystem::into_system(system.clone().map(O::outcome))))),
+            host,
             device: OnDevice::None,
             observes: false,
             every: 1,
@@ -220,17 +225,16 @@ impl System {
     /// A system of one's own that works node by node, each entity with an `S` on its body: see [`NodeSystem`]. It
     /// shares passes with its neighbours in the step. It runs only when a scene's schedule names it.
     pub fn of_nodes<S: NodeSystem>(name: impl Into<String>, phase: Phase, does: impl Into<String>) -> Self {
-        let nothing = |_: &World| ();
-        Self { host: OnHost::Nodes(NodeRows::of::<S>()), ..Self::custom(name, phase, does, nothing) }
+        Self::new(name, phase, does, OnHost::Nodes(NodeRows::of::<S>()))
     }
 
     /// With its twin on a GPU, a WGSL text that holds `fn NAME(node: u32)` of the system's name, and `path` under which
     /// errors name it. Without it the system runs on the host.
     ///
-    /// The text finds each of its [columns](NodeSystem::Columns) under its name, as `array<f32>` (or `array<u32>`),
-    /// three numbers a vector, and `rest_position` likewise; what the scene gave in a uniform `parameters`; `step.time`
-    /// and `step.time_step` (s); and, with [`ExternalForce`](crate::components::ExternalForce) among the columns,
-    /// `add_load(node, force)` in place of that.
+    /// The text sees its own node's rows only. It finds each of its [columns](NodeSystem::Columns) under its name, as
+    /// `array<f32>` (or `array<u32>`), three numbers a vector, and `rest_position` likewise; what the scene gave in a
+    /// uniform `parameters`; `step.time` and `step.time_step` (s). In place of columns of forces there are functions:
+    /// `internal_force_of(node)`, `external_force_of(node)` and `add_load(node, force)`.
     pub fn with_shader<S: NodeSystem + serde::Serialize>(mut self, path: &'static str, text: &'static str) -> Self {
         let name = self.name.clone();
         self.device = OnDevice::Stages(Arc::new(move |world, buffers| {

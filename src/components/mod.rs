@@ -19,6 +19,7 @@ mod material;
 pub mod nodes;
 mod observation;
 mod patches;
+mod touched;
 
 pub use block::{
     AddedMass, Alive, Block, BlockCorners, Connectivity, ElementSums, ElementVolume, FamilyDirection, FibreDirection,
@@ -38,6 +39,7 @@ pub use nodes::{
 };
 pub use observation::{Cadence, Energies, Observed, Probe};
 pub use patches::{Patches, Scheme};
+pub use touched::Touched;
 
 use bevy_ecs::prelude::*;
 

@@ -13,7 +13,6 @@ use super::schedule::{Scheduled, check_names, resolve};
 use super::scheme::{fit_workgroups, sum_forces};
 use super::stable_step::{self, Stability};
 use super::step_kernels::step_kernels;
-use super::touched::{columns_of, writes};
 use super::{Entry, Facts, Job, Member, Options, Simulation};
 use crate::assembly::{Assembly, assemble, assemble_in_time, insert_laws};
 use crate::backend::cpu::Cpu;
@@ -207,31 +206,41 @@ fn entries(
         let systems: Vec<Member> = group.iter().map(member).collect();
         let names: Vec<String> = systems.iter().map(|system| system.name.clone()).collect();
         let first = &schedule[group[0]];
-        let job = match (kernels, hosts[group[0]].take()) {
-            (Some(kernels), _) => Job::Kernels(kernels),
-            (None, Some(host)) if group.len() == 1 && first.system.host.nodes().is_none() => {
-                let (reads, writes) = columns_of(&access[group[0]], world);
-                let beat = Beat::new(first.every, first.interval);
-                Job::Host { system: host, beat, observes: first.system.observes, reads, writes }
-            }
-            (None, _) => {
+        let job = match kernels {
+            Some(kernels) => Job::Kernels(kernels),
+            None => {
                 let of_nodes = group.iter().filter_map(|&place| schedule[place].system.host.nodes());
                 let nodes = NodePass::new(of_nodes.collect());
-                let mut system = match first.system.name == ELEMENT_FORCES {
-                    true => patch_pass(nodes, world),
-                    false => node_pass(nodes, world),
+                let system = match hosts[group[0]].take() {
+                    Some(host) if group.len() == 1 && first.system.host.nodes().is_none() => host,
+                    _ if first.system.name == ELEMENT_FORCES => patch_pass(nodes, world),
+                    _ => node_pass(nodes, world),
                 };
-                system.initialize(world);
-                let touched = group.iter().map(|&place| columns_of(&access[place], world));
-                let (reads, writes): (Vec<_>, Vec<_>) = touched.unzip();
-                let beat = Beat::new(first.every, first.interval);
-                Job::Host { system, beat, observes: false, reads: reads.concat(), writes: writes.concat() }
+                let touched: Vec<Touched<'_>> = group.iter().map(|&place| Touched(&access[place])).collect();
+                Job::Host {
+                    system,
+                    beat: Beat::new(first.every, first.interval),
+                    observes: first.system.observes,
+                    reads: names_of(touched.iter().flat_map(|touched| touched.read_columns(world))),
+                    writes: names_of(touched.iter().flat_map(|touched| touched.written_columns(world))),
+                }
             }
         };
         let phase = systems.iter().map(|system| system.phase).max().unwrap_or(first.system.phase);
         entries.push(Entry { name: names.join(" + "), phase, systems, job, time: Duration::ZERO, runs: 0 });
     }
     entries
+}
+
+/// Names of columns, each once.
+fn names_of(columns: impl Iterator<Item = ColumnAccess>) -> Vec<&'static str> {
+    let mut names: Vec<&'static str> = Vec::new();
+    for column in columns {
+        if !names.contains(&column.name) {
+            names.push(column.name);
+        }
+    }
+    names
 }
 
 /// What a scene comes to before a backend is chosen.
@@ -343,7 +352,7 @@ fn add_called_for_columns(
 ) {
     let Some(external) = world.component_id::<ExternalForce>() else { return };
     let custom = schedule.iter().zip(access).filter(|(entry, _)| entry.system.custom);
-    if custom.into_iter().any(|(_, access)| writes(access, external)) {
+    if custom.into_iter().any(|(_, access)| Touched(access).writes(external)) {
         for body in assembly.bodies.values() {
             let length = world.get::<Displacement>(body.entity).map_or(0, |u| u.len());
             if world.get::<ExternalForce>(body.entity).is_none() {
@@ -365,7 +374,7 @@ fn keeping(
     Keeping {
         identity: identity(&scene.scene, world),
         precision,
-        written: custom().flat_map(|(_, access)| columns_of(access, world).1).collect(),
+        written: names_of(custom().flat_map(|(_, access)| Touched(access).written_columns(world))),
         systems: custom().filter_map(|(entry, _)| Some((entry.system.name.clone(), entry.system.state?))).collect(),
     }
 }

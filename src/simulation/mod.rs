@@ -38,7 +38,6 @@ mod stretch;
 mod summary;
 mod surface;
 mod tangent;
-mod touched;
 mod unload;
 mod watch;
 
