@@ -1,10 +1,10 @@
 //! What is wrong with a scene, where, and how it is shown.
 
+use super::excerpt::Excerpts;
 use super::limits::MISTAKES;
 use super::source::Source;
 use super::syntax::{Fault, Node, Path, Span, Tree};
 use codespan_reporting::diagnostic::{Diagnostic as Shown, Label, Severity as Grade};
-use codespan_reporting::files::SimpleFiles;
 use codespan_reporting::term::{self, Config, StylesWriter, termcolor::Ansi};
 use std::fmt;
 use std::sync::Arc;
@@ -51,7 +51,7 @@ impl Diagnostic {
     pub fn error(at: impl Into<Option<Span>>, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
-            message: shortened(message.into()),
+            message: shortened(message.into(), LONGEST),
             at: at.into(),
             file: None,
             label: String::new(),
@@ -62,25 +62,25 @@ impl Diagnostic {
 
     /// Adds a word on the place.
     pub fn label(&mut self, label: impl Into<String>) -> &mut Self {
-        self.label = shortened(label.into());
+        self.label = shortened(label.into(), LONGEST_LABEL);
         self
     }
 
     /// Adds a note: what is allowed, what to do.
     pub fn note(&mut self, note: impl Into<String>) -> &mut Self {
-        self.notes.push(shortened(note.into()));
+        self.notes.push(shortened(note.into(), LONGEST));
         self
     }
 
     /// Adds notes.
     pub fn notes(&mut self, notes: impl IntoIterator<Item = String>) -> &mut Self {
-        self.notes.extend(notes.into_iter().map(shortened));
+        self.notes.extend(notes.into_iter().map(|note| shortened(note, LONGEST)));
         self
     }
 
     /// Adds a second place.
     pub fn also(&mut self, at: Span, label: impl Into<String>) -> &mut Self {
-        self.also.push((at, label.into()));
+        self.also.push((at, shortened(label.into(), LONGEST_LABEL)));
         self
     }
 }
@@ -88,29 +88,26 @@ impl Diagnostic {
 impl From<Fault> for Diagnostic {
     fn from(fault: Fault) -> Self {
         let mut diagnostic = Self::error(fault.span, fault.message);
-        diagnostic.label = fault.label;
-        diagnostic.also.extend(fault.also);
+        diagnostic.label(fault.label);
+        if let Some((at, label)) = fault.also {
+            diagnostic.also(at, label);
+        }
         diagnostic
     }
 }
 
-/// The longest sentence that is told, and the longest line of a file that is shown (bytes).
+/// The longest sentence that is told (bytes).
 const LONGEST: usize = 4000;
+/// The longest word on a place, which stands beside a line that is cut to fit.
+const LONGEST_LABEL: usize = 400;
 
 /// The beginning of a text that is too long to be read: a word of a scene that is repeated may be of any length.
-fn shortened(mut text: String) -> String {
-    if text.len() > LONGEST {
-        text.truncate(text.floor_char_boundary(LONGEST));
+fn shortened(mut text: String, most: usize) -> String {
+    if text.len() > most {
+        text.truncate(text.floor_char_boundary(most));
         text.push_str("...");
     }
     text
-}
-
-/// Whether the line around a place is too long to be shown.
-fn is_long(text: &str, at: usize) -> bool {
-    let (before, after) = text.split_at(at);
-    let start = before.rfind('\n').map_or(0, |end| end + 1);
-    before.len() - start + after.find('\n').unwrap_or(after.len()) > LONGEST
 }
 
 /// `cube.ron:3:15`: a file, a line and a column of it.
@@ -252,14 +249,6 @@ impl Diagnostics {
         })
     }
 
-    /// Where a mistake is, if a line that would be shown for it is too long for that.
-    fn on_a_long_line(&self, diagnostic: &Diagnostic) -> Option<String> {
-        let places = diagnostic.at.iter().chain(diagnostic.also.iter().map(|(span, _)| span));
-        let mut texts = places.filter_map(|at| self.text_at(diagnostic, at));
-        let long = texts.find(|(_, text, start)| is_long(text, *start))?;
-        Some(diagnostic.at.as_ref().and_then(|at| self.text_at(diagnostic, at)).map_or(numbered(long), numbered))
-    }
-
     fn sorted(&self) -> Vec<&Diagnostic> {
         let mut sorted: Vec<&Diagnostic> = self.list.iter().collect();
         let file = |diagnostic: &Diagnostic| diagnostic.file.as_ref().map(|file| file.name.clone());
@@ -269,24 +258,22 @@ impl Diagnostics {
 
     /// All of them as text for people, in the order of the file, errors and warnings mixed; `color` for terminals.
     pub fn render(&self, color: bool) -> String {
-        let mut files = SimpleFiles::new();
+        let mut texts: Vec<(&str, &str)> = Vec::new();
         if let Some(source) = &self.source {
-            files.add(source.name.clone(), source.file.as_str());
-            for set in &source.sets {
-                files.add("--set".to_string(), set.as_str());
-            }
+            texts.push((&source.name, &source.file));
+            texts.extend(source.sets.iter().map(|set| ("--set", set.as_str())));
         }
+        let own = texts.len();
         let sorted = self.sorted();
         let mut text = String::new();
         for diagnostic in sorted.iter().take(MOST_SHOWN) {
             let mut shown = self.shown(diagnostic);
-            if let Some(place) = self.on_a_long_line(diagnostic) {
-                shown.message.push_str(&format!(" ({place})"));
-                shown.labels.clear();
-            } else if let (Some(file), Some(at)) = (&diagnostic.file, &diagnostic.at) {
-                let number = files.add(file.name.clone(), file.text.as_str());
-                shown.labels.push(Label::primary(number, at.clone()).with_message(&diagnostic.label));
+            texts.truncate(own);
+            if let (Some(file), Some(at)) = (&diagnostic.file, &diagnostic.at) {
+                shown.labels.push(Label::primary(own, at.clone()).with_message(&diagnostic.label));
+                texts.push((&file.name, &file.text));
             }
+            let files = Excerpts::of(&texts, &mut shown.labels);
             let config = Config::default();
             let written = if color {
                 let mut bytes = Vec::new();

@@ -3,6 +3,7 @@
 mod beside;
 pub mod check;
 pub mod diagnostic;
+mod excerpt;
 pub mod limits;
 pub mod load;
 mod partial;

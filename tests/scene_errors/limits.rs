@@ -97,10 +97,28 @@ fn what_is_told_of_long_lines_and_words_is_short() {
     let word = "x".repeat(100_000);
     let told = complaints(&with("Fixed(", &format!("{word}(")), &[]);
     assert!(told.has_errors() && told.to_string().len() < 10_000, "{} bytes", told.to_string().len());
-    // all on one line, with more mistakes than are shown
+    // all on one line, with more mistakes than are shown: of each of fifty a line of 120 columns and what is below it
     let line = GOOD.replace('\n', " ").replace("loads: [", &format!("loads: [{}", "Gravity(g: 1), ".repeat(5000)));
     let told = complaints(&line, &[]).to_string();
-    assert!(told.contains("(cube.ron:1:") && told.contains("unknown field `g`") && told.len() < 20_000, "{told}");
+    assert!(told.contains("┌─ cube.ron:1:") && told.contains("unknown field `g`"), "{told}");
+    assert!(told.len() < 50 * 1000, "{} bytes", told.len());
+}
+
+/// A line is shown around what is wrong in it, and its columns are those of the file.
+#[test]
+fn a_scene_on_one_line_is_shown_around_each_mistake() {
+    let line = with("density", "densty").replace('\n', " ");
+    let column = line.find("densty").unwrap() + 1;
+    for (text, number) in [(line.clone(), 1), (format!("// all on one line\n{line}"), 2)] {
+        let told = complaints(&text, &[]).to_string();
+        assert!(told.contains(&format!("┌─ cube.ron:{number}:{column}\n")), "{column} is not in\n{told}");
+        let lines: Vec<&str> = told.lines().collect();
+        let shown = lines.iter().position(|line| line.contains("densty: ")).expect("the line");
+        assert!(lines[shown].contains('…') && lines[shown].chars().count() < 140, "{told}");
+        // the mark is below the word
+        let at = |line: &str, what: &str| line[..line.find(what).expect(what)].chars().count();
+        assert_eq!(at(lines[shown + 1], "^^^"), at(lines[shown], "densty"), "{told}");
+    }
 }
 
 #[test]
