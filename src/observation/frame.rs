@@ -6,10 +6,11 @@ use crate::backend::cpu::Cpu;
 use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::error::Error;
-use crate::output::{Array, Frame, Series, Values};
+use crate::output::{Array, Frame, Series, Values, write_vtu};
 use crate::scene::schema::{Output, OutputField};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+use std::path::Path;
 
 /// Which fields are written, and whether removed elements are, too. A resource.
 #[derive(Resource, Clone, Debug, Default)]
@@ -59,11 +60,9 @@ pub fn write(world: &mut World, series: &mut Series) -> Result<Option<String>, E
     let wanted = world.get_resource::<WrittenFields>().cloned().unwrap_or_default();
     let of_nodes: Vec<OutputField> = wanted.fields.iter().copied().filter(|field| field.is_of_nodes()).collect();
     let elements = ElementFields::new(&wanted, world)?;
-    let mut bodies: Vec<(Label, Entity)> =
-        world.query_filtered::<(&Label, Entity), With<Authoring>>().iter(world).map(|(l, e)| (l.clone(), e)).collect();
-    bodies.sort();
+    let bodies = bodies(world);
     let mut parts = Parts { vectors: vec![Vec::new(); of_nodes.len()], ..Parts::default() };
-    for (number, (_, body)) in bodies.iter().enumerate() {
+    for (number, body) in bodies.iter().enumerate() {
         for (field, values) in of_nodes.iter().zip(&mut parts.vectors) {
             let vectors = node_vectors(*field, *body, world)?;
             values.extend(vectors.into_iter().flat_map(|vector| vector.as_vec3().to_array()));
@@ -81,6 +80,45 @@ pub fn write(world: &mut World, series: &mut Series) -> Result<Option<String>, E
         add(&mut parts.hexes, &authoring.hexes, tets, first, &found);
     }
     put_together(&wanted, &of_nodes, &elements, parts, world, series)
+}
+
+/// The bodies in the order of their names.
+fn bodies(world: &mut World) -> Vec<Entity> {
+    let mut bodies: Vec<(Label, Entity)> =
+        world.query_filtered::<(&Label, Entity), With<Authoring>>().iter(world).map(|(l, e)| (l.clone(), e)).collect();
+    bodies.sort();
+    bodies.into_iter().map(|(_, body)| body).collect()
+}
+
+/// Writes the mesh at rest with all elements, where some have gone and frames lack them: what is bared in the first
+/// frame of a run that goes on from a snapshot can be told from no frame.
+///
+/// # Errors
+/// What the GPU says; a file that cannot be written.
+pub fn write_whole(world: &mut World, path: &Path) -> Result<(), Error> {
+    if world.get_resource::<WrittenFields>().is_some_and(|wanted| wanted.removed_elements) {
+        return Ok(());
+    }
+    bring_to_host(world, |_, name| name == Alive::NAME)?;
+    let lacks = |(block, alive): (&Block, &Alive)| alive.iter().take(block.count).any(|alive| *alive == 0);
+    if !world.query::<(&Block, &Alive)>().iter(world).any(lacks) {
+        return Ok(());
+    }
+    let (mut points, mut tets, mut hexes) = (Vec::new(), Vec::new(), Vec::new());
+    for body in bodies(world) {
+        let (Some(authoring), Some(rest)) = (world.get::<Authoring>(body), world.get::<RestPosition>(body)) else {
+            continue;
+        };
+        let first = points.len() as u32;
+        points.extend(authoring.node_rows.iter().map(|&row| rest.0[row as usize]));
+        tets.extend(authoring.tets.iter().map(|tet| tet.map(|node| node + first)));
+        hexes.extend(authoring.hexes.iter().map(|hex| hex.map(|node| node + first)));
+    }
+    let (points, tets, hexes) = (&*points, &*tets, &*hexes);
+    let (point_arrays, cell_arrays) = (Vec::new(), Vec::new());
+    let frame = Frame { time: 0.0, points, tets, hexes, point_arrays, cell_arrays };
+    world.resource::<Cpu>().confine(|| write_vtu(path, &frame))?;
+    Ok(())
 }
 
 /// Adds the cells of a body that are written; its elements of this shape begin at `from`.

@@ -14,7 +14,7 @@ mod track;
 
 pub use energies::{energies, energy_header, mass};
 pub use fields::{BodyFields, body_fields, internal_forces};
-pub use frame::{WrittenFields, write as write_fields};
+pub use frame::{WrittenFields, write as write_fields, write_whole};
 pub use guards::{Watch, begin as begin_to_guard};
 pub use look::{Look, WatchKernels, look};
 pub use probes::{header, observe_probe};

@@ -2,9 +2,10 @@
 
 use super::probes::with_peaks;
 use super::track::{Moment, Row};
-use super::{Observer, energies, observe_probe, overlaps, write_fields};
+use super::{Observer, energies, observe_probe, overlaps, write_fields, write_whole};
 use crate::components::Clock;
 use crate::error::Error;
+use crate::output::WHOLE;
 use bevy_ecs::prelude::*;
 use std::time::Instant;
 
@@ -40,6 +41,12 @@ impl Observer {
             if let Some(track) = &mut self.energy {
                 track.keep(clock.step, row);
             }
+        }
+        if moment.is_due(&self.fields)
+            && let Some(files) = &self.files
+            && files.series.frame_count() == 0
+        {
+            write_whole(world, &files.folder.join(WHOLE))?;
         }
         if moment.is_due(&self.fields)
             && let Some(files) = &mut self.files

@@ -9,8 +9,10 @@ use std::sync::Arc;
 
 /// The mark of an output folder, written before anything else; it also names the tables of the run.
 const MARK: &str = "sinew.json";
+/// The mesh that bodies began with, of a run whose first frame lacks some of it already.
+pub const WHOLE: &str = "whole_mesh.vtu";
 /// Files that every run may leave.
-const KNOWN: [&str; 5] = [FIELDS, "last_states.pvd", "energy.csv", "nodes.csv", "summary.json"];
+const KNOWN: [&str; 6] = [FIELDS, WHOLE, "last_states.pvd", "energy.csv", "nodes.csv", "summary.json"];
 
 /// A folder that a run may write into, and no other: it is locked until the last one that writes into it is gone.
 pub struct Folder {

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `sinew.json` | [`Folder::create`], the mark that a folder is an output of sinew |
 //! | `fields.pvd`, `fields_000000.vtu` ... | [`Series`], one VTU file a [`Frame`] |
+//! | `whole_mesh.vtu` | [`write_vtu`], the mesh of before elements were removed, where no frame has it |
 //! | `energy.csv`, one table a probe | [`Table`] |
 //! | `nodes.csv` | [`nodes::write`] |
 //! | `unloaded.msh` | [`write_gmsh`] |
@@ -28,7 +29,7 @@ mod vtu;
 pub use atomic::replace;
 pub use error::OutputError;
 pub use finite::not_finite;
-pub use folder::Folder;
+pub use folder::{Folder, WHOLE};
 pub use gmsh::write as write_gmsh;
 pub use lock::Lock;
 pub use nodes::Node;

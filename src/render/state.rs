@@ -14,6 +14,7 @@ use super::range::Seen;
 use super::raster::Finish;
 use super::section::{Section, corners_of};
 use super::surface::{Faces, Outer, Skin};
+use crate::output::WHOLE;
 use crate::scene::schema::Colours;
 use glam::Vec3;
 use std::path::Path;
@@ -26,9 +27,9 @@ pub struct Reader {
     groups: Groups,
     plane: Option<Plane>,
     mesh: Mesh,
-    /// What the first frame shows of itself.
+    /// The surface of what the bodies began with.
     skin: Skin,
-    /// The first frame's surface at rest: its faces, and which of their sides are edges of the shape.
+    /// That surface at rest: its faces, and which of their sides are edges of the shape.
     rest: Option<Rest>,
 }
 
@@ -80,8 +81,10 @@ impl Reader {
         let field = Field::find(first, options.field.as_deref().unwrap_or(picture.field.array()))?;
         let mesh = Mesh::read(first)?;
         let points = points(first)?;
+        let whole = whole(folder, &mesh)?;
+        let began = whole.as_ref().unwrap_or(&mesh);
         let rest = picture.ghost.then(|| {
-            let faces: Vec<[u32; 4]> = mesh.faces.surface(|_| Some(0), None).iter().map(|face| face.points).collect();
+            let faces: Vec<[u32; 4]> = began.faces.surface(|_| Some(0), None).iter().map(|face| face.points).collect();
             Rest { creases: super::normals::creases(&points, &faces), faces }
         });
         let (low, high) = points.iter().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(*p), high.max(*p)));
@@ -91,7 +94,7 @@ impl Reader {
             ghost: picture.ghost,
             groups: Groups::new(folder, &picture.opacity)?,
             plane: picture.cut.as_ref().map(|cut| Plane::new(cut, low.distance(high))),
-            skin: mesh.faces.skin(),
+            skin: began.faces.skin(),
             mesh,
             rest,
         })
@@ -219,6 +222,19 @@ impl Reader {
             cut: true,
         });
         surface.chain(sections).chain(ghost).collect()
+    }
+}
+
+/// The mesh that the bodies began with, where the first frame lacks some of it already.
+fn whole(folder: &Path, first: &Mesh) -> Result<Option<Mesh>, RenderError> {
+    let path = folder.join(WHOLE);
+    if !path.exists() {
+        return Ok(None);
+    }
+    let mesh = Mesh::read(&FrameFile::open(&path)?)?;
+    match mesh.points == first.points {
+        true => Ok(Some(mesh)),
+        false => Err(RenderError::damaged(&path, "its points are not those of the frames")),
     }
 }
 

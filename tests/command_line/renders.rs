@@ -1,7 +1,9 @@
 //! `sinew render`.
 
-use crate::sinew::Place;
+use crate::sinew::{Place, SCENE};
 use std::fs;
+use std::io::BufReader;
+use std::path::Path;
 
 #[test]
 fn a_scene_is_run_only_when_its_output_is_missing_or_older() {
@@ -115,4 +117,42 @@ fn modes_swing_with_their_number_and_frequency_and_relative_amplitudes() {
     // what colours is a plain number from 0 to 1: the shape's own length means nothing
     let said = place.done(&["render", "out/block-modes", "--no-animation", "--field", "relative_amplitude"]);
     assert!(said.contains("relative_amplitude"), "{said}");
+}
+
+/// Pixels with the tint of what was bared: reddish, where values far below the range are violet.
+fn tinted(file: &Path) -> usize {
+    let mut reader = png::Decoder::new(BufReader::new(fs::File::open(file).unwrap())).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut bytes).unwrap();
+    let tint = |[r, g, b]: &&[u8; 3]| *r > g.saturating_add(15) && *r > b.saturating_add(15) && *b > 60;
+    bytes.as_chunks::<3>().0.iter().filter(tint).count()
+}
+
+#[test]
+fn what_was_bared_before_a_run_was_taken_up_has_its_tint_too() {
+    let removal = r#"removal: [(on: Sphere(center: (0.1, 0, 0.1), radius: 0.05), when: At(0.02))],
+    output: (snapshots_every: 0.1,"#;
+    let text = SCENE.replace("output: (", removal).replace("size: (320, 240)", "size: (320, 240), range: (0, 1e9)");
+    // hardly moves, so that cameras are nearly the same whatever frames they have to show
+    let text = text.replace("-9.81", "-0.1");
+    let place = Place::with_scene(&text);
+    let draw = |folder: &str| {
+        place.done(&["render", folder, "--no-animation"]);
+        tinted(&place.path(&format!("{folder}/picture.png")))
+    };
+    place.done(&["run", "block.ron", "--backend", "cpu"]);
+    let names = fs::read_dir(place.path("out/block")).unwrap().map(|entry| entry.unwrap().file_name());
+    let mut snapshots: Vec<String> = names.map(|name| name.to_string_lossy().into_owned()).collect();
+    snapshots.retain(|name| name.starts_with("snapshot_"));
+    snapshots.sort();
+    let from = format!("out/block/{}", snapshots[0]);
+    place.done(&["run", "block.ron", "--backend", "cpu", "--resume", &from]);
+    let (whole, resumed) = (draw("out/block"), draw("out/block-resumed"));
+    assert!(whole > 300, "{whole} pixels have the tint");
+    assert!(resumed.abs_diff(whole) < whole / 10, "{resumed} pixels have the tint, of the whole run {whole}");
+    // a run from the start tells of the whole in its first frame, and what an earlier one left is cleared
+    let mesh = |folder: &str| place.path(&format!("{folder}/whole_mesh.vtu")).exists();
+    assert!(mesh("out/block-resumed") && !mesh("out/block"));
+    place.done(&["run", "block.ron", "--backend", "cpu", "--out", "out/block-resumed"]);
+    assert!(!mesh("out/block-resumed"));
 }
