@@ -8,12 +8,17 @@ use super::wording::{digits, quantity};
 use super::{Outcome, progress, terminal};
 use sinew::components::Authoring;
 use sinew::glam::DVec3;
-use sinew::output::{Array, Folder, Frame, Series, Values};
+use sinew::output::{Array, Folder, Frame, Series, Values, summary};
 use sinew::render::{Options as Drawing, draw};
 use sinew::scene::schema::Picture;
 use sinew::{BackendChoice, Mode, Options, Simulation};
+use std::fs;
 use std::path::Path;
 
+/// What the folder keeps of the modes beside their shapes: what `--json` prints.
+const MODES: &str = "modes.json";
+/// What colours a mode, which has no size of its own.
+const COLOURED_BY: &str = "relative_amplitude";
 /// How large the largest displacement of a drawn mode is, as a share of the scene's size.
 const DRAWN: f64 = 0.1;
 /// Pictures of each mode, over one period.
@@ -102,6 +107,8 @@ fn table(modes: &[Mode], limit: Option<f64>) -> String {
 fn draw_modes(simulation: &mut Simulation, modes: &[Mode], path: &Path) -> Result<std::path::PathBuf, Failure> {
     let mut folder = Folder::create(path)?;
     let out = folder.claim(PICTURES[1])?;
+    folder.claim(PICTURES[0])?;
+    summary::write(&folder.claim(MODES)?, &modes)?;
     let bodies: Vec<String> = simulation.scene().bodies.keys().cloned().collect();
     let (mut points, mut tets, mut hexes) = (Vec::new(), Vec::new(), Vec::new());
     for body in &bodies {
@@ -127,23 +134,38 @@ fn draw_modes(simulation: &mut Simulation, modes: &[Mode], path: &Path) -> Resul
             points: &points,
             tets: &tets,
             hexes: &hexes,
-            point_arrays: vec![array("displacement", 3, &displacement), array("relative_amplitude", 1, &amplitude)],
+            point_arrays: vec![array("displacement", 3, &displacement), array(COLOURED_BY, 1, &amplitude)],
             cell_arrays: Vec::new(),
         })?;
     }
-    let caption = |(number, mode): (usize, &Mode)| match mode.frequency {
+    let frequencies: Vec<f64> = modes.iter().map(|mode| mode.frequency).collect();
+    let options = Drawing { animate: true, ..Drawing::new(simulation.scene().picture.clone(), out) };
+    Ok(draw(path, &drawing(&frequencies, options))?.out)
+}
+
+/// How modes of some frequencies (Hz) are drawn, when they would be drawn so if they were a run.
+fn drawing(frequencies: &[f64], options: Drawing) -> Drawing {
+    let caption = |(number, frequency): (usize, &f64)| match *frequency {
         0.0 => format!("mode {}, rigid", number + 1),
         frequency => format!("mode {}, {} Hz", number + 1, digits(frequency)),
     };
+    let field = options.field.unwrap_or_else(|| COLOURED_BY.into());
+    let range = if field == COLOURED_BY { Some((0.0, 1.0)) } else { options.picture.range };
     // a shape that swings is whole
-    let (range, opacity) = (Some((0.0, 1.0)), Vec::new());
-    let picture = Picture { range, ghost: true, cut: None, opacity, ..simulation.scene().picture.clone() };
-    let options = Drawing {
-        field: Some("relative_amplitude".into()),
-        animate: true,
-        captions: modes.iter().enumerate().map(caption).collect(),
-        swing: PICTURES_A_MODE,
-        ..Drawing::new(picture, out)
-    };
-    Ok(draw(path, &options)?.out)
+    let picture = Picture { range, ghost: true, cut: None, opacity: Vec::new(), ..options.picture };
+    let captions = frequencies.iter().enumerate().map(caption).collect();
+    Drawing { picture, field: Some(field), captions, swing: PICTURES_A_MODE, ..options }
+}
+
+/// How a folder is drawn: what it keeps of modes, if those are what it holds, says it.
+pub fn as_modes(folder: &Path, options: Drawing) -> Result<Drawing, Failure> {
+    let path = folder.join(MODES);
+    if !path.exists() {
+        return Ok(options);
+    }
+    let wrong = |reason: String| Failure::Options(format!("{}: {reason}", path.display()));
+    let text = fs::read_to_string(&path).map_err(|error| wrong(error.to_string()))?;
+    let modes: Vec<serde_json::Value> = serde_json::from_str(&text).map_err(|error| wrong(error.to_string()))?;
+    let frequencies: Option<Vec<f64>> = modes.iter().map(|mode| mode["frequency"].as_f64()).collect();
+    Ok(drawing(&frequencies.ok_or_else(|| wrong("a mode has no frequency".into()))?, options))
 }

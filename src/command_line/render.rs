@@ -2,6 +2,7 @@
 
 use super::arguments::{RenderArguments, allowed, default_folder};
 use super::failure::Failure;
+use super::modes::as_modes;
 use super::run::{self, PICTURES, SCENE};
 use super::terminal;
 use super::{Outcome, progress};
@@ -27,7 +28,8 @@ pub fn command(arguments: &RenderArguments) -> Outcome {
     for (animate, file) in files {
         let out = file.unwrap_or_else(|| folder.join(PICTURES[usize::from(animate)]));
         let (field, at) = (arguments.field.clone(), arguments.at);
-        draw(&folder, &Options { field, at, animate, ..Options::new(picture.clone(), out) })?;
+        let options = Options { field, at, animate, ..Options::new(picture.clone(), out) };
+        draw(&folder, &as_modes(&folder, options)?)?;
     }
     ended
 }
@@ -140,9 +142,11 @@ fn draw(folder: &Path, options: &Options) -> Outcome {
         bar.finish_and_clear();
     }
     let drawn = drawn?;
+    // what is no run has no times
+    let last = if options.captions.is_empty() { format!("t = {:.4} s", drawn.time) } else { drawn.caption };
     let frames = match drawn.frames {
-        1 => format!("t = {:.4} s", drawn.time),
-        frames => format!("{frames} frames until t = {:.4} s", drawn.time),
+        1 => last,
+        frames => format!("{frames} frames until {last}"),
     };
     let field = options.field.as_deref().unwrap_or(options.picture.field.array());
     terminal::say(&format!("{}  {field}, {frames}\n", drawn.out.display()))

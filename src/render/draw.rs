@@ -49,6 +49,8 @@ pub struct Drawn {
     pub frames: usize,
     /// Time of the (last) frame (s).
     pub time: f64,
+    /// What stands below it.
+    pub caption: String,
     /// The values that the colours span, in SI units.
     pub range: (f32, f32),
 }
@@ -103,13 +105,15 @@ pub fn draw_with_progress(
         None => seen.scale(centre, centre.is_none()),
     };
     let (quantity, unit) = (reader.field().quantity.clone(), reader.field().unit);
+    let caption = |row: usize| {
+        let of_time = || series.caption(series.frames[row].0);
+        options.captions.get(row).cloned().unwrap_or_else(of_time)
+    };
     let mut picture = |row: usize, phase: usize| -> Result<Image, RenderError> {
-        let (time, path) = &series.frames[row];
-        let mut state = reader.read(path)?;
+        let mut state = reader.read(&series.frames[row].1)?;
         if options.animate && options.swing > 0 {
             state.scale((TAU * phase as f32 / phases as f32).sin());
         }
-        let caption = options.captions.get(row).cloned().unwrap_or_else(|| series.caption(*time));
         // the legend of an animation does not change on the way
         let keys = if options.animate { keys_of_all.clone() } else { state.keys(&reader) };
         let picture = Picture {
@@ -117,7 +121,7 @@ pub fn draw_with_progress(
             scale,
             quantity: &quantity,
             unit,
-            caption: &caption,
+            caption: &caption(row),
             keys: &keys,
             plane: reader.plane(),
             ground: how.shadow.then(|| fit.ground()),
@@ -134,7 +138,8 @@ pub fn draw_with_progress(
     } else {
         encode::write_png(&options.out, &picture(last, 0)?)?;
     }
-    Ok(Drawn { out: options.out.clone(), frames, time: series.frames[last].0, range: scale.range })
+    let (out, time, caption) = (options.out.clone(), series.frames[last].0, caption(last));
+    Ok(Drawn { out, frames, time, caption, range: scale.range })
 }
 
 /// What a scene is checked for as well, with its place; here for those who draw from a program.

@@ -1,6 +1,8 @@
 //! `sinew render`.
 
 use crate::sinew::{Place, SCENE};
+use sinew::render::{Options, draw};
+use sinew::scene::schema::Picture;
 use std::fs;
 use std::io::BufReader;
 use std::path::Path;
@@ -107,16 +109,32 @@ fn modes_swing_with_their_number_and_frequency_and_relative_amplitudes() {
     place.done(&["modes", "block.ron", "--count", "2"]);
     let mut decoder = gif::DecodeOptions::new();
     decoder.set_color_output(gif::ColorOutput::Indexed);
-    let file = fs::File::open(place.path("out/block-modes/animation.gif")).unwrap();
-    let mut decoder = decoder.read_info(file).unwrap();
+    let animation = fs::read(place.path("out/block-modes/animation.gif")).unwrap();
+    let mut decoder = decoder.read_info(&animation[..]).unwrap();
     let mut frames = 0;
     while decoder.read_next_frame().unwrap().is_some() {
         frames += 1;
     }
     assert_eq!(frames, 2 * 16, "two modes, a period each");
     // what colours is a plain number from 0 to 1: the shape's own length means nothing
-    let said = place.done(&["render", "out/block-modes", "--no-animation", "--field", "relative_amplitude"]);
-    assert!(said.contains("relative_amplitude"), "{said}");
+    // a picture drawn later has number and frequency below it, too, and no time
+    let said = place.done(&["render", "out/block-modes", "--no-animation"]);
+    let (_, caption) = said.trim_end().split_once("relative_amplitude, ").expect("the field, and what is below");
+    assert!(caption.starts_with("mode 2, ") && caption.ends_with(" Hz") && !said.contains("t = "), "{said}");
+    let (drawn, out) = (fs::read(place.path("out/block-modes/picture.png")).unwrap(), place.path("expected.png"));
+    let how = Picture { range: Some((0.0, 1.0)), ghost: true, ..Picture::default() };
+    for (captions, same) in [(vec![String::new(), caption.into()], true), (vec![], false)] {
+        let field = Some("relative_amplitude".into());
+        let options = Options { field, captions, swing: 16, ..Options::new(how.clone(), out.clone()) };
+        draw(&place.path("out/block-modes"), &options).unwrap();
+        assert_eq!(fs::read(&out).unwrap() == drawn, same, "with the time: {}", !same);
+    }
+    let said = place.done(&["render", "out/block-modes", "--at", "1", "--no-animation"]);
+    assert!(said.contains("relative_amplitude, mode 1, "), "{said}");
+    // and the animation is that of `sinew modes`: its scene wants another size only
+    let said = place.done(&["render", "out/block-modes", "--animate", "--size", "320x240"]);
+    assert!(said.contains("32 frames until mode 2, "), "{said}");
+    assert_eq!(fs::read(place.path("out/block-modes/animation.gif")).unwrap(), animation);
 }
 
 /// Pixels with the tint of what was bared: reddish, where values far below the range are violet.
