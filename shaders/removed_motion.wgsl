@@ -1,5 +1,5 @@
-// Books the kinetic energy of elements that are about to be taken away: in a kernel of its own, so that neither this one nor
-// element_removal has more than eight buffers.
+// Books the kinetic energy of elements that are about to be taken away, and the part of it that constraints gave them: in a
+// kernel of its own, so that neither this one nor element_removal has more than eight buffers.
 struct Removal {
     share: f32, // density over nodes of an element (kg/m³)
 }
@@ -9,6 +9,8 @@ struct Removal {
 @group(0) @binding(3) var<storage, read> removal_step: array<u32>;
 @group(0) @binding(4) var<storage, read_write> removed_energy: array<f32>;
 @group(0) @binding(5) var<storage, read> displacement_step: array<f32>;
+@group(0) @binding(6) var<storage, read> constrained_axes: array<u32>;
+@group(0) @binding(7) var<storage, read_write> removed_work: array<f32>;
 
 // ½ m v² of the element's share of its nodes (J), v in the middle of the last step.
 @compute @workgroup_size(64)
@@ -18,10 +20,17 @@ fn removed_motion(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wor
         return;
     }
     var squares = 0.0;
+    var constrained = 0.0;
     for (var corner = 0u; corner < NODES; corner++) {
-        let at = 3u * connectivity[place(element, NODES, corner)];
+        let node = connectivity[place(element, NODES, corner)];
+        let at = 3u * node;
         let v = step.rate * vec3<f32>(displacement_step[at], displacement_step[at + 1u], displacement_step[at + 2u]);
         squares += dot(v, v);
+        let along = (vec3<u32>(constrained_axes[node]) & vec3<u32>(1u, 2u, 4u)) != vec3<u32>(0u);
+        let held = select(vec3<f32>(0.0), v, along);
+        constrained += dot(held, held);
     }
-    removed_energy[element] = 0.5 * removal.share * rest_shape[place(element, ROWS, VOLUME_ROW)] * squares;
+    let half = 0.5 * removal.share * rest_shape[place(element, ROWS, VOLUME_ROW)];
+    removed_energy[element] = half * squares;
+    removed_work[element] = half * constrained;
 }

@@ -22,7 +22,7 @@ pub const CRITERION_STEPS: u64 = 10;
 
 /// At the end of a step, elements go whose time has come or that pass a limit. Their volume and hourglass stiffness
 /// become zero, so that they exert nothing; what their nodes weigh is summed anew, and nodes without elements are
-/// parked; faces of removed elements bear no load. The energy they held is booked.
+/// parked; faces of removed elements bear no load. The energy they held is booked, and what of it constraints had given.
 pub fn system() -> System {
     System::built_in(
         "element_removal",
@@ -47,6 +47,16 @@ type BlockQuery<'a> = (
     &'a mut Alive,
     &'a RemovalStep,
     &'a mut RemovedEnergy,
+    &'a mut RemovedWork,
+);
+
+type BodyQuery<'a> = (
+    &'a Authoring,
+    &'a Displacement,
+    &'a DisplacementStep,
+    &'a ConstrainedAxes,
+    &'a mut Mass,
+    Option<&'a mut DampingCoefficient>,
 );
 
 /// Of a block that loses no elements, what it weighs by.
@@ -59,16 +69,28 @@ fn element_removal(
     densities: Query<(&Density, Option<&Damping>)>,
     mut blocks: Query<BlockQuery>,
     others: Query<StayingBlock, Without<Alive>>,
-    mut bodies: Query<(&Authoring, &Displacement, &DisplacementStep, &mut Mass, Option<&mut DampingCoefficient>)>,
+    mut bodies: Query<BodyQuery>,
     mut pressures: Query<(&mut Pressure, &OfBody), Without<Traction>>,
     mut tractions: Query<(&mut Traction, &OfBody), Without<Pressure>>,
 ) {
     let look = clock.step.is_multiple_of(CRITERION_STEPS);
     let mut touched: Vec<Entity> = Vec::new();
-    for (entity, block, connectivity, mut shape, law, fibres, memory, means, mut alive, by_time, mut energies) in
-        &mut blocks
+    for (
+        entity,
+        block,
+        connectivity,
+        mut shape,
+        law,
+        fibres,
+        memory,
+        means,
+        mut alive,
+        by_time,
+        mut energies,
+        mut given,
+    ) in &mut blocks
     {
-        let Ok((_, displacement, step, ..)) = bodies.get(block.body) else {
+        let Ok((_, displacement, step, axes, ..)) = bodies.get(block.body) else {
             missing("a column of a body");
             continue;
         };
@@ -99,11 +121,13 @@ fn element_removal(
         let held = |row: usize| {
             let state = view.element(row);
             let elastic = view.energy(row, &state) * state.volume;
-            elastic + state.hourglass_energy(row, view.shape) + kinetic_energy(&state, density, step, clock.time_step)
+            let [kinetic, given] = kinetic_energy(&state, density, (step, axes), clock.time_step);
+            [elastic + state.hourglass_energy(row, view.shape) + kinetic, given]
         };
-        let held: Vec<f64> = gone.iter().map(|&row| held(row)).collect();
-        for (&row, held) in gone.iter().zip(held) {
+        let held: Vec<[f64; 2]> = gone.iter().map(|&row| held(row)).collect();
+        for (&row, [held, by_constraints]) in gone.iter().zip(held) {
             energies.set(row, held);
+            given.set(row, by_constraints);
             alive[row] = 0;
             extinguish(block, row, &mut shape);
         }
@@ -148,12 +172,18 @@ fn measure(measure: Measure, row: usize, view: &BlockView<'_>) -> f64 {
     }
 }
 
-/// ½ m v² of the element's share of its nodes (J), v in the middle of the last step.
-fn kinetic_energy(state: &ElementState, density: f64, step: &Reals, time_step: f64) -> f64 {
+/// ½ m v² of the element's share of its nodes (J), v in the middle of the last step; and the part of it along
+/// constrained axes.
+fn kinetic_energy(state: &ElementState, density: f64, (step, axes): (&Reals, &[u32]), time_step: f64) -> [f64; 2] {
     let nodes = node_count(state.kind);
     let share = density * state.volume / nodes as f64;
-    let squares = state.nodes[..nodes].iter().map(|&node| step.vector(node as usize).length_squared());
-    0.5 * share * squares.sum::<f64>() / (time_step * time_step)
+    let (mut all, mut constrained) = (0.0, 0.0);
+    for &node in &state.nodes[..nodes] {
+        let v = step.vector(node as usize);
+        all += v.length_squared();
+        constrained += (0..3).filter(|&i| axes[node as usize] >> i & 1 == 1).map(|i| v[i] * v[i]).sum::<f64>();
+    }
+    [all, constrained].map(|squares| 0.5 * share * squares / (time_step * time_step))
 }
 
 /// Sums the mass and damping of a body's nodes from the elements that are left.
@@ -282,7 +312,9 @@ fn motion_kernel(block: &BlockKernels, world: &World, buffers: &mut dyn Buffers)
         .fragment(shader!("removed_motion"))
         .fragment(shader!("due"))
         .bind_uniform::<Removal>("removal", buffers.uniform("element_removal".into(), &removal.bytes()))
-        .bind(DisplacementStep::NAME, buffers.column(block.block.body, DisplacementStep::NAME));
+        .bind(DisplacementStep::NAME, buffers.column(block.block.body, DisplacementStep::NAME))
+        .bind(ConstrainedAxes::NAME, buffers.column(block.block.body, ConstrainedAxes::NAME))
+        .bind(RemovedWork::NAME, buffers.column(block.entity, RemovedWork::NAME));
     REMOVED.iter().fold(kernel, |k, &name| k.bind(name, buffers.column(block.entity, name)))
 }
 

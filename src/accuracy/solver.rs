@@ -102,6 +102,8 @@ pub struct Solution {
     pub field: Option<Field>,
     /// Wall time of the steps alone (s).
     pub seconds: f64,
+    /// What bringing the bodies to rest before the first step took (s); 0 where they begin as they are.
+    pub preload: f64,
     /// How often the steps were timed; `seconds` is the best.
     pub timed: u32,
     /// Simulated time (s); `None` for a search for equilibrium, which has none.

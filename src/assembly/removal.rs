@@ -64,6 +64,7 @@ pub(super) fn insert_columns(precision: Precision, block: Entity, world: &mut Wo
             Alive(alive),
             RemovalStep(vec![u32::MAX; padded]),
             RemovedEnergy(Reals::zeros(precision, padded)),
+            RemovedWork(Reals::zeros(precision, padded)),
         ));
     }
 }

@@ -54,8 +54,11 @@ columns! {
     Alive(Vec<u32>) = "alive", State;
     /// The step before which the element goes at the latest; `u32::MAX`: never. Exists with [`Alive`].
     RemovalStep(Vec<u32>) = "removal_step", State;
-    /// Elastic and hourglass energy (J) that each element held when it was removed. Exists with [`Alive`].
+    /// Elastic, hourglass and kinetic energy (J) that each element held when it was removed. Exists with [`Alive`].
     RemovedEnergy(Reals) = "removed_energy", State;
+    /// The part of [`RemovedEnergy`] that is kinetic along constrained axes (J): what constraints had given the mass that
+    /// went, and is their work still. Exists with [`Alive`].
+    RemovedWork(Reals) = "removed_work", State;
     /// Volume at rest (m³) of each element that is there, and that times θ, by which its law measures the change of
     /// volume. Exists with [`NodalVolumeChange`].
     ElementVolume(Reals) = "element_volume", Scratch;

@@ -23,8 +23,8 @@ mod touched;
 
 pub use block::{
     AddedMass, Alive, Block, BlockCorners, Connectivity, ElementSums, ElementVolume, FamilyDirection, FibreDirection,
-    FirstInverted, NodalVolumeChange, OnInversion, RemovalStep, RemovalTime, RemovedEnergy, RestShape, ViscousMemory,
-    patch_groups, patch_length,
+    FirstInverted, NodalVolumeChange, OnInversion, RemovalStep, RemovalTime, RemovedEnergy, RemovedWork, RestShape,
+    ViscousMemory, patch_groups, patch_length,
 };
 pub use clock::{Clock, Relaxation, Signal, Signals};
 pub use column::{Column, ColumnAccess, Precision, Reals, Role, all_columns, columns_in, place_in_buffer};

@@ -54,6 +54,7 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
         Work::NAME,
         RestShape::NAME,
         RemovedEnergy::NAME,
+        RemovedWork::NAME,
     ];
     bring_to_host(world, |_, name| wanted.contains(&name))?;
     let rate = world.resource::<Clock>().rate();
@@ -87,6 +88,10 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
         sum.hourglass += hourglass;
         if let Some(removed) = world.get::<RemovedEnergy>(entity) {
             sum.removed += (0..removed.len()).map(|row| removed.get(row)).sum::<f64>();
+        }
+        // nor do they take back what they gave to mass that is gone
+        if let (Some(total), Some(given)) = (&mut sum.constraint_work, world.get::<RemovedWork>(entity)) {
+            *total += (0..given.len()).map(|row| given.get(row)).sum::<f64>();
         }
     }
     Ok(sum)

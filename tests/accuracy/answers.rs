@@ -134,3 +134,24 @@ fn a_mesh_from_a_file_says_that_its_surface_stays_flat() {
     // a generator makes finer meshes round
     assert!(unseen("Ellipsoid(radii: (0.01, 0.01, 0.01), across: 4)").is_empty());
 }
+
+/// Bringing bodies to rest takes more steps on a finer mesh, of more elements, and is done again wherever a run is.
+#[test]
+fn the_way_to_rest_before_the_first_step_is_a_part_of_what_is_predicted() {
+    let text = block("(4, 4, 4)", r#"Set("z1")"#).replace("duration: 0.01,", "duration: 0.001, start: Equilibrium(),");
+    let (_keep, file) = scene("block.ron", &text);
+    let mut engine = Engine::new(&file, Options::default(), false, false, || false);
+    let base = engine.choices().unwrap().base;
+    let solution = engine.solve(&base).unwrap();
+    assert!(solution.preload > solution.seconds, "{} s of {} s", solution.preload, solution.seconds);
+    let mut finer = base.clone();
+    finer.mesh = Factor::new(2, 1);
+    let cost = engine.predict(&finer).unwrap();
+    // eight times the elements, twice the steps: to find the step, and for each of three runs, which are as short as that
+    assert!(cost.seconds >= 4.0 * 16.0 * solution.preload, "{} s for {} s", cost.seconds, solution.preload);
+    // what is at rest from the beginning has none of it
+    let (_keep, file) = scene("block.ron", &text.replace("start: Equilibrium(),", ""));
+    let mut engine = Engine::new(&file, Options::default(), false, false, || false);
+    let base = engine.choices().unwrap().base;
+    assert_eq!(engine.solve(&base).unwrap().preload, 0.0);
+}

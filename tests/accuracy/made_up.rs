@@ -139,6 +139,7 @@ impl Solver for MadeUp {
             channels: vec![channel],
             field: Some(self.field(c)),
             seconds: cost.seconds,
+            preload: 0.0,
             timed: 1,
             simulated: Some(1.0),
             steps: cost.steps,

@@ -29,6 +29,8 @@ fn the_same_elements_are_removed() {
                 // a stress along a strain, plus forces along displacements, plus 300 kg/m³ under 10 cm³ at 1 m/s
                 ROUNDINGS * UNIT * (magnitude.force * 0.01 + 1e-5)
             });
+            // its part along constrained axes: 300 kg/m³ under 10 cm³ at 1 m/s
+            pair.agree::<RemovedWork>(|_, _, _| ROUNDINGS * UNIT * 1e-5);
             // sums of up to 24 shares
             pair.agree::<Mass>(|pair, body, i| 24.0 * UNIT * pair.host().get::<Mass>(body).unwrap().get(i));
             pair.agree::<DampingCoefficient>(|pair, body, i| {

@@ -207,3 +207,45 @@ fn programs_are_short_and_constants_exact() {
     // one product, one sum
     assert_eq!(program.size().0, 2);
 }
+
+/// WGSL's own functions of constants alone have their values, as in the text that goes to the GPU.
+#[test]
+fn functions_of_constants_have_their_values() {
+    let cases = [
+        ("abs(-2.0)", 2.0),
+        ("abs(-gain)", 0.125),
+        ("abs(vec2<f32>(-1, 2)).x", 1.0),
+        ("max(-1.0 + 0.75, 1 / 3.0)", 1.0 / 3.0),
+        ("min(gain, 3.0)", 0.125),
+        ("clamp(-2.0, -0.5, 1.0)", -0.5),
+        ("saturate(2.0)", 1.0),
+        ("sign(-2.0)", -1.0),
+        ("step(1.0, 2.0)", 1.0),
+        ("sqrt(2.0)", std::f64::consts::SQRT_2),
+        ("inverseSqrt(4.0)", 0.5),
+        ("exp(1.0)", std::f64::consts::E),
+        ("exp2(0.5)", std::f64::consts::SQRT_2),
+        ("log(2.0)", std::f64::consts::LN_2),
+        ("log2(8.0)", 3.0),
+        ("pow(2.0, 0.5)", std::f64::consts::SQRT_2),
+        ("fma(2.0, 3.0, 4.0)", 10.0),
+        ("mix(1.0, 3.0, 0.25f)", 1.5),
+        ("dot(vec2f(1.0, 2.0), vec2f(3.0, 4.0))", 11.0),
+        ("cross(vec3f(1, 0, 0), vec3f(0, 1, 0)).z", 1.0),
+        ("length(vec2f(3.0, 4.0))", 5.0),
+        ("distance(2.0, 5.0)", 3.0),
+        ("normalize(vec2f(3.0, 4.0)).x", 0.6),
+        ("determinant(mat2x2f(1.0, 2.0, 3.0, 5.0))", -1.0),
+        ("(1.0 + abs(-2.0)) * max(0.25, -1.0)", 0.75),
+    ];
+    for (call, expected) in cases {
+        let text = format!("const gain: f32 = 0.125; fn f(x: f32) -> f32 {{ let value = {call}; return x * value; }}");
+        let source = Source::read(&text).unwrap_or_else(|wrong| panic!("{call}: {wrong:?}"));
+        let program = source.translate("f", &BTreeMap::new()).unwrap_or_else(|wrong| panic!("{call}: {wrong:?}"));
+        let found = program.run::<f64, 1, 1>([1.0])[0];
+        // logarithms and powers of them are right to a few roundings
+        assert!((found - expected).abs() <= 4.0 * f64::EPSILON * (1.0 + expected.abs()), "{call} is {found}");
+        let found = program.run::<f32, 1, 1>([1.0])[0];
+        assert_eq!(found, expected as f32, "{call} in f32");
+    }
+}

@@ -35,7 +35,12 @@ pub struct Calibration {
     seconds_a_step: f64,
     /// Time beside steps (s).
     beside: f64,
+    /// What bringing the bodies to rest before the first step takes (s), once.
+    preload: f64,
 }
+
+/// How often a run that is done once brings bodies to rest: to find its step, and to take it.
+const PRELOADS: f64 = 2.0;
 
 /// The kind of a configuration: all of it that changes what an element and step costs, and how many steps a search
 /// takes.
@@ -59,8 +64,10 @@ impl Engine<'_> {
         };
         let run = steps * known.seconds_a_step * growth;
         let again = if run < 0.1 { 3.0 } else { 1.0 };
+        // bodies are brought to rest by a search: it takes a step a cell, too
+        let preload = (PRELOADS + again - 1.0) * known.preload * growth * finer;
         let elements = (known.elements * growth) as u64;
-        Ok(Cost { seconds: again * run + known.beside * growth, elements, steps: steps as u64 })
+        Ok(Cost { seconds: again * run + known.beside * growth + preload, elements, steps: steps as u64 })
     }
 
     /// Keeps what a run has shown of its kind, for predictions of finer meshes: `all` is what it took, all in all (s).
@@ -69,13 +76,17 @@ impl Engine<'_> {
         let known = self.known.iter_mut().find(|(known, _)| *known == kind);
         let Some((_, known)) = known.filter(|(_, known)| configuration.mesh >= known.mesh) else { return };
         if configuration.step == 1 && solution.steps > 0 {
+            let beside = all - f64::from(solution.timed) * solution.seconds;
+            let preload = solution.preload.min(beside.max(0.0));
+            let often = PRELOADS + f64::from(solution.timed) - 1.0;
             *known = Calibration {
                 mesh: configuration.mesh,
                 elements: solution.elements as f64,
                 step: solution.time_step,
                 steps: solution.steps as f64,
                 seconds_a_step: solution.seconds / solution.steps as f64,
-                beside: (all - f64::from(solution.timed) * solution.seconds).max(0.0),
+                beside: (beside - often * preload).max(0.0),
+                preload,
             };
         }
     }
@@ -112,8 +123,10 @@ impl Engine<'_> {
         let on_mesh = Configuration { mesh, ..kind.clone() };
         let scene = variant(self.file, &on_mesh, None);
         let mut simulation = Simulation::new(&scene, &self.options(&on_mesh)).map_err(refusal)?;
+        simulation.settle().map_err(refusal)?;
+        let preload = simulation.preload().map_or(0.0, |preload| preload.seconds);
         let summary = simulation.summary("calibration").map_err(refusal)?;
-        let setup = started.elapsed().as_secs_f64();
+        let setup = (started.elapsed().as_secs_f64() - preload).max(0.0);
         let found = self.file.scene.integration.safety * summary.stable_step;
         let step = wanted.map_or(found, |step| step.min(found));
         let steps = simulation.planned_steps();
@@ -136,7 +149,7 @@ impl Engine<'_> {
         // energies are looked at a few times as often as fields; setting up happens once more to find the step
         let looks = self.looks.as_ref().map_or(FIELDS, |looks| looks.count).min(60);
         let beside = 2.0 * setup + look * looks as f64;
-        Ok(Calibration { mesh, elements: summary.elements as f64, step, steps: 0.0, seconds_a_step, beside })
+        Ok(Calibration { mesh, elements: summary.elements as f64, step, steps: 0.0, seconds_a_step, beside, preload })
     }
 
     /// How many steps a search for equilibrium takes on the scene's own mesh. Nobody knows before: it is gone through,

@@ -100,6 +100,7 @@ pub fn solve(
     drop(simulation);
     while solution.seconds < SHORT && solution.timed < AGAIN {
         let mut simulation = Simulation::new(scene, options).map_err(refusal)?;
+        simulation.settle().map_err(refusal)?;
         let steps = simulation.planned_steps();
         let seconds = timed(&mut simulation, steps)?;
         solution.seconds = solution.seconds.min(seconds);
@@ -141,6 +142,8 @@ impl Run<'_> {
             let body = BodyField { mesh: Arc::new(mesh), masses: Vec::new(), displacements: Vec::new() };
             self.field.bodies.insert(name.clone(), body);
         }
+        // bodies are brought to rest before steps are timed
+        simulation.settle().map_err(refusal)?;
         let all = simulation.planned_steps();
         if scene.scene.is_static() {
             while !simulation.is_finished() && simulation.step_count() < all {
@@ -225,6 +228,7 @@ impl Run<'_> {
             channels: self.channels.into_values().collect(),
             field: Some(self.field),
             seconds: self.seconds,
+            preload: simulation.preload().map_or(0.0, |preload| preload.seconds),
             timed: 1,
             simulated: (!scene.scene.is_static()).then_some(scene.scene.duration),
             steps: if scene.scene.is_static() { summary.steps } else { summary.planned_steps },

@@ -69,14 +69,17 @@ impl Source {
     /// What has no counterpart in double precision, such as `bitcast`.
     pub fn read(text: &str) -> Result<Self, Untranslatable> {
         let twin = Twin::new(text);
-        match naga::front::wgsl::parse_str(&twin.text) {
-            Ok(module) => Ok(Self { module, twin }),
-            Err(error) => {
-                let at = error.labels().next().and_then(|(span, _)| span.to_range());
-                let message = format!("this cannot be computed on the CPU: {}", error.message());
-                Err(Untranslatable { at: at.map(|range| twin.original(range)), message, notes: Vec::new() })
-            }
+        let error = match naga::front::wgsl::parse_str(&twin.text) {
+            Ok(module) => return Ok(Self { module, twin }),
+            Err(error) => error,
+        };
+        let unfolded = Twin::unfolded(text);
+        if let Ok(module) = naga::front::wgsl::parse_str(&unfolded.text) {
+            return Ok(Self { module, twin: unfolded });
         }
+        let at = error.labels().next().and_then(|(span, _)| span.to_range());
+        let message = format!("this cannot be computed on the CPU: {}", error.message());
+        Err(Untranslatable { at: at.map(|range| twin.original(range)), message, notes: Vec::new() })
     }
 
     /// Translates a function whose arguments and result are numbers, or structs and vectors of numbers. Inputs and

@@ -4,6 +4,35 @@
 use super::words::words;
 use std::ops::Range;
 
+/// The function of [`Twin::unfolded`] that gives 1.
+const ONE: &str = "one_that_is_not_folded";
+
+/// WGSL's own functions that a law may call; all take numbers, vectors or matrices of them.
+const MATH: [&str; 22] = [
+    "abs",
+    "clamp",
+    "cross",
+    "determinant",
+    "distance",
+    "dot",
+    "exp",
+    "exp2",
+    "fma",
+    "inverseSqrt",
+    "length",
+    "log",
+    "log2",
+    "max",
+    "min",
+    "mix",
+    "normalize",
+    "pow",
+    "saturate",
+    "sign",
+    "sqrt",
+    "step",
+];
+
 /// The text in double precision, and where each changed word came from.
 pub(super) struct Twin {
     pub(super) text: String,
@@ -14,21 +43,43 @@ pub(super) struct Twin {
 impl Twin {
     /// Changes the words of a text that parses: float types, and numbers with a point or an exponent.
     pub(super) fn new(original: &str) -> Self {
+        Self::of(original, false)
+    }
+
+    /// The same text, in which no call of WGSL's own functions is a constant: their first argument is multiplied by
+    /// what only [`ONE`] knows to be 1, which the graph folds to all its digits. naga cannot tell the value of such a
+    /// call of constants of type `f64`, and refuses it.
+    pub(super) fn unfolded(original: &str) -> Self {
+        let mut twin = Self::of(original, true);
+        twin.text.push_str(&format!("\nfn {ONE}() -> f64 {{ return 1.0lf; }}\n"));
+        twin
+    }
+
+    fn of(original: &str, unfolded: bool) -> Self {
         let mut twin = Self { text: String::with_capacity(original.len() * 5 / 4), changed: Vec::new() };
         let mut constant = Constant::default();
+        let mut called = false;
         for range in words(original) {
             let word = &original[range.clone()];
-            let other = if constant.holds(word) { constant.abstracted(word) } else { double(word) };
-            match other {
-                Some(other) => {
-                    let start = twin.text.len();
-                    twin.text.push_str(&other);
-                    twin.changed.push((start..twin.text.len(), range));
-                }
+            let declared = constant.holds(word);
+            match if declared { constant.abstracted(word) } else { double(word) } {
+                Some(other) => twin.change(&other, range.clone()),
                 None => twin.text.push_str(word),
             }
+            if unfolded && called && word == "(" {
+                // a product comes before all that may follow the argument's first factor
+                twin.change(&format!("{ONE}() * "), range.end..range.end);
+            }
+            called = !declared && MATH.contains(&word) || called && word.trim().is_empty();
         }
         twin
+    }
+
+    /// Appends what stands for some bytes of the original.
+    fn change(&mut self, other: &str, original: Range<usize>) {
+        let start = self.text.len();
+        self.text.push_str(other);
+        self.changed.push((start..self.text.len(), original));
     }
 
     /// The place in the original of a place in the twin.
@@ -121,6 +172,20 @@ mod tests {
         let twin = Twin::new(text);
         let expected = "const third  = 1.0 / 3.0; const v = vec3<f64>(third, 1.0, 2); fn f() -> f64 { const a = 1e3; return a * 2.0lf; }";
         assert_eq!(twin.text, expected);
+    }
+
+    #[test]
+    fn calls_of_constants_are_none_and_places_lead_back() {
+        let text =
+            "const a = abs(-2.0); fn f(x: f32) -> f32 { let b = max (a, -1.0) * x.abs; return maximum(b) + exp(2); }";
+        let twin = Twin::unfolded(text);
+        let expected = "const a = abs(-2.0); fn f(x: f64) -> f64 { let b = max (one_that_is_not_folded() * a, -1.0lf) * x.abs; \
+            return maximum(b) + exp(one_that_is_not_folded() * 2); }";
+        assert!(twin.text.starts_with(expected), "{}", twin.text);
+        for word in ["const", "let", "max", "a, -", "* x", "maximum(b)", "exp(", "2); }"] {
+            let at = twin.text.find(word).unwrap_or(0);
+            assert_eq!(&text[twin.original(at..at + word.len())], word);
+        }
     }
 
     #[test]
