@@ -4,6 +4,7 @@ mod access;
 mod adapt;
 mod added_mass;
 mod beat;
+mod block_forces;
 mod build;
 mod costly;
 mod damped_step;

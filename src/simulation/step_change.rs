@@ -1,13 +1,13 @@
 //! Going on with steps of another length: everything that counts in steps follows.
 
+use super::block_forces::{BlockForces, widened};
 use super::{Job, Simulation};
 use crate::assembly::step_of;
-use crate::backend::cpu::BlockLaw;
+use crate::backend::cpu::{BlockLaw, Cpu};
 use crate::backend::device::{Device, bring_to_host, send_to_device};
 use crate::backend::kernel::Uniform;
 use crate::components::*;
 use crate::error::Error;
-use crate::evaluation::{BlockView, lane_place, point_count};
 use crate::materials::PronyTerm;
 use crate::observation::Observer;
 use bevy_ecs::prelude::*;
@@ -112,13 +112,7 @@ fn relax_on(world: &mut World, clock: &Clock) -> Result<(), Error> {
             terms.iter().zip(&law.prony).map(change).collect::<Vec<f64>>(),
             volumetric.iter().zip(&law.volumetric).map(change).collect(),
         ];
-        let moved = moved_memory(world, entity, &changes);
-        if let (Some(moved), Some(mut memory)) = (moved, world.get_mut::<ViscousMemory>(entity)) {
-            moved.into_iter().for_each(|(place, by)| {
-                let value = memory.get(place) + by;
-                memory.set(place, value);
-            });
-        }
+        add_to_memory(world, entity, &changes);
         take_coefficients(world, entity, terms, volumetric)?;
     }
     Ok(())
@@ -150,10 +144,7 @@ fn remember(world: &mut World, times: fn(&PronyTerm<f64>) -> f64) {
     for entity in blocks {
         let Some(law) = world.get::<BlockLaw<f64>>(entity) else { continue };
         let times = [&law.prony, &law.volumetric].map(|terms| terms.iter().map(times).collect::<Vec<f64>>());
-        let memories = moved_memory(world, entity, &times);
-        if let (Some(memories), Some(mut memory)) = (memories, world.get_mut::<ViscousMemory>(entity)) {
-            memories.into_iter().for_each(|(place, value)| memory.set(place, value));
-        }
+        add_to_memory(world, entity, &times);
     }
 }
 
@@ -189,28 +180,20 @@ fn take_coefficients(
     Ok(())
 }
 
-/// Places in a block's memory, and what is added there: the change of the coefficient times the present stress.
-fn moved_memory(world: &World, entity: Entity, [terms, volumetric]: &[Vec<f64>; 2]) -> Option<Vec<(usize, f64)>> {
-    let view = BlockView::now(world, entity)?;
-    let points = point_count(view.block.kind);
-    let numbers = view.law.memory_numbers(points);
-    let mut moved = Vec::new();
-    for row in 0..view.block.count {
-        let state = view.element(row);
-        let mut pressure = 0.0;
-        for point in 0..points {
-            let (isochoric, instant) = view.instant(row, &state, point);
-            pressure = instant;
-            for (number, change) in terms.iter().enumerate() {
-                let first = 6 * (point * terms.len() + number);
-                moved.extend((0..6).map(|i| (lane_place(row, numbers, first + i), change * isochoric.0[i])));
-            }
-        }
-        for (number, change) in volumetric.iter().enumerate() {
-            moved.push((lane_place(row, numbers, 6 * terms.len() * points + number), change * pressure));
-        }
+/// Adds so many times the present stress to a block's memory: by its own kernel, with terms that do just that.
+fn add_to_memory(world: &mut World, entity: Entity, [terms, volumetric]: &[Vec<f64>; 2]) {
+    let adding = |times: &Vec<f64>| times.iter().map(|&times| PronyTerm::adding(times)).collect();
+    let law = |law: &BlockLaw<f64>| BlockLaw { prony: adding(terms), volumetric: adding(volumetric), ..law.clone() };
+    let added = BlockForces::of(world, entity, law).and_then(|mut block| {
+        let body = block.block.body;
+        let displacement = widened(world.get::<Displacement>(body)?);
+        let mut unused = vec![0.0; world.get::<ElementForce>(body)?.len()];
+        block.forces(world.resource::<Cpu>(), &displacement, &mut unused);
+        Some(block.memory)
+    });
+    if let (Some(added), Some(mut memory)) = (added, world.get_mut::<ViscousMemory>(entity)) {
+        memory.0 = Reals::from_f64(memory.precision(), added.into_iter());
     }
-    Some(moved)
 }
 
 /// What is still to go by time goes at the step that its time is now.
