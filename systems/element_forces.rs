@@ -20,19 +20,17 @@ use crate::shader;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
 
-/// Its name.
-pub(crate) const ELEMENT_FORCES: &str = "element_forces";
-
 /// Displacements to element forces, block by block.
 pub fn system() -> System {
     System::built_in(
-        ELEMENT_FORCES,
+        "element_forces",
         Phase::ElementForces,
         "strain, stress and nodal forces of every element",
         "bodies",
         |world| super::registry::count::<Block>(world, "element block", "element blocks"),
         element_forces,
     )
+    .of_elements()
     .on_device(kernels)
 }
 

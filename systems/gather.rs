@@ -92,6 +92,7 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
             .column(ElementForce::NAME, buffers.column(body, ElementForce::NAME))
             .column(InternalForce::NAME, buffers.column(body, InternalForce::NAME))
             .with_step(world)
+            .that_sums_forces()
             .loaded(loaded);
         stages.push(match loaded {
             true => stage.column(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME)),

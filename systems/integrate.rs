@@ -71,7 +71,9 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
         let [external, damped, worked] = optional;
         let most = buffers.most_buffers().storage;
         let mut stage = |call: &'static str, columns: &[&'static str]| {
-            let stage = NodeStage::new("integrate", call, body, count, shader!("integrate")).with_step(world);
+            let stage = NodeStage::new("integrate", call, body, count, shader!("integrate"))
+                .with_step(world)
+                .that_moves_nodes(call != "integrate");
             let stage =
                 with_optional(stage, [damped, worked], compensated, relaxed, (guarded, previous)).loaded(external);
             let stage = columns.iter().fold(stage, |stage, &name| {

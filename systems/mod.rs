@@ -35,7 +35,6 @@ mod pressure;
 mod registry;
 mod traction;
 
-pub(crate) use element_forces::ELEMENT_FORCES;
 pub(crate) use gather::sum_corners;
 pub(crate) use nodal_volume::means_of;
 pub(crate) use node_pass::{NodePass, node_pass};

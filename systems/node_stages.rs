@@ -53,7 +53,12 @@ pub(super) fn derived_stages<S: NodeSystem + serde::Serialize>(
             stage = stage.bind("parameters", buffers.uniform(format!("parameters of {name}"), &bytes));
         }
         let declared = Fragment::new(format!("generated: what {name} touches"), declared);
-        stages.push(stage.own(declared).with_step(world).loaded(loaded));
+        let stage = stage.own(declared).with_step(world).loaded(loaded);
+        stages.push(match (S::SUMS_FORCES, S::MOVES_NODES) {
+            (true, _) => stage.that_sums_forces(),
+            (false, true) => stage.that_moves_nodes(false),
+            (false, false) => stage,
+        });
     }
     stages
 }

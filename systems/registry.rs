@@ -44,13 +44,15 @@ pub enum OnHost {
     System(Box<dyn Fn() -> HostSystem + Send + Sync>),
     /// Something to each node, in passes that it may share with its neighbours in the step.
     Nodes(NodeRows),
+    /// A system by itself that finds the forces of elements patch by patch: nodes inside a patch may move with it.
+    Elements(Box<dyn Fn() -> HostSystem + Send + Sync>),
 }
 
 impl OnHost {
     /// The system, by itself in a pass if it is one of nodes.
     pub fn alone(&self, world: &mut World) -> HostSystem {
         match self {
-            OnHost::System(make) => make(),
+            OnHost::System(make) | OnHost::Elements(make) => make(),
             OnHost::Nodes(rows) => node_pass(NodePass::new(vec![*rows]), world),
         }
     }
@@ -59,7 +61,7 @@ impl OnHost {
     pub fn nodes(&self) -> Option<NodeRows> {
         match self {
             OnHost::Nodes(rows) => Some(*rows),
-            OnHost::System(_) => None,
+            OnHost::System(_) | OnHost::Elements(_) => None,
         }
     }
 }
@@ -276,6 +278,15 @@ impl System {
         system: impl IntoSystem<(), (), M> + Clone + Send + Sync + 'static,
     ) -> Self {
         Self { called_for_by, because, custom: false, ..Self::custom(name, phase, does, system) }
+    }
+
+    /// That finds the forces of elements, patch by patch.
+    pub(crate) fn of_elements(self) -> Self {
+        let host = match self.host {
+            OnHost::System(make) => OnHost::Elements(make),
+            host => host,
+        };
+        Self { host, ..self }
     }
 
     /// With its kernels.

@@ -38,6 +38,20 @@ pub struct NodeStage {
     layouts: Vec<(Cow<'static, str>, Layout)>,
     elsewhere: Vec<&'static str>,
     loaded: bool,
+    forces: Forces,
+}
+
+/// What a stage does with the forces on nodes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Forces {
+    /// It adds to them, or has nothing to do with them.
+    Adds,
+    /// It sums those of elements and clears the loads of the last step.
+    Sums,
+    /// It uses them up, by moving the nodes.
+    UsesUp,
+    /// A part of what moves the nodes in several kernels: its text asks for forces.
+    AsksFor,
 }
 
 /// What a stage's function is called for.
@@ -73,6 +87,7 @@ impl NodeStage {
             layouts: Vec::new(),
             elsewhere: Vec::new(),
             loaded: false,
+            forces: Forces::Adds,
         }
     }
 
@@ -105,7 +120,7 @@ impl NodeStage {
 
     /// The same for nodes inside a patch, in the kernel of that patch: forces are at hand.
     pub(super) fn in_patch(self) -> Self {
-        if self.call != GATHER {
+        if !self.sums_forces() {
             return self;
         }
         let columns = self.columns.into_iter().filter(|(name, _)| *name != ElementForce::NAME).collect();
@@ -113,8 +128,8 @@ impl NodeStage {
     }
 
     /// Whether it sums the forces of elements.
-    pub(super) fn gathers(&self) -> bool {
-        self.call == GATHER
+    pub(super) fn sums_forces(&self) -> bool {
+        self.forces == Forces::Sums
     }
 
     /// The body.
@@ -169,6 +184,17 @@ impl NodeStage {
         self
     }
 
+    /// Says that it sums the forces of elements and clears the loads of the last step.
+    pub fn that_sums_forces(self) -> Self {
+        Self { forces: Forces::Sums, ..self }
+    }
+
+    /// Says that it uses up forces by moving the nodes; or, where that takes `several` kernels, that it is a part of
+    /// it.
+    pub fn that_moves_nodes(self, several: bool) -> Self {
+        Self { forces: if several { Forces::AsksFor } else { Forces::UsesUp }, ..self }
+    }
+
     /// Says whether the body has loads: whether there is a column of external forces.
     pub fn loaded(mut self, loaded: bool) -> Self {
         self.loaded = loaded;
@@ -180,9 +206,6 @@ impl NodeStage {
 pub fn rows_of(body: Entity, world: &World) -> u32 {
     world.get::<Mass>(body).map_or(0, |mass| mass.len()) as u32
 }
-
-/// The call that sums forces of elements.
-const GATHER: &str = "gather";
 
 /// The rows of a kernel of nodes: where they end, and where they begin.
 #[derive(Clone, Copy, Debug)]

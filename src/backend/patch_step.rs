@@ -57,7 +57,7 @@ fn of_body(
     let is_of_body = |kernel: &&Kernel| block_of(kernel, world).is_some_and(|(_, block)| block.body == body);
     let blocks: Vec<&Kernel> = elements.iter().filter(is_of_body).collect();
     let of_nodes: Vec<&NodeStage> = stages.iter().filter(|stage| stage.body() == body).collect();
-    if blocks.is_empty() || !of_nodes.iter().any(|stage| stage.gathers()) {
+    if blocks.is_empty() || !of_nodes.iter().any(|stage| stage.sums_forces()) {
         return Err("it has no elements".into());
     }
     if blocks.iter().any(|kernel| !kernel.fragments.contains(&shader!("patches"))) {

@@ -3,17 +3,17 @@
 use super::beat::Beat;
 use super::follow::Follower;
 use super::frequency::largest_eigenvalue;
-use super::fuse::groups;
 use super::options::{BackendChoice, Chosen, choose};
 use super::outputs;
 use super::parameters::hand_out;
+use super::plan::{Over, Pass, Plan, Planned, each_once};
 use super::plausible;
 use super::relax::Relaxing;
 use super::schedule::{Scheduled, check_names, resolve};
 use super::scheme::{fit_workgroups, sum_forces};
 use super::stable_step::{self, Stability};
 use super::step_kernels::step_kernels;
-use super::{Entry, Facts, Job, Member, Options, Simulation};
+use super::{Entry, Facts, Job, Options, Simulation};
 use crate::assembly::{Assembly, assemble, assemble_in_time, insert_laws};
 use crate::backend::cpu::Cpu;
 use crate::backend::device::Device;
@@ -25,7 +25,7 @@ use crate::observation::{Observer, Track, Watch, WatchKernels, WrittenFields};
 use crate::scene::schema::Analysis;
 use crate::scene::{Diagnostics, SceneFile};
 use crate::snapshot::{Keeping, identity};
-use crate::systems::{ELEMENT_FORCES, HostSystem, NodePass, OnHost, Phase, Registry, System, node_pass, patch_pass};
+use crate::systems::{HostSystem, NodePass, OnHost, Phase, Registry, System, node_pass, patch_pass};
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemAccess;
 use std::time::{Duration, Instant};
@@ -47,8 +47,9 @@ impl Simulation {
         let started = Instant::now();
         let mut diagnostics = scene.diagnostics();
         let mut world = World::new();
-        let plan = plan(scene, options, registry, &mut world, &mut diagnostics);
-        let Some(Plan { assembly, clock, stability, steps, schedule }) = plan.filter(|_| !diagnostics.has_errors())
+        let prepared = prepare(scene, options, registry, &mut world, &mut diagnostics);
+        let Some(Prepared { assembly, clock, stability, steps, schedule }) =
+            prepared.filter(|_| !diagnostics.has_errors())
         else {
             return Err(diagnostics.into());
         };
@@ -61,13 +62,14 @@ impl Simulation {
         let mut access = Vec::new();
         for entry in &schedule {
             let mut system = match &entry.system.host {
-                OnHost::System(make) => make(),
+                OnHost::System(make) | OnHost::Elements(make) => make(),
                 OnHost::Nodes(rows) => rows.touches(),
             };
             access.push(system.initialize(&mut world));
-            hosts.push(system);
+            hosts.push(Some(system));
         }
         add_called_for_columns(&schedule, &access, &assembly, &mut world);
+        let plan = Plan::of(&schedule, &access, scene.scene.fuse, &world);
         let relaxing = relaxing(scene, options.precision, &mut world);
 
         let Chosen { gpu, mut why } = choose(options)?;
@@ -75,37 +77,28 @@ impl Simulation {
             why += &fit_workgroups(&mut world);
         }
         let gpu_name = gpu.as_ref().map(|gpu| gpu.report().name.clone());
-        let prepared = match gpu {
+        let kernels = match gpu {
             None => None,
-            Some(gpu) => {
-                match kernels_on(gpu, &schedule, groups(&schedule, &access, scene.scene.fuse, true), &mut world) {
-                    Ok(kernels) => Some(kernels),
-                    // a GPU that was not asked for need not be up to the scene
-                    Err(Error::Gpu(reason)) if options.backend == BackendChoice::Auto => {
-                        why = format!("the GPU cannot take this scene: {reason}");
-                        world.remove_resource::<Device>();
-                        world.remove_resource::<WatchKernels>();
-                        sum_forces(options.scheme, &mut world);
-                        None
-                    }
-                    Err(error) => return Err(error),
+            Some(gpu) => match kernels_on(gpu, &schedule, &plan, &mut world) {
+                Ok(kernels) => Some(kernels),
+                // a GPU that was not asked for need not be up to the scene
+                Err(Error::Gpu(reason)) if options.backend == BackendChoice::Auto => {
+                    why = format!("the GPU cannot take this scene: {reason}");
+                    world.remove_resource::<Device>();
+                    world.remove_resource::<WatchKernels>();
+                    sum_forces(options.scheme, &mut world);
+                    None
                 }
-            }
+                Err(error) => return Err(error),
+            },
         };
-        let on_gpu = prepared.is_some();
+        let on_gpu = kernels.is_some();
         let backend = match gpu_name.filter(|_| on_gpu) {
             Some(name) => format!("GPU ({name})"),
             None => world.resource::<Cpu>().describe(),
         };
-        let entries = match prepared {
-            Some(kernels) => entries(&schedule, hosts, &access, kernels, &mut world),
-            None => {
-                let groups = groups(&schedule, &access, scene.scene.fuse, false);
-                let none = groups.into_iter().map(|group| (group, None)).collect();
-                entries(&schedule, hosts, &access, none, &mut world)
-            }
-        };
-        let keeping = keeping(scene, options.precision, &schedule, &access, &mut world);
+        let entries = entries(&schedule, hosts, &plan, kernels, &mut world);
+        let keeping = keeping(scene, options.precision, &schedule, &plan, &mut world);
         // who writes more than loads makes energy
         let external = ExternalForce::NAME;
         let foreign = keeping.written.iter().any(|name| *name != external);
@@ -141,6 +134,7 @@ impl Simulation {
         let follower = Follower::new(&scene.scene, &facts.stability, facts.initial_mass, &mut world);
         Ok(Self {
             world,
+            plan,
             entries,
             scene: scene.scene.clone(),
             facts,
@@ -155,96 +149,78 @@ impl Simulation {
     }
 }
 
-/// Takes a GPU for the run and makes the kernels of all systems ready that have some.
+/// Takes a GPU for the run and makes the kernels of all its passes ready, in their order.
 fn kernels_on(
     gpu: Gpu,
     schedule: &[Scheduled<'_>],
-    groups: Vec<Vec<usize>>,
+    plan: &Plan,
     world: &mut World,
-) -> Result<Vec<Group>, Error> {
+) -> Result<Vec<Vec<KernelId>>, Error> {
     world.insert_resource(Device::new(gpu, all_columns()));
     if world.resource::<Clock>().relaxation.is_none() {
         crate::systems::add_watch_columns(world);
         let watch = Device::prepare(world, crate::systems::watch_kernels)?;
         world.insert_resource(WatchKernels(watch));
     }
-    let systems: Vec<Vec<&System>> =
-        groups.iter().map(|group| group.iter().map(|&place| schedule[place].system).collect()).collect();
+    let systems: Vec<&System> = schedule.iter().map(|scheduled| scheduled.system).collect();
     let mut counts = Vec::new();
     let all = Device::prepare(world, |world, buffers| {
-        let (kernels, _) = step_kernels(&systems, world, buffers);
+        let (kernels, _) = step_kernels(plan, &systems, world, buffers);
         counts.extend(kernels.iter().map(Vec::len));
         kernels.into_iter().flatten().collect()
     })?;
     let mut all = all.into_iter();
-    let with_kernels = groups.into_iter().zip(counts).map(|(group, count)| {
-        let kernels = all.by_ref().take(count).collect();
-        let on_device = schedule[group[0]].system.device.is_some();
-        (group, on_device.then_some(kernels))
-    });
-    Ok(with_kernels.collect())
+    Ok(counts.into_iter().map(|count| all.by_ref().take(count).collect()).collect())
 }
 
-/// Places of scheduled systems that share an entry, with their kernels where they have some.
-type Group = (Vec<usize>, Option<Vec<KernelId>>);
-
-/// The running schedule.
+/// The running schedule: an entry a pass. `kernels`: those of each pass on a GPU, where it runs there.
 fn entries(
     schedule: &[Scheduled<'_>],
-    hosts: Vec<HostSystem>,
-    access: &[SystemAccess],
-    groups: Vec<Group>,
+    mut hosts: Vec<Option<HostSystem>>,
+    plan: &Plan,
+    kernels: Option<Vec<Vec<KernelId>>>,
     world: &mut World,
 ) -> Vec<Entry> {
-    let mut hosts: Vec<Option<HostSystem>> = hosts.into_iter().map(Some).collect();
+    let on_gpu = kernels.is_some();
+    let mut kernels = kernels.into_iter().flatten();
     let mut entries = Vec::new();
-    for (group, kernels) in groups {
-        let member = |&place: &usize| {
-            let Scheduled { system, because, .. } = &schedule[place];
-            Member { name: system.name.clone(), phase: system.phase, because: because.clone() }
-        };
-        let systems: Vec<Member> = group.iter().map(member).collect();
-        let names: Vec<String> = systems.iter().map(|system| system.name.clone()).collect();
-        let first = &schedule[group[0]];
-        let job = match kernels {
-            Some(kernels) => Job::Kernels(kernels),
-            None => {
-                let of_nodes = group.iter().filter_map(|&place| schedule[place].system.host.nodes());
-                let nodes = NodePass::new(of_nodes.collect());
-                let system = match hosts[group[0]].take() {
-                    Some(host) if group.len() == 1 && first.system.host.nodes().is_none() => host,
-                    _ if first.system.name == ELEMENT_FORCES => patch_pass(nodes, world),
-                    _ => node_pass(nodes, world),
-                };
-                let touched: Vec<Touched<'_>> = group.iter().map(|&place| Touched(&access[place])).collect();
-                Job::Host {
-                    system,
-                    beat: Beat::new(first.every, first.interval),
-                    observes: first.system.observes,
-                    reads: names_of(touched.iter().flat_map(|touched| touched.read_columns(world))),
-                    writes: names_of(touched.iter().flat_map(|touched| touched.written_columns(world))),
-                }
+    for pass in plan.passes(on_gpu) {
+        let first = pass.systems[0];
+        let kernels = kernels.next().filter(|_| plan.systems[first].on_device);
+        let of_nodes = pass.systems.iter().filter_map(|&place| schedule[place].system.host.nodes());
+        let nodes = || NodePass::new(of_nodes.collect());
+        let host = hosts[first].take();
+        let job = match (kernels, pass.over, host) {
+            (Some(kernels), ..) => Job::Kernels(kernels),
+            (None, Over::Elements, _) => host_job(patch_pass(nodes(), world), schedule, plan, pass),
+            // what a GPU has no kernels for may be one of nodes on the host
+            (None, _, Some(host)) if schedule[first].system.host.nodes().is_none() => {
+                host_job(host, schedule, plan, pass)
             }
+            (None, ..) => host_job(node_pass(nodes(), world), schedule, plan, pass),
         };
-        let phase = systems.iter().map(|system| system.phase).max().unwrap_or(first.system.phase);
-        entries.push(Entry { name: names.join(" + "), phase, systems, job, time: Duration::ZERO, runs: 0 });
+        let names: Vec<&str> = plan.systems_of(pass).map(|system| system.name.as_str()).collect();
+        let phase = plan.systems_of(pass).map(|system| system.phase).max().unwrap_or(plan.systems[first].phase);
+        let name = names.join(" + ");
+        entries.push(Entry { name, phase, systems: pass.systems.clone(), job, time: Duration::ZERO, runs: 0 });
     }
     entries
 }
 
-/// Names of columns, each once.
-fn names_of(columns: impl Iterator<Item = ColumnAccess>) -> Vec<&'static str> {
-    let mut names: Vec<&'static str> = Vec::new();
-    for column in columns {
-        if !names.contains(&column.name) {
-            names.push(column.name);
-        }
+fn host_job(system: HostSystem, schedule: &[Scheduled<'_>], plan: &Plan, pass: &Pass) -> Job {
+    let first = &schedule[pass.systems[0]];
+    let names = |of: fn(&Planned) -> &Vec<&'static str>| each_once(plan.systems_of(pass).flat_map(of).copied());
+    Job::Host {
+        system,
+        beat: Beat::new(first.every, first.interval),
+        observes: first.system.observes,
+        reads: names(|system| &system.reads),
+        writes: names(|system| &system.writes),
     }
-    names
 }
 
 /// What a scene comes to before a backend is chosen.
-struct Plan<'a> {
+struct Prepared<'a> {
     assembly: Assembly<'a>,
     clock: Clock,
     stability: Stability,
@@ -253,13 +229,13 @@ struct Plan<'a> {
 }
 
 /// Makes a scene's world and its schedule. All mistakes that can be found go to `diagnostics`.
-fn plan<'a>(
+fn prepare<'a>(
     scene: &'a SceneFile,
     options: &Options,
     registry: &'a Registry,
     world: &mut World,
     diagnostics: &mut Diagnostics,
-) -> Option<Plan<'a>> {
+) -> Option<Prepared<'a>> {
     let assembly = assemble(scene, options.precision, options.scheme, world, diagnostics);
     check_names(scene.scene.schedule.as_deref().unwrap_or_default(), registry, diagnostics);
     let assembly = assembly?;
@@ -276,13 +252,13 @@ fn plan<'a>(
     assemble_in_time(&assembly, world, diagnostics);
     let mut schedule = resolve(scene.scene.schedule.as_deref(), registry, world, diagnostics);
     hand_out(&scene.scene, registry, &mut schedule, world, diagnostics);
-    Some(Plan { assembly, clock, stability, steps, schedule })
+    Some(Prepared { assembly, clock, stability, steps, schedule })
 }
 
 /// Checks a scene as far as making its world goes: everything except choosing a backend. All that was found.
 pub(super) fn check(scene: &SceneFile, registry: &Registry) -> Diagnostics {
     let mut diagnostics = scene.diagnostics();
-    plan(scene, &Options::default(), registry, &mut World::new(), &mut diagnostics);
+    prepare(scene, &Options::default(), registry, &mut World::new(), &mut diagnostics);
     diagnostics
 }
 
@@ -367,14 +343,14 @@ fn keeping(
     scene: &SceneFile,
     precision: Precision,
     schedule: &[Scheduled<'_>],
-    access: &[SystemAccess],
+    plan: &Plan,
     world: &mut World,
 ) -> Keeping {
-    let custom = || schedule.iter().zip(access).filter(|(entry, _)| entry.system.custom);
+    let custom = || schedule.iter().zip(&plan.systems).filter(|(entry, _)| entry.system.custom);
     Keeping {
         identity: identity(&scene.scene, world),
         precision,
-        written: names_of(custom().flat_map(|(_, access)| Touched(access).written_columns(world))),
+        written: each_once(custom().flat_map(|(_, planned)| &planned.writes).copied()),
         systems: custom().filter_map(|(entry, _)| Some((entry.system.name.clone(), entry.system.state?))).collect(),
     }
 }

@@ -6,7 +6,8 @@ mod effects;
 mod kernels;
 mod page;
 
-use super::{Entry, Job, Member, Simulation};
+use super::Simulation;
+use super::plan::{Pass, Plan, Planned};
 use crate::backend::many_steps::Dispatched;
 use crate::components::Precision;
 use crate::error::Error;
@@ -209,8 +210,8 @@ impl Simulation {
 
     fn explain_for(&mut self, registry: &Registry, on_gpu: bool) -> Result<Explanation, Error> {
         let sizes = Sizes::of(&mut self.world);
-        let in_use =
-            |name: &str| self.entries.iter().flat_map(|entry| &entry.systems).any(|system| system.name == name);
+        let plan = &self.plan;
+        let in_use = |name: &str| plan.systems.iter().any(|planned| planned.name == name);
         let off = registry.systems().iter().filter(|system| !in_use(&system.name));
         let systems_off = off.map(|system| SystemOff {
             name: system.name.clone(),
@@ -218,17 +219,15 @@ impl Simulation {
             turned_on_by: system.called_for_by.into(),
         });
         let systems_off = systems_off.collect();
+        let of_name = |planned: &Planned| registry.get(&planned.name).ok_or_else(|| unknown(planned));
+        let scheduled = plan.systems.iter().map(of_name).collect::<Result<Vec<&System>, Error>>()?;
         let mut systems: Vec<SystemInUse> = Vec::new();
-        for entry in &self.entries {
-            let in_use = |member: &Member| system_in_use(entry, member, registry.get(&member.name), on_gpu, &sizes);
-            systems.extend(entry.systems.iter().map(in_use));
+        for pass in plan.passes(on_gpu) {
+            systems
+                .extend(pass.systems.iter().map(|&place| in_pass(plan, pass, place, scheduled[place], on_gpu, &sizes)));
         }
         let OnGpu { kernels, buffers, dispatched } = match on_gpu {
-            true => {
-                let names = self.entries.iter().flat_map(|entry| &entry.systems).map(|system| system.name.as_str());
-                let scheduled: Vec<&System> = names.filter_map(|name| registry.get(name)).collect();
-                kernels::describe(&scheduled, self.scene.fuse, &sizes, &mut self.world)?
-            }
+            true => kernels::describe(plan, &scheduled, &sizes, &mut self.world)?,
             false => Default::default(),
         };
         for system in &mut systems {
@@ -268,26 +267,30 @@ impl Simulation {
     }
 }
 
-fn system_in_use(entry: &Entry, member: &Member, system: Option<&System>, on_gpu: bool, sizes: &Sizes) -> SystemInUse {
-    let on_device = on_gpu && system.is_some_and(|system| system.device.is_some());
-    let travels = match &entry.job {
-        Job::Host { reads, writes, observes: false, .. } if on_gpu && !on_device => {
-            let (mut brought, sent) = (sizes.existing(reads), sizes.existing(writes));
-            brought.extend(sent.iter().filter(|name| !reads.contains(name)));
-            let (brought_bytes, sent_bytes) = (sizes.sum(&brought), sizes.sum(&sent));
-            Some(Travels { brought, brought_bytes, sent, sent_bytes })
-        }
-        _ => None,
-    };
+fn unknown(planned: &Planned) -> Error {
+    Error::Options(format!("`{}` is not in the registry: it must be that of the simulation", planned.name))
+}
+
+/// A system as one of a pass.
+fn in_pass(plan: &Plan, pass: &Pass, place: usize, system: &System, on_gpu: bool, sizes: &Sizes) -> SystemInUse {
+    let planned = &plan.systems[place];
+    let on_device = on_gpu && planned.on_device;
+    let travels = (on_gpu && !on_device && !planned.observes).then(|| {
+        let (mut brought, sent) = (sizes.existing(&planned.reads), sizes.existing(&planned.writes));
+        brought.extend(sent.iter().filter(|name| !planned.reads.contains(name)));
+        let (brought_bytes, sent_bytes) = (sizes.sum(&brought), sizes.sum(&sent));
+        Travels { brought, brought_bytes, sent, sent_bytes }
+    });
+    let others = pass.systems.iter().filter(|&&other| other != place);
     SystemInUse {
-        name: member.name.clone(),
-        phase: format!("{:?}", member.phase),
-        does: system.map_or_else(String::new, |system| system.does.clone()),
-        because: member.because.clone(),
-        shares_with: entry.systems.iter().map(|other| other.name.clone()).filter(|name| *name != member.name).collect(),
+        name: planned.name.clone(),
+        phase: format!("{:?}", planned.phase),
+        does: system.does.clone(),
+        because: planned.because.clone(),
+        shares_with: others.map(|&other| plan.systems[other].name.clone()).collect(),
         on: if on_device { "device" } else { "host" },
         kernels: 0,
-        every: system.map_or(1, |system| system.every),
+        every: planned.every,
         travels,
     }
 }

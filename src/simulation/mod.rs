@@ -11,7 +11,6 @@ mod damped_step;
 pub mod explain;
 mod follow;
 mod frequency;
-mod fuse;
 mod growth;
 mod keep;
 mod mass_scaling;
@@ -23,6 +22,7 @@ mod options;
 mod outputs;
 mod pace;
 mod parameters;
+mod plan;
 mod plausible;
 mod policies;
 mod preload;
@@ -64,6 +64,8 @@ use std::time::Duration;
 /// A simulation: make it from a scene, step it, look at it.
 pub struct Simulation {
     world: World,
+    plan: plan::Plan,
+    /// Its passes on the backend that it runs on.
     entries: Vec<Entry>,
     scene: Scene,
     facts: Facts,
@@ -80,22 +82,16 @@ pub struct Simulation {
     failure: Option<crate::error::Instability>,
 }
 
-/// A system of the running schedule, or several that share a pass.
+/// A pass of the plan that runs.
 struct Entry {
     name: String,
-    /// Of the last of them.
+    /// Of the last of its systems.
     phase: Phase,
-    systems: Vec<Member>,
+    /// Places of its systems in the plan.
+    systems: Vec<usize>,
     job: Job,
     time: Duration,
     runs: u64,
-}
-
-/// A system of an entry.
-struct Member {
-    name: String,
-    phase: Phase,
-    because: String,
 }
 
 enum Job {

@@ -196,7 +196,7 @@ impl Simulation {
             real_time_factor: solving / (self.time() - since).max(f64::MIN_POSITIVE),
             seconds_a_step: a_step,
             nanoseconds_an_element_and_step: a_step * 1e9 / facts.elements.max(1) as f64,
-            systems: self.entries.iter().map(|entry| system_time(entry, facts.on_gpu)).collect(),
+            systems: self.entries.iter().map(|entry| system_time(entry, &self.plan, facts.on_gpu)).collect(),
             traffic: self.world.get_resource::<Device>().map(Device::traffic),
             equilibrium: self.equilibrium().cloned(),
             preload: self.preload.clone(),
@@ -216,8 +216,8 @@ impl Simulation {
     }
 }
 
-fn system_time(entry: &super::Entry, on_gpu: bool) -> SystemTime {
-    let because: Vec<&str> = entry.systems.iter().map(|system| system.because.as_str()).collect();
+fn system_time(entry: &super::Entry, plan: &super::plan::Plan, on_gpu: bool) -> SystemTime {
+    let because: Vec<&str> = entry.systems.iter().map(|&place| plan.systems[place].because.as_str()).collect();
     let (name, because) = (entry.name.clone(), because.join("; "));
     match &entry.job {
         Job::Kernels(_) => {

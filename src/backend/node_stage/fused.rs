@@ -1,7 +1,7 @@
 //! Stages put together into one kernel.
 
 use super::items::{Items, renamed, storage_variable};
-use super::{NodePass, NodeStage, Rows};
+use super::{Forces, NodePass, NodeStage, Rows};
 use crate::backend::Buffers;
 use crate::backend::kernel::{BufferId, Fragment, Kernel, Layout, Uniform};
 use crate::backend::user_law::declared_names;
@@ -212,10 +212,10 @@ fn places(rows: &[u32], nodes: &Range<u32>) -> Vec<u32> {
 fn forces_between(stages: &[&NodeStage]) -> Vec<Fragment> {
     let calls = |name: &str| stages.iter().any(|stage| stage.columns.iter().any(|(column, _)| *column == name));
     let (inner, outer) = (calls(InternalForce::NAME), calls(ExternalForce::NAME));
-    let at_hand = ["gather", "integrate"].iter().all(|call| stages.iter().any(|stage| stage.call == *call));
+    let do_with_them = |what: Forces| stages.iter().any(|stage| stage.forces == what);
+    let at_hand = do_with_them(Forces::Sums) && do_with_them(Forces::UsesUp);
     let loaded = stages.iter().any(|stage| stage.loaded);
-    // the second half of integrate asks for none of them, but the fragment does
-    let integrates = stages.iter().any(|stage| stage.system == "integrate");
+    let integrates = do_with_them(Forces::UsesUp) || do_with_them(Forces::AsksFor);
     let mut fragments = Vec::new();
     match (inner, at_hand) {
         (true, true) => fragments.push(shader!("internal_force_at_hand")),

@@ -7,8 +7,9 @@ use crate::backend::gpu::GpuError;
 use crate::backend::kernel::{BindingKind, Kernel, compose};
 use crate::backend::many_steps::Dispatched;
 use crate::error::Error;
+use crate::simulation::plan::{Over, Plan};
 use crate::simulation::step_kernels::step_kernels;
-use crate::systems::{OnDevice, System};
+use crate::systems::System;
 use bevy_ecs::prelude::*;
 
 /// What runs on a GPU in a step.
@@ -22,24 +23,16 @@ pub struct OnGpu {
     pub dispatched: Vec<Dispatched>,
 }
 
-/// What a GPU runs for systems, which stand in their order.
-pub fn describe(systems: &[&System], fuse: bool, sizes: &Sizes, world: &mut World) -> Result<OnGpu, Error> {
+/// What a GPU runs for a plan, whose `systems` stand as in the plan.
+pub fn describe(plan: &Plan, systems: &[&System], sizes: &Sizes, world: &mut World) -> Result<OnGpu, Error> {
     let limits = world.get_resource::<Device>().map(Device::limits);
     let mut counter = Counter::new(sizes, limits);
-    let mut groups: Vec<Vec<&System>> = Vec::new();
-    let is_of_nodes = |system: &System| matches!(system.device, OnDevice::Stages(_));
-    for &system in systems {
-        match groups.last_mut().filter(|group| fuse && is_of_nodes(group[0]) && is_of_nodes(system)) {
-            Some(group) => group.push(system),
-            None => groups.push(vec![system]),
-        }
-    }
-    let (kernels, dispatched) = step_kernels(&groups, world, &mut counter);
+    let (kernels, dispatched) = step_kernels(plan, systems, world, &mut counter);
     let mut described = Vec::new();
-    for (kernels, group) in kernels.iter().zip(&groups) {
+    for (kernels, pass) in kernels.iter().zip(plan.passes(true)) {
         for kernel in kernels {
             let systems = kernel.label.split_once(" of ").map_or(kernel.label.as_str(), |(systems, _)| systems);
-            let system = if is_of_nodes(group[0]) { systems } else { &group[0].name };
+            let system = if pass.over == Over::Nodes { systems } else { &plan.systems[pass.systems[0]].name };
             described.push(in_use(system, kernel, &counter)?);
         }
     }

@@ -1,0 +1,268 @@
+//! The plan of a step: which systems share a pass, and in which order passes run, on the CPU and on a GPU. It is made
+//! once, from what systems are and what they touch, never from their names; the host's passes, a GPU's kernels and
+//! `explain` all follow it.
+
+use super::schedule::Scheduled;
+use crate::components::{ColumnAccess, Touched};
+use crate::systems::{OnDevice, OnHost, Phase};
+use bevy_ecs::prelude::World;
+use bevy_ecs::system::SystemAccess;
+
+/// A step as passes over what its systems touch.
+pub(super) struct Plan {
+    /// The systems, in the order of the schedule.
+    pub systems: Vec<Planned>,
+    on_cpu: Vec<Pass>,
+    on_gpu: Vec<Pass>,
+    /// Places of the passes on a GPU that sum forces of elements and that move nodes: where the second follows the
+    /// first at once, and where a step is nothing else that changes anything; else what is in the way.
+    elements_then_nodes: Result<[usize; 2], String>,
+    nothing_else: Result<[usize; 2], String>,
+}
+
+/// A system of a plan.
+pub(super) struct Planned {
+    /// Its name.
+    pub name: String,
+    /// Its place in the step.
+    pub phase: Phase,
+    /// Why it is there.
+    pub because: String,
+    /// Whether it fetches what it reads from a device by itself.
+    pub observes: bool,
+    /// Whether a GPU has it.
+    pub on_device: bool,
+    /// Steps between two runs.
+    pub every: u64,
+    /// Names of the columns that it reads and writes.
+    pub reads: Vec<&'static str>,
+    pub writes: Vec<&'static str>,
+}
+
+/// Systems that run together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Pass {
+    pub over: Over,
+    /// Places in [`Plan::systems`], in the order in which they run.
+    pub systems: Vec<usize>,
+}
+
+/// What a pass goes over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Over {
+    /// Whatever its one system does.
+    Itself,
+    /// Nodes: a task takes some rows through all systems.
+    Nodes,
+    /// Patches of elements, whose forces the first system finds; nodes inside a patch go through the other systems
+    /// while they are in the core's cache, all others afterwards.
+    Elements,
+}
+
+impl Plan {
+    /// Of a schedule, whose systems touch so much. Without `fuse` each system has a pass of its own.
+    pub fn of(schedule: &[Scheduled<'_>], access: &[SystemAccess], fuse: bool, world: &World) -> Self {
+        let planned = |(scheduled, access): (&Scheduled<'_>, &SystemAccess)| {
+            let Scheduled { system, because, every, .. } = scheduled;
+            let touched = Touched(access);
+            let names = |columns: Vec<ColumnAccess>| columns.into_iter().map(|column| column.name).collect();
+            Planned {
+                name: system.name.clone(),
+                phase: system.phase,
+                because: because.clone(),
+                observes: system.observes,
+                on_device: system.device.is_some(),
+                every: *every,
+                reads: names(touched.read_columns(world)),
+                writes: names(touched.written_columns(world)),
+            }
+        };
+        let passes = |on_gpu: bool| -> Vec<Pass> {
+            let grouping = Grouping { schedule, access, on_gpu };
+            let groups = if fuse { grouping.groups() } else { (0..schedule.len()).map(|place| vec![place]).collect() };
+            groups.into_iter().map(|systems| Pass { over: grouping.over(&systems), systems }).collect()
+        };
+        let (on_cpu, on_gpu) = (passes(false), passes(true));
+        let gpu = Grouping { schedule, access, on_gpu: true };
+        Self {
+            systems: schedule.iter().zip(access).map(planned).collect(),
+            elements_then_nodes: gpu.elements_then_nodes(&on_gpu),
+            nothing_else: gpu.nothing_but_elements_then_nodes(&on_gpu),
+            on_cpu,
+            on_gpu,
+        }
+    }
+
+    /// The passes of a backend, in the order in which they run.
+    pub fn passes(&self, on_gpu: bool) -> &[Pass] {
+        if on_gpu { &self.on_gpu } else { &self.on_cpu }
+    }
+
+    /// Places on a GPU of the pass of element forces and of that over nodes which moves them at once; else what is in
+    /// the way of moving nodes as soon as the forces on them are known.
+    pub fn elements_then_nodes(&self) -> Result<[usize; 2], &str> {
+        self.elements_then_nodes.as_ref().copied().map_err(String::as_str)
+    }
+
+    /// The same where a step is nothing else that changes anything; else what is in the way of taking steps one after
+    /// the other in a kernel.
+    pub fn nothing_but_elements_then_nodes(&self) -> Result<[usize; 2], &str> {
+        self.nothing_else.as_ref().copied().map_err(String::as_str)
+    }
+
+    /// The systems of a pass.
+    pub fn systems_of<'a>(&'a self, pass: &'a Pass) -> impl Iterator<Item = &'a Planned> {
+        pass.systems.iter().map(|&place| &self.systems[place])
+    }
+}
+
+/// Names, each once.
+pub(super) fn each_once(all: impl IntoIterator<Item = &'static str>) -> Vec<&'static str> {
+    let mut names: Vec<&'static str> = Vec::new();
+    for name in all {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+/// Groups neighbours of a schedule for a backend.
+#[derive(Clone, Copy)]
+struct Grouping<'a> {
+    schedule: &'a [Scheduled<'a>],
+    access: &'a [SystemAccess],
+    on_gpu: bool,
+}
+
+impl Grouping<'_> {
+    /// Places in the order in which systems run, those together that share a pass.
+    ///
+    /// A system that says where constrained nodes go may wait until just before the nodes move, where nothing in
+    /// between touches what it reads and writes: that is known of all systems, one's own too, from their queries.
+    fn groups(&self) -> Vec<Vec<usize>> {
+        let mut order: Vec<usize> = (0..self.schedule.len()).collect();
+        let is_boundary = |&place: &usize| self.schedule[place].system.phase == Phase::Boundary;
+        for place in (0..self.schedule.len()).filter(is_boundary).rev() {
+            self.put_off(place, &mut order);
+        }
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        for place in order {
+            match groups.last_mut().filter(|group| self.is_of_nodes(place) && self.is_of_nodes(group[0])) {
+                Some(group) => group.push(place),
+                None => groups.push(vec![place]),
+            }
+        }
+        if self.on_gpu { groups } else { self.with_elements(groups) }
+    }
+
+    /// On the CPU the forces of elements belong to the pass that follows them, where that sums them and moves nodes:
+    /// those inside a patch move with it.
+    fn with_elements(&self, groups: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
+        let mut together: Vec<Vec<usize>> = Vec::new();
+        for group in groups {
+            let sums = self.schedule[group[0]].system.host.nodes().is_some_and(|first| first.sums_forces);
+            match together.last_mut().filter(|before| sums && self.moves_nodes(&group) && self.is_of_elements(before)) {
+                Some(before) => before.extend(group),
+                None => together.push(group),
+            }
+        }
+        together
+    }
+
+    /// Moves a system on to just before the first that it must not be exchanged with, if that one works node by node
+    /// too.
+    fn put_off(&self, place: usize, order: &mut [usize]) {
+        let Some(from) = order.iter().position(|&other| other == place) else { return };
+        let blocks = |&other: &usize| !may_be_exchanged(&self.access[place], &self.access[other]);
+        let Some(steps) = order[from + 1..].iter().position(blocks) else { return };
+        let to = from + 1 + steps;
+        if self.is_of_nodes(place) && self.is_of_nodes(order[to]) {
+            order[from..to].rotate_left(1);
+        }
+    }
+
+    /// Whether the system of that place works node by node, in every step.
+    fn is_of_nodes(&self, place: usize) -> bool {
+        let Scheduled { system, every, interval, .. } = &self.schedule[place];
+        let of_nodes = match self.on_gpu {
+            true => matches!(system.device, OnDevice::Stages(_)),
+            false => system.host.nodes().is_some(),
+        };
+        of_nodes && *every == 1 && interval.is_none()
+    }
+
+    /// Whether these are the forces of elements alone.
+    fn is_of_elements(&self, group: &[usize]) -> bool {
+        matches!(group, [place] if match self.on_gpu {
+            true => {
+                let system = self.schedule[*place].system;
+                system.phase == Phase::ElementForces && system.device.is_some()
+            }
+            false => matches!(self.schedule[*place].system.host, OnHost::Elements(_)),
+        })
+    }
+
+    fn moves_nodes(&self, group: &[usize]) -> bool {
+        let of_nodes = |&place: &usize| self.schedule[place].system.host.nodes();
+        group.iter().filter_map(of_nodes).any(|system| system.moves_nodes)
+    }
+
+    fn over(&self, group: &[usize]) -> Over {
+        let first = self.schedule[group[0]].system;
+        let of_nodes = match self.on_gpu {
+            true => matches!(first.device, OnDevice::Stages(_)),
+            false => first.host.nodes().is_some(),
+        };
+        match of_nodes {
+            true => Over::Nodes,
+            false if group.len() > 1 => Over::Elements,
+            false => Over::Itself,
+        }
+    }
+
+    /// What only looks does so between steps.
+    fn changes(&self, pass: &Pass) -> bool {
+        !self.schedule[pass.systems[0]].system.observes
+    }
+
+    fn moves_in_a_pass(&self, pass: &Pass) -> bool {
+        pass.over == Over::Nodes && pass.systems.len() > 1 && self.moves_nodes(&pass.systems)
+    }
+
+    /// See [`Plan::elements_then_nodes`].
+    fn elements_then_nodes(&self, passes: &[Pass]) -> Result<[usize; 2], String> {
+        let mut places = (0..passes.len()).filter(|&place| self.changes(&passes[place]));
+        let of_elements = |&place: &usize| self.is_of_elements(&passes[place].systems);
+        let elements = places.find(of_elements).ok_or("it has no element forces")?;
+        match places.next() {
+            Some(nodes) if self.moves_in_a_pass(&passes[nodes]) => Ok([elements, nodes]),
+            Some(other) => Err(self.apart(&passes[other])),
+            None => Err("nothing moves the nodes after element forces".into()),
+        }
+    }
+
+    /// See [`Plan::nothing_but_elements_then_nodes`].
+    fn nothing_but_elements_then_nodes(&self, passes: &[Pass]) -> Result<[usize; 2], String> {
+        let is_other = |pass: &&Pass| !self.is_of_elements(&pass.systems) && !self.moves_in_a_pass(pass);
+        match passes.iter().filter(|pass| self.changes(pass)).find(is_other) {
+            Some(other) => Err(self.apart(other)),
+            None => self.elements_then_nodes(passes),
+        }
+    }
+
+    fn apart(&self, pass: &Pass) -> String {
+        format!("`{}` does not share a pass over the nodes", self.schedule[pass.systems[0]].system.name)
+    }
+}
+
+/// Whether neither writes what the other touches.
+fn may_be_exchanged(one: &SystemAccess, other: &SystemAccess) -> bool {
+    match (one, other) {
+        (SystemAccess::None, _) | (_, SystemAccess::None) => true,
+        (SystemAccess::Shared(one), SystemAccess::Shared(other)) => {
+            one.combined_access().is_compatible(other.combined_access())
+        }
+        _ => false,
+    }
+}
