@@ -87,6 +87,6 @@ impl Simulation {
         let column = found.and_then(|found| found.get_ref::<C>()).ok_or_else(missing)?;
         let generation = column.last_changed().get();
         let node_rows = found.and_then(|found| found.get::<Authoring>()).map_or(&[][..], |known| &known.node_rows);
-        Ok(ColumnView { values: &**column.into_inner(), numbers, node_rows, generation })
+        Ok(ColumnView { values: column.into_inner(), numbers, node_rows, generation })
     }
 }
