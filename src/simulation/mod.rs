@@ -6,6 +6,7 @@ mod added_mass;
 mod beat;
 mod block_forces;
 mod build;
+mod column_view;
 mod costly;
 mod damped_step;
 pub mod explain;
@@ -42,6 +43,7 @@ mod tangent;
 mod unload;
 mod watch;
 
+pub use column_view::ColumnView;
 pub use follow::StepHistory;
 pub use modes::Mode;
 pub use names::{FieldName, Names};

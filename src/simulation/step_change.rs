@@ -12,28 +12,9 @@ use crate::materials::PronyTerm;
 use crate::observation::Observer;
 use bevy_ecs::prelude::*;
 
-/// What a change reads or writes.
-const COLUMNS: [&str; 9] = [
-    PreviousPrescribedStep::NAME,
-    Displacement::NAME,
-    DisplacementStep::NAME,
-    DisplacementCompensation::NAME,
-    Work::NAME,
-    RestShape::NAME,
-    ViscousMemory::NAME,
-    Alive::NAME,
-    RemovalStep::NAME,
-];
-
-/// What it writes.
-const WRITTEN: [&str; 6] = [
-    DisplacementStep::NAME,
-    DisplacementCompensation::NAME,
-    Work::NAME,
-    PreviousPrescribedStep::NAME,
-    ViscousMemory::NAME,
-    RemovalStep::NAME,
-];
+/// What is read and written beside increments: where viscous memories follow, and where elements go by time.
+const READ: [&str; 5] = [Displacement::NAME, RestShape::NAME, ViscousMemory::NAME, Alive::NAME, RemovalStep::NAME];
+const WRITTEN: [&str; 2] = [ViscousMemory::NAME, RemovalStep::NAME];
 
 impl Simulation {
     /// Takes steps of another length (s) from the present one on, whatever is stable; the scene ends with the last
@@ -59,12 +40,15 @@ impl Simulation {
     /// systems and the history of viscous materials go on at their times.
     pub(super) fn change_step(&mut self, time_step: f64, last_step: u64) -> Result<(), Error> {
         let world = &mut self.world;
-        bring_to_host(world, |_, name| COLUMNS.contains(&name))?;
+        let counted: Vec<ColumnAccess> =
+            all_columns().into_iter().filter(|column| column.increments != Increments::None).collect();
+        let counts = |name: &str| counted.iter().any(|column| column.name == name);
+        bring_to_host(world, |_, name| READ.contains(&name) || counts(name))?;
         let before = *world.resource::<Clock>();
         world.resource_scope(|world, mut observer: Mut<Observer>| observer.change_step(world, time_step, last_step))?;
         world.resource_mut::<Clock>().change_step(time_step);
         let now = *world.resource::<Clock>();
-        scale_steps(world, now.time_step / before.time_step);
+        scale_increments(&counted, now.time_step / before.time_step, world);
         relax_on(world, &now)?;
         remove_in_time(world, &now);
         for entry in &mut self.entries {
@@ -73,32 +57,15 @@ impl Simulation {
             }
         }
         self.facts.steps = last_step;
-        send_to_device(world, |_, name| WRITTEN.contains(&name))
+        send_to_device(world, |_, name| WRITTEN.contains(&name) || counts(name))
     }
 }
 
-/// Velocities are kept: steps, what rounding left out of them, and the last steps along constrained axes.
-fn scale_steps(world: &mut World, factor: f64) {
-    let scale = |column: &mut Reals, i: usize| column.set(i, factor * column.get(i));
-    type Steps<'a> = (
-        &'a mut DisplacementStep,
-        Option<&'a mut DisplacementCompensation>,
-        Option<&'a mut Work>,
-        Option<&'a mut PreviousPrescribedStep>,
-    );
-    for (mut step, lost, work, mut previous) in world.query::<Steps>().iter_mut(world) {
-        let nodes = step.len() / 3;
-        (0..3 * nodes).for_each(|i| scale(&mut step, i));
-        if let Some(mut lost) = lost {
-            // after those of the displacements those of the steps
-            (3 * nodes..6 * nodes).for_each(|i| scale(&mut lost, i));
-        }
-        for step in previous.iter_mut().flat_map(|previous| previous.iter_mut()) {
-            *step = (factor * f64::from(*step)) as f32;
-        }
-        if let Some(mut work) = work {
-            (0..nodes).flat_map(|node| (4..7).map(move |i| WORK_NUMBERS * node + i)).for_each(|i| scale(&mut work, i));
-        }
+/// Velocities are kept: what columns hold of changes in a step follows it.
+fn scale_increments(counted: &[ColumnAccess], factor: f64, world: &mut World) {
+    let bodies: Vec<Entity> = world.query_filtered::<Entity, With<Body>>().iter(world).collect();
+    for body in bodies {
+        counted.iter().for_each(|column| (column.scale_increments)(world, body, factor));
     }
 }
 
