@@ -12,6 +12,7 @@ mod follow;
 mod frequency;
 mod growth;
 mod keep;
+mod known;
 mod mass_scaling;
 mod modes;
 mod names;

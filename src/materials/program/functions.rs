@@ -251,7 +251,7 @@ impl Translator<'_> {
 }
 
 fn not_there(at: Span) -> Untranslatable {
-    Untranslatable::new(at, "this function is not there for a law of one's own").note(FUNCTIONS)
+    Untranslatable::new(at, "this function is not there for a text of one's own").note(FUNCTIONS)
 }
 
 fn number(value: &Value, at: Span) -> Result<Id> {
