@@ -13,6 +13,7 @@ mod frequency;
 mod growth;
 mod keep;
 mod known;
+mod load_rates;
 mod mass_scaling;
 mod modes;
 mod names;
