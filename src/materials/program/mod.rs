@@ -53,8 +53,9 @@ impl Untranslatable {
 pub const KNOWN_BY_NAME: [&str; 4] = ["inverse_cbrt", "exponential", "exponential_less_one", "logarithm_of_one_plus"];
 
 const NOT_ALLOWED: &str = "this is not possible in a text of one's own";
-const FUNCTIONS: &str = "allowed: abs, all, any, clamp, cross, determinant, distance, dot, exp, exp2, fma, inverseSqrt, \
-     length, log, log2, max, min, mix, normalize, outer, pow, saturate, select, sign, sqrt, step, transpose";
+const FUNCTIONS: &str = "allowed: abs, all, any, clamp, cos, cross, determinant, distance, dot, exp, exp2, fma, \
+     inverseSqrt, length, log, log2, max, min, mix, normalize, outer, pow, saturate, select, sign, sin, sqrt, step, \
+     transpose";
 
 /// The text of the WGSL functions of a law or a load, read in double precision.
 pub struct Source {
