@@ -46,8 +46,8 @@ pub use error::{Error, GpuFailure, Instability, NotConverged, NotUnloaded, shell
 pub use scene::SceneFile;
 pub use simulation::explain;
 pub use simulation::{
-    BackendChoice, Equilibrium, FieldName, Inversions, Mode, Names, NodeSet, NodeState, Options, Preload, Simulation,
-    Stability, StepHistory, Summary, SystemTime, Unloaded, Unloading, UnloadingStep, unload,
+    BackendChoice, ColumnView, Equilibrium, FieldName, Inversions, Mode, Names, NodeSet, NodeState, Options, Preload,
+    Simulation, Stability, StepHistory, Summary, SystemTime, Unloaded, Unloading, UnloadingStep, unload,
 };
 pub use snapshot::Snapshot;
 

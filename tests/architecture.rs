@@ -153,6 +153,26 @@ fn files_are_at_most_400_lines() {
     }
 }
 
+/// Paths in backticks that begin with a folder of the repository.
+#[test]
+fn what_is_said_of_the_architecture_is_there() {
+    let text = std::fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let top: Vec<String> = std::fs::read_dir(root())
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
+    let is_path = |words: &&str| {
+        let first = words.split('/').next().unwrap_or_default();
+        words.contains('/') && !words.contains(' ') && top.iter().any(|name| name == first)
+    };
+    let paths: Vec<&str> = text.split('`').skip(1).step_by(2).filter(is_path).collect();
+    let missing: Vec<&&str> = paths.iter().filter(|path| !root().join(path).exists()).collect();
+    assert!(paths.len() > 30 && missing.is_empty(), "{} paths, not there: {missing:?}", paths.len());
+    let linked = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    let broken: Vec<&str> = linked.filter(|link| !root().join(link).exists()).collect();
+    assert!(broken.is_empty(), "links to nowhere: {broken:?}");
+}
+
 #[test]
 fn every_system_is_a_file_of_its_name_and_a_line_of_the_step() {
     let names: Vec<String> = sinew::systems::standard().into_iter().map(|system| system.name).collect();

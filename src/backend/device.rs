@@ -174,6 +174,8 @@ pub fn bring_to_host(world: &mut World, wanted: impl Fn(Entity, &'static str) ->
     let range = |column: &DeviceColumn| (column.buffer, column.place.start, column.place.end - column.place.start);
     let ranges: Vec<(BufferId, u64, u64)> = keys.iter().map(|key| range(&device.columns[key])).collect();
     let result = if ranges.is_empty() { Ok(Vec::new()) } else { device.gpu.download_ranges(&ranges) };
+    // what comes is newer than what was seen before
+    world.increment_change_tick();
     let result = result.map(|downloads| {
         for (key, bytes) in keys.iter().zip(downloads) {
             if let Some(column) = device.columns.get_mut(key) {

@@ -43,38 +43,38 @@ pub enum FamilyDirection<T> {
 
 columns! {
     /// Rows of the body's node columns, by corner.
-    Connectivity(Vec<u32>) = "connectivity", Structure;
+    Connectivity(Vec<u32>) = "connectivity", Structure, Elements;
     /// What the element type knows of the rest shape: see [`Element`](crate::elements::Element).
-    RestShape(Reals) = "rest_shape", Given;
+    RestShape(Reals) = "rest_shape", Given, Elements;
     /// Unit vectors along the fibres at rest, of the families where they differ from element to element.
-    FibreDirection(Reals) = "fibre_direction", Given;
+    FibreDirection(Reals) = "fibre_direction", Given, Elements;
     /// Viscous history q: six numbers a point and Prony term, then one a term of the pressure.
-    ViscousMemory(Reals) = "viscous_memory", State;
+    ViscousMemory(Reals) = "viscous_memory", State, Elements;
     /// 1 until the element is removed, then 0. Exists when elements can be removed.
-    Alive(Vec<u32>) = "alive", State;
+    Alive(Vec<u32>) = "alive", State, Elements;
     /// The step before which the element goes at the latest; `u32::MAX`: never. Exists with [`Alive`].
-    RemovalStep(Vec<u32>) = "removal_step", State;
+    RemovalStep(Vec<u32>) = "removal_step", State, Elements;
     /// Elastic, hourglass and kinetic energy (J) that each element held when it was removed. Exists with [`Alive`].
-    RemovedEnergy(Reals) = "removed_energy", State;
+    RemovedEnergy(Reals) = "removed_energy", State, Elements;
     /// The part of [`RemovedEnergy`] that is kinetic along constrained axes (J): what constraints had given the mass that
     /// went, and is their work still. Exists with [`Alive`].
-    RemovedWork(Reals) = "removed_work", State;
+    RemovedWork(Reals) = "removed_work", State, Elements;
     /// Volume at rest (m³) of each element that is there, and that times θ, by which its law measures the change of
     /// volume. Exists with [`NodalVolumeChange`].
-    ElementVolume(Reals) = "element_volume", Scratch;
+    ElementVolume(Reals) = "element_volume", Scratch, Elements;
     /// θ of each node of the body: the mean over the block's elements around it, by rest volume. Exists for elements
     /// with averaged nodal pressure.
-    NodalVolumeChange(Reals) = "nodal_volume_change", Scratch;
+    NodalVolumeChange(Reals) = "nodal_volume_change", Scratch, Nodes(1);
     /// What each 64 elements come to, four words each: bits of the elastic and the hourglass energy (J) and of the
     /// smallest J, and its row. For the guards on a GPU.
-    ElementSums(Vec<u32>) = "element_sums", Scratch;
+    ElementSums(Vec<u32>) = "element_sums", Scratch, Other;
     /// Two numbers: the lowest row of an element found with J < 0, by the kernel itself in every step, and the step in
     /// which it was: the first in which there was one; `u32::MAX`: none. Elements that are removed for it
     /// ([`OnInversion`]) are not noted here.
-    FirstInverted(Vec<u32>) = "first_inverted", State;
+    FirstInverted(Vec<u32>) = "first_inverted", State, Other;
     /// Mass that was added to each element so that the step may be as large as it is (kg), in f64 whatever the run's
     /// precision. Exists where the scene has mass scaled.
-    AddedMass(Vec<f64>) = "added_mass", State;
+    AddedMass(Vec<f64>) = "added_mass", State, Elements;
 }
 
 /// Elements of a patch: enough to be worth a task, few enough that their nodes and forces stay in a core's cache.

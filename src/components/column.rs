@@ -141,6 +141,42 @@ pub enum Role {
     Scratch,
 }
 
+/// What a row of a column belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rows {
+    /// A node of a body, so many numbers each, side by side.
+    Nodes(usize),
+    /// An element of a block, in groups of [`LANES`](crate::math::LANES).
+    Elements,
+    /// Something else: sums over several, what is found first, forces by corner.
+    Other,
+}
+
+/// Which numbers of a column are changes in a step, and follow when steps become longer or shorter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Increments {
+    /// None.
+    None,
+    /// All.
+    All,
+    /// Those of the second half.
+    SecondHalf,
+    /// The last three of so many numbers a row.
+    LastThreeOf(usize),
+}
+
+impl Increments {
+    /// Whether that of a place in a column of some length is one.
+    pub(super) fn is_one(self, place: usize, length: usize) -> bool {
+        match self {
+            Self::None => false,
+            Self::All => true,
+            Self::SecondHalf => place >= length / 2,
+            Self::LastThreeOf(numbers) => place % numbers >= numbers - 3,
+        }
+    }
+}
+
 /// A component that is a column of plain numbers and can live on a device: the same bytes here and there.
 pub trait Column: Component<Mutability = Mutable> {
     /// Its name in shaders and reports.
@@ -152,10 +188,16 @@ pub trait Column: Component<Mutability = Mutable> {
     const BUFFER: &'static str;
     /// What its numbers are in shaders: `f32` or `u32`.
     const WORD: &'static str;
+    /// What its rows belong to.
+    const ROWS: Rows;
+    /// Which of its numbers are changes in a step.
+    const INCREMENTS: Increments;
     /// The bytes.
     fn bytes(&self) -> &[u8];
     /// The bytes, to write.
     fn bytes_mut(&mut self) -> &mut [u8];
+    /// Multiplies those that are changes in a step.
+    fn scale_increments(&mut self, factor: f64);
 }
 
 /// Access to one kind of column without its type.
@@ -175,6 +217,12 @@ pub struct ColumnAccess {
     pub write: fn(&mut World, Entity, &[u8]),
     /// Its component.
     pub id: fn(&World) -> Option<ComponentId>,
+    /// What its rows belong to.
+    pub rows: Rows,
+    /// Which of its numbers are changes in a step.
+    pub increments: Increments,
+    /// Multiplies these on the host.
+    pub scale_increments: fn(&mut World, Entity, f64),
 }
 
 impl ColumnAccess {
@@ -192,6 +240,13 @@ impl ColumnAccess {
                 }
             },
             id: |world| world.component_id::<C>(),
+            rows: C::ROWS,
+            increments: C::INCREMENTS,
+            scale_increments: |world, entity, factor| {
+                if let Some(mut column) = world.get_mut::<C>(entity) {
+                    column.scale_increments(factor);
+                }
+            },
         }
     }
 }
@@ -212,12 +267,21 @@ pub fn all_columns() -> Vec<ColumnAccess> {
     [super::nodes::accesses(), super::block::accesses()].concat()
 }
 
-/// Declares components that are columns, each with its name, its [`Role`] and, where that is not its own, its buffer;
-/// and a function `accesses` that lists them.
+/// Declares components that are columns, each with its name, its [`Role`], what its [`Rows`] belong to and, where they
+/// are not none and its own, its [`Increments`] and its buffer; and a function `accesses` that lists them.
 macro_rules! columns {
     (@buffer $word:literal) => { $word };
     (@buffer $word:literal $buffer:literal) => { $buffer };
-    ($($(#[$doc:meta])* $name:ident($type:ty) = $word:literal, $role:ident $(, in $buffer:literal)?;)*) => {
+    (@increments) => { $crate::components::Increments::None };
+    (@increments $which:ident) => { $crate::components::Increments::$which };
+    (@increments $which:ident $numbers:expr) => { $crate::components::Increments::$which($numbers) };
+    (@rows $rows:ident) => { $crate::components::Rows::$rows };
+    (@rows $rows:ident $numbers:expr) => { $crate::components::Rows::$rows($numbers) };
+    ($(
+        $(#[$doc:meta])*
+        $name:ident($type:ty) = $word:literal, $role:ident, $rows:ident$(($numbers:expr))?
+            $(, increments: $which:ident$(($of:expr))?)? $(, in $buffer:literal)?;
+    )*) => {
         $(
             $(#[$doc])*
             #[derive(bevy_ecs::prelude::Component, Clone, Debug)]
@@ -228,11 +292,18 @@ macro_rules! columns {
                 const ROLE: $crate::components::Role = $crate::components::Role::$role;
                 const BUFFER: &'static str = $crate::components::column::columns!(@buffer $word $($buffer)?);
                 const WORD: &'static str = <$type as $crate::components::column::AsBytes>::WORD;
+                const ROWS: $crate::components::Rows = $crate::components::column::columns!(@rows $rows $($numbers)?);
+                const INCREMENTS: $crate::components::Increments =
+                    $crate::components::column::columns!(@increments $($which $($of)?)?);
                 fn bytes(&self) -> &[u8] {
                     $crate::components::column::AsBytes::as_bytes(&self.0)
                 }
                 fn bytes_mut(&mut self) -> &mut [u8] {
                     $crate::components::column::AsBytes::as_bytes_mut(&mut self.0)
+                }
+                fn scale_increments(&mut self, factor: f64) {
+                    let is_one = |place, length| Self::INCREMENTS.is_one(place, length);
+                    $crate::components::column::AsBytes::scale(&mut self.0, &is_one, factor);
                 }
             }
 
@@ -262,18 +333,30 @@ pub(crate) use columns;
 pub trait Word: bytemuck::Pod {
     /// What they are in shaders; of those that only the host has, what they would be.
     const WORD: &'static str;
+    /// So many times it.
+    fn times(self, factor: f64) -> Self;
 }
 
 impl Word for f32 {
     const WORD: &'static str = "f32";
+    fn times(self, factor: f64) -> Self {
+        (factor * f64::from(self)) as f32
+    }
 }
 
 impl Word for f64 {
     const WORD: &'static str = "f32";
+    fn times(self, factor: f64) -> Self {
+        factor * self
+    }
 }
 
 impl Word for u32 {
     const WORD: &'static str = "u32";
+    fn times(self, factor: f64) -> Self {
+        debug_assert!(false, "counts are no changes in a step");
+        (factor * f64::from(self)) as u32
+    }
 }
 
 /// What columns are made of.
@@ -284,6 +367,14 @@ pub trait AsBytes {
     fn as_bytes(&self) -> &[u8];
     /// The bytes, to write.
     fn as_bytes_mut(&mut self) -> &mut [u8];
+    /// Multiplies the numbers at some places of so many.
+    fn scale(&mut self, is_one: &dyn Fn(usize, usize) -> bool, factor: f64);
+}
+
+fn scale_words<T: Word>(words: &mut [T], is_one: &dyn Fn(usize, usize) -> bool, factor: f64) {
+    let length = words.len();
+    let scaled = words.iter_mut().enumerate().filter(|(place, _)| is_one(*place, length));
+    scaled.for_each(|(_, word)| *word = word.times(factor));
 }
 
 impl AsBytes for Reals {
@@ -294,6 +385,9 @@ impl AsBytes for Reals {
     fn as_bytes_mut(&mut self) -> &mut [u8] {
         self.bytes_mut()
     }
+    fn scale(&mut self, is_one: &dyn Fn(usize, usize) -> bool, factor: f64) {
+        either!(self, v => scale_words(v, is_one, factor));
+    }
 }
 
 impl<T: Word> AsBytes for Vec<T> {
@@ -303,5 +397,8 @@ impl<T: Word> AsBytes for Vec<T> {
     }
     fn as_bytes_mut(&mut self) -> &mut [u8] {
         bytemuck::cast_slice_mut(self)
+    }
+    fn scale(&mut self, is_one: &dyn Fn(usize, usize) -> bool, factor: f64) {
+        scale_words(self, is_one, factor);
     }
 }

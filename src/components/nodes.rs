@@ -12,51 +12,51 @@ pub struct RestPosition(pub Vec<DVec3>);
 
 columns! {
     /// Displacement u (m), a vector a node.
-    Displacement(Reals) = "displacement", State;
+    Displacement(Reals) = "displacement", State, Nodes(3);
     /// Displacement of the last step, u_n − u_{n−1} (m), a vector a node: velocity in the middle of the step times Δt.
     /// On constrained axes `boundary` writes the step to come here.
-    DisplacementStep(Reals) = "displacement_step", State;
+    DisplacementStep(Reals) = "displacement_step", State, Nodes(3), increments: All;
     /// What rounding has made of the displacements too much (m), a vector a node, and then what of their steps,
     /// likewise. Exists in f32 where sums are compensated.
-    DisplacementCompensation(Reals) = "displacement_compensation", State;
+    DisplacementCompensation(Reals) = "displacement_compensation", State, Other, increments: SecondHalf;
     /// Lumped mass (kg), a number a node; 0 parks the node.
-    Mass(Reals) = "mass", State;
+    Mass(Reals) = "mass", State, Nodes(1);
     /// Mass (kg) that resists acceleration in place of the real one, which only weighs then: in static analyses the
     /// mass that makes every element's bound of the stable step the same, else the real one and what was added to it
     /// where a scene has mass scaled. A number a node.
-    FictitiousMass(Reals) = "fictitious_mass", State;
+    FictitiousMass(Reals) = "fictitious_mass", State, Nodes(1);
     /// Σ c m over a node's elements (kg/s): damping rate times mass. Exists when a material is damped.
-    DampingCoefficient(Reals) = "damping_coefficient", State;
+    DampingCoefficient(Reals) = "damping_coefficient", State, Nodes(1);
     /// Force of the deformed elements on the node, sign such that M ü = R − F (N), a vector a node.
-    InternalForce(Reals) = "internal_force", State;
+    InternalForce(Reals) = "internal_force", State, Nodes(3);
     /// Sum R of all loads (N), a vector a node. Exists when there are loads.
-    ExternalForce(Reals) = "external_force", State;
+    ExternalForce(Reals) = "external_force", State, Nodes(3);
     /// Bits 0, 1, 2: the node does not move freely along x, y, z.
-    ConstrainedAxes(Vec<u32>) = "constrained_axes", Given;
+    ConstrainedAxes(Vec<u32>) = "constrained_axes", Given, Nodes(1);
     /// Work done on or by a node since the start (J): by loads, against damping, by constraints, by internal forces;
     /// then the last step along constrained axes (m), which `boundary` writes over: [`WORK_NUMBERS`] a node. Exists
     /// when energies are asked for.
-    Work(Reals) = "work", State;
+    Work(Reals) = "work", State, Nodes(WORK_NUMBERS), increments: LastThreeOf(WORK_NUMBERS);
     /// Two numbers: the lowest row of a node whose displacement was found not finite, and the step in which it was: the
     /// first in which there was one; `u32::MAX`: none.
-    FirstNonFinite(Vec<u32>) = "first_non_finite", State, in "node_diagnostics";
+    FirstNonFinite(Vec<u32>) = "first_non_finite", State, Other, in "node_diagnostics";
     /// Work against internal forces since the start (J), in f32 whatever the run's precision: two numbers for each
     /// [`GROUP_ROWS`] nodes and two more, a sum over nodes that move together and what rounding has left out of it.
     /// Exists in a motion without [`Work`] whose energy is guarded.
-    InternalWork(Vec<f32>) = "internal_work", State, in "node_diagnostics";
+    InternalWork(Vec<f32>) = "internal_work", State, Other, in "node_diagnostics";
     /// Displacement of the last step along prescribed axes (m), which `boundary` has written over in
     /// [`DisplacementStep`], in f32 whatever the run's precision: a vector a node. Exists with [`InternalWork`] where
     /// nodes are prescribed.
-    PreviousPrescribedStep(Vec<f32>) = "previous_prescribed_step", State, in "node_diagnostics";
+    PreviousPrescribedStep(Vec<f32>) = "previous_prescribed_step", State, Nodes(3), increments: All, in "node_diagnostics";
     /// Displacement in the middle of the last step (m), a vector a node: for the guards on a GPU.
-    MiddleDisplacement(Reals) = "middle_displacement", Scratch;
+    MiddleDisplacement(Reals) = "middle_displacement", Scratch, Nodes(3);
     /// What each 64 nodes come to, four words each: bits of ½ m d² (kg m²) and of the longest step's square (m²), its
     /// row, bits of the square of the largest displacement (m²).
-    NodeSums(Vec<u32>) = "node_sums", Scratch;
+    NodeSums(Vec<u32>) = "node_sums", Scratch, Other;
     /// Forces of all elements (N), all blocks of the body one after the other: a vector for each node of each patch
     /// ([`Patches`](super::Patches)), which those that move with their patch do not use; in the scheme of two passes
     /// those on corners, in each group of [`LANES`](crate::math::LANES) elements by corner, component, element.
-    ElementForce(Reals) = "element_force", Scratch;
+    ElementForce(Reals) = "element_force", Scratch, Other;
 }
 
 /// Nodes to a sum in [`InternalWork`]: no less are moved together, so that who moves some has a sum of its own.

@@ -3,7 +3,7 @@
 use super::{lane_place, node_count, point_count, with_element_of};
 use crate::backend::cpu::BlockLaw;
 use crate::components::*;
-use crate::elements::{Element, MOST_NODES, MOST_POINTS, largest_eigenvalue};
+use crate::elements::{Element, MOST_NODES, MOST_POINTS, PointState, largest_eigenvalue};
 use crate::materials::{Elastic, Kinematics};
 use crate::math::{Mat3, Sym3};
 use crate::mesh::ElementKind;
@@ -55,12 +55,13 @@ impl ElementState {
             let u = E::prepare(&displacements);
             let states: [_; E::POINTS] = std::array::from_fn(|point| E::at_point(&u, point, number));
             let whole: f64 = states.iter().map(|state| state.volume).sum();
-            let at = |point: usize| {
-                let state = states.get(point).unwrap_or(&states[0]);
-                let share = if E::POINTS == 1 { 1.0 } else { state.volume / whole };
-                PointKinematics { gradient: state.gradient, kinematics: law.elastic.kinematics(&state.gradient), share }
+            let at = |state: &PointState<f64>| PointKinematics {
+                gradient: state.gradient,
+                kinematics: law.elastic.kinematics(&state.gradient),
+                share: if E::POINTS == 1 { 1.0 } else { state.volume / whole },
             };
-            let points = std::array::from_fn(at);
+            let mut points = [at(&states[0]); MOST_POINTS];
+            points.iter_mut().zip(&states).skip(1).for_each(|(point, state)| *point = at(state));
             Self { kind, nodes, displacements, volume: number(E::VOLUME_ROW), simple, points }
         })
     }

@@ -97,6 +97,25 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
     Ok(sum)
 }
 
+/// What of the energies that are added up from step to step is no finite number: what it is of, and the number.
+pub(super) fn not_finite(world: &mut World) -> Result<Option<(&'static str, f64)>, Error> {
+    let wanted = [Work::NAME, RemovedEnergy::NAME, RemovedWork::NAME];
+    bring_to_host(world, |_, name| wanted.contains(&name))?;
+    let mut sums: Vec<(&'static str, f64)> = Vec::new();
+    for work in world.query::<&Work>().iter(world) {
+        let total = |i: usize| (0..work.len() / WORK_NUMBERS).map(|row| work.get(WORK_NUMBERS * row + i)).sum::<f64>();
+        let names =
+            ["the work of loads", "the loss to damping", "the work of constraints", "the work against internal forces"];
+        sums.extend(names.into_iter().enumerate().map(|(i, name)| (name, total(i))));
+    }
+    let total = |column: &Reals| (0..column.len()).map(|row| column.get(row)).sum::<f64>();
+    for (energy, work) in world.query::<(&RemovedEnergy, &RemovedWork)>().iter(world) {
+        sums.push(("the energy of removed elements", total(energy)));
+        sums.push(("the work of constraints on removed elements", total(work)));
+    }
+    Ok(sums.into_iter().find(|(_, value)| !value.is_finite()))
+}
+
 /// Displacements in the middle of the last step, where velocities are: only there do the energies add up.
 fn middle_of_step(world: &World, body: Entity) -> Option<Reals> {
     let (u, step) = (world.get::<Displacement>(body)?, world.get::<DisplacementStep>(body)?);

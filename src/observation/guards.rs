@@ -19,6 +19,8 @@ const OVERFLOW: &str = "a motion, load or modulus beyond what numbers can expres
                         integration.safety)";
 /// Parts that hold less than this share of all energy are not asked for their hourglass energy.
 const WORTH_LOOKING: f64 = 1e-3;
+/// Shares of hourglass energy are told up to this one: elastic energy may be next to none.
+const MOST_SHARE: f64 = 1e6;
 
 /// How a scene wants to be guarded.
 #[derive(Clone, Debug, Default)]
@@ -112,8 +114,14 @@ fn larger(a: f64, b: f64) -> f64 {
 /// forces: of a state that is handed out as a result, and of the last one, that would be too late.
 pub(super) fn find_in_result(world: &mut World, good_until: f64, watch: &Watch) -> Result<Option<Instability>, Error> {
     let parts = look_at_result(world)?;
-    let found = seen_inside_out(&parts, world);
-    Ok(found.map(|(body, what, criterion)| instability(world, watch, body, what, INVERTED, criterion, good_until)))
+    if let Some((body, what, criterion)) = seen_inside_out(&parts, world) {
+        return Ok(Some(instability(world, watch, body, what, INVERTED, criterion, good_until)));
+    }
+    let added_up = super::energies::not_finite(world)?;
+    Ok(added_up.map(|(what, value)| {
+        let (body, what) = (bodies(world), format!("{what} is {value}"));
+        instability(world, watch, body, what, OVERFLOW, Criterion::of("result"), good_until)
+    }))
 }
 
 /// Looks at energies and elements. Warns of what passes a limit, each once, and ends the run where elements hold more
@@ -243,7 +251,7 @@ fn hourglass(memory: &mut GuardMemory, seen: &Look, watch: &Watch, world: &World
         if sums.hourglass <= 0.0 || sums.hourglass + *peak < WORTH_LOOKING * memory.scale {
             continue;
         }
-        let share = sums.hourglass / peak.max(f64::MIN_POSITIVE);
+        let share = (sums.hourglass / peak.max(f64::MIN_POSITIVE)).min(MOST_SHARE);
         let worst = memory.hourglass.entry(part.clone()).or_default();
         *worst = worst.max(share);
         if share > limit && !watch.limits.off.contains(&Guard::Hourglass) {

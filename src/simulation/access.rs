@@ -20,6 +20,8 @@ impl Simulation {
 
     /// The world, to change. On the GPU changes to columns do not reach the device; custom systems' do.
     pub fn world_mut(&mut self) -> &mut World {
+        // what is written now is newer than what was seen before
+        self.world.increment_change_tick();
         &mut self.world
     }
 

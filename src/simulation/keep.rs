@@ -30,6 +30,7 @@ impl Simulation {
     /// # Errors
     /// That the snapshot is of another simulation (then nothing has changed); what the GPU says.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Error> {
+        self.world.increment_change_tick();
         snapshot.put(&mut self.world)?;
         (self.settling, self.preload) = (None, None);
         self.take_up_pace(snapshot)?;

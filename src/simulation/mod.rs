@@ -4,7 +4,9 @@ mod access;
 mod adapt;
 mod added_mass;
 mod beat;
+mod block_forces;
 mod build;
+mod column_view;
 mod costly;
 mod damped_step;
 pub mod explain;
@@ -43,6 +45,7 @@ mod tangent;
 mod unload;
 mod watch;
 
+pub use column_view::ColumnView;
 pub use follow::StepHistory;
 pub use modes::Mode;
 pub use names::{FieldName, Names};

@@ -1,39 +1,20 @@
 //! Going on with steps of another length: everything that counts in steps follows.
 
+use super::block_forces::{BlockForces, widened};
 use super::{Job, Simulation};
 use crate::assembly::step_of;
-use crate::backend::cpu::BlockLaw;
+use crate::backend::cpu::{BlockLaw, Cpu};
 use crate::backend::device::{Device, bring_to_host, send_to_device};
 use crate::backend::kernel::Uniform;
 use crate::components::*;
 use crate::error::Error;
-use crate::evaluation::{BlockView, lane_place, point_count};
 use crate::materials::PronyTerm;
 use crate::observation::Observer;
 use bevy_ecs::prelude::*;
 
-/// What a change reads or writes.
-const COLUMNS: [&str; 9] = [
-    PreviousPrescribedStep::NAME,
-    Displacement::NAME,
-    DisplacementStep::NAME,
-    DisplacementCompensation::NAME,
-    Work::NAME,
-    RestShape::NAME,
-    ViscousMemory::NAME,
-    Alive::NAME,
-    RemovalStep::NAME,
-];
-
-/// What it writes.
-const WRITTEN: [&str; 6] = [
-    DisplacementStep::NAME,
-    DisplacementCompensation::NAME,
-    Work::NAME,
-    PreviousPrescribedStep::NAME,
-    ViscousMemory::NAME,
-    RemovalStep::NAME,
-];
+/// What is read and written beside increments: where viscous memories follow, and where elements go by time.
+const READ: [&str; 5] = [Displacement::NAME, RestShape::NAME, ViscousMemory::NAME, Alive::NAME, RemovalStep::NAME];
+const WRITTEN: [&str; 2] = [ViscousMemory::NAME, RemovalStep::NAME];
 
 impl Simulation {
     /// Takes steps of another length (s) from the present one on, whatever is stable; the scene ends with the last
@@ -59,12 +40,15 @@ impl Simulation {
     /// systems and the history of viscous materials go on at their times.
     pub(super) fn change_step(&mut self, time_step: f64, last_step: u64) -> Result<(), Error> {
         let world = &mut self.world;
-        bring_to_host(world, |_, name| COLUMNS.contains(&name))?;
+        let counted: Vec<ColumnAccess> =
+            all_columns().into_iter().filter(|column| column.increments != Increments::None).collect();
+        let counts = |name: &str| counted.iter().any(|column| column.name == name);
+        bring_to_host(world, |_, name| READ.contains(&name) || counts(name))?;
         let before = *world.resource::<Clock>();
         world.resource_scope(|world, mut observer: Mut<Observer>| observer.change_step(world, time_step, last_step))?;
         world.resource_mut::<Clock>().change_step(time_step);
         let now = *world.resource::<Clock>();
-        scale_steps(world, now.time_step / before.time_step);
+        scale_increments(&counted, now.time_step / before.time_step, world);
         relax_on(world, &now)?;
         remove_in_time(world, &now);
         for entry in &mut self.entries {
@@ -73,32 +57,15 @@ impl Simulation {
             }
         }
         self.facts.steps = last_step;
-        send_to_device(world, |_, name| WRITTEN.contains(&name))
+        send_to_device(world, |_, name| WRITTEN.contains(&name) || counts(name))
     }
 }
 
-/// Velocities are kept: steps, what rounding left out of them, and the last steps along constrained axes.
-fn scale_steps(world: &mut World, factor: f64) {
-    let scale = |column: &mut Reals, i: usize| column.set(i, factor * column.get(i));
-    type Steps<'a> = (
-        &'a mut DisplacementStep,
-        Option<&'a mut DisplacementCompensation>,
-        Option<&'a mut Work>,
-        Option<&'a mut PreviousPrescribedStep>,
-    );
-    for (mut step, lost, work, mut previous) in world.query::<Steps>().iter_mut(world) {
-        let nodes = step.len() / 3;
-        (0..3 * nodes).for_each(|i| scale(&mut step, i));
-        if let Some(mut lost) = lost {
-            // after those of the displacements those of the steps
-            (3 * nodes..6 * nodes).for_each(|i| scale(&mut lost, i));
-        }
-        for step in previous.iter_mut().flat_map(|previous| previous.iter_mut()) {
-            *step = (factor * f64::from(*step)) as f32;
-        }
-        if let Some(mut work) = work {
-            (0..nodes).flat_map(|node| (4..7).map(move |i| WORK_NUMBERS * node + i)).for_each(|i| scale(&mut work, i));
-        }
+/// Velocities are kept: what columns hold of changes in a step follows it.
+fn scale_increments(counted: &[ColumnAccess], factor: f64, world: &mut World) {
+    let bodies: Vec<Entity> = world.query_filtered::<Entity, With<Body>>().iter(world).collect();
+    for body in bodies {
+        counted.iter().for_each(|column| (column.scale_increments)(world, body, factor));
     }
 }
 
@@ -112,13 +79,7 @@ fn relax_on(world: &mut World, clock: &Clock) -> Result<(), Error> {
             terms.iter().zip(&law.prony).map(change).collect::<Vec<f64>>(),
             volumetric.iter().zip(&law.volumetric).map(change).collect(),
         ];
-        let moved = moved_memory(world, entity, &changes);
-        if let (Some(moved), Some(mut memory)) = (moved, world.get_mut::<ViscousMemory>(entity)) {
-            moved.into_iter().for_each(|(place, by)| {
-                let value = memory.get(place) + by;
-                memory.set(place, value);
-            });
-        }
+        add_to_memory(world, entity, &changes);
         take_coefficients(world, entity, terms, volumetric)?;
     }
     Ok(())
@@ -150,10 +111,7 @@ fn remember(world: &mut World, times: fn(&PronyTerm<f64>) -> f64) {
     for entity in blocks {
         let Some(law) = world.get::<BlockLaw<f64>>(entity) else { continue };
         let times = [&law.prony, &law.volumetric].map(|terms| terms.iter().map(times).collect::<Vec<f64>>());
-        let memories = moved_memory(world, entity, &times);
-        if let (Some(memories), Some(mut memory)) = (memories, world.get_mut::<ViscousMemory>(entity)) {
-            memories.into_iter().for_each(|(place, value)| memory.set(place, value));
-        }
+        add_to_memory(world, entity, &times);
     }
 }
 
@@ -189,28 +147,20 @@ fn take_coefficients(
     Ok(())
 }
 
-/// Places in a block's memory, and what is added there: the change of the coefficient times the present stress.
-fn moved_memory(world: &World, entity: Entity, [terms, volumetric]: &[Vec<f64>; 2]) -> Option<Vec<(usize, f64)>> {
-    let view = BlockView::now(world, entity)?;
-    let points = point_count(view.block.kind);
-    let numbers = view.law.memory_numbers(points);
-    let mut moved = Vec::new();
-    for row in 0..view.block.count {
-        let state = view.element(row);
-        let mut pressure = 0.0;
-        for point in 0..points {
-            let (isochoric, instant) = view.instant(row, &state, point);
-            pressure = instant;
-            for (number, change) in terms.iter().enumerate() {
-                let first = 6 * (point * terms.len() + number);
-                moved.extend((0..6).map(|i| (lane_place(row, numbers, first + i), change * isochoric.0[i])));
-            }
-        }
-        for (number, change) in volumetric.iter().enumerate() {
-            moved.push((lane_place(row, numbers, 6 * terms.len() * points + number), change * pressure));
-        }
+/// Adds so many times the present stress to a block's memory: by its own kernel, with terms that do just that.
+fn add_to_memory(world: &mut World, entity: Entity, [terms, volumetric]: &[Vec<f64>; 2]) {
+    let adding = |times: &Vec<f64>| times.iter().map(|&times| PronyTerm::adding(times)).collect();
+    let law = |law: &BlockLaw<f64>| BlockLaw { prony: adding(terms), volumetric: adding(volumetric), ..law.clone() };
+    let added = BlockForces::of(world, entity, law).and_then(|mut block| {
+        let body = block.block.body;
+        let displacement = widened(world.get::<Displacement>(body)?);
+        let mut unused = vec![0.0; world.get::<ElementForce>(body)?.len()];
+        block.forces(world.resource::<Cpu>(), &displacement, &mut unused);
+        Some(block.memory)
+    });
+    if let (Some(added), Some(mut memory)) = (added, world.get_mut::<ViscousMemory>(entity)) {
+        memory.0 = Reals::from_f64(memory.precision(), added.into_iter());
     }
-    Some(moved)
 }
 
 /// What is still to go by time goes at the step that its time is now.

@@ -1,12 +1,12 @@
 //! Internal forces of all bodies in f64, whatever the run's precision and wherever it runs, and by their differences
 //! the tangent stiffness at the present state. Reads the world only.
 
-use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, run_block};
+use super::block_forces::BlockForces;
+use crate::backend::cpu::{BlockLaw, Cpu};
 use crate::components::*;
-use crate::evaluation::{lane_place, node_count, with_element_of};
-use crate::systems::{means_of, sum_corners};
+use crate::evaluation::{lane_place, node_count};
+use crate::systems::sum_corners;
 use bevy_ecs::prelude::*;
-use std::borrow::Cow;
 
 /// How far displacements are changed for a difference, as a share of the height of the flattest element: curvature of
 /// the law is then below 1e-6 of its slope, and rounding in f64 as well.
@@ -30,19 +30,6 @@ struct BodyForces<'w> {
     blocks: Vec<BlockForces<'w>>,
 }
 
-struct BlockForces<'w> {
-    block: &'w Block,
-    connectivity: &'w Connectivity,
-    patches: Option<&'w Patches>,
-    corners: Option<&'w BlockCorners>,
-    shape: Cow<'w, [f64]>,
-    fibres: Option<Cow<'w, [f64]>>,
-    law: BlockLaw<f64>,
-    memory: Vec<f64>,
-    volumes: Vec<f64>,
-    means: Vec<f64>,
-}
-
 impl<'w> Tangent<'w> {
     /// At the present displacements. The host's columns must be up to date: see [`Tangent::COLUMNS`].
     pub fn at_present(world: &'w World, bodies: &[Entity]) -> Option<Self> {
@@ -51,7 +38,8 @@ impl<'w> Tangent<'w> {
         for &body in bodies {
             let displacement = world.get::<Displacement>(body)?;
             let blocks = &world.get::<Authoring>(body)?.blocks;
-            let blocks = blocks.iter().map(|&block| BlockForces::of(world, block)).collect::<Option<Vec<_>>>()?;
+            let blocks =
+                blocks.iter().map(|&block| BlockForces::of(world, block, at_an_instant)).collect::<Option<Vec<_>>>()?;
             let (corners, forces) = (world.get::<Corners>(body)?, world.get::<ElementForce>(body)?.len());
             let (from, length) = (u.len(), displacement.len());
             all.push(BodyForces { corners, element_force: vec![0.0; forces], from, length, blocks });
@@ -98,48 +86,6 @@ impl<'w> Tangent<'w> {
     }
 }
 
-impl<'w> BlockForces<'w> {
-    fn of(world: &'w World, entity: Entity) -> Option<Self> {
-        let block = world.get::<Block>(entity)?;
-        let memory = world.get::<ViscousMemory>(entity);
-        let corners = world.get::<BlockCorners>(entity);
-        Some(Self {
-            block,
-            connectivity: world.get::<Connectivity>(entity)?,
-            patches: world.get::<Patches>(entity),
-            corners,
-            shape: widened(&world.get::<RestShape>(entity)?.0),
-            fibres: world.get::<FibreDirection>(entity).map(|f| widened(&f.0)),
-            law: at_an_instant(world.get::<BlockLaw<f64>>(entity)?),
-            memory: memory.map_or(Vec::new(), |memory| widened(&memory.0).into_owned()),
-            volumes: world.get::<ElementVolume>(entity).map_or(Vec::new(), |v| vec![0.0; v.len()]),
-            means: world.get::<NodalVolumeChange>(entity).map_or(Vec::new(), |v| vec![0.0; v.len()]),
-        })
-    }
-
-    fn forces(&mut self, cpu: &Cpu, u: &[f64], element_force: &mut [f64]) {
-        let block = self.block;
-        if let Some(corners) = self.corners {
-            let read = (self.connectivity, &*self.shape, corners, u);
-            means_of(cpu, block, read, &self.law, &mut self.volumes, &mut self.means);
-        }
-        let columns = BlockColumns {
-            displacement: u,
-            first_row: 0,
-            connectivity: self.connectivity,
-            rest_shape: &self.shape,
-            fibre_direction: self.fibres.as_deref(),
-            nodal_volume_change: &self.means,
-            memory: &mut self.memory,
-            force: &mut element_force[block.force_offset..block.force_offset + block.force_length],
-            patches: self.patches,
-            inverted_go: false,
-            inside: None,
-        };
-        with_element_of!(block, E => run_block::<E, f64>(cpu, columns, &self.law, patch_groups(block.kind)));
-    }
-}
-
 /// A law as it answers to what is sudden: stresses relaxed so far are there, nothing relaxes further, and fibres that
 /// could be pulled taut at any moment push back as well.
 fn at_an_instant(law: &BlockLaw<f64>) -> BlockLaw<f64> {
@@ -153,13 +99,6 @@ fn at_an_instant(law: &BlockLaw<f64>) -> BlockLaw<f64> {
     law.fibres.iter_mut().for_each(|(fibres, _)| fibres.tension_only = 0.0);
     law.exponential.iter_mut().for_each(|(family, _)| family.tension_only = 0.0);
     law
-}
-
-fn widened(reals: &Reals) -> Cow<'_, [f64]> {
-    match reals {
-        Reals::F64(values) => Cow::Borrowed(values),
-        Reals::F32(values) => Cow::Owned(values.iter().map(|&value| f64::from(value)).collect()),
-    }
 }
 
 /// About the height (m) of the flattest element: its volume at rest over the square of its longest edge.

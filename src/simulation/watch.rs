@@ -10,11 +10,16 @@ use crate::evaluation::{lane_place, node_count, rest_volume, with_element_of};
 use crate::math::LANES;
 use crate::observation::shortest_edge;
 use bevy_ecs::prelude::*;
+use std::ops::Range;
 
 /// Elements looked at in one task: what is found of them stays in the core's cache.
 const ROWS_A_TASK: usize = 512;
-/// Tasks whose elements are looked at one by one together.
-const TASKS_AT_ONCE: usize = 8;
+/// Elements that are looked at together, before one by one: neighbours, which are deformed alike.
+const ROWS_A_PART: usize = 64;
+const PARTS_A_TASK: usize = ROWS_A_TASK / ROWS_A_PART;
+const GROUPS_A_TASK: usize = ROWS_A_TASK / LANES;
+/// Parts whose elements are looked at one by one before it is asked which others still need it; then twice as many.
+const PARTS_AT_FIRST: usize = 4;
 /// What elements come to is known to this: their ω², and how much stiffer they have become.
 const NEARLY: f64 = 1.1;
 
@@ -28,13 +33,29 @@ pub(super) struct Watched {
     pub shortest_edge: f64,
     /// The growth of ω² of all, by each element, when that was found last.
     known_growth: Vec<f32>,
-    /// Of the elements of each task that are there: the largest bound at rest (1/s²), and the least growth of ω² of all
+    /// Of the elements of each part that are there: the largest bound at rest (1/s²), and the least growth of ω² of all
     /// when that was found.
-    tasks: Vec<(f64, f64)>,
+    parts: Vec<(f64, f64)>,
     /// How many elements were there when that was summed up.
     counted: usize,
     /// Whether anything is damped in proportion to its stiffness.
     pub is_damped: bool,
+}
+
+/// What strains of a block are taken from.
+struct Columns<'w> {
+    cpu: &'w Cpu,
+    block: &'w Block,
+    u: &'w Displacement,
+    d: &'w DisplacementStep,
+    connectivity: &'w Connectivity,
+    shape: &'w RestShape,
+    fibres: Option<&'w FibreDirection>,
+}
+
+/// Groups of a part's elements.
+fn part_groups(part: usize) -> Range<usize> {
+    part * ROWS_A_PART / LANES..(part + 1) * ROWS_A_PART / LANES
 }
 
 /// What a look at all elements shows.
@@ -93,10 +114,10 @@ impl Watched {
             let block = world.get::<Block>(entity)?;
             let rest = world.get::<RestPosition>(block.body)?;
             let shortest_edge = shortest_edge(block, world.get::<Connectivity>(entity)?, rest);
-            let (squares, tasks) = (Vec::new(), Vec::new());
+            let (squares, parts) = (Vec::new(), Vec::new());
             let known_growth = vec![1.0; block.count];
             let mut watched =
-                Self { entity, growth, squares, shortest_edge, known_growth, tasks, counted: 0, is_damped };
+                Self { entity, growth, squares, shortest_edge, known_growth, parts, counted: 0, is_damped };
             watched.weigh(world);
             Some(watched)
         };
@@ -118,21 +139,21 @@ impl Watched {
         self.sum_up(world);
     }
 
-    /// What tasks come to, of the elements that are there.
+    /// What parts come to, of the elements that are there.
     fn sum_up(&mut self, world: &World) {
         let (Some(block), Some(shape)) = (world.get::<Block>(self.entity), world.get::<RestShape>(self.entity)) else {
             return;
         };
         let is_there = |row: &usize| rest_volume(block, *row, shape) > 0.0;
         let count = self.squares.len();
-        let of_task = |task: usize| {
-            let rows = task * ROWS_A_TASK..count.min((task + 1) * ROWS_A_TASK);
+        let of_part = |part: usize| {
+            let rows = part * ROWS_A_PART..count.min((part + 1) * ROWS_A_PART);
             let rows = rows.filter(is_there).filter(|&row| self.squares[row] > 0.0);
             rows.fold((0.0_f64, f64::INFINITY), |(most, least), row| {
                 (most.max(self.squares[row]), least.min(f64::from(self.known_growth[row])))
             })
         };
-        self.tasks = (0..count.div_ceil(ROWS_A_TASK)).map(of_task).collect();
+        self.parts = (0..count.div_ceil(ROWS_A_PART)).map(of_part).collect();
         self.counted = (0..count).filter(is_there).count();
     }
 
@@ -151,64 +172,68 @@ impl Watched {
         fits
     }
 
-    /// Looks at all elements: first at what those of a task come to were one of them the largest in everything, then at
+    /// Looks at all elements: first at what those of a part come to were one of them the largest in everything, then at
     /// one after the other where that comes to most.
     pub fn look(&mut self, world: &World) -> Seen {
         let (cpu, count) = (world.resource::<Cpu>(), self.squares.len());
-        let nothing = Strain { row: 0, size: 1.0, squeeze: 1.0, speed: 0.0, more: 0.0 };
-        let widest = |task: usize| self.strains(world, task, None).unwrap_or((nothing, 0));
-        let widest = cpu.map(count.div_ceil(ROWS_A_TASK), widest);
+        let of_task = |task: usize| -> Vec<(Strain, usize)> {
+            let parts = task * PARTS_A_TASK..count.div_ceil(ROWS_A_PART).min((task + 1) * PARTS_A_TASK);
+            let Some(columns) = self.columns(world) else { return Vec::new() };
+            parts.map(|part| self.strains(&columns, part_groups(part), None)).collect()
+        };
+        let widest = cpu.map(count.div_ceil(ROWS_A_TASK), of_task).concat();
         let most = |of: fn(&Strain) -> f64| widest.iter().map(|(most, _)| of(most)).fold(1.0, f64::max);
-        self.growth.reach(most(|task| task.size), most(|task| task.squeeze));
+        self.growth.reach(most(|part| part.size), most(|part| part.squeeze));
         if widest.iter().map(|(_, alive)| alive).sum::<usize>() != self.counted {
             self.sum_up(world);
         }
-        let tasks = widest.iter().zip(&self.tasks).enumerate().filter(|(_, ((_, alive), _))| *alive > 0);
-        let tasks: Vec<(usize, Seen)> = tasks
-            .map(|(task, (&(widest, alive), &(at_rest, least_known)))| {
+        let parts = widest.iter().zip(&self.parts).enumerate().filter(|(_, ((_, alive), _))| *alive > 0);
+        let (places, parts): (Vec<usize>, Vec<Seen>) = parts
+            .map(|(part, (&(widest, alive), &(at_rest, least_known)))| {
                 let [own, of_all] = self.growth_of(widest.size, widest.squeeze, widest.more);
                 let (of_elements, ratio) = ((at_rest * own).min(f64::MAX), (of_all / least_known).max(1.0));
-                (task, Seen { square: f64::INFINITY, of_elements, at_rest, ratio, speed: widest.speed, alive })
+                (part, Seen { square: f64::INFINITY, of_elements, at_rest, ratio, speed: widest.speed, alive })
             })
-            .collect();
-        self.refine(world, tasks)
+            .unzip();
+        let parts = self.refined(world, &places, parts);
+        parts.into_iter().fold(Seen::NOTHING, Seen::and)
     }
 
-    /// Looks at elements one by one in those tasks that may come to most.
-    fn refine(&self, world: &World, mut tasks: Vec<(usize, Seen)>) -> Seen {
-        let at_rest = tasks.iter().fold(0.0_f64, |most, (_, task)| most.max(task.at_rest));
-        let most = |task: &Seen| (task.of_elements / at_rest).max(task.ratio);
-        tasks.sort_by(|(_, a), (_, b)| most(b).total_cmp(&most(a)));
-        // what is known to come to so much at least, and all others
-        let mut seen = Seen { of_elements: at_rest, ..Seen::NOTHING };
-        let mut others = Seen::NOTHING;
-        let mut left = tasks.into_iter();
+    /// Looks at elements one by one in those of some parts, at `places`, that may come to most.
+    fn refined(&self, world: &World, places: &[usize], mut parts: Vec<Seen>) -> Vec<Seen> {
+        let at_rest = parts.iter().fold(0.0_f64, |most, part| most.max(part.at_rest));
+        let most = |part: &Seen| (part.of_elements / at_rest).max(part.ratio);
+        // what is known to come to so much at least
+        let mut known = Seen { of_elements: at_rest, ..Seen::NOTHING };
+        let mut left: Vec<usize> = (0..parts.len()).collect();
+        let mut at_once = PARTS_AT_FIRST;
         loop {
-            let mut chosen = Vec::new();
-            for (task, at_most) in left.by_ref() {
-                if at_most.of_elements > NEARLY * seen.of_elements || at_most.ratio > NEARLY * seen.ratio {
-                    chosen.push((task, at_most));
-                } else {
-                    others = others.and(at_most);
-                }
-                if chosen.len() == TASKS_AT_ONCE {
-                    break;
-                }
+            left.retain(|&i| {
+                parts[i].of_elements > NEARLY * known.of_elements || parts[i].ratio > NEARLY * known.ratio
+            });
+            if left.is_empty() {
+                return parts;
             }
-            if chosen.is_empty() {
-                return seen.and(others);
+            if left.len() > at_once {
+                left.select_nth_unstable_by(at_once, |&a, &b| most(&parts[b]).total_cmp(&most(&parts[a])));
             }
-            let found = world.resource::<Cpu>().map(chosen.len(), |i| self.one_by_one(world, chosen[i]));
-            seen = found.into_iter().fold(seen, Seen::and);
+            let chosen: Vec<usize> = left.drain(..left.len().min(at_once)).collect();
+            at_once *= 2;
+            let one_by_one = |i: usize| self.one_by_one(world, (places[chosen[i]], parts[chosen[i]]));
+            for (i, found) in chosen.iter().zip(world.resource::<Cpu>().map(chosen.len(), one_by_one)) {
+                parts[*i] = found;
+                known = known.and(found);
+            }
         }
     }
 
-    /// What the elements of a task come to that may all together come to `at_most`.
-    fn one_by_one(&self, world: &World, (task, at_most): (usize, Seen)) -> Seen {
+    /// What the elements of a part come to that may all together come to `at_most`.
+    fn one_by_one(&self, world: &World, (part, at_most): (usize, Seen)) -> Seen {
         let (mut of_elements, mut ratio) = (0.0_f64, 1.0_f64);
+        let Some(columns) = self.columns(world) else { return at_most };
         self.strains(
-            world,
-            task,
+            &columns,
+            part_groups(part),
             Some(&mut |strains: &[Strain]| {
                 for strain in strains.iter().filter(|strain| self.squares[strain.row] > 0.0) {
                     let [own, of_all] = self.growth_of(strain.size, strain.squeeze, strain.more);
@@ -275,41 +300,54 @@ impl Watched {
         start: R,
         visit: impl Fn(&mut R, &Strain) + Sync + Send,
     ) -> Vec<R> {
+        let groups = self.squares.len().div_ceil(LANES);
         let task = |task: usize| {
             let mut found = start.clone();
-            self.strains(world, task, Some(&mut |strains| strains.iter().for_each(|strain| visit(&mut found, strain))));
+            if let Some(columns) = self.columns(world) {
+                let own = task * GROUPS_A_TASK..groups.min((task + 1) * GROUPS_A_TASK);
+                let mut visit = |strains: &[Strain]| strains.iter().for_each(|strain| visit(&mut found, strain));
+                self.strains(&columns, own, Some(&mut visit));
+            }
             found
         };
-        world.resource::<Cpu>().map(self.squares.len().div_ceil(ROWS_A_TASK), task)
+        world.resource::<Cpu>().map(groups.div_ceil(GROUPS_A_TASK), task)
     }
 
-    /// Visits the elements of a task that are there; what they come to, and how many they are. `None` where the world
-    /// has them no longer.
-    fn strains(&self, world: &World, task: usize, visit: Option<Visit<'_>>) -> Option<(Strain, usize)> {
+    /// What strains are taken from; `None` where the world has the block no longer.
+    fn columns<'w>(&self, world: &'w World) -> Option<Columns<'w>> {
         let block = world.get::<Block>(self.entity)?;
-        let (u, d) = (world.get::<Displacement>(block.body)?, world.get::<DisplacementStep>(block.body)?);
-        let (connectivity, shape) = (world.get::<Connectivity>(self.entity)?, world.get::<RestShape>(self.entity)?);
-        let fibres = world.get::<FibreDirection>(self.entity).map(|fibres| &fibres.0);
+        Some(Columns {
+            cpu: world.resource::<Cpu>(),
+            block,
+            u: world.get::<Displacement>(block.body)?,
+            d: world.get::<DisplacementStep>(block.body)?,
+            connectivity: world.get::<Connectivity>(self.entity)?,
+            shape: world.get::<RestShape>(self.entity)?,
+            fibres: world.get::<FibreDirection>(self.entity),
+        })
+    }
+
+    /// Visits the elements of some groups that are there; what they come to, and how many they are.
+    fn strains(&self, of: &Columns<'_>, groups: Range<usize>, visit: Option<Visit<'_>>) -> (Strain, usize) {
+        let fibres = of.fibres.map(|fibres| &fibres.0);
         let families = |row: usize, c: [f64; 6]| -> f64 {
             let families = self.growth.families.iter();
             families.map(|(family, from)| self.growth.of_family(family, c, self.direction(row, from, fibres))).sum()
         };
         let more = (!self.growth.families.is_empty()).then_some(&families as &(dyn Fn(usize, [f64; 6]) -> f64 + Sync));
-        let groups = ROWS_A_TASK / LANES;
-        let groups = task * groups..block.count.div_ceil(LANES).min((task + 1) * groups);
-        let cpu = world.resource::<Cpu>();
+        let (block, connectivity, ends) = (of.block, of.connectivity, self.growth.ends);
+        let groups = groups.start..groups.end.min(block.count.div_ceil(LANES));
         macro_rules! run {
             ($T:ty) => {{
-                let (displacement, step, rest_shape) = (u.slice(), d.slice(), shape.slice());
-                let ends = self.growth.ends;
+                let (displacement, step, rest_shape) = (of.u.slice(), of.d.slice(), of.shape.slice());
                 let columns = StrainColumns::<$T> { displacement, step, connectivity, rest_shape, ends };
-                with_element_of!(block, E => strains::<E, $T>(cpu, &columns, groups, more, visit))
+                with_element_of!(block, E => strains::<E, $T>(of.cpu, &columns, groups, more, visit))
             }};
         }
-        Some(match u.0 {
+        match of.u.0 {
             Reals::F32(_) => run!(f32),
             Reals::F64(_) => run!(f64),
-        })
+        }
     }
 
     fn direction(&self, row: usize, from: &FamilyDirection<f64>, fibres: Option<&Reals>) -> [f64; 3] {

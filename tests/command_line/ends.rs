@@ -125,6 +125,21 @@ guards: (off: [Energy]), output: (fields: [Displacement]))"#,
     assert!(!place.path("out/block/nodes.csv").exists(), "nodes without meaning");
 }
 
+/// In single precision: in double it can be told.
+#[test]
+fn energy_of_removed_elements_beyond_what_numbers_express_ends_with_1() {
+    let place = Place::with_scene(
+        r#"(duration: 0.02, bodies: {"b": (mesh: Box(size: (1, 1, 1), cells: (2, 1, 1)), material: "m", velocity: (1e20, 0, 0))},
+materials: {"m": (density: 1000, neo_hookean: Young(young: 3000, poisson: 0.45))},
+removal: [(on: Box(min: (0, 0, 0), max: (0.6, 1, 1)), when: At(0.01))],
+guards: (off: [Energy]), output: (fields: [Displacement]))"#,
+    );
+    let run = |precision: &str| place.sinew(&["run", "block.ron", "--backend", "cpu", "--precision", precision]);
+    run("f32").wants(1, &["the energy of removed elements is inf"]);
+    assert_eq!(place.json("out/block/summary.json")["failure"]["criterion"]["name"], "result");
+    run("f64").wants(0, &[]);
+}
+
 #[test]
 fn a_search_for_rest_that_finds_none_ends_with_1_and_says_how_far_it_came() {
     let place = Place::new();

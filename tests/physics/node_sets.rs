@@ -88,3 +88,47 @@ fn nodes_that_are_not_there_are_an_error() {
     simulation.world_mut().insert_resource(Grip(foreign));
     assert!(simulation.advance(1).unwrap_err().to_string().contains("make the set anew"));
 }
+
+#[test]
+fn a_column_is_seen_without_a_copy_and_says_when_it_is_another() {
+    for run in configurations() {
+        let mut simulation = simulation(&run.options);
+        let set = simulation.nodes_at("lens", &[3]).unwrap();
+        simulation.world_mut().insert_resource(Grip(set));
+        simulation.advance(3).unwrap();
+        let before = simulation.snapshot().unwrap();
+        let wanted = simulation.displacements("lens").unwrap();
+        let mut vertices = vec![0.0_f32; 3 * wanted.len()];
+        let column = simulation.column::<Displacement>("lens").unwrap();
+        assert_eq!((column.rows(), column.numbers()), (wanted.len(), 3));
+        column.copy_in_authors_order(&mut vertices).unwrap();
+        let rounded: Vec<f32> = wanted.iter().flat_map(|u| u.as_vec3().to_array()).collect();
+        assert!(vertices == rounded && rounded.iter().any(|u| *u != 0.0), "{}", run.name);
+        let rows = column.node_rows().iter().map(|&row| column.values().vector(row as usize));
+        assert!(rows.eq(wanted.iter().copied()), "{}", run.name);
+        assert!(column.copy_in_authors_order(&mut [0.0; 4]).is_err());
+        // looking changes nothing; steps, snapshots and who writes do
+        let mut seen = vec![column.generation()];
+        let mut generation = |simulation: &mut Simulation, is_another: bool| {
+            let now = simulation.column::<Displacement>("lens").unwrap().generation();
+            assert_eq!(!seen.contains(&now), is_another, "{}: {now} after {seen:?}", run.name);
+            seen.push(now);
+        };
+        generation(&mut simulation, false);
+        simulation.advance(1).unwrap();
+        generation(&mut simulation, true);
+        generation(&mut simulation, false);
+        for _ in 0..2 {
+            simulation.restore(&before).unwrap();
+            generation(&mut simulation, true);
+        }
+        let body = simulation.body("lens").unwrap();
+        for _ in 0..2 {
+            simulation.world_mut().get_mut::<Displacement>(body).unwrap().set(0, 1.0);
+            generation(&mut simulation, true);
+        }
+        // what has no row a node, and what the scene does not call for
+        assert!(simulation.column::<sinew::components::ElementForce>("lens").is_err());
+        assert!(simulation.column::<sinew::components::DampingCoefficient>("lens").is_err());
+    }
+}

@@ -55,7 +55,7 @@ pub fn strains<E: Element, T: SimdScalar>(
     more: Option<OfStretch<'_>>,
     visit: Option<Visit<'_>>,
 ) -> (Strain, usize) {
-    cpu.dispatch(Groups::<E, T> { columns, groups, more, visit, element: PhantomData })
+    cpu.dispatch_widest(Groups::<E, T> { columns, groups, more, visit, element: PhantomData })
 }
 
 struct Groups<'a, 'v, E, T> {
@@ -212,10 +212,12 @@ pub(crate) fn sizes<R: Real>(f: &[[R; 3]; 3], ends: bool) -> [R; 3] {
             }
         }
     }
-    let inverse = [0, 1, 2].map(
-        #[inline(always)]
-        |i| product(&cofactors, &cofactors, i, i),
-    );
+    // `map` of an array would call a function compiled without wide registers
+    let inverse = [
+        product(&cofactors, &cofactors, 0, 0),
+        product(&cofactors, &cofactors, 1, 1),
+        product(&cofactors, &cofactors, 2, 2),
+    ];
     let mean = (inverse[0] + inverse[1] + inverse[2]) * third;
     let mut square = zero;
     for i in 0..3 {
