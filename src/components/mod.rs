@@ -11,6 +11,7 @@
 mod block;
 mod clock;
 mod column;
+mod column_layout;
 mod constraint;
 mod curve;
 mod guard;
@@ -28,9 +29,8 @@ pub use block::{
     ViscousMemory, patch_groups, patch_length,
 };
 pub use clock::{Clock, Relaxation, Signal, Signals};
-pub use column::{
-    Column, ColumnAccess, Increments, Precision, Reals, Role, Rows, all_columns, columns_in, place_in_buffer,
-};
+pub use column::{Column, ColumnAccess, Precision, Reals, Role, all_columns, columns_in, place_in_buffer};
+pub use column_layout::{Increments, Rows};
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
 pub use guard::{GuardMemory, Notice, Seen};
 pub use load::{FaceCorners, Gravity, NodalForce, Pressure, Traction};

@@ -235,8 +235,10 @@ fn work_on_mass_that_is_gone_stays_booked() {
         let work = e.constraint_work.unwrap();
         assert!(e.removed > 0.2 * work, "{e:?}");
         let sum = e.kinetic + e.strain + e.hourglass + e.removed - work - e.load_work.unwrap();
-        // as above
-        let allowed = if elements == "Tet4NodalPressure" { 5e-3 } else { 1e-4 };
+        // the work of a step is that of the mean of the forces at its ends: where a force goes that does 1.4 kW, half of it
+        // over a step of 1 ms is not there, 0.7 J of 920 J (and half of that with half the step). Nodal means jump as above,
+        // here by 21 J of 829 J, which no smaller step changes
+        let allowed = if elements == "Tet4NodalPressure" { 3e-2 } else { 8e-4 };
         near(&format!("{}, {elements}", run.name), sum, 0.0, work, allowed);
     }
 }
