@@ -81,6 +81,11 @@ impl Reals {
         either!(self, v => v[index] = Scalar::from_f64(value));
     }
 
+    /// The sum of all numbers, in their order.
+    pub fn sum(&self) -> f64 {
+        either!(self, v => v.iter().map(|number| number.to_f64()).sum())
+    }
+
     /// Row `row` of a column of vectors.
     pub fn vector(&self, row: usize) -> DVec3 {
         either!(self, v => DVec3::new(v[3 * row].to_f64(), v[3 * row + 1].to_f64(), v[3 * row + 2].to_f64()))
@@ -182,8 +187,6 @@ pub struct ColumnAccess {
     pub write: fn(&mut World, Entity, &[u8]),
     /// Its component.
     pub id: fn(&World) -> Option<ComponentId>,
-    /// What its rows belong to.
-    pub rows: Rows,
     /// Which of its numbers are changes in a step.
     pub increments: Increments,
     /// Multiplies these on the host.
@@ -205,7 +208,6 @@ impl ColumnAccess {
                 }
             },
             id: |world| world.component_id::<C>(),
-            rows: C::ROWS,
             increments: C::INCREMENTS,
             scale_increments: |world, entity, factor| {
                 if let Some(mut column) = world.get_mut::<C>(entity) {

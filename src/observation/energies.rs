@@ -38,7 +38,7 @@ pub(super) fn values(e: &Energies) -> Vec<f64> {
 /// What the GPU says.
 pub fn mass(world: &mut World) -> Result<f64, Error> {
     bring_to_host(world, |_, name| name == Mass::NAME)?;
-    Ok(world.query::<&Mass>().iter(world).map(|mass| (0..mass.len()).map(|row| mass.get(row)).sum::<f64>()).sum())
+    Ok(world.query::<&Mass>().iter(world).map(|mass| mass.sum()).sum())
 }
 
 /// The energies of all bodies at the present step.
@@ -72,13 +72,13 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
         let rows = 0..mass.len();
         sum.kinetic += rows.clone().map(|row| kinetic(row, &|_| true)).sum::<f64>();
         if let Some(work) = work {
-            let total = |i: usize| rows.clone().map(|row| work.get(WORK_NUMBERS * row + i)).sum::<f64>();
+            let [of_loads, damped, of_constraints, internal] = work_done(work);
             // constraints also give the kinetic energy of what they move
             let moved = rows.clone().map(|row| kinetic(row, &|i| axes[row] >> i & 1 == 1)).sum::<f64>();
-            *sum.load_work.get_or_insert(0.0) += total(0);
-            *sum.damping_loss.get_or_insert(0.0) += total(1);
-            *sum.constraint_work.get_or_insert(0.0) += total(2) + moved;
-            *sum.internal_work.get_or_insert(0.0) += total(3);
+            *sum.load_work.get_or_insert(0.0) += of_loads;
+            *sum.damping_loss.get_or_insert(0.0) += damped;
+            *sum.constraint_work.get_or_insert(0.0) += of_constraints + moved;
+            *sum.internal_work.get_or_insert(0.0) += internal;
         }
     }
     let blocks: Vec<Entity> = world.query_filtered::<Entity, With<Block>>().iter(world).collect();
@@ -87,14 +87,19 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
         sum.strain += strain;
         sum.hourglass += hourglass;
         if let Some(removed) = world.get::<RemovedEnergy>(entity) {
-            sum.removed += (0..removed.len()).map(|row| removed.get(row)).sum::<f64>();
+            sum.removed += removed.sum();
         }
         // nor do they take back what they gave to mass that is gone
         if let (Some(total), Some(given)) = (&mut sum.constraint_work, world.get::<RemovedWork>(entity)) {
-            *total += (0..given.len()).map(|row| given.get(row)).sum::<f64>();
+            *total += given.sum();
         }
     }
     Ok(sum)
+}
+
+/// Of all nodes the work (J) done by loads, against damping, by constraints and against internal forces.
+fn work_done(work: &Work) -> [f64; 4] {
+    [0, 1, 2, 3].map(|i| (0..work.len() / WORK_NUMBERS).map(|row| work.get(WORK_NUMBERS * row + i)).sum())
 }
 
 /// What of the energies that are added up from step to step is no finite number: what it is of, and the number.
@@ -103,15 +108,13 @@ pub(super) fn not_finite(world: &mut World) -> Result<Option<(&'static str, f64)
     bring_to_host(world, |_, name| wanted.contains(&name))?;
     let mut sums: Vec<(&'static str, f64)> = Vec::new();
     for work in world.query::<&Work>().iter(world) {
-        let total = |i: usize| (0..work.len() / WORK_NUMBERS).map(|row| work.get(WORK_NUMBERS * row + i)).sum::<f64>();
         let names =
             ["the work of loads", "the loss to damping", "the work of constraints", "the work against internal forces"];
-        sums.extend(names.into_iter().enumerate().map(|(i, name)| (name, total(i))));
+        sums.extend(names.into_iter().zip(work_done(work)));
     }
-    let total = |column: &Reals| (0..column.len()).map(|row| column.get(row)).sum::<f64>();
     for (energy, work) in world.query::<(&RemovedEnergy, &RemovedWork)>().iter(world) {
-        sums.push(("the energy of removed elements", total(energy)));
-        sums.push(("the work of constraints on removed elements", total(work)));
+        sums.push(("the energy of removed elements", energy.sum()));
+        sums.push(("the work of constraints on removed elements", work.sum()));
     }
     Ok(sums.into_iter().find(|(_, value)| !value.is_finite()))
 }

@@ -184,12 +184,16 @@ impl Grouping<'_> {
 
     /// Whether the system of that place works node by node, in every step.
     fn is_of_nodes(&self, place: usize) -> bool {
-        let Scheduled { system, every, interval, .. } = &self.schedule[place];
-        let of_nodes = match self.on_gpu {
+        let Scheduled { every, interval, .. } = &self.schedule[place];
+        self.goes_over_nodes(place) && *every == 1 && interval.is_none()
+    }
+
+    fn goes_over_nodes(&self, place: usize) -> bool {
+        let system = self.schedule[place].system;
+        match self.on_gpu {
             true => matches!(system.device, OnDevice::Stages(_)),
             false => system.host.nodes().is_some(),
-        };
-        of_nodes && *every == 1 && interval.is_none()
+        }
     }
 
     /// Whether these are the forces of elements alone.
@@ -209,12 +213,7 @@ impl Grouping<'_> {
     }
 
     fn over(&self, group: &[usize]) -> Over {
-        let first = self.schedule[group[0]].system;
-        let of_nodes = match self.on_gpu {
-            true => matches!(first.device, OnDevice::Stages(_)),
-            false => first.host.nodes().is_some(),
-        };
-        match of_nodes {
+        match self.goes_over_nodes(group[0]) {
             true => Over::Nodes,
             false if group.len() > 1 => Over::Elements,
             false => Over::Itself,
