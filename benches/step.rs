@@ -1,7 +1,8 @@
 //! What a step costs on one thread, what a large body costs to set up, and how much memory it takes.
 //!
 //! `cargo bench --bench step` prints ns an element and step beside criterion's own figures. `cargo bench --bench step
-//! -- 10` runs the small ones only, `-- guards` what the guards cost (with SINEW_BENCH_GPU set, on the GPU in f32).
+//! -- 10` runs the small ones only, `-- guards` what the guards cost (with SINEW_BENCH_GPU set, on the GPU in f32), `--
+//! energies` laws from an energy beside the same laws written by hand.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use criterion::{Criterion, Throughput};
@@ -170,6 +171,61 @@ fn guards() {
     }
 }
 
+/// Laws from an energy, each with the same law written by hand.
+const ENERGIES: [(&str, &str, &str); 5] = [
+    (
+        "neo-Hookean",
+        NEO_HOOKEAN,
+        "law: (energy: \"mu/2*I1bar_minus_3 + k/2*J_minus_1^2\", parameters: {\"mu\": 1034.5, \"k\": 10000})",
+    ),
+    (
+        "Mooney-Rivlin",
+        "mooney_rivlin: (c10: 300, c01: 217, bulk: 10000)",
+        "law: (energy: \"a*I1bar_minus_3 + b*I2bar_minus_3 + k/2*J_minus_1^2\", parameters: {\"a\": 300, \"b\": 217, \"k\": 10000})",
+    ),
+    (
+        "Arruda-Boyce",
+        "arruda_boyce: (shear: 900, locking_stretch: 2, bulk: 10000)",
+        "law: (energy: \"mu*((I1bar - 3)/2 + (I1bar^2 - 9)/(20*m^2) + 11/1050*(I1bar^3 - 27)/m^4 + 19/7000*(I1bar^4 - 81)/m^6 \
+         + 519/673750*(I1bar^5 - 243)/m^8) + k/2*J_minus_1^2\", parameters: {\"mu\": 900, \"m\": 2, \"k\": 10000})",
+    ),
+    (
+        "Demiray, by hand in WGSL",
+        "law: (file: \"own_law.wgsl\", parameters: {\"mu\": 1034.5, \"b\": 1, \"bulk\": 10000})",
+        "law: (energy: \"mu/(2*b)*(exp(b*I1bar_minus_3) - 1) + k/2*J_minus_1^2\", parameters: {\"mu\": 1034.5, \"b\": 1, \"k\": 10000})",
+    ),
+    (
+        "neo-Hookean with another U(J), beside the built-in one",
+        NEO_HOOKEAN,
+        "law: (energy: \"mu/2*I1bar_minus_3 + k/4*(J^2 - 1 - 2*log(J))\", parameters: {\"mu\": 1034.5, \"k\": 10000})",
+    ),
+];
+
+/// What laws from an energy cost: blocks of steps under the two by turns, the best of each.
+fn energies() {
+    for (kind, cells, count) in [("Tet4", 16, 6), ("Hex8", 24, 1), ("Hex8MeanDilatation", 16, 1)] {
+        for (word, precision) in [("f32", Precision::F32), ("f64", Precision::F64)] {
+            for (name, by_hand, energy) in ENERGIES {
+                let mut pair = [by_hand, energy].map(|law| simulation(&cube(kind, cells, law), precision, 1));
+                let mut best = [f64::INFINITY; 2];
+                for _ in 0..60 {
+                    for (simulation, best) in pair.iter_mut().zip(&mut best) {
+                        let started = Instant::now();
+                        simulation.advance(BLOCK).expect("steps");
+                        *best = best.min(started.elapsed().as_secs_f64() / BLOCK as f64);
+                    }
+                }
+                let [by_hand, energy] = best.map(|time| time * 1e9 / f64::from(cells.pow(3) * count));
+                println!(
+                    "energies, {kind} {word}, {name}: {by_hand:.1} ns an element and step by hand, {energy:.1} from its energy: \
+                     {:.2} times",
+                    energy / by_hand
+                );
+            }
+        }
+    }
+}
+
 /// Runs in a process of its own, so that its peak memory is its own.
 fn million() {
     let started = Instant::now();
@@ -200,6 +256,9 @@ fn peak_memory() -> Option<u64> {
 fn main() {
     if std::env::args().any(|argument| argument == "guards") {
         return guards();
+    }
+    if std::env::args().any(|argument| argument == "energies") {
+        return energies();
     }
     if std::env::var_os("SINEW_BENCH_MILLION").is_some() {
         return million();

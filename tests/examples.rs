@@ -68,7 +68,17 @@ fn custom_system_shares_a_pass_and_pulls_alike_on_both_backends_and_on_the_host(
 /// t² A.
 #[test]
 fn own_law_pulls_a_strip_as_its_closed_form_says_on_both_backends() {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/own_law.ron");
+    pulls_as_the_closed_form_says("own_law.ron");
+}
+
+/// The same law from a formula of its energy.
+#[test]
+fn energy_law_pulls_a_strip_as_its_closed_form_says_on_both_backends() {
+    pulls_as_the_closed_form_says("energy_law.ron");
+}
+
+fn pulls_as_the_closed_form_says(example: &str) {
+    let path = format!("{}/examples/{example}", env!("CARGO_MANIFEST_DIR"));
     let scene = SceneFile::load(path, &[]).unwrap();
     let (mu, b, bulk, stretch) = (2000.0, 2.0, 1e5, 1.4_f64);
     let stress = |across: f64| {

@@ -3,7 +3,8 @@
 use super::user_laws;
 use crate::components::{Damping, Density, ExponentialFibres, Label, Prony, StiffnessDamping};
 use crate::materials::{
-    ArrudaBoyce, ExponentialFibre, Fibres, Linear, MooneyRivlin, NeoHookean, Ogden, StVenantKirchhoff, StableNeoHookean,
+    ArrudaBoyce, ElasticLaw, ExponentialFibre, Fibres, Linear, MooneyRivlin, NeoHookean, Ogden, StVenantKirchhoff,
+    StableNeoHookean,
 };
 use crate::scene::schema::{self, Elasticity, Material};
 use bevy_ecs::prelude::*;
@@ -20,8 +21,12 @@ pub(super) fn spawn(
         let material = &called_for(material);
         let mut entity = world.spawn((Label(name.clone()), Density(material.density)));
         insert_elastic_law(&mut entity, material);
-        if let Some(user_laws::Read { law, findings, .. }) = laws.remove(name) {
-            entity.insert((law, findings));
+        if let Some(user_laws::Read { law, built_in, findings, .. }) = laws.remove(name) {
+            match built_in {
+                Some(ElasticLaw::NeoHookean(law)) => entity.insert(law),
+                Some(ElasticLaw::MooneyRivlin(law)) => entity.insert(law),
+                _ => entity.insert((law, findings)),
+            };
         }
         if let Some(fibres) = &material.fibres {
             entity.insert(Fibres { eta: fibres.eta, tension_only: number(fibres.tension_only) });

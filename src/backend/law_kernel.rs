@@ -111,10 +111,17 @@ pub(super) fn ground(law: &ElasticLaw<f32>) -> Vec<Fragment> {
         ElasticLaw::Linear(_) => vec![],
         ElasticLaw::StVenantKirchhoff(_) => vec![shader!("finite_strain")],
         ElasticLaw::StableNeoHookean(_) => vec![shader!("elementary")],
-        // a law of one's own may call what Ogden's calls
-        ElasticLaw::Ogden(_) | ElasticLaw::UserLaw(_) => {
+        ElasticLaw::Ogden(_) => {
             vec![shader!("finite_strain"), shader!("volume_ratio"), shader!("eigen"), shader!("elementary")]
         }
+        // may call what all of these call
+        ElasticLaw::UserLaw(_) => vec![
+            shader!("finite_strain"),
+            shader!("volume_ratio"),
+            shader!("eigen"),
+            shader!("elementary"),
+            shader!("invariants"),
+        ],
         _ => vec![shader!("finite_strain"), shader!("volume_ratio")],
     }
 }

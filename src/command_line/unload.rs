@@ -74,7 +74,7 @@ fn write(scene: &SceneFile, found: &Unloaded, path: &Path) -> Result<Vec<String>
         names.push(file);
     }
     for (name, material) in &scene.scene.materials {
-        if let Some(law) = &material.law {
+        if let Some(law) = material.law.as_ref().filter(|law| !law.file.is_empty()) {
             sets.push(format!("materials.\"{name}\".law.file=\"{}\"", copies.of(&law.file, scene, &mut folder)?));
         }
     }

@@ -27,16 +27,10 @@ impl<R: Real> Elastic<R> for MooneyRivlin<R> {
         MooneyRivlin { c10: number(self.c10), c01: number(self.c01), bulk: number(self.bulk) }
     }
 
-    /// 2c₁₀ J^(−2/3) (I − I₁/3 C⁻¹) + 2c₀₁ J^(−4/3) (I₁ I − C − 2/3 I₂ C⁻¹), which is C⁻¹ times the deviator of
-    /// 4(c₁₀ J^(−2/3) + c₀₁ J^(−4/3) (1 + 2 tr E)) E − 8c₀₁ J^(−4/3) E²: so it keeps the digits of a small strain.
+    /// 2c₁₀ J^(−2/3) (I − I₁/3 C⁻¹) + 2c₀₁ J^(−4/3) (I₁ I − C − 2/3 I₂ C⁻¹).
     #[inline(always)]
     fn isochoric(&self, k: &Kinematics<R>) -> Sym3<R> {
-        let e = &k.green_strain;
-        let (one, two, four) = (self.bulk.constant(1.0), self.bulk.constant(2.0), self.bulk.constant(4.0));
-        let second = four * self.c01 * k.j_m23 * k.j_m23;
-        let first = (four * self.c10).mul_add(k.j_m23, second * two.mul_add(e.trace(), one));
-        let inner = e.scaled(first).plus(&e.times_coaxial(e).scaled(-(two * second)));
-        k.inverse_c_times(&inner.deviator())
+        k.stress_of_slopes(self.c10, self.c01)
     }
 
     /// κ(J − 1).
@@ -48,14 +42,7 @@ impl<R: Real> Elastic<R> for MooneyRivlin<R> {
     /// c₁₀ (Ī₁ − 3) + c₀₁ (Ī₂ − 3).
     #[inline(always)]
     fn isochoric_energy(&self, k: &Kinematics<R>) -> R {
-        let e = &k.green_strain;
-        let (two, three, four) = (self.bulk.constant(2.0), self.bulk.constant(3.0), self.bulk.constant(4.0));
-        // J^(−4/3) − 1, and I₂ − 3 = 4 tr E + 2((tr E)² − E:E)
-        let w = k.j_m23_change();
-        let v = w * (two + w);
-        let trace = e.trace();
-        let i2_change = four * trace + two * (trace * trace - e.contracted(e));
-        self.c10 * k.i1_change() + self.c01 * (three * v + i2_change + v * i2_change)
+        self.c10 * k.i1_change() + self.c01 * k.i2_change()
     }
 
     /// κ/2 (J − 1)².

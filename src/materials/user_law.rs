@@ -1,13 +1,15 @@
-//! A law of the user's own, from one WGSL file.
+//! A law of the user's own: from one WGSL file, or from an energy.
 
-use super::program::Program;
+use super::program::{DerivedLaw, Program};
 use super::{Elastic, Kinematics};
 use crate::math::{Real, Sym3};
 use bevy_ecs::component::Component;
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
 
-/// A law that somebody wrote as one WGSL file: the GPU runs the text as it stands, the CPU runs it as [`Program`]s.
+/// A law that somebody wrote as one WGSL file: the GPU runs the text as it stands, the CPU runs it as [`Program`]s. Of an
+/// energy the GPU runs the WGSL that was derived from it, the CPU its derivatives by the invariants as programs, and
+/// compiled code around them.
 #[derive(Component, Clone, Copy)]
 pub struct UserLaw<T: Send + Sync + 'static> {
     law: &'static LawPrograms,
@@ -20,15 +22,15 @@ pub struct UserLaw<T: Send + Sync + 'static> {
 pub struct LawPrograms {
     /// The file, as messages name it.
     pub path: String,
-    /// Its text.
+    /// The text that a GPU runs.
     pub text: String,
     /// The bytes of `var<uniform> elastic`; empty for a law without parameters.
     pub uniform: Vec<u8>,
-    /// `elastic_isochoric`.
-    pub isochoric: Program,
+    /// S_iso.
+    pub isochoric: IsochoricStress,
     /// `elastic_pressure`.
     pub pressure: Program,
-    /// `elastic_isochoric_energy`.
+    /// `elastic_isochoric_energy`, of `Kinematics`; of an energy, of Ī₁ − 3 and Ī₂ − 3.
     pub isochoric_energy: Program,
     /// `elastic_volumetric_energy`.
     pub volumetric_energy: Program,
@@ -36,11 +38,76 @@ pub struct LawPrograms {
     pub moduli: [f64; 2],
 }
 
+/// How a law's S_iso is found.
+#[derive(Clone, Debug)]
+pub enum IsochoricStress {
+    /// By `elastic_isochoric`.
+    Whole(Program),
+    /// From the derivatives of an energy by its invariants.
+    Slopes(EnergySlopes),
+}
+
+/// The derivatives of an energy by its invariants.
+#[derive(Clone, Debug)]
+pub struct EnergySlopes {
+    /// ∂Ψ/∂Ī₁ and ∂Ψ/∂Ī₂ (Pa) of Ī₁ − 3 and Ī₂ − 3.
+    program: Program,
+    /// Their values (Pa), where they are the same at every deformation.
+    constant: Option<[f64; 2]>,
+    /// Whether they depend on Ī₂.
+    depends_on_second: bool,
+    /// Whether the energy does.
+    has_second: bool,
+}
+
+impl IsochoricStress {
+    /// Instructions that the CPU goes through for it at each point, constants, and slots in use at the same time.
+    pub fn size(&self) -> (usize, usize, usize) {
+        match self {
+            Self::Whole(program) => program.size(),
+            Self::Slopes(slopes) if slopes.constant.is_some() => (0, 0, 0),
+            Self::Slopes(slopes) => slopes.program.size(),
+        }
+    }
+}
+
+impl EnergySlopes {
+    /// Of a derived law.
+    pub fn of(law: &DerivedLaw) -> Self {
+        Self {
+            program: law.slopes.clone(),
+            constant: (law.depends_on == [false; 2]).then(|| law.slopes.run::<f64, 2, 2>([0.0; 2])),
+            depends_on_second: law.depends_on[1],
+            has_second: law.has_second,
+        }
+    }
+
+    /// ∂Ψ/∂Ī₁ and ∂Ψ/∂Ī₂ (Pa).
+    #[inline(always)]
+    fn at<R: Real>(&self, k: &Kinematics<R>) -> [R; 2] {
+        if let Some(constant) = self.constant {
+            return constant.map(|slope| k.j.constant(slope));
+        }
+        let second = if self.depends_on_second { k.i2_change() } else { k.j.constant(0.0) };
+        self.program.run([k.i1_change(), second])
+    }
+
+    /// S_iso (Pa).
+    #[inline(always)]
+    fn stress<R: Real>(&self, k: &Kinematics<R>) -> Sym3<R> {
+        let [first, second] = self.at(k);
+        if self.has_second { k.stress_of_slopes(first, second) } else { k.stress_of_slope(first) }
+    }
+}
+
 impl LawPrograms {
-    /// Runs [`isochoric`](Self::isochoric) (Pa).
+    /// S_iso (Pa).
     #[inline(always)]
     pub fn isochoric_stress<R: Real>(&self, k: &Kinematics<R>) -> Sym3<R> {
-        Sym3(self.isochoric.run(numbers(k)))
+        match &self.isochoric {
+            IsochoricStress::Whole(program) => Sym3(program.run(numbers(k))),
+            IsochoricStress::Slopes(slopes) => slopes.stress(k),
+        }
     }
 
     /// Runs [`pressure`](Self::pressure) (Pa).
@@ -52,7 +119,10 @@ impl LawPrograms {
     /// Runs [`isochoric_energy`](Self::isochoric_energy) (J/m³).
     #[inline(always)]
     pub fn isochoric_energy_at<R: Real>(&self, k: &Kinematics<R>) -> R {
-        self.isochoric_energy.run::<R, 16, 1>(numbers(k))[0]
+        match &self.isochoric {
+            IsochoricStress::Whole(_) => self.isochoric_energy.run::<R, 16, 1>(numbers(k))[0],
+            IsochoricStress::Slopes(_) => self.isochoric_energy.run::<R, 2, 1>([k.i1_change(), k.i2_change()])[0],
+        }
     }
 
     /// Runs [`volumetric_energy`](Self::volumetric_energy) (J/m³).
@@ -64,7 +134,11 @@ impl LawPrograms {
     fn is(&self, other: &Self) -> bool {
         // what is made from the same text and numbers is the same
         (&self.path, &self.text, &self.uniform) == (&other.path, &other.text, &other.uniform)
-            && self.isochoric.is(&other.isochoric)
+            && match (&self.isochoric, &other.isochoric) {
+                (IsochoricStress::Whole(a), IsochoricStress::Whole(b)) => a.is(b),
+                (IsochoricStress::Slopes(a), IsochoricStress::Slopes(b)) => a.program.is(&b.program),
+                _ => false,
+            }
             && self.pressure.is(&other.pressure)
             && self.isochoric_energy.is(&other.isochoric_energy)
             && self.volumetric_energy.is(&other.volumetric_energy)

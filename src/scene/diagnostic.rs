@@ -167,6 +167,27 @@ impl Diagnostics {
         self.push(Diagnostic::error(at, message))
     }
 
+    /// Adds an error about some bytes of the text `value` that stands at a path; about all of it where it is not written
+    /// as it is, but with backslashes.
+    pub fn error_within(
+        &mut self,
+        path: impl Into<Path>,
+        value: &str,
+        bytes: Span,
+        message: impl Into<String>,
+    ) -> &mut Diagnostic {
+        let path = path.into();
+        let found =
+            self.tree.as_ref().and_then(|tree| path.find(&tree.root).ok().map(|node| node.inner().span.clone()));
+        let text = self.source.as_ref().map_or("", |source| source.text());
+        let within = found.and_then(|span| {
+            let start = span.start + text.get(span)?.find(value)? + bytes.start;
+            Some(start..start + bytes.len())
+        });
+        let at = within.or_else(|| self.span(&path));
+        self.push(Diagnostic::error(at, message))
+    }
+
     /// As [`Self::error_at`], for what does not keep the scene from running.
     pub fn warn_at(&mut self, path: impl Into<Path>, message: impl Into<String>) -> &mut Diagnostic {
         let diagnostic = self.error_at(path, message);

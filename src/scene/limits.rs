@@ -43,6 +43,8 @@ pub const ROWS: u64 = 100_000_000;
 pub const PSEUDO_STEPS: u64 = 1_000_000_000;
 /// Bytes of a law or system of one's own.
 pub const LAW_BYTES: u64 = 1 << 20;
+/// Bytes of a formula of an energy.
+pub const FORMULA_BYTES: usize = 64 << 10;
 /// Words, numbers and signs of a law or system of one's own, comments left out.
 pub const LAW_WORDS: usize = 20_000;
 /// Functions, structs, constants and other declarations of a law or system of one's own; arrays in it.

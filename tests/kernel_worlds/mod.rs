@@ -48,7 +48,7 @@ pub struct Effects {
     pub scheme: Scheme,
 }
 
-pub const LAWS: [&str; 7] = [
+pub const LAWS: [&str; 8] = [
     "linear: Moduli(shear: 1034, bulk: 10000)",
     "st_venant_kirchhoff: Moduli(shear: 1034, bulk: 10000)",
     "neo_hookean: Moduli(shear: 1034, bulk: 10000)",
@@ -56,6 +56,7 @@ pub const LAWS: [&str; 7] = [
     "mooney_rivlin: (c10: 300, c01: 200, bulk: 10000)",
     "ogden: (terms: [(mu: 1400, alpha: 1.3), (mu: 3, alpha: 5), (mu: -30, alpha: -2)], bulk: 10000)",
     "arruda_boyce: (shear: 700, locking_stretch: 1.8, bulk: 10000)",
+    "law: (energy: \"c1*I1bar_minus_3 + c2*I2bar_minus_3 + c/2*(exp(b*I1bar_minus_3^2) - 1) + kappa/4*(J^2 - 1 - 2*log(J))\", parameters: {\"c1\": 300, \"c2\": 150, \"c\": 20, \"b\": 0.4, \"kappa\": 10000})",
 ];
 
 /// One family along a line, and one around an axis that pushes, too.

@@ -3,6 +3,7 @@
 
 mod constraints;
 mod deep_laws;
+mod energies;
 mod good;
 mod laws;
 mod limits;

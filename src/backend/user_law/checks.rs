@@ -3,7 +3,7 @@
 
 use super::comparison::{Comparison, largest};
 use super::deformations::{self, Deformation, shown};
-use super::form::OF_LAWS;
+use super::form::{ENERGY, OF_LAWS};
 use super::names::declared;
 use super::{About, Complaint};
 use crate::materials::{Kinematics, LawPrograms};
@@ -34,9 +34,50 @@ const REST: f64 = 1e-9;
 /// Volume changes that pressures are tried at.
 const CHANGES: [f64; 9] = [-0.3, -0.1, -0.03, -0.01, 0.003, 0.01, 0.03, 0.1, 0.3];
 
+/// What messages call the four parts of a law, and where they mark them.
+pub(super) struct Told {
+    parts: [(String, About); 4],
+    /// What to write in place of differences that lose digits.
+    exact: &'static str,
+}
+
+impl Told {
+    /// Of a text with all four functions.
+    pub(super) fn law(text: &str) -> Self {
+        Self {
+            parts: OF_LAWS.map(|(name, ..)| (format!("`{name}`"), place(text, name))),
+            exact: "compute from `k.green_strain` and `k.volume_change`, which are exact for small strains",
+        }
+    }
+
+    /// Of a text with an energy.
+    pub(super) fn energy(text: &str) -> Self {
+        Self::derived(&place(text, ENERGY))
+    }
+
+    /// Of a formula.
+    pub(super) fn formula() -> Self {
+        Self::derived(&About::File)
+    }
+
+    fn derived(about: &About) -> Self {
+        let parts =
+            ["the energy's isochoric stress", "the energy's pressure", "the isochoric energy", "the volumetric energy"];
+        Self {
+            parts: parts.map(|part| (part.to_owned(), about.clone())),
+            exact: "compute from `I1bar_minus_3`, `I2bar_minus_3` and `J_minus_1`, which are exact for small strains",
+        }
+    }
+}
+
+/// Where a text declares a function.
+fn place(text: &str, name: &str) -> About {
+    declared(text).into_iter().find(|d| d.name == name).map_or(About::File, |d| About::Bytes(d.at))
+}
+
 /// Tries a law.
-pub(super) fn check(law: &LawPrograms, text: &str) -> Result<(Findings, Vec<Complaint>), Vec<Complaint>> {
-    let trial = Trial { law, text };
+pub(super) fn check(law: &LawPrograms, told: &Told) -> Result<(Findings, Vec<Complaint>), Vec<Complaint>> {
+    let trial = Trial { law, told };
     let deformations = deformations::all();
     let finite_up_to = trial.finite(&deformations)?;
     let [shear, bulk] = trial.moduli()?;
@@ -62,7 +103,7 @@ pub(super) fn check(law: &LawPrograms, text: &str) -> Result<(Findings, Vec<Comp
 
 struct Trial<'a> {
     law: &'a LawPrograms,
-    text: &'a str,
+    told: &'a Told,
 }
 
 fn inner(a: &Sym3<f64>, b: &Sym3<f64>) -> f64 {
@@ -70,11 +111,14 @@ fn inner(a: &Sym3<f64>, b: &Sym3<f64>) -> f64 {
 }
 
 impl Trial<'_> {
-    /// A complaint about one of the four functions.
-    fn about(&self, function: usize, message: String) -> Complaint {
-        let name = OF_LAWS[function].0;
-        let found = declared(self.text).into_iter().find(|d| d.name == name);
-        Complaint::new(found.map_or(About::File, |d| About::Bytes(d.at)), message)
+    /// A complaint about one of the four parts.
+    fn about(&self, part: usize, message: String) -> Complaint {
+        Complaint::new(self.told.parts[part].1.clone(), message)
+    }
+
+    /// What messages call one of them.
+    fn name(&self, part: usize) -> &str {
+        &self.told.parts[part].0
     }
 
     /// The second Piola-Kirchhoff stress as a whole (Pa).
@@ -105,7 +149,7 @@ impl Trial<'_> {
                 0.0 => "at rest".to_owned(),
                 _ => format!("at {}", shown(&deformation.gradient)),
             };
-            let message = format!("`{}` is {} {at}", OF_LAWS[function].0, numbers[function]);
+            let message = format!("{} is {} {at}", self.name(function), numbers[function]);
             return Err(vec![self.about(function, message).note(
                 "a law must be finite at rest and around it: 0/0 and ln 0 there need a series or another form",
             )]);
@@ -143,7 +187,7 @@ impl Trial<'_> {
         let (rest, pressure) = (self.stress(&Mat3([[0.0; 3]; 3])), self.law.pressure_at(0.0));
         if largest(&rest.0) > REST * scale {
             let function = usize::from(pressure.abs() > REST * scale);
-            let message = format!("`{}` is not 0 at rest: {:.4e} Pa", OF_LAWS[function].0, largest(&rest.0));
+            let message = format!("{} is not 0 at rest: {:.4e} Pa", self.name(function), largest(&rest.0));
             return Err(vec![self.about(function, message).note("an undeformed body has no stress")]);
         }
         for strain in [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.3, 0.0, 0.0], [0.2, 0.0, -1.0, 0.0, 0.5, 0.7]]
@@ -186,7 +230,7 @@ impl Trial<'_> {
             comparison.add(stress, derivative, shear * size, || shown(gradient));
         }
         comparison.outcome(|what| {
-            self.about(0, format!("`elastic_isochoric` is not the derivative of `elastic_isochoric_energy`: {what}"))
+            self.about(0, format!("{} is not the derivative of {}: {what}", self.name(0), self.name(2)))
         })
     }
 
@@ -204,7 +248,7 @@ impl Trial<'_> {
             }
         }
         comparison.outcome(|what| {
-            self.about(1, format!("`elastic_pressure` is not the derivative of `elastic_volumetric_energy`: {what}"))
+            self.about(1, format!("{} is not the derivative of {}: {what}", self.name(1), self.name(3)))
         })
     }
 
@@ -235,10 +279,8 @@ impl Trial<'_> {
                 "in f32 the stress errs by {:.1} % at strains of 1e-4: digits are lost",
                 100.0 * findings.single_precision_error
             );
-            warn(self.about(0, message).note(
-                "differences of large numbers, such as Ī₁ − 3, lose them: compute from `k.green_strain` and \
-                 `k.volume_change`, which are exact for small strains",
-            ));
+            let note = format!("differences of large numbers, such as Ī₁ − 3, lose them: {}", self.told.exact);
+            warn(self.about(0, message).note(note));
         }
         let share = |d: &&Deformation| {
             let k = Kinematics::new(&d.gradient);
@@ -249,7 +291,7 @@ impl Trial<'_> {
         };
         let share = deformations.iter().map(share).fold(0.0, f64::max);
         if share > 1e-6 {
-            let message = format!("`elastic_isochoric` has a pressure in it: up to {:.2} of the stress", share);
+            let message = format!("{} has a pressure in it: up to {share:.2} of the stress", self.name(0));
             warn(self.about(0, message).note(
                 "elements that average the pressure, and viscosity, take it for a part of the isochoric stress: give it \
                  by `elastic_pressure`",

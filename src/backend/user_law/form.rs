@@ -42,6 +42,9 @@ pub(super) const OF_LAWS: [(&str, &str, &str, &str); 4] = [
     ("elastic_volumetric_energy", "f32", "f32", "volume_change"),
 ];
 
+/// The function of an energy.
+pub(super) const ENERGY: &str = "elastic_energy";
+
 fn function((name, argument, result, called): (&str, &'static str, &'static str, &str)) -> Function {
     let declared = format!("fn {name}({called}: {argument}) -> {result}");
     Function { name: name.to_owned(), argument, result, declared }
@@ -60,6 +63,17 @@ impl Form {
             depends_on: "a stress depends on the deformation and the parameters alone",
             ours,
             owners: law_owners(),
+        }
+    }
+
+    /// Of an energy that a law is derived from.
+    pub(super) fn energy() -> Self {
+        Self {
+            word: "energy",
+            functions: vec![function((ENERGY, "Invariants", "f32", "s"))],
+            called_by: "the law is derived from the function",
+            depends_on: "an energy depends on the deformation and the parameters alone",
+            ..Self::law()
         }
     }
 

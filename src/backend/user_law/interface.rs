@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 
 /// The parameters of a text, in the order of its struct.
 pub(super) struct Parameters {
+    pub(super) names: Vec<String>,
     pub(super) values: Vec<f64>,
     /// As they lie in the uniform buffer, in f32.
     pub(super) bytes: Vec<u8>,
@@ -133,7 +134,7 @@ fn parameters(
     given: &BTreeMap<String, f64>,
     complaints: &mut Vec<Complaint>,
 ) -> Parameters {
-    let mut packed = Parameters { values: Vec::new(), bytes: Vec::new() };
+    let mut packed = Parameters { names: Vec::new(), values: Vec::new(), bytes: Vec::new() };
     let Form { word, parameters, .. } = form;
     let binding = composed.binding(parameters);
     let members = binding.map(|binding| composed.struct_layout(&binding.type_name));
@@ -167,6 +168,7 @@ fn parameters(
             complaints.push(Complaint::new(About::Parameters, message).note(needs.clone()));
             continue;
         };
+        packed.names.push(wanted.name.clone());
         packed.values.push(value);
         let at = wanted.offset as usize;
         packed.bytes[at..at + 4].copy_from_slice(&(value as f32).to_le_bytes());

@@ -1,11 +1,13 @@
-//! Reading a law or a load of the user's own: one WGSL file with parameters from the scene. The text is compiled with
+//! Reading a law or a load of the user's own: one WGSL file, or a formula, with parameters from the scene. The text is compiled with
 //! our own fragments as the GPU will, translated for the CPU, and found to be what it should before anything is
 //! simulated with it.
 
 mod checks;
 mod comparison;
 mod deformations;
+mod energy;
 mod form;
+mod formula;
 mod interface;
 mod limits;
 mod load;
@@ -14,11 +16,12 @@ mod reading;
 mod text;
 
 pub use checks::Findings;
+pub use energy::read_formula;
 pub(crate) use form::ground_of_load;
 pub use load::{check_load, read_load};
 pub(crate) use names::declared_names;
 
-use crate::materials::{LawPrograms, UserLaw};
+use crate::materials::{ElasticLaw, IsochoricStress, LawPrograms, UserLaw};
 use form::{Form, OF_LAWS};
 use reading::Reading;
 use std::collections::BTreeMap;
@@ -67,30 +70,36 @@ impl Complaint {
 pub struct Read {
     /// The law.
     pub law: UserLaw<f64>,
+    /// The same law built in, where an energy turns out to be that of one: it has kernels of its own.
+    pub built_in: Option<ElasticLaw<f64>>,
     /// What was found.
     pub findings: Findings,
     /// Warnings.
     pub warnings: Vec<Complaint>,
 }
 
-/// Reads a law from the text of its file and the parameters that the scene gives.
+/// Reads a law from the text of its file and the parameters that the scene gives. The file may have the law's energy
+/// alone, as `elastic_energy`.
 ///
 /// # Errors
 /// All that is wrong with the text, or with the parameters; if they are sound, with the law itself.
 pub fn read(path: &str, text: &str, parameters: &BTreeMap<String, f64>) -> Result<Read, Vec<Complaint>> {
+    if energy::is_one(text) {
+        return energy::read(path, text, parameters, &checks::Told::energy(text));
+    }
     let reading = Reading::of(&Form::law(), path, text, parameters)?;
     let program = |number: usize| reading.program(OF_LAWS[number].0);
-    let mut law = LawPrograms {
+    let law = LawPrograms {
         path: path.to_owned(),
         text: text.to_owned(),
-        isochoric: program(0)?,
+        isochoric: IsochoricStress::Whole(program(0)?),
         pressure: program(1)?,
         isochoric_energy: program(2)?,
         volumetric_energy: program(3)?,
         moduli: [0.0; 2],
         uniform: reading.uniform,
     };
-    let (findings, warnings) = checks::check(&law, text)?;
-    law.moduli = [findings.shear, findings.bulk];
-    Ok(Read { law: UserLaw::new(law), findings, warnings })
+    let (findings, warnings) = checks::check(&law, &checks::Told::law(text))?;
+    let law = LawPrograms { moduli: [findings.shear, findings.bulk], ..law };
+    Ok(Read { law: UserLaw::new(law), built_in: None, findings, warnings })
 }

@@ -58,7 +58,7 @@ pub(super) fn member(text: &str, of: &Declared, member: &str) -> Range<usize> {
 
 /// The fragments that a law may call, and with which it is compiled.
 pub(super) fn to_call() -> Vec<Fragment> {
-    vec![shader!("tensor"), shader!("kinematics"), shader!("elementary"), shader!("eigen")]
+    vec![shader!("tensor"), shader!("kinematics"), shader!("elementary"), shader!("eigen"), shader!("invariants")]
 }
 
 /// The other fragments that can be in one kernel with a law.

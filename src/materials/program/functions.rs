@@ -133,6 +133,15 @@ impl Translator<'_> {
             (F::Exp, &[x]) => g.unary(Unary::Exp, x),
             (F::Sin, &[x]) => g.unary(Unary::Sine, x),
             (F::Cos, &[x]) => g.unary(Unary::Cosine, x),
+            // e/(e + 2) with e = e^(2x) − 1; at 20 it is 1 to all digits
+            (F::Tanh, &[x]) => {
+                let (two, largest) = (g.constant(2.0), g.constant(20.0));
+                let x = g.binary(Min, x, largest);
+                let twice = g.binary(Multiply, two, x);
+                let grown = g.unary(Unary::ExpLessOne, twice);
+                let sum = g.binary(Add, grown, two);
+                g.binary(Divide, grown, sum)
+            }
             (F::Log, &[x]) => g.unary(Unary::Log, x),
             (F::InverseSqrt, &[x]) => {
                 let root = g.unary(Unary::Sqrt, x);

@@ -8,6 +8,11 @@ use std::collections::HashMap;
 pub(super) struct Id(u32);
 
 impl Id {
+    /// Of the value with this index.
+    pub(super) fn of(index: usize) -> Self {
+        Self(index as u32)
+    }
+
     pub(super) fn index(self) -> usize {
         self.0 as usize
     }
@@ -76,6 +81,11 @@ impl Graph {
             self.nodes.push(node);
             Id(self.nodes.len() as u32 - 1)
         })
+    }
+
+    /// A sum or product with a constant at the place where it is looked for.
+    pub(super) fn make_in_order(&mut self, function: Binary, a: Id, b: Id) -> Id {
+        self.make(Node::Binary(function, a, b))
     }
 
     pub(super) fn input(&mut self, number: u16) -> Id {

@@ -6,20 +6,25 @@
 //! [`Real`](crate::math::Real): in f64 as the reference, over registers as the CPU backend does.
 
 mod arithmetic;
+mod derivative;
+mod emit;
+mod energy;
 mod expression;
 mod flow;
 mod functions;
 mod graph;
 mod tape;
+mod tidy;
 mod translate;
 mod twin;
 mod value;
 mod words;
 
+pub use energy::{DerivedLaw, INVARIANTS};
 pub use tape::{Program, SLOTS};
 pub(crate) use words::{is_name, words};
 
-use graph::Graph;
+use graph::{Graph, Id};
 use naga::{AddressSpace, Module, Span, TypeInner};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -55,7 +60,7 @@ pub const KNOWN_BY_NAME: [&str; 4] = ["inverse_cbrt", "exponential", "exponentia
 const NOT_ALLOWED: &str = "this is not possible in a text of one's own";
 const FUNCTIONS: &str = "allowed: abs, all, any, clamp, cos, cross, determinant, distance, dot, exp, exp2, fma, \
      inverseSqrt, length, log, log2, max, min, mix, normalize, outer, pow, saturate, select, sign, sin, sqrt, step, \
-     transpose";
+     tanh, transpose";
 
 /// The text of the WGSL functions of a law or a load, read in double precision.
 pub struct Source {
@@ -119,9 +124,14 @@ impl Source {
 
     /// The values of `var<uniform>`s; none for other variables.
     fn globals(&self, graph: &mut Graph, uniforms: &BTreeMap<String, Vec<f64>>) -> Vec<Option<Value>> {
+        let mut constants = |values: &Vec<f64>| values.iter().map(|value| graph.constant(*value)).collect();
+        self.of_uniforms(&uniforms.iter().map(|(name, values)| (name.clone(), constants(values))).collect())
+    }
+
+    /// Values of a graph as those of `var<uniform>`s.
+    fn of_uniforms(&self, uniforms: &BTreeMap<String, Vec<Id>>) -> Vec<Option<Value>> {
         let value = |variable: &naga::GlobalVariable| {
-            let values = uniforms.get(variable.name.as_deref()?)?;
-            let floats = Value::vector(values.iter().map(|value| graph.constant(*value)).collect::<Vec<_>>());
+            let floats = Value::vector(uniforms.get(variable.name.as_deref()?)?.iter().copied());
             let uniform = variable.space == AddressSpace::Uniform;
             match self.module.types[variable.ty].inner {
                 TypeInner::Struct { .. } if uniform => Some(floats),

@@ -8,7 +8,7 @@ use std::ops::Range;
 const ONE: &str = "one_that_is_not_folded";
 
 /// WGSL's own functions that a law may call; all take numbers, vectors or matrices of them.
-const MATH: [&str; 24] = [
+const MATH: [&str; 25] = [
     "abs",
     "clamp",
     "cos",
@@ -33,6 +33,7 @@ const MATH: [&str; 24] = [
     "sin",
     "sqrt",
     "step",
+    "tanh",
 ];
 
 /// The text in double precision, and where each changed word came from.

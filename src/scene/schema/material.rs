@@ -31,7 +31,7 @@ pub struct Material {
     /// The eight-chain law of Arruda and Boyce, which stiffens towards a locking stretch.
     #[serde(default)]
     pub arruda_boyce: Option<ArrudaBoyce>,
-    /// An elastic law of your own, written in WGSL.
+    /// An elastic law of your own: a formula of its energy, or written in WGSL.
     #[serde(default)]
     pub law: Option<OwnLaw>,
     /// Fibres in one direction (transverse isotropy), on top of the elastic law.
@@ -105,13 +105,17 @@ pub enum Elasticity {
     },
 }
 
-/// An elastic law of your own: a WGSL file with four functions, and the parameters it needs.
+/// An elastic law of your own: a formula of its energy, or a WGSL file; and the parameters it needs.
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct OwnLaw {
-    /// The file (.wgsl), its path relative to the scene file.
+    /// The energy (J/m³) as a formula of the invariants of the deformation and the parameters.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub energy: Option<String>,
+    /// In place of `energy` the file (.wgsl), its path relative to the scene file; empty where there is none.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub file: String,
-    /// A number for each member of the struct of `var<uniform> elastic`, by name.
+    /// A number for each name in the formula, or for each member of the struct of `var<uniform> elastic`.
     #[serde(default)]
     pub parameters: BTreeMap<String, f64>,
 }

@@ -1,8 +1,13 @@
 //! The elastic law of a material: exactly one, with moduli that make sense.
 
 use super::{Judge, show};
-use crate::scene::schema::{ArrudaBoyce, Elasticity, Material, MooneyRivlin, Ogden};
+use crate::scene::limits::FORMULA_BYTES;
+use crate::scene::schema::{ArrudaBoyce, Elasticity, Material, MooneyRivlin, Ogden, OwnLaw};
 use crate::scene::syntax::Path;
+
+/// What a law could be.
+const FOR_INSTANCE: &str =
+    "for instance energy: \"mu/2*I1bar_minus_3 + kappa/2*J_minus_1^2\", parameters: {\"mu\": 1000, \"kappa\": 1e4}";
 
 /// Terms that an Ogden law can have.
 const OGDEN_TERMS: usize = 4;
@@ -52,8 +57,8 @@ pub(super) fn validate(judge: &mut Judge, path: &Path, name: &str, material: &Ma
             elasticity(judge, &path.name(word), law);
         }
     }
-    if material.law.as_ref().is_some_and(|law| law.file.is_empty()) {
-        judge.out.error_at(path.name("law").name("file"), "the path of the law is empty");
+    if let Some(law) = &material.law {
+        own_law(judge, &path.name("law"), law);
     }
     if let Some(law) = &material.mooney_rivlin {
         mooney_rivlin(judge, &path.name("mooney_rivlin"), law);
@@ -73,6 +78,32 @@ pub(super) fn validate(judge: &mut Judge, path: &Path, name: &str, material: &Ma
                 .error_at(path.name(word), format!("`{word}` need an elastic law for large strains, not `linear`"))
                 .note(format!("elastic laws: {}", all[1..].join(", ")));
         }
+    }
+}
+
+fn own_law(judge: &mut Judge, path: &Path, law: &OwnLaw) {
+    match &law.energy {
+        Some(_) if !law.file.is_empty() => {
+            judge
+                .out
+                .error_at(path.name("file"), "the law has both `energy` and `file`")
+                .note("a law is a formula of its energy, or a file of WGSL: leave the other out");
+        }
+        Some(energy) if energy.trim().is_empty() => {
+            judge.out.error_at(path.name("energy"), "the formula is empty").note(FOR_INSTANCE);
+        }
+        Some(energy) if energy.len() > FORMULA_BYTES => {
+            let message = format!("a formula has at most {FORMULA_BYTES} bytes, found {}", energy.len());
+            judge.out.error_at(path.name("energy"), message).note("a file of WGSL may be longer");
+        }
+        None if law.file.is_empty() => {
+            judge
+                .out
+                .error_at(path.name("file"), "the law has neither `energy` nor `file`")
+                .note(FOR_INSTANCE)
+                .note("or file: \"law.wgsl\", a law in WGSL");
+        }
+        _ => {}
     }
 }
 
