@@ -22,8 +22,7 @@ use crate::error::{Criterion, Error, Instability};
 const LARGER: (f64, f64) = (1.05, 2.0);
 /// A step so many times the wanted one is made smaller.
 const SMALLER: f64 = 1.25;
-/// Where motion is violent steps become at most so many times longer at once: the balance of energy is that of steps of
-/// like length.
+/// Steps become at most so many times longer at once: the balance of energy is that of steps of like length.
 const LONGER: f64 = 2.0;
 /// Products by which the highest frequency is found anew: the first time, and from a shape that is known.
 const PRODUCTS: (usize, usize) = (20, 8);
@@ -32,8 +31,8 @@ const PRODUCTS: (usize, usize) = (20, 8);
 const BESIDE: f64 = 2.0;
 /// ω² may be so many times what they show.
 const SHOWN: f64 = 1.1;
-/// Strains change by at most so much in a step, relative to present lengths: what follows must see it come.
-const FASTEST: f64 = 0.5;
+/// Lengths change by at most so many times themselves in a step: what follows must see it come.
+const FASTEST: f64 = 1.0;
 /// Strains make a step at most so many times smaller than it would be.
 const SLOWEST: f64 = 20.0;
 /// A step so many times smaller than the first is given up.
@@ -58,8 +57,7 @@ impl Simulation {
             return Err(self.too_small(follower, stable));
         }
         let seen_to_come = follower.seen_to_come(stable, seen, &clock);
-        let longest = if follower.found.violent { LONGER * clock.time_step } else { f64::INFINITY };
-        let wanted = stable.min(seen_to_come).min(longest);
+        let wanted = stable.min(seen_to_come).min(LONGER * clock.time_step);
         let smaller = clock.time_step > follower.most() * limit || clock.time_step > SMALLER * wanted;
         let change = smaller || wanted >= if finds { LARGER.0 } else { LARGER.1 } * clock.time_step;
         let taken = if change { wanted } else { clock.time_step };

@@ -34,7 +34,8 @@ pub struct Strain {
     /// At least the largest eigenvalue of C⁻¹, the inverse square of the least stretch, and no more than that where one
     /// axis is squeezed: tr C⁻¹/3 + √(2/3 D : D) with its deviator D; infinite for what is flat, or no number.
     pub squeeze: f64,
-    /// √(ΔE : ΔE) tr C⁻¹/3 with the change ΔE of Green's strain in a step; infinite for what is no number.
+    /// √(ΔE : ΔE) times [`squeeze`](Self::squeeze), with the change ΔE of Green's strain in a step: at least the change of
+    /// a length over that length; infinite for what is no number.
     pub speed: f64,
     /// What was asked for of its C.
     pub more: f64,
@@ -173,7 +174,7 @@ fn register<E: Element, T: SimdScalar, S: Simd>(
             }
         }
         let [first, inverse, squeezed] = sizes(&f, ends);
-        let relative = change_of_strain(&f, &change.gradient).sqrt() * inverse;
+        let relative = change_of_strain(&f, &change.gradient).sqrt() * squeezed;
         size = size.max(first.max(inverse));
         squeeze = squeeze.max(squeezed);
         speed = speed.max(relative);
