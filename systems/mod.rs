@@ -14,9 +14,9 @@
 //! observe          all, read only               -> probes, energies, guards, files
 //! ```
 //!
-//! What works node by node is a [`NodeSystem`], and so may be a user's: neighbours of a step share a pass
-//! (`node_pass`), with `element_forces` before them for the nodes inside a patch (`patch_pass`; on a GPU
-//! `src/backend/patch_step.rs`).
+//! A scene may have loads of its own in WGSL (`own_load`): systems of their own names, among the loads. What works node
+//! by node is a [`NodeSystem`], and so may be a user's: neighbours of a step share a pass (`node_pass`), with
+//! `element_forces` before them for the nodes inside a patch (`patch_pass`; on a GPU `src/backend/patch_step.rs`).
 
 mod boundary;
 mod element_forces;
@@ -30,6 +30,7 @@ mod node_pass;
 mod node_stages;
 mod node_system;
 mod observe;
+mod own_load;
 mod patch_pass;
 mod pressure;
 mod registry;
@@ -41,12 +42,24 @@ pub(crate) use node_pass::{NodePass, node_pass};
 pub use node_system::{Before, NodeRows, NodeSystem};
 pub use observe::{add_watch_columns, watch_kernels};
 pub(crate) use patch_pass::patch_pass;
-pub use registry::{DescribeKernels, HostSystem, OnDevice, OnHost, Outcome, Phase, Registry, System};
+pub use registry::{Because, DescribeKernels, HostSystem, OnDevice, OnHost, Outcome, Phase, Registry, System};
+
+use crate::scene::schema::{OwnSystem, Scene};
 
 /// Places in `rows`, which ascend, of those among `count` from row `first` on.
 fn places_within(rows: &[u32], first: usize, count: usize) -> std::ops::Range<usize> {
     let place = |bound: usize| rows.partition_point(|&row| (row as usize) < bound);
     place(first)..place(first + count)
+}
+
+/// The systems that a scene has of its own: loads in WGSL, each a system of its name.
+pub(crate) fn of_scene(scene: &Scene) -> Vec<System> {
+    let system = |(number, (name, own)): (usize, (&String, &OwnSystem))| {
+        let parameters = own.parameters.iter().map(|(parameter, value)| format!("{parameter} {value}"));
+        let what: Vec<String> = std::iter::once(own.file.clone()).chain(parameters).collect();
+        own_load::system(name, number, what.join(", "))
+    };
+    scene.systems.iter().enumerate().map(system).collect()
 }
 
 /// The built-in systems, in the order of a step.

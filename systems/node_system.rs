@@ -87,8 +87,8 @@ impl OfRun for f64 {
     }
 }
 
-/// What calls for a system, and the body that it acts on.
-type Callers<'w, 's, S> = Query<'w, 's, (Entity, &'static S, Option<&'static OfBody>)>;
+/// What calls for a system, and the body that it acts on; where several systems do the same, for which of them.
+type Callers<'w, 's, S> = Query<'w, 's, (Entity, &'static S, Option<&'static OfBody>, Option<&'static OfSystem>)>;
 
 /// Systems bound to a body, in their order.
 pub(super) type BoundSystems<'a> = Vec<Box<dyn OnRows + 'a>>;
@@ -97,8 +97,10 @@ pub(super) type BoundSystems<'a> = Vec<Box<dyn OnRows + 'a>>;
 #[derive(Clone, Copy)]
 pub struct NodeRows {
     parameter: fn() -> DynParamBuilder<'static>,
-    bind: for<'a> fn(&'a mut DynSystemParam<'_, '_>, Entity, &Before<'_>, &mut BoundSystems<'a>),
+    bind: for<'a> fn(&'a mut DynSystemParam<'_, '_>, Option<OfSystem>, Entity, &Before<'_>, &mut BoundSystems<'a>),
     touches: fn() -> HostSystem,
+    /// Only what is for this one of several systems calls for it.
+    of: Option<OfSystem>,
     /// See [`NodeSystem::SUMS_FORCES`].
     pub sums_forces: bool,
     /// See [`NodeSystem::MOVES_NODES`].
@@ -115,9 +117,15 @@ impl NodeRows {
                 let nothing = |_: Query<S::Columns>, _: Callers<S>, _: Res<Clock>, _: Res<Signals>| Ok(());
                 Box::new(IntoSystem::into_system(nothing))
             },
+            of: None,
             sums_forces: S::SUMS_FORCES,
             moves_nodes: S::MOVES_NODES,
         }
+    }
+
+    /// The same for one of several systems: only what has its number as [`OfSystem`] calls for it.
+    pub(super) fn of_system(self, number: usize) -> Self {
+        Self { of: Some(OfSystem(number)), ..self }
     }
 
     /// What a pass asks the world for, to find what calls for the system.
@@ -133,7 +141,7 @@ impl NodeRows {
         before: &Before<'_>,
         all: &mut BoundSystems<'a>,
     ) {
-        (self.bind)(callers, body, before, all);
+        (self.bind)(callers, self.of, body, before, all);
     }
 
     /// A system that does nothing and touches what this one does: for the order in which systems may run.
@@ -144,14 +152,15 @@ impl NodeRows {
 
 fn bind<'a, S: NodeSystem>(
     callers: &'a mut DynSystemParam<'_, '_>,
+    of_system: Option<OfSystem>,
     body: Entity,
     before: &Before<'_>,
     all: &mut BoundSystems<'a>,
 ) {
     let callers = callers.downcast_mut::<Callers<'a, 'a, S>>();
     debug_assert!(callers.is_some(), "the parameter of another system");
-    for (entity, system, of) in callers.into_iter().flat_map(|callers| callers.iter_inner()) {
-        if of.map_or(entity, |of| of.0) == body {
+    for (entity, system, of, which) in callers.into_iter().flat_map(|callers| callers.iter_inner()) {
+        if of.map_or(entity, |of| of.0) == body && which.copied() == of_system {
             all.push(Box::new(Bound { system, prepared: system.prepare(before) }));
         }
     }

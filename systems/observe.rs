@@ -11,6 +11,7 @@ use crate::error::Error;
 use crate::observation::Observer;
 use crate::shader;
 use bevy_ecs::prelude::*;
+use std::sync::Arc;
 
 /// Reads only. On the GPU it brings to the host what is due, and nothing in all other steps.
 pub fn system() -> System {
@@ -19,7 +20,7 @@ pub fn system() -> System {
         phase: Phase::Observe,
         does: "probes, energies, fields and guards, when they are due".into(),
         called_for_by: "every scene",
-        because: |_| Some("guards look for inverted elements and lost numbers".into()),
+        because: Arc::new(|_| Some("guards look for inverted elements and lost numbers".into())),
         host: OnHost::System(Box::new(|| Box::new(IntoSystem::into_system(observe)))),
         device: OnDevice::None,
         observes: true,

@@ -108,7 +108,7 @@ pub struct System {
     pub called_for_by: &'static str,
     /// Why the world needs it; `None` when it does not. A schedule that a scene writes out must hold all that are
     /// needed.
-    pub because: fn(&mut World) -> Option<String>,
+    pub because: Because,
     /// What runs on the host.
     pub host: OnHost,
     /// Describes the kernels that do the same on a GPU.
@@ -124,6 +124,9 @@ pub struct System {
     /// How its state gets into snapshots and back.
     pub(crate) state: Option<StateAccess>,
 }
+
+/// Why a world needs a system; `None` when it does not.
+pub type Because = Arc<dyn Fn(&mut World) -> Option<String> + Send + Sync>;
 
 /// Turns what a scene gives as a system's parameters into a resource; else says why it cannot.
 type ReadParameters = fn(ron::Value, &mut World) -> Result<(), String>;
@@ -172,7 +175,7 @@ impl System {
             phase,
             does: does.into(),
             called_for_by: "its name in the scene's `schedule`",
-            because: |_| None,
+            because: Arc::new(|_| None),
             host,
             device: OnDevice::None,
             observes: false,
@@ -265,7 +268,20 @@ impl System {
         called_for_by: &'static str,
         because: fn(&mut World) -> Option<String>,
     ) -> Self {
-        Self { called_for_by, because, custom: false, ..Self::of_nodes::<S>(name, phase, does) }
+        Self { called_for_by, because: Arc::new(because), custom: false, ..Self::of_nodes::<S>(name, phase, does) }
+    }
+
+    /// A system of nodes that a scene has of its own, and what it is.
+    pub(crate) fn of_scene(
+        name: &str,
+        phase: Phase,
+        rows: NodeRows,
+        does: &str,
+        called_for_by: &'static str,
+        what: String,
+    ) -> Self {
+        let because: Because = Arc::new(move |_| Some(what.clone()));
+        Self { called_for_by, because, custom: false, ..Self::new(name, phase, does, OnHost::Nodes(rows)) }
     }
 
     /// A built-in system.
@@ -277,7 +293,7 @@ impl System {
         because: fn(&mut World) -> Option<String>,
         system: impl IntoSystem<(), (), M> + Clone + Send + Sync + 'static,
     ) -> Self {
-        Self { called_for_by, because, custom: false, ..Self::custom(name, phase, does, system) }
+        Self { called_for_by, because: Arc::new(because), custom: false, ..Self::custom(name, phase, does, system) }
     }
 
     /// That finds the forces of elements, patch by patch.

@@ -91,6 +91,34 @@ fn own_law_pulls_a_strip_as_its_closed_form_says_on_both_backends() {
     }
 }
 
+/// Wind that is nothing but WGSL bends the blade, alike on both backends. WGSL's sine may be off by 2⁻¹¹, the drag by
+/// 2·0.4 times that.
+#[test]
+fn own_system_bends_a_blade_alike_on_both_backends_without_a_line_of_rust() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/own_system.ron");
+    let scene = SceneFile::load(path, &[]).unwrap();
+    let found = Simulation::check(&scene, &Registry::default());
+    assert!(found.is_empty(), "{}", found.render(false));
+    let calm = SceneFile::load(path, &["systems.wind.parameters.speed=3".into()]).unwrap();
+    let bent = |scene: &SceneFile, backend| {
+        let mut run = Simulation::new(scene, &Options { backend, ..Options::default() }).unwrap();
+        run.advance_to(0.3).unwrap();
+        let summary = run.summary("finished").unwrap();
+        let shared = summary.systems.iter().any(|pass| pass.name.contains("gather + boundary + wind + integrate"));
+        assert!(shared, "{:?}", summary.systems.iter().map(|pass| &pass.name).collect::<Vec<_>>());
+        run.probe("tip").unwrap()[0]
+    };
+    let tip = bent(&scene, BackendChoice::Cpu);
+    assert!(tip > 5e-3 && tip < 0.05, "the tip is {tip} m off");
+    // drag goes with the square of the speed
+    let calm = bent(&calm, BackendChoice::Cpu);
+    assert!(calm > 0.02 * tip && calm < 0.12 * tip, "{calm} m at a quarter of the speed, {tip} m");
+    if sinew::backend::gpu::gpu_or_reason().is_some() {
+        let gpu = bent(&scene, BackendChoice::Gpu);
+        assert!((gpu - tip).abs() < 1e-3 * tip, "{gpu} m on the GPU, {tip} m on the CPU");
+    }
+}
+
 /// The scenes that the guides show: those of the README, which stand alone.
 #[test]
 fn scenes_in_the_readme_are_sound() {

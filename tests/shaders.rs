@@ -5,14 +5,15 @@ mod kernel_worlds;
 
 use bevy_ecs::prelude::World;
 use kernel_worlds::{AROUND, Described, Effects, OF_NODES, all_kernels, shared_kernels};
-use sinew::BackendChoice;
 use sinew::backend::kernel::{BindingKind, Kernel, Layout, MostBuffers, Uniform, compose};
 use sinew::backend::patch_lists::WEBGPU_WORKGROUP_MEMORY;
 use sinew::components::{Scheme, Signals};
+use sinew::systems::Registry;
+use sinew::{BackendChoice, Options, SceneFile, Simulation};
 use std::collections::BTreeSet;
 
 /// Fragments that belong to no system, element or material by name, and what calls for them.
-const SUPPORT: [(&str, &str); 47] = [
+const SUPPORT: [(&str, &str); 48] = [
     ("corner", "corners of elements, in columns"),
     ("corner_volume", "the same for averaged nodal pressure"),
     ("patch_volume", "averaged nodal pressure, in patches"),
@@ -44,6 +45,7 @@ const SUPPORT: [(&str, &str); 47] = [
     ("fibres_uniform", "fibres of one direction"),
     ("lost", "compensated sums, in boundary"),
     ("node_damping", "damping, where elements can go"),
+    ("node_state", "nodes as loads of a scene's own see them"),
     ("node_mass", "mass, where elements can go"),
     ("relaxation", "a static analysis, in integrate"),
     ("row", "the row of an invocation"),
@@ -351,6 +353,12 @@ fn all_fragments_of_the_folder_are_in_use() {
     let mut used: BTreeSet<String> = BTreeSet::new();
     // the guards' own kernels, which look now and then
     used.extend(["watch_elements.wgsl".to_owned(), "watch_nodes.wgsl".to_owned()]);
+    // those of loads that a scene has of its own
+    let scene = SceneFile::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/own_system.ron"), &[]).unwrap();
+    let mut simulation = Simulation::new(&scene, &Options::default()).unwrap();
+    let explained = simulation.explain_on_gpu(&Registry::default()).unwrap();
+    let fragments = explained.kernels.iter().flat_map(|kernel| &kernel.fragments);
+    used.extend(fragments.filter_map(|f| f.path.strip_prefix("shaders/").map(str::to_owned)));
     for effects in Effects::combinations() {
         for (_, kernel) in all(&effects) {
             used.extend(kernel.fragments.iter().filter_map(|f| f.path.strip_prefix("shaders/").map(str::to_owned)));

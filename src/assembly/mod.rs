@@ -10,6 +10,8 @@ mod locality;
 mod material;
 mod meshes;
 mod observation;
+mod own_systems;
+mod own_texts;
 mod patches;
 mod relaxation;
 mod removal;
@@ -66,6 +68,7 @@ pub fn assemble<'a>(
     }
     let meshes = meshes::meshes(scene, diagnostics);
     let mut laws = user_laws::read(scene, diagnostics);
+    let systems = own_systems::read(scene, diagnostics);
     if diagnostics.has_errors() {
         return None;
     }
@@ -83,6 +86,7 @@ pub fn assemble<'a>(
     // what is wrong with these does not keep other mistakes from being found
     constraints::spawn(&assembly, world, diagnostics);
     loads::spawn(&assembly, world, diagnostics);
+    own_systems::spawn(&assembly, &systems, world, diagnostics);
     Some(assembly)
 }
 

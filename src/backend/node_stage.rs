@@ -11,6 +11,7 @@ use crate::components::{Column, Displacement, ElementForce, GROUP_ROWS, Mass};
 use crate::shader;
 use bevy_ecs::prelude::*;
 use fused::Fused;
+pub(crate) use items::renamed;
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;

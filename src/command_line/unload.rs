@@ -78,6 +78,9 @@ fn write(scene: &SceneFile, found: &Unloaded, path: &Path) -> Result<Vec<String>
             sets.push(format!("materials.\"{name}\".law.file=\"{}\"", copies.of(&law.file, scene, &mut folder)?));
         }
     }
+    for (name, system) in &scene.scene.systems {
+        sets.push(format!("systems.\"{name}\".file=\"{}\"", copies.of(&system.file, scene, &mut folder)?));
+    }
     if scene.scene.start == InitialState::Undeformed && !scene.scene.is_static() {
         sets.push("start=Equilibrium()".into());
     }

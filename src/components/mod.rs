@@ -5,7 +5,7 @@
 //! | body | node columns ([`nodes`]), [`Corners`], [`ElementForce`], [`Authoring`] |
 //! | element block: one element type, one material, one body | [`Block`], [`Connectivity`], [`Patches`], [`RestShape`] and, where called for, [`FibreDirection`], [`ViscousMemory`], [`NodalVolumeChange`], [`Alive`], [`RemovalStep`] |
 //! | material | [`Density`], an [elastic law](crate::materials::ElasticLaw), [`Fibres`](crate::materials::Fibres), [`ExponentialFibres`], [`Prony`], [`Damping`], [`StiffnessDamping`]: an effect exists when its component does |
-//! | constraint, load, removal | [`Fixed`], [`Prescribed`], [`Gravity`], [`NodalForce`], [`Pressure`], [`Traction`], [`RemovalCriterion`] with the rows they act on |
+//! | constraint, load, removal | [`Fixed`], [`Prescribed`], [`Gravity`], [`NodalForce`], [`Pressure`], [`Traction`], [`OwnLoad`], [`RemovalCriterion`] with the rows they act on |
 //! | probe | [`Probe`] |
 
 mod block;
@@ -19,6 +19,7 @@ mod load;
 mod material;
 pub mod nodes;
 mod observation;
+mod own_load;
 mod patches;
 mod touched;
 
@@ -40,6 +41,7 @@ pub use nodes::{
     MiddleDisplacement, NodeSums, PreviousPrescribedStep, RestPosition, WORK_NUMBERS, Work,
 };
 pub use observation::{Cadence, Energies, Observed, Probe};
+pub use own_load::{LoadText, NodeAtRest, OfSystem, OwnLoad};
 pub use patches::{Patches, Scheme};
 pub use touched::Touched;
 

@@ -8,6 +8,7 @@ mod rows;
 mod simd;
 mod tensor;
 mod thrice;
+mod trigonometry;
 
 pub(crate) use real::refine_inverse_cbrt;
 pub use real::{Real, Scalar, Task};

@@ -1,6 +1,6 @@
 //! The number types that pointwise physics is written over.
 
-use super::elementary;
+use super::{elementary, trigonometry};
 use std::fmt::Debug;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
@@ -72,6 +72,16 @@ pub trait Real:
     #[inline(always)]
     fn ln(self) -> Self {
         elementary::ln(self)
+    }
+    /// sin x to 1.5 ε, for |x| up to 1e4 (f32) or 1e6 (f64); infinite and no numbers give none.
+    #[inline(always)]
+    fn sin(self) -> Self {
+        trigonometry::sin(self)
+    }
+    /// cos x; likewise.
+    #[inline(always)]
+    fn cos(self) -> Self {
+        trigonometry::cos(self)
     }
     /// ln(1 + x) to 3 ulp, also for small x, for normal 1 + x > 0; finite and wrong elsewhere.
     #[inline(always)]

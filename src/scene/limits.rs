@@ -13,6 +13,8 @@ pub const VALUES: usize = 2_000_000;
 pub const BODIES: usize = 1000;
 /// Constraints; loads; removals; probes.
 pub const ACTIONS: usize = 10_000;
+/// Systems of a scene's own.
+pub const SYSTEMS: usize = 100;
 /// Points of a table; a longer signal is thinned out before.
 pub const TABLE_POINTS: usize = 100_000;
 /// Terms of each of a material's series (viscosity, families of fibres).
@@ -39,13 +41,13 @@ pub const FRAMES: u64 = 1_000_000;
 pub const ROWS: u64 = 100_000_000;
 /// Pseudo-steps of a static analysis.
 pub const PSEUDO_STEPS: u64 = 1_000_000_000;
-/// Bytes of a law of one's own.
+/// Bytes of a law or system of one's own.
 pub const LAW_BYTES: u64 = 1 << 20;
-/// Words, numbers and signs of a law of one's own, comments left out.
+/// Words, numbers and signs of a law or system of one's own, comments left out.
 pub const LAW_WORDS: usize = 20_000;
-/// Functions, structs, constants and other declarations of a law of one's own; arrays in it.
+/// Functions, structs, constants and other declarations of a law or system of one's own; arrays in it.
 pub const LAW_DECLARATIONS: usize = 500;
-/// Operators, brackets and branches of a law of one's own that are within each other.
+/// Operators, brackets and branches of a law or system of one's own that are within each other.
 pub const LAW_DEPTH: usize = 500;
 /// Mistakes that are kept; there is enough to do.
 pub(super) const MISTAKES: usize = 100_000;

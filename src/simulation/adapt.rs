@@ -9,7 +9,7 @@
 
 use super::Simulation;
 use super::damped_step::square_with_damping;
-use super::follow::{Follower, step_of};
+use super::follow::Follower;
 use super::frequency::{PRODUCT, bodies, largest_near};
 use super::nodal;
 use super::tangent::Tangent;
@@ -44,14 +44,15 @@ impl Simulation {
         let clock = *self.world.resource::<Clock>();
         let found = &mut follower.found;
         found.lost += found.losing * clock.step.saturating_sub(found.looked) as f64;
-        let gives_up =
-            |follower: &Follower, seen: &Seen| follower.wanted(step_of(seen.square), seen) < LEAST * follower.first;
+        let gives_up = |follower: &Follower, seen: &Seen| {
+            follower.wanted(follower.step_of(seen.square), seen) < LEAST * follower.first
+        };
         let finds = follower.is_finding_worth(seen, &clock) || gives_up(follower, seen);
         if finds {
             self.estimate(follower, seen)?;
         }
         follower.found.seen.get_or_insert(*seen);
-        let limit = step_of(seen.square);
+        let limit = follower.step_of(seen.square);
         let stable = follower.wanted(limit, seen);
         if gives_up(follower, seen) {
             return Err(self.too_small(follower, stable));
@@ -142,7 +143,7 @@ impl Follower {
     /// stiffer than when it was found, and less so what has become less stiff (s).
     fn hoped_for(&self, seen: &Seen, clock: &Clock) -> f64 {
         let relief = self.found.seen.map_or(1.0, |before| (seen.of_elements / before.of_elements).min(1.0));
-        let stable = self.wanted(step_of(self.found.known * relief), seen);
+        let stable = self.wanted(self.step_of(self.found.known * relief), seen);
         stable.min(self.seen_to_come(stable, seen, clock))
     }
 
@@ -154,7 +155,7 @@ impl Follower {
     /// Whether the highest frequency is to be found now.
     fn is_finding_worth(&self, seen: &Seen, clock: &Clock) -> bool {
         let cost = BESIDE * PRODUCT * self.products() as f64;
-        let (now, then) = (self.wanted(step_of(seen.square), seen), self.hoped_for(seen, clock));
+        let (now, then) = (self.wanted(self.step_of(seen.square), seen), self.hoped_for(seen, clock));
         let left = (self.duration - clock.time()) / now;
         self.found.lost >= cost && left * (1.0 - now / then) >= cost
     }

@@ -3,6 +3,7 @@
 use super::beat::Beat;
 use super::follow::Follower;
 use super::frequency::largest_eigenvalue;
+use super::known::Known;
 use super::options::{BackendChoice, Chosen, choose};
 use super::outputs;
 use super::parameters::hand_out;
@@ -47,7 +48,8 @@ impl Simulation {
         let started = Instant::now();
         let mut diagnostics = scene.diagnostics();
         let mut world = World::new();
-        let prepared = prepare(scene, options, registry, &mut world, &mut diagnostics);
+        let known = Known::of(registry, &scene.scene);
+        let prepared = prepare(scene, options, &known, &mut world, &mut diagnostics);
         let Some(Prepared { assembly, clock, stability, steps, schedule }) =
             prepared.filter(|_| !diagnostics.has_errors())
         else {
@@ -232,12 +234,13 @@ struct Prepared<'a> {
 fn prepare<'a>(
     scene: &'a SceneFile,
     options: &Options,
-    registry: &'a Registry,
+    known: &'a Known<'_>,
     world: &mut World,
     diagnostics: &mut Diagnostics,
 ) -> Option<Prepared<'a>> {
     let assembly = assemble(scene, options.precision, options.scheme, world, diagnostics);
-    check_names(scene.scene.schedule.as_deref().unwrap_or_default(), registry, diagnostics);
+    known.check(diagnostics);
+    check_names(scene.scene.schedule.as_deref().unwrap_or_default(), known, diagnostics);
     let assembly = assembly?;
     world.insert_resource(Cpu::new(options.threads, counts(&assembly).1, options.instructions));
     // what is stable depends on the laws, whose history waits for the step
@@ -250,15 +253,16 @@ fn prepare<'a>(
     world.insert_resource(clock);
     world.insert_resource(Observed(true));
     assemble_in_time(&assembly, world, diagnostics);
-    let mut schedule = resolve(scene.scene.schedule.as_deref(), registry, world, diagnostics);
-    hand_out(&scene.scene, registry, &mut schedule, world, diagnostics);
+    let mut schedule = resolve(scene.scene.schedule.as_deref(), known, world, diagnostics);
+    hand_out(&scene.scene, known, &mut schedule, world, diagnostics);
     Some(Prepared { assembly, clock, stability, steps, schedule })
 }
 
 /// Checks a scene as far as making its world goes: everything except choosing a backend. All that was found.
 pub(super) fn check(scene: &SceneFile, registry: &Registry) -> Diagnostics {
     let mut diagnostics = scene.diagnostics();
-    prepare(scene, &Options::default(), registry, &mut World::new(), &mut diagnostics);
+    let known = Known::of(registry, &scene.scene);
+    prepare(scene, &Options::default(), &known, &mut World::new(), &mut diagnostics);
     diagnostics
 }
 

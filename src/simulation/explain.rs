@@ -7,6 +7,7 @@ mod kernels;
 mod page;
 
 use super::Simulation;
+use super::known::Known;
 use super::plan::{Pass, Plan, Planned};
 use crate::backend::many_steps::Dispatched;
 use crate::components::Precision;
@@ -211,15 +212,16 @@ impl Simulation {
     fn explain_for(&mut self, registry: &Registry, on_gpu: bool) -> Result<Explanation, Error> {
         let sizes = Sizes::of(&mut self.world);
         let plan = &self.plan;
+        let known = Known::of(registry, &self.scene);
         let in_use = |name: &str| plan.systems.iter().any(|planned| planned.name == name);
-        let off = registry.systems().iter().filter(|system| !in_use(&system.name));
+        let off = known.systems().filter(|system| !in_use(&system.name));
         let systems_off = off.map(|system| SystemOff {
             name: system.name.clone(),
             does: system.does.clone(),
             turned_on_by: system.called_for_by.into(),
         });
         let systems_off = systems_off.collect();
-        let of_name = |planned: &Planned| registry.get(&planned.name).ok_or_else(|| unknown(planned));
+        let of_name = |planned: &Planned| known.get(&planned.name).ok_or_else(|| unknown(planned));
         let scheduled = plan.systems.iter().map(of_name).collect::<Result<Vec<&System>, Error>>()?;
         let mut systems: Vec<SystemInUse> = Vec::new();
         for pass in plan.passes(on_gpu) {

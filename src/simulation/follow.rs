@@ -2,6 +2,7 @@
 //! When the highest frequency itself is found is in [`adapt`](super::adapt) and [`policies`](super::policies).
 
 use super::Simulation;
+use super::load_rates::LoadRates;
 use super::mass_scaling;
 use super::rounding::warn_of_rounding;
 use super::stable_step::Stability;
@@ -63,6 +64,8 @@ pub(super) struct Follower {
     stays_with_elements: bool,
     /// The share of the stable step at the start that the scene's own one is; else 0.
     own_share: f64,
+    /// What loads of the scene's own make of a stable step: all frequencies here are of the bodies alone.
+    loads: LoadRates,
     pub duration: f64,
     pub first: f64,
     pub watched: Vec<Watched>,
@@ -125,6 +128,7 @@ impl Follower {
             safety: integration.safety,
             stays_with_elements: stability.stays_with_elements,
             own_share: integration.step.map_or(0.0, |step| step / limit),
+            loads: stability.loads,
             duration: scene.duration,
             first: step,
             watched: Vec::new(),
@@ -133,7 +137,7 @@ impl Follower {
                 looked: 0,
                 quickened: 0,
                 own: integration.step,
-                known: square_of(limit),
+                known: square_of(stability.limit_of_bodies),
                 seen: None,
                 losing: 0.0,
                 lost: 0.0,
@@ -156,9 +160,14 @@ impl Follower {
         0.5 * (1.0 + self.safety.max(self.own_share).min(1.0))
     }
 
+    /// The stable step when ω² of the bodies is so large (s).
+    pub fn step_of(&self, square: f64) -> f64 {
+        self.loads.with(step_of(square))
+    }
+
     /// The largest step that may be taken when so much is stable (s).
     pub fn wanted(&self, limit: f64, seen: &Seen) -> f64 {
-        let elements = if self.stays_with_elements { self.safety * step_of(seen.at_rest) } else { f64::INFINITY };
+        let elements = if self.stays_with_elements { self.safety * self.step_of(seen.at_rest) } else { f64::INFINITY };
         (self.safety * limit).min(elements).min(self.found.own.unwrap_or(f64::INFINITY))
     }
 }
@@ -195,7 +204,7 @@ impl Follower {
     /// and before loads and motions become quicker, `quicker` (s).
     fn next_look(&mut self, step: u64, seen: &Seen, clock: &Clock, quicker: Option<f64>) -> u64 {
         // far below the limit more may happen unseen
-        let room = self.most() * step_of(seen.square) / clock.time_step - 1.0;
+        let room = self.most() * self.step_of(seen.square) / clock.time_step - 1.0;
         let strain = (STRAIN.1 * room).clamp(STRAIN.0, STRAIN.1);
         // what is no number, or inside out, has no speed
         let speed = if seen.speed.is_finite() { seen.speed } else { MOST_STRAIN };

@@ -14,6 +14,8 @@ mod follow;
 mod frequency;
 mod growth;
 mod keep;
+mod known;
+mod load_rates;
 mod mass_scaling;
 mod modes;
 mod names;

@@ -44,9 +44,12 @@ pub(super) fn check_curves(scene: &SceneFile, clock: &Clock, diagnostics: &mut D
         let message = format!("the curve changes within {finest:.3e} s, and a step is {:.3e} s", clock.time_step);
         diagnostics.warn_at(path.name("curve"), message).note(what_of_it);
     };
+    let note = "its impulse is right, but it acts as a mean over a step; a smaller `step` shows more of it";
     for (number, load) in scene.loads.iter().enumerate() {
-        let note = "its impulse is right, but it acts as a mean over a step; a smaller `step` shows more of it";
         check(load.curve(), Path::default().name("loads").index(number), note);
+    }
+    for (name, system) in &scene.systems {
+        check(&system.curve, Path::default().name("systems").name(name), note);
     }
     for (number, constraint) in scene.constraints.iter().enumerate() {
         let note = "nodes are put where it is at the ends of steps: what happens between them is lost; a smaller `step` shows \

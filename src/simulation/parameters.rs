@@ -1,10 +1,10 @@
 //! What a scene's `parameters` say, for the systems they are for.
 
+use super::known::Known;
 use super::schedule::Scheduled;
 use crate::components::Clock;
 use crate::scene::schema::Scene;
 use crate::scene::{Diagnostics, choice};
-use crate::systems::Registry;
 use bevy_ecs::prelude::*;
 use ron::Value;
 use ron::value::Map;
@@ -15,24 +15,31 @@ const EVERY: &str = "every";
 /// Hands each system of the schedule its parameters, and sets how often it runs. Complaints go to `diagnostics`.
 pub(super) fn hand_out(
     scene: &Scene,
-    registry: &Registry,
+    known: &Known<'_>,
     schedule: &mut [Scheduled<'_>],
     world: &mut World,
     diagnostics: &mut Diagnostics,
 ) {
     for name in scene.parameters.keys() {
         let path = path_of(name);
-        match registry.get(name) {
+        match known.get(name) {
             None => {
-                let known: Vec<&str> =
-                    registry.systems().iter().filter(|s| s.custom).map(|s| s.name.as_str()).collect();
-                let notes = match known.is_empty() {
+                let custom: Vec<&str> = known.systems().filter(|s| s.custom).map(|s| s.name.as_str()).collect();
+                let notes = match custom.is_empty() {
                     true => vec!["a program adds systems of its own; this one has none".to_string()],
-                    false => choice(name, known),
+                    false => choice(name, custom),
                 };
                 diagnostics
                     .error_at(path.as_str(), format!("there is no system named `{name}` to give parameters to"))
                     .notes(notes);
+            }
+            Some(_) if known.is_own(name) => {
+                diagnostics
+                    .error_at(
+                        path.as_str(),
+                        format!("`{name}` is a system of the scene's own: it has no parameters here"),
+                    )
+                    .note(format!("what its file takes stands in systems.\"{name}\".parameters"));
             }
             Some(system) if !system.custom => {
                 diagnostics

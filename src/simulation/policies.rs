@@ -23,7 +23,7 @@ impl Simulation {
     /// Does what the scene wants done where the step stays.
     pub(super) fn hold(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<(), Error> {
         let (step, time_step) = (self.step_count(), self.world.resource::<Clock>().time_step);
-        let pressing = time_step > follower.most() * step_of(seen.square);
+        let pressing = time_step > follower.most() * follower.step_of(seen.square);
         // mass is not added and elements are not removed on the word of the cheap bound
         let watches = follower.policy == WhenUnstable::Watch;
         let affordable = follower.history.sharp_looks < FINDINGS.0 + step / FINDINGS.1;
@@ -33,14 +33,14 @@ impl Simulation {
         };
         follower.found.seen.get_or_insert(*seen);
         match follower.policy {
-            WhenUnstable::Watch if time_step > step_of(follower.found.known) => {
+            WhenUnstable::Watch if time_step > follower.step_of(follower.found.known) => {
                 let now = self.time();
                 follower.history.beyond_since.get_or_insert(now);
                 // told once; the guards see to the rest
                 follower.found.next = u64::MAX;
                 Ok(())
             }
-            _ if !found || time_step <= follower.most() * step_of(seen.square) => Ok(()),
+            _ if !found || time_step <= follower.most() * follower.step_of(seen.square) => Ok(()),
             WhenUnstable::ScaleMass { most } => self.make_heavier(follower, time_step, most),
             WhenUnstable::Remove => self.remove_quickest(follower),
             WhenUnstable::Watch | WhenUnstable::Adapt => Ok(()),
@@ -88,7 +88,7 @@ impl Simulation {
             if let Some(limit) = limit_now(&mut self.world, ACCURACY) {
                 follower.found.known = square_of(limit);
             }
-            if time_step <= follower.most() * step_of(follower.found.known) {
+            if time_step <= follower.most() * follower.step_of(follower.found.known) {
                 break;
             }
         }

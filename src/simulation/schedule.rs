@@ -1,7 +1,8 @@
 //! The order of systems: as the scene writes it, or derived from what the scene contains.
 
+use super::known::Known;
 use crate::scene::{Diagnostics, choice};
-use crate::systems::{Phase, Registry, System};
+use crate::systems::{Phase, System};
 use bevy_ecs::prelude::*;
 
 /// A system of the schedule, and why it is there.
@@ -17,15 +18,15 @@ pub struct Scheduled<'a> {
 }
 
 /// Looks for mistakes in a scene's schedule that show without its world: names and their order.
-pub fn check_names(names: &[String], registry: &Registry, diagnostics: &mut Diagnostics) {
+pub fn check_names(names: &[String], known: &Known<'_>, diagnostics: &mut Diagnostics) {
     let mut schedule: Vec<&System> = Vec::new();
     for (place, name) in names.iter().enumerate() {
         let path = format!("schedule[{place}]");
-        let Some(system) = registry.get(name) else {
-            let known = registry.systems().iter().map(|system| system.name.as_str());
+        let Some(system) = known.get(name) else {
+            let names = known.systems().map(|system| system.name.as_str());
             diagnostics
                 .error_at(path.as_str(), format!("there is no system named `{name}`"))
-                .notes(choice(name, known));
+                .notes(choice(name, names));
             continue;
         };
         if schedule.iter().any(|earlier| earlier.name == *name) {
@@ -46,24 +47,24 @@ pub fn check_names(names: &[String], registry: &Registry, diagnostics: &mut Diag
 /// which it needs goes to `diagnostics`.
 pub fn resolve<'a>(
     names: Option<&[String]>,
-    registry: &'a Registry,
+    known: &'a Known<'_>,
     world: &mut World,
     diagnostics: &mut Diagnostics,
 ) -> Vec<Scheduled<'a>> {
     let Some(names) = names else {
-        let all = registry.systems().iter();
-        return all
+        return known
+            .systems()
             .filter_map(|system| {
                 Some(Scheduled { system, because: (system.because)(world)?, every: system.every, interval: None })
             })
             .collect();
     };
     let mut schedule: Vec<Scheduled<'a>> = Vec::new();
-    for system in names.iter().filter_map(|name| registry.get(name)) {
+    for system in names.iter().filter_map(|name| known.get(name)) {
         let because = (system.because)(world).unwrap_or_else(|| "the scene's schedule names it".into());
         schedule.push(Scheduled { system, because, every: system.every, interval: None });
     }
-    for system in registry.systems() {
+    for system in known.systems() {
         if let Some(because) = (system.because)(world)
             && !names.contains(&system.name)
         {

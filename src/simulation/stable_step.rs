@@ -4,6 +4,7 @@ use super::costly::warn_of_costly;
 use super::damped_step::with_damping;
 use super::follow::step_of;
 use super::frequency::{Largest, PRODUCT, largest_eigenvalue, largest_worth};
+use super::load_rates::LoadRates;
 use super::nodal::bound_at_rest;
 use super::tangent::Tangent;
 use super::{Simulation, added_mass};
@@ -48,6 +49,15 @@ pub struct Stability {
     /// Whether the step stays with what the elements alone allow.
     #[serde(skip)]
     pub(super) stays_with_elements: bool,
+    /// What loads of the scene's own make of the step; `limit`, `stable_step` and `step` are with them.
+    #[serde(skip)]
+    pub(super) loads: LoadRates,
+    /// `limit` without them (s).
+    #[serde(skip)]
+    pub(super) limit_of_bodies: f64,
+    /// `stable_step` without them (s).
+    #[serde(skip)]
+    pub(super) stable_of_bodies: f64,
 }
 
 impl Stability {
@@ -74,6 +84,9 @@ impl Stability {
             found_from: "elements",
             because: "steps to rest are no motion".into(),
             stays_with_elements: true,
+            loads: LoadRates::default(),
+            limit_of_bodies: 0.0,
+            stable_of_bodies: 0.0,
         }
     }
 }
@@ -92,7 +105,8 @@ impl Simulation {
     /// What the GPU says.
     pub fn stable_limit(&mut self) -> Result<Option<f64>, Error> {
         bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
-        Ok(limit_now(&mut self.world, ACCURACY))
+        let loads = self.world.get_resource::<LoadRates>().copied().unwrap_or_default();
+        Ok(limit_now(&mut self.world, ACCURACY).map(|limit| loads.with(limit)))
     }
 }
 
@@ -122,7 +136,9 @@ pub(super) fn choose(
             .warn_at("integration.bound", reason)
             .note("`bound: Auto` stays with the stiffest element, which is safe");
     }
-    let found = seek(&scene.scene, certain, stays.is_none(), world);
+    let loads = LoadRates::at_rest(scene.scene.duration, world);
+    world.insert_resource(loads);
+    let found = seek(&scene.scene, certain, stays.is_none(), &loads, world);
     // the bounds are certain as well: at rest the best of all
     let limit = step_of(found.at_most).max(certain);
     let (found_from, stable_step) = match integration.bound {
@@ -133,21 +149,26 @@ pub(super) fn choose(
         _ => ("elements", heavier),
     };
     let found_from = if integration.step.is_some() { "scene" } else { found_from };
+    let mut because = because(&scene.scene, certain, stable_step, &found, stays);
+    because.extend(loads.told(stable_step).map(|told| format!("; {told}")));
     let stability = Stability {
         bound,
         by_nodes: Some(certain),
-        limit: Some(limit),
+        limit: Some(loads.with(limit)),
         beyond: (found.at_least > 0.0).then(|| step_of(found.at_least)),
         products: found.products,
         found_from,
-        because: because(&scene.scene, certain, stable_step, &found, stays),
-        stable_step,
+        because,
+        stable_step: loads.with(stable_step),
         step: 0.0,
         stays_with_elements: match integration.bound {
             StepBound::Elements => true,
             StepBound::Auto => stays.is_some(),
             StepBound::Iterated => false,
         },
+        loads,
+        limit_of_bodies: limit,
+        stable_of_bodies: stable_step,
     };
     let (time_step, steps) = taken(&scene.scene, &stability, diagnostics);
     let stability = Stability { step: time_step, ..stability };
@@ -189,12 +210,12 @@ fn reason_to_stay(scene: &Scene) -> Option<&'static str> {
 }
 
 /// The highest frequency of all bodies as they are held, as well as the scene needs it; `certain` (s) is stable anyway.
-fn seek(scene: &Scene, certain: f64, adapts: bool, world: &mut World) -> Largest {
+fn seek(scene: &Scene, certain: f64, adapts: bool, loads: &LoadRates, world: &mut World) -> Largest {
     let integration = &scene.integration;
     let nothing = Largest { at_least: 0.0, at_most: f64::INFINITY, products: 0 };
     let found = match (integration.step, integration.bound) {
         // certainly stable: nothing depends on more
-        (Some(step), StepBound::Auto) if step <= certain && adapts => return nothing,
+        (Some(step), StepBound::Auto) if step <= loads.with(certain) && adapts => return nothing,
         (None, StepBound::Auto) if adapts => {
             let steps = |at_most: f64| scene.duration / (integration.safety * step_of(at_most).max(certain));
             largest_worth(world, ACCURACY, Some(&steps))
@@ -204,7 +225,9 @@ fn seek(scene: &Scene, certain: f64, adapts: bool, world: &mut World) -> Largest
     let found = with_damping(found.unwrap_or(nothing), world);
     // a step of the scene's own may lie within the margin
     match integration.step {
-        Some(step) if step > step_of(found.at_most).max(certain) && step < step_of(found.at_least) => {
+        Some(step)
+            if step > loads.with(step_of(found.at_most).max(certain)) && step < loads.with(step_of(found.at_least)) =>
+        {
             largest_eigenvalue(world, SHARP).map_or(found, |sharp| with_damping(sharp, world))
         }
         _ => found,

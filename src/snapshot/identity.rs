@@ -25,6 +25,18 @@ pub fn identity(scene: &Scene, world: &mut World) -> Identity {
     }
     add("constraints", of_text(&scene.constraints));
     add("loads", of_text(&scene.loads));
+    if !scene.systems.is_empty() {
+        let mut systems = XxHash64::default();
+        systems.write_u64(of_text(&scene.systems));
+        let mut loads: Vec<&OwnLoad> = world.query::<&OwnLoad>().iter(world).collect();
+        loads.sort_by(|a, b| a.text.name.cmp(&b.text.name));
+        for load in loads {
+            // the scene only names the file
+            systems.write(load.text.text.as_bytes());
+            systems.write(&load.text.uniform);
+        }
+        add("systems", systems.finish());
+    }
     add("removal", of_text(&scene.removal));
     add("integration", of_text(&scene.integration));
     add("schedule", of_text(&scene.schedule));
@@ -86,6 +98,9 @@ fn sets_in_use(world: &mut World) -> u64 {
     });
     world.query::<&Pressure>().iter(world).for_each(|l| note("pressure", l.signal, &[bytes(&l.faces.faces)]));
     world.query::<&Traction>().iter(world).for_each(|l| note("traction", l.signal, &[bytes(&l.faces.faces)]));
+    world.query::<&OwnLoad>().iter(world).for_each(|l| {
+        note("system", l.signal, &[bytes(l.rows.as_deref().unwrap_or_default())]);
+    });
     world.query::<&RemovalCriterion>().iter(world).for_each(|r| {
         note("removal", r.measure as usize, &[bytes(&r.rows), &r.limit.to_le_bytes()]);
     });

@@ -32,6 +32,7 @@ mod node_sets;
 mod one_pass;
 mod output_fields;
 mod overlaps;
+mod own_systems;
 mod points;
 mod precision;
 mod preload;

@@ -15,7 +15,7 @@ fn arithmetic(x: f32, y: f32) -> f32 { return elastic.gain * (x * y - x / 3) + (
 
 fn functions(x: f32, y: f32) -> f32 {
     let roots = sqrt(abs(x)) + inverseSqrt(1.0 + y * y) + pow(1.0 + abs(x), 1.3) + pow(2.0 + x, 3.0) + pow(3.0 + y, -2.0);
-    let curves = exp(x) + exp2(y) + log(2.0 + x) + log2(3.0 + y) + pow(2.0 + y, third) + pow(2.0 + x, -2.0 / 3.0) + pow(2.0 + x, 1.5);
+    let curves = exp(x) + sin(7.0 * x) + cos(7.0 * y) + exp2(y) + log(2.0 + x) + log2(3.0 + y) + pow(2.0 + y, third) + pow(2.0 + x, -2.0 / 3.0) + pow(2.0 + x, 1.5);
     return roots + curves + min(x, y) + 2.0 * max(x, 0.1) + clamp(y, -0.2, 0.3) + saturate(x) + sign(y) + step(0.1, x)
         + fma(x, y, 1.0) + mix(x, y, 0.3);
 }
@@ -86,6 +86,8 @@ fn reference(name: &str, x: f64, y: f64) -> f64 {
                 + (2.0 + x).powi(3)
                 + (3.0 + y).powi(-2);
             let curves = x.exp()
+                + (7.0 * x).sin()
+                + (7.0 * y).cos()
                 + y.exp2()
                 + (2.0 + x).ln()
                 + (3.0 + y).log2()
@@ -224,6 +226,8 @@ fn functions_of_constants_have_their_values() {
         ("sqrt(2.0)", std::f64::consts::SQRT_2),
         ("inverseSqrt(4.0)", 0.5),
         ("exp(1.0)", std::f64::consts::E),
+        ("sin(0.5)", 0.479_425_538_604_203),
+        ("cos(0.5)", 0.877_582_561_890_372_8),
         ("exp2(0.5)", std::f64::consts::SQRT_2),
         ("log(2.0)", std::f64::consts::LN_2),
         ("log2(8.0)", 3.0),

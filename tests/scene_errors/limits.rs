@@ -234,6 +234,7 @@ fn the_reference_lists_the_limits() {
         (sinew::scene::syntax::DEEPEST as u64, "|brackets"),
         (limits::BODIES as u64, "|bodies;materials;regions"),
         (limits::ACTIONS as u64, "|constraints;loads;removals;probes"),
+        (limits::SYSTEMS as u64, "|systemsofyourown"),
         (limits::TABLE_POINTS as u64, "|pointsofatable"),
         (limits::TERMS as u64, "|termsofviscosity"),
         (limits::NAME_BYTES as u64, "bytes|thenameofabody"),

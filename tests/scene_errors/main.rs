@@ -9,6 +9,7 @@ mod limits;
 mod materials;
 mod mutations;
 mod outside;
+mod own_systems;
 mod set;
 mod several;
 mod values;

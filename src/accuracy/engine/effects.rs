@@ -54,6 +54,10 @@ fn list(scene: &Scene) -> Vec<Effect> {
         let name = if scene.loads.len() == 1 { word.to_string() } else { format!("{word} (loads[{number}])") };
         add(name, Box::new(move |scene| drop(scene.loads.remove(number))));
     }
+    for name in scene.systems.keys() {
+        let key = name.clone();
+        add(name.clone(), Box::new(move |scene| drop(scene.systems.remove(&key))));
+    }
     for number in 0..scene.removal.len() {
         let name = if scene.removal.len() == 1 { "removal".into() } else { format!("removal[{number}]") };
         add(name, Box::new(move |scene| drop(scene.removal.remove(number))));

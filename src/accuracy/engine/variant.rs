@@ -52,7 +52,9 @@ fn selections(scene: &Scene) -> impl Iterator<Item = &Select> {
         Load::Gravity { .. } => None,
     });
     let removal = scene.removal.iter().map(|removal| &removal.on);
-    regions.chain(constraints).chain(loads).chain(removal).chain(scene.probes.values().map(|probe| &probe.on))
+    let systems = scene.systems.values().map(|system| &system.on);
+    let probes = scene.probes.values().map(|probe| &probe.on);
+    regions.chain(constraints).chain(loads).chain(systems).chain(removal).chain(probes)
 }
 
 /// The cells of a generated mesh along its directions.

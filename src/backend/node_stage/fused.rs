@@ -81,7 +81,12 @@ impl Fused {
         let known: BTreeSet<String> = known.into_iter().map(|(name, _)| name).collect();
         for name in texts.iter().flat_map(|text| declared_names(text)).filter(|name| !known.contains(name)) {
             if declared.contains(&name) {
-                names.insert(name.clone(), format!("{name}_{number}"));
+                let mut other = format!("{name}_{number}");
+                while declared.contains(&other) {
+                    other.push('_');
+                }
+                declared.insert(other.clone());
+                names.insert(name.clone(), other);
             } else {
                 declared.insert(name);
             }

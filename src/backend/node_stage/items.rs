@@ -1,6 +1,7 @@
 //! WGSL texts as lists of declarations, as far as putting kernels together needs it: the engine's own fragments begin
 //! every declaration at the beginning of a line.
 
+use crate::materials::program::words;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A declaration with the comments and attributes before it.
@@ -73,26 +74,45 @@ pub fn storage_variable(line: &str) -> Option<(&str, bool, &str)> {
 }
 
 fn is_of_a_name(c: char) -> bool {
-    c.is_ascii_alphanumeric() || c == '_'
+    c.is_alphanumeric() || c == '_'
 }
 
-/// A text with other names.
+/// A text with other names for what it declares outside of functions; members of structs keep theirs.
 pub fn renamed(text: &str, names: &BTreeMap<String, String>) -> String {
     if names.is_empty() {
         return text.to_owned();
     }
+    let all: Vec<&str> = words(text).map(|range| &text[range]).collect();
+    let says = |word: &str| !(word.trim().is_empty() || word.starts_with("//") || word.starts_with("/*"));
     let mut result = String::with_capacity(text.len());
-    let mut rest = text;
-    while let Some(start) = rest.find(is_of_a_name) {
-        let end = rest[start..].find(|c| !is_of_a_name(c)).map_or(rest.len(), |length| start + length);
-        let word = &rest[start..end];
-        result += &rest[..start];
-        // a member is no declaration
-        let member = result.ends_with('.');
-        result += names.get(word).filter(|_| !member).map_or(word, String::as_str);
-        rest = &rest[end..];
+    // the two words before, and whether a struct's members are being declared
+    let (mut before, mut members) = (["", ""], Members::Elsewhere);
+    for (place, &word) in all.iter().enumerate() {
+        let kept = match before {
+            [_, "."] | [_, "@"] | ["var", "<"] => true,
+            _ if members == Members::Here => all[place + 1..].iter().find(|word| says(word)) == Some(&":"),
+            _ => false,
+        };
+        result += names.get(word).filter(|_| !kept).map_or(word, String::as_str);
+        if says(word) {
+            members = match (members, word) {
+                (_, "struct") => Members::Next,
+                (Members::Next, "{") => Members::Here,
+                (Members::Here, "}") => Members::Elsewhere,
+                (members, _) => members,
+            };
+            before = [before[1], word];
+        }
     }
-    result + rest
+    result
+}
+
+/// Whether the members of a struct are being declared.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Members {
+    Elsewhere,
+    Next,
+    Here,
 }
 
 #[cfg(test)]
@@ -130,5 +150,18 @@ fn pull(node: u32) {
             BTreeMap::from([("load".to_owned(), "load_1".to_owned()), ("pull".to_owned(), "pull_1".to_owned())]);
         let text = renamed(TEXT, &names);
         assert!(text.contains("f32(load_1.load) * overload(node)") && text.contains("fn pull_1("), "{text}");
+        assert!(text.contains("    load: u32, // slot\n"), "{text}");
+    }
+
+    #[test]
+    fn a_text_may_be_laid_out_in_any_way() {
+        let text = "struct Gust { pull : array<Load, read>, @align(16) group: f32 } struct Load { x: f32 }\n\
+                    const read = 2; @group(0) @binding(0) var<uniform> group: Gust; /* pull */ fn pull(g: Gust) -> f32 {\n\
+                    let of = g . pull[0].x; let pull: f32 = of; return pull * group.group; }";
+        let names = ["pull", "group", "read", "uniform", "Load"].map(|name| (name.to_owned(), format!("{name}_2")));
+        let expected = "struct Gust { pull : array<Load_2, read_2>, @align(16) group: f32 } struct Load_2 { x: f32 }\n\
+                        const read_2 = 2; @group(0) @binding(0) var<uniform> group_2: Gust; /* pull */ fn pull_2(g: Gust) -> f32 {\n\
+                        let of = g . pull[0].x; let pull_2: f32 = of; return pull_2 * group_2.group; }";
+        assert_eq!(renamed(text, &BTreeMap::from(names)), expected);
     }
 }

@@ -3,8 +3,9 @@
 
 use super::comparison::{Comparison, largest};
 use super::deformations::{self, Deformation, shown};
+use super::form::OF_LAWS;
 use super::names::declared;
-use super::{About, Complaint, FUNCTIONS};
+use super::{About, Complaint};
 use crate::materials::{Kinematics, LawPrograms};
 use crate::math::{Mat3, Real, Scalar, Sym3};
 use bevy_ecs::component::Component;
@@ -71,7 +72,7 @@ fn inner(a: &Sym3<f64>, b: &Sym3<f64>) -> f64 {
 impl Trial<'_> {
     /// A complaint about one of the four functions.
     fn about(&self, function: usize, message: String) -> Complaint {
-        let name = FUNCTIONS[function].0;
+        let name = OF_LAWS[function].0;
         let found = declared(self.text).into_iter().find(|d| d.name == name);
         Complaint::new(found.map_or(About::File, |d| About::Bytes(d.at)), message)
     }
@@ -104,7 +105,7 @@ impl Trial<'_> {
                 0.0 => "at rest".to_owned(),
                 _ => format!("at {}", shown(&deformation.gradient)),
             };
-            let message = format!("`{}` is {} {at}", FUNCTIONS[function].0, numbers[function]);
+            let message = format!("`{}` is {} {at}", OF_LAWS[function].0, numbers[function]);
             return Err(vec![self.about(function, message).note(
                 "a law must be finite at rest and around it: 0/0 and ln 0 there need a series or another form",
             )]);
@@ -142,7 +143,7 @@ impl Trial<'_> {
         let (rest, pressure) = (self.stress(&Mat3([[0.0; 3]; 3])), self.law.pressure_at(0.0));
         if largest(&rest.0) > REST * scale {
             let function = usize::from(pressure.abs() > REST * scale);
-            let message = format!("`{}` is not 0 at rest: {:.4e} Pa", FUNCTIONS[function].0, largest(&rest.0));
+            let message = format!("`{}` is not 0 at rest: {:.4e} Pa", OF_LAWS[function].0, largest(&rest.0));
             return Err(vec![self.about(function, message).note("an undeformed body has no stress")]);
         }
         for strain in [[1.0, 0.0, 0.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.3, 0.0, 0.0], [0.2, 0.0, -1.0, 0.0, 0.5, 0.7]]

@@ -1,24 +1,30 @@
-//! Whether a text has the form of a law: the four functions, one uniform of numbers, nothing else that kernels have.
+//! Whether a text has its form, that of a law say: the functions, one uniform of numbers, nothing else that kernels have.
 
-use super::names::{Declared, declared, member, owners};
-use super::{About, Complaint, FUNCTIONS, PARAMETERS, text};
+use super::form::{Form, Function};
+use super::names::{Declared, declared, member};
+use super::{About, Complaint, text};
 use crate::backend::kernel::{Composed, KernelError, compose};
 use naga::AddressSpace;
 use std::collections::BTreeMap;
 
-/// The parameters of a law, in the order of its struct.
+/// The parameters of a text, in the order of its struct.
 pub(super) struct Parameters {
     pub(super) values: Vec<f64>,
     /// As they lie in the uniform buffer, in f32.
     pub(super) bytes: Vec<u8>,
 }
 
-/// Checks the form of a law and packs its parameters.
-pub(super) fn check(path: &str, text: &str, given: &BTreeMap<String, f64>) -> Result<Parameters, Vec<Complaint>> {
-    let (declared, owners) = (declared(text), owners());
+/// Checks the form of a text and packs its parameters.
+pub(super) fn check(
+    form: &Form,
+    path: &str,
+    text: &str,
+    given: &BTreeMap<String, f64>,
+) -> Result<Parameters, Vec<Complaint>> {
+    let declared = declared(text);
     let mut complaints = Vec::new();
     for Declared { name, at, .. } in &declared {
-        if let Some(owner) = owners.get(name) {
+        if let Some(owner) = form.owners.get(name) {
             let message = format!("`{name}` is a name of sinew's own ({owner})");
             complaints.push(Complaint::new(About::Bytes(at.clone()), message).note("choose another name"));
         }
@@ -26,14 +32,14 @@ pub(super) fn check(path: &str, text: &str, given: &BTreeMap<String, f64>) -> Re
     if !complaints.is_empty() {
         return Err(complaints);
     }
-    let composed = compose(&text::fragments(path, text)).map_err(|error| vec![of_kernel(path, error)])?;
-    foreign(&composed, &declared, &mut complaints);
-    functions(&composed, &declared, text, &mut complaints);
-    let parameters = parameters(&composed, &declared, path, text, given, &mut complaints);
+    let composed = compose(&text::fragments(form, path, text)).map_err(|error| vec![of_kernel(path, error)])?;
+    foreign(form, &composed, &declared, &mut complaints);
+    functions(form, &composed, &declared, text, &mut complaints);
+    let parameters = parameters(form, &composed, &declared, (path, text), given, &mut complaints);
     if complaints.is_empty() { Ok(parameters) } else { Err(complaints) }
 }
 
-/// What the compiler says, at the place in the law's own text.
+/// What the compiler says, at the place in the user's own text.
 fn of_kernel(path: &str, error: KernelError) -> Complaint {
     let KernelError::Wgsl { message, places, notes, .. } = error else {
         return Complaint::new(About::File, error.to_string());
@@ -49,93 +55,96 @@ fn place(declared: &[Declared], name: &str) -> About {
     declared.iter().find(|d| d.name == name).map_or(About::File, |d| About::Bytes(d.at.clone()))
 }
 
-/// What other kernels have and a law cannot.
-fn foreign(composed: &Composed, declared: &[Declared], complaints: &mut Vec<Complaint>) {
-    let module = composed.module();
+/// What other kernels have and a text of the user's own cannot.
+fn foreign(form: &Form, composed: &Composed, declared: &[Declared], complaints: &mut Vec<Complaint>) {
+    let (module, Form { word, parameters, .. }) = (composed.module(), form);
     let mut complain = |name: &str, message: String, note: &str| {
         complaints.push(Complaint::new(place(declared, name), message).note(note));
     };
     for point in &module.entry_points {
-        let message = format!("`{}` is an entry point: a law has none", point.name);
-        complain(
-            &point.name,
-            message,
-            "the element kernel calls the law's functions; leave out @compute and @workgroup_size",
-        );
+        let message = format!("`{}` is an entry point: a {word} has none", point.name);
+        complain(&point.name, message, &format!("{}; leave out @compute and @workgroup_size", form.called_by));
     }
     for (_, value) in module.overrides.iter() {
         let name = value.name.as_deref().unwrap_or_default();
-        let note = "parameters are members of the struct of `var<uniform> elastic`";
-        complain(name, format!("`{name}` is an `override`: nothing would set it"), note);
+        let note = format!("parameters are members of the struct of `var<uniform> {parameters}`");
+        complain(name, format!("`{name}` is an `override`: nothing would set it"), &note);
     }
     for (_, variable) in module.global_variables.iter() {
         let name = variable.name.as_deref().unwrap_or_default();
-        let stress = "a stress depends on the deformation and the parameters alone";
         match variable.space {
-            AddressSpace::Uniform if name == PARAMETERS => {}
+            AddressSpace::Uniform if name == *parameters => {}
             AddressSpace::Uniform => complain(
                 name,
-                format!("the parameters of a law must be called `{PARAMETERS}`, found `{name}`"),
-                "@group(0) @binding(0) var<uniform> elastic: YourStruct;",
+                format!("the parameters of a {word} must be called `{parameters}`, found `{name}`"),
+                &format!("@group(0) @binding(0) var<uniform> {parameters}: YourStruct;"),
             ),
             AddressSpace::Storage { .. } => {
-                complain(name, format!("`{name}` is a storage buffer: a law has none"), stress);
+                complain(name, format!("`{name}` is a storage buffer: a {word} has none"), form.depends_on);
             }
             AddressSpace::Private | AddressSpace::WorkGroup => {
-                complain(name, format!("`{name}` is a variable outside of all functions: a law has none"), stress);
+                let message = format!("`{name}` is a variable outside of all functions: a {word} has none");
+                complain(name, message, form.depends_on);
             }
-            _ => complain(name, format!("`{name}` is no uniform buffer: a law has only one of these"), stress),
+            _ => {
+                let message = format!("`{name}` is no uniform buffer: a {word} has only one of these");
+                complain(name, message, form.depends_on);
+            }
         }
     }
 }
 
-fn functions(composed: &Composed, declared: &[Declared], text: &str, complaints: &mut Vec<Complaint>) {
-    for (name, argument, result, form) in FUNCTIONS {
-        let note = format!("it must be: {form}");
+fn functions(form: &Form, composed: &Composed, declared: &[Declared], text: &str, complaints: &mut Vec<Complaint>) {
+    let word = form.word;
+    for Function { name, argument, result, declared: as_it_is } in &form.functions {
+        let note = format!("it must be: {as_it_is}");
         match composed.signature(name) {
             Some((arguments, found)) => {
-                if arguments != [argument] || found.as_deref() != Some(result) {
+                if arguments != [*argument] || found.as_deref() != Some(*result) {
                     let found = format!("({}) -> {}", arguments.join(", "), found.as_deref().unwrap_or("nothing"));
                     let message = format!("`{name}` takes and gives something else: {found}");
                     complaints.push(Complaint::new(place(declared, name), message).note(note));
                 }
             }
             None => {
-                let names = declared.iter().filter(|d| d.kind == "fn" && !FUNCTIONS.iter().any(|f| f.0 == d.name));
+                let names =
+                    declared.iter().filter(|d| d.kind == "fn" && !form.functions.iter().any(|f| f.name == d.name));
                 let names: Vec<&str> = names.map(|d| d.name.as_str()).collect();
                 let nearest = crate::scene::nearest(name, names.iter().copied());
                 let about = nearest.map_or(About::File, |near| place(declared, near));
-                let mut complaint = Complaint::new(about, format!("the law has no function `{name}`"));
+                let mut complaint = Complaint::new(about, format!("the {word} has no function `{name}`"));
                 complaint.notes.extend(nearest.map(|near| format!("is `{near}` meant to be it?")));
                 complaints.push(complaint.note(note));
             }
         }
     }
-    // a word that only a GPU could make sense of: said in the law's own words, not in those of a twin
+    // a word that only a GPU could make sense of: said in the text's own words, not in those of a twin
     for range in crate::materials::program::words(text).filter(|range| &text[range.clone()] == "bitcast") {
-        let message = "the bits of a number cannot be looked at: a law is computed in several precisions";
+        let message = format!("the bits of a number cannot be looked at: a {word} is computed in several precisions");
         complaints.push(Complaint::new(About::Bytes(range), message));
     }
 }
 
 fn parameters(
+    form: &Form,
     composed: &Composed,
     declared: &[Declared],
-    path: &str,
-    text: &str,
+    (path, text): (&str, &str),
     given: &BTreeMap<String, f64>,
     complaints: &mut Vec<Complaint>,
 ) -> Parameters {
     let mut packed = Parameters { values: Vec::new(), bytes: Vec::new() };
-    let binding = composed.binding(PARAMETERS);
+    let Form { word, parameters, .. } = form;
+    let binding = composed.binding(parameters);
     let members = binding.map(|binding| composed.struct_layout(&binding.type_name));
     let members = match members {
         None => Vec::new(),
         Some(Ok(members)) => members,
         Some(Err(_)) => {
-            let message = format!("`{PARAMETERS}` must be a struct of numbers");
-            let note = "struct Law { mu: f32 } @group(0) @binding(0) var<uniform> elastic: Law;";
-            complaints.push(Complaint::new(place(declared, PARAMETERS), message).note(note));
+            let message = format!("`{parameters}` must be a struct of numbers");
+            let note =
+                format!("struct Numbers {{ first: f32 }} @group(0) @binding(0) var<uniform> {parameters}: Numbers;");
+            complaints.push(Complaint::new(place(declared, parameters), message).note(note));
             return packed;
         }
     };
@@ -154,7 +163,7 @@ fn parameters(
             continue;
         }
         let Some(&value) = given.get(&wanted.name) else {
-            let message = format!("the law needs the parameter `{}`", wanted.name);
+            let message = format!("the {word} needs the parameter `{}`", wanted.name);
             complaints.push(Complaint::new(About::Parameters, message).note(needs.clone()));
             continue;
         };
@@ -164,7 +173,7 @@ fn parameters(
     }
     for name in given.keys().filter(|name| !names.contains(&name.as_str())) {
         let mut complaint =
-            Complaint::new(About::Parameter(name.clone()), format!("the law has no parameter `{name}`"));
+            Complaint::new(About::Parameter(name.clone()), format!("the {word} has no parameter `{name}`"));
         complaint
             .notes
             .extend(crate::scene::nearest(name, names.iter().copied()).map(|n| format!("did you mean `{n}`?")));

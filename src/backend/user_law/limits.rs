@@ -1,4 +1,4 @@
-//! Whether a law's text has a bearable size and depth, from its words alone. Compilers go into what is nested by calls
+//! Whether a text of the user's own has a bearable size and depth, from its words alone. Compilers go into what is nested by calls
 //! within calls: a text without limits would take all of their stack, or all of one's time.
 
 use super::{About, Complaint};
@@ -22,8 +22,15 @@ struct Level {
     after_block: bool,
 }
 
-/// Finds the place where a text becomes too long, too deep or too much.
-pub(super) fn check(text: &str) -> Result<(), Complaint> {
+/// Finds the place where a text, a `law` say, becomes too long, too deep or too much.
+pub(super) fn check(text: &str, word: &str) -> Result<(), Complaint> {
+    let at_most = |most: usize, found: usize, at: &Range<usize>, what: &str, note: &str| match found <= most {
+        true => Ok(()),
+        false => {
+            let message = format!("a {word} has at most {most} {what}");
+            Err(Complaint::new(About::Bytes(at.clone()), message).note(note))
+        }
+    };
     let mut levels = vec![Level::default()];
     let (mut count, mut declarations, mut arrays, mut after_name) = (0, 0, 0, false);
     for range in words(text) {
@@ -32,13 +39,7 @@ pub(super) fn check(text: &str) -> Result<(), Complaint> {
             continue;
         }
         count += 1;
-        at_most(
-            LAW_WORDS,
-            count,
-            &range,
-            "words, numbers and signs",
-            "a table of so many numbers has no place in a law",
-        )?;
+        at_most(LAW_WORDS, count, &range, "words, numbers and signs", "a table of so many numbers has no place in it")?;
         match word {
             "fn" | "struct" | "var" | "const" | "alias" | "override" if levels.len() == 1 => declarations += 1,
             "array" | "ptr" => arrays += 1,
@@ -84,13 +85,6 @@ fn nest(levels: &mut Vec<Level>, word: &str, after_name: bool) {
     }
 }
 
-fn at_most(most: usize, found: usize, at: &Range<usize>, what: &str, note: &str) -> Result<(), Complaint> {
-    if found <= most {
-        return Ok(());
-    }
-    Err(Complaint::new(About::Bytes(at.clone()), format!("a law has at most {most} {what}")).note(note))
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -98,7 +92,7 @@ mod tests {
 
     /// The depth at the word where a text passes the limit, for texts that grow with a number.
     fn passes(text: impl Fn(usize) -> String) -> usize {
-        (1..=LAW_DEPTH + 1).find(|n| check(&text(*n)).is_err()).unwrap_or(usize::MAX)
+        (1..=LAW_DEPTH + 1).find(|n| check(&text(*n), "law").is_err()).unwrap_or(usize::MAX)
     }
 
     #[test]
@@ -128,7 +122,7 @@ mod tests {
             format!("struct A {{ {} }}", "mu: f32, ".repeat(long)),
             "/*".repeat(long) + &"*/".repeat(long),
         ] {
-            assert_eq!(check(&text), Ok(()), "{text:.80}");
+            assert_eq!(check(&text, "law"), Ok(()), "{text:.80}");
         }
     }
 }

@@ -1,19 +1,26 @@
-//! Reading a law of the user's own: one WGSL file with parameters from the scene. The text is compiled with our own
-//! fragments as the GPU will, translated for the CPU, and found to be a law before anything is simulated with it.
+//! Reading a law or a load of the user's own: one WGSL file with parameters from the scene. The text is compiled with
+//! our own fragments as the GPU will, translated for the CPU, and found to be what it should before anything is
+//! simulated with it.
 
 mod checks;
 mod comparison;
 mod deformations;
+mod form;
 mod interface;
 mod limits;
+mod load;
 mod names;
+mod reading;
 mod text;
 
 pub use checks::Findings;
+pub(crate) use form::ground_of_load;
+pub use load::{check_load, read_load};
 pub(crate) use names::declared_names;
 
-use crate::materials::program::Untranslatable;
 use crate::materials::{LawPrograms, UserLaw};
+use form::{Form, OF_LAWS};
+use reading::Reading;
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -30,10 +37,10 @@ pub enum About {
     Parameters,
 }
 
-/// What is wrong with a law, or should be known of it.
+/// What is wrong with a law or a load, or should be known of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Complaint {
-    /// Whether the law can be used all the same.
+    /// Whether it can be used all the same.
     pub warning: bool,
     /// Where.
     pub about: About,
@@ -66,43 +73,22 @@ pub struct Read {
     pub warnings: Vec<Complaint>,
 }
 
-/// The functions of a law: name, types of the arguments, type of the result, and what it is.
-const FUNCTIONS: [(&str, &str, &str, &str); 4] = [
-    ("elastic_isochoric", "Kinematics", "Sym3", "fn elastic_isochoric(k: Kinematics) -> Sym3"),
-    ("elastic_pressure", "f32", "f32", "fn elastic_pressure(volume_change: f32) -> f32"),
-    ("elastic_isochoric_energy", "Kinematics", "f32", "fn elastic_isochoric_energy(k: Kinematics) -> f32"),
-    ("elastic_volumetric_energy", "f32", "f32", "fn elastic_volumetric_energy(volume_change: f32) -> f32"),
-];
-
-/// The one variable that a law may have: `var<uniform> elastic`.
-const PARAMETERS: &str = "elastic";
-
 /// Reads a law from the text of its file and the parameters that the scene gives.
 ///
 /// # Errors
 /// All that is wrong with the text, or with the parameters; if they are sound, with the law itself.
 pub fn read(path: &str, text: &str, parameters: &BTreeMap<String, f64>) -> Result<Read, Vec<Complaint>> {
-    limits::check(text).map_err(|complaint| vec![complaint])?;
-    let uniform = interface::check(path, text, parameters)?;
-    let whole = text::in_double_precision(text);
-    let own = whole.len() - text.len();
-    let complaint = |error: Untranslatable| {
-        let bytes = error.at.filter(|range| range.start >= own).map(|range| range.start - own..range.end - own);
-        let about = bytes.map_or(About::File, About::Bytes);
-        vec![Complaint { notes: error.notes, ..Complaint::new(about, error.message) }]
-    };
-    let source = crate::materials::program::Source::read(&whole).map_err(complaint)?;
-    let values = BTreeMap::from([(PARAMETERS.to_owned(), uniform.values)]);
-    let program = |name: &str| source.translate(name, &values).map_err(complaint);
+    let reading = Reading::of(&Form::law(), path, text, parameters)?;
+    let program = |number: usize| reading.program(OF_LAWS[number].0);
     let mut law = LawPrograms {
         path: path.to_owned(),
         text: text.to_owned(),
-        uniform: uniform.bytes,
-        isochoric: program(FUNCTIONS[0].0)?,
-        pressure: program(FUNCTIONS[1].0)?,
-        isochoric_energy: program(FUNCTIONS[2].0)?,
-        volumetric_energy: program(FUNCTIONS[3].0)?,
+        isochoric: program(0)?,
+        pressure: program(1)?,
+        isochoric_energy: program(2)?,
+        volumetric_energy: program(3)?,
         moduli: [0.0; 2],
+        uniform: reading.uniform,
     };
     let (findings, warnings) = checks::check(&law, text)?;
     law.moduli = [findings.shear, findings.bulk];

@@ -123,15 +123,21 @@ const GENERATED: [&str; 19] = [
     "J_FLOOR",
 ];
 
-/// The names that are ours, each with the file that has it.
-pub(super) fn owners() -> HashMap<String, String> {
+/// The names that are ours where there is a law, each with the file that has it.
+pub(super) fn law_owners() -> HashMap<String, String> {
+    let mut owners = owners_among(&[to_call(), beside()].concat());
+    owners.extend(GENERATED.map(|name| (name.to_owned(), "a generated part of the kernel".to_owned())));
+    owners
+}
+
+/// The names that fragments declare, each with its file.
+pub(super) fn owners_among(fragments: &[Fragment]) -> HashMap<String, String> {
     let mut owners = HashMap::new();
-    for fragment in to_call().into_iter().chain(beside()) {
+    for fragment in fragments {
         for name in declared_names(&fragment.text) {
             owners.entry(name).or_insert_with(|| fragment.path.clone());
         }
     }
-    owners.extend(GENERATED.map(|name| (name.to_owned(), "a generated part of the kernel".to_owned())));
     owners
 }
 

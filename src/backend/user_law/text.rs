@@ -1,22 +1,19 @@
-//! The texts that a law is compiled in.
+//! The texts that one of the user's own is compiled in.
 
-use super::names::to_call;
+use super::form::Form;
 use crate::backend::kernel::Fragment;
-use crate::materials::J_FLOOR;
 use crate::materials::program::KNOWN_BY_NAME;
 
-/// Our fragments that a law may call, then the law.
-pub(super) fn fragments(path: &str, text: &str) -> Vec<Fragment> {
-    let mut fragments = to_call();
-    fragments.push(Fragment::new("generated: constants", format!("const J_FLOOR: f32 = {J_FLOOR:e};\n")));
-    fragments.push(Fragment::new(path, text.to_owned()));
-    fragments
+/// Our fragments that a text may call, then the text.
+pub(super) fn fragments(form: &Form, path: &str, text: &str) -> Vec<Fragment> {
+    let own = Fragment::new(path, text.to_owned());
+    form.ours.iter().cloned().chain([own]).collect()
 }
 
-/// The same as one text that can be read in double precision; the law stands at its end.
-pub(super) fn in_double_precision(text: &str) -> String {
+/// The same as one text that can be read in double precision; the user's stands at its end.
+pub(super) fn in_double_precision(form: &Form, text: &str) -> String {
     let mut whole = String::new();
-    for fragment in fragments("", text).split_last().map_or(&[][..], |(_, ours)| ours) {
+    for fragment in &form.ours {
         whole.push_str(&without_bits(&fragment.text));
         whole.push('\n');
     }

@@ -139,7 +139,7 @@ impl Translator<'_> {
             (Value::Float(_), _) => {
                 return Err(Untranslatable::new(
                     at,
-                    "a number that differs from element to element cannot become a whole one",
+                    "a number that differs from element to element or node to node cannot become a whole one",
                 ));
             }
             _ => return Err(Untranslatable::new(at, NOT_ALLOWED)),

@@ -5,7 +5,7 @@ use super::value::{Place, Test, Value, Variable};
 use super::{NOT_ALLOWED, Untranslatable};
 use naga::{Expression, Handle, Literal, ScalarKind, Span, Type, TypeInner};
 
-/// The largest value that a law may have, in double precision: 1000 numbers and more.
+/// The largest value that a text may have, in double precision: 1000 numbers and more.
 const MOST_BYTES: u32 = 8192;
 
 impl<'m> Translator<'m> {
@@ -37,7 +37,7 @@ impl<'m> Translator<'m> {
                 let Some(index) = index else {
                     return Err(Untranslatable::new(
                         at,
-                        "an index must be known here, not differ from element to element",
+                        "an index must be known here, not differ from element to element or node to node",
                     ));
                 };
                 let base = self.value(frame, *base)?;
@@ -112,7 +112,7 @@ impl<'m> Translator<'m> {
     fn bearable(&self, ty: Handle<Type>, at: Span) -> Result<()> {
         let size = self.module.types[ty].inner.try_size(self.module.to_ctx());
         if size.is_none_or(|bytes| bytes > MOST_BYTES) {
-            let message = format!("a value of more than {MOST_BYTES} bytes is too large for a law");
+            let message = format!("a value of more than {MOST_BYTES} bytes is too large");
             return Err(Untranslatable::new(at, message).note("its numbers are handled one by one: use smaller arrays"));
         }
         Ok(())
@@ -161,7 +161,7 @@ impl<'m> Translator<'m> {
         };
         let value = variable.and_then(|value| value.at(&place.path)).cloned();
         value.ok_or_else(|| {
-            Untranslatable::new(at, "this index leads beyond the end, or this variable is not the law's")
+            Untranslatable::new(at, "this index leads beyond the end, or this variable holds no parameters")
         })
     }
 }

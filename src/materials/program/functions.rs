@@ -131,6 +131,8 @@ impl Translator<'_> {
             (F::Abs, &[x]) => g.unary(Unary::Abs, x),
             (F::Sqrt, &[x]) => g.unary(Unary::Sqrt, x),
             (F::Exp, &[x]) => g.unary(Unary::Exp, x),
+            (F::Sin, &[x]) => g.unary(Unary::Sine, x),
+            (F::Cos, &[x]) => g.unary(Unary::Cosine, x),
             (F::Log, &[x]) => g.unary(Unary::Log, x),
             (F::InverseSqrt, &[x]) => {
                 let root = g.unary(Unary::Sqrt, x);
@@ -251,7 +253,7 @@ impl Translator<'_> {
 }
 
 fn not_there(at: Span) -> Untranslatable {
-    Untranslatable::new(at, "this function is not there for a law of one's own").note(FUNCTIONS)
+    Untranslatable::new(at, "this function is not there for a text of one's own").note(FUNCTIONS)
 }
 
 fn number(value: &Value, at: Span) -> Result<Id> {

@@ -26,6 +26,8 @@ pub(super) enum Unary {
     /// ln(1 + x).
     LogOfOnePlus,
     InverseCbrt,
+    Sine,
+    Cosine,
 }
 
 /// Functions of two numbers.
@@ -148,6 +150,8 @@ impl Unary {
             Self::Log => x.if_positive(x.ln(), x.constant(f64::NAN)),
             Self::LogOfOnePlus => (x + x.constant(1.0)).if_positive(x.ln_1p(), x.constant(f64::NAN)),
             Self::InverseCbrt => x.inverse_cbrt(),
+            Self::Sine => x.sin(),
+            Self::Cosine => x.cos(),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Programs: a law written in WGSL alone, ready to run on the CPU.
+//! Programs: a law or a load written in WGSL alone, ready to run on the CPU.
 //!
 //! A pure function of WGSL (no memory, no threads, loops with a fixed number of rounds) is a fixed arrangement of sums,
 //! products, roots, exponentials and choices. [`translate()`] finds it from naga's reading of the text, in double
@@ -52,11 +52,12 @@ impl Untranslatable {
 /// Functions of ours that look at the bits of a number: what they mean is known by their names.
 pub const KNOWN_BY_NAME: [&str; 4] = ["inverse_cbrt", "exponential", "exponential_less_one", "logarithm_of_one_plus"];
 
-const NOT_ALLOWED: &str = "this is not possible in a law of one's own";
-const FUNCTIONS: &str = "allowed: abs, all, any, clamp, cross, determinant, distance, dot, exp, exp2, fma, inverseSqrt, \
-     length, log, log2, max, min, mix, normalize, outer, pow, saturate, select, sign, sqrt, step, transpose";
+const NOT_ALLOWED: &str = "this is not possible in a text of one's own";
+const FUNCTIONS: &str = "allowed: abs, all, any, clamp, cos, cross, determinant, distance, dot, exp, exp2, fma, \
+     inverseSqrt, length, log, log2, max, min, mix, normalize, outer, pow, saturate, select, sign, sin, sqrt, step, \
+     transpose";
 
-/// The text of the WGSL functions of a law, read in double precision.
+/// The text of the WGSL functions of a law or a load, read in double precision.
 pub struct Source {
     module: Module,
     twin: Twin,

@@ -116,6 +116,25 @@ impl Program {
             && bits(self) == bits(other)
     }
 
+    /// Whether an output depends on an input.
+    pub fn reads(&self, input: usize) -> bool {
+        let holds = |slot: u8| usize::from(slot) == input;
+        for i in &self.instructions {
+            let operands = match i.code {
+                Code::Unary(_) => &[i.a][..],
+                Code::Binary(_) => &[i.a, i.b],
+                _ => &[i.a, i.b, i.c],
+            };
+            if operands.iter().any(|&slot| holds(slot)) {
+                return true;
+            }
+            if holds(i.to) {
+                return false;
+            }
+        }
+        self.outputs.iter().any(|&slot| holds(slot))
+    }
+
     /// Instructions, constants, and slots in use at the same time.
     pub fn size(&self) -> (usize, usize, usize) {
         (self.instructions.len(), self.constants.len(), self.slots)

@@ -227,4 +227,4 @@ impl<'m> Translator<'m> {
 }
 
 /// What is said of whole numbers and indices that are not known when a function is translated.
-pub(super) const VARYING: &str = "a whole number here differs from element to element";
+pub(super) const VARYING: &str = "a whole number here differs from element to element or node to node";

@@ -8,9 +8,10 @@ use std::ops::Range;
 const ONE: &str = "one_that_is_not_folded";
 
 /// WGSL's own functions that a law may call; all take numbers, vectors or matrices of them.
-const MATH: [&str; 22] = [
+const MATH: [&str; 24] = [
     "abs",
     "clamp",
+    "cos",
     "cross",
     "determinant",
     "distance",
@@ -29,6 +30,7 @@ const MATH: [&str; 22] = [
     "pow",
     "saturate",
     "sign",
+    "sin",
     "sqrt",
     "step",
 ];

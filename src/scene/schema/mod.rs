@@ -8,6 +8,7 @@ mod output;
 mod picture;
 mod scene;
 mod selection;
+mod system;
 
 pub use crate::mesh::ElementKind;
 pub use accuracy::{Accuracy, AccuracyReference};
@@ -21,14 +22,16 @@ pub use output::{Output, OutputField};
 pub use picture::{Colours, Cut, Field, Opacity, Picture};
 pub use scene::{Analysis, EnergyGuard, Guard, Guards, InitialState, Integration, Scene, StepBound, WhenUnstable};
 pub use selection::{Probe, Quantity, Select};
+pub use system::OwnSystem;
 
 /// The texts of these files: what a field means is told in the words it is documented with.
-pub const TEXT: [&str; 8] = [
+pub const TEXT: [&str; 9] = [
     include_str!("scene.rs"),
     include_str!("body.rs"),
     include_str!("material.rs"),
     include_str!("action.rs"),
     include_str!("selection.rs"),
+    include_str!("system.rs"),
     include_str!("output.rs"),
     include_str!("picture.rs"),
     include_str!("accuracy.rs"),

@@ -1,6 +1,6 @@
 //! The whole scene, its time step, its guards.
 
-use super::{Accuracy, Body, Constraint, Load, Material, Output, Picture, Probe, Removal};
+use super::{Accuracy, Body, Constraint, Load, Material, Output, OwnSystem, Picture, Probe, Removal};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -29,6 +29,9 @@ pub struct Scene {
     /// What pushes and pulls.
     #[serde(default)]
     pub loads: Vec<Load>,
+    /// Loads of your own in WGSL, by the name of their function.
+    #[serde(default)]
+    pub systems: BTreeMap<String, OwnSystem>,
     /// Which elements go, and when.
     #[serde(default)]
     pub removal: Vec<Removal>,

@@ -160,7 +160,9 @@ impl Scene {
             Load::Gravity { .. } => None,
         });
         let removal = self.removal.iter().map(|removal| &removal.on);
-        regions.chain(constraints).chain(loads).chain(removal).chain(self.probes.values().map(|probe| &probe.on))
+        let systems = self.systems.values().map(|system| &system.on);
+        let probes = self.probes.values().map(|probe| &probe.on);
+        regions.chain(constraints).chain(loads).chain(systems).chain(removal).chain(probes)
     }
 }
 

@@ -85,6 +85,7 @@ fn start(scene_: &Scene, judge: &mut Judge) {
         }
     }
     let curves = scene_.loads.iter().map(Load::curve).chain(scene_.constraints.iter().filter_map(Constraint::curve));
+    let curves = curves.chain(scene_.systems.values().map(|system| &system.curve));
     if curves.map(|curve| curve.value(0.0)).all(|factor| factor == 0.0) {
         judge.out.warn_at(&path, "nothing acts at t = 0: bodies start undeformed").note(
             "curves count as they stand at 0: a ramp that begins there is 0; a load without `curve` acts in full",

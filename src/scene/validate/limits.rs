@@ -2,7 +2,7 @@
 //! much.
 
 use super::{Judge, scene};
-use crate::scene::limits::{ACTIONS, BODIES, MOST_REFINEMENT, NAME_BYTES, TABLE_POINTS, TERMS};
+use crate::scene::limits::{ACTIONS, BODIES, MOST_REFINEMENT, NAME_BYTES, SYSTEMS, TABLE_POINTS, TERMS};
 use crate::scene::load::SceneFile;
 use crate::scene::schema::{Constraint, Curve, Load, MeshSource};
 use crate::scene::syntax::Path;
@@ -15,6 +15,7 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) -> bool {
     limits.at_most(BODIES, found.materials.len(), "materials", || scene("materials"));
     limits.at_most(ACTIONS, found.constraints.len(), "constraints", || scene("constraints"));
     limits.at_most(ACTIONS, found.loads.len(), "loads", || scene("loads"));
+    limits.at_most(SYSTEMS, found.systems.len(), "systems", || scene("systems"));
     limits.at_most(ACTIONS, found.removal.len(), "removals", || scene("removal"));
     limits.at_most(ACTIONS, found.probes.len(), "probes", || scene("probes"));
     if !limits.kept {
@@ -43,9 +44,14 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) -> bool {
         | Load::Traction { curve, .. }) = load;
         limits.table(curve, || scene("loads").index(i).name("curve"));
     }
+    for (name, system) in &found.systems {
+        limits.table(&system.curve, || scene("systems").name(name).name("curve"));
+    }
     let bodies = found.bodies.keys().map(|name| ("bodies", name));
     let materials = found.materials.keys().map(|name| ("materials", name));
-    for (what, name) in bodies.chain(materials).chain(found.probes.keys().map(|name| ("probes", name))) {
+    let systems = found.systems.keys().map(|name| ("systems", name));
+    let probes = found.probes.keys().map(|name| ("probes", name));
+    for (what, name) in bodies.chain(materials).chain(systems).chain(probes) {
         limits.at_most(NAME_BYTES, name.len(), "bytes in a name", || scene(what).name(name));
     }
     limits.kept

@@ -9,6 +9,7 @@ mod material;
 mod names;
 mod numbers;
 mod output;
+mod own_system;
 mod picture;
 mod select;
 mod time;
@@ -31,6 +32,7 @@ pub fn validate(file: &SceneFile, diagnostics: &mut Diagnostics) -> bool {
     material::validate(&file.scene, &mut judge);
     geometry::validate(file, &mut judge);
     action::validate(&file.scene, &mut judge);
+    own_system::validate(&file.scene, &mut judge);
     time::validate(&file.scene, &mut judge);
     analysis::validate(&file.scene, &mut judge);
     output::validate(&file.scene, &mut judge);

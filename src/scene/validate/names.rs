@@ -72,6 +72,11 @@ fn bodies(scene_: &Scene, judge: &mut Judge) {
             | Load::Traction { body, .. } => body_named(scene_, judge, &path, body.as_ref()),
         }
     }
+    for (name, system) in &scene_.systems {
+        if system.body.is_some() {
+            body_named(scene_, judge, &scene("systems").name(name), system.body.as_ref());
+        }
+    }
     for (i, removal) in scene_.removal.iter().enumerate() {
         body_named(scene_, judge, &scene("removal").index(i), removal.body.as_ref());
     }

@@ -89,6 +89,9 @@ fn actions(scene_: &Scene, judge: &mut Judge) {
         | Load::Traction { curve, .. }) = load;
         validate_curve(judge, &scene("loads").index(i).name("curve"), curve, scene_.duration);
     }
+    for (name, system) in &scene_.systems {
+        validate_curve(judge, &scene("systems").name(name).name("curve"), &system.curve, scene_.duration);
+    }
     for (i, removal) in scene_.removal.iter().enumerate() {
         let path = scene("removal").index(i).name("when");
         match removal.when {

@@ -171,8 +171,8 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> 
     vec![
         Effect {
             name: "external forces",
-            on: entity.contains::<ExternalForce>().then(|| many(scene.loads.len(), "load")),
-            turned_on_by: "an entry under `loads`".into(),
+            on: entity.contains::<ExternalForce>().then(|| many(scene.loads.len() + scene.systems.len(), "load")),
+            turned_on_by: "an entry under `loads` or `systems`".into(),
         },
         Effect {
             name: "damping",

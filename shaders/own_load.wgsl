@@ -1,0 +1,28 @@
+// A load that a scene has in WGSL alone; twin of systems/own_load.rs. Generated: force_on, which calls the scene's function,
+// and own_load, which calls own_load_on.
+struct OwnLoadUniform {
+    signal: u32, // slot of the curve
+    velocity_factor: u32, // 1; 0 in a static analysis, whose steps are no motion
+}
+@group(0) @binding(0) var<uniform> load: OwnLoadUniform;
+@group(0) @binding(1) var<storage, read> mass: array<f32>;
+@group(0) @binding(2) var<storage, read> displacement: array<f32>;
+@group(0) @binding(3) var<storage, read> displacement_step: array<f32>;
+@group(0) @binding(4) var<storage, read> rest_position: array<f32>;
+
+// What has lost all its elements bears nothing.
+fn own_load_on(node: u32) {
+    if mass[node] > 0.0 {
+        let at = 3u * node;
+        var state: Node;
+        state.rest_position = vec3<f32>(rest_position[at], rest_position[at + 1u], rest_position[at + 2u]);
+        state.displacement = vec3<f32>(displacement[at], displacement[at + 1u], displacement[at + 2u]);
+        let last = vec3<f32>(displacement_step[at], displacement_step[at + 1u], displacement_step[at + 2u]);
+        state.velocity = last * (step.rate * f32(load.velocity_factor));
+        state.mass = mass[node];
+        state.curve = step.signals[load.signal].x;
+        state.time = step.time;
+        state.time_step = step.time_step;
+        add_load(node, force_on(state));
+    }
+}

@@ -1,0 +1,88 @@
+//! What a text of the user's own must be: a law, or a load.
+
+use super::names::{law_owners, owners_among, to_call};
+use crate::backend::kernel::Fragment;
+use crate::materials::J_FLOOR;
+use crate::materials::program::{is_name, words};
+use crate::shader;
+use std::collections::HashMap;
+
+/// A function that a text must declare.
+pub(super) struct Function {
+    pub(super) name: String,
+    /// Types of its argument and of its result.
+    pub(super) argument: &'static str,
+    pub(super) result: &'static str,
+    /// How it is declared.
+    pub(super) declared: String,
+}
+
+/// What a text must be, and what it may use.
+pub(super) struct Form {
+    /// What it is, in a word.
+    pub(super) word: &'static str,
+    pub(super) functions: Vec<Function>,
+    /// The one variable that it may have, a `var<uniform>`.
+    pub(super) parameters: &'static str,
+    /// Who calls the functions.
+    pub(super) called_by: &'static str,
+    /// What they may depend on.
+    pub(super) depends_on: &'static str,
+    /// Fragments that it may call, and with which it is compiled.
+    pub(super) ours: Vec<Fragment>,
+    /// Names that it cannot have, each with the file that has it.
+    pub(super) owners: HashMap<String, String>,
+}
+
+/// The functions of a law: name, types of the argument and of the result, and what its argument is called.
+pub(super) const OF_LAWS: [(&str, &str, &str, &str); 4] = [
+    ("elastic_isochoric", "Kinematics", "Sym3", "k"),
+    ("elastic_pressure", "f32", "f32", "volume_change"),
+    ("elastic_isochoric_energy", "Kinematics", "f32", "k"),
+    ("elastic_volumetric_energy", "f32", "f32", "volume_change"),
+];
+
+fn function((name, argument, result, called): (&str, &'static str, &'static str, &str)) -> Function {
+    let declared = format!("fn {name}({called}: {argument}) -> {result}");
+    Function { name: name.to_owned(), argument, result, declared }
+}
+
+impl Form {
+    /// Of an elastic law.
+    pub(super) fn law() -> Self {
+        let mut ours = to_call();
+        ours.push(Fragment::new("generated: constants", format!("const J_FLOOR: f32 = {J_FLOOR:e};\n")));
+        Self {
+            word: "law",
+            functions: OF_LAWS.into_iter().map(function).collect(),
+            parameters: "elastic",
+            called_by: "the element kernel calls the law's functions",
+            depends_on: "a stress depends on the deformation and the parameters alone",
+            ours,
+            owners: law_owners(),
+        }
+    }
+
+    /// Of a load by the name of its function: the force on a node.
+    pub(super) fn load(name: &str) -> Self {
+        let ours = vec![shader!("node_state"), shader!("elementary")];
+        Self {
+            word: "system",
+            functions: vec![function((name, "Node", "vec3<f32>", "node"))],
+            parameters: "parameters",
+            called_by: "the kernel of nodes calls the system's function",
+            depends_on: "a force depends on the node and the parameters alone",
+            owners: owners_among(&ours),
+            ours,
+        }
+    }
+}
+
+/// The fragments of ours without which a load's text does not compile.
+pub(crate) fn ground_of_load(text: &str) -> Vec<Fragment> {
+    let elementary = shader!("elementary");
+    let names: Vec<String> = super::declared_names(&elementary.text).collect();
+    let calls =
+        words(text).map(|range| &text[range]).any(|word| is_name(word) && names.iter().any(|name| name == word));
+    std::iter::once(shader!("node_state")).chain(calls.then_some(elementary)).collect()
+}

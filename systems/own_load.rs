@@ -1,0 +1,208 @@
+//! Loads that a scene has in WGSL alone (`systems` in the scene): each a system of its own name, which adds the force
+//! that its function gives to every node. On the CPU a program translated from the text runs over registers of nodes;
+//! on a GPU `shaders/own_load.wgsl` calls the text itself.
+
+use super::node_system::{Before, NodeRows, NodeSystem};
+use super::places_within;
+use super::registry::{Phase, System};
+use crate::backend::Buffers;
+use crate::backend::cpu::{Cpu, NodeColumns};
+use crate::backend::kernel::{Fragment, Uniform, uniform};
+use crate::backend::node_stage::{NodeStage, renamed, rows_of};
+use crate::backend::user_law::{declared_names, ground_of_load};
+use crate::components::*;
+use crate::materials::program::Program;
+use crate::math::{LANES, Real, SimdScalar};
+use crate::shader;
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+use pulp::{Simd, WithSimd};
+use std::collections::BTreeMap;
+
+/// The system of a scene's own `name`, by its number among them; `what` it is, in a few words.
+pub(super) fn system(name: &str, number: usize, what: String) -> System {
+    System::of_scene(
+        name,
+        Phase::Loads,
+        NodeRows::of::<OwnLoad>().of_system(number),
+        "adds what a function of the scene's own gives to the external forces",
+        "an entry under `systems`",
+        what,
+    )
+    .on_nodes(move |world, buffers| stages(number, world, buffers))
+}
+
+/// What is the same for all nodes in a step.
+pub struct InStep {
+    /// The curve.
+    curve: f64,
+    /// At the beginning of the step (s).
+    time: f64,
+    /// Δt (s).
+    time_step: f64,
+    /// What turns the last step into a velocity (1/s).
+    rate: f64,
+}
+
+impl NodeSystem for OwnLoad {
+    type Columns = (
+        &'static RestPosition,
+        &'static Displacement,
+        &'static DisplacementStep,
+        &'static Mass,
+        &'static mut ExternalForce,
+    );
+    type Prepared = InStep;
+
+    fn prepare(&self, before: &Before<'_>) -> InStep {
+        let Before { clock, signals, .. } = before;
+        let curve = signals.values()[self.signal][0];
+        InStep { curve, time: clock.time(), time_step: clock.time_step, rate: clock.rate() }
+    }
+
+    fn act<T: SimdScalar>(&self, step: &InStep, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        let (first, count) = (nodes.first, nodes.rows());
+        let Some(external) = nodes.external.as_deref_mut() else { return };
+        cpu.dispatch(Push {
+            program: &self.text.program,
+            in_step: step,
+            first,
+            count,
+            rows: self.rows.as_ref().map(|rows| &rows[places_within(rows, first, count)]),
+            rest: nodes.rest,
+            u: &*nodes.u,
+            step: &*nodes.step,
+            mass: nodes.mass,
+            external,
+        });
+    }
+}
+
+struct Push<'a, T> {
+    program: &'a Program,
+    in_step: &'a InStep,
+    /// The body's row of the first of these nodes, and how many they are.
+    first: usize,
+    count: usize,
+    /// The body's rows of those that the load is for, where it is not for all.
+    rows: Option<&'a [u32]>,
+    rest: &'a [DVec3],
+    u: &'a [T],
+    step: &'a [T],
+    mass: &'a [T],
+    external: &'a mut [T],
+}
+
+impl<T: SimdScalar> Push<'_, T> {
+    /// The row among these nodes of one of those that the load is for.
+    fn row(&self, place: usize) -> usize {
+        self.rows.map_or(place, |rows| rows[place] as usize - self.first)
+    }
+}
+
+/// Numbers of `Node` that differ from node to node: the first ones.
+const OF_A_NODE: usize = LoadText::MASS + 1;
+
+impl<T: SimdScalar> WithSimd for Push<'_, T> {
+    type Output = ();
+
+    /// A register full of nodes at a time; what a node gets does not depend on its place there.
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let width = T::width::<S>();
+        let splat = |number: f64| T::splat(simd, T::from_f64(number));
+        let InStep { curve, time, time_step, rate } = *self.in_step;
+        let rate = T::from_f64(rate);
+        let mut inputs = [splat(0.0); LoadText::NUMBERS];
+        inputs[OF_A_NODE..].copy_from_slice(&[splat(curve), splat(time), splat(time_step)]);
+        let mut numbers = [[T::default(); LANES]; OF_A_NODE];
+        let all = self.rows.map_or(self.count, <[u32]>::len);
+        for from in (0..all).step_by(width) {
+            let lanes = width.min(all - from);
+            for lane in 0..lanes {
+                let row = self.row(from + lane);
+                let rest = self.rest[row].to_array();
+                for i in 0..3 {
+                    numbers[i][lane] = T::from_f64(rest[i]);
+                    numbers[3 + i][lane] = self.u[3 * row + i];
+                    numbers[6 + i][lane] = self.step[3 * row + i] * rate;
+                }
+                numbers[LoadText::MASS][lane] = self.mass[row];
+            }
+            for (input, numbers) in inputs.iter_mut().zip(&numbers) {
+                *input = T::load(simd, numbers);
+            }
+            let force: [T::Vector<S>; 3] = self.program.run(inputs);
+            // what has lost all its elements bears nothing
+            let there = inputs[LoadText::MASS];
+            let force = force.map(|part| {
+                let mut lanes = [T::default(); LANES];
+                T::store(there.if_positive(part, splat(0.0)), &mut lanes);
+                lanes
+            });
+            for lane in 0..lanes {
+                let row = self.row(from + lane);
+                for i in 0..3 {
+                    self.external[3 * row + i] += force[i][lane];
+                }
+            }
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+struct OwnLoadUniform {
+    signal: u32,
+    velocity_factor: u32,
+}
+uniform!(OwnLoadUniform { signal, velocity_factor });
+
+/// One stage for each body that the system acts on.
+fn stages(number: usize, world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
+    let loads: Vec<(OwnLoad, Entity)> = world
+        .query::<(&OwnLoad, &OfSystem, &OfBody)>()
+        .iter(world)
+        .filter(|(_, system, _)| system.0 == number)
+        .map(|(load, _, body)| (load.clone(), body.0))
+        .collect();
+    let moves = world.resource::<Clock>().relaxation.is_none();
+    let mut stages = Vec::new();
+    for (OwnLoad { text, rows, signal }, body) in loads {
+        let name = &text.name;
+        let load = OwnLoadUniform { signal: signal as u32, velocity_factor: moves.into() };
+        let rest = world.get::<RestPosition>(body).map_or(&[][..], |rest| &rest.0);
+        let rest: Vec<[f32; 3]> = rest.iter().map(|x| x.as_vec3().to_array()).collect();
+        let mut stage = NodeStage::new(name.clone(), "own_load", body, rows_of(body, world), shader!("own_load"))
+            .bind_uniform::<OwnLoadUniform>("load", buffers.uniform(name.clone(), &load.bytes()))
+            .bind("rest_position", buffers.constants("rest_position".into(), bytemuck::cast_slice(&rest)));
+        for column in [Mass::NAME, Displacement::NAME, DisplacementStep::NAME, ExternalForce::NAME] {
+            stage = stage.column(column, buffers.column(body, column));
+        }
+        // no name of the text's own is one of another fragment, whatever shares the kernel
+        let of_system = |name: &str| format!("{name}_of_system_{number}");
+        let names: BTreeMap<String, String> =
+            declared_names(&text.text).map(|name| (name.clone(), of_system(&name))).collect();
+        let arguments = if rows.is_some() { "i: u32, node: u32" } else { "node: u32" };
+        let calls = format!(
+            "fn force_on(state: Node) -> vec3<f32> {{\n    return {}(state);\n}}\n\
+             fn own_load({arguments}) {{\n    own_load_on(node);\n}}\n",
+            of_system(name)
+        );
+        for fragment in ground_of_load(&text.text) {
+            stage = stage.own(fragment);
+        }
+        stage = stage
+            .own(Fragment::new(text.path.clone(), renamed(&text.text, &names)))
+            .own(Fragment::new(format!("generated: {name} on a node"), calls));
+        if !text.uniform.is_empty() {
+            let parameters = buffers.uniform(format!("parameters of {name}"), &text.uniform);
+            stage = stage.bind(of_system("parameters"), parameters);
+        }
+        if let Some(rows) = rows {
+            stage = stage.of_rows(rows);
+        }
+        stages.push(stage.with_step(world).loaded(true));
+    }
+    stages
+}
