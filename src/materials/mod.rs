@@ -17,6 +17,7 @@ pub mod program;
 mod prony;
 mod st_venant_kirchhoff;
 mod stable_neo_hookean;
+mod tangent;
 mod user_law;
 
 pub use arruda_boyce::ArrudaBoyce;

@@ -58,6 +58,10 @@ pub struct EnergySlopes {
     depends_on_second: bool,
     /// Whether the energy does.
     has_second: bool,
+    /// ∂²Ψ/∂Ī₁², ∂²Ψ/∂Ī₁∂Ī₂ and ∂²Ψ/∂Ī₂² (Pa) of Ī₁ − 3 and Ī₂ − 3.
+    curvatures: Program,
+    /// U'' (Pa) of J − 1.
+    volumetric_stiffness: Program,
 }
 
 impl IsochoricStress {
@@ -79,17 +83,29 @@ impl EnergySlopes {
             constant: (law.depends_on == [false; 2]).then(|| law.slopes.run::<f64, 2, 2>([0.0; 2])),
             depends_on_second: law.depends_on[1],
             has_second: law.has_second,
+            curvatures: law.curvatures.clone(),
+            volumetric_stiffness: law.volumetric_stiffness.clone(),
         }
+    }
+
+    /// ∂²Ψ/∂Ī₁², ∂²Ψ/∂Ī₁∂Ī₂ and ∂²Ψ/∂Ī₂² (Pa).
+    pub(super) fn curvatures_at<R: Real>(&self, k: &Kinematics<R>) -> [R; 3] {
+        self.curvatures.run([not_below_zero(k.i1_change()), not_below_zero(k.i2_change())])
+    }
+
+    /// U'' (Pa).
+    pub(super) fn volumetric_stiffness_at<R: Real>(&self, volume_change: R) -> R {
+        self.volumetric_stiffness.run::<R, 1, 1>([volume_change])[0]
     }
 
     /// ∂Ψ/∂Ī₁ and ∂Ψ/∂Ī₂ (Pa).
     #[inline(always)]
-    fn at<R: Real>(&self, k: &Kinematics<R>) -> [R; 2] {
+    pub(super) fn at<R: Real>(&self, k: &Kinematics<R>) -> [R; 2] {
         if let Some(constant) = self.constant {
             return constant.map(|slope| k.j.constant(slope));
         }
-        let second = if self.depends_on_second { k.i2_change() } else { k.j.constant(0.0) };
-        self.program.run([k.i1_change(), second])
+        let second = if self.depends_on_second { not_below_zero(k.i2_change()) } else { k.j.constant(0.0) };
+        self.program.run([not_below_zero(k.i1_change()), second])
     }
 
     /// S_iso (Pa).
@@ -98,6 +114,12 @@ impl EnergySlopes {
         let [first, second] = self.at(k);
         if self.has_second { k.stress_of_slopes(first, second) } else { k.stress_of_slope(first) }
     }
+}
+
+/// Ī₁ − 3 or Ī₂ − 3 without what rounding takes below 0, which has no place in a power.
+#[inline(always)]
+fn not_below_zero<R: Real>(change: R) -> R {
+    change.max(change.constant(0.0))
 }
 
 impl LawPrograms {
@@ -121,7 +143,10 @@ impl LawPrograms {
     pub fn isochoric_energy_at<R: Real>(&self, k: &Kinematics<R>) -> R {
         match &self.isochoric {
             IsochoricStress::Whole(_) => self.isochoric_energy.run::<R, 16, 1>(numbers(k))[0],
-            IsochoricStress::Slopes(_) => self.isochoric_energy.run::<R, 2, 1>([k.i1_change(), k.i2_change()])[0],
+            IsochoricStress::Slopes(_) => {
+                let invariants = [not_below_zero(k.i1_change()), not_below_zero(k.i2_change())];
+                self.isochoric_energy.run::<R, 2, 1>(invariants)[0]
+            }
         }
     }
 

@@ -21,6 +21,8 @@ pub struct Findings {
     pub derivative_error: f64,
     /// Largest error of a stress in f32 at strains around 1e-4, relative to it.
     pub single_precision_error: f64,
+    /// Largest error of an energy in f32 there, relative to it.
+    pub single_precision_energy_error: f64,
     /// Deformations tried.
     pub tried: usize,
     /// The size of ∇u up to which the law was finite in all of them; none where it was everywhere.
@@ -39,6 +41,10 @@ pub(super) struct Told {
     parts: [(String, About); 4],
     /// What to write in place of differences that lose digits.
     exact: &'static str,
+    /// What they call the change of volume.
+    volume: &'static str,
+    /// What makes a law isotropic.
+    isotropic: &'static str,
 }
 
 impl Told {
@@ -47,6 +53,9 @@ impl Told {
         Self {
             parts: OF_LAWS.map(|(name, ..)| (format!("`{name}`"), place(text, name))),
             exact: "compute from `k.green_strain` and `k.volume_change`, which are exact for small strains",
+            volume: "volume_change",
+            isotropic: "use the strains in `k` as a whole, by sym_trace and sym_times_coaxial; directions come with a \
+                        material's `fibres`",
         }
     }
 
@@ -66,6 +75,8 @@ impl Told {
         Self {
             parts: parts.map(|part| (part.to_owned(), about.clone())),
             exact: "compute from `I1bar_minus_3`, `I2bar_minus_3` and `J_minus_1`, which are exact for small strains",
+            volume: "J_minus_1",
+            isotropic: "the slopes of the energy at rest must be finite, and the same on all sides",
         }
     }
 }
@@ -95,9 +106,17 @@ pub(super) fn check(law: &LawPrograms, told: &Told) -> Result<(Findings, Vec<Com
     if !complaints.is_empty() {
         return Err(complaints);
     }
-    let single_precision_error = trial.single_precision_error();
-    let findings =
-        Findings { shear, bulk, derivative_error, single_precision_error, tried: deformations.len(), finite_up_to };
+    let [single_precision_error, single_precision_energy_error] = trial.single_precision_errors();
+    let tried = deformations.len();
+    let findings = Findings {
+        shear,
+        bulk,
+        derivative_error,
+        single_precision_error,
+        single_precision_energy_error,
+        tried,
+        finite_up_to,
+    };
     Ok((findings, trial.warnings(&within, &findings)))
 }
 
@@ -130,7 +149,7 @@ impl Trial<'_> {
 
     /// The size of deformation from which on the law is not finite everywhere.
     fn finite(&self, deformations: &[Deformation]) -> Result<Option<f64>, Vec<Complaint>> {
-        let rest = Deformation { size: 0.0, gradient: Mat3([[0.0; 3]; 3]) };
+        let rest = Deformation { size: 0.0, gradient: Mat3([[0.0; 3]; 3]), plain: true };
         for deformation in std::iter::once(&rest).chain(deformations) {
             let k = Kinematics::new(&deformation.gradient);
             let (law, change) = (self.law, k.volume_change);
@@ -179,8 +198,8 @@ impl Trial<'_> {
             if modulus.is_nan() || modulus <= 1e-12 * scale {
                 let message = format!("the {name} modulus at small strains is {modulus:.4} Pa: it must be above 0");
                 return Err(vec![self.about(function, message).note(match function {
-                    0 => "2 μ is what the stress grows by with the shear strain at rest",
-                    _ => "κ is what the pressure grows by with `volume_change` at rest",
+                    0 => "2 μ is what the stress grows by with the shear strain at rest".to_owned(),
+                    _ => format!("κ is what the pressure grows by with `{}` at rest", self.told.volume),
                 })]);
             }
         }
@@ -199,10 +218,7 @@ impl Trial<'_> {
             if largest(&error) > 1e-4 * scale {
                 let moduli = shears.map(|shear| format!("{shear:.4}")).join(", ");
                 let message = format!("the law is not isotropic: its shear moduli in xy, yz, xz are {moduli} Pa");
-                return Err(vec![self.about(0, message).note(
-                    "use the strains in `k` as a whole, by sym_trace and sym_times_coaxial; directions come with a \
-                     material's `fibres`",
-                )]);
+                return Err(vec![self.about(0, message).note(self.told.isotropic)]);
             }
         }
         Ok([shear, bulk])
@@ -213,7 +229,7 @@ impl Trial<'_> {
         const STEP: f64 = 1e-5;
         let energy = |gradient: &Mat3<f64>| self.law.isochoric_energy_at(&Kinematics::new(gradient));
         let mut comparison = Comparison::default();
-        for Deformation { size, gradient } in deformations {
+        for Deformation { size, gradient, .. } in deformations {
             let stress = gradient.plus_identity_times(&self.law.isochoric_stress(&Kinematics::new(gradient)));
             let mut derivative = Mat3([[0.0; 3]; 3]);
             for i in 0..3 {
@@ -244,7 +260,8 @@ impl Trial<'_> {
             let pressure = self.law.pressure_at(change);
             // where the law ends is told elsewhere
             if derivative.is_finite() && pressure.is_finite() {
-                comparison.add(&[pressure], &[derivative], bulk * change.abs(), || format!("volume_change = {change}"));
+                let at = || format!("{} = {change}", self.told.volume);
+                comparison.add(&[pressure], &[derivative], bulk * change.abs(), at);
             }
         }
         comparison.outcome(|what| {
@@ -252,10 +269,10 @@ impl Trial<'_> {
         })
     }
 
-    /// Largest relative error of stresses in f32 at strains around 1e-4.
-    fn single_precision_error(&self) -> f64 {
-        let mut worst: f64 = 0.0;
-        for deformation in deformations::all().iter().filter(|d| d.size <= 1e-3) {
+    /// Largest relative errors of stresses and of energies in f32 at strains around 1e-4.
+    fn single_precision_errors(&self) -> [f64; 2] {
+        let (mut worst, mut of_energies): (f64, f64) = (0.0, 0.0);
+        for deformation in deformations::all().iter().filter(|d| d.size <= 1e-3 && !d.plain) {
             let single = Mat3(deformation.gradient.0.map(|row| row.map(|x| f32::from_f64(x * 0.1))));
             let double = Mat3(single.0.map(|row| row.map(Scalar::to_f64)));
             let (k, exact) = (Kinematics::new(&single), Kinematics::new(&double));
@@ -267,27 +284,39 @@ impl Trial<'_> {
             worst = worst
                 .max(largest(&error) / largest(&expected))
                 .max(pressure_error.abs() / pressure.abs().max(Real::abs(expected[0])));
+            let exact = self.law.isochoric_energy_at(&exact) + self.law.volumetric_energy_at(exact.volume_change);
+            let found = self.law.isochoric_energy_at(&k) + self.law.volumetric_energy_at(k.volume_change);
+            of_energies = of_energies.max((f64::from(found) - exact).abs() / exact.abs());
         }
-        worst
+        [worst, of_energies]
     }
 
     fn warnings(&self, deformations: &[&Deformation], findings: &Findings) -> Vec<Complaint> {
         let mut warnings = Vec::new();
         let mut warn = |complaint: Complaint| warnings.push(Complaint { warning: true, ..complaint });
+        let note = format!("differences of large numbers, such as Ī₁ − 3, lose them: {}", self.told.exact);
         if findings.single_precision_error > 1e-2 {
             let message = format!(
                 "in f32 the stress errs by {:.1} % at strains of 1e-4: digits are lost",
                 100.0 * findings.single_precision_error
             );
-            let note = format!("differences of large numbers, such as Ī₁ − 3, lose them: {}", self.told.exact);
-            warn(self.about(0, message).note(note));
+            warn(self.about(0, message).note(note.clone()));
+        }
+        if findings.single_precision_energy_error > 1e-2 {
+            let message = format!(
+                "in f32 the energy errs by {:.1} % at strains of 1e-4: digits are lost",
+                100.0 * findings.single_precision_energy_error
+            );
+            let note = format!("the guards compare it with the work done: they may stop a sound run; {note}");
+            warn(self.about(2, message).note(note));
         }
         let share = |d: &&Deformation| {
             let k = Kinematics::new(&d.gradient);
             let (stress, e) = (self.law.isochoric_stress(&k), k.green_strain.0);
             let c = Sym3([1.0 + 2.0 * e[0], 1.0 + 2.0 * e[1], 1.0 + 2.0 * e[2], 2.0 * e[3], 2.0 * e[4], 2.0 * e[5]]);
             let size = (inner(&stress, &stress) * inner(&c, &c)).sqrt();
-            if size > 0.0 { (inner(&stress, &c) / size).abs() } else { 0.0 }
+            // what rounding leaves of none has any direction
+            if size > 1e-9 * findings.shear * d.size { (inner(&stress, &c) / size).abs() } else { 0.0 }
         };
         let share = deformations.iter().map(share).fold(0.0, f64::max);
         if share > 1e-6 {

@@ -4,13 +4,15 @@ use crate::math::Mat3;
 
 /// Sizes of ∇u, from the smallest strains to far beyond what most tissue bears.
 const SIZES: [f64; 7] = [1e-3, 3e-3, 0.01, 0.03, 0.1, 0.25, 0.5];
-/// Deformations of each size.
+/// Random deformations of each size.
 const OF_EACH: usize = 8;
 
 /// A displacement gradient and its size.
 pub(super) struct Deformation {
     pub(super) size: f64,
     pub(super) gradient: Mat3<f64>,
+    /// Whether it is a change of volume or a rotation alone: isochoric strains are then what rounding makes of 0.
+    pub(super) plain: bool,
 }
 
 /// All of them, the small ones first.
@@ -30,12 +32,31 @@ pub(super) fn all() -> Vec<Deformation> {
             let gradient = Mat3(std::array::from_fn(|_| std::array::from_fn(|_| size * random())));
             // a mirrored or flattened element is the guard's concern, not the law's
             if determinant(&gradient) > 0.4 {
-                deformations.push(Deformation { size, gradient });
+                deformations.push(Deformation { size, gradient, plain: false });
                 found += 1;
             }
         }
+        for stretch in [0.5 * size, -0.5 * size] {
+            let gradient = Mat3([[stretch, 0.0, 0.0], [0.0, stretch, 0.0], [0.0, 0.0, stretch]]);
+            deformations.push(Deformation { size, gradient, plain: true });
+        }
+        deformations.push(Deformation { size, gradient: rotation(size), plain: true });
     }
     deformations
+}
+
+/// R − I of a rotation by an angle (rad) about the axis (2, −1, 2)/3.
+fn rotation(angle: f64) -> Mat3<f64> {
+    let axis = [2.0 / 3.0, -1.0 / 3.0, 2.0 / 3.0];
+    // 1 − cos, which keeps the digits of a small angle
+    let (sine, versine) = (angle.sin(), 2.0 * (0.5 * angle).sin().powi(2));
+    let cross = [[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]];
+    Mat3(std::array::from_fn(|i| {
+        std::array::from_fn(|j| {
+            let along = axis[i] * axis[j] - if i == j { 1.0 } else { 0.0 };
+            sine * cross[i][j] + versine * along
+        })
+    }))
 }
 
 /// det(I + ∇u).

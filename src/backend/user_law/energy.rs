@@ -7,8 +7,8 @@ use super::{Complaint, Read, checks, formula};
 use crate::materials::{ElasticLaw, EnergySlopes, IsochoricStress, LawPrograms, MooneyRivlin, NeoHookean, UserLaw};
 use std::collections::BTreeMap;
 
-/// How far a modulus from derivatives may be from one by differences, relative to both moduli: it is the better one
-/// unless the energy has a kink at rest.
+/// How far a modulus from derivatives may be from the same by differences, relative to it: it is the better one unless
+/// the energy has a kink at rest.
 const ALIKE: f64 = 1e-4;
 
 /// Whether a law's text has its energy alone.
@@ -26,7 +26,7 @@ pub(super) fn read(
     told: &checks::Told,
 ) -> Result<Read, Vec<Complaint>> {
     let reading = Reading::of(&Form::energy(), path, text, parameters)?;
-    let (derived, uniform) = reading.derived(ENERGY)?;
+    let derived = reading.derived(ENERGY)?;
     let built_in = derived.constants.map(built_in);
     let law = LawPrograms {
         path: path.to_owned(),
@@ -36,13 +36,16 @@ pub(super) fn read(
         volumetric_energy: derived.volumetric_energy,
         text: derived.wgsl,
         moduli: [0.0; 2],
-        uniform,
+        // the parameters stand in the text
+        uniform: Vec::new(),
     };
     let (mut findings, warnings) = checks::check(&law, told)?;
-    let by_differences = [findings.shear, findings.bulk];
-    let scale = findings.shear + findings.bulk;
-    let alike = derived.moduli.iter().zip(by_differences).all(|(a, b)| (a - b).abs() <= ALIKE * scale);
-    let moduli = if alike { derived.moduli } else { by_differences };
+    let moduli = [(derived.moduli[0], findings.shear), (derived.moduli[1], findings.bulk)].map(|(derived, found)| {
+        match derived > 0.0 && (derived - found).abs() <= ALIKE * found {
+            true => derived,
+            false => found,
+        }
+    });
     [findings.shear, findings.bulk] = moduli;
     Ok(Read { law: UserLaw::new(LawPrograms { moduli, ..law }), built_in, findings, warnings })
 }

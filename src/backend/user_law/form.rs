@@ -30,6 +30,8 @@ pub(super) struct Form {
     pub(super) depends_on: &'static str,
     /// Fragments that it may call, and with which it is compiled.
     pub(super) ours: Vec<Fragment>,
+    /// What a text may have in place of all functions.
+    pub(super) instead: Option<Function>,
     /// Names that it cannot have, each with the file that has it.
     pub(super) owners: HashMap<String, String>,
 }
@@ -43,7 +45,8 @@ pub(super) const OF_LAWS: [(&str, &str, &str, &str); 4] = [
 ];
 
 /// The function of an energy.
-pub(super) const ENERGY: &str = "elastic_energy";
+pub(super) const ENERGY: &str = OF_ENERGIES.0;
+const OF_ENERGIES: (&str, &str, &str, &str) = ("elastic_energy", "Invariants", "f32", "s");
 
 fn function((name, argument, result, called): (&str, &'static str, &'static str, &str)) -> Function {
     let declared = format!("fn {name}({called}: {argument}) -> {result}");
@@ -62,6 +65,7 @@ impl Form {
             called_by: "the element kernel calls the law's functions",
             depends_on: "a stress depends on the deformation and the parameters alone",
             ours,
+            instead: Some(function(OF_ENERGIES)),
             owners: law_owners(),
         }
     }
@@ -70,7 +74,8 @@ impl Form {
     pub(super) fn energy() -> Self {
         Self {
             word: "energy",
-            functions: vec![function((ENERGY, "Invariants", "f32", "s"))],
+            functions: vec![function(OF_ENERGIES)],
+            instead: None,
             called_by: "the law is derived from the function",
             depends_on: "an energy depends on the deformation and the parameters alone",
             ..Self::law()
@@ -86,6 +91,7 @@ impl Form {
             parameters: "parameters",
             called_by: "the kernel of nodes calls the system's function",
             depends_on: "a force depends on the node and the parameters alone",
+            instead: None,
             owners: owners_among(&ours),
             ours,
         }

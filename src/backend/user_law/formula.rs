@@ -1,4 +1,4 @@
-//! A formula of an energy, as scenes have it, put into WGSL: names become members of what the function is given, `^`
+//! A formula of an energy, as scenes have it, put into WGSL: names become those of what the function is given, `^`
 //! becomes `pow`, whole numbers get a point. What a formula means is for the one compiler to say; places in the WGSL
 //! lead back to places in the formula.
 
@@ -69,7 +69,15 @@ pub(super) fn wrap(formula: &str, given: &BTreeMap<String, f64>) -> Result<Wrapp
         }
         text.push_str("}\n@group(0) @binding(0) var<uniform> elastic: FormulaParameters;\n");
     }
-    text.push_str(&format!("fn {ENERGY}(s: Invariants) -> f32 {{\n    return "));
+    text.push_str(&format!("fn {ENERGY}(s: Invariants) -> f32 {{\n"));
+    // a name is no operator: `s.J` would be one, of which expressions have so many at most
+    for name in INVARIANTS {
+        text.push_str(&format!("    let {name} = s.{name};\n"));
+    }
+    for name in given.keys().map(|name| member(name)) {
+        text.push_str(&format!("    let {name} = elastic.{name};\n"));
+    }
+    text.push_str("    return ");
     let end = formula.trim_end().len();
     for word in &tokens {
         let start = text.len();
@@ -138,10 +146,10 @@ fn tokens(formula: &str, given: &BTreeMap<String, f64>) -> Result<Vec<Word>, Vec
                 complain(format!("`{word}` is no function of formulas"), near.into_iter().chain([all]).collect());
                 continue;
             }
-            _ if INVARIANTS.contains(&word) => format!("s.{word}"),
+            _ if INVARIANTS.contains(&word) => word.to_owned(),
             _ if given.contains_key(word) => {
                 unused.remove(word);
-                format!("elastic.{}", member(word))
+                member(word)
             }
             _ if is_name(word) => {
                 let names = INVARIANTS.iter().copied().chain(given.keys().map(String::as_str));
@@ -271,7 +279,7 @@ mod tests {
         let used: BTreeMap<String, f64> = given().into_iter().filter(|(name, _)| formula.contains(name)).collect();
         let wrapped = wrap(formula, &used).unwrap_or_else(|wrong| panic!("{formula}: {wrong:?}"));
         let (_, body) = wrapped.text.split_once("return ").unwrap();
-        body.split(';').next().unwrap().replace("elastic.parameter_", "").replace(' ', "")
+        body.split(';').next().unwrap().replace("parameter_", "").replace(' ', "")
     }
 
     #[test]
@@ -285,7 +293,7 @@ mod tests {
             ("(a+b)^2 + 1/2", "pow((a+b),2.0)+1.0/2.0"),
             ("exp(a^2)^(b - 1)", "pow(exp(pow(a,2.0)),(b-1.0))"),
             ("max(a^2, b^3)^c", "pow(max(pow(a,2.0),pow(b,3.0)),c)"),
-            ("J^(-2/3)", "pow(s.J,(-2.0/3.0))"),
+            ("J^(-2/3)", "pow(J,(-2.0/3.0))"),
             ("a^-b^2/c", "pow(a,-pow(b,2.0))/c"),
         ] {
             assert_eq!(body(formula), expected, "{formula}");
@@ -297,7 +305,7 @@ mod tests {
         let formula = "a/2*I1bar_minus_3^b";
         let used = given().into_iter().filter(|(name, _)| name != "c").collect();
         let wrapped = wrap(formula, &used).unwrap();
-        let at = wrapped.text.find("s.I1bar").unwrap();
+        let at = wrapped.text.rfind("I1bar").unwrap();
         let complaint = wrapped.led_back(Complaint::new(About::Bytes(at..at + 3), "wrong"));
         assert_eq!(complaint.about, About::Bytes(4..17));
     }

@@ -9,7 +9,6 @@ use std::collections::BTreeMap;
 
 /// The parameters of a text, in the order of its struct.
 pub(super) struct Parameters {
-    pub(super) names: Vec<String>,
     pub(super) values: Vec<f64>,
     /// As they lie in the uniform buffer, in f32.
     pub(super) bytes: Vec<u8>,
@@ -97,6 +96,19 @@ fn foreign(form: &Form, composed: &Composed, declared: &[Declared], complaints: 
 
 fn functions(form: &Form, composed: &Composed, declared: &[Declared], text: &str, complaints: &mut Vec<Complaint>) {
     let word = form.word;
+    let has = |name: &str| composed.signature(name).is_some();
+    if let Some(instead) = form.instead.as_ref().filter(|_| !form.functions.iter().any(|f| has(&f.name))) {
+        let names: Vec<&str> = declared.iter().filter(|d| d.kind == "fn").map(|d| d.name.as_str()).collect();
+        let nearest = crate::scene::nearest(&instead.name, names.iter().copied());
+        let about = nearest.map_or(About::File, |near| place(declared, near));
+        let message = format!("the {word} has no function `{}`, and none of those of its stresses", instead.name);
+        let mut complaint = Complaint::new(about, message);
+        complaint.notes.extend(nearest.map(|near| format!("is `{near}` meant to be `{}`?", instead.name)));
+        let all: Vec<&str> = form.functions.iter().map(|f| f.declared.as_str()).collect();
+        complaint.notes.push(format!("its energy alone will do: {}", instead.declared));
+        complaints.push(complaint.note(format!("else it must have all of: {}", all.join(", "))));
+        return;
+    }
     for Function { name, argument, result, declared: as_it_is } in &form.functions {
         let note = format!("it must be: {as_it_is}");
         match composed.signature(name) {
@@ -134,7 +146,7 @@ fn parameters(
     given: &BTreeMap<String, f64>,
     complaints: &mut Vec<Complaint>,
 ) -> Parameters {
-    let mut packed = Parameters { names: Vec::new(), values: Vec::new(), bytes: Vec::new() };
+    let mut packed = Parameters { values: Vec::new(), bytes: Vec::new() };
     let Form { word, parameters, .. } = form;
     let binding = composed.binding(parameters);
     let members = binding.map(|binding| composed.struct_layout(&binding.type_name));
@@ -168,7 +180,6 @@ fn parameters(
             complaints.push(Complaint::new(About::Parameters, message).note(needs.clone()));
             continue;
         };
-        packed.names.push(wanted.name.clone());
         packed.values.push(value);
         let at = wanted.offset as usize;
         packed.bytes[at..at + 4].copy_from_slice(&(value as f32).to_le_bytes());

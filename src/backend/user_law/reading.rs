@@ -11,10 +11,6 @@ pub(super) struct Reading {
     source: Source,
     /// Bytes of our own text before that of the user.
     ours: usize,
-    /// The variable that holds the parameters.
-    variable: &'static str,
-    /// Its members, in order.
-    members: Vec<String>,
     /// The parameters' values, by the name of the variable that holds them.
     values: BTreeMap<String, Vec<f64>>,
     /// The parameters as they lie in the uniform buffer, in f32.
@@ -30,12 +26,12 @@ impl Reading {
         given: &BTreeMap<String, f64>,
     ) -> Result<Self, Vec<Complaint>> {
         limits::check(text, form.word).map_err(|complaint| vec![complaint])?;
-        let Parameters { names, values, bytes } = interface::check(form, path, text, given)?;
+        let Parameters { values, bytes } = interface::check(form, path, text, given)?;
         let whole = text::in_double_precision(form, text);
         let ours = whole.len() - text.len();
         let source = Source::read(&whole).map_err(|error| complaints(error, ours))?;
         let values = BTreeMap::from([(form.parameters.to_owned(), values)]);
-        Ok(Self { source, ours, variable: form.parameters, members: names, values, uniform: bytes })
+        Ok(Self { source, ours, values, uniform: bytes })
     }
 
     /// One of its functions.
@@ -43,13 +39,9 @@ impl Reading {
         self.source.translate(name, &self.values).map_err(|error| complaints(error, self.ours))
     }
 
-    /// The law that follows from one of its functions, an energy; and its parameters as they lie in that law's uniform.
-    pub(super) fn derived(&self, name: &str) -> Result<(DerivedLaw, Vec<u8>), Vec<Complaint>> {
-        let values = self.values.get(self.variable).map_or(&[][..], Vec::as_slice);
-        let given: Vec<(String, f64)> = self.members.iter().cloned().zip(values.iter().copied()).collect();
-        let law = self.source.derive(name, self.variable, &given).map_err(|error| complaints(error, self.ours))?;
-        let uniform = values.iter().flat_map(|value| (*value as f32).to_le_bytes()).collect();
-        Ok((law, uniform))
+    /// The law that follows from one of its functions, an energy.
+    pub(super) fn derived(&self, name: &str) -> Result<DerivedLaw, Vec<Complaint>> {
+        self.source.derive(name, &self.values).map_err(|error| complaints(error, self.ours))
     }
 }
 

@@ -136,6 +136,13 @@ impl Translator<'_> {
                 let (one, zero) = (self.graph.constant(1.0), self.graph.constant(0.0));
                 self.graph.choose(test, Value::Float(one), Value::Float(zero))
             }
+            // one that parameters choose, as the GPU rounds it
+            (Value::Float(id), ScalarKind::Sint) if let Some(x) = self.graph.constant_of(id) => {
+                Value::Signed(x as f32 as i32)
+            }
+            (Value::Float(id), ScalarKind::Uint) if let Some(x) = self.graph.constant_of(id) => {
+                Value::Unsigned(x as f32 as u32)
+            }
             (Value::Float(_), _) => {
                 return Err(Untranslatable::new(
                     at,

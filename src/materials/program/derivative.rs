@@ -40,10 +40,10 @@ impl Graph {
             }
             Unary::Exp => y,
             Unary::ExpLessOne => self.unary(Unary::Exp, x),
-            Unary::Log => self.binary(Divide, one, x),
+            Unary::Log => self.inverse_within(x),
             Unary::LogOfOnePlus => {
                 let sum = self.tidy(Add, x, one);
-                self.binary(Divide, one, sum)
+                self.inverse_within(sum)
             }
             // −⅓ x^(−4/3)
             Unary::InverseCbrt => {
@@ -58,6 +58,13 @@ impl Graph {
                 self.unary(Unary::Negate, sine)
             }
         }
+    }
+
+    /// 1/x for x > 0, as the slope of what has no number elsewhere.
+    fn inverse_within(&mut self, x: Id) -> Id {
+        let (one, none) = (self.constant(1.0), self.constant(f64::NAN));
+        let inverse = self.binary(Binary::Divide, one, x);
+        self.select(x, inverse, none)
     }
 
     fn of_two(

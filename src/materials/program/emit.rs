@@ -27,24 +27,18 @@ impl Graph {
                 }
                 Node::Unary(function, x) => of_one(function, at(x)),
                 Node::Binary(function, a, b) => of_two(function, at(a), at(b)),
-                Node::Select(test, a, b) => {
-                    // a constant that is no number cannot be written down
-                    let none = format!("no_number({})", at(test));
-                    let part = |id: Id| if at(id) == NONE { none.as_str() } else { at(id) };
-                    format!("select({}, {}, {} > 0.0)", part(b), part(a), at(test))
-                }
+                Node::Select(test, a, b) => format!("select({}, {}, {} > 0.0)", at(b), at(a), at(test)),
             };
             let _ = writeln!(text, "    let x{count} = {expression};");
             names[index] = format!("x{count}");
             count += 1;
         }
-        let none = |name: &String| if name == NONE { "no_number(0.0)".to_owned() } else { name.clone() };
-        Ok((text, outputs.iter().map(|output| none(&names[output.index()])).collect()))
+        Ok((text, outputs.iter().map(|output| names[output.index()].clone()).collect()))
     }
 }
 
-/// What stands for a constant that is no number.
-const NONE: &str = "NaN";
+/// What stands for a constant that is no number: such a one cannot be written down.
+const NONE: &str = "no_number(0.0)";
 
 fn literal(value: f64) -> Result<String, Untranslatable> {
     let single = value as f32;

@@ -200,6 +200,10 @@ impl Translator<'_> {
                 let root = g.unary(Unary::Sqrt, x);
                 product = g.binary(Binary::Multiply, product, root);
             }
+            // the derivative at 0 is 0, not what 0 · (0.5/0) would be
+            if exponent.fract() != 0.0 && exponent > 1.0 {
+                return self.above_zero(x, product, true);
+            }
             return if exponent < 0.0 { g.binary(Binary::Divide, one, product) } else { product };
         }
         let third = g.unary(Unary::InverseCbrt, x);
@@ -217,9 +221,14 @@ impl Translator<'_> {
             let product = g.binary(Binary::Multiply, log, y);
             g.unary(Unary::Exp, product)
         };
-        // as on the GPU: negative numbers have no such power, 0 has the positive ones
+        self.above_zero(x, power, exponent > 0.0)
+    }
+
+    /// As on the GPU: negative numbers have no such power, 0 has the positive ones.
+    fn above_zero(&mut self, x: Id, power: Id, positive: bool) -> Id {
+        let g = &mut self.graph;
         let (none, zero, below) = (g.constant(f64::NAN), g.constant(0.0), g.unary(Unary::Negate, x));
-        let at_zero = if exponent > 0.0 { g.select(below, none, zero) } else { none };
+        let at_zero = if positive { g.select(below, none, zero) } else { none };
         g.select(x, power, at_zero)
     }
 

@@ -7,6 +7,7 @@
 
 mod arithmetic;
 mod derivative;
+mod differences;
 mod emit;
 mod energy;
 mod expression;
@@ -24,7 +25,7 @@ pub use energy::{DerivedLaw, INVARIANTS};
 pub use tape::{Program, SLOTS};
 pub(crate) use words::{is_name, words};
 
-use graph::{Graph, Id};
+use graph::Graph;
 use naga::{AddressSpace, Module, Span, TypeInner};
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -124,14 +125,9 @@ impl Source {
 
     /// The values of `var<uniform>`s; none for other variables.
     fn globals(&self, graph: &mut Graph, uniforms: &BTreeMap<String, Vec<f64>>) -> Vec<Option<Value>> {
-        let mut constants = |values: &Vec<f64>| values.iter().map(|value| graph.constant(*value)).collect();
-        self.of_uniforms(&uniforms.iter().map(|(name, values)| (name.clone(), constants(values))).collect())
-    }
-
-    /// Values of a graph as those of `var<uniform>`s.
-    fn of_uniforms(&self, uniforms: &BTreeMap<String, Vec<Id>>) -> Vec<Option<Value>> {
         let value = |variable: &naga::GlobalVariable| {
-            let floats = Value::vector(uniforms.get(variable.name.as_deref()?)?.iter().copied());
+            let values = uniforms.get(variable.name.as_deref()?)?;
+            let floats = Value::vector(values.iter().map(|value| graph.constant(*value)).collect::<Vec<_>>());
             let uniform = variable.space == AddressSpace::Uniform;
             match self.module.types[variable.ty].inner {
                 TypeInner::Struct { .. } if uniform => Some(floats),

@@ -13,12 +13,6 @@ impl Graph {
         (graph, outputs)
     }
 
-    /// A value, and all that it is made of, in another graph with the same inputs.
-    pub(super) fn copied(&self, id: Id, to: &mut Graph) -> Id {
-        let wanted = self.wanted(&[id]);
-        self.made_in(to, &[id], &wanted, &mut Graph::input)[0]
-    }
-
     /// Which values some are made of.
     pub(super) fn wanted(&self, outputs: &[Id]) -> Vec<bool> {
         let mut wanted = vec![false; self.nodes().len()];

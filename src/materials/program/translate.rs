@@ -14,7 +14,7 @@ pub(super) type Result<T> = std::result::Result<T, Untranslatable>;
 const MOST_WORK: usize = 2_000_000;
 /// Values of a function, unrolled and with all calls, after which it is given up: each is an instruction of every
 /// element and step.
-const MOST_VALUES: usize = 50_000;
+pub(super) const MOST_VALUES: usize = 50_000;
 /// Calls and blocks within each other.
 const MOST_DEPTH: usize = 200;
 
