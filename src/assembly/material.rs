@@ -22,10 +22,11 @@ pub(super) fn spawn(
         let mut entity = world.spawn((Label(name.clone()), Density(material.density)));
         insert_elastic_law(&mut entity, material);
         if let Some(user_laws::Read { law, built_in, findings, .. }) = laws.remove(name) {
+            entity.insert(findings);
             match built_in {
                 Some(ElasticLaw::NeoHookean(law)) => entity.insert(law),
                 Some(ElasticLaw::MooneyRivlin(law)) => entity.insert(law),
-                _ => entity.insert((law, findings)),
+                _ => entity.insert(law),
             };
         }
         if let Some(fibres) = &material.fibres {

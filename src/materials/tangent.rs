@@ -16,7 +16,8 @@ impl LawPrograms {
         let number = |x: f64| k.j.constant(x);
         let [first, second] = slopes.at(k);
         let [first_first, first_second, second_second] = slopes.curvatures_at(k);
-        let (pressure, stiffness) = (self.pressure_at(k.volume_change), slopes.volumetric_stiffness_at(k.volume_change));
+        let (pressure, stiffness) =
+            (self.pressure_at(k.volume_change), slopes.volumetric_stiffness_at(k.volume_change));
         let (one, two, third) = (number(1.0), number(2.0), number(1.0 / 3.0));
 
         let change = strain_change.scaled(two);

@@ -11,6 +11,9 @@ use sinew::components::*;
 use sinew::systems::{OnDevice, Registry};
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
 
+mod noise;
+pub use noise::{Noise, randomize, small_strains};
+
 /// What a scene calls for.
 #[derive(Clone, Debug, Default)]
 pub struct Effects {
@@ -48,7 +51,7 @@ pub struct Effects {
     pub scheme: Scheme,
 }
 
-pub const LAWS: [&str; 8] = [
+pub const LAWS: [&str; 9] = [
     "linear: Moduli(shear: 1034, bulk: 10000)",
     "st_venant_kirchhoff: Moduli(shear: 1034, bulk: 10000)",
     "neo_hookean: Moduli(shear: 1034, bulk: 10000)",
@@ -57,7 +60,11 @@ pub const LAWS: [&str; 8] = [
     "ogden: (terms: [(mu: 1400, alpha: 1.3), (mu: 3, alpha: 5), (mu: -30, alpha: -2)], bulk: 10000)",
     "arruda_boyce: (shear: 700, locking_stretch: 1.8, bulk: 10000)",
     "law: (energy: \"c1*I1bar_minus_3 + c2*I2bar_minus_3 + c/2*(exp(b*I1bar_minus_3^2) - 1) + kappa/4*(J^2 - 1 - 2*log(J))\", parameters: {\"c1\": 300, \"c2\": 150, \"c\": 20, \"b\": 0.4, \"kappa\": 10000})",
+    GROWING,
 ];
+
+/// An energy whose terms of first order cancel as it is written.
+pub const GROWING: &str = "law: (energy: \"mu/2*I1bar_minus_3 + kappa/b^2*(exp(b*J_minus_1) - b*J_minus_1)\", parameters: {\"mu\": 1034, \"b\": 3, \"kappa\": 10000})";
 
 /// One family along a line, and one around an axis that pushes, too.
 pub const FAMILIES: &str = "[(k1: 900, k2: 0.4, dispersion: 0.1, direction: Along(1, 2, 3)),
@@ -339,62 +346,4 @@ pub fn watch_kernels(world: &mut World) -> Vec<(String, Kernel)> {
     sinew::systems::add_watch_columns(world);
     let kernels = sinew::systems::watch_kernels(world, &mut Described::default());
     kernels.into_iter().map(|kernel| ("observe".to_string(), kernel)).collect()
-}
-
-/// A small generator of numbers between −1 and 1, the same everywhere.
-pub struct Noise(pub u64);
-
-impl Noise {
-    pub fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-
-    fn fill(&mut self, column: &mut Reals, amplitude: f64) {
-        (0..column.len()).for_each(|i| column.set(i, amplitude * self.next()));
-    }
-}
-
-/// Numbers of a body's element forces in the scheme of two passes.
-fn two_pass_length(world: &World, body: Entity) -> usize {
-    let blocks = world.get::<Authoring>(body).unwrap().blocks.iter().map(|&block| world.get::<Block>(block).unwrap());
-    blocks.map(|block| block.count.div_ceil(16) * 16 * 3 * sinew::evaluation::node_count(block.kind)).sum()
-}
-
-/// Fills every column that changes with noise: displacements of a tenth of an element, plausible forces and histories.
-pub fn randomize(world: &mut World, seed: u64) {
-    let mut noise = Noise(seed);
-    // a common order of entities, whatever order the query has
-    let mut entities: Vec<Entity> = world.query::<EntityRef>().iter(world).map(|e| e.id()).collect();
-    entities.sort();
-    const SPACING: f64 = 0.1 / 6.0;
-    for entity in entities {
-        macro_rules! fill {
-            ($($column:ty: $amplitude:expr),*) => {$(
-                if let Some(mut column) = world.get_mut::<$column>(entity) {
-                    noise.fill(&mut column.0, $amplitude);
-                }
-            )*};
-        }
-        fill!(
-            Displacement: 0.1 * SPACING, DisplacementStep: 1e-5, DisplacementCompensation: 1e-11,
-            InternalForce: 0.01, ExternalForce: 0.01
-        );
-        // whose length depends on the scheme: all else is the same in both
-        if let Some(mut column) = world.get_mut::<ElementForce>(entity) {
-            Noise(noise.0).fill(&mut column.0, 0.01);
-            (0..two_pass_length(world, entity)).for_each(|_| _ = noise.next());
-        }
-        fill!(ViscousMemory: 200.0, Work: 1e-6, ElementVolume: 1e-6, NodalVolumeChange: 0.05);
-        // parked nodes, and axes held without a load
-        if let Some(mut mass) = world.get_mut::<Mass>(entity) {
-            mass.set(3, 0.0);
-        }
-        if let Some(mut mass) = world.get_mut::<FictitiousMass>(entity) {
-            mass.set(3, 0.0);
-        }
-        if let Some(mut axes) = world.get_mut::<ConstrainedAxes>(entity) {
-            axes[5] |= 2;
-        }
-    }
 }

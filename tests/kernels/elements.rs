@@ -1,6 +1,6 @@
 //! `element_forces`.
 
-use super::kernel_worlds::{ALONG, AROUND, Effects, FAMILIES, LAWS};
+use super::kernel_worlds::{ALONG, AROUND, Effects, FAMILIES, GROWING, LAWS, small_strains};
 use super::magnitude::{OGDEN_ROUNDINGS, ROUNDINGS, magnitude};
 use super::pair::{Pair, UNIT, entities, run};
 use bevy_ecs::prelude::*;
@@ -179,6 +179,16 @@ fn laws_of_the_ladder_exert_the_same_forces() {
             let viscous =
                 Effects { law: Some(law), averaged, families, prony: 1, reproject: true, ..Effects::default() };
             compare_element_forces(&viscous, |_| {});
+        }
+    }
+}
+
+/// Strains of 1e-4, at which an energy is 1e-8 of the numbers in its formula.
+#[test]
+fn laws_from_an_energy_exert_the_same_forces_at_small_strains() {
+    for law in [GROWING, LAWS[7]] {
+        for averaged in [false, true] {
+            compare_element_forces(&Effects { law: Some(law), averaged, ..Effects::default() }, small_strains);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! `element_removal`.
 
-use super::kernel_worlds::{ALONG, AROUND, Effects};
+use super::kernel_worlds::{ALONG, AROUND, Effects, GROWING, LAWS, small_strains};
 use super::magnitude::{ROUNDINGS, magnitude};
 use super::pair::{UNIT, run};
 use sinew::components::*;
@@ -50,5 +50,18 @@ fn each_criterion_alone_finds_the_same_elements() {
         pair.identical::<Alive>();
         let removed = pair.changed::<Alive>();
         assert!((200..1300).contains(&removed), "{removed} by {criterion}");
+    }
+}
+
+/// Energies of 1e-8 of the moduli, from formulas in which all but that cancels.
+#[test]
+fn energies_of_small_strains_find_the_same_elements() {
+    for (law, averaged) in [(GROWING, false), (GROWING, true), (LAWS[7], false)] {
+        let criterion = Some("EnergyDensityAbove(1.2e-4)");
+        let effects = Effects { criterion, law: Some(law), averaged, ..Effects::default() };
+        let Some(mut pair) = run("element_removal", &effects, 9, small_strains) else { return };
+        pair.identical::<Alive>();
+        let removed = pair.changed::<Alive>();
+        assert!((200..1300).contains(&removed), "{removed} of {law}");
     }
 }

@@ -146,11 +146,10 @@ fn largest(of: &Sym3<f64>) -> f64 {
 /// Rounding takes Ī₁ − 3 of a change of volume below 0, where fractional powers are no numbers.
 #[test]
 fn what_rounding_makes_of_no_isochoric_strain_is_no_strain() {
-    let read = law("mu/2*I1bar_minus_3 + c*I1bar_minus_3^1.3 + c*I2bar_minus_3^1.5 + k/2*J_minus_1^2", &[
-        ("mu", 1e3),
-        ("c", 100.0),
-        ("k", 1e4),
-    ]);
+    let read = law(
+        "mu/2*I1bar_minus_3 + c*I1bar_minus_3^1.3 + c*I2bar_minus_3^1.5 + k/2*J_minus_1^2",
+        &[("mu", 1e3), ("c", 100.0), ("k", 1e4)],
+    );
     let mut below = 0;
     let mut random = Random(11);
     for number in 0..300 {
@@ -187,7 +186,10 @@ fn beyond_the_end_of_its_domain_a_law_has_no_stress() {
         assert!(!inside || stress[3] > 0.0);
     }
     let single = read.law.map(|x| x as f32);
-    assert!(Elastic::<f32>::isochoric(&single, &Kinematics::new(&Mat3([[0.0, 0.9, 0.0], [0.0; 3], [0.0; 3]]))).0[3].is_nan());
+    assert!(
+        Elastic::<f32>::isochoric(&single, &Kinematics::new(&Mat3([[0.0, 0.9, 0.0], [0.0; 3], [0.0; 3]]))).0[3]
+            .is_nan()
+    );
 }
 
 /// A modulus at a kink is that of the side that is there, whatever the other modulus is.
@@ -299,5 +301,29 @@ fn tangents_are_the_derivatives_of_the_stress() {
         }
         println!("{:?}: {worst:.1e}", read.law);
         assert!(worst < 1e-8, "{:?}: {worst:e}", read.law);
+    }
+}
+
+/// A constant that is no number, in the midst of arithmetic, is none in the text that a GPU runs either.
+#[test]
+fn what_is_no_number_has_no_name_in_the_derived_wgsl() {
+    let file = "struct Law { mu: f32, outside: f32, kappa: f32 }
+@group(0) @binding(0) var<uniform> elastic: Law;
+fn elastic_energy(s: Invariants) -> f32 {
+    var energy = elastic.mu * s.I1bar_minus_3 + elastic.kappa * s.J_minus_1 * s.J_minus_1;
+    if s.J > 10.0 {
+        energy += log(elastic.outside) * s.J;
+    }
+    return energy;
+}
+";
+    let read_energy = read("energy.wgsl", file, &named(&[("mu", 1e3), ("outside", -1.0), ("kappa", 1e4)]));
+    let law = read_energy.unwrap_or_else(|wrong| panic!("{wrong:?}")).law;
+    let text = &law.parts().text;
+    assert!(text.contains("no_number(0.0)") && !text.contains("NaN"), "{text}");
+    let written = read("derived.wgsl", text, &named(&[])).unwrap_or_else(|wrong| panic!("{wrong:?}\n{text}")).law;
+    for law in [&law, &written] {
+        assert!(law.volumetric_energy(8.0).is_finite() && law.volumetric_energy(10.0).is_nan());
+        assert!(law.pressure(8.0).is_finite() && law.pressure(10.0).is_nan());
     }
 }

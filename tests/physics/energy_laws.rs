@@ -64,13 +64,11 @@ fn is_the_law<L: Elastic<f64>>(formula: &str, parameters: &[(&str, f64)], by_han
         let errors = [
             difference(&found, &expected) / largest(expected.0),
             (read.law.pressure(k.volume_change) / by_hand.pressure(k.volume_change) - 1.0).abs(),
-            // energies of laws of powers are differences of numbers of the size of the moduli
-            (read.law.isochoric_energy(&k) - by_hand.isochoric_energy(&k)).abs()
-                / (shear + by_hand.isochoric_energy(&k)),
-            (read.law.volumetric_energy(k.volume_change) - by_hand.volumetric_energy(k.volume_change)).abs() / bulk,
+            read.law.isochoric_energy(&k) / by_hand.isochoric_energy(&k) - 1.0,
+            read.law.volumetric_energy(k.volume_change) / by_hand.volumetric_energy(k.volume_change) - 1.0,
         ];
         for (worst, error) in worst.iter_mut().zip(errors) {
-            *worst = if error.is_nan() { f64::NAN } else { worst.max(error) };
+            *worst = if error.is_nan() { f64::NAN } else { worst.max(error.abs()) };
         }
     }
     println!("{formula}: {}, {:?}", worst.map(|x| format!("{x:.1e}")).join(", "), read.law.parts().isochoric.size());
@@ -101,7 +99,8 @@ fn derivatives_of_energies_are_the_laws_written_by_hand() {
         let k = Kinematics::new(&mat(h));
         let (found, expected) = (read.law.isochoric(&k), by_hand.isochoric(&k));
         assert!(difference(&found, &expected) < 1e-12 * largest(expected.0), "{found:?} instead of {expected:?}");
-        near("energy", read.law.isochoric_energy(&k), by_hand.isochoric_energy(&k), 2000.0, 1e-12);
+        let expected = by_hand.isochoric_energy(&k);
+        near("energy", read.law.isochoric_energy(&k), expected, 2000.0 + expected, 1e-12);
     }
 }
 
@@ -232,9 +231,8 @@ fn the_derived_wgsl_is_the_same_law() {
     ] {
         let law = law(formula, parameters).law;
         let text = &law.parts().text;
-        let given = parameters.iter().map(|(name, x)| (format!("parameter_{name}"), *x)).collect();
-        let written = read("derived.wgsl", text, &given).unwrap_or_else(|wrong| panic!("{wrong:?}\n{text}")).law;
-        assert_eq!(written.parts().uniform.len().div_ceil(16), law.parts().uniform.len().div_ceil(16));
+        let written =
+            read("derived.wgsl", text, &BTreeMap::new()).unwrap_or_else(|wrong| panic!("{wrong:?}\n{text}")).law;
         for (_, h) in gradients() {
             let k = Kinematics::new(&mat(h));
             let (found, expected) = (written.isochoric(&k), law.isochoric(&k));

@@ -14,6 +14,7 @@ mod copies;
 mod determinism;
 mod elements;
 mod endings;
+mod energy_digits;
 mod energy_laws;
 mod equilibrium;
 mod far_away;

@@ -47,6 +47,19 @@ fn a_sound_formula_is_not_complained_about() {
     assert_eq!(brief(GOOD, ""), "");
 }
 
+/// Powers of which a parameter is the exponent, and half powers, are no numbers only where they must not be.
+#[test]
+fn powers_by_parameters_are_powers() {
+    for (formula, parameters) in [
+        ("mu/2*I1bar_minus_3 + mu*I1bar_minus_3^n + kappa/2*J_minus_1^2", "\"mu\": 1000, \"n\": 2, \"kappa\": 1e4"),
+        ("mu/2*I1bar_minus_3 + mu*I1bar_minus_3^1.5 + kappa/2*J_minus_1^2", "\"mu\": 1000, \"kappa\": 1e4"),
+        ("mu/2*I1bar_minus_3 + mu*I2bar_minus_3^2.5 + kappa/2*J_minus_1^2", "\"mu\": 1000, \"kappa\": 1e4"),
+        ("mu/a*(I1bar^a - 3^a) + kappa/a*(J^a - a*log(J))", "\"mu\": 1000, \"a\": 0.8, \"kappa\": 1e4"),
+    ] {
+        assert_eq!(brief(&format!("energy: \"{formula}\", parameters: {{{parameters}}}"), ""), "", "{formula}");
+    }
+}
+
 #[test]
 fn what_is_no_formula_is_told_at_its_place() {
     const VARIABLES: &str = "variables: I1bar_minus_3, I2bar_minus_3, J_minus_1, I1bar, I2bar, J";
@@ -125,6 +138,13 @@ fn what_is_no_law_is_told_with_what_it_lacks() {
             "mu*log(I1bar_minus_3)",
             "cube.ron:2:10: error: the energy's isochoric stress is NaN at rest",
         ),
+        ("I1bar_minus_3", "sqrt(I1bar_minus_3)", "cube.ron:2:10: error: the energy's isochoric stress is "),
+        (
+            "\"kappa\": 1e4",
+            "\"kappa\": 0",
+            "cube.ron:2:10: error: the bulk modulus at small strains is 0.0000 Pa: it must be above 0 | κ is what the \
+             pressure grows by with `J_minus_1` at rest",
+        ),
         (
             "J_minus_1^2",
             "J_minus_1^2*I1bar",
@@ -173,6 +193,20 @@ fn energies_in_files_are_told_of_at_their_lines() {
         ("elastic.kappa / 2", "- elastic.kappa", "own.wgsl:3:4: error: the bulk modulus at small strains is -"),
         ("kappa: f32 }", "bulk: f32, kappa: f32 }", "cube.ron:2:31: error: the energy needs the parameter `bulk`"),
         ("fn elastic_energy", "fn elastic_pressure", "own.wgsl:3:4: error: "),
+        (
+            "fn elastic_energy",
+            "fn elastic_enery",
+            "own.wgsl:3:4: error: the law has no function `elastic_energy`, and none of those of its stresses | is \
+             `elastic_enery` meant to be `elastic_energy`? | its energy alone will do: fn elastic_energy(s: Invariants) \
+             -> f32 | else it must have all of: fn elastic_isochoric(k: Kinematics) -> Sym3, ",
+        ),
+        // derivatives of what is just short enough are too long
+        (
+            "    return",
+            "    var x = s.J;\n    for (var i = 0; i < 900; i++) { x = x * sin(x * s.J) + exp(x) * cos(x / s.J) + \
+             sqrt(x) * log(x) * s.J / x; }\n    return x *",
+            "own.wgsl:3:4: error: the derivatives of this have ",
+        ),
     ] {
         assert!(FILE.contains(old), "{old}");
         let said = brief(law, &FILE.replacen(old, new, 1));
@@ -199,6 +233,11 @@ fn a_formula_beyond_all_bounds_is_told_so() {
             assert!(n == 100 || said.contains("error: a formula has at most"), "{energy:.20}: {said:.300}");
             assert!(started.elapsed() < Duration::from_secs(10), "{energy:.20} took {:?}", started.elapsed());
         }
+    }
+    // what the message allows is allowed
+    for (term, n) in [(" + J_minus_1", 480), (" + 0*kappa", 240), (" + 0*J_minus_1^2", 110)] {
+        let said = brief(&GOOD.replace("kappa/2*J_minus_1^2", &format!("kappa*J_minus_1^2{}", term.repeat(n))), "");
+        assert!(!said.contains("at most"), "{n} times{term}: {said:.300}");
     }
     let said = brief(&GOOD.replace("mu/2", &format!("mu/2{}", " ".repeat(70_000))), "");
     assert!(said.contains("error: a formula has at most 65536 bytes"), "{said:.300}");

@@ -1,6 +1,6 @@
-//! Reading a law or a load of the user's own: one WGSL file, or a formula, with parameters from the scene. The text is compiled with
-//! our own fragments as the GPU will, translated for the CPU, and found to be what it should before anything is
-//! simulated with it.
+//! Reading a law or a load of the user's own: one WGSL file, or a formula, with parameters from the scene. The text is
+//! compiled with our own fragments as the GPU will, translated for the CPU, and found to be what it should before
+//! anything is simulated with it.
 
 mod checks;
 mod comparison;

@@ -153,7 +153,13 @@ impl Graph {
         Difference { at_rest, slopes, first, second: self.number_times(-at_rest / 3.0, rest) }
     }
 
-    fn of_binary(&mut self, function: Binary, (a, x): (Id, Difference), (b, y): (Id, Difference), id: Id) -> Difference {
+    fn of_binary(
+        &mut self,
+        function: Binary,
+        (a, x): (Id, Difference),
+        (b, y): (Id, Difference),
+        id: Id,
+    ) -> Difference {
         use Binary::{Add, Divide, Less, Max, Min, Multiply, Subtract};
         let at_rest = function.of(x.at_rest, y.at_rest);
         let both = |f: &dyn Fn(f64, f64) -> f64| std::array::from_fn(|i| f(x.slopes[i], y.slopes[i]));
@@ -175,8 +181,7 @@ impl Graph {
             Multiply => {
                 let (left, right) = (self.tidy(Multiply, x.first, b), self.number_times(x.at_rest, y.first));
                 let first = self.tidy(Add, left, right);
-                let (left, right) =
-                    (self.number_times(y.at_rest, x.second), self.number_times(x.at_rest, y.second));
+                let (left, right) = (self.number_times(y.at_rest, x.second), self.number_times(x.at_rest, y.second));
                 let product = self.tidy(Multiply, x.first, y.first);
                 let rest = self.tidy(Add, left, right);
                 let slopes = both(&|a, b| a * y.at_rest + x.at_rest * b);
@@ -196,7 +201,8 @@ impl Graph {
                 Difference { at_rest, slopes, first, second }
             }
             Min | Max => {
-                let chosen = match function == Min && x.at_rest < y.at_rest || function == Max && x.at_rest > y.at_rest {
+                let chosen = match function == Min && x.at_rest < y.at_rest || function == Max && x.at_rest > y.at_rest
+                {
                     true => x,
                     false => y,
                 };

@@ -82,11 +82,7 @@ impl Source {
     }
 
     /// The energy in terms of the invariants.
-    fn symbolic(
-        &self,
-        name: &str,
-        uniforms: &BTreeMap<String, Vec<f64>>,
-    ) -> Result<(Graph, Id, Span), Untranslatable> {
+    fn symbolic(&self, name: &str, uniforms: &BTreeMap<String, Vec<f64>>) -> Result<(Graph, Id, Span), Untranslatable> {
         let function = self.module.functions.iter().find(|(_, f)| f.name.as_deref() == Some(name));
         let Some((handle, function)) = function else {
             return Err(Untranslatable::new(Span::UNDEFINED, format!("there is no function `{name}`")));
@@ -125,11 +121,10 @@ impl Derived {
             ));
         }
         // Ψ_iso = Ψ(Ī₁, Ī₂, 1) − Ψ(3, 3, 1)
-        let (mut isochoric, found) =
-            graph.tidied(&[slopes[0], slopes[1], psi], |graph, number| match number {
-                VOLUME => graph.constant(0.0),
-                _ => graph.input(number),
-            });
+        let (mut isochoric, found) = graph.tidied(&[slopes[0], slopes[1], psi], |graph, number| match number {
+            VOLUME => graph.constant(0.0),
+            _ => graph.input(number),
+        });
         let [first, second, of_both] = some(&found, at)?;
         let curvatures = [(first, 0), (first, 1), (second, 1)].map(|(slope, by)| isochoric.derivative(slope, by));
         let isochoric_energy = isochoric.difference(of_both).map_or(of_both, |difference| difference.first);
@@ -155,16 +150,7 @@ impl Derived {
         };
         bearable(&volumetric, &[pressure, stiffness, volumetric_energy], at)?;
         let slopes = [first, second];
-        Ok(Self {
-            isochoric,
-            slopes,
-            curvatures,
-            isochoric_energy,
-            volumetric,
-            pressure,
-            stiffness,
-            volumetric_energy,
-        })
+        Ok(Self { isochoric, slopes, curvatures, isochoric_energy, volumetric, pressure, stiffness, volumetric_energy })
     }
 
     fn law(&self) -> Result<DerivedLaw, Untranslatable> {

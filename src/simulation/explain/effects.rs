@@ -129,19 +129,24 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
 
 /// What was found of a law of the user's own when it was tried.
 fn trial(material: Entity, world: &World) -> String {
-    let (Some(law), Some(found)) = (world.get::<UserLaw<f64>>(material), world.get::<Findings>(material)) else {
-        return String::new();
-    };
-    let parts = law.parts();
-    let (instructions, _, slots) = parts.isochoric.size();
+    let Some(found) = world.get::<Findings>(material) else { return String::new() };
     let finite = match found.finite_up_to {
         None => format!("finite in all {} deformations tried", found.tried),
         Some(size) => format!("finite for ∇u below {size}"),
     };
+    let (name, cost) = match world.get::<UserLaw<f64>>(material) {
+        Some(law) => {
+            let (instructions, _, slots) = law.parts().isochoric.size();
+            let cost = format!("; {instructions} instructions over {slots} registers on the CPU");
+            (law.parts().path.as_str(), cost)
+        }
+        // an energy that is that of a law built in
+        None => ("from its energy", String::new()),
+    };
     format!(
-        " ({}: stress is dΨ/dE within {:.0e}, in f32 within {:.0e} at strains of 1e-4; {finite}; \
-         {instructions} instructions over {slots} registers on the CPU)",
-        parts.path, found.derivative_error, found.single_precision_error,
+        " ({name}: stress is dΨ/dE within {:.0e}, in f32 within {:.0e} at strains of 1e-4, energy within {:.0e}; \
+         {finite}{cost})",
+        found.derivative_error, found.single_precision_error, found.single_precision_energy_error,
     )
 }
 
