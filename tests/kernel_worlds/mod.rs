@@ -12,6 +12,7 @@ use sinew::systems::{OnDevice, Registry};
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
 
 mod noise;
+#[allow(unused_imports)]
 pub use noise::{Noise, randomize, small_strains};
 
 /// What a scene calls for.

@@ -22,7 +22,7 @@ fn elastic_pressure(change: f32) -> f32 {
 }
 
 fn elastic_isochoric_energy(k: Kinematics) -> f32 {
-    return 0.5 * elastic.mu * (k.j_m23 * (3.0 + 2.0 * sym_trace(k.green_strain)) - 3.0);
+    return 0.5 * elastic.mu * i1_change(k);
 }
 
 fn elastic_volumetric_energy(change: f32) -> f32 {
@@ -246,7 +246,10 @@ cube.ron:1:60: error: the law needs the parameter `bulk` | the parameters of own
             r#"law: (file: "other.wgsl")"#,
             "cube.ron:1:67: error: there is no file `other.wgsl` | paths are relative to the scene file",
         ),
-        (r#"law: (file: "")"#, "cube.ron:1:67: error: the path of the law is empty"),
+        (
+            r#"law: (file: "")"#,
+            "cube.ron:1:67: error: the law has neither `energy` nor `file` | for instance energy: \"mu/2*I1bar_minus_3 + kappa/2*J_minus_1^2\", parameters: {\"mu\": 1000, \"kappa\": 1e4} | or file: \"law.wgsl\", a law in WGSL",
+        ),
         (
             r#"law: (file: "own.wgsl", parameters: {"mu": 1, "bulk": 2}), neo_hookean: Moduli(shear: 1, bulk: 2)"#,
             "cube.ron:1:60: error: the material `tissue` has two elastic laws, neo_hookean and law | a material has exactly one: leave the others out",
