@@ -41,6 +41,9 @@ pub fn at_start(summary: &Summary) -> String {
 /// Elements whose bounds differ by less than this share are alike.
 const ALIKE: f64 = 0.01;
 
+/// The true limit counts as known from this share of what is beyond it for certain.
+const WELL_KNOWN: f64 = 0.95;
+
 /// Bounds, true limit and what is taken of it.
 fn bounds(summary: &Summary) -> String {
     let (body, element) = &summary.stable_step_element;
@@ -50,8 +53,15 @@ fn bounds(summary: &Summary) -> String {
         if let Some(by_nodes) = stability.by_nodes.filter(|by_nodes| *by_nodes > 1.001 * stability.bound.time_step) {
             let _ = write!(text, "; by nodes {}", quantity(by_nodes, "s"));
         }
-        let sought = if stability.products == 0 { "not sought, at least " } else { "" };
-        let _ = write!(text, "; true limit: {sought}{}; the step is {} of it", quantity(limit, "s"), digits(share));
+        // what few products leave open is said
+        let beyond = stability.beyond.filter(|beyond| limit < WELL_KNOWN * beyond);
+        let (sought, at_most) = match beyond {
+            _ if stability.products == 0 => ("not sought, at least ".to_string(), "at most "),
+            Some(beyond) => (format!("below {}, at least ", quantity(beyond, "s")), "at most "),
+            None => (String::new(), ""),
+        };
+        let (limit, share) = (quantity(limit, "s"), digits(share));
+        let _ = write!(text, "; true limit: {sought}{limit}; the step is {at_most}{share} of it");
     }
     text
 }

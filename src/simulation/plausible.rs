@@ -87,8 +87,8 @@ fn materials(scene: &Scene, world: &mut World, diagnostics: &mut Diagnostics) {
 
 /// Bodies that loads act on and nothing holds fly away: seldom meant, and never by who forgot a constraint.
 fn unheld(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
-    // a scene's own systems may hold what they like
-    if assembly.scene.scene.schedule.is_some() {
+    // a scene's own systems may hold what they like; a constraint that is wrong was meant to hold
+    if assembly.scene.scene.schedule.is_some() || diagnostics.has_error_in("constraints") {
         return;
     }
     let held: Vec<Entity> =

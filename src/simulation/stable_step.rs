@@ -155,7 +155,7 @@ pub(super) fn choose(
         bound,
         by_nodes: Some(certain),
         limit: Some(loads.with(limit)),
-        beyond: (found.at_least > 0.0).then(|| step_of(found.at_least)),
+        beyond: (found.at_least > 0.0).then(|| loads.with(step_of(found.at_least))),
         products: found.products,
         found_from,
         because,

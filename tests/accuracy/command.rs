@@ -155,3 +155,31 @@ fn mistakes_end_with_2_before_anything_runs() {
         assert!(aside.contains(words), "{words:?} is not in\n{aside}");
     }
 }
+
+/// Steps become smaller where the rod stretches: what is seen is still seen at the scene's times, the last at its end.
+#[test]
+fn what_is_seen_is_of_the_scenes_times_where_steps_change() {
+    let place = Place::new();
+    let scene = SCENE
+        .replace("duration: 0.05", "duration: 0.3")
+        .replace("size: (0.1, 0.1, 0.1), cells: (2, 2, 2)", "size: (0.1, 0.02, 0.02), cells: (8, 2, 2)")
+        .replace("young: 3000", "young: 20000")
+        .replace("Set(\"z0\")", "Set(\"x0\")")
+        .replace("Set(\"z1\")", "Set(\"x1\")");
+    fs::write(place.path("rod.ron"), scene).unwrap();
+    let (status, said, aside) = place.sinew(&["run", "rod.ron", "-q", "--backend", "cpu"]);
+    assert_eq!(status, 0, "{said}{aside}");
+    let summary: serde_json::Value = serde_json::from_str(&place.read("out/rod/summary.json")).unwrap();
+    assert!(summary["step_history"]["changes"].as_u64().unwrap() > 0, "the step does not change: {summary}");
+    let table = place.read("out/rod/probe_top.csv");
+    let numbers: Vec<f64> = table.lines().last().unwrap().split(',').map(|text| text.parse().unwrap()).collect();
+    assert_eq!(numbers[0], 0.3);
+    let (status, said, aside) =
+        place.sinew(&["accuracy", "rod.ron", "--backend", "cpu", "--finest", "1", "--budget", "20s", "--out", "study"]);
+    assert_eq!(status, 0, "{said}{aside}");
+    let study: serde_json::Value = serde_json::from_str(&place.read("study/accuracy.json")).unwrap();
+    let estimates = study["estimates"].as_array().unwrap();
+    let found = estimates.iter().find(|one| one["quantity"] == "top.uz").unwrap();
+    let seen = found["value"][0].as_f64().unwrap();
+    assert!((seen / numbers[3] - 1.0).abs() < 1e-3, "{seen} m in the study, {} m in the run", numbers[3]);
+}

@@ -180,7 +180,7 @@ fn a_second_run_replaces_the_first_and_its_pictures() {
 fn check_names_what_sets_the_step_and_what_it_costs() {
     let place = Place::new();
     let said = place.done(&["check", "block.ron"]);
-    for words in ["true limit:", "the step is 0.", "elements that set it:", "costs 1 times the steps"] {
+    for words in ["true limit:", "the step is ", "elements that set it:", "costs 1 times the steps"] {
         assert!(said.contains(words), "no {words:?} in\n{said}");
     }
     // all of its elements that are held alike are alike
@@ -205,6 +205,26 @@ fn check_names_what_sets_the_step_and_what_it_costs() {
     let share = number("/stability/step") / number("/stability/limit");
     assert!((number("/share_of_limit") - share).abs() < 1e-12 && share < 1.0, "{facts}");
     assert_eq!(facts["stability"]["bound"]["worst"].as_array().unwrap().len(), 10);
+}
+
+#[test]
+fn check_says_between_what_the_true_limit_is_where_few_products_were_worth_their_time() {
+    let place = Place::new();
+    let stability = |integration: &str, duration: &str| {
+        let [integration, duration] = [format!("integration=({integration})"), format!("duration={duration}")];
+        let arguments = ["check", "block.ron", "--set", integration.as_str(), "--set", duration.as_str()];
+        let facts = place.done(&[&arguments[..], &["--json"]].concat());
+        let facts: serde_json::Value = serde_json::from_str(&facts).unwrap();
+        let number = |name: &str| facts["stability"][name].as_f64().unwrap_or_else(|| panic!("no {name}: {facts}"));
+        (number("limit"), number("beyond"), place.done(&arguments))
+    };
+    let (known, beyond, said) = stability("bound: Iterated", "0.5");
+    assert!(known <= beyond && 0.95 * beyond < known, "{known} {beyond}");
+    assert!(said.contains("; true limit: ") && !said.contains("true limit: below"), "{said}");
+    // long enough to be sought, too short to be sought well
+    let (limit, beyond, said) = stability("", "0.12");
+    assert!(limit < 0.95 * known && limit < 0.95 * beyond && 0.95 * known < beyond, "{limit} {known} {beyond}");
+    assert!(said.contains("true limit: below ") && said.contains("the step is at most 0."), "{said}");
 }
 
 #[test]

@@ -46,6 +46,8 @@ struct Run {
     time_step: f64,
     bytes: Vec<u8>,
     displacements: Vec<DVec3>,
+    /// The largest share of its energy that came from nothing or went there, as the run itself tells.
+    imbalance: f64,
 }
 
 fn told(error: &Error) -> Result<String, String> {
@@ -158,7 +160,8 @@ fn finished(simulation: &mut Simulation, ended: Result<(), Error>) -> Result<Run
     };
     let displacements = displacements(simulation);
     let (steps, time_step) = (simulation.step_count(), simulation.time_step());
-    Ok(Run { ended, steps, time_step, bytes, displacements })
+    let imbalance = simulation.guards().imbalance.abs();
+    Ok(Run { ended, steps, time_step, bytes, displacements, imbalance })
 }
 
 /// The largest distance between two sets of displacements, as a share of the largest displacement.
@@ -187,9 +190,9 @@ fn near(what: &str, a: &Run, b: &Run, most: f64) -> Result<(), String> {
         return Ok(());
     }
     // where rounding has decided when a step that follows became another, what differs is the error of the scheme
-    // itself
+    // itself: of motion that holds so much of the energy as a run says went astray, amplitudes go with its root
     let alike = a.steps == b.steps && (a.time_step - b.time_step).abs() <= 1e-9 * a.time_step;
-    let most = if alike { most } else { most.max(0.05) };
+    let most = if alike { most } else { most.max(0.05).max(a.imbalance.max(b.imbalance).sqrt()) };
     let apart = apart(&a.displacements, &b.displacements);
     if apart <= most {
         return Ok(());

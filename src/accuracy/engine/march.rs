@@ -1,5 +1,6 @@
 //! Runs a scene and looks at it at times that all configurations share.
 
+use super::sample::{Sample, Sampler, takes};
 use crate::accuracy::solver::{BodyField, Channel, Field, Refusal, Solution};
 use crate::assembly::mesh_of;
 use crate::scene::SceneFile;
@@ -12,7 +13,7 @@ use std::time::Instant;
 /// Times at which fields are kept; numbers and energies are looked at more often.
 pub const FIELDS: u64 = 10;
 /// Looks at energies for each look at fields: they cost as much as some steps.
-const ENERGIES_A_FIELD: u64 = 4;
+pub const ENERGIES_A_FIELD: u64 = 4;
 /// Runs shorter than this are timed again (s).
 const SHORT: f64 = 0.1;
 /// Between two looks at the clock at most so long (s), by what steps have taken so far.
@@ -94,15 +95,15 @@ pub fn solve(
     check_time: &dyn Fn() -> Result<(), Refusal>,
 ) -> Result<Solution, Refusal> {
     let mut simulation = Simulation::new(scene, options).map_err(refusal)?;
-    let mut run = Run { looks, channels: BTreeMap::new(), field: Field::default(), seconds: 0.0 };
+    let sampler = Sampler::new(looks, scene.scene.duration);
+    let mut run = Run { looks, channels: BTreeMap::new(), field: Field::default(), sampler };
     run.through(&mut simulation, scene, check_time)?;
     let mut solution = run.solution(&mut simulation, scene)?;
     drop(simulation);
     while solution.seconds < SHORT && solution.timed < AGAIN {
         let mut simulation = Simulation::new(scene, options).map_err(refusal)?;
         simulation.settle().map_err(refusal)?;
-        let steps = simulation.planned_steps();
-        let seconds = timed(&mut simulation, steps)?;
+        let seconds = time_of(&mut simulation, |simulation| simulation.advance_towards_end(u64::MAX))?;
         solution.seconds = solution.seconds.min(seconds);
         solution.timed += 1;
     }
@@ -111,8 +112,15 @@ pub fn solve(
 
 /// Takes steps; how long they took (s). What waits on a device is waited for.
 pub fn timed(simulation: &mut Simulation, steps: u64) -> Result<f64, Refusal> {
+    time_of(simulation, |simulation| simulation.advance(steps))
+}
+
+fn time_of(
+    simulation: &mut Simulation,
+    work: impl FnOnce(&mut Simulation) -> Result<(), Error>,
+) -> Result<f64, Refusal> {
     let started = Instant::now();
-    simulation.advance(steps).map_err(refusal)?;
+    work(simulation).map_err(refusal)?;
     if let Some(body) = simulation.scene().bodies.keys().next().cloned() {
         let on_device = simulation.is_on_gpu();
         if on_device {
@@ -127,7 +135,7 @@ struct Run<'a> {
     looks: &'a Looks,
     channels: BTreeMap<String, Channel>,
     field: Field,
-    seconds: f64,
+    sampler: Sampler<'a>,
 }
 
 impl Run<'_> {
@@ -144,68 +152,50 @@ impl Run<'_> {
         }
         // bodies are brought to rest before steps are timed
         simulation.settle().map_err(refusal)?;
-        let all = simulation.planned_steps();
+        let mut advance = |simulation: &mut Simulation, most: u64, so_far: f64| {
+            check_time()?;
+            timed(simulation, most.min(in_a_breath(simulation, so_far)))
+        };
         if scene.scene.is_static() {
+            let all = simulation.planned_steps();
             while !simulation.is_finished() && simulation.step_count() < all {
-                check_time()?;
-                let steps = (all - simulation.step_count()).min(self.in_a_breath(simulation));
-                self.seconds += timed(simulation, steps)?;
+                let left = all - simulation.step_count();
+                self.sampler.seconds += advance(simulation, left, self.sampler.seconds)?;
             }
-            return self.look(simulation, self.looks.count, scene.scene.duration);
+            self.sampler.see(simulation, [true; 2])?;
+            let sample = self.sampler.last().map(|sample| Sample { time: scene.scene.duration, ..sample });
+            sample.into_iter().for_each(|sample| self.take(sample));
+        } else {
+            for look in 0..=self.looks.count {
+                let mut sample = self.sampler.at(simulation, look, &mut advance)?;
+                let [energies, fields] = takes(self.looks, look);
+                sample.energies = sample.energies.filter(|_| energies);
+                sample.displacements = sample.displacements.filter(|_| fields);
+                self.take(sample);
+            }
         }
-        for look in 0..=self.looks.count {
-            let target = all * look / self.looks.count;
-            while simulation.step_count() < target {
-                check_time()?;
-                let steps = (target - simulation.step_count()).min(self.in_a_breath(simulation));
-                self.seconds += timed(simulation, steps)?;
-            }
-            self.look(simulation, look, target as f64 * simulation.time_step())?;
+        for (name, body) in &mut self.field.bodies {
+            body.masses = simulation.masses(name).map_err(refusal)?;
         }
         Ok(())
     }
 
-    /// Steps between two looks at the clock.
-    fn in_a_breath(&self, simulation: &Simulation) -> u64 {
-        let each = self.seconds / simulation.step_count().max(1) as f64;
-        let steps = if each > 0.0 { (BREATH / each) as u64 } else { FIRST };
-        steps.clamp(FIRST, 2000)
-    }
-
-    fn look(&mut self, simulation: &mut Simulation, look: u64, time: f64) -> Result<(), Refusal> {
-        for (name, what, components) in self.looks.probes.clone() {
-            if what != Quantity::Reaction {
-                let values = simulation.probe(&name).map_err(refusal)?;
-                self.keep(&name, what, &components, time, &values);
-            }
+    /// Takes what was seen.
+    fn take(&mut self, sample: Sample) {
+        let time = sample.time;
+        for ((name, what, components), values) in self.looks.probes.iter().zip(&sample.probes) {
+            self.keep(name, *what, components, time, values);
         }
-        if look.is_multiple_of((self.looks.count / (FIELDS * ENERGIES_A_FIELD)).max(1)) {
-            let energies = simulation.energies().map_err(refusal)?;
-            for (name, value) in [("energy.kinetic", energies.kinetic), ("energy.strain", energies.strain)] {
-                self.push(name.into(), "energy", "J".into(), time, value);
-            }
+        for (name, value) in ["energy.kinetic", "energy.strain"].into_iter().zip(sample.energies.into_iter().flatten())
+        {
+            self.push(name.into(), "energy", "J".into(), time, value);
         }
-        if look > 0 && look.is_multiple_of(self.looks.count / FIELDS) {
+        if let Some(displacements) = sample.displacements {
             self.field.times.push(time);
-            for (name, body) in &mut self.field.bodies {
-                body.displacements.push(simulation.displacements(name).map_err(refusal)?);
-                body.masses = simulation.masses(name).map_err(refusal)?;
+            for (body, own) in self.field.bodies.values_mut().zip(displacements) {
+                body.displacements.push(own);
             }
         }
-        // reactions are made of the forces at the beginning of the step before: those of now are known one step later
-        let reactions: Vec<_> = self.looks.probes.iter().filter(|(_, what, _)| *what == Quantity::Reaction).collect();
-        if !reactions.is_empty() {
-            // (in equilibrium nothing moves any more, and no step is taken)
-            let started = Instant::now();
-            simulation.advance(1).map_err(refusal)?;
-            let last = look == self.looks.count;
-            self.seconds += if last { 0.0 } else { started.elapsed().as_secs_f64() };
-            for (name, what, components) in reactions.into_iter().cloned().collect::<Vec<_>>() {
-                let values = simulation.probe(&name).map_err(refusal)?;
-                self.keep(&name, what, &components, time, &values);
-            }
-        }
-        Ok(())
     }
 
     fn keep(&mut self, probe: &str, what: Quantity, components: &[usize], time: f64, values: &[f64]) {
@@ -227,7 +217,7 @@ impl Run<'_> {
         Ok(Solution {
             channels: self.channels.into_values().collect(),
             field: Some(self.field),
-            seconds: self.seconds,
+            seconds: self.sampler.seconds,
             preload: simulation.preload().map_or(0.0, |preload| preload.seconds),
             timed: 1,
             simulated: (!scene.scene.is_static()).then_some(scene.scene.duration),
@@ -239,4 +229,11 @@ impl Run<'_> {
             hourglass_share: summary.energies.hourglass / summary.energies.strain.max(1e-300),
         })
     }
+}
+
+/// Steps between two looks at the clock, where those so far took so long (s).
+fn in_a_breath(simulation: &Simulation, so_far: f64) -> u64 {
+    let each = so_far / simulation.step_count().max(1) as f64;
+    let steps = if each > 0.0 { (BREATH / each) as u64 } else { FIRST };
+    steps.clamp(FIRST, 2000)
 }

@@ -6,6 +6,7 @@ mod effects;
 mod ladder;
 mod march;
 mod meshes;
+mod sample;
 mod variant;
 
 use super::configuration::{Configuration, Digits, Factor, Place};
