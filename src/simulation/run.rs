@@ -11,6 +11,9 @@ use crate::observation::Observer;
 use bevy_ecs::prelude::*;
 use std::time::{Duration, Instant};
 
+/// A time is a whole number of steps that is so little of one away.
+const WHOLE: f64 = 1e-6;
+
 impl Simulation {
     /// Takes one step.
     ///
@@ -25,13 +28,27 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn advance_to(&mut self, time: f64) -> Result<(), Error> {
+        // a time that is a whole number of steps is met in spite of rounding
+        self.advance_along(u64::MAX, |clock| ((time - clock.since.1) / clock.time_step - WHOLE).ceil())
+    }
+
+    /// Takes at most `most` steps, none of which goes beyond `time` (s), whatever becomes of their length.
+    ///
+    /// # Errors
+    /// As [`Simulation::advance`].
+    pub(crate) fn advance_short_of(&mut self, time: f64, most: u64) -> Result<(), Error> {
+        self.advance_along(most, |clock| ((time - clock.since.1) / clock.time_step + WHOLE).floor())
+    }
+
+    /// Takes at most `most` steps to where `steps` says, counted from the last change of the step.
+    fn advance_along(&mut self, most: u64, steps: impl Fn(&Clock) -> f64) -> Result<(), Error> {
         self.settle()?;
+        let end = self.step_count().saturating_add(most);
         loop {
             self.follow_in_time()?;
             let clock = *self.world.resource::<Clock>();
-            // a time that is a whole number of steps is met in spite of rounding
-            let target = clock.since.0 + ((time - clock.since.1) / clock.time_step - 1e-6).ceil().max(0.0) as u64;
-            let next = target.min(self.next_follow());
+            let target = clock.since.0 + steps(&clock).max(0.0) as u64;
+            let next = target.min(end).min(self.next_follow());
             if next <= clock.step {
                 return Ok(());
             }

@@ -152,20 +152,23 @@ impl Run<'_> {
         }
         // bodies are brought to rest before steps are timed
         simulation.settle().map_err(refusal)?;
-        let mut advance = |simulation: &mut Simulation, most: u64, so_far: f64| {
-            check_time()?;
-            timed(simulation, most.min(in_a_breath(simulation, so_far)))
-        };
         if scene.scene.is_static() {
             let all = simulation.planned_steps();
             while !simulation.is_finished() && simulation.step_count() < all {
+                check_time()?;
                 let left = all - simulation.step_count();
-                self.sampler.seconds += advance(simulation, left, self.sampler.seconds)?;
+                let steps = left.min(in_a_breath(simulation, self.sampler.seconds));
+                self.sampler.seconds += timed(simulation, steps)?;
             }
             self.sampler.see(simulation, [true; 2])?;
             let sample = self.sampler.last().map(|sample| Sample { time: scene.scene.duration, ..sample });
             sample.into_iter().for_each(|sample| self.take(sample));
         } else {
+            let mut advance = |simulation: &mut Simulation, time: f64, so_far: f64| {
+                check_time()?;
+                let most = in_a_breath(simulation, so_far);
+                time_of(simulation, |simulation| simulation.advance_short_of(time, most))
+            };
             for look in 0..=self.looks.count {
                 let mut sample = self.sampler.at(simulation, look, &mut advance)?;
                 let [energies, fields] = takes(self.looks, look);

@@ -70,13 +70,13 @@ impl<'a> Sampler<'a> {
         self.duration * look as f64 / self.looks.count as f64
     }
 
-    /// Steps to the `look`th look and sees what is there; `advance` takes steps, at most so many, and says how long they
-    /// took (s). Looks come in order. Steps may become smaller on the way: a time within a step is interpolated.
+    /// Steps to the `look`th look and sees what is there; `advance` takes steps, none beyond a time (s), and says how long
+    /// they took (s). Looks come in order. Steps may change on the way: a time within a step is interpolated.
     pub fn at(
         &mut self,
         simulation: &mut Simulation,
         look: u64,
-        advance: &mut dyn FnMut(&mut Simulation, u64, f64) -> Result<f64, Refusal>,
+        advance: &mut dyn FnMut(&mut Simulation, f64, f64) -> Result<f64, Refusal>,
     ) -> Result<Sample, Refusal> {
         let time = self.time(look);
         loop {
@@ -96,8 +96,7 @@ impl<'a> Sampler<'a> {
             let left = (time - simulation.time()) / simulation.time_step();
             let is_seen = self.seen.back().is_some_and(|(step, _)| *step == simulation.step_count());
             if left > 1.0 - MET {
-                let steps = (left + MET).floor() as u64;
-                self.seconds += advance(simulation, steps, self.seconds)?;
+                self.seconds += advance(simulation, time, self.seconds)?;
             } else if is_seen {
                 self.seconds += timed(simulation, 1)?;
             } else {
