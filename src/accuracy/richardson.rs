@@ -37,8 +37,9 @@ pub struct Limit {
 /// extrapolation by another order lies from it, but at least a quarter of the extrapolated step. The other order is the
 /// formal one, 2, where p is below it; where p is above it, which is luck and no convergence, it lies as far below,
 /// twice over, down to 1. Elsewhere nothing is extrapolated: the limit is the finest result, and its uncertainty three
-/// times the largest distance between the three. Where the second difference is larger than the first by no more than
-/// locking elements make it, results run apart, and two more doublings at the same rate are added to that distance.
+/// times the largest distance between the three. Where the second difference goes the way of the first and is larger by
+/// no more than locking elements make it, results run apart, and two more doublings at the same rate are added to that
+/// distance.
 pub fn extrapolate(sizes: [f64; 3], results: [&[f64]; 3], norm: impl Fn(&[f64]) -> f64) -> Limit {
     let [coarse, middle, fine] = results;
     let (first, second) = (difference(coarse, middle), difference(middle, fine));
@@ -53,7 +54,7 @@ pub fn extrapolate(sizes: [f64; 3], results: [&[f64]; 3], norm: impl Fn(&[f64]) 
     let Some(order) = order else {
         let spread = far.max(near).max(norm(&difference(coarse, fine)));
         let growth = near / far;
-        let more = if LOCKED.contains(&growth) { near * (growth + growth * growth) } else { 0.0 };
+        let more = if same_way && LOCKED.contains(&growth) { near * (growth + growth * growth) } else { 0.0 };
         return Limit { values: fine.to_vec(), uncertainty: LOST * (spread + more), order };
     };
     let by = |order: f64| gain(sizes, order);

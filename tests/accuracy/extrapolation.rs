@@ -51,6 +51,13 @@ fn results_that_run_apart_are_so_uncertain_that_a_locked_mesh_is_not_believed() 
 }
 
 #[test]
+fn results_that_turn_round_are_three_times_as_uncertain_as_they_are_apart_and_no_more() {
+    // a probe whose nodes are others on each mesh: -4.6 %, then 8.7 % back
+    let found = extrapolate([1.0, 0.5, 0.25], [&[-8.62], &[-9.02], &[-8.24]], |values| values[0].abs());
+    assert!((found.uncertainty - 3.0 * 0.78).abs() < 1e-12 && found.order.is_none(), "{found:?}");
+}
+
+#[test]
 fn two_results_bound_the_error_of_all_orders_from_a_half_on() {
     for order in [0.5, 1.0, 1.5, 2.0, 3.0] {
         let [middle, fine] = [1.0, 0.5].map(|h: f64| [2.0 - 0.3 * h.powf(order)]);
