@@ -36,6 +36,7 @@ mod simulation;
 pub mod snapshot;
 #[path = "../systems/mod.rs"]
 pub mod systems;
+pub mod uniform;
 
 // custom systems are written with these, and must be so in the same versions
 pub use bevy_ecs;

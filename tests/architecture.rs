@@ -64,12 +64,12 @@ fn imports(code: &str) -> Vec<String> {
 fn imports_run_one_way() {
     let inputs = ["mesh", "scene"];
     let data = ["math", "components", "elements", "materials"];
-    // what each part may name; itself and `error` (which knows every part's errors) are always allowed
+    // what each part may name; itself `error` (which knows every part's errors) and `uniform` are always allowed
     let allowed: [(&str, Vec<&str>); 16] = [
         ("src/math", vec![]),
         ("src/plot", vec![]),
         ("src/mesh", vec![]),
-        ("src/scene", vec!["mesh"]),
+        ("src/scene", vec!["mesh", "materials"]),
         ("src/materials", vec!["math"]),
         ("src/elements", vec!["math"]),
         ("src/components", [&inputs[..], &["math", "elements", "materials"]].concat()),

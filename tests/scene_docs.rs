@@ -9,15 +9,16 @@ const REFERENCE: &str = include_str!("../docs/scene.md");
 /// The names of all fields and variants: what has a comment with three slashes or stands in an enum, and is no
 /// function.
 fn words_of_the_schema() -> Vec<&'static str> {
-    let mut words = Vec::new();
+    let mut words = sinew::scene::schema::ELASTIC_LAWS.to_vec();
     let mut inside = false;
-    for line in sinew::scene::schema::TEXT.iter().flat_map(|file| file.lines()) {
+    for line in sinew::scene::schema::texts().flat_map(|file| file.lines()) {
+        let line = line.trim();
         if line.starts_with("pub struct") || line.starts_with("pub enum") {
             inside = true;
         } else if line == "}" {
             inside = false;
         } else if inside {
-            let text = line.trim().trim_start_matches("pub ");
+            let text = line.trim_start_matches("pub ");
             let end = text.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(text.len());
             if end > 0 {
                 words.push(&text[..end]);

@@ -2,11 +2,8 @@
 
 use super::user_laws;
 use crate::components::{Damping, Density, ExponentialFibres, Label, Prony, StiffnessDamping};
-use crate::materials::{
-    ArrudaBoyce, ElasticLaw, ExponentialFibre, Fibres, Linear, MooneyRivlin, NeoHookean, Ogden, StVenantKirchhoff,
-    StableNeoHookean,
-};
-use crate::scene::schema::{self, Elasticity, Material};
+use crate::materials::{ElasticLaw, ExponentialFibre, Fibres, each_elastic_law};
+use crate::scene::schema::{self, Material};
 use bevy_ecs::prelude::*;
 use std::collections::BTreeMap;
 
@@ -20,14 +17,12 @@ pub(super) fn spawn(
     for (name, material) in &scene.materials {
         let material = &called_for(material);
         let mut entity = world.spawn((Label(name.clone()), Density(material.density)));
-        insert_elastic_law(&mut entity, material);
+        if let Some(law) = material.elastic_law() {
+            insert(&mut entity, law);
+        }
         if let Some(user_laws::Read { law, built_in, findings, .. }) = laws.remove(name) {
             entity.insert(findings);
-            match built_in {
-                Some(ElasticLaw::NeoHookean(law)) => entity.insert(law),
-                Some(ElasticLaw::MooneyRivlin(law)) => entity.insert(law),
-                _ => entity.insert(law),
-            };
+            insert(&mut entity, built_in.unwrap_or(ElasticLaw::UserLaw(law)));
         }
         if let Some(fibres) = &material.fibres {
             entity.insert(Fibres { eta: fibres.eta, tension_only: number(fibres.tension_only) });
@@ -83,41 +78,17 @@ fn number(yes: bool) -> f64 {
     if yes { 1.0 } else { 0.0 }
 }
 
-/// The one law that validation has seen.
-fn insert_elastic_law(entity: &mut EntityWorldMut<'_>, material: &Material) {
-    if let Some((shear, bulk)) = material.linear.map(|law| law.moduli()) {
-        entity.insert(Linear { shear, bulk });
-    }
-    if let Some((shear, bulk)) = material.st_venant_kirchhoff.map(|law| law.moduli()) {
-        entity.insert(StVenantKirchhoff { shear, bulk });
-    }
-    if let Some((shear, bulk)) = material.neo_hookean.map(|law| law.moduli()) {
-        entity.insert(NeoHookean { shear, bulk });
-    }
-    if let Some((shear, bulk)) = material.stable_neo_hookean.map(|law| law.moduli()) {
-        entity.insert(StableNeoHookean { shear, bulk });
-    }
-    if let Some(schema::MooneyRivlin { c10, c01, bulk }) = material.mooney_rivlin {
-        entity.insert(MooneyRivlin { c10, c01, bulk });
-    }
-    if let Some(law) = &material.ogden {
-        let terms: Vec<(f64, f64)> = law.terms.iter().map(|term| (term.mu, term.alpha)).collect();
-        entity.insert(Ogden::new(&terms, law.bulk));
-    }
-    if let Some(schema::ArrudaBoyce { shear, locking_stretch, bulk }) = material.arruda_boyce {
-        entity.insert(ArrudaBoyce { shear, locking_stretch, bulk });
-    }
-}
-
-impl Elasticity {
-    /// Shear and bulk modulus (Pa).
-    pub fn moduli(&self) -> (f64, f64) {
-        match *self {
-            Self::Young { young, poisson } => (young / (2.0 * (1.0 + poisson)), young / (3.0 * (1.0 - 2.0 * poisson))),
-            Self::Moduli { shear, bulk } => (shear, bulk),
+macro_rules! insert_any {
+    ($($(#[$doc:meta])* $word:ident: $law:ident;)*) => {
+        /// A law as the component of its type.
+        fn insert(entity: &mut EntityWorldMut<'_>, law: ElasticLaw<f64>) {
+            match law {
+                $(ElasticLaw::$law(law) => entity.insert(law),)*
+            };
         }
-    }
+    };
 }
+each_elastic_law!(insert_any law: UserLaw;);
 
 /// Directions of all families of fibres, with the fields they stand in: `fibres` first, then `exponential_fibres`.
 pub(super) fn directions(material: &Material) -> Vec<(String, &schema::Direction)> {

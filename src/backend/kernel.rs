@@ -6,7 +6,6 @@
 
 mod compose;
 mod diagnose;
-pub mod layout;
 mod reflect;
 #[cfg(test)]
 mod tests;
@@ -14,10 +13,10 @@ mod tests;
 use bevy_ecs::prelude::Entity;
 use std::borrow::Cow;
 
+pub(crate) use crate::uniform::uniform;
+pub use crate::uniform::{Layout, Uniform};
 pub use compose::{Composed, Entry, compose};
 pub use diagnose::{KernelError, NameMismatch};
-pub(crate) use layout::uniform;
-pub use layout::{Layout, Uniform};
 pub use reflect::{Binding, BindingKind, Member};
 
 /// Name of the uniform variable that holds the step's record; the GPU layer binds it, a kernel must not.
@@ -84,6 +83,12 @@ impl Fragment {
 /// A file of the crate's `shaders/` folder as a [`Fragment`], built into the program: `shader!("row")`.
 #[macro_export]
 macro_rules! shader {
+    ($stem:ident) => {
+        $crate::backend::kernel::Fragment::new(
+            concat!("shaders/", stringify!($stem), ".wgsl"),
+            include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders/", stringify!($stem), ".wgsl")),
+        )
+    };
     ($stem:literal) => {
         $crate::backend::kernel::Fragment::new(
             concat!("shaders/", $stem, ".wgsl"),

@@ -2,36 +2,11 @@
 
 use super::kernel::{Fragment, Layout, Uniform, uniform};
 use crate::components::FamilyDirection;
-use crate::materials::{
-    ArrudaBoyce, ElasticLaw, ExponentialFibre, Fibres, Linear, MooneyRivlin, NeoHookean, Ogden, PronyTerm,
-    StVenantKirchhoff, StableNeoHookean, each_elastic_law,
-};
+use crate::materials::{self, ElasticLaw, ExponentialFibre, Fibres, Law, PronyTerm, Support, each_elastic_law};
 use crate::shader;
 
-uniform!(Linear<f32> { shear, bulk });
-uniform!(StVenantKirchhoff<f32> { shear, bulk });
-uniform!(NeoHookean<f32> { shear, bulk });
-uniform!(StableNeoHookean<f32> { shear, bulk });
-uniform!(MooneyRivlin<f32> { c10, c01, bulk });
-uniform!(ArrudaBoyce<f32> { shear, locking_stretch, bulk });
 uniform!(Fibres<f32> { eta, tension_only });
 uniform!(PronyTerm<f32> { stress, memory, rate, aim });
-
-impl Uniform for Ogden<f32> {
-    // WGSL has vec4 for four numbers, and rounds the struct up to whole ones
-    const LAYOUT: Layout = Layout {
-        name: "Ogden",
-        size: 48,
-        members: &[("mu", 0, 16), ("alpha", 16, 16), ("bulk", 32, 4), ("terms", 36, 4)],
-    };
-    fn bytes(&self) -> Vec<u8> {
-        let mut bytes = bytemuck::cast_slice(&[self.mu, self.alpha]).to_vec();
-        bytes.extend(self.bulk.to_ne_bytes());
-        bytes.extend(self.terms.to_ne_bytes());
-        bytes.resize(Self::LAYOUT.size, 0);
-        bytes
-    }
-}
 
 /// A family of fibres as kernels see it.
 #[derive(Clone, Copy, Debug)]
@@ -84,14 +59,14 @@ pub(super) struct ElasticPart {
 }
 
 macro_rules! elastic_parts {
-    ($($law:ident = $stem:literal;)*) => {
+    ($($(#[$doc:meta])* $word:ident: $law:ident;)*) => {
         impl ElasticPart {
             pub fn of(law: &ElasticLaw<f32>) -> Self {
                 match law {
                     $(ElasticLaw::$law(law) => Self {
-                        fragment: shader!($stem),
+                        fragment: shader!($word),
                         bytes: law.bytes(),
-                        layout: Some(<$law<f32> as Uniform>::LAYOUT),
+                        layout: Some(<materials::$law<f32> as Uniform>::LAYOUT),
                     },)*
                     ElasticLaw::UserLaw(law) => Self {
                         fragment: Fragment::new(law.parts().path.as_str(), law.parts().text.as_str()),
@@ -101,27 +76,32 @@ macro_rules! elastic_parts {
                 }
             }
         }
+
+        /// Fragments that a law's twin stands on.
+        pub(super) fn stands_on(law: &ElasticLaw<f32>) -> Vec<Fragment> {
+            let files = match law {
+                $(ElasticLaw::$law(_) => <materials::$law<f64> as Law>::STANDS_ON,)*
+                // may call what all others call
+                ElasticLaw::UserLaw(_) => &[
+                    Support::FiniteStrain,
+                    Support::VolumeRatio,
+                    Support::Eigen,
+                    Support::Elementary,
+                    Support::Invariants,
+                ],
+            };
+            files.iter().copied().map(fragment).collect()
+        }
     };
 }
 each_elastic_law!(elastic_parts);
 
-/// Fragments that a law's twin stands on: what it has no functions of its own for.
-pub(super) fn ground(law: &ElasticLaw<f32>) -> Vec<Fragment> {
-    match law {
-        ElasticLaw::Linear(_) => vec![],
-        ElasticLaw::StVenantKirchhoff(_) => vec![shader!("finite_strain")],
-        ElasticLaw::StableNeoHookean(_) => vec![shader!("elementary")],
-        ElasticLaw::Ogden(_) => {
-            vec![shader!("finite_strain"), shader!("volume_ratio"), shader!("eigen"), shader!("elementary")]
-        }
-        // may call what all of these call
-        ElasticLaw::UserLaw(_) => vec![
-            shader!("finite_strain"),
-            shader!("volume_ratio"),
-            shader!("eigen"),
-            shader!("elementary"),
-            shader!("invariants"),
-        ],
-        _ => vec![shader!("finite_strain"), shader!("volume_ratio")],
+fn fragment(support: Support) -> Fragment {
+    match support {
+        Support::FiniteStrain => shader!("finite_strain"),
+        Support::VolumeRatio => shader!("volume_ratio"),
+        Support::Eigen => shader!("eigen"),
+        Support::Elementary => shader!("elementary"),
+        Support::Invariants => shader!("invariants"),
     }
 }

@@ -1,20 +1,23 @@
 //! The eight-chain law of Arruda and Boyce.
 
-use super::{Elastic, Kinematics};
+use super::{Elastic, Kinematics, Law, Told};
 use crate::math::{Real, Sym3};
+use crate::uniform::uniform;
 use bevy_ecs::component::Component;
+use serde::{Deserialize, Serialize};
 
 /// Ψ_iso = μ Σᵢ Cᵢ λ_m^(2−2i) (Ī₁ⁱ − 3ⁱ), i = 1 to 5, U = κ/2 (J − 1)² (Arruda & Boyce 1993: the inverse Langevin
 /// function of the eight-chain model by its first five terms; its WGSL twin is `shaders/arruda_boyce.wgsl`).
 ///
 /// Chains stiffen towards the locking stretch λ_m; the series stays finite there and beyond. At small strains the shear
 /// modulus is above μ: μ(1 + 3/(5λ_m²) + 99/(175λ_m⁴) + 513/(875λ_m⁶) + 42039/(67375λ_m⁸)).
-#[derive(Component, Clone, Copy, Debug, PartialEq)]
+#[derive(Component, Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
+#[serde(deny_unknown_fields)]
 #[repr(C)]
 pub struct ArrudaBoyce<T: Send + Sync + 'static> {
-    /// μ (Pa): n k T of the chains.
+    /// μ (Pa), n k T of the chains: below the shear modulus of small strains.
     pub shear: T,
-    /// Locking stretch λ_m of a chain, above 1.
+    /// The locking stretch λ_m of a chain, above 1.
     pub locking_stretch: T,
     /// Bulk modulus κ (Pa).
     pub bulk: T,
@@ -22,6 +25,9 @@ pub struct ArrudaBoyce<T: Send + Sync + 'static> {
 
 /// Where Ī₁ − 3 stops counting (chains stretched tenfold): so far beyond locking the stress only has to stay a number.
 const LARGEST_CHANGE: f64 = 100.0;
+
+/// The locking stretch that [`Law::with_moduli`] gives.
+const LOCKING_STRETCH: f64 = 2.0;
 
 /// Cᵢ.
 const SERIES: [f64; 5] = [1.0 / 2.0, 1.0 / 20.0, 11.0 / 1050.0, 19.0 / 7000.0, 519.0 / 673_750.0];
@@ -47,6 +53,30 @@ impl<R: Real> ArrudaBoyce<R> {
             factor = factor * chain;
         }
         (energy, slope)
+    }
+}
+
+uniform!(ArrudaBoyce<f32> { shear, locking_stretch, bulk });
+
+impl Law for ArrudaBoyce<f64> {
+    type Parameters = Self;
+
+    fn of(parameters: &Self) -> Self {
+        *parameters
+    }
+
+    fn check(&Self { shear, locking_stretch, bulk }: &Self, told: &mut Told) {
+        told.above_zero("shear", shear, "Pa");
+        if locking_stretch <= 1.0 {
+            told.must("locking_stretch", "above 1", locking_stretch)
+                .note("chains at rest are stretched to 1 already; a large value gives the neo-Hookean law");
+        }
+        told.bulk_modulus(bulk, shear, "`shear`");
+    }
+
+    fn with_moduli(shear: f64, bulk: f64) -> Option<Self> {
+        let of_one = Self { shear: 1.0, locking_stretch: LOCKING_STRETCH, bulk };
+        Some(Self { shear: shear / of_one.small_strain_moduli()[0], ..of_one })
     }
 }
 

@@ -1,9 +1,6 @@
 //! What an elastic law is, and the list of those there are.
 
-use super::{
-    ArrudaBoyce, Fibres, Kinematics, Linear, MooneyRivlin, NeoHookean, Ogden, StVenantKirchhoff, StableNeoHookean,
-    UserLaw,
-};
+use super::{Fibres, Kinematics};
 use crate::math::{Mat3, Real, Sym3, dot_plus};
 
 /// An isotropic elastic law over the numbers `R`: Ψ = Ψ_iso + U(θ), so that S = S_iso + U'(θ) ∂θ/∂E.
@@ -117,17 +114,25 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
     fn small_strain_moduli(&self) -> [R; 2];
 }
 
-/// All elastic laws with a WGSL file of ours: type and name. One line here makes a law known to both backends.
+/// All elastic laws with a WGSL file of ours: word and type. One line here makes a law known to scenes and to both
+/// backends, and to the studies that compare laws in this order.
 macro_rules! each_elastic_law {
     ($then:ident $($more:tt)*) => {
         $then! {
-            Linear = "linear";
-            StVenantKirchhoff = "st_venant_kirchhoff";
-            NeoHookean = "neo_hookean";
-            StableNeoHookean = "stable_neo_hookean";
-            MooneyRivlin = "mooney_rivlin";
-            Ogden = "ogden";
-            ArrudaBoyce = "arruda_boyce";
+            /// Hooke's law for small strains and rotations.
+            linear: Linear;
+            /// Hooke's law in Green's strain: large rotations, small strains.
+            st_venant_kirchhoff: StVenantKirchhoff;
+            /// The neo-Hookean law, for large strains.
+            neo_hookean: NeoHookean;
+            /// The stable neo-Hookean law, defined for every deformation, also of tissue that is turned inside out.
+            stable_neo_hookean: StableNeoHookean;
+            /// The Mooney-Rivlin law, for large strains.
+            mooney_rivlin: MooneyRivlin;
+            /// Ogden's law in principal stretches, for large strains.
+            ogden: Ogden;
+            /// The eight-chain law of Arruda and Boyce, which stiffens towards a locking stretch.
+            arruda_boyce: ArrudaBoyce;
             $($more)*
         }
     };
@@ -135,18 +140,18 @@ macro_rules! each_elastic_law {
 pub(crate) use each_elastic_law;
 
 macro_rules! elastic_laws {
-    ($($law:ident = $name:literal;)*) => {
+    ($($(#[$doc:meta])* $word:ident: $law:ident;)*) => {
         /// Any elastic law. It is a law itself: one that asks at each point which it is.
         #[derive(Clone, Copy, Debug)]
         #[allow(missing_docs)]
         pub enum ElasticLaw<R: Real> {
-            $($law($law<R>),)*
+            $($law(super::$law<R>),)*
         }
 
         impl ElasticLaw<f64> {
             /// The law that an entity has as a component.
             pub fn of(material: bevy_ecs::world::EntityRef<'_>) -> Option<Self> {
-                $(if let Some(&law) = material.get::<$law<f64>>() {
+                $(if let Some(&law) = material.get::<super::$law<f64>>() {
                     return Some(ElasticLaw::$law(law));
                 })*
                 None
@@ -157,7 +162,7 @@ macro_rules! elastic_laws {
             /// Its name in scenes, and the stem of its WGSL twin.
             pub fn name(&self) -> &'static str {
                 match self {
-                    $(Self::$law(_) => $name,)*
+                    $(Self::$law(_) => stringify!($word),)*
                 }
             }
         }
@@ -236,4 +241,15 @@ macro_rules! elastic_laws {
         }
     };
 }
-each_elastic_law!(elastic_laws UserLaw = "law";);
+each_elastic_law!(elastic_laws law: UserLaw;);
+
+macro_rules! texts {
+    ($($(#[$doc:meta])* $word:ident: $law:ident;)*) => {
+        /// The texts of the files of laws: what their parameters mean is told in the words they are documented with.
+        pub const TEXTS: &[&str] = &[
+            include_str!("elasticity.rs"),
+            $(include_str!(concat!(stringify!($word), ".rs")),)*
+        ];
+    };
+}
+each_elastic_law!(texts);

@@ -1,7 +1,8 @@
 //! Hooke's law for small strains.
 
-use super::{Elastic, Kinematics};
+use super::{Elastic, Elasticity, Kinematics, Law, Support, Told};
 use crate::math::{Mat3, Real, Sym3};
+use crate::uniform::uniform;
 use bevy_ecs::component::Component;
 
 /// Ψ = μ dev ε:dev ε + κ/2 (tr ε)² with ε = ½(∇u + ∇uᵀ): the linear theory (Hooke; e.g. Bonet & Wood 2008, ch. 6; its
@@ -16,6 +17,27 @@ pub struct Linear<T: Send + Sync + 'static> {
     pub shear: T,
     /// Bulk modulus κ (Pa).
     pub bulk: T,
+}
+
+uniform!(Linear<f32> { shear, bulk });
+
+impl Law for Linear<f64> {
+    type Parameters = Elasticity;
+    const STANDS_ON: &'static [Support] = &[];
+    const LARGE_STRAINS: bool = false;
+
+    fn of(elasticity: &Elasticity) -> Self {
+        let (shear, bulk) = elasticity.moduli();
+        Self { shear, bulk }
+    }
+
+    fn check(elasticity: &Elasticity, told: &mut Told) {
+        elasticity.check(told);
+    }
+
+    fn with_moduli(shear: f64, bulk: f64) -> Option<Elasticity> {
+        Some(Elasticity::Moduli { shear, bulk })
+    }
 }
 
 impl<R: Real> Elastic<R> for Linear<R> {

@@ -1,8 +1,9 @@
 //! The neo-Hookean law in isochoric and volumetric parts.
 
 use super::kinematics::{twice_green_strain, volume_change};
-use super::{Elastic, Fibres, J_FLOOR, Kinematics};
+use super::{Elastic, Elasticity, Fibres, J_FLOOR, Kinematics, Law, Told};
 use crate::math::{Mat3, Real, Sym3, dot, dot_plus, minor};
+use crate::uniform::uniform;
 use bevy_ecs::component::Component;
 
 /// Ψ_iso = μ/2 (Ī₁ − 3), Ψ_vol = κ/2 (J − 1)² (Comas et al. 2008, eq. 2; its WGSL twin is `shaders/neo_hookean.wgsl`).
@@ -16,6 +17,25 @@ pub struct NeoHookean<T: Send + Sync + 'static> {
     pub shear: T,
     /// Bulk modulus κ (Pa).
     pub bulk: T,
+}
+
+uniform!(NeoHookean<f32> { shear, bulk });
+
+impl Law for NeoHookean<f64> {
+    type Parameters = Elasticity;
+
+    fn of(elasticity: &Elasticity) -> Self {
+        let (shear, bulk) = elasticity.moduli();
+        Self { shear, bulk }
+    }
+
+    fn check(elasticity: &Elasticity, told: &mut Told) {
+        elasticity.check(told);
+    }
+
+    fn with_moduli(shear: f64, bulk: f64) -> Option<Elasticity> {
+        Some(Elasticity::Moduli { shear, bulk })
+    }
 }
 
 impl<R: Real> Elastic<R> for NeoHookean<R> {

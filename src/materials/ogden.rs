@@ -1,8 +1,11 @@
 //! Ogden's law in principal stretches.
 
-use super::{Elastic, Kinematics};
+use super::told::{Place, number as show};
+use super::{Elastic, Kinematics, Law, Support, Told};
 use crate::math::{Real, Sym3};
+use crate::uniform::{Layout, Uniform};
 use bevy_ecs::component::Component;
+use serde::{Deserialize, Serialize};
 
 /// Terms that an Ogden law can have.
 pub const OGDEN_TERMS: usize = 4;
@@ -26,6 +29,87 @@ pub struct Ogden<T: Send + Sync + 'static> {
     pub bulk: T,
     /// How many terms there are.
     pub terms: u32,
+}
+
+/// Ψ = Σ μ/α (λ̄₁^α + λ̄₂^α + λ̄₃^α − 3) + κ/2 (J − 1)², as scenes have it.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct OgdenParameters {
+    /// One to four terms; half the sum of all μ α is the shear modulus of small strains.
+    pub terms: Vec<OgdenTerm>,
+    /// Bulk modulus κ (Pa).
+    pub bulk: f64,
+}
+
+/// One term of an [`Ogden`] law.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct OgdenTerm {
+    /// μ (Pa), of the sign of α.
+    pub mu: f64,
+    /// The exponent α.
+    pub alpha: f64,
+}
+
+/// The exponent of the one term that [`Law::with_moduli`] gives: 2 would be neo-Hookean.
+const ALPHA: f64 = 4.0;
+
+impl Law for Ogden<f64> {
+    type Parameters = OgdenParameters;
+    const STANDS_ON: &'static [Support] =
+        &[Support::FiniteStrain, Support::VolumeRatio, Support::Eigen, Support::Elementary];
+
+    fn of(OgdenParameters { terms, bulk }: &OgdenParameters) -> Self {
+        let terms: Vec<(f64, f64)> = terms.iter().map(|term| (term.mu, term.alpha)).collect();
+        Self::new(&terms, *bulk)
+    }
+
+    fn check(OgdenParameters { terms, bulk }: &OgdenParameters, told: &mut Told) {
+        let count = terms.len();
+        if count == 0 || count > OGDEN_TERMS {
+            told.error("terms", format!("`ogden` must have 1 to {OGDEN_TERMS} terms, found {count}"))
+                .note("a term is (mu: 1000, alpha: 2)");
+        }
+        for (number, term) in terms.iter().enumerate() {
+            let at = |field: &'static str| vec!["terms".into(), Place::Item(number), field.into()];
+            if term.alpha == 0.0 {
+                let message = "`alpha` must not be 0: such a term has no energy";
+                told.at(at("alpha"), true, message.into());
+            } else if term.mu * term.alpha < 0.0 {
+                let message =
+                    "`mu` and `alpha` are of different sign: at some large stretch the law loses its stiffness";
+                told.at(at("mu"), false, message.into())
+                    .note("it is safe at every stretch when `mu` times `alpha` is above 0 in each term");
+            }
+        }
+        let shear = 0.5 * terms.iter().map(|term| term.mu * term.alpha).sum::<f64>();
+        if count > 0 && shear <= 0.0 {
+            let found = show(2.0 * shear);
+            told.error("terms", format!("the sum of all `mu` times `alpha` must be above 0, found {found} Pa"))
+                .note("half of it is the shear modulus of small strains");
+        }
+        told.bulk_modulus(*bulk, shear, "of half the sum of all `mu` times `alpha`");
+    }
+
+    fn with_moduli(shear: f64, bulk: f64) -> Option<OgdenParameters> {
+        Some(OgdenParameters { terms: vec![OgdenTerm { mu: 2.0 * shear / ALPHA, alpha: ALPHA }], bulk })
+    }
+}
+
+impl Uniform for Ogden<f32> {
+    // WGSL has vec4 for four numbers, and rounds the struct up to whole ones
+    const LAYOUT: Layout = Layout {
+        name: "Ogden",
+        size: 48,
+        members: &[("mu", 0, 16), ("alpha", 16, 16), ("bulk", 32, 4), ("terms", 36, 4)],
+    };
+    fn bytes(&self) -> Vec<u8> {
+        let mut bytes = bytemuck::cast_slice(&[self.mu, self.alpha]).to_vec();
+        bytes.extend(self.bulk.to_ne_bytes());
+        bytes.extend(self.terms.to_ne_bytes());
+        bytes.resize(Self::LAYOUT.size, 0);
+        bytes
+    }
 }
 
 impl Ogden<f64> {

@@ -1,7 +1,8 @@
 //! The St. Venant-Kirchhoff law.
 
-use super::{Elastic, Kinematics};
+use super::{Elastic, Elasticity, Kinematics, Law, Support, Told};
 use crate::math::{Real, Sym3};
+use crate::uniform::uniform;
 use bevy_ecs::component::Component;
 
 /// Ψ = μ dev E:dev E + κ/2 (tr E)²: Hooke's law in Green's strain (Bonet & Wood 2008, §6.4; its WGSL twin is
@@ -17,6 +18,26 @@ pub struct StVenantKirchhoff<T: Send + Sync + 'static> {
     pub shear: T,
     /// Bulk modulus κ (Pa).
     pub bulk: T,
+}
+
+uniform!(StVenantKirchhoff<f32> { shear, bulk });
+
+impl Law for StVenantKirchhoff<f64> {
+    type Parameters = Elasticity;
+    const STANDS_ON: &'static [Support] = &[Support::FiniteStrain];
+
+    fn of(elasticity: &Elasticity) -> Self {
+        let (shear, bulk) = elasticity.moduli();
+        Self { shear, bulk }
+    }
+
+    fn check(elasticity: &Elasticity, told: &mut Told) {
+        elasticity.check(told);
+    }
+
+    fn with_moduli(shear: f64, bulk: f64) -> Option<Elasticity> {
+        Some(Elasticity::Moduli { shear, bulk })
+    }
 }
 
 impl<R: Real> Elastic<R> for StVenantKirchhoff<R> {

@@ -1,7 +1,8 @@
 //! The stable neo-Hookean law, defined for every deformation.
 
-use super::{Elastic, Kinematics};
+use super::{Elastic, Elasticity, Kinematics, Law, Support, Told};
 use crate::math::{Mat3, Real, Sym3, minor};
+use crate::uniform::uniform;
 use bevy_ecs::component::Component;
 
 /// Ψ = m/2 (I₁ − 3) + l/2 (J − a)² − m/2 ln(I₁ + 1) with I₁ = tr C, m = 4/3 μ, l = λ + 5/6 μ, a = 1 + 3m/(4l) (Smith,
@@ -38,6 +39,23 @@ impl<R: Real> StableNeoHookean<R> {
         let growth = k.green_strain.trace() + k.green_strain.trace();
         let four = growth.constant(4.0);
         self.m() * growth / (four * (four + growth))
+    }
+}
+
+uniform!(StableNeoHookean<f32> { shear, bulk });
+
+impl Law for StableNeoHookean<f64> {
+    type Parameters = Elasticity;
+    const STANDS_ON: &'static [Support] = &[Support::Elementary];
+    const RECOVERS: bool = true;
+
+    fn of(elasticity: &Elasticity) -> Self {
+        let (shear, bulk) = elasticity.moduli();
+        Self { shear, bulk }
+    }
+
+    fn check(elasticity: &Elasticity, told: &mut Told) {
+        elasticity.check(told);
     }
 }
 

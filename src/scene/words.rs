@@ -1,14 +1,14 @@
 //! What the words of a scene mean, as their own documentation says: messages quote it.
 
-use super::schema::TEXT;
+use super::schema::texts;
 
 /// The first sentence on a field of a struct or of a variant, with its unit: `duration` of `Scene` is
 /// "Simulated time (s)."
 pub fn meaning(owner: &str, field: &str) -> Option<String> {
-    let mut lines =
-        TEXT.iter().flat_map(|file| file.lines()).map(str::trim).skip_while(|line| {
-            !(line.starts_with(&format!("pub struct {owner} {{")) || *line == format!("{owner} {{"))
-        });
+    let mut lines = texts().flat_map(|file| file.lines()).map(str::trim).skip_while(|line| {
+        let named = line.strip_prefix("pub struct ").and_then(|rest| rest.strip_prefix(owner));
+        !(named.is_some_and(|rest| rest.starts_with([' ', '<'])) || *line == format!("{owner} {{"))
+    });
     lines.next()?;
     let mut doc = String::new();
     for line in lines {

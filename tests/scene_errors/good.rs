@@ -63,6 +63,14 @@ pub fn with(old: &str, new: &str) -> String {
 /// Cases: a piece of the good scene, what replaces it, and all that is said of the result.
 pub fn compare(cases: &[(&str, &str, &str)]) {
     for (old, new, expected) in cases {
-        assert_eq!(brief(&with(old, new), &[]), *expected, "with {new}");
+        assert_eq!(brief(&with(old, new), &[]), listed(expected), "with {new}");
     }
+}
+
+/// A message with the words that there are in place of `{laws}` and `{elements}`.
+pub fn listed(message: &str) -> String {
+    let elements = sinew::mesh::ElementKind::ALL.map(|kind| format!("{kind:?}"));
+    message
+        .replace("{laws}", &sinew::scene::schema::ELASTIC_LAWS.join(", "))
+        .replace("{elements}", &elements.join(", "))
 }

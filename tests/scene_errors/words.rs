@@ -109,20 +109,12 @@ fn words_that_do_not_fit_are_told_with_those_that_do() {
         (
             "Hex8",
             "hex8",
-            r"9:74: error: `elements` cannot be `hex8` | unknown word | did you mean `Hex8`? | allowed: Tet4, Tet4NodalPressure, Hex8, Hex8MeanDilatation",
+            r"9:74: error: `elements` cannot be `hex8` | unknown word | did you mean `Hex8`? | allowed: {elements}",
         ),
-        (
-            "Hex8",
-            "Hex20",
-            r"9:74: error: `elements` cannot be `Hex20` | unknown word | allowed: Tet4, Tet4NodalPressure, Hex8, Hex8MeanDilatation",
-        ),
+        ("Hex8", "Hex20", r"9:74: error: `elements` cannot be `Hex20` | unknown word | allowed: {elements}"),
         ("Hex8", r#""Hex8""#, r"9:74: error: `elements` must be a word without quotes | write Hex8"),
         ("Hex8", "Hex8()", r"9:74: error: `Hex8` stands alone, without brackets | write Hex8"),
-        (
-            "Hex8",
-            "8",
-            r"9:74: error: `elements` must be one of the words below | found a number | allowed: Tet4, Tet4NodalPressure, Hex8, Hex8MeanDilatation",
-        ),
+        ("Hex8", "8", r"9:74: error: `elements` must be one of the words below | found a number | allowed: {elements}"),
         (
             "Box(size",
             "Bx(size",
@@ -146,7 +138,7 @@ fn words_that_do_not_fit_are_told_with_those_that_do() {
             r#""tissue": ("#,
             r#""tissue": Stuff("#,
             r"5:19: error: `Stuff` does not belong here | `tissue` is written without a word before the brackets
-5:53: error: the material `tissue` has no elastic law | add for instance neo_hookean: Young(young: 3000, poisson: 0.45) | elastic laws: linear, st_venant_kirchhoff, neo_hookean, stable_neo_hookean, mooney_rivlin, ogden, arruda_boyce, law",
+5:53: error: the material `tissue` has no elastic law | add for instance neo_hookean: Young(young: 3000, poisson: 0.45) | elastic laws: {laws}",
         ),
         (
             "    loads: [\n",

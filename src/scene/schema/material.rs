@@ -1,58 +1,109 @@
 //! Materials and their effects.
 
+use crate::materials::{self, Elastic, ElasticLaw, Law, Told, each_elastic_law};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// A material: a density and the effects it has. An effect that is not named does not exist.
-#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
-#[serde(deny_unknown_fields)]
-pub struct Material {
-    /// Density at rest (kg/m³).
-    pub density: f64,
-    /// Hooke's law for small strains and rotations. Every material needs exactly one elastic law.
-    #[serde(default)]
-    pub linear: Option<Elasticity>,
-    /// Hooke's law in Green's strain: large rotations, small strains.
-    #[serde(default)]
-    pub st_venant_kirchhoff: Option<Elasticity>,
-    /// The neo-Hookean law, for large strains.
-    #[serde(default)]
-    pub neo_hookean: Option<Elasticity>,
-    /// The stable neo-Hookean law, defined for every deformation, also of tissue that is turned inside out.
-    #[serde(default)]
-    pub stable_neo_hookean: Option<Elasticity>,
-    /// The Mooney-Rivlin law, for large strains.
-    #[serde(default)]
-    pub mooney_rivlin: Option<MooneyRivlin>,
-    /// Ogden's law in principal stretches, for large strains.
-    #[serde(default)]
-    pub ogden: Option<Ogden>,
-    /// The eight-chain law of Arruda and Boyce, which stiffens towards a locking stretch.
-    #[serde(default)]
-    pub arruda_boyce: Option<ArrudaBoyce>,
-    /// An elastic law of your own: a formula of its energy, or written in WGSL.
-    #[serde(default)]
-    pub law: Option<OwnLaw>,
-    /// Fibres in one direction (transverse isotropy), on top of the elastic law.
-    #[serde(default)]
-    pub fibres: Option<Fibres>,
-    /// Families of fibres that stiffen exponentially (Holzapfel-Gasser-Ogden), on top of the elastic law.
-    #[serde(default)]
-    pub exponential_fibres: Option<Vec<ExponentialFibres>>,
-    /// Viscosity of the isochoric stress.
-    #[serde(default)]
-    pub prony: Option<Prony>,
-    /// Mass-proportional damping: rate c of the force -c M v (1/s).
-    #[serde(default)]
-    pub damping: Option<f64>,
-    /// Stiffness-proportional damping: time β of the stress β Ṡ, S the stress without viscosity (s).
-    #[serde(default)]
-    pub stiffness_damping: Option<f64>,
-    /// What becomes of elements that are turned inside out; left out, `Recover` where the material can, else `Stop`.
-    #[serde(default)]
-    pub inversion: Option<Inversion>,
+macro_rules! material {
+    ($($(#[$doc:meta])* $word:ident: $law:ident;)*) => {
+        /// A material: a density and the effects it has. An effect that is not named does not exist.
+        #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+        #[serde(deny_unknown_fields)]
+        pub struct Material {
+            /// Density at rest (kg/m³).
+            pub density: f64,
+            $($(#[$doc])* #[doc = ""] #[doc = "Every material has exactly one elastic law."]
+            #[serde(default)]
+            pub $word: Option<<materials::$law<f64> as Law>::Parameters>,)*
+            /// An elastic law of your own: a formula of its energy, or written in WGSL.
+            #[serde(default)]
+            pub law: Option<OwnLaw>,
+            /// Fibres in one direction (transverse isotropy), on top of the elastic law.
+            #[serde(default)]
+            pub fibres: Option<Fibres>,
+            /// Families of fibres that stiffen exponentially (Holzapfel-Gasser-Ogden), on top of the elastic law.
+            #[serde(default)]
+            pub exponential_fibres: Option<Vec<ExponentialFibres>>,
+            /// Viscosity of the isochoric stress.
+            #[serde(default)]
+            pub prony: Option<Prony>,
+            /// Mass-proportional damping: rate c of the force -c M v (1/s).
+            #[serde(default)]
+            pub damping: Option<f64>,
+            /// Stiffness-proportional damping: time β of the stress β Ṡ, S the stress without viscosity (s).
+            #[serde(default)]
+            pub stiffness_damping: Option<f64>,
+            /// What becomes of elements that are turned inside out; left out, `Recover` where the material can, else
+            /// `Stop`.
+            #[serde(default)]
+            pub inversion: Option<Inversion>,
+        }
+
+        /// Words of the elastic laws that a material can have, that of one's own last.
+        pub const ELASTIC_LAWS: &[&str] = &[$(stringify!($word),)* "law"];
+
+        /// Those of them that are for large strains.
+        pub fn laws_for_large_strains() -> Vec<&'static str> {
+            let all = [$((stringify!($word), <materials::$law<f64> as Law>::LARGE_STRAINS),)* ("law", true)];
+            all.into_iter().filter(|(_, large)| *large).map(|(word, _)| word).collect()
+        }
+
+        /// Words of the elastic laws that studies compare, from the simplest on.
+        pub fn comparable_laws() -> Vec<&'static str> {
+            let all = [$((stringify!($word), <materials::$law<f64> as Law>::with_moduli(1.0, 1.0).is_some()),)*];
+            all.into_iter().filter(|(_, is_one)| *is_one).map(|(word, _)| word).collect()
+        }
+
+        impl Material {
+            /// Words of the elastic laws that it has: one, once it has been validated.
+            pub fn elastic_laws(&self) -> Vec<&'static str> {
+                let all = [$((stringify!($word), self.$word.is_some()),)* ("law", self.law.is_some())];
+                all.into_iter().filter(|(_, there)| *there).map(|(word, _)| word).collect()
+            }
+
+            /// Its elastic law, unless that is one of the user's own.
+            pub fn elastic_law(&self) -> Option<ElasticLaw<f64>> {
+                $(if let Some(parameters) = &self.$word {
+                    return Some(ElasticLaw::$law(Law::of(parameters)));
+                })*
+                None
+            }
+
+            /// What is wrong with the parameters of its elastic laws, with the words of the laws.
+            pub fn check_elastic_laws(&self) -> Vec<(&'static str, Told)> {
+                let mut all = Vec::new();
+                $(if let Some(parameters) = &self.$word {
+                    let mut told = Told::default();
+                    <materials::$law<f64> as Law>::check(parameters, &mut told);
+                    all.push((stringify!($word), told));
+                })*
+                all
+            }
+
+            /// Gives it the elastic law of that word in place of its own, with the moduli (Pa) that its own has at small
+            /// strains; leaves it alone where there is no such law, or its own is none of those that studies compare.
+            pub fn take_law(&mut self, word: &str) {
+                let [own] = self.elastic_laws()[..] else { return };
+                let known = comparable_laws();
+                let Some([shear, bulk]) = self.elastic_law().map(|law| law.small_strain_moduli()) else { return };
+                if !known.contains(&own) || !known.contains(&word) {
+                    return;
+                }
+                $(self.$word = None;)*
+                $(if word == stringify!($word) {
+                    self.$word = <materials::$law<f64> as Law>::with_moduli(shear, bulk);
+                })*
+            }
+
+            /// Whether its elastic law has a stress inside out, too.
+            fn recovers(&self) -> bool {
+                $(self.$word.is_some() && <materials::$law<f64> as Law>::RECOVERS ||)* false
+            }
+        }
+    };
 }
+each_elastic_law!(material);
 
 /// What becomes of an element that is turned inside out (J < 0).
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
@@ -69,7 +120,7 @@ impl Material {
     /// What keeps its elements from recovering when they are turned inside out; `None` where they can.
     pub fn cannot_recover_because_of(&self) -> Option<&'static str> {
         let needs = [
-            ("an elastic law that ends at J = 0", self.stable_neo_hookean.is_none()),
+            ("an elastic law that ends at J = 0", !self.recovers()),
             ("fibres", self.fibres.is_some()),
             ("exponential_fibres", self.exponential_fibres.is_some()),
             ("stiffness_damping", self.stiffness_damping.is_some_and(|time| time != 0.0)),
@@ -85,26 +136,6 @@ impl Material {
     }
 }
 
-/// Moduli of an isotropic law, as one of two pairs.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
-#[serde(deny_unknown_fields)]
-pub enum Elasticity {
-    /// Young's modulus (Pa) and Poisson's ratio, both of small strains.
-    Young {
-        /// Young's modulus (Pa).
-        young: f64,
-        /// Poisson's ratio, below 1/2.
-        poisson: f64,
-    },
-    /// Shear modulus and bulk modulus.
-    Moduli {
-        /// Shear modulus μ (Pa).
-        shear: f64,
-        /// Bulk modulus κ (Pa).
-        bulk: f64,
-    },
-}
-
 /// An elastic law of your own: a formula of its energy, or a WGSL file; and the parameters it needs.
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
@@ -118,50 +149,6 @@ pub struct OwnLaw {
     /// A number for each name in the formula, or for each member of the struct of `var<uniform> elastic`.
     #[serde(default)]
     pub parameters: BTreeMap<String, f64>,
-}
-
-/// Ψ = c₁₀ (Ī₁ − 3) + c₀₁ (Ī₂ − 3) + κ/2 (J − 1)².
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
-#[serde(deny_unknown_fields)]
-pub struct MooneyRivlin {
-    /// c₁₀ (Pa); c₁₀ + c₀₁ is half the shear modulus of small strains.
-    pub c10: f64,
-    /// c₀₁ (Pa).
-    pub c01: f64,
-    /// Bulk modulus κ (Pa).
-    pub bulk: f64,
-}
-
-/// Ψ = Σ μ/α (λ̄₁^α + λ̄₂^α + λ̄₃^α − 3) + κ/2 (J − 1)².
-#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
-#[serde(deny_unknown_fields)]
-pub struct Ogden {
-    /// One to four terms; half the sum of all μ α is the shear modulus of small strains.
-    pub terms: Vec<OgdenTerm>,
-    /// Bulk modulus κ (Pa).
-    pub bulk: f64,
-}
-
-/// One term of an [`Ogden`] law.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
-#[serde(deny_unknown_fields)]
-pub struct OgdenTerm {
-    /// μ (Pa), of the sign of α.
-    pub mu: f64,
-    /// The exponent α.
-    pub alpha: f64,
-}
-
-/// Ψ = μ Σ Cᵢ λ_m^(2−2i) (Ī₁ⁱ − 3ⁱ) + κ/2 (J − 1)², five terms.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
-#[serde(deny_unknown_fields)]
-pub struct ArrudaBoyce {
-    /// μ (Pa), below the shear modulus of small strains.
-    pub shear: f64,
-    /// The locking stretch λ_m of a chain, above 1.
-    pub locking_stretch: f64,
-    /// Bulk modulus κ (Pa).
-    pub bulk: f64,
 }
 
 /// A family of fibres: Ψ = k₁/(2k₂) (exp(k₂ Ē²) − 1), Ē = κ_d (Ī₁ − 3) + (1 − 3κ_d)(Ī₄ − 1).

@@ -10,13 +10,14 @@ mod scene;
 mod selection;
 mod system;
 
+pub use crate::materials::Elasticity;
 pub use crate::mesh::ElementKind;
 pub use accuracy::{Accuracy, AccuracyReference};
 pub use action::{Axis, Constraint, Curve, Load, Removal, Share, When};
 pub use body::{Body, MeshSource, Region, Start};
 pub use material::{
-    ArrudaBoyce, Direction, Elasticity, ExponentialFibres, Fibres, Inversion, Material, MooneyRivlin, Ogden, OgdenTerm,
-    OwnLaw, Prony, PronyTerm, ViscousIntegrator,
+    Direction, ELASTIC_LAWS, ExponentialFibres, Fibres, Inversion, Material, OwnLaw, Prony, PronyTerm,
+    ViscousIntegrator, comparable_laws, laws_for_large_strains,
 };
 pub use output::{Output, OutputField};
 pub use picture::{Colours, Cut, Field, Opacity, Picture};
@@ -24,8 +25,12 @@ pub use scene::{Analysis, EnergyGuard, Guard, Guards, InitialState, Integration,
 pub use selection::{Probe, Quantity, Select};
 pub use system::OwnSystem;
 
-/// The texts of these files: what a field means is told in the words it is documented with.
-pub const TEXT: [&str; 9] = [
+/// The texts of these files and those of laws: what a field means is told in the words it is documented with.
+pub fn texts() -> impl Iterator<Item = &'static str> {
+    TEXT.iter().chain(crate::materials::TEXTS).copied()
+}
+
+const TEXT: [&str; 9] = [
     include_str!("scene.rs"),
     include_str!("body.rs"),
     include_str!("material.rs"),

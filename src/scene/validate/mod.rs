@@ -17,6 +17,7 @@ mod time;
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::load::SceneFile;
 use super::syntax::{Path, Segment};
+use crate::materials::told::number as show;
 use glam::DVec3;
 
 /// Adds all that is wrong with the values of a scene, each mistake with its place, the value found and what is allowed.
@@ -53,12 +54,6 @@ struct Judge<'a> {
 /// The way to a field of the scene.
 fn scene(field: &str) -> Path {
     Path::default().name(field)
-}
-
-/// A number as an author would write it.
-fn show(number: f64) -> String {
-    let size = number.abs();
-    if size == 0.0 || (1e-4..1e7).contains(&size) { format!("{number}") } else { format!("{number:e}") }
 }
 
 /// The field a path leads to, as sentences begin with it.

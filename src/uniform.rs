@@ -23,8 +23,8 @@ pub trait Uniform {
 /// out does not compile.
 macro_rules! uniform {
     ($name:ident $(<$number:ty>)? { $($member:ident),* }) => {
-        impl $crate::backend::kernel::Uniform for $name $(<$number>)? {
-            const LAYOUT: $crate::backend::kernel::Layout = $crate::backend::kernel::Layout {
+        impl $crate::uniform::Uniform for $name $(<$number>)? {
+            const LAYOUT: $crate::uniform::Layout = $crate::uniform::Layout {
                 name: stringify!($name),
                 size: size_of::<Self>(),
                 members: &[$((
@@ -36,7 +36,7 @@ macro_rules! uniform {
             };
             fn bytes(&self) -> Vec<u8> {
                 let Self { $($member),* } = self;
-                [$(bytemuck::bytes_of::<_>($crate::backend::kernel::layout::word($member))),*].concat()
+                [$(bytemuck::bytes_of::<_>($crate::uniform::word($member))),*].concat()
             }
         }
     };

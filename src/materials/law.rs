@@ -1,0 +1,48 @@
+//! What an elastic law is in scenes and to a GPU, beside its stress: its descriptor.
+
+use super::{Elastic, Told};
+use crate::uniform::Uniform;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::fmt::Debug;
+
+/// An elastic law as scenes name it: all that has to be said of one beside [`Elastic`] and its WGSL twin. The twin has
+/// the law's word for its stem, and a struct with the members of [`Uniform`].
+pub trait Law: Elastic<f64> + Elastic<f64, Of<f32>: Uniform> {
+    /// What stands in a scene after the law's word.
+    type Parameters: Clone + Debug + PartialEq + Serialize + DeserializeOwned;
+    /// What its twin calls beside `Kinematics`, and what it leaves to the functions that most laws have in common.
+    const STANDS_ON: &'static [Support] = &[Support::FiniteStrain, Support::VolumeRatio];
+    /// Whether it is one for large strains.
+    const LARGE_STRAINS: bool = true;
+    /// Whether its stress is one inside out (J < 0), too, and pushes back.
+    const RECOVERS: bool = false;
+
+    /// The law that parameters make; they have been checked.
+    fn of(parameters: &Self::Parameters) -> Self;
+
+    /// Tells what is wrong with parameters.
+    fn check(parameters: &Self::Parameters, told: &mut Told);
+
+    /// Parameters of a law with these shear and bulk moduli (Pa) at small strains; `None` for a law that is not one of
+    /// those that a study compares.
+    fn with_moduli(shear: f64, bulk: f64) -> Option<Self::Parameters> {
+        let _ = (shear, bulk);
+        None
+    }
+}
+
+/// Files in `shaders/` that a law's twin can stand on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Support {
+    /// Kinematics, stresses and pressures of large strains: for laws that have none of their own.
+    FiniteStrain,
+    /// θ = J − 1: for laws that have none of their own.
+    VolumeRatio,
+    /// Eigenvalues and axes.
+    Eigen,
+    /// Exponentials, logarithms and roots with the same digits on every device.
+    Elementary,
+    /// Invariants and stresses of their slopes.
+    Invariants,
+}
