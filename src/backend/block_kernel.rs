@@ -4,7 +4,7 @@
 use super::Buffers;
 use super::cpu::BlockLaw;
 use super::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};
-use super::law_kernel::{ElasticPart, ExponentialFamily, family_directions, stands_on};
+use super::law_kernel::{ElasticPart, ExponentialFamily, family_directions, prerequisites};
 use super::patch_lists::{BATCH_GROUPS, PLACE_BITS, PackedPatches, PatchLists, patch_batches};
 use crate::components::{
     self, Column, Connectivity, Displacement, FamilyDirection, FibreDirection, Label, NodalVolumeChange, ViscousMemory,
@@ -164,7 +164,7 @@ impl BlockKernels {
                 ElementKind::Hex8MeanDilatation => shader!("hex8_mean_dilatation"),
             })
             .fragment(elastic.fragment);
-        kernel.fragments.extend(stands_on(&self.law.elastic));
+        kernel.fragments.extend(prerequisites(&self.law.elastic));
         kernel.layouts.extend(elastic.layout.map(|layout| ("elastic".into(), layout)));
         kernel
     }

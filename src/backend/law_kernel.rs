@@ -2,7 +2,7 @@
 
 use super::kernel::{Fragment, Layout, Uniform, uniform};
 use crate::components::FamilyDirection;
-use crate::materials::{self, ElasticLaw, ExponentialFibre, Fibres, Law, PronyTerm, Support, each_elastic_law};
+use crate::materials::{self, ElasticLaw, ExponentialFibre, Fibres, Law, Prerequisite, PronyTerm, each_elastic_law};
 use crate::shader;
 
 uniform!(Fibres<f32> { eta, tension_only });
@@ -78,16 +78,16 @@ macro_rules! elastic_parts {
         }
 
         /// Fragments that a law's twin stands on.
-        pub(super) fn stands_on(law: &ElasticLaw<f32>) -> Vec<Fragment> {
+        pub(super) fn prerequisites(law: &ElasticLaw<f32>) -> Vec<Fragment> {
             let files = match law {
-                $(ElasticLaw::$law(_) => <materials::$law<f64> as Law>::STANDS_ON,)*
+                $(ElasticLaw::$law(_) => <materials::$law<f64> as Law>::PREREQUISITES,)*
                 // may call what all others call
                 ElasticLaw::UserLaw(_) => &[
-                    Support::FiniteStrain,
-                    Support::VolumeRatio,
-                    Support::Eigen,
-                    Support::Elementary,
-                    Support::Invariants,
+                    Prerequisite::FiniteStrain,
+                    Prerequisite::VolumeRatio,
+                    Prerequisite::Eigen,
+                    Prerequisite::Elementary,
+                    Prerequisite::Invariants,
                 ],
             };
             files.iter().copied().map(fragment).collect()
@@ -96,12 +96,12 @@ macro_rules! elastic_parts {
 }
 each_elastic_law!(elastic_parts);
 
-fn fragment(support: Support) -> Fragment {
+fn fragment(support: Prerequisite) -> Fragment {
     match support {
-        Support::FiniteStrain => shader!("finite_strain"),
-        Support::VolumeRatio => shader!("volume_ratio"),
-        Support::Eigen => shader!("eigen"),
-        Support::Elementary => shader!("elementary"),
-        Support::Invariants => shader!("invariants"),
+        Prerequisite::FiniteStrain => shader!("finite_strain"),
+        Prerequisite::VolumeRatio => shader!("volume_ratio"),
+        Prerequisite::Eigen => shader!("eigen"),
+        Prerequisite::Elementary => shader!("elementary"),
+        Prerequisite::Invariants => shader!("invariants"),
     }
 }

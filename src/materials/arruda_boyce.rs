@@ -1,6 +1,6 @@
 //! The eight-chain law of Arruda and Boyce.
 
-use super::{Elastic, Kinematics, Law, Told};
+use super::{Complaints, Elastic, Kinematics, Law};
 use crate::math::{Real, Sym3};
 use crate::uniform::uniform;
 use bevy_ecs::component::Component;
@@ -65,13 +65,14 @@ impl Law for ArrudaBoyce<f64> {
         *parameters
     }
 
-    fn check(&Self { shear, locking_stretch, bulk }: &Self, told: &mut Told) {
-        told.above_zero("shear", shear, "Pa");
+    fn check(&Self { shear, locking_stretch, bulk }: &Self, complaints: &mut Complaints) {
+        complaints.above_zero("shear", shear, "Pa");
         if locking_stretch <= 1.0 {
-            told.must("locking_stretch", "above 1", locking_stretch)
+            complaints
+                .must("locking_stretch", "above 1", locking_stretch)
                 .note("chains at rest are stretched to 1 already; a large value gives the neo-Hookean law");
         }
-        told.bulk_modulus(bulk, shear, "`shear`");
+        complaints.bulk_modulus(bulk, shear, "`shear`");
     }
 
     fn with_moduli(shear: f64, bulk: f64) -> Option<Self> {

@@ -1,6 +1,6 @@
 //! Moduli of small strains, as scenes give them.
 
-use super::Told;
+use super::Complaints;
 use serde::{Deserialize, Serialize};
 
 /// Moduli of an isotropic law, as one of two pairs.
@@ -33,22 +33,24 @@ impl Elasticity {
     }
 
     /// Tells what is wrong with them.
-    pub fn check(&self, told: &mut Told) {
+    pub fn check(&self, complaints: &mut Complaints) {
         match *self {
             Self::Young { young, poisson } => {
-                told.above_zero("young", young, "Pa");
+                complaints.above_zero("young", young, "Pa");
                 if poisson >= 0.5 {
-                    told.must("poisson", "between -1 and 0.5", poisson)
+                    complaints
+                        .must("poisson", "between -1 and 0.5", poisson)
                         .note("0.5 means no change of volume at all: an infinite bulk modulus, and a stable step of 0")
                         .note("soft tissue is usually given 0.45 to 0.499");
                 } else if poisson <= -1.0 {
-                    told.must("poisson", "between -1 and 0.5", poisson)
+                    complaints
+                        .must("poisson", "between -1 and 0.5", poisson)
                         .note("at -1 and below the bulk modulus is infinite or negative");
                 }
             }
             Self::Moduli { shear, bulk } => {
-                told.above_zero("shear", shear, "Pa");
-                told.bulk_modulus(bulk, shear, "`shear`");
+                complaints.above_zero("shear", shear, "Pa");
+                complaints.bulk_modulus(bulk, shear, "`shear`");
             }
         }
     }

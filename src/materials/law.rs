@@ -1,6 +1,6 @@
 //! What an elastic law is in scenes and to a GPU, beside its stress: its descriptor.
 
-use super::{Elastic, Told};
+use super::{Complaints, Elastic};
 use crate::uniform::Uniform;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -12,7 +12,7 @@ pub trait Law: Elastic<f64> + Elastic<f64, Of<f32>: Uniform> {
     /// What stands in a scene after the law's word.
     type Parameters: Clone + Debug + PartialEq + Serialize + DeserializeOwned;
     /// What its twin calls beside `Kinematics`, and what it leaves to the functions that most laws have in common.
-    const STANDS_ON: &'static [Support] = &[Support::FiniteStrain, Support::VolumeRatio];
+    const PREREQUISITES: &'static [Prerequisite] = &[Prerequisite::FiniteStrain, Prerequisite::VolumeRatio];
     /// Whether it is one for large strains.
     const LARGE_STRAINS: bool = true;
     /// Whether its stress is one inside out (J < 0), too, and pushes back.
@@ -22,7 +22,7 @@ pub trait Law: Elastic<f64> + Elastic<f64, Of<f32>: Uniform> {
     fn of(parameters: &Self::Parameters) -> Self;
 
     /// Tells what is wrong with parameters.
-    fn check(parameters: &Self::Parameters, told: &mut Told);
+    fn check(parameters: &Self::Parameters, complaints: &mut Complaints);
 
     /// Parameters of a law with these shear and bulk moduli (Pa) at small strains; `None` for a law that is not one of
     /// those that a study compares.
@@ -34,7 +34,7 @@ pub trait Law: Elastic<f64> + Elastic<f64, Of<f32>: Uniform> {
 
 /// Files in `shaders/` that a law's twin can stand on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Support {
+pub enum Prerequisite {
     /// Kinematics, stresses and pressures of large strains: for laws that have none of their own.
     FiniteStrain,
     /// θ = J − 1: for laws that have none of their own.

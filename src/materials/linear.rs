@@ -1,6 +1,6 @@
 //! Hooke's law for small strains.
 
-use super::{Elastic, Elasticity, Kinematics, Law, Support, Told};
+use super::{Complaints, Elastic, Elasticity, Kinematics, Law, Prerequisite};
 use crate::math::{Mat3, Real, Sym3};
 use crate::uniform::uniform;
 use bevy_ecs::component::Component;
@@ -23,7 +23,7 @@ uniform!(Linear<f32> { shear, bulk });
 
 impl Law for Linear<f64> {
     type Parameters = Elasticity;
-    const STANDS_ON: &'static [Support] = &[];
+    const PREREQUISITES: &'static [Prerequisite] = &[];
     const LARGE_STRAINS: bool = false;
 
     fn of(elasticity: &Elasticity) -> Self {
@@ -31,8 +31,8 @@ impl Law for Linear<f64> {
         Self { shear, bulk }
     }
 
-    fn check(elasticity: &Elasticity, told: &mut Told) {
-        elasticity.check(told);
+    fn check(elasticity: &Elasticity, complaints: &mut Complaints) {
+        elasticity.check(complaints);
     }
 
     fn with_moduli(shear: f64, bulk: f64) -> Option<Elasticity> {

@@ -5,6 +5,7 @@
 //! its share of their sum, the volumetric stress comes last: S = S_vol + S_iso − Υ.
 
 mod arruda_boyce;
+pub mod complaints;
 mod elastic;
 mod elasticity;
 mod exponential_fibres;
@@ -21,19 +22,18 @@ mod prony;
 mod st_venant_kirchhoff;
 mod stable_neo_hookean;
 mod tangent;
-pub mod told;
 mod user_law;
 
+pub use complaints::Complaints;
 pub(crate) use elastic::each_elastic_law;
 pub use elastic::{Elastic, ElasticLaw, TEXTS};
 pub use elasticity::Elasticity;
 pub use exponential_fibres::ExponentialFibre;
 pub use fibres::Fibres;
 pub use kinematics::{FLATTEST, J_FLOOR, Kinematics};
-pub use law::{Law, Support};
+pub use law::{Law, Prerequisite};
 pub use ogden::{OGDEN_TERMS, OgdenParameters, OgdenTerm};
 pub use prony::PronyTerm;
-pub use told::Told;
 pub use user_law::{EnergySlopes, IsochoricStress, LawPrograms, UserLaw};
 
 macro_rules! laws {

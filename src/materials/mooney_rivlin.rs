@@ -1,7 +1,7 @@
 //! The Mooney-Rivlin law.
 
-use super::told::number as show;
-use super::{Elastic, Kinematics, Law, Told};
+use super::complaints::number as show;
+use super::{Complaints, Elastic, Kinematics, Law};
 use crate::math::{Real, Sym3};
 use crate::uniform::uniform;
 use bevy_ecs::component::Component;
@@ -32,17 +32,19 @@ impl Law for MooneyRivlin<f64> {
         *parameters
     }
 
-    fn check(&Self { c10, c01, bulk }: &Self, told: &mut Told) {
+    fn check(&Self { c10, c01, bulk }: &Self, complaints: &mut Complaints) {
         let sum = c10 + c01;
         if sum <= 0.0 {
-            told.error("c10", format!("`c10` + `c01` must be above 0, found {} Pa", show(sum)))
+            complaints
+                .error("c10", format!("`c10` + `c01` must be above 0, found {} Pa", show(sum)))
                 .note("twice their sum is the shear modulus of small strains");
         } else if c10 < 0.0 || c01 < 0.0 {
             let word = if c10 < 0.0 { "c10" } else { "c01" };
-            told.warn(word, format!("`{word}` is below 0: at some large stretch the law loses its stiffness"))
+            complaints
+                .warn(word, format!("`{word}` is below 0: at some large stretch the law loses its stiffness"))
                 .note("it is safe at every stretch when both are 0 or above");
         }
-        told.bulk_modulus(bulk, 2.0 * sum, "of 2 (`c10` + `c01`)");
+        complaints.bulk_modulus(bulk, 2.0 * sum, "of 2 (`c10` + `c01`)");
     }
 
     /// With equal constants.

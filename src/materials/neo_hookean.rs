@@ -1,7 +1,7 @@
 //! The neo-Hookean law in isochoric and volumetric parts.
 
 use super::kinematics::{twice_green_strain, volume_change};
-use super::{Elastic, Elasticity, Fibres, J_FLOOR, Kinematics, Law, Told};
+use super::{Complaints, Elastic, Elasticity, Fibres, J_FLOOR, Kinematics, Law};
 use crate::math::{Mat3, Real, Sym3, dot, dot_plus, minor};
 use crate::uniform::uniform;
 use bevy_ecs::component::Component;
@@ -29,8 +29,8 @@ impl Law for NeoHookean<f64> {
         Self { shear, bulk }
     }
 
-    fn check(elasticity: &Elasticity, told: &mut Told) {
-        elasticity.check(told);
+    fn check(elasticity: &Elasticity, complaints: &mut Complaints) {
+        elasticity.check(complaints);
     }
 
     fn with_moduli(shear: f64, bulk: f64) -> Option<Elasticity> {

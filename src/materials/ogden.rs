@@ -1,7 +1,7 @@
 //! Ogden's law in principal stretches.
 
-use super::told::{Place, number as show};
-use super::{Elastic, Kinematics, Law, Support, Told};
+use super::complaints::{Place, number as show};
+use super::{Complaints, Elastic, Kinematics, Law, Prerequisite};
 use crate::math::{Real, Sym3};
 use crate::uniform::{Layout, Uniform};
 use bevy_ecs::component::Component;
@@ -56,39 +56,42 @@ const ALPHA: f64 = 4.0;
 
 impl Law for Ogden<f64> {
     type Parameters = OgdenParameters;
-    const STANDS_ON: &'static [Support] =
-        &[Support::FiniteStrain, Support::VolumeRatio, Support::Eigen, Support::Elementary];
+    const PREREQUISITES: &'static [Prerequisite] =
+        &[Prerequisite::FiniteStrain, Prerequisite::VolumeRatio, Prerequisite::Eigen, Prerequisite::Elementary];
 
     fn of(OgdenParameters { terms, bulk }: &OgdenParameters) -> Self {
         let terms: Vec<(f64, f64)> = terms.iter().map(|term| (term.mu, term.alpha)).collect();
         Self::new(&terms, *bulk)
     }
 
-    fn check(OgdenParameters { terms, bulk }: &OgdenParameters, told: &mut Told) {
+    fn check(OgdenParameters { terms, bulk }: &OgdenParameters, complaints: &mut Complaints) {
         let count = terms.len();
         if count == 0 || count > OGDEN_TERMS {
-            told.error("terms", format!("`ogden` must have 1 to {OGDEN_TERMS} terms, found {count}"))
+            complaints
+                .error("terms", format!("`ogden` must have 1 to {OGDEN_TERMS} terms, found {count}"))
                 .note("a term is (mu: 1000, alpha: 2)");
         }
         for (number, term) in terms.iter().enumerate() {
             let at = |field: &'static str| vec!["terms".into(), Place::Item(number), field.into()];
             if term.alpha == 0.0 {
                 let message = "`alpha` must not be 0: such a term has no energy";
-                told.at(at("alpha"), true, message.into());
+                complaints.at(at("alpha"), true, message.into());
             } else if term.mu * term.alpha < 0.0 {
                 let message =
                     "`mu` and `alpha` are of different sign: at some large stretch the law loses its stiffness";
-                told.at(at("mu"), false, message.into())
+                complaints
+                    .at(at("mu"), false, message.into())
                     .note("it is safe at every stretch when `mu` times `alpha` is above 0 in each term");
             }
         }
         let shear = 0.5 * terms.iter().map(|term| term.mu * term.alpha).sum::<f64>();
         if count > 0 && shear <= 0.0 {
             let found = show(2.0 * shear);
-            told.error("terms", format!("the sum of all `mu` times `alpha` must be above 0, found {found} Pa"))
+            complaints
+                .error("terms", format!("the sum of all `mu` times `alpha` must be above 0, found {found} Pa"))
                 .note("half of it is the shear modulus of small strains");
         }
-        told.bulk_modulus(*bulk, shear, "of half the sum of all `mu` times `alpha`");
+        complaints.bulk_modulus(*bulk, shear, "of half the sum of all `mu` times `alpha`");
     }
 
     fn with_moduli(shear: f64, bulk: f64) -> Option<OgdenParameters> {

@@ -1,6 +1,6 @@
 //! The St. Venant-Kirchhoff law.
 
-use super::{Elastic, Elasticity, Kinematics, Law, Support, Told};
+use super::{Complaints, Elastic, Elasticity, Kinematics, Law, Prerequisite};
 use crate::math::{Real, Sym3};
 use crate::uniform::uniform;
 use bevy_ecs::component::Component;
@@ -24,15 +24,15 @@ uniform!(StVenantKirchhoff<f32> { shear, bulk });
 
 impl Law for StVenantKirchhoff<f64> {
     type Parameters = Elasticity;
-    const STANDS_ON: &'static [Support] = &[Support::FiniteStrain];
+    const PREREQUISITES: &'static [Prerequisite] = &[Prerequisite::FiniteStrain];
 
     fn of(elasticity: &Elasticity) -> Self {
         let (shear, bulk) = elasticity.moduli();
         Self { shear, bulk }
     }
 
-    fn check(elasticity: &Elasticity, told: &mut Told) {
-        elasticity.check(told);
+    fn check(elasticity: &Elasticity, complaints: &mut Complaints) {
+        elasticity.check(complaints);
     }
 
     fn with_moduli(shear: f64, bulk: f64) -> Option<Elasticity> {

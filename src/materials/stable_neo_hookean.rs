@@ -1,6 +1,6 @@
 //! The stable neo-Hookean law, defined for every deformation.
 
-use super::{Elastic, Elasticity, Kinematics, Law, Support, Told};
+use super::{Complaints, Elastic, Elasticity, Kinematics, Law, Prerequisite};
 use crate::math::{Mat3, Real, Sym3, minor};
 use crate::uniform::uniform;
 use bevy_ecs::component::Component;
@@ -46,7 +46,7 @@ uniform!(StableNeoHookean<f32> { shear, bulk });
 
 impl Law for StableNeoHookean<f64> {
     type Parameters = Elasticity;
-    const STANDS_ON: &'static [Support] = &[Support::Elementary];
+    const PREREQUISITES: &'static [Prerequisite] = &[Prerequisite::Elementary];
     const RECOVERS: bool = true;
 
     fn of(elasticity: &Elasticity) -> Self {
@@ -54,8 +54,8 @@ impl Law for StableNeoHookean<f64> {
         Self { shear, bulk }
     }
 
-    fn check(elasticity: &Elasticity, told: &mut Told) {
-        elasticity.check(told);
+    fn check(elasticity: &Elasticity, complaints: &mut Complaints) {
+        elasticity.check(complaints);
     }
 }
 

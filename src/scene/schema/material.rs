@@ -1,6 +1,6 @@
 //! Materials and their effects.
 
-use crate::materials::{self, Elastic, ElasticLaw, Law, Told, each_elastic_law};
+use crate::materials::{self, Complaints, Elastic, ElasticLaw, Law, each_elastic_law};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -71,12 +71,12 @@ macro_rules! material {
             }
 
             /// What is wrong with the parameters of its elastic laws, with the words of the laws.
-            pub fn check_elastic_laws(&self) -> Vec<(&'static str, Told)> {
+            pub fn check_elastic_laws(&self) -> Vec<(&'static str, Complaints)> {
                 let mut all = Vec::new();
                 $(if let Some(parameters) = &self.$word {
-                    let mut told = Told::default();
-                    <materials::$law<f64> as Law>::check(parameters, &mut told);
-                    all.push((stringify!($word), told));
+                    let mut complaints = Complaints::default();
+                    <materials::$law<f64> as Law>::check(parameters, &mut complaints);
+                    all.push((stringify!($word), complaints));
                 })*
                 all
             }

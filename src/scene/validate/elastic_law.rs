@@ -1,7 +1,7 @@
 //! The elastic law of a material: exactly one, with moduli that make sense.
 
 use super::Judge;
-use crate::materials::told::{Complaint, Place};
+use crate::materials::complaints::{Complaint, Place};
 use crate::scene::limits::FORMULA_BYTES;
 use crate::scene::schema::{ELASTIC_LAWS, Material, OwnLaw, laws_for_large_strains};
 use crate::scene::syntax::Path;
@@ -29,8 +29,8 @@ pub(super) fn validate(judge: &mut Judge, path: &Path, name: &str, material: &Ma
             }
         }
     }
-    for (word, told) in material.check_elastic_laws() {
-        told.complaints.into_iter().for_each(|complaint| tell(judge, path.name(word), complaint));
+    for (word, complaints) in material.check_elastic_laws() {
+        complaints.list.into_iter().for_each(|complaint| tell(judge, path.name(word), complaint));
     }
     if let Some(law) = &material.law {
         own_law(judge, &path.name("law"), law);

@@ -17,7 +17,7 @@ mod time;
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::load::SceneFile;
 use super::syntax::{Path, Segment};
-use crate::materials::told::number as show;
+use crate::materials::complaints::number as show;
 use glam::DVec3;
 
 /// Adds all that is wrong with the values of a scene, each mistake with its place, the value found and what is allowed.

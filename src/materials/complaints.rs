@@ -38,12 +38,12 @@ impl Complaint {
 
 /// What is told of parameters.
 #[derive(Clone, Debug, Default)]
-pub struct Told {
+pub struct Complaints {
     /// In the order in which it was told.
-    pub complaints: Vec<Complaint>,
+    pub list: Vec<Complaint>,
 }
 
-impl Told {
+impl Complaints {
     /// A mistake at a field.
     pub fn error(&mut self, field: &'static str, message: impl Into<String>) -> &mut Complaint {
         self.at(vec![field.into()], true, message.into())
@@ -56,9 +56,9 @@ impl Told {
 
     /// The same somewhere within the parameters.
     pub fn at(&mut self, at: Vec<Place>, is_error: bool, message: String) -> &mut Complaint {
-        self.complaints.push(Complaint { at, is_error, message, notes: Vec::new() });
-        let last = self.complaints.len() - 1;
-        &mut self.complaints[last]
+        self.list.push(Complaint { at, is_error, message, notes: Vec::new() });
+        let last = self.list.len() - 1;
+        &mut self.list[last]
     }
 
     /// That a field must be something else.
