@@ -340,7 +340,7 @@ fn every_shader_is_named_after_a_system_an_element_or_a_material_or_listed() {
     let mut known: BTreeSet<String> = SUPPORT.iter().map(|(stem, _)| (*stem).to_owned()).collect();
     for folder in ["systems", "src/elements", "src/materials"] {
         known.extend(stems(folder).into_iter().filter(|stem| {
-            !["mod", "registry", "node_system", "node_stages", "observe", "elastic", "program", "user_law"]
+            !["mod", "registry", "node_system", "node_stages", "observe", "elastic", "program", "user_law", "tangent"]
                 .contains(&stem.as_str())
         }));
     }
