@@ -39,7 +39,6 @@ const SUPPORT: &[(&str, &str)] = &[
     ("fibres", "an effect of a material"),
     ("prony", "an effect of a material"),
     ("invariants", "stresses of an energy's slopes, in laws"),
-    ("kinematics", "strain measures, in laws"),
     ("energy", "elastic energy, where elements can go"),
     ("force_factor", "forces that differ from copy to copy"),
     ("external_force", "sums of loads, between kernels"),
