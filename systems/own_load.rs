@@ -2,7 +2,7 @@
 //! that its function gives to every node. On the CPU a program translated from the text runs over registers of nodes;
 //! on a GPU `shaders/own_load.wgsl` calls the text itself.
 
-use super::node_system::{Before, NodeRows, NodeSystem};
+use super::node_system::{Before, ForceSlopes, NodeRows, NodeSystem, NodesAtRest};
 use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
@@ -32,6 +32,13 @@ pub(super) fn system(name: &str, number: usize, what: String) -> System {
     .on_nodes(move |world, buffers| stages(number, world, buffers))
 }
 
+/// Nodes of each body at which slopes are taken, evenly from all; the lightest node is one more.
+const TRIED: usize = 1000;
+/// Times at which they are taken, evenly from the start to the end.
+const TIMES: usize = 5;
+/// Length of the differences, as a share of the body's size.
+const LENGTH: f64 = 1e-6;
+
 /// What is the same for all nodes in a step.
 pub struct InStep {
     /// The curve.
@@ -58,6 +65,32 @@ impl NodeSystem for OwnLoad {
         let Before { clock, signals, .. } = before;
         let curve = signals.values()[self.signal][0];
         InStep { curve, time: clock.time(), time_step: clock.time_step, rate: clock.rate() }
+    }
+
+    /// Differences at nodes at rest, at some times, with the curve at 1.
+    fn slopes(&self, nodes: &NodesAtRest<'_>) -> ForceSlopes {
+        let rest = &nodes.rest.0;
+        let moves = |row: &usize| nodes.moves(*row);
+        let rows: Vec<usize> = match &self.rows {
+            Some(rows) => rows.iter().map(|&row| row as usize).filter(moves).collect(),
+            None => (0..rest.len()).filter(moves).collect(),
+        };
+        let (low, high) =
+            rest.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+        let length = LENGTH * (high - low).max_element();
+        let lightest = rows.iter().copied().min_by(|&a, &b| nodes.mass.get(a).total_cmp(&nodes.mass.get(b)));
+        let every = rows.len().div_ceil(TRIED).max(1);
+        let mut largest = ForceSlopes::default();
+        for row in rows.iter().copied().step_by(every).chain(lightest) {
+            for number in 0..TIMES {
+                let time = nodes.duration * number as f64 / (TIMES - 1) as f64;
+                let node = NodeAtRest { rest_position: rest[row], mass: nodes.mass.get(row), time };
+                let [stiffness, damping] = self.text.growth(&node, length).map(|slope| slope / node.mass);
+                // what is no number is the guards' business
+                largest = largest.larger(ForceSlopes { stiffness, damping });
+            }
+        }
+        largest
     }
 
     fn act<T: SimdScalar>(&self, step: &InStep, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {

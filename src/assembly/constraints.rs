@@ -56,8 +56,17 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
                 rows.iter().for_each(|&row| moved[row as usize] |= axes);
                 let moves = (*displacement, *rotation, *gradient) != (DVec3::ZERO, DVec3::ZERO, [DVec3::ZERO; 3]);
                 // a static analysis lets every motion grow smoothly
-                let at_once = matches!(curve, Curve::Step { .. }) && !assembly.scene.scene.is_static();
-                if moves && at_once {
+                let moves = moves && !assembly.scene.scene.is_static();
+                if moves && matches!(curve, Curve::Input { rate: None, .. }) {
+                    diagnostics
+                        .warn_at(
+                            format!("constraints[{number}].curve").as_str(),
+                            "an input without `rate` moves nodes all at once, in a single step: a shock for the elements beside \
+                             them",
+                        )
+                        .note("bound its change a second: Input(name: ..., rate: ...)");
+                }
+                if moves && matches!(curve, Curve::Step { .. }) {
                     diagnostics
                         .warn_at(
                             format!("constraints[{number}]").as_str(),

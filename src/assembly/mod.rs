@@ -73,7 +73,11 @@ pub fn assemble<'a>(
         return None;
     }
     let materials = material::spawn(&scene.scene, &mut laws, world);
-    world.insert_resource(Signals::default());
+    let mut signals = Signals::default();
+    for (_, curve) in scene.scene.curves() {
+        signals.declare(curve);
+    }
+    world.insert_resource(signals);
     let mut assembly = Assembly { scene, precision, scheme, bodies: BTreeMap::new(), materials };
     for (name, mesh) in meshes {
         if let Some(parts) = body::spawn(&assembly, &name, mesh, world, diagnostics) {

@@ -206,6 +206,7 @@ impl Case {
                 _ => Instructions::Widest,
             },
             scheme: if self.scheme == "patches" { Scheme::Patches } else { Scheme::TwoPass },
+            forgets_start: true,
             ..Options::default()
         }
     }

@@ -3,6 +3,8 @@
 use super::beat::Beat;
 use super::follow::Follower;
 use super::frequency::largest_eigenvalue;
+use super::history::History;
+use super::inputs::Tape;
 use super::known::Known;
 use super::options::{BackendChoice, Chosen, choose};
 use super::outputs;
@@ -130,6 +132,7 @@ impl Simulation {
             elements,
             initial_mass: crate::observation::mass(&mut world)?,
             setup: started.elapsed(),
+            forgets_start: options.forgets_start,
             warnings: diagnostics,
         };
         let settling = super::preload::settling(scene, options)?;
@@ -144,6 +147,11 @@ impl Simulation {
             settling,
             preload: None,
             follower,
+            tape: Tape::default(),
+            history: History::default(),
+            surfaces: Default::default(),
+            grabs: Default::default(),
+            seconds_a_step: None,
             elapsed: Duration::ZERO,
             began: (0, 0.0),
             failure: None,
@@ -242,11 +250,16 @@ fn prepare<'a>(
     known.check(diagnostics);
     check_names(scene.scene.schedule.as_deref().unwrap_or_default(), known, diagnostics);
     let assembly = assembly?;
+    if options.grabs && !scene.scene.is_static() {
+        let bodies: Vec<Entity> = assembly.bodies.values().map(|body| body.entity).collect();
+        bodies.iter().for_each(|&body| drop(world.spawn((Grabs::default(), OfBody(body)))));
+        add_loads(&bodies, options.precision, world);
+    }
     world.insert_resource(Cpu::new(options.threads, counts(&assembly).1, options.instructions));
     // what is stable depends on the laws, whose history waits for the step
     world.insert_resource(Clock::with_step(1.0));
     insert_laws(options.precision, world);
-    let (clock, stability, steps) = clock(scene, world, diagnostics)?;
+    let (clock, stability, steps) = clock(scene, known, world, diagnostics)?;
     outputs::check(scene, &clock, steps, diagnostics);
     outputs::check_curves(scene, &clock, diagnostics);
     plausible::check(&assembly, world, diagnostics);
@@ -267,7 +280,12 @@ pub(super) fn check(scene: &SceneFile, registry: &Registry) -> Diagnostics {
 }
 
 /// The clock with its step, what is known of the stable step, and how many steps the scene lasts.
-fn clock(scene: &SceneFile, world: &mut World, diagnostics: &mut Diagnostics) -> Option<(Clock, Stability, u64)> {
+fn clock(
+    scene: &SceneFile,
+    known: &Known<'_>,
+    world: &mut World,
+    diagnostics: &mut Diagnostics,
+) -> Option<(Clock, Stability, u64)> {
     if let Analysis::Static { max_steps, load_steps, at, .. } = scene.scene.analysis {
         let bound = stable_step::found_bound(world, diagnostics)?;
         let load_steps = load_steps.unwrap_or_else(|| crate::assembly::load_steps(world));
@@ -277,7 +295,7 @@ fn clock(scene: &SceneFile, world: &mut World, diagnostics: &mut Diagnostics) ->
         let clock = Clock { relaxation: Some(relaxation), ..Clock::with_step(scene.scene.duration * growth) };
         return Some((clock, Stability::of_rest(bound), max_steps));
     }
-    let (stability, time_step, steps) = stable_step::choose(scene, world, diagnostics)?;
+    let (stability, time_step, steps) = stable_step::choose(scene, known, world, diagnostics)?;
     Some((Clock::with_step(time_step), stability, steps))
 }
 
@@ -333,11 +351,17 @@ fn add_called_for_columns(
     let Some(external) = world.component_id::<ExternalForce>() else { return };
     let custom = schedule.iter().zip(access).filter(|(entry, _)| entry.system.custom);
     if custom.into_iter().any(|(_, access)| Touched(access).writes(external)) {
-        for body in assembly.bodies.values() {
-            let length = world.get::<Displacement>(body.entity).map_or(0, |u| u.len());
-            if world.get::<ExternalForce>(body.entity).is_none() {
-                world.entity_mut(body.entity).insert(ExternalForce(Reals::zeros(assembly.precision, length)));
-            }
+        let bodies: Vec<Entity> = assembly.bodies.values().map(|body| body.entity).collect();
+        add_loads(&bodies, assembly.precision, world);
+    }
+}
+
+/// Columns of external forces of bodies that have none.
+fn add_loads(bodies: &[Entity], precision: Precision, world: &mut World) {
+    for &body in bodies {
+        let length = world.get::<Displacement>(body).map_or(0, |u| u.len());
+        if world.get::<ExternalForce>(body).is_none() {
+            world.entity_mut(body).insert(ExternalForce(Reals::zeros(precision, length)));
         }
     }
 }

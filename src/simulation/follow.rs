@@ -65,7 +65,7 @@ pub(super) struct Follower {
     /// The share of the stable step at the start that the scene's own one is; else 0.
     own_share: f64,
     /// What loads of the scene's own make of a stable step: all frequencies here are of the bodies alone.
-    loads: LoadRates,
+    pub loads: LoadRates,
     pub duration: f64,
     pub first: f64,
     pub watched: Vec<Watched>,
@@ -85,6 +85,9 @@ pub(super) struct Found {
     pub looked: u64,
     /// The step in which loads and motions became quicker last.
     pub quickened: u64,
+    /// The step in which an input last changed.
+    #[serde(default)]
+    pub changed: Option<u64>,
     /// The step that the scene or the program wants, which it never grows beyond (s).
     pub own: Option<f64>,
     /// The highest ω² when it was found last (1/s²), and what was seen then.
@@ -136,6 +139,7 @@ impl Follower {
                 next: 0,
                 looked: 0,
                 quickened: 0,
+                changed: None,
                 own: integration.step,
                 known: square_of(stability.limit_of_bodies),
                 seen: None,
@@ -200,6 +204,29 @@ impl Follower {
         self.found.seen.is_some_and(|before| seen.alive < before.alive)
     }
 
+    /// An input changes in a step, perhaps so that loads and motions become quicker than ever before. Whether it was
+    /// looked before that or is after makes no difference.
+    pub fn note_change(&mut self, step: u64, quickens: bool) {
+        // where nothing would be done about it nobody looks
+        if self.found.next == u64::MAX {
+            return;
+        }
+        self.found.changed = Some(step);
+        let within = if quickens { 1 } else { LOOKS.0 };
+        self.found.next = self.found.next.min(step + within);
+        if quickens {
+            self.found.quickened = step;
+        }
+    }
+
+    /// Looks before the next step.
+    pub fn look_soon(&mut self) {
+        // where nothing would be done about it nobody looks
+        if self.found.next != u64::MAX {
+            self.found.next = self.found.next.min(self.found.looked);
+        }
+    }
+
     /// The step before which is looked next: sooner where strains change fast, where the step is close to the limit,
     /// and before loads and motions become quicker, `quicker` (s).
     fn next_look(&mut self, step: u64, seen: &Seen, clock: &Clock, quicker: Option<f64>) -> u64 {
@@ -211,6 +238,8 @@ impl Follower {
         let least = ((MOST_STRAIN / speed) as u64).clamp(1, LOOKS.0);
         let calm =
             ((strain / speed) as u64).clamp(least, LOOKS.1).min(step.saturating_sub(self.found.quickened).max(1));
+        // what begins to change may be anything
+        let calm = if self.found.changed == Some(step) { calm.min(LOOKS.0) } else { calm };
         let until = |time: f64| ((time - clock.time()) / clock.time_step).ceil();
         match quicker.map(until).filter(|steps| *steps < calm as f64) {
             Some(steps) => {

@@ -30,10 +30,12 @@ impl Simulation {
     /// # Errors
     /// That the snapshot is of another simulation (then nothing has changed); what the GPU says.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Error> {
+        self.keep_start();
         self.world.increment_change_tick();
+        let before = self.step_count();
         snapshot.put(&mut self.world)?;
         (self.settling, self.preload) = (None, None);
-        self.take_up_pace(snapshot)?;
+        self.take_up_pace(snapshot, before)?;
         let clock = *self.world.resource::<Clock>();
         self.began = (clock.step, clock.time());
         self.elapsed = Duration::ZERO;

@@ -5,6 +5,7 @@ mod adapt;
 mod added_mass;
 mod beat;
 mod block_forces;
+mod budget;
 mod build;
 mod column_view;
 mod costly;
@@ -12,7 +13,10 @@ mod damped_step;
 pub mod explain;
 mod follow;
 mod frequency;
+mod grab;
 mod growth;
+mod history;
+mod inputs;
 mod keep;
 mod known;
 mod load_rates;
@@ -25,6 +29,7 @@ mod options;
 mod outputs;
 mod pace;
 mod parameters;
+mod pick;
 mod plan;
 mod plausible;
 mod policies;
@@ -45,12 +50,16 @@ mod tangent;
 mod unload;
 mod watch;
 
+pub use budget::{Advanced, Ended};
 pub use column_view::ColumnView;
 pub use follow::StepHistory;
+pub use grab::{Grab, GrabId, Grip};
+pub use inputs::{InputChange, InputRecording, InputUse, InputValue};
 pub use modes::Mode;
 pub use names::{FieldName, Names};
 pub use node_set::{NodeSet, NodeState};
 pub use options::{BackendChoice, Options};
+pub use pick::Pick;
 pub use preload::Preload;
 pub use relax::Equilibrium;
 pub use stable_step::Stability;
@@ -79,6 +88,15 @@ pub struct Simulation {
     /// What that took.
     preload: Option<Preload>,
     follower: Option<follow::Follower>,
+    /// Inputs that are recorded and replayed.
+    tape: inputs::Tape,
+    /// Surfaces for picking.
+    surfaces: pick::Surfaces,
+    grabs: grab::AllGrabs,
+    /// States to go back to.
+    history: history::History,
+    /// What a step takes on the clock on the wall (s), where that was measured.
+    seconds_a_step: Option<f64>,
     elapsed: Duration,
     /// Step and time (s) from which `elapsed` counts: of the start, or of a snapshot that was gone on from.
     began: (u64, f64),
@@ -117,5 +135,6 @@ struct Facts {
     elements: usize,
     initial_mass: f64,
     setup: Duration,
+    forgets_start: bool,
     warnings: Diagnostics,
 }

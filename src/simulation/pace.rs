@@ -3,9 +3,10 @@
 
 use super::beat::Beat;
 use super::follow::Followed;
+use super::grab::AllGrabs;
 use super::step_change::relax_as;
 use super::{Job, Simulation};
-use crate::components::Clock;
+use crate::components::{Clock, InputState};
 use crate::error::Error;
 use crate::observation::Observer;
 use crate::snapshot::{Snapshot, SnapshotError};
@@ -21,6 +22,12 @@ struct Pace {
     beats: BTreeMap<String, Beat>,
     /// What is known of the stable step.
     found: Option<Followed>,
+    /// What programs set.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    inputs: BTreeMap<String, InputState>,
+    /// What they hold.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    grabs: AllGrabs,
 }
 
 impl Simulation {
@@ -33,19 +40,24 @@ impl Simulation {
         let pace = Pace {
             beats: self.entries.iter().filter_map(beat).collect(),
             found: self.follower.as_ref().map(|follower| follower.followed()),
+            inputs: self.input_states(),
+            grabs: self.grabs.clone(),
         };
         let text = ron::to_string(&pace).map_err(|error| SnapshotError::Senseless(error.to_string()))?;
         snapshot.set_pace(text);
         Ok(())
     }
 
-    /// Goes on at the pace of a snapshot that has been put into the world.
-    pub(super) fn take_up_pace(&mut self, snapshot: &Snapshot) -> Result<(), Error> {
+    /// Goes on at the pace of a snapshot that has been put into the world, where the run was at the step `before`.
+    pub(super) fn take_up_pace(&mut self, snapshot: &Snapshot, before: u64) -> Result<(), Error> {
         let senseless = |reason: String| SnapshotError::Senseless(format!("its pace cannot be taken up: {reason}"));
         let pace: Pace = ron::from_str(snapshot.pace()).map_err(|error| senseless(error.to_string()))?;
         if let Some((name, _)) = pace.beats.iter().find(|(_, beat)| !beat.is_sound()) {
             return Err(senseless(format!("the system `{name}` can never run")).into());
         }
+        self.take_up_input_states(pace.inputs, before).map_err(senseless)?;
+        self.take_up_grabs(pace.grabs)?;
+        self.surfaces.clear();
         let clock = *self.world.resource::<Clock>();
         relax_as(&mut self.world, &clock)?;
         for entry in &mut self.entries {

@@ -27,16 +27,21 @@ impl Simulation {
     pub fn advance_to(&mut self, time: f64) -> Result<(), Error> {
         self.settle()?;
         loop {
-            self.follow_in_time()?;
-            let clock = *self.world.resource::<Clock>();
-            // a time that is a whole number of steps is met in spite of rounding
-            let target = clock.since.0 + ((time - clock.since.1) / clock.time_step - 1e-6).ceil().max(0.0) as u64;
-            let next = target.min(self.next_follow());
-            if next <= clock.step {
-                return Ok(());
+            match self.steps_left_to(time)? {
+                0 => return Ok(()),
+                left => self.advance(left)?,
             }
-            self.advance(next - clock.step)?;
         }
+    }
+
+    /// Steps that can be taken together until the clock shows at least `time` (s), as long as Δt stays as it is.
+    pub(super) fn steps_left_to(&mut self, time: f64) -> Result<u64, Error> {
+        self.follow_in_time()?;
+        let clock = *self.world.resource::<Clock>();
+        // a time that is a whole number of steps is met in spite of rounding
+        let steps = ((time - clock.since.1) / clock.time_step - 1e-6).ceil().max(0.0) as u64;
+        let next = clock.since.0.saturating_add(steps).min(self.next_follow());
+        Ok(next.saturating_sub(clock.step))
     }
 
     /// Takes at most `count` steps, and none beyond the end of the scene.
@@ -66,8 +71,9 @@ impl Simulation {
     /// that the GPU failed, or that outputs could not be written.
     pub fn advance(&mut self, count: u64) -> Result<(), Error> {
         self.settle()?;
+        self.keep_start();
         let started = Instant::now();
-        let target = self.step_count() + count;
+        let target = self.step_count().saturating_add(count);
         let result = self.on_threads(|simulation| simulation.steps_to(target));
         self.elapsed += started.elapsed();
         result.map_err(|error| self.note(error))
@@ -120,8 +126,14 @@ impl Simulation {
 
     fn steps_to(&mut self, target: u64) -> Result<(), Error> {
         while self.step_count() < target && self.relaxing.is_none() {
+            self.keep_history_if_due()?;
+            self.take_up_inputs();
             self.follow()?;
-            self.some_steps(target.min(self.next_follow()))?;
+            let next = self.next_follow().min(self.next_change()).min(self.next_kept().max(self.step_count() + 1));
+            self.some_steps(target.min(next))?;
+        }
+        if self.step_count() < target {
+            self.take_up_inputs();
         }
         while self.step_count() < target
             && let Some(relaxing) = self.relaxing.as_ref().filter(|relaxing| !relaxing.equilibrium.reached)

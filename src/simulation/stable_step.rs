@@ -4,6 +4,7 @@ use super::costly::warn_of_costly;
 use super::damped_step::with_damping;
 use super::follow::step_of;
 use super::frequency::{Largest, PRODUCT, largest_eigenvalue, largest_worth};
+use super::known::Known;
 use super::load_rates::LoadRates;
 use super::nodal::bound_at_rest;
 use super::tangent::Tangent;
@@ -109,6 +110,7 @@ impl Simulation {
 /// The stable step of a scene whose world has its laws, its step and the number of its steps.
 pub(super) fn choose(
     scene: &SceneFile,
+    known: &Known<'_>,
     world: &mut World,
     diagnostics: &mut Diagnostics,
 ) -> Option<(Stability, f64, u64)> {
@@ -132,7 +134,7 @@ pub(super) fn choose(
             .warn_at("integration.bound", reason)
             .note("`bound: Auto` stays with the stiffest element, which is safe");
     }
-    let loads = LoadRates::at_rest(scene.scene.duration, world);
+    let loads = LoadRates::of(known.systems(), scene.scene.duration, world);
     world.insert_resource(loads);
     let found = seek(&scene.scene, certain, stays.is_none(), &loads, world);
     // the bounds are certain as well: at rest the best of all
@@ -185,9 +187,13 @@ pub(super) fn choose(
 fn reason_to_stay(scene: &Scene) -> Option<&'static str> {
     let removes = scene.materials.values().any(|material| material.inversion() == Inversion::Remove);
     let jumps = |constraint: &Constraint| match constraint {
-        Constraint::Prescribed { curve: Curve::Step { .. }, displacement, gradient, rotation, .. } => {
-            gradient.iter().chain([displacement, rotation]).any(|moved| *moved != DVec3::ZERO)
-        }
+        Constraint::Prescribed {
+            curve: Curve::Step { .. } | Curve::Input { rate: None, .. },
+            displacement,
+            gradient,
+            rotation,
+            ..
+        } => gradient.iter().chain([displacement, rotation]).any(|moved| *moved != DVec3::ZERO),
         _ => false,
     };
     match scene.when_unstable() {

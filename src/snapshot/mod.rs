@@ -10,11 +10,13 @@ mod columns;
 mod error;
 mod format;
 mod identity;
+mod packed;
 
 pub use columns::Place;
 pub use error::SnapshotError;
 pub use format::VERSION;
 pub use identity::{Identity, identity};
+pub use packed::PackedSnapshot;
 
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;

@@ -184,6 +184,17 @@ pub enum Curve {
     },
     /// Straight lines through (time (s), factor), held before the first and after the last.
     Table(Vec<(f64, f64)>),
+    /// What a program sets while it runs. The same name in several places is one input.
+    Input {
+        /// What the program calls it.
+        name: String,
+        /// The factor until the program sets another.
+        #[serde(default)]
+        initial: f64,
+        /// By how much the factor changes in a second at most (1/s); left out: at once.
+        #[serde(default)]
+        rate: Option<f64>,
+    },
 }
 
 impl Default for Curve {

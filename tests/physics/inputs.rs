@@ -1,0 +1,224 @@
+//! Inputs: what a program sets between steps acts as a curve of the same values would, and is recorded, replayed and
+//! kept bit for bit.
+
+use crate::configurations::{configurations, near, scene_of};
+use crate::grids::bits;
+use sinew::{InputRecording, Options, Simulation, Snapshot};
+use std::path::Path;
+
+/// A cube that stands on a plate, with what the tests ask for.
+fn cube(acts: &str, further: &str) -> String {
+    format!(
+        "(duration: 0.2, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3)), material: \"m\")}},
+        materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 20)}},
+        {acts}, {further})"
+    )
+}
+
+/// Loads and a motion that follow curves.
+fn followed(push: &str, motion: &str) -> String {
+    format!(
+        "constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0)), Prescribed(on: Plane(normal: (0, 0, 1), at: 0.1),
+            axes: [Z], displacement: (0, 0, -0.02), curve: {motion})],
+        loads: [Pressure(on: Surface(normal: (1, 0, 0)), pressure: 200, curve: {push}),
+            NodalForce(on: Plane(normal: (1, 0, 0), at: 0), force: (0.001, 0, 0), curve: {push})]"
+    )
+}
+
+const TOOL: &str = "Input(name: \"tool\", initial: 0, rate: 50)";
+const PUSH: &str = "Input(name: \"push\", initial: 0.25)";
+
+#[test]
+fn an_input_gives_the_bits_of_a_curve_of_the_same_values() {
+    // to 1 from the start, half way back from 0.03125 s on; pushes jump at the same times
+    let dt = 4.8828125e-4; // 2^-11 s: times of steps are exact
+    let step = format!("integration: (step: {dt:?})");
+    let tool = "Table([(0, 0), (0.02, 1), (0.03125, 1), (0.04125, 0.5)])";
+    for run in configurations() {
+        let mut told = run.start(&cube(&followed("Step(start: 0, end: 0.03125)", tool), &step));
+        let mut set = run.start(&cube(&followed(PUSH, TOOL), &step));
+        set.set_input("tool", 1.0).unwrap();
+        set.set_input("push", 1.0).unwrap();
+        set.advance(64).unwrap();
+        set.set_input("tool", 17.0).unwrap();
+        set.set_input("tool", 0.5).unwrap();
+        set.set_input("push", 0.0).unwrap();
+        set.advance(200).unwrap();
+        told.advance(264).unwrap();
+        assert!(bits(&mut set, "b") == bits(&mut told, "b"), "{}: other bits", run.name);
+        let sunk = set.displacements("b").unwrap().iter().fold(0.0_f64, |low, u| low.min(u.z));
+        near("the plate is", sunk, -0.01, 0.01, 1e-6);
+    }
+}
+
+/// Of half a window of the old value and half of the new one, and not of the new one alone.
+#[test]
+fn a_load_acts_with_the_mean_over_its_step() {
+    for run in configurations() {
+        let acts = "loads: [Gravity(acceleration: (0, 0, 8), curve: Input(name: \"g\"))]";
+        let mut simulation = run.start(&cube(acts, "integration: (step: 0.0009765625)"));
+        simulation.advance(8).unwrap();
+        simulation.set_input("g", 1.0).unwrap();
+        simulation.advance(1).unwrap();
+        let dt = simulation.time_step();
+        let rise = simulation.displacements("b").unwrap()[0].z;
+        // v⁺ = g Δt/2 where the damping of one step takes αΔt/2 of it
+        near(run.name, rise, 0.5 * 8.0 * dt * dt / (1.0 + 0.5 * 20.0 * dt), 8.0 * dt * dt, 1e-6);
+    }
+}
+
+#[test]
+fn a_prescribed_motion_follows_no_faster_than_the_rate() {
+    for run in configurations() {
+        let mut simulation = run.start(&cube(&followed(PUSH, TOOL), ""));
+        let lowest = |simulation: &mut Simulation| {
+            simulation.displacements("b").unwrap().iter().fold(f64::INFINITY, |low, u| low.min(u.z))
+        };
+        let (mut before, mut fastest) = (0.0, 0.0_f64);
+        for goal in [1.0, -5.0, 3.0, 0.9, 1.0] {
+            simulation.set_input("tool", goal).unwrap();
+            for _ in 0..5 {
+                simulation.advance(1).unwrap();
+                let tool = &simulation.inputs()[0];
+                assert_eq!((tool.name.as_str(), tool.target, tool.rate), ("tool", goal, Some(50.0)));
+                // only where the plate is the lowest part
+                let value = tool.value;
+                let low = lowest(&mut simulation);
+                if value > 0.05 {
+                    near("the plate is", low, -0.02 * value, 0.02, run.bound(1e-9, 1e-6));
+                }
+                fastest = fastest.max((value - before).abs() / simulation.time_step());
+                before = value;
+            }
+        }
+        near("fastest", fastest, 50.0, 50.0, 1e-6);
+    }
+}
+
+/// Sets inputs at odd times and in odd pieces, as a hand would; where the run stands at the end.
+fn played(simulation: &mut Simulation) {
+    let mut dice = fastrand::Rng::with_seed(3);
+    for place in 0..40 {
+        let push = -1.5 * dice.f64();
+        simulation.set_input("push", push).unwrap();
+        if place % 3 == 0 {
+            simulation.set_input("tool", 1.5 * dice.f64() * f64::from(place) / 40.0).unwrap();
+        }
+        match place % 2 {
+            0 => simulation.advance(dice.u64(1..9)).unwrap(),
+            _ => simulation.advance_to(simulation.time() + 2e-3 * dice.f64()).unwrap(),
+        }
+    }
+}
+
+#[test]
+fn a_recording_replayed_gives_the_same_bits() {
+    for run in configurations() {
+        let text = cube(&followed(PUSH, TOOL), "");
+        let mut hand = run.start(&text);
+        hand.record_inputs();
+        played(&mut hand);
+        let recording = hand.stop_recording_inputs().unwrap();
+        assert!(recording.changes.len() > 45, "{} changes", recording.changes.len());
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("touch.ron");
+        recording.write(&path).unwrap();
+        let json = serde_json::to_string(&recording).unwrap();
+        assert!(serde_json::from_str::<InputRecording>(&json).unwrap() == recording, "JSON loses bits");
+        let read = InputRecording::read(&path).unwrap();
+        assert!(read == recording, "RON loses bits");
+
+        let mut again = run.start(&text);
+        again.replay_inputs(&read).unwrap();
+        again.record_inputs();
+        again.advance(hand.step_count()).unwrap();
+        assert!(bits(&mut again, "b") == bits(&mut hand, "b"), "{}: other bits", run.name);
+        assert_eq!((again.time(), again.time_step()), (hand.time(), hand.time_step()), "{}", run.name);
+        assert!(again.recorded_inputs() == Some(&recording), "{}: another recording", run.name);
+        // what is not replayed goes elsewhere
+        let mut other = run.start(&text);
+        other.advance(hand.step_count()).unwrap();
+        assert!(bits(&mut other, "b") != bits(&mut hand, "b"));
+    }
+}
+
+#[test]
+fn snapshots_keep_inputs() {
+    for run in configurations() {
+        let text = cube(&followed(PUSH, TOOL), "");
+        let mut whole = run.start(&text);
+        whole.record_inputs();
+        whole.advance(5).unwrap();
+        whole.set_input("tool", 1.0).unwrap();
+        whole.set_input("push", -1.0).unwrap();
+        // on its way, and with a value that no step has taken up yet
+        whole.advance(7).unwrap();
+        whole.set_input("push", 0.75).unwrap();
+        let kept = Snapshot::from_bytes(&whole.snapshot().unwrap().to_bytes().unwrap()).unwrap();
+        let inputs = whole.inputs();
+        assert!(inputs[1].value > 0.0 && inputs[1].value < 1.0, "{inputs:?}");
+        whole.advance(100).unwrap();
+        let (end, recorded) = (bits(&mut whole, "b"), whole.recorded_inputs().cloned());
+
+        let mut other = run.start(&text);
+        other.set_input("push", 9.0).unwrap();
+        other.restore(&kept).unwrap();
+        assert_eq!(other.inputs(), inputs);
+        other.advance(100).unwrap();
+        assert!(bits(&mut other, "b") == end, "{}: another way on", run.name);
+        // back in the same one: what was recorded since is recorded anew
+        whole.restore(&kept).unwrap();
+        whole.advance(100).unwrap();
+        assert!(bits(&mut whole, "b") == end, "{}: no way back", run.name);
+        assert_eq!(whole.recorded_inputs().cloned(), recorded);
+        assert_eq!(recorded.unwrap().changes.iter().map(|change| change.step).collect::<Vec<_>>(), [5, 5, 12]);
+    }
+}
+
+#[test]
+fn an_input_of_a_static_analysis_is_set_before_it_begins() {
+    let acts = |curve: &str| {
+        format!(
+            "analysis: Static(), constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))],
+            loads: [Gravity(acceleration: (0, 0, -4), curve: {curve})]"
+        )
+    };
+    for run in configurations() {
+        let mut told = run.start(&cube(&acts("Table([(0, 0.75)])"), ""));
+        let mut set = run.start(&cube(&acts("Input(name: \"g\", rate: 0.001)"), ""));
+        set.set_input("g", 0.75).unwrap();
+        told.finish().unwrap();
+        set.finish().unwrap();
+        assert!(bits(&mut set, "b") == bits(&mut told, "b"), "{}: another rest", run.name);
+        assert!(set.set_input("g", 1.0).unwrap_err().to_string().contains("before its first step"));
+    }
+}
+
+#[test]
+fn what_cannot_be_set_or_replayed_says_why() {
+    let file = scene_of(&cube(&followed(PUSH, TOOL), ""), Path::new("."));
+    let mut simulation = Simulation::new(&file, &Options::default()).unwrap();
+    let told = |result: Result<(), sinew::Error>| result.unwrap_err().to_string();
+    let unknown = told(simulation.set_input("tol", 1.0));
+    assert_eq!(unknown, "there is no input named \"tol\"; there is tool, push");
+    for value in [f64::NAN, f64::INFINITY] {
+        assert!(told(simulation.set_input("tool", value)).contains("must be a finite number"));
+    }
+    let wrong = |text: &str| InputRecording::from_ron(text).unwrap();
+    let refused = |simulation: &mut Simulation, text: &str| told(simulation.replay_inputs(&wrong(text)));
+    let unknown = refused(&mut simulation, "(from: 0, changes: [(step: 1, name: \"x\", value: 1)])");
+    assert!(unknown.contains("tool, push"), "{unknown}");
+    let back = "(from: 0, changes: [(step: 3, name: \"tool\", value: 1), (step: 2, name: \"tool\", value: 2)])";
+    assert!(refused(&mut simulation, back).contains("at step 2"));
+    let later = refused(&mut simulation, "(from: 4, changes: [(step: 4, name: \"tool\", value: 1)])");
+    assert!(later.contains("began after 4 steps"), "{later}");
+    assert!(InputRecording::from_ron("(from: 0, changs: [])").unwrap_err().to_string().contains("changs"));
+    // uses tell what is multiplied
+    let uses: Vec<_> = simulation.inputs().into_iter().flat_map(|input| input.uses).map(|u| (u.path, u.unit)).collect();
+    let expected = [("constraints[1].curve", "m"), ("loads[0].curve", "Pa"), ("loads[1].curve", "N")];
+    assert_eq!(uses, expected.map(|(path, unit)| (path.to_string(), Some(unit))));
+    // and a scene without inputs says how there would be one
+    let file = scene_of(&cube("loads: []", ""), Path::new("."));
+    let mut none = Simulation::new(&file, &Options::default()).unwrap();
+    assert!(told(none.set_input("tool", 1.0)).contains("curve: Input(name: \"tool\")"));
+}
