@@ -4,7 +4,7 @@ use super::node_system::{Before, ForceSlopes, NodeSystem, NodesAtRest};
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
-use crate::backend::kernel::Fragment;
+use crate::backend::kernel::{Fragment, Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
 use crate::math::SimdScalar;
@@ -64,20 +64,34 @@ pub(crate) fn uniform_of(body: &str) -> String {
     format!("grabs of {body}")
 }
 
-/// The bytes of that uniform: how many there are, then each on 32 bytes; see `shaders/grab.wgsl`.
+/// A held node as kernels see it.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+struct HeldRow {
+    row: u32,
+    stiffness: f32,
+    damping: f32,
+    most: f32,
+    goal_x: f32,
+    goal_y: f32,
+    goal_z: f32,
+    unused: u32,
+}
+uniform!(HeldRow { row, stiffness, damping, most, goal_x, goal_y, goal_z, unused });
+
+/// The bytes of that uniform: behind the last held node come rows that no body has.
 pub(crate) fn bytes_of(grabs: &Grabs) -> Vec<u8> {
-    let mut bytes = vec![0; 16 + 32 * Grabs::MOST_HELD];
-    bytes[..4].copy_from_slice(&(grabs.held.len() as u32).to_le_bytes());
-    for (held, place) in grabs.held.iter().zip(bytes[16..].chunks_exact_mut(32)) {
-        let numbers = [held.stiffness, held.damping, held.most, held.goal.x, held.goal.y, held.goal.z];
+    let place = |place: usize| {
+        let held = grabs.held.get(place);
+        let HeldNode { row, stiffness, damping, most, goal } =
+            held.copied().unwrap_or(HeldNode { row: u32::MAX, ..HeldNode::default() });
+        let [goal_x, goal_y, goal_z] = goal.as_vec3().to_array();
         // infinity is no number that a shader must know
-        let number = |number: f64| (number as f32).min(f32::MAX).to_bits();
-        let words = std::iter::once(held.row).chain(numbers.map(number));
-        for (word, bytes) in words.zip(place.as_chunks_mut::<4>().0) {
-            *bytes = word.to_le_bytes();
-        }
-    }
-    bytes
+        let most = (most as f32).min(f32::MAX);
+        let (stiffness, damping) = (stiffness as f32, damping as f32);
+        HeldRow { row, stiffness, damping, most, goal_x, goal_y, goal_z, unused: 0 }.bytes()
+    };
+    (0..Grabs::MOST_HELD).flat_map(place).collect()
 }
 
 /// One stage for each body that can be grabbed.
@@ -93,7 +107,7 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
         );
         let mut stage = NodeStage::new("grab", "grab", body, rows_of(body, world), shader!("grab"))
             .own(most)
-            .bind("grabs", buffers.uniform(uniform_of(&label), &bytes_of(&grabs)));
+            .bind_uniform::<HeldRow>("grabs", buffers.uniform(uniform_of(&label), &bytes_of(&grabs)));
         for column in [Mass::NAME, Displacement::NAME, DisplacementStep::NAME, ExternalForce::NAME] {
             stage = stage.column(column, buffers.column(body, column));
         }

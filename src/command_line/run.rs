@@ -120,7 +120,7 @@ fn tell_of_inputs(simulation: &Simulation) {
     let inputs = simulation.inputs();
     let all: Vec<String> = inputs.iter().map(|input| format!("{} stays at {}", input.name, input.target)).collect();
     if !all.is_empty() {
-        let text = "a program sets inputs while it runs (docs/systems.md), this command does not";
+        let text = "a program sets inputs while it runs (docs/interaction.md), this command does not";
         terminal::note(&format!("{}: {text}\n", all.join(", ")));
     }
 }

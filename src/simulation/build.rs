@@ -259,7 +259,7 @@ fn prepare<'a>(
     // what is stable depends on the laws, whose history waits for the step
     world.insert_resource(Clock::with_step(1.0));
     insert_laws(options.precision, world);
-    let (clock, stability, steps) = clock(scene, known, world, diagnostics)?;
+    let (clock, mut stability, steps) = clock(scene, known, world, diagnostics)?;
     outputs::check(scene, &clock, steps, diagnostics);
     outputs::check_curves(scene, &clock, diagnostics);
     plausible::check(&assembly, world, diagnostics);
@@ -268,6 +268,8 @@ fn prepare<'a>(
     assemble_in_time(&assembly, world, diagnostics);
     let mut schedule = resolve(scene.scene.schedule.as_deref(), known, world, diagnostics);
     hand_out(&scene.scene, known, &mut schedule, world, diagnostics);
+    let systems = schedule.iter().map(|entry| entry.system);
+    stable_step::count_systems(&scene.scene, systems, &mut stability, world, diagnostics);
     Some(Prepared { assembly, clock, stability, steps, schedule })
 }
 

@@ -64,7 +64,7 @@ pub(super) struct Follower {
     stays_with_elements: bool,
     /// The share of the stable step at the start that the scene's own one is; else 0.
     own_share: f64,
-    /// What loads of the scene's own make of a stable step: all frequencies here are of the bodies alone.
+    /// What forces on nodes make of a stable step: all frequencies here are of the bodies alone.
     pub loads: LoadRates,
     pub duration: f64,
     pub first: f64,

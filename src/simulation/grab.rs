@@ -92,26 +92,21 @@ impl Simulation {
     /// [`Options::grabs`](super::Options::grabs) is not set; a static analysis; a grip that is no positive number, or
     /// too stiff for a step that the scene insists on; too many nodes held; what the GPU says.
     pub fn grab(&mut self, pick: &Pick, grip: &Grip) -> Result<GrabId, Error> {
-        let nodes = std::array::from_fn(|i| (pick.nodes[i] as usize, pick.weights[i].max(0.0)));
-        self.grab_nodes::<3>(&pick.body, nodes, grip)
+        let nodes = [0, 1, 2].map(|i| (pick.nodes[i] as usize, pick.weights[i].max(0.0)));
+        self.grab_nodes(&pick.body, &nodes, grip)
     }
 
     /// Grabs the weighted mean of nodes, by their places in the author's order. Weights are divided by their sum.
     ///
     /// # Errors
     /// As [`Simulation::grab`]; no such body or place; weights that are negative, or all 0.
-    pub fn grab_nodes<const N: usize>(
-        &mut self,
-        body: &str,
-        nodes: [(usize, f64); N],
-        grip: &Grip,
-    ) -> Result<GrabId, Error> {
+    pub fn grab_nodes(&mut self, body: &str, nodes: &[(usize, f64)], grip: &Grip) -> Result<GrabId, Error> {
         self.settle()?;
         let sum: f64 = nodes.iter().map(|node| node.1).sum();
         if !(sum.is_finite() && sum > 0.0 && nodes.iter().all(|node| node.1 >= 0.0)) {
             return Err(wrong("the weights of grabbed nodes must be 0 or above, and one of them above"));
         }
-        let nodes: Vec<(usize, f64)> = nodes.into_iter().filter(|node| node.1 > 0.0).collect();
+        let nodes: Vec<(usize, f64)> = nodes.iter().copied().filter(|node| node.1 > 0.0).collect();
         let places: Vec<usize> = nodes.iter().map(|node| node.0).collect();
         let set = self.nodes_at(body, &places)?;
         let entity = set.body();

@@ -1,6 +1,7 @@
 //! Going back: to the first state, and to states that are kept during the run.
 
 use super::Simulation;
+use super::grab::AllGrabs;
 use crate::components::{Clock, Signals};
 use crate::error::Error;
 use crate::snapshot::{PackedSnapshot, Snapshot};
@@ -37,7 +38,7 @@ impl Kept {
 
 impl Simulation {
     /// Goes back to the state before the first step, at rest or as the scene and the program made it, with all inputs
-    /// at their initial values: the same steps from there give the same bits. Outputs go on being written.
+    /// at their initial values and nothing held: the same steps from there give the same bits. Outputs go on being written.
     ///
     /// # Errors
     /// That this state was not kept: the run began with a snapshot from elsewhere, [`Options::forgets_start`] is set,
@@ -58,7 +59,7 @@ impl Simulation {
         self.restore(&start?)?;
         self.preload = preload;
         self.world.resource_mut::<Signals>().inputs_mut().iter_mut().for_each(|input| input.withdraw());
-        Ok(())
+        self.take_up_grabs(AllGrabs::new())
     }
 
     /// Keeps the state before the first step, if that has not been taken yet. What cannot be kept, as that of a system

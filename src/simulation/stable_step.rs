@@ -11,9 +11,11 @@ use super::tangent::Tangent;
 use super::{Simulation, added_mass};
 use crate::assembly::{StableStep, stable_step};
 use crate::backend::device::bring_to_host;
+use crate::components::Clock;
 use crate::error::Error;
 use crate::scene::schema::{Constraint, Curve, Inversion, Scene, StepBound, WhenUnstable};
 use crate::scene::{Diagnostics, SceneFile};
+use crate::systems::System;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use serde::Serialize;
@@ -50,7 +52,7 @@ pub struct Stability {
     /// Whether the step stays with what the elements alone allow.
     #[serde(skip)]
     pub(super) stays_with_elements: bool,
-    /// What loads of the scene's own make of the step; `limit`, `stable_step` and `step` are with them.
+    /// What forces on nodes make of the step; `limit`, `stable_step` and `step` are with them.
     #[serde(skip)]
     pub(super) loads: LoadRates,
     /// `limit` without them (s).
@@ -181,6 +183,31 @@ pub(super) fn choose(
         return None;
     }
     Some((stability, time_step, steps as u64))
+}
+
+/// Counts the stiffness of systems whose parameters were not known when the step was chosen. Where the step follows what
+/// is stable, it will be smaller before the first one is taken.
+pub(super) fn count_systems<'a>(
+    scene: &Scene,
+    systems: impl Iterator<Item = &'a System>,
+    stability: &mut Stability,
+    world: &mut World,
+    diagnostics: &mut Diagnostics,
+) {
+    let all = LoadRates::of(systems, scene.duration, world);
+    let (step, before) = (world.resource::<Clock>().time_step, stability.limit);
+    // what has been counted already may be summed in another order
+    let Some(before) = before.filter(|before| all.with(stability.limit_of_bodies) < (1.0 - 1e-9) * before) else {
+        return;
+    };
+    let limit = all.with(stability.limit_of_bodies);
+    (stability.loads, stability.limit) = (all, Some(limit));
+    world.insert_resource(all);
+    if step > limit && scene.when_unstable() != WhenUnstable::Adapt {
+        diagnostics
+            .warn_at("schedule", format!("systems of the program's make the stable step {limit:.3e} s of {before:.3e} s; the step is {step:.3e} s"))
+            .note("give a smaller `step` or `safety`, or let the step follow (when_unstable: Adapt)");
+    }
 }
 
 /// Why `bound: Auto` stays with what the elements allow: what needs the room between that and the true limit.

@@ -23,7 +23,7 @@ fn start(run: &Configuration, scene: &str) -> Simulation {
 
 /// Grabs the middle of the top.
 fn grab(simulation: &mut Simulation, grip: &Grip) -> GrabId {
-    let pick = simulation.pick(DVec3::new(0.045, 0.05, 1.0), -DVec3::Z).unwrap().unwrap();
+    let pick = simulation.pick(DVec3::new(0.05, 0.05, 1.0), -DVec3::Z).unwrap().unwrap();
     simulation.grab(&pick, grip).unwrap()
 }
 
@@ -50,7 +50,7 @@ fn the_force_at_rest_is_the_weight_that_it_holds() {
         assert!(force.truncate().length() < 1e-3 * weight, "{}: beside: {force}", run.name);
         // and the point hangs below its target by the force over the stiffness
         let stiffness = simulation.grabs().next().unwrap().1.stiffness;
-        let pick = simulation.pick(DVec3::new(0.045, 0.05, 1.0), -DVec3::Z).unwrap().unwrap();
+        let pick = simulation.pick(DVec3::new(0.05, 0.05, 1.0), -DVec3::Z).unwrap().unwrap();
         near("it hangs", 0.1 - pick.point.z, weight / stiffness, weight / stiffness, 0.05);
         // let go, it falls
         simulation.release(hand).unwrap();
@@ -67,28 +67,30 @@ fn the_force_at_rest_is_the_weight_that_it_holds() {
 #[test]
 fn the_work_of_a_hand_is_in_the_balance_and_ends_with_it() {
     for run in configurations() {
-        let mut simulation = start(&run, &cube(&format!("{STIFF}, output: (energies_every: 0.01)")));
+        let mut simulation =
+            start(&run, &cube(&format!("{STIFF}, integration: (step: 0.001), output: (energies_every: 0.01)")));
         let hand = grab(&mut simulation, &Grip::default());
         let goal = DVec3::new(0.06, 0.05, 0.12);
         let told = |simulation: &mut Simulation| {
             let e = simulation.energies().unwrap();
-            (e.load_work.unwrap(), e.kinetic + e.strain + e.hourglass + e.damping_loss.unwrap())
+            // from middle to middle of steps: exact but for rounding
+            (e.load_work.unwrap(), e.kinetic + e.internal_work.unwrap() + e.damping_loss.unwrap())
         };
         // the target goes up and aside, as a mouse does it
         for place in 1..=40 {
-            let from = DVec3::new(0.045, 0.05, 0.1);
+            let from = DVec3::new(0.05, 0.05, 0.1);
             simulation.move_grab(hand, from + (goal - from) * f64::from(place) / 40.0).unwrap();
             simulation.advance(5).unwrap();
         }
         let (work, held) = told(&mut simulation);
         assert!(work > 1e-4, "{}: {work} J", run.name);
-        near("the balance", held, work, work, run.bound(2e-3, 2e-3));
+        near("the balance", held, work, work, run.bound(1e-9, 1e-3));
         simulation.release(hand).unwrap();
         let (before, _) = told(&mut simulation);
         simulation.advance(200).unwrap();
         let (work, held) = told(&mut simulation);
         assert_eq!(work, before, "{}: who let go does no work", run.name);
-        near("the balance after", held, work, work, run.bound(2e-3, 2e-3));
+        near("the balance after", held, work, work, run.bound(1e-9, 1e-3));
     }
 }
 
@@ -97,7 +99,7 @@ fn no_force_beyond_the_largest_and_momentum_as_it_says() {
     for run in configurations() {
         let mut simulation = start(&run, &cube(STIFF));
         let hand = grab(&mut simulation, &Grip { most_force: 0.02, ..Grip::default() });
-        simulation.move_grab(hand, DVec3::new(0.045, 0.05, 50.0)).unwrap();
+        simulation.move_grab(hand, DVec3::new(0.05, 0.05, 50.0)).unwrap();
         near("it pulls", simulation.grab_force(hand).unwrap().z, 0.02, 0.02, 1e-6);
         simulation.advance(400).unwrap();
         let time = simulation.time() - 0.5 * simulation.time_step();
@@ -166,14 +168,15 @@ fn a_stiff_hand_is_stable_where_the_step_follows_and_refused_where_it_does_not()
         simulation.release(gentle).unwrap();
         let stiff = Grip { stiffness: Some(stiffness), damping: Some(0.0), ..Grip::default() };
         let hand = grab(&mut simulation, &stiff);
-        simulation.move_grab(hand, DVec3::new(0.045, 0.05, 0.105)).unwrap();
+        simulation.move_grab(hand, DVec3::new(0.05, 0.05, 0.105)).unwrap();
         simulation.advance_to(0.5).unwrap();
         assert!(simulation.time_step() < 0.8 * first, "{}: {} of {first}", run.name, simulation.time_step());
         let far = simulation.displacements("b").unwrap().iter().fold(0.0_f64, |far, u| far.max(u.length()));
         assert!(far < 0.02, "{}: {far} m", run.name);
 
         let mut held = start(&run, &cube(&format!("{STIFF}, integration: (when_unstable: Watch)")));
-        let pick = held.pick(DVec3::new(0.045, 0.05, 1.0), -DVec3::Z).unwrap().unwrap();
+        let pick = held.pick(DVec3::new(0.05, 0.05, 1.0), -DVec3::Z).unwrap().unwrap();
+        let stiff = Grip { stiffness: Some(10.0 * stiffness), ..stiff };
         let refused = held.grab(&pick, &stiff).unwrap_err().to_string();
         assert!(refused.contains("so stiff a grip"), "{refused}");
         assert_eq!(held.grabs().count(), 0);
@@ -186,7 +189,7 @@ fn what_cannot_be_held_says_why() {
     let run = &configurations()[0];
     assert_eq!(run.options.precision, Precision::F64);
     let mut none = run.start(&cube(STIFF));
-    let pick = none.pick(DVec3::new(0.045, 0.05, 1.0), -DVec3::Z).unwrap().unwrap();
+    let pick = none.pick(DVec3::new(0.05, 0.05, 1.0), -DVec3::Z).unwrap().unwrap();
     let told = |result: Result<GrabId, sinew::Error>| result.unwrap_err().to_string();
     assert!(told(none.grab(&pick, &Grip::default())).contains("grabs: true"));
     let mut simulation = start(run, &cube(STIFF));
@@ -198,8 +201,8 @@ fn what_cannot_be_held_says_why() {
     ] {
         assert!(told(simulation.grab(&pick, &grip)).contains("must be above 0"), "{grip:?}");
     }
-    assert!(told(simulation.grab_nodes("b", [(99, 1.0)], &Grip::default())).contains("99"));
-    assert!(told(simulation.grab_nodes("b", [(0, -1.0)], &Grip::default())).contains("0 or above"));
+    assert!(told(simulation.grab_nodes("b", &[(99, 1.0)], &Grip::default())).contains("99"));
+    assert!(told(simulation.grab_nodes("b", &[(0, -1.0)], &Grip::default())).contains("0 or above"));
     let hands: Vec<GrabId> = (0..21).map(|_| grab(&mut simulation, &Grip::default())).collect();
     assert!(told(simulation.grab(&pick, &Grip::default())).contains("at most 64 nodes"));
     assert!(simulation.move_grab(hands[0], DVec3::NAN).is_err());

@@ -7,11 +7,11 @@ use std::time::Duration;
 
 /// With history in its material, elements that go, and an input.
 fn scene() -> String {
-    "(duration: 0.3, bodies: {\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3)), material: \"m\", spin: (1, 2, 3))},
+    "(duration: 100, bodies: {\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3)), material: \"m\", spin: (0.1, 0.2, 0.3))},
     materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 2,
         prony: (terms: [(alpha: 0.3, tau: 0.05)]))},
     constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))],
-    loads: [Gravity(acceleration: (3, 0, -9.81), curve: Input(name: \"g\", initial: 1, rate: 100))],
+    loads: [Gravity(acceleration: (0.3, 0, -1), curve: Input(name: \"g\", initial: 1, rate: 100))],
     removal: [(on: Box(min: (0.06, 0, 0), max: (0.1, 0.1, 0.1)), when: During(start: 0.005, end: 0.06))])"
         .into()
 }

@@ -7,7 +7,7 @@ use sinew::{Pick, Simulation};
 fn scene(elements: &str, acts: &str) -> String {
     let body = |origin: &str| {
         format!(
-            "(mesh: Box(size: (0.1, 0.2, 0.1), cells: (3, 4, 3), elements: {elements}, origin: {origin}), material: \"m\")"
+            "(mesh: Box(size: (0.1, 0.2, 0.1), cells: (3, 4, 3), elements: {elements}), translate: {origin}, material: \"m\")"
         )
     };
     format!(
@@ -58,10 +58,10 @@ fn a_ray_meets_the_nearest_body_where_it_is() {
 fn a_ray_meets_a_deformed_body_where_it_has_gone() {
     // u = (0.2 x + 0.1 z + 0.01, 0, -0.1 z): the top is at 0.09, its corner (0.1, ·) at 0.14
     let moves = "constraints: [Prescribed(body: \"a\", on: All, displacement: (0.01, 0, 0),
-        gradient: [(0.2, 0, 0.1), (0, 0, 0), (0, 0, -0.1)], curve: Smooth(end: 0.01))]";
+        gradient: ((0.2, 0, 0.1), (0, 0, 0), (0, 0, -0.1)), curve: Smooth(end: 0.1))]";
     for run in configurations() {
         let mut simulation = run.start(&scene("Hex8", moves));
-        simulation.advance_to(0.02).unwrap();
+        simulation.advance_to(0.12).unwrap();
         let pick = simulation.pick(DVec3::new(0.135, 0.1, 1.0), -DVec3::Z).unwrap().unwrap();
         near("the top", pick.point.z, 0.09, 0.1, run.bound(1e-9, 1e-6));
         assert!(simulation.pick(DVec3::new(0.145, 0.1, 1.0), -DVec3::Z).unwrap().is_none_or(|pick| pick.body == "b"));
