@@ -136,8 +136,10 @@ impl Simulation {
 
     /// The next step at whose beginning a state is to be kept.
     pub(super) fn next_kept(&self) -> u64 {
-        let next = self.history.kept.as_ref().map(|kept| kept.next);
-        next.map_or(u64::MAX, |next| self.world.resource::<Clock>().step_nearest(next))
+        let Some(kept) = &self.history.kept else { return u64::MAX };
+        // no state is kept twice
+        let after = kept.states.back().map_or(0, |state| state.step() + 1);
+        self.world.resource::<Clock>().step_nearest(kept.next).max(after)
     }
 
     /// Keeps the present state, if that is due.

@@ -74,25 +74,17 @@ impl Effects {
             fibres: Some(AROUND),
             tension_only: true,
             prony: 2,
-            backward_euler: false,
             damping: true,
             loads: true,
             grabs: true,
             moved: true,
-            copies: false,
             compensated: true,
             energies: true,
             removal: true,
-            at_rest: false,
-            criterion: None,
-            cells: false,
-            averaged: false,
-            law: None,
             families: Some(FAMILIES),
             volumetric: true,
             reproject: true,
-            inversion: None,
-            scheme: Scheme::Patches,
+            ..Self::default()
         }
     }
 

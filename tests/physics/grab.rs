@@ -166,9 +166,12 @@ fn a_stiff_hand_is_stable_where_the_step_follows_and_refused_where_it_does_not()
         let gentle = grab(&mut simulation, &Grip::default());
         let stiffness = 400.0 * simulation.grabs().next().unwrap().1.stiffness;
         simulation.release(gentle).unwrap();
-        let stiff = Grip { stiffness: Some(stiffness), damping: Some(0.0), ..Grip::default() };
+        let stiff = Grip { stiffness: Some(stiffness), ..Grip::default() };
         let hand = grab(&mut simulation, &stiff);
-        simulation.move_grab(hand, DVec3::new(0.05, 0.05, 0.105)).unwrap();
+        for place in 1..=50 {
+            simulation.move_grab(hand, DVec3::new(0.05, 0.05, 0.1 + 1e-4 * f64::from(place))).unwrap();
+            simulation.advance_to(0.005 * f64::from(place)).unwrap();
+        }
         simulation.advance_to(0.5).unwrap();
         assert!(simulation.time_step() < 0.8 * first, "{}: {} of {first}", run.name, simulation.time_step());
         let far = simulation.displacements("b").unwrap().iter().fold(0.0_f64, |far, u| far.max(u.length()));
@@ -203,7 +206,8 @@ fn what_cannot_be_held_says_why() {
     }
     assert!(told(simulation.grab_nodes("b", &[(99, 1.0)], &Grip::default())).contains("99"));
     assert!(told(simulation.grab_nodes("b", &[(0, -1.0)], &Grip::default())).contains("0 or above"));
-    let hands: Vec<GrabId> = (0..21).map(|_| grab(&mut simulation, &Grip::default())).collect();
+    let edge = [(0, 0.5), (1, 0.5)];
+    let hands: Vec<GrabId> = (0..32).map(|_| simulation.grab_nodes("b", &edge, &Grip::default()).unwrap()).collect();
     assert!(told(simulation.grab(&pick, &Grip::default())).contains("at most 64 nodes"));
     assert!(simulation.move_grab(hands[0], DVec3::NAN).is_err());
     hands.into_iter().for_each(|hand| simulation.release(hand).unwrap());
