@@ -104,7 +104,7 @@ fn own_system_bends_a_blade_alike_on_both_backends_without_a_line_of_rust() {
         let mut run = Simulation::new(scene, &Options { backend, ..Options::default() }).unwrap();
         run.advance_to(0.3).unwrap();
         let summary = run.summary("finished").unwrap();
-        let shared = summary.systems.iter().any(|pass| pass.name.contains("gather + wind + integrate"));
+        let shared = summary.systems.iter().any(|pass| pass.name.contains("gather + boundary + wind + integrate"));
         assert!(shared, "{:?}", summary.systems.iter().map(|pass| &pass.name).collect::<Vec<_>>());
         run.probe("tip").unwrap()[0]
     };

@@ -5,7 +5,6 @@ use crate::scene::SceneFile;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Body, MeshSource, Select};
 use glam::DVec3;
-use std::path::PathBuf;
 use std::sync::OnceLock;
 
 /// A mesh where the author wants it, with its surface when somebody asks for it.
@@ -53,7 +52,7 @@ pub fn mesh_of(body: &Body, scene: &SceneFile) -> Result<Mesh, MeshError> {
 /// The same without copies.
 fn one_copy_of(body: &Body, scene: &SceneFile) -> Result<Mesh, MeshError> {
     let mut mesh = match &body.mesh {
-        MeshSource::File { path, flip_inverted, .. } => Mesh::read(mesh_file(scene, path)?, *flip_inverted)?,
+        MeshSource::File { path, flip_inverted, .. } => mesh_file(scene, path, *flip_inverted)?,
         MeshSource::Box { size, cells, elements } => generators::box_mesh(*size, *cells, *elements)?,
         MeshSource::Cylinder { radius, height, across, along, elements } => {
             generators::cylinder_mesh(*radius, *height, *across, *along, *elements)?
@@ -86,12 +85,13 @@ fn one_copy_of(body: &Body, scene: &SceneFile) -> Result<Mesh, MeshError> {
     Ok(mesh)
 }
 
-/// The path of a mesh file, if the scene may read it.
-fn mesh_file(scene: &SceneFile, name: &str) -> Result<PathBuf, MeshError> {
-    scene.file(name).map_err(|outside| MeshError::Unreadable {
-        file: name.into(),
-        source: std::io::Error::new(std::io::ErrorKind::PermissionDenied, outside),
-    })
+/// What a mesh file holds, if the scene may read it.
+fn mesh_file(scene: &SceneFile, name: &str, flip_inverted: bool) -> Result<Mesh, MeshError> {
+    let path = scene.file(name).unwrap_or_else(|_| name.into());
+    match scene.bytes(name, u64::MAX) {
+        Ok(bytes) => Mesh::from_bytes(path, &bytes, flip_inverted),
+        Err(source) => Err(MeshError::Unreadable { file: path, source }),
+    }
 }
 
 fn too_many(elements: u64, scene: &SceneFile) -> MeshError {
@@ -105,8 +105,7 @@ fn rest_points(name: &str, body: &Body, scene: &SceneFile, mesh: &Mesh) -> Resul
         (Some(points), _) => (points.clone(), "given"),
         (None, None) => return Ok(None),
         (None, Some(file)) => {
-            let path = mesh_file(scene, file).map_err(|error| error.to_string())?;
-            let rest = Mesh::read(path, false).map_err(|error| error.to_string())?;
+            let rest = mesh_file(scene, file, false).map_err(|error| error.to_string())?;
             if (&rest.tets, &rest.hexes) != (&mesh.tets, &mesh.hexes) {
                 return Err(format!(
                     "the elements of {file} are not those of the mesh: a rest shape has the same points and elements in the \

@@ -5,7 +5,6 @@ use crate::scene::diagnostic::{Diagnostic, Diagnostics, Severity, TextFile};
 use crate::scene::limits::LAW_BYTES;
 use crate::scene::syntax::Path;
 use crate::scene::{Outside, SceneFile};
-use std::io::Read as _;
 use std::sync::Arc;
 
 /// The text of a file that the scene names at `place`. Complaints go to `diagnostics`.
@@ -15,15 +14,16 @@ pub(super) fn read(
     place: &Path,
     diagnostics: &mut Diagnostics,
 ) -> Option<Arc<TextFile>> {
-    let path = match scene.file(name) {
-        Ok(path) => path,
-        Err(outside) => {
-            let message = format!("`{}` lies outside the scene's folder", outside.name);
-            diagnostics.error_at(place.name("file"), message).note(Outside::HOW);
-            return None;
-        }
-    };
-    match text_of(&path) {
+    if let Err(outside) = scene.file(name) {
+        let message = format!("`{}` lies outside the scene's folder", outside.name);
+        diagnostics.error_at(place.name("file"), message).note(Outside::HOW);
+        return None;
+    }
+    let text = scene.bytes(name, LAW_BYTES).and_then(|bytes| {
+        String::from_utf8(bytes.into_owned())
+            .map_err(|error| std::io::Error::new(std::io::ErrorKind::InvalidData, error))
+    });
+    match text {
         Ok(text) => Some(Arc::new(TextFile { name: name.to_owned(), text })),
         Err(error) => {
             let reason = match error.kind() {
@@ -38,22 +38,6 @@ pub(super) fn read(
             None
         }
     }
-}
-
-/// What a file of a bearable length holds.
-fn text_of(path: &std::path::Path) -> std::io::Result<String> {
-    let mut text = String::new();
-    let kind = std::fs::metadata(path)?;
-    if !kind.is_file() {
-        // reading a pipe could wait for ever
-        let kind = if kind.is_dir() { std::io::ErrorKind::IsADirectory } else { std::io::ErrorKind::Unsupported };
-        return Err(kind.into());
-    }
-    std::fs::File::open(path)?.take(LAW_BYTES + 1).read_to_string(&mut text)?;
-    if text.len() as u64 > LAW_BYTES {
-        return Err(std::io::ErrorKind::FileTooLarge.into());
-    }
-    Ok(text)
 }
 
 /// Tells what is wrong with a text that the scene names at `place`.

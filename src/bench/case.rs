@@ -1,13 +1,14 @@
-//! What is measured: cubes under gravity, held at the bottom.
+//! What is measured: cubes under a load, held at the bottom.
 
+use super::load::{Load, TEXT};
 use crate::backend::cpu::Instructions;
 use crate::components::{Precision, Scheme};
 use crate::error::Error;
 use crate::mesh::ElementKind;
 use crate::scene::SceneFile;
-use crate::simulation::{BackendChoice, Options};
+use crate::simulation::{BackendChoice, Options, Simulation};
 use serde::{Deserialize, Serialize};
-use std::path::Path;
+use std::collections::BTreeMap;
 
 /// Effects beside neo-Hookean elasticity.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
@@ -46,6 +47,9 @@ pub struct Case {
     /// Whether neighbouring systems share a kernel or loop where they can.
     #[serde(default = "yes")]
     pub fuse: bool,
+    /// What pulls at it.
+    #[serde(default)]
+    pub load: Load,
 }
 
 /// Records of before had no word for it.
@@ -78,6 +82,8 @@ pub struct Plan {
     pub schemes: Vec<String>,
     /// Whether systems share kernels, both for what that gains.
     pub fuse: Vec<bool>,
+    /// Loads.
+    pub loads: Vec<Load>,
 }
 
 impl Plan {
@@ -93,7 +99,9 @@ impl Plan {
                         for precision in self.precisions.iter().filter(|precision| !gpu || *precision == "f32") {
                             for (threads, instructions) in if gpu { vec![(1, widest())] } else { self.on_cpu() } {
                                 for scheme in &self.schemes {
-                                    group.extend(self.fuse.iter().map(|&fuse| Case {
+                                    let fuse = self.fuse.iter();
+                                    let both = fuse.flat_map(|&fuse| self.loads.iter().map(move |&load| (fuse, load)));
+                                    group.extend(both.map(|(fuse, load)| Case {
                                         element,
                                         effects,
                                         backend: backend.clone(),
@@ -103,6 +111,7 @@ impl Plan {
                                         scheme: scheme.clone(),
                                         cells,
                                         fuse,
+                                        load,
                                     }));
                                 }
                             }
@@ -163,6 +172,11 @@ impl Case {
         Self { fuse: false, ..self.clone() }
     }
 
+    /// The same under the engine's gravity.
+    pub fn under_gravity(&self) -> Self {
+        Self { load: Load::Gravity, ..self.clone() }
+    }
+
     /// The same in the plain scheme of two passes.
     pub fn two_pass(&self) -> Self {
         Self { scheme: "two-pass".into(), ..self.clone() }
@@ -189,9 +203,19 @@ impl Case {
                                    material: \"tissue\")}},
               materials: {{\"tissue\": (density: 1000, neo_hookean: Young(young: 3000, poisson: 0.45), {effects})}},
               constraints: [Fixed(on: Set(\"z0\"))],
-              loads: [Gravity(acceleration: (0, 0, -2))])"
+              {})",
+            self.load.in_scene()
         );
-        SceneFile::from_text("cube", &text, Path::new("."), &[]).map_err(Error::from)
+        let files = BTreeMap::from([(TEXT.0.to_string(), TEXT.1.as_bytes().to_vec())]);
+        SceneFile::from_memory("cube", &text, files, &[]).map_err(Error::from)
+    }
+
+    /// Its simulation.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub fn simulation(&self) -> Result<Simulation, Error> {
+        Simulation::with_systems(&self.scene()?, &self.options(), &self.load.registry())
     }
 
     /// How it runs.

@@ -190,12 +190,14 @@ fn flops<E: Element>(effects: Effects) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bench::Load;
     use crate::mesh::ElementKind;
 
     #[test]
     fn arithmetic_is_that_of_the_elements_and_more_with_effects() {
         let case = |element, effects| Case {
             fuse: true,
+            load: Load::Gravity,
             element,
             effects,
             backend: "cpu".into(),

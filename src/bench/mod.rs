@@ -5,6 +5,7 @@ mod case;
 mod compare;
 mod cost;
 mod gpu;
+mod load;
 mod machine;
 mod plot;
 mod ratios;
@@ -13,13 +14,13 @@ mod tables;
 pub use case::{Case, Effects, Plan, elements_a_cell};
 pub use compare::{Change, compare};
 pub use cost::{Cost, cost};
+pub use load::Load;
 pub use machine::{Machine, memory_peak};
 pub use plot::svg;
 pub use ratios::{cpu_to_gpu, split_to_fused};
 pub use tables::{csv, line, markdown};
 
 use crate::error::Error;
-use crate::simulation::Simulation;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
@@ -45,6 +46,9 @@ pub struct Row {
     pub updates_per_s: f64,
     /// How many times as long the plain two-pass scheme takes in the same run; where it was measured beside.
     pub two_pass_ratio: Option<f64>,
+    /// How many times as long it takes as under the engine's gravity in the same run; where that was measured beside.
+    #[serde(default)]
+    pub gravity_ratio: Option<f64>,
     /// Arithmetic of an element and step (floating-point operations), counted by running the kernel on numbers that
     /// count.
     pub flops: f64,
@@ -89,7 +93,7 @@ pub fn measure(group: &[Case], seconds: f64, machine: &[Machine]) -> Result<Vec<
     let mut made = Vec::new();
     for case in group {
         let started = Instant::now();
-        let mut simulation = Simulation::new(&case.scene()?, &case.options())?;
+        let mut simulation = case.simulation()?;
         gpu::advance(&mut simulation, 1)?;
         made.push((simulation, started.elapsed().as_secs_f64(), Vec::new(), 1_u64));
     }
@@ -130,6 +134,7 @@ pub fn measure(group: &[Case], seconds: f64, machine: &[Machine]) -> Result<Vec<
             third_quartile_ns: Some(nanoseconds(times[times.len() * 3 / 4])),
             updates_per_s: 1.0 / per_element,
             two_pass_ratio: None,
+            gravity_ratio: None,
             flops: cost.flops,
             bytes: cost.bytes,
             bandwidth_share: of.map(|machine| cost.bytes / per_element / machine.bytes_per_s),
@@ -144,6 +149,9 @@ pub fn measure(group: &[Case], seconds: f64, machine: &[Machine]) -> Result<Vec<
     for place in 0..rows.len() {
         let plain = best(&rows, &rows[place].case.two_pass());
         rows[place].two_pass_ratio = plain.map(|plain| plain / rows[place].ns_per_element_step);
+        let case = &rows[place].case;
+        let gravity = (case.load != Load::Gravity).then(|| best(&rows, &case.under_gravity())).flatten();
+        rows[place].gravity_ratio = gravity.map(|gravity| rows[place].ns_per_element_step / gravity);
     }
     Ok(rows)
 }

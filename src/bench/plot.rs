@@ -1,6 +1,6 @@
 //! ns an element and step against the number of elements, as SVG.
 
-use super::{Case, Record, Row};
+use super::{Case, Load, Record, Row};
 use crate::plot::panels::{Line, Panel, Point, Rise, Words, svg as drawing};
 
 /// Lines of the same configuration over sizes: a panel for each element and its effects.
@@ -30,9 +30,10 @@ pub(super) fn is_software(row: &Row) -> bool {
 /// Adds a point to the line of a name, in the panel of a row's element and effects. What ran on a software GPU has
 /// panels of its own, with axes of their own: it tells nothing of GPUs, and nothing beside CPUs.
 pub(super) fn add(panels: &mut Vec<Panel>, row: &Row, name: String, point: Point) {
-    let Case { element, effects, .. } = &row.case;
+    let Case { element, effects, load, .. } = &row.case;
     let software = is_software(row);
-    let title = format!("{element:?}, {}{}", effects.name(), if software { ": a software GPU" } else { "" });
+    let load = if *load == Load::Gravity { String::new() } else { format!(", load: {}", load.name()) };
+    let title = format!("{element:?}, {}{load}{}", effects.name(), if software { ": a software GPU" } else { "" });
     let place = panels.iter().position(|panel| panel.title == title).unwrap_or_else(|| {
         panels.push(Panel { title, kind: software.into(), lines: Vec::new() });
         panels.len() - 1

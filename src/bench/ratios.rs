@@ -12,7 +12,7 @@ pub fn cpu_to_gpu(record: &Record) -> Option<String> {
     for gpu in record.rows.iter().filter(|row| row.case.is_gpu() && !is_software(row)) {
         let same = |case: &Case| {
             let of = &gpu.case;
-            (case.element, case.effects, case.cells) == (of.element, of.effects, of.cells)
+            (case.element, case.effects, case.cells, case.load) == (of.element, of.effects, of.cells, of.load)
                 && (case.fuse, &case.scheme) == (of.fuse, &of.scheme)
         };
         for cpu in record.rows.iter().filter(|row| !row.case.is_gpu() && same(&row.case)) {

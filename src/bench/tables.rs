@@ -30,6 +30,8 @@ pub fn csv(record: &Record) -> String {
         "gpu_ns",
         "adapter",
         "instructions",
+        "load",
+        "gravity_ratio",
     ]);
     let optional = |number: Option<f64>| number.map(|number| number.to_string()).unwrap_or_default();
     for row in &record.rows {
@@ -58,6 +60,8 @@ pub fn csv(record: &Record) -> String {
             optional(row.gpu_ns),
             row.adapter.clone().unwrap_or_default(),
             if case.is_gpu() { String::new() } else { case.instructions.clone() },
+            case.load.name().into(),
+            optional(row.gravity_ratio),
         ]);
     }
     writer.into_inner().map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).unwrap_or_default()
@@ -79,8 +83,8 @@ pub fn markdown(record: &Record) -> String {
     let mut adapters: Vec<&String> = record.rows.iter().filter_map(|row| row.adapter.as_ref()).collect();
     adapters.dedup();
     adapters.iter().for_each(|adapter| text += &format!("GPU: {adapter}\n"));
-    text += "\n| element | effects | on | scheme | cells | ns an element and step | median | M elements/s | against two passes | bytes | of bandwidth | flop | of peak |\n\
-             |---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
+    text += "\n| element | effects | load | on | scheme | cells | ns an element and step | median | M elements/s | against two passes | against gravity | bytes | of bandwidth | flop | of peak |\n\
+             |---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|\n";
     for row in &record.rows {
         text += &line(row);
     }
@@ -92,16 +96,19 @@ pub fn line(row: &Row) -> String {
     let case = &row.case;
     let on = case.on();
     let scheme = if case.fuse { case.scheme.clone() } else { format!("{}, split", case.scheme) };
+    let ratio = |ratio: Option<f64>| ratio.map_or("".into(), |ratio| format!("{ratio:.2}"));
     let percent = |share: Option<f64>| share.map_or("".into(), |share| format!("{:.0} %", 100.0 * share));
     format!(
-        "| {:?} | {} | {on} | {scheme} | {} | {:.2} | {:.2} | {:.1} | {} | {:.0} | {} | {:.0} | {} |\n",
+        "| {:?} | {} | {} | {on} | {scheme} | {} | {:.2} | {:.2} | {:.1} | {} | {} | {:.0} | {} | {:.0} | {} |\n",
         case.element,
         case.effects.name(),
+        case.load.name(),
         case.cells,
         row.ns_per_element_step,
         row.median_ns,
         row.updates_per_s * 1e-6,
-        row.two_pass_ratio.map_or("".into(), |ratio| format!("{ratio:.2}")),
+        ratio(row.two_pass_ratio),
+        ratio(row.gravity_ratio),
         row.bytes,
         percent(row.bandwidth_share),
         row.flops,

@@ -4,7 +4,7 @@ use super::arguments::BenchArguments;
 use super::failure::Failure;
 use super::{Outcome, interrupt, terminal};
 use sinew::bench::{
-    Effects, Machine, Plan, Record, compare, cpu_to_gpu, csv, line, markdown, measure, split_to_fused, svg,
+    Effects, Load, Machine, Plan, Record, compare, cpu_to_gpu, csv, line, markdown, measure, split_to_fused, svg,
 };
 use sinew::mesh::ElementKind;
 use sinew::output::{Folder, OutputError, replace, summary};
@@ -45,10 +45,11 @@ pub fn command(arguments: &BenchArguments) -> Outcome {
         let word = if change.ratio() > SLOWER { "SLOWER" } else { "      " };
         slower += usize::from(change.ratio() > SLOWER);
         terminal::say(&format!(
-            "{word} {:.2} times as long: {:?}, {}, {}, {}, {} cells: {:.2} ns, was {:.2}\n",
+            "{word} {:.2} times as long: {:?}, {}, {}, {}, {}, {} cells: {:.2} ns, was {:.2}\n",
             change.ratio(),
             case.element,
             case.effects.name(),
+            case.load.name(),
             case.on(),
             case.scheme,
             case.cells,
@@ -76,6 +77,12 @@ fn plan(arguments: &BenchArguments) -> Plan {
         "fibres-viscosity" => Effects::FibresViscosity,
         _ => Effects::None,
     };
+    let load = |name: &String| match name.as_str() {
+        "none" => Load::None,
+        "rust" => Load::Rust,
+        "wgsl" => Load::Wgsl,
+        _ => Load::Gravity,
+    };
     let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
     let mut threads: Vec<usize> = arguments.threads.iter().map(|&n| n.into()).collect();
     if threads.is_empty() {
@@ -91,6 +98,7 @@ fn plan(arguments: &BenchArguments) -> Plan {
         instructions: arguments.instructions.clone(),
         schemes: arguments.schemes.clone(),
         fuse: arguments.fuse.iter().map(|word| word == "on").collect(),
+        loads: arguments.loads.iter().map(load).collect(),
     }
 }
 

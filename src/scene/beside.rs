@@ -1,7 +1,11 @@
-//! Files that a scene names: beside it, in its folder or below.
+//! Files that a scene names: beside it, in its folder or below, or in memory.
 
 use super::load::SceneFile;
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::io::{self, ErrorKind, Read as _};
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
 
 /// A file that a scene names and may not read.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -19,18 +23,93 @@ impl Outside {
 const HOW: &str =
     "put it into the folder or below, or allow it: --allow-outside, in a program Allowed { outside: true, .. }";
 
+/// Where the files that a scene names are.
+#[derive(Clone, Debug, Default)]
+pub enum FileSource {
+    /// In the scene's folder or below.
+    #[default]
+    Disk,
+    /// In memory, by the names that the scene gives them: in a browser, or where a program has made them.
+    Memory(Arc<BTreeMap<String, Vec<u8>>>),
+}
+
+/// What a scene's name of a file stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileKind {
+    /// A file.
+    File,
+    /// A folder.
+    Folder,
+    /// Nothing.
+    Nothing,
+}
+
 impl SceneFile {
     /// Where a file is that the scene names, its path relative to the scene's folder. Links are followed: what counts
-    /// is where a file really is.
+    /// is where a file really is. A file in memory is where its name says.
     ///
     /// # Errors
     /// The file lies outside the folder, and that is not [allowed](super::limits::Allowed::outside).
     pub fn file(&self, name: &str) -> Result<PathBuf, Outside> {
+        if let FileSource::Memory(_) = self.files {
+            return Ok(name.into());
+        }
         let full = self.folder.join(name);
         if self.allowed.outside || is_inside(&self.folder, name, &full) {
             return Ok(full);
         }
         Err(Outside { name: name.to_string() })
+    }
+
+    /// What a file holds that the scene names, if that is no more than `most` bytes.
+    ///
+    /// # Errors
+    /// The file lies outside the scene's folder, is not there, is no plain file, is longer, or cannot be read.
+    pub fn bytes(&self, name: &str, most: u64) -> io::Result<Cow<'_, [u8]>> {
+        let path = self.file(name).map_err(|outside| io::Error::new(ErrorKind::PermissionDenied, outside))?;
+        let bytes: Cow<'_, [u8]> = match &self.files {
+            FileSource::Memory(files) => files.get(name).map(|bytes| bytes.into()).ok_or(ErrorKind::NotFound)?,
+            FileSource::Disk => {
+                let kind = std::fs::metadata(&path)?;
+                if !kind.is_file() {
+                    // reading a pipe could wait for ever
+                    return Err(if kind.is_dir() { ErrorKind::IsADirectory } else { ErrorKind::Unsupported }.into());
+                }
+                let mut bytes = Vec::new();
+                // one byte more tells that there are too many
+                std::fs::File::open(path)?.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+                bytes.into()
+            }
+        };
+        if bytes.len() as u64 > most {
+            return Err(ErrorKind::FileTooLarge.into());
+        }
+        Ok(bytes)
+    }
+
+    /// What a name stands for, and the names of the files that are where it should be.
+    ///
+    /// # Errors
+    /// As [`Self::file`].
+    pub fn look_up(&self, name: &str) -> Result<(FileKind, Vec<String>), Outside> {
+        let full = self.file(name)?;
+        Ok(match &self.files {
+            FileSource::Memory(files) => {
+                let found = if files.contains_key(name) { FileKind::File } else { FileKind::Nothing };
+                (found, files.keys().cloned().collect())
+            }
+            FileSource::Disk if full.is_file() => (FileKind::File, Vec::new()),
+            FileSource::Disk if full.is_dir() => (FileKind::Folder, Vec::new()),
+            FileSource::Disk => {
+                let folder = full.parent().unwrap_or(&self.folder);
+                let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+                let entries = std::fs::read_dir(folder).into_iter().flatten();
+                let mut there: Vec<String> =
+                    entries.filter_map(|entry| entry.ok()?.file_name().into_string().ok()).collect();
+                there.sort();
+                (FileKind::Nothing, there)
+            }
+        })
     }
 }
 

@@ -1,5 +1,6 @@
 //! From a scene file to a [`Scene`].
 
+use super::beside::FileSource;
 use super::check::check;
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::limits::{self, Allowed};
@@ -24,6 +25,8 @@ pub struct SceneFile {
     pub path: PathBuf,
     /// The folder that mesh files are relative to.
     pub folder: PathBuf,
+    /// Where those files are.
+    pub files: FileSource,
     /// What the scene may ask for.
     pub allowed: Allowed,
     /// Where nodes of bodies are at rest (m), in the author's order, where a program knows better than the scene: in
@@ -109,6 +112,30 @@ impl SceneFile {
         sets: &[String],
         allowed: Allowed,
     ) -> Result<Self, Diagnostics> {
+        Self::from_parts(name, text, (folder, FileSource::Disk), sets, allowed)
+    }
+
+    /// As [`Self::from_text`], for a scene whose meshes and laws are in memory, by the names that it gives them: nothing
+    /// is read from a disk.
+    ///
+    /// # Errors
+    /// As [`Self::from_text`].
+    pub fn from_memory(
+        name: &str,
+        text: &str,
+        files: BTreeMap<String, Vec<u8>>,
+        sets: &[String],
+    ) -> Result<Self, Diagnostics> {
+        Self::from_parts(name, text, (Path::new(""), FileSource::Memory(Arc::new(files))), sets, Allowed::default())
+    }
+
+    fn from_parts(
+        name: &str,
+        text: &str,
+        (folder, files): (&Path, FileSource),
+        sets: &[String],
+        allowed: Allowed,
+    ) -> Result<Self, Diagnostics> {
         if text.len() > limits::TEXT_BYTES {
             return Err(Diagnostics::of(too_long(name)));
         }
@@ -137,6 +164,7 @@ impl SceneFile {
             scene,
             path: name.into(),
             folder: folder.to_path_buf(),
+            files: files.clone(),
             allowed,
             rest_shapes: BTreeMap::new(),
             source,

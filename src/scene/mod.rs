@@ -15,7 +15,7 @@ pub mod syntax;
 pub mod validate;
 pub mod words;
 
-pub use beside::Outside;
+pub use beside::{FileKind, FileSource, Outside};
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, TextFile};
 pub use limits::Allowed;
 pub use load::SceneFile;

@@ -1,4 +1,4 @@
-//! Elements that make the step much smaller than usual ones need are told of, with what would help.
+//! Elements and loads that make the step much smaller than usual elements need are told of, with what would help.
 
 use super::mass_scaling;
 use super::stable_step::Stability;
@@ -6,7 +6,7 @@ use crate::assembly::StepSetter;
 use crate::scene::Diagnostics;
 use bevy_ecs::prelude::*;
 
-/// Elements that make the step so many times smaller than a usual one needs are told of.
+/// What makes the step so many times smaller than a usual element needs is told of.
 const COSTLY: f64 = 10.0;
 /// What helps makes the step so many times larger.
 const HELPS: f64 = 1.5;
@@ -16,7 +16,14 @@ const PROPOSED: f64 = 0.05;
 /// Warns of them, where the step that is taken is so small: what the highest frequency of all shows to be harmless is
 /// not told of.
 pub(super) fn warn_of_costly(stability: &Stability, world: &mut World, diagnostics: &mut Diagnostics) {
-    let (bound, stable) = (&stability.bound, stability.stable_step);
+    let (bound, stable, limit) = (&stability.bound, stability.stable_of_bodies, stability.limit_of_bodies);
+    if stable >= COSTLY * stability.stable_step
+        && let Some(told) = stability.loads.told(stable)
+    {
+        diagnostics
+            .warn_at("systems", told)
+            .note("make their forces change less from place to place, or the mesh coarser");
+    }
     let cost = bound.usual / stable;
     if cost.is_nan() || cost < COSTLY {
         return;
@@ -34,19 +41,14 @@ pub(super) fn warn_of_costly(stability: &Stability, world: &mut World, diagnosti
     for worst in &bound.worst {
         warning.note(setter(worst));
     }
-    match stability.limit {
-        Some(limit) if limit >= HELPS * stable => {
-            warning.note(format!(
-                "by the highest frequency of all elements together {limit:.2e} s are stable: `bound: Iterated` takes that"
-            ));
-        }
-        Some(_) if stability.found_from == "iterated" => {
-            warning
-                .note("that is by the highest frequency of all elements together; by these alone it would be smaller");
-        }
-        _ => {}
+    if limit >= HELPS * stable {
+        warning.note(format!(
+            "by the highest frequency of all elements together {limit:.2e} s are stable: `bound: Iterated` takes that"
+        ));
+    } else if stability.found_from == "iterated" {
+        warning.note("that is by the highest frequency of all elements together; by these alone it would be smaller");
     }
-    let best = stability.limit.unwrap_or(stable).max(stable);
+    let best = limit.max(stable);
     if with_mass >= HELPS * best {
         warning.note(format!(
             "{} % of added mass would allow {with_mass:.2e} s: integration: (when_unstable: ScaleMass())",

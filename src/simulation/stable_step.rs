@@ -58,6 +58,9 @@ pub struct Stability {
     /// `limit` without them (s).
     #[serde(skip)]
     pub(super) limit_of_bodies: f64,
+    /// `stable_step` without them (s).
+    #[serde(skip)]
+    pub(super) stable_of_bodies: f64,
 }
 
 impl Stability {
@@ -86,6 +89,7 @@ impl Stability {
             stays_with_elements: true,
             loads: LoadRates::default(),
             limit_of_bodies: 0.0,
+            stable_of_bodies: 0.0,
         }
     }
 }
@@ -168,6 +172,7 @@ pub(super) fn choose(
         },
         loads,
         limit_of_bodies: limit,
+        stable_of_bodies: stable_step,
     };
     let (time_step, steps) = taken(&scene.scene, &stability, diagnostics);
     let stability = Stability { step: time_step, ..stability };

@@ -1,7 +1,7 @@
 //! `sinew bench`, and the figures drawn from what it measured. Times are not asserted: machines are busy.
 
 use crate::sinew::Place;
-use sinew::bench::{Case, Effects, Record, Row, cpu_to_gpu, split_to_fused, svg};
+use sinew::bench::{Case, Effects, Load, Record, Row, cpu_to_gpu, split_to_fused, svg};
 use sinew::mesh::ElementKind;
 
 #[test]
@@ -41,7 +41,7 @@ fn records_of_before_there_was_a_choice_can_be_compared_with() {
     std::fs::write(place.path("old.json"), old).unwrap();
     // slower or not: the case is found again
     let said = place.sinew(&[&asked[..], &["--compare", "old.json"]].concat());
-    assert!(said.said.contains("times as long: Tet4, none, 1 × f32, patches, 2 cells"), "{}", said.said);
+    assert!(said.said.contains("times as long: Tet4, none, gravity, 1 × f32, patches, 2 cells"), "{}", said.said);
 }
 
 fn row(backend: &str, cells: u32, fuse: bool, ns: f64, gpu_ns: Option<f64>, adapter: Option<&str>) -> Row {
@@ -55,6 +55,7 @@ fn row(backend: &str, cells: u32, fuse: bool, ns: f64, gpu_ns: Option<f64>, adap
         scheme: "two-pass".into(),
         cells,
         fuse,
+        load: Load::Gravity,
     };
     Row {
         case,
@@ -65,6 +66,7 @@ fn row(backend: &str, cells: u32, fuse: bool, ns: f64, gpu_ns: Option<f64>, adap
         third_quartile_ns: Some(1.2 * ns),
         updates_per_s: 1e9 / ns,
         two_pass_ratio: None,
+        gravity_ratio: None,
         flops: 1.0,
         bytes: 1.0,
         bandwidth_share: None,

@@ -7,6 +7,7 @@ mod good;
 mod laws;
 mod limits;
 mod materials;
+mod memory;
 mod mutations;
 mod outside;
 mod own_systems;

@@ -97,7 +97,15 @@ fn what_is_not_written_as_a_system_is_told_at_its_line() {
         assert_eq!(brief(&GOOD.replacen(old, new, 1), SYSTEM), *expected, "with {new}");
     }
     let told = brief(&GOOD.replace("length(past) * past", "normalize(node.velocity)"), SYSTEM);
-    assert!(told.starts_with("wind.wgsl:7:4: error: `wind` gives (NaN, NaN, NaN) N on node "), "{told}");
+    assert!(told.contains("wind.wgsl:7:4: error: `wind` gives (NaN, NaN, NaN) N on node "), "{told}");
+}
+
+/// No element is blamed for the step that a load makes small.
+#[test]
+fn a_load_that_makes_the_step_small_is_told_of() {
+    let told = brief(&GOOD.replace("length(past) * past", "-1e8 * node.displacement"), SYSTEM);
+    assert!(told.starts_with("cube.ron:4:10: warning: loads of the scene's own make "), "{told}");
+    assert!(!told.contains("element"), "{told}");
 }
 
 #[test]
@@ -145,7 +153,7 @@ fn a_name_is_had_by_one_system_only() {
 #[test]
 fn a_schedule_names_the_systems_of_the_scene() {
     let with = |names: &str, more: &str| {
-        let schedule = format!("schedule: [\"element_forces\", \"gather\", {names} \"observe\"], {more}");
+        let schedule = format!("schedule: [\"boundary\", \"element_forces\", \"gather\", {names} \"observe\"], {more}");
         told_of(GOOD, SYSTEM, &schedule, &Registry::default())
     };
     assert_eq!(with("\"wind\", \"integrate\",", ""), "");

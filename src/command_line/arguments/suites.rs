@@ -49,6 +49,9 @@ pub struct BenchArguments {
     /// Whether systems share kernels and loops where they can, or are kept apart
     #[arg(long, value_name = "WORD,..", value_delimiter = ',', default_values_t = ["on".to_string()], value_parser = ["on", "off"])]
     pub fuse: Vec<String>,
+    /// What pulls at the cubes: nothing, the engine's gravity, or the same as a system of one's own, in Rust or in WGSL
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["gravity".to_string()], value_parser = ["none", "gravity", "rust", "wgsl"])]
+    pub loads: Vec<String>,
     /// Seconds for each case
     #[arg(long, value_name = "S", default_value_t = 0.5)]
     pub seconds: f64,

@@ -21,7 +21,16 @@ impl Mesh {
     pub fn read(path: impl AsRef<Path>, flip_inverted: bool) -> Result<Mesh, MeshError> {
         let path = path.as_ref();
         let bytes = std::fs::read(path).map_err(|source| MeshError::Unreadable { file: path.into(), source })?;
-        let mut mesh = parse(&bytes, path).map_err(|fault| fault.in_file(path))?;
+        Self::from_bytes(path, &bytes, flip_inverted)
+    }
+
+    /// As [`Self::read`], from what a file holds; `path` is its name in messages.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn from_bytes(path: impl AsRef<Path>, bytes: &[u8], flip_inverted: bool) -> Result<Mesh, MeshError> {
+        let path = path.as_ref();
+        let mut mesh = parse(bytes, path).map_err(|fault| fault.in_file(path))?;
         mesh.orient(flip_inverted);
         mesh.require_sound(&path.display().to_string())?;
         Ok(mesh)

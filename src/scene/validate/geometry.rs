@@ -2,7 +2,7 @@
 
 use super::{Judge, scene, select};
 use crate::mesh::generators::cells_around;
-use crate::scene::beside::Outside;
+use crate::scene::beside::{FileKind, FileSource, Outside};
 use crate::scene::limits::{MOST_COPIES, MOST_REFINEMENT};
 use crate::scene::load::SceneFile;
 use crate::scene::schema::{AccuracyReference, MeshSource, Start};
@@ -162,38 +162,29 @@ fn at_least_one(judge: &mut Judge, path: &Path, count: u32) {
 }
 
 fn mesh_file(file: &SceneFile, judge: &mut Judge, path: &Path, name: &str) {
-    let full = match file.file(name) {
-        Ok(full) => full,
+    let (found, full, mut there) = match file.file(name).and_then(|full| Ok((full, file.look_up(name)?))) {
+        Ok((full, (found, there))) => (found, full, there),
         Err(outside) => return tell_outside(judge, path, &outside),
     };
     let ending = full.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
     if name.is_empty() {
         judge.out.error_at(path, "the path of the mesh file is empty");
-    } else if full.is_dir() {
+    } else if found == FileKind::Folder {
         judge.out.error_at(path, format!("`{name}` is a folder, not a mesh file"));
-    } else if !full.is_file() {
-        // what lies in the folder the path points to
-        let folder = full.parent().unwrap_or(&file.folder);
-        let mut there: Vec<String> =
-            std::fs::read_dir(if folder.as_os_str().is_empty() { ".".as_ref() } else { folder })
-                .into_iter()
-                .flatten()
-                .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
-                .filter(|name| {
-                    MESH_FILES.iter().any(|ending| name.to_ascii_lowercase().ends_with(&format!(".{ending}")))
-                })
-                .collect();
-        there.sort();
+    } else if found == FileKind::Nothing {
+        let is_mesh =
+            |name: &str| MESH_FILES.iter().any(|ending| name.to_ascii_lowercase().ends_with(&format!(".{ending}")));
+        there.retain(|name| is_mesh(name));
         let wanted = full.file_name().and_then(|name| name.to_str()).unwrap_or(name);
         let diagnostic = judge.out.error_at(path, format!("there is no file `{name}`"));
         if there.is_empty() {
-            let folder = if folder.as_os_str().is_empty() {
-                "this folder".to_string()
-            } else {
-                format!("the folder `{}`", folder.display())
+            let folder = full.parent().unwrap_or(&file.folder);
+            let place = match file.files {
+                FileSource::Memory(_) => "among the files in memory".to_string(),
+                FileSource::Disk if folder.as_os_str().is_empty() => "in this folder".to_string(),
+                FileSource::Disk => format!("in the folder `{}`", folder.display()),
             };
-            diagnostic
-                .note(format!("no mesh files (.msh, .vtk, .vtu) in {folder}; paths are relative to the scene file"));
+            diagnostic.note(format!("no mesh files (.msh, .vtk, .vtu) {place}; paths are relative to the scene file"));
         } else {
             let mut notes = choice(wanted, there.iter().map(String::as_str));
             if let Some(last) = notes.last_mut() {
