@@ -126,61 +126,69 @@ struct Push<'a, T> {
     external: &'a mut [T],
 }
 
-impl<T: SimdScalar> Push<'_, T> {
-    /// The row among these nodes of one of those that the load is for.
-    fn row(&self, place: usize) -> usize {
-        self.rows.map_or(place, |rows| rows[place] as usize - self.first)
-    }
-}
-
 /// Numbers of `Node` that differ from node to node: the first ones.
 const OF_A_NODE: usize = LoadText::MASS + 1;
 
 impl<T: SimdScalar> WithSimd for Push<'_, T> {
     type Output = ();
 
-    /// A register full of nodes at a time; what a node gets does not depend on its place there.
+    /// A register full of nodes at a time; what a node gets does not depend on its place there. Only what the program
+    /// reads is gathered.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let width = T::width::<S>();
         let splat = |number: f64| T::splat(simd, T::from_f64(number));
-        let InStep { curve, time, time_step, rate } = *self.in_step;
+        let Push { program, in_step, first, count, rows, rest, u, step, mass, external } = self;
+        let InStep { curve, time, time_step, rate } = *in_step;
         let rate = T::from_f64(rate);
         let mut inputs = [splat(0.0); LoadText::NUMBERS];
         inputs[OF_A_NODE..].copy_from_slice(&[splat(curve), splat(time), splat(time_step)]);
-        let mut numbers = [[T::default(); LANES]; OF_A_NODE];
-        let all = self.rows.map_or(self.count, <[u32]>::len);
+        let reads: [bool; OF_A_NODE] = std::array::from_fn(|number| program.reads(number));
+        let all = rows.map_or(count, <[u32]>::len);
         for from in (0..all).step_by(width) {
             let lanes = width.min(all - from);
-            for lane in 0..lanes {
-                let row = self.row(from + lane);
-                let rest = self.rest[row].to_array();
-                for i in 0..3 {
-                    numbers[i][lane] = T::from_f64(rest[i]);
-                    numbers[3 + i][lane] = self.u[3 * row + i];
-                    numbers[6 + i][lane] = self.step[3 * row + i] * rate;
+            // the row among these nodes of one of those that the load is for
+            let row = |lane| rows.map_or(from + lane, |rows| rows[from + lane] as usize - first);
+            for i in 0..3 {
+                if reads[i] {
+                    inputs[i] = gathered(simd, lanes, |lane| T::from_f64(rest[row(lane)][i]));
                 }
-                numbers[LoadText::MASS][lane] = self.mass[row];
+                if reads[3 + i] {
+                    inputs[3 + i] = gathered(simd, lanes, |lane| u[3 * row(lane) + i]);
+                }
+                if reads[6 + i] {
+                    inputs[6 + i] = gathered(simd, lanes, |lane| step[3 * row(lane) + i] * rate);
+                }
             }
-            for (input, numbers) in inputs.iter_mut().zip(&numbers) {
-                *input = T::load(simd, numbers);
-            }
-            let force: [T::Vector<S>; 3] = self.program.run(inputs);
             // what has lost all its elements bears nothing
-            let there = inputs[LoadText::MASS];
-            let force = force.map(|part| {
-                let mut lanes = [T::default(); LANES];
-                T::store(there.if_positive(part, splat(0.0)), &mut lanes);
-                lanes
-            });
-            for lane in 0..lanes {
-                let row = self.row(from + lane);
-                for i in 0..3 {
-                    self.external[3 * row + i] += force[i][lane];
+            let there = gathered(simd, lanes, |lane| mass[row(lane)]);
+            inputs[LoadText::MASS] = there;
+            let force: [T::Vector<S>; 3] = program.run(inputs);
+            let mut added = [T::default(); 3 * LANES];
+            for (i, force) in force.into_iter().enumerate() {
+                let mut numbers = [T::default(); LANES];
+                T::store(there.if_positive(force, splat(0.0)), &mut numbers);
+                for (to, number) in added.iter_mut().skip(i).step_by(3).zip(numbers) {
+                    *to = number;
+                }
+            }
+            for (lane, added) in added.chunks_exact(3).enumerate().take(lanes) {
+                for (external, added) in external[3 * row(lane)..][..3].iter_mut().zip(added) {
+                    *external += *added;
                 }
             }
         }
     }
+}
+
+/// A register of what some lanes have; zeros in the others.
+#[inline(always)]
+fn gathered<T: SimdScalar, S: Simd>(simd: S, lanes: usize, of_lane: impl Fn(usize) -> T) -> T::Vector<S> {
+    let mut numbers = [T::default(); LANES];
+    for (lane, number) in numbers.iter_mut().enumerate().take(lanes) {
+        *number = of_lane(lane);
+    }
+    T::load(simd, &numbers)
 }
 
 #[derive(Clone, Copy, Debug)]

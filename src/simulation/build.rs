@@ -14,6 +14,7 @@ use super::plausible;
 use super::relax::Relaxing;
 use super::schedule::{Scheduled, check_names, resolve};
 use super::scheme::{fit_workgroups, sum_forces};
+use super::solver::Solver;
 use super::stable_step::{self, Stability};
 use super::step_kernels::step_kernels;
 use super::{Entry, Facts, Job, Options, Simulation};
@@ -136,17 +137,17 @@ impl Simulation {
             warnings: diagnostics,
         };
         let settling = super::preload::settling(scene, options)?;
-        let follower = Follower::new(&scene.scene, &facts.stability, facts.initial_mass, &mut world);
+        let follow = || Follower::new(&scene.scene, &facts.stability, facts.initial_mass, &mut world);
+        let solver = relaxing.map_or_else(|| Solver::Explicit(follow()), Solver::Relaxation);
         Ok(Self {
             world,
             plan,
             entries,
             scene: scene.scene.clone(),
             facts,
-            relaxing,
             settling,
             preload: None,
-            follower,
+            solver,
             tape: Tape::default(),
             history: History::default(),
             surfaces: Default::default(),

@@ -5,6 +5,7 @@ use super::Simulation;
 use super::load_rates::LoadRates;
 use super::mass_scaling;
 use super::rounding::warn_of_rounding;
+use super::solver::Solver;
 use super::stable_step::Stability;
 use super::watch::{Seen, Watched};
 use crate::backend::device::{bring_to_host, send_to_device};
@@ -283,22 +284,18 @@ pub(super) fn square_of(step: f64) -> f64 {
 impl Simulation {
     /// How the step went so far; `None` in a static analysis.
     pub fn step_history(&self) -> Option<&StepHistory> {
-        self.follower.as_ref().map(|follower| &follower.history)
-    }
-
-    /// The next step before which the stable step is looked at.
-    pub(super) fn next_follow(&self) -> u64 {
-        self.follower.as_ref().map_or(u64::MAX, |follower| follower.found.next)
+        self.solver.follower().map(|follower| &follower.history)
     }
 
     /// Looks at the stable step if it is time, and does what the scene wants done.
     pub(super) fn follow(&mut self) -> Result<(), Error> {
         let step = self.step_count();
-        let Some(mut follower) = self.follower.take_if(|follower| follower.found.next <= step) else { return Ok(()) };
+        let Solver::Explicit(follower) = &mut self.solver else { return Ok(()) };
+        let Some(mut follower) = follower.take_if(|follower| follower.found.next <= step) else { return Ok(()) };
         let started = Instant::now();
         let looked = self.look_with(&mut follower);
         follower.history.seconds += started.elapsed().as_secs_f64();
-        self.follower = Some(follower);
+        self.solver = Solver::Explicit(Some(follower));
         looked.map_err(|error| self.note(error))
     }
 

@@ -137,7 +137,7 @@ impl Simulation {
             self.count_grabs_for_the_step();
             return Err(error);
         }
-        if let Some(follower) = &mut self.follower {
+        if let Some(follower) = self.solver.follower_mut() {
             follower.look_soon();
         }
         Ok(id)
@@ -157,7 +157,7 @@ impl Simulation {
         let body = self.body(&body)?;
         self.put_grabs(body)?;
         let step = self.step_count();
-        if let Some(follower) = &mut self.follower {
+        if let Some(follower) = self.solver.follower_mut() {
             follower.note_change(step, false);
         }
         Ok(())
@@ -247,7 +247,7 @@ impl Simulation {
     /// What is held counts for the stable step.
     fn count_grabs_for_the_step(&mut self) {
         let slopes: ForceSlopes = NodeRows::of::<Grabs>().slopes(self.scene.duration, &mut self.world);
-        if let Some(follower) = &mut self.follower {
+        if let Some(follower) = self.solver.follower_mut() {
             follower.loads = self.facts.stability.loads.and(slopes);
         }
         self.world.insert_resource(self.facts.stability.loads.and(slopes));
@@ -257,7 +257,7 @@ impl Simulation {
     fn is_stable_with_grabs(&mut self) -> Result<(), Error> {
         self.count_grabs_for_the_step();
         let step = self.time_step();
-        let Some(follower) = &self.follower else { return Ok(()) };
+        let Some(follower) = self.solver.follower() else { return Ok(()) };
         let limit = follower.step_of(follower.found.known);
         if follower.policy == WhenUnstable::Adapt || step <= limit || self.scene.integration.beyond_stable_step {
             return Ok(());

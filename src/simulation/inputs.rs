@@ -245,7 +245,7 @@ impl Simulation {
             if let Some(recording) = &mut self.tape.recording {
                 recording.changes.push(InputChange { step: clock.step, name: input.name.clone(), value });
             }
-            if let Some(follower) = &mut self.follower {
+            if let Some(follower) = self.solver.follower_mut() {
                 follower.note_change(clock.step, change == Change::Quickens);
             }
         }

@@ -40,6 +40,7 @@ mod rounding;
 mod run;
 mod schedule;
 mod scheme;
+mod solver;
 mod stable_step;
 mod step_change;
 mod step_kernels;
@@ -82,12 +83,11 @@ pub struct Simulation {
     entries: Vec<Entry>,
     scene: Scene,
     facts: Facts,
-    relaxing: Option<relax::Relaxing>,
+    solver: solver::Solver,
     /// What is to bring the bodies to rest before the first step.
     settling: Option<Box<Simulation>>,
     /// What that took.
     preload: Option<Preload>,
-    follower: Option<follow::Follower>,
     /// Inputs that are recorded and replayed.
     tape: inputs::Tape,
     /// Surfaces for picking.

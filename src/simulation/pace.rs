@@ -39,7 +39,7 @@ impl Simulation {
         };
         let pace = Pace {
             beats: self.entries.iter().filter_map(beat).collect(),
-            found: self.follower.as_ref().map(|follower| follower.followed()),
+            found: self.solver.follower().map(|follower| follower.followed()),
             inputs: self.input_states(),
             grabs: self.grabs.clone(),
         };
@@ -69,7 +69,7 @@ impl Simulation {
         let last_step = clock.step_nearest(self.scene.duration);
         self.facts.steps = last_step;
         self.world.resource_scope(|world, mut observer: Mut<Observer>| observer.go_on(world, last_step))?;
-        if let (Some(follower), Some(found)) = (&mut self.follower, pace.found)
+        if let (Some(follower), Some(found)) = (self.solver.follower_mut(), pace.found)
             && !follower.take_up(found, &mut self.world)
         {
             return Err(senseless("it is that of other elements".into()).into());

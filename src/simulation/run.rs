@@ -40,7 +40,7 @@ impl Simulation {
         let clock = *self.world.resource::<Clock>();
         // a time that is a whole number of steps is met in spite of rounding
         let steps = ((time - clock.since.1) / clock.time_step - 1e-6).ceil().max(0.0) as u64;
-        let next = clock.since.0.saturating_add(steps).min(self.next_follow());
+        let next = clock.since.0.saturating_add(steps).min(self.solver.next_look());
         Ok(next.saturating_sub(clock.step))
     }
 
@@ -53,7 +53,7 @@ impl Simulation {
         let target = self.step_count().saturating_add(count);
         while !self.is_finished() && self.step_count() < target {
             self.follow_in_time()?;
-            let end = self.planned_steps().min(target).min(self.next_follow());
+            let end = self.planned_steps().min(target).min(self.solver.next_look());
             let left = end.saturating_sub(self.step_count());
             if left == 0 {
                 break;
@@ -90,7 +90,7 @@ impl Simulation {
     /// [`Simulation::follow`] as a part of the run.
     fn follow_in_time(&mut self) -> Result<(), Error> {
         // threads are not called together for nothing
-        if self.next_follow() > self.step_count() {
+        if self.solver.next_look() > self.step_count() {
             return Ok(());
         }
         let started = Instant::now();
@@ -116,7 +116,7 @@ impl Simulation {
     /// Notes how the simulation broke down, and leaves the last states where files are written.
     pub(super) fn note(&mut self, error: Error) -> Error {
         let Error::Unstable(mut broken) = error else { return self.with_what_is_kept(error) };
-        if self.failure.is_none() && self.relaxing.is_none() {
+        if self.failure.is_none() && self.solver.relaxing().is_none() {
             // what cannot be written now must not hide why the run ended
             let _ = self.leave_last_states(&mut broken);
         }
@@ -124,34 +124,8 @@ impl Simulation {
         Error::Unstable(broken)
     }
 
-    fn steps_to(&mut self, target: u64) -> Result<(), Error> {
-        while self.step_count() < target && self.relaxing.is_none() {
-            self.keep_history_if_due()?;
-            self.take_up_inputs();
-            self.follow()?;
-            let next = self.next_follow().min(self.next_change()).min(self.next_kept().max(self.step_count() + 1));
-            self.some_steps(target.min(next))?;
-        }
-        if self.step_count() < target {
-            self.take_up_inputs();
-        }
-        while self.step_count() < target
-            && let Some(relaxing) = self.relaxing.as_ref().filter(|relaxing| !relaxing.equilibrium.reached)
-        {
-            let next_look = relaxing.next_look();
-            // who asks again after it was given up is told again
-            if self.step_count() < next_look {
-                self.some_steps(target.min(next_look))?;
-            }
-            if self.step_count() >= next_look {
-                self.look()?;
-            }
-        }
-        Ok(())
-    }
-
     /// One step on the host, or as many as can be submitted together.
-    fn some_steps(&mut self, target: u64) -> Result<(), Error> {
+    pub(super) fn some_steps(&mut self, target: u64) -> Result<(), Error> {
         if self.facts.on_gpu { self.device_steps(target) } else { self.host_step(target) }
     }
 

@@ -28,7 +28,7 @@ impl Simulation {
             return Err(Error::Options(format!("{time_step} s is no step that this simulation can take")));
         }
         let left = ((self.scene.duration - clock.time()) / time_step).round().max(0.0);
-        if let Some(follower) = &mut self.follower {
+        if let Some(follower) = self.solver.follower_mut() {
             follower.found.own = Some(time_step);
         }
         self.change_step(time_step, clock.step + left as u64)
