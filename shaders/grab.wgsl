@@ -7,7 +7,11 @@ struct HeldRow {
     goal_x: f32, // the displacement to which it is pulled (m)
     goal_y: f32,
     goal_z: f32,
-    unused: u32,
+    stiffness_over_mass: f32, // of the node when it was grabbed (1/s²)
+    damping_over_mass: f32, // (1/s)
+    unused_1: u32,
+    unused_2: u32,
+    unused_3: u32,
 }
 @group(0) @binding(0) var<uniform> grabs: array<HeldRow, MOST_HELD>;
 @group(0) @binding(1) var<storage, read> mass: array<f32>;
@@ -22,7 +26,10 @@ fn grab(node: u32) {
             let u = vec3<f32>(displacement[at], displacement[at + 1u], displacement[at + 2u]);
             let last = vec3<f32>(displacement_step[at], displacement_step[at + 1u], displacement_step[at + 2u]);
             let goal = vec3<f32>(held.goal_x, held.goal_y, held.goal_z);
-            let force = held.stiffness * (goal - u) - held.damping * (step.rate * last);
+            // what elements that go take of the mass makes the spring softer: the stable step stays
+            let stiffness = min(held.stiffness, held.stiffness_over_mass * mass[node]);
+            let damping = min(held.damping, held.damping_over_mass * mass[node]);
+            let force = stiffness * (goal - u) - damping * (step.rate * last);
             let size = length(force);
             add_load(node, select(force, force * (held.most / size), size > held.most));
         }

@@ -37,25 +37,26 @@ impl NodeSystem for Grabs {
         let place = |bound: usize| self.held.partition_point(|held| (held.row as usize) < bound);
         for held in &self.held[place(nodes.first)..place(nodes.first + nodes.rows())] {
             let row = held.row as usize - nodes.first;
-            if nodes.mass[row] > T::default() {
+            let mass = nodes.mass[row];
+            if mass > T::default() {
                 let step = glam::DVec3::from_array([0, 1, 2].map(|i| nodes.step[3 * row + i].to_f64()));
-                nodes.add_load(row, held.force(nodes.displacement(row), step * rate));
+                nodes.add_load(row, held.force(nodes.displacement(row), step * rate, mass.to_f64()));
             }
         }
     }
 
-    fn slopes(&self, nodes: &NodesAtRest<'_>) -> ForceSlopes {
-        let mut largest = ForceSlopes::default();
-        for held in &self.held {
-            let mass = nodes.mass.get(held.row as usize);
-            if mass > 0.0 {
-                let of_node = self.held.iter().filter(|other| other.row == held.row);
+    /// Whatever the nodes' masses are by now: see [`HeldNode`].
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        let of_node = |nodes: &[HeldNode]| {
+            let each = nodes.iter().map(|held| ForceSlopes {
                 // the same in all directions
-                let sum = of_node.fold((0.0, 0.0), |sum, held| (sum.0 + held.stiffness, sum.1 + held.damping));
-                largest = largest.larger(ForceSlopes { stiffness: sum.0 / mass, damping: sum.1 / mass });
-            }
-        }
-        largest
+                stiffness: held.stiffness_over_mass,
+                damping: held.damping_over_mass,
+            });
+            each.fold(ForceSlopes::default(), ForceSlopes::and)
+        };
+        let all = self.held.chunk_by(|one, next| one.row == next.row).map(of_node);
+        all.fold(ForceSlopes::default(), ForceSlopes::larger)
     }
 }
 
@@ -75,21 +76,50 @@ struct HeldRow {
     goal_x: f32,
     goal_y: f32,
     goal_z: f32,
-    unused: u32,
+    stiffness_over_mass: f32,
+    damping_over_mass: f32,
+    unused_1: u32,
+    unused_2: u32,
+    unused_3: u32,
 }
-uniform!(HeldRow { row, stiffness, damping, most, goal_x, goal_y, goal_z, unused });
+uniform!(HeldRow {
+    row,
+    stiffness,
+    damping,
+    most,
+    goal_x,
+    goal_y,
+    goal_z,
+    stiffness_over_mass,
+    damping_over_mass,
+    unused_1,
+    unused_2,
+    unused_3
+});
 
 /// The bytes of that uniform: behind the last held node come rows that no body has.
 pub(crate) fn bytes_of(grabs: &Grabs) -> Vec<u8> {
     let place = |place: usize| {
         let held = grabs.held.get(place);
-        let HeldNode { row, stiffness, damping, most, goal } =
-            held.copied().unwrap_or(HeldNode { row: u32::MAX, ..HeldNode::default() });
-        let [goal_x, goal_y, goal_z] = goal.as_vec3().to_array();
+        let held = held.copied().unwrap_or(HeldNode { row: u32::MAX, ..HeldNode::default() });
+        let [goal_x, goal_y, goal_z] = held.goal.as_vec3().to_array();
         // infinity is no number that a shader must know
-        let most = (most as f32).min(f32::MAX);
-        let (stiffness, damping) = (stiffness as f32, damping as f32);
-        HeldRow { row, stiffness, damping, most, goal_x, goal_y, goal_z, unused: 0 }.bytes()
+        let number = |number: f64| (number as f32).min(f32::MAX);
+        HeldRow {
+            row: held.row,
+            stiffness: number(held.stiffness),
+            damping: number(held.damping),
+            most: number(held.most),
+            goal_x,
+            goal_y,
+            goal_z,
+            stiffness_over_mass: number(held.stiffness_over_mass),
+            damping_over_mass: number(held.damping_over_mass),
+            unused_1: 0,
+            unused_2: 0,
+            unused_3: 0,
+        }
+        .bytes()
     };
     (0..Grabs::MOST_HELD).flat_map(place).collect()
 }

@@ -8,6 +8,7 @@ use crate::math::SimdScalar;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
 use bevy_ecs::system::{DynParamBuilder, DynSystemParam, IntoSystem, ParamBuilder};
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// What a system does to the nodes of a body, row by row. Its component calls for it: each entity that has one and
@@ -30,7 +31,7 @@ pub trait NodeSystem: Component {
     fn prepare(&self, before: &Before<'_>) -> Self::Prepared;
 
     /// How fast the forces that it adds grow with displacements and velocities, for the stable step, where they do: the
-    /// largest of all nodes.
+    /// largest of all nodes, 0 or above.
     fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
         ForceSlopes::default()
     }
@@ -61,6 +62,8 @@ pub struct NodesAtRest<'a> {
     pub mass: &'a Mass,
     /// Which axes are held, as bits.
     pub axes: Option<&'a ConstrainedAxes>,
+    /// Inputs that programs set, where the scene has any.
+    pub signals: Option<&'a Signals>,
     /// What the scene lasts (s).
     pub duration: f64,
 }
@@ -73,7 +76,8 @@ impl NodesAtRest<'_> {
 }
 
 /// Norms of −∂f/∂u and −∂f/∂v of forces on nodes, over the nodes' masses.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct ForceSlopes {
     /// κ (1/s²).
     pub stiffness: f64,
@@ -228,9 +232,11 @@ fn slopes<S: NodeSystem>(of_system: Option<OfSystem>, duration: f64, world: &mut
     for (entity, system, of, _) in callers.iter(world).filter(|caller| caller.3.copied() == of_system) {
         let body = of.map_or(entity, |of| of.0);
         if let (Some(rest), Some(mass)) = (world.get::<RestPosition>(body), world.get::<Mass>(body)) {
-            let nodes = NodesAtRest { rest, mass, axes: world.get::<ConstrainedAxes>(body), duration };
+            let (axes, signals) = (world.get::<ConstrainedAxes>(body), world.get_resource::<Signals>());
+            let nodes = NodesAtRest { rest, mass, axes, signals, duration };
             let sum = bodies.entry(body).or_default();
-            *sum = sum.and(system.slopes(&nodes));
+            // a negative norm would take from the others; what is no number is the guards' business
+            *sum = sum.and(system.slopes(&nodes).larger(ForceSlopes::default()));
         }
     }
     bodies.into_values().fold(ForceSlopes::default(), ForceSlopes::larger)

@@ -67,7 +67,7 @@ impl NodeSystem for OwnLoad {
         InStep { curve, time: clock.time(), time_step: clock.time_step, rate: clock.rate() }
     }
 
-    /// Differences at nodes at rest, at some times, with the curve at 1.
+    /// Differences at nodes at rest, at some times, with the curve at 1, or at the largest that an input has been.
     fn slopes(&self, nodes: &NodesAtRest<'_>) -> ForceSlopes {
         let rest = &nodes.rest.0;
         let moves = |row: &usize| nodes.moves(*row);
@@ -80,11 +80,12 @@ impl NodeSystem for OwnLoad {
         let length = LENGTH * (high - low).max_element();
         let lightest = rows.iter().copied().min_by(|&a, &b| nodes.mass.get(a).total_cmp(&nodes.mass.get(b)));
         let every = rows.len().div_ceil(TRIED).max(1);
+        let curve = nodes.signals.map_or(1.0, |signals| signals.largest_input(self.signal));
         let mut largest = ForceSlopes::default();
         for row in rows.iter().copied().step_by(every).chain(lightest) {
             for number in 0..TIMES {
                 let time = nodes.duration * number as f64 / (TIMES - 1) as f64;
-                let node = NodeAtRest { rest_position: rest[row], mass: nodes.mass.get(row), time };
+                let node = NodeAtRest { rest_position: rest[row], mass: nodes.mass.get(row), curve, time };
                 let [stiffness, damping] = self.text.growth(&node, length).map(|slope| slope / node.mass);
                 // what is no number is the guards' business
                 largest = largest.larger(ForceSlopes { stiffness, damping });

@@ -32,7 +32,11 @@ pub fn command(arguments: &RunArguments) -> Outcome {
             (beside(file, folder)?, Some(Snapshot::read(file)?))
         }
     };
-    let options = arguments.how.options();
+    let mut options = arguments.how.options();
+    if let Some(snapshot) = &from {
+        // what a program holds in it stays held
+        options.grabs |= Simulation::can_grab_in(snapshot)?;
+    }
     let mut outcome = run(&scene, &options, &folder, from.as_ref());
     if let Some((cpu, why)) = after_the_gpu(&options, &outcome) {
         terminal::note(&format!("{why}\n`--backend auto` takes the CPU then, from the start\n"));

@@ -241,6 +241,18 @@ impl Signals {
         &mut self.inputs
     }
 
+    /// The largest size that the input of a slot has had or goes to, 1 at least; 1 where it has none.
+    pub fn largest_input(&self, slot: usize) -> f64 {
+        let mut first = 0;
+        for (source, input) in &self.sources {
+            if (first..first + source.slots()).contains(&slot) {
+                return input.map_or(1.0, |input| self.inputs[input].largest());
+            }
+            first += source.slots();
+        }
+        1.0
+    }
+
     /// Evaluates all signals for a step: of loads the mean over a window (s), see [`Clock::window_at`], of motions
     /// where they are at the end of the step (s).
     pub fn evaluate(&mut self, window: (f64, f64), end: f64) {

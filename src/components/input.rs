@@ -29,6 +29,13 @@ pub struct InputState {
     pending: Option<f64>,
     /// The fastest that it ever changed (1/s); where it has no rate, its largest jump.
     fastest: f64,
+    /// The largest size that it has had or goes to, 1 at least: what a load of the scene's own is stiff by.
+    #[serde(default = "one")]
+    largest: f64,
+}
+
+fn one() -> f64 {
+    1.0
 }
 
 /// What became of an input that was set.
@@ -44,7 +51,7 @@ impl Input {
     /// At its initial value.
     pub fn new(name: &str, initial: f64, rate: Option<f64>) -> Self {
         let course = Curve::Table(vec![(0.0, initial)]);
-        let state = InputState { target: initial, course, pending: None, fastest: 0.0 };
+        let state = InputState { target: initial, course, pending: None, fastest: 0.0, largest: initial.abs().max(1.0) };
         Self { name: name.into(), initial, rate, state }
     }
 
@@ -73,6 +80,16 @@ impl Input {
         self.state.pending
     }
 
+    /// The largest size that it has had or goes to, 1 at least.
+    pub fn largest(&self) -> f64 {
+        self.state.largest
+    }
+
+    /// Takes a size as the largest; what was the largest before.
+    pub fn replace_largest(&mut self, largest: f64) -> f64 {
+        std::mem::replace(&mut self.state.largest, largest)
+    }
+
     /// Whether it has jumped.
     pub fn has_jumped(&self) -> bool {
         self.rate.is_none() && self.state.fastest > 0.0
@@ -91,7 +108,10 @@ impl Input {
         // loads act with means over windows that begin in the step before
         let known = points.partition_point(|&(time, _)| time < now - clock.before.max(clock.time_step));
         points.drain(..known.saturating_sub(1));
-        points.extend([(now, here), (rate.map_or(now, |rate| now + (target - here).abs() / rate), target)]);
+        // slower than any clock can tell is never there, in a number all the same
+        let there = rate.map_or(now, |rate| (now + (target - here).abs() / rate).min(f64::MAX));
+        points.extend([(now, here), (there, target)]);
+        state.largest = state.largest.max(here.abs()).max(target.abs());
         state.target = target;
         let speed = rate.unwrap_or((target - here).abs());
         let quickens = speed > 2.0 * state.fastest;
@@ -104,7 +124,7 @@ impl InputState {
     /// Whether it can be that of an input: finite numbers, in a course whose times do not go back.
     pub fn is_sound(&self) -> bool {
         let Curve::Table(points) = &self.course else { return false };
-        let numbers = [self.target, self.fastest].into_iter().chain(self.pending);
+        let numbers = [self.target, self.fastest, self.largest].into_iter().chain(self.pending);
         let grows = points.windows(2).all(|pair| pair[0].0 <= pair[1].0);
         let mut all = numbers.chain(points.iter().flat_map(|&(time, value)| [time, value]));
         !points.is_empty() && grows && all.all(f64::is_finite)
@@ -135,6 +155,16 @@ mod tests {
         assert_eq!(set(&mut input, 0.0, 5), Some(Change::Moves));
         assert_eq!([1.125, 1.25, 1.5, 2.0, 7.0].map(|time| input.course().value(time)), [1.25, 1.5, 1.0, 0.0, 0.0]);
         assert_eq!(input.course().mean((1.125, 1.375)), 0.25 * (1.25 + 1.5 + 1.5 + 1.25));
+    }
+
+    #[test]
+    fn a_rate_too_slow_for_any_clock_leaves_numbers() {
+        let mut input = Input::new("tool", 0.0, Some(1e-320));
+        set(&mut input, f64::from(f32::MAX), 4);
+        assert!(input.course().value(9.0) < 1e-200 && input.course().mean((1.0, 2.0)) < 1e-200);
+        set(&mut input, -f64::from(f32::MAX), 5);
+        assert!(input.state.is_sound() && input.course().value(1e9).abs() < 1e-200);
+        assert_eq!(input.largest(), f64::from(f32::MAX));
     }
 
     #[test]

@@ -57,8 +57,7 @@ impl Simulation {
         let (first, from) = (self.step_count(), self.time());
         let mut longest = Duration::ZERO;
         let why = loop {
-            let left = self.steps_left_to(until)?;
-            if left == 0 {
+            if self.steps_until(until) == 0 {
                 break Ended::Reached;
             }
             let rest = budget.saturating_sub(started.elapsed()).as_secs_f64();
@@ -69,6 +68,10 @@ impl Simulation {
                 None if rest == 0.0 && before > first => break Ended::Budget,
                 None => 1,
             };
+            let left = self.steps_left_to(until)?;
+            if left == 0 {
+                break Ended::Reached;
+            }
             let batch = Instant::now();
             self.advance(fits.clamp(1, left))?;
             if let Some(mut device) = self.world.get_resource_mut::<Device>() {

@@ -4,20 +4,22 @@ use super::{Pick, Simulation};
 use crate::backend::device::{Device, bring_to_host};
 use crate::components::*;
 use crate::error::Error;
-use crate::scene::schema::WhenUnstable;
-use crate::systems::{ForceSlopes, NodeRows, grab_bytes, grab_uniform};
+use crate::systems::{grab_bytes, grab_uniform};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-/// ω Δt of a spring whose stiffness is not given: what it takes of the stable step cannot be noticed.
-const GENTLE: f64 = 0.1;
+/// ω Δt of a spring whose stiffness is not given. With critical damping γΔt is twice that. Where Δt is 0.9 of the stable
+/// step, 2.8 % of that are lost: 1 − 2/(γ/2 + √(γ²/4 + 4 + ω²)) with ω = 0.05/0.9 and γ = 2ω in units of it; 5 % is what
+/// such a step leaves free before it follows ([`Follower::most`](super::follow::Follower::most)).
+const GENTLE: f64 = 0.05;
 
 /// How a hand holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grip {
-    /// Stiffness of the spring (N/m); left out: m ω² with ω Δt = 0.1, m the least mass of a held node over its weight.
+    /// Stiffness of the spring (N/m); left out: m ω² with ω Δt = 0.05, m the least mass of a held node over its weight and
+    /// Δt the first step of the run: it takes 2.8 % of a stable step of which Δt is 0.9, and no step has to follow that.
     pub stiffness: Option<f64>,
     /// Damping of the damper (N s/m); left out: that of a critically damped mass m.
     pub damping: Option<f64>,
@@ -51,8 +53,19 @@ pub struct Grab {
     pub damping: f64,
     /// The largest force (N).
     pub most_force: f64,
-    /// Rows of the held nodes, their weights, and their displacements when they were grabbed (m).
-    held: Vec<(u32, f64, DVec3)>,
+    held: Vec<Held>,
+}
+
+/// A node that is held, when it was grabbed.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Held {
+    row: u32,
+    weight: f64,
+    /// Its displacement (m).
+    displacement: DVec3,
+    /// Its mass (kg).
+    mass: f64,
 }
 
 /// All that is held, by number.
@@ -61,18 +74,28 @@ pub(super) type AllGrabs = BTreeMap<GrabId, Grab>;
 impl Grab {
     /// The held nodes, each with its share of the spring.
     fn nodes(&self) -> impl Iterator<Item = HeldNode> {
-        self.held.iter().map(|&(row, weight, displacement)| HeldNode {
-            row,
-            stiffness: weight * self.stiffness,
-            damping: weight * self.damping,
-            most: weight * self.most_force,
-            goal: displacement + (self.target - self.from),
+        self.held.iter().map(|&Held { row, weight, displacement, mass }| {
+            let (stiffness, damping) = (weight * self.stiffness, weight * self.damping);
+            // what has no mass is not pulled
+            let over_mass = |number: f64| if mass > 0.0 { number / mass } else { 0.0 };
+            HeldNode {
+                row,
+                stiffness,
+                damping,
+                stiffness_over_mass: over_mass(stiffness),
+                damping_over_mass: over_mass(damping),
+                most: weight * self.most_force,
+                goal: displacement + (self.target - self.from),
+            }
         })
     }
 
     fn is_sound(&self, rows: usize) -> bool {
         let numbers = [self.stiffness, self.damping];
-        let held = |&(row, weight, u): &(u32, f64, DVec3)| (row as usize) < rows && weight > 0.0 && u.is_finite();
+        let held = |held: &Held| {
+            let sound = held.weight > 0.0 && held.displacement.is_finite() && held.mass.is_finite();
+            (held.row as usize) < rows && sound && held.mass >= 0.0
+        };
         numbers.iter().all(|number| number.is_finite() && *number >= 0.0)
             && (self.from - self.target).is_finite()
             && self.most_force > 0.0
@@ -102,6 +125,7 @@ impl Simulation {
     /// As [`Simulation::grab`]; no such body or place; weights that are negative, or all 0.
     pub fn grab_nodes(&mut self, body: &str, nodes: &[(usize, f64)], grip: &Grip) -> Result<GrabId, Error> {
         self.settle()?;
+        self.keep_start();
         let sum: f64 = nodes.iter().map(|node| node.1).sum();
         if !(sum.is_finite() && sum > 0.0 && nodes.iter().all(|node| node.1 >= 0.0)) {
             return Err(wrong("the weights of grabbed nodes must be 0 or above, and one of them above"));
@@ -112,35 +136,52 @@ impl Simulation {
         let entity = set.body();
         let states = self.node_state(&set)?;
         let weights = nodes.iter().map(|node| node.1 / sum);
-        let held: Vec<(u32, f64, DVec3)> = (set.rows().iter().zip(weights).zip(&states))
-            .map(|((&row, weight), state)| (row as u32, weight, state.displacement))
+        let held: Vec<Held> = (set.rows().iter().zip(weights).zip(&states))
+            .map(|((&row, weight), state)| Held {
+                row: row as u32,
+                weight,
+                displacement: state.displacement,
+                mass: state.mass,
+            })
             .collect();
-        let from = held.iter().zip(&states).map(|(held, state)| held.1 * (state.rest + state.displacement)).sum();
-        let inertia = held.iter().zip(&states).map(|(held, state)| state.mass / held.1);
+        let from =
+            held.iter().zip(&states).map(|(held, state)| held.weight * (state.rest + state.displacement)).sum();
+        let inertia = held.iter().map(|held| held.mass / held.weight);
         let mass = inertia.filter(|mass| *mass > 0.0).fold(f64::INFINITY, f64::min);
         if !mass.is_finite() {
             return Err(wrong("the grabbed nodes have no mass: all their elements are removed"));
         }
-        let stiffness = grip.stiffness.unwrap_or(mass * (GENTLE / self.time_step()).powi(2));
+        // the same for every grab, whatever the step has become
+        let time_step = self.solver.follower().map_or_else(|| self.time_step(), |follower| follower.first);
+        let stiffness = grip.stiffness.unwrap_or(mass * (GENTLE / time_step).powi(2));
         let damping = grip.damping.unwrap_or(2.0 * (stiffness * mass).sqrt());
         let body = body.to_string();
         let grab = Grab { body, from, target: from, stiffness, damping, most_force: grip.most_force, held };
         if !grab.is_sound(usize::MAX) || grab.stiffness == 0.0 {
             return Err(wrong("stiffness and largest force of a grip must be above 0, its damping 0 or above"));
         }
-        let id = GrabId(self.grabs.last_key_value().map_or(0, |(id, _)| id.0 + 1));
+        let id = GrabId(self.next_grab);
         self.grabs.insert(id, grab);
         let put = self.put_grabs(entity).and_then(|()| self.is_stable_with_grabs());
         if let Err(error) = put {
             self.grabs.remove(&id);
             let _ = self.put_grabs(entity);
-            self.count_grabs_for_the_step();
+            let _ = self.count_loads();
             return Err(error);
         }
+        self.next_grab += 1;
+        self.note_grab(id);
         if let Some(follower) = self.solver.follower_mut() {
             follower.look_soon();
         }
         Ok(id)
+    }
+
+    /// A grab is what it is from the present step on: snapshots from before are not of another run.
+    fn note_grab(&mut self, id: GrabId) {
+        let grab = self.grabs.get(&id);
+        let what = format!("{id:?} {:?}", grab.map(|grab| (grab.from, grab.target, grab.stiffness, grab.damping)));
+        self.lineage.note(self.world.resource::<Clock>().step, &what);
     }
 
     /// Moves the target of a grab (m): from the next step on.
@@ -156,6 +197,7 @@ impl Simulation {
         let body = grab.body.clone();
         let body = self.body(&body)?;
         self.put_grabs(body)?;
+        self.note_grab(id);
         let step = self.step_count();
         if let Some(follower) = self.solver.follower_mut() {
             follower.note_change(step, false);
@@ -180,8 +222,11 @@ impl Simulation {
         else {
             return Ok(DVec3::ZERO);
         };
-        let with_mass = grab.nodes().filter(|held| mass.get(held.row as usize) > 0.0);
-        Ok(with_mass.map(|held| held.force(u.vector(held.row as usize), d.vector(held.row as usize) * rate)).sum())
+        let of_node = |held: HeldNode| {
+            let row = held.row as usize;
+            held.force(u.vector(row), d.vector(row) * rate, mass.get(row))
+        };
+        Ok(grab.nodes().filter(|held| mass.get(held.row as usize) > 0.0).map(of_node).sum())
     }
 
     /// Lets go.
@@ -192,8 +237,8 @@ impl Simulation {
         let grab = self.grabs.remove(&id).ok_or_else(released)?;
         let body = self.body(&grab.body)?;
         self.put_grabs(body)?;
-        self.count_grabs_for_the_step();
-        Ok(())
+        self.note_grab(id);
+        self.count_loads()
     }
 
     /// All that is held.
@@ -201,23 +246,44 @@ impl Simulation {
         self.grabs.iter().map(|(id, grab)| (*id, grab))
     }
 
-    /// Goes on from what is held in a snapshot.
-    pub(super) fn take_up_grabs(&mut self, grabs: AllGrabs) -> Result<(), Error> {
-        let before = std::mem::replace(&mut self.grabs, grabs);
-        if before.is_empty() && self.grabs.is_empty() {
+    /// Whether what a snapshot holds can be held here.
+    ///
+    /// # Errors
+    /// That nothing can be grabbed; what cannot be held.
+    pub(super) fn check_grabs(&mut self, grabs: &AllGrabs) -> Result<(), Error> {
+        if grabs.is_empty() {
             return Ok(());
         }
-        let names: std::collections::BTreeSet<String> =
+        if self.world.query::<&Grabs>().iter(&self.world).next().is_none() {
+            let count = grabs.len();
+            return Err(Error::Options(format!(
+                "something is held in the snapshot ({count} by Simulation::grab), and nothing can be held here: make the \
+                 simulation with `Options {{ grabs: true, .. }}`"
+            )));
+        }
+        let names: BTreeSet<&String> = grabs.values().map(|grab| &grab.body).collect();
+        for name in names {
+            let body = self.body(name)?;
+            let rows = self.world.get::<Mass>(body).map_or(0, |mass| mass.len());
+            let of_body = || grabs.values().filter(|grab| grab.body == *name);
+            let count = of_body().map(|grab| grab.held.len()).sum::<usize>();
+            if !of_body().all(|grab| grab.is_sound(rows)) || count > Grabs::MOST_HELD {
+                return Err(wrong("the snapshot holds what cannot be held"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Goes on from what is held in a snapshot, which has been checked.
+    pub(super) fn take_up_grabs(&mut self, grabs: AllGrabs) -> Result<(), Error> {
+        let before = std::mem::replace(&mut self.grabs, grabs);
+        self.next_grab = self.next_grab.max(self.grabs.last_key_value().map_or(0, |(id, _)| id.0 + 1));
+        let names: BTreeSet<String> =
             before.values().chain(self.grabs.values()).map(|grab| grab.body.clone()).collect();
         for name in names {
             let body = self.body(&name)?;
-            let rows = self.world.get::<Mass>(body).map_or(0, |mass| mass.len());
-            if !self.grabs.values().filter(|grab| grab.body == name).all(|grab| grab.is_sound(rows)) {
-                return Err(wrong("the snapshot holds what cannot be held"));
-            }
             self.put_grabs(body)?;
         }
-        self.count_grabs_for_the_step();
         Ok(())
     }
 
@@ -244,28 +310,17 @@ impl Simulation {
         Ok(())
     }
 
-    /// What is held counts for the stable step.
-    fn count_grabs_for_the_step(&mut self) {
-        let slopes: ForceSlopes = NodeRows::of::<Grabs>().slopes(self.scene.duration, &mut self.world);
-        if let Some(follower) = self.solver.follower_mut() {
-            follower.loads = self.facts.stability.loads.and(slopes);
-        }
-        self.world.insert_resource(self.facts.stability.loads.and(slopes));
-    }
-
     /// Whether a step that does not follow what is stable is stable with what is held.
     fn is_stable_with_grabs(&mut self) -> Result<(), Error> {
-        self.count_grabs_for_the_step();
-        let step = self.time_step();
-        let Some(follower) = self.solver.follower() else { return Ok(()) };
-        let limit = follower.step_of(follower.found.known);
-        if follower.policy == WhenUnstable::Adapt || step <= limit || self.scene.integration.beyond_stable_step {
-            return Ok(());
-        }
-        Err(Error::Options(format!(
-            "with so stiff a grip the stable step is {limit:.3e} s, and the step is {step:.3e} s: hold more softly, or let the step \
-             follow (when_unstable: Adapt)"
-        )))
+        self.count_loads()?;
+        let loads = self.solver.follower().map(|follower| follower.loads).unwrap_or_default();
+        self.fits_the_step(&loads).map_err(|limit| {
+            let step = self.time_step();
+            Error::Options(format!(
+                "with so stiff a grip the stable step is {limit:.3e} s, and the step is {step:.3e} s: hold more softly, or \
+                 let the step follow (when_unstable: Adapt)"
+            ))
+        })
     }
 }
 

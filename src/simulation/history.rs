@@ -12,6 +12,8 @@ use std::collections::VecDeque;
 pub(super) struct History {
     /// The state before the first step.
     start: Option<PackedSnapshot>,
+    /// Why that was not kept, where it should have been.
+    no_start: Option<String>,
     kept: Option<Kept>,
 }
 
@@ -30,7 +32,8 @@ impl Kept {
     fn add(&mut self, state: Snapshot) {
         self.next = state.time() + self.every;
         self.states.push_back(state);
-        while self.states.iter().map(Snapshot::size).sum::<usize>() > self.bytes {
+        // states may grow; the newest is kept whatever it takes
+        while self.states.len() > 1 && self.states.iter().map(Snapshot::size).sum::<usize>() > self.bytes {
             self.states.pop_front();
         }
     }
@@ -49,11 +52,11 @@ impl Simulation {
         self.settle()?;
         self.keep_start();
         let Some(start) = self.history.start.as_ref().map(PackedSnapshot::unpacked) else {
-            return Err(Error::Options(
-                "the state before the first step was not kept: the run began with a snapshot from elsewhere, \
-                 `forgets_start` is set, or this is a static analysis (make a new simulation)"
-                    .into(),
-            ));
+            let why = self.history.no_start.clone().unwrap_or_else(|| {
+                "the run began with a snapshot from elsewhere, `forgets_start` is set, or this is a static analysis".into()
+            });
+            let text = format!("the state before the first step was not kept: {why} (make a new simulation)");
+            return Err(Error::Options(text));
         };
         let preload = self.preload.take();
         self.restore(&start?)?;
@@ -67,12 +70,16 @@ impl Simulation {
     pub(super) fn keep_start(&mut self) {
         let wanted = !self.facts.forgets_start && !self.scene.is_static() && self.settling.is_none();
         if wanted && self.step_count() == 0 && self.history.start.is_none() {
-            self.history.start = self.snapshot().ok().map(|state| state.packed());
+            match self.snapshot() {
+                Ok(state) => self.history.start = Some(state.packed()),
+                Err(reason) => self.history.no_start = Some(reason.to_string()),
+            }
         }
     }
 
     /// Keeps a state now and whenever so much simulated time has passed (s), in so many bytes together: where they are
-    /// used up, the oldest states go. What was kept before is forgotten.
+    /// used up, the oldest states go, but never the newest. What was kept before is forgotten. Going back forgets what
+    /// came later; a snapshot that is not of this run's own past forgets all.
     ///
     /// # Errors
     /// An `every` that is no positive number; that one state alone takes more; a static analysis; what the GPU says.
@@ -112,7 +119,6 @@ impl Simulation {
         let Some(place) = kept.and_then(|kept| kept.states.iter().rposition(|state| state.time() <= latest)) else {
             if latest >= 0.0 && self.history.start.is_some() {
                 self.reset()?;
-                self.forget_later(0.0);
                 return Ok(self.time());
             }
             let oldest = self.history().first().map(|time| format!("; the oldest is of t = {time} s"));
@@ -123,13 +129,13 @@ impl Simulation {
         };
         let Some(state) = kept.and_then(|kept| kept.states.get(place)).cloned() else { return Ok(self.time()) };
         self.restore(&state)?;
-        self.forget_later(state.time());
         Ok(state.time())
     }
 
-    fn forget_later(&mut self, time: f64) {
+    /// The run goes on from a time: what it came to after that is forgotten, and all of it where it has never been there.
+    pub(super) fn forget_later(&mut self, time: f64, ours: bool) {
         if let Some(kept) = &mut self.history.kept {
-            kept.states.retain(|state| state.time() <= time);
+            kept.states.retain(|state| ours && state.time() <= time);
             kept.next = kept.states.back().map_or(time, |state| state.time() + kept.every);
         }
     }

@@ -7,7 +7,7 @@ use super::Simulation;
 use crate::components::{Change, Clock, Input, InputState, Signals};
 use crate::error::Error;
 use crate::output::{OutputError, replace};
-use crate::scene::schema::{Constraint, Curve, Load, Scene};
+use crate::scene::schema::{Constraint, Curve, Load, Scene, WhenUnstable};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -119,10 +119,12 @@ impl Tape {
         &self.replayed[place(step)..place(step + 1)]
     }
 
-    /// The run goes on from another step: what was recorded after it has not been.
-    fn go_on_from(&mut self, step: u64, before: u64) {
+    /// The run goes on from another step, of its own past or not: what was recorded after it has not been, and what was
+    /// to be replayed is of another run.
+    fn go_on_from(&mut self, step: u64, ours: bool) {
+        self.replayed.clear();
         let Some(recording) = &mut self.recording else { return };
-        if (recording.from..=before).contains(&step) {
+        if ours && recording.from <= step {
             recording.changes.retain(|change| change.step < step);
         } else {
             *recording = InputRecording { from: step, changes: Vec::new() };
@@ -149,21 +151,46 @@ impl Simulation {
     /// counts.
     ///
     /// # Errors
-    /// A name that the scene does not have, with those that it has; a value that is no finite number; a static analysis
-    /// that has begun, whose loads are what they were then.
+    /// A name that the scene does not have, with those that it has; a value that is no finite number, also in f32; one
+    /// with which a load of the scene's own is too stiff for a step that stays; a static analysis that has begun, whose
+    /// loads are what they were then.
     pub fn set_input(&mut self, name: &str, value: f64) -> Result<(), Error> {
-        if !value.is_finite() {
-            return Err(Error::Options(format!("an input must be a finite number; {name:?} was set to {value}")));
+        if !is_possible(value) {
+            let text = format!("an input must be a finite number, in f32 as well; {name:?} was set to {value}");
+            return Err(Error::Options(text));
         }
         if self.scene.is_static() && self.step_count() > 0 {
             let text = "the inputs of a static analysis can be set before its first step only: loads grow to what they are then";
             return Err(Error::Options(text.into()));
         }
-        match self.world.resource_mut::<Signals>().inputs_mut().iter_mut().find(|input| input.name == name) {
-            Some(input) => input.set(value),
-            None => return Err(self.no_input(name)),
-        }
+        let Some(place) = self.world.resource::<Signals>().inputs().iter().position(|input| input.name == name) else {
+            return Err(self.no_input(name));
+        };
+        self.may_be_as_large(place, value)?;
+        self.world.resource_mut::<Signals>().inputs_mut()[place].set(value);
         Ok(())
+    }
+
+    /// Whether loads of the scene's own are stable with a larger input than ever before, where the step stays.
+    fn may_be_as_large(&mut self, place: usize, value: f64) -> Result<(), Error> {
+        let stays = self.solver.follower().is_some_and(|follower| follower.policy != WhenUnstable::Adapt);
+        let before = self.world.resource::<Signals>().inputs()[place].largest();
+        if !stays || value.abs() <= before || self.scene.systems.is_empty() {
+            return Ok(());
+        }
+        let replace = |simulation: &mut Self, largest: f64| {
+            simulation.world.resource_mut::<Signals>().inputs_mut()[place].replace_largest(largest)
+        };
+        replace(self, value.abs());
+        let loads = self.loads_now();
+        replace(self, before);
+        self.fits_the_step(&loads?).map_err(|limit| {
+            let step = self.time_step();
+            Error::Options(format!(
+                "with {value} a load of the scene's own is so stiff that the stable step is {limit:.3e} s, and the step is \
+                 {step:.3e} s: choose a smaller one, or let the step follow (when_unstable: Adapt)"
+            ))
+        })
     }
 
     fn no_input(&self, name: &str) -> Error {
@@ -178,7 +205,8 @@ impl Simulation {
     }
 
     /// Records the inputs from here on, until [`stop_recording_inputs`](Self::stop_recording_inputs). Going back to a
-    /// snapshot of this run takes back what was recorded since; one from elsewhere begins the recording anew.
+    /// snapshot of this run, with the same changes before it, takes back what was recorded since; one from elsewhere
+    /// begins the recording anew.
     pub fn record_inputs(&mut self) {
         self.tape.recording = Some(InputRecording { from: self.step_count(), changes: Vec::new() });
     }
@@ -194,11 +222,13 @@ impl Simulation {
     }
 
     /// Replays a recording: each change is made when its step begins. What is set meanwhile counts until the next
-    /// recorded change of the same input. An empty recording ends replaying.
+    /// recorded change of the same input; of several changes of an input at one step the last counts. An empty recording
+    /// ends replaying, and so does going back.
     ///
     /// # Errors
     /// A recording that began at another step than the present one (restore the snapshot of that step first); inputs
-    /// that the scene does not have; values that are no finite numbers; steps that go back.
+    /// that the scene does not have; values that are no finite numbers, also in f32; steps that go back; changes after
+    /// the first step of a static analysis.
     pub fn replay_inputs(&mut self, recording: &InputRecording) -> Result<(), Error> {
         let (from, now) = (recording.from, self.step_count());
         if from != now && !recording.changes.is_empty() {
@@ -207,7 +237,11 @@ impl Simulation {
         }
         let mut last = from;
         for InputChange { step, name, value } in &recording.changes {
-            if *step < last || !value.is_finite() {
+            if self.scene.is_static() && *step > 0 {
+                let text = format!("the recording sets {name:?} at step {step}: a static analysis takes inputs before its first");
+                return Err(Error::Options(text));
+            }
+            if *step < last || !is_possible(*value) {
                 return Err(Error::Options(format!("the recording cannot set {name:?} to {value} at step {step}")));
             }
             if !self.world.resource::<Signals>().inputs().iter().any(|input| input.name == *name) {
@@ -215,7 +249,16 @@ impl Simulation {
             }
             last = *step;
         }
-        self.tape.replayed = recording.changes.clone();
+        let mut changes: Vec<InputChange> = Vec::new();
+        for change in &recording.changes {
+            // of several before a step the last counts
+            let mut of_step = changes.iter().rev().take_while(|earlier| earlier.step == change.step);
+            if let Some(back) = of_step.position(|earlier| earlier.name == change.name) {
+                changes.remove(changes.len() - 1 - back);
+            }
+            changes.push(change.clone());
+        }
+        self.tape.replayed = changes;
         Ok(())
     }
 
@@ -225,11 +268,11 @@ impl Simulation {
     }
 
     /// Takes up what is set when a step begins.
-    pub(super) fn take_up_inputs(&mut self) {
+    pub(super) fn take_up_inputs(&mut self) -> Result<(), Error> {
         let clock = *self.world.resource::<Clock>();
         // nothing is touched where nothing is set
         if self.world.resource::<Signals>().inputs().is_empty() {
-            return;
+            return Ok(());
         }
         let mut signals = self.world.resource_mut::<Signals>();
         for change in self.tape.due(clock.step) {
@@ -239,9 +282,12 @@ impl Simulation {
                 input.set(change.value);
             }
         }
+        let mut larger = false;
         for input in signals.inputs_mut() {
-            let value = input.target();
+            let (value, largest) = (input.target(), input.largest());
             let Some(change) = input.take_up(&clock) else { continue };
+            larger |= input.largest() > largest;
+            self.lineage.note(clock.step, &format!("{} {value:?}", input.name));
             if let Some(recording) = &mut self.tape.recording {
                 recording.changes.push(InputChange { step: clock.step, name: input.name.clone(), value });
             }
@@ -249,6 +295,14 @@ impl Simulation {
                 follower.note_change(clock.step, change == Change::Quickens);
             }
         }
+        // loads of the scene's own may be as much stiffer
+        if larger && !self.scene.systems.is_empty() {
+            self.count_loads()?;
+            if let Some(follower) = self.solver.follower_mut() {
+                follower.look_soon();
+            }
+        }
+        Ok(())
     }
 
     /// The states of all inputs, for snapshots.
@@ -257,24 +311,34 @@ impl Simulation {
         inputs.map(|input| (input.name.clone(), input.state.clone())).collect()
     }
 
-    /// Goes on from states of inputs, at the present step; `before`: the step that the run was at.
-    pub(super) fn take_up_input_states(
-        &mut self,
-        states: BTreeMap<String, InputState>,
-        before: u64,
-    ) -> Result<(), String> {
+    /// Whether the inputs can be in such states.
+    pub(super) fn check_input_states(&self, states: &BTreeMap<String, InputState>) -> Result<(), String> {
+        let inputs = self.world.resource::<Signals>().inputs();
+        let fits = |(name, state): &(&String, &InputState)| {
+            state.is_sound() && inputs.iter().any(|input| input.name == **name)
+        };
+        match states.iter().find(|state| !fits(state)) {
+            Some((name, _)) => Err(format!("the input {name:?} cannot be what it says")),
+            None => Ok(()),
+        }
+    }
+
+    /// Goes on from states of inputs, which have been checked, at the present step, where the run has been or not.
+    pub(super) fn take_up_input_states(&mut self, states: BTreeMap<String, InputState>, ours: bool) {
         let mut signals = self.world.resource_mut::<Signals>();
         for (name, state) in states {
-            let input = signals.inputs_mut().iter_mut().find(|input| input.name == name);
-            match input.filter(|_| state.is_sound()) {
-                Some(input) => input.state = state,
-                None => return Err(format!("the input {name:?} cannot be what it says")),
+            if let Some(input) = signals.inputs_mut().iter_mut().find(|input| input.name == name) {
+                input.state = state;
             }
         }
         let step = self.step_count();
-        self.tape.go_on_from(step, before);
-        Ok(())
+        self.tape.go_on_from(step, ours);
     }
+}
+
+/// Whether an input can be that: a number that is finite in every precision.
+fn is_possible(value: f64) -> bool {
+    (value as f32).is_finite()
 }
 
 /// What the input of a name multiplies.

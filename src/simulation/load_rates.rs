@@ -12,24 +12,35 @@
 //! pushes only later, or harder elsewhere, is not seen: where it may be stiff, the scene's own `step` or `safety` is
 //! smaller.
 
-use crate::systems::{ForceSlopes, System};
+use super::Simulation;
+use super::follow::step_of;
+use crate::backend::device::bring_to_host;
+use crate::components::{Column, Mass};
+use crate::error::Error;
+use crate::scene::schema::WhenUnstable;
+use crate::systems::{ForceSlopes, NodeRows, System};
 use bevy_ecs::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// The slopes of all forces of node systems together: the largest of each.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct LoadRates(ForceSlopes);
 
 impl LoadRates {
     /// Of the systems of a world, whose scene lasts so long (s).
     pub fn of<'a>(systems: impl Iterator<Item = &'a System>, duration: f64, world: &mut World) -> Self {
-        let nodes = systems.filter_map(|system| system.host.nodes());
-        let all = nodes.map(|rows| rows.slopes(duration, world));
+        Self::of_rows(systems.filter_map(|system| system.host.nodes()), duration, world)
+    }
+
+    /// The same of systems that act on nodes.
+    pub fn of_rows(systems: impl Iterator<Item = NodeRows>, duration: f64, world: &mut World) -> Self {
+        let all = systems.map(|rows| rows.slopes(duration, world));
         Self(all.fold(ForceSlopes::default(), ForceSlopes::and))
     }
 
-    /// The same with those of forces that a program brings.
-    pub fn and(self, slopes: ForceSlopes) -> Self {
-        Self(self.0.and(slopes))
+    /// Whether they are numbers that steps can be found from.
+    pub fn are_sound(&self) -> bool {
+        [self.0.stiffness, self.0.damping].iter().all(|number| number.is_finite() && *number >= 0.0)
     }
 
     /// The stable step (s) under the loads, from that of the bodies alone.
@@ -51,6 +62,38 @@ impl LoadRates {
                 self.0.stiffness, self.0.damping
             )
         })
+    }
+}
+
+impl Simulation {
+    /// The slopes of all forces on nodes as they are now.
+    pub(super) fn loads_now(&mut self) -> Result<LoadRates, Error> {
+        bring_to_host(&mut self.world, |_, name| name == Mass::NAME)?;
+        let systems = self.facts.node_systems.iter().copied();
+        Ok(LoadRates::of_rows(systems, self.scene.duration, &mut self.world))
+    }
+
+    /// Counts forces on nodes for the stable step from here on. Snapshots hold what was counted: elements that went since
+    /// must not make another step of it.
+    pub(super) fn count_loads(&mut self) -> Result<(), Error> {
+        let loads = self.loads_now()?;
+        if let Some(follower) = self.solver.follower_mut() {
+            (follower.loads, follower.found.loads) = (loads, Some(loads));
+        }
+        self.world.insert_resource(loads);
+        Ok(())
+    }
+
+    /// Whether a step that stays is stable with such loads by the margin at which something would be done about it.
+    ///
+    /// # Errors
+    /// The largest that is (s).
+    pub(super) fn fits_the_step(&self, loads: &LoadRates) -> Result<(), f64> {
+        let Some(follower) = self.solver.follower() else { return Ok(()) };
+        let bodies = step_of(follower.found.known.max(follower.found.latest));
+        let limit = follower.most() * loads.with(bodies);
+        let follows = follower.policy == WhenUnstable::Adapt || self.scene.integration.beyond_stable_step;
+        if follows || self.time_step() <= limit { Ok(()) } else { Err(limit) }
     }
 }
 

@@ -19,6 +19,7 @@ mod history;
 mod inputs;
 mod keep;
 mod known;
+mod lineage;
 mod load_rates;
 mod mass_scaling;
 mod modes;
@@ -34,6 +35,7 @@ mod plan;
 mod plausible;
 mod policies;
 mod preload;
+mod prepare;
 mod relax;
 mod residual;
 mod rounding;
@@ -93,6 +95,10 @@ pub struct Simulation {
     /// Surfaces for picking.
     surfaces: pick::Surfaces,
     grabs: grab::AllGrabs,
+    /// The number of the next grab: none is given twice.
+    next_grab: u64,
+    /// What programs have done so far.
+    lineage: lineage::Lineage,
     /// States to go back to.
     history: history::History,
     /// What a step takes on the clock on the wall (s), where that was measured.
@@ -136,5 +142,7 @@ struct Facts {
     initial_mass: f64,
     setup: Duration,
     forgets_start: bool,
+    /// Systems of the step that act on nodes: what their forces do to the stable step is counted anew when it changes.
+    node_systems: Vec<crate::systems::NodeRows>,
     warnings: Diagnostics,
 }

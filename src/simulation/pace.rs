@@ -6,7 +6,7 @@ use super::follow::Followed;
 use super::grab::AllGrabs;
 use super::step_change::relax_as;
 use super::{Job, Simulation};
-use crate::components::{Clock, InputState};
+use crate::components::{Clock, Grabs, InputState};
 use crate::error::Error;
 use crate::observation::Observer;
 use crate::snapshot::{Snapshot, SnapshotError};
@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 /// The pace at the end of a step.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Pace {
+pub(super) struct Pace {
     /// When systems on the host run next, by name.
     beats: BTreeMap<String, Beat>,
     /// What is known of the stable step.
@@ -25,14 +25,41 @@ struct Pace {
     /// What programs set.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     inputs: BTreeMap<String, InputState>,
+    /// Whether they may hold something.
+    #[serde(default, skip_serializing_if = "is_default")]
+    can_grab: bool,
     /// What they hold.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     grabs: AllGrabs,
+    /// The hash of what they had done before this step.
+    #[serde(default, skip_serializing_if = "is_default")]
+    changes: u64,
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+fn senseless(reason: impl std::fmt::Display) -> SnapshotError {
+    SnapshotError::Senseless(format!("its pace cannot be taken up: {reason}"))
+}
+
+fn pace_of(snapshot: &Snapshot) -> Result<Pace, SnapshotError> {
+    ron::from_str(snapshot.pace()).map_err(senseless)
 }
 
 impl Simulation {
+    /// Whether a snapshot is of a simulation with [`Options::grabs`](super::Options::grabs): one that goes on from it
+    /// needs them, too.
+    ///
+    /// # Errors
+    /// A snapshot that is senseless.
+    pub fn can_grab_in(snapshot: &Snapshot) -> Result<bool, Error> {
+        Ok(pace_of(snapshot)?.can_grab)
+    }
+
     /// Notes the pace in a snapshot of the world.
-    pub(super) fn note_pace(&self, snapshot: &mut Snapshot) -> Result<(), SnapshotError> {
+    pub(super) fn note_pace(&mut self, snapshot: &mut Snapshot) -> Result<(), SnapshotError> {
         let beat = |entry: &super::Entry| match &entry.job {
             Job::Host { beat, .. } => Some((entry.name.clone(), *beat)),
             Job::Kernels(_) => None,
@@ -41,21 +68,36 @@ impl Simulation {
             beats: self.entries.iter().filter_map(beat).collect(),
             found: self.solver.follower().map(|follower| follower.followed()),
             inputs: self.input_states(),
+            can_grab: self.world.query::<&Grabs>().iter(&self.world).next().is_some(),
             grabs: self.grabs.clone(),
+            changes: self.lineage.before(self.step_count()).unwrap_or_default(),
         };
         let text = ron::to_string(&pace).map_err(|error| SnapshotError::Senseless(error.to_string()))?;
         snapshot.set_pace(text);
         Ok(())
     }
 
-    /// Goes on at the pace of a snapshot that has been put into the world, where the run was at the step `before`.
-    pub(super) fn take_up_pace(&mut self, snapshot: &Snapshot, before: u64) -> Result<(), Error> {
-        let senseless = |reason: String| SnapshotError::Senseless(format!("its pace cannot be taken up: {reason}"));
-        let pace: Pace = ron::from_str(snapshot.pace()).map_err(|error| senseless(error.to_string()))?;
+    /// The pace of a snapshot, if all of it fits; nothing has changed then.
+    pub(super) fn checked_pace(&mut self, snapshot: &Snapshot) -> Result<Pace, Error> {
+        let pace = pace_of(snapshot)?;
+        self.check_grabs(&pace.grabs)?;
+        snapshot.fits(&mut self.world)?;
         if let Some((name, _)) = pace.beats.iter().find(|(_, beat)| !beat.is_sound()) {
             return Err(senseless(format!("the system `{name}` can never run")).into());
         }
-        self.take_up_input_states(pace.inputs, before).map_err(senseless)?;
+        self.check_input_states(&pace.inputs).map_err(senseless)?;
+        let found = pace.found.as_ref().filter(|_| self.solver.follower().is_some());
+        match found.is_none_or(|found| found.fits(&mut self.world)) {
+            true => Ok(pace),
+            false => Err(senseless("it is that of other elements").into()),
+        }
+    }
+
+    /// Goes on at the pace of a snapshot that has been put into the world, where the run was at the step `before`;
+    /// whether it has been where it goes on from.
+    pub(super) fn take_up_pace(&mut self, pace: Pace, before: u64) -> Result<bool, Error> {
+        let ours = self.lineage.go_on_from(self.step_count(), pace.changes, before);
+        self.take_up_input_states(pace.inputs, ours);
         self.take_up_grabs(pace.grabs)?;
         self.surfaces.clear();
         let clock = *self.world.resource::<Clock>();
@@ -69,11 +111,9 @@ impl Simulation {
         let last_step = clock.step_nearest(self.scene.duration);
         self.facts.steps = last_step;
         self.world.resource_scope(|world, mut observer: Mut<Observer>| observer.go_on(world, last_step))?;
-        if let (Some(follower), Some(found)) = (self.solver.follower_mut(), pace.found)
-            && !follower.take_up(found, &mut self.world)
-        {
-            return Err(senseless("it is that of other elements".into()).into());
+        if let (Some(follower), Some(found)) = (self.solver.follower_mut(), pace.found) {
+            follower.take_up(found, &mut self.world);
         }
-        Ok(())
+        Ok(ours)
     }
 }

@@ -34,14 +34,24 @@ impl Simulation {
         }
     }
 
-    /// Steps that can be taken together until the clock shows at least `time` (s), as long as Δt stays as it is.
+    /// Steps that can be taken together until the clock shows at least `time` (s), as long as Δt stays as it is. Where
+    /// there are any, the first of them has begun, and must be taken before anything is set.
     pub(super) fn steps_left_to(&mut self, time: f64) -> Result<u64, Error> {
-        self.follow_in_time()?;
-        let clock = *self.world.resource::<Clock>();
+        if self.steps_until(time) == 0 {
+            return Ok(0);
+        }
+        self.begin_step_in_time()?;
+        let step = self.step_count();
+        let next = step.saturating_add(self.steps_until(time).max(1)).min(self.solver.next_look());
+        Ok(next.saturating_sub(step))
+    }
+
+    /// Steps of Δt as it is until the clock shows at least `time` (s).
+    pub(super) fn steps_until(&self, time: f64) -> u64 {
+        let clock = self.world.resource::<Clock>();
         // a time that is a whole number of steps is met in spite of rounding
         let steps = ((time - clock.since.1) / clock.time_step - 1e-6).ceil().max(0.0) as u64;
-        let next = clock.since.0.saturating_add(steps).min(self.solver.next_look());
-        Ok(next.saturating_sub(clock.step))
+        clock.since.0.saturating_add(steps).saturating_sub(clock.step)
     }
 
     /// Takes at most `count` steps, and none beyond the end of the scene.
@@ -52,7 +62,7 @@ impl Simulation {
         self.settle()?;
         let target = self.step_count().saturating_add(count);
         while !self.is_finished() && self.step_count() < target {
-            self.follow_in_time()?;
+            self.begin_step_in_time()?;
             let end = self.planned_steps().min(target).min(self.solver.next_look());
             let left = end.saturating_sub(self.step_count());
             if left == 0 {
@@ -87,8 +97,11 @@ impl Simulation {
         }
     }
 
-    /// [`Simulation::follow`] as a part of the run.
-    fn follow_in_time(&mut self) -> Result<(), Error> {
+    /// [`Simulation::begin_step`] as a part of the run.
+    fn begin_step_in_time(&mut self) -> Result<(), Error> {
+        self.keep_start();
+        self.keep_history_if_due()?;
+        self.take_up_inputs()?;
         // threads are not called together for nothing
         if self.solver.next_look() > self.step_count() {
             return Ok(());

@@ -11,9 +11,8 @@ use super::tangent::Tangent;
 use super::{Simulation, added_mass};
 use crate::assembly::{StableStep, stable_step};
 use crate::backend::device::bring_to_host;
-use crate::components::Clock;
 use crate::error::Error;
-use crate::scene::schema::{Constraint, Curve, Inversion, Scene, StepBound, WhenUnstable};
+use crate::scene::schema::{Constraint, Curve, InitialState, Inversion, Scene, StepBound, WhenUnstable};
 use crate::scene::{Diagnostics, SceneFile};
 use crate::systems::System;
 use bevy_ecs::prelude::*;
@@ -113,10 +112,12 @@ impl Simulation {
     }
 }
 
-/// The stable step of a scene whose world has its laws, its step and the number of its steps.
+/// The stable step of a scene whose world has its laws, its step and the number of its steps. `loads`: forces on nodes,
+/// where more is known of them than the world says yet.
 pub(super) fn choose(
     scene: &SceneFile,
     known: &Known<'_>,
+    loads: Option<LoadRates>,
     world: &mut World,
     diagnostics: &mut Diagnostics,
 ) -> Option<(Stability, f64, u64)> {
@@ -140,7 +141,7 @@ pub(super) fn choose(
             .warn_at("integration.bound", reason)
             .note("`bound: Auto` stays with the stiffest element, which is safe");
     }
-    let loads = LoadRates::of(known.systems(), scene.scene.duration, world);
+    let loads = loads.unwrap_or_else(|| LoadRates::of(known.systems(), scene.scene.duration, world));
     world.insert_resource(loads);
     let found = seek(&scene.scene, certain, stays.is_none(), &loads, world);
     // the bounds are certain as well: at rest the best of all
@@ -190,42 +191,32 @@ pub(super) fn choose(
     Some((stability, time_step, steps as u64))
 }
 
-/// Counts the stiffness of systems whose parameters were not known when the step was chosen. Where the step follows what
-/// is stable, it will be smaller before the first one is taken.
-pub(super) fn count_systems<'a>(
+/// The stiffness of forces on nodes with systems whose parameters were not known when the step was chosen, where they
+/// make it smaller: then it must be chosen again.
+pub(super) fn with_parameters<'a>(
     scene: &Scene,
     systems: impl Iterator<Item = &'a System>,
-    stability: &mut Stability,
+    stability: &Stability,
     world: &mut World,
-    diagnostics: &mut Diagnostics,
-) {
+) -> Option<LoadRates> {
     let all = LoadRates::of(systems, scene.duration, world);
-    let (step, before) = (world.resource::<Clock>().time_step, stability.limit);
     // what has been counted already may be summed in another order
-    let Some(before) = before.filter(|before| all.with(stability.limit_of_bodies) < (1.0 - 1e-9) * before) else {
-        return;
-    };
-    let limit = all.with(stability.limit_of_bodies);
-    (stability.loads, stability.limit) = (all, Some(limit));
-    world.insert_resource(all);
-    if step > limit && scene.when_unstable() != WhenUnstable::Adapt {
-        diagnostics
-            .warn_at("schedule", format!("systems of the program's make the stable step {limit:.3e} s of {before:.3e} s; the step is {step:.3e} s"))
-            .note("give a smaller `step` or `safety`, or let the step follow (when_unstable: Adapt)");
-    }
+    let before = (1.0 - 1e-9) * stability.limit?;
+    (all.with(stability.limit_of_bodies) < before).then_some(all)
 }
 
 /// Why `bound: Auto` stays with what the elements allow: what needs the room between that and the true limit.
 fn reason_to_stay(scene: &Scene) -> Option<&'static str> {
     let removes = scene.materials.values().any(|material| material.inversion() == Inversion::Remove);
+    let at_rest = scene.start != InitialState::default();
+    let jump = |curve: &Curve| match curve {
+        Curve::Step { .. } | Curve::Input { rate: None, .. } => true,
+        // from rest to there in the first step
+        Curve::Input { initial, .. } => *initial != 0.0 && !at_rest,
+        _ => false,
+    };
     let jumps = |constraint: &Constraint| match constraint {
-        Constraint::Prescribed {
-            curve: Curve::Step { .. } | Curve::Input { rate: None, .. },
-            displacement,
-            gradient,
-            rotation,
-            ..
-        } => gradient.iter().chain([displacement, rotation]).any(|moved| *moved != DVec3::ZERO),
+        Constraint::Prescribed { curve, displacement, gradient, rotation, .. } if jump(curve) => gradient.iter().chain([displacement, rotation]).any(|moved| *moved != DVec3::ZERO),
         _ => false,
     };
     match scene.when_unstable() {

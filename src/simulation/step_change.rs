@@ -27,6 +27,7 @@ impl Simulation {
         if !(time_step.is_finite() && time_step > 0.0) || clock.relaxation.is_some() {
             return Err(Error::Options(format!("{time_step} s is no step that this simulation can take")));
         }
+        self.lineage.note(clock.step, &format!("step {time_step:?}"));
         let left = ((self.scene.duration - clock.time()) / time_step).round().max(0.0);
         if let Some(follower) = self.solver.follower_mut() {
             follower.found.own = Some(time_step);

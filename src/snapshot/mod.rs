@@ -118,6 +118,18 @@ impl Snapshot {
         put
     }
 
+    /// Whether the state fits a world.
+    ///
+    /// # Errors
+    /// What does not.
+    pub(crate) fn fits(&self, world: &mut World) -> Result<(), SnapshotError> {
+        let Some(keeping) = world.remove_resource::<Keeping>() else { return Err(SnapshotError::Static) };
+        let columns = state_columns(world, &keeping.written);
+        let fits = check(self, world, &keeping, &columns);
+        world.insert_resource(keeping);
+        fits
+    }
+
     /// How the simulation goes on from here.
     pub(crate) fn pace(&self) -> &str {
         &self.head.pace

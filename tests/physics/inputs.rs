@@ -142,6 +142,63 @@ fn a_recording_replayed_gives_the_same_bits() {
     }
 }
 
+/// Looks at the stable step come at the same steps however steps are asked for, beside a load that quickens later.
+#[test]
+fn a_recording_of_steps_towards_times_is_replayed_by_their_number() {
+    for run in configurations() {
+        let later = "loads: [Gravity(acceleration: (0, 0, -3), curve: Smooth(start: 0.06, end: 0.12)),";
+        let text = cube(&followed(PUSH, TOOL).replace("loads: [", later), "");
+        let mut hand = run.start(&text);
+        hand.record_inputs();
+        for place in 1..=60 {
+            // as fast as it will ever be at first: what comes later only moves it
+            let (push, tool) = if place == 1 { (-2.0, 1.0) } else { (-2.0 + 0.02 * f64::from(place), 0.5) };
+            hand.set_input("push", push).unwrap();
+            hand.set_input("tool", tool).unwrap();
+            hand.advance_to(0.0021 * f64::from(place)).unwrap();
+        }
+        // a time that lay within a step took none: what was set before is taken up by now
+        hand.advance(1).unwrap();
+        let recording = hand.stop_recording_inputs().unwrap();
+        let mut again = run.start(&text);
+        again.replay_inputs(&recording).unwrap();
+        again.advance(hand.step_count()).unwrap();
+        let (hand, again) = (hand.snapshot().unwrap(), again.snapshot().unwrap());
+        assert_eq!(again.differences(&hand), Vec::<String>::new(), "{}", run.name);
+    }
+}
+
+/// A snapshot of another run, even of the same step, is nothing that the recording leads to.
+#[test]
+fn a_recording_does_not_go_on_from_another_run() {
+    let run = &configurations()[0];
+    let text = cube(&followed(PUSH, TOOL), "");
+    let pushed = |push: f64| {
+        let mut simulation = run.start(&text);
+        simulation.record_inputs();
+        simulation.advance(5).unwrap();
+        simulation.set_input("push", push).unwrap();
+        simulation.advance(15).unwrap();
+        simulation
+    };
+    let (mut one, mut other) = (pushed(1.0), pushed(0.5));
+    let (own, foreign) = (one.snapshot().unwrap(), other.snapshot().unwrap());
+    one.advance(10).unwrap();
+    one.restore(&own).unwrap();
+    assert_eq!((one.recorded_inputs().unwrap().from, one.recorded_inputs().unwrap().changes.len()), (0, 1));
+    one.advance(10).unwrap();
+    one.restore(&foreign).unwrap();
+    assert_eq!((one.recorded_inputs().unwrap().from, one.recorded_inputs().unwrap().changes.len()), (20, 0));
+    // going back ends what is replayed
+    let recording = other.stop_recording_inputs().unwrap();
+    let mut again = run.start(&text);
+    again.replay_inputs(&recording).unwrap();
+    again.advance(2).unwrap();
+    again.reset().unwrap();
+    again.advance(20).unwrap();
+    assert_eq!(again.inputs()[1].target, 0.25);
+}
+
 #[test]
 fn snapshots_keep_inputs() {
     for run in configurations() {
@@ -191,6 +248,10 @@ fn an_input_of_a_static_analysis_is_set_before_it_begins() {
         set.finish().unwrap();
         assert!(bits(&mut set, "b") == bits(&mut told, "b"), "{}: another rest", run.name);
         assert!(set.set_input("g", 1.0).unwrap_err().to_string().contains("before its first step"));
+        let later = "(from: 0, changes: [(step: 0, name: \"g\", value: 0.75), (step: 3, name: \"g\", value: 1)])";
+        let mut replayed = run.start(&cube(&acts("Input(name: \"g\")"), ""));
+        let refused = replayed.replay_inputs(&InputRecording::from_ron(later).unwrap()).unwrap_err().to_string();
+        assert!(refused.contains("at step 3: a static analysis"), "{refused}");
     }
 }
 
@@ -201,7 +262,7 @@ fn what_cannot_be_set_or_replayed_says_why() {
     let told = |result: Result<(), sinew::Error>| result.unwrap_err().to_string();
     let unknown = told(simulation.set_input("tol", 1.0));
     assert_eq!(unknown, "there is no input named \"tol\"; there is tool, push");
-    for value in [f64::NAN, f64::INFINITY] {
+    for value in [f64::NAN, f64::INFINITY, 1e39, -1e308] {
         assert!(told(simulation.set_input("tool", value)).contains("must be a finite number"));
     }
     let wrong = |text: &str| InputRecording::from_ron(text).unwrap();
@@ -213,6 +274,13 @@ fn what_cannot_be_set_or_replayed_says_why() {
     let later = refused(&mut simulation, "(from: 4, changes: [(step: 4, name: \"tool\", value: 1)])");
     assert!(later.contains("began after 4 steps"), "{later}");
     assert!(InputRecording::from_ron("(from: 0, changs: [])").unwrap_err().to_string().contains("changs"));
+    // of several changes at one step the last counts
+    let twice = "(from: 0, changes: [(step: 0, name: \"tool\", value: 3), (step: 0, name: \"push\", value: 1),
+        (step: 0, name: \"tool\", value: 0.5)])";
+    simulation.replay_inputs(&wrong(twice)).unwrap();
+    simulation.advance(1).unwrap();
+    assert_eq!(simulation.inputs()[0].target, 0.5);
+    assert_eq!(simulation.inputs()[1].target, 1.0);
     // uses tell what is multiplied
     let uses: Vec<_> = simulation.inputs().into_iter().flat_map(|input| input.uses).map(|u| (u.path, u.unit)).collect();
     let expected = [("constraints[1].curve", "m"), ("loads[0].curve", "Pa"), ("loads[1].curve", "N")];
@@ -238,8 +306,13 @@ fn wrong_inputs_are_told_with_what_is_allowed() {
         ("Input(name: \"\")", TOOL, "an input needs a name"),
         ("Input(name: \"a\", rate: -1)", TOOL, "`rate` must be above 0, found -1"),
         (PUSH, "Input(name: \"b\")", "an input without `rate` moves nodes all at once"),
+        (PUSH, "Input(name: \"b\", initial: 1, rate: 3)", "an input that is not 0 at first"),
     ] {
         let found = told(push, motion);
         assert!(found.contains(expected), "{push}, {motion}: {found}");
     }
+    // who begins there is not moved there
+    let at_rest = cube(&followed(PUSH, "Input(name: \"b\", initial: 1, rate: 3)"), "start: Equilibrium()");
+    let file = scene_of(&at_rest, Path::new("."));
+    assert!(!Simulation::check(&file, &Registry::default()).render(false).contains("an input that"));
 }
