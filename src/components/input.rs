@@ -51,7 +51,8 @@ impl Input {
     /// At its initial value.
     pub fn new(name: &str, initial: f64, rate: Option<f64>) -> Self {
         let course = Curve::Table(vec![(0.0, initial)]);
-        let state = InputState { target: initial, course, pending: None, fastest: 0.0, largest: initial.abs().max(1.0) };
+        let state =
+            InputState { target: initial, course, pending: None, fastest: 0.0, largest: initial.abs().max(1.0) };
         Self { name: name.into(), initial, rate, state }
     }
 

@@ -144,8 +144,7 @@ impl Simulation {
                 mass: state.mass,
             })
             .collect();
-        let from =
-            held.iter().zip(&states).map(|(held, state)| held.weight * (state.rest + state.displacement)).sum();
+        let from = held.iter().zip(&states).map(|(held, state)| held.weight * (state.rest + state.displacement)).sum();
         let inertia = held.iter().map(|held| held.mass / held.weight);
         let mass = inertia.filter(|mass| *mass > 0.0).fold(f64::INFINITY, f64::min);
         if !mass.is_finite() {

@@ -53,7 +53,8 @@ impl Simulation {
         self.keep_start();
         let Some(start) = self.history.start.as_ref().map(PackedSnapshot::unpacked) else {
             let why = self.history.no_start.clone().unwrap_or_else(|| {
-                "the run began with a snapshot from elsewhere, `forgets_start` is set, or this is a static analysis".into()
+                "the run began with a snapshot from elsewhere, `forgets_start` is set, or this is a static analysis"
+                    .into()
             });
             let text = format!("the state before the first step was not kept: {why} (make a new simulation)");
             return Err(Error::Options(text));

@@ -238,7 +238,9 @@ impl Simulation {
         let mut last = from;
         for InputChange { step, name, value } in &recording.changes {
             if self.scene.is_static() && *step > 0 {
-                let text = format!("the recording sets {name:?} at step {step}: a static analysis takes inputs before its first");
+                let text = format!(
+                    "the recording sets {name:?} at step {step}: a static analysis takes inputs before its first"
+                );
                 return Err(Error::Options(text));
             }
             if *step < last || !is_possible(*value) {

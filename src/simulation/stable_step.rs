@@ -216,7 +216,9 @@ fn reason_to_stay(scene: &Scene) -> Option<&'static str> {
         _ => false,
     };
     let jumps = |constraint: &Constraint| match constraint {
-        Constraint::Prescribed { curve, displacement, gradient, rotation, .. } if jump(curve) => gradient.iter().chain([displacement, rotation]).any(|moved| *moved != DVec3::ZERO),
+        Constraint::Prescribed { curve, displacement, gradient, rotation, .. } if jump(curve) => {
+            gradient.iter().chain([displacement, rotation]).any(|moved| *moved != DVec3::ZERO)
+        }
         _ => false,
     };
     match scene.when_unstable() {

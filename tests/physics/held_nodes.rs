@@ -173,7 +173,8 @@ fn held_nodes_have_the_same_bits_whatever_the_number_of_threads() {
                 Options { grabs: true, threads, precision, backend: BackendChoice::Cpu, ..Options::default() };
             let file = scene_of(&cube(14, ""), Path::new("."));
             let mut simulation = Simulation::new(&file, &options).unwrap();
-            let nodes: Vec<(usize, f64)> = (0..64).map(|place| (place * 3374 / 63, 1.0 + f64::from(place as u32))).collect();
+            let nodes: Vec<(usize, f64)> =
+                (0..64).map(|place| (place * 3374 / 63, 1.0 + f64::from(place as u32))).collect();
             let hand = simulation.grab_nodes("b", &nodes, &Grip::default()).unwrap();
             let from = simulation.grabs().next().unwrap().1.from;
             simulation.move_grab(hand, from + DVec3::new(0.01, 0.0, 0.02)).unwrap();

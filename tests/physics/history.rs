@@ -90,7 +90,7 @@ fn going_back_forgets_what_came_later() {
         simulation.advance_to(0.065).unwrap();
         let all = simulation.history();
         let past = all.iter().filter(|time| **time <= middle.time()).count();
-        assert!(past > 2 && past + 2 < all.len(), "{all:?}");
+        assert!(past > 2 && past < all.len(), "{all:?}");
         simulation.restore(&middle).unwrap();
         assert_eq!(simulation.history(), all[..past], "{}", run.name);
         // a state of another run is no past of this one
@@ -111,10 +111,11 @@ fn going_back_forgets_what_came_later() {
 
 #[test]
 fn a_run_that_began_from_equilibrium_is_reset_to_that() {
-    let scene = scene()
-        .replace("(duration", "(start: Equilibrium(), duration")
-        .replace(", spin: (0.1, 0.2, 0.3)", "")
-        .replace("removal: [(on: Box(min: (0.06, 0, 0), max: (0.1, 0.1, 0.1)), when: During(start: 0.005, end: 0.06))]", "");
+    let scene =
+        scene().replace("(duration", "(start: Equilibrium(), duration").replace(", spin: (0.1, 0.2, 0.3)", "").replace(
+            "removal: [(on: Box(min: (0.06, 0, 0), max: (0.1, 0.1, 0.1)), when: During(start: 0.005, end: 0.06))]",
+            "",
+        );
     for run in configurations() {
         let mut simulation = run.start(&scene);
         simulation.keep_history(0.005, 1 << 30).unwrap();

@@ -14,8 +14,9 @@ use std::path::Path;
 #[derive(bevy_ecs::prelude::Component, Clone, serde::Deserialize)]
 struct Spring {
     over_mass: f64,
+    /// What it says κ is, where that is not it.
     #[serde(default)]
-    says: Option<f64>,
+    says: f64,
 }
 
 impl NodeSystem for Spring {
@@ -25,7 +26,7 @@ impl NodeSystem for Spring {
     fn prepare(&self, _: &Before<'_>) {}
 
     fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
-        ForceSlopes { stiffness: self.says.unwrap_or(self.over_mass), damping: 0.0 }
+        ForceSlopes { stiffness: if self.says == 0.0 { self.over_mass } else { self.says }, damping: 0.0 }
     }
 
     fn act<T: SimdScalar>(&self, (): &(), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
