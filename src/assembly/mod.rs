@@ -15,6 +15,7 @@ mod own_texts;
 mod patches;
 mod relaxation;
 mod removal;
+mod renew;
 mod select;
 mod start;
 mod time_step;
@@ -27,6 +28,7 @@ pub use observation::steps_of;
 pub use patches::insert_forces;
 pub use relaxation::load_steps;
 pub use removal::step_of;
+pub use renew::renew_materials;
 pub use select::Selection;
 pub use time_step::{
     SquaresAtRest, StableStep, StepSetter, alike_in_any_precision, author_of, damped, damping_time, square_frequencies,

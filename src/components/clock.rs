@@ -2,7 +2,7 @@
 
 use super::curve::smooth;
 use super::input::Input;
-use crate::scene::schema::Curve;
+use crate::scene::schema::{Curve, Load};
 use bevy_ecs::prelude::*;
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
@@ -209,6 +209,8 @@ pub struct Signals {
     sources: Vec<(Signal, Option<usize>)>,
     values: Vec<[f64; 4]>,
     inputs: Vec<Input>,
+    /// Loads of the scene: number, place among the sources, and by what their amplitude is divided.
+    loads: Vec<(usize, usize, f64)>,
 }
 
 impl Signals {
@@ -219,6 +221,23 @@ impl Signals {
         let input = self.declare(signal.curve());
         self.sources.push((signal, input));
         slot
+    }
+
+    /// Adds the signal of the scene's load of a number, whose amplitude is divided by `parts`; its slot.
+    pub fn add_load(&mut self, number: usize, load: &Load, parts: f64) -> usize {
+        self.loads.push((number, self.sources.len(), parts));
+        self.add(Signal::Load { curve: load.curve().clone(), amplitude: load.amplitude() / parts })
+    }
+
+    /// Takes the amplitudes of the scene's loads as they are now.
+    pub fn renew_loads(&mut self, all: &[Load]) {
+        for &(number, place, parts) in &self.loads {
+            if let (Some(load), Some((Signal::Load { amplitude, .. }, _))) =
+                (all.get(number), self.sources.get_mut(place))
+            {
+                *amplitude = load.amplitude() / parts;
+            }
+        }
     }
 
     /// Takes note of the input that a curve may be; its place.

@@ -135,6 +135,9 @@ impl Simulation {
             warnings: diagnostics,
         };
         let settling = super::preload::settling(scene, options)?;
+        // rest shapes have gone into the world
+        let mut file = scene.clone();
+        file.rest_shapes.clear();
         let mut follow = || Follower::new(&scene.scene, &facts.stability, facts.initial_mass, &mut world);
         let solver = relaxing.map_or_else(|| Solver::Explicit(follow()), Solver::Relaxation);
         Ok(Self {
@@ -142,6 +145,8 @@ impl Simulation {
             plan,
             entries,
             scene: scene.scene.clone(),
+            file,
+            changed: None,
             facts,
             settling,
             preload: None,

@@ -7,6 +7,7 @@ mod beat;
 mod block_forces;
 mod budget;
 mod build;
+mod change;
 mod column_view;
 mod costly;
 mod damped_step;
@@ -70,8 +71,8 @@ pub use summary::{Inversions, Summary, SystemTime};
 pub use unload::{Unloaded, Unloading, UnloadingStep, unload};
 
 use crate::backend::kernel::KernelId;
-use crate::scene::Diagnostics;
 use crate::scene::schema::Scene;
+use crate::scene::{Diagnostics, SceneFile};
 use crate::systems::{HostSystem, Phase};
 use beat::Beat;
 use bevy_ecs::prelude::*;
@@ -83,7 +84,12 @@ pub struct Simulation {
     plan: plan::Plan,
     /// Its passes on the backend that it runs on.
     entries: Vec<Entry>,
+    /// As it is now.
     scene: Scene,
+    /// What it was made of.
+    file: SceneFile,
+    /// The text of the scene, where it has been changed since.
+    changed: Option<String>,
     facts: Facts,
     solver: solver::Solver,
     /// What is to bring the bodies to rest before the first step.

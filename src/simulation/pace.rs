@@ -31,6 +31,9 @@ pub(super) struct Pace {
     /// What they hold.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     grabs: AllGrabs,
+    /// The scene's text, where its parameters have been changed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    scene: Option<String>,
     /// The hash of what they had done before this step.
     #[serde(default, skip_serializing_if = "is_default")]
     changes: u64,
@@ -70,6 +73,7 @@ impl Simulation {
             inputs: self.input_states(),
             can_grab: self.world.query::<&Grabs>().iter(&self.world).next().is_some(),
             grabs: self.grabs.clone(),
+            scene: self.changed_text(),
             changes: self.lineage.before(self.step_count()).unwrap_or_default(),
         };
         let text = ron::to_string(&pace).map_err(|error| SnapshotError::Senseless(error.to_string()))?;
@@ -81,6 +85,7 @@ impl Simulation {
     pub(super) fn checked_pace(&mut self, snapshot: &Snapshot) -> Result<Pace, Error> {
         let pace = pace_of(snapshot)?;
         self.check_grabs(&pace.grabs)?;
+        self.check_changed(pace.scene.as_deref())?;
         snapshot.fits(&mut self.world)?;
         if let Some((name, _)) = pace.beats.iter().find(|(_, beat)| !beat.is_sound()) {
             return Err(senseless(format!("the system `{name}` can never run")).into());
@@ -99,6 +104,7 @@ impl Simulation {
         let ours = self.lineage.go_on_from(self.step_count(), pace.changes, before);
         self.take_up_input_states(pace.inputs, ours);
         self.take_up_grabs(pace.grabs)?;
+        self.take_up_changed(pace.scene)?;
         self.surfaces.clear();
         let clock = *self.world.resource::<Clock>();
         relax_as(&mut self.world, &clock)?;

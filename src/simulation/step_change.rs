@@ -148,11 +148,26 @@ fn take_coefficients(
     Ok(())
 }
 
-/// Adds so many times the present stress to a block's memory: by its own kernel, with terms that do just that.
-fn add_to_memory(world: &mut World, entity: Entity, [terms, volumetric]: &[Vec<f64>; 2]) {
+/// Adds so many times the present stress to a block's memory.
+fn add_to_memory(world: &mut World, entity: Entity, times: &[Vec<f64>; 2]) {
+    if let Some(law) = world.get::<BlockLaw<f64>>(entity).cloned() {
+        add_to_memory_by(world, entity, &law, times);
+    }
+}
+
+/// The same of the stress that a law has: by the block's own kernel, with terms that do just that.
+pub(super) fn add_to_memory_by(
+    world: &mut World,
+    entity: Entity,
+    law: &BlockLaw<f64>,
+    [terms, volumetric]: &[Vec<f64>; 2],
+) {
+    if world.get::<ViscousMemory>(entity).is_none() {
+        return;
+    }
     let adding = |times: &Vec<f64>| times.iter().map(|&times| PronyTerm::adding(times)).collect();
-    let law = |law: &BlockLaw<f64>| BlockLaw { prony: adding(terms), volumetric: adding(volumetric), ..law.clone() };
-    let added = BlockForces::of(world, entity, law).and_then(|mut block| {
+    let adds = |_: &BlockLaw<f64>| BlockLaw { prony: adding(terms), volumetric: adding(volumetric), ..law.clone() };
+    let added = BlockForces::of(world, entity, adds).and_then(|mut block| {
         let body = block.block.body;
         let displacement = widened(world.get::<Displacement>(body)?);
         let mut unused = vec![0.0; world.get::<ElementForce>(body)?.len()];

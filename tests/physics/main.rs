@@ -5,6 +5,7 @@
 
 mod auto_bound;
 mod bars;
+mod changed_scene;
 mod changing_step;
 mod clock_and_limit;
 mod columns;

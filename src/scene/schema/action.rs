@@ -141,6 +141,17 @@ impl Load {
             | Load::Traction { curve, .. } => curve,
         }
     }
+
+    /// What the course multiplies: an acceleration (m/s²), a force (N), a pressure (Pa, in the first number), a
+    /// traction (Pa).
+    pub fn amplitude(&self) -> DVec3 {
+        match self {
+            Load::Gravity { acceleration: vector, .. }
+            | Load::NodalForce { force: vector, .. }
+            | Load::Traction { traction: vector, .. } => *vector,
+            Load::Pressure { pressure, .. } => DVec3::X * *pressure,
+        }
+    }
 }
 
 /// How a force is shared among nodes.
