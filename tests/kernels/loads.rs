@@ -60,17 +60,28 @@ fn remove_some(world: &mut World) {
     }
 }
 
-/// Held nodes of each body, one of them twice, one without mass, some pulled with all that their hand has.
+/// Held nodes of each body, one of them twice, one without mass, some pulled with all that their hand has, some lighter
+/// than when they were grabbed.
 #[test]
 fn held_nodes_are_pulled_alike() {
     let hold = |world: &mut World| {
         for grabs in entities::<Grabs>(world) {
             let body = world.get::<OfBody>(grabs).unwrap().0;
             let rows = world.get::<Mass>(body).unwrap().len() as u32;
+            let masses = world.get::<Mass>(body).unwrap().clone();
             let held = |number: u32| HeldNode {
                 row: (number / 2) * 5 % rows,
                 stiffness: 2.0 + f64::from(number),
                 damping: 1e-3 * f64::from(number % 4),
+                // to half the spring and half the damper
+                stiffness_over_mass: match number % 5 {
+                    0 => 0.5 * (2.0 + f64::from(number)) / masses.get(((number / 2) * 5 % rows) as usize),
+                    _ => f64::INFINITY,
+                },
+                damping_over_mass: match number % 5 {
+                    1 => 5e-4 * f64::from(number % 4) / masses.get(((number / 2) * 5 % rows) as usize),
+                    _ => f64::INFINITY,
+                },
                 most: if number % 3 == 0 { 0.01 } else { f64::INFINITY },
                 goal: DVec3::new(0.001, -0.002, 0.0005 * f64::from(number)),
             };
