@@ -57,7 +57,9 @@ fn prepare_with<'a>(
     let assembly = assembly?;
     if options.grabs && !scene.scene.is_static() {
         let bodies: Vec<Entity> = assembly.bodies.values().map(|body| body.entity).collect();
-        bodies.iter().for_each(|&body| drop(world.spawn((Grabs::default(), OfBody(body)))));
+        for &body in &bodies {
+            world.spawn((Grabs::default(), OfBody(body)));
+        }
         add_loads(&bodies, options.precision, world);
     }
     world.insert_resource(Cpu::new(options.threads, counts(&assembly).1, options.instructions));

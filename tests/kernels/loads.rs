@@ -82,7 +82,7 @@ fn held_nodes_are_pulled_alike() {
                     1 => 5e-4 * f64::from(number % 4) / masses.get(((number / 2) * 5 % rows) as usize),
                     _ => f64::INFINITY,
                 },
-                most: if number % 3 == 0 { 0.01 } else { f64::INFINITY },
+                most: if number.is_multiple_of(3) { 0.01 } else { f64::INFINITY },
                 goal: DVec3::new(0.001, -0.002, 0.0005 * f64::from(number)),
             };
             let mut all: Vec<HeldNode> = (0..30).map(held).collect();
