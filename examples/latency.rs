@@ -1,66 +1,37 @@
 //! How long a touch takes: where a tool is goes in, what it feels comes out, step by step.
 //!
-//! `cargo run --release --example latency [SCENE] [THREADS]` touches a lens (scenes/lens_pressed.ron without its
-//! pressure) with a ball that goes up and down, and prints how long one step and how long a millisecond of simulated
-//! time take: the median, what 99 in 100 stay below, and the longest. A scene's curves are known beforehand; what only
-//! the moment knows comes in through a resource that the program writes between steps and a system of its own reads.
+//! `cargo run --release --example latency [SCENE] [THREADS]` presses a lens (scenes/lens_pressed.ron, whose pressure is
+//! an input here), takes hold of its front where a ray meets it, and moves that up and down. It prints how long one
+//! step and how long a millisecond of simulated time take, target in to force out: the median, what 99 in 100 stay
+//! below, and the longest; then how much of life sixty frames a second keep up with, where each may take 12 ms.
 
-use sinew::bevy_ecs::prelude::*;
-use sinew::components::{Displacement, ExternalForce, RestPosition};
 use sinew::glam::DVec3;
-use sinew::systems::{Phase, Registry, System};
-use sinew::{BackendChoice, Error, Options, SceneFile, Simulation};
+use sinew::{BackendChoice, Error, Grip, Options, SceneFile, Simulation};
 use std::time::{Duration, Instant};
 
-/// The tool: a ball that pushes nodes out of itself, by so much force a node and depth (N/m).
-#[derive(Resource, Default, Clone)]
-struct Tool {
-    center: DVec3,
-    radius: f64,
-    stiffness: f64,
-    /// What the tool feels (N), written by the system.
-    reaction: DVec3,
-}
+/// What a picture leaves of a sixtieth of a second.
+const BUDGET: Duration = Duration::from_millis(12);
 
-/// Pushes, and sums what pushes back. Nodes of the surface alone would do; all of them are few.
-fn touch(mut tool: ResMut<Tool>, mut bodies: Query<(&RestPosition, &Displacement, &mut ExternalForce)>) {
-    let mut reaction = DVec3::ZERO;
-    for (rest, displacement, mut force) in &mut bodies {
-        for (row, rest) in rest.0.iter().enumerate() {
-            let out = *rest + displacement.vector(row) - tool.center;
-            let depth = tool.radius - out.length();
-            if depth > 0.0 {
-                let push = tool.stiffness * depth * out.normalize_or_zero();
-                let sum = force.vector(row) + push;
-                force.set_vector(row, sum);
-                reaction -= push;
-            }
-        }
-    }
-    tool.reaction = reaction;
-}
-
-/// Touches for so long (simulated, s) and prints what it took; returns the largest reaction (N).
+/// Touches for so long (simulated, s) and prints what it took; returns the largest force of the hand (N).
 pub fn run(scene: &SceneFile, threads: usize, seconds: f64) -> Result<f64, Error> {
-    let system = System::custom("touch", Phase::Loads, "pushes nodes out of a tool", touch);
-    let registry = Registry::default().with(system);
-    let options = Options { backend: BackendChoice::Cpu, threads, ..Options::default() };
-    let mut simulation = Simulation::with_systems(scene, &options, &registry)?;
-    // a node's share of the lens's own stiffness, E times the size of an element
-    let mut tool = Tool { radius: 1e-3, stiffness: 2.0, ..Tool::default() };
+    let options = Options { backend: BackendChoice::Cpu, threads, grabs: true, ..Options::default() };
+    let mut simulation = Simulation::new(scene, &options)?;
+    let above = DVec3::new(0.1e-3, 0.1e-3, 1.0);
+    let pick = simulation.pick(above, -DVec3::Z)?.ok_or_else(|| Error::Options("the ray misses the lens".into()))?;
+    let hand = simulation.grab(&pick, &Grip { most_force: 0.01, ..Grip::default() })?;
 
     let (mut steps, mut frames) = (Vec::new(), Vec::new());
     let (mut largest, mut deepest) = (0.0_f64, 0.0_f64);
     let mut frame = Duration::ZERO;
     while simulation.time() < seconds {
         let started = Instant::now();
-        // load in: the tool's tip goes 0.5 mm below the front's rest and back, five times a second
-        let depth = 0.25e-3 * (1.0 - (std::f64::consts::TAU * 5.0 * simulation.time()).cos());
-        tool.center = DVec3::new(0.0, 0.0, 2e-3 + tool.radius - depth);
-        simulation.world_mut().insert_resource(tool.clone());
+        // target in: it goes 0.5 mm below the front's rest and back, five times a second, while the front is pressed
+        let share = 0.5 * (1.0 - (std::f64::consts::TAU * 5.0 * simulation.time()).cos());
+        simulation.move_grab(hand, pick.point - 0.5e-3 * share * DVec3::Z)?;
+        simulation.set_input("press", 0.2 * share)?;
         simulation.step()?;
-        // reaction out
-        let reaction = simulation.world().resource::<Tool>().reaction;
+        // force out
+        let force = simulation.grab_force(hand)?.length();
         let took = started.elapsed();
         steps.push(took);
         frame += took;
@@ -68,8 +39,8 @@ pub fn run(scene: &SceneFile, threads: usize, seconds: f64) -> Result<f64, Error
         if simulation.time() >= 1e-3 * (frames.len() + 1) as f64 {
             frames.push(std::mem::take(&mut frame));
         }
-        largest = largest.max(reaction.z);
-        deepest = deepest.max(depth);
+        largest = largest.max(force);
+        deepest = deepest.max(0.5e-3 * share);
     }
     println!(
         "{} threads, step {:.1} µs: up to {:.3} mN at {:.2} mm",
@@ -78,8 +49,18 @@ pub fn run(scene: &SceneFile, threads: usize, seconds: f64) -> Result<f64, Error
         1e3 * largest,
         1e3 * deepest
     );
-    told("one step, load in to reaction out", &mut steps);
+    told("one step, target in to force out", &mut steps);
     told("1 ms of simulated time", &mut frames);
+
+    simulation.release(hand)?;
+    let (mut simulated, mut took) = (0.0, 0.0);
+    for _ in 0..5 {
+        let until = simulation.time() + 1.0 / 60.0;
+        let frame = simulation.advance_for(BUDGET, until)?;
+        simulated += frame.simulated;
+        took += frame.took.as_secs_f64();
+    }
+    println!("  5 frames: {:.1} ms simulated in {:.1} ms", 1e3 * simulated, 1e3 * took);
     Ok(largest)
 }
 
@@ -89,13 +70,8 @@ fn told(what: &str, times: &mut [Duration]) {
     println!("  {what:34} median {:7.1} µs, 99 % below {:7.1} µs, longest {:7.1} µs", at(0.5), at(0.99), at(1.0));
 }
 
-/// What makes a scene of a body alone one that is touched.
-pub const TOUCHED: [&str; 3] = [
-    "loads=[]",
-    "schedule=[\"boundary\", \"element_forces\", \"gather\", \"touch\", \"integrate\", \"observe\"]",
-    // the tool is stiffness that the limit does not know
-    "integration.safety=0.8",
-];
+/// What makes a scene whose first load is known beforehand one in which a program presses.
+pub const TOUCHED: [&str; 1] = ["loads[0].curve=Input(name: \"press\", rate: 20)"];
 
 #[allow(dead_code)]
 fn main() -> Result<(), Error> {

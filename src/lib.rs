@@ -47,7 +47,8 @@ pub use error::{Error, GpuFailure, Instability, NotConverged, NotUnloaded, shell
 pub use scene::SceneFile;
 pub use simulation::explain;
 pub use simulation::{
-    BackendChoice, ColumnView, Equilibrium, FieldName, Inversions, Mode, Names, NodeSet, NodeState, Options, Preload,
+    Advanced, BackendChoice, ColumnView, Ended, Equilibrium, FieldName, Grab, GrabId, Grip, InputChange,
+    InputRecording, InputUse, InputValue, Inversions, Mode, Names, NodeSet, NodeState, Options, Pick, Preload,
     Simulation, Stability, StepHistory, Summary, SystemTime, Unloaded, Unloading, UnloadingStep, unload,
 };
 pub use snapshot::Snapshot;

@@ -9,6 +9,7 @@
 //! nodal_force                                   -> ExternalForce                          per loaded node
 //! pressure         Displacement                 -> ExternalForce                          per loaded node
 //! traction                                      -> ExternalForce                          per loaded node
+//! grab             Displacement                 -> ExternalForce                          per held node
 //! integrate        forces, Mass                 -> DisplacementStep, Displacement         per node
 //! element_removal  criteria, times              -> Alive, RestShape, Mass                 per element, per node
 //! observe          all, read only               -> probes, energies, guards, files
@@ -22,6 +23,7 @@ mod boundary;
 mod element_forces;
 mod element_removal;
 mod gather;
+mod grab;
 mod gravity;
 mod integrate;
 mod nodal_force;
@@ -37,9 +39,10 @@ mod registry;
 mod traction;
 
 pub(crate) use gather::sum_corners;
+pub(crate) use grab::{bytes_of as grab_bytes, uniform_of as grab_uniform};
 pub(crate) use nodal_volume::means_of;
 pub(crate) use node_pass::{NodePass, node_pass};
-pub use node_system::{Before, NodeRows, NodeSystem};
+pub use node_system::{Before, ForceSlopes, NodeRows, NodeSystem, NodesAtRest};
 pub use observe::{add_watch_columns, watch_kernels};
 pub(crate) use patch_pass::patch_pass;
 pub use registry::{Because, DescribeKernels, HostSystem, OnDevice, OnHost, Outcome, Phase, Registry, System};
@@ -73,6 +76,7 @@ pub fn standard() -> Vec<System> {
         nodal_force::system(),
         pressure::system(),
         traction::system(),
+        grab::system(),
         integrate::system(),
         element_removal::system(),
         observe::system(),

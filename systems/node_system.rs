@@ -8,6 +8,8 @@ use crate::math::SimdScalar;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
 use bevy_ecs::system::{DynParamBuilder, DynSystemParam, IntoSystem, ParamBuilder};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// What a system does to the nodes of a body, row by row. Its component calls for it: each entity that has one and
 /// [`OfBody`] acts on that body, and a body that has one itself is acted on.
@@ -28,6 +30,12 @@ pub trait NodeSystem: Component {
     /// Finds out what this step needs, before any node of the body moves.
     fn prepare(&self, before: &Before<'_>) -> Self::Prepared;
 
+    /// How fast the forces that it adds grow with displacements and velocities, for the stable step, where they do: the
+    /// largest of all nodes, 0 or above.
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        ForceSlopes::default()
+    }
+
     /// Does it to some rows of the body, which no other task has.
     fn act<T: SimdScalar>(&self, prepared: &Self::Prepared, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>);
 }
@@ -43,6 +51,50 @@ pub struct Before<'a> {
     pub rest: &'a RestPosition,
     /// Displacements at the beginning of the step (m).
     pub displacement: &'a Displacement,
+}
+
+/// The nodes of a body, for what forces on them do to the stable step.
+#[derive(Clone, Copy, Debug)]
+pub struct NodesAtRest<'a> {
+    /// Where they are at rest (m).
+    pub rest: &'a RestPosition,
+    /// Their masses (kg); 0: parked.
+    pub mass: &'a Mass,
+    /// Which axes are held, as bits.
+    pub axes: Option<&'a ConstrainedAxes>,
+    /// Inputs that programs set, where the scene has any.
+    pub signals: Option<&'a Signals>,
+    /// What the scene lasts (s).
+    pub duration: f64,
+}
+
+impl NodesAtRest<'_> {
+    /// Whether the node of a row can be pushed anywhere.
+    pub fn moves(&self, row: usize) -> bool {
+        self.mass.get(row) > 0.0 && self.axes.is_none_or(|axes| axes[row] & 7 != 7)
+    }
+}
+
+/// Norms of −∂f/∂u and −∂f/∂v of forces on nodes, over the nodes' masses.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ForceSlopes {
+    /// κ (1/s²).
+    pub stiffness: f64,
+    /// γ (1/s).
+    pub damping: f64,
+}
+
+impl ForceSlopes {
+    /// The larger of both, each by itself.
+    pub fn larger(self, other: Self) -> Self {
+        Self { stiffness: self.stiffness.max(other.stiffness), damping: self.damping.max(other.damping) }
+    }
+
+    /// Those of forces that act together.
+    pub fn and(self, other: Self) -> Self {
+        Self { stiffness: self.stiffness + other.stiffness, damping: self.damping + other.damping }
+    }
 }
 
 /// A node system bound to a step.
@@ -99,6 +151,7 @@ pub struct NodeRows {
     parameter: fn() -> DynParamBuilder<'static>,
     bind: for<'a> fn(&'a mut DynSystemParam<'_, '_>, Option<OfSystem>, Entity, &Before<'_>, &mut BoundSystems<'a>),
     touches: fn() -> HostSystem,
+    slopes: fn(Option<OfSystem>, f64, &mut World) -> ForceSlopes,
     /// Only what is for this one of several systems calls for it.
     of: Option<OfSystem>,
     /// See [`NodeSystem::SUMS_FORCES`].
@@ -117,6 +170,7 @@ impl NodeRows {
                 let nothing = |_: Query<S::Columns>, _: Callers<S>, _: Res<Clock>, _: Res<Signals>| Ok(());
                 Box::new(IntoSystem::into_system(nothing))
             },
+            slopes: slopes::<S>,
             of: None,
             sums_forces: S::SUMS_FORCES,
             moves_nodes: S::MOVES_NODES,
@@ -144,6 +198,11 @@ impl NodeRows {
         (self.bind)(callers, self.of, body, before, all);
     }
 
+    /// How fast the forces that it adds grow, in a scene that lasts so long (s): see [`NodeSystem::slopes`].
+    pub(crate) fn slopes(&self, duration: f64, world: &mut World) -> ForceSlopes {
+        (self.slopes)(self.of, duration, world)
+    }
+
     /// A system that does nothing and touches what this one does: for the order in which systems may run.
     pub(crate) fn touches(&self) -> HostSystem {
         (self.touches)()
@@ -164,4 +223,21 @@ fn bind<'a, S: NodeSystem>(
             all.push(Box::new(Bound { system, prepared: system.prepare(before) }));
         }
     }
+}
+
+/// Of all that calls for a system: together on one body, the largest of all bodies.
+fn slopes<S: NodeSystem>(of_system: Option<OfSystem>, duration: f64, world: &mut World) -> ForceSlopes {
+    let mut bodies: BTreeMap<Entity, ForceSlopes> = BTreeMap::new();
+    let mut callers = world.query::<(Entity, &S, Option<&OfBody>, Option<&OfSystem>)>();
+    for (entity, system, of, _) in callers.iter(world).filter(|caller| caller.3.copied() == of_system) {
+        let body = of.map_or(entity, |of| of.0);
+        if let (Some(rest), Some(mass)) = (world.get::<RestPosition>(body), world.get::<Mass>(body)) {
+            let (axes, signals) = (world.get::<ConstrainedAxes>(body), world.get_resource::<Signals>());
+            let nodes = NodesAtRest { rest, mass, axes, signals, duration };
+            let sum = bodies.entry(body).or_default();
+            // a negative norm would take from the others; what is no number is the guards' business
+            *sum = sum.and(system.slopes(&nodes).larger(ForceSlopes::default()));
+        }
+    }
+    bodies.into_values().fold(ForceSlopes::default(), ForceSlopes::larger)
 }

@@ -2,7 +2,7 @@
 //! that its function gives to every node. On the CPU a program translated from the text runs over registers of nodes;
 //! on a GPU `shaders/own_load.wgsl` calls the text itself.
 
-use super::node_system::{Before, NodeRows, NodeSystem};
+use super::node_system::{Before, ForceSlopes, NodeRows, NodeSystem, NodesAtRest};
 use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
@@ -32,6 +32,13 @@ pub(super) fn system(name: &str, number: usize, what: String) -> System {
     .on_nodes(move |world, buffers| stages(number, world, buffers))
 }
 
+/// Nodes of each body at which slopes are taken, evenly from all; the lightest node is one more.
+const TRIED: usize = 1000;
+/// Times at which they are taken, evenly from the start to the end.
+const TIMES: usize = 5;
+/// Length of the differences, as a share of the body's size.
+const LENGTH: f64 = 1e-6;
+
 /// What is the same for all nodes in a step.
 pub struct InStep {
     /// The curve.
@@ -58,6 +65,33 @@ impl NodeSystem for OwnLoad {
         let Before { clock, signals, .. } = before;
         let curve = signals.values()[self.signal][0];
         InStep { curve, time: clock.time(), time_step: clock.time_step, rate: clock.rate() }
+    }
+
+    /// Differences at nodes at rest, at some times, with the curve at 1, or at the largest that an input has been.
+    fn slopes(&self, nodes: &NodesAtRest<'_>) -> ForceSlopes {
+        let rest = &nodes.rest.0;
+        let moves = |row: &usize| nodes.moves(*row);
+        let rows: Vec<usize> = match &self.rows {
+            Some(rows) => rows.iter().map(|&row| row as usize).filter(moves).collect(),
+            None => (0..rest.len()).filter(moves).collect(),
+        };
+        let (low, high) =
+            rest.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+        let length = LENGTH * (high - low).max_element();
+        let lightest = rows.iter().copied().min_by(|&a, &b| nodes.mass.get(a).total_cmp(&nodes.mass.get(b)));
+        let every = rows.len().div_ceil(TRIED).max(1);
+        let curve = nodes.signals.map_or(1.0, |signals| signals.largest_input(self.signal));
+        let mut largest = ForceSlopes::default();
+        for row in rows.iter().copied().step_by(every).chain(lightest) {
+            for number in 0..TIMES {
+                let time = nodes.duration * number as f64 / (TIMES - 1) as f64;
+                let node = NodeAtRest { rest_position: rest[row], mass: nodes.mass.get(row), curve, time };
+                let [stiffness, damping] = self.text.growth(&node, length).map(|slope| slope / node.mass);
+                // what is no number is the guards' business
+                largest = largest.larger(ForceSlopes { stiffness, damping });
+            }
+        }
+        largest
     }
 
     fn act<T: SimdScalar>(&self, step: &InStep, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
@@ -93,61 +127,69 @@ struct Push<'a, T> {
     external: &'a mut [T],
 }
 
-impl<T: SimdScalar> Push<'_, T> {
-    /// The row among these nodes of one of those that the load is for.
-    fn row(&self, place: usize) -> usize {
-        self.rows.map_or(place, |rows| rows[place] as usize - self.first)
-    }
-}
-
 /// Numbers of `Node` that differ from node to node: the first ones.
 const OF_A_NODE: usize = LoadText::MASS + 1;
 
 impl<T: SimdScalar> WithSimd for Push<'_, T> {
     type Output = ();
 
-    /// A register full of nodes at a time; what a node gets does not depend on its place there.
+    /// A register full of nodes at a time; what a node gets does not depend on its place there. Only what the program
+    /// reads is gathered.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let width = T::width::<S>();
         let splat = |number: f64| T::splat(simd, T::from_f64(number));
-        let InStep { curve, time, time_step, rate } = *self.in_step;
+        let Push { program, in_step, first, count, rows, rest, u, step, mass, external } = self;
+        let InStep { curve, time, time_step, rate } = *in_step;
         let rate = T::from_f64(rate);
         let mut inputs = [splat(0.0); LoadText::NUMBERS];
         inputs[OF_A_NODE..].copy_from_slice(&[splat(curve), splat(time), splat(time_step)]);
-        let mut numbers = [[T::default(); LANES]; OF_A_NODE];
-        let all = self.rows.map_or(self.count, <[u32]>::len);
+        let reads: [bool; OF_A_NODE] = std::array::from_fn(|number| program.reads(number));
+        let all = rows.map_or(count, <[u32]>::len);
         for from in (0..all).step_by(width) {
             let lanes = width.min(all - from);
-            for lane in 0..lanes {
-                let row = self.row(from + lane);
-                let rest = self.rest[row].to_array();
-                for i in 0..3 {
-                    numbers[i][lane] = T::from_f64(rest[i]);
-                    numbers[3 + i][lane] = self.u[3 * row + i];
-                    numbers[6 + i][lane] = self.step[3 * row + i] * rate;
+            // the row among these nodes of one of those that the load is for
+            let row = |lane| rows.map_or(from + lane, |rows| rows[from + lane] as usize - first);
+            for i in 0..3 {
+                if reads[i] {
+                    inputs[i] = gathered(simd, lanes, |lane| T::from_f64(rest[row(lane)][i]));
                 }
-                numbers[LoadText::MASS][lane] = self.mass[row];
+                if reads[3 + i] {
+                    inputs[3 + i] = gathered(simd, lanes, |lane| u[3 * row(lane) + i]);
+                }
+                if reads[6 + i] {
+                    inputs[6 + i] = gathered(simd, lanes, |lane| step[3 * row(lane) + i] * rate);
+                }
             }
-            for (input, numbers) in inputs.iter_mut().zip(&numbers) {
-                *input = T::load(simd, numbers);
-            }
-            let force: [T::Vector<S>; 3] = self.program.run(inputs);
             // what has lost all its elements bears nothing
-            let there = inputs[LoadText::MASS];
-            let force = force.map(|part| {
-                let mut lanes = [T::default(); LANES];
-                T::store(there.if_positive(part, splat(0.0)), &mut lanes);
-                lanes
-            });
-            for lane in 0..lanes {
-                let row = self.row(from + lane);
-                for i in 0..3 {
-                    self.external[3 * row + i] += force[i][lane];
+            let there = gathered(simd, lanes, |lane| mass[row(lane)]);
+            inputs[LoadText::MASS] = there;
+            let force: [T::Vector<S>; 3] = program.run(inputs);
+            let mut added = [T::default(); 3 * LANES];
+            for (i, force) in force.into_iter().enumerate() {
+                let mut numbers = [T::default(); LANES];
+                T::store(there.if_positive(force, splat(0.0)), &mut numbers);
+                for (to, number) in added.iter_mut().skip(i).step_by(3).zip(numbers) {
+                    *to = number;
+                }
+            }
+            for (lane, added) in added.chunks_exact(3).enumerate().take(lanes) {
+                for (external, added) in external[3 * row(lane)..][..3].iter_mut().zip(added) {
+                    *external += *added;
                 }
             }
         }
     }
+}
+
+/// A register of what some lanes have; zeros in the others.
+#[inline(always)]
+fn gathered<T: SimdScalar, S: Simd>(simd: S, lanes: usize, of_lane: impl Fn(usize) -> T) -> T::Vector<S> {
+    let mut numbers = [T::default(); LANES];
+    for (lane, number) in numbers.iter_mut().enumerate().take(lanes) {
+        *number = of_lane(lane);
+    }
+    T::load(simd, &numbers)
 }
 
 #[derive(Clone, Copy, Debug)]

@@ -20,7 +20,7 @@ fn embed_runs() {
     embed::main().unwrap();
 }
 
-/// The stiffness of the whole tool in contact is some N/m, and it goes 0.5 mm deep.
+/// The stiffness of the hand is some N/m, and it goes 0.5 mm deep.
 #[test]
 fn a_touched_lens_pushes_back() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/lens_pressed.ron");

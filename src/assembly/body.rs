@@ -237,6 +237,6 @@ impl BlockBuilder<'_> {
 }
 
 /// Small-strain Young's modulus (Pa) from shear and bulk modulus.
-fn young([shear, bulk]: [f64; 2]) -> f64 {
+pub(super) fn young([shear, bulk]: [f64; 2]) -> f64 {
     9.0 * bulk * shear / (3.0 * bulk + shear)
 }

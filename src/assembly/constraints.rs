@@ -3,7 +3,7 @@
 use super::Assembly;
 use crate::components::*;
 use crate::scene::diagnostic::Diagnostics;
-use crate::scene::schema::{Axis, Constraint, Curve};
+use crate::scene::schema::{Axis, Constraint, Curve, InitialState};
 use bevy_ecs::prelude::*;
 use glam::{DMat3, DVec3};
 use std::collections::HashMap;
@@ -56,8 +56,28 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
                 rows.iter().for_each(|&row| moved[row as usize] |= axes);
                 let moves = (*displacement, *rotation, *gradient) != (DVec3::ZERO, DVec3::ZERO, [DVec3::ZERO; 3]);
                 // a static analysis lets every motion grow smoothly
-                let at_once = matches!(curve, Curve::Step { .. }) && !assembly.scene.scene.is_static();
-                if moves && at_once {
+                let moves = moves && !assembly.scene.scene.is_static();
+                if moves && matches!(curve, Curve::Input { rate: None, .. }) {
+                    diagnostics
+                        .warn_at(
+                            format!("constraints[{number}].curve").as_str(),
+                            "an input without `rate` moves nodes all at once, in a single step: a shock for the elements beside \
+                             them",
+                        )
+                        .note("bound its change a second: Input(name: ..., rate: ...)");
+                }
+                // from rest under what acts at t = 0 it is there already
+                let from_rest = assembly.scene.scene.start == InitialState::default();
+                if moves && from_rest && matches!(curve, Curve::Input { initial, .. } if *initial != 0.0) {
+                    diagnostics
+                        .warn_at(
+                            format!("constraints[{number}].curve").as_str(),
+                            "an input that is not 0 at first moves nodes there in the first step, whatever its rate: a shock for \
+                             the elements beside them",
+                        )
+                        .note("let it be 0 at first, or begin at rest there: start: Equilibrium()");
+                }
+                if moves && matches!(curve, Curve::Step { .. }) {
                     diagnostics
                         .warn_at(
                             format!("constraints[{number}]").as_str(),

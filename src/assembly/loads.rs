@@ -13,19 +13,18 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
     for (number, load) in assembly.scene.scene.loads.iter().enumerate() {
         let path = format!("loads[{number}].on");
         match load {
-            Load::Gravity { body, acceleration, curve } => {
+            Load::Gravity { body, .. } => {
                 if !has_weight(load) {
                     continue;
                 }
-                let signal = Signal::Load { curve: curve.clone(), amplitude: *acceleration };
-                let signal = world.resource_mut::<Signals>().add(signal);
+                let signal = world.resource_mut::<Signals>().add_load(number, load, 1.0);
                 let named = body.as_ref().and_then(|name| assembly.bodies.get(name));
                 let bodies: Vec<&BodyParts> = named.map_or(assembly.bodies.values().collect(), |body| vec![body]);
                 for body in bodies {
                     world.spawn((Gravity { signal }, OfBody(body.entity)));
                 }
             }
-            Load::NodalForce { body, on, force, share, per_copy, curve } => {
+            Load::NodalForce { body, on, share, per_copy, .. } => {
                 let Some(body) = assembly.body(body) else { continue };
                 let Some(picked) = assembly.pick(body, on, &path, diagnostics) else { continue };
                 match picked.nodes(&body.placed) {
@@ -36,8 +35,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
                         let touched: BTreeSet<usize> = body.copies_of(&rows).into_iter().collect();
                         let each = rows.len() as f64 / touched.len().max(1) as f64;
                         let parts = if *share == Share::Total { each } else { 1.0 };
-                        let signal = Signal::Load { curve: curve.clone(), amplitude: *force / parts };
-                        let signal = world.resource_mut::<Signals>().add(signal);
+                        let signal = world.resource_mut::<Signals>().add_load(number, load, parts);
                         world.spawn((NodalForce { rows, factors, signal }, OfBody(body.entity)));
                     }
                     Err(problem) => {
@@ -45,22 +43,20 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
                     }
                 }
             }
-            Load::Pressure { body, on, pressure, curve } => {
+            Load::Pressure { body, on, .. } => {
                 let Some((body, faces)) = loaded_faces(assembly, body, on, &path, diagnostics) else { continue };
                 if !has_weight(load) {
                     continue;
                 }
-                let signal = Signal::Load { curve: curve.clone(), amplitude: DVec3::X * *pressure };
-                let signal = world.resource_mut::<Signals>().add(signal);
+                let signal = world.resource_mut::<Signals>().add_load(number, load, 1.0);
                 world.spawn((Pressure { faces, signal }, OfBody(body)));
             }
-            Load::Traction { body, on, traction, curve } => {
+            Load::Traction { body, on, .. } => {
                 let Some((body, faces)) = loaded_faces(assembly, body, on, &path, diagnostics) else { continue };
                 if !has_weight(load) {
                     continue;
                 }
-                let signal = Signal::Load { curve: curve.clone(), amplitude: *traction };
-                let signal = world.resource_mut::<Signals>().add(signal);
+                let signal = world.resource_mut::<Signals>().add_load(number, load, 1.0);
                 world.spawn((Traction { faces, signal }, OfBody(body)));
             }
         }
@@ -69,12 +65,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
 
 /// Whether a load ever pushes.
 pub(super) fn has_weight(load: &Load) -> bool {
-    match load {
-        Load::Gravity { acceleration: vector, .. }
-        | Load::NodalForce { force: vector, .. }
-        | Load::Traction { traction: vector, .. } => *vector != DVec3::ZERO,
-        Load::Pressure { pressure, .. } => *pressure != 0.0,
-    }
+    load.amplitude() != DVec3::ZERO
 }
 
 fn loaded_faces(

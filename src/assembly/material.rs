@@ -25,16 +25,10 @@ pub(super) fn spawn(
             insert(&mut entity, built_in.unwrap_or(ElasticLaw::UserLaw(law)));
         }
         if let Some(fibres) = &material.fibres {
-            entity.insert(Fibres { eta: fibres.eta, tension_only: number(fibres.tension_only) });
+            entity.insert(fibres_of(fibres));
         }
         if let Some(families) = &material.exponential_fibres {
-            let family = |family: &schema::ExponentialFibres| ExponentialFibre {
-                k1: family.k1,
-                k2: family.k2,
-                dispersion: family.dispersion,
-                tension_only: number(family.tension_only),
-            };
-            entity.insert(ExponentialFibres(families.iter().map(family).collect()));
+            entity.insert(ExponentialFibres(families.iter().map(family_of).collect()));
         }
         if let Some(prony) = &material.prony {
             let terms = |terms: &[schema::PronyTerm]| terms.iter().map(|term| (term.alpha, term.tau)).collect();
@@ -54,6 +48,34 @@ pub(super) fn spawn(
         spawned.insert(name.clone(), entity.id());
     }
     spawned
+}
+
+/// Takes the parameters that a material has now, of the effects that it was made with.
+pub(super) fn renew(entity: &mut EntityWorldMut<'_>, made: &Material, now: &Material) {
+    insert_elastic_law(entity, now);
+    if let (Some(_), Some(fibres)) = (entity.get::<Fibres<f64>>(), &now.fibres) {
+        entity.insert(fibres_of(fibres));
+    }
+    if let (Some(made), Some(now)) = (&made.exponential_fibres, &now.exponential_fibres) {
+        let weighty = made.iter().zip(now).filter(|(made, _)| made.k1 != 0.0);
+        let families: Vec<ExponentialFibre<f64>> = weighty.map(|(_, now)| family_of(now)).collect();
+        if entity.contains::<ExponentialFibres>() {
+            entity.insert(ExponentialFibres(families));
+        }
+    }
+}
+
+fn fibres_of(fibres: &schema::Fibres) -> Fibres<f64> {
+    Fibres { eta: fibres.eta, tension_only: number(fibres.tension_only) }
+}
+
+fn family_of(family: &schema::ExponentialFibres) -> ExponentialFibre<f64> {
+    ExponentialFibre {
+        k1: family.k1,
+        k2: family.k2,
+        dispersion: family.dispersion,
+        tension_only: number(family.tension_only),
+    }
 }
 
 /// A material without the effects that have no weight: they cost nothing, and change nothing to the last bit.

@@ -15,6 +15,7 @@ mod own_texts;
 mod patches;
 mod relaxation;
 mod removal;
+mod renew;
 mod select;
 mod start;
 mod time_step;
@@ -27,6 +28,7 @@ pub use observation::steps_of;
 pub use patches::insert_forces;
 pub use relaxation::load_steps;
 pub use removal::step_of;
+pub use renew::renew_materials;
 pub use select::Selection;
 pub use time_step::{
     SquaresAtRest, StableStep, StepSetter, alike_in_any_precision, author_of, damped, damping_time, square_frequencies,
@@ -73,7 +75,11 @@ pub fn assemble<'a>(
         return None;
     }
     let materials = material::spawn(&scene.scene, &mut laws, world);
-    world.insert_resource(Signals::default());
+    let mut signals = Signals::default();
+    for (_, curve) in scene.scene.curves() {
+        signals.declare(curve);
+    }
+    world.insert_resource(signals);
     let mut assembly = Assembly { scene, precision, scheme, bodies: BTreeMap::new(), materials };
     for (name, mesh) in meshes {
         if let Some(parts) = body::spawn(&assembly, &name, mesh, world, diagnostics) {

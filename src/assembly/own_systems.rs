@@ -111,6 +111,8 @@ fn nodes_at_rest(body: &BodyParts, rows: Option<&[u32]>, world: &World) -> Vec<(
         numbers[row as usize] = authoring.node_ids.of(node);
     }
     let every = count.div_ceil(TRIED).max(1);
-    let of_row = |row: usize| (numbers[row], NodeAtRest { rest_position: rest.0[row], mass: mass.get(row), time: 0.0 });
+    let of_row = |row: usize| {
+        (numbers[row], NodeAtRest { rest_position: rest.0[row], mass: mass.get(row), curve: 1.0, time: 0.0 })
+    };
     (0..count).step_by(every).map(row_of).filter(|&row| mass.get(row) > 0.0).map(of_row).collect()
 }

@@ -62,6 +62,19 @@ pub(crate) struct BlockKernels {
     varying_directions: Option<BufferId>,
 }
 
+/// What kernels know of a law's parameters: of the elastic law, of fibres, of families of fibres, each with the label
+/// of its uniform, where there is any.
+pub(crate) fn law_uniforms(law: &BlockLaw<f32>, label: &str) -> [Option<(String, Vec<u8>)>; 3] {
+    let fibres = law.fibres.as_ref().map_or(Vec::new(), |(fibres, _)| fibres.bytes());
+    let families = law.exponential.iter().flat_map(|family| ExponentialFamily::new(family).bytes()).collect();
+    let parts = [
+        (law.elastic.name(), ElasticPart::of(&law.elastic).bytes),
+        ("fibres", fibres),
+        ("exponential_fibres", families),
+    ];
+    parts.map(|(name, bytes)| (!bytes.is_empty()).then(|| (format!("{name} of {label}"), bytes)))
+}
+
 impl BlockKernels {
     /// Of every block that has a law in f32.
     pub fn of_world(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Self> {
@@ -84,11 +97,8 @@ impl BlockKernels {
         let columns = [buffers.column(block.body, Displacement::NAME), buffers.column(entity, Connectivity::NAME)];
         let parameters = Block { count: block.count as u32, force_offset: block.force_offset as u32 };
         let parameters = buffers.uniform(format!("block of {label}"), &parameters.bytes());
-        let bytes = ElasticPart::of(&law.elastic).bytes;
-        let elastic =
-            (!bytes.is_empty()).then(|| buffers.uniform(format!("{} of {label}", law.elastic.name()), &bytes));
-        let fibres =
-            law.fibres.as_ref().map(|(fibres, _)| buffers.uniform(format!("fibres of {label}"), &fibres.bytes()));
+        let mut parts = law_uniforms(&law, &label).map(|part| part.map(|(name, bytes)| buffers.uniform(name, &bytes)));
+        let [elastic, fibres, families] = std::array::from_fn(|i| parts[i].take());
         let uniform_direction = match law.fibres {
             Some((_, FamilyDirection::Uniform([x, y, z]))) => {
                 let direction = UniformDirection { x, y, z };
@@ -96,10 +106,6 @@ impl BlockKernels {
             }
             _ => None,
         };
-        let families = law.exponential.iter().flat_map(|family| ExponentialFamily::new(family).bytes());
-        let families: Vec<u8> = families.collect();
-        let families =
-            (!families.is_empty()).then(|| buffers.uniform(format!("exponential_fibres of {label}"), &families));
         let varying_directions = (law.varying_families() > 0).then(|| buffers.column(entity, FibreDirection::NAME));
         Self {
             entity,

@@ -230,6 +230,7 @@ impl Case {
                 _ => Instructions::Widest,
             },
             scheme: if self.scheme == "patches" { Scheme::Patches } else { Scheme::TwoPass },
+            forgets_start: true,
             ..Options::default()
         }
     }

@@ -316,6 +316,7 @@ impl HowArguments {
                 SchemeName::Patches => Scheme::Patches,
                 SchemeName::TwoPass => Scheme::TwoPass,
             },
+            forgets_start: true,
             ..Options::default()
         }
     }

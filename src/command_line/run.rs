@@ -32,7 +32,11 @@ pub fn command(arguments: &RunArguments) -> Outcome {
             (beside(file, folder)?, Some(Snapshot::read(file)?))
         }
     };
-    let options = arguments.how.options();
+    let mut options = arguments.how.options();
+    if let Some(snapshot) = &from {
+        // what a program holds in it stays held
+        options.grabs |= Simulation::can_grab_in(snapshot)?;
+    }
     let mut outcome = run(&scene, &options, &folder, from.as_ref());
     if let Some((cpu, why)) = after_the_gpu(&options, &outcome) {
         terminal::note(&format!("{why}\n`--backend auto` takes the CPU then, from the start\n"));
@@ -94,6 +98,7 @@ pub fn run(
     if let Some(snapshot) = from {
         go_on_from(snapshot, &mut simulation)?;
     }
+    tell_of_inputs(&simulation);
     if from.is_none() && scene.scene.start != InitialState::Undeformed {
         progress::during("bringing the bodies to rest", || simulation.settle())?;
     }
@@ -112,6 +117,16 @@ pub fn run(
     let finished = finish(&mut simulation, &mut folder, ended);
     interrupt::rest();
     finished
+}
+
+/// Says what stays as it is because there is no program that would set it.
+fn tell_of_inputs(simulation: &Simulation) {
+    let inputs = simulation.inputs();
+    let all: Vec<String> = inputs.iter().map(|input| format!("{} stays at {}", input.name, input.target)).collect();
+    if !all.is_empty() {
+        let text = "a program sets inputs while it runs (docs/interaction.md), this command does not";
+        terminal::note(&format!("{}: {text}\n", all.join(", ")));
+    }
 }
 
 /// Goes on from a snapshot, if there is anything left to do.

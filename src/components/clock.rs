@@ -1,7 +1,8 @@
 //! Time, and what depends on nothing else.
 
 use super::curve::smooth;
-use crate::scene::schema::Curve;
+use super::input::Input;
+use crate::scene::schema::{Curve, Load};
 use bevy_ecs::prelude::*;
 use glam::{DMat3, DVec3};
 use serde::{Deserialize, Serialize};
@@ -158,13 +159,26 @@ impl Signal {
         }
     }
 
-    fn fill(&self, factor: impl Fn(&Curve, Use) -> f64, slots: &mut [[f64; 4]]) {
+    /// Its course in time, as the scene has it.
+    fn curve(&self) -> &Curve {
         match self {
-            Signal::Load { curve, amplitude } => {
+            Signal::Load { curve, .. } | Signal::Motion { curve, .. } => curve,
+        }
+    }
+
+    /// Whether it ever moves anything.
+    fn moves(&self) -> bool {
+        matches!(self, Signal::Motion { displacement, gradient, rotation, .. }
+            if (*displacement, *gradient, *rotation) != (DVec3::ZERO, DMat3::ZERO, DVec3::ZERO))
+    }
+
+    fn fill(&self, curve: &Curve, factor: impl Fn(&Curve, Use) -> f64, slots: &mut [[f64; 4]]) {
+        match self {
+            Signal::Load { amplitude, .. } => {
                 let v = *amplitude * factor(curve, Use::Load);
                 slots[0] = [v.x, v.y, v.z, 0.0];
             }
-            Signal::Motion { curve, displacement, gradient, rotation } => {
+            Signal::Motion { displacement, gradient, rotation, .. } => {
                 let factor = factor(curve, Use::Motion);
                 let a = *gradient * factor + rotation_less_identity(*rotation * factor);
                 let b = *displacement * factor;
@@ -191,8 +205,12 @@ fn rotation_less_identity(rotation: DVec3) -> DMat3 {
 /// All signals of a scene and their values in the present step; loads and constraints know their slots.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct Signals {
-    sources: Vec<Signal>,
+    /// Each with the place of its input, where it has one.
+    sources: Vec<(Signal, Option<usize>)>,
     values: Vec<[f64; 4]>,
+    inputs: Vec<Input>,
+    /// Loads of the scene: number, place among the sources, and by what their amplitude is divided.
+    loads: Vec<(usize, usize, f64)>,
 }
 
 impl Signals {
@@ -200,8 +218,58 @@ impl Signals {
     pub fn add(&mut self, signal: Signal) -> usize {
         let slot = self.values.len();
         self.values.resize(slot + signal.slots(), [0.0; 4]);
-        self.sources.push(signal);
+        let input = self.declare(signal.curve());
+        self.sources.push((signal, input));
         slot
+    }
+
+    /// Adds the signal of the scene's load of a number, whose amplitude is divided by `parts`; its slot.
+    pub fn add_load(&mut self, number: usize, load: &Load, parts: f64) -> usize {
+        self.loads.push((number, self.sources.len(), parts));
+        self.add(Signal::Load { curve: load.curve().clone(), amplitude: load.amplitude() / parts })
+    }
+
+    /// Takes the amplitudes of the scene's loads as they are now.
+    pub fn renew_loads(&mut self, all: &[Load]) {
+        for &(number, place, parts) in &self.loads {
+            if let (Some(load), Some((Signal::Load { amplitude, .. }, _))) =
+                (all.get(number), self.sources.get_mut(place))
+            {
+                *amplitude = load.amplitude() / parts;
+            }
+        }
+    }
+
+    /// Takes note of the input that a curve may be; its place.
+    pub fn declare(&mut self, curve: &Curve) -> Option<usize> {
+        let Curve::Input { name, initial, rate } = curve else { return None };
+        let known = self.inputs.iter().position(|input| input.name == *name);
+        Some(known.unwrap_or_else(|| {
+            self.inputs.push(Input::new(name, *initial, *rate));
+            self.inputs.len() - 1
+        }))
+    }
+
+    /// What a program may set.
+    pub fn inputs(&self) -> &[Input] {
+        &self.inputs
+    }
+
+    /// The same, to set.
+    pub fn inputs_mut(&mut self) -> &mut [Input] {
+        &mut self.inputs
+    }
+
+    /// The largest size that the input of a slot has had or goes to, 1 at least; 1 where it has none.
+    pub fn largest_input(&self, slot: usize) -> f64 {
+        let mut first = 0;
+        for (source, input) in &self.sources {
+            if (first..first + source.slots()).contains(&slot) {
+                return input.map_or(1.0, |input| self.inputs[input].largest());
+            }
+            first += source.slots();
+        }
+        1.0
     }
 
     /// Evaluates all signals for a step: of loads the mean over a window (s), see [`Clock::window_at`], of motions
@@ -220,26 +288,26 @@ impl Signals {
 
     fn fill(&mut self, factor: impl Fn(&Curve, Use) -> f64) {
         let mut slot = 0;
-        for source in &self.sources {
-            source.fill(&factor, &mut self.values[slot..]);
+        for (source, input) in &self.sources {
+            let curve = input.map_or(source.curve(), |input| self.inputs[input].course());
+            source.fill(curve, &factor, &mut self.values[slot..]);
             slot += source.slots();
         }
     }
 
     /// The first time after one (s) from which on a load or a motion may be quicker than ever before.
     pub fn quickens_after(&self, time: f64) -> Option<f64> {
-        let curves = self.sources.iter().map(|source| match source {
-            Signal::Load { curve, .. } | Signal::Motion { curve, .. } => curve,
-        });
-        curves.filter_map(|curve| curve.quickens_after(time)).reduce(f64::min)
+        self.sources.iter().filter_map(|(source, _)| source.curve().quickens_after(time)).reduce(f64::min)
     }
 
     /// Whether nodes have been moved as told by a jump until a time (s).
     pub fn have_jumped(&self, until: f64) -> bool {
-        self.sources.iter().any(|source| {
-            matches!(source, Signal::Motion { curve: Curve::Step { start, .. }, displacement, gradient, rotation }
-                if *start <= until && (*displacement, *gradient, *rotation) != (DVec3::ZERO, DMat3::ZERO, DVec3::ZERO))
-        })
+        let jumped = |(source, input): &(Signal, Option<usize>)| match (source.curve(), input) {
+            (Curve::Step { start, .. }, _) => *start <= until,
+            (_, Some(input)) => self.inputs[*input].has_jumped(),
+            _ => false,
+        };
+        self.sources.iter().any(|source| source.0.moves() && jumped(source))
     }
 
     /// Values of all slots in the present step.

@@ -33,6 +33,8 @@ impl Curve {
                     (None, None) => 0.0,
                 }
             }
+            // until somebody sets another
+            Curve::Input { initial, .. } => *initial,
         }
     }
 
@@ -77,6 +79,8 @@ impl Curve {
             }
             Curve::Step { start, end } => [Some(*start), *end].into_iter().flatten().find(|corner| *corner > time),
             Curve::Ramp { start, .. } | Curve::Smooth { start, .. } => Some(*start).filter(|start| *start > time),
+            // who sets it says so
+            Curve::Input { .. } => None,
         }
     }
 
@@ -87,6 +91,7 @@ impl Curve {
             Curve::Step { start, end } => first([Some(*start), *end]),
             Curve::Ramp { start, end } | Curve::Smooth { start, end } => first([Some(*start), Some(*end)]),
             Curve::Table(points) => points.get(points.partition_point(|&(t, _)| t <= time)).map(|point| point.0),
+            Curve::Input { .. } => None,
         }
     }
 

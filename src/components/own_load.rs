@@ -59,16 +59,18 @@ pub struct NodeAtRest {
     pub rest_position: DVec3,
     /// Its mass (kg).
     pub mass: f64,
+    /// What the curve is.
+    pub curve: f64,
     /// When (s).
     pub time: f64,
 }
 
 impl NodeAtRest {
-    /// The numbers of `Node` with the curve at 1 and steps of a millisecond.
+    /// The numbers of `Node` with steps of a millisecond.
     pub fn numbers(&self) -> [f64; LoadText::NUMBERS] {
         let mut numbers = [0.0; LoadText::NUMBERS];
         numbers[..3].copy_from_slice(&self.rest_position.to_array());
-        numbers[LoadText::MASS..].copy_from_slice(&[self.mass, 1.0, self.time, 1e-3]);
+        numbers[LoadText::MASS..].copy_from_slice(&[self.mass, self.curve, self.time, 1e-3]);
         numbers
     }
 }

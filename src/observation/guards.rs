@@ -227,6 +227,16 @@ fn held_by(seen: &Look, world: &World) -> Held {
     held
 }
 
+/// What elements hold as the balance of energy counts it (J), of viscous ones what remains in the long term, in the
+/// middle of the last step.
+///
+/// # Errors
+/// What the GPU says.
+pub fn held_for_long(world: &mut World) -> Result<f64, Error> {
+    let seen = look(world)?;
+    Ok(held_by(&seen, world).lasting)
+}
+
 /// Notes what bodies hold before the first step, from which on imbalances count.
 ///
 /// # Errors

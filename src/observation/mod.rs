@@ -15,7 +15,7 @@ mod track;
 pub use energies::{energies, energy_header, mass};
 pub use fields::{BodyFields, body_fields, internal_forces};
 pub use frame::{WrittenFields, write as write_fields, write_whole};
-pub use guards::{Watch, begin as begin_to_guard};
+pub use guards::{Watch, begin as begin_to_guard, held_for_long};
 pub use look::{Look, WatchKernels, look};
 pub use probes::{header, observe_probe};
 pub use rounding::{Rounding, shortest_edge};

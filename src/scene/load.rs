@@ -129,6 +129,16 @@ impl SceneFile {
         Self::from_parts(name, text, (Path::new(""), FileSource::Memory(Arc::new(files))), sets, Allowed::default())
     }
 
+    /// The same scene read from another text, with values put in as by `--set`.
+    ///
+    /// # Errors
+    /// As [`Self::from_text`].
+    pub(crate) fn again(&self, text: &str, sets: &[String]) -> Result<Self, Diagnostics> {
+        let name = self.path.display().to_string();
+        let again = Self::from_parts(&name, text, (&self.folder, self.files.clone()), sets, self.allowed)?;
+        Ok(Self { path: self.path.clone(), rest_shapes: self.rest_shapes.clone(), ..again })
+    }
+
     fn from_parts(
         name: &str,
         text: &str,

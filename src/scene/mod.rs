@@ -1,5 +1,6 @@
 //! Scene files: their words, how they are read, and what is said when they are wrong.
 
+mod adjust;
 mod beside;
 pub mod check;
 pub mod diagnostic;
@@ -15,6 +16,7 @@ pub mod syntax;
 pub mod validate;
 pub mod words;
 
+pub(crate) use adjust::other_than_parameters;
 pub use beside::{FileKind, FileSource, Outside};
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, TextFile};
 pub use limits::Allowed;

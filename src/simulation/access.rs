@@ -223,6 +223,6 @@ impl Simulation {
 
     /// Everything that is wrong with a scene, as far as can be known without running it.
     pub fn check(scene: &SceneFile, registry: &Registry) -> Diagnostics {
-        super::build::check(scene, registry)
+        super::prepare::check(scene, registry)
     }
 }

@@ -3,19 +3,19 @@
 use super::beat::Beat;
 use super::follow::Follower;
 use super::frequency::largest_eigenvalue;
+use super::history::History;
+use super::inputs::Tape;
 use super::known::Known;
 use super::options::{BackendChoice, Chosen, choose};
-use super::outputs;
-use super::parameters::hand_out;
 use super::plan::{Over, Pass, Plan, Planned, each_once};
-use super::plausible;
+use super::prepare::{Prepared, add_loads, counts, prepare};
 use super::relax::Relaxing;
-use super::schedule::{Scheduled, check_names, resolve};
+use super::schedule::Scheduled;
 use super::scheme::{fit_workgroups, sum_forces};
-use super::stable_step::{self, Stability};
+use super::solver::Solver;
 use super::step_kernels::step_kernels;
 use super::{Entry, Facts, Job, Options, Simulation};
-use crate::assembly::{Assembly, assemble, assemble_in_time, insert_laws};
+use crate::assembly::Assembly;
 use crate::backend::cpu::Cpu;
 use crate::backend::device::Device;
 use crate::backend::gpu::Gpu;
@@ -23,8 +23,8 @@ use crate::backend::kernel::KernelId;
 use crate::components::*;
 use crate::error::Error;
 use crate::observation::{Observer, Track, Watch, WatchKernels, WrittenFields};
+use crate::scene::SceneFile;
 use crate::scene::schema::Analysis;
-use crate::scene::{Diagnostics, SceneFile};
 use crate::snapshot::{Keeping, identity};
 use crate::systems::{HostSystem, NodePass, OnHost, Phase, Registry, System, node_pass, patch_pass};
 use bevy_ecs::prelude::*;
@@ -130,20 +130,34 @@ impl Simulation {
             elements,
             initial_mass: crate::observation::mass(&mut world)?,
             setup: started.elapsed(),
+            forgets_start: options.forgets_start,
+            node_systems: schedule.iter().filter_map(|entry| entry.system.host.nodes()).collect(),
             warnings: diagnostics,
         };
         let settling = super::preload::settling(scene, options)?;
-        let follower = Follower::new(&scene.scene, &facts.stability, facts.initial_mass, &mut world);
+        // rest shapes have gone into the world
+        let mut file = scene.clone();
+        file.rest_shapes.clear();
+        let mut follow = || Follower::new(&scene.scene, &facts.stability, facts.initial_mass, &mut world);
+        let solver = relaxing.map_or_else(|| Solver::Explicit(follow()), Solver::Relaxation);
         Ok(Self {
             world,
             plan,
             entries,
             scene: scene.scene.clone(),
+            file,
+            changed: None,
             facts,
-            relaxing,
             settling,
             preload: None,
-            follower,
+            solver,
+            tape: Tape::default(),
+            history: History::default(),
+            surfaces: Default::default(),
+            grabs: Default::default(),
+            next_grab: 0,
+            lineage: Default::default(),
+            seconds_a_step: None,
             elapsed: Duration::ZERO,
             began: (0, 0.0),
             failure: None,
@@ -221,66 +235,6 @@ fn host_job(system: HostSystem, schedule: &[Scheduled<'_>], plan: &Plan, pass: &
     }
 }
 
-/// What a scene comes to before a backend is chosen.
-struct Prepared<'a> {
-    assembly: Assembly<'a>,
-    clock: Clock,
-    stability: Stability,
-    steps: u64,
-    schedule: Vec<Scheduled<'a>>,
-}
-
-/// Makes a scene's world and its schedule. All mistakes that can be found go to `diagnostics`.
-fn prepare<'a>(
-    scene: &'a SceneFile,
-    options: &Options,
-    known: &'a Known<'_>,
-    world: &mut World,
-    diagnostics: &mut Diagnostics,
-) -> Option<Prepared<'a>> {
-    let assembly = assemble(scene, options.precision, options.scheme, world, diagnostics);
-    known.check(diagnostics);
-    check_names(scene.scene.schedule.as_deref().unwrap_or_default(), known, diagnostics);
-    let assembly = assembly?;
-    world.insert_resource(Cpu::new(options.threads, counts(&assembly).1, options.instructions));
-    // what is stable depends on the laws, whose history waits for the step
-    world.insert_resource(Clock::with_step(1.0));
-    insert_laws(options.precision, world);
-    let (clock, stability, steps) = clock(scene, world, diagnostics)?;
-    outputs::check(scene, &clock, steps, diagnostics);
-    outputs::check_curves(scene, &clock, diagnostics);
-    plausible::check(&assembly, world, diagnostics);
-    world.insert_resource(clock);
-    world.insert_resource(Observed(true));
-    assemble_in_time(&assembly, world, diagnostics);
-    let mut schedule = resolve(scene.scene.schedule.as_deref(), known, world, diagnostics);
-    hand_out(&scene.scene, known, &mut schedule, world, diagnostics);
-    Some(Prepared { assembly, clock, stability, steps, schedule })
-}
-
-/// Checks a scene as far as making its world goes: everything except choosing a backend. All that was found.
-pub(super) fn check(scene: &SceneFile, registry: &Registry) -> Diagnostics {
-    let mut diagnostics = scene.diagnostics();
-    let known = Known::of(registry, &scene.scene);
-    prepare(scene, &Options::default(), &known, &mut World::new(), &mut diagnostics);
-    diagnostics
-}
-
-/// The clock with its step, what is known of the stable step, and how many steps the scene lasts.
-fn clock(scene: &SceneFile, world: &mut World, diagnostics: &mut Diagnostics) -> Option<(Clock, Stability, u64)> {
-    if let Analysis::Static { max_steps, load_steps, at, .. } = scene.scene.analysis {
-        let bound = stable_step::found_bound(world, diagnostics)?;
-        let load_steps = load_steps.unwrap_or_else(|| crate::assembly::load_steps(world));
-        let growth = 1.0 / load_steps as f64;
-        let relaxation =
-            Relaxation { end: at.unwrap_or(scene.scene.duration), since: (0, 0.0), growth, damping: 0.0, gain: 1.0 };
-        let clock = Clock { relaxation: Some(relaxation), ..Clock::with_step(scene.scene.duration * growth) };
-        return Some((clock, Stability::of_rest(bound), max_steps));
-    }
-    let (stability, time_step, steps) = stable_step::choose(scene, world, diagnostics)?;
-    Some((Clock::with_step(time_step), stability, steps))
-}
-
 /// What drives a static analysis.
 fn relaxing(scene: &SceneFile, precision: Precision, world: &mut World) -> Option<Relaxing> {
     let Analysis::Static { tolerance, max_steps, .. } = scene.scene.analysis else { return None };
@@ -299,11 +253,6 @@ fn relaxing(scene: &SceneFile, precision: Precision, world: &mut World) -> Optio
 
 /// How well a static analysis knows the largest eigenvalue at rest: some 24 products; its safety is margin enough.
 const OF_RELAXATION: f64 = 0.2;
-
-fn counts(assembly: &Assembly<'_>) -> (usize, usize) {
-    let sum = |of: &dyn Fn(&crate::mesh::Mesh) -> usize| assembly.bodies.values().map(|b| of(&b.placed.mesh)).sum();
-    (sum(&|mesh| mesh.points.len()), sum(&|mesh| mesh.element_count()))
-}
 
 fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> Observer {
     let every = |time: f64| Cadence::new(time, clock.time_step);
@@ -333,12 +282,8 @@ fn add_called_for_columns(
     let Some(external) = world.component_id::<ExternalForce>() else { return };
     let custom = schedule.iter().zip(access).filter(|(entry, _)| entry.system.custom);
     if custom.into_iter().any(|(_, access)| Touched(access).writes(external)) {
-        for body in assembly.bodies.values() {
-            let length = world.get::<Displacement>(body.entity).map_or(0, |u| u.len());
-            if world.get::<ExternalForce>(body.entity).is_none() {
-                world.entity_mut(body.entity).insert(ExternalForce(Reals::zeros(assembly.precision, length)));
-            }
-        }
+        let bodies: Vec<Entity> = assembly.bodies.values().map(|body| body.entity).collect();
+        add_loads(&bodies, assembly.precision, world);
     }
 }
 

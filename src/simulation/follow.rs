@@ -5,6 +5,7 @@ use super::Simulation;
 use super::load_rates::LoadRates;
 use super::mass_scaling;
 use super::rounding::warn_of_rounding;
+use super::solver::Solver;
 use super::stable_step::Stability;
 use super::watch::{Seen, Watched};
 use crate::backend::device::{bring_to_host, send_to_device};
@@ -69,8 +70,9 @@ pub(super) struct Follower {
     by_elements: bool,
     /// The share of the stable step at the start that the scene's own one is; else 0.
     own_share: f64,
-    /// What loads of the scene's own make of a stable step: all frequencies here are of the bodies alone.
-    loads: LoadRates,
+    /// What forces on nodes make of a stable step: all frequencies here are of the bodies alone; now, and at the start.
+    pub loads: LoadRates,
+    loads_at_start: LoadRates,
     pub duration: f64,
     pub first: f64,
     pub watched: Vec<Watched>,
@@ -88,8 +90,20 @@ pub(super) struct Found {
     pub next: u64,
     /// The step of the last look.
     pub looked: u64,
-    /// The step in which loads and motions became quicker last.
+    /// The step in which loads and motions became quicker last, of those that were looked at.
     pub quickened: u64,
+    /// The step from which on they become quicker, where it is looked next for that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub quickens_at: Option<u64>,
+    /// What forces on nodes make of the step, where that has been counted anew since the start.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub loads: Option<LoadRates>,
+    /// ω² of all bodies at most when it was looked last (1/s²); 0: not yet.
+    #[serde(default)]
+    pub latest: f64,
+    /// The step in which an input last changed.
+    #[serde(default)]
+    pub changed: Option<u64>,
     /// The step that the scene or the program wants, which it never grows beyond (s).
     pub own: Option<f64>,
     /// The highest ω² when it was found last (1/s²), and what was seen then.
@@ -136,6 +150,7 @@ impl Follower {
             by_elements: stability.stays_with_elements,
             own_share: integration.step.map_or(0.0, |step| step / limit),
             loads: stability.loads,
+            loads_at_start: stability.loads,
             duration: scene.duration,
             first: step,
             watched: Vec::new(),
@@ -143,6 +158,10 @@ impl Follower {
                 next: 0,
                 looked: 0,
                 quickened: 0,
+                quickens_at: None,
+                loads: None,
+                latest: 0.0,
+                changed: None,
                 own: integration.step,
                 known: square_of(stability.limit_of_bodies),
                 seen: None,
@@ -190,23 +209,48 @@ impl Follower {
         Followed { found: self.found.clone(), history, growths, shape: self.shape.as_deref().map(text_of) }
     }
 
-    /// Goes on from what had been found; false where it does not fit the world.
-    pub fn take_up(&mut self, followed: Followed, world: &mut World) -> bool {
+    /// Goes on from what had been found, which [fits](Followed::fits).
+    pub fn take_up(&mut self, followed: Followed, world: &mut World) {
         self.watched = if followed.growths.is_empty() { Vec::new() } else { Watched::all(world) };
-        let growths: Option<Vec<Vec<f32>>> = followed.growths.iter().map(numbers_of).collect();
-        let Some(growths) = growths.filter(|growths| growths.len() == self.watched.len()) else { return false };
-        let fits = self.watched.iter_mut().zip(growths).all(|(block, growth)| block.take_known_growth(growth, world));
-        let shape = followed.shape.as_deref().map(numbers_of);
-        let sound = shape != Some(None);
-        (self.found, self.history, self.shape) = (followed.found, followed.history, shape.flatten());
-        let numbers = [self.found.known, self.found.lost, self.found.losing];
-        fits && sound && numbers.iter().all(|number| number.is_finite())
+        for (block, growth) in self.watched.iter_mut().zip(&followed.growths) {
+            let taken = numbers_of(growth).is_some_and(|growth| block.take_known_growth(growth, world));
+            debug_assert!(taken, "the growth of other elements");
+        }
+        self.shape = followed.shape.as_deref().and_then(numbers_of);
+        (self.found, self.history) = (followed.found, followed.history);
+        self.loads = self.found.loads.unwrap_or(self.loads_at_start);
+        world.insert_resource(self.loads);
     }
 
     /// Elements have gone since the highest frequency was found: their mass has gone with them, and what was found
     /// holds no more.
     pub fn has_lost(&self, seen: &Seen) -> bool {
         self.found.seen.is_some_and(|before| seen.alive < before.alive)
+    }
+
+    /// An input changes in a step, perhaps so that loads and motions become quicker than ever before. Whether it was
+    /// looked before that or is after makes no difference.
+    pub fn note_change(&mut self, step: u64, quickens: bool) {
+        // where nothing would be done about it nobody looks
+        if self.found.next == u64::MAX {
+            return;
+        }
+        self.found.changed = Some(step);
+        let within = if quickens { 1 } else { LOOKS.0 };
+        self.found.next = self.found.next.min(step + within);
+        // what comes after that look is sought at it
+        self.found.quickens_at = self.found.quickens_at.filter(|at| *at < step + within);
+        if quickens {
+            self.found.quickened = step;
+        }
+    }
+
+    /// Looks before the next step.
+    pub fn look_soon(&mut self) {
+        // where nothing would be done about it nobody looks
+        if self.found.next != u64::MAX {
+            self.found.next = self.found.next.min(self.found.looked);
+        }
     }
 
     /// The step before which is looked next: sooner where strains change fast, where the step is close to the limit,
@@ -220,14 +264,29 @@ impl Follower {
         let least = ((MOST_STRAIN / speed) as u64).clamp(1, LOOKS.0);
         let calm =
             ((strain / speed) as u64).clamp(least, LOOKS.1).min(step.saturating_sub(self.found.quickened).max(1));
+        // what begins to change may be anything
+        let calm = if self.found.changed == Some(step) { calm.min(LOOKS.0) } else { calm };
         let until = |time: f64| ((time - clock.time()) / clock.time_step).ceil();
-        match quicker.map(until).filter(|steps| *steps < calm as f64) {
-            Some(steps) => {
-                self.found.quickened = step + steps as u64;
-                self.found.quickened.max(step + 1)
-            }
-            None => step + calm,
-        }
+        let sooner = quicker.map(until).filter(|steps| *steps < calm as f64);
+        self.found.quickens_at = sooner.map(|steps| step + steps as u64);
+        self.found.quickens_at.map_or(step + calm, |at| at.max(step + 1))
+    }
+}
+
+impl Followed {
+    /// Whether it can be that of a world.
+    pub fn fits(&self, world: &mut World) -> bool {
+        let mut blocks: Vec<(Entity, usize)> =
+            world.query::<(Entity, &Block)>().iter(world).map(|(entity, block)| (entity, block.count)).collect();
+        blocks.sort();
+        let growths: Option<Vec<usize>> =
+            self.growths.iter().map(|text| numbers_of(text).map(|numbers| numbers.len())).collect();
+        let counts = || blocks.iter().map(|block| block.1);
+        let fits = growths.is_some_and(|growths| growths.is_empty() || growths.into_iter().eq(counts()));
+        let shape = self.shape.as_ref().is_none_or(|text| numbers_of(text).is_some());
+        let loads = self.found.loads.is_none_or(|loads| loads.are_sound());
+        let numbers = [self.found.known, self.found.lost, self.found.losing, self.found.latest];
+        fits && shape && loads && numbers.iter().all(|number| number.is_finite())
     }
 }
 
@@ -254,22 +313,18 @@ pub(super) fn square_of(step: f64) -> f64 {
 impl Simulation {
     /// How the step went so far; `None` in a static analysis.
     pub fn step_history(&self) -> Option<&StepHistory> {
-        self.follower.as_ref().map(|follower| &follower.history)
-    }
-
-    /// The next step before which the stable step is looked at.
-    pub(super) fn next_follow(&self) -> u64 {
-        self.follower.as_ref().map_or(u64::MAX, |follower| follower.found.next)
+        self.solver.follower().map(|follower| &follower.history)
     }
 
     /// Looks at the stable step if it is time, and does what the scene wants done.
     pub(super) fn follow(&mut self) -> Result<(), Error> {
         let step = self.step_count();
-        let Some(mut follower) = self.follower.take_if(|follower| follower.found.next <= step) else { return Ok(()) };
+        let Solver::Explicit(follower) = &mut self.solver else { return Ok(()) };
+        let Some(mut follower) = follower.take_if(|follower| follower.found.next <= step) else { return Ok(()) };
         let started = Instant::now();
         let looked = self.look_with(&mut follower);
         follower.history.seconds += started.elapsed().as_secs_f64();
-        self.follower = Some(follower);
+        self.solver = Solver::Explicit(Some(follower));
         looked.map_err(|error| self.note(error))
     }
 
@@ -285,10 +340,14 @@ impl Simulation {
             seen = seen.and(block.look(&self.world));
         }
         follower.history.looks += 1;
+        if let Some(at) = follower.found.quickens_at.take_if(|at| *at <= step) {
+            follower.found.quickened = at;
+        }
         warn_of_rounding(&follower.watched, &mut self.world);
         let lost = follower.has_lost(&seen);
         // what was found of more elements says nothing
         seen.square = if lost { seen.of_elements } else { seen.of_elements.min(follower.found.known * seen.ratio) };
+        follower.found.latest = if seen.square.is_finite() { seen.square } else { follower.found.latest };
         if lost && matches!(follower.policy, WhenUnstable::ScaleMass { .. }) {
             // what was added to removed elements goes with them
             bring_to_host(&mut self.world, |_, name| [Mass::NAME, FictitiousMass::NAME].contains(&name))?;

@@ -28,12 +28,18 @@ impl Simulation {
     /// done, when it was taken, on the same backend; a snapshot of the CPU in f32 also fits the GPU, whose bits differ.
     ///
     /// # Errors
-    /// That the snapshot is of another simulation (then nothing has changed); what the GPU says.
+    /// That the snapshot is of another simulation, is senseless, or holds a body where nothing can be held
+    /// ([`Options::grabs`](super::Options::grabs)): then nothing has changed. A custom system's state that cannot be taken
+    /// back; what the GPU says.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Error> {
+        self.keep_start();
+        let pace = self.checked_pace(snapshot)?;
         self.world.increment_change_tick();
+        let before = self.step_count();
         snapshot.put(&mut self.world)?;
         (self.settling, self.preload) = (None, None);
-        self.take_up_pace(snapshot)?;
+        let ours = self.take_up_pace(pace, before)?;
+        self.forget_later(snapshot.time(), ours);
         let clock = *self.world.resource::<Clock>();
         self.began = (clock.step, clock.time());
         self.elapsed = Duration::ZERO;

@@ -1,4 +1,5 @@
-//! What loads of the scene's own make of the stable step, as far as it can be seen at rest.
+//! What forces on nodes make of the stable step, as far as the systems that bring them say so
+//! ([`NodeSystem::slopes`](crate::systems::NodeSystem::slopes)).
 //!
 //! A force f(u, v) on a node is that of a spring and a damper to the first order, K = −∂f/∂u and C = −∂f/∂v. Central
 //! differences take v from the middle of the step before, so the recursion M (u⁺ − 2u + u⁻)/Δt² + C (u − u⁻)/Δt + K u =
@@ -7,78 +8,39 @@
 //!
 //! Δt = 2/(γ/2 + √(γ²/4 + ω² + κ)).
 //!
-//! Slopes are differences at nodes at rest, at some times, with the curve at 1. What pushes only later, or harder
-//! elsewhere, is not seen: where it may be stiff, the scene's own `step` or `safety` is smaller.
+//! Of loads that a scene has in WGSL they are differences at nodes at rest, at some times, with the curve at 1. What
+//! pushes only later, or harder elsewhere, is not seen: where it may be stiff, the scene's own `step` or `safety` is
+//! smaller.
 
-use crate::components::*;
+use super::Simulation;
+use super::follow::step_of;
+use crate::backend::device::bring_to_host;
+use crate::components::{Column, Mass};
+use crate::error::Error;
+use crate::scene::schema::WhenUnstable;
+use crate::systems::{ForceSlopes, NodeRows, System};
 use bevy_ecs::prelude::*;
-use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
-/// Nodes of each body at which slopes are taken, evenly from all; the lightest node is one more.
-const TRIED: usize = 1000;
-/// Times at which they are taken, evenly from the start to the end.
-const TIMES: usize = 5;
-/// Length of the differences, as a share of the body's size.
-const LENGTH: f64 = 1e-6;
-
-/// The largest slopes of all loads of the scene's own.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct LoadRates {
-    /// κ (1/s²).
-    square: f64,
-    /// γ (1/s).
-    rate: f64,
-}
+/// The slopes of all forces of node systems together: the largest of each.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct LoadRates(ForceSlopes);
 
 impl LoadRates {
-    /// Of the loads of a world at rest, whose scene lasts so long (s).
-    pub fn at_rest(duration: f64, world: &mut World) -> Self {
-        let mut all = Self::default();
-        let loads: Vec<(OwnLoad, Entity, OfSystem)> = world
-            .query::<(&OwnLoad, &OfBody, &OfSystem)>()
-            .iter(world)
-            .map(|(load, body, system)| (load.clone(), body.0, *system))
-            .collect();
-        let systems = loads.iter().map(|(.., system)| system.0 + 1).max().unwrap_or(0);
-        // loads of one system are on different bodies
-        for number in 0..systems {
-            let mut largest = Self::default();
-            for (load, body, _) in loads.iter().filter(|(.., system)| system.0 == number) {
-                let found = Self::of_load(load, *body, duration, world);
-                largest = Self { square: largest.square.max(found.square), rate: largest.rate.max(found.rate) };
-            }
-            all = Self { square: all.square + largest.square, rate: all.rate + largest.rate };
-        }
-        all
+    /// Of the systems of a world, whose scene lasts so long (s).
+    pub fn of<'a>(systems: impl Iterator<Item = &'a System>, duration: f64, world: &mut World) -> Self {
+        Self::of_rows(systems.filter_map(|system| system.host.nodes()), duration, world)
     }
 
-    fn of_load(load: &OwnLoad, body: Entity, duration: f64, world: &World) -> Self {
-        let entity = world.entity(body);
-        let (Some(RestPosition(rest)), Some(mass)) = (entity.get::<RestPosition>(), entity.get::<Mass>()) else {
-            return Self::default();
-        };
-        let axes = entity.get::<ConstrainedAxes>();
-        let moves = |row: &usize| mass.get(*row) > 0.0 && axes.is_none_or(|axes| axes[*row] & 7 != 7);
-        let rows: Vec<usize> = match &load.rows {
-            Some(rows) => rows.iter().map(|&row| row as usize).filter(moves).collect(),
-            None => (0..rest.len()).filter(moves).collect(),
-        };
-        let (low, high) =
-            rest.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
-        let length = LENGTH * (high - low).max_element();
-        let lightest = rows.iter().copied().min_by(|&a, &b| mass.get(a).total_cmp(&mass.get(b)));
-        let every = rows.len().div_ceil(TRIED).max(1);
-        let mut largest = Self::default();
-        for row in rows.iter().copied().step_by(every).chain(lightest) {
-            for number in 0..TIMES {
-                let time = duration * number as f64 / (TIMES - 1) as f64;
-                let node = NodeAtRest { rest_position: rest[row], mass: mass.get(row), time };
-                let [stiffness, damping] = load.text.growth(&node, length).map(|slope| slope / node.mass);
-                // what is no number is the guards' business
-                largest = Self { square: largest.square.max(stiffness), rate: largest.rate.max(damping) };
-            }
-        }
-        largest
+    /// The same of systems that act on nodes.
+    pub fn of_rows(systems: impl Iterator<Item = NodeRows>, duration: f64, world: &mut World) -> Self {
+        let all = systems.map(|rows| rows.slopes(duration, world));
+        Self(all.fold(ForceSlopes::default(), ForceSlopes::and))
+    }
+
+    /// Whether they are numbers that steps can be found from.
+    pub fn are_sound(&self) -> bool {
+        [self.0.stiffness, self.0.damping].iter().all(|number| number.is_finite() && *number >= 0.0)
     }
 
     /// The stable step (s) under the loads, from that of the bodies alone.
@@ -86,8 +48,8 @@ impl LoadRates {
         if *self == Self::default() {
             return step;
         }
-        let half = 0.5 * self.rate;
-        2.0 / (half + (half * half + 4.0 / (step * step) + self.square).sqrt())
+        let half = 0.5 * self.0.damping;
+        2.0 / (half + (half * half + 4.0 / (step * step) + self.0.stiffness).sqrt())
     }
 
     /// What they do to the stable step of the bodies (s), where it can be noticed.
@@ -95,11 +57,43 @@ impl LoadRates {
         let with = self.with(step);
         (with < 0.999 * step).then(|| {
             format!(
-                "loads of the scene's own make {with:.3e} s of {step:.3e} s: at rest they grow by up to {:.3e} N/(m kg) with \
+                "forces on nodes make {with:.3e} s of {step:.3e} s: at rest they grow by up to {:.3e} N/(m kg) with \
                  displacements and {:.3e} N s/(m kg) with velocities",
-                self.square, self.rate
+                self.0.stiffness, self.0.damping
             )
         })
+    }
+}
+
+impl Simulation {
+    /// The slopes of all forces on nodes as they are now.
+    pub(super) fn loads_now(&mut self) -> Result<LoadRates, Error> {
+        bring_to_host(&mut self.world, |_, name| name == Mass::NAME)?;
+        let systems = self.facts.node_systems.iter().copied();
+        Ok(LoadRates::of_rows(systems, self.scene.duration, &mut self.world))
+    }
+
+    /// Counts forces on nodes for the stable step from here on. Snapshots hold what was counted: elements that went since
+    /// must not make another step of it.
+    pub(super) fn count_loads(&mut self) -> Result<(), Error> {
+        let loads = self.loads_now()?;
+        if let Some(follower) = self.solver.follower_mut() {
+            (follower.loads, follower.found.loads) = (loads, Some(loads));
+        }
+        self.world.insert_resource(loads);
+        Ok(())
+    }
+
+    /// Whether a step that stays is stable with such loads by the margin at which something would be done about it.
+    ///
+    /// # Errors
+    /// The largest that is (s).
+    pub(super) fn fits_the_step(&self, loads: &LoadRates) -> Result<(), f64> {
+        let Some(follower) = self.solver.follower() else { return Ok(()) };
+        let bodies = step_of(follower.found.known.max(follower.found.latest));
+        let limit = follower.most() * loads.with(bodies);
+        let follows = follower.policy == WhenUnstable::Adapt || self.scene.integration.beyond_stable_step;
+        if follows || self.time_step() <= limit { Ok(()) } else { Err(limit) }
     }
 }
 
@@ -114,7 +108,7 @@ mod tests {
         for (square, rate, own) in
             [(4.0, 0.0, 0.0), (0.0, 3.0, 0.0), (9.0, 3.0, 25.0), (0.0, 0.0, 16.0), (1e-3, 1e3, 1.0)]
         {
-            let loads = LoadRates { square, rate };
+            let loads = LoadRates(ForceSlopes { stiffness: square, damping: rate });
             let limit = loads.with(2.0 / f64::sqrt(own));
             let at_minus_one = |step: f64| 4.0 - (own + square) * step * step - 2.0 * rate * step;
             assert!(at_minus_one(0.999 * limit) > 0.0 && at_minus_one(1.001 * limit) < 0.0, "{loads:?}, {own}");

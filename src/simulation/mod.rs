@@ -5,16 +5,22 @@ mod adapt;
 mod added_mass;
 mod beat;
 mod block_forces;
+mod budget;
 mod build;
+mod change;
 mod column_view;
 mod costly;
 mod damped_step;
 pub mod explain;
 mod follow;
 mod frequency;
+mod grab;
 mod growth;
+mod history;
+mod inputs;
 mod keep;
 mod known;
+mod lineage;
 mod load_rates;
 mod mass_scaling;
 mod modes;
@@ -25,16 +31,19 @@ mod options;
 mod outputs;
 mod pace;
 mod parameters;
+mod pick;
 mod plan;
 mod plausible;
 mod policies;
 mod preload;
+mod prepare;
 mod relax;
 mod residual;
 mod rounding;
 mod run;
 mod schedule;
 mod scheme;
+mod solver;
 mod stable_step;
 mod step_change;
 mod step_kernels;
@@ -45,12 +54,16 @@ mod tangent;
 mod unload;
 mod watch;
 
+pub use budget::{Advanced, Ended};
 pub use column_view::ColumnView;
 pub use follow::StepHistory;
+pub use grab::{Grab, GrabId, Grip};
+pub use inputs::{InputChange, InputRecording, InputUse, InputValue};
 pub use modes::Mode;
 pub use names::{FieldName, Names};
 pub use node_set::{NodeSet, NodeState};
 pub use options::{BackendChoice, Options};
+pub use pick::Pick;
 pub use preload::Preload;
 pub use relax::Equilibrium;
 pub use stable_step::Stability;
@@ -58,8 +71,8 @@ pub use summary::{Inversions, Summary, SystemTime};
 pub use unload::{Unloaded, Unloading, UnloadingStep, unload};
 
 use crate::backend::kernel::KernelId;
-use crate::scene::Diagnostics;
 use crate::scene::schema::Scene;
+use crate::scene::{Diagnostics, SceneFile};
 use crate::systems::{HostSystem, Phase};
 use beat::Beat;
 use bevy_ecs::prelude::*;
@@ -71,14 +84,31 @@ pub struct Simulation {
     plan: plan::Plan,
     /// Its passes on the backend that it runs on.
     entries: Vec<Entry>,
+    /// As it is now.
     scene: Scene,
+    /// What it was made of.
+    file: SceneFile,
+    /// The text of the scene, where it has been changed since.
+    changed: Option<String>,
     facts: Facts,
-    relaxing: Option<relax::Relaxing>,
+    solver: solver::Solver,
     /// What is to bring the bodies to rest before the first step.
     settling: Option<Box<Simulation>>,
     /// What that took.
     preload: Option<Preload>,
-    follower: Option<follow::Follower>,
+    /// Inputs that are recorded and replayed.
+    tape: inputs::Tape,
+    /// Surfaces for picking.
+    surfaces: pick::Surfaces,
+    grabs: grab::AllGrabs,
+    /// The number of the next grab: none is given twice.
+    next_grab: u64,
+    /// What programs have done so far.
+    lineage: lineage::Lineage,
+    /// States to go back to.
+    history: history::History,
+    /// What a step takes on the clock on the wall (s), where that was measured.
+    seconds_a_step: Option<f64>,
     elapsed: Duration,
     /// Step and time (s) from which `elapsed` counts: of the start, or of a snapshot that was gone on from.
     began: (u64, f64),
@@ -117,5 +147,8 @@ struct Facts {
     elements: usize,
     initial_mass: f64,
     setup: Duration,
+    forgets_start: bool,
+    /// Systems of the step that act on nodes: what their forces do to the stable step is counted anew when it changes.
+    node_systems: Vec<crate::systems::NodeRows>,
     warnings: Diagnostics,
 }

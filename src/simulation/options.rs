@@ -34,6 +34,10 @@ pub struct Options {
     pub scheme: Scheme,
     /// Less than that GPU allows, for trying out what becomes of a scene on a smaller one.
     pub gpu_limits: SmallerLimits,
+    /// Whether a program may [grab](crate::Simulation::grab) bodies while it runs: they have forces on nodes then.
+    pub grabs: bool,
+    /// Whether the state before the first step is not kept: then nobody can [reset](crate::Simulation::reset).
+    pub forgets_start: bool,
 }
 
 /// What was chosen, and why.

@@ -3,9 +3,10 @@
 
 use super::beat::Beat;
 use super::follow::Followed;
+use super::grab::AllGrabs;
 use super::step_change::relax_as;
 use super::{Job, Simulation};
-use crate::components::Clock;
+use crate::components::{Clock, Grabs, InputState};
 use crate::error::Error;
 use crate::observation::Observer;
 use crate::snapshot::{Snapshot, SnapshotError};
@@ -16,36 +17,95 @@ use std::collections::BTreeMap;
 /// The pace at the end of a step.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Pace {
+pub(super) struct Pace {
     /// When systems on the host run next, by name.
     beats: BTreeMap<String, Beat>,
     /// What is known of the stable step.
     found: Option<Followed>,
+    /// What programs set.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    inputs: BTreeMap<String, InputState>,
+    /// Whether they may hold something.
+    #[serde(default, skip_serializing_if = "is_default")]
+    can_grab: bool,
+    /// What they hold.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    grabs: AllGrabs,
+    /// The scene's text, where its parameters have been changed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    scene: Option<String>,
+    /// The hash of what they had done before this step.
+    #[serde(default, skip_serializing_if = "is_default")]
+    changes: u64,
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+fn senseless(reason: impl std::fmt::Display) -> SnapshotError {
+    SnapshotError::Senseless(format!("its pace cannot be taken up: {reason}"))
+}
+
+fn pace_of(snapshot: &Snapshot) -> Result<Pace, SnapshotError> {
+    ron::from_str(snapshot.pace()).map_err(senseless)
 }
 
 impl Simulation {
+    /// Whether a snapshot is of a simulation with [`Options::grabs`](super::Options::grabs): one that goes on from it
+    /// needs them, too.
+    ///
+    /// # Errors
+    /// A snapshot that is senseless.
+    pub fn can_grab_in(snapshot: &Snapshot) -> Result<bool, Error> {
+        Ok(pace_of(snapshot)?.can_grab)
+    }
+
     /// Notes the pace in a snapshot of the world.
-    pub(super) fn note_pace(&self, snapshot: &mut Snapshot) -> Result<(), SnapshotError> {
+    pub(super) fn note_pace(&mut self, snapshot: &mut Snapshot) -> Result<(), SnapshotError> {
         let beat = |entry: &super::Entry| match &entry.job {
             Job::Host { beat, .. } => Some((entry.name.clone(), *beat)),
             Job::Kernels(_) => None,
         };
         let pace = Pace {
             beats: self.entries.iter().filter_map(beat).collect(),
-            found: self.follower.as_ref().map(|follower| follower.followed()),
+            found: self.solver.follower().map(|follower| follower.followed()),
+            inputs: self.input_states(),
+            can_grab: self.world.query::<&Grabs>().iter(&self.world).next().is_some(),
+            grabs: self.grabs.clone(),
+            scene: self.changed_text(),
+            changes: self.lineage.before(self.step_count()).unwrap_or_default(),
         };
         let text = ron::to_string(&pace).map_err(|error| SnapshotError::Senseless(error.to_string()))?;
         snapshot.set_pace(text);
         Ok(())
     }
 
-    /// Goes on at the pace of a snapshot that has been put into the world.
-    pub(super) fn take_up_pace(&mut self, snapshot: &Snapshot) -> Result<(), Error> {
-        let senseless = |reason: String| SnapshotError::Senseless(format!("its pace cannot be taken up: {reason}"));
-        let pace: Pace = ron::from_str(snapshot.pace()).map_err(|error| senseless(error.to_string()))?;
+    /// The pace of a snapshot, if all of it fits; nothing has changed then.
+    pub(super) fn checked_pace(&mut self, snapshot: &Snapshot) -> Result<Pace, Error> {
+        let pace = pace_of(snapshot)?;
+        self.check_grabs(&pace.grabs)?;
+        self.check_changed(pace.scene.as_deref())?;
+        snapshot.fits(&mut self.world)?;
         if let Some((name, _)) = pace.beats.iter().find(|(_, beat)| !beat.is_sound()) {
             return Err(senseless(format!("the system `{name}` can never run")).into());
         }
+        self.check_input_states(&pace.inputs).map_err(senseless)?;
+        let found = pace.found.as_ref().filter(|_| self.solver.follower().is_some());
+        match found.is_none_or(|found| found.fits(&mut self.world)) {
+            true => Ok(pace),
+            false => Err(senseless("it is that of other elements").into()),
+        }
+    }
+
+    /// Goes on at the pace of a snapshot that has been put into the world, where the run was at the step `before`;
+    /// whether it has been where it goes on from.
+    pub(super) fn take_up_pace(&mut self, pace: Pace, before: u64) -> Result<bool, Error> {
+        let ours = self.lineage.go_on_from(self.step_count(), pace.changes, before);
+        self.take_up_input_states(pace.inputs, ours);
+        self.take_up_grabs(pace.grabs)?;
+        self.take_up_changed(pace.scene)?;
+        self.surfaces.clear();
         let clock = *self.world.resource::<Clock>();
         relax_as(&mut self.world, &clock)?;
         for entry in &mut self.entries {
@@ -57,11 +117,9 @@ impl Simulation {
         let last_step = clock.step_nearest(self.scene.duration);
         self.facts.steps = last_step;
         self.world.resource_scope(|world, mut observer: Mut<Observer>| observer.go_on(world, last_step))?;
-        if let (Some(follower), Some(found)) = (&mut self.follower, pace.found)
-            && !follower.take_up(found, &mut self.world)
-        {
-            return Err(senseless("it is that of other elements".into()).into());
+        if let (Some(follower), Some(found)) = (self.solver.follower_mut(), pace.found) {
+            follower.take_up(found, &mut self.world);
         }
-        Ok(())
+        Ok(ours)
     }
 }

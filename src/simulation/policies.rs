@@ -24,15 +24,22 @@ impl Simulation {
     /// known.
     pub(super) fn hold(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<Option<u64>, Error> {
         let (step, time_step) = (self.step_count(), self.world.resource::<Clock>().time_step);
-        let pressing = time_step > follower.most() * follower.step_of(seen.square);
-        // mass is not added and elements are not removed on the word of the cheap bound
+        // mass is not added and elements are not removed on the word of the cheap bound, nor for what a load or a hand does
         let watches = follower.policy == WhenUnstable::Watch;
+        let presses = |follower: &Follower, square: f64| {
+            time_step > follower.most() * if watches { follower.step_of(square) } else { step_of(square) }
+        };
+        let pressing = presses(follower, seen.square);
         let affordable = follower.history.sharp_looks < FINDINGS.0 + step / FINDINGS.1;
         let found = match watches {
             true => pressing && affordable && self.estimate(follower, seen)?,
             false => pressing && self.find(follower, seen)?,
         };
         follower.found.seen.get_or_insert(*seen);
+        if !watches && time_step > follower.step_of(seen.square) && !presses(follower, seen.square) {
+            // with what acts on nodes: told, as where one only watches, and the guards see to the rest
+            follower.history.beyond_since.get_or_insert(self.time());
+        }
         match follower.policy {
             WhenUnstable::Watch if time_step > follower.step_of(follower.found.known) => {
                 let now = self.time();
@@ -40,7 +47,7 @@ impl Simulation {
                 // told once; the guards see to the rest
                 Ok(Some(u64::MAX))
             }
-            _ if !found || time_step <= follower.most() * follower.step_of(seen.square) => Ok(None),
+            _ if !found || !presses(follower, seen.square) => Ok(None),
             WhenUnstable::ScaleMass { most } => self.make_heavier(follower, time_step, most).map(|()| None),
             WhenUnstable::Remove => self.remove_quickest(follower).map(Some),
             WhenUnstable::Watch | WhenUnstable::Adapt => Ok(None),
@@ -88,7 +95,7 @@ impl Simulation {
             if let Some(limit) = limit_now(&mut self.world, ACCURACY) {
                 follower.found.known = square_of(limit);
             }
-            if time_step <= follower.most() * follower.step_of(follower.found.known) {
+            if time_step <= follower.most() * step_of(follower.found.known) {
                 break;
             }
         }

@@ -131,7 +131,7 @@ impl Simulation {
         relax_fully(&mut self.world);
         send_to_device(&mut self.world, |_, name| WRITTEN.contains(&name))?;
         crate::observation::begin_to_guard(&mut self.world)?;
-        if let Some(follower) = &mut self.follower {
+        if let Some(follower) = self.solver.follower_mut() {
             // the step was found for bodies that are not deformed
             follower.found.next = 0;
         }

@@ -7,6 +7,7 @@
 
 use super::Simulation;
 use super::residual::{Motion, Residual, State};
+use super::solver::Solver;
 use super::stretch::least_stretch;
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
@@ -108,15 +109,12 @@ impl Relaxing {
 impl Simulation {
     /// The equilibrium of a static analysis, or how far it has come; `None` for one of motion.
     pub fn equilibrium(&self) -> Option<&Equilibrium> {
-        self.relaxing.as_ref().map(|relaxing| &relaxing.equilibrium)
+        self.solver.relaxing().map(|relaxing| &relaxing.equilibrium)
     }
 
     /// Whether all is done: the scene's duration has passed, or equilibrium is reached.
     pub fn is_finished(&self) -> bool {
-        match &self.relaxing {
-            Some(relaxing) => relaxing.equilibrium.reached,
-            None => self.step_count() >= self.planned_steps(),
-        }
+        self.solver.is_done(self.step_count(), self.planned_steps())
     }
 
     /// Takes all steps that are left, to the end of the scene's duration or to equilibrium.
@@ -129,12 +127,9 @@ impl Simulation {
 
     /// Looks at the residual, and chooses how to go on.
     pub(super) fn look(&mut self) -> Result<(), Error> {
-        let Some(mut relaxing) = self.relaxing.take() else { return Ok(()) };
-        let looked = relaxing.look(&mut self.world);
-        let reached = relaxing.equilibrium.reached;
-        self.relaxing = Some(relaxing);
-        looked?;
-        if reached {
+        let Solver::Relaxation(relaxing) = &mut self.solver else { return Ok(()) };
+        relaxing.look(&mut self.world)?;
+        if relaxing.equilibrium.reached {
             self.world.resource_mut::<Observer>().last_step = self.step_count();
             self.observe_in_time()?;
         }

@@ -28,8 +28,13 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn advance_to(&mut self, time: f64) -> Result<(), Error> {
-        // a time that is a whole number of steps is met in spite of rounding
-        self.advance_along(u64::MAX, |clock| ((time - clock.since.1) / clock.time_step - WHOLE).ceil())
+        self.settle()?;
+        loop {
+            match self.steps_left_to(time)? {
+                0 => return Ok(()),
+                left => self.advance(left)?,
+            }
+        }
     }
 
     /// Takes at most `most` steps, none of which goes beyond `time` (s), whatever becomes of their length.
@@ -37,23 +42,38 @@ impl Simulation {
     /// # Errors
     /// As [`Simulation::advance`].
     pub(crate) fn advance_short_of(&mut self, time: f64, most: u64) -> Result<(), Error> {
-        self.advance_along(most, |clock| ((time - clock.since.1) / clock.time_step + WHOLE).floor())
-    }
-
-    /// Takes at most `most` steps to where `steps` says, counted from the last change of the step.
-    fn advance_along(&mut self, most: u64, steps: impl Fn(&Clock) -> f64) -> Result<(), Error> {
         self.settle()?;
         let end = self.step_count().saturating_add(most);
         loop {
-            self.follow_in_time()?;
+            self.begin_step_in_time()?;
             let clock = *self.world.resource::<Clock>();
-            let target = clock.since.0 + steps(&clock).max(0.0) as u64;
-            let next = target.min(end).min(self.next_follow());
+            let whole = ((time - clock.since.1) / clock.time_step + WHOLE).floor().max(0.0) as u64;
+            let next = clock.since.0.saturating_add(whole).min(end).min(self.solver.next_look());
             if next <= clock.step {
                 return Ok(());
             }
             self.advance(next - clock.step)?;
         }
+    }
+
+    /// Steps that can be taken together until the clock shows at least `time` (s), as long as Δt stays as it is. Where
+    /// there are any, the first of them has begun, and must be taken before anything is set.
+    pub(super) fn steps_left_to(&mut self, time: f64) -> Result<u64, Error> {
+        if self.steps_until(time) == 0 {
+            return Ok(0);
+        }
+        self.begin_step_in_time()?;
+        let step = self.step_count();
+        let next = step.saturating_add(self.steps_until(time).max(1)).min(self.solver.next_look());
+        Ok(next.saturating_sub(step))
+    }
+
+    /// Steps of Δt as it is until the clock shows at least `time` (s).
+    pub(super) fn steps_until(&self, time: f64) -> u64 {
+        let clock = self.world.resource::<Clock>();
+        // a time that is a whole number of steps is met in spite of rounding
+        let steps = ((time - clock.since.1) / clock.time_step - WHOLE).ceil().max(0.0) as u64;
+        clock.since.0.saturating_add(steps).saturating_sub(clock.step)
     }
 
     /// Takes at most `count` steps, and none beyond the end of the scene.
@@ -64,8 +84,8 @@ impl Simulation {
         self.settle()?;
         let target = self.step_count().saturating_add(count);
         while !self.is_finished() && self.step_count() < target {
-            self.follow_in_time()?;
-            let end = self.planned_steps().min(target).min(self.next_follow());
+            self.begin_step_in_time()?;
+            let end = self.planned_steps().min(target).min(self.solver.next_look());
             let left = end.saturating_sub(self.step_count());
             if left == 0 {
                 break;
@@ -83,8 +103,9 @@ impl Simulation {
     /// that the GPU failed, or that outputs could not be written.
     pub fn advance(&mut self, count: u64) -> Result<(), Error> {
         self.settle()?;
+        self.keep_start();
         let started = Instant::now();
-        let target = self.step_count() + count;
+        let target = self.step_count().saturating_add(count);
         let result = self.on_threads(|simulation| simulation.steps_to(target));
         self.elapsed += started.elapsed();
         result.map_err(|error| self.note(error))
@@ -98,10 +119,13 @@ impl Simulation {
         }
     }
 
-    /// [`Simulation::follow`] as a part of the run.
-    fn follow_in_time(&mut self) -> Result<(), Error> {
+    /// [`Simulation::begin_step`] as a part of the run.
+    fn begin_step_in_time(&mut self) -> Result<(), Error> {
+        self.keep_start();
+        self.keep_history_if_due()?;
+        self.take_up_inputs()?;
         // threads are not called together for nothing
-        if self.next_follow() > self.step_count() {
+        if self.solver.next_look() > self.step_count() {
             return Ok(());
         }
         let started = Instant::now();
@@ -127,7 +151,7 @@ impl Simulation {
     /// Notes how the simulation broke down, and leaves the last states where files are written.
     pub(super) fn note(&mut self, error: Error) -> Error {
         let Error::Unstable(mut broken) = error else { return self.with_what_is_kept(error) };
-        if self.failure.is_none() && self.relaxing.is_none() {
+        if self.failure.is_none() && self.solver.relaxing().is_none() {
             // what cannot be written now must not hide why the run ended
             let _ = self.leave_last_states(&mut broken);
         }
@@ -135,28 +159,8 @@ impl Simulation {
         Error::Unstable(broken)
     }
 
-    fn steps_to(&mut self, target: u64) -> Result<(), Error> {
-        while self.step_count() < target && self.relaxing.is_none() {
-            self.follow()?;
-            self.some_steps(target.min(self.next_follow()))?;
-        }
-        while self.step_count() < target
-            && let Some(relaxing) = self.relaxing.as_ref().filter(|relaxing| !relaxing.equilibrium.reached)
-        {
-            let next_look = relaxing.next_look();
-            // who asks again after it was given up is told again
-            if self.step_count() < next_look {
-                self.some_steps(target.min(next_look))?;
-            }
-            if self.step_count() >= next_look {
-                self.look()?;
-            }
-        }
-        Ok(())
-    }
-
     /// One step on the host, or as many as can be submitted together.
-    fn some_steps(&mut self, target: u64) -> Result<(), Error> {
+    pub(super) fn some_steps(&mut self, target: u64) -> Result<(), Error> {
         if self.facts.on_gpu { self.device_steps(target) } else { self.host_step(target) }
     }
 

@@ -4,6 +4,7 @@ use super::costly::warn_of_costly;
 use super::damped_step::with_damping;
 use super::follow::step_of;
 use super::frequency::{Largest, PRODUCT, largest_eigenvalue, largest_worth};
+use super::known::Known;
 use super::load_rates::LoadRates;
 use super::nodal::bound_at_rest;
 use super::tangent::Tangent;
@@ -11,8 +12,9 @@ use super::{Simulation, added_mass};
 use crate::assembly::{StableStep, stable_step};
 use crate::backend::device::bring_to_host;
 use crate::error::Error;
-use crate::scene::schema::{Constraint, Curve, Inversion, Scene, StepBound, WhenUnstable};
+use crate::scene::schema::{Constraint, Curve, InitialState, Inversion, Scene, StepBound, WhenUnstable};
 use crate::scene::{Diagnostics, SceneFile};
+use crate::systems::System;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use serde::Serialize;
@@ -49,7 +51,7 @@ pub struct Stability {
     /// Whether the step stays with what the elements alone allow.
     #[serde(skip)]
     pub(super) stays_with_elements: bool,
-    /// What loads of the scene's own make of the step; `limit`, `stable_step` and `step` are with them.
+    /// What forces on nodes make of the step; `limit`, `stable_step` and `step` are with them.
     #[serde(skip)]
     pub(super) loads: LoadRates,
     /// `limit` without them (s).
@@ -110,9 +112,12 @@ impl Simulation {
     }
 }
 
-/// The stable step of a scene whose world has its laws, its step and the number of its steps.
+/// The stable step of a scene whose world has its laws, its step and the number of its steps. `loads`: forces on nodes,
+/// where more is known of them than the world says yet.
 pub(super) fn choose(
     scene: &SceneFile,
+    known: &Known<'_>,
+    loads: Option<LoadRates>,
     world: &mut World,
     diagnostics: &mut Diagnostics,
 ) -> Option<(Stability, f64, u64)> {
@@ -136,7 +141,7 @@ pub(super) fn choose(
             .warn_at("integration.bound", reason)
             .note("`bound: Auto` stays with the stiffest element, which is safe");
     }
-    let loads = LoadRates::at_rest(scene.scene.duration, world);
+    let loads = loads.unwrap_or_else(|| LoadRates::of(known.systems(), scene.scene.duration, world));
     world.insert_resource(loads);
     let found = seek(&scene.scene, certain, stays.is_none(), &loads, world);
     // the bounds are certain as well: at rest the best of all
@@ -186,11 +191,32 @@ pub(super) fn choose(
     Some((stability, time_step, steps as u64))
 }
 
+/// The stiffness of forces on nodes with systems whose parameters were not known when the step was chosen, where they
+/// make it smaller: then it must be chosen again.
+pub(super) fn with_parameters<'a>(
+    scene: &Scene,
+    systems: impl Iterator<Item = &'a System>,
+    stability: &Stability,
+    world: &mut World,
+) -> Option<LoadRates> {
+    let all = LoadRates::of(systems, scene.duration, world);
+    // what has been counted already may be summed in another order
+    let before = (1.0 - 1e-9) * stability.limit?;
+    (all.with(stability.limit_of_bodies) < before).then_some(all)
+}
+
 /// Why `bound: Auto` stays with what the elements allow: what needs the room between that and the true limit.
 fn reason_to_stay(scene: &Scene) -> Option<&'static str> {
     let removes = scene.materials.values().any(|material| material.inversion() == Inversion::Remove);
+    let at_rest = scene.start != InitialState::default();
+    let jump = |curve: &Curve| match curve {
+        Curve::Step { .. } | Curve::Input { rate: None, .. } => true,
+        // from rest to there in the first step
+        Curve::Input { initial, .. } => *initial != 0.0 && !at_rest,
+        _ => false,
+    };
     let jumps = |constraint: &Constraint| match constraint {
-        Constraint::Prescribed { curve: Curve::Step { .. }, displacement, gradient, rotation, .. } => {
+        Constraint::Prescribed { curve, displacement, gradient, rotation, .. } if jump(curve) => {
             gradient.iter().chain([displacement, rotation]).any(|moved| *moved != DVec3::ZERO)
         }
         _ => false,

@@ -27,8 +27,9 @@ impl Simulation {
         if !(time_step.is_finite() && time_step > 0.0) || clock.relaxation.is_some() {
             return Err(Error::Options(format!("{time_step} s is no step that this simulation can take")));
         }
+        self.lineage.note(clock.step, &format!("step {time_step:?}"));
         let left = ((self.scene.duration - clock.time()) / time_step).round().max(0.0);
-        if let Some(follower) = &mut self.follower {
+        if let Some(follower) = self.solver.follower_mut() {
             follower.found.own = Some(time_step);
         }
         self.change_step(time_step, clock.step + left as u64)
@@ -147,11 +148,26 @@ fn take_coefficients(
     Ok(())
 }
 
-/// Adds so many times the present stress to a block's memory: by its own kernel, with terms that do just that.
-fn add_to_memory(world: &mut World, entity: Entity, [terms, volumetric]: &[Vec<f64>; 2]) {
+/// Adds so many times the present stress to a block's memory.
+fn add_to_memory(world: &mut World, entity: Entity, times: &[Vec<f64>; 2]) {
+    if let Some(law) = world.get::<BlockLaw<f64>>(entity).cloned() {
+        add_to_memory_by(world, entity, &law, times);
+    }
+}
+
+/// The same of the stress that a law has: by the block's own kernel, with terms that do just that.
+pub(super) fn add_to_memory_by(
+    world: &mut World,
+    entity: Entity,
+    law: &BlockLaw<f64>,
+    [terms, volumetric]: &[Vec<f64>; 2],
+) {
+    if world.get::<ViscousMemory>(entity).is_none() {
+        return;
+    }
     let adding = |times: &Vec<f64>| times.iter().map(|&times| PronyTerm::adding(times)).collect();
-    let law = |law: &BlockLaw<f64>| BlockLaw { prony: adding(terms), volumetric: adding(volumetric), ..law.clone() };
-    let added = BlockForces::of(world, entity, law).and_then(|mut block| {
+    let adds = |_: &BlockLaw<f64>| BlockLaw { prony: adding(terms), volumetric: adding(volumetric), ..law.clone() };
+    let added = BlockForces::of(world, entity, adds).and_then(|mut block| {
         let body = block.block.body;
         let displacement = widened(world.get::<Displacement>(body)?);
         let mut unused = vec![0.0; world.get::<ElementForce>(body)?.len()];

@@ -3,7 +3,8 @@
 use super::Simulation;
 use crate::components::*;
 use crate::error::Error;
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, SurfaceFace};
+use bevy_ecs::prelude::*;
 
 impl Simulation {
     /// Triangles of a body's surface: places in [`displacements`](Simulation::displacements) and
@@ -15,23 +16,31 @@ impl Simulation {
     pub fn surface_triangles(&mut self, body: &str) -> Result<Vec<[u32; 3]>, Error> {
         let body = self.body(body)?;
         crate::backend::device::bring_to_host(&mut self.world, |_, name| name == Alive::NAME)?;
-        let Some(authoring) = self.world.get::<Authoring>(body) else { return Ok(Vec::new()) };
-        let there = |element: usize| {
+        let triangles = |face: SurfaceFace| {
+            let [a, b, c, d] = face.nodes;
+            std::iter::once([a, b, c]).chain((c != d).then_some([a, c, d]))
+        };
+        Ok(self.surface_faces(body).into_iter().flat_map(triangles).collect())
+    }
+
+    /// Faces of a body's surface, by places in the author's order; elements are what is known of on the host.
+    pub(super) fn surface_faces(&self, body: Entity) -> Vec<SurfaceFace> {
+        let Some(authoring) = self.world.get::<Authoring>(body) else { return Vec::new() };
+        let there = |&element: &usize| {
             let (block, row) = authoring.element_rows[element];
             let alive = self.world.get::<Alive>(authoring.blocks[block as usize]);
             alive.is_none_or(|alive| alive[row as usize] == 1)
         };
         let tets = authoring.tets.len();
+        let elements: Vec<usize> = (0..tets + authoring.hexes.len()).filter(there).collect();
+        let of_tets = elements.partition_point(|&element| element < tets);
         let left = Mesh {
             points: vec![glam::DVec3::ZERO; authoring.node_rows.len()],
-            tets: (0..tets).filter(|&e| there(e)).map(|e| authoring.tets[e]).collect(),
-            hexes: (0..authoring.hexes.len()).filter(|&e| there(tets + e)).map(|e| authoring.hexes[e]).collect(),
+            tets: elements[..of_tets].iter().map(|&e| authoring.tets[e]).collect(),
+            hexes: elements[of_tets..].iter().map(|&e| authoring.hexes[e - tets]).collect(),
             ..Mesh::default()
         };
-        let triangles = |face: crate::mesh::SurfaceFace| {
-            let [a, b, c, d] = face.nodes;
-            std::iter::once([a, b, c]).chain((c != d).then_some([a, c, d]))
-        };
-        Ok(left.surface().into_iter().flat_map(triangles).collect())
+        let numbered = |face: SurfaceFace| SurfaceFace { element: elements[face.element as usize] as u32, ..face };
+        left.surface().into_iter().map(numbered).collect()
     }
 }

@@ -10,11 +10,13 @@ mod columns;
 mod error;
 mod format;
 mod identity;
+mod packed;
 
 pub use columns::Place;
 pub use error::SnapshotError;
 pub use format::VERSION;
 pub use identity::{Identity, identity};
+pub use packed::PackedSnapshot;
 
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
@@ -114,6 +116,18 @@ impl Snapshot {
         let put = put(self, world, &keeping);
         world.insert_resource(keeping);
         put
+    }
+
+    /// Whether the state fits a world.
+    ///
+    /// # Errors
+    /// What does not.
+    pub(crate) fn fits(&self, world: &mut World) -> Result<(), SnapshotError> {
+        let Some(keeping) = world.remove_resource::<Keeping>() else { return Err(SnapshotError::Static) };
+        let columns = state_columns(world, &keeping.written);
+        let fits = check(self, world, &keeping, &columns);
+        world.insert_resource(keeping);
+        fits
     }
 
     /// How the simulation goes on from here.

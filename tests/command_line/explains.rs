@@ -53,7 +53,10 @@ fn json_holds_what_the_page_says() {
     // boundary waits for the systems with which it shares a pass over the nodes
     assert_eq!(names("systems"), ["element_forces", "gather", "gravity", "boundary", "integrate", "observe"]);
     assert!(said_of(&json, "gravity").contains(&"integrate".into()), "{json}");
-    assert_eq!(names("systems_off"), ["nodal_volume", "nodal_force", "pressure", "traction", "element_removal"]);
+    assert_eq!(
+        names("systems_off"),
+        ["nodal_volume", "nodal_force", "pressure", "traction", "grab", "element_removal"]
+    );
     let columns = json["columns"].as_array().unwrap();
     let displacement = columns.iter().find(|column| column["name"] == "displacement").unwrap();
     assert_eq!((&displacement["of"], &displacement["bytes"]), (&"block".into(), &(64 * 3 * 4).into()));

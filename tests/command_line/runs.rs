@@ -284,3 +284,18 @@ fn a_resumed_run_ends_in_the_same_numbers() {
         .sinew(&["run", "block.ron", "--resume", "nowhere.sinew"])
         .wants(2, &["cannot read the snapshot nowhere.sinew"]);
 }
+
+/// There is no program that would set them: the run says what they stay at.
+#[test]
+fn inputs_stay_as_they_are_and_the_run_says_so() {
+    let place = Place::new();
+    let set = "loads[0].curve=Input(name: \"tilt\", initial: 0.5)";
+    let ended = place.sinew(&["run", "block.ron", "--backend", "cpu", "--set", set]);
+    assert_eq!(ended.status, Some(0), "{}", ended.complained);
+    assert!(ended.complained.contains("tilt stays at 0.5"), "{}", ended.complained);
+    place.done(&["check", "block.ron", "--set", set]);
+    let sag = |folder: &str| place.table(&format!("{folder}/probe_top.csv")).last().unwrap()[3];
+    let half = sag("out/block");
+    place.done(&["run", "block.ron", "--backend", "cpu"]);
+    assert!(half < 0.0 && sag("out/block") < 1.2 * half, "{half} m with half the weight");
+}

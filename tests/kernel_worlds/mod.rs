@@ -25,6 +25,8 @@ pub struct Effects {
     pub backward_euler: bool,
     pub damping: bool,
     pub loads: bool,
+    /// Bodies that a program may grab.
+    pub grabs: bool,
     pub moved: bool,
     /// Two copies of each body, with loads that differ.
     pub copies: bool,
@@ -81,24 +83,17 @@ impl Effects {
             fibres: Some(AROUND),
             tension_only: true,
             prony: 2,
-            backward_euler: false,
             damping: true,
             loads: true,
+            grabs: true,
             moved: true,
-            copies: false,
             compensated: true,
             energies: true,
             removal: true,
-            at_rest: false,
-            criterion: None,
-            cells: false,
-            averaged: false,
-            law: None,
             families: Some(FAMILIES),
             volumetric: true,
             reproject: true,
-            inversion: None,
-            scheme: Scheme::Patches,
+            ..Self::default()
         }
     }
 
@@ -141,6 +136,7 @@ impl Effects {
         all.push(Self::all());
         all.push(Self { copies: true, loads: true, ..Self::default() });
         all.push(Self { averaged: true, ..Self::default() });
+        all.push(Self { grabs: true, ..Self::default() });
         all.push(Self { averaged: true, ..Self::all() });
         all
     }
@@ -242,7 +238,8 @@ impl Effects {
             Ok(scene) => scene,
             Err(problem) => panic!("{}", problem.render(false)),
         };
-        let options = Options { backend, gpu: gpu_choice(), scheme: self.scheme, ..Options::default() };
+        let options =
+            Options { backend, gpu: gpu_choice(), scheme: self.scheme, grabs: self.grabs, ..Options::default() };
         Simulation::new(&scene, &options).unwrap_or_else(|error| panic!("{error}\n{text}"))
     }
 }
@@ -299,7 +296,8 @@ pub fn all_kernels(world: &mut World) -> (Vec<(String, Kernel)>, Described) {
 }
 
 /// Systems that work node by node, in an order in which they can share kernels.
-pub const OF_NODES: [&str; 7] = ["gather", "gravity", "nodal_force", "traction", "pressure", "boundary", "integrate"];
+pub const OF_NODES: [&str; 8] =
+    ["gather", "gravity", "nodal_force", "traction", "grab", "pressure", "boundary", "integrate"];
 
 /// Kernels of systems of nodes that share them.
 pub fn shared_kernels(systems: &[&str], world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {

@@ -4,6 +4,7 @@ use super::kernel_worlds::Effects;
 use super::pair::{UNIT, entities, run};
 use bevy_ecs::prelude::*;
 use sinew::components::*;
+use sinew::glam::DVec3;
 
 #[test]
 fn nodes_gather_the_same_bits() {
@@ -57,4 +58,44 @@ fn remove_some(world: &mut World) {
             world.get_mut::<Traction>(load).unwrap().faces.alive = alive;
         }
     }
+}
+
+/// Held nodes of each body, one of them twice, one without mass, some pulled with all that their hand has, some lighter
+/// than when they were grabbed.
+#[test]
+fn held_nodes_are_pulled_alike() {
+    let hold = |world: &mut World| {
+        for grabs in entities::<Grabs>(world) {
+            let body = world.get::<OfBody>(grabs).unwrap().0;
+            let rows = world.get::<Mass>(body).unwrap().len() as u32;
+            let masses = world.get::<Mass>(body).unwrap().clone();
+            let held = |number: u32| HeldNode {
+                row: (number / 2) * 5 % rows,
+                stiffness: 2.0 + f64::from(number),
+                damping: 1e-3 * f64::from(number % 4),
+                // to half the spring and half the damper
+                stiffness_over_mass: match number % 5 {
+                    0 => 0.5 * (2.0 + f64::from(number)) / masses.get(((number / 2) * 5 % rows) as usize),
+                    _ => f64::INFINITY,
+                },
+                damping_over_mass: match number % 5 {
+                    1 => 5e-4 * f64::from(number % 4) / masses.get(((number / 2) * 5 % rows) as usize),
+                    _ => f64::INFINITY,
+                },
+                most: if number.is_multiple_of(3) { 0.01 } else { f64::INFINITY },
+                goal: DVec3::new(0.001, -0.002, 0.0005 * f64::from(number)),
+            };
+            let mut all: Vec<HeldNode> = (0..30).map(held).collect();
+            all.sort_by_key(|held| held.row);
+            world.get_mut::<Mass>(body).unwrap().set(all[4].row as usize, 0.0);
+            world.get_mut::<Grabs>(grabs).unwrap().held = all;
+        }
+    };
+    let effects = Effects { grabs: true, ..Effects::default() };
+    let Some(mut pair) = run("grab", &effects, 3, hold) else { return };
+    // k = 31 N/m at a difference of two lengths below 0.02 m, velocities likewise, and two of them in a sum: some ten
+    // roundings of numbers below 2 N
+    pair.agree::<ExternalForce>(|_, _, _| 10.0 * UNIT * 2.0);
+    let changed = pair.changed::<ExternalForce>();
+    assert!((60..=90).contains(&changed), "{changed} numbers");
 }

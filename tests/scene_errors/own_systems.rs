@@ -104,7 +104,7 @@ fn what_is_not_written_as_a_system_is_told_at_its_line() {
 #[test]
 fn a_load_that_makes_the_step_small_is_told_of() {
     let told = brief(&GOOD.replace("length(past) * past", "-1e8 * node.displacement"), SYSTEM);
-    assert!(told.starts_with("cube.ron:4:10: warning: loads of the scene's own make "), "{told}");
+    assert!(told.starts_with("cube.ron:4:10: warning: forces on nodes make "), "{told}");
     assert!(!told.contains("element"), "{told}");
 }
 

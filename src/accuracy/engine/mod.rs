@@ -101,6 +101,7 @@ impl<'a> Engine<'a> {
                 Place::Gpu => BackendChoice::Gpu,
             },
             precision: if configuration.digits == Digits::Double { Precision::F64 } else { Precision::F32 },
+            forgets_start: true,
             ..self.options.clone()
         }
     }

@@ -141,6 +141,17 @@ impl Load {
             | Load::Traction { curve, .. } => curve,
         }
     }
+
+    /// What the course multiplies: an acceleration (m/s²), a force (N), a pressure (Pa, in the first number), a
+    /// traction (Pa).
+    pub fn amplitude(&self) -> DVec3 {
+        match self {
+            Load::Gravity { acceleration: vector, .. }
+            | Load::NodalForce { force: vector, .. }
+            | Load::Traction { traction: vector, .. } => *vector,
+            Load::Pressure { pressure, .. } => DVec3::X * *pressure,
+        }
+    }
 }
 
 /// How a force is shared among nodes.
@@ -184,6 +195,17 @@ pub enum Curve {
     },
     /// Straight lines through (time (s), factor), held before the first and after the last.
     Table(Vec<(f64, f64)>),
+    /// What a program sets while it runs. The same name in several places is one input.
+    Input {
+        /// What the program calls it.
+        name: String,
+        /// The factor until the program sets another.
+        #[serde(default)]
+        initial: f64,
+        /// By how much the factor changes in a second at most (1/s); left out: at once.
+        #[serde(default)]
+        rate: Option<f64>,
+    },
 }
 
 impl Default for Curve {

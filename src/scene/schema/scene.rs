@@ -1,6 +1,7 @@
 //! The whole scene, its time step, its guards.
 
-use super::{Accuracy, Body, Constraint, Load, Material, Output, OwnSystem, Picture, Probe, Removal};
+use super::{Accuracy, Body, Constraint, Curve, Load, Material, Output, OwnSystem, Picture, Probe, Removal};
+use crate::scene::syntax::Path;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -259,6 +260,16 @@ impl Scene {
     /// Whether elements are made heavier.
     pub fn scales_mass(&self) -> bool {
         matches!(self.when_unstable(), WhenUnstable::ScaleMass { .. }) && !self.is_static()
+    }
+
+    /// All courses in time, with the ways to them.
+    pub fn curves(&self) -> Vec<(Path, &Curve)> {
+        let to = |list: &str| Path::default().name(list);
+        let constraints = self.constraints.iter().enumerate();
+        let constraints = constraints.filter_map(|(i, moved)| Some((to("constraints").index(i), moved.curve()?)));
+        let loads = self.loads.iter().enumerate().map(|(i, load)| (to("loads").index(i), load.curve()));
+        let systems = self.systems.iter().map(|(name, system)| (to("systems").name(name), &system.curve));
+        constraints.chain(loads).chain(systems).map(|(path, curve)| (path.name("curve"), curve)).collect()
     }
 
     /// Whether equilibrium is sought instead of motion.

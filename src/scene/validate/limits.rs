@@ -4,7 +4,7 @@
 use super::{Judge, scene};
 use crate::scene::limits::{ACTIONS, BODIES, MOST_REFINEMENT, NAME_BYTES, SYSTEMS, TABLE_POINTS, TERMS};
 use crate::scene::load::SceneFile;
-use crate::scene::schema::{Constraint, Curve, Load, MeshSource};
+use crate::scene::schema::{Curve, MeshSource};
 use crate::scene::syntax::Path;
 
 /// Whether there is not too much of anything that is looked at one by one.
@@ -32,20 +32,14 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) -> bool {
             limits.at_most(TERMS, terms.map_or(0, Vec::len), "terms", || path().name("prony").name(field));
         }
     }
-    for (i, constraint) in found.constraints.iter().enumerate() {
-        if let Constraint::Prescribed { curve, .. } = constraint {
-            limits.table(curve, || scene("constraints").index(i).name("curve"));
+    for (path, curve) in found.curves() {
+        match curve {
+            Curve::Table(points) => limits.at_most(TABLE_POINTS, points.len(), "points in a table", || path.clone()),
+            Curve::Input { name, .. } => {
+                limits.at_most(NAME_BYTES, name.len(), "bytes in a name", || path.name("name"))
+            }
+            _ => {}
         }
-    }
-    for (i, load) in found.loads.iter().enumerate() {
-        let (Load::Gravity { curve, .. }
-        | Load::NodalForce { curve, .. }
-        | Load::Pressure { curve, .. }
-        | Load::Traction { curve, .. }) = load;
-        limits.table(curve, || scene("loads").index(i).name("curve"));
-    }
-    for (name, system) in &found.systems {
-        limits.table(&system.curve, || scene("systems").name(name).name("curve"));
     }
     let bodies = found.bodies.keys().map(|name| ("bodies", name));
     let materials = found.materials.keys().map(|name| ("materials", name));
@@ -67,12 +61,6 @@ impl Limits<'_, '_> {
         if found > most {
             self.judge.out.error_at(path(), format!("{found} {what}; at most {most} are allowed"));
             self.kept = false;
-        }
-    }
-
-    fn table(&mut self, curve: &Curve, path: impl Fn() -> Path) {
-        if let Curve::Table(points) = curve {
-            self.at_most(TABLE_POINTS, points.len(), "points in a table", path);
         }
     }
 }

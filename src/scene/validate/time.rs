@@ -1,8 +1,9 @@
 //! Durations, steps, intervals and curves.
 
 use super::{Judge, scene, show, with_unit};
-use crate::scene::schema::{Constraint, Curve, EnergyGuard, Guard, Guards, Load, Scene, When, WhenUnstable};
+use crate::scene::schema::{Curve, EnergyGuard, Guard, Guards, Scene, When, WhenUnstable};
 use crate::scene::syntax::Path;
+use std::collections::BTreeMap;
 
 /// More states than are of use after a breakdown.
 const MOST_STATES: u64 = 100;
@@ -77,21 +78,10 @@ fn every(judge: &mut Judge, path: &Path, value: f64, duration: f64) {
 }
 
 fn actions(scene_: &Scene, judge: &mut Judge) {
-    for (i, constraint) in scene_.constraints.iter().enumerate() {
-        if let Constraint::Prescribed { curve, .. } = constraint {
-            validate_curve(judge, &scene("constraints").index(i).name("curve"), curve, scene_.duration);
-        }
+    for (path, curve) in scene_.curves() {
+        validate_curve(judge, &path, curve, scene_.duration);
     }
-    for (i, load) in scene_.loads.iter().enumerate() {
-        let (Load::Gravity { curve, .. }
-        | Load::NodalForce { curve, .. }
-        | Load::Pressure { curve, .. }
-        | Load::Traction { curve, .. }) = load;
-        validate_curve(judge, &scene("loads").index(i).name("curve"), curve, scene_.duration);
-    }
-    for (name, system) in &scene_.systems {
-        validate_curve(judge, &scene("systems").name(name).name("curve"), &system.curve, scene_.duration);
-    }
+    inputs(scene_, judge);
     for (i, removal) in scene_.removal.iter().enumerate() {
         let path = scene("removal").index(i).name("when");
         match removal.when {
@@ -126,6 +116,34 @@ fn validate_curve(judge: &mut Judge, path: &Path, curve: &Curve, duration: f64) 
             too_late(judge, &path.name("start"), *start, duration);
         }
         Curve::Table(points) => table(judge, path, points),
+        Curve::Input { name, rate, .. } => {
+            if name.is_empty() {
+                judge.out.error_at(path.name("name"), "an input needs a name, by which a program sets it");
+            }
+            if let Some(rate) = rate {
+                judge.above_zero(&path.name("rate"), *rate, "a second");
+            }
+        }
+    }
+}
+
+/// What has the same name is one input, and must be the same everywhere.
+fn inputs(scene_: &Scene, judge: &mut Judge) {
+    let curves = scene_.curves();
+    let mut first: BTreeMap<&str, &Curve> = BTreeMap::new();
+    for (path, curve) in &curves {
+        let Curve::Input { name, initial, rate } = curve else { continue };
+        let Curve::Input { initial: there, rate: bound, .. } = first.entry(name).or_insert(curve) else { continue };
+        let note = format!("the same name is the same input; `{name}` stands somewhere before");
+        if initial != there {
+            judge.must(&path.name("initial"), &format!("{}, as before", show(*there)), show(*initial)).note(&note);
+        }
+        let said = |rate: &Option<f64>| rate.map_or("none".into(), show);
+        if rate != bound {
+            let found = if rate.is_some() { path.name("rate") } else { path.clone() };
+            let message = format!("`rate` must be {}, as before, found {}", said(bound), said(rate));
+            judge.out.error_at(found, message).note(&note);
+        }
     }
 }
 

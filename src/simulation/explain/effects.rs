@@ -21,10 +21,11 @@ pub fn parts(scene: &Scene, precision: Precision, on_gpu: bool, world: &mut Worl
         blocks.push(Part { name: format!("block {}", label.0), size, effects, cpu_variant });
     }
     let mut bodies: Vec<Part> = Vec::new();
+    let held: Vec<Entity> = world.query::<(&Grabs, &OfBody)>().iter(world).map(|(_, of)| of.0).collect();
     let mut query = world.query::<(EntityRef, &Authoring, &Label)>();
     for (entity, authoring, label) in query.iter(world) {
         let size = format!("{} nodes", authoring.node_rows.len());
-        let effects = body_effects(&entity, precision, scene);
+        let effects = body_effects(&entity, precision, held.contains(&entity.id()), scene);
         bodies.push(Part { name: format!("body {}", label.0), size, effects, cpu_variant: None });
     }
     blocks.sort_by(|a, b| a.name.cmp(&b.name));
@@ -164,7 +165,12 @@ fn viscosity(prony: &Prony, at_rest: bool) -> String {
     }
 }
 
-fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> Vec<Effect> {
+fn body_effects(entity: &EntityRef<'_>, precision: Precision, can_be_held: bool, scene: &Scene) -> Vec<Effect> {
+    let loads = match (scene.loads.len() + scene.systems.len(), can_be_held) {
+        (0, true) => "those of what a program grabs".into(),
+        (count, true) => format!("{}, and those of what a program grabs", many(count, "load")),
+        (count, false) => many(count, "load"),
+    };
     let compensated = match precision {
         Precision::F32 => "`compensated: true` under `integration`",
         Precision::F64 => "`compensated: true` under `integration`, in f32 only",
@@ -176,8 +182,8 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, scene: &Scene) -> 
     vec![
         Effect {
             name: "external forces",
-            on: entity.contains::<ExternalForce>().then(|| many(scene.loads.len() + scene.systems.len(), "load")),
-            turned_on_by: "an entry under `loads` or `systems`".into(),
+            on: entity.contains::<ExternalForce>().then_some(loads),
+            turned_on_by: "an entry under `loads` or `systems`, `grabs` in the program's options".into(),
         },
         Effect {
             name: "damping",

@@ -1,0 +1,126 @@
+//! What a scene comes to before a backend is chosen: its world, its step and its schedule.
+
+use super::Options;
+use super::known::Known;
+use super::load_rates::LoadRates;
+use super::parameters::hand_out;
+use super::schedule::{Scheduled, check_names, resolve};
+use super::stable_step::{self, Stability};
+use super::{outputs, plausible};
+use crate::assembly::{Assembly, assemble, assemble_in_time, insert_laws};
+use crate::backend::cpu::Cpu;
+use crate::components::*;
+use crate::scene::schema::Analysis;
+use crate::scene::{Diagnostics, SceneFile};
+use crate::systems::Registry;
+use bevy_ecs::prelude::*;
+
+/// What a scene comes to before a backend is chosen.
+pub(super) struct Prepared<'a> {
+    pub assembly: Assembly<'a>,
+    pub clock: Clock,
+    pub stability: Stability,
+    pub steps: u64,
+    pub schedule: Vec<Scheduled<'a>>,
+}
+
+/// Makes a scene's world and its schedule. All mistakes that can be found go to `diagnostics`.
+pub(super) fn prepare<'a>(
+    scene: &'a SceneFile,
+    options: &Options,
+    known: &'a Known<'_>,
+    world: &mut World,
+    diagnostics: &mut Diagnostics,
+) -> Option<Prepared<'a>> {
+    let before = diagnostics.clone();
+    let (prepared, loads) = prepare_with(None, scene, options, known, world, diagnostics)?;
+    if loads.is_none() {
+        return Some(prepared);
+    }
+    // all that counts in steps is made anew with the step that systems leave
+    (*world, *diagnostics) = (World::new(), before);
+    prepare_with(loads, scene, options, known, world, diagnostics).map(|prepared| prepared.0)
+}
+
+/// The same with what is known of forces on nodes beforehand; what they turn out to be, where that is more.
+fn prepare_with<'a>(
+    loads: Option<LoadRates>,
+    scene: &'a SceneFile,
+    options: &Options,
+    known: &'a Known<'_>,
+    world: &mut World,
+    diagnostics: &mut Diagnostics,
+) -> Option<(Prepared<'a>, Option<LoadRates>)> {
+    let assembly = assemble(scene, options.precision, options.scheme, world, diagnostics);
+    known.check(diagnostics);
+    check_names(scene.scene.schedule.as_deref().unwrap_or_default(), known, diagnostics);
+    let assembly = assembly?;
+    if options.grabs && !scene.scene.is_static() {
+        let bodies: Vec<Entity> = assembly.bodies.values().map(|body| body.entity).collect();
+        for &body in &bodies {
+            world.spawn((Grabs::default(), OfBody(body)));
+        }
+        add_loads(&bodies, options.precision, world);
+    }
+    world.insert_resource(Cpu::new(options.threads, counts(&assembly).1, options.instructions));
+    // what is stable depends on the laws, whose history waits for the step
+    world.insert_resource(Clock::with_step(1.0));
+    insert_laws(options.precision, world);
+    let (clock, stability, steps) = clock(scene, known, loads, world, diagnostics)?;
+    outputs::check(scene, &clock, steps, diagnostics);
+    outputs::check_curves(scene, &clock, diagnostics);
+    plausible::check(&assembly, world, diagnostics);
+    world.insert_resource(clock);
+    world.insert_resource(Observed(true));
+    assemble_in_time(&assembly, world, diagnostics);
+    let mut schedule = resolve(scene.scene.schedule.as_deref(), known, world, diagnostics);
+    hand_out(&scene.scene, known, &mut schedule, world, diagnostics);
+    let systems = schedule.iter().map(|entry| entry.system);
+    let more = stable_step::with_parameters(&scene.scene, systems, &stability, world);
+    Some((Prepared { assembly, clock, stability, steps, schedule }, more))
+}
+
+/// Checks a scene as far as making its world goes: everything except choosing a backend. All that was found.
+pub(super) fn check(scene: &SceneFile, registry: &Registry) -> Diagnostics {
+    let mut diagnostics = scene.diagnostics();
+    let known = Known::of(registry, &scene.scene);
+    prepare(scene, &Options::default(), &known, &mut World::new(), &mut diagnostics);
+    diagnostics
+}
+
+/// The clock with its step, what is known of the stable step, and how many steps the scene lasts.
+fn clock(
+    scene: &SceneFile,
+    known: &Known<'_>,
+    loads: Option<LoadRates>,
+    world: &mut World,
+    diagnostics: &mut Diagnostics,
+) -> Option<(Clock, Stability, u64)> {
+    if let Analysis::Static { max_steps, load_steps, at, .. } = scene.scene.analysis {
+        let bound = stable_step::found_bound(world, diagnostics)?;
+        let load_steps = load_steps.unwrap_or_else(|| crate::assembly::load_steps(world));
+        let growth = 1.0 / load_steps as f64;
+        let relaxation =
+            Relaxation { end: at.unwrap_or(scene.scene.duration), since: (0, 0.0), growth, damping: 0.0, gain: 1.0 };
+        let clock = Clock { relaxation: Some(relaxation), ..Clock::with_step(scene.scene.duration * growth) };
+        return Some((clock, Stability::of_rest(bound), max_steps));
+    }
+    let (stability, time_step, steps) = stable_step::choose(scene, known, loads, world, diagnostics)?;
+    Some((Clock::with_step(time_step), stability, steps))
+}
+
+/// Nodes and elements of all bodies.
+pub(super) fn counts(assembly: &Assembly<'_>) -> (usize, usize) {
+    let sum = |of: &dyn Fn(&crate::mesh::Mesh) -> usize| assembly.bodies.values().map(|b| of(&b.placed.mesh)).sum();
+    (sum(&|mesh| mesh.points.len()), sum(&|mesh| mesh.element_count()))
+}
+
+/// Columns of external forces of bodies that have none.
+pub(super) fn add_loads(bodies: &[Entity], precision: Precision, world: &mut World) {
+    for &body in bodies {
+        let length = world.get::<Displacement>(body).map_or(0, |u| u.len());
+        if world.get::<ExternalForce>(body).is_none() {
+            world.entity_mut(body).insert(ExternalForce(Reals::zeros(precision, length)));
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! `grab`: springs and dampers from nodes that a hand holds to where they should be. `shaders/grab.wgsl` is its twin.
+
+use super::node_system::{Before, ForceSlopes, NodeSystem, NodesAtRest};
+use super::registry::{Phase, System};
+use crate::backend::Buffers;
+use crate::backend::cpu::{Cpu, NodeColumns};
+use crate::backend::kernel::{Fragment, Uniform, uniform};
+use crate::backend::node_stage::{NodeStage, rows_of};
+use crate::components::*;
+use crate::math::SimdScalar;
+use crate::shader;
+use bevy_ecs::prelude::*;
+
+/// Pulls each held node by itself: the forces of a hand on the nodes of a face then sum up to that of a spring at the
+/// point that was grabbed, and no node has to know where the others are. A parked node is not pulled.
+pub fn system() -> System {
+    System::built_in_nodes::<Grabs>(
+        "grab",
+        Phase::Loads,
+        "pulls nodes that a program holds to where it wants them",
+        "`grabs` in the program's options",
+        |world| super::registry::count::<Grabs>(world, "body that can be grabbed", "bodies that can be grabbed"),
+    )
+    .on_nodes(stages)
+}
+
+impl NodeSystem for Grabs {
+    type Columns = (&'static Displacement, &'static DisplacementStep, &'static Mass, &'static mut ExternalForce);
+    /// What turns the last step into a velocity (1/s).
+    type Prepared = f64;
+
+    fn prepare(&self, before: &Before<'_>) -> f64 {
+        before.clock.rate()
+    }
+
+    fn act<T: SimdScalar>(&self, &rate: &f64, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        let place = |bound: usize| self.held.partition_point(|held| (held.row as usize) < bound);
+        for held in &self.held[place(nodes.first)..place(nodes.first + nodes.rows())] {
+            let row = held.row as usize - nodes.first;
+            let mass = nodes.mass[row];
+            if mass > T::default() {
+                let step = glam::DVec3::from_array([0, 1, 2].map(|i| nodes.step[3 * row + i].to_f64()));
+                nodes.add_load(row, held.force(nodes.displacement(row), step * rate, mass.to_f64()));
+            }
+        }
+    }
+
+    /// Whatever the nodes' masses are by now: see [`HeldNode`].
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        let of_node = |nodes: &[HeldNode]| {
+            let each = nodes.iter().map(|held| ForceSlopes {
+                // the same in all directions
+                stiffness: held.stiffness_over_mass,
+                damping: held.damping_over_mass,
+            });
+            each.fold(ForceSlopes::default(), ForceSlopes::and)
+        };
+        let all = self.held.chunk_by(|one, next| one.row == next.row).map(of_node);
+        all.fold(ForceSlopes::default(), ForceSlopes::larger)
+    }
+}
+
+/// The name of the uniform that holds a body's held nodes.
+pub(crate) fn uniform_of(body: &str) -> String {
+    format!("grabs of {body}")
+}
+
+/// A held node as kernels see it.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+struct HeldRow {
+    row: u32,
+    stiffness: f32,
+    damping: f32,
+    most: f32,
+    goal_x: f32,
+    goal_y: f32,
+    goal_z: f32,
+    stiffness_over_mass: f32,
+    damping_over_mass: f32,
+    unused_1: u32,
+    unused_2: u32,
+    unused_3: u32,
+}
+uniform!(HeldRow {
+    row,
+    stiffness,
+    damping,
+    most,
+    goal_x,
+    goal_y,
+    goal_z,
+    stiffness_over_mass,
+    damping_over_mass,
+    unused_1,
+    unused_2,
+    unused_3
+});
+
+/// The bytes of that uniform: behind the last held node come rows that no body has.
+pub(crate) fn bytes_of(grabs: &Grabs) -> Vec<u8> {
+    let place = |place: usize| {
+        let held = grabs.held.get(place);
+        let held = held.copied().unwrap_or(HeldNode { row: u32::MAX, ..HeldNode::default() });
+        let [goal_x, goal_y, goal_z] = held.goal.as_vec3().to_array();
+        // infinity is no number that a shader must know
+        let number = |number: f64| (number as f32).min(f32::MAX);
+        HeldRow {
+            row: held.row,
+            stiffness: number(held.stiffness),
+            damping: number(held.damping),
+            most: number(held.most),
+            goal_x,
+            goal_y,
+            goal_z,
+            stiffness_over_mass: number(held.stiffness_over_mass),
+            damping_over_mass: number(held.damping_over_mass),
+            unused_1: 0,
+            unused_2: 0,
+            unused_3: 0,
+        }
+        .bytes()
+    };
+    (0..Grabs::MOST_HELD).flat_map(place).collect()
+}
+
+/// One stage for each body that can be grabbed.
+fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
+    let all: Vec<(Grabs, Entity)> =
+        world.query::<(&Grabs, &OfBody)>().iter(world).map(|(grabs, body)| (grabs.clone(), body.0)).collect();
+    let mut stages = Vec::new();
+    for (grabs, body) in all {
+        let label = world.get::<Label>(body).map(|label| label.0.clone()).unwrap_or_default();
+        let most = Fragment::new(
+            "generated: nodes that can be held",
+            format!("const MOST_HELD: u32 = {}u;\n", Grabs::MOST_HELD),
+        );
+        let mut stage = NodeStage::new("grab", "grab", body, rows_of(body, world), shader!("grab"))
+            .own(most)
+            .bind_uniform::<HeldRow>("grabs", buffers.uniform(uniform_of(&label), &bytes_of(&grabs)));
+        for column in [Mass::NAME, Displacement::NAME, DisplacementStep::NAME, ExternalForce::NAME] {
+            stage = stage.column(column, buffers.column(body, column));
+        }
+        stages.push(stage.with_step(world).loaded(true));
+    }
+    stages
+}
