@@ -68,10 +68,14 @@ pub(super) fn spawn(
     let materials = element_materials(assembly, name, &placed, diagnostics)?;
     let mesh = &placed.mesh;
     // one block for each element type and material that occur together
-    let (tets, hexes) = assembly.scene.scene.bodies[name].mesh.element_kinds();
+    let source = &assembly.scene.scene.bodies[name].mesh;
     let mut members: BTreeMap<(ElementKind, &str), Vec<u32>> = BTreeMap::new();
-    for (element, material) in materials.iter().enumerate() {
-        let kind = if element < mesh.tets.len() { tets } else { hexes };
+    for (element, (material, (cell, _))) in materials.iter().zip(mesh.cells.iter()).enumerate() {
+        let Some(kind) = source.element_kind(cell) else {
+            let message = format!("sinew has no element for {}", cell.topology().plural);
+            diagnostics.error_at(format!("bodies.\"{name}\".mesh").as_str(), message);
+            return None;
+        };
         members.entry((kind, material)).or_default().push(element as u32);
     }
     let copies = assembly.scene.scene.bodies[name].copies as usize;
@@ -99,8 +103,7 @@ pub(super) fn spawn(
         node_ids: mesh.point_ids.clone(),
         element_rows: element_rows.clone(),
         element_ids: mesh.element_ids.clone(),
-        tets: mesh.tets.clone(),
-        hexes: mesh.hexes.clone(),
+        cells: mesh.cells.clone(),
         blocks: blocks.clone(),
     };
     super::columns::insert_node_columns(assembly, name, mesh, &node_rows, &authoring, world, body);

@@ -13,10 +13,10 @@ pub use tet4::Tet4;
 pub use tet4_nodal_pressure::Tet4NodalPressure;
 
 use crate::math::{Mat3, Real};
+use crate::mesh::CellKind;
 use glam::DVec3;
 
-/// Nodes of the element type that has most.
-pub const MOST_NODES: usize = 8;
+pub use crate::mesh::topology::MOST_NODES;
 /// Rest-shape numbers of the element type that has most.
 pub const MOST_ROWS: usize = 32;
 /// Integration points of the element type that has most.
@@ -34,8 +34,10 @@ pub const MOST_POINTS: usize = 8;
 pub trait Element: Copy + Send + Sync + 'static {
     /// Its name in scenes, shaders and reports.
     const NAME: &'static str;
+    /// The kind of its cells.
+    const CELL: CellKind;
     /// How many nodes.
-    const NODES: usize;
+    const NODES: usize = Self::CELL.node_count();
     /// How many integration points.
     const POINTS: usize;
     /// How many numbers describe the rest shape.

@@ -96,7 +96,7 @@ pub fn extinguish(block: &Block, row: usize, shape: &mut Reals) {
 }
 
 /// Adds a block's lumped masses (kg) and damping coefficients (kg/s) to its nodes', from the elements that still have
-/// volume: ρV over the nodes of each, and the damping rate (1/s) times that.
+/// volume: its nodes' shares of the ρV of each, and the damping rate (1/s) times that.
 pub fn add_nodal_masses(
     block: &Block,
     connectivity: &[u32],
@@ -107,10 +107,12 @@ pub fn add_nodal_masses(
     damping: &mut [f64],
 ) {
     let nodes = node_count(block.kind);
+    let shares = block.kind.cell().topology().solid.map_or(&[][..], |solid| solid.shares);
+    debug_assert_eq!(shares.len(), nodes, "elements fill space");
     for row in 0..block.count {
-        let share = density * rest_volume(block, row, shape) / nodes as f64;
-        for corner in 0..nodes {
-            let node = connectivity[lane_place(row, nodes, corner)] as usize;
+        let whole = density * rest_volume(block, row, shape);
+        for (corner, share) in shares.iter().enumerate() {
+            let (node, share) = (connectivity[lane_place(row, nodes, corner)] as usize, whole * share);
             mass[node] += share;
             damping[node] += share * rate;
         }

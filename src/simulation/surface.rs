@@ -21,11 +21,10 @@ impl Simulation {
             let alive = self.world.get::<Alive>(authoring.blocks[block as usize]);
             alive.is_none_or(|alive| alive[row as usize] == 1)
         };
-        let tets = authoring.tets.len();
+        let rows = (0..authoring.cells.len()).filter(|&element| there(element));
         let left = Mesh {
             points: vec![glam::DVec3::ZERO; authoring.node_rows.len()],
-            tets: (0..tets).filter(|&e| there(e)).map(|e| authoring.tets[e]).collect(),
-            hexes: (0..authoring.hexes.len()).filter(|&e| there(tets + e)).map(|e| authoring.hexes[e]).collect(),
+            cells: authoring.cells.select(rows, |node| node),
             ..Mesh::default()
         };
         let triangles = |face: crate::mesh::SurfaceFace| {

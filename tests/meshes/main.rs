@@ -10,4 +10,6 @@ mod samples_vtk;
 mod shared;
 mod shipped;
 mod soundness;
+mod topology;
+mod topology;
 mod written;

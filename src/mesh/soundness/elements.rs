@@ -2,10 +2,8 @@
 
 use super::{Defect, FLAT, LISTED, Soundness, counted};
 use crate::mesh::Mesh;
-use crate::mesh::measure::{
-    hex_determinants, hex_longest_edge, hex_smallest_altitude, hex_volume, tet_longest_edge, tet_smallest_altitude,
-    tet_volume,
-};
+use crate::mesh::measure::longest_edge;
+use crate::mesh::topology::MOST_NODES;
 
 /// An element whose smallest altitude is below this share of its longest edge is warned of.
 const SLIVER: f64 = 0.01;
@@ -74,20 +72,18 @@ impl Mesh {
     }
 
     fn check_shape(&self, row: usize, all: &mut Findings) {
-        let (edge, altitude, volume, folded) = if row < self.tets.len() {
-            let corners = self.tet_corners(row);
-            let volume = tet_volume(corners);
-            (tet_longest_edge(corners), tet_smallest_altitude(corners), volume, false)
-        } else {
-            let corners = self.hex_corners(row - self.tets.len());
-            let edge = hex_longest_edge(corners);
-            let determinants = hex_determinants(corners);
-            let folded = determinants.iter().any(|&determinant| determinant < -FLAT * edge.powi(3));
-            let volume = hex_volume(corners);
+        let kind = self.cells.kind(row);
+        let Some(solid) = kind.topology().solid else { return };
+        let corners = &self.places(row)[..];
+        let (edge, altitude) = (longest_edge(kind, corners), (solid.smallest_altitude)(corners));
+        let (mut volume, mut folded) = ((solid.volume)(corners), false);
+        if !solid.frames.is_empty() {
+            let middle = solid.middle_determinant(corners);
+            let least = solid.corner_determinants(corners).fold(middle, f64::min);
+            folded = least < -FLAT * edge.powi(3);
             // a one-point element lives by its centre alone: where that has no volume, the element has none
-            let least = if determinants[8].abs() < volume.abs() { determinants[8] } else { volume };
-            (edge, hex_smallest_altitude(corners), least, folded)
-        };
+            volume = if middle.abs() < volume.abs() { middle } else { volume };
+        }
         if volume.abs() < FLAT * edge.powi(3) || edge == 0.0 {
             all.flat.push((row, format!("volume {volume:.2e} m³, longest edge {edge:.2e} m")));
         } else if volume < 0.0 {
@@ -101,16 +97,20 @@ impl Mesh {
 
     /// Two elements with the same points: found by sorting.
     fn check_repeated_elements(&self, found: &mut Soundness) {
-        let mut tets: Vec<([u32; 4], u32)> = self.tets.iter().copied().zip(0..).collect();
-        tets.iter_mut().for_each(|(nodes, _)| nodes.sort_unstable());
-        tets.sort_unstable();
-        let first = self.tets.len() as u32;
-        let mut hexes: Vec<([u32; 8], u32)> = self.hexes.iter().copied().zip(first..).collect();
-        hexes.iter_mut().for_each(|(nodes, _)| nodes.sort_unstable());
-        hexes.sort_unstable();
-        let tets = tets.windows(2).filter(|two| two[0].0 == two[1].0).map(|two| (two[0].1, two[1].1));
-        let hexes = hexes.windows(2).filter(|two| two[0].0 == two[1].0).map(|two| (two[0].1, two[1].1));
-        let mut pairs: Vec<(u32, u32)> = tets.chain(hexes).collect();
+        let mut pairs: Vec<(u32, u32)> = Vec::new();
+        let mut first = 0;
+        for (kind, count) in self.cells.kinds() {
+            let sorted = |row: u32| {
+                let mut nodes = [0; MOST_NODES];
+                nodes[..kind.node_count()].copy_from_slice(self.element(row as usize));
+                nodes[..kind.node_count()].sort_unstable();
+                (nodes, row)
+            };
+            let mut alike: Vec<([u32; MOST_NODES], u32)> = (first..first + count as u32).map(sorted).collect();
+            alike.sort_unstable();
+            pairs.extend(alike.windows(2).filter(|two| two[0].0 == two[1].0).map(|two| (two[0].1, two[1].1)));
+            first += count as u32;
+        }
         if pairs.is_empty() {
             return;
         }
