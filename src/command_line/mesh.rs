@@ -29,7 +29,7 @@ pub fn command(arguments: &MeshArguments) -> Outcome {
         reports.push((name, mesh.summary()));
     }
     if arguments.json {
-        let all: std::collections::BTreeMap<_, _> = reports.iter().map(|(name, report)| (name, report)).collect();
+        let all: BTreeMap<_, _> = reports.iter().map(|(name, report)| (name, report)).collect();
         let text = serde_json::to_string_pretty(&all).map_err(|error| Failure::Silent(error.into()))?;
         return terminal::say(&format!("{text}\n"));
     }

@@ -11,5 +11,4 @@ mod shared;
 mod shipped;
 mod soundness;
 mod topology;
-mod topology;
 mod written;
