@@ -44,7 +44,11 @@ impl Load {
         match self {
             Self::None => String::new(),
             Self::Gravity => format!("loads: [Gravity(acceleration: (0, 0, {ACCELERATION}))]"),
-            Self::Rust => format!("parameters: {{\"weight\": (acceleration: {ACCELERATION})}}"),
+            // a program's own system runs where the schedule names it
+            Self::Rust => format!(
+                "schedule: [\"boundary\", \"element_forces\", \"gather\", \"weight\", \"integrate\", \"observe\"],
+                 parameters: {{\"weight\": (acceleration: {ACCELERATION})}}"
+            ),
             Self::Wgsl => format!(
                 "systems: {{\"weight\": (file: \"{}\", parameters: {{\"acceleration\": {ACCELERATION}}})}}",
                 TEXT.0
@@ -82,5 +86,43 @@ impl NodeSystem for Weight {
         for row in 0..nodes.rows() {
             nodes.add_load(row, DVec3::new(0.0, 0.0, nodes.mass[row].to_f64() * self.acceleration));
         }
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::bench::{Case, Effects};
+    use crate::mesh::ElementKind;
+
+    /// What is timed is the same load three times, and nothing else once.
+    #[test]
+    fn loads_of_ones_own_move_the_cube_as_gravity_does() {
+        let moved = |load| {
+            let case = Case {
+                element: ElementKind::Hex8,
+                effects: Effects::None,
+                backend: "cpu".into(),
+                precision: "f64".into(),
+                threads: 1,
+                instructions: "widest".into(),
+                scheme: "patches".into(),
+                cells: 3,
+                fuse: true,
+                load,
+            };
+            let mut simulation = case.simulation().unwrap();
+            simulation.advance(20).unwrap();
+            simulation.displacements("cube").unwrap()
+        };
+        let gravity = moved(Load::Gravity);
+        let far = gravity.iter().fold(0.0_f64, |most, u| most.max(u.length()));
+        assert!(far > 1e-4, "{far} m");
+        for load in [Load::Rust, Load::Wgsl] {
+            let apart = gravity.iter().zip(moved(load)).fold(0.0_f64, |most, (a, b)| most.max((*a - b).length()));
+            assert!(apart <= 1e-12 * far, "{load:?}: {apart} m of {far} m");
+        }
+        assert!(moved(Load::None).iter().all(|u| u.length() == 0.0));
     }
 }

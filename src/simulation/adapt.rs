@@ -39,8 +39,8 @@ const SLOWEST: f64 = 20.0;
 const LEAST: f64 = 1e-4;
 
 impl Simulation {
-    /// Makes the step smaller where it must be, and larger where that is worth while.
-    pub(super) fn adapt(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<(), Error> {
+    /// Makes the step smaller where it must be, and larger where that is worth while; whether it is to grow further soon.
+    pub(super) fn adapt(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<bool, Error> {
         let clock = *self.world.resource::<Clock>();
         let found = &mut follower.found;
         found.lost += found.losing * clock.step.saturating_sub(found.looked) as f64;
@@ -58,14 +58,15 @@ impl Simulation {
             return Err(self.too_small(follower, stable));
         }
         let seen_to_come = follower.seen_to_come(stable, seen, &clock);
-        let wanted = stable.min(seen_to_come).min(LONGER * clock.time_step);
+        let in_the_end = stable.min(seen_to_come);
+        let wanted = in_the_end.min(LONGER * clock.time_step);
         let smaller = clock.time_step > follower.most() * limit || clock.time_step > SMALLER * wanted;
         let change = smaller || wanted >= if finds { LARGER.0 } else { LARGER.1 } * clock.time_step;
         let taken = if change { wanted } else { clock.time_step };
         let hoped_for = follower.hoped_for(seen, &clock);
         follower.found.losing = if hoped_for < LARGER.0 * taken { 0.0 } else { 1.0 - taken / hoped_for };
         if !change {
-            return Ok(());
+            return Ok(false);
         }
         let left = follower.duration - clock.time();
         // the scene ends with a whole step
@@ -77,7 +78,8 @@ impl Simulation {
         history.changes += 1;
         history.smallest = history.smallest.min(new);
         history.largest = history.largest.max(new);
-        self.change_step(new, last)
+        self.change_step(new, last)?;
+        Ok(wanted < in_the_end)
     }
 
     /// Finds the highest frequency from what was known of it; whether there is one.

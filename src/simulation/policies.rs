@@ -20,8 +20,9 @@ const FINDINGS: (u64, u64) = (8, 200);
 const ROUNDS: usize = 4;
 
 impl Simulation {
-    /// Does what the scene wants done where the step stays.
-    pub(super) fn hold(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<(), Error> {
+    /// Does what the scene wants done where the step stays. The step before which is to be looked next, where that is
+    /// known.
+    pub(super) fn hold(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<Option<u64>, Error> {
         let (step, time_step) = (self.step_count(), self.world.resource::<Clock>().time_step);
         let pressing = time_step > follower.most() * follower.step_of(seen.square);
         // mass is not added and elements are not removed on the word of the cheap bound
@@ -37,13 +38,12 @@ impl Simulation {
                 let now = self.time();
                 follower.history.beyond_since.get_or_insert(now);
                 // told once; the guards see to the rest
-                follower.found.next = u64::MAX;
-                Ok(())
+                Ok(Some(u64::MAX))
             }
-            _ if !found || time_step <= follower.most() * follower.step_of(seen.square) => Ok(()),
-            WhenUnstable::ScaleMass { most } => self.make_heavier(follower, time_step, most),
-            WhenUnstable::Remove => self.remove_quickest(follower),
-            WhenUnstable::Watch | WhenUnstable::Adapt => Ok(()),
+            _ if !found || time_step <= follower.most() * follower.step_of(seen.square) => Ok(None),
+            WhenUnstable::ScaleMass { most } => self.make_heavier(follower, time_step, most).map(|()| None),
+            WhenUnstable::Remove => self.remove_quickest(follower).map(Some),
+            WhenUnstable::Watch | WhenUnstable::Adapt => Ok(None),
         }
     }
 
@@ -97,8 +97,8 @@ impl Simulation {
     }
 
     /// Removes the elements with the highest frequencies, as many as are nearly as quick as the quickest; others follow
-    /// if that is not enough.
-    fn remove_quickest(&mut self, follower: &mut Follower) -> Result<(), Error> {
+    /// if that is not enough. The step before which is to be looked next.
+    fn remove_quickest(&mut self, follower: &mut Follower) -> Result<u64, Error> {
         let step = self.step_count();
         bring_to_host(&mut self.world, |_, name| [Alive::NAME, RemovalStep::NAME].contains(&name))?;
         let mut all = Vec::new();
@@ -114,8 +114,8 @@ impl Simulation {
                 follower.history.removed += quick.len() as u64;
             }
         }
+        send_to_device(&mut self.world, |_, name| name == RemovalStep::NAME)?;
         // they go at the end of this step
-        follower.found.next = step + 1;
-        send_to_device(&mut self.world, |_, name| name == RemovalStep::NAME)
+        Ok(step + 1)
     }
 }

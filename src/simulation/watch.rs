@@ -69,15 +69,24 @@ pub(super) struct Seen {
     pub at_rest: f64,
     /// The most that the stiffness of an element has grown since the frequency of all was found.
     pub ratio: f64,
-    /// The fastest deformation in a step: the largest change of strain, relative to the present lengths.
+    /// The fastest deformation in a step: the largest change of strain, relative to the present lengths; and relative to
+    /// their mean over the axes.
     pub speed: f64,
+    pub mean_speed: f64,
     /// Elements that are there.
     pub alive: usize,
 }
 
 impl Seen {
-    pub const NOTHING: Self =
-        Self { square: f64::INFINITY, of_elements: 0.0, at_rest: 0.0, ratio: 1.0, speed: 0.0, alive: 0 };
+    pub const NOTHING: Self = Self {
+        square: f64::INFINITY,
+        of_elements: 0.0,
+        at_rest: 0.0,
+        ratio: 1.0,
+        speed: 0.0,
+        mean_speed: 0.0,
+        alive: 0,
+    };
 
     /// Of both together.
     pub fn and(self, other: Self) -> Self {
@@ -86,11 +95,16 @@ impl Seen {
             of_elements: self.of_elements.max(other.of_elements),
             at_rest: self.at_rest.max(other.at_rest),
             ratio: self.ratio.max(other.ratio),
-            // max forgets what is no number
-            speed: if other.speed.is_nan() { f64::INFINITY } else { self.speed.max(other.speed) },
+            speed: fastest(self.speed, other.speed),
+            mean_speed: fastest(self.mean_speed, other.mean_speed),
             alive: self.alive + other.alive,
         }
     }
+}
+
+/// The larger one: `max` would forget what is no number.
+fn fastest(one: f64, other: f64) -> f64 {
+    if other.is_nan() { f64::INFINITY } else { one.max(other) }
 }
 
 /// Whether a node of an element can move by itself.
@@ -192,7 +206,18 @@ impl Watched {
             .map(|(part, (&(widest, alive), &(at_rest, least_known)))| {
                 let [own, of_all] = self.growth_of(widest.size, widest.squeeze, widest.more);
                 let (of_elements, ratio) = ((at_rest * own).min(f64::MAX), (of_all / least_known).max(1.0));
-                (part, Seen { square: f64::INFINITY, of_elements, at_rest, ratio, speed: widest.speed, alive })
+                (
+                    part,
+                    Seen {
+                        square: f64::INFINITY,
+                        of_elements,
+                        at_rest,
+                        ratio,
+                        speed: widest.speed,
+                        mean_speed: widest.mean_speed,
+                        alive,
+                    },
+                )
             })
             .unzip();
         let parts = self.refined(world, &places, parts);

@@ -81,7 +81,11 @@ fn sizes_and_speeds_of_an_affine_motion_are_the_closed_forms_for_every_element_t
     let e = 0.5 * (rate + rate.transpose());
     let trace = |m: DMat3| m.x_axis.x + m.y_axis.y + m.z_axis.z;
     let size = trace(c).max(trace(c.inverse())) / 3.0;
-    let speed = trace(e.transpose() * e).sqrt() * trace(c.inverse()) / 3.0;
+    let strained = trace(e.transpose() * e).sqrt();
+    let mean = trace(c.inverse()) / 3.0;
+    // tr C⁻¹/3 + √(2/3 D : D) with its deviator D
+    let deviator = c.inverse() - mean * DMat3::IDENTITY;
+    let squeeze = mean + (2.0 / 3.0 * trace(deviator.transpose() * deviator)).sqrt();
     for run in configurations().iter().filter(|run| run.options.backend == BackendChoice::Cpu) {
         // a box, whose hexahedra are parallelepipeds, and a ball, whose are none
         for (elements, mesh) in ELEMENTS.iter().flat_map(|elements| {
@@ -104,7 +108,9 @@ fn sizes_and_speeds_of_an_affine_motion_are_the_closed_forms_for_every_element_t
             assert_eq!(found.len(), simulation.world().get::<Block>(entity).unwrap().count);
             for strain in &found {
                 near(&what("size"), strain.size, size, size, bound);
-                near(&what("speed"), strain.speed, speed, speed, bound);
+                near(&what("squeeze"), strain.squeeze, squeeze, squeeze, bound);
+                near(&what("speed"), strain.speed, strained * squeeze, strained * squeeze, bound);
+                near(&what("mean speed"), strain.mean_speed, strained * mean, strained * mean, bound);
                 near(&what("C_xx"), strain.more, c.x_axis.x, c.x_axis.x, bound);
             }
             assert!(found.iter().enumerate().all(|(row, strain)| strain.row == row));

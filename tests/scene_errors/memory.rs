@@ -9,10 +9,10 @@ const SCENE: &str = r#"(duration: 0.1,
 bodies: {"a": (mesh: File(path: "meshes/a.msh"), material: "tissue")},
 materials: {"tissue": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.4))},
 constraints: [Fixed(on: Nodes([1, 2, 3]))],
-systems: {"push": (file: "push.wgsl")})"#;
+systems: {"push": (file: "push.wgsl", curve: Smooth(end: 0.1))})"#;
 const MESH: &str = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 0.1\n$EndNodes\n\
                     $Elements\n1\n1 4 2 1 1 1 2 3 4\n$EndElements\n";
-const PUSH: &str = "fn push(node: Node) -> vec3f { return vec3f(0, 0, 0.1 * node.mass); }";
+const PUSH: &str = "fn push(node: Node) -> vec3f { return vec3f(0, 0, 0.1 * node.curve * node.mass); }";
 
 fn files() -> BTreeMap<String, Vec<u8>> {
     [("meshes/a.msh", MESH), ("push.wgsl", PUSH)]
@@ -58,7 +58,7 @@ fn what_is_not_in_memory_is_told_and_never_looked_for_on_a_disk() {
     let real = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/wind.wgsl");
     let outside = told(&SCENE.replace("push.wgsl", real), files());
     assert!(outside.contains("there is no file `"), "{outside}");
-    let broken = files().into_iter().map(|(name, _)| (name, b"no mesh".to_vec())).collect();
+    let broken = files().into_keys().map(|name| (name, b"no mesh".to_vec())).collect();
     let broken = told(SCENE, broken);
     assert!(broken.contains("meshes/a.msh: "), "{broken}");
 }

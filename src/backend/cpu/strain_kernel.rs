@@ -37,8 +37,15 @@ pub struct Strain {
     /// √(ΔE : ΔE) times [`squeeze`](Self::squeeze), with the change ΔE of Green's strain in a step: at least the change of
     /// a length over that length; infinite for what is no number.
     pub speed: f64,
+    /// √(ΔE : ΔE) tr C⁻¹/3: the same over all axes; infinite for what is no number.
+    pub mean_speed: f64,
     /// What was asked for of its C.
     pub more: f64,
+}
+
+impl Strain {
+    /// Of what is not deformed.
+    const AT_REST: Self = Self { row: 0, size: 1.0, squeeze: 1.0, speed: 0.0, mean_speed: 0.0, more: 0.0 };
 }
 
 /// What is asked for beside: a number from an element's row and its C (xx, yy, zz, xy, yz, xz).
@@ -74,15 +81,15 @@ impl<E: Element, T: SimdScalar> WithSimd for Groups<'_, '_, E, T> {
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let Self { columns, groups, more, mut visit, .. } = self;
         let (zero, one) = (T::splat(simd, T::default()), T::splat(simd, T::from_f64(1.0)));
-        // size, squeeze, speed, what is no number, and how many are there
-        let mut widest = [one, one, zero, zero, zero];
+        // size, squeeze, both speeds, what is no number, and how many are there
+        let mut widest = [one, one, zero, zero, zero, zero];
         let mut more_of_all = 0.0_f64;
         for group in groups {
             let nodes = &columns.connectivity[group * E::NODES * LANES..(group + 1) * E::NODES * LANES];
             let shape = &columns.rest_shape[group * E::ROWS * LANES..(group + 1) * E::ROWS * LANES];
             let u = group_vectors::<E, T>(nodes, columns.displacement);
             let d = group_vectors::<E, T>(nodes, columns.step);
-            let (mut lanes, mut largest) = ([[T::default(); LANES]; 4], [0.0_f64; LANES]);
+            let (mut lanes, mut largest) = ([[T::default(); LANES]; 5], [0.0_f64; LANES]);
             let mut at = 0;
             while at < LANES {
                 let rows = more.map(|more| (more, group * LANES + at, &mut largest[at..]));
@@ -91,21 +98,23 @@ impl<E: Element, T: SimdScalar> WithSimd for Groups<'_, '_, E, T> {
                 widest[0] = widest[0].max(volume.if_positive(found[0], one));
                 widest[1] = widest[1].max(volume.if_positive(found[1], one));
                 widest[2] = widest[2].max(volume.if_positive(found[2], zero));
-                widest[3] += volume.if_positive(found[3], zero);
-                widest[4] += volume.if_positive(one, zero);
+                widest[3] = widest[3].max(volume.if_positive(found[3], zero));
+                widest[4] += volume.if_positive(found[4], zero);
+                widest[5] += volume.if_positive(one, zero);
                 if visit.is_some() {
-                    (0..4).for_each(|i| T::store(found[i], &mut lanes[i][at..]));
+                    (0..5).for_each(|i| T::store(found[i], &mut lanes[i][at..]));
                 }
                 at += T::width::<S>();
             }
             if visit.is_none() && more.is_none() {
                 continue;
             }
-            let mut found = [Strain { row: 0, size: 1.0, squeeze: 1.0, speed: 0.0, more: 0.0 }; LANES];
+            let mut found = [Strain::AT_REST; LANES];
             let mut count = 0;
             for lane in (0..LANES).filter(|lane| shape[E::VOLUME_ROW * LANES + lane] > T::default()) {
-                let [size, squeeze, speed] = sound(lanes.map(|of| of[lane]));
-                found[count] = Strain { row: group * LANES + lane, size, squeeze, speed, more: largest[lane] };
+                let [size, squeeze, speed, mean_speed] = sound(lanes.map(|of| of[lane]));
+                found[count] =
+                    Strain { row: group * LANES + lane, size, squeeze, speed, mean_speed, more: largest[lane] };
                 more_of_all = more_of_all.max(largest[lane]);
                 count += 1;
             }
@@ -113,28 +122,29 @@ impl<E: Element, T: SimdScalar> WithSimd for Groups<'_, '_, E, T> {
                 visit(&found[..count]);
             }
         }
-        let mut all = Strain { row: 0, size: 1.0, squeeze: 1.0, speed: 0.0, more: more_of_all };
+        let mut all = Strain { more: more_of_all, ..Strain::AT_REST };
         let mut count = 0.0;
-        let mut lanes = [[T::default(); LANES]; 5];
-        (0..5).for_each(|i| T::store(widest[i], &mut lanes[i]));
+        let mut lanes = [[T::default(); LANES]; 6];
+        (0..6).for_each(|i| T::store(widest[i], &mut lanes[i]));
         for lane in 0..T::width::<S>() {
-            let [size, squeeze, speed] = sound([0, 1, 2, 3].map(|i: usize| lanes[i][lane]));
+            let [size, squeeze, speed, mean_speed] = sound([0, 1, 2, 3, 4].map(|i: usize| lanes[i][lane]));
             all.size = all.size.max(size);
             all.squeeze = all.squeeze.max(squeeze);
             all.speed = all.speed.max(speed);
-            count += lanes[4][lane].to_f64();
+            all.mean_speed = all.mean_speed.max(mean_speed);
+            count += lanes[5][lane].to_f64();
         }
         (all, count as usize)
     }
 }
 
-/// Size, squeeze and speed; infinite where they are no numbers.
-fn sound<T: SimdScalar>([size, squeeze, speed, astray]: [T; 4]) -> [f64; 3] {
+/// Size, squeeze and both speeds; infinite where they are no numbers.
+fn sound<T: SimdScalar>([size, squeeze, speed, mean_speed, astray]: [T; 5]) -> [f64; 4] {
     let number = |of: T| if astray == T::default() { of.to_f64() } else { f64::INFINITY };
-    [size, squeeze, speed].map(number)
+    [size, squeeze, speed, mean_speed].map(number)
 }
 
-/// Size, squeeze and speed of a register full of elements, and what is not 0 where either is no number. `rows`: what
+/// Size, squeeze and both speeds of a register full of elements, and what is not 0 where either is no number. `rows`: what
 /// more is asked for, of which row on, and where it goes.
 #[inline(always)]
 fn register<E: Element, T: SimdScalar, S: Simd>(
@@ -143,11 +153,11 @@ fn register<E: Element, T: SimdScalar, S: Simd>(
     (shape, ends): (&[T], bool),
     at: usize,
     mut rows: Option<(OfStretch<'_>, usize, &mut [f64])>,
-) -> [T::Vector<S>; 4] {
+) -> [T::Vector<S>; 5] {
     let u = E::prepare(&corner_registers::<E, T, S>(simd, u, at));
     let d = E::prepare(&corner_registers::<E, T, S>(simd, d, at));
     let zero = T::splat(simd, T::default());
-    let (mut size, mut squeeze, mut speed, mut astray) = (zero, zero, zero, zero);
+    let (mut size, mut squeeze, mut speed, mut mean_speed, mut astray) = (zero, zero, zero, zero, zero);
     for point in 0..E::POINTS {
         let state = E::at_point(
             &u,
@@ -174,14 +184,15 @@ fn register<E: Element, T: SimdScalar, S: Simd>(
             }
         }
         let [first, inverse, squeezed] = sizes(&f, ends);
-        let relative = change_of_strain(&f, &change.gradient).sqrt() * squeezed;
+        let change = change_of_strain(&f, &change.gradient).sqrt();
         size = size.max(first.max(inverse));
         squeeze = squeeze.max(squeezed);
-        speed = speed.max(relative);
+        speed = speed.max(change * squeezed);
+        mean_speed = mean_speed.max(change * inverse);
         // what is no number, or infinite, stays none
-        astray += (inverse + relative) * zero;
+        astray += (inverse + change * squeezed) * zero;
     }
-    [size, squeeze, speed, astray]
+    [size, squeeze, speed, mean_speed, astray]
 }
 
 /// F = I + ∇u.
