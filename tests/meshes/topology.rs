@@ -347,7 +347,7 @@ fn rows_count_kind_by_kind_in_the_order_of_adding() {
 }
 
 #[test]
-fn distances_of_a_linear_map_are_kept() {
+fn the_jacobian_of_a_linear_map_is_its_matrix() {
     // the Jacobian of a cell that is mapped by a matrix is that matrix, anywhere in it
     let matrix = DMat3::from_cols(DVec3::new(1.2, 0.1, 0.0), DVec3::new(-0.2, 0.9, 0.3), DVec3::new(0.1, 0.0, 1.1));
     for (kind, topology, solid, _) in solids() {
