@@ -70,13 +70,18 @@ pub(super) fn spawn(
     // one block for each element type and material that occur together
     let source = &assembly.scene.scene.bodies[name].mesh;
     let mut members: BTreeMap<(ElementKind, &str), Vec<u32>> = BTreeMap::new();
-    for (element, (material, (cell, _))) in materials.iter().zip(mesh.cells.iter()).enumerate() {
+    for (cell, rows, _) in mesh.cells.blocks() {
         let Some(kind) = source.element_kind(cell) else {
             let message = format!("sinew has no element for {}", cell.topology().plural);
             diagnostics.error_at(format!("bodies.\"{name}\".mesh").as_str(), message);
             return None;
         };
-        members.entry((kind, material)).or_default().push(element as u32);
+        let mut first = rows.start as u32;
+        for alike in materials[rows].chunk_by(|a, b| a == b) {
+            let end = first + alike.len() as u32;
+            members.entry((kind, alike[0])).or_default().extend(first..end);
+            first = end;
+        }
     }
     let copies = assembly.scene.scene.bodies[name].copies as usize;
     let order =
@@ -211,8 +216,8 @@ impl BlockBuilder<'_> {
     /// Rest positions of an element's nodes (m).
     fn points(&self, element: u32) -> [DVec3; MOST_NODES] {
         let mut points = [DVec3::ZERO; MOST_NODES];
-        for (point, &node) in points.iter_mut().zip(self.mesh.element(element as usize)) {
-            *point = self.mesh.points[node as usize];
+        for (place, &node) in self.mesh.element(element as usize).iter().enumerate() {
+            points[place] = self.mesh.points[node as usize];
         }
         points
     }

@@ -1,10 +1,12 @@
-//! Cells of any kind: blocks of one kind each, with the nodes of their cells one after the other.
+//! Cells that fill space, of any kind: blocks of one kind each, with the nodes of their cells one after the other.
 
-use super::topology::{CellKind, MOST_NODES};
+use super::MeshError;
+use super::topology::CellKind;
 use std::collections::TryReserveError;
+use std::ops::Range;
 
-/// Cells in the order of their kinds (tetrahedra first), cells of one kind in the order in which they were added. A
-/// cell's row counts all cells before it.
+/// Cells that fill space, in the order of their kinds (tetrahedra first), cells of one kind in the order in which they
+/// were added. A cell's row counts all cells before it.
 #[derive(Clone, Debug, Default)]
 pub struct Cells {
     /// Ascending by kind, each kind once.
@@ -14,20 +16,69 @@ pub struct Cells {
 #[derive(Clone, Debug)]
 struct Block {
     kind: CellKind,
+    /// Nodes of each.
+    each: usize,
+    /// How many cells.
+    count: usize,
     nodes: Vec<u32>,
 }
 
 impl Block {
-    fn len(&self) -> usize {
-        self.nodes.len() / self.kind.node_count()
+    fn nodes(&self, row: usize) -> &[u32] {
+        &self.nodes[row * self.each..][..self.each]
+    }
+
+    fn push(&mut self, nodes: impl Iterator<Item = u32>) {
+        self.nodes.extend(nodes);
+        self.count += 1;
+        debug_assert_eq!(self.nodes.len(), self.count * self.each, "{:?}", self.kind);
+    }
+
+    fn extend(&mut self, nodes: impl IntoIterator<Item = u32>) {
+        self.nodes.extend(nodes);
+        debug_assert!(self.nodes.len().is_multiple_of(self.each), "{:?}", self.kind);
+        self.count = self.nodes.len() / self.each;
     }
 }
 
 impl Cells {
+    /// Cells of one kind by their nodes.
+    ///
+    /// # Errors
+    /// The kind does not fill space, or has another number of nodes.
+    pub fn of<const N: usize>(kind: CellKind, cells: &[[u32; N]]) -> Result<Self, MeshError> {
+        fits(kind, N)?;
+        let mut all = Self::default();
+        all.block(kind).extend(cells.as_flattened().iter().copied());
+        Ok(all)
+    }
+
     /// Adds a cell by its nodes; behind the others of its kind, so before those of later kinds.
-    pub fn push(&mut self, kind: CellKind, nodes: &[u32]) {
-        debug_assert_eq!(nodes.len(), kind.node_count(), "{kind:?}");
-        self.block(kind).extend_from_slice(nodes);
+    ///
+    /// # Errors
+    /// The kind does not fill space, or has another number of nodes.
+    pub fn push<const N: usize>(&mut self, kind: CellKind, nodes: [u32; N]) -> Result<(), MeshError> {
+        fits(kind, N)?;
+        self.block(kind).push(nodes.into_iter());
+        Ok(())
+    }
+
+    /// Adds cells by their nodes, one cell after the other: as many as the kind has, of a kind that fills space.
+    pub(crate) fn extend_kind(&mut self, kind: CellKind, nodes: impl IntoIterator<Item = u32>) {
+        debug_assert!(kind.topology().solid.is_some(), "{kind:?}");
+        self.block(kind).extend(nodes);
+    }
+
+    /// The same of one cell.
+    pub(crate) fn push_nodes(&mut self, kind: CellKind, nodes: &[u32]) {
+        debug_assert!(kind.topology().solid.is_some(), "{kind:?}");
+        self.block(kind).push(nodes.iter().copied());
+    }
+
+    /// Makes room for so many more of a kind, or some more.
+    pub(crate) fn reserve(&mut self, kind: CellKind, cells: usize) {
+        let block = self.block(kind);
+        block.nodes.reserve(cells * block.each);
     }
 
     /// Adds all of some others, with `first` added to each of their nodes.
@@ -42,23 +93,24 @@ impl Cells {
     /// # Errors
     /// They do not fit into memory.
     pub fn try_reserve_exact(&mut self, kind: CellKind, cells: usize) -> Result<(), TryReserveError> {
-        self.block(kind).try_reserve_exact(cells.saturating_mul(kind.node_count()))
+        let block = self.block(kind);
+        block.nodes.try_reserve_exact(cells.saturating_mul(block.each))
     }
 
-    fn block(&mut self, kind: CellKind) -> &mut Vec<u32> {
+    fn block(&mut self, kind: CellKind) -> &mut Block {
         let place = match self.blocks.binary_search_by_key(&kind, |block| block.kind) {
             Ok(place) => place,
             Err(place) => {
-                self.blocks.insert(place, Block { kind, nodes: Vec::new() });
+                self.blocks.insert(place, Block { kind, each: kind.node_count(), count: 0, nodes: Vec::new() });
                 place
             }
         };
-        &mut self.blocks[place].nodes
+        &mut self.blocks[place]
     }
 
     /// How many there are.
     pub fn len(&self) -> usize {
-        self.blocks.iter().map(Block::len).sum()
+        self.blocks.iter().map(|block| block.count).sum()
     }
 
     /// Whether there are none.
@@ -68,7 +120,17 @@ impl Cells {
 
     /// The kinds there are, ascending, with how many of each.
     pub fn kinds(&self) -> impl Iterator<Item = (CellKind, usize)> + Clone {
-        self.blocks.iter().map(|block| (block.kind, block.len())).filter(|(_, count)| *count > 0)
+        self.blocks.iter().map(|block| (block.kind, block.count)).filter(|(_, count)| *count > 0)
+    }
+
+    /// The kinds there are, ascending, with the rows of their cells and the nodes of these, one cell after the other.
+    pub fn blocks(&self) -> impl Iterator<Item = (CellKind, Range<usize>, &[u32])> + Clone {
+        let mut end = 0;
+        self.blocks.iter().filter(|block| block.count > 0).map(move |block| {
+            let first = end;
+            end += block.count;
+            (block.kind, first..end, &block.nodes[..])
+        })
     }
 
     /// How many of a kind there are.
@@ -81,16 +143,16 @@ impl Cells {
         self.kinds().take_while(|of| of.0 < kind).map(|of| of.1).sum()
     }
 
-    /// The block of a row, and the row in it. A row that is not there is beyond the last block.
-    fn place(&self, mut row: usize) -> (usize, usize) {
+    /// The place of a row's block, and the block's first row. A row that is not there is beyond the last block.
+    fn place(&self, row: usize) -> (usize, usize) {
+        let mut first = 0;
         for (place, block) in self.blocks.iter().enumerate() {
-            let count = block.len();
-            if row < count {
-                return (place, row);
+            if row - first < block.count {
+                return (place, first);
             }
-            row -= count;
+            first += block.count;
         }
-        (self.blocks.len(), row)
+        (self.blocks.len(), first)
     }
 
     /// The kind of a cell. Panics on a row that is not there.
@@ -100,26 +162,20 @@ impl Cells {
 
     /// The nodes of a cell. Panics on a row that is not there.
     pub fn nodes(&self, row: usize) -> &[u32] {
-        let (place, row) = self.place(row);
-        let Block { kind, nodes } = &self.blocks[place];
-        &nodes[row * kind.node_count()..][..kind.node_count()]
+        let (place, first) = self.place(row);
+        self.blocks[place].nodes(row - first)
     }
 
     /// The same, to be changed. Panics on a row that is not there.
     pub fn nodes_mut(&mut self, row: usize) -> &mut [u32] {
-        let (place, row) = self.place(row);
-        let Block { kind, nodes } = &mut self.blocks[place];
-        &mut nodes[row * kind.node_count()..][..kind.node_count()]
+        let (place, first) = self.place(row);
+        let Block { each, nodes, .. } = &mut self.blocks[place];
+        &mut nodes[(row - first) * *each..][..*each]
     }
 
     /// All cells in their order.
-    pub fn iter(&self) -> impl Iterator<Item = (CellKind, &[u32])> + Clone {
-        let of = |block| -> (CellKind, &[u32]) {
-            let Block { kind, nodes }: &Block = block;
-            (*kind, nodes)
-        };
-        let blocks = self.blocks.iter().map(of);
-        blocks.flat_map(|(kind, nodes)| nodes.chunks_exact(kind.node_count()).map(move |nodes| (kind, nodes)))
+    pub fn iter(&self) -> Iter<'_> {
+        Iter { blocks: self.blocks.iter(), kind: CellKind::Tet4, nodes: [].chunks_exact(1), left: self.len() }
     }
 
     /// The nodes of all cells, one cell after the other.
@@ -127,36 +183,92 @@ impl Cells {
         self.blocks.iter().flat_map(|block| block.nodes.iter().copied())
     }
 
-    /// The cells of a kind whose cells have `N` nodes; none of a kind that has another number.
-    pub fn of_kind<const N: usize>(&self, kind: CellKind) -> &[[u32; N]] {
-        debug_assert_eq!(N, kind.node_count(), "{kind:?}");
-        let of = self.blocks.iter().find(|block| block.kind == kind && N == kind.node_count());
-        of.map_or(&[], |block| block.nodes.as_chunks().0)
+    /// The cells of a kind whose cells have `N` nodes; `None` for a kind that has another number.
+    pub fn of_kind<const N: usize>(&self, kind: CellKind) -> Option<&[[u32; N]]> {
+        let of = self.blocks.iter().find(|block| block.kind == kind);
+        (N == kind.node_count()).then(|| of.map_or(&[][..], |block| block.nodes.as_chunks().0))
     }
 
-    /// The cells of some rows, ascending, with other names for their nodes.
+    /// The cells of some rows, ascending, with other names for their nodes. Panics on a row that is not there.
     pub fn select(&self, rows: impl IntoIterator<Item = usize>, mut rename: impl FnMut(u32) -> u32) -> Cells {
         let mut selected = Cells::default();
-        let mut nodes = [0; MOST_NODES];
-        for row in rows {
-            let (kind, own) = (self.kind(row), self.nodes(row));
-            nodes.iter_mut().zip(own).for_each(|(node, own)| *node = rename(*own));
-            selected.push(kind, &nodes[..own.len()]);
+        let mut rows = rows.into_iter().peekable();
+        while let Some(&row) = rows.peek() {
+            let (place, first) = self.place(row);
+            let (from, to) = (&self.blocks[place], selected.block(self.blocks[place].kind));
+            // rows of this block follow each other
+            while let Some(row) = rows.next_if(|row| (first..first + from.count).contains(row)) {
+                to.push(from.nodes(row - first).iter().map(|&node| rename(node)));
+            }
         }
         selected
     }
 }
 
-impl PartialEq for Cells {
-    fn eq(&self, other: &Self) -> bool {
-        self.iter().eq(other.iter())
+/// Refuses cells of a kind by so many nodes.
+fn fits(kind: CellKind, nodes: usize) -> Result<(), MeshError> {
+    let topology = kind.topology();
+    let (plural, count) = (topology.plural, kind.node_count());
+    let refuse = |value: String, allowed: String| {
+        Err(MeshError::Parameter { name: "cells of a mesh", parameter: topology.name, value, allowed })
+    };
+    match topology.solid {
+        None => {
+            let solids: Vec<&str> = CellKind::solids().map(|(kind, _)| kind.topology().plural).collect();
+            refuse(format!("a kind of {plural}"), format!("cells of a mesh fill space: {}", solids.join(", ")))
+        }
+        Some(_) if nodes != count => refuse(format!("given by {nodes} nodes"), format!("{plural} have {count}")),
+        Some(_) => Ok(()),
     }
 }
 
-impl<'a> FromIterator<(CellKind, &'a [u32])> for Cells {
-    fn from_iter<T: IntoIterator<Item = (CellKind, &'a [u32])>>(cells: T) -> Self {
-        let mut all = Cells::default();
-        cells.into_iter().for_each(|(kind, nodes)| all.push(kind, nodes));
-        all
+/// Cells in their order: kinds and nodes.
+#[derive(Clone, Debug)]
+pub struct Iter<'a> {
+    blocks: std::slice::Iter<'a, Block>,
+    kind: CellKind,
+    nodes: std::slice::ChunksExact<'a, u32>,
+    left: usize,
+}
+
+impl<'a> Iterator for Iter<'a> {
+    type Item = (CellKind, &'a [u32]);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            if let Some(nodes) = self.nodes.next() {
+                self.left -= 1;
+                return Some((self.kind, nodes));
+            }
+            let block = self.blocks.next()?;
+            (self.kind, self.nodes) = (block.kind, block.nodes.chunks_exact(block.each));
+        }
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (self.left, Some(self.left))
+    }
+}
+
+impl ExactSizeIterator for Iter<'_> {}
+
+impl<'a> IntoIterator for &'a Cells {
+    type Item = (CellKind, &'a [u32]);
+    type IntoIter = Iter<'a>;
+
+    fn into_iter(self) -> Iter<'a> {
+        self.iter()
+    }
+}
+
+impl<'a> Extend<&'a Cells> for Cells {
+    fn extend<T: IntoIterator<Item = &'a Cells>>(&mut self, all: T) {
+        all.into_iter().for_each(|cells| self.extend_moved(cells, 0));
+    }
+}
+
+impl PartialEq for Cells {
+    fn eq(&self, other: &Self) -> bool {
+        self.blocks().eq(other.blocks())
     }
 }

@@ -22,7 +22,9 @@ impl Places {
     pub fn new(cells: &Cells, row: usize, points: &[DVec3]) -> Self {
         let nodes = cells.nodes(row);
         let mut all = [DVec3::ZERO; MOST_NODES];
-        all.iter_mut().zip(nodes).for_each(|(place, &node)| *place = points[node as usize]);
+        for (place, &node) in nodes.iter().enumerate() {
+            all[place] = points[node as usize];
+        }
         Self { all, count: nodes.len() }
     }
 }
@@ -36,11 +38,11 @@ impl std::ops::Deref for Places {
 }
 
 impl Mesh {
-    /// Places of the first `N` nodes of an element (m). Panics on an element with less, and on a row of `points` that
-    /// does not exist; [`Mesh::soundness`] finds those.
-    pub fn corners<const N: usize>(&self, row: usize) -> [DVec3; N] {
-        let nodes = self.element(row);
-        std::array::from_fn(|place| self.points[nodes[place] as usize])
+    /// Places of the nodes of an element (m); `None` of one that has not `N` nodes. Panics on a row that does not exist;
+    /// [`Mesh::soundness`] finds those of `points`.
+    pub fn corners<const N: usize>(&self, row: usize) -> Option<[DVec3; N]> {
+        let nodes: &[u32; N] = self.element(row).try_into().ok()?;
+        Some(nodes.map(|node| self.points[node as usize]))
     }
 
     /// Places of the nodes of an element (m).
@@ -50,13 +52,11 @@ impl Mesh {
 
     /// Sum of the signed volumes of all elements (m³), kind by kind.
     pub fn volume(&self) -> f64 {
-        let mut first = 0;
         let mut sum = 0.0;
-        for (kind, count) in self.cells.kinds() {
+        for (kind, rows, _) in self.cells.blocks() {
             if let Some(solid) = kind.topology().solid {
-                sum += (first..first + count).map(|row| (solid.volume)(&self.places(row))).sum::<f64>();
+                sum += rows.map(|row| (solid.volume)(&self.places(row))).sum::<f64>();
             }
-            first += count;
         }
         sum
     }

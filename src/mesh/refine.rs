@@ -1,15 +1,18 @@
-//! Uniform subdivision: every element becomes eight of the same kind, as its [`Split`] says.
+//! Uniform subdivision: every element becomes some of the same kind, as its [`Split`] says.
 
-use super::topology::{MOST_NODES, MOST_SPLIT_POINTS, Split};
+use super::topology::{MOST_NODES, MOST_PARENTS, MOST_SPLIT_POINTS, Split};
 use super::{CellKind, Cells, Ids, Mesh, MeshError, SurfaceFace};
 use glam::DVec3;
 use std::collections::{BTreeSet, HashMap};
 
-/// What stands in the key of a new point where it has fewer parents than eight.
+/// The parents of a new point, ascending.
+type Key = [u32; MOST_PARENTS];
+
+/// What stands in the key of a new point where it has fewer parents than one may have.
 const NOBODY: u32 = u32::MAX;
 
 impl Mesh {
-    /// Cuts every element into eight, so many times over. Edges are halved where they are: a curved outline stays the
+    /// Cuts every element into smaller ones (eight of a tetrahedron or a hexahedron), so many times over. Edges are halved where they are: a curved outline stays the
     /// polygon it is.
     ///
     /// Points keep their rows and numbers, new ones follow. The parts of an element bear its number, its vectors and
@@ -17,9 +20,10 @@ impl Mesh {
     /// on does (with faces of the surface tried first).
     ///
     /// # Errors
-    /// More elements or points than 32 bits count.
+    /// Elements of a kind that cannot be cut; more elements or points than 32 bits count.
     pub fn refine(&mut self, times: u32) -> Result<(), MeshError> {
         let most = u64::from(u32::MAX) / 8;
+        let refuse = |value, allowed| Err(MeshError::Parameter { name: "body", parameter: "refine", value, allowed });
         let rows = (self.points.len() as u32, self.element_count() as u32);
         let faces = self.face_sets.values().flatten().flatten();
         let lost_points = self.cells.all_nodes().chain(faces.copied()).any(|row| row >= rows.0);
@@ -28,10 +32,17 @@ impl Mesh {
             return Ok(());
         }
         for _ in 0..times {
-            if self.element_count() as u64 * 8 > most {
-                let value = format!("{times}, {} elements at last", self.element_count() as f64 * 8.0);
-                let allowed = format!("at most {most} elements fit the 32-bit numbers of points and elements");
-                return Err(MeshError::Parameter { name: "body", parameter: "refine", value, allowed });
+            let mut parts = 0;
+            for (kind, count) in self.cells.kinds() {
+                let topology = kind.topology();
+                let Some(split) = topology.split else {
+                    return refuse(format!("{times}"), format!("it must be 0: {} are not cut", topology.plural));
+                };
+                parts += (split.count() * count) as u64;
+            }
+            if parts > most {
+                let value = format!("{times}, {parts} elements at last");
+                return refuse(value, format!("at most {most} elements fit the 32-bit numbers of points and elements"));
             }
             self.halve();
         }
@@ -43,11 +54,15 @@ impl Mesh {
         let whole = std::mem::take(&mut self.cells);
         let before = self.points.len();
         let mut middles = Middles { points: std::mem::take(&mut self.points), known: HashMap::new() };
-        for (kind, nodes) in whole.iter() {
+        // where the parts of each element begin, and the last of them end
+        let mut parts = vec![0];
+        for (kind, nodes) in &whole {
             if let Some(split) = kind.topology().split {
-                middles.cut(split, nodes, |part| self.cells.push(kind, part));
+                middles.cut(split, nodes, |part| self.cells.push_nodes(kind, part));
             }
+            parts.push(self.cells.len() as u32);
         }
+        let parts_of = |parent: u32| parts[parent as usize]..parts[parent as usize + 1];
         if !self.node_sets.is_empty() || !self.point_lists.is_empty() {
             let near = Near::of(&middles, &surface, &whole);
             for (name, set) in &mut self.node_sets {
@@ -60,13 +75,17 @@ impl Mesh {
             *set = set.iter().flat_map(|face| middles.four(face)).collect();
         }
         for set in self.element_sets.values_mut() {
-            *set = set.iter().flat_map(|&parent| 8 * parent..8 * parent + 8).collect();
+            *set = set.iter().flat_map(|&parent| parts_of(parent)).collect();
         }
         for vectors in self.element_vectors.values_mut() {
-            *vectors = vectors.iter().flat_map(|vector| [*vector; 8]).collect();
+            let own = (0..).zip(vectors.iter()).flat_map(|(parent, vector)| parts_of(parent).map(|_| *vector));
+            *vectors = own.collect();
         }
-        let ids = (0..whole.len()).flat_map(|parent| [self.element_ids.of(parent); 8]).collect();
-        self.element_ids = Ids::Named(ids);
+        let ids = (0..whole.len()).flat_map(|parent| {
+            let id = self.element_ids.of(parent);
+            parts_of(parent as u32).map(move |_| id)
+        });
+        self.element_ids = Ids::Named(ids.collect());
         if let Ids::Named(ids) = &mut self.point_ids {
             ids.extend(free_numbers(ids, middles.points.len() - before));
         }
@@ -94,7 +113,7 @@ fn same_points(faces: &[[u32; 4]], points: &[u32]) -> bool {
 /// The points, and which of the new ones lies between which of the old.
 struct Middles {
     points: Vec<DVec3>,
-    known: HashMap<[u32; 8], u32>,
+    known: HashMap<Key, u32>,
 }
 
 impl Middles {
@@ -118,16 +137,20 @@ impl Middles {
     /// The parts of a cell, right-handed if it is, by the rows of their nodes.
     fn cut(&mut self, split: &Split, nodes: &[u32], mut see: impl FnMut(&[u32])) {
         let mut rows = [0; MOST_SPLIT_POINTS];
-        for (row, corners) in rows.iter_mut().zip(split.points) {
-            let mut parents = [0; MOST_NODES];
-            parents.iter_mut().zip(*corners).for_each(|(parent, &corner)| *parent = nodes[corner]);
-            *row = if let [corner] = corners { nodes[*corner] } else { self.of(&parents[..corners.len()]) };
+        for (place, corners) in split.points.iter().enumerate() {
+            let mut parents = [0; MOST_PARENTS];
+            for (parent, &corner) in corners.iter().enumerate() {
+                parents[parent] = nodes[corner];
+            }
+            rows[place] = if let [corner] = corners { nodes[*corner] } else { self.of(&parents[..corners.len()]) };
         }
         split.parts(
             |place| self.points[rows[place] as usize],
             |part| {
                 let mut nodes = [0; MOST_NODES];
-                nodes.iter_mut().zip(part).for_each(|(node, &place)| *node = rows[place]);
+                for (node, &place) in part.iter().enumerate() {
+                    nodes[node] = rows[place];
+                }
                 see(&nodes[..part.len()]);
             },
         );
@@ -199,7 +222,7 @@ fn at<'a>(parts: &'a ByLowest, points: &'a [u32]) -> impl Iterator<Item = &'a [u
 struct Near<'a> {
     faces: ByLowest,
     elements: ByLowest,
-    points: HashMap<u32, Vec<(&'a [u32; 8], u32)>>,
+    points: HashMap<u32, Vec<(&'a Key, u32)>>,
 }
 
 impl<'a> Near<'a> {
@@ -213,7 +236,7 @@ impl<'a> Near<'a> {
             }
             found
         };
-        let mut points: HashMap<u32, Vec<(&[u32; 8], u32)>> = HashMap::new();
+        let mut points: HashMap<u32, Vec<(&Key, u32)>> = HashMap::new();
         for (key, &row) in &middles.known {
             points.entry(key[0]).or_default().push((key, row));
         }
@@ -226,8 +249,8 @@ impl<'a> Near<'a> {
 }
 
 /// The name of a new point: its parents in order.
-fn key(parents: &[u32]) -> [u32; 8] {
-    let mut key = [NOBODY; 8];
+fn key(parents: &[u32]) -> Key {
+    let mut key = [NOBODY; MOST_PARENTS];
     key[..parents.len()].copy_from_slice(parents);
     key.sort_unstable();
     key

@@ -86,7 +86,7 @@ mod tests {
     #[test]
     fn copies_share_nothing_and_keep_their_sets() {
         let mut one = box_mesh(DVec3::ONE, (2, 1, 1), ElementKind::Hex8).expect("a box");
-        one.cells.push(CellKind::Tet4, &[0, 1, 2, 4]);
+        one.cells.push(CellKind::Tet4, [0, 1, 2, 4]).expect("a tetrahedron");
         one.element_sets.insert("right".into(), vec![0, 2]);
         one.element_vectors.insert("fibres".into(), vec![DVec3::X, DVec3::Y, DVec3::Z]);
         let mut all = one.clone();

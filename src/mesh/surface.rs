@@ -1,6 +1,7 @@
 //! The surface of a mesh: faces that belong to exactly one element.
 
 use super::Mesh;
+use super::topology::MOST_FACES;
 
 /// A face of the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -11,8 +12,8 @@ pub struct SurfaceFace {
     pub element: u32,
 }
 
-/// Faces of the kind that has most; a face is numbered `element * FACES + local face`.
-const FACES: u64 = 6;
+/// A face is numbered `element * FACES + local face`.
+const FACES: u64 = MOST_FACES as u64;
 
 impl Mesh {
     /// Faces that belong to exactly one element, sorted by element, then by local face.

@@ -69,7 +69,7 @@ fn worst_shape(mesh: &Mesh) -> f64 {
         let (solid, edge) = (kind.topology().solid.unwrap(), longest_edge(kind, &p));
         match kind {
             CellKind::Tet4 => (solid.smallest_altitude)(&p) / edge,
-            _ => solid.corner_determinants(&p).fold(solid.middle_determinant(&p), f64::min) / edge.powi(3),
+            _ => solid.corner_volumes(&p).fold(solid.middle_volume(&p), f64::min) / edge.powi(3),
         }
     };
     mesh.cells.iter().map(shape).fold(f64::MAX, f64::min)

@@ -1,6 +1,7 @@
 //! Meshes: generators, readers, soundness, placement and surface.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod cells;
 mod generators;
 mod hostile;
 mod placement;

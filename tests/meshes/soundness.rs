@@ -51,9 +51,9 @@ fn a_hexahedron_folded_at_one_corner_is_inverted() {
 #[test]
 fn flat_elements_are_refused() {
     let mut mesh = cube(ElementKind::Tet4);
-    let [a, b, c, _] = mesh.cells.of_kind(CellKind::Tet4)[0];
+    let [a, b, c, _] = mesh.cells.of_kind(CellKind::Tet4).unwrap()[0];
     mesh.points.push((mesh.points[a as usize] + mesh.points[b as usize]) / 2.0);
-    mesh.cells.push(CellKind::Tet4, &[a, b, c, mesh.points.len() as u32 - 1]);
+    mesh.cells.push(CellKind::Tet4, [a, b, c, mesh.points.len() as u32 - 1]).unwrap();
     says(&mesh, Defect::Flat, &[48], "1 element without volume: 48 (volume 0.00e0 m³, longest edge 7.07e-1 m)");
 }
 
@@ -83,8 +83,8 @@ fn wrong_rows_points_and_sets_are_each_named() {
     mesh.cells.nodes_mut(2)[5] = twice;
     says(&mesh, Defect::RepeatedNode, &[2], "1 element names a point twice: 2 (point 12)");
     let mut mesh = cube(ElementKind::Tet4);
-    let again = mesh.element(4).to_vec();
-    mesh.cells.push(CellKind::Tet4, &again);
+    let again = mesh.cells.of_kind::<4>(CellKind::Tet4).unwrap()[4];
+    mesh.cells.push(CellKind::Tet4, again).unwrap();
     says(&mesh, Defect::RepeatedElement, &[48], "1 pair of elements with the same points: 4 and 48; keep one of each");
     let mut mesh = cube(ElementKind::Tet4);
     mesh.points[13].y = f64::NAN;

@@ -85,8 +85,8 @@ impl<'a> Engine<'a> {
         let scene = &self.file.scene;
         let mut kinds: Vec<ElementKind> = Vec::new();
         for body in scene.bodies.values() {
-            let own = body.mesh.element_kinds();
-            kinds.extend(own.iter().find(|kind| elements.contains(kind)).or(own.last()));
+            let mut own = body.mesh.element_kinds();
+            kinds.extend(own.find(|kind| elements.contains(kind)).or(body.mesh.element_kinds().last()));
         }
         kinds.dedup();
         let element = if let [kind] = kinds[..] { Some(kind).filter(|kind| elements.contains(kind)) } else { None };
@@ -118,7 +118,7 @@ impl<'a> Engine<'a> {
                     }
                 }
                 mesh => {
-                    let cell = mesh.element_kinds().first().map(|kind| kind.cell());
+                    let cell = mesh.element_kinds().next().map(|kind| kind.cell());
                     cell.filter(|_| names_elements(scene))
                 }
             };

@@ -8,7 +8,8 @@ use glam::DVec3;
 /// The most cells a generator makes: points and elements are counted in 32 bits.
 const MOST_CELLS: u64 = 1_000_000_000;
 
-/// Corners are named by bits: 1: upper in x, 2: in y, 4: in z. Six tetrahedra along the diagonal from corner 0 to corner 7 (Kuhn): one a way along the edges.
+/// Corners are named by bits: 1: upper in x, 2: in y, 4: in z. Six tetrahedra along the diagonal from corner 0 to
+/// corner 7 (Kuhn): one a way along the edges.
 const KUHN: [[u8; 4]; 6] = [[0, 1, 3, 7], [0, 2, 6, 7], [0, 4, 5, 7], [0, 1, 7, 5], [0, 2, 7, 3], [0, 4, 7, 6]];
 
 /// A side of the grid.
@@ -31,7 +32,9 @@ pub(super) const SIDES: [Side; 6] = [
 /// A grid of cells, each one hexahedron or six tetrahedra.
 pub(super) struct Grid {
     cells: [u32; 3],
-    kind: ElementKind,
+    kind: CellKind,
+    /// How many elements a cell becomes.
+    parts: u32,
     /// Axes along which the diagonals of the lower half are mirrored, so that they run from the middle outwards.
     mirrored: [bool; 3],
     /// Whether the last row of points along y is the first.
@@ -39,13 +42,19 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// A grid of `cells`; refuses none and too many.
+    /// A grid of `cells`; refuses none and too many, and elements that it cannot make.
     pub fn new(
         name: &'static str,
         parameter: &'static str,
         cells: [u32; 3],
         kind: ElementKind,
     ) -> Result<Self, MeshError> {
+        let Some(parts) = kind.a_cell() else {
+            let able = ElementKind::ALL.iter().filter(|kind| kind.a_cell().is_some());
+            let allowed =
+                format!("generators make {}", able.map(|kind| format!("{kind:?}")).collect::<Vec<_>>().join(", "));
+            return Err(MeshError::Parameter { name, parameter: "elements", value: format!("{kind:?}"), allowed });
+        };
         let refuse = |allowed: String| {
             Err(MeshError::Parameter {
                 name,
@@ -57,7 +66,7 @@ impl Grid {
         if cells.contains(&0) {
             return refuse("there must be at least 1 cell in each direction".into());
         }
-        let most = MOST_CELLS.min(u64::from(u32::MAX) / kind.a_cell());
+        let most = MOST_CELLS.min(u64::from(u32::MAX / parts));
         let count = cells.iter().try_fold(1u64, |product, &n| product.checked_mul(u64::from(n)));
         let points = cells.iter().try_fold(1u64, |product, &n| product.checked_mul(u64::from(n) + 1));
         let fits = |value: Option<u64>, limit: u64| value.is_some_and(|value| value <= limit);
@@ -67,7 +76,7 @@ impl Grid {
                 u32::MAX
             ));
         }
-        Ok(Grid { cells, kind, mirrored: [false; 3], ring: false })
+        Ok(Grid { cells, kind: kind.cell(), parts, mirrored: [false; 3], ring: false })
     }
 
     /// Lets the diagonals of cells run outwards along these axes. On round shapes a cell in a corner of the grid has
@@ -95,7 +104,7 @@ impl Grid {
         let mut mesh = Mesh::default();
         let cells = nx as usize * ny as usize * nz as usize;
         let points = (nx as usize + 1) * self.points_along_y() as usize * (nz as usize + 1);
-        let (kind, elements) = (self.kind.cell(), self.kind.a_cell() as usize * cells);
+        let (kind, elements) = (self.kind, self.parts as usize * cells);
         let reserved = mesh.points.try_reserve_exact(points);
         let reserved = reserved.and_then(|()| mesh.cells.try_reserve_exact(kind, elements));
         if reserved.is_err() {
@@ -110,7 +119,7 @@ impl Grid {
         for k in 0..nz {
             for j in 0..ny {
                 for i in 0..nx {
-                    self.cut([i, j, k], |nodes| mesh.cells.push(kind, nodes));
+                    self.cut([i, j, k], |nodes| mesh.cells.push_nodes(kind, nodes));
                 }
             }
         }
@@ -131,7 +140,7 @@ impl Grid {
 
     /// The corners (by bits) of the elements of a cell.
     fn elements(&self, cell: [u32; 3], mut see: impl FnMut(&[u8])) {
-        match self.kind.cell() {
+        match self.kind {
             CellKind::Tet4 => {
                 let mirror = self.mirror(cell);
                 for tet in KUHN {
@@ -140,7 +149,9 @@ impl Grid {
                     see(&if mirror.count_ones().is_multiple_of(2) { [a, b, c, d] } else { [a, b, d, c] });
                 }
             }
-            _ => see(&hex8::ROW_BY_ROW.map(|corner| corner as u8)),
+            CellKind::Hex8 => see(&hex8::ROW_BY_ROW.map(|corner| corner as u8)),
+            // refused when the grid was made
+            CellKind::Point | CellKind::Line | CellKind::Triangle | CellKind::Quad => {}
         }
     }
 
@@ -148,8 +159,8 @@ impl Grid {
     fn cut(&self, cell: [u32; 3], mut see: impl FnMut(&[u32])) {
         self.elements(cell, |corners| {
             let mut rows = [0; MOST_NODES];
-            for (row, &corner) in rows.iter_mut().zip(corners) {
-                *row = self.row(cell, corner);
+            for (place, &corner) in corners.iter().enumerate() {
+                rows[place] = self.row(cell, corner);
             }
             see(&rows[..corners.len()]);
         });
@@ -180,7 +191,7 @@ impl Grid {
                 let mut cell = [first; 3];
                 (cell[u], cell[v]) = (i, j);
                 self.elements(cell, |corners| {
-                    let own = self.kind.cell().topology().faces.iter().map(|face| face.corners(corners));
+                    let own = self.kind.topology().faces.iter().map(|face| face.corners(corners));
                     let own = own.filter(|face| face.iter().all(|&corner| on_side(corner)));
                     faces.extend(own.map(|face| face.map(|corner| self.row(cell, corner))));
                 });

@@ -49,11 +49,12 @@ impl ElementKind {
         }
     }
 
-    /// How many of them generators make of a cell of their grid.
-    pub const fn a_cell(self) -> u64 {
+    /// How many of them generators make of a cell of their grid; none where they cannot.
+    pub const fn a_cell(self) -> Option<u32> {
         match self.cell() {
-            CellKind::Tet4 => 6,
-            _ => 1,
+            CellKind::Tet4 => Some(6),
+            CellKind::Hex8 => Some(1),
+            CellKind::Point | CellKind::Line | CellKind::Triangle | CellKind::Quad => None,
         }
     }
 }

@@ -7,11 +7,10 @@ impl Mesh {
     /// if `flip_inverted` is set. A folded hexahedron, positive at one corner and negative at another, cannot be
     /// turned.
     pub(in crate::mesh) fn orient(&mut self, flip_inverted: bool) {
-        let mut first = 0;
-        let kinds: Vec<(CellKind, usize)> = self.cells.kinds().collect();
-        for (kind, count) in kinds {
-            let rows = first..first + count;
-            first += count;
+        let kinds: Vec<(CellKind, std::ops::Range<usize>)> =
+            self.cells.blocks().map(|(kind, rows, _)| (kind, rows)).collect();
+        for (kind, rows) in kinds {
+            let count = rows.len();
             let Some(solid) = kind.topology().solid else { continue };
             let inside_out: Vec<usize> = rows.filter(|&row| solid.is_inside_out(&self.places(row))).collect();
             if self.notes_of_turning(flip_inverted, inside_out.len(), count, kind.topology().plural) {

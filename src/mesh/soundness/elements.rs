@@ -78,8 +78,8 @@ impl Mesh {
         let (edge, altitude) = (longest_edge(kind, corners), (solid.smallest_altitude)(corners));
         let (mut volume, mut folded) = ((solid.volume)(corners), false);
         if !solid.frames.is_empty() {
-            let middle = solid.middle_determinant(corners);
-            let least = solid.corner_determinants(corners).fold(middle, f64::min);
+            let middle = solid.middle_volume(corners);
+            let least = solid.corner_volumes(corners).fold(middle, f64::min);
             folded = least < -FLAT * edge.powi(3);
             // a one-point element lives by its centre alone: where that has no volume, the element has none
             volume = if middle.abs() < volume.abs() { middle } else { volume };
@@ -95,21 +95,35 @@ impl Mesh {
         }
     }
 
-    /// Two elements with the same points: found by sorting.
+    /// Two elements with the same points: found among those with the same lowest point, four bytes an element.
     fn check_repeated_elements(&self, found: &mut Soundness) {
         let mut pairs: Vec<(u32, u32)> = Vec::new();
-        let mut first = 0;
-        for (kind, count) in self.cells.kinds() {
+        for (kind, rows, _) in self.cells.blocks() {
             let sorted = |row: u32| {
                 let mut nodes = [0; MOST_NODES];
-                nodes[..kind.node_count()].copy_from_slice(self.element(row as usize));
+                let nodes_of = self.element(row as usize);
+                nodes[..nodes_of.len()].copy_from_slice(nodes_of);
                 nodes[..kind.node_count()].sort_unstable();
-                (nodes, row)
+                nodes
             };
-            let mut alike: Vec<([u32; MOST_NODES], u32)> = (first..first + count as u32).map(sorted).collect();
-            alike.sort_unstable();
-            pairs.extend(alike.windows(2).filter(|two| two[0].0 == two[1].0).map(|two| (two[0].1, two[1].1)));
-            first += count as u32;
+            let lowest = |row: usize| self.element(row).iter().min().map_or(0, |&node| node as usize);
+            // lowest points that are not there share a bucket
+            let bucket = |row: usize| lowest(row).min(self.points.len());
+            let mut starts = vec![0_u32; self.points.len() + 2];
+            rows.clone().for_each(|row| starts[bucket(row) + 1] += 1);
+            (1..starts.len()).for_each(|place| starts[place] += starts[place - 1]);
+            let (mut next, mut dealt) = (starts.clone(), vec![0_u32; rows.len()]);
+            for row in rows {
+                let next = &mut next[bucket(row)];
+                dealt[*next as usize] = row as u32;
+                *next += 1;
+            }
+            for bucket in starts.windows(2) {
+                let mut alike: Vec<([u32; MOST_NODES], u32)> =
+                    dealt[bucket[0] as usize..bucket[1] as usize].iter().map(|&row| (sorted(row), row)).collect();
+                alike.sort_unstable();
+                pairs.extend(alike.windows(2).filter(|two| two[0].0 == two[1].0).map(|two| (two[0].1, two[1].1)));
+            }
         }
         if pairs.is_empty() {
             return;

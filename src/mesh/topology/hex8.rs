@@ -90,6 +90,7 @@ pub static HEX8: Topology = Topology {
             [7, 6, 4, 3],
         ],
         axes: |p| axes(first(p)),
+        unit_volume: 1.0,
         volume: |p| volume(first(p)),
         smallest_altitude: |p| smallest_altitude(first(p)),
         quality: |p| scaled_jacobian(first(p)),

@@ -16,25 +16,74 @@ use glam::DVec3;
 
 /// Nodes of the kind that has most.
 pub const MOST_NODES: usize = 8;
+/// Faces of the kind that has most.
+pub const MOST_FACES: usize = 6;
 /// Points of the [`Split`] that has most.
 pub const MOST_SPLIT_POINTS: usize = 27;
+/// Corners between which a point of a [`Split`] lies that has most.
+pub const MOST_PARENTS: usize = 8;
 
-/// A kind of cell. Their order is that of the cells of a mesh: tetrahedra first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum CellKind {
+// exactly what the kinds need: a kind that has more does not compile
+const _: () = {
+    const fn larger(a: usize, b: usize) -> usize {
+        if a > b { a } else { b }
+    }
+    let (mut nodes, mut faces, mut points, mut parents) = (0, 0, 0, 0);
+    let mut kind = 0;
+    while kind < CellKind::ALL.len() {
+        let topology = CellKind::ALL[kind].topology();
+        nodes = larger(nodes, topology.nodes.len());
+        faces = larger(faces, topology.faces.len());
+        if let Some(split) = topology.split {
+            points = larger(points, split.points.len());
+            let mut point = 0;
+            while point < split.points.len() {
+                parents = larger(parents, split.points[point].len());
+                point += 1;
+            }
+        }
+        kind += 1;
+    }
+    assert!(nodes == MOST_NODES && faces == MOST_FACES && points == MOST_SPLIT_POINTS && parents == MOST_PARENTS);
+};
+
+/// Makes [`CellKind`] of its kinds and where they are described.
+macro_rules! cell_kinds {
+    ($($(#[$doc:meta])* $kind:ident => $topology:path,)*) => {
+        /// A kind of cell. Their order is that of the cells of a mesh: tetrahedra first.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum CellKind {
+            $($(#[$doc])* $kind,)*
+        }
+
+        impl CellKind {
+            /// All kinds, ascending.
+            pub const ALL: [CellKind; [$(CellKind::$kind),*].len()] = [$(CellKind::$kind),*];
+
+            /// What is known of it.
+            pub const fn topology(self) -> &'static Topology {
+                match self {
+                    $(Self::$kind => &$topology,)*
+                }
+            }
+        }
+    };
+}
+
+cell_kinds! {
     /// One point.
-    Point,
+    Point => flat::POINT,
     /// Two points.
-    Line,
+    Line => flat::LINE,
     /// Three points.
-    Triangle,
+    Triangle => flat::TRIANGLE,
     /// Four points, in order around it.
-    Quad,
+    Quad => flat::QUAD,
     /// Four-node tetrahedron: the fourth point lies on the side that the right-hand normal of the first three points
     /// to.
-    Tet4,
+    Tet4 => tet4::TET4,
     /// Eight-node hexahedron: bottom counter-clockwise seen from above, then the top.
-    Hex8,
+    Hex8 => hex8::HEX8,
 }
 
 /// What is known of a kind of cell.
@@ -74,6 +123,7 @@ pub struct Face {
 impl Face {
     /// The corners of the face of a cell; a triangle repeats its last.
     pub fn corners<T: Copy>(&self, nodes: &[T]) -> [T; 4] {
+        // three or four
         let last = self.kind.topology().corners - 1;
         [0, 1, 2, last].map(|place| nodes[self.nodes[place]])
     }
@@ -87,7 +137,7 @@ pub struct Listing {
     pub order: &'static [usize],
 }
 
-/// How a cell is cut into smaller ones of its kind: a hexahedron and a tetrahedron into eight, a face into four.
+/// How a cell is cut into smaller ones of its kind: a cell that fills space into eight, a face into four.
 pub struct Split {
     /// Points of the parts: each the middle of these corners. New ones are made in this order.
     pub points: &'static [&'static [usize]],
@@ -123,13 +173,19 @@ pub struct Solid {
     pub quadrature: &'static [([f64; 3], f64)],
     /// By what rule the mass goes to the nodes.
     pub mass: MassRule,
-    /// What the rule gives each node of the reference cell, 1 together; a distorted cell keeps these shares.
+    /// What the rule gives each node of the reference cell, 1 together. A distorted cell keeps these shares, as masses
+    /// are lumped everywhere: its mass is right, its centre of mass not quite where the rule would put it for its own
+    /// shape (for [`MassRule::Hrz`], ∫ N_a² with its own Jacobian).
     pub shares: &'static [f64],
     /// Three neighbours of each corner at which the Jacobian has to be looked at, so that corner and neighbours make a
-    /// right-handed frame; none where the determinant is the same everywhere.
+    /// right-handed frame; none where the determinant is the same everywhere. Edges are straight: a curved cell of
+    /// second order would need the Jacobian of its shape functions at sample points instead.
     pub frames: &'static [[usize; 4]],
-    /// Mean edges along the three directions (m); their triple product is the determinant in the middle.
+    /// Mean edges along the three directions (m); their triple product is proportional to the determinant in the
+    /// middle.
     pub axes: fn(&[DVec3]) -> [DVec3; 3],
+    /// Volume of the affine cell whose axes, and whose frames, have the triple product 1.
+    pub unit_volume: f64,
     /// Signed volume (m³).
     pub volume: fn(&[DVec3]) -> f64,
     /// Smallest altitude (m).
@@ -143,24 +199,29 @@ pub struct Solid {
 }
 
 impl CellKind {
-    /// All kinds.
-    pub const ALL: [CellKind; 6] = [Self::Point, Self::Line, Self::Triangle, Self::Quad, Self::Tet4, Self::Hex8];
-
-    /// What is known of it.
-    pub const fn topology(self) -> &'static Topology {
-        match self {
-            Self::Point => &flat::POINT,
-            Self::Line => &flat::LINE,
-            Self::Triangle => &flat::TRIANGLE,
-            Self::Quad => &flat::QUAD,
-            Self::Tet4 => &tet4::TET4,
-            Self::Hex8 => &hex8::HEX8,
-        }
-    }
-
     /// How many nodes it has.
     pub const fn node_count(self) -> usize {
         self.topology().nodes.len()
+    }
+
+    /// What share of a cell's mass each of its nodes has: [`Solid::shares`]; none of a kind that does not fill space.
+    pub const fn shares(self) -> &'static [f64] {
+        match self.topology().solid {
+            Some(solid) => solid.shares,
+            None => &[],
+        }
+    }
+
+    /// The least of the [shares](CellKind::shares).
+    pub const fn least_share(self) -> f64 {
+        let (shares, mut least, mut node) = (self.shares(), 1.0, 0);
+        while node < shares.len() {
+            if shares[node] < least {
+                least = shares[node];
+            }
+            node += 1;
+        }
+        least
     }
 
     /// Kinds that fill space, with what these have besides.
@@ -194,17 +255,30 @@ pub fn singular(plural: &str) -> String {
 
 impl Listing {
     /// The nodes of a cell from those that a file lists.
-    pub fn read<T: Copy>(&self, listed: &[T]) -> Vec<T> {
-        self.order.iter().map(|&place| listed[place]).collect()
+    pub fn read<'a, T: Copy>(&'a self, listed: &'a [T]) -> impl ExactSizeIterator<Item = T> + 'a {
+        self.order.iter().map(|&place| listed[place])
     }
 
     /// The nodes of a cell as a file lists them.
-    pub fn write<'a, T: Copy>(&'a self, nodes: &'a [T]) -> impl Iterator<Item = T> + 'a {
-        (0..nodes.len()).map(|place| nodes[self.order.iter().position(|&at| at == place).unwrap_or(place)])
+    pub fn write<T: Copy + Default>(&self, nodes: &[T]) -> impl ExactSizeIterator<Item = T> + use<T> {
+        debug_assert_eq!(nodes.len(), self.order.len());
+        let mut listed = [T::default(); MOST_NODES];
+        self.order.iter().zip(nodes).for_each(|(&place, &node)| listed[place] = node);
+        listed.into_iter().take(nodes.len())
+    }
+
+    /// Whether files list the nodes in the cell's own order.
+    pub fn keeps_order(&self) -> bool {
+        self.order.is_sorted()
     }
 }
 
 impl Split {
+    /// How many parts there are.
+    pub const fn count(&self) -> usize {
+        self.parts.len() + if self.inner.is_empty() { 0 } else { 4 }
+    }
+
     /// The parts of a cell, as places in [`Split::points`]; `at`: where the points of these places are (m).
     pub fn parts(&self, at: impl Fn(usize) -> DVec3, mut see: impl FnMut(&[usize])) {
         self.parts.iter().for_each(|part| see(part));
@@ -217,22 +291,23 @@ impl Split {
 }
 
 impl Solid {
-    /// The determinant of the Jacobian in the middle (m³).
-    pub fn middle_determinant(&self, p: &[DVec3]) -> f64 {
+    /// The volume (m³) of a cell that had everywhere the Jacobian of the middle of this one: an affine cell's own.
+    pub fn middle_volume(&self, p: &[DVec3]) -> f64 {
         let [a, b, c] = (self.axes)(p);
-        a.cross(b).dot(c)
+        a.cross(b).dot(c) * self.unit_volume
     }
 
-    /// Determinants of the Jacobian at the corners that have to be looked at (m³).
-    pub fn corner_determinants<'a>(&'a self, p: &'a [DVec3]) -> impl Iterator<Item = f64> + 'a {
-        self.frames.iter().map(|&[o, a, b, c]| (p[a] - p[o]).cross(p[b] - p[o]).dot(p[c] - p[o]))
+    /// The same of the corners that have to be looked at.
+    pub fn corner_volumes<'a>(&'a self, p: &'a [DVec3]) -> impl Iterator<Item = f64> + 'a {
+        let frame = |&[o, a, b, c]: &[usize; 4]| (p[a] - p[o]).cross(p[b] - p[o]).dot(p[c] - p[o]);
+        self.frames.iter().map(move |corners| frame(corners) * self.unit_volume)
     }
 
     /// Whether a cell lists its nodes in the other order: it is negative everywhere.
     pub fn is_inside_out(&self, p: &[DVec3]) -> bool {
         match self.frames.is_empty() {
             true => (self.volume)(p) < 0.0,
-            false => self.corner_determinants(p).chain([self.middle_determinant(p)]).all(|value| value < 0.0),
+            false => self.corner_volumes(p).chain([self.middle_volume(p)]).all(|value| value < 0.0),
         }
     }
 }

@@ -37,6 +37,7 @@ pub static TET4: Topology = Topology {
         shares: &[0.25; 4],
         frames: &[],
         axes: |p| [p[1] - p[0], p[2] - p[0], p[3] - p[0]],
+        unit_volume: 1.0 / 6.0,
         volume: |p| volume(first(p)),
         smallest_altitude: |p| smallest_altitude(first(p)),
         quality: |p| mean_ratio(first(p)),

@@ -186,21 +186,22 @@ pub enum MeshSource {
 
 impl MeshSource {
     /// What its cells are taken for: one kind of element a kind of cell.
-    pub fn element_kinds(&self) -> Vec<ElementKind> {
-        match self {
-            Self::File { tets, hexes, .. } => vec![*tets, *hexes],
+    pub fn element_kinds(&self) -> impl ExactSizeIterator<Item = ElementKind> + use<> {
+        let (kinds, count) = match self {
+            Self::File { tets, hexes, .. } => ([*tets, *hexes], 2),
             Self::Box { elements, .. }
             | Self::Cylinder { elements, .. }
             | Self::Ellipsoid { elements, .. }
             | Self::Hexahedron { elements, .. }
             | Self::Tube { elements, .. }
-            | Self::Lens { elements, .. } => vec![*elements],
-        }
+            | Self::Lens { elements, .. } => ([*elements; 2], 1),
+        };
+        kinds.into_iter().take(count)
     }
 
     /// What its cells of a kind are taken for; nothing where it has none.
     pub fn element_kind(&self, cell: CellKind) -> Option<ElementKind> {
-        self.element_kinds().into_iter().find(|kind| kind.cell() == cell)
+        self.element_kinds().find(|kind| kind.cell() == cell)
     }
 }
 

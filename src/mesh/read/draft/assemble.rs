@@ -104,9 +104,9 @@ impl Draft {
                 if own != kind || first_of.contains_key(&row) {
                     continue;
                 }
-                elements[row] = mesh.element_count() as u32;
+                elements[row] = numbers.len() as u32;
                 numbers.push(number);
-                mesh.cells.push(kind, &rows[start..start + kind.node_count()]);
+                mesh.cells.push_nodes(kind, &rows[start..start + kind.node_count()]);
             }
         }
         if !first_of.is_empty() {
