@@ -256,7 +256,8 @@ impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
         let slope = |mode: usize, a: usize| DVec3::from_slice(&shape[3 * mode..]) * mode_sign(mode, a);
         let b: [DVec3; 8] = std::array::from_fn(|a| (0..SLOPES).map(|mode| slope(mode, a)).sum());
         let (trace, largest) = gradient_measure(b.into_iter());
-        let material = 8.0 / stiffness.density * (stiffness.lambda * trace + stiffness.deviatoric * largest);
+        let nodes = Self::NODES_OF_LEAST_MASS;
+        let material = nodes / stiffness.density * (stiffness.lambda * trace + stiffness.deviatoric * largest);
 
         let gamma = |m: usize, a: usize| {
             let arm = Self::arm(&|row: usize| shape[row], m).map_or(DVec3::ZERO, DVec3::from);
@@ -272,8 +273,8 @@ impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
             largest_row = largest_row.max(row);
             overlap = overlap.max((0..8).map(|a| b[a] * gamma(m, a)).sum::<DVec3>().length());
         }
-        let hourglass =
-            shape[Self::STIFFNESS_ROW] * largest_row.min(square) / (stiffness.density * shape[Self::VOLUME_ROW] / 8.0);
+        let hourglass = shape[Self::STIFFNESS_ROW] * largest_row.min(square)
+            / (stiffness.density * shape[Self::VOLUME_ROW] / nodes);
         // modes of both kinds are orthogonal in a parallelepiped: then the larger counts, else their sum
         if overlap < 1e-9 * trace.sqrt() { material.max(hourglass) } else { material + hourglass }
     }
