@@ -24,12 +24,12 @@ impl Example {
         let corners =
             [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1), (2, 0, 0)];
         let points: Vec<_> = corners.map(|(x, y, z)| DVec3::new(x as f64 / 3.0, y.into(), z.into())).to_vec();
+        let mut cells = Cells::of(CellKind::Hex8, &[[0, 1, 2, 3, 4, 5, 6, 7]]).unwrap();
+        cells.push(CellKind::Tet4, [1, 8, 2, 5]).unwrap();
         Example {
             displacement: (0..points.len() * 3).map(|row| row as f32 * 0.1).collect(),
             points,
-            cells: [(CellKind::Hex8, &[0, 1, 2, 3, 4, 5, 6, 7][..]), (CellKind::Tet4, &[1, 8, 2, 5])]
-                .into_iter()
-                .collect(),
+            cells,
             alive: vec![0, 1],
             stress: (0..12).map(|row| f64::from(row) / 7.0).collect(),
         }

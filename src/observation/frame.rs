@@ -111,8 +111,12 @@ pub fn write_whole(world: &mut World, path: &Path) -> Result<(), Error> {
 impl Parts {
     /// Adds the cells of a body that are written; its points begin at `first`.
     fn add(&mut self, cells: &Cells, first: u32, found: &BodyElements<'_>) {
-        let put = |row: &usize| found.put(*row, self.rows.entry(cells.kind(*row)).or_default());
-        self.cells.extend_moved(&cells.select((0..cells.len()).filter(put), |node| node), first);
+        for (kind, rows, nodes) in cells.blocks() {
+            let own = self.rows.entry(kind).or_default();
+            self.cells.reserve(kind, rows.len());
+            let kept = rows.zip(nodes.chunks_exact(kind.node_count())).filter(|(row, _)| found.put(*row, own));
+            self.cells.extend_kind(kind, kept.flat_map(|(_, nodes)| nodes.iter().map(move |node| node + first)));
+        }
     }
 }
 

@@ -109,15 +109,27 @@ impl Writer<'_> {
         for bytes in arrays.chain([bytemuck::cast_slice(frame.points)]) {
             places.push(self.array(bytes)?);
         }
-        let long = needs_long(frame);
-        let nodes = frame.cells.iter().flat_map(|(kind, nodes)| listing(kind).write(nodes));
-        let ends = frame.cells.iter().scan(0, |end, (_, nodes)| {
-            *end += nodes.len() as i64;
-            Some(*end)
-        });
-        places.push(self.array(&integers(nodes.map(i64::from), long))?);
-        places.push(self.array(&integers(ends, long))?);
-        let types: Vec<u8> = frame.cells.iter().map(|(kind, _)| listing(kind).number).collect();
+        let (cells, long) = (frame.cells, needs_long(frame));
+        let mut nodes = Integers::with_capacity(node_count(cells), long);
+        for (kind, _, own) in cells.blocks() {
+            let listing = listing(kind);
+            match listing.keeps_order() {
+                true => own.iter().for_each(|&node| nodes.push(node.into())),
+                false => own
+                    .chunks_exact(kind.node_count())
+                    .for_each(|cell| listing.write(cell).for_each(|node| nodes.push(node.into()))),
+            }
+        }
+        places.push(self.array(&nodes.bytes)?);
+        drop(nodes);
+        let (mut ends, mut end) = (Integers::with_capacity(cells.len(), long), 0);
+        for (_, nodes) in cells {
+            end += nodes.len() as i64;
+            ends.push(end);
+        }
+        places.push(self.array(&ends.bytes)?);
+        drop(ends);
+        let types: Vec<u8> = cells.iter().map(|(kind, _)| listing(kind).number).collect();
         places.push(self.array(&types)?);
         self.file.write_all(b"\n  </AppendedData>\n</VTKFile>\n")?;
         for (at, place) in self.offsets.iter().zip(places) {
@@ -191,8 +203,12 @@ fn compress(block: &[u8]) -> std::io::Result<Vec<u8>> {
 
 /// Whether 32 bits are too few for a corner's number or the count of corners.
 fn needs_long(frame: &Frame<'_>) -> bool {
-    let numbers: usize = frame.cells.kinds().map(|(kind, count)| kind.node_count() * count).sum();
-    frame.points.len().max(numbers) > i32::MAX as usize
+    frame.points.len().max(node_count(frame.cells)) > i32::MAX as usize
+}
+
+/// Nodes of all cells.
+fn node_count(cells: &Cells) -> usize {
+    cells.kinds().map(|(kind, count)| kind.node_count() * count).sum()
 }
 
 /// How VTK lists cells of a kind.
@@ -200,10 +216,21 @@ fn listing(kind: CellKind) -> &'static Listing {
     &kind.topology().vtk[0]
 }
 
-fn integers(values: impl Iterator<Item = i64>, long: bool) -> Vec<u8> {
-    if long {
-        values.flat_map(i64::to_ne_bytes).collect()
-    } else {
-        values.flat_map(|v| (v as i32).to_ne_bytes()).collect()
+/// Whole numbers of 32 or 64 bits as they stand in a file.
+struct Integers {
+    bytes: Vec<u8>,
+    long: bool,
+}
+
+impl Integers {
+    fn with_capacity(count: usize, long: bool) -> Self {
+        Self { bytes: Vec::with_capacity(count * if long { 8 } else { 4 }), long }
+    }
+
+    fn push(&mut self, value: i64) {
+        match self.long {
+            true => self.bytes.extend_from_slice(&value.to_ne_bytes()),
+            false => self.bytes.extend_from_slice(&(value as i32).to_ne_bytes()),
+        }
     }
 }

@@ -132,14 +132,18 @@ impl FrameFile {
             self.entry(Place::Mesh, name).ok_or_else(missing)
         };
         let kinds: Vec<[u8; 1]> = self.unpack(mesh("types")?, self.cells)?;
-        let kind = |[number]: &[u8; 1]| CellKind::of_vtk(*number).ok().filter(|of| of.0.topology().solid.is_some());
-        let kinds = kinds.iter().map(kind).collect::<Option<Vec<(CellKind, &Listing)>>>();
-        let Some(kinds) = kinds.filter(|kinds| kinds.is_sorted_by_key(|of| of.0)) else {
+        let run = |run: &[[u8; 1]]| {
+            let (kind, listing) = CellKind::of_vtk(run[0][0]).ok().filter(|of| of.0.topology().solid.is_some())?;
+            Some((kind, listing, run.len()))
+        };
+        let runs = kinds.chunk_by(|a, b| a == b).map(run).collect::<Option<Vec<(CellKind, &Listing, usize)>>>();
+        let Some(runs) = runs.filter(|runs| runs.is_sorted_by_key(|of| of.0)) else {
             let solids: Vec<&str> = CellKind::solids().map(|(kind, _)| kind.topology().plural).collect();
             let what = format!("names cells other than {}", solids.join(" and, after them, "));
             return Err(self.damaged(mesh("types")?, &what));
         };
-        let (entry, count) = (mesh("connectivity")?, kinds.iter().map(|of| of.0.node_count()).sum());
+        let (entry, count) =
+            (mesh("connectivity")?, runs.iter().map(|(kind, _, cells)| kind.node_count() * cells).sum());
         let corners: Vec<u32> = match entry.kind.as_str() {
             "Int32" => self.unpack(entry, count)?.into_iter().map(|bytes| i32::from_ne_bytes(bytes) as u32).collect(),
             _ => self.unpack(entry, count)?.into_iter().map(|bytes| i64::from_ne_bytes(bytes) as u32).collect(),
@@ -148,9 +152,14 @@ impl FrameFile {
             return Err(self.damaged(entry, "names points that do not exist"));
         }
         let (mut cells, mut rest) = (Cells::default(), &corners[..]);
-        for (kind, listing) in kinds {
-            let (listed, behind) = rest.split_at(kind.node_count());
-            cells.push(kind, &listing.read(listed));
+        for (kind, listing, count) in runs {
+            let (listed, behind) = rest.split_at(count * kind.node_count());
+            match listing.keeps_order() {
+                true => cells.extend_kind(kind, listed.iter().copied()),
+                false => {
+                    cells.extend_kind(kind, listed.chunks_exact(kind.node_count()).flat_map(|cell| listing.read(cell)));
+                }
+            }
             rest = behind;
         }
         Ok(cells)

@@ -25,7 +25,7 @@ impl Faces {
         let mut faces = Vec::with_capacity(cells.kinds().map(|(kind, n)| kind.topology().faces.len() * n).sum());
         for (cell, (kind, nodes)) in (0..).zip(cells.iter()) {
             let own = kind.topology().faces.iter();
-            faces.extend(own.map(|face| Face { points: face.corners(nodes), cell, beyond: NONE }));
+            faces.extend(own.map(|face| Face { points: drawn(face.corners(nodes), nodes), cell, beyond: NONE }));
         }
         faces.par_sort_unstable_by_key(|face| (key(face.points), face.cell));
         faces.dedup_by(|later, first| {
@@ -95,6 +95,16 @@ impl Skin {
     }
 }
 
+/// The points of a face in the order in which they are drawn: a triangle at a cell's last node ends in it, as VTK has
+/// them.
+fn drawn([a, b, c, d]: [u32; 4], nodes: &[u32]) -> [u32; 4] {
+    match nodes.last() {
+        Some(&last) if c == d && a == last => [b, c, a, a],
+        Some(&last) if c == d && b == last => [c, a, b, b],
+        _ => [a, b, c, d],
+    }
+}
+
 /// The same for all faces with the same points.
 fn key(points: [u32; 4]) -> [u32; 4] {
     let mut key = points;
@@ -122,9 +132,8 @@ mod tests {
             (0..12).map(|row| Vec3::new((row / 4) as f32, (row / 2 % 2) as f32, (row % 2) as f32)).collect();
         let cube = |x: u32| [0, 4, 6, 2, 1, 5, 7, 3].map(|corner| 4 * x + corner);
         let cells = |cubes: &[u32]| {
-            let mut cells = Cells::default();
-            cubes.iter().for_each(|&x| cells.push(CellKind::Hex8, &cube(x)));
-            cells
+            let cubes: Vec<[u32; 8]> = cubes.iter().map(|&x| cube(x)).collect();
+            Cells::of(CellKind::Hex8, &cubes).unwrap()
         };
         let faces = Faces::new(&cells(&[0, 1]));
         let surface = |alive: [f32; 2]| faces.surface(|cell| (alive[cell as usize] != 0.0).then_some(0), None);
@@ -147,7 +156,14 @@ mod tests {
     }
 
     fn two_tetrahedra() -> Cells {
-        [(CellKind::Tet4, &[0, 1, 2, 3][..]), (CellKind::Tet4, &[1, 4, 2, 3])].into_iter().collect()
+        Cells::of(CellKind::Tet4, &[[0, 1, 2, 3], [1, 4, 2, 3]]).unwrap()
+    }
+
+    #[test]
+    fn faces_of_a_tetrahedron_are_drawn_as_vtk_lists_them() {
+        let one = Cells::of(CellKind::Tet4, &[[0, 1, 2, 3]]).unwrap();
+        let faces: Vec<[u32; 4]> = Faces::new(&one).surface(|_| Some(0), None).iter().map(|face| face.points).collect();
+        assert_eq!(faces, [[0, 2, 1, 1], [0, 1, 3, 3], [2, 0, 3, 3], [1, 2, 3, 3]]);
     }
 
     #[test]

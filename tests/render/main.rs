@@ -34,10 +34,10 @@ impl Bar {
             let corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)];
             let c = corners.map(|(dx, dy, dz)| row(x + dx, y + dy, z + dz));
             if x < nx / 2 {
-                bar.cells.push(CellKind::Hex8, &c);
+                bar.cells.push(CellKind::Hex8, c).unwrap();
             } else {
                 let six = [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]];
-                six.iter().for_each(|tet| bar.cells.push(CellKind::Tet4, &tet.map(|corner: usize| c[corner])));
+                six.iter().for_each(|tet| bar.cells.push(CellKind::Tet4, tet.map(|corner: usize| c[corner])).unwrap());
             }
         }
         bar

@@ -54,8 +54,8 @@ impl Run {
             for &&(x, y, z) in &there {
                 let c = corner(x, y, z);
                 match self.tets {
-                    true => six.iter().for_each(|tet| cells.push(CellKind::Tet4, &tet.map(|n: usize| c[n]))),
-                    false => cells.push(CellKind::Hex8, &c),
+                    true => six.iter().for_each(|tet| cells.push(CellKind::Tet4, tet.map(|n: usize| c[n])).unwrap()),
+                    false => cells.push(CellKind::Hex8, c).unwrap(),
                 }
             }
             let each = |of: &dyn Fn(&(u32, u32, u32)) -> f32| -> Vec<f32> {
