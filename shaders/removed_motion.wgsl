@@ -1,7 +1,8 @@
 // Books the kinetic energy of elements that are about to be taken away, and the part of it that constraints gave them: in a
-// kernel of its own, so that neither this one nor element_removal has more than eight buffers.
+// kernel of its own, so that neither this one nor element_removal has more than eight buffers. MASS_SHARES are generated from
+// the block's element type.
 struct Removal {
-    share: f32, // density over nodes of an element (kg/m³)
+    density: f32, // kg/m³
 }
 @group(0) @binding(0) var<uniform> removal: Removal;
 @group(0) @binding(1) var<storage, read> rest_shape: array<f32>;
@@ -19,18 +20,19 @@ fn removed_motion(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wor
     if element >= block.count || !is_due(element) {
         return;
     }
+    var shares = MASS_SHARES;
     var squares = 0.0;
     var constrained = 0.0;
     for (var corner = 0u; corner < NODES; corner++) {
         let node = connectivity[place(element, NODES, corner)];
         let at = 3u * node;
         let v = step.rate * vec3<f32>(displacement_step[at], displacement_step[at + 1u], displacement_step[at + 2u]);
-        squares += dot(v, v);
+        squares += shares[corner] * dot(v, v);
         let along = (vec3<u32>(constrained_axes[node]) & vec3<u32>(1u, 2u, 4u)) != vec3<u32>(0u);
         let held = select(vec3<f32>(0.0), v, along);
-        constrained += dot(held, held);
+        constrained += shares[corner] * dot(held, held);
     }
-    let half = 0.5 * removal.share * rest_shape[place(element, ROWS, VOLUME_ROW)];
+    let half = 0.5 * removal.density * rest_shape[place(element, ROWS, VOLUME_ROW)];
     removed_energy[element] = half * squares;
     removed_work[element] = half * constrained;
 }

@@ -10,7 +10,7 @@ use crate::components::*;
 use crate::elements::Element;
 use crate::error::missing;
 use crate::evaluation::{
-    BlockView, ElementState, add_nodal_masses, extinguish, lane_place, node_count, with_element_of,
+    BlockView, ElementState, add_nodal_masses, extinguish, lane_place, mass_shares, with_element_of,
 };
 use crate::shader;
 use bevy_ecs::prelude::*;
@@ -175,15 +175,15 @@ fn measure(measure: Measure, row: usize, view: &BlockView<'_>) -> f64 {
 /// ½ m v² of the element's share of its nodes (J), v in the middle of the last step; and the part of it along
 /// constrained axes.
 fn kinetic_energy(state: &ElementState, density: f64, (step, axes): (&Reals, &[u32]), time_step: f64) -> [f64; 2] {
-    let nodes = node_count(state.kind);
-    let share = density * state.volume / nodes as f64;
+    let mass = density * state.volume;
     let (mut all, mut constrained) = (0.0, 0.0);
-    for &node in &state.nodes[..nodes] {
+    for (&node, share) in state.nodes.iter().zip(mass_shares(state.kind)) {
         let v = step.vector(node as usize);
-        all += v.length_squared();
-        constrained += (0..3).filter(|&i| axes[node as usize] >> i & 1 == 1).map(|i| v[i] * v[i]).sum::<f64>();
+        all += share * v.length_squared();
+        let held = (0..3).filter(|&i| axes[node as usize] >> i & 1 == 1).map(|i| v[i] * v[i]);
+        constrained += share * held.sum::<f64>();
     }
-    [all, constrained].map(|squares| 0.5 * share * squares / (time_step * time_step))
+    [all, constrained].map(|squares| 0.5 * mass * squares / (time_step * time_step))
 }
 
 /// Sums the mass and damping of a body's nodes from the elements that are left.
@@ -224,19 +224,19 @@ fn update_faces(faces: &mut FaceCorners, alive: impl Fn((u32, u32)) -> u32) {
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 struct Removal {
-    share: f32,
+    density: f32,
 }
-uniform!(Removal { share });
+uniform!(Removal { density });
 
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 struct NodeMass {
     count: u32,
     first: u32,
-    share: f32,
+    density: f32,
     rate: f32,
 }
-uniform!(NodeMass { count, first, share, rate });
+uniform!(NodeMass { count, first, density, rate });
 
 /// For each block that may lose elements: what finds those that pass a limit, and what takes away those that are due.
 /// Then for each of the body's blocks what its nodes weigh.
@@ -306,11 +306,15 @@ const REMOVED: [&str; 4] = [RestShape::NAME, Alive::NAME, RemovalStep::NAME, Rem
 
 fn motion_kernel(block: &BlockKernels, world: &World, buffers: &mut dyn Buffers) -> Kernel {
     let density = world.get::<Density>(block.block.material).map_or(0.0, |density| density.0);
-    let removal = Removal { share: (density / node_count(block.block.kind) as f64) as f32 };
+    let removal = Removal { density: density as f32 };
+    let shares: Vec<String> =
+        mass_shares(block.block.kind).iter().map(|share| format!("{:?}", *share as f32)).collect();
+    let shares = format!("const MASS_SHARES = array<f32, NODES>({});\n", shares.join(", "));
     let kernel = block
         .of_columns("removed_motion")
         .fragment(shader!("removed_motion"))
         .fragment(shader!("due"))
+        .fragment(block.generated("mass shares", shares))
         .bind_uniform::<Removal>("removal", buffers.uniform("element_removal".into(), &removal.bytes()))
         .bind(DisplacementStep::NAME, buffers.column(block.block.body, DisplacementStep::NAME))
         .bind(ConstrainedAxes::NAME, buffers.column(block.block.body, ConstrainedAxes::NAME))
@@ -334,20 +338,20 @@ fn removal_kernel(block: &BlockKernels, buffers: &mut dyn Buffers) -> Kernel {
 }
 
 fn mass_kernel(block: &BlockKernels, first: bool, world: &World, buffers: &mut dyn Buffers) -> Option<Kernel> {
-    let (body, kind) = (block.block.body, block.block.kind);
+    let body = block.block.body;
     let count = world.get::<Mass>(body)?.len();
-    let (starts, volumes) = volumes_at_nodes(&block.block, world.get::<Connectivity>(block.entity)?, count);
+    let (starts, volumes, shares) = volumes_at_nodes(&block.block, world.get::<Connectivity>(block.entity)?, count);
     let number = |value: Option<f64>| value.unwrap_or(0.0);
     let density = number(world.get::<Density>(block.block.material).map(|density| density.0));
     let rate = number(world.get::<Damping>(block.block.material).map(|damping| damping.0));
-    let share = (density / node_count(kind) as f64) as f32;
-    let part = NodeMass { count: count as u32, first: u32::from(first), share, rate: rate as f32 };
+    let part = NodeMass { count: count as u32, first: u32::from(first), density: density as f32, rate: rate as f32 };
     let kernel = Kernel::new("node_mass", "node_mass")
         .fragment(shader!("node_mass"))
         .fragment(shader!("row"))
         .bind_uniform::<NodeMass>("part", buffers.uniform("node_mass".into(), &part.bytes()))
         .bind("starts", buffers.constants("starts of node_mass".into(), bytemuck::cast_slice(&starts)))
         .bind("volumes", buffers.constants("volumes of node_mass".into(), bytemuck::cast_slice(&volumes)))
+        .bind("shares", buffers.constants("shares of node_mass".into(), bytemuck::cast_slice(&shares)))
         .bind(RestShape::NAME, buffers.column(block.entity, RestShape::NAME))
         .bind(Mass::NAME, buffers.column(body, Mass::NAME))
         .threads(count as u32);
@@ -360,15 +364,18 @@ fn mass_kernel(block: &BlockKernels, first: bool, world: &World, buffers: &mut d
 }
 
 /// For each of a body's nodes the places, in the rest shapes of a block, of the volumes of the elements that meet
-/// there.
-fn volumes_at_nodes(block: &Block, connectivity: &[u32], count: usize) -> (Vec<u32>, Vec<u32>) {
-    let nodes = node_count(block.kind);
-    let mut pairs: Vec<(u32, u32)> = Vec::with_capacity(block.count * nodes);
+/// there, and what share of their masses the node has.
+fn volumes_at_nodes(block: &Block, connectivity: &[u32], count: usize) -> (Vec<u32>, Vec<u32>, Vec<f32>) {
+    let shares = mass_shares(block.kind);
+    let mut pairs: Vec<(u32, u32, u8)> = Vec::with_capacity(block.count * shares.len());
     for row in 0..block.count {
         let place = with_element_of!(block, E => lane_place(row, E::ROWS, E::VOLUME_ROW)) as u32;
-        pairs.extend((0..nodes).map(|corner| (connectivity[lane_place(row, nodes, corner)], place)));
+        let node = |corner: usize| connectivity[lane_place(row, shares.len(), corner)];
+        pairs.extend((0..shares.len()).map(|corner| (node(corner), place, corner as u8)));
     }
     pairs.sort_unstable();
-    let start = |node: usize| pairs.partition_point(|&(of, _)| (of as usize) < node) as u32;
-    ((0..=count).map(start).collect(), pairs.iter().map(|&(_, place)| place).collect())
+    let start = |node: usize| pairs.partition_point(|&(of, ..)| (of as usize) < node) as u32;
+    let starts = (0..=count).map(start).collect();
+    let share = |&(.., corner): &(u32, u32, u8)| shares[usize::from(corner)] as f32;
+    (starts, pairs.iter().map(|&(_, place, _)| place).collect(), pairs.iter().map(share).collect())
 }

@@ -71,7 +71,7 @@ fn imports_run_one_way() {
         ("src/mesh", vec![]),
         ("src/scene", vec!["mesh", "materials"]),
         ("src/materials", vec!["math"]),
-        ("src/elements", vec!["math"]),
+        ("src/elements", vec!["math", "mesh"]),
         ("src/components", [&inputs[..], &["math", "elements", "materials"]].concat()),
         ("src/output", vec!["mesh"]),
         ("src/render", vec!["mesh", "output", "plot", "scene"]),

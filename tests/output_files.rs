@@ -4,6 +4,7 @@
 use flate2::read::ZlibDecoder;
 use glam::DVec3;
 use serde_json::{Value, json};
+use sinew::mesh::{CellKind, Cells};
 use sinew::output::{Array, Folder, Frame, Lock, Node, Series, Table, Values, nodes, summary, write_vtu};
 use std::fs;
 use std::io::Read;
@@ -12,8 +13,7 @@ use std::path::Path;
 /// A hexahedron with a tetrahedron beside it.
 struct Example {
     points: Vec<DVec3>,
-    tets: Vec<[u32; 4]>,
-    hexes: Vec<[u32; 8]>,
+    cells: Cells,
     displacement: Vec<f32>,
     alive: Vec<u8>,
     stress: Vec<f64>,
@@ -24,11 +24,12 @@ impl Example {
         let corners =
             [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1), (2, 0, 0)];
         let points: Vec<_> = corners.map(|(x, y, z)| DVec3::new(x as f64 / 3.0, y.into(), z.into())).to_vec();
+        let mut cells = Cells::of(CellKind::Hex8, &[[0, 1, 2, 3, 4, 5, 6, 7]]).unwrap();
+        cells.push(CellKind::Tet4, [1, 8, 2, 5]).unwrap();
         Example {
             displacement: (0..points.len() * 3).map(|row| row as f32 * 0.1).collect(),
             points,
-            tets: vec![[1, 8, 2, 5]],
-            hexes: vec![[0, 1, 2, 3, 4, 5, 6, 7]],
+            cells,
             alive: vec![0, 1],
             stress: (0..12).map(|row| f64::from(row) / 7.0).collect(),
         }
@@ -38,8 +39,7 @@ impl Example {
         Frame {
             time,
             points: &self.points,
-            tets: &self.tets,
-            hexes: &self.hexes,
+            cells: &self.cells,
             point_arrays: vec![Array { name: "displacement", components: 3, values: Values::F32(&self.displacement) }],
             cell_arrays: vec![
                 Array { name: "alive", components: 1, values: Values::U8(&self.alive) },
@@ -102,7 +102,8 @@ fn an_array_of_many_blocks_reads_back() {
         let points: Vec<_> = (0..rows).map(|row| DVec3::splat(f64::from(row).sin())).collect();
         let ids: Vec<i64> = (0..i64::from(rows)).collect();
         let point_arrays = vec![Array { name: "id", components: 1, values: Values::I64(&ids) }];
-        let frame = Frame { time: 0.0, points: &points, tets: &[], hexes: &[], point_arrays, cell_arrays: vec![] };
+        let cells = Cells::default();
+        let frame = Frame { time: 0.0, points: &points, cells: &cells, point_arrays, cell_arrays: vec![] };
         write_vtu(&path, &frame).unwrap();
         let file = fs::read(&path).unwrap();
         assert_eq!(array(&file, "id"), bytemuck::cast_slice::<i64, u8>(&ids));
@@ -114,10 +115,10 @@ fn an_array_of_many_blocks_reads_back() {
 fn a_frame_that_paraview_could_not_read_is_refused() {
     let (folder, mut example) = (tempfile::tempdir().unwrap(), Example::new());
     let path = folder.path().join("frame.vtu");
-    example.tets[0][2] = 9;
+    example.cells.nodes_mut(0)[2] = 9;
     let text = write_vtu(&path, &example.frame(0.0)).unwrap_err().to_string();
     assert!(text.ends_with("an element names point 9, but there are 9 points, counted from 0"), "{text}");
-    example.tets[0][2] = 2;
+    example.cells.nodes_mut(0)[2] = 2;
     example.alive.pop();
     let text = write_vtu(&path, &example.frame(0.0)).unwrap_err().to_string();
     assert!(text.ends_with("array \"alive\" has 1 values; 2 rows of 1 components need 2"), "{text}");

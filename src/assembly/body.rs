@@ -68,11 +68,20 @@ pub(super) fn spawn(
     let materials = element_materials(assembly, name, &placed, diagnostics)?;
     let mesh = &placed.mesh;
     // one block for each element type and material that occur together
-    let (tets, hexes) = assembly.scene.scene.bodies[name].mesh.element_kinds();
+    let source = &assembly.scene.scene.bodies[name].mesh;
     let mut members: BTreeMap<(ElementKind, &str), Vec<u32>> = BTreeMap::new();
-    for (element, material) in materials.iter().enumerate() {
-        let kind = if element < mesh.tets.len() { tets } else { hexes };
-        members.entry((kind, material)).or_default().push(element as u32);
+    for (cell, rows, _) in mesh.cells.blocks() {
+        let Some(kind) = source.element_kind(cell) else {
+            let message = format!("sinew has no element for {}", cell.topology().plural);
+            diagnostics.error_at(format!("bodies.\"{name}\".mesh").as_str(), message);
+            return None;
+        };
+        let mut first = rows.start as u32;
+        for alike in materials[rows].chunk_by(|a, b| a == b) {
+            let end = first + alike.len() as u32;
+            members.entry((kind, alike[0])).or_default().extend(first..end);
+            first = end;
+        }
     }
     let copies = assembly.scene.scene.bodies[name].copies as usize;
     let order =
@@ -99,8 +108,7 @@ pub(super) fn spawn(
         node_ids: mesh.point_ids.clone(),
         element_rows: element_rows.clone(),
         element_ids: mesh.element_ids.clone(),
-        tets: mesh.tets.clone(),
-        hexes: mesh.hexes.clone(),
+        cells: mesh.cells.clone(),
         blocks: blocks.clone(),
     };
     super::columns::insert_node_columns(assembly, name, mesh, &node_rows, &authoring, world, body);
@@ -208,8 +216,8 @@ impl BlockBuilder<'_> {
     /// Rest positions of an element's nodes (m).
     fn points(&self, element: u32) -> [DVec3; MOST_NODES] {
         let mut points = [DVec3::ZERO; MOST_NODES];
-        for (point, &node) in points.iter_mut().zip(self.mesh.element(element as usize)) {
-            *point = self.mesh.points[node as usize];
+        for (place, &node) in self.mesh.element(element as usize).iter().enumerate() {
+            points[place] = self.mesh.points[node as usize];
         }
         points
     }

@@ -106,7 +106,7 @@ fn rest_points(name: &str, body: &Body, scene: &SceneFile, mesh: &Mesh) -> Resul
         (None, None) => return Ok(None),
         (None, Some(file)) => {
             let rest = mesh_file(scene, file, false).map_err(|error| error.to_string())?;
-            if (&rest.tets, &rest.hexes) != (&mesh.tets, &mesh.hexes) {
+            if rest.cells != mesh.cells {
                 return Err(format!(
                     "the elements of {file} are not those of the mesh: a rest shape has the same points and elements in the \
                      same order, after `refine` and `copies`"

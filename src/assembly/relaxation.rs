@@ -4,7 +4,7 @@ use super::Assembly;
 use super::columns::stiffness;
 use super::time_step::square_frequency;
 use crate::components::*;
-use crate::evaluation::{lane_place, node_count, rest_volume};
+use crate::evaluation::{lane_place, mass_shares, node_count, rest_volume};
 use bevy_ecs::prelude::*;
 
 /// Loads grow over at least so many pseudo-steps.
@@ -30,12 +30,11 @@ pub(super) fn insert_fictitious_masses(assembly: &Assembly<'_>, world: &mut Worl
             };
             let Some(frequency) = square_frequency(world, entity, block) else { continue };
             let density = world.get::<Density>(block.material).map_or(0.0, |density| density.0);
-            let nodes = node_count(block.kind);
+            let shares = mass_shares(block.kind);
             for row in 0..block.count {
-                let real = density * rest_volume(block, row, shape) / nodes as f64;
-                let share = real * 0.25 * frequency(row) * time_step * time_step;
-                for corner in 0..nodes {
-                    mass[connectivity[lane_place(row, nodes, corner)] as usize] += share;
+                let whole = density * rest_volume(block, row, shape) * 0.25 * frequency(row) * time_step * time_step;
+                for (corner, share) in shares.iter().enumerate() {
+                    mass[connectivity[lane_place(row, shares.len(), corner)] as usize] += whole * share;
                 }
             }
         }

@@ -10,10 +10,12 @@ use sinew::SceneFile;
 use sinew::assembly::mesh_of;
 use sinew::glam::DVec3;
 use sinew::mesh::quality::BINS;
-use sinew::mesh::{Mesh, MeshReport};
+use sinew::mesh::topology::singular;
+use sinew::mesh::{Cells, Mesh, MeshReport};
 use sinew::output::{Array, Folder, Frame, Series, Values};
 use sinew::render::{Options, draw};
 use sinew::scene::schema::{Colours, Picture};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The longest bar of a histogram.
@@ -27,7 +29,7 @@ pub fn command(arguments: &MeshArguments) -> Outcome {
         reports.push((name, mesh.summary()));
     }
     if arguments.json {
-        let all: std::collections::BTreeMap<_, _> = reports.iter().map(|(name, report)| (name, report)).collect();
+        let all: BTreeMap<_, _> = reports.iter().map(|(name, report)| (name, report)).collect();
         let text = serde_json::to_string_pretty(&all).map_err(|error| Failure::Silent(error.into()))?;
         return terminal::say(&format!("{text}\n"));
     }
@@ -64,13 +66,13 @@ fn meshes(arguments: &MeshArguments) -> Result<Vec<(String, Mesh)>, Failure> {
 fn page(name: &str, report: &MeshReport, mesh: &Mesh) -> String {
     let mut text = format!("{name}\n");
     let mut line = |word: &str, rest: String| text += &format!("  {word:<10}{rest}\n");
-    let kinds = [(report.tetrahedra, "tetrahedron"), (report.hexahedra, "hexahedron")];
-    let kinds: Vec<String> = kinds
+    let kinds: Vec<String> = report
+        .elements
         .iter()
-        .filter(|(number, _)| *number > 0)
-        .map(|(number, word)| match number {
-            1 => format!("1 {word}"),
-            n => format!("{} {}a", count(*n as u64), word.trim_end_matches("on")),
+        .filter(|(_, number)| *number > 0)
+        .map(|(plural, number)| match number {
+            1 => format!("1 {}", singular(plural)),
+            n => format!("{} {plural}", count(*n as u64)),
         })
         .collect();
     line("consists", format!("{}, {}", counted(report.nodes as u64, "node"), kinds.join(", ")));
@@ -153,24 +155,22 @@ fn units(report: &MeshReport) -> String {
 fn picture(meshes: &[(String, Mesh)], path: &Path) -> Result<std::path::PathBuf, Failure> {
     let mut folder = Folder::create(path)?;
     let out = folder.claim(PICTURES[0])?;
-    let (mut points, mut tets, mut hexes) = (Vec::new(), Vec::new(), Vec::new());
-    let (mut of_tets, mut of_hexes) = (Vec::new(), Vec::new());
+    let (mut points, mut cells) = (Vec::new(), Cells::default());
+    let mut of_kinds: BTreeMap<_, Vec<f32>> = BTreeMap::new();
     for (_, mesh) in meshes {
         let first = points.len() as u32;
         points.extend_from_slice(&mesh.points);
-        tets.extend(mesh.tets.iter().map(|tet| tet.map(|node| node + first)));
-        hexes.extend(mesh.hexes.iter().map(|hex| hex.map(|node| node + first)));
-        let quality = |row: usize| mesh.element_quality(row) as f32;
-        of_tets.extend((0..mesh.tets.len()).map(quality));
-        of_hexes.extend((mesh.tets.len()..mesh.element_count()).map(quality));
+        cells.extend_moved(&mesh.cells, first);
+        for row in 0..mesh.element_count() {
+            of_kinds.entry(mesh.cells.kind(row)).or_default().push(mesh.element_quality(row) as f32);
+        }
     }
-    let quality = [of_tets, of_hexes].concat();
+    let quality: Vec<f32> = of_kinds.into_values().flatten().collect();
     let (displacement, alive) = (vec![0.0_f32; 3 * points.len()], vec![1_u8; quality.len()]);
     let frame = Frame {
         time: 0.0,
         points: &points,
-        tets: &tets,
-        hexes: &hexes,
+        cells: &cells,
         point_arrays: vec![Array { name: "displacement", components: 3, values: Values::F32(&displacement) }],
         cell_arrays: vec![
             Array { name: "quality", components: 1, values: Values::F32(&quality) },

@@ -8,6 +8,7 @@ use super::wording::{digits, quantity};
 use super::{Outcome, progress, terminal};
 use sinew::components::Authoring;
 use sinew::glam::DVec3;
+use sinew::mesh::Cells;
 use sinew::output::{Array, Folder, Frame, Series, Values, summary};
 use sinew::render::{Options as Drawing, draw};
 use sinew::scene::schema::Picture;
@@ -110,14 +111,13 @@ fn draw_modes(simulation: &mut Simulation, modes: &[Mode], path: &Path) -> Resul
     folder.claim(PICTURES[0])?;
     summary::write(&folder.claim(MODES)?, &modes)?;
     let bodies: Vec<String> = simulation.scene().bodies.keys().cloned().collect();
-    let (mut points, mut tets, mut hexes) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut points, mut cells) = (Vec::new(), Cells::default());
     for body in &bodies {
         let first = points.len() as u32;
         let entity = simulation.body(body)?;
         points.extend(simulation.rest_positions(body)?);
         let Some(authoring) = simulation.world().get::<Authoring>(entity) else { continue };
-        tets.extend(authoring.tets.iter().map(|tet| tet.map(|node| node + first)));
-        hexes.extend(authoring.hexes.iter().map(|hex| hex.map(|node| node + first)));
+        cells.extend_moved(&authoring.cells, first);
     }
     let (low, high) = sinew::mesh::extent(points.iter().copied());
     let size = DRAWN * (high - low).length();
@@ -132,8 +132,7 @@ fn draw_modes(simulation: &mut Simulation, modes: &[Mode], path: &Path) -> Resul
         series.write(&Frame {
             time: (number + 1) as f64,
             points: &points,
-            tets: &tets,
-            hexes: &hexes,
+            cells: &cells,
             point_arrays: vec![array("displacement", 3, &displacement), array(COLOURED_BY, 1, &amplitude)],
             cell_arrays: Vec::new(),
         })?;

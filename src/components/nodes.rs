@@ -2,7 +2,7 @@
 
 use super::Reals;
 use super::column::columns;
-use crate::mesh::Ids;
+use crate::mesh::{Cells, Ids};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -98,14 +98,12 @@ pub struct Authoring {
     pub node_rows: Vec<u32>,
     /// The author's number of each of the author's nodes.
     pub node_ids: Ids,
-    /// For each of the author's elements (tetrahedra first), its block's place in the body's list and its row there.
+    /// For each of the author's elements, its block's place in the body's list and its row there.
     pub element_rows: Vec<(u32, u32)>,
     /// The author's number of each of the author's elements.
     pub element_ids: Ids,
-    /// Nodes of each tetrahedron, in the author's order and the author's rows.
-    pub tets: Vec<[u32; 4]>,
-    /// Nodes of each hexahedron, likewise.
-    pub hexes: Vec<[u32; 8]>,
+    /// Nodes of each element, in the author's order and the author's rows.
+    pub cells: Cells,
     /// The body's element blocks.
     pub blocks: Vec<Entity>,
 }

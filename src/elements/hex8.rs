@@ -2,6 +2,8 @@
 
 use super::{Element, MOST_NODES, MOST_ROWS, PointState, PressureFrom, Stiffness, gradient_measure, vector};
 use crate::math::{Mat3, Real, dot, dot_plus};
+use crate::mesh::CellKind;
+pub(super) use crate::mesh::topology::hex8::NODES as NODE_SIGNS;
 use glam::{DMat3, DVec3};
 
 /// Trilinear hexahedron with the mean gradients b_a (Flanagan & Belytschko 1981) and total Lagrangian hourglass
@@ -26,17 +28,6 @@ pub struct Hexahedron<const SLOPES: usize>;
 pub type Hex8 = Hexahedron<6>;
 /// Parallelepipeds only: what is zero in them has no place in the rest shape.
 pub type Parallelepiped = Hexahedron<3>;
-
-pub(super) const NODE_SIGNS: [[f64; 3]; 8] = [
-    [-1.0, -1.0, -1.0],
-    [1.0, -1.0, -1.0],
-    [1.0, 1.0, -1.0],
-    [-1.0, 1.0, -1.0],
-    [-1.0, -1.0, 1.0],
-    [1.0, -1.0, 1.0],
-    [1.0, 1.0, 1.0],
-    [-1.0, 1.0, 1.0],
-];
 
 /// Γ_m at node a: ηζ, ζξ, ξη, ξηζ.
 #[inline(always)]
@@ -148,7 +139,7 @@ impl<const SLOPES: usize> Hexahedron<SLOPES> {
 
 impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
     const NAME: &'static str = "hex8";
-    const NODES: usize = 8;
+    const CELL: CellKind = CellKind::Hex8;
     const POINTS: usize = 1;
     const ROWS: usize = if SLOPES == MODES - 1 { Self::STIFFNESS_ROW + 13 } else { Self::STIFFNESS_ROW + 1 };
     const VOLUME_ROW: usize = 3 * SLOPES;
@@ -265,7 +256,8 @@ impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
         let slope = |mode: usize, a: usize| DVec3::from_slice(&shape[3 * mode..]) * mode_sign(mode, a);
         let b: [DVec3; 8] = std::array::from_fn(|a| (0..SLOPES).map(|mode| slope(mode, a)).sum());
         let (trace, largest) = gradient_measure(b.into_iter());
-        let material = 8.0 / stiffness.density * (stiffness.lambda * trace + stiffness.deviatoric * largest);
+        let nodes = Self::NODES_OF_LEAST_MASS;
+        let material = nodes / stiffness.density * (stiffness.lambda * trace + stiffness.deviatoric * largest);
 
         let gamma = |m: usize, a: usize| {
             let arm = Self::arm(&|row: usize| shape[row], m).map_or(DVec3::ZERO, DVec3::from);
@@ -281,8 +273,8 @@ impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
             largest_row = largest_row.max(row);
             overlap = overlap.max((0..8).map(|a| b[a] * gamma(m, a)).sum::<DVec3>().length());
         }
-        let hourglass =
-            shape[Self::STIFFNESS_ROW] * largest_row.min(square) / (stiffness.density * shape[Self::VOLUME_ROW] / 8.0);
+        let hourglass = shape[Self::STIFFNESS_ROW] * largest_row.min(square)
+            / (stiffness.density * shape[Self::VOLUME_ROW] / nodes);
         // modes of both kinds are orthogonal in a parallelepiped: then the larger counts, else their sum
         if overlap < 1e-9 * trace.sqrt() { material.max(hourglass) } else { material + hourglass }
     }

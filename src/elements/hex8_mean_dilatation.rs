@@ -3,6 +3,7 @@
 use super::hex8::{MODES, NODE_SIGNS, balanced, mode_sign, modes, natural_gradients, spread};
 use super::{Element, MOST_NODES, MOST_ROWS, PointState, PressureFrom, Stiffness, gradient_measure, vector};
 use crate::math::{Mat3, Real, dot, minor};
+use crate::mesh::CellKind;
 use glam::{DMat3, DVec3};
 
 /// Trilinear hexahedron with 2×2×2 Gauss points for what changes shape, and one pressure from its mean volume
@@ -42,7 +43,7 @@ fn natural_gradient<R: Real>(c: [R; 7], point: usize) -> [R; 3] {
 
 impl Element for Hex8MeanDilatation {
     const NAME: &'static str = "hex8_mean_dilatation";
-    const NODES: usize = 8;
+    const CELL: CellKind = CellKind::Hex8;
     const POINTS: usize = 8;
     const ROWS: usize = 23;
     const VOLUME_ROW: usize = 21;
@@ -185,7 +186,7 @@ impl Element for Hex8MeanDilatation {
         }
         let (trace, _) = gradient_measure(mean.into_iter().map(|b| b / volume));
         let largest = largest_eigenvalue_bound(laplacian) / volume;
-        8.0 / stiffness.density * (stiffness.lambda * trace + stiffness.deviatoric * largest)
+        Self::NODES_OF_LEAST_MASS / stiffness.density * (stiffness.lambda * trace + stiffness.deviatoric * largest)
     }
 }
 

@@ -13,9 +13,10 @@ pub use tet4::Tet4;
 pub use tet4_nodal_pressure::Tet4NodalPressure;
 
 use crate::math::{Mat3, Real};
+use crate::mesh::CellKind;
 use glam::DVec3;
 
-/// Nodes of the element type that has most.
+/// Nodes of the element type that has most: kernels have room for so many.
 pub const MOST_NODES: usize = 8;
 /// Rest-shape numbers of the element type that has most.
 pub const MOST_ROWS: usize = 32;
@@ -34,8 +35,12 @@ pub const MOST_POINTS: usize = 8;
 pub trait Element: Copy + Send + Sync + 'static {
     /// Its name in scenes, shaders and reports.
     const NAME: &'static str;
+    /// The kind of its cells.
+    const CELL: CellKind;
     /// How many nodes.
-    const NODES: usize;
+    const NODES: usize = Self::CELL.node_count();
+    /// One over the least share of its mass that a node has: how many nodes there are where all have the same.
+    const NODES_OF_LEAST_MASS: f64 = 1.0 / Self::CELL.least_share();
     /// How many integration points.
     const POINTS: usize;
     /// How many numbers describe the rest shape.
@@ -91,8 +96,9 @@ pub trait Element: Copy + Send + Sync + 'static {
 
     /// Upper bound of the largest squared angular frequency (1/s²) of the free element with lumped mass.
     ///
-    /// ω² ≤ (n/ρ)(λ tr G + 2μ' λ_max(G)), G = Σ g gᵀ, n nodes; λ, μ' and ρ as [`Stiffness`] has them; plus what the
-    /// hourglass control adds. Rigorous at rest; stretch raises the true value by about 1/σ_min(F)².
+    /// ω² ≤ (n/ρ)(λ tr G + 2μ' λ_max(G)), G = Σ g gᵀ, n as in [`NODES_OF_LEAST_MASS`](Element::NODES_OF_LEAST_MASS): no
+    /// node has less than m/n; λ, μ' and ρ as [`Stiffness`] has them; plus what the hourglass control adds. Rigorous at
+    /// rest; stretch raises the true value by about 1/σ_min(F)².
     fn frequency_bound(shape: &[f64; MOST_ROWS], stiffness: &Stiffness) -> f64;
 }
 

@@ -2,6 +2,7 @@
 
 use super::{Element, MOST_NODES, MOST_ROWS, PointState, PressureFrom, Stiffness, gradient_measure, vector};
 use crate::math::{Mat3, Real, dot};
+use crate::mesh::CellKind;
 use glam::{DMat3, DVec3};
 
 /// Linear tetrahedron: one constant gradient. It locks near incompressibility (a bar under gravity at ν = 0.49 with
@@ -14,7 +15,7 @@ pub struct Tet4;
 
 impl Element for Tet4 {
     const NAME: &'static str = "tet4";
-    const NODES: usize = 4;
+    const CELL: CellKind = CellKind::Tet4;
     const POINTS: usize = 1;
     const ROWS: usize = 10;
     const VOLUME_ROW: usize = 9;
@@ -94,6 +95,6 @@ impl Element for Tet4 {
     fn frequency_bound(shape: &[f64; MOST_ROWS], stiffness: &Stiffness) -> f64 {
         let g = |a: usize| DVec3::from_slice(&shape[3 * a..]);
         let (trace, largest) = gradient_measure([g(0), g(1), g(2), -(g(0) + g(1) + g(2))].into_iter());
-        4.0 / stiffness.density * (stiffness.lambda * trace + stiffness.deviatoric * largest)
+        Self::NODES_OF_LEAST_MASS / stiffness.density * (stiffness.lambda * trace + stiffness.deviatoric * largest)
     }
 }

@@ -2,6 +2,7 @@
 
 use super::{Element, MOST_NODES, MOST_ROWS, PointState, PressureFrom, Stiffness, Tet4};
 use crate::math::{Mat3, Real};
+use crate::mesh::CellKind;
 use glam::DVec3;
 
 /// [`Tet4`] whose pressure is the mean of its nodes' pressures, which come from the volume around each node (Bonet &
@@ -16,7 +17,7 @@ pub struct Tet4NodalPressure;
 
 impl Element for Tet4NodalPressure {
     const NAME: &'static str = "tet4_nodal_pressure";
-    const NODES: usize = Tet4::NODES;
+    const CELL: CellKind = Tet4::CELL;
     const POINTS: usize = Tet4::POINTS;
     const ROWS: usize = Tet4::ROWS;
     const VOLUME_ROW: usize = Tet4::VOLUME_ROW;

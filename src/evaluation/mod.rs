@@ -10,7 +10,7 @@ pub use element::{ElementState, PointKinematics};
 pub use measures::principal_values;
 
 use crate::components::*;
-use crate::elements::{Element, PressureFrom};
+use crate::elements::{Element, MOST_NODES, MOST_POINTS, MOST_ROWS, PressureFrom};
 use crate::math::LANES;
 use crate::mesh::ElementKind;
 
@@ -65,6 +65,30 @@ pub const fn node_count(kind: ElementKind) -> usize {
     with_element!(kind, E => E::NODES)
 }
 
+/// What share of an element's mass each of its nodes has, 1 together: the one rule by which masses go to nodes.
+pub const fn mass_shares(kind: ElementKind) -> &'static [f64] {
+    with_element!(kind, E => E::CELL.shares())
+}
+
+// what the list of kinds says of their cells is what the elements say, and kernels have room for them
+const _: () = {
+    let (mut place, mut nodes, mut rows, mut points) = (0, 0, 0, 0);
+    const fn larger(a: usize, b: usize) -> usize {
+        if a > b { a } else { b }
+    }
+    while place < ElementKind::ALL.len() {
+        let kind = ElementKind::ALL[place];
+        with_element!(kind, E => {
+            assert!(E::CELL as usize == kind.cell() as usize && E::CELL.shares().len() == E::NODES);
+            nodes = larger(nodes, E::NODES);
+            rows = larger(rows, E::ROWS);
+            points = larger(points, E::POINTS);
+        });
+        place += 1;
+    }
+    assert!(nodes == MOST_NODES && rows == MOST_ROWS && points == MOST_POINTS);
+};
+
 /// How many numbers describe the rest shape of an element of a block.
 pub const fn row_count(block: &Block) -> usize {
     with_element_of!(block, E => E::ROWS)
@@ -96,7 +120,7 @@ pub fn extinguish(block: &Block, row: usize, shape: &mut Reals) {
 }
 
 /// Adds a block's lumped masses (kg) and damping coefficients (kg/s) to its nodes', from the elements that still have
-/// volume: ρV over the nodes of each, and the damping rate (1/s) times that.
+/// volume: its nodes' shares of the ρV of each, and the damping rate (1/s) times that.
 pub fn add_nodal_masses(
     block: &Block,
     connectivity: &[u32],
@@ -107,10 +131,11 @@ pub fn add_nodal_masses(
     damping: &mut [f64],
 ) {
     let nodes = node_count(block.kind);
+    let shares = mass_shares(block.kind);
     for row in 0..block.count {
-        let share = density * rest_volume(block, row, shape) / nodes as f64;
-        for corner in 0..nodes {
-            let node = connectivity[lane_place(row, nodes, corner)] as usize;
+        let whole = density * rest_volume(block, row, shape);
+        for (corner, share) in shares.iter().enumerate() {
+            let (node, share) = (connectivity[lane_place(row, nodes, corner)] as usize, whole * share);
             mass[node] += share;
             damping[node] += share * rate;
         }

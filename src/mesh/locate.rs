@@ -1,19 +1,8 @@
 //! Which element a point lies in, and where in it: what fields are interpolated with.
 
 use super::Mesh;
-use glam::{DMat3, DVec3};
-
-/// Signs of a hexahedron's corners (VTK order) along its three directions.
-const SIGNS: [[f64; 3]; 8] = [
-    [-1., -1., -1.],
-    [1., -1., -1.],
-    [1., 1., -1.],
-    [-1., 1., -1.],
-    [-1., -1., 1.],
-    [1., -1., 1.],
-    [1., 1., 1.],
-    [-1., 1., 1.],
-];
+use super::topology::{Located, MOST_NODES};
+use glam::DVec3;
 
 /// How far outside of an element a point may lie and still count as inside, in element sizes: rounding.
 const ROUNDING: f64 = 1e-9;
@@ -21,10 +10,10 @@ const ROUNDING: f64 = 1e-9;
 /// A point in an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Location {
-    /// The element (tetrahedra first, then hexahedra).
+    /// The element.
     pub element: usize,
-    /// Values of the corners' shape functions; 1 together. What the element has no corner for is 0.
-    pub weights: [f64; 8],
+    /// Values of the nodes' shape functions; 1 together. What the element has no node for is 0.
+    pub weights: [f64; MOST_NODES],
     /// How far outside of the element the point lies, in element sizes; 0 inside.
     pub outside: f64,
 }
@@ -128,56 +117,9 @@ impl<'a> Locator<'a> {
     }
 
     fn in_element(&self, element: usize, x: DVec3) -> Location {
-        match element.checked_sub(self.mesh.tets.len()) {
-            None => in_tet(element, self.mesh.tet_corners(element), x),
-            Some(row) => in_hex(element, self.mesh.hex_corners(row), x),
-        }
+        let nowhere = Located { weights: [0.0; MOST_NODES], outside: f64::INFINITY };
+        let solid = self.mesh.cells.kind(element).topology().solid;
+        let Located { weights, outside } = solid.map_or(nowhere, |solid| (solid.locate)(&self.mesh.places(element), x));
+        Location { element, weights, outside }
     }
-}
-
-fn in_tet(element: usize, p: [DVec3; 4], x: DVec3) -> Location {
-    let edges = DMat3::from_cols(p[1] - p[0], p[2] - p[0], p[3] - p[0]);
-    let r = edges.inverse() * (x - p[0]);
-    let share = [1.0 - r.x - r.y - r.z, r.x, r.y, r.z];
-    let outside = share.iter().fold(0.0, |worst: f64, share| worst.max(-share));
-    let clipped = share.map(|share| share.max(0.0));
-    let sum: f64 = clipped.iter().sum();
-    let mut weights = [0.0; 8];
-    weights.iter_mut().zip(clipped).for_each(|(weight, share)| *weight = share / sum);
-    Location { element, weights, outside: if outside.is_finite() { outside } else { f64::INFINITY } }
-}
-
-/// The shape functions of a hexahedron.
-fn shape(r: DVec3) -> [f64; 8] {
-    SIGNS.map(|[a, b, c]| (1.0 + a * r.x) * (1.0 + b * r.y) * (1.0 + c * r.z) / 8.0)
-}
-
-fn in_hex(element: usize, p: [DVec3; 8], x: DVec3) -> Location {
-    let (mut r, mut reached) = (DVec3::ZERO, false);
-    // Newton's method; the map is linear on a parallelepiped and nearly so elsewhere
-    for _ in 0..20 {
-        let (n, mut here, mut slope) = (shape(r), DVec3::ZERO, DMat3::ZERO);
-        for (corner, [a, b, c]) in SIGNS.into_iter().enumerate() {
-            here += n[corner] * p[corner];
-            let (u, v, w) = (1.0 + a * r.x, 1.0 + b * r.y, 1.0 + c * r.z);
-            let gradient = DVec3::new(a * v * w, b * u * w, c * u * v) / 8.0;
-            slope += DMat3::from_cols(p[corner] * gradient.x, p[corner] * gradient.y, p[corner] * gradient.z);
-        }
-        let step = slope.inverse() * (x - here);
-        // far outside the map folds over; what is there is no good place anyway
-        r = (r + step).clamp(DVec3::splat(-5.0), DVec3::splat(5.0));
-        if !r.is_finite() {
-            return Location { element, weights: [0.125; 8], outside: f64::INFINITY };
-        }
-        if step.length() < 1e-10 {
-            // the step that has just been taken was the last that matters: the next would be its square
-            reached = true;
-            break;
-        }
-    }
-    if !reached {
-        return Location { element, weights: [0.125; 8], outside: f64::INFINITY };
-    }
-    let clipped = r.clamp(DVec3::NEG_ONE, DVec3::ONE);
-    Location { element, weights: shape(clipped), outside: (r - clipped).abs().max_element() / 2.0 }
 }

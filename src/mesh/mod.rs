@@ -3,6 +3,7 @@
 //! A [`Mesh`] is what generators make and files hold; the engine renumbers it for locality when a body is built from
 //! it.
 
+mod cells;
 mod error;
 pub mod generators;
 mod gmsh;
@@ -16,15 +17,18 @@ mod repeat;
 mod report;
 pub mod soundness;
 mod surface;
+pub mod topology;
 mod vtk;
 pub mod vtu;
 
+pub use cells::Cells;
 pub use error::{MeshError, Place};
 pub use generators::ElementKind;
 pub use locate::{Location, Locator};
 pub use quality::Quality;
 pub use report::{MeshReport, SetReport, extent};
 pub use surface::SurfaceFace;
+pub use topology::CellKind;
 
 use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -56,12 +60,9 @@ pub struct Mesh {
     pub points: Vec<DVec3>,
     /// The author's number of each point.
     pub point_ids: Ids,
-    /// Four-node tetrahedra: rows of `points`, VTK order (the fourth point lies on the side that the right-hand normal
-    /// of the first three points to).
-    pub tets: Vec<[u32; 4]>,
-    /// Eight-node hexahedra: rows of `points`, VTK order (bottom face counter-clockwise seen from above, then the top).
-    pub hexes: Vec<[u32; 8]>,
-    /// The author's number of each element: tetrahedra first, then hexahedra.
+    /// Elements by rows of `points`: [`CellKind`] has the order of their nodes.
+    pub cells: Cells,
+    /// The author's number of each element, in the order of `cells`.
     pub element_ids: Ids,
     /// Named sets of points (rows of `points`, ascending, each once).
     pub node_sets: BTreeMap<String, Vec<u32>>,
@@ -70,9 +71,9 @@ pub struct Mesh {
     pub point_lists: BTreeMap<Vec<u64>, Vec<u32>>,
     /// Named sets of surface faces: rows of `points`; a triangle repeats its last point.
     pub face_sets: BTreeMap<String, Vec<[u32; 4]>>,
-    /// Named sets of elements (tetrahedra first, then hexahedra; ascending, each once).
+    /// Named sets of elements (rows of `cells`, ascending, each once).
     pub element_sets: BTreeMap<String, Vec<u32>>,
-    /// Named vectors, one row an element (tetrahedra first, then hexahedra): fibre directions, for instance.
+    /// Named vectors, one row an element: fibre directions, for instance.
     pub element_vectors: BTreeMap<String, Vec<DVec3>>,
     /// What the author should know about how the mesh was read, one sentence each.
     pub notes: Vec<String>,
@@ -92,16 +93,13 @@ impl Mesh {
         (0..self.points.len()).map(|row| (self.point_ids.of(row), row)).collect()
     }
 
-    /// How many elements there are, of both kinds.
+    /// How many elements there are, of all kinds.
     pub fn element_count(&self) -> usize {
-        self.tets.len() + self.hexes.len()
+        self.cells.len()
     }
 
-    /// The points of an element (tetrahedra first, then hexahedra).
+    /// The points of an element. Panics on a row that is not there.
     pub fn element(&self, row: usize) -> &[u32] {
-        match self.tets.get(row) {
-            Some(tet) => tet,
-            None => &self.hexes[row - self.tets.len()],
-        }
+        self.cells.nodes(row)
     }
 }

@@ -1,8 +1,6 @@
 //! How good the shapes of elements are: 1 is regular, 0 is flat, below 0 is inside out.
 
 use super::Mesh;
-use super::measure::{hex_determinants, tet_volume};
-use glam::DVec3;
 
 /// Ranges of quality in a histogram, from 0 to 1.
 pub const BINS: usize = 10;
@@ -10,7 +8,7 @@ pub const BINS: usize = 10;
 /// The quality of each element: mean ratio of tetrahedra, scaled Jacobian of hexahedra.
 #[derive(Clone, Debug, serde::Serialize)]
 pub struct Quality {
-    /// Rows of elements (tetrahedra first, then hexahedra) with their quality, the ten worst, the worst first.
+    /// Rows of elements with their quality, the ten worst, the worst first.
     pub worst: Vec<(usize, f64)>,
     /// How many elements there are in each tenth from 0 to 1; those below 0 are in the first.
     pub histogram: [usize; BINS],
@@ -18,34 +16,10 @@ pub struct Quality {
     pub mean: f64,
 }
 
-/// Mean ratio of a tetrahedron, 12 (3 V)^(2/3) / Σ l² over its edges (Liu and Joe 1994): 1 for the regular one.
-pub fn mean_ratio(p: [DVec3; 4]) -> f64 {
-    let edges = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
-    let sum: f64 = edges.iter().map(|&[a, b]: &[usize; 2]| p[a].distance_squared(p[b])).sum();
-    let volume = tet_volume(p);
-    if sum > 0.0 { volume.signum() * 12.0 * (3.0 * volume.abs()).powf(2.0 / 3.0) / sum } else { 0.0 }
-}
-
-/// Scaled Jacobian of a hexahedron (Knupp 2000): the least of its corners' determinants over the lengths of their
-/// edges: 1 for a cuboid.
-pub fn scaled_jacobian(p: [DVec3; 8]) -> f64 {
-    const NEIGHBOURS: [[usize; 3]; 8] =
-        [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]];
-    let determinants = hex_determinants(p);
-    let scaled = |corner: usize| {
-        let lengths: f64 = NEIGHBOURS[corner].iter().map(|&other| p[corner].distance(p[other])).product();
-        if lengths > 0.0 { determinants[corner] / lengths } else { 0.0 }
-    };
-    (0..8).map(scaled).fold(1.0, f64::min)
-}
-
 impl Mesh {
-    /// The quality of an element (tetrahedra first, then hexahedra).
+    /// The quality of an element: that of its [kind](super::topology::Solid::quality).
     pub fn element_quality(&self, row: usize) -> f64 {
-        match row.checked_sub(self.tets.len()) {
-            None => mean_ratio(self.tet_corners(row)),
-            Some(row) => scaled_jacobian(self.hex_corners(row)),
-        }
+        self.cells.kind(row).topology().solid.map_or(0.0, |solid| (solid.quality)(&self.places(row)))
     }
 
     /// The quality of all elements, in short.
@@ -65,7 +39,9 @@ impl Mesh {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use crate::mesh::topology::hex8::scaled_jacobian;
+    use crate::mesh::topology::tet4::{mean_ratio, volume as tet_volume};
+    use glam::DVec3;
 
     #[test]
     fn regular_elements_have_the_quality_one() {

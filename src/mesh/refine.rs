@@ -1,24 +1,18 @@
-//! Uniform subdivision: every element becomes eight of the same kind.
+//! Uniform subdivision: every element becomes some of the same kind, as its [`Split`] says.
 
-use super::{Ids, Mesh, MeshError, SurfaceFace};
+use super::topology::{MOST_NODES, MOST_PARENTS, MOST_SPLIT_POINTS, Split};
+use super::{CellKind, Cells, Ids, Mesh, MeshError, SurfaceFace};
 use glam::DVec3;
 use std::collections::{BTreeSet, HashMap};
 
-/// Edges of a tetrahedron by its corners; [`INNER`] counts them in this order.
-const EDGES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
+/// The parents of a new point, ascending.
+type Key = [u32; MOST_PARENTS];
 
-/// The octahedron in the middle of a tetrahedron, cut along one of its diagonals: two edges of [`EDGES`] whose middles
-/// the diagonal joins, and the other four around it, right-handed.
-const INNER: [([usize; 2], [usize; 4]); 3] = [([0, 5], [1, 2, 4, 3]), ([1, 4], [2, 0, 3, 5]), ([2, 3], [0, 1, 5, 4])];
-
-/// Corners of a hexahedron (VTK order) by bits: 1 upper in the first direction, 2 in the second, 4 in the third.
-const CORNERS: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
-
-/// What stands in the key of a new point where it has fewer parents than eight.
+/// What stands in the key of a new point where it has fewer parents than one may have.
 const NOBODY: u32 = u32::MAX;
 
 impl Mesh {
-    /// Cuts every element into eight, so many times over. Edges are halved where they are: a curved outline stays the
+    /// Cuts every element into smaller ones (eight of a tetrahedron or a hexahedron), so many times over. Edges are halved where they are: a curved outline stays the
     /// polygon it is.
     ///
     /// Points keep their rows and numbers, new ones follow. The parts of an element bear its number, its vectors and
@@ -26,21 +20,29 @@ impl Mesh {
     /// on does (with faces of the surface tried first).
     ///
     /// # Errors
-    /// More elements or points than 32 bits count.
+    /// Elements of a kind that cannot be cut; more elements or points than 32 bits count.
     pub fn refine(&mut self, times: u32) -> Result<(), MeshError> {
         let most = u64::from(u32::MAX) / 8;
+        let refuse = |value, allowed| Err(MeshError::Parameter { name: "body", parameter: "refine", value, allowed });
         let rows = (self.points.len() as u32, self.element_count() as u32);
         let faces = self.face_sets.values().flatten().flatten();
-        let mut points = self.tets.iter().flatten().chain(self.hexes.iter().flatten()).chain(faces);
-        if points.any(|&row| row >= rows.0) || self.element_sets.values().flatten().any(|&row| row >= rows.1) {
+        let lost_points = self.cells.all_nodes().chain(faces.copied()).any(|row| row >= rows.0);
+        if lost_points || self.element_sets.values().flatten().any(|&row| row >= rows.1) {
             // of the mesh as it is, the check of its soundness says what is wrong
             return Ok(());
         }
         for _ in 0..times {
-            if self.element_count() as u64 * 8 > most {
-                let value = format!("{times}, {} elements at last", self.element_count() as f64 * 8.0);
-                let allowed = format!("at most {most} elements fit the 32-bit numbers of points and elements");
-                return Err(MeshError::Parameter { name: "body", parameter: "refine", value, allowed });
+            let mut parts = 0;
+            for (kind, count) in self.cells.kinds() {
+                let topology = kind.topology();
+                let Some(split) = topology.split else {
+                    return refuse(format!("{times}"), format!("it must be 0: {} are not cut", topology.plural));
+                };
+                parts += (split.count() * count) as u64;
+            }
+            if parts > most {
+                let value = format!("{times}, {parts} elements at last");
+                return refuse(value, format!("at most {most} elements fit the 32-bit numbers of points and elements"));
             }
             self.halve();
         }
@@ -49,17 +51,20 @@ impl Mesh {
 
     fn halve(&mut self) {
         let surface = self.surface();
-        let (tets, hexes) = (std::mem::take(&mut self.tets), std::mem::take(&mut self.hexes));
+        let whole = std::mem::take(&mut self.cells);
         let before = self.points.len();
         let mut middles = Middles { points: std::mem::take(&mut self.points), known: HashMap::new() };
-        for tet in &tets {
-            self.tets.extend(eight_tets(tet, &mut middles));
+        // where the parts of each element begin, and the last of them end
+        let mut parts = vec![0];
+        for (kind, nodes) in &whole {
+            if let Some(split) = kind.topology().split {
+                middles.cut(split, nodes, |part| self.cells.push_nodes(kind, part));
+            }
+            parts.push(self.cells.len() as u32);
         }
-        for hex in &hexes {
-            self.hexes.extend(eight_hexes(hex, &mut middles));
-        }
+        let parts_of = |parent: u32| parts[parent as usize]..parts[parent as usize + 1];
         if !self.node_sets.is_empty() || !self.point_lists.is_empty() {
-            let near = Near::of(&middles, &surface, &tets, &hexes);
+            let near = Near::of(&middles, &surface, &whole);
             for (name, set) in &mut self.node_sets {
                 let own = self.face_sets.get(name).filter(|faces| same_points(faces, set));
                 middles.join(&near, set, own);
@@ -70,13 +75,17 @@ impl Mesh {
             *set = set.iter().flat_map(|face| middles.four(face)).collect();
         }
         for set in self.element_sets.values_mut() {
-            *set = set.iter().flat_map(|&parent| 8 * parent..8 * parent + 8).collect();
+            *set = set.iter().flat_map(|&parent| parts_of(parent)).collect();
         }
         for vectors in self.element_vectors.values_mut() {
-            *vectors = vectors.iter().flat_map(|vector| [*vector; 8]).collect();
+            let own = (0..).zip(vectors.iter()).flat_map(|(parent, vector)| parts_of(parent).map(|_| *vector));
+            *vectors = own.collect();
         }
-        let ids = (0..tets.len() + hexes.len()).flat_map(|parent| [self.element_ids.of(parent); 8]).collect();
-        self.element_ids = Ids::Named(ids);
+        let ids = (0..whole.len()).flat_map(|parent| {
+            let id = self.element_ids.of(parent);
+            parts_of(parent as u32).map(move |_| id)
+        });
+        self.element_ids = Ids::Named(ids.collect());
         if let Ids::Named(ids) = &mut self.point_ids {
             ids.extend(free_numbers(ids, middles.points.len() - before));
         }
@@ -104,7 +113,7 @@ fn same_points(faces: &[[u32; 4]], points: &[u32]) -> bool {
 /// The points, and which of the new ones lies between which of the old.
 struct Middles {
     points: Vec<DVec3>,
-    known: HashMap<[u32; 8], u32>,
+    known: HashMap<Key, u32>,
 }
 
 impl Middles {
@@ -125,16 +134,39 @@ impl Middles {
         self.known.get(&key(parents)).copied()
     }
 
-    /// The four parts of a face; none of one that no element has.
-    fn four(&self, &[a, b, c, d]: &[u32; 4]) -> Vec<[u32; 4]> {
-        let parts = || {
-            let (ab, bc) = (self.find(&[a, b])?, self.find(&[b, c])?);
-            if c == d {
-                let ca = self.find(&[c, a])?;
-                return Some(vec![[a, ab, ca, ca], [ab, b, bc, bc], [ca, bc, c, c], [ab, bc, ca, ca]]);
+    /// The parts of a cell, right-handed if it is, by the rows of their nodes.
+    fn cut(&mut self, split: &Split, nodes: &[u32], mut see: impl FnMut(&[u32])) {
+        let mut rows = [0; MOST_SPLIT_POINTS];
+        for (place, corners) in split.points.iter().enumerate() {
+            let mut parents = [0; MOST_PARENTS];
+            for (parent, &corner) in corners.iter().enumerate() {
+                parents[parent] = nodes[corner];
             }
-            let (cd, da, m) = (self.find(&[c, d])?, self.find(&[d, a])?, self.find(&[a, b, c, d])?);
-            Some(vec![[a, ab, m, da], [ab, b, bc, m], [m, bc, c, cd], [da, m, cd, d]])
+            rows[place] = if let [corner] = corners { nodes[*corner] } else { self.of(&parents[..corners.len()]) };
+        }
+        split.parts(
+            |place| self.points[rows[place] as usize],
+            |part| {
+                let mut nodes = [0; MOST_NODES];
+                for (node, &place) in part.iter().enumerate() {
+                    nodes[node] = rows[place];
+                }
+                see(&nodes[..part.len()]);
+            },
+        );
+    }
+
+    /// The four parts of a face; none of one that no element has.
+    fn four(&self, face: &[u32; 4]) -> Vec<[u32; 4]> {
+        let parts = || {
+            let split = CellKind::of_face(face).topology().split?;
+            let row = |corners: &&[usize]| match corners {
+                [corner] => Some(face[*corner]),
+                corners => self.find(&corners.iter().map(|&corner| face[corner]).collect::<Vec<_>>()),
+            };
+            let rows = split.points.iter().map(row).collect::<Option<Vec<u32>>>()?;
+            let four = |part: &&[usize]| [0, 1, 2, part.len() - 1].map(|place| rows[part[place]]);
+            Some(split.parts.iter().map(four).collect())
         };
         parts().unwrap_or_default()
     }
@@ -190,11 +222,11 @@ fn at<'a>(parts: &'a ByLowest, points: &'a [u32]) -> impl Iterator<Item = &'a [u
 struct Near<'a> {
     faces: ByLowest,
     elements: ByLowest,
-    points: HashMap<u32, Vec<(&'a [u32; 8], u32)>>,
+    points: HashMap<u32, Vec<(&'a Key, u32)>>,
 }
 
 impl<'a> Near<'a> {
-    fn of(middles: &'a Middles, surface: &[SurfaceFace], tets: &[[u32; 4]], hexes: &[[u32; 8]]) -> Self {
+    fn of(middles: &'a Middles, surface: &[SurfaceFace], whole: &Cells) -> Self {
         let by_lowest = |parts: &mut dyn Iterator<Item = Vec<u32>>| {
             let mut found = ByLowest::new();
             for part in parts {
@@ -204,64 +236,22 @@ impl<'a> Near<'a> {
             }
             found
         };
-        let mut points: HashMap<u32, Vec<(&[u32; 8], u32)>> = HashMap::new();
+        let mut points: HashMap<u32, Vec<(&Key, u32)>> = HashMap::new();
         for (key, &row) in &middles.known {
             points.entry(key[0]).or_default().push((key, row));
         }
-        let elements = tets.iter().map(|tet| tet.to_vec());
         Self {
             faces: by_lowest(&mut surface.iter().map(|face| face.nodes.to_vec())),
-            elements: by_lowest(&mut elements.chain(hexes.iter().map(|hex| hex.to_vec()))),
+            elements: by_lowest(&mut whole.iter().map(|(_, nodes)| nodes.to_vec())),
             points,
         }
     }
 }
 
 /// The name of a new point: its parents in order.
-fn key(parents: &[u32]) -> [u32; 8] {
-    let mut key = [NOBODY; 8];
+fn key(parents: &[u32]) -> Key {
+    let mut key = [NOBODY; MOST_PARENTS];
     key[..parents.len()].copy_from_slice(parents);
     key.sort_unstable();
     key
-}
-
-/// Eight tetrahedra in the place of one, right-handed if it is: one in each corner, and four around the shortest
-/// diagonal of the octahedron between them.
-fn eight_tets(tet: &[u32; 4], middles: &mut Middles) -> [[u32; 4]; 8] {
-    let m = EDGES.map(|[a, b]| middles.of(&[tet[a], tet[b]]));
-    let length = |&([a, b], _): &([usize; 2], [usize; 4])| {
-        middles.points[m[a] as usize].distance_squared(middles.points[m[b] as usize])
-    };
-    let mut shortest = INNER[0];
-    for inner in &INNER[1..] {
-        if length(inner) < length(&shortest) {
-            shortest = *inner;
-        }
-    }
-    let ([a, b], ring) = shortest;
-    let inside = [0, 1, 2, 3].map(|i| [m[a], m[b], m[ring[i]], m[ring[(i + 1) % 4]]]);
-    let corners = [
-        [tet[0], m[0], m[1], m[2]],
-        [m[0], tet[1], m[3], m[4]],
-        [m[1], m[3], tet[2], m[5]],
-        [m[2], m[4], m[5], tet[3]],
-    ];
-    [corners[0], corners[1], corners[2], corners[3], inside[0], inside[1], inside[2], inside[3]]
-}
-
-/// Eight hexahedra in the place of one, each at the corner of its place.
-fn eight_hexes(hex: &[u32; 8], middles: &mut Middles) -> [[u32; 8]; 8] {
-    // points of the 3×3×3 grid: each the middle of the corners that agree with it
-    let mut grid = [0; 27];
-    for (place, point) in grid.iter_mut().enumerate() {
-        let at = [place % 3, place / 3 % 3, place / 9];
-        let agrees = |corner: usize| (0..3).all(|axis| at[axis] == 1 || (at[axis] == 2) == (corner >> axis & 1 == 1));
-        let parents: Vec<u32> = (0..8).filter(|&corner| agrees(corner)).map(|c| hex[CORNERS[c]]).collect();
-        *point = if parents.len() == 1 { parents[0] } else { middles.of(&parents) };
-    }
-    CORNERS.map(|corner| {
-        let at =
-            |bits: usize| (0..3).map(move |axis| ((corner >> axis & 1) + (bits >> axis & 1)) * 3usize.pow(axis as u32));
-        CORNERS.map(|bits| grid[at(bits).sum::<usize>()])
-    })
 }

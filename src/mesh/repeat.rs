@@ -4,8 +4,8 @@ use super::{Ids, Mesh};
 use glam::DVec3;
 
 impl Mesh {
-    /// Copies that share nothing, one after the other: points, tetrahedra and hexahedra of the first, of the second and
-    /// so on. Each stands `apart` (m) from the one before; they may stand in the same place. Sets hold the points and
+    /// Copies that share nothing, one after the other: points, and elements of each kind, of the first, of the second and so
+    /// on. Each stands `apart` (m) from the one before; they may stand in the same place. Sets hold the points and
     /// elements of all copies; the sets `copy 0`, `copy 1` ... those of one. Numbers of points and elements go on from
     /// copy to copy.
     pub fn repeat(&mut self, copies: u32, apart: DVec3) {
@@ -13,15 +13,16 @@ impl Mesh {
             return;
         }
         let one = std::mem::take(self);
-        let (points, tets, hexes) = (one.points.len(), one.tets.len(), one.hexes.len());
-        let all_tets = copies as usize * tets;
-        // where an element of a copy stands: all tetrahedra come first
-        let place = |copy: usize, element: usize| match element.checked_sub(tets) {
-            None => copy * tets + element,
-            Some(hex) => all_tets + copy * hexes + hex,
+        let (points, elements) = (one.points.len(), one.element_count());
+        // where an element of a copy stands: all copies of a kind come before those of the next
+        let kinds: Vec<(usize, usize)> =
+            one.cells.kinds().map(|(kind, count)| (one.cells.first(kind), count)).collect();
+        let place = |copy: usize, element: usize| match kinds.iter().rfind(|(first, _)| *first <= element) {
+            Some((first, count)) => copies as usize * first + copy * count + (element - first),
+            None => element,
         };
-        let (point_step, element_step) = (step_of(&one.point_ids, points), step_of(&one.element_ids, tets + hexes));
-        let mut element_ids = vec![0; copies as usize * (tets + hexes)];
+        let (point_step, element_step) = (step_of(&one.point_ids, points), step_of(&one.element_ids, elements));
+        let mut element_ids = vec![0; copies as usize * elements];
         let mut point_ids = Vec::with_capacity(copies as usize * points);
         for (name, vectors) in &one.element_vectors {
             self.element_vectors.insert(name.clone(), vec![DVec3::ZERO; copies as usize * vectors.len()]);
@@ -29,12 +30,11 @@ impl Mesh {
         for copy in 0..copies as usize {
             let first = (copy * points) as u32;
             self.points.extend(one.points.iter().map(|&point| point + copy as f64 * apart));
-            self.tets.extend(one.tets.iter().map(|nodes| nodes.map(|node| first + node)));
-            self.hexes.extend(one.hexes.iter().map(|nodes| nodes.map(|node| first + node)));
+            self.cells.extend_moved(&one.cells, first);
             point_ids.extend(
                 (0..points).map(|row| one.point_ids.of(row).wrapping_add((copy as u64).wrapping_mul(point_step))),
             );
-            for row in 0..tets + hexes {
+            for row in 0..elements {
                 element_ids[place(copy, row)] =
                     one.element_ids.of(row).wrapping_add((copy as u64).wrapping_mul(element_step));
             }
@@ -56,7 +56,7 @@ impl Mesh {
             }
             let name = format!("copy {copy}");
             self.node_sets.insert(name.clone(), (first..first + points as u32).collect());
-            let own = (0..tets + hexes).map(|row| place(copy, row) as u32);
+            let own = (0..elements).map(|row| place(copy, row) as u32);
             self.element_sets.insert(name, own.collect());
         }
         self.element_sets.values_mut().for_each(|rows| rows.sort_unstable());
@@ -81,17 +81,18 @@ mod tests {
     #![allow(clippy::expect_used)]
 
     use super::*;
-    use crate::mesh::{ElementKind, generators::box_mesh};
+    use crate::mesh::{CellKind, ElementKind, generators::box_mesh};
 
     #[test]
     fn copies_share_nothing_and_keep_their_sets() {
         let mut one = box_mesh(DVec3::ONE, (2, 1, 1), ElementKind::Hex8).expect("a box");
-        one.tets = vec![[0, 1, 2, 4]];
+        one.cells.push(CellKind::Tet4, [0, 1, 2, 4]).expect("a tetrahedron");
         one.element_sets.insert("right".into(), vec![0, 2]);
         one.element_vectors.insert("fibres".into(), vec![DVec3::X, DVec3::Y, DVec3::Z]);
         let mut all = one.clone();
         all.repeat(3, DVec3::new(2.0, 0.0, 0.0));
-        assert_eq!((all.points.len(), all.tets.len(), all.hexes.len()), (3 * one.points.len(), 3, 6));
+        let count = |kind| all.cells.count(kind);
+        assert_eq!((all.points.len(), count(CellKind::Tet4), count(CellKind::Hex8)), (3 * one.points.len(), 3, 6));
         let copy_of = |node: u32| node as usize / one.points.len();
         for element in 0..all.element_count() {
             let nodes = all.element(element);

@@ -1,9 +1,9 @@
 //! What a mesh is, in short: where it lies, what it consists of, its named sets, how good its elements are, and what
 //! its unit of length could be.
 
-use super::{Mesh, quality::Quality};
+use super::{CellKind, Mesh, quality::Quality};
 use glam::DVec3;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::collections::BTreeSet;
 
 /// Lengths of bodies of tissue (m): from an embryo's organ to a whole leg.
@@ -16,10 +16,9 @@ const UNITS: [(&str, f64); 4] = [("m", 1.0), ("mm", 1e-3), ("cm", 1e-2), ("µm",
 pub struct MeshReport {
     /// Nodes.
     pub nodes: usize,
-    /// Tetrahedra.
-    pub tetrahedra: usize,
-    /// Hexahedra.
-    pub hexahedra: usize,
+    /// Elements of each kind, by what many of them are called.
+    #[serde(flatten, serialize_with = "as_map")]
+    pub elements: Vec<(&'static str, usize)>,
     /// The lowest coordinates (m).
     pub min: DVec3,
     /// The largest coordinates (m).
@@ -71,8 +70,7 @@ impl Mesh {
         let worst = quality.worst.iter().map(|&(row, quality)| (self.element_ids.of(row), quality, centroid(row)));
         MeshReport {
             nodes: self.points.len(),
-            tetrahedra: self.tets.len(),
-            hexahedra: self.hexes.len(),
+            elements: CellKind::solids().map(|(kind, _)| (kind.topology().plural, self.cells.count(kind))).collect(),
             min,
             max,
             volume: self.volume(),
@@ -104,6 +102,10 @@ impl Mesh {
         all.sort_by(|a, b| a.name.cmp(&b.name).then(a.of.cmp(b.of)));
         all
     }
+}
+
+fn as_map<S: Serializer>(elements: &[(&'static str, usize)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(elements.iter().copied())
 }
 
 /// The box around some points; infinite where there are none.

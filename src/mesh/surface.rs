@@ -1,25 +1,19 @@
 //! The surface of a mesh: faces that belong to exactly one element.
 
 use super::Mesh;
+use super::topology::MOST_FACES;
 
 /// A face of the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SurfaceFace {
     /// Rows of `points`, so that the right-hand normal points outwards; a triangle repeats its last point.
     pub nodes: [u32; 4],
-    /// The element it belongs to (tetrahedra first, then hexahedra).
+    /// The element it belongs to.
     pub element: u32,
 }
 
-/// Local faces of a tetrahedron in VTK order, seen from outside counter-clockwise.
-pub(super) const TET_FACES: [[usize; 3]; 4] = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]];
-
-/// Local faces of a hexahedron in VTK order, seen from outside counter-clockwise.
-pub(super) const HEX_FACES: [[usize; 4]; 6] =
-    [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
-
-/// Hexahedra have the most faces; a face is numbered `element * FACES + local face`.
-const FACES: u64 = 6;
+/// A face is numbered `element * FACES + local face`.
+const FACES: u64 = MOST_FACES as u64;
 
 impl Mesh {
     /// Faces that belong to exactly one element, sorted by element, then by local face.
@@ -35,22 +29,15 @@ impl Mesh {
     /// The face of a number, its normal outwards.
     fn face(&self, number: u64) -> SurfaceFace {
         let (element, local) = ((number / FACES) as usize, (number % FACES) as usize);
-        let nodes = match self.tets.get(element) {
-            Some(tet) => {
-                let [a, b, c] = TET_FACES[local].map(|corner| tet[corner]);
-                [a, b, c, c]
-            }
-            None => HEX_FACES[local].map(|corner| self.hexes[element - self.tets.len()][corner]),
-        };
+        let corners = self.cells.nodes(element);
+        let nodes = self.cells.kind(element).topology().faces[local].corners(corners);
         SurfaceFace { nodes, element: element as u32 }
     }
 
     fn each_face(&self, mut see: impl FnMut(u64, [u32; 4])) {
-        for element in 0..self.element_count() as u64 {
-            let faces = if (element as usize) < self.tets.len() { TET_FACES.len() } else { HEX_FACES.len() };
-            for local in 0..faces as u64 {
-                let number = element * FACES + local;
-                see(number, sorted(self.face(number).nodes));
+        for (element, (kind, corners)) in (0..).zip(self.cells.iter()) {
+            for (local, face) in (0..).zip(kind.topology().faces) {
+                see(element * FACES + local, sorted(face.corners(corners)));
             }
         }
     }

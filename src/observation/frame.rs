@@ -6,10 +6,12 @@ use crate::backend::cpu::Cpu;
 use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::error::Error;
+use crate::mesh::{CellKind, Cells};
 use crate::output::{Array, Frame, Series, Values, write_vtu};
 use crate::scene::schema::{Output, OutputField};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Which fields are written, and whether removed elements are, too. A resource.
@@ -36,20 +38,9 @@ struct Parts {
     node: Vec<i64>,
     /// A field of nodes each.
     vectors: Vec<Vec<f32>>,
-    tets: Cells<4>,
-    hexes: Cells<8>,
-}
-
-/// Cells of one shape.
-struct Cells<const N: usize> {
-    corners: Vec<[u32; N]>,
-    rows: ElementRows,
-}
-
-impl<const N: usize> Default for Cells<N> {
-    fn default() -> Self {
-        Self { corners: Vec::new(), rows: ElementRows::default() }
-    }
+    cells: Cells,
+    /// What the cells of each kind are.
+    rows: BTreeMap<CellKind, ElementRows>,
 }
 
 /// Writes all bodies as one frame; or what of them is not finite, and nothing is written.
@@ -75,9 +66,7 @@ pub fn write(world: &mut World, series: &mut Series) -> Result<Option<String>, E
         parts.point_body.resize(parts.points.len(), number as u32);
         parts.node.extend((0..authoring.node_rows.len()).map(|place| authoring.node_ids.of(place) as i64));
         let found = elements.of_body(number as u32, *body, world);
-        let tets = authoring.tets.len();
-        add(&mut parts.tets, &authoring.tets, 0, first, &found);
-        add(&mut parts.hexes, &authoring.hexes, tets, first, &found);
+        parts.add(&authoring.cells, first, &found);
     }
     put_together(&wanted, &of_nodes, &elements, parts, world, series)
 }
@@ -104,28 +93,29 @@ pub fn write_whole(world: &mut World, path: &Path) -> Result<(), Error> {
     if !world.query::<(&Block, &Alive)>().iter(world).any(lacks) {
         return Ok(());
     }
-    let (mut points, mut tets, mut hexes) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut points, mut cells) = (Vec::new(), Cells::default());
     for body in bodies(world) {
         let (Some(authoring), Some(rest)) = (world.get::<Authoring>(body), world.get::<RestPosition>(body)) else {
             continue;
         };
         let first = points.len() as u32;
         points.extend(authoring.node_rows.iter().map(|&row| rest.0[row as usize]));
-        tets.extend(authoring.tets.iter().map(|tet| tet.map(|node| node + first)));
-        hexes.extend(authoring.hexes.iter().map(|hex| hex.map(|node| node + first)));
+        cells.extend_moved(&authoring.cells, first);
     }
-    let (points, tets, hexes) = (&*points, &*tets, &*hexes);
     let (point_arrays, cell_arrays) = (Vec::new(), Vec::new());
-    let frame = Frame { time: 0.0, points, tets, hexes, point_arrays, cell_arrays };
+    let frame = Frame { time: 0.0, points: &points, cells: &cells, point_arrays, cell_arrays };
     world.resource::<Cpu>().confine(|| write_vtu(path, &frame))?;
     Ok(())
 }
 
-/// Adds the cells of a body that are written; its elements of this shape begin at `from`.
-fn add<const N: usize>(cells: &mut Cells<N>, corners: &[[u32; N]], from: usize, first: u32, found: &BodyElements<'_>) {
-    for (place, nodes) in corners.iter().enumerate() {
-        if found.put(from + place, &mut cells.rows) {
-            cells.corners.push(nodes.map(|node| node + first));
+impl Parts {
+    /// Adds the cells of a body that are written; its points begin at `first`.
+    fn add(&mut self, cells: &Cells, first: u32, found: &BodyElements<'_>) {
+        for (kind, rows, nodes) in cells.blocks() {
+            let own = self.rows.entry(kind).or_default();
+            self.cells.reserve(kind, rows.len());
+            let kept = rows.zip(nodes.chunks_exact(kind.node_count())).filter(|(row, _)| found.put(*row, own));
+            self.cells.extend_kind(kind, kept.flat_map(|(_, nodes)| nodes.iter().map(move |node| node + first)));
         }
     }
 }
@@ -138,8 +128,8 @@ fn put_together(
     world: &World,
     series: &mut Series,
 ) -> Result<Option<String>, Error> {
-    // tetrahedra of all bodies come before the hexahedra of all bodies
-    let cells = parts.tets.rows.and(parts.hexes.rows);
+    // cells of one kind of all bodies come before those of the next
+    let cells = parts.rows.into_values().fold(ElementRows::default(), ElementRows::and);
     let columns = elements.columns(&cells);
     let points = of_nodes.iter().zip(&parts.vectors).map(|(field, values)| (field.array().to_string(), 3, values));
     let cell_fields = columns.iter().map(|column| (column.name.clone(), column.components, &column.values));
@@ -161,8 +151,7 @@ fn put_together(
     cell_arrays.push(Array { name: "material", components: 1, values: Values::U32(&cells.material) });
     cell_arrays.push(Array { name: "element", components: 1, values: Values::I64(&cells.element) });
     let time = world.resource::<Clock>().time();
-    let (tets, hexes) = (&*parts.tets.corners, &*parts.hexes.corners);
-    let frame = Frame { time, points: &parts.points, tets, hexes, point_arrays, cell_arrays };
+    let frame = Frame { time, points: &parts.points, cells: &parts.cells, point_arrays, cell_arrays };
     // parts of a file are compressed side by side
     world.resource::<Cpu>().confine(|| series.write(&frame))?;
     Ok(None)

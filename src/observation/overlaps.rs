@@ -116,12 +116,11 @@ fn near(world: &World, body: &Placed<'_>, low: DVec3, high: DVec3) -> NearBox {
         let (a, b) = corners.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
         a.cmple(high).all() && b.cmpge(low).all()
     };
-    let tets = authoring.tets.len();
-    let of_tets: Vec<usize> = (0..tets).filter(|&e| reaches(&authoring.tets[e]) && there(e)).collect();
-    let of_hexes: Vec<usize> =
-        (0..authoring.hexes.len()).filter(|&e| reaches(&authoring.hexes[e]) && there(tets + e)).collect();
+    let cells = authoring.cells.iter().enumerate();
+    let elements: Vec<usize> =
+        cells.filter(|(row, (_, nodes))| reaches(nodes) && there(*row)).map(|(row, _)| row).collect();
     let (mut nodes, mut rows) = (Vec::new(), vec![u32::MAX; points.len()]);
-    let mut row = |node: u32| {
+    let row = |node: u32| {
         let row = &mut rows[node as usize];
         if *row == u32::MAX {
             *row = nodes.len() as u32;
@@ -129,13 +128,9 @@ fn near(world: &World, body: &Placed<'_>, low: DVec3, high: DVec3) -> NearBox {
         }
         *row
     };
-    let mesh = Mesh {
-        tets: of_tets.iter().map(|&e| authoring.tets[e].map(&mut row)).collect(),
-        hexes: of_hexes.iter().map(|&e| authoring.hexes[e].map(&mut row)).collect(),
-        ..Mesh::default()
-    };
-    let mesh = Mesh { points: nodes.iter().map(|&node| points[node as usize]).collect(), ..mesh };
-    let elements = of_tets.into_iter().chain(of_hexes.into_iter().map(|e| tets + e)).collect();
+    let cells = authoring.cells.select(elements.iter().copied(), row);
+    let points = nodes.iter().map(|&node| points[node as usize]).collect();
+    let mesh = Mesh { points, cells, ..Mesh::default() };
     NearBox { mesh, elements, nodes, low, high }
 }
 

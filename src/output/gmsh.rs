@@ -2,18 +2,11 @@
 //! faces and elements, numbers, and vectors of elements, and that other programs read.
 
 use super::{OutputError, replace};
-use crate::mesh::Mesh;
+use crate::mesh::{CellKind, Mesh};
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{BufWriter, Result, Write};
 use std::path::Path;
-
-/// Gmsh's numbers of element types.
-const POINT: u32 = 15;
-const TRIANGLE: u32 = 2;
-const QUAD: u32 = 3;
-const TET: u32 = 4;
-const HEX: u32 = 5;
 
 /// Writes a mesh; the file appears when it is complete. Numbers are written with as many digits as give each back
 /// exactly.
@@ -24,11 +17,11 @@ pub fn write(path: &Path, mesh: &Mesh) -> std::result::Result<(), OutputError> {
     replace(path, |file| write_to(file, mesh).map_err(OutputError::system("write", path)))
 }
 
-/// A named set: its dimension, its number, and its cells as type and rows of points; those of elements as their rows.
+/// A named set: its dimension, its number, and its cells as kind and rows of points; those of elements as their rows.
 struct Group<'a> {
     name: &'a str,
     dimension: u8,
-    cells: Vec<(u32, Vec<u32>)>,
+    cells: Vec<(CellKind, Vec<u32>)>,
     elements: &'a [u32],
 }
 
@@ -38,9 +31,9 @@ fn groups(mesh: &Mesh) -> Vec<Group<'_>> {
         all.push(Group { name, dimension: 3, cells: Vec::new(), elements });
     }
     for (name, faces) in &mesh.face_sets {
-        let cell = |face: &[u32; 4]| match face[3] == face[2] {
-            true => (TRIANGLE, face[..3].to_vec()),
-            false => (QUAD, face.to_vec()),
+        let cell = |face: &[u32; 4]| {
+            let kind = CellKind::of_face(face);
+            (kind, face[..kind.node_count()].to_vec())
         };
         all.push(Group { name, dimension: 2, cells: faces.iter().map(cell).collect(), elements: &[] });
     }
@@ -49,8 +42,8 @@ fn groups(mesh: &Mesh) -> Vec<Group<'_>> {
         let faces = mesh.face_sets.get(name).into_iter().flatten().flatten();
         let elements = mesh.element_sets.get(name).into_iter().flatten();
         let brought: BTreeSet<u32> = faces.chain(elements.flat_map(|&e| mesh.element(e as usize))).copied().collect();
-        let left: Vec<(u32, Vec<u32>)> =
-            nodes.iter().filter(|node| !brought.contains(node)).map(|&node| (POINT, vec![node])).collect();
+        let left: Vec<(CellKind, Vec<u32>)> =
+            nodes.iter().filter(|node| !brought.contains(node)).map(|&node| (CellKind::Point, vec![node])).collect();
         if !left.is_empty() {
             all.push(Group { name, dimension: 0, cells: left, elements: &[] });
         }
@@ -100,18 +93,18 @@ fn cell_count(mesh: &Mesh, groups: &[Group<'_>]) -> usize {
 }
 
 fn write_element(file: &mut BufWriter<File>, mesh: &Mesh, row: usize, group: usize) -> Result<()> {
-    let kind = if row < mesh.tets.len() { TET } else { HEX };
-    write_cell(file, mesh, (mesh.element_ids.of(row), kind, group), mesh.element(row))
+    write_cell(file, mesh, (mesh.element_ids.of(row), mesh.cells.kind(row), group), mesh.element(row))
 }
 
 fn write_cell(
     file: &mut BufWriter<File>,
     mesh: &Mesh,
-    (number, kind, group): (u64, u32, usize),
+    (number, kind, group): (u64, CellKind, usize),
     rows: &[u32],
 ) -> Result<()> {
-    write!(file, "{number} {kind} 2 {group} {group}")?;
-    for &row in rows {
+    let listing = &kind.topology().gmsh;
+    write!(file, "{number} {} 2 {group} {group}", listing.number)?;
+    for row in listing.write(rows) {
         write!(file, " {}", mesh.point_ids.of(row as usize))?;
     }
     writeln!(file)

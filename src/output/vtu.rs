@@ -2,6 +2,8 @@
 //! itself.
 
 use super::{OutputError, replace};
+use crate::mesh::topology::Listing;
+use crate::mesh::{CellKind, Cells};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use glam::DVec3;
@@ -16,13 +18,11 @@ pub struct Frame<'a> {
     pub time: f64,
     /// Rest positions (m), one row a point.
     pub points: &'a [DVec3],
-    /// Tetrahedra: rows of `points`, VTK order.
-    pub tets: &'a [[u32; 4]],
-    /// Hexahedra: rows of `points`, VTK order.
-    pub hexes: &'a [[u32; 8]],
+    /// Cells by rows of `points`.
+    pub cells: &'a Cells,
     /// One row a point.
     pub point_arrays: Vec<Array<'a>>,
-    /// One row a cell: tetrahedra first, then hexahedra.
+    /// One row a cell.
     pub cell_arrays: Vec<Array<'a>>,
 }
 
@@ -64,8 +64,6 @@ impl<'a> Values<'a> {
 const BLOCK: usize = 1 << 18;
 /// Room for `offset="..."` with every number that fits in 64 bits.
 const OFFSET_ROOM: usize = 29;
-const VTK_TETRA: u8 = 10;
-const VTK_HEXAHEDRON: u8 = 12;
 
 /// Writes a frame; the file appears when it is complete. Not more than one array is held as a copy.
 pub fn write(path: &Path, frame: &Frame<'_>) -> Result<(), OutputError> {
@@ -77,7 +75,7 @@ pub fn write(path: &Path, frame: &Frame<'_>) -> Result<(), OutputError> {
 
 /// A file that ParaView would stumble over is not written.
 fn check(path: &Path, frame: &Frame<'_>) -> Result<(), OutputError> {
-    let cells = frame.tets.len() + frame.hexes.len();
+    let cells = frame.cells.len();
     let arrays = frame.point_arrays.iter().map(|array| (array, frame.points.len()));
     for (array, rows) in arrays.chain(frame.cell_arrays.iter().map(|array| (array, cells))) {
         let (_, found, _) = array.values.parts();
@@ -86,9 +84,8 @@ fn check(path: &Path, frame: &Frame<'_>) -> Result<(), OutputError> {
             return Err(OutputError::ArrayLength { path: path.to_path_buf(), array, found, rows, components });
         }
     }
-    let corners = frame.tets.as_flattened().iter().chain(frame.hexes.as_flattened());
-    match corners.max() {
-        Some(&point) if point as usize >= frame.points.len() => {
+    match frame.cells.all_nodes().max() {
+        Some(point) if point as usize >= frame.points.len() => {
             Err(OutputError::NoSuchPoint { path: path.to_path_buf(), point, points: frame.points.len() })
         }
         _ => Ok(()),
@@ -112,14 +109,27 @@ impl Writer<'_> {
         for bytes in arrays.chain([bytemuck::cast_slice(frame.points)]) {
             places.push(self.array(bytes)?);
         }
-        let (long, corners) = (needs_long(frame), frame.tets.as_flattened().iter().chain(frame.hexes.as_flattened()));
-        let ends = (0..frame.tets.len()).map(|row| 4 * (row + 1));
-        let first = 4 * frame.tets.len();
-        let ends = ends.chain((0..frame.hexes.len()).map(|row| first + 8 * (row + 1)));
-        places.push(self.array(&integers(corners.map(|&corner| i64::from(corner)), long))?);
-        places.push(self.array(&integers(ends.map(|end| end as i64), long))?);
-        let mut types = vec![VTK_TETRA; frame.tets.len()];
-        types.resize(frame.tets.len() + frame.hexes.len(), VTK_HEXAHEDRON);
+        let (cells, long) = (frame.cells, needs_long(frame));
+        let mut nodes = Integers::with_capacity(node_count(cells), long);
+        for (kind, _, own) in cells.blocks() {
+            let listing = listing(kind);
+            match listing.keeps_order() {
+                true => own.iter().for_each(|&node| nodes.push(node.into())),
+                false => own
+                    .chunks_exact(kind.node_count())
+                    .for_each(|cell| listing.write(cell).for_each(|node| nodes.push(node.into()))),
+            }
+        }
+        places.push(self.array(&nodes.bytes)?);
+        drop(nodes);
+        let (mut ends, mut end) = (Integers::with_capacity(cells.len(), long), 0);
+        for (_, nodes) in cells {
+            end += nodes.len() as i64;
+            ends.push(end);
+        }
+        places.push(self.array(&ends.bytes)?);
+        drop(ends);
+        let types: Vec<u8> = cells.iter().map(|(kind, _)| listing(kind).number).collect();
         places.push(self.array(&types)?);
         self.file.write_all(b"\n  </AppendedData>\n</VTKFile>\n")?;
         for (at, place) in self.offsets.iter().zip(places) {
@@ -131,7 +141,7 @@ impl Writer<'_> {
 
     fn head(&mut self, frame: &Frame<'_>) -> std::io::Result<()> {
         let order = if cfg!(target_endian = "little") { "LittleEndian" } else { "BigEndian" };
-        let (points, cells) = (frame.points.len(), frame.tets.len() + frame.hexes.len());
+        let (points, cells) = (frame.points.len(), frame.cells.len());
         let integer = if needs_long(frame) { "Int64" } else { "Int32" };
         write!(
             self.file,
@@ -193,13 +203,34 @@ fn compress(block: &[u8]) -> std::io::Result<Vec<u8>> {
 
 /// Whether 32 bits are too few for a corner's number or the count of corners.
 fn needs_long(frame: &Frame<'_>) -> bool {
-    frame.points.len().max(4 * frame.tets.len() + 8 * frame.hexes.len()) > i32::MAX as usize
+    frame.points.len().max(node_count(frame.cells)) > i32::MAX as usize
 }
 
-fn integers(values: impl Iterator<Item = i64>, long: bool) -> Vec<u8> {
-    if long {
-        values.flat_map(i64::to_ne_bytes).collect()
-    } else {
-        values.flat_map(|v| (v as i32).to_ne_bytes()).collect()
+/// Nodes of all cells.
+fn node_count(cells: &Cells) -> usize {
+    cells.kinds().map(|(kind, count)| kind.node_count() * count).sum()
+}
+
+/// How VTK lists cells of a kind.
+fn listing(kind: CellKind) -> &'static Listing {
+    &kind.topology().vtk[0]
+}
+
+/// Whole numbers of 32 or 64 bits as they stand in a file.
+struct Integers {
+    bytes: Vec<u8>,
+    long: bool,
+}
+
+impl Integers {
+    fn with_capacity(count: usize, long: bool) -> Self {
+        Self { bytes: Vec::with_capacity(count * if long { 8 } else { 4 }), long }
+    }
+
+    fn push(&mut self, value: i64) {
+        match self.long {
+            true => self.bytes.extend_from_slice(&value.to_ne_bytes()),
+            false => self.bytes.extend_from_slice(&(value as i32).to_ne_bytes()),
+        }
     }
 }

@@ -1,6 +1,8 @@
 //! Reads one frame of a series: a VTU file as [`crate::output::Series`] writes it (appended raw data in zlib blocks).
 
 use super::RenderError;
+use crate::mesh::topology::Listing;
+use crate::mesh::{CellKind, Cells};
 use flate2::read::ZlibDecoder;
 use glam::Vec3;
 use std::fs;
@@ -12,7 +14,7 @@ use std::path::{Path, PathBuf};
 pub enum Place {
     /// One row a point.
     Points,
-    /// One row a cell: tetrahedra first, then hexahedra.
+    /// One row a cell.
     Cells,
     /// Points, corners and kinds of the mesh itself.
     Mesh,
@@ -123,26 +125,44 @@ impl FrameFile {
         Ok(self.floats(entry)?.chunks_exact(3).map(Vec3::from_slice).collect())
     }
 
-    /// The corners of the cells, one cell after the other, and how many tetrahedra there are.
-    pub fn corners(&self) -> Result<(Vec<u32>, usize), RenderError> {
+    /// The cells.
+    pub fn cells(&self) -> Result<Cells, RenderError> {
         let mesh = |name: &str| {
             let missing = || RenderError::damaged(&self.path, format!("the array {name} is missing"));
             self.entry(Place::Mesh, name).ok_or_else(missing)
         };
         let kinds: Vec<[u8; 1]> = self.unpack(mesh("types")?, self.cells)?;
-        let tets = kinds.iter().take_while(|kind| **kind == [10]).count();
-        if kinds[tets..].iter().any(|kind| *kind != [12]) {
-            return Err(self.damaged(mesh("types")?, "names cells other than tetrahedra and, after them, hexahedra"));
-        }
-        let (entry, count) = (mesh("connectivity")?, 4 * tets + 8 * (self.cells - tets));
+        let run = |run: &[[u8; 1]]| {
+            let (kind, listing) = CellKind::of_vtk(run[0][0]).ok().filter(|of| of.0.topology().solid.is_some())?;
+            Some((kind, listing, run.len()))
+        };
+        let runs = kinds.chunk_by(|a, b| a == b).map(run).collect::<Option<Vec<(CellKind, &Listing, usize)>>>();
+        let Some(runs) = runs.filter(|runs| runs.is_sorted_by_key(|of| of.0)) else {
+            let solids: Vec<&str> = CellKind::solids().map(|(kind, _)| kind.topology().plural).collect();
+            let what = format!("names cells other than {}", solids.join(" and, after them, "));
+            return Err(self.damaged(mesh("types")?, &what));
+        };
+        let (entry, count) =
+            (mesh("connectivity")?, runs.iter().map(|(kind, _, cells)| kind.node_count() * cells).sum());
         let corners: Vec<u32> = match entry.kind.as_str() {
             "Int32" => self.unpack(entry, count)?.into_iter().map(|bytes| i32::from_ne_bytes(bytes) as u32).collect(),
             _ => self.unpack(entry, count)?.into_iter().map(|bytes| i64::from_ne_bytes(bytes) as u32).collect(),
         };
-        match corners.iter().all(|&corner| (corner as usize) < self.points) {
-            true => Ok((corners, tets)),
-            false => Err(self.damaged(entry, "names points that do not exist")),
+        if corners.iter().any(|&corner| corner as usize >= self.points) {
+            return Err(self.damaged(entry, "names points that do not exist"));
         }
+        let (mut cells, mut rest) = (Cells::default(), &corners[..]);
+        for (kind, listing, count) in runs {
+            let (listed, behind) = rest.split_at(count * kind.node_count());
+            match listing.keeps_order() {
+                true => cells.extend_kind(kind, listed.iter().copied()),
+                false => {
+                    cells.extend_kind(kind, listed.chunks_exact(kind.node_count()).flat_map(|cell| listing.read(cell)));
+                }
+            }
+            rest = behind;
+        }
+        Ok(cells)
     }
 
     /// Unpacks an array of `count` values of `N` bytes.

@@ -3,8 +3,8 @@
 
 use super::RenderError;
 use super::frame::{FrameFile, Place};
-use super::section::corners_of;
-use super::surface::HEX;
+use crate::mesh::topology::{Face, MOST_NODES};
+use crate::mesh::{CellKind, Cells};
 use glam::Vec3;
 use std::collections::HashMap;
 
@@ -32,7 +32,7 @@ impl Averages {
     pub fn new(
         frame: &FrameFile,
         rest: &[Vec3],
-        (corners, tets): (&[u32], usize),
+        cells: &Cells,
         values: &[f32],
         there: impl Fn(usize) -> bool,
     ) -> Result<Averages, RenderError> {
@@ -43,8 +43,8 @@ impl Averages {
         let mut averages =
             Averages { material, first: vec![(NONE, Sum::default()); rest.len()], others: HashMap::new() };
         for (cell, value) in values.iter().enumerate().filter(|(cell, _)| there(*cell)) {
-            let corners = corners_of(corners, tets, cell);
-            let weight = f64::from(volume(corners, rest).max(f32::MIN_POSITIVE));
+            let corners = cells.nodes(cell);
+            let weight = f64::from(volume(cells.kind(cell), corners, rest).max(f32::MIN_POSITIVE));
             for node in corners {
                 averages.add(*node, averages.material[cell], Sum { value: weight * f64::from(*value), weight });
             }
@@ -71,17 +71,18 @@ impl Averages {
 }
 
 /// The volume of a cell (m³), as pyramids over its faces.
-fn volume(corners: &[u32], points: &[Vec3]) -> f32 {
+fn volume(kind: CellKind, corners: &[u32], points: &[Vec3]) -> f32 {
     let point = |row: usize| points[corners[row] as usize];
-    if corners.len() == 4 {
+    if kind == CellKind::Tet4 {
         return (point(1) - point(0)).cross(point(2) - point(0)).dot(point(3) - point(0)).abs() / 6.0;
     }
-    let middle = (0..8).map(point).sum::<Vec3>() / 8.0;
-    let pyramid = |face: &[usize; 4]| {
-        let [a, b, c, d] = face.map(|corner| point(corner) - middle);
+    let middle = (0..corners.len()).map(point).sum::<Vec3>() / corners.len() as f32;
+    let rows: [usize; MOST_NODES] = std::array::from_fn(|row| row);
+    let pyramid = |face: &Face| {
+        let [a, b, c, d] = face.corners(&rows).map(|corner| point(corner) - middle);
         (c - a).cross(d - b).dot(a + b + c + d) / 24.0
     };
-    HEX.iter().map(pyramid).sum::<f32>().abs()
+    kind.topology().faces.iter().map(pyramid).sum::<f32>().abs()
 }
 
 #[cfg(test)]
@@ -93,8 +94,8 @@ mod tests {
     fn volumes_are_those_of_the_shape() {
         let points = [(0, 0, 0), (2, 0, 0), (2, 3, 0), (0, 3, 0), (0, 0, 4), (2, 0, 4), (2, 3, 4), (0, 3, 4)];
         let points = points.map(|(x, y, z)| Vec3::new(x as f32, y as f32, z as f32));
-        assert!((volume(&[0, 1, 2, 3, 4, 5, 6, 7], &points) - 24.0).abs() < 1e-4);
-        assert!((volume(&[0, 1, 3, 4], &points) - 4.0).abs() < 1e-5);
+        assert!((volume(CellKind::Hex8, &[0, 1, 2, 3, 4, 5, 6, 7], &points) - 24.0).abs() < 1e-4);
+        assert!((volume(CellKind::Tet4, &[0, 1, 3, 4], &points) - 4.0).abs() < 1e-5);
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! Where a plane cuts cells: polygons that close them.
 
 use super::plane::Plane;
-use super::surface::HEX;
+use crate::mesh::CellKind;
+use crate::mesh::topology::MOST_NODES;
 use glam::Vec3;
 
 /// A cut through some cells, as triangles.
@@ -25,17 +26,17 @@ type Corner = (Vec3, f32, f32);
 const ALONE: [[usize; 3]; 4] = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]];
 
 impl Section {
-    /// Adds a tetrahedron or a hexahedron with its corners in VTK's order. A hexahedron is taken as 24 tetrahedra about
-    /// its middle and those of its faces, which is how faces are drawn: the cut of a cell meets those of its neighbours
-    /// and the surface without a gap.
-    pub fn add(&mut self, plane: &Plane, points: &[Vec3], values: &[f32]) {
+    /// Adds a cell with its nodes. One with quadrilaterals is taken as tetrahedra about its middle and those of its
+    /// faces, which is how faces are drawn: the cut of a cell meets those of its neighbours and the surface without a
+    /// gap.
+    pub fn add(&mut self, plane: &Plane, kind: CellKind, points: &[Vec3], values: &[f32]) {
         let corner = |row: usize| (points[row], plane.beyond(points[row]), values[row]);
         let sides = (0..points.len()).map(|row| plane.beyond(points[row]));
         let (low, high) = sides.fold((f32::MAX, f32::MIN), |(low, high), beyond| (low.min(beyond), high.max(beyond)));
         if !(low <= 0.0 && high > 0.0) {
             return;
         }
-        if points.len() == 4 {
+        if kind == CellKind::Tet4 {
             self.tetrahedron([0, 1, 2, 3].map(corner), [true; 4]);
             return;
         }
@@ -44,11 +45,12 @@ impl Section {
             let place = rows.iter().map(|row| points[*row]).sum::<Vec3>() * share;
             (place, plane.beyond(place), rows.iter().map(|row| values[*row]).sum::<f32>() * share)
         };
-        let centre = mean(&[0, 1, 2, 3, 4, 5, 6, 7]);
-        for face in &HEX {
+        let all: [usize; MOST_NODES] = std::array::from_fn(|row| row);
+        let centre = mean(&all[..points.len()]);
+        for face in kind.topology().faces.iter().map(|face| face.nodes) {
             let middle = mean(face);
-            for side in 0..4 {
-                let (a, b) = (corner(face[side]), corner(face[(side + 1) % 4]));
+            for side in 0..face.len() {
+                let (a, b) = (corner(face[side]), corner(face[(side + 1) % face.len()]));
                 // only the side opposite to the cell's middle lies on a face of it
                 self.tetrahedron([centre, middle, a, b], [true, false, false, false]);
             }
@@ -94,14 +96,6 @@ impl Section {
     }
 }
 
-/// The corners of cells of which `tets` are tetrahedra and come first.
-pub fn corners_of(corners: &[u32], tets: usize, cell: usize) -> &[u32] {
-    match cell.checked_sub(tets) {
-        None => &corners[4 * cell..][..4],
-        Some(hex) => &corners[4 * tets + 8 * hex..][..8],
-    }
-}
-
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -131,7 +125,8 @@ mod tests {
             true => six.iter().map(|tet| tet.iter().map(|&row: &usize| points[row]).collect()).collect(),
         };
         for cell in cells {
-            section.add(&plane, &cell, &cell.iter().map(value).collect::<Vec<_>>());
+            let kind = if tets { CellKind::Tet4 } else { CellKind::Hex8 };
+            section.add(&plane, kind, &cell, &cell.iter().map(value).collect::<Vec<_>>());
         }
         for (point, found) in section.vertices.iter().zip(&section.values) {
             assert!((value(point) - found).abs() < 1e-5, "{point}: {found}");

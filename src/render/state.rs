@@ -12,8 +12,10 @@ use super::picture::{Colouring, Layer, Lines};
 use super::plane::Plane;
 use super::range::Seen;
 use super::raster::Finish;
-use super::section::{Section, corners_of};
+use super::section::Section;
 use super::surface::{Faces, Outer, Skin};
+use crate::mesh::Cells;
+use crate::mesh::topology::MOST_NODES;
 use crate::output::WHOLE;
 use crate::scene::schema::Colours;
 use glam::Vec3;
@@ -34,8 +36,7 @@ pub struct Reader {
 }
 
 struct Mesh {
-    corners: Vec<u32>,
-    tets: usize,
+    cells: Cells,
     faces: Faces,
     points: usize,
 }
@@ -65,12 +66,8 @@ struct Part {
 
 impl Mesh {
     fn read(frame: &FrameFile) -> Result<Mesh, RenderError> {
-        let (corners, tets) = frame.corners()?;
-        Ok(Mesh { faces: Faces::new(&corners, tets), corners, tets, points: frame.points })
-    }
-
-    fn cells(&self) -> usize {
-        self.tets + (self.corners.len() - 4 * self.tets) / 8
+        let cells = frame.cells()?;
+        Ok(Mesh { faces: Faces::new(&cells), cells, points: frame.points })
     }
 }
 
@@ -113,7 +110,7 @@ impl Reader {
     /// Reads a frame.
     pub fn read(&mut self, path: &Path) -> Result<State, RenderError> {
         let frame = FrameFile::open(path)?;
-        if (self.mesh.points, self.mesh.cells()) != (frame.points, frame.cells) {
+        if (self.mesh.points, self.mesh.cells.len()) != (frame.points, frame.cells) {
             // elements have gone, or it is another mesh
             self.mesh = Mesh::read(&frame)?;
         }
@@ -134,8 +131,7 @@ impl Reader {
         let source = match self.field.place {
             Place::Cells if self.smooth => {
                 let there = |cell: usize| group(cell as u32).is_some();
-                let (corners, tets) = (&self.mesh.corners, self.mesh.tets);
-                Source::Smooth(Averages::new(&frame, &rest, (corners, tets), &values, there)?)
+                Source::Smooth(Averages::new(&frame, &rest, &self.mesh.cells, &values, there)?)
             }
             Place::Cells => Source::Cells(values),
             _ => Source::Points(values),
@@ -173,11 +169,10 @@ impl Reader {
     ) -> Vec<(Finish, Section)> {
         let mut sections: Vec<(Finish, Section)> = Vec::new();
         let Some(plane) = &self.plane else { return sections };
-        for cell in 0..self.mesh.cells() {
+        for (cell, (kind, corners)) in self.mesh.cells.iter().enumerate() {
             let Some(finish) = group(cell as u32).and_then(|group| self.groups.finish(group, false)) else { continue };
-            let corners = corners_of(&self.mesh.corners, self.mesh.tets, cell);
-            let mut places = [Vec3::ZERO; 8];
-            let mut values = [0.0; 8];
+            let mut places = [Vec3::ZERO; MOST_NODES];
+            let mut values = [0.0; MOST_NODES];
             for (row, corner) in corners.iter().enumerate() {
                 places[row] = vertices[*corner as usize];
                 values[row] = source.value(cell, *corner);
@@ -186,7 +181,7 @@ impl Reader {
                 sections.push((finish, Section::default()));
                 sections.len() - 1
             });
-            sections[place].1.add(plane, &places[..corners.len()], &values[..corners.len()]);
+            sections[place].1.add(plane, kind, &places[..corners.len()], &values[..corners.len()]);
         }
         sections
     }

@@ -1,5 +1,6 @@
 //! The outer faces of what is left of a mesh.
 
+use crate::mesh::Cells;
 use rayon::prelude::*;
 
 /// All faces of a mesh with the one or two cells at each.
@@ -18,24 +19,13 @@ struct Face {
 
 const NONE: u32 = u32::MAX;
 
-/// Faces seen from outside, VTK's order of corners.
-pub const TET: [[usize; 4]; 4] = [[0, 2, 1, 1], [0, 1, 3, 3], [1, 2, 3, 3], [2, 0, 3, 3]];
-/// The same of a hexahedron.
-pub const HEX: [[usize; 4]; 6] = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
-
 impl Faces {
-    /// The faces of a mesh: `corners` holds four a tetrahedron, then eight a hexahedron.
-    pub fn new(corners: &[u32], tets: usize) -> Faces {
-        let (tet_corners, hex_corners) = corners.split_at(4 * tets);
-        let mut faces = Vec::with_capacity(corners.len());
-        let mut add = |cell: usize, corners: &[u32], face: &[usize; 4]| {
-            faces.push(Face { points: face.map(|corner| corners[corner]), cell: cell as u32, beyond: NONE });
-        };
-        for (cell, corners) in tet_corners.chunks_exact(4).enumerate() {
-            TET.iter().for_each(|face| add(cell, corners, face));
-        }
-        for (cell, corners) in hex_corners.chunks_exact(8).enumerate() {
-            HEX.iter().for_each(|face| add(tets + cell, corners, face));
+    /// The faces of some cells.
+    pub fn new(cells: &Cells) -> Faces {
+        let mut faces = Vec::with_capacity(cells.kinds().map(|(kind, n)| kind.topology().faces.len() * n).sum());
+        for (cell, (kind, nodes)) in (0..).zip(cells.iter()) {
+            let own = kind.topology().faces.iter();
+            faces.extend(own.map(|face| Face { points: drawn(face.corners(nodes), nodes), cell, beyond: NONE }));
         }
         faces.par_sort_unstable_by_key(|face| (key(face.points), face.cell));
         faces.dedup_by(|later, first| {
@@ -105,6 +95,16 @@ impl Skin {
     }
 }
 
+/// The points of a face in the order in which they are drawn: a triangle at a cell's last node ends in it, as VTK has
+/// them.
+fn drawn([a, b, c, d]: [u32; 4], nodes: &[u32]) -> [u32; 4] {
+    match nodes.last() {
+        Some(&last) if c == d && a == last => [b, c, a, a],
+        Some(&last) if c == d && b == last => [c, a, b, b],
+        _ => [a, b, c, d],
+    }
+}
+
 /// The same for all faces with the same points.
 fn key(points: [u32; 4]) -> [u32; 4] {
     let mut key = points;
@@ -122,6 +122,7 @@ fn key(points: [u32; 4]) -> [u32; 4] {
 mod tests {
     #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
     use super::*;
+    use crate::mesh::CellKind;
     use glam::Vec3;
 
     #[test]
@@ -130,7 +131,11 @@ mod tests {
         let points: Vec<Vec3> =
             (0..12).map(|row| Vec3::new((row / 4) as f32, (row / 2 % 2) as f32, (row % 2) as f32)).collect();
         let cube = |x: u32| [0, 4, 6, 2, 1, 5, 7, 3].map(|corner| 4 * x + corner);
-        let faces = Faces::new(&[cube(0), cube(1)].concat(), 0);
+        let cells = |cubes: &[u32]| {
+            let cubes: Vec<[u32; 8]> = cubes.iter().map(|&x| cube(x)).collect();
+            Cells::of(CellKind::Hex8, &cubes).unwrap()
+        };
+        let faces = Faces::new(&cells(&[0, 1]));
         let surface = |alive: [f32; 2]| faces.surface(|cell| (alive[cell as usize] != 0.0).then_some(0), None);
         assert_eq!(surface([1.0; 2]).len(), 10);
         assert!(surface([1.0; 2]).iter().all(|face| !face.bared));
@@ -145,14 +150,25 @@ mod tests {
         }
         assert_eq!(surface([0.0, 0.0]).len(), 0);
         // files from which removed cells are left out: the surface of before tells
-        let (skin, left) = (faces.skin(), Faces::new(&cube(0), 0));
+        let (skin, left) = (faces.skin(), Faces::new(&cells(&[0])));
         let bared = |skin| left.surface(|_| Some(0), skin).iter().filter(|face| face.bared).count();
         assert_eq!((bared(Some(&skin)), bared(None)), (1, 0));
     }
 
+    fn two_tetrahedra() -> Cells {
+        Cells::of(CellKind::Tet4, &[[0, 1, 2, 3], [1, 4, 2, 3]]).unwrap()
+    }
+
+    #[test]
+    fn faces_of_a_tetrahedron_are_drawn_as_vtk_lists_them() {
+        let one = Cells::of(CellKind::Tet4, &[[0, 1, 2, 3]]).unwrap();
+        let faces: Vec<[u32; 4]> = Faces::new(&one).surface(|_| Some(0), None).iter().map(|face| face.points).collect();
+        assert_eq!(faces, [[0, 2, 1, 1], [0, 1, 3, 3], [2, 0, 3, 3], [1, 2, 3, 3]]);
+    }
+
     #[test]
     fn a_face_shared_by_two_tetrahedra_is_inside() {
-        let faces = Faces::new(&[0, 1, 2, 3, 1, 4, 2, 3], 2);
+        let faces = Faces::new(&two_tetrahedra());
         let outer = faces.surface(|_| Some(0), None);
         assert_eq!(outer.len(), 6);
         assert!(outer.iter().all(|face| face.points[2] == face.points[3]));
@@ -161,7 +177,7 @@ mod tests {
 
     #[test]
     fn a_face_between_two_groups_is_that_of_the_lower_one() {
-        let faces = Faces::new(&[0, 1, 2, 3, 1, 4, 2, 3], 2);
+        let faces = Faces::new(&two_tetrahedra());
         for lower in 0..2 {
             let outer = faces.surface(|cell| Some(u8::from(cell != lower)), None);
             assert_eq!((outer.len(), outer.iter().filter(|face| face.group == 0).count()), (7, 4));

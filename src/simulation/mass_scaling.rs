@@ -3,7 +3,7 @@
 
 use crate::assembly::{alike_in_any_precision, author_of};
 use crate::components::*;
-use crate::evaluation::{lane_place, node_count, rest_volume};
+use crate::evaluation::{lane_place, mass_shares, rest_volume};
 use bevy_ecs::prelude::*;
 
 /// Halvings of the range in which the step is sought for which so much mass may be added.
@@ -157,12 +157,12 @@ fn spread(world: &World, entity: Entity, nodes: &mut [f64]) -> f64 {
         world.get::<RestShape>(entity),
     );
     let (Some(block), Some(connectivity), Some(added), Some(shape)) = parts else { return 0.0 };
-    let corners = node_count(block.kind);
+    let shares = mass_shares(block.kind);
     let mut sum = 0.0;
     for row in (0..block.count).filter(|&row| added.0[row] > 0.0 && rest_volume(block, row, shape) > 0.0) {
         sum += added.0[row];
-        for corner in 0..corners {
-            nodes[connectivity[lane_place(row, corners, corner)] as usize] += added.0[row] / corners as f64;
+        for (corner, share) in shares.iter().enumerate() {
+            nodes[connectivity[lane_place(row, shares.len(), corner)] as usize] += added.0[row] * share;
         }
     }
     sum

@@ -1,9 +1,10 @@
 //! A bound of all frequencies by nodes: as certain as that of the stiffest element, never a smaller step, and nearly as
 //! cheap.
 //!
-//! An element's bound says K_e ≤ ω_e² M_e, with the lumped mass m_e/n at each of its n nodes. Summed over all elements,
+//! An element's bound says K_e ≤ ω_e² M_e, with the lumped mass s_a m_e at its node a, s_a the node's share. Summed over
+//! all elements,
 //!
-//! xᵀKx ≤ Σ_e ω_e² m_e/n Σ_{a of e} |x_a|² = Σ_a |x_a|² Σ_{e at a} ω_e² m_e/n,
+//! xᵀKx ≤ Σ_e ω_e² m_e Σ_{a of e} s_a |x_a|² = Σ_a |x_a|² Σ_{e at a} ω_e² s_a m_e,
 //!
 //! so ω² of all is at most the largest mean of ω_e² over the elements that meet in a node, by the mass that each brings
 //! there. A sliver brings little: beside elements of usual size it counts for that much less. The same holds of what is
@@ -15,7 +16,7 @@ use super::mass_scaling::heavy_mass;
 use super::watch::Watched;
 use crate::assembly::undamped_square_frequencies;
 use crate::components::*;
-use crate::evaluation::{lane_place, node_count};
+use crate::evaluation::{lane_place, mass_shares};
 use bevy_ecs::prelude::*;
 use std::collections::BTreeMap;
 
@@ -35,12 +36,12 @@ impl NodalMeans {
         let (Some(block), Some(connectivity)) = (world.get::<Block>(entity), world.get::<Connectivity>(entity)) else {
             return;
         };
-        let (corners, count) = (node_count(block.kind), world.get::<Mass>(block.body).map_or(0, |mass| mass.len()));
+        let (shares, count) = (mass_shares(block.kind), world.get::<Mass>(block.body).map_or(0, |mass| mass.len()));
         let nodes = self.bodies.entry(block.body).or_insert_with(|| vec![(0.0, 0.0); count]);
         for (row, mass, number) in elements {
-            let share = mass / corners as f64;
-            for corner in 0..corners {
-                let (sum, all) = &mut nodes[connectivity[lane_place(row, corners, corner)] as usize];
+            for (corner, share) in shares.iter().enumerate() {
+                let share = mass * share;
+                let (sum, all) = &mut nodes[connectivity[lane_place(row, shares.len(), corner)] as usize];
                 *all += share;
                 *sum += share * number;
             }

@@ -31,13 +31,10 @@ impl Simulation {
             let alive = self.world.get::<Alive>(authoring.blocks[block as usize]);
             alive.is_none_or(|alive| alive[row as usize] == 1)
         };
-        let tets = authoring.tets.len();
-        let elements: Vec<usize> = (0..tets + authoring.hexes.len()).filter(there).collect();
-        let of_tets = elements.partition_point(|&element| element < tets);
+        let elements: Vec<usize> = (0..authoring.cells.len()).filter(there).collect();
         let left = Mesh {
             points: vec![glam::DVec3::ZERO; authoring.node_rows.len()],
-            tets: elements[..of_tets].iter().map(|&e| authoring.tets[e]).collect(),
-            hexes: elements[of_tets..].iter().map(|&e| authoring.hexes[e - tets]).collect(),
+            cells: authoring.cells.select(elements.iter().copied(), |node| node),
             ..Mesh::default()
         };
         let numbered = |face: SurfaceFace| SurfaceFace { element: elements[face.element as usize] as u32, ..face };

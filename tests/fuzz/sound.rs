@@ -49,10 +49,7 @@ fn inside_out(simulation: &mut Simulation, body: &str, rest: &[DVec3], moved: &[
         if gone || inversion == Some(Inversion::Recover) {
             continue;
         }
-        let corners: &[u32] = match node_count(block.kind) {
-            4 => &authoring.tets[element],
-            _ => &authoring.hexes[element - authoring.tets.len()],
-        };
+        let corners = authoring.cells.nodes(element);
         let of = |numbers: &[DVec3]| corners.iter().map(|&node| numbers[node as usize]).collect::<Vec<_>>();
         let after = moved;
         let (moved, least) = match inversion {

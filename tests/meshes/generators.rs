@@ -5,8 +5,8 @@
 
 use glam::DVec3;
 use sinew::mesh::generators::{box_mesh, cylinder_mesh, ellipsoid_mesh, hexahedron_mesh, lens_mesh, tube_mesh};
-use sinew::mesh::measure::{hex_determinants, hex_longest_edge, tet_longest_edge, tet_smallest_altitude};
-use sinew::mesh::{ElementKind, Mesh, MeshError};
+use sinew::mesh::measure::longest_edge;
+use sinew::mesh::{CellKind, ElementKind, Mesh, MeshError};
 use std::f64::consts::PI;
 
 const KINDS: [ElementKind; 2] = [ElementKind::Tet4, ElementKind::Hex8];
@@ -64,12 +64,15 @@ fn assert_closed(mesh: &Mesh, what: &str) {
 
 /// The thinnest tetrahedron (altitude against edge), or the smallest corner determinant against edge³ of hexahedra.
 fn worst_shape(mesh: &Mesh) -> f64 {
-    let tets =
-        (0..mesh.tets.len()).map(|row| mesh.tet_corners(row)).map(|p| tet_smallest_altitude(p) / tet_longest_edge(p));
-    let hexes = (0..mesh.hexes.len())
-        .map(|row| mesh.hex_corners(row))
-        .map(|p| hex_determinants(p).into_iter().fold(f64::MAX, f64::min) / hex_longest_edge(p).powi(3));
-    tets.chain(hexes).fold(f64::MAX, f64::min)
+    let shape = |(kind, nodes): (CellKind, &[u32])| {
+        let p: Vec<DVec3> = nodes.iter().map(|&node| mesh.points[node as usize]).collect();
+        let (solid, edge) = (kind.topology().solid.unwrap(), longest_edge(kind, &p));
+        match kind {
+            CellKind::Tet4 => (solid.smallest_altitude)(&p) / edge,
+            _ => solid.corner_volumes(&p).fold(solid.middle_volume(&p), f64::min) / edge.powi(3),
+        }
+    };
+    mesh.cells.iter().map(shape).fold(f64::MAX, f64::min)
 }
 
 #[test]
@@ -157,7 +160,8 @@ fn surface_faces_come_in_the_order_of_their_elements() {
     assert_eq!(surface.len(), 54);
     assert!(surface.is_sorted_by_key(|face| face.element));
     for face in &surface {
-        let centre: DVec3 = mesh.hexes[face.element as usize].iter().map(|&row| mesh.points[row as usize] / 8.0).sum();
+        let centre: DVec3 =
+            mesh.element(face.element as usize).iter().map(|&row| mesh.points[row as usize] / 8.0).sum();
         assert!(area_vector(&mesh, face.nodes).dot(mesh.points[face.nodes[0] as usize] - centre) > 0.0, "outwards");
     }
 }
@@ -197,7 +201,7 @@ fn a_hexahedron_fills_its_corners_whatever_the_cells() {
         .map(|i| DVec3::new([0.0, 1.0, 1.0, 0.0][i % 4], [0.0, 0.0, 1.0, 1.0][i % 4], [0.0, 1.0][i / 4]));
     let (block, cube) = (hexahedron_mesh(unit, (3, 2, 4), KINDS[0]), box_mesh(DVec3::ONE, (3, 2, 4), KINDS[0]));
     let (block, cube) = (block.unwrap(), cube.unwrap());
-    assert_eq!(block.tets, cube.tets);
+    assert_eq!(block.cells, cube.cells);
     assert!(block.points.iter().zip(&cube.points).all(|(a, b)| a.distance(*b) < 1e-15), "a box is a hexahedron");
 }
 

@@ -1,6 +1,7 @@
 //! Meshes: generators, readers, soundness, placement and surface.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod cells;
 mod generators;
 mod hostile;
 mod placement;
@@ -10,4 +11,5 @@ mod samples_vtk;
 mod shared;
 mod shipped;
 mod soundness;
+mod topology;
 mod written;

@@ -1,7 +1,7 @@
 //! Every reader against the same small mesh, and against files that are wrong in one way each.
 
 use crate::samples::{self, Form, number};
-use sinew::mesh::{Ids, Mesh, MeshError, vtu};
+use sinew::mesh::{CellKind, Ids, Mesh, MeshError, vtu};
 
 /// Reads a file of that content.
 pub fn read(name: &str, bytes: &[u8]) -> Result<Mesh, MeshError> {
@@ -27,7 +27,8 @@ fn refusal(name: &str, bytes: &[u8], from: &str, to: &str) -> String {
 fn every_format_and_form_gives_the_same_mesh() {
     for (name, bytes) in samples::all() {
         let mesh = read(&name, &bytes).unwrap_or_else(|error| panic!("{error}"));
-        assert_eq!((&mesh.tets[..], &mesh.hexes[..]), (&[samples::TET][..], &[samples::HEX][..]), "{name}");
+        let cells: Vec<(CellKind, &[u32])> = mesh.cells.iter().collect();
+        assert_eq!(cells, [(CellKind::Tet4, &samples::TET[..]), (CellKind::Hex8, &samples::HEX)], "{name}");
         for (point, exact) in mesh.points.iter().zip(samples::POINTS) {
             assert_eq!(point.to_array(), exact, "{name}");
         }
@@ -77,8 +78,9 @@ fn pieces_of_a_vtu_file_are_joined() {
     let end = one.find("</Unstr").unwrap();
     let apart = one[start..end].replace("\n2\n0.5\n0.5\n", "\n3\n0.5\n0.5\n");
     let mesh = read("two.vtu", (one[..end].to_string() + &apart + &one[end..]).as_bytes()).unwrap();
-    assert_eq!((mesh.points.len(), mesh.tets.len(), mesh.hexes.len()), (18, 2, 2));
-    assert_eq!(mesh.tets[1], samples::TET.map(|row| row + 9));
+    let kinds: Vec<(CellKind, usize)> = mesh.cells.kinds().collect();
+    assert_eq!((mesh.points.len(), &kinds[..]), (18, &[(CellKind::Tet4, 2), (CellKind::Hex8, 2)][..]));
+    assert_eq!(mesh.element(1), samples::TET.map(|row| row + 9));
     assert_eq!(mesh.element_sets["region=7"], [2, 3]);
 }
 
@@ -86,7 +88,7 @@ fn pieces_of_a_vtu_file_are_joined() {
 fn voxels_become_hexahedra() {
     let text = String::from_utf8(samples::vtk(Form::Text, false)).unwrap();
     let text = text.replace("8\n0\n1\n2\n3\n4\n5\n6\n7\n", "8 0 1 3 2 4 5 7 6\n").replace("12\n10\n9\n", "11 10 9\n");
-    assert_eq!(read("voxel.vtk", text.as_bytes()).unwrap().hexes, [samples::HEX]);
+    assert_eq!(read("voxel.vtk", text.as_bytes()).unwrap().cells.of_kind(CellKind::Hex8).unwrap(), [samples::HEX]);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use crate::readers::read_turning;
 use glam::DVec3;
 use sinew::mesh::generators::box_mesh;
 use sinew::mesh::soundness::{Defect, Finding};
-use sinew::mesh::{ElementKind, Ids, Mesh};
+use sinew::mesh::{CellKind, ElementKind, Ids, Mesh};
 
 fn cube(kind: ElementKind) -> Mesh {
     box_mesh(DVec3::ONE, (2, 2, 2), kind).unwrap()
@@ -28,13 +28,13 @@ fn says(mesh: &Mesh, defect: Defect, ids: &[u64], text: &str) {
 fn inverted_elements_are_listed_with_their_volumes() {
     let mut mesh = cube(ElementKind::Tet4);
     mesh.element_ids = Ids::Named((100..148).collect());
-    mesh.tets[3].swap(0, 1);
-    mesh.tets[20].swap(2, 3);
+    mesh.cells.nodes_mut(3).swap(0, 1);
+    mesh.cells.nodes_mut(20).swap(2, 3);
     let text = "2 inverted elements: 103 (volume -2.08e-2 m³), 120 (volume -2.08e-2 m³); list their nodes in the other order, \
                 or set flip_inverted: true";
     says(&mesh, Defect::Inverted, &[103, 120], text);
-    for tet in &mut mesh.tets {
-        tet.swap(0, 1);
+    for row in 0..mesh.cells.len() {
+        mesh.cells.nodes_mut(row).swap(0, 1);
     }
     assert!(
         error(&mesh).to_string().contains("46 inverted elements") && error(&mesh).to_string().contains(" and 36 more")
@@ -51,9 +51,9 @@ fn a_hexahedron_folded_at_one_corner_is_inverted() {
 #[test]
 fn flat_elements_are_refused() {
     let mut mesh = cube(ElementKind::Tet4);
-    let [a, b, _, _] = mesh.tets[0];
+    let [a, b, c, _] = mesh.cells.of_kind(CellKind::Tet4).unwrap()[0];
     mesh.points.push((mesh.points[a as usize] + mesh.points[b as usize]) / 2.0);
-    mesh.tets.push([a, b, mesh.tets[0][2], mesh.points.len() as u32 - 1]);
+    mesh.cells.push(CellKind::Tet4, [a, b, c, mesh.points.len() as u32 - 1]).unwrap();
     says(&mesh, Defect::Flat, &[48], "1 element without volume: 48 (volume 0.00e0 m³, longest edge 7.07e-1 m)");
 }
 
@@ -71,7 +71,7 @@ fn slivers_are_warned_of_worst_first() {
 #[test]
 fn wrong_rows_points_and_sets_are_each_named() {
     let mut mesh = cube(ElementKind::Hex8);
-    mesh.hexes[2][5] = 99;
+    mesh.cells.nodes_mut(2)[5] = 99;
     says(
         &mesh,
         Defect::OutOfRange,
@@ -79,10 +79,12 @@ fn wrong_rows_points_and_sets_are_each_named() {
         "1 element names a point that is not there: 2 (row 99); points have the rows 0 to 26",
     );
     let mut mesh = cube(ElementKind::Hex8);
-    mesh.hexes[2][5] = mesh.hexes[2][4];
+    let twice = mesh.element(2)[4];
+    mesh.cells.nodes_mut(2)[5] = twice;
     says(&mesh, Defect::RepeatedNode, &[2], "1 element names a point twice: 2 (point 12)");
     let mut mesh = cube(ElementKind::Tet4);
-    mesh.tets.push(mesh.tets[4]);
+    let again = mesh.cells.of_kind::<4>(CellKind::Tet4).unwrap()[4];
+    mesh.cells.push(CellKind::Tet4, again).unwrap();
     says(&mesh, Defect::RepeatedElement, &[48], "1 pair of elements with the same points: 4 and 48; keep one of each");
     let mut mesh = cube(ElementKind::Tet4);
     mesh.points[13].y = f64::NAN;
@@ -96,9 +98,10 @@ fn wrong_rows_points_and_sets_are_each_named() {
 #[test]
 fn all_findings_are_reported_at_once() {
     let mut mesh = cube(ElementKind::Tet4);
-    mesh.tets[0][0] = 1000;
-    mesh.tets[1].swap(0, 1);
-    mesh.tets[2][1] = mesh.tets[2][0];
+    mesh.cells.nodes_mut(0)[0] = 1000;
+    mesh.cells.nodes_mut(1).swap(0, 1);
+    let twice = mesh.element(2)[0];
+    mesh.cells.nodes_mut(2)[1] = twice;
     mesh.points.extend([mesh.points[0], DVec3::INFINITY]);
     let soundness = mesh.soundness();
     let defects: Vec<Defect> = soundness.errors.iter().map(|finding| finding.defect).collect();

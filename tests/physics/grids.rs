@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use sinew::Simulation;
-use sinew::mesh::ElementKind;
+use sinew::mesh::{CellKind, ElementKind};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -37,7 +37,7 @@ pub fn grid(cells: [usize; 3], kind: impl Fn(usize) -> ElementKind) -> Grid {
         for j in 0..cells[1] {
             for i in 0..cells[0] {
                 let corner = |bits: usize| at(i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2));
-                match kind(k).is_tetrahedron() {
+                match kind(k).cell() == CellKind::Tet4 {
                     false => grid.elements.push(HEX.map(corner).to_vec()),
                     true => grid.elements.extend(KUHN.map(|tet| tet.map(corner).to_vec())),
                 }

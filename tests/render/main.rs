@@ -5,6 +5,7 @@
 mod words;
 
 use glam::{DQuat, DVec3, Vec3};
+use sinew::mesh::{CellKind, Cells};
 use sinew::output::{Array, Folder, Frame, Series, Values};
 use sinew::render::{Colouring, Finish, Fit, Layer, Lines, Options, Picture, RenderError, Scale, View, draw, paint};
 use sinew::scene::schema;
@@ -14,8 +15,7 @@ use std::path::{Path, PathBuf};
 /// A bar along x, half of it hexahedra and half tetrahedra, that is twisted and bent and loses some elements.
 struct Bar {
     points: Vec<DVec3>,
-    tets: Vec<[u32; 4]>,
-    hexes: Vec<[u32; 8]>,
+    cells: Cells,
 }
 
 const CELLS: [u32; 3] = [24, 6, 8];
@@ -25,7 +25,7 @@ impl Bar {
     fn new() -> Bar {
         let [nx, ny, nz] = CELLS;
         let row = |x: u32, y: u32, z: u32| (x * (ny + 1) + y) * (nz + 1) + z;
-        let mut bar = Bar { points: Vec::new(), tets: Vec::new(), hexes: Vec::new() };
+        let mut bar = Bar { points: Vec::new(), cells: Cells::default() };
         for (x, y, z) in each([nx + 1, ny + 1, nz + 1]) {
             let counts = DVec3::new(nx.into(), ny.into(), nz.into());
             bar.points.push(DVec3::new(x.into(), y.into(), z.into()) / counts * SIZE);
@@ -34,10 +34,10 @@ impl Bar {
             let corners = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)];
             let c = corners.map(|(dx, dy, dz)| row(x + dx, y + dy, z + dz));
             if x < nx / 2 {
-                bar.hexes.push(c);
+                bar.cells.push(CellKind::Hex8, c).unwrap();
             } else {
                 let six = [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]];
-                bar.tets.extend(six.map(|tet| tet.map(|corner| c[corner])));
+                six.iter().for_each(|tet| bar.cells.push(CellKind::Tet4, tet.map(|corner: usize| c[corner])).unwrap());
             }
         }
         bar
@@ -48,8 +48,7 @@ impl Bar {
     }
 
     fn cells(&self) -> impl Iterator<Item = DVec3> {
-        let tets = self.tets.iter().map(|tet| self.centroid(tet));
-        tets.chain(self.hexes.iter().map(|hex| self.centroid(hex)))
+        self.cells.iter().map(|(_, nodes)| self.centroid(nodes))
     }
 
     /// Displacement at a share of the whole course.
@@ -83,8 +82,7 @@ impl Bar {
             let frame = Frame {
                 time: 0.02 * share,
                 points: &self.points,
-                tets: &self.tets,
-                hexes: &self.hexes,
+                cells: &self.cells,
                 point_arrays: vec![array("displacement", 3, Values::F32(&displacement))],
                 cell_arrays: vec![
                     array("von_mises", 1, Values::F32(&von_mises)),
@@ -319,8 +317,8 @@ fn a_run_that_broke_can_still_be_drawn() {
         displacement.iter_mut().take(bad).for_each(|value| *value = f32::NAN);
         displacement.iter_mut().skip(90).take(bad.min(30)).for_each(|value| *value = f32::INFINITY);
         let point_arrays = vec![Array { name: "displacement", components: 3, values: Values::F32(&displacement) }];
-        let (points, tets, hexes) = (&bar.points, &bar.tets, &bar.hexes);
-        series.write(&Frame { time, points, tets, hexes, point_arrays, cell_arrays: vec![] }).unwrap();
+        let (points, cells) = (&bar.points, &bar.cells);
+        series.write(&Frame { time, points, cells, point_arrays, cell_arrays: vec![] }).unwrap();
         let out = folder.join(format!("{time}.png"));
         let drawn = draw(&folder, &Options { field: Some("displacement".into()), ..options(out) }).unwrap();
         assert!(drawn.range.1 < 1.0, "{:?}", drawn.range);

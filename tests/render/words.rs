@@ -2,6 +2,7 @@
 
 use crate::read_png;
 use glam::{DVec3, Vec2, Vec3};
+use sinew::mesh::{CellKind, Cells};
 use sinew::output::{Array, Folder, Frame, Series, Values};
 use sinew::render::{Camera, Fit, Options, View, draw, stage};
 use sinew::scene::schema::{Colours, Cut, Opacity, Picture};
@@ -49,10 +50,13 @@ impl Run {
             let kept = self.removed.is_none_or(|(_, kept)| kept);
             let there: Vec<&(u32, u32, u32)> = places.iter().filter(|at| kept || !goes(at)).collect();
             let six = [[0, 1, 2, 6], [0, 2, 3, 6], [0, 3, 7, 6], [0, 7, 4, 6], [0, 4, 5, 6], [0, 5, 1, 6]];
-            let (mut tets, mut hexes) = (Vec::new(), Vec::new());
+            let mut cells = Cells::default();
             for &&(x, y, z) in &there {
                 let c = corner(x, y, z);
-                if self.tets { tets.extend(six.map(|tet| tet.map(|n: usize| c[n]))) } else { hexes.push(c) }
+                match self.tets {
+                    true => six.iter().for_each(|tet| cells.push(CellKind::Tet4, tet.map(|n: usize| c[n])).unwrap()),
+                    false => cells.push(CellKind::Hex8, c).unwrap(),
+                }
             }
             let each = |of: &dyn Fn(&(u32, u32, u32)) -> f32| -> Vec<f32> {
                 there.iter().flat_map(|at| vec![of(at); if self.tets { 6 } else { 1 }]).collect()
@@ -72,8 +76,8 @@ impl Run {
                 cell_arrays.push(array("alive", 1, Values::U8(&alive)));
             }
             let point_arrays = vec![array("displacement", 3, Values::F32(&u))];
-            let (time, points, tets, hexes) = (frame as f64, &*points, &*tets, &*hexes);
-            series.write(&Frame { time, points, tets, hexes, point_arrays, cell_arrays }).unwrap();
+            let (time, points, cells) = (frame as f64, &*points, &cells);
+            series.write(&Frame { time, points, cells, point_arrays, cell_arrays }).unwrap();
         }
         let names = r#"{"names": {"bodies": ["box"], "materials": ["core", "rest"]}}"#;
         std::fs::write(folder.join("summary.json"), names).unwrap();

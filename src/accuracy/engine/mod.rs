@@ -86,8 +86,8 @@ impl<'a> Engine<'a> {
         let scene = &self.file.scene;
         let mut kinds: Vec<ElementKind> = Vec::new();
         for body in scene.bodies.values() {
-            let (tets, hexes) = body.mesh.element_kinds();
-            kinds.push(if elements.contains(&tets) { tets } else { hexes });
+            let mut own = body.mesh.element_kinds();
+            kinds.extend(own.find(|kind| elements.contains(kind)).or(body.mesh.element_kinds().last()));
         }
         kinds.dedup();
         let element = if let [kind] = kinds[..] { Some(kind).filter(|kind| elements.contains(kind)) } else { None };
@@ -114,15 +114,17 @@ impl<'a> Engine<'a> {
             let shape = match &body.mesh {
                 MeshSource::File { .. } => {
                     let mesh = mesh_of(body, self.file).map_err(|error| Refusal::Refused(error.to_string()))?;
-                    match (mesh.tets.is_empty(), mesh.hexes.is_empty()) {
-                        (false, true) => Some(true),
-                        (true, false) => Some(false),
+                    match mesh.cells.kinds().collect::<Vec<_>>()[..] {
+                        [(cell, _)] => Some(cell),
                         _ => return Ok(Vec::new()),
                     }
                 }
-                mesh => names_elements(scene).then_some(mesh.element_kinds().0.is_tetrahedron()),
+                mesh => {
+                    let cell = mesh.element_kinds().next().map(|kind| kind.cell());
+                    cell.filter(|_| names_elements(scene))
+                }
             };
-            kinds.retain(|kind| shape.is_none_or(|tets| kind.is_tetrahedron() == tets));
+            kinds.retain(|kind| shape.is_none_or(|cell| kind.cell() == cell));
         }
         Ok(kinds)
     }

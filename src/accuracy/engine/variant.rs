@@ -3,7 +3,7 @@
 use super::effects::switch_off;
 use super::ladder::climb;
 use crate::accuracy::configuration::{Configuration, Digits, Factor, Place};
-use crate::mesh::ElementKind;
+use crate::mesh::{CellKind, ElementKind};
 use crate::scene::SceneFile;
 use crate::scene::schema::{
     Analysis, Axis, Constraint, InitialState, Load, MeshSource, Probe, Quantity, Scene, Select,
@@ -93,7 +93,7 @@ fn remesh(scene: &mut Scene, factor: Factor, element: Option<ElementKind>) {
         };
         let elements = match &mut body.mesh {
             MeshSource::File { tets, hexes, .. } => match element {
-                Some(kind) if kind.is_tetrahedron() => tets,
+                Some(kind) if kind.cell() == CellKind::Tet4 => tets,
                 _ => hexes,
             },
             MeshSource::Box { cells, elements, .. }

@@ -1,5 +1,6 @@
 //! Meshes of cells, as text: hexahedra, or six tetrahedra each.
 
+use crate::mesh::CellKind;
 use std::fmt::Write;
 
 /// A VTK file of so many cells along each axis, of corners at given places (m).
@@ -15,7 +16,8 @@ pub fn vtk(count: [usize; 3], place: impl Fn([usize; 3]) -> [f64; 3], is_hex: im
     let mut add = |nodes: &[usize]| {
         let words: Vec<String> = nodes.iter().map(usize::to_string).collect();
         let _ = writeln!(cells, "{} {}", nodes.len(), words.join(" "));
-        let _ = writeln!(kinds, "{}", if nodes.len() == 4 { 10 } else { 12 });
+        let kind = if nodes.len() == 4 { CellKind::Tet4 } else { CellKind::Hex8 };
+        let _ = writeln!(kinds, "{}", kind.topology().vtk[0].number);
         (elements, numbers) = (elements + 1, numbers + 1 + nodes.len());
     };
     for cell in 0..count.iter().product() {

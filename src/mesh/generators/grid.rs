@@ -1,6 +1,6 @@
 //! The grid of cells that every generator deforms.
 
-use super::super::surface::{HEX_FACES, TET_FACES};
+use super::super::topology::{CellKind, MOST_NODES, hex8};
 use super::super::{Mesh, MeshError};
 use super::ElementKind;
 use glam::DVec3;
@@ -8,10 +8,8 @@ use glam::DVec3;
 /// The most cells a generator makes: points and elements are counted in 32 bits.
 const MOST_CELLS: u64 = 1_000_000_000;
 
-/// Corners of a cell by bits (1: upper in x, 2: in y, 4: in z), in VTK order.
-const HEX: [u8; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
-
-/// Six tetrahedra along the diagonal from corner 0 to corner 7 (Kuhn): one a way along the edges.
+/// Corners are named by bits: 1: upper in x, 2: in y, 4: in z. Six tetrahedra along the diagonal from corner 0 to
+/// corner 7 (Kuhn): one a way along the edges.
 const KUHN: [[u8; 4]; 6] = [[0, 1, 3, 7], [0, 2, 6, 7], [0, 4, 5, 7], [0, 1, 7, 5], [0, 2, 7, 3], [0, 4, 7, 6]];
 
 /// A side of the grid.
@@ -34,7 +32,9 @@ pub(super) const SIDES: [Side; 6] = [
 /// A grid of cells, each one hexahedron or six tetrahedra.
 pub(super) struct Grid {
     cells: [u32; 3],
-    kind: ElementKind,
+    kind: CellKind,
+    /// How many elements a cell becomes.
+    parts: u32,
     /// Axes along which the diagonals of the lower half are mirrored, so that they run from the middle outwards.
     mirrored: [bool; 3],
     /// Whether the last row of points along y is the first.
@@ -42,13 +42,19 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// A grid of `cells`; refuses none and too many.
+    /// A grid of `cells`; refuses none and too many, and elements that it cannot make.
     pub fn new(
         name: &'static str,
         parameter: &'static str,
         cells: [u32; 3],
         kind: ElementKind,
     ) -> Result<Self, MeshError> {
+        let Some(parts) = kind.a_cell() else {
+            let able = ElementKind::ALL.iter().filter(|kind| kind.a_cell().is_some());
+            let allowed =
+                format!("generators make {}", able.map(|kind| format!("{kind:?}")).collect::<Vec<_>>().join(", "));
+            return Err(MeshError::Parameter { name, parameter: "elements", value: format!("{kind:?}"), allowed });
+        };
         let refuse = |allowed: String| {
             Err(MeshError::Parameter {
                 name,
@@ -60,7 +66,7 @@ impl Grid {
         if cells.contains(&0) {
             return refuse("there must be at least 1 cell in each direction".into());
         }
-        let most = if kind.is_tetrahedron() { u64::from(u32::MAX) / 6 } else { MOST_CELLS };
+        let most = MOST_CELLS.min(u64::from(u32::MAX / parts));
         let count = cells.iter().try_fold(1u64, |product, &n| product.checked_mul(u64::from(n)));
         let points = cells.iter().try_fold(1u64, |product, &n| product.checked_mul(u64::from(n) + 1));
         let fits = |value: Option<u64>, limit: u64| value.is_some_and(|value| value <= limit);
@@ -70,7 +76,7 @@ impl Grid {
                 u32::MAX
             ));
         }
-        Ok(Grid { cells, kind, mirrored: [false; 3], ring: false })
+        Ok(Grid { cells, kind: kind.cell(), parts, mirrored: [false; 3], ring: false })
     }
 
     /// Lets the diagonals of cells run outwards along these axes. On round shapes a cell in a corner of the grid has
@@ -98,10 +104,9 @@ impl Grid {
         let mut mesh = Mesh::default();
         let cells = nx as usize * ny as usize * nz as usize;
         let points = (nx as usize + 1) * self.points_along_y() as usize * (nz as usize + 1);
-        let reserved = mesh.points.try_reserve_exact(points).and_then(|()| match self.kind.is_tetrahedron() {
-            true => mesh.tets.try_reserve_exact(6 * cells),
-            false => mesh.hexes.try_reserve_exact(cells),
-        });
+        let (kind, elements) = (self.kind, self.parts as usize * cells);
+        let reserved = mesh.points.try_reserve_exact(points);
+        let reserved = reserved.and_then(|()| mesh.cells.try_reserve_exact(kind, elements));
         if reserved.is_err() {
             let (name, parameter, value) = ("generator", "number of cells", cells.to_string());
             return Err(MeshError::Parameter { name, parameter, value, allowed: "it must fit into memory".into() });
@@ -114,11 +119,7 @@ impl Grid {
         for k in 0..nz {
             for j in 0..ny {
                 for i in 0..nx {
-                    self.cut([i, j, k], |corners| match *corners {
-                        [a, b, c, d] => mesh.tets.push([a, b, c, d]),
-                        [a, b, c, d, e, f, g, h] => mesh.hexes.push([a, b, c, d, e, f, g, h]),
-                        _ => debug_assert!(false, "a cell is cut into tetrahedra or hexahedra"),
-                    });
+                    self.cut([i, j, k], |nodes| mesh.cells.push_nodes(kind, nodes));
                 }
             }
         }
@@ -139,9 +140,8 @@ impl Grid {
 
     /// The corners (by bits) of the elements of a cell.
     fn elements(&self, cell: [u32; 3], mut see: impl FnMut(&[u8])) {
-        match self.kind.is_tetrahedron() {
-            false => see(&HEX),
-            true => {
+        match self.kind {
+            CellKind::Tet4 => {
                 let mirror = self.mirror(cell);
                 for tet in KUHN {
                     let [a, b, c, d] = tet.map(|corner| corner ^ mirror);
@@ -149,15 +149,18 @@ impl Grid {
                     see(&if mirror.count_ones().is_multiple_of(2) { [a, b, c, d] } else { [a, b, d, c] });
                 }
             }
+            CellKind::Hex8 => see(&hex8::ROW_BY_ROW.map(|corner| corner as u8)),
+            // refused when the grid was made
+            CellKind::Point | CellKind::Line | CellKind::Triangle | CellKind::Quad => {}
         }
     }
 
     /// The elements of a cell as rows of points.
     fn cut(&self, cell: [u32; 3], mut see: impl FnMut(&[u32])) {
         self.elements(cell, |corners| {
-            let mut rows = [0; 8];
-            for (row, &corner) in rows.iter_mut().zip(corners) {
-                *row = self.row(cell, corner);
+            let mut rows = [0; MOST_NODES];
+            for (place, &corner) in corners.iter().enumerate() {
+                rows[place] = self.row(cell, corner);
             }
             see(&rows[..corners.len()]);
         });
@@ -187,15 +190,10 @@ impl Grid {
             for i in 0..self.cells[u] {
                 let mut cell = [first; 3];
                 (cell[u], cell[v]) = (i, j);
-                self.elements(cell, |corners| match *corners {
-                    [_, _, _, _] => faces.extend(TET_FACES.iter().filter_map(|face| {
-                        let [a, b, c] = face.map(|corner| corners[corner]);
-                        [a, b, c].into_iter().all(on_side).then(|| [a, b, c, c].map(|corner| self.row(cell, corner)))
-                    })),
-                    _ => faces.extend(HEX_FACES.iter().filter_map(|face| {
-                        let face = face.map(|corner| corners[corner]);
-                        face.into_iter().all(on_side).then(|| face.map(|corner| self.row(cell, corner)))
-                    })),
+                self.elements(cell, |corners| {
+                    let own = self.kind.topology().faces.iter().map(|face| face.corners(corners));
+                    let own = own.filter(|face| face.iter().all(|&corner| on_side(corner)));
+                    faces.extend(own.map(|face| face.map(|corner| self.row(cell, corner))));
                 });
             }
         }

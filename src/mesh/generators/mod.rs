@@ -20,7 +20,7 @@ pub use lens::lens_mesh;
 pub(crate) use tube::cells_around;
 pub use tube::tube_mesh;
 
-use super::MeshError;
+use super::{CellKind, MeshError};
 use serde::{Deserialize, Serialize};
 
 /// Kinds of elements. Generators make six tetrahedra or one hexahedron of a cell.
@@ -41,9 +41,21 @@ impl ElementKind {
     /// All kinds.
     pub const ALL: [ElementKind; 4] = [Self::Tet4, Self::Tet4NodalPressure, Self::Hex8, Self::Hex8MeanDilatation];
 
-    /// Whether it is a tetrahedron; else it is a hexahedron.
-    pub fn is_tetrahedron(self) -> bool {
-        matches!(self, Self::Tet4 | Self::Tet4NodalPressure)
+    /// The kind of its cells.
+    pub const fn cell(self) -> CellKind {
+        match self {
+            Self::Tet4 | Self::Tet4NodalPressure => CellKind::Tet4,
+            Self::Hex8 | Self::Hex8MeanDilatation => CellKind::Hex8,
+        }
+    }
+
+    /// How many of them generators make of a cell of their grid; none where they cannot.
+    pub const fn a_cell(self) -> Option<u32> {
+        match self.cell() {
+            CellKind::Tet4 => Some(6),
+            CellKind::Hex8 => Some(1),
+            CellKind::Point | CellKind::Line | CellKind::Triangle | CellKind::Quad => None,
+        }
     }
 }
 

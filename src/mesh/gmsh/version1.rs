@@ -1,6 +1,7 @@
 //! Format 1: `$NOD` and `$ELM`, text only.
 
 use super::{File, kinds};
+use crate::mesh::CellKind;
 use crate::mesh::error::Fault;
 use glam::DVec3;
 
@@ -33,8 +34,9 @@ impl File<'_> {
     }
 
     pub(super) fn unknown_kind(&self, number: u64, kind: u64) -> Fault {
-        let allowed =
-            "sinew uses points (15), lines (1), triangles (2), quadrilaterals (3), tetrahedra (4), hexahedra (5)";
+        let known = CellKind::ALL.map(CellKind::topology);
+        let known = known.map(|known| format!("{} ({})", known.plural, known.gmsh.number)).join(", ");
+        let allowed = format!("sinew uses {known}");
         self.cursor.fault(format!("element {number} is of the unknown type {kind}"), allowed)
     }
 
@@ -44,11 +46,11 @@ impl File<'_> {
         for node in &mut nodes[..kind.nodes] {
             *node = self.element_node()?;
         }
-        let Some(shape) = kind.shape else {
+        let Some(cell) = kind.cell else {
             self.draft.cannot_use(kind.name, kind.dimension);
             return Ok(());
         };
-        let cell = self.draft.add(shape, number, nodes[..kind.nodes].iter().copied());
+        let cell = self.draft.add(cell, number, cell.topology().gmsh.read(&nodes[..kind.nodes]));
         for &group in groups.iter().filter(|&&group| group != 0) {
             self.draft.group(&self.groups.name(kind.dimension, group), cell);
         }

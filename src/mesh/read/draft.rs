@@ -3,7 +3,7 @@
 mod assemble;
 mod numbering;
 
-use super::shape::Shape;
+use crate::mesh::CellKind;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -34,7 +34,7 @@ pub struct Draft {
 
 #[derive(Clone, Copy)]
 struct Cell {
-    shape: Shape,
+    kind: CellKind,
     number: u64,
     /// First of its `corners`.
     start: usize,
@@ -51,11 +51,11 @@ impl Draft {
         Draft { notes, ..Draft::default() }
     }
 
-    /// Adds a cell; gives its row for [`Draft::group`].
-    pub fn add(&mut self, shape: Shape, number: u64, corners: impl IntoIterator<Item = u64>) -> u32 {
-        self.cells.push(Cell { shape, number, start: self.corners.len() });
+    /// Adds a cell by its nodes; gives its row for [`Draft::group`].
+    pub fn add(&mut self, kind: CellKind, number: u64, corners: impl IntoIterator<Item = u64>) -> u32 {
+        self.cells.push(Cell { kind, number, start: self.corners.len() });
         self.corners.extend(corners);
-        debug_assert_eq!(self.corners.len() - self.cells[self.cells.len() - 1].start, shape.corner_count());
+        debug_assert_eq!(self.corners.len() - self.cells[self.cells.len() - 1].start, kind.node_count());
         (self.cells.len() - 1) as u32
     }
 
@@ -78,7 +78,7 @@ impl Draft {
 
     /// The file's numbers of a cell's points.
     fn corners(&self, cell: usize) -> &[u64] {
-        let Cell { shape, start, .. } = self.cells[cell];
-        &self.corners[start..start + shape.corner_count()]
+        let Cell { kind, start, .. } = self.cells[cell];
+        &self.corners[start..start + kind.node_count()]
     }
 }

@@ -3,7 +3,6 @@
 pub mod cursor;
 pub mod draft;
 mod orientation;
-pub mod shape;
 
 use super::error::Fault;
 use super::{Mesh, MeshError, gmsh, vtk, vtu};

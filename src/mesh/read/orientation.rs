@@ -1,23 +1,25 @@
 //! Elements listed inside out, and how they are turned.
 
-use crate::mesh::Mesh;
-use crate::mesh::measure::{hex_determinants, tet_volume};
+use crate::mesh::{CellKind, Mesh};
 
 impl Mesh {
     /// Turns elements that list their points in the other order: all of a kind if the whole file does so, single ones
     /// if `flip_inverted` is set. A folded hexahedron, positive at one corner and negative at another, cannot be
     /// turned.
     pub(in crate::mesh) fn orient(&mut self, flip_inverted: bool) {
-        let tets: Vec<usize> = (0..self.tets.len()).filter(|&row| tet_volume(self.tet_corners(row)) < 0.0).collect();
-        let inside_out = |&row: &usize| hex_determinants(self.hex_corners(row)).iter().all(|&value| value < 0.0);
-        let hexes: Vec<usize> = (0..self.hexes.len()).filter(inside_out).collect();
-        let turned_tets = self.notes_of_turning(flip_inverted, tets.len(), self.tets.len(), "tetrahedra");
-        let turned_hexes = self.notes_of_turning(flip_inverted, hexes.len(), self.hexes.len(), "hexahedra");
-        for row in tets.into_iter().filter(|_| turned_tets) {
-            self.tets[row].swap(2, 3);
-        }
-        for row in hexes.into_iter().filter(|_| turned_hexes) {
-            self.hexes[row].rotate_left(4);
+        let kinds: Vec<(CellKind, std::ops::Range<usize>)> =
+            self.cells.blocks().map(|(kind, rows, _)| (kind, rows)).collect();
+        for (kind, rows) in kinds {
+            let count = rows.len();
+            let Some(solid) = kind.topology().solid else { continue };
+            let inside_out: Vec<usize> = rows.filter(|&row| solid.is_inside_out(&self.places(row))).collect();
+            if self.notes_of_turning(flip_inverted, inside_out.len(), count, kind.topology().plural) {
+                for row in inside_out {
+                    let nodes = self.cells.nodes_mut(row);
+                    let before = nodes.to_vec();
+                    nodes.iter_mut().zip(solid.turned).for_each(|(node, &place)| *node = before[place]);
+                }
+            }
         }
     }
 

@@ -2,10 +2,8 @@
 
 use super::{Defect, FLAT, LISTED, Soundness, counted};
 use crate::mesh::Mesh;
-use crate::mesh::measure::{
-    hex_determinants, hex_longest_edge, hex_smallest_altitude, hex_volume, tet_longest_edge, tet_smallest_altitude,
-    tet_volume,
-};
+use crate::mesh::measure::longest_edge;
+use crate::mesh::topology::MOST_NODES;
 
 /// An element whose smallest altitude is below this share of its longest edge is warned of.
 const SLIVER: f64 = 0.01;
@@ -74,20 +72,18 @@ impl Mesh {
     }
 
     fn check_shape(&self, row: usize, all: &mut Findings) {
-        let (edge, altitude, volume, folded) = if row < self.tets.len() {
-            let corners = self.tet_corners(row);
-            let volume = tet_volume(corners);
-            (tet_longest_edge(corners), tet_smallest_altitude(corners), volume, false)
-        } else {
-            let corners = self.hex_corners(row - self.tets.len());
-            let edge = hex_longest_edge(corners);
-            let determinants = hex_determinants(corners);
-            let folded = determinants.iter().any(|&determinant| determinant < -FLAT * edge.powi(3));
-            let volume = hex_volume(corners);
+        let kind = self.cells.kind(row);
+        let Some(solid) = kind.topology().solid else { return };
+        let corners = &self.places(row)[..];
+        let (edge, altitude) = (longest_edge(kind, corners), (solid.smallest_altitude)(corners));
+        let (mut volume, mut folded) = ((solid.volume)(corners), false);
+        if !solid.frames.is_empty() {
+            let middle = solid.middle_volume(corners);
+            let least = solid.corner_volumes(corners).fold(middle, f64::min);
+            folded = least < -FLAT * edge.powi(3);
             // a one-point element lives by its centre alone: where that has no volume, the element has none
-            let least = if determinants[8].abs() < volume.abs() { determinants[8] } else { volume };
-            (edge, hex_smallest_altitude(corners), least, folded)
-        };
+            volume = if middle.abs() < volume.abs() { middle } else { volume };
+        }
         if volume.abs() < FLAT * edge.powi(3) || edge == 0.0 {
             all.flat.push((row, format!("volume {volume:.2e} m³, longest edge {edge:.2e} m")));
         } else if volume < 0.0 {
@@ -99,18 +95,36 @@ impl Mesh {
         }
     }
 
-    /// Two elements with the same points: found by sorting.
+    /// Two elements with the same points: found among those with the same lowest point, four bytes an element.
     fn check_repeated_elements(&self, found: &mut Soundness) {
-        let mut tets: Vec<([u32; 4], u32)> = self.tets.iter().copied().zip(0..).collect();
-        tets.iter_mut().for_each(|(nodes, _)| nodes.sort_unstable());
-        tets.sort_unstable();
-        let first = self.tets.len() as u32;
-        let mut hexes: Vec<([u32; 8], u32)> = self.hexes.iter().copied().zip(first..).collect();
-        hexes.iter_mut().for_each(|(nodes, _)| nodes.sort_unstable());
-        hexes.sort_unstable();
-        let tets = tets.windows(2).filter(|two| two[0].0 == two[1].0).map(|two| (two[0].1, two[1].1));
-        let hexes = hexes.windows(2).filter(|two| two[0].0 == two[1].0).map(|two| (two[0].1, two[1].1));
-        let mut pairs: Vec<(u32, u32)> = tets.chain(hexes).collect();
+        let mut pairs: Vec<(u32, u32)> = Vec::new();
+        for (kind, rows, _) in self.cells.blocks() {
+            let sorted = |row: u32| {
+                let mut nodes = [0; MOST_NODES];
+                let nodes_of = self.element(row as usize);
+                nodes[..nodes_of.len()].copy_from_slice(nodes_of);
+                nodes[..kind.node_count()].sort_unstable();
+                nodes
+            };
+            let lowest = |row: usize| self.element(row).iter().min().map_or(0, |&node| node as usize);
+            // lowest points that are not there share a bucket
+            let bucket = |row: usize| lowest(row).min(self.points.len());
+            let mut starts = vec![0_u32; self.points.len() + 2];
+            rows.clone().for_each(|row| starts[bucket(row) + 1] += 1);
+            (1..starts.len()).for_each(|place| starts[place] += starts[place - 1]);
+            let (mut next, mut dealt) = (starts.clone(), vec![0_u32; rows.len()]);
+            for row in rows {
+                let next = &mut next[bucket(row)];
+                dealt[*next as usize] = row as u32;
+                *next += 1;
+            }
+            for bucket in starts.windows(2) {
+                let mut alike: Vec<([u32; MOST_NODES], u32)> =
+                    dealt[bucket[0] as usize..bucket[1] as usize].iter().map(|&row| (sorted(row), row)).collect();
+                alike.sort_unstable();
+                pairs.extend(alike.windows(2).filter(|two| two[0].0 == two[1].0).map(|two| (two[0].1, two[1].1)));
+            }
+        }
         if pairs.is_empty() {
             return;
         }

@@ -27,7 +27,7 @@ impl Mesh {
 
     fn check_use(&self, found: &mut Soundness) {
         let mut used = vec![false; self.points.len()];
-        for &row in self.tets.as_flattened().iter().chain(self.hexes.as_flattened()) {
+        for row in self.cells.all_nodes() {
             if let Some(used) = used.get_mut(row as usize) {
                 *used = true;
             }

@@ -3,7 +3,7 @@
 use super::{DataArray, VtuFile};
 use crate::mesh::error::Fault;
 use crate::mesh::read::draft::Draft;
-use crate::mesh::read::shape::Shape;
+use crate::mesh::topology::CellKind;
 use glam::DVec3;
 use std::collections::BTreeSet;
 
@@ -17,13 +17,14 @@ impl VtuFile {
         let mut rows = vec![None; self.types.len()];
         for cell in 0..self.types.len() {
             let corners = self.cell(cell);
-            match Shape::of_vtk(self.types[cell]) {
-                Ok(shape) if corners.len() == shape.corner_count() => {
-                    rows[cell] = Some(draft.add(shape, cell as u64, corners.iter().copied()));
+            match CellKind::of_vtk(self.types[cell]) {
+                Ok((kind, listing)) if corners.len() == kind.node_count() => {
+                    rows[cell] = Some(draft.add(kind, cell as u64, listing.read(corners)));
                 }
-                Ok(shape) => {
+                Ok((kind, _)) => {
                     let what = format!("cell {cell} has {} points", corners.len());
-                    return Err(Fault::whole(what, format!("{} have {}", shape.plural(), shape.corner_count())));
+                    let allowed = format!("{} have {}", kind.topology().plural, kind.node_count());
+                    return Err(Fault::whole(what, allowed));
                 }
                 Err((name, dimension)) => draft.cannot_use(&name, dimension),
             }

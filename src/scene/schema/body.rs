@@ -1,6 +1,7 @@
 //! Bodies and their meshes.
 
 use super::{ElementKind, Select};
+use crate::mesh::CellKind;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -184,17 +185,23 @@ pub enum MeshSource {
 }
 
 impl MeshSource {
-    /// What its tetrahedra and its hexahedra are taken for.
-    pub fn element_kinds(&self) -> (ElementKind, ElementKind) {
-        match self {
-            Self::File { tets, hexes, .. } => (*tets, *hexes),
+    /// What its cells are taken for: one kind of element a kind of cell.
+    pub fn element_kinds(&self) -> impl ExactSizeIterator<Item = ElementKind> + use<> {
+        let (kinds, count) = match self {
+            Self::File { tets, hexes, .. } => ([*tets, *hexes], 2),
             Self::Box { elements, .. }
             | Self::Cylinder { elements, .. }
             | Self::Ellipsoid { elements, .. }
             | Self::Hexahedron { elements, .. }
             | Self::Tube { elements, .. }
-            | Self::Lens { elements, .. } => (*elements, *elements),
-        }
+            | Self::Lens { elements, .. } => ([*elements; 2], 1),
+        };
+        kinds.into_iter().take(count)
+    }
+
+    /// What its cells of a kind are taken for; nothing where it has none.
+    pub fn element_kind(&self, cell: CellKind) -> Option<ElementKind> {
+        self.element_kinds().find(|kind| kind.cell() == cell)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Bodies and their meshes.
 
 use super::{Judge, scene, select};
+use crate::mesh::CellKind;
 use crate::mesh::generators::cells_around;
 use crate::scene::beside::{FileKind, FileSource, Outside};
 use crate::scene::limits::{MOST_COPIES, MOST_REFINEMENT};
@@ -95,10 +96,10 @@ fn mesh(file: &SceneFile, judge: &mut Judge, path: &Path, mesh: &MeshSource) {
     match mesh {
         MeshSource::File { path: name, tets, hexes, .. } => {
             mesh_file(file, judge, &path.name("path"), name);
-            if !tets.is_tetrahedron() {
+            if tets.cell() != CellKind::Tet4 {
                 judge.must(&path.name("tets"), "Tet4 or Tet4NodalPressure", format!("{tets:?}"));
             }
-            if hexes.is_tetrahedron() {
+            if hexes.cell() != CellKind::Hex8 {
                 judge.must(&path.name("hexes"), "Hex8 or Hex8MeanDilatation", format!("{hexes:?}"));
             }
         }

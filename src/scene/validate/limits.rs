@@ -71,7 +71,7 @@ pub(super) fn elements(file: &SceneFile, judge: &mut Judge) {
     let mut all = 0_u128;
     for (name, body) in &file.scene.bodies {
         let Some((field, cells)) = cells(&body.mesh) else { continue };
-        let each = if body.mesh.element_kinds().0.is_tetrahedron() { 6 } else { 1 };
+        let each = body.mesh.element_kinds().next().and_then(|kind| kind.a_cell()).map_or(1, u128::from);
         let made = cells * each * 8_u128.pow(body.refine.min(MOST_REFINEMENT)) * u128::from(body.copies);
         all += made;
         if all > u128::from(most) {

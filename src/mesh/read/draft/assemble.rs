@@ -1,9 +1,10 @@
 //! From a draft to a mesh.
 
 use super::numbering::Numbering;
-use super::{Cell, Draft, Shape};
+use super::{Cell, Draft};
 use crate::mesh::error::Fault;
-use crate::mesh::{Ids, Mesh};
+use crate::mesh::topology::singular;
+use crate::mesh::{CellKind, Ids, Mesh};
 use glam::DVec3;
 use std::collections::{BTreeMap, HashSet};
 
@@ -26,7 +27,7 @@ impl Draft {
         if self.points.len() > most || self.cells.len() > most {
             return Err(Fault::whole("the file holds too many points or cells", format!("at most {most} of each")));
         }
-        if !self.cells.iter().any(|cell| cell.shape.dimension() == 3) {
+        if !self.cells.iter().any(|cell| cell.kind.topology().dimension == 3) {
             return Err(self.without_volume());
         }
         let rows = self.rows()?;
@@ -43,7 +44,7 @@ impl Draft {
     fn without_volume(&self) -> Fault {
         let mut counts: BTreeMap<String, usize> = self.left_out.clone();
         for cell in &self.cells {
-            *counts.entry(cell.shape.plural().into()).or_default() += 1;
+            *counts.entry(cell.kind.topology().plural.into()).or_default() += 1;
         }
         let surface =
             counts.keys().any(|name| name.contains("triangle") || name.contains("quad") || name.contains("polygon"));
@@ -97,19 +98,15 @@ impl Draft {
         let mut elements = vec![NONE; self.cells.len()];
         let first_of = if self.repeats_elements { self.repeated() } else { BTreeMap::new() };
         let mut numbers = Vec::new();
-        for tets in [true, false] {
-            for (row, &Cell { shape, number, start }) in self.cells.iter().enumerate() {
-                if shape.dimension() != 3 || (shape == Shape::Tet) != tets || first_of.contains_key(&row) {
+        // rows count kind by kind
+        for (kind, _) in CellKind::solids() {
+            for (row, &Cell { kind: own, number, start }) in self.cells.iter().enumerate() {
+                if own != kind || first_of.contains_key(&row) {
                     continue;
                 }
-                elements[row] = mesh.element_count() as u32;
+                elements[row] = numbers.len() as u32;
                 numbers.push(number);
-                match (&rows[start..start + shape.corner_count()], shape) {
-                    (&[a, b, c, d], _) => mesh.tets.push([a, b, c, d]),
-                    (&[a, b, c, d, e, f, g, h], Shape::Voxel) => mesh.hexes.push([a, b, d, c, e, f, h, g]),
-                    (&[a, b, c, d, e, f, g, h], _) => mesh.hexes.push([a, b, c, d, e, f, g, h]),
-                    _ => debug_assert!(false, "a volume cell has four or eight corners"),
-                }
+                mesh.cells.push_nodes(kind, &rows[start..start + kind.node_count()]);
             }
         }
         if !first_of.is_empty() {
@@ -125,7 +122,7 @@ impl Draft {
     /// Volume cells with the corners of an earlier one, and that one.
     fn repeated(&self) -> BTreeMap<usize, usize> {
         let mut order: Vec<usize> =
-            (0..self.cells.len()).filter(|&cell| self.cells[cell].shape.dimension() == 3).collect();
+            (0..self.cells.len()).filter(|&cell| self.cells[cell].kind.topology().dimension == 3).collect();
         order.sort_by(|&a, &b| self.corners(a).cmp(self.corners(b)));
         let alike = order.chunk_by(|&a, &b| self.corners(a) == self.corners(b));
         alike.flat_map(|alike| alike[1..].iter().map(|&again| (again, alike[0]))).collect()
@@ -154,17 +151,12 @@ impl Draft {
             let mut nodes = Vec::new();
             let mut dimensions = [false; 4];
             for &cell in cells {
-                let Cell { shape, start, .. } = self.cells[cell as usize];
-                let corners = &rows[start..start + shape.corner_count()];
+                let Cell { kind, start, .. } = self.cells[cell as usize];
+                let corners = &rows[start..start + kind.node_count()];
                 nodes.extend_from_slice(corners);
-                dimensions[shape.dimension() as usize] = true;
-                let face = match (corners, shape) {
-                    (&[a, b, c], _) => Some([a, b, c, c]),
-                    (&[a, b, c, d], Shape::Quad) => Some([a, b, c, d]),
-                    (&[a, b, c, d], Shape::Pixel) => Some([a, b, d, c]),
-                    _ => None,
-                };
-                if let Some(face) = face {
+                dimensions[kind.topology().dimension as usize] = true;
+                if kind.topology().dimension == 2 {
+                    let face = [0, 1, 2, kind.topology().corners - 1].map(|corner| corners[corner]);
                     mesh.face_sets.entry(name.clone()).or_default().push(face);
                 } else if elements[cell as usize] != NONE {
                     mesh.element_sets.entry(name.clone()).or_default().push(elements[cell as usize]);
@@ -222,9 +214,10 @@ impl Draft {
         for &cell in self.groups.values().flatten() {
             grouped[cell as usize] = true;
         }
-        for (cell, _) in self.cells.iter().zip(grouped).filter(|(cell, grouped)| !grouped && cell.shape.dimension() < 3)
+        for (cell, _) in
+            self.cells.iter().zip(grouped).filter(|(cell, grouped)| !grouped && cell.kind.topology().dimension < 3)
         {
-            *self.left_out.entry(cell.shape.plural().into()).or_default() += 1;
+            *self.left_out.entry(cell.kind.topology().plural.into()).or_default() += 1;
         }
         if !self.left_out.is_empty() {
             self.notes
@@ -240,12 +233,8 @@ fn ascending(rows: &mut Vec<u32>) {
 
 /// "1 pyramid, 12 wedges".
 fn listed(counts: &BTreeMap<String, usize>) -> String {
-    let one = |name: &str| match name.strip_suffix("hedra") {
-        Some(stem) => format!("{stem}hedron"),
-        None => name.trim_end_matches('s').to_string(),
-    };
     let list = |(name, &count): (&String, &usize)| {
-        if count == 1 { format!("1 {}", one(name)) } else { format!("{count} {name}") }
+        if count == 1 { format!("1 {}", singular(name)) } else { format!("{count} {name}") }
     };
     counts.iter().map(list).collect::<Vec<_>>().join(", ")
 }
