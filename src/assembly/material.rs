@@ -52,7 +52,9 @@ pub(super) fn spawn(
 
 /// Takes the parameters that a material has now, of the effects that it was made with.
 pub(super) fn renew(entity: &mut EntityWorldMut<'_>, made: &Material, now: &Material) {
-    insert_elastic_law(entity, now);
+    if let Some(law) = now.elastic_law() {
+        insert(entity, law);
+    }
     if let (Some(_), Some(fibres)) = (entity.get::<Fibres<f64>>(), &now.fibres) {
         entity.insert(fibres_of(fibres));
     }

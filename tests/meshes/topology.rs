@@ -1,7 +1,7 @@
 //! What is written down of each kind of cell fits together.
 
 use glam::{DMat3, DVec3};
-use sinew::mesh::topology::{CellKind, Listing, MassRule, Solid, Topology, foreign};
+use sinew::mesh::topology::{CellKind, MassRule, Solid, Topology, foreign};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Cells that fill space, each with its nodes moved a little (m).
