@@ -26,14 +26,7 @@ pub fn other_than_parameters(made: &Scene, now: &Scene) -> Option<Path> {
 
 /// The parameters of effects that both have, and that had a weight from the start.
 fn take_parameters(material: &mut Material, now: &Material) {
-    macro_rules! take {
-        ($($law:ident)*) => {
-            $(if let (Some(law), Some(now)) = (&mut material.$law, &now.$law) {
-                law.clone_from(now);
-            })*
-        };
-    }
-    take!(linear st_venant_kirchhoff neo_hookean stable_neo_hookean mooney_rivlin ogden arruda_boyce);
+    material.take_law_parameters(now);
     if let (Some(fibres), Some(now)) = (&mut material.fibres, &now.fibres)
         && fibres.eta != 0.0
     {

@@ -96,6 +96,13 @@ macro_rules! material {
                 })*
             }
 
+            /// Takes the parameters of another's elastic law where that is of the same kind.
+            pub fn take_law_parameters(&mut self, other: &Material) {
+                $(if let (Some(own), Some(other)) = (&mut self.$word, &other.$word) {
+                    own.clone_from(other);
+                })*
+            }
+
             /// Whether its elastic law has a stress inside out, too.
             fn recovers(&self) -> bool {
                 $(self.$word.is_some() && <materials::$law<f64> as Law>::RECOVERS ||)* false
