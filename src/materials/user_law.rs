@@ -44,7 +44,7 @@ pub enum IsochoricStress {
     /// By `elastic_isochoric`.
     Whole(Program),
     /// From the derivatives of an energy by its invariants.
-    Slopes(EnergySlopes),
+    Slopes(Box<EnergySlopes>),
 }
 
 /// The derivatives of an energy by its invariants.

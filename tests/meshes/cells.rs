@@ -174,15 +174,17 @@ fn files_have_the_numbers_and_the_orders_of_their_formats() {
     // places in reference cells in the order in which the formats list them: vtkCell.h's types with the parametric
     // coordinates of the classes (0 to 1), and "Node ordering" and "MSH file format" of Gmsh's manual (-1 to 1 for hexahedra)
     type Places = &'static [[i8; 3]];
+    /// A kind with its numbers and orders in VTK files, and those in Gmsh files.
+    type Known<'a> = (CellKind, &'a [(u8, Places)], (u8, Places));
     const SQUARE: Places = &[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]];
     const TET: Places = &[[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
     const CUBE: Places = &[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
     const PIXEL: Places = &[[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]];
     const VOXEL: Places = &[[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]];
-    let known: [(CellKind, &[(u8, Places)], (u8, Places)); 6] = [
+    let known: [Known<'_>; 6] = [
         (CellKind::Point, &[(1, &[[0; 3]])], (15, &[[0; 3]])),
         (CellKind::Line, &[(3, &[[0, 0, 0], [1, 0, 0]])], (1, &[[0, 0, 0], [1, 0, 0]])),
-        (CellKind::Triangle, &[(5, &TET.split_at(3).0)], (2, &TET.split_at(3).0)),
+        (CellKind::Triangle, &[(5, TET.split_at(3).0)], (2, TET.split_at(3).0)),
         (CellKind::Quad, &[(9, SQUARE), (8, PIXEL)], (3, SQUARE)),
         (CellKind::Tet4, &[(10, TET)], (4, TET)),
         (CellKind::Hex8, &[(12, CUBE), (11, VOXEL)], (5, CUBE)),

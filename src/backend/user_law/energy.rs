@@ -30,7 +30,7 @@ pub(super) fn read(
     let built_in = derived.constants.map(built_in);
     let law = LawPrograms {
         path: path.to_owned(),
-        isochoric: IsochoricStress::Slopes(EnergySlopes::of(&derived)),
+        isochoric: IsochoricStress::Slopes(Box::new(EnergySlopes::of(&derived))),
         pressure: derived.pressure,
         isochoric_energy: derived.isochoric_energy,
         volumetric_energy: derived.volumetric_energy,
