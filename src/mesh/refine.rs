@@ -12,7 +12,7 @@ type Key = [u32; MOST_PARENTS];
 const NOBODY: u32 = u32::MAX;
 
 impl Mesh {
-    /// Cuts every element into smaller ones (eight of a tetrahedron or a hexahedron), so many times over. Edges are halved where they are: a curved outline stays the
+    /// Cuts every element into eight, so many times over. Edges are halved where they are: a curved outline stays the
     /// polygon it is.
     ///
     /// Points keep their rows and numbers, new ones follow. The parts of an element bear its number, its vectors and

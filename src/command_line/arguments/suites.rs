@@ -26,7 +26,7 @@ pub struct BenchArguments {
     #[arg(long, value_name = "N,..", value_delimiter = ',', default_values_t = [10, 20, 30], value_parser = clap::value_parser!(u32).range(1..=200))]
     pub cells: Vec<u32>,
     /// Element types
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["tet4".to_string(), "hex8".to_string()], value_parser = ["tet4", "tet4-nodal-pressure", "hex8", "hex8-mean-dilatation"])]
+    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["tet4".to_string(), "hex8".to_string()], value_parser = ["tet4", "tet4-nodal-pressure", "hex8", "hex8-mean-dilatation", "wedge6"])]
     pub elements: Vec<String>,
     /// Effects beside neo-Hookean elasticity
     #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["none".to_string(), "fibres-viscosity".to_string()], value_parser = ["none", "fibres", "viscosity", "fibres-viscosity"])]
