@@ -91,15 +91,15 @@ fn face_corners(body: &BodyParts, places: &[usize]) -> FaceCorners {
     let mut corners = FaceCorners::default();
     let mut by_node: Vec<(u32, u32)> = Vec::new();
     for (number, face) in places.iter().map(|&place| body.placed.surface()[place]).enumerate() {
-        let triangle = face.nodes[2] == face.nodes[3];
+        let count = face.corners().len();
         let points = face.nodes.map(|node| body.placed.mesh.points[node as usize]);
         let nodes = face.nodes.map(|node| body.node_rows[node as usize]);
-        for (corner, &node) in nodes.iter().enumerate().take(if triangle { 3 } else { 4 }) {
+        for (corner, &node) in nodes.iter().enumerate().take(count) {
             by_node.push((node, 4 * number as u32 + corner as u32));
         }
         corners.faces.push(nodes);
         corners.elements.push(body.element_rows[face.element as usize]);
-        corners.areas.push(corner_areas(&points, triangle));
+        corners.areas.push(corner_areas(&points, count == 3));
         corners.alive.push(1);
     }
     by_node.sort_unstable();

@@ -75,9 +75,9 @@ impl Law for ArrudaBoyce<f64> {
         complaints.bulk_modulus(bulk, shear, "`shear`");
     }
 
-    fn with_moduli(shear: f64, bulk: f64) -> Option<Self> {
+    fn with_moduli(shear: f64, bulk: f64) -> Self {
         let of_one = Self { shear: 1.0, locking_stretch: LOCKING_STRETCH, bulk };
-        Some(Self { shear: shear / of_one.small_strain_moduli()[0], ..of_one })
+        Self { shear: shear / of_one.small_strain_moduli()[0], ..of_one }
     }
 }
 

@@ -1,25 +1,10 @@
 //! What is told of the parameters of a law: mistakes and warnings, each at its place.
 
-/// A step on the way to a value within parameters.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// A field.
-    Field(&'static str),
-    /// A place in a list.
-    Item(usize),
-}
-
-impl From<&'static str> for Place {
-    fn from(field: &'static str) -> Self {
-        Self::Field(field)
-    }
-}
-
 /// A mistake or a warning.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Complaint {
-    /// The way to what it is about, from the parameters on.
-    pub at: Vec<Place>,
+    /// The way to what it is about, from the parameters on: `terms[0].alpha`.
+    pub at: String,
     /// Whether the scene cannot be run with it.
     pub is_error: bool,
     /// The sentence.
@@ -45,31 +30,31 @@ pub struct Complaints {
 
 impl Complaints {
     /// A mistake at a field.
-    pub fn error(&mut self, field: &'static str, message: impl Into<String>) -> &mut Complaint {
-        self.at(vec![field.into()], true, message.into())
+    pub fn error(&mut self, field: &str, message: impl Into<String>) -> &mut Complaint {
+        self.at(field, true, message)
     }
 
     /// What looks like one at a field, and does not keep the scene from running.
-    pub fn warn(&mut self, field: &'static str, message: impl Into<String>) -> &mut Complaint {
-        self.at(vec![field.into()], false, message.into())
+    pub fn warn(&mut self, field: &str, message: impl Into<String>) -> &mut Complaint {
+        self.at(field, false, message)
     }
 
     /// The same somewhere within the parameters.
-    pub fn at(&mut self, at: Vec<Place>, is_error: bool, message: String) -> &mut Complaint {
-        self.list.push(Complaint { at, is_error, message, notes: Vec::new() });
+    pub fn at(&mut self, at: impl Into<String>, is_error: bool, message: impl Into<String>) -> &mut Complaint {
+        self.list.push(Complaint { at: at.into(), is_error, message: message.into(), notes: Vec::new() });
         let last = self.list.len() - 1;
         &mut self.list[last]
     }
 
     /// That a field must be something else.
-    pub fn must(&mut self, field: &'static str, be: &str, found: f64) -> &mut Complaint {
+    pub fn must(&mut self, field: &str, be: &str, found: f64) -> &mut Complaint {
         self.error(field, format!("`{field}` must be {be}, found {}", number(found)))
     }
 
     /// A field whose value must be above 0.
-    pub fn above_zero(&mut self, field: &'static str, value: f64, unit: &str) {
+    pub fn above_zero(&mut self, field: &str, value: f64, unit: &str) {
         if value <= 0.0 {
-            self.error(field, format!("`{field}` must be above 0, found {} {unit}", number(value)));
+            self.error(field, format!("`{field}` must be above 0, found {}", with_unit(value, unit)));
         }
     }
 
@@ -91,4 +76,10 @@ impl Complaints {
 pub fn number(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || (1e-4..1e7).contains(&size) { format!("{value}") } else { format!("{value:e}") }
+}
+
+/// The same with its unit, where it has one.
+pub fn with_unit(value: f64, unit: &str) -> String {
+    let value = number(value);
+    if unit.is_empty() { value } else { format!("{value} {unit}") }
 }

@@ -55,3 +55,24 @@ impl Elasticity {
         }
     }
 }
+
+/// What a law of a shear and a bulk modulus is in scenes: the same for all, `shear` and `bulk` are its fields.
+macro_rules! by_moduli {
+    () => {
+        type Parameters = $crate::materials::Elasticity;
+
+        fn of(elasticity: &Self::Parameters) -> Self {
+            let (shear, bulk) = elasticity.moduli();
+            Self { shear, bulk }
+        }
+
+        fn check(elasticity: &Self::Parameters, complaints: &mut $crate::materials::Complaints) {
+            elasticity.check(complaints);
+        }
+
+        fn with_moduli(shear: f64, bulk: f64) -> Self::Parameters {
+            $crate::materials::Elasticity::Moduli { shear, bulk }
+        }
+    };
+}
+pub(super) use by_moduli;

@@ -17,6 +17,8 @@ pub trait Law: Elastic<f64> + Elastic<f64, Of<f32>: Uniform> {
     const LARGE_STRAINS: bool = true;
     /// Whether its stress is one inside out (J < 0), too, and pushes back.
     const RECOVERS: bool = false;
+    /// Whether it is one of those that studies of a scene compare.
+    const IS_COMPARED: bool = true;
 
     /// The law that parameters make; they have been checked.
     fn of(parameters: &Self::Parameters) -> Self;
@@ -24,12 +26,8 @@ pub trait Law: Elastic<f64> + Elastic<f64, Of<f32>: Uniform> {
     /// Tells what is wrong with parameters.
     fn check(parameters: &Self::Parameters, complaints: &mut Complaints);
 
-    /// Parameters of a law with these shear and bulk moduli (Pa) at small strains; `None` for a law that is not one of
-    /// those that a study compares.
-    fn with_moduli(shear: f64, bulk: f64) -> Option<Self::Parameters> {
-        let _ = (shear, bulk);
-        None
-    }
+    /// Parameters of a law with these shear and bulk moduli (Pa) at small strains.
+    fn with_moduli(shear: f64, bulk: f64) -> Self::Parameters;
 }
 
 /// Files in `shaders/` that a law's twin can stand on.

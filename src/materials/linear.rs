@@ -1,6 +1,7 @@
 //! Hooke's law for small strains.
 
-use super::{Complaints, Elastic, Elasticity, Kinematics, Law, Prerequisite};
+use super::elasticity::by_moduli;
+use super::{Elastic, Kinematics, Law, Prerequisite};
 use crate::math::{Mat3, Real, Sym3};
 use crate::uniform::uniform;
 use bevy_ecs::component::Component;
@@ -22,22 +23,9 @@ pub struct Linear<T: Send + Sync + 'static> {
 uniform!(Linear<f32> { shear, bulk });
 
 impl Law for Linear<f64> {
-    type Parameters = Elasticity;
     const PREREQUISITES: &'static [Prerequisite] = &[];
     const LARGE_STRAINS: bool = false;
-
-    fn of(elasticity: &Elasticity) -> Self {
-        let (shear, bulk) = elasticity.moduli();
-        Self { shear, bulk }
-    }
-
-    fn check(elasticity: &Elasticity, complaints: &mut Complaints) {
-        elasticity.check(complaints);
-    }
-
-    fn with_moduli(shear: f64, bulk: f64) -> Option<Elasticity> {
-        Some(Elasticity::Moduli { shear, bulk })
-    }
+    by_moduli!();
 }
 
 impl<R: Real> Elastic<R> for Linear<R> {

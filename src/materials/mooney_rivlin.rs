@@ -48,8 +48,8 @@ impl Law for MooneyRivlin<f64> {
     }
 
     /// With equal constants.
-    fn with_moduli(shear: f64, bulk: f64) -> Option<Self> {
-        Some(Self { c10: 0.25 * shear, c01: 0.25 * shear, bulk })
+    fn with_moduli(shear: f64, bulk: f64) -> Self {
+        Self { c10: 0.25 * shear, c01: 0.25 * shear, bulk }
     }
 }
 

@@ -1,7 +1,8 @@
 //! The neo-Hookean law in isochoric and volumetric parts.
 
+use super::elasticity::by_moduli;
 use super::kinematics::{twice_green_strain, volume_change};
-use super::{Complaints, Elastic, Elasticity, Fibres, J_FLOOR, Kinematics, Law};
+use super::{Elastic, Fibres, J_FLOOR, Kinematics, Law};
 use crate::math::{Mat3, Real, Sym3, dot, dot_plus, minor};
 use crate::uniform::uniform;
 use bevy_ecs::component::Component;
@@ -22,20 +23,7 @@ pub struct NeoHookean<T: Send + Sync + 'static> {
 uniform!(NeoHookean<f32> { shear, bulk });
 
 impl Law for NeoHookean<f64> {
-    type Parameters = Elasticity;
-
-    fn of(elasticity: &Elasticity) -> Self {
-        let (shear, bulk) = elasticity.moduli();
-        Self { shear, bulk }
-    }
-
-    fn check(elasticity: &Elasticity, complaints: &mut Complaints) {
-        elasticity.check(complaints);
-    }
-
-    fn with_moduli(shear: f64, bulk: f64) -> Option<Elasticity> {
-        Some(Elasticity::Moduli { shear, bulk })
-    }
+    by_moduli!();
 }
 
 impl<R: Real> Elastic<R> for NeoHookean<R> {

@@ -1,6 +1,6 @@
 //! Ogden's law in principal stretches.
 
-use super::complaints::{Place, number as show};
+use super::complaints::number as show;
 use super::{Complaints, Elastic, Kinematics, Law, Prerequisite};
 use crate::math::{Real, Sym3};
 use crate::uniform::{Layout, Uniform};
@@ -72,15 +72,15 @@ impl Law for Ogden<f64> {
                 .note("a term is (mu: 1000, alpha: 2)");
         }
         for (number, term) in terms.iter().enumerate() {
-            let at = |field: &'static str| vec!["terms".into(), Place::Item(number), field.into()];
+            let at = |field: &str| format!("terms[{number}].{field}");
             if term.alpha == 0.0 {
                 let message = "`alpha` must not be 0: such a term has no energy";
-                complaints.at(at("alpha"), true, message.into());
+                complaints.at(at("alpha"), true, message);
             } else if term.mu * term.alpha < 0.0 {
                 let message =
                     "`mu` and `alpha` are of different sign: at some large stretch the law loses its stiffness";
                 complaints
-                    .at(at("mu"), false, message.into())
+                    .at(at("mu"), false, message)
                     .note("it is safe at every stretch when `mu` times `alpha` is above 0 in each term");
             }
         }
@@ -94,8 +94,8 @@ impl Law for Ogden<f64> {
         complaints.bulk_modulus(*bulk, shear, "of half the sum of all `mu` times `alpha`");
     }
 
-    fn with_moduli(shear: f64, bulk: f64) -> Option<OgdenParameters> {
-        Some(OgdenParameters { terms: vec![OgdenTerm { mu: 2.0 * shear / ALPHA, alpha: ALPHA }], bulk })
+    fn with_moduli(shear: f64, bulk: f64) -> OgdenParameters {
+        OgdenParameters { terms: vec![OgdenTerm { mu: 2.0 * shear / ALPHA, alpha: ALPHA }], bulk }
     }
 }
 

@@ -1,6 +1,7 @@
 //! The St. Venant-Kirchhoff law.
 
-use super::{Complaints, Elastic, Elasticity, Kinematics, Law, Prerequisite};
+use super::elasticity::by_moduli;
+use super::{Elastic, Kinematics, Law, Prerequisite};
 use crate::math::{Real, Sym3};
 use crate::uniform::uniform;
 use bevy_ecs::component::Component;
@@ -23,21 +24,8 @@ pub struct StVenantKirchhoff<T: Send + Sync + 'static> {
 uniform!(StVenantKirchhoff<f32> { shear, bulk });
 
 impl Law for StVenantKirchhoff<f64> {
-    type Parameters = Elasticity;
     const PREREQUISITES: &'static [Prerequisite] = &[Prerequisite::FiniteStrain];
-
-    fn of(elasticity: &Elasticity) -> Self {
-        let (shear, bulk) = elasticity.moduli();
-        Self { shear, bulk }
-    }
-
-    fn check(elasticity: &Elasticity, complaints: &mut Complaints) {
-        elasticity.check(complaints);
-    }
-
-    fn with_moduli(shear: f64, bulk: f64) -> Option<Elasticity> {
-        Some(Elasticity::Moduli { shear, bulk })
-    }
+    by_moduli!();
 }
 
 impl<R: Real> Elastic<R> for StVenantKirchhoff<R> {

@@ -1,6 +1,7 @@
 //! The stable neo-Hookean law, defined for every deformation.
 
-use super::{Complaints, Elastic, Elasticity, Kinematics, Law, Prerequisite};
+use super::elasticity::by_moduli;
+use super::{Elastic, Kinematics, Law, Prerequisite};
 use crate::math::{Mat3, Real, Sym3, minor};
 use crate::uniform::uniform;
 use bevy_ecs::component::Component;
@@ -45,18 +46,10 @@ impl<R: Real> StableNeoHookean<R> {
 uniform!(StableNeoHookean<f32> { shear, bulk });
 
 impl Law for StableNeoHookean<f64> {
-    type Parameters = Elasticity;
     const PREREQUISITES: &'static [Prerequisite] = &[Prerequisite::Elementary];
     const RECOVERS: bool = true;
-
-    fn of(elasticity: &Elasticity) -> Self {
-        let (shear, bulk) = elasticity.moduli();
-        Self { shear, bulk }
-    }
-
-    fn check(elasticity: &Elasticity, complaints: &mut Complaints) {
-        elasticity.check(complaints);
-    }
+    const IS_COMPARED: bool = false;
+    by_moduli!();
 }
 
 impl<R: Real> Elastic<R> for StableNeoHookean<R> {

@@ -12,6 +12,19 @@ pub struct SurfaceFace {
     pub element: u32,
 }
 
+impl SurfaceFace {
+    /// Its points, each once.
+    pub fn corners(&self) -> &[u32] {
+        &self.nodes[..if self.nodes[2] == self.nodes[3] { 3 } else { 4 }]
+    }
+
+    /// The triangles it is made of: two of a quadrilateral.
+    pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + use<> {
+        let [a, b, c, d] = self.nodes;
+        std::iter::once([a, b, c]).chain((c != d).then_some([a, c, d]))
+    }
+}
+
 /// A face is numbered `element * FACES + local face`.
 const FACES: u64 = MOST_FACES as u64;
 

@@ -146,8 +146,7 @@ fn overlap(one: &NearBox, other: &NearBox, of: &Placed<'_>, with: &Placed<'_>) -
         let corners = one.mesh.element(face.element as usize);
         let middle = corners.iter().map(|&node| points[node as usize]).sum::<DVec3>() / corners.len() as f64;
         let nodes = face.nodes.map(|node| points[node as usize]);
-        // a triangle repeats a corner
-        let count = if face.nodes[2] == face.nodes[3] { 3 } else { 4 };
+        let count = face.corners().len();
         let center = nodes[..count].iter().sum::<DVec3>() / count as f64;
         for (place, x) in nodes[..count].iter().chain([&center]).enumerate() {
             let below = x.lerp(middle, DEPTH);

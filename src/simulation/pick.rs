@@ -124,11 +124,10 @@ impl Simulation {
             return;
         }
         let faces = self.surface_faces(body);
-        let triangles = faces.iter().zip(0..).flat_map(|(face, number)| {
-            let [a, b, c, d] = face.nodes;
-            let triangle = move |nodes| Triangle { nodes, face: number };
-            std::iter::once([a, b, c]).chain((c != d).then_some([a, c, d])).map(triangle)
-        });
+        let triangles = faces
+            .iter()
+            .zip(0..)
+            .flat_map(|(face, number)| face.triangles().map(move |nodes| Triangle { nodes, face: number }));
         let triangles = triangles.collect();
         self.surfaces.insert(body, Surface { left, faces, triangles });
     }

@@ -122,8 +122,7 @@ impl Simulation {
     /// [`Simulation::begin_step`] as a part of the run.
     fn begin_step_in_time(&mut self) -> Result<(), Error> {
         self.keep_start();
-        self.keep_history_if_due()?;
-        self.take_up_inputs()?;
+        self.before_the_look()?;
         // threads are not called together for nothing
         if self.solver.next_look() > self.step_count() {
             return Ok(());

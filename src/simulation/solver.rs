@@ -60,9 +60,14 @@ impl Simulation {
     /// What comes before a step, in an order that does not depend on how the program asks for steps: the state is kept,
     /// inputs are taken up, and then the stable step is looked at. A second time before the same step it does nothing.
     fn begin_step(&mut self) -> Result<(), Error> {
-        self.keep_history_if_due()?;
-        self.take_up_inputs()?;
+        self.before_the_look()?;
         self.follow()
+    }
+
+    /// All of it but the look.
+    pub(super) fn before_the_look(&mut self) -> Result<(), Error> {
+        self.keep_history_if_due()?;
+        self.take_up_inputs()
     }
 
     /// Takes steps up to `target`, or to equilibrium.

@@ -16,11 +16,7 @@ impl Simulation {
     pub fn surface_triangles(&mut self, body: &str) -> Result<Vec<[u32; 3]>, Error> {
         let body = self.body(body)?;
         crate::backend::device::bring_to_host(&mut self.world, |_, name| name == Alive::NAME)?;
-        let triangles = |face: SurfaceFace| {
-            let [a, b, c, d] = face.nodes;
-            std::iter::once([a, b, c]).chain((c != d).then_some([a, c, d]))
-        };
-        Ok(self.surface_faces(body).into_iter().flat_map(triangles).collect())
+        Ok(self.surface_faces(body).iter().flat_map(SurfaceFace::triangles).collect())
     }
 
     /// Faces of a body's surface, by places in the author's order; elements are what is known of on the host.

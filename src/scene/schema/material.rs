@@ -51,7 +51,7 @@ macro_rules! material {
 
         /// Words of the elastic laws that studies compare, from the simplest on.
         pub fn comparable_laws() -> Vec<&'static str> {
-            let all = [$((stringify!($word), <materials::$law<f64> as Law>::with_moduli(1.0, 1.0).is_some()),)*];
+            let all = [$((stringify!($word), <materials::$law<f64> as Law>::IS_COMPARED),)*];
             all.into_iter().filter(|(_, is_one)| *is_one).map(|(word, _)| word).collect()
         }
 
@@ -92,7 +92,7 @@ macro_rules! material {
                 }
                 $(self.$word = None;)*
                 $(if word == stringify!($word) {
-                    self.$word = <materials::$law<f64> as Law>::with_moduli(shear, bulk);
+                    self.$word = Some(<materials::$law<f64> as Law>::with_moduli(shear, bulk));
                 })*
             }
 

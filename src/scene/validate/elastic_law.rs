@@ -1,7 +1,7 @@
 //! The elastic law of a material: exactly one, with moduli that make sense.
 
 use super::Judge;
-use crate::materials::complaints::{Complaint, Place};
+use crate::materials::complaints::Complaint;
 use crate::scene::limits::FORMULA_BYTES;
 use crate::scene::schema::{ELASTIC_LAWS, Material, OwnLaw, laws_for_large_strains};
 use crate::scene::syntax::Path;
@@ -30,7 +30,7 @@ pub(super) fn validate(judge: &mut Judge, path: &Path, name: &str, material: &Ma
         }
     }
     for (word, complaints) in material.check_elastic_laws() {
-        complaints.list.into_iter().for_each(|complaint| tell(judge, path.name(word), complaint));
+        complaints.list.into_iter().for_each(|complaint| tell(judge, &path.name(word), complaint));
     }
     if let Some(law) = &material.law {
         own_law(judge, &path.name("law"), law);
@@ -50,11 +50,8 @@ pub(super) fn validate(judge: &mut Judge, path: &Path, name: &str, material: &Ma
     }
 }
 
-fn tell(judge: &mut Judge, law: Path, complaint: Complaint) {
-    let at = complaint.at.iter().fold(law, |path, place| match place {
-        Place::Field(field) => path.name(*field),
-        Place::Item(number) => path.index(*number),
-    });
+fn tell(judge: &mut Judge, law: &Path, complaint: Complaint) {
+    let at = format!("{law}.{}", complaint.at);
     let told = match complaint.is_error {
         true => judge.out.error_at(at, complaint.message),
         false => judge.out.warn_at(at, complaint.message),

@@ -17,7 +17,7 @@ mod time;
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::load::SceneFile;
 use super::syntax::{Path, Segment};
-use crate::materials::complaints::number as show;
+use crate::materials::complaints::{number as show, with_unit};
 use glam::DVec3;
 
 /// Adds all that is wrong with the values of a scene, each mistake with its place, the value found and what is allowed.
@@ -96,9 +96,4 @@ impl Judge<'_> {
             self.out.error_at(path, message).note("its length does not matter, but it must point somewhere: (0, 0, 1)");
         }
     }
-}
-
-fn with_unit(value: f64, unit: &str) -> String {
-    let value = show(value);
-    if unit.is_empty() { value } else { format!("{value} {unit}") }
 }
