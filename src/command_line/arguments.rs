@@ -156,7 +156,13 @@ pub struct HowArguments {
     #[arg(long, value_enum, default_value_t = PrecisionName::F32)]
     pub precision: PrecisionName,
     /// CPU threads; 0 is one a core, or a single one for small bodies. Results are the same for any number
-    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 0,
+        allow_negative_numbers = true,
+        value_parser = clap::value_parser!(u16).range(0..=1024)
+    )]
     pub threads: u16,
     /// How element forces are summed: patch by patch in cache or a GPU's workgroup memory, or in two passes over
     /// memory, to compare with
@@ -214,7 +220,13 @@ pub struct AccuracyArguments {
     #[arg(long, value_enum, default_value_t = PrecisionName::F32)]
     pub precision: PrecisionName,
     /// CPU threads; one, so that times can be compared with each other
-    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true, value_parser = clap::value_parser!(u16).range(0..=1024))]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        allow_negative_numbers = true,
+        value_parser = clap::value_parser!(u16).range(0..=1024)
+    )]
     pub threads: u16,
     /// The folder to write into, in place of an earlier study [default: out/NAME-OF-THE-SCENE-accuracy]
     #[arg(short, long, value_name = "DIR")]

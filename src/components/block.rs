@@ -56,8 +56,8 @@ columns! {
     RemovalStep(Vec<u32>) = "removal_step", State, Elements;
     /// Elastic, hourglass and kinetic energy (J) that each element held when it was removed. Exists with [`Alive`].
     RemovedEnergy(Reals) = "removed_energy", State, Elements;
-    /// The part of [`RemovedEnergy`] that is kinetic along constrained axes (J): what constraints had given the mass that
-    /// went, and is their work still. Exists with [`Alive`].
+    /// The part of [`RemovedEnergy`] that is kinetic along constrained axes (J): what constraints had given the mass
+    /// that went, and is their work still. Exists with [`Alive`].
     RemovedWork(Reals) = "removed_work", State, Elements;
     /// Volume at rest (m³) of each element that is there, and that times θ, by which its law measures the change of
     /// volume. Exists with [`NodalVolumeChange`].

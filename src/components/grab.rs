@@ -10,8 +10,9 @@ pub struct Grabs {
     pub held: Vec<HeldNode>,
 }
 
-/// A node that is pulled to where it should be: F = k (goal − u) − c u̇, no longer than `most`. Elements may go that the
-/// node had its mass from: k and c over the mass stay what they were when it was grabbed, so that the stable step does.
+/// A node that is pulled to where it should be: F = k (goal − u) − c u̇, no longer than `most`. Elements may go that
+/// the node had its mass from: k and c over the mass stay what they were when it was grabbed, so that the stable step
+/// does.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HeldNode {
     /// Row of the body's node columns.

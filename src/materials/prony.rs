@@ -52,8 +52,8 @@ impl PronyTerm<f64> {
         self.stress < 0.0
     }
 
-    /// Adds so many `times` the stress to the memory and takes nothing from the stress: q ← q + r((times/r) S − q), with
-    /// r = 2⁻⁶⁰ so small that q itself stays as it is in f64.
+    /// Adds so many `times` the stress to the memory and takes nothing from the stress: q ← q + r((times/r) S − q),
+    /// with r = 2⁻⁶⁰ so small that q itself stays as it is in f64.
     pub fn adding(times: f64) -> Self {
         let rate = 2.0_f64.powi(-60);
         Self { stress: 0.0, memory: 0.0, rate, aim: times / rate }

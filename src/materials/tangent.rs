@@ -5,8 +5,8 @@ use super::{IsochoricStress, Kinematics, LawPrograms};
 use crate::math::{Real, Sym3};
 
 impl LawPrograms {
-    /// ΔS = 4 ∂²Ψ/∂C² : ΔE (Pa) for a change ΔE of Green's strain, of a law from an energy; none of others. S is the whole
-    /// second Piola-Kirchhoff stress.
+    /// ΔS = 4 ∂²Ψ/∂C² : ΔE (Pa) for a change ΔE of Green's strain, of a law from an energy; none of others. S is the
+    /// whole second Piola-Kirchhoff stress.
     ///
     /// With A = ∂Ī₁/∂C and B = ∂Ī₂/∂C it is 2 (Ψ₁ ΔA + Ψ₂ ΔB + ΔΨ₁ A + ΔΨ₂ B) + Δ(U' J) C⁻¹ − U' J C⁻¹ ΔC C⁻¹
     /// (Holzapfel 2000, §6.6). Against differences of the stress it errs by less than 1e-8 of itself

@@ -7,8 +7,8 @@ use bevy_ecs::component::Component;
 use std::fmt;
 use std::sync::{Mutex, PoisonError};
 
-/// A law that somebody wrote as one WGSL file: the GPU runs the text as it stands, the CPU runs it as [`Program`]s. Of an
-/// energy the GPU runs the WGSL that was derived from it, the CPU its derivatives by the invariants as programs, and
+/// A law that somebody wrote as one WGSL file: the GPU runs the text as it stands, the CPU runs it as [`Program`]s. Of
+/// an energy the GPU runs the WGSL that was derived from it, the CPU its derivatives by the invariants as programs, and
 /// compiled code around them.
 #[derive(Component, Clone, Copy)]
 pub struct UserLaw<T: Send + Sync + 'static> {

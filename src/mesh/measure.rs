@@ -38,8 +38,8 @@ impl std::ops::Deref for Places {
 }
 
 impl Mesh {
-    /// Places of the nodes of an element (m); `None` of one that has not `N` nodes. Panics on a row that does not exist;
-    /// [`Mesh::soundness`] finds those of `points`.
+    /// Places of the nodes of an element (m); `None` of one that has not `N` nodes. Panics on a row that does not
+    /// exist; [`Mesh::soundness`] finds those of `points`.
     pub fn corners<const N: usize>(&self, row: usize) -> Option<[DVec3; N]> {
         let nodes: &[u32; N] = self.element(row).try_into().ok()?;
         Some(nodes.map(|node| self.points[node as usize]))

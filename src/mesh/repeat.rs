@@ -4,10 +4,10 @@ use super::{Ids, Mesh};
 use glam::DVec3;
 
 impl Mesh {
-    /// Copies that share nothing, one after the other: points, and elements of each kind, of the first, of the second and so
-    /// on. Each stands `apart` (m) from the one before; they may stand in the same place. Sets hold the points and
-    /// elements of all copies; the sets `copy 0`, `copy 1` ... those of one. Numbers of points and elements go on from
-    /// copy to copy.
+    /// Copies that share nothing, one after the other: points, and elements of each kind, of the first, of the second
+    /// and so on. Each stands `apart` (m) from the one before; they may stand in the same place. Sets hold the points
+    /// and elements of all copies; the sets `copy 0`, `copy 1` ... those of one. Numbers of points and elements go on
+    /// from copy to copy.
     pub fn repeat(&mut self, copies: u32, apart: DVec3) {
         if copies <= 1 {
             return;

@@ -167,8 +167,8 @@ impl Diagnostics {
         self.push(Diagnostic::error(at, message))
     }
 
-    /// Adds an error about some bytes of the text `value` that stands at a path; about all of it where it is not written
-    /// as it is, but with backslashes.
+    /// Adds an error about some bytes of the text `value` that stands at a path; about all of it where it is not
+    /// written as it is, but with backslashes.
     pub fn error_within(
         &mut self,
         path: impl Into<Path>,

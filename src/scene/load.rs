@@ -115,8 +115,8 @@ impl SceneFile {
         Self::from_parts(name, text, (folder, FileSource::Disk), sets, allowed)
     }
 
-    /// As [`Self::from_text`], for a scene whose meshes and laws are in memory, by the names that it gives them: nothing
-    /// is read from a disk.
+    /// As [`Self::from_text`], for a scene whose meshes and laws are in memory, by the names that it gives them:
+    /// nothing is read from a disk.
     ///
     /// # Errors
     /// As [`Self::from_text`].

@@ -39,7 +39,8 @@ const SLOWEST: f64 = 20.0;
 const LEAST: f64 = 1e-4;
 
 impl Simulation {
-    /// Makes the step smaller where it must be, and larger where that is worth while; whether it is to grow further soon.
+    /// Makes the step smaller where it must be, and larger where that is worth while; whether it is to grow further
+    /// soon.
     pub(super) fn adapt(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<bool, Error> {
         let clock = *self.world.resource::<Clock>();
         let found = &mut follower.found;

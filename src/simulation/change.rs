@@ -34,9 +34,9 @@ impl Simulation {
     /// so.
     ///
     /// # Errors
-    /// What is wrong with the scene as it would be; anything else that would change, effects and loads among it that had
-    /// no weight when the simulation was made, and values that a program put into the scene beside its text; a material
-    /// too stiff for a step that stays; a static analysis: then nothing has changed. What the GPU says.
+    /// What is wrong with the scene as it would be; anything else that would change, effects and loads among it that
+    /// had no weight when the simulation was made, and values that a program put into the scene beside its text; a
+    /// material too stiff for a step that stays; a static analysis: then nothing has changed. What the GPU says.
     pub fn change(&mut self, sets: &[String]) -> Result<(), Error> {
         if self.scene.is_static() {
             return Err(Error::Options("a static analysis takes its materials and loads from the scene".into()));

@@ -10,16 +10,17 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// ω Δt of a spring whose stiffness is not given. With critical damping γΔt is twice that. Where Δt is 0.9 of the stable
-/// step, 2.8 % of that are lost: 1 − 2/(γ/2 + √(γ²/4 + 4 + ω²)) with ω = 0.05/0.9 and γ = 2ω in units of it; 5 % is what
-/// such a step leaves free before it follows ([`Follower::most`](super::follow::Follower::most)).
+/// ω Δt of a spring whose stiffness is not given. With critical damping γΔt is twice that. Where Δt is 0.9 of the
+/// stable step, 2.8 % of that are lost: 1 − 2/(γ/2 + √(γ²/4 + 4 + ω²)) with ω = 0.05/0.9 and γ = 2ω in units of it; 5 %
+/// is what such a step leaves free before it follows ([`Follower::most`](super::follow::Follower::most)).
 const GENTLE: f64 = 0.05;
 
 /// How a hand holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grip {
-    /// Stiffness of the spring (N/m); left out: m ω² with ω Δt = 0.05, m the least mass of a held node over its weight and
-    /// Δt the first step of the run: it takes 2.8 % of a stable step of which Δt is 0.9, and no step has to follow that.
+    /// Stiffness of the spring (N/m); left out: m ω² with ω Δt = 0.05, m the least mass of a held node over its weight
+    /// and Δt the first step of the run: it takes 2.8 % of a stable step of which Δt is 0.9, and no step has to follow
+    /// that.
     pub stiffness: Option<f64>,
     /// Damping of the damper (N s/m); left out: that of a critically damped mass m.
     pub damping: Option<f64>,

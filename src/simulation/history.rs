@@ -41,7 +41,8 @@ impl Kept {
 
 impl Simulation {
     /// Goes back to the state before the first step, at rest or as the scene and the program made it, with all inputs
-    /// at their initial values and nothing held: the same steps from there give the same bits. Outputs go on being written.
+    /// at their initial values and nothing held: the same steps from there give the same bits. Outputs go on being
+    /// written.
     ///
     /// # Errors
     /// That this state was not kept: the run began with a snapshot from elsewhere, [`Options::forgets_start`] is set,
@@ -133,7 +134,8 @@ impl Simulation {
         Ok(state.time())
     }
 
-    /// The run goes on from a time: what it came to after that is forgotten, and all of it where it has never been there.
+    /// The run goes on from a time: what it came to after that is forgotten, and all of it where it has never been
+    /// there.
     pub(super) fn forget_later(&mut self, time: f64, ours: bool) {
         if let Some(kept) = &mut self.history.kept {
             kept.states.retain(|state| ours && state.time() <= time);

@@ -146,9 +146,9 @@ impl Simulation {
         self.world.resource::<Signals>().inputs().iter().map(value).collect()
     }
 
-    /// Sets an input: from the next step on it goes there, no faster than its rate. Loads act in each step with its mean
-    /// over that step, prescribed nodes are where it says at the step's end. Of several values before a step the last
-    /// counts.
+    /// Sets an input: from the next step on it goes there, no faster than its rate. Loads act in each step with its
+    /// mean over that step, prescribed nodes are where it says at the step's end. Of several values before a step the
+    /// last counts.
     ///
     /// # Errors
     /// A name that the scene does not have, with those that it has; a value that is no finite number, also in f32; one
@@ -222,8 +222,8 @@ impl Simulation {
     }
 
     /// Replays a recording: each change is made when its step begins. What is set meanwhile counts until the next
-    /// recorded change of the same input; of several changes of an input at one step the last counts. An empty recording
-    /// ends replaying, and so does going back.
+    /// recorded change of the same input; of several changes of an input at one step the last counts. An empty
+    /// recording ends replaying, and so does going back.
     ///
     /// # Errors
     /// A recording that began at another step than the present one (restore the snapshot of that step first); inputs

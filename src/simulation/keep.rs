@@ -29,8 +29,8 @@ impl Simulation {
     ///
     /// # Errors
     /// That the snapshot is of another simulation, is senseless, or holds a body where nothing can be held
-    /// ([`Options::grabs`](super::Options::grabs)): then nothing has changed. A custom system's state that cannot be taken
-    /// back; what the GPU says.
+    /// ([`Options::grabs`](super::Options::grabs)): then nothing has changed. A custom system's state that cannot be
+    /// taken back; what the GPU says.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Error> {
         self.keep_start();
         let pace = self.checked_pace(snapshot)?;

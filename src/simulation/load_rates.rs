@@ -73,8 +73,8 @@ impl Simulation {
         Ok(LoadRates::of_rows(systems, self.scene.duration, &mut self.world))
     }
 
-    /// Counts forces on nodes for the stable step from here on. Snapshots hold what was counted: elements that went since
-    /// must not make another step of it.
+    /// Counts forces on nodes for the stable step from here on. Snapshots hold what was counted: elements that went
+    /// since must not make another step of it.
     pub(super) fn count_loads(&mut self) -> Result<(), Error> {
         let loads = self.loads_now()?;
         if let Some(follower) = self.solver.follower_mut() {

@@ -1,8 +1,8 @@
 //! A bound of all frequencies by nodes: as certain as that of the stiffest element, never a smaller step, and nearly as
 //! cheap.
 //!
-//! An element's bound says K_e ≤ ω_e² M_e, with the lumped mass s_a m_e at its node a, s_a the node's share. Summed over
-//! all elements,
+//! An element's bound says K_e ≤ ω_e² M_e, with the lumped mass s_a m_e at its node a, s_a the node's share. Summed
+//! over all elements,
 //!
 //! xᵀKx ≤ Σ_e ω_e² m_e Σ_{a of e} s_a |x_a|² = Σ_a |x_a|² Σ_{e at a} ω_e² s_a m_e,
 //!

@@ -24,7 +24,8 @@ impl Simulation {
     /// known.
     pub(super) fn hold(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<Option<u64>, Error> {
         let (step, time_step) = (self.step_count(), self.world.resource::<Clock>().time_step);
-        // mass is not added and elements are not removed on the word of the cheap bound, nor for what a load or a hand does
+        // mass is not added and elements are not removed on the word of the cheap bound, nor for what a load or a hand
+        // does
         let watches = follower.policy == WhenUnstable::Watch;
         let presses = |follower: &Follower, square: f64| {
             time_step > follower.most() * if watches { follower.step_of(square) } else { step_of(square) }

@@ -69,8 +69,8 @@ pub(super) struct Seen {
     pub at_rest: f64,
     /// The most that the stiffness of an element has grown since the frequency of all was found.
     pub ratio: f64,
-    /// The fastest deformation in a step: the largest change of strain, relative to the present lengths; and relative to
-    /// their mean over the axes.
+    /// The fastest deformation in a step: the largest change of strain, relative to the present lengths; and relative
+    /// to their mean over the axes.
     pub speed: f64,
     pub mean_speed: f64,
     /// Elements that are there.

@@ -147,7 +147,8 @@ fn the_way_to_rest_before_the_first_step_is_a_part_of_what_is_predicted() {
     let mut finer = base.clone();
     finer.mesh = Factor::new(2, 1);
     let cost = engine.predict(&finer).unwrap();
-    // eight times the elements, twice the steps: to find the step, and for each of three runs, which are as short as that
+    // eight times the elements, twice the steps: to find the step, and for each of three runs, which are as short as
+    // that
     assert!(cost.seconds >= 4.0 * 16.0 * solution.preload, "{} s for {} s", cost.seconds, solution.preload);
     // what is at rest from the beginning has none of it
     let (_keep, file) = scene("block.ron", &text.replace("start: Equilibrium(),", ""));

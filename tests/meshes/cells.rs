@@ -172,7 +172,8 @@ fn flat_cells_and_wrong_numbers_of_nodes_are_refused() {
 #[test]
 fn files_have_the_numbers_and_the_orders_of_their_formats() {
     // places in reference cells in the order in which the formats list them: vtkCell.h's types with the parametric
-    // coordinates of the classes (0 to 1), and "Node ordering" and "MSH file format" of Gmsh's manual (-1 to 1 for hexahedra)
+    // coordinates of the classes (0 to 1), and "Node ordering" and "MSH file format" of Gmsh's manual (-1 to 1 for
+    // hexahedra)
     type Places = &'static [[i8; 3]];
     /// A kind with its numbers and orders in VTK files, and those in Gmsh files.
     type Known<'a> = (CellKind, &'a [(u8, Places)], (u8, Places));

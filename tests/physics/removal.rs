@@ -200,9 +200,9 @@ fn elements_of_another_material_stay_as_they_are() {
     }
 }
 
-/// Runs a bar from which elements go: what is held at the end, what went with them and what was done on it must balance,
-/// to `allowed` of the larger work, or where nodal means are taken to the second of it. Removed energy must be that share
-/// of the work at least.
+/// Runs a bar from which elements go: what is held at the end, what went with them and what was done on it must
+/// balance, to `allowed` of the larger work, or where nodal means are taken to the second of it. Removed energy must be
+/// that share of the work at least.
 ///
 /// Around the hole nodal means are taken anew, of fewer elements: the energy of those that stay jumps by what their
 /// volumes differed by, and nobody books that. No smaller step changes it.
@@ -236,8 +236,9 @@ fn work_on_mass_that_is_gone_stays_booked() {
     let rest = "constraints: [Fixed(on: Plane(normal: (1, 0, 0), at: 0)),
             Prescribed(on: Plane(normal: (1, 0, 0), at: 6), displacement: (0.6, 0, 0), curve: Smooth(end: 0.8))],
         removal: [(on: Box(min: (5, 0, 0), max: (6, 1, 0.7)), when: At(0.4))]";
-    // the work of a step is that of the mean of the forces at its ends: where a force goes that does 1.4 kW, half of it over a
-    // step of 1 ms is not there, 0.7 J of 920 J (and half of that with half the step); nodal means jump by 21 J of 829 J
+    // the work of a step is that of the mean of the forces at its ends: where a force goes that does 1.4 kW, half of it
+    // over a step of 1 ms is not there, 0.7 J of 920 J (and half of that with half the step); nodal means jump by 21 J
+    // of 829 J
     balances(rest, 500, 0.2, [8e-4, 3e-2]);
 }
 

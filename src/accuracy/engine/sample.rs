@@ -70,8 +70,8 @@ impl<'a> Sampler<'a> {
         self.duration * look as f64 / self.looks.count as f64
     }
 
-    /// Steps to the `look`th look and sees what is there; `advance` takes steps, none beyond a time (s), and says how long
-    /// they took (s). Looks come in order. Steps may change on the way: a time within a step is interpolated.
+    /// Steps to the `look`th look and sees what is there; `advance` takes steps, none beyond a time (s), and says how
+    /// long they took (s). Looks come in order. Steps may change on the way: a time within a step is interpolated.
     pub fn at(
         &mut self,
         simulation: &mut Simulation,

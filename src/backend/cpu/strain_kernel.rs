@@ -34,8 +34,8 @@ pub struct Strain {
     /// At least the largest eigenvalue of C⁻¹, the inverse square of the least stretch, and no more than that where one
     /// axis is squeezed: tr C⁻¹/3 + √(2/3 D : D) with its deviator D; infinite for what is flat, or no number.
     pub squeeze: f64,
-    /// √(ΔE : ΔE) times [`squeeze`](Self::squeeze), with the change ΔE of Green's strain in a step: at least the change of
-    /// a length over that length; infinite for what is no number.
+    /// √(ΔE : ΔE) times [`squeeze`](Self::squeeze), with the change ΔE of Green's strain in a step: at least the change
+    /// of a length over that length; infinite for what is no number.
     pub speed: f64,
     /// √(ΔE : ΔE) tr C⁻¹/3: the same over all axes; infinite for what is no number.
     pub mean_speed: f64,
@@ -144,8 +144,8 @@ fn sound<T: SimdScalar>([size, squeeze, speed, mean_speed, astray]: [T; 5]) -> [
     [size, squeeze, speed, mean_speed].map(number)
 }
 
-/// Size, squeeze and both speeds of a register full of elements, and what is not 0 where either is no number. `rows`: what
-/// more is asked for, of which row on, and where it goes.
+/// Size, squeeze and both speeds of a register full of elements, and what is not 0 where either is no number. `rows`:
+/// what more is asked for, of which row on, and where it goes.
 #[inline(always)]
 fn register<E: Element, T: SimdScalar, S: Simd>(
     simd: S,
@@ -206,7 +206,8 @@ pub(crate) fn with_identity<R: Real>(gradient: &Mat3<R>) -> [[R; 3]; 3] {
 }
 
 /// tr C/3, tr C⁻¹/3 and a bound of the largest eigenvalue of C⁻¹ (see [`Strain::squeeze`]): |F|², and cof F over J, which lose no
-/// digits where C is nearly singular. Where a law does not end at J = 0, of cof C in place of C⁻¹, and 1 + (1 − J)² at least.
+/// digits where C is nearly singular. Where a law does not end at J = 0, of cof C in place of C⁻¹, and 1 + (1 − J)² at
+/// least.
 #[inline(always)]
 pub(crate) fn sizes<R: Real>(f: &[[R; 3]; 3], ends: bool) -> [R; 3] {
     let third = f[0][0].constant(1.0 / 3.0);

@@ -1,4 +1,5 @@
-//! Whether a text has its form, that of a law say: the functions, one uniform of numbers, nothing else that kernels have.
+//! Whether a text has its form, that of a law say: the functions, one uniform of numbers, nothing else that kernels
+//! have.
 
 use super::form::{Form, Function};
 use super::names::{Declared, declared, member};

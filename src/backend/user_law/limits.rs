@@ -1,5 +1,5 @@
-//! Whether a text of the user's own has a bearable size and depth, from its words alone. Compilers go into what is nested by calls
-//! within calls: a text without limits would take all of their stack, or all of one's time.
+//! Whether a text of the user's own has a bearable size and depth, from its words alone. Compilers go into what is
+//! nested by calls within calls: a text without limits would take all of their stack, or all of one's time.
 
 use super::{About, Complaint};
 use crate::materials::program::{is_name, words};

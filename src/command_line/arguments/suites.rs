@@ -23,34 +23,88 @@ pub struct HardArguments {
 #[derive(Args)]
 pub struct BenchArguments {
     /// Cells along each edge of the cubes
-    #[arg(long, value_name = "N,..", value_delimiter = ',', default_values_t = [10, 20, 30], value_parser = clap::value_parser!(u32).range(1..=200))]
+    #[arg(
+        long,
+        value_name = "N,..",
+        value_delimiter = ',',
+        default_values_t = [10, 20, 30],
+        value_parser = clap::value_parser!(u32).range(1..=200)
+    )]
     pub cells: Vec<u32>,
     /// Element types
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["tet4".to_string(), "hex8".to_string()], value_parser = ["tet4", "tet4-nodal-pressure", "hex8", "hex8-mean-dilatation"])]
+    #[arg(
+        long,
+        value_name = "NAME,..",
+        value_delimiter = ',',
+        default_values_t = ["tet4".to_string(), "hex8".to_string()],
+        value_parser = ["tet4", "tet4-nodal-pressure", "hex8", "hex8-mean-dilatation"]
+    )]
     pub elements: Vec<String>,
     /// Effects beside neo-Hookean elasticity
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["none".to_string(), "fibres-viscosity".to_string()], value_parser = ["none", "fibres", "viscosity", "fibres-viscosity"])]
+    #[arg(
+        long,
+        value_name = "NAME,..",
+        value_delimiter = ',',
+        default_values_t = ["none".to_string(), "fibres-viscosity".to_string()],
+        value_parser = ["none", "fibres", "viscosity", "fibres-viscosity"]
+    )]
     pub effects: Vec<String>,
     /// Where
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["cpu".to_string()], value_parser = ["cpu", "gpu"])]
+    #[arg(
+        long,
+        value_name = "NAME,..",
+        value_delimiter = ',',
+        default_values_t = ["cpu".to_string()],
+        value_parser = ["cpu", "gpu"]
+    )]
     pub backends: Vec<String>,
     /// Number types; GPUs have f32 only
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["f32".to_string()], value_parser = ["f32", "f64"])]
+    #[arg(
+        long,
+        value_name = "NAME,..",
+        value_delimiter = ',',
+        default_values_t = ["f32".to_string()],
+        value_parser = ["f32", "f64"]
+    )]
     pub precisions: Vec<String>,
     /// CPU threads [default: 1 and one a core]
     #[arg(long, value_name = "N,..", value_delimiter = ',', value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub threads: Vec<u16>,
     /// Vector registers of the CPU: the widest it has, AVX2 also where there is AVX-512, or what any machine has
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["widest".to_string()], value_parser = ["widest", "avx2", "portable"])]
+    #[arg(
+        long,
+        value_name = "NAME,..",
+        value_delimiter = ',',
+        default_values_t = ["widest".to_string()],
+        value_parser = ["widest", "avx2", "portable"]
+    )]
     pub instructions: Vec<String>,
     /// How element forces are summed
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["patches".to_string(), "two-pass".to_string()], value_parser = ["patches", "two-pass"])]
+    #[arg(
+        long,
+        value_name = "NAME,..",
+        value_delimiter = ',',
+        default_values_t = ["patches".to_string(), "two-pass".to_string()],
+        value_parser = ["patches", "two-pass"]
+    )]
     pub schemes: Vec<String>,
     /// Whether systems share kernels and loops where they can, or are kept apart
-    #[arg(long, value_name = "WORD,..", value_delimiter = ',', default_values_t = ["on".to_string()], value_parser = ["on", "off"])]
+    #[arg(
+        long,
+        value_name = "WORD,..",
+        value_delimiter = ',',
+        default_values_t = ["on".to_string()],
+        value_parser = ["on", "off"]
+    )]
     pub fuse: Vec<String>,
     /// What pulls at the cubes: nothing, the engine's gravity, or the same as a system of one's own, in Rust or in WGSL
-    #[arg(long, value_name = "NAME,..", value_delimiter = ',', default_values_t = ["gravity".to_string()], value_parser = ["none", "gravity", "rust", "wgsl"])]
+    #[arg(
+        long,
+        value_name = "NAME,..",
+        value_delimiter = ',',
+        default_values_t = ["gravity".to_string()],
+        value_parser = ["none", "gravity", "rust", "wgsl"]
+    )]
     pub loads: Vec<String>,
     /// Seconds for each case
     #[arg(long, value_name = "S", default_value_t = 0.5)]

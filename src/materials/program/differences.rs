@@ -292,8 +292,8 @@ impl Graph {
         self.within(x, 0.25, near, far)
     }
 
-    /// ln(1 + x) − x = 2s³ (⅓ + s²/5 + ...) − s x with s = x/(2 + x). Below ⅛ as that, with a series that ends where f64
-    /// does (s¹³/17 < 1e-16); beyond, the difference loses no more than a factor of 20.
+    /// ln(1 + x) − x = 2s³ (⅓ + s²/5 + ...) − s x with s = x/(2 + x). Below ⅛ as that, with a series that ends where
+    /// f64 does (s¹³/17 < 1e-16); beyond, the difference loses no more than a factor of 20.
     fn logarithm_remainder(&mut self, x: Id) -> Id {
         let factors: Vec<f64> = (0..7).map(|k| 2.0 / f64::from(2 * k + 3)).collect();
         let sum = self.plus_number(x, 2.0);

@@ -1,6 +1,6 @@
 //! Graphs made anew in simpler terms: with other inputs, constants drawn together, and differences that lose digits at
-//! small strains in a form that keeps them. Unlike what [`Graph`] itself simplifies, this may change roundings and takes
-//! 0·x for 0: it is for energies, which are differentiated anyway.
+//! small strains in a form that keeps them. Unlike what [`Graph`] itself simplifies, this may change roundings and
+//! takes 0·x for 0: it is for energies, which are differentiated anyway.
 
 use super::graph::{Binary, Graph, Id, Node, Unary};
 

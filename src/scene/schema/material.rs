@@ -81,8 +81,9 @@ macro_rules! material {
                 all
             }
 
-            /// Gives it the elastic law of that word in place of its own, with the moduli (Pa) that its own has at small
-            /// strains; leaves it alone where there is no such law, or its own is none of those that studies compare.
+            /// Gives it the elastic law of that word in place of its own, with the moduli (Pa) that its own has at
+            /// small strains; leaves it alone where there is no such law, or its own is none of those that studies
+            /// compare.
             pub fn take_law(&mut self, word: &str) {
                 let [own] = self.elastic_laws()[..] else { return };
                 let known = comparable_laws();
