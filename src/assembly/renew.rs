@@ -43,7 +43,7 @@ fn renew_block(entity: Entity, made: &Scene, world: &mut World) -> Option<BlockL
     for ((family, _), now) in law.exponential.iter_mut().zip(families.iter().flat_map(|families| &families.0)) {
         *family = *now;
     }
-    if format!("{law:?}") == format!("{before:?}") {
+    if law == before {
         return None;
     }
     let moduli = law.elastic.small_strain_moduli();

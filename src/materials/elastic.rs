@@ -142,7 +142,7 @@ pub(crate) use each_elastic_law;
 macro_rules! elastic_laws {
     ($($(#[$doc:meta])* $word:ident: $law:ident;)*) => {
         /// Any elastic law. It is a law itself: one that asks at each point which it is.
-        #[derive(Clone, Copy, Debug)]
+        #[derive(Clone, Copy, Debug, PartialEq)]
         #[allow(missing_docs)]
         pub enum ElasticLaw<R: Real> {
             $($law(super::$law<R>),)*

@@ -194,6 +194,13 @@ impl<T: Send + Sync + 'static> UserLaw<T> {
     }
 }
 
+/// Laws made of the same are the same: see [`UserLaw::new`].
+impl<T: Send + Sync + 'static> PartialEq for UserLaw<T> {
+    fn eq(&self, other: &Self) -> bool {
+        std::ptr::eq(self.law, other.law)
+    }
+}
+
 impl<T: Send + Sync + 'static> fmt::Debug for UserLaw<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "UserLaw({})", self.law.path)

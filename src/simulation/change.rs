@@ -159,7 +159,7 @@ impl Simulation {
             follower.found.take(&seen);
         }
         follower.found.latest = seen.square;
-        let loads = follower.loads;
+        let loads = follower.loads();
         self.solver = Solver::Explicit(Some(follower));
         let fits = known.and_then(|_| {
             self.fits_the_step(&loads).map_err(|limit| {

@@ -70,8 +70,7 @@ pub(super) struct Follower {
     by_elements: bool,
     /// The share of the stable step at the start that the scene's own one is; else 0.
     own_share: f64,
-    /// What forces on nodes make of a stable step: all frequencies here are of the bodies alone; now, and at the start.
-    pub loads: LoadRates,
+    /// What forces on nodes make of a stable step at the start: all frequencies here are of the bodies alone.
     loads_at_start: LoadRates,
     pub duration: f64,
     pub first: f64,
@@ -149,7 +148,6 @@ impl Follower {
             safety: integration.safety,
             by_elements: stability.stays_with_elements,
             own_share: integration.step.map_or(0.0, |step| step / limit),
-            loads: stability.loads,
             loads_at_start: stability.loads,
             duration: scene.duration,
             first: step,
@@ -187,9 +185,14 @@ impl Follower {
         0.5 * (1.0 + self.safety.max(self.own_share).min(1.0))
     }
 
+    /// What forces on nodes make of a stable step now.
+    pub fn loads(&self) -> LoadRates {
+        self.found.loads.unwrap_or(self.loads_at_start)
+    }
+
     /// The stable step when ω² of the bodies is so large (s).
     pub fn step_of(&self, square: f64) -> f64 {
-        self.loads.with(step_of(square))
+        self.loads().with(step_of(square))
     }
 
     /// The largest step that may be taken when so much is stable (s).
@@ -218,8 +221,6 @@ impl Follower {
         }
         self.shape = followed.shape.as_deref().and_then(numbers_of);
         (self.found, self.history) = (followed.found, followed.history);
-        self.loads = self.found.loads.unwrap_or(self.loads_at_start);
-        world.insert_resource(self.loads);
     }
 
     /// Elements have gone since the highest frequency was found: their mass has gone with them, and what was found

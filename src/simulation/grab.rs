@@ -1,5 +1,6 @@
 //! Grabbing: a spring and a damper between a point of a body and a target that a program moves.
 
+use super::follow::Follower;
 use super::{Pick, Simulation};
 use crate::backend::device::{Device, bring_to_host};
 use crate::components::*;
@@ -313,7 +314,7 @@ impl Simulation {
     /// Whether a step that does not follow what is stable is stable with what is held.
     fn is_stable_with_grabs(&mut self) -> Result<(), Error> {
         self.count_loads()?;
-        let loads = self.solver.follower().map(|follower| follower.loads).unwrap_or_default();
+        let loads = self.solver.follower().map(Follower::loads).unwrap_or_default();
         self.fits_the_step(&loads).map_err(|limit| {
             let step = self.time_step();
             Error::Options(format!(

@@ -23,7 +23,7 @@ use bevy_ecs::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// The slopes of all forces of node systems together: the largest of each.
-#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct LoadRates(ForceSlopes);
 
 impl LoadRates {
@@ -78,9 +78,8 @@ impl Simulation {
     pub(super) fn count_loads(&mut self) -> Result<(), Error> {
         let loads = self.loads_now()?;
         if let Some(follower) = self.solver.follower_mut() {
-            (follower.loads, follower.found.loads) = (loads, Some(loads));
+            follower.found.loads = Some(loads);
         }
-        self.world.insert_resource(loads);
         Ok(())
     }
 

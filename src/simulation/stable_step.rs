@@ -2,6 +2,7 @@
 
 use super::costly::warn_of_costly;
 use super::damped_step::with_damping;
+use super::follow::Follower;
 use super::follow::step_of;
 use super::frequency::{Largest, PRODUCT, largest_eigenvalue, largest_worth};
 use super::known::Known;
@@ -107,7 +108,7 @@ impl Simulation {
     /// What the GPU says.
     pub fn stable_limit(&mut self) -> Result<Option<f64>, Error> {
         bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
-        let loads = self.world.get_resource::<LoadRates>().copied().unwrap_or_default();
+        let loads = self.solver.follower().map_or(self.facts.stability.loads, Follower::loads);
         Ok(limit_now(&mut self.world, ACCURACY).map(|limit| loads.with(limit)))
     }
 }
@@ -142,7 +143,6 @@ pub(super) fn choose(
             .note("`bound: Auto` stays with the stiffest element, which is safe");
     }
     let loads = loads.unwrap_or_else(|| LoadRates::of(known.systems(), scene.scene.duration, world));
-    world.insert_resource(loads);
     let found = seek(&scene.scene, certain, stays.is_none(), &loads, world);
     // the bounds are certain as well: at rest the best of all
     let limit = step_of(found.at_most).max(certain);

@@ -7,7 +7,7 @@ use bevy_ecs::prelude::*;
 
 /// All that a block's kernel needs of its material, in the kernel's precision. What the material does not have is
 /// `None` or empty, and costs nothing.
-#[derive(Component, Clone, Debug)]
+#[derive(Component, Clone, Debug, PartialEq)]
 pub struct BlockLaw<T: Scalar> {
     /// Isotropic elasticity.
     pub elastic: ElasticLaw<T>,
