@@ -38,7 +38,7 @@ fn add_force(element: u32, is_there: bool, batch: u32, corner: u32, force: vec3<
         own_round = word / (PLACE_BITS + 1u);
         at = 3u * (word & PLACE_BITS);
     }
-    let of_four = patch_lists[patches.rounds + batch * (NODES / 4u) + corner / 4u];
+    let of_four = patch_lists[patches.rounds + batch * ((NODES + 3u) / 4u) + corner / 4u];
     let rounds = (of_four >> (8u * (corner % 4u))) & 0xffu;
     for (var round = 0u; round < rounds; round++) {
         if round == own_round {

@@ -14,6 +14,7 @@ use std::collections::BTreeSet;
 
 /// Fragments that belong to no system, element or material by name, and what calls for them.
 const SUPPORT: &[(&str, &str)] = &[
+    ("mean_pressure", "elements with one pressure and several points"),
     ("corner", "corners of elements, in columns"),
     ("corner_volume", "the same for averaged nodal pressure"),
     ("patch_volume", "averaged nodal pressure, in patches"),

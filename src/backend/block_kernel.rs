@@ -13,7 +13,7 @@ use crate::elements::{Element, PressureFrom};
 use crate::evaluation::{node_count, with_element, with_element_of};
 use crate::materials::{Fibres, J_FLOOR, PronyTerm};
 use crate::math::LANES;
-use crate::mesh::ElementKind;
+use crate::mesh::{ElementKind, each_element_kind};
 use crate::shader;
 use bevy_ecs::prelude::*;
 
@@ -164,11 +164,7 @@ impl BlockKernels {
             .fragment(shader!("tensor"))
             .fragment(shader!("kinematics"))
             .fragment(shader!("point"))
-            .fragment(match self.block.kind {
-                ElementKind::Tet4 | ElementKind::Tet4NodalPressure => shader!("tet4"),
-                ElementKind::Hex8 => shader!("hex8"),
-                ElementKind::Hex8MeanDilatation => shader!("hex8_mean_dilatation"),
-            })
+            .fragment(element_shader(self.block.kind))
             .fragment(elastic.fragment);
         kernel.fragments.extend(prerequisites(&self.law.elastic));
         kernel.layouts.extend(elastic.layout.map(|layout| ("elastic".into(), layout)));
@@ -212,8 +208,7 @@ impl BlockKernels {
         };
         match from {
             PressureFrom::Point => kernel.fragment(shader!("point_pressure")),
-            // comes with the element type
-            PressureFrom::MeanOverPoints => kernel,
+            PressureFrom::MeanOverPoints => kernel.fragment(shader!("mean_pressure")),
             PressureFrom::Nodes => kernel
                 .fragment(shader!("tet4_nodal_pressure"))
                 .fragment(match at {
@@ -319,6 +314,17 @@ impl BlockKernels {
         with_element_of!(self.block, E => constants::<E>())
     }
 }
+
+macro_rules! element_shaders {
+    ($dollar:tt $($(#[$about:meta])* $kind:ident: $cell:ident, $shader:literal;)*) => {
+        fn element_shader(kind: ElementKind) -> Fragment {
+            match kind {
+                $(ElementKind::$kind => shader!($shader),)*
+            }
+        }
+    };
+}
+each_element_kind! { $ element_shaders }
 
 fn constants<E: Element>() -> String {
     format!(

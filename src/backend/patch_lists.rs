@@ -102,7 +102,7 @@ pub fn pack(block: &Block, patches: &Patches) -> Result<PackedPatches, String> {
     if nodes > most {
         return Err(format!("a patch has {nodes} nodes, and {most} fit into a workgroup's memory"));
     }
-    let words_a_batch = corners / 4;
+    let words_a_batch = corners.div_ceil(4);
     let mut words = patches.starts.clone();
     let rounds_at = words.len();
     words.resize(rounds_at + count * patch_batches(kind) * words_a_batch, 0);

@@ -134,10 +134,7 @@ impl Plan {
 
 /// How many elements fill a cell of a cube.
 pub fn elements_a_cell(element: ElementKind) -> u64 {
-    match element {
-        ElementKind::Tet4 | ElementKind::Tet4NodalPressure => 6,
-        ElementKind::Hex8 | ElementKind::Hex8MeanDilatation => 1,
-    }
+    element.a_cell().unwrap_or(1).into()
 }
 
 impl Effects {

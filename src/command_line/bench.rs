@@ -69,6 +69,7 @@ fn plan(arguments: &BenchArguments) -> Plan {
         "tet4" => ElementKind::Tet4,
         "tet4-nodal-pressure" => ElementKind::Tet4NodalPressure,
         "hex8" => ElementKind::Hex8,
+        "wedge6" => ElementKind::Wedge6,
         _ => ElementKind::Hex8MeanDilatation,
     };
     let effects = |name: &String| match name.as_str() {

@@ -4,6 +4,7 @@
 
 use super::Reals;
 use super::column::columns;
+use crate::mesh::CellKind;
 use crate::scene::schema::{ElementKind, Inversion};
 use bevy_ecs::prelude::*;
 
@@ -79,10 +80,12 @@ columns! {
 
 /// Elements of a patch: enough to be worth a task, few enough that their nodes and forces stay in a core's cache.
 pub const fn patch_groups(kind: ElementKind) -> usize {
-    match kind {
-        ElementKind::Tet4 | ElementKind::Tet4NodalPressure => 1024 / crate::math::LANES,
-        ElementKind::Hex8 | ElementKind::Hex8MeanDilatation => 224 / crate::math::LANES,
-    }
+    let elements = match kind.cell() {
+        CellKind::Tet4 => 1024,
+        CellKind::Wedge6 => 448,
+        _ => 224,
+    };
+    elements / crate::math::LANES
 }
 
 /// Elements of each of a block's patches but the last, which may have less.

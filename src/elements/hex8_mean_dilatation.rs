@@ -190,9 +190,9 @@ impl Element for Hex8MeanDilatation {
     }
 }
 
-/// (tr L^64)^(1/64) ≥ λ_max of a positive semidefinite matrix, at most 3.3 % above it.
-fn largest_eigenvalue_bound(mut power: [[f64; 8]; 8]) -> f64 {
-    let trace = |m: &[[f64; 8]; 8]| (0..8).map(|a| m[a][a]).sum::<f64>();
+/// (tr L^64)^(1/64) ≥ λ_max of a positive semidefinite matrix, at most 3.3 % above it for up to eight rows.
+pub(super) fn largest_eigenvalue_bound<const N: usize>(mut power: [[f64; N]; N]) -> f64 {
+    let trace = |m: &[[f64; N]; N]| (0..N).map(|a| m[a][a]).sum::<f64>();
     let mut logarithm = 0.0;
     for squared in 0..=6 {
         let scale = trace(&power);
@@ -202,7 +202,7 @@ fn largest_eigenvalue_bound(mut power: [[f64; 8]; 8]) -> f64 {
         logarithm += scale.ln() / f64::from(1 << squared);
         power.as_flattened_mut().iter_mut().for_each(|entry| *entry /= scale);
         if squared < 6 {
-            let row = |a: usize, b: usize| (0..8).map(|c| power[a][c] * power[c][b]).sum::<f64>();
+            let row = |a: usize, b: usize| (0..N).map(|c| power[a][c] * power[c][b]).sum::<f64>();
             power = std::array::from_fn(|a| std::array::from_fn(|b| row(a, b)));
         }
     }

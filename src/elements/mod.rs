@@ -6,11 +6,13 @@ mod hex8;
 mod hex8_mean_dilatation;
 mod tet4;
 mod tet4_nodal_pressure;
+mod wedge6;
 
 pub use hex8::{Hex8, Hexahedron, Parallelepiped};
 pub use hex8_mean_dilatation::Hex8MeanDilatation;
 pub use tet4::Tet4;
 pub use tet4_nodal_pressure::Tet4NodalPressure;
+pub use wedge6::Wedge6;
 
 use crate::math::{Mat3, Real};
 use crate::mesh::CellKind;

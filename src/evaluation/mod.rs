@@ -14,29 +14,22 @@ use crate::elements::{Element, MOST_NODES, MOST_POINTS, MOST_ROWS, PressureFrom}
 use crate::math::LANES;
 use crate::mesh::ElementKind;
 
-/// Runs an expression with `$element` standing for the type of an [`ElementKind`].
-macro_rules! with_element {
-    ($kind:expr, $element:ident => $body:expr) => {
-        match $kind {
-            $crate::mesh::ElementKind::Tet4 => {
-                type $element = $crate::elements::Tet4;
-                $body
-            }
-            $crate::mesh::ElementKind::Tet4NodalPressure => {
-                type $element = $crate::elements::Tet4NodalPressure;
-                $body
-            }
-            $crate::mesh::ElementKind::Hex8 => {
-                type $element = $crate::elements::Hex8;
-                $body
-            }
-            $crate::mesh::ElementKind::Hex8MeanDilatation => {
-                type $element = $crate::elements::Hex8MeanDilatation;
-                $body
-            }
+macro_rules! make_with_element {
+    ($dollar:tt $($(#[$about:meta])* $kind:ident: $cell:ident, $shader:literal;)*) => {
+        /// Runs an expression with `$element` standing for the type of an [`ElementKind`].
+        macro_rules! with_element {
+            ($dollar of:expr, $dollar element:ident => $dollar body:expr) => {
+                match $dollar of {
+                    $(crate::mesh::ElementKind::$kind => {
+                        type $dollar element = crate::elements::$kind;
+                        $dollar body
+                    })*
+                }
+            };
         }
     };
 }
+crate::mesh::each_element_kind! { $ make_with_element }
 pub(crate) use with_element;
 
 /// The same for a block, or whatever has a `kind` and is `simple` as one: where it is, with the type for
@@ -80,6 +73,8 @@ const _: () = {
         let kind = ElementKind::ALL[place];
         with_element!(kind, E => {
             assert!(E::CELL as usize == kind.cell() as usize && E::CELL.shares().len() == E::NODES);
+            // energies, viscous memory and nodal means know one pressure an element
+            assert!(E::POINTS == 1 || matches!(E::PRESSURE, PressureFrom::MeanOverPoints));
             nodes = larger(nodes, E::NODES);
             rows = larger(rows, E::ROWS);
             points = larger(points, E::POINTS);

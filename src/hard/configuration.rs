@@ -16,12 +16,7 @@ pub struct Configuration {
 impl Configuration {
     /// The word of the elements in scenes.
     pub fn elements_name(&self) -> &'static str {
-        match self.elements {
-            ElementKind::Tet4 => "Tet4",
-            ElementKind::Tet4NodalPressure => "Tet4NodalPressure",
-            ElementKind::Hex8 => "Hex8",
-            ElementKind::Hex8MeanDilatation => "Hex8MeanDilatation",
-        }
+        self.elements.name()
     }
 
     /// `CPU f64`, `CPU f32` or `GPU f32`.

@@ -24,6 +24,7 @@ pub mod vtu;
 pub use cells::Cells;
 pub use error::{MeshError, Place};
 pub use generators::ElementKind;
+pub(crate) use generators::each_element_kind;
 pub use locate::{Location, Locator};
 pub use quality::Quality;
 pub use report::{MeshReport, SetReport, extent};

@@ -12,8 +12,8 @@ type Key = [u32; MOST_PARENTS];
 const NOBODY: u32 = u32::MAX;
 
 impl Mesh {
-    /// Cuts every element into smaller ones (eight of a tetrahedron or a hexahedron), so many times over. Edges are
-    /// halved where they are: a curved outline stays the polygon it is.
+    /// Cuts every element into eight, so many times over. Edges are halved where they are: a curved outline stays the
+    /// polygon it is.
     ///
     /// Points keep their rows and numbers, new ones follow. The parts of an element bear its number, its vectors and
     /// its sets. A new point belongs to a set of points, or to a list of them, when the face, element or edge it lies

@@ -41,6 +41,8 @@ pub struct Effects {
     pub cells: bool,
     /// Elements that take their pressure from means.
     pub averaged: bool,
+    /// Other elements in place of hexahedra.
+    pub others: Option<&'static str>,
     /// The elastic law, as RON writes it; else the neo-Hookean one.
     pub law: Option<&'static str>,
     /// Families of fibres that stiffen, as RON writes them.
@@ -138,6 +140,10 @@ impl Effects {
         all.push(Self { averaged: true, ..Self::default() });
         all.push(Self { grabs: true, ..Self::default() });
         all.push(Self { averaged: true, ..Self::all() });
+        for scheme in [Scheme::Patches, Scheme::TwoPass] {
+            all.push(Self { others: Some("Wedge6"), scheme, ..Self::default() });
+        }
+        all.push(Self { others: Some("Wedge6"), ..Self::all() });
         all
     }
 
@@ -226,7 +232,7 @@ impl Effects {
             {energies}
             )",
             body(if self.averaged { "Tet4NodalPressure" } else { "Tet4" }),
-            body(if self.averaged { "Hex8MeanDilatation" } else { "Hex8" }),
+            body(self.others.unwrap_or(if self.averaged { "Hex8MeanDilatation" } else { "Hex8" })),
             self.compensated
         )
     }

@@ -113,6 +113,20 @@ fn parallelepipeds_exert_the_same_forces() {
     compare_element_forces(&Effects { removal: true, prony: 1, ..cells }, extinguish_some);
 }
 
+/// Wedges with every effect, in both schemes, and with elements gone.
+#[test]
+fn wedges_exert_the_same_forces() {
+    let wedges = Effects { others: Some("Wedge6"), ..Effects::default() };
+    for (fibres, prony) in [(None, 0), (Some(ALONG), 0), (Some(AROUND), 2)] {
+        compare_element_forces(&Effects { fibres, prony, ..wedges.clone() }, |_| {});
+        compare_element_forces(&Effects { fibres, prony, scheme: Scheme::TwoPass, ..wedges.clone() }, |_| {});
+    }
+    for law in LAWS {
+        compare_element_forces(&Effects { law: Some(law), volumetric: true, prony: 1, ..wedges.clone() }, |_| {});
+    }
+    compare_element_forces(&Effects { removal: true, prony: 1, ..wedges }, extinguish_some);
+}
+
 /// The scheme of two passes, with a law that has all effects and with the plain one.
 #[test]
 fn elements_exert_the_same_forces_in_two_passes() {

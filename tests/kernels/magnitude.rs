@@ -2,7 +2,7 @@
 
 use bevy_ecs::prelude::*;
 use sinew::components::*;
-use sinew::elements::{Element, Hex8, Hex8MeanDilatation, MOST_NODES, Parallelepiped};
+use sinew::elements::{Element, Hex8, Hex8MeanDilatation, MOST_NODES, Parallelepiped, Wedge6};
 use sinew::evaluation::{ElementState, lane_place, node_count, row_count};
 use sinew::materials::Elastic;
 use sinew::mesh::ElementKind;
@@ -27,7 +27,9 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
     let number = |k: usize| shape.get(lane_place(row, row_count(data), k));
     let nodes = node_count(data.kind);
     let gradients = match data.kind {
-        ElementKind::Hex8MeanDilatation => natural_gradients(number),
+        ElementKind::Hex8MeanDilatation => natural_gradients::<Hex8MeanDilatation>(number),
+        // in the triangle coordinates run from 0 to 1: what they multiply is a difference of two displacements
+        ElementKind::Wedge6 => 2.0 * natural_gradients::<Wedge6>(number),
         // a node's gradient is the sum of the slopes of all modes, each with either sign
         ElementKind::Hex8 => {
             let slopes = if data.simple { 3 } else { 6 };
@@ -64,13 +66,14 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
 }
 
 /// The largest ∂ξ/∂X, which stands for gradients in natural coordinates.
-fn natural_gradients(number: impl Fn(usize) -> f64) -> f64 {
-    let still = Hex8MeanDilatation::prepare(&[[0.0; 3]; MOST_NODES]);
+fn natural_gradients<E: Element>(number: impl Fn(usize) -> f64) -> f64 {
+    let still = E::prepare(&[[0.0; 3]; MOST_NODES]);
     let inverse = |point: usize| {
-        let at = Hex8MeanDilatation::at_point(&still, point, &number);
-        at.adjugate.0.into_iter().flatten().map(move |x| (x / at.volume).abs())
+        let at = E::at_point(&still, point, &number);
+        let determinant = at.volume / E::CELL.topology().solid.unwrap().quadrature[point].1;
+        at.adjugate.0.into_iter().flatten().map(move |x| (x / determinant).abs())
     };
-    (0..8).flat_map(inverse).fold(0.0, f64::max)
+    (0..E::POINTS).flat_map(inverse).fold(0.0, f64::max)
 }
 
 /// The longest way from displacements to a corner's force: a gradient (8 roundings), strains and J (8), a cube root

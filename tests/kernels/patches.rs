@@ -31,7 +31,7 @@ fn block(kind: ElementKind, count: usize, of: impl Fn(usize) -> usize) -> (Block
 #[test]
 fn each_corner_is_summed_once_in_a_round_of_its_own() {
     use ElementKind::*;
-    for kind in [Tet4, Tet4NodalPressure, Hex8, Hex8MeanDilatation] {
+    for kind in [Tet4, Tet4NodalPressure, Hex8, Hex8MeanDilatation, Wedge6] {
         for count in [1, 15, 16, 130, 1024, 1025, 2100] {
             let (block, patches) = block(kind, count, |i| i * 7919 % 501 + i / 4096);
             let PackedPatches { lists, words, room } = pack(&block, &patches).unwrap();
@@ -45,7 +45,7 @@ fn each_corner_is_summed_once_in_a_round_of_its_own() {
                 let batches = groups.div_ceil(BATCH_GROUPS);
                 for batch in 0..batches {
                     for corner in 0..corners {
-                        let of_four = (patch * patch_batches(kind) + batch) * corners / 4 + corner / 4;
+                        let of_four = (patch * patch_batches(kind) + batch) * corners.div_ceil(4) + corner / 4;
                         let rounds = words[lists.rounds as usize + of_four] >> (8 * (corner % 4)) & 255;
                         let mut seen = std::collections::BTreeSet::new();
                         for local in 0..BATCH_GROUPS * LANES {

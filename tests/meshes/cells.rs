@@ -113,7 +113,7 @@ fn cells_of_every_kind_are_refined_or_refused() {
         assert_eq!(mesh.element_vectors["along"], vec![DVec3::X; parts]);
         assert_eq!(mesh.element_ids, sinew::mesh::Ids::Named(vec![17; parts]));
     }
-    for kind in [CellKind::Tet4, CellKind::Hex8] {
+    for kind in [CellKind::Tet4, CellKind::Hex8, CellKind::Wedge6] {
         assert_eq!(kind.topology().split.map(|split| split.count()), Some(8), "{kind:?}");
     }
 }
@@ -158,7 +158,7 @@ fn a_tetrahedron_and_a_hexahedron_are_cut_as_ever() {
 fn flat_cells_and_wrong_numbers_of_nodes_are_refused() {
     let mut cells = Cells::default();
     let error = cells.push(CellKind::Triangle, [0, 1, 2]).unwrap_err().to_string();
-    assert!(error.contains("a kind of triangles") && error.contains("tetrahedra, hexahedra"), "{error}");
+    assert!(error.contains("a kind of triangles") && error.contains("tetrahedra, hexahedra, wedges"), "{error}");
     let error = cells.push(CellKind::Hex8, [0, 1, 2, 3]).unwrap_err().to_string();
     assert!(error.contains("given by 4 nodes; hexahedra have 8"), "{error}");
     assert!(Cells::of(CellKind::Quad, &[[0, 1, 2, 3]]).is_err() && cells.is_empty());
@@ -180,22 +180,31 @@ fn files_have_the_numbers_and_the_orders_of_their_formats() {
     const SQUARE: Places = &[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]];
     const TET: Places = &[[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]];
     const CUBE: Places = &[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1], [0, 1, 1]];
+    // vtkWedge: the first triangle's normal points out of it
+    const PRISM: Places = &[[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1]];
+    const VTK_WEDGE: Places = &[[0, 0, 0], [0, 1, 0], [1, 0, 0], [0, 0, 1], [0, 1, 1], [1, 0, 1]];
     const PIXEL: Places = &[[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]];
     const VOXEL: Places = &[[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]];
-    let known: [Known<'_>; 6] = [
+    let known: [Known<'_>; 7] = [
         (CellKind::Point, &[(1, &[[0; 3]])], (15, &[[0; 3]])),
         (CellKind::Line, &[(3, &[[0, 0, 0], [1, 0, 0]])], (1, &[[0, 0, 0], [1, 0, 0]])),
         (CellKind::Triangle, &[(5, TET.split_at(3).0)], (2, TET.split_at(3).0)),
         (CellKind::Quad, &[(9, SQUARE), (8, PIXEL)], (3, SQUARE)),
         (CellKind::Tet4, &[(10, TET)], (4, TET)),
         (CellKind::Hex8, &[(12, CUBE), (11, VOXEL)], (5, CUBE)),
+        (CellKind::Wedge6, &[(13, VTK_WEDGE)], (6, PRISM)),
     ];
     assert_eq!(known.map(|of| of.0), CellKind::ALL);
     for (kind, vtk, gmsh) in known {
         let topology = kind.topology();
-        // lines, quadrilaterals and hexahedra are here twice as long, about the origin
-        let least = topology.nodes.iter().flatten().fold(0.0, |least: f64, &x| least.min(x));
-        let place = |node: usize| topology.nodes[node].map(|x| if least < 0.0 { (x + 1.0) / 2.0 } else { x });
+        // along lines, quadrilaterals, hexahedra and wedges' axes they are here twice as long, about the origin
+        let least = |axis: usize| topology.nodes.iter().fold(0.0, |least: f64, x| least.min(x[axis]));
+        let place = |node: usize| {
+            [0, 1, 2].map(|axis| match topology.nodes[node][axis] {
+                x if least(axis) < 0.0 => (x + 1.0) / 2.0,
+                x => x,
+            })
+        };
         let check = |listing: &Listing, (number, places): (u8, Places)| {
             let used = |axis: usize| axis < usize::from(topology.dimension);
             let nodes: Vec<usize> = (0..topology.nodes.len()).collect();

@@ -9,7 +9,7 @@ use sinew::mesh::measure::longest_edge;
 use sinew::mesh::{CellKind, ElementKind, Mesh, MeshError};
 use std::f64::consts::PI;
 
-const KINDS: [ElementKind; 2] = [ElementKind::Tet4, ElementKind::Hex8];
+const KINDS: [ElementKind; 3] = [ElementKind::Tet4, ElementKind::Hex8, ElementKind::Wedge6];
 
 fn cylinder(n: u32, kind: ElementKind) -> Mesh {
     cylinder_mesh(0.05, 0.2, n, n, kind).unwrap()
@@ -80,7 +80,7 @@ fn a_box_is_exact_closed_and_named() {
     for kind in KINDS {
         let mesh = box_mesh(DVec3::new(0.1, 0.02, 0.03), (5, 2, 3), kind).unwrap();
         assert_eq!(mesh.points.len(), 6 * 3 * 4);
-        assert_eq!(mesh.element_count(), 5 * 2 * 3 * if kind == ElementKind::Tet4 { 6 } else { 1 });
+        assert_eq!(mesh.element_count(), 5 * 2 * 3 * kind.a_cell().unwrap() as usize);
         assert!((mesh.volume() / (0.1 * 0.02 * 0.03) - 1.0).abs() < 1e-12);
         assert_closed(&mesh, "box");
         assert!(mesh.soundness().is_sound());

@@ -114,7 +114,7 @@ fn wrong_gmsh_files_are_refused_with_place_and_reason() {
         "a.msh: the number 80 is given to two nodes; each node needs a number of its own",
         "a.msh:16: element 101 is of the unknown type 44; sinew uses points (15), lines (1), triangles (2), \
          quadrilaterals (3), tetrahedra (4), hexahedra (5)",
-        "a.msh: the file holds 1 pyramid; sinew simulates 4-node tetrahedra and 8-node hexahedra (voxels too): save the \
+        "a.msh: the file holds 1 pyramid; sinew simulates 4-node tetrahedra, 8-node hexahedra (voxels too) and 6-node wedges: save the \
          mesh with those alone",
         "a.msh:2: Gmsh format 4; sinew reads the formats 1, 2.0 to 2.2 and 4.1 (in Gmsh: -format msh41 or msh22)",
         "4 elements are claimed, its blocks hold 3; the two counts must agree",
@@ -131,7 +131,7 @@ fn wrong_vtk_files_are_refused_with_place_and_reason() {
     let cases = [
         refusal("a.vtk", &three, "Version 3.0", "Version 9.0"),
         refusal("a.vtk", &three, "UNSTRUCTURED_GRID", "STRUCTURED_POINTS"),
-        refusal("a.vtk", &three, "CELL_TYPES 3\n12", "CELL_TYPES 3\n13"),
+        refusal("a.vtk", &three, "CELL_TYPES 3\n12", "CELL_TYPES 3\n15"),
         refusal("a.vtk", &three, "CELL_TYPES 3\n12", "CELL_TYPES 3\n10"),
         refusal("a.vtk", &three, "CELLS 3 19\n8", "CELLS 3 19\n19"),
         refusal("a.vtk", &five, "OFFSETS vtktypeint64\n0\n8", "OFFSETS vtktypeint64\n0\n-8"),
@@ -141,7 +141,7 @@ fn wrong_vtk_files_are_refused_with_place_and_reason() {
     let expected = [
         "a.vtk:1: `# vtk DataFile Version 9.0`; sinew reads legacy VTK files of the versions 1.0 to 5.1",
         "a.vtk:4: the data set is STRUCTURED_POINTS; sinew reads UNSTRUCTURED_GRID",
-        "a.vtk: the file holds 1 wedge; sinew simulates",
+        "a.vtk: the file holds 1 pentagonal prism; sinew simulates",
         "a.vtk: cell 0 has 8 points; tetrahedra have 4",
         "cell 0 goes beyond the 19 numbers of CELLS; each cell is its number of points, then the points",
         "-8 in CELLS; points of cells are numbered from 0",

@@ -25,7 +25,7 @@ fn load(force: f64, more: &str) -> String {
 #[test]
 fn copies_do_what_the_body_does_by_itself() {
     for run in configurations() {
-        for elements in ["Tet4", "Tet4NodalPressure", "Hex8", "Hex8MeanDilatation"] {
+        for elements in ["Tet4", "Tet4NodalPressure", "Hex8", "Hex8MeanDilatation", "Wedge6"] {
             // at the same place and apart, along x, so that the plane picks the ends of all
             for apart in ["", "apart: (0.05, 0, 0)"] {
                 let many = end(&run, elements, &format!("copies: 5, {apart}"), &load(0.01, "per_copy: (-1, 1),"));

@@ -9,7 +9,7 @@ use crate::configurations::configurations;
 use crate::grids::{Grid, grid};
 use crate::random::{Random, gradient, rows};
 use glam::{DMat3, DVec3};
-use sinew::elements::{Element, Hex8, Hex8MeanDilatation, MOST_NODES, MOST_ROWS, Tet4, Tet4NodalPressure};
+use sinew::elements::{Element, Hex8, Hex8MeanDilatation, MOST_NODES, MOST_ROWS, Tet4, Tet4NodalPressure, Wedge6};
 use sinew::materials::{Elastic, Kinematics, NeoHookean};
 use sinew::math::{Mat3, Scalar, Sym3};
 use sinew::mesh::ElementKind;
@@ -98,12 +98,15 @@ fn affine_fields_are_reproduced<E: Element>(kind: ElementKind) {
     assert!(worst64 < 1e-14 && worst32 < 1e-5, "f64 {worst64:e}, f32 {worst32:e}");
 }
 
-/// V = ∮ x·n dA/3, by 4×4 Gauss points on each of the six bilinear faces, or by three edges.
+/// V = ∮ x·n dA/3, by 4×4 Gauss points on each of the bilinear faces, of which a triangle is one with two corners in
+/// one place; or by three edges.
 fn volume(points: &[DVec3]) -> f64 {
     if points.len() == 4 {
         return (points[1] - points[0]).cross(points[2] - points[0]).dot(points[3] - points[0]) / 6.0;
     }
-    let faces = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+    let hexahedron = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+    let wedge = [[0, 2, 1, 1], [3, 4, 5, 5], [0, 1, 4, 3], [1, 2, 5, 4], [2, 0, 3, 5]];
+    let faces = if points.len() == 6 { &wedge[..] } else { &hexahedron };
     let (inner, outer) =
         ((3.0 / 7.0 - 2.0 / 7.0 * 1.2_f64.sqrt()).sqrt(), (3.0 / 7.0 + 2.0 / 7.0 * 1.2_f64.sqrt()).sqrt());
     let weight =
@@ -222,6 +225,7 @@ elements! {
     tet4_nodal_pressure: Tet4NodalPressure, ElementKind::Tet4;
     hex8: Hex8, ElementKind::Hex8;
     hex8_mean_dilatation: Hex8MeanDilatation, ElementKind::Hex8;
+    wedge6: Wedge6, ElementKind::Wedge6;
 }
 
 /// Closed form 8, H31: interior nodes of a distorted mesh feel nothing of any homogeneous deformation.
@@ -234,9 +238,18 @@ elements! {
 fn patch_test_leaves_interior_nodes_without_force() {
     let mut random = Random(15);
     let mixed = |layer: usize| if layer < 2 { ElementKind::Hex8 } else { ElementKind::Tet4 };
-    let meshes: [(&str, Grid); 3] = [
+    let wedges = |layer: usize| if layer < 2 { ElementKind::Wedge6 } else { ElementKind::Hex8 };
+    let meshes: [(&str, Grid); 5] = [
         ("Tet4", grid([3, 3, 3], |_| ElementKind::Tet4).distorted(|_| random.vector() * 0.2)),
         ("Hex8", grid([3, 3, 3], |_| ElementKind::Hex8).distorted(|_| Random(16).vector() * 0.2)),
+        ("Wedge6", grid([3, 3, 3], |_| ElementKind::Wedge6).distorted(|_| Random(17).vector() * 0.2)),
+        // triangles of wedges below the quadrilaterals of hexahedra
+        (
+            "wedges and hexahedra",
+            grid([3, 3, 4], wedges).distorted(|x| {
+                if x.z == 2.0 { DVec3::ZERO } else { Random((x.x * 7.0 + x.y * 5.0 + x.z) as u64).vector() * 0.2 }
+            }),
+        ),
         (
             "both",
             grid([3, 3, 4], mixed).distorted(|x| {

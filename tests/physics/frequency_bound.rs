@@ -7,7 +7,7 @@
 use crate::elements::{NEO_HOOKEAN, YOUNG, corners, distorted, forces, isochoric};
 use crate::random::Random;
 use glam::DVec3;
-use sinew::elements::{Element, Hex8, Hex8MeanDilatation, MOST_NODES, Stiffness, Tet4};
+use sinew::elements::{Element, Hex8, Hex8MeanDilatation, MOST_NODES, Stiffness, Tet4, Wedge6};
 use sinew::materials::Fibres;
 use sinew::mesh::ElementKind;
 
@@ -97,6 +97,11 @@ fn is_never_below_the_true_one_of_hexahedra() {
 #[test]
 fn is_never_below_the_true_one_of_hexahedra_with_mean_dilatation() {
     is_never_below::<Hex8MeanDilatation>(ElementKind::Hex8);
+}
+
+#[test]
+fn is_never_below_the_true_one_of_wedges() {
+    is_never_below::<Wedge6>(ElementKind::Wedge6);
 }
 
 /// The bound takes the 64th norm of eight eigenvalues for the largest: at most 3.3 % above it.

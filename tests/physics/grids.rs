@@ -11,6 +11,9 @@ const KUHN: [[usize; 4]; 6] = [[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 
 /// A hexahedron's corners likewise, in VTK order.
 const HEX: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 
+/// Two wedges along a diagonal of the bottom, their triangles counter-clockwise seen from above.
+const WEDGES: [[usize; 6]; 2] = [[0, 1, 3, 4, 5, 7], [0, 3, 2, 4, 7, 6]];
+
 /// Points and elements.
 #[derive(Clone)]
 pub struct Grid {
@@ -37,9 +40,10 @@ pub fn grid(cells: [usize; 3], kind: impl Fn(usize) -> ElementKind) -> Grid {
         for j in 0..cells[1] {
             for i in 0..cells[0] {
                 let corner = |bits: usize| at(i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2));
-                match kind(k).cell() == CellKind::Tet4 {
-                    false => grid.elements.push(HEX.map(corner).to_vec()),
-                    true => grid.elements.extend(KUHN.map(|tet| tet.map(corner).to_vec())),
+                match kind(k).cell() {
+                    CellKind::Tet4 => grid.elements.extend(KUHN.map(|tet| tet.map(corner).to_vec())),
+                    CellKind::Wedge6 => grid.elements.extend(WEDGES.map(|wedge| wedge.map(corner).to_vec())),
+                    _ => grid.elements.push(HEX.map(corner).to_vec()),
                 }
             }
         }
@@ -85,12 +89,17 @@ impl Grid {
         let numbers: usize = self.elements.iter().map(|e| e.len() + 1).sum();
         writeln!(text, "CELLS {} {numbers}", self.elements.len()).unwrap();
         for element in &self.elements {
-            let nodes: Vec<String> = element.iter().map(usize::to_string).collect();
+            let mut nodes: Vec<String> = element.iter().map(usize::to_string).collect();
+            if nodes.len() == 6 {
+                // VTK looks at the first triangle of a wedge from outside
+                nodes.swap(1, 2);
+                nodes.swap(4, 5);
+            }
             writeln!(text, "{} {}", element.len(), nodes.join(" ")).unwrap();
         }
         writeln!(text, "CELL_TYPES {}", self.elements.len()).unwrap();
         for element in &self.elements {
-            writeln!(text, "{}", if element.len() == 4 { 10 } else { 12 }).unwrap();
+            writeln!(text, "{}", [10, 13, 12][element.len() / 2 - 2]).unwrap();
         }
         std::fs::write(path, text).unwrap();
     }

@@ -70,7 +70,7 @@ mod tests {
     use crate::mesh::ElementKind;
     use crate::mesh::generators::{box_mesh, cylinder_mesh, ellipsoid_mesh};
 
-    const KINDS: [ElementKind; 2] = [ElementKind::Tet4, ElementKind::Hex8];
+    const KINDS: [ElementKind; 3] = [ElementKind::Tet4, ElementKind::Hex8, ElementKind::Wedge6];
 
     #[test]
     fn a_box_stands_for_itself() {

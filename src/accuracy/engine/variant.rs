@@ -92,9 +92,11 @@ fn remesh(scene: &mut Scene, factor: Factor, element: Option<ElementKind>) {
             *count = if way == Finer::Cells { factor.times(*count).unwrap_or(*count) } else { *count };
         };
         let elements = match &mut body.mesh {
-            MeshSource::File { tets, hexes, .. } => match element {
-                Some(kind) if kind.cell() == CellKind::Tet4 => tets,
-                _ => hexes,
+            MeshSource::File { tets, hexes, .. } => match element.map(|kind| kind.cell()) {
+                Some(CellKind::Tet4) => tets,
+                Some(CellKind::Hex8) => hexes,
+                // nothing to choose
+                _ => continue,
             },
             MeshSource::Box { cells, elements, .. }
             | MeshSource::Hexahedron { cells, elements, .. }

@@ -37,7 +37,7 @@ pub struct BenchArguments {
         value_name = "NAME,..",
         value_delimiter = ',',
         default_values_t = ["tet4".to_string(), "hex8".to_string()],
-        value_parser = ["tet4", "tet4-nodal-pressure", "hex8", "hex8-mean-dilatation"]
+        value_parser = ["tet4", "tet4-nodal-pressure", "hex8", "hex8-mean-dilatation", "wedge6"]
     )]
     pub elements: Vec<String>,
     /// Effects beside neo-Hookean elasticity

@@ -1,16 +1,12 @@
 //! The grid of cells that every generator deforms.
 
-use super::super::topology::{CellKind, MOST_NODES, hex8};
+use super::super::topology::{CellKind, MOST_NODES, Solid};
 use super::super::{Mesh, MeshError};
 use super::ElementKind;
 use glam::DVec3;
 
 /// The most cells a generator makes: points and elements are counted in 32 bits.
 const MOST_CELLS: u64 = 1_000_000_000;
-
-/// Corners are named by bits: 1: upper in x, 2: in y, 4: in z. Six tetrahedra along the diagonal from corner 0 to
-/// corner 7 (Kuhn): one a way along the edges.
-const KUHN: [[u8; 4]; 6] = [[0, 1, 3, 7], [0, 2, 6, 7], [0, 4, 5, 7], [0, 1, 7, 5], [0, 2, 7, 3], [0, 4, 7, 6]];
 
 /// A side of the grid.
 #[derive(Clone, Copy)]
@@ -29,7 +25,7 @@ pub(super) const SIDES: [Side; 6] = [
     Side { axis: 2, upper: true },
 ];
 
-/// A grid of cells, each one hexahedron or six tetrahedra.
+/// A grid of cells, each filled with elements as their [kind](Solid::in_cube) says; corners are named by bits.
 pub(super) struct Grid {
     cells: [u32; 3],
     kind: CellKind,
@@ -127,31 +123,30 @@ impl Grid {
     }
 
     /// The row of the point at a corner of a cell.
-    fn row(&self, cell: [u32; 3], corner: u8) -> u32 {
-        let [i, j, k] = [0, 1, 2].map(|axis| cell[axis] + u32::from(corner >> axis & 1));
+    fn row(&self, cell: [u32; 3], corner: usize) -> u32 {
+        let [i, j, k] = [0, 1, 2].map(|axis| cell[axis] + (corner >> axis & 1) as u32);
         let across = self.points_along_y();
         i + (self.cells[0] + 1) * (j % across + across * k)
     }
 
     /// Bits of the axes along which a cell's diagonal is mirrored.
-    fn mirror(&self, cell: [u32; 3]) -> u8 {
-        (0..3).map(|axis| u8::from(self.mirrored[axis] && 2 * cell[axis] + 1 < self.cells[axis]) << axis).sum()
+    fn mirror(&self, cell: [u32; 3]) -> usize {
+        (0..3).map(|axis| usize::from(self.mirrored[axis] && 2 * cell[axis] + 1 < self.cells[axis]) << axis).sum()
     }
 
     /// The corners (by bits) of the elements of a cell.
-    fn elements(&self, cell: [u32; 3], mut see: impl FnMut(&[u8])) {
-        match self.kind {
-            CellKind::Tet4 => {
-                let mirror = self.mirror(cell);
-                for tet in KUHN {
-                    let [a, b, c, d] = tet.map(|corner| corner ^ mirror);
-                    // an odd number of mirrors turns an element inside out
-                    see(&if mirror.count_ones().is_multiple_of(2) { [a, b, c, d] } else { [a, b, d, c] });
-                }
+    fn elements(&self, cell: [u32; 3], mut see: impl FnMut(&[usize])) {
+        let Some(Solid { in_cube, turned, .. }) = self.kind.topology().solid else { return };
+        // an element that is the whole cell has no diagonals to mirror
+        let mirror = if in_cube.len() == 1 { 0 } else { self.mirror(cell) };
+        for part in *in_cube {
+            let mut corners = [0; MOST_NODES];
+            for place in 0..part.len() {
+                // an odd number of mirrors turns an element inside out
+                let from = if mirror.count_ones().is_multiple_of(2) { place } else { turned[place] };
+                corners[place] = part[from] ^ mirror;
             }
-            CellKind::Hex8 => see(&hex8::ROW_BY_ROW.map(|corner| corner as u8)),
-            // refused when the grid was made
-            CellKind::Point | CellKind::Line | CellKind::Triangle | CellKind::Quad => {}
+            see(&corners[..part.len()]);
         }
     }
 
@@ -185,7 +180,7 @@ impl Grid {
         let mut faces = Vec::new();
         let first = if side.upper { self.cells[side.axis] - 1 } else { 0 };
         let (u, v) = ((side.axis + 1) % 3, (side.axis + 2) % 3);
-        let on_side = |corner: u8| (corner >> side.axis & 1 == 1) == side.upper;
+        let on_side = |corner: usize| (corner >> side.axis & 1 == 1) == side.upper;
         for j in 0..self.cells[v] {
             for i in 0..self.cells[u] {
                 let mut cell = [first; 3];

@@ -23,39 +23,63 @@ pub use tube::tube_mesh;
 use super::{CellKind, MeshError};
 use serde::{Deserialize, Serialize};
 
-/// Kinds of elements. Generators make six tetrahedra or one hexahedron of a cell.
-#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq, PartialOrd, Ord)]
-pub enum ElementKind {
-    /// Four-node tetrahedra: quick, and stiff near incompressibility (locking).
-    #[default]
-    Tet4,
-    /// Four-node tetrahedra with averaged nodal pressure: they hardly lock.
-    Tet4NodalPressure,
-    /// Eight-node hexahedra with one point and hourglass control: quick, and they do not lock.
-    Hex8,
-    /// Eight-node hexahedra with eight points and mean dilatation: accurate, and slower.
-    Hex8MeanDilatation,
+/// Hands the list of element types to a macro, behind a `$` for macros that make macros: name, kind of cells, and stem of
+/// the shader.
+macro_rules! each_element_kind {
+    ($dollar:tt $then:ident) => {
+        $then! {
+            $dollar
+            /// Four-node tetrahedra: quick, and stiff near incompressibility (locking).
+            #[default]
+            Tet4: Tet4, "tet4";
+            /// Four-node tetrahedra with averaged nodal pressure: they hardly lock.
+            Tet4NodalPressure: Tet4, "tet4";
+            /// Eight-node hexahedra with one point and hourglass control: quick, and they do not lock.
+            Hex8: Hex8, "hex8";
+            /// Eight-node hexahedra with eight points and mean dilatation: accurate, and slower.
+            Hex8MeanDilatation: Hex8, "hex8_mean_dilatation";
+            /// Six-node wedges with six points and mean dilatation: what meshes of layers are made of.
+            Wedge6: Wedge6, "wedge6";
+        }
+    };
 }
+pub(crate) use each_element_kind;
+
+macro_rules! element_kinds {
+    ($dollar:tt $($(#[$about:meta])* $kind:ident: $cell:ident, $shader:literal;)*) => {
+        /// Kinds of elements. Generators make six tetrahedra, two wedges or one hexahedron of a cell.
+        #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq, PartialOrd, Ord)]
+        pub enum ElementKind {
+            $($(#[$about])* $kind,)*
+        }
+
+        impl ElementKind {
+            /// All kinds.
+            pub const ALL: [ElementKind; [$(ElementKind::$kind),*].len()] = [$(ElementKind::$kind),*];
+
+            /// Its word in scenes.
+            pub const fn name(self) -> &'static str {
+                match self {
+                    $(Self::$kind => stringify!($kind),)*
+                }
+            }
+
+            /// The kind of its cells.
+            pub const fn cell(self) -> CellKind {
+                match self {
+                    $(Self::$kind => CellKind::$cell,)*
+                }
+            }
+        }
+    };
+}
+each_element_kind! { $ element_kinds }
 
 impl ElementKind {
-    /// All kinds.
-    pub const ALL: [ElementKind; 4] = [Self::Tet4, Self::Tet4NodalPressure, Self::Hex8, Self::Hex8MeanDilatation];
-
-    /// The kind of its cells.
-    pub const fn cell(self) -> CellKind {
-        match self {
-            Self::Tet4 | Self::Tet4NodalPressure => CellKind::Tet4,
-            Self::Hex8 | Self::Hex8MeanDilatation => CellKind::Hex8,
-        }
-    }
-
     /// How many of them generators make of a cell of their grid; none where they cannot.
-    pub const fn a_cell(self) -> Option<u32> {
-        match self.cell() {
-            CellKind::Tet4 => Some(6),
-            CellKind::Hex8 => Some(1),
-            CellKind::Point | CellKind::Line | CellKind::Triangle | CellKind::Quad => None,
-        }
+    pub fn a_cell(self) -> Option<u32> {
+        let parts = self.cell().topology().solid.map_or(0, |solid| solid.in_cube.len());
+        (parts > 0).then_some(parts as u32)
     }
 }
 

@@ -8,7 +8,8 @@ use super::error::Fault;
 use super::{Mesh, MeshError, gmsh, vtk, vtu};
 use std::path::Path;
 
-const FORMATS: &str = "sinew reads Gmsh (formats 1, 2.x, 4.1), legacy VTK and VTU files with tetrahedra or hexahedra";
+const FORMATS: &str =
+    "sinew reads Gmsh (formats 1, 2.x, 4.1), legacy VTK and VTU files with tetrahedra, hexahedra or wedges";
 
 impl Mesh {
     /// Reads a mesh file: Gmsh 1, 2.x or 4.1, legacy VTK, or VTU, each as text or binary.

@@ -69,7 +69,7 @@ impl Mesh {
     pub fn soundness(&self) -> Soundness {
         let mut found = Soundness::default();
         if self.element_count() == 0 {
-            found.error(Defect::Empty, vec![], "there are no elements: add tetrahedra or hexahedra".into());
+            found.error(Defect::Empty, vec![], "there are no elements: add tetrahedra, hexahedra or wedges".into());
         }
         self.check_columns(&mut found);
         self.check_points(&mut found);

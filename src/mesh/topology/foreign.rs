@@ -19,7 +19,7 @@ const fn cell(plural: &'static str, nodes: usize, dimension: u8, vtk: Option<u8>
 }
 
 /// All that are known.
-pub static CELLS: [Foreign; 43] = [
+pub static CELLS: [Foreign; 42] = [
     cell("empty cells", 0, 0, Some(0), None),
     cell("poly-vertices", 0, 0, Some(2), None),
     cell("polylines", 0, 1, Some(4), None),
@@ -46,7 +46,6 @@ pub static CELLS: [Foreign; 43] = [
     cell("Lagrange tetrahedra", 0, 3, Some(71), None),
     cell("polyhedra", 0, 3, Some(42), None),
     cell("pyramids", 5, 3, Some(14), Some(7)),
-    cell("wedges", 6, 3, Some(13), Some(6)),
     cell("10-node tetrahedra", 10, 3, Some(24), Some(11)),
     cell("pentagonal prisms", 10, 3, Some(15), None),
     cell("12-node wedges", 12, 3, Some(31), None),

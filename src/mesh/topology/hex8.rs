@@ -96,6 +96,7 @@ pub static HEX8: Topology = Topology {
         quality: |p| scaled_jacobian(first(p)),
         locate: |p, x| newton(&p[..8], x, shape, clip),
         turned: &[4, 5, 6, 7, 0, 1, 2, 3],
+        in_cube: &[&ROW_BY_ROW],
     }),
 };
 

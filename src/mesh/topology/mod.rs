@@ -9,6 +9,7 @@ pub mod foreign;
 pub mod hex8;
 mod isoparametric;
 pub mod tet4;
+pub mod wedge6;
 
 pub use isoparametric::{Located, Shape};
 
@@ -84,6 +85,8 @@ cell_kinds! {
     Tet4 => tet4::TET4,
     /// Eight-node hexahedron: bottom counter-clockwise seen from above, then the top.
     Hex8 => hex8::HEX8,
+    /// Six-node wedge: the bottom counter-clockwise seen from the top, then the top.
+    Wedge6 => wedge6::WEDGE6,
 }
 
 /// What is known of a kind of cell.
@@ -196,6 +199,9 @@ pub struct Solid {
     pub locate: fn(&[DVec3], DVec3) -> Located,
     /// The order in which the nodes stand when the cell is turned inside out.
     pub turned: &'static [usize],
+    /// How many of them fill a cube whose corners are named by bits (1 upper in the first direction, 2 in the second, 4
+    /// in the third), by these; none where corners alone do not say. Cubes side by side meet in the same faces.
+    pub in_cube: &'static [&'static [usize]],
 }
 
 impl CellKind {

@@ -43,6 +43,8 @@ pub static TET4: Topology = Topology {
         quality: |p| mean_ratio(first(p)),
         locate: |p, x| locate(first(p), x),
         turned: &[0, 1, 3, 2],
+        // along the diagonal from corner 0 to corner 7 (Kuhn): one a way along the edges
+        in_cube: &[&[0, 1, 3, 7], &[0, 2, 6, 7], &[0, 4, 5, 7], &[0, 1, 7, 5], &[0, 2, 7, 3], &[0, 4, 7, 6]],
     }),
 };
 

@@ -51,7 +51,8 @@ fn other_dataset(cursor: &mut Cursor, dataset: &str) -> Fault {
         }
         None => "the file holds a surface (POLYDATA), no volume elements".to_string(),
     };
-    let allowed = "sinew needs tetrahedra or hexahedra that fill the body: mesh the inside of the surface first";
+    let allowed =
+        "sinew needs tetrahedra, hexahedra or wedges that fill the body: mesh the inside of the surface first";
     Fault::whole(what, allowed)
 }
 

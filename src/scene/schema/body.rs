@@ -111,7 +111,7 @@ pub enum MeshSource {
     Box {
         /// Edge lengths (m).
         size: DVec3,
-        /// Cells along each edge; a cell is one hexahedron or six tetrahedra.
+        /// Cells along each edge; a cell is one hexahedron, two wedges or six tetrahedra.
         cells: (u32, u32, u32),
         /// The kind of elements.
         #[serde(default)]
@@ -186,17 +186,21 @@ pub enum MeshSource {
 
 impl MeshSource {
     /// What its cells are taken for: one kind of element a kind of cell.
-    pub fn element_kinds(&self) -> impl ExactSizeIterator<Item = ElementKind> + use<> {
-        let (kinds, count) = match self {
-            Self::File { tets, hexes, .. } => ([*tets, *hexes], 2),
+    pub fn element_kinds(&self) -> impl Iterator<Item = ElementKind> + use<> {
+        let (chosen, file) = match self {
+            Self::File { tets, hexes, .. } => ([*tets, *hexes], true),
             Self::Box { elements, .. }
             | Self::Cylinder { elements, .. }
             | Self::Ellipsoid { elements, .. }
             | Self::Hexahedron { elements, .. }
             | Self::Tube { elements, .. }
-            | Self::Lens { elements, .. } => ([*elements; 2], 1),
+            | Self::Lens { elements, .. } => ([*elements; 2], false),
         };
-        kinds.into_iter().take(count)
+        // cells for which there is but one element need no word
+        let others = ElementKind::ALL
+            .into_iter()
+            .filter(move |kind| file && ![CellKind::Tet4, CellKind::Hex8].contains(&kind.cell()));
+        chosen.into_iter().take(if file { 2 } else { 1 }).chain(others)
     }
 
     /// What its cells of a kind are taken for; nothing where it has none.

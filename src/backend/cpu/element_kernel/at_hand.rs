@@ -7,6 +7,9 @@ use crate::materials::Elastic;
 use crate::math::{LANES, Real, Scratch, SimdScalar};
 use pulp::Simd;
 
+// corners are written out below: an element that has more needs more there
+const _: () = assert!(MOST_NODES == 8);
+
 /// A vector at each corner.
 pub(super) type AtNodes<R> = [[R; 3]; MOST_NODES];
 

@@ -8,8 +8,7 @@ use crate::mesh::{CellKind, Ids, Mesh};
 use glam::DVec3;
 use std::collections::{BTreeMap, HashSet};
 
-const SUPPORTED: &str =
-    "sinew simulates 4-node tetrahedra and 8-node hexahedra (voxels too): save the mesh with those alone";
+const SUPPORTED: &str = "sinew simulates 4-node tetrahedra, 8-node hexahedra (voxels too) and 6-node wedges: save the mesh with those alone";
 
 /// Vectors of elements that a file need not give.
 const SPARSE_VECTORS: usize = 1_000_000;
@@ -55,7 +54,7 @@ impl Draft {
         };
         Fault::whole(
             what,
-            "sinew needs tetrahedra or hexahedra that fill the body: mesh the inside of the surface first",
+            "sinew needs tetrahedra, hexahedra or wedges that fill the body: mesh the inside of the surface first",
         )
     }
 
