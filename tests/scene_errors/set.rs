@@ -70,7 +70,7 @@ fn mistakes_in_a_set_are_shown_in_the_set() {
         ),
         (
             "bodies.cube.mesh=Box(size:(1,1,1))",
-            r"--set:1:18: error: the field `cells` is missing in `Box` | Box needs `cells` | cells: Cells along each edge; a cell is one hexahedron or six tetrahedra.",
+            r"--set:1:18: error: the field `cells` is missing in `Box` | Box needs `cells` | cells: Cells along each edge; a cell is one hexahedron, two wedges or six tetrahedra.",
         ),
     ];
     for (set, expected) in cases {

@@ -78,6 +78,7 @@ pub(super) fn beside() -> Vec<Fragment> {
         shader!("hex8"),
         shader!("hex8_mean_dilatation"),
         shader!("many_steps"),
+        shader!("mean_pressure"),
         shader!("nodal_mean"),
         shader!("nodal_volume"),
         shader!("note_inverted"),
@@ -97,6 +98,7 @@ pub(super) fn beside() -> Vec<Fragment> {
         shader!("tet4_nodal_pressure"),
         shader!("volume_ratio"),
         shader!("watch_elements"),
+        shader!("wedge6"),
     ]
 }
 
@@ -167,8 +169,9 @@ mod tests {
             let names: Vec<String> = declared(&text).into_iter().map(|d| d.name).collect();
             let law = names.iter().any(|name| name == "elastic_isochoric");
             // kernels of nodes and faces have no element
-            let elements =
-                ["alive", "block", "prony", "fibres", "element", "point", "nodal_v", "nodal_m", "hex8", "tet4"];
+            let elements = [
+                "alive", "block", "prony", "fibres", "element", "point", "nodal_v", "nodal_m", "hex8", "tet4", "wedge6",
+            ];
             let meets = elements.iter().any(|part| name.contains(part)) || text.contains("Kinematics");
             assert!(law || !meets || known.contains(&name), "{name} is in no list of src/backend/user_law/names.rs");
         }
