@@ -317,7 +317,8 @@ impl BlockKernels {
 
 macro_rules! element_shaders {
     ($dollar:tt $($(#[$about:meta])* $kind:ident: $cell:ident, $shader:literal;)*) => {
-        fn element_shader(kind: ElementKind) -> Fragment {
+        /// The WGSL of an element type.
+        pub(super) fn element_shader(kind: ElementKind) -> Fragment {
             match kind {
                 $(ElementKind::$kind => shader!($shader),)*
             }

@@ -1,7 +1,9 @@
 //! What WGSL texts declare, by name and place, and the names that a law cannot have because they are ours.
 
+use crate::backend::block_kernel::element_shader;
 use crate::backend::kernel::Fragment;
 use crate::materials::program::{is_name, words};
+use crate::mesh::ElementKind;
 use crate::shader;
 use std::collections::HashMap;
 use std::ops::Range;
@@ -63,7 +65,8 @@ pub(super) fn to_call() -> Vec<Fragment> {
 
 /// The other fragments that can be in one kernel with a law.
 pub(super) fn beside() -> Vec<Fragment> {
-    vec![
+    let kinds = ElementKind::ALL.into_iter().map(element_shader);
+    let others = vec![
         shader!("alive"),
         shader!("block"),
         shader!("criterion"),
@@ -75,8 +78,6 @@ pub(super) fn beside() -> Vec<Fragment> {
         shader!("fibres_field"),
         shader!("fibres_uniform"),
         shader!("finite_strain"),
-        shader!("hex8"),
-        shader!("hex8_mean_dilatation"),
         shader!("many_steps"),
         shader!("mean_pressure"),
         shader!("nodal_mean"),
@@ -94,12 +95,11 @@ pub(super) fn beside() -> Vec<Fragment> {
         shader!("remove_inverted"),
         shader!("row"),
         shader!("step"),
-        shader!("tet4"),
         shader!("tet4_nodal_pressure"),
         shader!("volume_ratio"),
         shader!("watch_elements"),
-        shader!("wedge6"),
-    ]
+    ];
+    kinds.chain(others).collect()
 }
 
 /// Names that kernels are generated with.
@@ -169,9 +169,8 @@ mod tests {
             let names: Vec<String> = declared(&text).into_iter().map(|d| d.name).collect();
             let law = names.iter().any(|name| name == "elastic_isochoric");
             // kernels of nodes and faces have no element
-            let elements = [
-                "alive", "block", "prony", "fibres", "element", "point", "nodal_v", "nodal_m", "hex8", "tet4", "wedge6",
-            ];
+            let elements =
+                ["alive", "block", "prony", "fibres", "element", "point", "nodal_v", "nodal_m", "tet4_nodal"];
             let meets = elements.iter().any(|part| name.contains(part)) || text.contains("Kinematics");
             assert!(law || !meets || known.contains(&name), "{name} is in no list of src/backend/user_law/names.rs");
         }
