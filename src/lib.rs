@@ -15,22 +15,17 @@
 //! # }
 //! ```
 
-pub mod accuracy;
 pub mod assembly;
 pub mod backend;
-pub mod bench;
 pub mod components;
 pub mod elements;
 mod error;
 pub mod evaluation;
-pub mod hard;
 pub mod materials;
 pub mod math;
 pub mod mesh;
 pub mod observation;
 pub mod output;
-pub mod plot;
-pub mod render;
 pub mod scene;
 mod simulation;
 pub mod snapshot;

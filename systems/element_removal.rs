@@ -8,10 +8,10 @@ use crate::backend::kernel::{Fragment, Kernel, Uniform, uniform};
 use crate::backend::step::with_step;
 use crate::components::*;
 use crate::elements::Element;
+use crate::elements::{mass_shares, with_element_of};
 use crate::error::missing;
-use crate::evaluation::{
-    BlockView, ElementState, add_nodal_masses, extinguish, lane_place, mass_shares, with_element_of,
-};
+use crate::evaluation::{BlockView, ElementState, add_nodal_masses, extinguish};
+use crate::math::lane_place;
 use crate::shader;
 use bevy_ecs::prelude::*;
 use std::borrow::Cow;

@@ -58,74 +58,71 @@ fn imports(code: &str) -> Vec<String> {
     names
 }
 
-/// math ← components ← elements, materials ← backend ← systems ← simulation, command line; beside them the files that a
-/// scene comes from and goes to.
+/// The parts in the order of the table in ARCHITECTURE.md: each may name those before it, and no other.
+fn parts() -> Vec<String> {
+    let text = std::fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let rows = text.lines().skip_while(|line| !line.starts_with("| folder |")).skip(2);
+    let folders = rows.take_while(|line| line.starts_with('|')).filter_map(|line| line.split('|').nth(1));
+    folders.flat_map(|cell| cell.split('`').skip(1).step_by(2)).map(str::to_owned).collect()
+}
+
+/// The name by which others import a part.
+fn module(part: &str) -> &str {
+    part.rsplit('/').next().unwrap()
+}
+
+/// Modules and crates of the repository that code names.
+fn named(code: &str) -> Vec<String> {
+    let crates = ["pictures", "studies"].into_iter().filter(|name| code.contains(&format!("sinew_{name}::")));
+    imports(code).into_iter().chain(crates.map(String::from)).collect()
+}
+
+/// What a part names that stands behind it.
+fn named_too_early(parts: &[String], part: &str, code: &str) -> Vec<String> {
+    let place = parts.iter().position(|other| other == part).unwrap();
+    let later = |name: &String| parts[place + 1..].iter().any(|other| module(other) == name);
+    named(code).into_iter().filter(later).collect()
+}
+
 #[test]
 fn imports_run_one_way() {
-    let inputs = ["mesh", "scene"];
-    let data = ["math", "components", "elements", "materials"];
-    // what each part may name; itself `error` (which knows every part's errors) and `uniform` are always allowed
-    let allowed: [(&str, Vec<&str>); 16] = [
-        ("src/math", vec![]),
-        ("src/plot", vec![]),
-        ("src/mesh", vec![]),
-        ("src/scene", vec!["mesh", "materials"]),
-        ("src/materials", vec!["math"]),
-        ("src/elements", vec!["math", "mesh"]),
-        ("src/components", [&inputs[..], &["math", "elements", "materials"]].concat()),
-        ("src/output", vec!["mesh"]),
-        ("src/render", vec!["mesh", "output", "plot", "scene"]),
-        ("src/backend", [&inputs[..], &data, &["evaluation"]].concat()),
-        ("src/evaluation", [&inputs[..], &data, &["backend"]].concat()),
-        ("src/assembly", [&inputs[..], &data, &["backend", "evaluation", "systems"]].concat()),
-        ("src/snapshot", [&inputs[..], &["components", "materials", "backend", "output"]].concat()),
-        ("src/observation", [&inputs[..], &data, &["backend", "evaluation", "output", "snapshot"]].concat()),
-        (
-            "systems",
-            [&inputs[..], &data, &["backend", "evaluation", "observation", "assembly", "output", "snapshot"]].concat(),
-        ),
-        (
-            "src/accuracy",
-            [&inputs[..], &["components", "materials", "backend", "assembly", "observation", "plot"]].concat(),
-        ),
-    ];
-    let parts = [
-        "math",
-        "mesh",
-        "scene",
-        "materials",
-        "elements",
-        "components",
-        "output",
-        "plot",
-        "snapshot",
-        "render",
-        "backend",
-        "evaluation",
-        "assembly",
-        "observation",
-        "systems",
-        "simulation",
-        "accuracy",
-        "command",
-    ];
+    let parts = parts();
+    let folders = |of: &str| {
+        let entries = std::fs::read_dir(root().join(of)).unwrap().map(|entry| entry.unwrap().path());
+        entries.filter(|path| path.is_dir()).map(|path| format!("{of}/{}", path.file_name().unwrap().display()))
+    };
+    let mut all: Vec<String> = folders("src").chain(folders("crates")).chain(["systems".to_owned()]).collect();
+    let mut told = parts.clone();
+    all.sort();
+    told.sort();
+    assert_eq!(told, all, "the folders of the table in ARCHITECTURE.md and those there are");
     let mut wrong = Vec::new();
-    for (part, allowed) in &allowed {
-        let own = part.trim_start_matches("src/").trim_end_matches(".rs");
+    for part in &parts {
         for (file, text) in files(&[part], "rs") {
-            for name in imports(&code(&text)) {
-                if parts.contains(&name.as_str()) && name != own && !allowed.contains(&name.as_str()) {
-                    wrong.push(format!("{file} names crate::{name}; {part} may name {allowed:?}"));
-                }
+            // what has a crate of its own has modules of its own
+            if part.starts_with("crates/") && !file.starts_with(&format!("{part}/src")) {
+                continue;
             }
+            let early = named_too_early(&parts, part, &code(&text));
+            wrong.extend(early.iter().map(|name| format!("{file} names {name}, which comes after {part}")));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]
+fn an_import_that_runs_the_other_way_is_found() {
+    let parts = parts();
+    let backend = "use crate::{math::Real, evaluation::{BlockView, ElementState}};";
+    assert_eq!(named_too_early(&parts, "src/backend", backend), ["evaluation"]);
+    assert_eq!(named_too_early(&parts, "src/evaluation", backend), [""; 0]);
+    let pictures = "use sinew::mesh::Mesh;\nuse sinew_studies::hard::CASES;";
+    assert_eq!(named_too_early(&parts, "crates/pictures", pictures), ["studies"]);
+}
+
+#[test]
 fn wgpu_is_known_in_one_place() {
-    for (file, text) in files(&["src", "systems"], "rs") {
+    for (file, text) in files(&["src", "systems", "crates"], "rs") {
         let known = code(&text).contains("wgpu");
         assert!(!known || file.starts_with("src/backend/gpu/"), "{file} knows wgpu");
     }
@@ -138,7 +135,7 @@ const LONG: &[(&str, &str)] = &[];
 fn files_are_at_most_400_lines() {
     let mut long = Vec::new();
     for ending in ["rs", "wgsl"] {
-        for (file, text) in files(&["src", "systems", "shaders", "tests", "benches", "examples"], ending) {
+        for (file, text) in files(&["src", "systems", "shaders", "tests", "benches", "examples", "crates"], ending) {
             let lines = text.lines().count();
             if lines > 400 {
                 long.push((file, lines));

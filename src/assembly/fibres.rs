@@ -1,8 +1,8 @@
 //! Directions of the fibres in a block.
 
 use crate::components::{FamilyDirection, Precision, Reals};
-use crate::evaluation::lane_place;
 use crate::math::LANES;
+use crate::math::lane_place;
 use crate::mesh::Mesh;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Direction, Material};

@@ -1,8 +1,9 @@
 //! Cutting blocks into patches, and where element forces stand.
 
 use crate::components::*;
-use crate::evaluation::{lane_place, node_count};
+use crate::elements::node_count;
 use crate::math::LANES;
+use crate::math::lane_place;
 use crate::mesh::ElementKind;
 use bevy_ecs::prelude::*;
 

@@ -4,7 +4,9 @@ use super::Assembly;
 use super::columns::stiffness;
 use super::time_step::square_frequency;
 use crate::components::*;
-use crate::evaluation::{lane_place, mass_shares, node_count, rest_volume};
+use crate::elements::{mass_shares, node_count};
+use crate::evaluation::rest_volume;
+use crate::math::lane_place;
 use bevy_ecs::prelude::*;
 
 /// Loads grow over at least so many pseudo-steps.

@@ -3,9 +3,10 @@
 use super::material;
 use crate::backend::cpu::BlockLaw;
 use crate::components::*;
+use crate::elements::with_element_of;
 use crate::elements::{Element, MOST_NODES};
-use crate::evaluation::{lane_place, with_element_of};
 use crate::materials::{Elastic, ElasticLaw, Fibres};
+use crate::math::lane_place;
 use crate::scene::schema::Scene;
 use bevy_ecs::prelude::*;
 use glam::DVec3;

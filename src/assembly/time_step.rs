@@ -3,8 +3,10 @@
 use super::columns::stiffness;
 use crate::backend::cpu::Cpu;
 use crate::components::*;
+use crate::elements::with_element_of;
 use crate::elements::{Element, MOST_ROWS};
-use crate::evaluation::{lane_place, rest_volume, with_element_of};
+use crate::evaluation::rest_volume;
+use crate::math::lane_place;
 use bevy_ecs::prelude::*;
 use rayon::prelude::*;
 use serde::Serialize;

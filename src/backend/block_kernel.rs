@@ -10,7 +10,7 @@ use crate::components::{
     self, Column, Connectivity, Displacement, FamilyDirection, FibreDirection, Label, NodalVolumeChange, ViscousMemory,
 };
 use crate::elements::{Element, PressureFrom};
-use crate::evaluation::{node_count, with_element, with_element_of};
+use crate::elements::{node_count, with_element, with_element_of};
 use crate::materials::{Fibres, J_FLOOR, PronyTerm};
 use crate::math::LANES;
 use crate::mesh::{ElementKind, each_element_kind};

@@ -2,8 +2,9 @@
 
 use super::kernel::uniform;
 use crate::components::{Block, Patches, patch_groups};
-use crate::evaluation::{averages, lane_place, node_count};
+use crate::elements::{averages, node_count};
 use crate::math::LANES;
+use crate::math::lane_place;
 use crate::mesh::ElementKind;
 
 /// Groups of elements that a workgroup computes at a time.

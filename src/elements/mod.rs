@@ -4,12 +4,15 @@
 
 mod hex8;
 mod hex8_mean_dilatation;
+mod kinds;
 mod tet4;
 mod tet4_nodal_pressure;
 mod wedge6;
 
 pub use hex8::{Hex8, Hexahedron, Parallelepiped};
 pub use hex8_mean_dilatation::Hex8MeanDilatation;
+pub use kinds::{ElementTask, averages, mass_shares, node_count, point_count, run_with_element};
+pub(crate) use kinds::{with_element, with_element_of};
 pub use tet4::Tet4;
 pub use tet4_nodal_pressure::Tet4NodalPressure;
 pub use wedge6::Wedge6;

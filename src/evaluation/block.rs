@@ -1,9 +1,10 @@
 //! A block's law and columns, to look at one element after the other.
 
-use super::{ElementState, averages, lane_place, node_count, point_count};
+use super::{ElementState, lane_place};
 use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK};
 use crate::components::*;
 use crate::elements::MOST_NODES;
+use crate::elements::{averages, node_count, point_count};
 use crate::materials::{Elastic, Kinematics};
 use crate::math::{Mat3, Sym3};
 use bevy_ecs::prelude::*;

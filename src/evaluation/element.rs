@@ -1,9 +1,10 @@
 //! One element's state.
 
-use super::{lane_place, node_count, point_count, with_element_of};
+use super::lane_place;
 use crate::backend::cpu::BlockLaw;
 use crate::components::*;
 use crate::elements::{Element, MOST_NODES, MOST_POINTS, PointState, largest_eigenvalue};
+use crate::elements::{node_count, point_count, with_element_of};
 use crate::materials::{Elastic, Kinematics};
 use crate::math::{Mat3, Sym3};
 use crate::mesh::ElementKind;

@@ -10,8 +10,8 @@ mod tensor;
 mod thrice;
 mod trigonometry;
 
-pub(crate) use real::refine_inverse_cbrt;
+pub use real::refine_inverse_cbrt;
 pub use real::{Real, Scalar, Task};
 pub use rows::{Rows, Scratch};
-pub use simd::{F32s, F64s, LANES, SimdScalar};
+pub use simd::{F32s, F64s, LANES, SimdScalar, lane_place};
 pub use tensor::{Mat3, Sym3, dot, dot_plus, minor};

@@ -108,7 +108,7 @@ pub trait Scalar: Real + PartialOrd + Default + bytemuck::Pod {
 
 /// Newton steps for y = x^(−1/3): the error e of a guess becomes 2e².
 #[inline(always)]
-pub(crate) fn refine_inverse_cbrt<R: Real>(x: R, guess: R, steps: usize) -> R {
+pub fn refine_inverse_cbrt<R: Real>(x: R, guess: R, steps: usize) -> R {
     let third = x * x.constant(-1.0 / 3.0);
     let mut y = guess;
     for _ in 0..steps {

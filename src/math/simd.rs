@@ -16,6 +16,11 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 /// Narrower registers take a group in several parts.
 pub const LANES: usize = 16;
 
+/// Place of number `k` of `numbers` of an element in a column of groups.
+pub fn lane_place(row: usize, numbers: usize, k: usize) -> usize {
+    (row / LANES * numbers + k) * LANES + row % LANES
+}
+
 /// A task where the compiler may use the instructions of a kind of register.
 struct WithInstructions<R, T>(T, PhantomData<R>);
 

@@ -64,7 +64,7 @@ impl Cells {
     }
 
     /// Adds cells by their nodes, one cell after the other: as many as the kind has, of a kind that fills space.
-    pub(crate) fn extend_kind(&mut self, kind: CellKind, nodes: impl IntoIterator<Item = u32>) {
+    pub fn extend_kind(&mut self, kind: CellKind, nodes: impl IntoIterator<Item = u32>) {
         debug_assert!(kind.topology().solid.is_some(), "{kind:?}");
         self.block(kind).extend(nodes);
     }

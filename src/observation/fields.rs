@@ -3,8 +3,9 @@
 use crate::backend::cpu::{Cpu, ROWS_A_TASK};
 use crate::backend::device::bring_to_host;
 use crate::components::*;
+use crate::elements::node_count;
 use crate::error::Error;
-use crate::evaluation::{BlockView, node_count};
+use crate::evaluation::BlockView;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -66,7 +67,7 @@ pub fn internal_forces(world: &mut World, body: Entity) -> Result<Vec<DVec3>, Er
         };
         for (row, element) in elements_of(world, entity).iter().enumerate() {
             for corner in 0..node_count(block.kind) {
-                let node = connectivity[crate::evaluation::lane_place(row, node_count(block.kind), corner)];
+                let node = connectivity[crate::math::lane_place(row, node_count(block.kind), corner)];
                 by_row[node as usize] += DVec3::from_array(element.3[corner]);
             }
         }

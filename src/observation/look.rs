@@ -5,8 +5,9 @@ use crate::backend::cpu::{BlockLaw, BlockSums, Cpu, WatchedColumns, run_watch};
 use crate::backend::device::{Device, bring_to_host};
 use crate::backend::kernel::KernelId;
 use crate::components::*;
+use crate::elements::{averages, with_element_of};
 use crate::error::{Error, missing};
-use crate::evaluation::{BlockView, averages, with_element_of};
+use crate::evaluation::BlockView;
 use crate::math::SimdScalar;
 use bevy_ecs::prelude::*;
 

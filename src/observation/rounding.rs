@@ -2,8 +2,10 @@
 
 use crate::backend::cpu::BlockLaw;
 use crate::components::*;
-use crate::evaluation::{lane_place, node_count, rest_volume};
+use crate::elements::node_count;
+use crate::evaluation::rest_volume;
 use crate::materials::Elastic;
+use crate::math::lane_place;
 use bevy_ecs::prelude::*;
 
 /// Strains that f32 knows to a twentieth of their energy: volume changes cancel in it to eps/ε.

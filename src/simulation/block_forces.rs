@@ -3,7 +3,7 @@
 
 use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, run_block};
 use crate::components::*;
-use crate::evaluation::with_element_of;
+use crate::elements::with_element_of;
 use crate::systems::means_of;
 use bevy_ecs::prelude::*;
 use std::borrow::Cow;

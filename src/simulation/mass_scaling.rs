@@ -3,7 +3,9 @@
 
 use crate::assembly::{alike_in_any_precision, author_of};
 use crate::components::*;
-use crate::evaluation::{lane_place, mass_shares, rest_volume};
+use crate::elements::mass_shares;
+use crate::evaluation::rest_volume;
+use crate::math::lane_place;
 use bevy_ecs::prelude::*;
 
 /// Halvings of the range in which the step is sought for which so much mass may be added.

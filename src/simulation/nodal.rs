@@ -16,7 +16,8 @@ use super::mass_scaling::heavy_mass;
 use super::watch::Watched;
 use crate::assembly::undamped_square_frequencies;
 use crate::components::*;
-use crate::evaluation::{lane_place, mass_shares};
+use crate::elements::mass_shares;
+use crate::math::lane_place;
 use bevy_ecs::prelude::*;
 use std::collections::BTreeMap;
 

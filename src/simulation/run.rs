@@ -41,7 +41,7 @@ impl Simulation {
     ///
     /// # Errors
     /// As [`Simulation::advance`].
-    pub(crate) fn advance_short_of(&mut self, time: f64, most: u64) -> Result<(), Error> {
+    pub fn advance_short_of(&mut self, time: f64, most: u64) -> Result<(), Error> {
         self.settle()?;
         let end = self.step_count().saturating_add(most);
         loop {

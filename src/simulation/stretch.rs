@@ -2,7 +2,8 @@
 
 use crate::backend::cpu::{Cpu, ROWS_A_TASK};
 use crate::components::*;
-use crate::evaluation::{lane_place, node_count};
+use crate::elements::node_count;
+use crate::math::lane_place;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 

@@ -4,7 +4,8 @@
 use super::block_forces::BlockForces;
 use crate::backend::cpu::{BlockLaw, Cpu};
 use crate::components::*;
-use crate::evaluation::{lane_place, node_count};
+use crate::elements::node_count;
+use crate::math::lane_place;
 use crate::systems::sum_corners;
 use bevy_ecs::prelude::*;
 

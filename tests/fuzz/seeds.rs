@@ -44,7 +44,7 @@ pub fn of(target: &str) -> (Vec<Vec<u8>>, Vec<Vec<u8>>) {
                 files.into_iter().filter(|(path, _)| path.extension().is_some_and(|e| e == "wgsl")).map(|(_, b)| b),
             );
         }
-        _ => all.extend(TABLES.map(|table| table.as_bytes().to_vec())),
+        name => panic!("no seeds for {name}"),
     }
     (all, kept)
 }
@@ -96,10 +96,4 @@ const SETS: [&str; 8] = [
     "loads[0].curve=Table([(0, 0), (0.1, 1), (0.3, 0.5)])",
     "probes.tip.on=And([Surface(), Not(Plane(normal: (0, 0, 1), at: 0, tolerance: 1e-4))])",
     "materials.\"tissue\".prony=(terms: [(alpha: 0.5, tau: 0.1)])\nanalysis=Static(tolerance: 1e-7, max_steps: 50)",
-];
-
-const TABLES: [&str; 3] = [
-    "time (s),ux (m),uy (m),uz (m)\n0,0,0,0\n0.5,0,0,-1e-3\n1,0,0,-2e-3\n",
-    "time (s),Rx (N)\n0,0\n0.1,1\n0.2,2\n0.3,3\n0.4,4\n0.5,5\n1,6\n",
-    "id,X,Y,Z,ux,uy,uz,fx,fy,fz,mass\n0,0,0,0,0,0,0,0,0,0,1\n1,1,0,0,0.1,0,0,0,0,0,1\n",
 ];

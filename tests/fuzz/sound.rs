@@ -2,7 +2,7 @@
 
 use sinew::Simulation;
 use sinew::components::{Alive, Authoring, Block, DisplacementStep, Label, Precision};
-use sinew::evaluation::node_count;
+use sinew::elements::node_count;
 use sinew::glam::{DMat3, DVec3};
 use sinew::materials::FLATTEST;
 use sinew::scene::schema::{ElementKind, Inversion};

@@ -20,7 +20,7 @@ impl Noise {
 /// Numbers of a body's element forces in the scheme of two passes.
 fn two_pass_length(world: &World, body: Entity) -> usize {
     let blocks = world.get::<Authoring>(body).unwrap().blocks.iter().map(|&block| world.get::<Block>(block).unwrap());
-    blocks.map(|block| block.count.div_ceil(16) * 16 * 3 * sinew::evaluation::node_count(block.kind)).sum()
+    blocks.map(|block| block.count.div_ceil(16) * 16 * 3 * sinew::elements::node_count(block.kind)).sum()
 }
 
 /// Fills every column that changes with noise: displacements of a tenth of an element, plausible forces and histories.

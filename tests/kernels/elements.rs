@@ -5,7 +5,9 @@ use super::magnitude::{OGDEN_ROUNDINGS, ROUNDINGS, magnitude};
 use super::pair::{Pair, UNIT, entities, run};
 use bevy_ecs::prelude::*;
 use sinew::components::*;
-use sinew::evaluation::{ElementState, extinguish, lane_place, node_count, point_count, row_count};
+use sinew::elements::{node_count, point_count};
+use sinew::evaluation::{ElementState, extinguish, row_count};
+use sinew::math::lane_place;
 use sinew::mesh::ElementKind;
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -2,9 +2,11 @@
 
 use bevy_ecs::prelude::*;
 use sinew::components::*;
+use sinew::elements::node_count;
 use sinew::elements::{Element, Hex8, Hex8MeanDilatation, MOST_NODES, Parallelepiped, Wedge6};
-use sinew::evaluation::{ElementState, lane_place, node_count, row_count};
+use sinew::evaluation::{ElementState, row_count};
 use sinew::materials::Elastic;
+use sinew::math::lane_place;
 use sinew::mesh::ElementKind;
 
 /// Σ|tᵢ| of the forces on an element's corners and of its stress. With ∇u = h, stresses are sums of moduli times

@@ -3,8 +3,9 @@
 use bevy_ecs::prelude::Entity;
 use sinew::backend::patch_lists::*;
 use sinew::components::{Block, Patches, patch_groups};
-use sinew::evaluation::{lane_place, node_count};
+use sinew::elements::node_count;
 use sinew::math::LANES;
+use sinew::math::lane_place;
 use sinew::mesh::ElementKind;
 
 /// A block whose corners meet at random in so many nodes, and its patches, all corners of which are in one node where

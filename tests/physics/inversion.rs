@@ -1,5 +1,5 @@
 //! Tissue under the stable neo-Hookean law squeezed to almost nothing (H07). What is turned inside out, H08 to H10, is
-//! in `tests/hard.rs`.
+//! in `crates/studies/tests/hard.rs`.
 //!
 //! A cube of .1 m, damped at 40/s: its slowest motion, of some 15 rad/s, dies in a second to 1e-6 of itself. What is
 //! farther than 1e-3 of the cube from its place after that is held there by a false equilibrium.

@@ -5,7 +5,6 @@
 use sinew::backend::gpu::gpu_or_reason;
 use sinew::components::Precision;
 use sinew::{BackendChoice, Options, SceneFile, Simulation, Snapshot};
-use std::path::Path;
 
 /// Snapshots of a scene, its end included.
 const SNAPSHOTS: u64 = 6;
@@ -108,11 +107,7 @@ fn shipped_scenes_resume_at_every_snapshot() {
 
 #[test]
 fn hard_cases_resume_at_every_snapshot() {
-    let scenes = sinew::hard::CASES.iter().map(|case| {
-        let scene = SceneFile::from_text(&case.file(), case.scene, Path::new("."), &[]);
-        (case.id.to_string(), scene.unwrap_or_else(|wrong| panic!("{}", wrong.render(false))))
-    });
-    all(scenes.collect(), 25);
+    all(in_folder("scenes/hard", &[]), 25);
 }
 
 #[test]

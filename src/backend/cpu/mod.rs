@@ -116,7 +116,7 @@ impl Cpu {
     }
 
     /// Runs a task with the widest registers that the machine has.
-    pub(crate) fn dispatch_widest<O: pulp::WithSimd>(&self, task: O) -> O::Output {
+    pub fn dispatch_widest<O: pulp::WithSimd>(&self, task: O) -> O::Output {
         self.arch.dispatch(task)
     }
 

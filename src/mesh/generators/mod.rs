@@ -23,8 +23,8 @@ pub use tube::tube_mesh;
 use super::{CellKind, MeshError};
 use serde::{Deserialize, Serialize};
 
-/// Hands the list of element types to a macro, behind a `$` for macros that make macros: name, kind of cells, and stem of
-/// the shader.
+/// Hands the list of element types to a macro, behind a `$` for macros that make macros: name, kind of cells, and stem
+/// of the shader.
 macro_rules! each_element_kind {
     ($dollar:tt $then:ident) => {
         $then! {

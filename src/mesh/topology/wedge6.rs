@@ -138,8 +138,8 @@ pub fn smallest_altitude(p: [DVec3; 6]) -> f64 {
     if largest > 0.0 { a.cross(b).dot(c).abs() / largest } else { 0.0 }
 }
 
-/// Scaled Jacobian of a wedge: the least of its corners' determinants over the lengths of their edges, as a share of that
-/// of the prism on an equilateral triangle, which has 1.
+/// Scaled Jacobian of a wedge: the least of its corners' determinants over the lengths of their edges, as a share of
+/// that of the prism on an equilateral triangle, which has 1.
 pub fn scaled_jacobian(p: [DVec3; 6]) -> f64 {
     let frames = WEDGE6.solid.map_or(&[][..], |solid| solid.frames);
     let scaled = |&[o, a, b, c]: &[usize; 4]| {

@@ -1,0 +1,395 @@
+//! The words of the command line.
+
+mod before_a_run;
+mod suites;
+
+pub use before_a_run::{MeshArguments, ModesArguments, UnloadArguments};
+pub use suites::{BenchArguments, HardArguments};
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use glam::Vec3;
+use sinew::backend::gpu::Choice;
+use sinew::components::{Precision, Scheme};
+use sinew::scene::limits::PICTURE;
+use sinew::scene::{Allowed, Diagnostics};
+use sinew::{BackendChoice, Options, SceneFile};
+use sinew_pictures::render::RenderError;
+use std::path::{Path, PathBuf};
+
+const STATUSES: &str = "\
+Exit status:
+  0    done
+  1    the simulation broke down; what was written until then is kept. hard: a case did not end as it should
+  2    the scene or the options are wrong; nothing was run
+  3    outputs could not be written
+  4    there is no GPU, or it failed
+  5    accuracy: the scene as it is written does not meet its --target
+  6    accuracy: the reference is too coarse to tell whether it does
+  130  interrupted; what was written until then is kept";
+
+/// Soft tissue, fast: total Lagrangian explicit finite elements on the CPU and the GPU.
+#[derive(Parser)]
+#[command(name = "sinew", version, after_help = STATUSES, max_term_width = 100)]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+    /// Say nothing but warnings and errors: no report, no progress
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Say what is done meanwhile, too
+    #[arg(short, long, global = true)]
+    pub verbose: bool,
+}
+
+#[derive(Subcommand)]
+pub enum Command {
+    /// Run a scene and write what it asks for into a folder
+    #[command(after_help = STATUSES)]
+    Run(RunArguments),
+    /// Look for mistakes in a scene, all in one go, without running it
+    #[command(after_help = STATUSES)]
+    Check(CheckArguments),
+    /// Show what a scene causes and why: systems, effects, kernels, buffers; and what would turn on what is off
+    #[command(after_help = STATUSES)]
+    Explain(ExplainArguments),
+    /// Draw a scene or the output of a run
+    #[command(after_help = STATUSES)]
+    Render(RenderArguments),
+    /// Show what a mesh is and where it lies: extents, sets, quality, likely units; of a mesh file or of a scene's
+    /// bodies
+    #[command(after_help = STATUSES)]
+    Mesh(MeshArguments),
+    /// Find the lowest natural frequencies of a scene and their shapes, with a proposal for damping and ramps
+    #[command(after_help = STATUSES)]
+    Modes(ModesArguments),
+    /// Find the unloaded shape of a scene whose meshes show its bodies loaded, as scans do
+    #[command(after_help = STATUSES)]
+    Unload(UnloadArguments),
+    /// Show what accuracy costs in time: solve a scene in many ways, time each, measure each against a reference
+    #[command(after_help = STATUSES)]
+    Accuracy(AccuracyArguments),
+    /// Run the hard cases: what must stay stable, or fail honestly
+    #[command(after_help = STATUSES)]
+    Hard(HardArguments),
+    /// Measure what a step costs: sizes, elements, effects, backends, threads, schemes
+    #[command(after_help = STATUSES)]
+    Bench(BenchArguments),
+    /// Print what a shell needs to complete sinew's words, to be put where the shell looks
+    Completions {
+        /// The shell
+        shell: clap_complete::Shell,
+    },
+    /// Write manual pages: sinew.1, sinew-run.1 and so on
+    Man {
+        /// The folder to write them into, made if it is not there
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+    },
+}
+
+impl Command {
+    /// Whether it looks for a GPU.
+    pub fn may_open_a_gpu(&self) -> bool {
+        match self {
+            Command::Run(arguments) => arguments.how.backend != BackendName::Cpu,
+            Command::Explain(arguments) => arguments.how.backend != BackendName::Cpu,
+            Command::Render(_) => true,
+            Command::Accuracy(arguments) => arguments.backend != BackendName::Cpu,
+            Command::Hard(arguments) => arguments.backend != BackendName::Cpu,
+            Command::Bench(arguments) => arguments.backends.contains(&"gpu".to_string()),
+            Command::Check(_) | Command::Mesh(_) | Command::Modes(_) | Command::Unload(_) => false,
+            Command::Completions { .. } | Command::Man { .. } => false,
+        }
+    }
+}
+
+/// Which scene.
+#[derive(Args)]
+pub struct SceneArguments {
+    /// The scene file (.ron); - reads it from the standard input
+    pub scene: PathBuf,
+    /// Put a value into the scene, such as materials.tissue.density=1060; may be given several times
+    #[arg(long, value_name = "PATH=VALUE")]
+    pub set: Vec<String>,
+    /// Let the scene name files outside its own folder
+    #[arg(long)]
+    pub allow_outside: bool,
+}
+
+impl SceneArguments {
+    /// Reads the scene.
+    pub fn load(&self) -> Result<SceneFile, Diagnostics> {
+        let allowed = allowed(self.allow_outside);
+        match self.scene == Path::new("-") {
+            // files that it names are looked for where the command is called
+            true => SceneFile::read_allowing("standard input", std::io::stdin(), Path::new(""), &self.set, allowed),
+            false => SceneFile::load_allowing(&self.scene, &self.set, allowed),
+        }
+    }
+}
+
+/// What a scene may ask for.
+pub fn allowed(outside: bool) -> Allowed {
+    Allowed { outside, ..Allowed::default() }
+}
+
+/// What `sinew check` is told.
+#[derive(Args)]
+pub struct CheckArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// What is known of a sound scene as JSON: sizes, steps, and the stable step with the elements that set it
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// How to run it.
+#[derive(Args)]
+pub struct HowArguments {
+    /// Where to run; auto takes a hardware GPU if there is one, else the CPU
+    #[arg(long, value_enum, default_value_t = BackendName::Auto)]
+    pub backend: BackendName,
+    /// Which GPU: best, hardware, software, or a part of its name
+    #[arg(long, value_name = "NAME", default_value = "best")]
+    pub gpu: String,
+    /// The number type; f64 is the reference and runs on the CPU only
+    #[arg(long, value_enum, default_value_t = PrecisionName::F32)]
+    pub precision: PrecisionName,
+    /// CPU threads; 0 is one a core, or a single one for small bodies. Results are the same for any number
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 0,
+        allow_negative_numbers = true,
+        value_parser = clap::value_parser!(u16).range(0..=1024)
+    )]
+    pub threads: u16,
+    /// How element forces are summed: patch by patch in cache or a GPU's workgroup memory, or in two passes over
+    /// memory, to compare with
+    #[arg(long, value_enum, default_value_t = SchemeName::Patches)]
+    pub scheme: SchemeName,
+}
+
+#[derive(Args)]
+pub struct RunArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    #[command(flatten)]
+    pub how: HowArguments,
+    /// The folder to write into, in place of an earlier run's output [default: out/NAME-OF-THE-SCENE]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Go on from a snapshot of the same scene, see output.snapshots_every; writes into out/NAME-OF-THE-SCENE-resumed
+    #[arg(long, value_name = "FILE")]
+    pub resume: Option<PathBuf>,
+    /// Print the summary as JSON, and nothing else on the standard output
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args)]
+pub struct AccuracyArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    /// Wall time the study may take, such as 60s, 10min or 2h; a plain number is seconds. What does not fit is left out
+    /// by name
+    #[arg(long, value_name = "TIME", default_value = "50s", value_parser = wall_time)]
+    pub budget: f64,
+    /// The finest mesh to try, in the scene's cells along an edge: 2 has half the cell size
+    #[arg(long, value_name = "TIMES", value_parser = above_zero)]
+    pub finest: Option<f64>,
+    /// The error that is good enough, such as 1% or 0.01; decides the exit status
+    #[arg(long, value_name = "ERROR", value_parser = share)]
+    pub target: Option<f64>,
+    /// The quantity to judge by: displacement, tip.uz, tip.uz.over_time, energy.strain ... [default: the scene's]
+    #[arg(long, value_name = "QUANTITY")]
+    pub by: Option<String>,
+    /// Tables of an earlier run to measure against: probe_NAME.csv, nodes.csv or its folder; may be given several times
+    #[arg(long, value_name = "PATH")]
+    pub reference: Vec<PathBuf>,
+    /// Switch off each effect of the scene in turn and show what it costs and what it changes
+    #[arg(long)]
+    pub effects: bool,
+    /// Where the scene as written runs: auto is the CPU, compared with a hardware GPU if there is one
+    #[arg(long, value_enum, default_value_t = BackendName::Auto)]
+    pub backend: BackendName,
+    /// Which GPU: best, hardware, software, or a part of its name
+    #[arg(long, value_name = "NAME", default_value = "best")]
+    pub gpu: String,
+    /// The number type of the scene as written
+    #[arg(long, value_enum, default_value_t = PrecisionName::F32)]
+    pub precision: PrecisionName,
+    /// CPU threads; one, so that times can be compared with each other
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 1,
+        allow_negative_numbers = true,
+        value_parser = clap::value_parser!(u16).range(0..=1024)
+    )]
+    pub threads: u16,
+    /// The folder to write into, in place of an earlier study [default: out/NAME-OF-THE-SCENE-accuracy]
+    #[arg(short, long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+impl AccuracyArguments {
+    /// How the scene as written runs.
+    pub fn options(&self) -> Options {
+        let backend = if self.backend == BackendName::Gpu { BackendName::Gpu } else { BackendName::Cpu };
+        let (gpu, precision, threads) = (self.gpu.clone(), self.precision, self.threads);
+        HowArguments { backend, gpu, precision, threads, scheme: SchemeName::Patches }.options()
+    }
+}
+
+#[derive(Args)]
+pub struct ExplainArguments {
+    #[command(flatten)]
+    pub scene: SceneArguments,
+    #[command(flatten)]
+    pub how: HowArguments,
+    /// Print JSON instead of a page
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Args)]
+pub struct RenderArguments {
+    /// An output folder, or a scene file; a scene is run first where its output is missing or older than it
+    #[arg(value_name = "SCENE|OUT")]
+    pub what: PathBuf,
+    /// Put a value into the scene, such as picture.zoom=2; of an output folder into its picture. May be given several
+    /// times
+    #[arg(long, value_name = "PATH=VALUE")]
+    pub set: Vec<String>,
+    /// Let the scene name files outside its own folder
+    #[arg(long)]
+    pub allow_outside: bool,
+    /// What gives the colour: displacement, speed, von_mises, pressure, volume_ratio, or a component such as
+    /// displacement.z or stress.xy [default: the scene's]
+    #[arg(long, value_name = "NAME")]
+    pub field: Option<String>,
+    /// Where the eye stands, seen from what it looks at: three numbers [default: the scene's]
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
+    pub from: Option<Vec3>,
+    /// Width and height in pixels [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    pub size: Option<(u32, u32)>,
+    /// The time of the picture in seconds; an animation ends there [default: the end]
+    #[arg(long, value_name = "TIME", value_parser = time)]
+    pub at: Option<f64>,
+    /// Draw the animation only
+    #[arg(long, conflicts_with = "no_animation")]
+    pub animate: bool,
+    /// Draw the picture only
+    #[arg(long)]
+    pub no_animation: bool,
+    /// The file to write: .png for a picture, .gif for an animation [default: picture.png and animation.gif in the
+    /// output folder]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["animate", "no_animation"])]
+    pub to: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, ValueEnum, PartialEq, Eq)]
+pub enum BackendName {
+    Auto,
+    Cpu,
+    Gpu,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum PrecisionName {
+    F32,
+    F64,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum SchemeName {
+    Patches,
+    TwoPass,
+}
+
+impl HowArguments {
+    /// What the library calls it.
+    pub fn options(&self) -> Options {
+        Options {
+            backend: match self.backend {
+                BackendName::Auto => BackendChoice::Auto,
+                BackendName::Cpu => BackendChoice::Cpu,
+                BackendName::Gpu => BackendChoice::Gpu,
+            },
+            precision: match self.precision {
+                PrecisionName::F32 => Precision::F32,
+                PrecisionName::F64 => Precision::F64,
+            },
+            threads: self.threads.into(),
+            gpu: Choice::parse(&self.gpu),
+            scheme: match self.scheme {
+                SchemeName::Patches => Scheme::Patches,
+                SchemeName::TwoPass => Scheme::TwoPass,
+            },
+            forgets_start: true,
+            ..Options::default()
+        }
+    }
+}
+
+/// Where the outputs of a scene go when nobody says where.
+pub fn default_folder(scene: &Path) -> PathBuf {
+    let name = if scene == Path::new("-") { "stdin".as_ref() } else { scene.file_stem().unwrap_or(scene.as_os_str()) };
+    Path::new("out").join(name)
+}
+
+fn direction(text: &str) -> Result<Vec3, String> {
+    let numbers: Vec<f32> = text.split(',').filter_map(|number| number.trim().parse().ok()).collect();
+    match numbers[..] {
+        [x, y, z] if text.split(',').count() == 3 => Ok(Vec3::new(x, y, z)),
+        _ => Err("three numbers with commas between are wanted, such as 1,-2,0.8".into()),
+    }
+}
+
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let halves = text.split_once(['x', 'X', '×']);
+    let numbers = halves.and_then(|(wide, high)| Some((wide.trim().parse().ok()?, high.trim().parse().ok()?)));
+    let size = numbers.ok_or("width and height with an x between are wanted, such as 960x720")?;
+    match PICTURE[0].contains(&size.0) && PICTURE[1].contains(&size.1) {
+        true => Ok(size),
+        false => Err(RenderError::Size { size }.to_string()),
+    }
+}
+
+fn above_zero(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
+    number.ok_or_else(|| "a number above 0 is wanted, such as 60".into())
+}
+
+/// Seconds from `60`, `60s`, `1.5 min`, `500ms`, `2h`.
+fn wall_time(text: &str) -> Result<f64, String> {
+    const UNITS: [(&str, f64); 5] = [("ms", 1e-3), ("min", 60.0), ("s", 1.0), ("m", 60.0), ("h", 3600.0)];
+    let text = text.trim();
+    let found = UNITS.iter().find_map(|(unit, size)| Some((text.strip_suffix(unit)?, *size)));
+    let (number, size) = found.unwrap_or((text, 1.0));
+    let seconds = above_zero(number.trim_end()).map(|number| number * size).ok();
+    let seconds = seconds.filter(|seconds| seconds.is_finite() && *seconds > 0.0);
+    seconds.ok_or_else(|| {
+        "a time above 0 is wanted, such as 60s, 10min or 2h; a number above 0 is wanted of seconds".into()
+    })
+}
+
+/// A share from `1%` or `0.01`. A plain number from 1 on is asked back about: who types 5 means 5 %, not 500 %.
+fn share(text: &str) -> Result<f64, String> {
+    let (number, factor) = text.strip_suffix('%').map_or((text, 1.0), |number| (number, 0.01));
+    let number = above_zero(number.trim()).map_err(|_| "an error above 0 is wanted, such as 1% or 0.01".to_string())?;
+    if factor == 1.0 && number >= 1.0 {
+        let (percent, plain) = (100.0 * number, number / 100.0);
+        return Err(format!(
+            "{number} would be {percent} %: for {number} % write {number}% or {plain}, else {percent}%"
+        ));
+    }
+    Ok(number * factor)
+}
+
+fn time(text: &str) -> Result<f64, String> {
+    let time = text.parse().ok().filter(|time: &f64| time.is_finite());
+    time.ok_or_else(|| "a time in seconds is wanted, such as 0.25".into())
+}

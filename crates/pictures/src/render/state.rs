@@ -1,0 +1,290 @@
+//! One frame, ready to be drawn: its surfaces in groups of the same finish, and what colours them.
+
+use super::RenderError;
+use super::camera::Fit;
+use super::draw::Options;
+use super::field::Field;
+use super::frame::{FrameFile, Place};
+use super::groups::Groups;
+use super::legend::Key;
+use super::nodal::Averages;
+use super::picture::{Colouring, Layer, Lines};
+use super::plane::Plane;
+use super::range::Seen;
+use super::raster::Finish;
+use super::section::Section;
+use super::surface::{Faces, Outer, Skin};
+use glam::Vec3;
+use sinew::mesh::Cells;
+use sinew::mesh::topology::MOST_NODES;
+use sinew::output::WHOLE;
+use sinew::scene::schema::Colours;
+use std::path::Path;
+
+/// What frames of a series share.
+pub struct Reader {
+    field: Field,
+    smooth: bool,
+    ghost: bool,
+    groups: Groups,
+    plane: Option<Plane>,
+    mesh: Mesh,
+    /// The surface of what the bodies began with.
+    skin: Skin,
+    /// That surface at rest: its faces, and which of their sides are edges of the shape.
+    rest: Option<Rest>,
+}
+
+struct Mesh {
+    cells: Cells,
+    faces: Faces,
+    points: usize,
+}
+
+struct Rest {
+    faces: Vec<[u32; 4]>,
+    creases: Vec<u8>,
+}
+
+/// One frame.
+pub struct State {
+    rest: Vec<Vec3>,
+    vertices: Vec<Vec3>,
+    parts: Vec<Part>,
+    /// Whether values are one a vertex: else one a corner of each face.
+    values: Option<Vec<f32>>,
+    sections: Vec<(Finish, Section)>,
+}
+
+/// Faces of one finish.
+struct Part {
+    finish: Finish,
+    faces: Vec<[u32; 4]>,
+    /// One a corner; empty where there is one a vertex.
+    values: Vec<[f32; 4]>,
+}
+
+impl Mesh {
+    fn read(frame: &FrameFile) -> Result<Mesh, RenderError> {
+        let cells = frame.cells()?;
+        Ok(Mesh { faces: Faces::new(&cells), cells, points: frame.points })
+    }
+}
+
+impl Reader {
+    /// Prepares for a series that begins with a frame; `folder`: of the series.
+    pub fn new(folder: &Path, first: &FrameFile, options: &Options) -> Result<Reader, RenderError> {
+        let picture = &options.picture;
+        let field = Field::find(first, options.field.as_deref().unwrap_or(picture.field.array()))?;
+        let mesh = Mesh::read(first)?;
+        let points = points(first)?;
+        let whole = whole(folder, &mesh)?;
+        let began = whole.as_ref().unwrap_or(&mesh);
+        let rest = picture.ghost.then(|| {
+            let faces: Vec<[u32; 4]> = began.faces.surface(|_| Some(0), None).iter().map(|face| face.points).collect();
+            Rest { creases: super::normals::creases(&points, &faces), faces }
+        });
+        let (low, high) = points.iter().fold((Vec3::MAX, Vec3::MIN), |(low, high), p| (low.min(*p), high.max(*p)));
+        Ok(Reader {
+            smooth: field.real && picture.colours == Colours::Smooth,
+            field,
+            ghost: picture.ghost,
+            groups: Groups::new(folder, &picture.opacity)?,
+            plane: picture.cut.as_ref().map(|cut| Plane::new(cut, low.distance(high))),
+            skin: began.faces.skin(),
+            mesh,
+            rest,
+        })
+    }
+
+    /// What gives the colour.
+    pub fn field(&self) -> &Field {
+        &self.field
+    }
+
+    /// What takes away.
+    pub fn plane(&self) -> Option<Plane> {
+        self.plane
+    }
+
+    /// Reads a frame.
+    pub fn read(&mut self, path: &Path) -> Result<State, RenderError> {
+        let frame = FrameFile::open(path)?;
+        if (self.mesh.points, self.mesh.cells.len()) != (frame.points, frame.cells) {
+            // elements have gone, or it is another mesh
+            self.mesh = Mesh::read(&frame)?;
+        }
+        let alive = frame.entry(Place::Cells, "alive").filter(|entry| entry.components == 1);
+        let alive = alive.map(|entry| frame.floats(entry)).transpose()?;
+        let rest = points(&frame)?;
+        let mut vertices = rest.clone();
+        if let Some(entry) = frame.entry(Place::Points, "displacement") {
+            frame.vectors(entry)?.iter().zip(&mut vertices).for_each(|(by, point)| *point += *by);
+        }
+        let of_cells = self.groups.of_cells(&frame)?;
+        let group = |cell: u32| {
+            let there = alive.as_ref().is_none_or(|alive| alive[cell as usize] != 0.0);
+            there.then(|| of_cells.get(cell as usize).copied().unwrap_or(0))
+        };
+        let outer = self.mesh.faces.surface(group, Some(&self.skin));
+        let values = self.field.values(&frame)?;
+        let source = match self.field.place {
+            Place::Cells if self.smooth => {
+                let there = |cell: usize| group(cell as u32).is_some();
+                Source::Smooth(Averages::new(&frame, &rest, &self.mesh.cells, &values, there)?)
+            }
+            Place::Cells => Source::Cells(values),
+            _ => Source::Points(values),
+        };
+        let sections = self.sections(&vertices, &source, group);
+        let parts = self.parts(&outer, &source);
+        let values = if let Source::Points(values) = source { Some(values) } else { None };
+        Ok(State { rest, vertices, parts, values, sections })
+    }
+
+    /// Faces by finish.
+    fn parts(&self, outer: &[Outer], source: &Source) -> Vec<Part> {
+        let mut parts: Vec<Part> = Vec::new();
+        for face in outer {
+            let Some(finish) = self.groups.finish(face.group, face.bared) else { continue };
+            let place = parts.iter().position(|part| part.finish == finish).unwrap_or_else(|| {
+                parts.push(Part { finish, faces: Vec::new(), values: Vec::new() });
+                parts.len() - 1
+            });
+            parts[place].faces.push(face.points);
+            if !matches!(source, Source::Points(_)) {
+                let values = face.points.map(|point| source.value(face.cell as usize, point));
+                parts[place].values.push(values);
+            }
+        }
+        parts
+    }
+
+    /// The cut through all cells that are there, by finish.
+    fn sections(
+        &self,
+        vertices: &[Vec3],
+        source: &Source,
+        group: impl Fn(u32) -> Option<u8>,
+    ) -> Vec<(Finish, Section)> {
+        let mut sections: Vec<(Finish, Section)> = Vec::new();
+        let Some(plane) = &self.plane else { return sections };
+        for (cell, (kind, corners)) in self.mesh.cells.iter().enumerate() {
+            let Some(finish) = group(cell as u32).and_then(|group| self.groups.finish(group, false)) else { continue };
+            let mut places = [Vec3::ZERO; MOST_NODES];
+            let mut values = [0.0; MOST_NODES];
+            for (row, corner) in corners.iter().enumerate() {
+                places[row] = vertices[*corner as usize];
+                values[row] = source.value(cell, *corner);
+            }
+            let place = sections.iter().position(|section| section.0 == finish).unwrap_or_else(|| {
+                sections.push((finish, Section::default()));
+                sections.len() - 1
+            });
+            sections[place].1.add(plane, kind, &places[..corners.len()], &values[..corners.len()]);
+        }
+        sections
+    }
+
+    /// The layers of a frame.
+    pub fn layers<'a>(&'a self, state: &'a State, edges: bool) -> Vec<Layer<'a>> {
+        let lines = if edges { Lines::All } else { Lines::None };
+        let surface = state.parts.iter().map(|part| Layer {
+            vertices: &state.vertices,
+            faces: &part.faces,
+            values: state.values.as_deref().map_or(Colouring::Corners(&part.values), Colouring::Vertices),
+            finish: part.finish,
+            lines,
+            flat: None,
+            cut: true,
+        });
+        let sections = state.sections.iter().map(|(finish, section)| Layer {
+            vertices: &section.vertices,
+            faces: &section.faces,
+            values: Colouring::Vertices(&section.values),
+            finish: *finish,
+            lines: if edges { Lines::Sides(&section.sides) } else { Lines::None },
+            flat: self.plane.map(|plane| plane.normal),
+            cut: false,
+        });
+        let ghost = self.rest.iter().map(|rest| Layer {
+            vertices: &state.rest,
+            faces: &rest.faces,
+            values: Colouring::Nothing,
+            finish: Finish::Ghost,
+            lines: Lines::Sides(&rest.creases),
+            flat: None,
+            cut: true,
+        });
+        surface.chain(sections).chain(ghost).collect()
+    }
+}
+
+/// The mesh that the bodies began with, where the first frame lacks some of it already.
+fn whole(folder: &Path, first: &Mesh) -> Result<Option<Mesh>, RenderError> {
+    let path = folder.join(WHOLE);
+    if !path.exists() {
+        return Ok(None);
+    }
+    let mesh = Mesh::read(&FrameFile::open(&path)?)?;
+    match mesh.points == first.points {
+        true => Ok(Some(mesh)),
+        false => Err(RenderError::damaged(&path, "its points are not those of the frames")),
+    }
+}
+
+/// The places of points at rest (m).
+fn points(frame: &FrameFile) -> Result<Vec<Vec3>, RenderError> {
+    let missing = || RenderError::damaged(&frame.path, "the array Points is missing");
+    frame.vectors(frame.entry(Place::Mesh, "Points").ok_or_else(missing)?)
+}
+
+/// Where values come from.
+enum Source {
+    Points(Vec<f32>),
+    Cells(Vec<f32>),
+    Smooth(Averages),
+}
+
+impl Source {
+    /// At a corner of a cell.
+    fn value(&self, cell: usize, corner: u32) -> f32 {
+        match self {
+            Source::Points(values) => values[corner as usize],
+            Source::Cells(values) => values[cell],
+            Source::Smooth(averages) => averages.at(cell, corner),
+        }
+    }
+}
+
+impl State {
+    /// Moves it from its shape at rest by a multiple of its displacement.
+    pub fn scale(&mut self, factor: f32) {
+        for (point, rest) in self.vertices.iter_mut().zip(&self.rest) {
+            *point = *rest + (*point - *rest) * factor;
+        }
+    }
+
+    /// What its surfaces are, beside coloured by values.
+    pub fn keys(&self, reader: &Reader) -> Vec<Key> {
+        let bared = self.parts.iter().any(|part| part.finish == Finish::Bared);
+        [(bared, Key::Bared), (reader.ghost, Key::Ghost)].into_iter().filter(|key| key.0).map(|key| key.1).collect()
+    }
+
+    /// Adds what this frame shows.
+    pub fn look(&self, reader: &Reader, seen: &mut Seen, fit: &mut Fit) {
+        for part in &self.parts {
+            for (row, face) in part.faces.iter().enumerate() {
+                face.iter().for_each(|point| fit.see(self.vertices[*point as usize]));
+                match &self.values {
+                    Some(values) => face.iter().for_each(|point| seen.value(values[*point as usize])),
+                    None => part.values[row].iter().for_each(|value| seen.value(*value)),
+                }
+            }
+        }
+        let cut = self.sections.iter().flat_map(|section| &section.1.values);
+        cut.for_each(|value| seen.value(*value));
+        let ghost = reader.rest.iter().flat_map(|rest| rest.faces.iter().flatten());
+        ghost.for_each(|point| fit.see(self.rest[*point as usize]));
+    }
+}

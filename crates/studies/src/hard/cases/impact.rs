@@ -1,0 +1,95 @@
+//! A cube that falls on a plate that pushes back: a node system of a program's own, which says how stiff it is.
+
+use super::super::Trial;
+use bevy_ecs::prelude::*;
+use sinew::Error;
+use sinew::backend::cpu::{Cpu, NodeColumns};
+use sinew::components::{Displacement, ExternalForce, RestPosition};
+use sinew::glam::DVec3;
+use sinew::math::SimdScalar;
+use sinew::systems::{Before, ForceSlopes, NodeSystem, NodesAtRest, Phase, Registry, System};
+
+/// Pushes nodes up that are below z = 0. What the scene says under `parameters`.
+#[derive(Component, Clone, serde::Deserialize, serde::Serialize)]
+struct Plate {
+    /// Force a depth and node (N/m).
+    stiffness: f64,
+}
+
+impl NodeSystem for Plate {
+    type Columns = (&'static RestPosition, &'static Displacement, &'static mut ExternalForce);
+    type Prepared = ();
+
+    fn prepare(&self, _: &Before<'_>) {}
+
+    /// Any node may come to bear it, and the lightest is the quickest.
+    fn slopes(&self, nodes: &NodesAtRest<'_>) -> ForceSlopes {
+        let moving = (0..nodes.rest.0.len()).filter(|&row| nodes.moves(row));
+        let lightest = moving.map(|row| nodes.mass.get(row)).fold(f64::INFINITY, f64::min);
+        ForceSlopes { stiffness: self.stiffness / lightest, damping: 0.0 }
+    }
+
+    fn act<T: SimdScalar>(&self, (): &(), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        for row in 0..nodes.rows() {
+            let height = nodes.place(row).z;
+            if height < 0.0 {
+                nodes.add_load(row, DVec3::new(0.0, 0.0, -self.stiffness * height));
+            }
+        }
+    }
+}
+
+/// H26.
+pub fn impact(trial: &mut Trial<'_>) -> Result<(), Error> {
+    let registry = Registry::default().with(
+        System::of_nodes::<Plate>("plate", Phase::Loads, "pushes up what is below z = 0")
+            .on_each_body::<Plate>()
+            .with_shader::<Plate>("plate.wgsl", include_str!("plate.wgsl")),
+    );
+    let (young, cell) = (1e7, 0.0125);
+    let nodal = if trial.configuration.elements_name() == "Tet4NodalPressure" { "\"nodal_volume\", " } else { "" };
+    let schedule = format!("schedule=[{nodal}\"element_forces\", \"gather\", \"plate\", \"integrate\", \"observe\"]");
+    // drivers that compute on the CPU take long for steps of so small a body
+    let few = trial.configuration.is_gpu() && !trial.full;
+    for &speed in if few { &[50.0][..] } else { &[10.0, 50.0][..] } {
+        for &times in if few { &[10.0][..] } else { &[1.0, 10.0, 100.0][..] } {
+            let stiffness = times * young * cell;
+            let sets = [
+                schedule.clone(),
+                format!("parameters={{\"plate\": (stiffness: {stiffness:e})}}"),
+                format!("bodies.body.velocity=(0, 0, -{speed})"),
+                // of what is stable with the plate: energy in it cannot be told from the ends of longer steps
+                "integration.safety=0.2".into(),
+            ];
+            let mut simulation = trial.start_with(&sets, &registry)?;
+            let start = simulation.energies()?.kinetic;
+            let name = format!("{speed} m/s, penalty ×{times}");
+            let lightest = simulation.masses("body")?.into_iter().fold(f64::INFINITY, f64::min);
+            let alone = 2.0 / (stiffness / lightest).sqrt();
+            trial.most(format!("step over that of the penalty alone, {name}"), simulation.time_step() / alone, 1.0);
+            let (mut deepest, mut most) = (0.0_f64, 0.0_f64);
+            for looks_left in (1..=30).rev() {
+                let left = simulation.planned_steps().saturating_sub(simulation.step_count());
+                let ended = simulation.advance_towards_end(left.div_ceil(looks_left));
+                if ended.is_err() {
+                    trial.stops(&name, ended, &["element"]);
+                    break;
+                }
+                let (rest, fields) = (simulation.rest_positions("body")?, simulation.fields("body")?);
+                // energies are those of the middle of the step
+                let half = 0.5 * simulation.time_step();
+                let height = |node: usize| rest[node].z + fields.displacement[node].z - half * fields.velocity[node].z;
+                let depth = |node: usize| (-height(node)).max(0.0);
+                let held: f64 = (0..rest.len()).map(|node| 0.5 * stiffness * depth(node).powi(2)).sum();
+                let e = simulation.energies()?;
+                most = most.max(e.kinetic + e.strain + e.hourglass + held);
+                deepest = (0..rest.len()).map(depth).fold(deepest, f64::max);
+            }
+            if deepest > 0.0 {
+                trial.most(format!("energy over that at the start, {name}"), most / start, 1.01);
+                trial.report(format!("deepest in cells, {name}"), deepest / cell);
+            }
+        }
+    }
+    Ok(())
+}

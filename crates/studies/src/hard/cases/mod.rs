@@ -1,0 +1,124 @@
+//! The cases, by what they are about.
+
+mod bending;
+mod cells;
+mod compression;
+mod fibres;
+mod impact;
+mod input;
+mod inversion;
+mod long_runs;
+mod mixed;
+mod point;
+mod removal;
+mod shocks;
+mod step;
+mod viscosity;
+
+use super::{Case, Configuration};
+
+/// A case: its number and name make the path of its scene.
+macro_rules! case {
+    ($id:literal $name:literal $title:literal, $passes:literal, $on:expr, $run:path) => {
+        Case {
+            id: $id,
+            name: $name,
+            title: $title,
+            passes_when: $passes,
+            scene: include_str!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenes/hard/", $id, "_", $name, ".ron")),
+            on: $on,
+            run: $run,
+        }
+    };
+}
+
+/// Every configuration.
+fn every(_: &Configuration) -> bool {
+    true
+}
+
+/// What concerns one-point hexahedra alone.
+fn one_point(configuration: &Configuration) -> bool {
+    configuration.elements == sinew::mesh::ElementKind::Hex8
+}
+
+/// What is decided before elements and machines matter.
+fn once(configuration: &Configuration) -> bool {
+    one_point(configuration) && configuration.is_f64()
+}
+
+/// All cases.
+pub const CASES: &[Case] = &[
+    case!("h01" "squeezed_cube" "cube squeezed by 30 %, ν .49, .499, .4999",
+        "step as the root of the bulk modulus within 5 %; force of a finer mesh within 5 % (elements that do not lock); no checkerboard",
+        every, compression::squeezed_cube),
+    case!("h02" "corner_load" "corner load on one-point hexahedra",
+        "hourglass energy below 10 %; coefficient 0 is warned of; the default does not stiffen S1",
+        one_point, bending::corner_load),
+    case!("h03" "sliver" "one sliver: h/1000, h/1e6, flat, negative volume",
+        "runs with a smaller step; warns with the worst elements; refused with their numbers", every, step::sliver),
+    case!("h04" "sizes" "element sizes 1:1000",
+        "the small element is named, with what it costs", every, step::sizes),
+    case!("h05" "release" "release from 100 % stretch, 20 periods (everyday: 5)",
+        "energy within 1 % (f64), 2 % (f32); J > .1", every, inversion::release),
+    case!("h06" "twist" "twist by 180, 360 and 720° and back",
+        "V/V₀ in [.97, 1.03]; back within 1e-3", every, bending::twist),
+    case!("h07" "crushed_cube" "95 % compression, confined and free",
+        "the formula for a point within 1 %; back within 1e-3", every, compression::crushed_cube),
+    case!("h08" "through" "node driven through the opposite face and back",
+        "stopped with the element's number, or back within 1e-3: no false rest", every, inversion::through),
+    case!("h09" "scrambled" "scrambled start",
+        "refused with an element's number, or back within 1e-3", every, inversion::deformed_start),
+    case!("h10" "flattened" "flattened start",
+        "refused with an element's number, or back within 1e-3", every, inversion::deformed_start),
+    case!("h11" "stiffness_contrast" "stiffness contrast of 1e4 in one bar",
+        "the joint moves as two springs in series within 1 %", every, bending::stiffness_contrast),
+    case!("h12" "stiff_fibres" "fibres a thousand times stiffer than the rest",
+        "one element at 1.02 within 1e-3; the step accounts for fibres", every, fibres::stiff_fibres),
+    case!("h13" "squeezed_fibres" "fibres compressed to half",
+        "the formula for a point within 1e-4", every, fibres::squeezed_fibres),
+    case!("h14" "fast_viscosity" "relaxation in a hundredth of the step",
+        "long-term modulus within 1 % in five steps", every, viscosity::fast),
+    case!("h15" "slow_viscosity" "relaxation in 1e6 s, of 99 %",
+        "instantaneous modulus within 1e-4", every, viscosity::slow),
+    case!("h16" "no_viscosity" "viscosity of weight 0; of 1; of more; of no time",
+        "0: the same bits as without; the others are refused", every, viscosity::none),
+    case!("h17" "islands" "elements removed until an island falls off",
+        "mass to 1e-6; the island falls with g; nodes without elements are parked", every, removal::islands),
+    case!("h18" "all_removed" "all elements removed",
+        "mass to 1e-6; nodes are parked; the run ends well", every, removal::everything),
+    case!("h19" "sudden_load" "sudden 100 g",
+        "energy balanced to the end, or an honest stop", every, shocks::sudden_load),
+    case!("h20" "denormals" "motion damped down into denormal numbers",
+        "a step there costs less than 1.5 times one at the start (timed in full only)", every, long_runs::denormals),
+    case!("h21" "long_run" "1e7 steps of one element (everyday: 1e5)",
+        "t = n·Δt exactly; frequency within 1e-3; energy within .1 % (f64), 1 % (f32)", every, long_runs::long_run),
+    case!("h22" "spin" "spinning free cube, 10 turns (in full: 1000)",
+        "angular momentum to 1e-10 (f64), 1e-5 (f32)", every, long_runs::spin),
+    case!("h23" "far_away" "mesh 1e4 m from the origin",
+        "the same result within 1e-5", every, long_runs::far_away),
+    case!("h24" "jump" "prescribed jump of 10 %, of 100 %",
+        "10 %: work booked; 100 %: an honest stop that says \"use a ramp\"", every, shocks::jump),
+    case!("h25" "thin_slab" "slab one element thick",
+        "sag of three layers within 15 %; the share of hourglass energy tells", one_point, bending::thin_slab),
+    case!("h26" "impact" "impact at 10 and 50 m/s, penalty ×1, ×10, ×100",
+        "energy at most 1 % above that at the start; the step accounts for the penalty; depth told", every, impact::impact),
+    case!("h27" "not_a_number" "NaN in a mesh, a material, a custom system's write",
+        "refused by name, or found within a few steps with the first node", every, input::not_a_number),
+    case!("h28" "bad_numbers" "numbers that cannot be",
+        "each refused with its own message", once, input::bad_numbers),
+    case!("h29" "beyond" "Δt = .99, 1.01, 1.1, 2 of the true limit (everyday: 5000 steps)",
+        ".99 runs 1e5 steps; the others are refused, or stopped where insisted on", every, step::beyond),
+    case!("h30" "shrinking_step" "the stable step shrinks during the run",
+        "the step adapts, or the run warns or stops", every, step::shrinks),
+    case!("h31" "mixed_patch" "hexahedra and tetrahedra in one body",
+        "patch test to 1e-6 (f64), 1e-4 (f32)", every, mixed::mixed_patch),
+    case!("h32" "mass_scaling" "mass scaling",
+        "added mass told, above 5 % warned of; energy balanced", every, step::heavier),
+    case!("h33" "nothing_loaded" "nothing loaded for 1e5 steps (everyday: 1e4)",
+        "no displacement above 1e-7 of the length", every, long_runs::nothing_loaded),
+    case!("h34" "zero_weights" "effects of weight zero against absent ones",
+        "the same bits (in full: the step time within 3 %)", every, fibres::zero_weights),
+    case!("h35" "buckling" "slender column buckling",
+        "deflection of a finer mesh within 3 %", every, bending::buckling),
+];

@@ -1,0 +1,125 @@
+//! The hard cases: what must stay stable, or fail honestly. `sinew hard` runs them; `docs/stability.md` is their
+//! record.
+//!
+//! A case is a scene in `scenes/hard/` (its gates stand at its head) and a function that runs it in a configuration and
+//! measures. Nothing is dropped: a case that ends in an honest failure where it should pass is shown as that.
+
+mod cases;
+mod configuration;
+mod known;
+mod report;
+mod trial;
+mod watch;
+
+pub use cases::CASES;
+pub use configuration::Configuration;
+pub use known::{SHORTFALLS, Shortfall, known};
+pub use report::{csv, markdown};
+pub use trial::{Gate, Trial};
+pub use watch::Watched;
+
+use serde::Serialize;
+use sinew::Error;
+use std::time::Instant;
+
+/// One of the hard cases.
+pub struct Case {
+    /// H01 to H35.
+    pub id: &'static str,
+    /// What it is, as a file name has it: `squeezed_cube`.
+    pub name: &'static str,
+    /// What happens.
+    pub title: &'static str,
+    /// Its gates.
+    pub passes_when: &'static str,
+    /// The text of its scene.
+    pub scene: &'static str,
+    /// Whether a configuration is one of its own, or would only repeat another.
+    pub on: fn(&Configuration) -> bool,
+    /// Runs it and measures.
+    pub run: fn(&mut Trial<'_>) -> Result<(), Error>,
+}
+
+impl Case {
+    /// The file of its scene.
+    pub fn file(&self) -> String {
+        format!("scenes/hard/{}_{}.ron", self.id.to_lowercase(), self.name)
+    }
+}
+
+/// How a case ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// All gates passed.
+    Passed,
+    /// It could not be simulated to the end and said so: where, when, why (G5).
+    FailedHonestly,
+    /// A gate did not pass.
+    Failed,
+}
+
+impl std::fmt::Display for Verdict {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Verdict::Passed => "passed",
+            Verdict::FailedHonestly => "failed honestly",
+            Verdict::Failed => "FAILED",
+        })
+    }
+}
+
+/// A case in one configuration: what came out.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    /// The case.
+    pub case: &'static str,
+    /// What it is.
+    pub title: &'static str,
+    /// Elements.
+    pub elements: &'static str,
+    /// Backend and number type.
+    pub machine: &'static str,
+    /// How it ended.
+    pub verdict: Verdict,
+    /// How it should: with a pass, or as is known and explained.
+    pub expected: Verdict,
+    /// All that was measured.
+    pub gates: Vec<Gate>,
+    /// What an honest failure said.
+    pub told: Option<String>,
+    /// Why this is how it has to end today, where it is not a pass.
+    pub known: Option<&'static str>,
+    /// Wall time (s).
+    pub seconds: f64,
+}
+
+impl Row {
+    /// The gate that used most of what is allowed.
+    pub fn tightest(&self) -> Option<&Gate> {
+        self.gates.iter().max_by(|a, b| a.used.total_cmp(&b.used))
+    }
+}
+
+/// Runs a case in a configuration.
+pub fn run(case: &Case, configuration: &Configuration, full: bool) -> Row {
+    let started = Instant::now();
+    let mut trial = Trial { case, configuration, full, gates: Vec::new() };
+    let ended = (case.run)(&mut trial);
+    let gates = trial.gates;
+    let all_passed = gates.iter().all(|gate| gate.passed) && !gates.is_empty();
+    let (verdict, told) = match ended {
+        Ok(()) if all_passed => (Verdict::Passed, None),
+        Ok(()) => (Verdict::Failed, None),
+        Err(error @ (Error::Unstable(_) | Error::NotConverged(_))) => {
+            (Verdict::FailedHonestly, Some(error.to_string()))
+        }
+        Err(error) => (Verdict::Failed, Some(error.to_string())),
+    };
+    let known = known(case.id, configuration, full);
+    let expected = known.map_or(Verdict::Passed, |known| known.verdict);
+    let known = known.filter(|known| known.verdict == verdict).map(|known| known.why);
+    let (elements, machine) = (configuration.elements_name(), configuration.machine());
+    let seconds = started.elapsed().as_secs_f64();
+    Row { case: case.id, title: case.title, elements, machine, verdict, expected, gates, told, known, seconds }
+}

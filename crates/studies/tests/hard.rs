@@ -1,0 +1,36 @@
+//! The hard cases in their everyday size: every one passes, or fails honestly where it says why.
+//! In full, with a table: `cargo run --release -- hard --full`.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use sinew::backend::gpu::gpu_or_reason;
+use sinew_studies::hard::{CASES, Configuration, run};
+
+fn check(id: &str) {
+    let case = CASES.iter().find(|case| case.id == id).unwrap_or_else(|| panic!("there is no case {id}"));
+    let mut wrong = Vec::new();
+    for configuration in Configuration::all(gpu_or_reason().is_some()).iter().filter(|c| (case.on)(c)) {
+        let row = run(case, configuration, false);
+        let figure = row.tightest().map(|gate| format!("{}: {:.3e}, {}", gate.what, gate.figure, gate.allowed));
+        println!(
+            "{id} {} {}: {} in {:.2} s, {figure:?} {:?}",
+            row.elements, row.machine, row.verdict, row.seconds, row.told
+        );
+        if row.verdict != row.expected {
+            let gates = row.gates.iter().filter(|gate| !gate.passed);
+            let gates: Vec<String> = gates.map(|g| format!("{}: {:.4e} ({})", g.what, g.figure, g.allowed)).collect();
+            wrong.push(format!("{} on {}: {}, {gates:?} {:?}", row.elements, row.machine, row.verdict, row.told));
+        }
+    }
+    assert!(wrong.is_empty(), "{id}, {}:\n{}", case.title, wrong.join("\n"));
+}
+
+macro_rules! cases {
+    ($($id:ident)*) => {
+        $(#[test] fn $id() { check(stringify!($id)); })*
+        #[test]
+        fn all_cases_are_here() {
+            assert_eq!(CASES.iter().map(|case| case.id).collect::<Vec<_>>(), [$(stringify!($id)),*]);
+        }
+    };
+}
+cases!(h01 h02 h03 h04 h05 h06 h07 h08 h09 h10 h11 h12 h13 h14 h15 h16 h17 h18 h19 h20 h21 h22 h23 h24 h25 h26 h27 h28 h29 h30 h31 h32 h33 h34 h35);

@@ -1,7 +1,0 @@
-//! The command `sinew`.
-
-mod command_line;
-
-fn main() -> std::process::ExitCode {
-    command_line::main()
-}
