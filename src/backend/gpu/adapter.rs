@@ -1,75 +1,8 @@
-//! Which device to run on.
+//! Which devices there are, and which of them to run on.
 
 use wgpu::{Adapter, Backends, DeviceType, Instance, InstanceDescriptor};
 
-use super::NoGpu;
-
-/// Which device is wanted.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum Choice {
-    /// A discrete GPU, else an integrated one, else a software device.
-    #[default]
-    Best,
-    /// The same without software devices.
-    Hardware,
-    /// A software device (lavapipe, WARP): for tests.
-    Software,
-    /// A device whose name contains this, whatever its kind; case is ignored.
-    Named(String),
-}
-
-impl Choice {
-    /// Reads what a user writes: `best`, `hardware`, `software`, or a part of a device's name.
-    pub fn parse(text: &str) -> Self {
-        match text {
-            "best" | "" => Self::Best,
-            "hardware" => Self::Hardware,
-            "software" => Self::Software,
-            name => Self::Named(name.to_owned()),
-        }
-    }
-
-    fn takes(&self, report: &AdapterReport) -> bool {
-        match self {
-            Self::Best => true,
-            Self::Hardware => !report.software,
-            Self::Software => report.software,
-            Self::Named(name) => report.name.to_lowercase().contains(&name.to_lowercase()),
-        }
-    }
-}
-
-impl std::fmt::Display for Choice {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Best => write!(f, "`best`"),
-            Self::Hardware => write!(f, "`hardware` (no software device)"),
-            Self::Software => write!(f, "`software`"),
-            Self::Named(name) => write!(f, "the name `{name}`"),
-        }
-    }
-}
-
-/// What a device says of itself.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct AdapterReport {
-    /// Name of the device.
-    pub name: String,
-    /// Driver and its version.
-    pub driver: String,
-    /// Interface: `Vulkan`, `Metal` or `Dx12`.
-    pub interface: String,
-    /// Whether the device is a program on the CPU: right for tests, no measure of speed.
-    pub software: bool,
-    /// `discrete`, `integrated`, `virtual`, `software` or `unknown`.
-    pub kind: &'static str,
-}
-
-impl std::fmt::Display for AdapterReport {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{} ({}, {}, {})", self.name, self.kind, self.interface, self.driver)
-    }
-}
+use super::{AdapterReport, Choice, NoGpu};
 
 impl AdapterReport {
     fn of(adapter: &Adapter) -> Self {

@@ -5,20 +5,11 @@ use std::collections::BTreeMap;
 use bytemuck::{AnyBitPattern, NoUninit};
 use wgpu::{BufferDescriptor, BufferUsages, CommandEncoderDescriptor, MapMode};
 
-use super::{Gpu, GpuError};
+use super::{BufferKind, Gpu, GpuError, Memory};
 use crate::backend::kernel::BufferId;
 
 /// Bytes moved at a time between the computer's memory and the GPU's: bounds the staging memory.
 const PIECE: u64 = 64 << 20;
-
-/// What a buffer is bound as.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum BufferKind {
-    /// `var<storage, ...>`
-    Storage,
-    /// `var<uniform>`
-    Uniform,
-}
 
 /// A buffer and what is known of it.
 pub(super) struct Slot {
@@ -26,17 +17,6 @@ pub(super) struct Slot {
     pub(super) label: String,
     pub(super) bytes: u64,
     pub(super) kind: BufferKind,
-}
-
-/// Memory of the buffers with one label.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Memory {
-    /// The label.
-    pub label: String,
-    /// Bytes in all.
-    pub bytes: u64,
-    /// Number of buffers.
-    pub count: usize,
 }
 
 impl Gpu {

@@ -5,15 +5,15 @@ use std::time::Duration;
 
 use wgpu::{Adapter, Device, DeviceDescriptor, Features, Limits, PollError, PollType, Queue, SubmissionIndex};
 
-use super::adapter::{AdapterReport, Choice, choose};
+use super::adapter::choose;
 use super::buffers::Slot;
-use super::error::{Event, Inbox};
+use super::inbox::{Event, Inbox};
 use super::pace::Pace;
 use super::pipelines::{Pipelines, Prepared};
 use super::quirks::safe_uniforms;
 use super::run::StepRecords;
 use super::timing::Timing;
-use super::{GpuError, NoGpu};
+use super::{AdapterReport, Choice, GpuError, GpuLimits, NoGpu, SmallerLimits};
 use crate::backend::kernel::MostBuffers;
 
 /// A submission that takes longer than this is taken for dead.
@@ -36,34 +36,6 @@ pub struct Gpu {
     pub(super) safe_uniforms: Option<usize>,
     inbox: Inbox,
     report: AdapterReport,
-}
-
-/// What the device allows, as far as the engine cares.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct GpuLimits {
-    /// Bytes of one storage binding.
-    pub storage_binding: u64,
-    /// Bytes of one uniform binding.
-    pub uniform_binding: u64,
-    /// Bytes of one buffer.
-    pub buffer: u64,
-    /// Buffers of one kernel.
-    pub buffers: MostBuffers,
-    /// Bytes of workgroup memory.
-    pub workgroup_memory: u32,
-    /// Invocations of a workgroup.
-    pub workgroup_size: u32,
-    /// Whether kernels can be timed.
-    pub time_stamps: bool,
-}
-
-/// Less than a device allows, as on a smaller one: for trying out what a program does there.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct SmallerLimits {
-    /// Bytes of one storage binding.
-    pub storage_binding: Option<u64>,
-    /// Workgroups in one dimension of a dispatch.
-    pub workgroups: Option<u32>,
 }
 
 impl Gpu {

@@ -1,12 +1,13 @@
 //! What can go wrong on a GPU, as values: nothing here panics or ends the process.
 
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-
 use crate::backend::kernel::KernelError;
 
 /// Why there is no GPU to run on.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum NoGpu {
+    /// This sinew was built without the feature `gpu`.
+    #[error("no GPU: this sinew was built without its feature `gpu`; the CPU backend needs none")]
+    NotBuilt,
     /// No driver showed a device.
     #[error(
         "no GPU found: no Vulkan, Metal or DX12 driver shows a device. Install your vendor's driver, or \
@@ -122,56 +123,4 @@ impl From<KernelError> for GpuError {
 
 fn aligned(offset: u64, bytes: u64) -> &'static str {
     if offset.is_multiple_of(4) && bytes.is_multiple_of(4) { "" } else { " (offset and bytes must be multiples of 4)" }
-}
-
-/// Where wgpu's callbacks leave their errors until the next call picks them up.
-#[derive(Clone, Default)]
-pub(super) struct Inbox(Arc<Mutex<Letters>>);
-
-#[derive(Default)]
-struct Letters {
-    errors: Vec<Event>,
-    /// stays: a lost device does not come back, and wgpu is silent about all that follows
-    lost: Option<String>,
-}
-
-/// What a callback said.
-pub(super) enum Event {
-    OutOfMemory,
-    Other(String),
-    Lost(String),
-}
-
-impl Inbox {
-    /// Hears the device's errors from now on.
-    pub(super) fn listen(device: &wgpu::Device) -> Self {
-        let inbox = Self::default();
-        let errors = inbox.clone();
-        device.on_uncaptured_error(Arc::new(move |error| {
-            errors.put(match error {
-                wgpu::Error::OutOfMemory { .. } => Event::OutOfMemory,
-                other => Event::Other(other.to_string()),
-            });
-        }));
-        let lost = inbox.clone();
-        device.set_device_lost_callback(move |_, text| lost.open().lost = Some(text));
-        inbox
-    }
-
-    /// Leaves something that went wrong.
-    pub(super) fn put(&self, event: Event) {
-        self.open().errors.push(event);
-    }
-
-    fn open(&self) -> MutexGuard<'_, Letters> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// A lost device, or else the first thing that went wrong since the last call; forgets the others, which are its
-    /// consequences.
-    pub(super) fn take(&self) -> Option<Event> {
-        let mut letters = self.open();
-        let errors = std::mem::take(&mut letters.errors);
-        letters.lost.clone().map(Event::Lost).or_else(|| errors.into_iter().next())
-    }
 }

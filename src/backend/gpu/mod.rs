@@ -1,4 +1,5 @@
-//! The GPU layer: the only place that knows wgpu. It runs [kernels](super::kernel) and knows nothing of physics.
+//! The GPU layer: the only place that knows wgpu. It runs [kernels](super::kernel) and knows nothing of physics. Without
+//! the feature `gpu` there is no wgpu, and no [`Gpu`] can be opened.
 //!
 //! ```no_run
 //! use sinew::backend::gpu::{BufferKind, Choice, Gpu};
@@ -18,20 +19,36 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod adapter;
-mod buffers;
-mod device;
 mod error;
-mod pace;
-mod pipelines;
-mod quirks;
-mod run;
+mod report;
 mod testing;
+
+#[cfg(feature = "gpu")]
+mod adapter;
+#[cfg(feature = "gpu")]
+mod buffers;
+#[cfg(feature = "gpu")]
+mod device;
+#[cfg(feature = "gpu")]
+mod inbox;
+#[cfg(feature = "gpu")]
+mod pace;
+#[cfg(feature = "gpu")]
+mod pipelines;
+#[cfg(feature = "gpu")]
+mod quirks;
+#[cfg(feature = "gpu")]
+mod run;
+#[cfg(feature = "gpu")]
 mod timing;
 
-pub use adapter::{AdapterReport, Choice};
-pub use buffers::{BufferKind, Memory};
-pub use device::{Gpu, GpuLimits, SmallerLimits};
+#[cfg(not(feature = "gpu"))]
+mod absent;
+
+#[cfg(not(feature = "gpu"))]
+pub use absent::Gpu;
+#[cfg(feature = "gpu")]
+pub use device::Gpu;
 pub use error::{GpuError, NoGpu};
+pub use report::{AdapterReport, BufferKind, Choice, GpuLimits, KernelTime, Memory, SmallerLimits};
 pub use testing::gpu_or_reason;
-pub use timing::KernelTime;

@@ -8,21 +8,10 @@ use wgpu::{
     QuerySet, QuerySetDescriptor, QueryType,
 };
 
-use super::{Gpu, GpuError};
+use super::{Gpu, GpuError, KernelTime};
 
 /// Dispatches that one submission can time: two stamps each, and 4096 stamps a query set.
 const MOST_DISPATCHES: u32 = 2048;
-
-/// Time spent in the kernels of one label.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct KernelTime {
-    /// The kernels' label.
-    pub label: String,
-    /// Time on the GPU (ns), all dispatches together.
-    pub nanoseconds: f64,
-    /// Number of dispatches.
-    pub dispatches: u64,
-}
 
 pub(super) struct Timing {
     stamps: QuerySet,

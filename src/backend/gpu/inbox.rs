@@ -1,0 +1,55 @@
+//! Errors that wgpu tells of by callbacks.
+
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Where wgpu's callbacks leave their errors until the next call picks them up.
+#[derive(Clone, Default)]
+pub(super) struct Inbox(Arc<Mutex<Letters>>);
+
+#[derive(Default)]
+struct Letters {
+    errors: Vec<Event>,
+    /// stays: a lost device does not come back, and wgpu is silent about all that follows
+    lost: Option<String>,
+}
+
+/// What a callback said.
+pub(super) enum Event {
+    OutOfMemory,
+    Other(String),
+    Lost(String),
+}
+
+impl Inbox {
+    /// Hears the device's errors from now on.
+    pub(super) fn listen(device: &wgpu::Device) -> Self {
+        let inbox = Self::default();
+        let errors = inbox.clone();
+        device.on_uncaptured_error(Arc::new(move |error| {
+            errors.put(match error {
+                wgpu::Error::OutOfMemory { .. } => Event::OutOfMemory,
+                other => Event::Other(other.to_string()),
+            });
+        }));
+        let lost = inbox.clone();
+        device.set_device_lost_callback(move |_, text| lost.open().lost = Some(text));
+        inbox
+    }
+
+    /// Leaves something that went wrong.
+    pub(super) fn put(&self, event: Event) {
+        self.open().errors.push(event);
+    }
+
+    fn open(&self) -> MutexGuard<'_, Letters> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// A lost device, or else the first thing that went wrong since the last call; forgets the others, which are its
+    /// consequences.
+    pub(super) fn take(&self) -> Option<Event> {
+        let mut letters = self.open();
+        let errors = std::mem::take(&mut letters.errors);
+        letters.lost.clone().map(Event::Lost).or_else(|| errors.into_iter().next())
+    }
+}
