@@ -1,5 +1,5 @@
-//! The GPU layer: the only place that knows wgpu. It runs [kernels](super::kernel) and knows nothing of physics. Without
-//! the feature `gpu` there is no wgpu, and no [`Gpu`] can be opened.
+//! The GPU layer: the only place that knows wgpu. It runs [kernels](super::kernel) and knows nothing of physics.
+//! Without the feature `gpu` there is no wgpu, and no [`Gpu`] can be opened.
 //!
 //! ```no_run
 //! use sinew::backend::gpu::{BufferKind, Choice, Gpu};
