@@ -145,6 +145,7 @@ impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
     const VOLUME_ROW: usize = 3 * SLOPES;
     const FORCE_ROW: Option<usize> = Some(Self::STIFFNESS_ROW);
     const PRESSURE: PressureFrom = PressureFrom::Point;
+    const SPECIALISED: bool = true;
 
     fn rest_shape(points: &[DVec3], young: f64) -> [f64; MOST_ROWS] {
         let (volume, b) = mean_gradients(points);

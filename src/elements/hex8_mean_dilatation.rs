@@ -49,6 +49,7 @@ impl Element for Hex8MeanDilatation {
     const VOLUME_ROW: usize = 21;
     const FORCE_ROW: Option<usize> = Some(22);
     const PRESSURE: PressureFrom = PressureFrom::MeanOverPoints;
+    const SPECIALISED: bool = true;
 
     type Simple = Self;
     /// Mode coefficients of each component.

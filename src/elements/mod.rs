@@ -57,6 +57,11 @@ pub trait Element: Copy + Send + Sync + 'static {
     /// Where the pressure comes from.
     const PRESSURE: PressureFrom;
 
+    /// Whether the CPU has kernels in f32 of its own for what is asked for most, beside the one that asks the law for
+    /// each effect at each point. They take most of the time of compiling, so only kinds whose speed was measured with
+    /// and without have them.
+    const SPECIALISED: bool = false;
+
     /// The same element for simple shapes, of which fewer numbers need be known: what a block is made of if it
     /// [describes](Element::describes) all its elements. Itself, if there are none such.
     type Simple: Element;

@@ -21,6 +21,7 @@ impl Element for Tet4 {
     const VOLUME_ROW: usize = 9;
     const FORCE_ROW: Option<usize> = None;
     const PRESSURE: PressureFrom = PressureFrom::Point;
+    const SPECIALISED: bool = true;
 
     fn rest_shape(points: &[DVec3], _young: f64) -> [f64; MOST_ROWS] {
         let edges = DMat3::from_cols(points[1] - points[0], points[2] - points[0], points[3] - points[0]);

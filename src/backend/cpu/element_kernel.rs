@@ -67,15 +67,20 @@ pub fn run_block<E: Element, T: SimdScalar>(
 }
 
 /// The same in f32, where speed counts, with a kernel of its own for what is asked for most: the neo-Hookean law with
-/// each combination of fibres and viscosity, and three laws with neither. What a material lacks is not even asked for.
+/// each combination of fibres and viscosity, and three laws with neither; of kinds that are
+/// [specialised](Element::SPECIALISED). What a material lacks is not even asked for.
 pub fn run_block_fast<E: Element>(
     cpu: &Cpu,
     columns: BlockColumns<'_, '_, f32>,
     law: &BlockLaw<f32>,
     groups_a_patch: usize,
 ) -> Vec<usize> {
-    let effects = kernel_effects(law);
+    let effects = kernel_effects::<E>(law);
     let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
+    // known when this is compiled: no code is made of what follows for the other kinds
+    if !E::SPECIALISED {
+        return block.run::<_, ASK>(&law.elastic);
+    }
     match &law.elastic {
         asked if effects.is_none() => block.run::<_, ASK>(asked),
         ElasticLaw::NeoHookean(elastic) => block.run_neo_hookean(elastic),
@@ -88,7 +93,7 @@ pub fn run_block_fast<E: Element>(
 
 /// Whether a law's kernel in f32 is one that has fibres, and one that has viscosity, and nothing that it need not have;
 /// `None`: it is the one that asks for each effect.
-pub fn kernel_effects(law: &BlockLaw<f32>) -> Option<[bool; 2]> {
+pub fn kernel_effects<E: Element>(law: &BlockLaw<f32>) -> Option<[bool; 2]> {
     let effects = [law.fibres.is_some(), !law.prony.is_empty()];
     let others = !law.exponential.is_empty() || !law.volumetric.is_empty() || law.reproject;
     let is_there = match law.elastic {
@@ -98,7 +103,7 @@ pub fn kernel_effects(law: &BlockLaw<f32>) -> Option<[bool; 2]> {
         }
         _ => false,
     };
-    (is_there && !others).then_some(effects)
+    (E::SPECIALISED && is_there && !others).then_some(effects)
 }
 
 /// Effects of a kernel, as bits.

@@ -108,11 +108,18 @@ impl Cpu {
     /// Runs a task with the machine's vector registers, of 256 bits where it has wider ones too: most kernels are not
     /// worth their code a third time.
     pub(crate) fn dispatch<O: pulp::WithSimd>(&self, task: O) -> O::Output {
-        match self.arch {
-            #[cfg(target_arch = "x86_64")]
-            pulp::Arch::V4(simd) => pulp::Arch::V3(*simd).dispatch(task),
-            arch => arch.dispatch(task),
+        #[cfg(target_arch = "x86_64")]
+        {
+            use pulp::Simd;
+            // arm by arm: `Arch::dispatch` has the code for all of them compiled, wherever it is called
+            match self.arch {
+                pulp::Arch::V4(simd) => Simd::vectorize(*simd, task),
+                pulp::Arch::V3(simd) => Simd::vectorize(simd, task),
+                _ => Simd::vectorize(pulp::Scalar, task),
+            }
         }
+        #[cfg(not(target_arch = "x86_64"))]
+        self.arch.dispatch(task)
     }
 
     /// Runs a task with the widest registers that the machine has.

@@ -4,6 +4,7 @@ use super::{Effect, Part};
 use crate::backend::cpu::{BlockLaw, kernel_effects};
 use crate::backend::user_law::Findings;
 use crate::components::*;
+use crate::elements::with_element;
 use crate::materials::{Elastic, ElasticLaw, ExponentialFibre, Fibres, UserLaw};
 use crate::math::LANES;
 use crate::scene::schema::{InitialState, Inversion, Scene};
@@ -218,7 +219,7 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, can_be_held: bool,
 fn cpu_variant(entity: &EntityRef<'_>, block: &Block, world: &World) -> String {
     let law = ElasticLaw::of(world.entity(block.material)).map_or("no law", |law| law.name());
     let rounded = entity.get::<BlockLaw<f32>>();
-    let variant = match rounded.and_then(kernel_effects) {
+    let variant = match rounded.and_then(|law| with_element!(block.kind, E => kernel_effects::<E>(law))) {
         Some(effects) => {
             let [fibres, viscosity] = effects.map(|is| if is { "with" } else { "without" });
             format!("{fibres} fibres, {viscosity} viscosity")
