@@ -1,11 +1,15 @@
 // All steps of a submission of a small body, in one dispatch of one workgroup: one of which a step takes no longer than starting
-// kernels does. sum_all (sum_patch of patches.wgsl, for each block), call_all and finish_all are generated, INVOCATIONS too.
+// kernels does. INVOCATIONS is generated, and `var<workgroup> step: Step`.
 struct StepRecords {
     count: u32, // steps of the submission
     steps: array<Step>,
 }
 @group(0) @binding(0) var<storage, read> step_records: StepRecords;
-var<workgroup> step: Step;
+
+// sum_patch of patches.wgsl, for each block, and the functions of systems of nodes, in their order: linked.
+fn sum_all(number: u32, local: u32, kept: u32) {}
+fn call_all(node: u32) {}
+fn finish_all(local: u32, node: u32) {}
 
 // `id` is 0. No 0 is written in its place: Mesa 22.3's software GPU compiles loops anew, while they run, of which only a uniform is
 // not known before, and has been seen to crash over it.

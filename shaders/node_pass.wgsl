@@ -1,6 +1,8 @@
-// The kernel of systems that work node by node. call_all and finish_all are generated: the functions of those systems, in
-// their order.
-const INVOCATIONS: u32 = 64u;
+// The kernel of systems that work node by node. INVOCATIONS is generated.
+
+// The functions of those systems, in their order: linked.
+fn call_all(node: u32) {}
+fn finish_all(local: u32, node: u32) {}
 
 @compute @workgroup_size(INVOCATIONS)
 fn node_pass(

@@ -1,5 +1,4 @@
-// A load that a scene has in WGSL alone; twin of systems/own_load.rs. Generated: force_on, which calls the scene's function,
-// and own_load, which calls own_load_on.
+// A load that a scene has in WGSL alone; twin of systems/own_load.rs. own_load is generated, which calls own_load_on.
 struct OwnLoadUniform {
     signal: u32, // slot of the curve
     velocity_factor: u32, // 1; 0 in a static analysis, whose steps are no motion
@@ -9,6 +8,11 @@ struct OwnLoadUniform {
 @group(0) @binding(2) var<storage, read> displacement: array<f32>;
 @group(0) @binding(3) var<storage, read> displacement_step: array<f32>;
 @group(0) @binding(4) var<storage, read> rest_position: array<f32>;
+
+// The scene's function: linked.
+fn force_on(state: Node) -> vec3<f32> {
+    return vec3<f32>(0.0);
+}
 
 // What has lost all its elements bears nothing.
 fn own_load_on(node: u32) {

@@ -1,13 +1,13 @@
 // The kernel of a block's patches where the nodes inside a patch move as soon as its forces are known: the stages of the pass over the
-// nodes, which does the rest. sum_all (sum_patch of patches.wgsl), call_all, finish_all and LEAST_INSIDE are generated.
+// nodes, which does the rest. sum_patch is in patches.wgsl; LEAST_INSIDE, INVOCATIONS and force_of_patch are generated.
 //
 // No workgroup sees what another moves: a node is inside a patch if no other patch of the body has it, a patch reads the
 // displacements of its own nodes only, and no stage reads those of other nodes than its own. Within a workgroup all displacements
-// have been read before the first barrier of sum_all.
-const INVOCATIONS: u32 = BATCH;
+// have been read before the first barrier of sum_patch.
 
-// Place of the node among its patch's, for patch_gather.wgsl.
-var<private> place_in_patch: u32;
+// The functions of those stages, in their order: linked.
+fn call_all(node: u32) {}
+fn finish_all(local: u32, node: u32) {}
 
 @compute @workgroup_size(INVOCATIONS)
 fn patch_step(
@@ -18,11 +18,11 @@ fn patch_step(
     let number = patch_row(id, workgroups);
     if number < patches.count {
         let inside = patch_lists[patches.inside + number];
-        sum_all(number, local, inside);
+        sum_patch(number, local, inside);
         // they follow one another
         let first = patch_lists[patches.nodes + patch_lists[number]];
         for (var i = local; i < inside; i += INVOCATIONS) {
-            place_in_patch = i;
+            force_of_patch = vec3<f32>(patch_force[3u * i], patch_force[3u * i + 1u], patch_force[3u * i + 2u]);
             call_all(first + i);
         }
         // once for all of them: each sixty-four invocations that had any have a place of the patch's own

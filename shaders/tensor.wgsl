@@ -86,14 +86,3 @@ fn plus_identity_times(m: mat3x3<f32>, s: Sym3) -> mat3x3<f32> {
 fn plus_outer(m: mat3x3<f32>, a: vec3<f32>, b: vec3<f32>) -> mat3x3<f32> {
     return mat3x3<f32>(m[0] + a.x * b, m[1] + a.y * b, m[2] + a.z * b);
 }
-
-// x^(−1/3) for x > 0: a guess from the bits and Newton steps, as in src/math/real.rs; a real power would be slow and not
-// the same on every device.
-fn inverse_cbrt(x: f32) -> f32 {
-    let third = x * (-1.0 / 3.0);
-    var y = bitcast<f32>(0x54a2fa8cu - bitcast<u32>(x) / 3u);
-    y = y * (y * y * y * third + 4.0 / 3.0);
-    y = y * (y * y * y * third + 4.0 / 3.0);
-    y = y * (y * y * y * third + 4.0 / 3.0);
-    return y;
-}

@@ -92,9 +92,9 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
             .of_rows(set.rows);
         stage = if world.get::<DisplacementCompensation>(body).is_some() {
             let lost = buffers.column(body, DisplacementCompensation::NAME);
-            stage.shared(shader!("lost")).column(DisplacementCompensation::NAME, lost)
+            stage.own(shader!("lost")).column(DisplacementCompensation::NAME, lost)
         } else {
-            stage.shared(Fragment::new(
+            stage.own(Fragment::new(
                 "generated: sums that are not compensated",
                 "fn lost_of(node: u32, axis: u32) -> f32 {\n    return 0.0;\n}\n",
             ))
@@ -106,9 +106,9 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
                 "generated: where previous steps lie",
                 format!("const PREVIOUS_PRESCRIBED_AT: u32 = {place}u;\n"),
             );
-            stage.shared(shader!("previous_prescribed_step")).shared(place).column(FirstNonFinite::BUFFER, diagnostics)
+            stage.own(shader!("previous_prescribed_step")).own(place).column(FirstNonFinite::BUFFER, diagnostics)
         } else {
-            stage.shared(Fragment::new("generated: previous steps are not kept", "fn keep_previous_step(at: u32) {}\n"))
+            stage.own(Fragment::new("generated: previous steps are not kept", "fn keep_previous_step(at: u32) {}\n"))
         };
         stages.push(stage.with_step(world));
     }

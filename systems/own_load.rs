@@ -8,8 +8,8 @@ use super::registry::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::kernel::{Fragment, Uniform, uniform};
-use crate::backend::node_stage::{NodeStage, renamed, rows_of};
-use crate::backend::user_law::{declared_names, ground_of_load};
+use crate::backend::node_stage::{NodeStage, rows_of};
+use crate::backend::user_law::ground_of_load;
 use crate::components::*;
 use crate::materials::program::Program;
 use crate::math::{LANES, Real, SimdScalar};
@@ -17,7 +17,6 @@ use crate::shader;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use pulp::{Simd, WithSimd};
-use std::collections::BTreeMap;
 
 /// The system of a scene's own `name`, by its number among them; `what` it is, in a few words.
 pub(super) fn system(name: &str, number: usize, what: String) -> System {
@@ -221,25 +220,17 @@ fn stages(number: usize, world: &mut World, buffers: &mut dyn Buffers) -> Vec<No
         for column in [Mass::NAME, Displacement::NAME, DisplacementStep::NAME, ExternalForce::NAME] {
             stage = stage.column(column, buffers.column(body, column));
         }
-        // no name of the text's own is one of another fragment, whatever shares the kernel
-        let of_system = |name: &str| format!("{name}_of_system_{number}");
-        let names: BTreeMap<String, String> =
-            declared_names(&text.text).map(|name| (name.clone(), of_system(&name))).collect();
         let arguments = if rows.is_some() { "i: u32, node: u32" } else { "node: u32" };
-        let calls = format!(
-            "fn force_on(state: Node) -> vec3<f32> {{\n    return {}(state);\n}}\n\
-             fn own_load({arguments}) {{\n    own_load_on(node);\n}}\n",
-            of_system(name)
-        );
-        for fragment in ground_of_load(&text.text) {
-            stage = stage.own(fragment);
-        }
+        let call = format!("fn own_load({arguments}) {{\n    own_load_on(node);\n}}\n");
+        let mut own = ground_of_load();
+        own.push(Fragment::new(text.path.clone(), text.text.clone()));
         stage = stage
-            .own(Fragment::new(text.path.clone(), renamed(&text.text, &names)))
-            .own(Fragment::new(format!("generated: {name} on a node"), calls));
+            .own(shader!("node_state"))
+            .own(Fragment::new(format!("generated: {name} on a node"), call))
+            .calling("force_on", name.clone(), own);
         if !text.uniform.is_empty() {
             let parameters = buffers.uniform(format!("parameters of {name}"), &text.uniform);
-            stage = stage.bind(of_system("parameters"), parameters);
+            stage = stage.bind("parameters", parameters);
         }
         if let Some(rows) = rows {
             stage = stage.of_rows(rows);

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod gpu_kernels;
+mod gpu_stages;
 
 use gpu_kernels::{march, march_on, march_records, saxpy, storage};
 use sinew::backend::gpu::{BufferKind, GpuError, SmallerLimits, gpu_or_reason};

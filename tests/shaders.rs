@@ -1,11 +1,12 @@
 //! Kernels compose, validate and fit what Rust knows of them, for every combination of effects; no GPU needed.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod kernel_units;
 mod kernel_worlds;
 
 use bevy_ecs::prelude::World;
 use kernel_worlds::{AROUND, Described, Effects, OF_NODES, all_kernels, shared_kernels};
-use sinew::backend::kernel::{BindingKind, Kernel, Layout, MostBuffers, Uniform, compose};
+use sinew::backend::kernel::{BindingKind, Composer, Kernel, Layout, MostBuffers, Uniform};
 use sinew::backend::patch_lists::WEBGPU_WORKGROUP_MEMORY;
 use sinew::components::{Scheme, Signals};
 use sinew::systems::Registry;
@@ -56,6 +57,7 @@ const SUPPORT: &[(&str, &str)] = &[
     ("row", "the row of an invocation"),
     ("step", "what is the same for a whole step"),
     ("tensor", "small tensors"),
+    ("inverse_cbrt", "a root from the bits of a number"),
     ("previous_prescribed_step", "the step that boundary writes over"),
     ("internal_work", "work against internal forces, in integrate"),
     ("watch_elements", "what the guards look at"),
@@ -102,7 +104,7 @@ fn all(effects: &Effects) -> Vec<(String, Kernel)> {
     // one of each kind is enough
     let mut seen: Vec<Vec<String>> = Vec::new();
     all.retain(|(_, kernel)| {
-        let texts: Vec<String> = kernel.fragments.iter().map(|fragment| fragment.text.to_string()).collect();
+        let texts: Vec<String> = kernel.all_fragments().iter().map(|fragment| fragment.text.to_string()).collect();
         let fresh = !seen.contains(&texts);
         if fresh {
             seen.push(texts);
@@ -178,11 +180,12 @@ fn members(layout: &Layout) -> Vec<(String, u32, u32)> {
 
 #[test]
 fn every_combination_of_effects_composes_with_no_more_buffers_than_there_may_be() {
+    let mut composer = Composer::default();
     for effects in Effects::combinations() {
         for (system, kernel) in all(&effects) {
-            let composed = compose(&kernel.fragments).unwrap_or_else(|e| panic!("{}: {e}", kernel.label));
+            let composed = composer.compose(&kernel).unwrap_or_else(|e| panic!("{}: {e}", kernel.label));
             let entry = composed.entry(kernel.entry).unwrap_or_else(|| panic!("{}: no {}", kernel.label, kernel.entry));
-            let patches = kernel.fragments.iter().any(|fragment| fragment.path == "shaders/patches.wgsl");
+            let patches = kernel.all_fragments().iter().any(|fragment| fragment.path == "shaders/patches.wgsl");
             let width = match (kernel.entry, patches) {
                 ("many_steps", _) => kernel.threads,
                 (_, patches) => {
@@ -206,9 +209,10 @@ fn every_combination_of_effects_composes_with_no_more_buffers_than_there_may_be(
 
 #[test]
 fn every_variable_in_use_has_a_buffer_and_every_buffer_is_in_use() {
+    let mut composer = Composer::default();
     for effects in Effects::combinations() {
         for (_, kernel) in all(&effects) {
-            let composed = compose(&kernel.fragments).unwrap();
+            let composed = composer.compose(&kernel).unwrap();
             let entry = composed.entry(kernel.entry).unwrap();
             let names = entry.uses.iter().map(|i| composed.bindings[*i].name.as_str());
             let used: BTreeSet<_> = names.filter(|name| !["step", "step_records"].contains(name)).collect();
@@ -220,9 +224,10 @@ fn every_variable_in_use_has_a_buffer_and_every_buffer_is_in_use() {
 
 #[test]
 fn structs_have_the_same_members_at_the_same_places_in_rust_and_wgsl() {
+    let mut composer = Composer::default();
     for effects in Effects::combinations() {
         for (_, kernel) in kernels(&effects) {
-            let composed = compose(&kernel.fragments).unwrap();
+            let composed = composer.compose(&kernel).unwrap();
             for binding in composed.bindings.iter().filter(|b| b.kind == BindingKind::Uniform && b.name != "step") {
                 let layout = kernel.layouts.iter().find(|(name, _)| *name == binding.name).map(|(_, layout)| layout);
                 let Some(layout) = layout else {
@@ -241,13 +246,14 @@ fn structs_have_the_same_members_at_the_same_places_in_rust_and_wgsl() {
 
 #[test]
 fn the_steps_record_is_what_kernels_read() {
+    let mut composer = Composer::default();
     let mut simulation = Effects::all().simulation(BackendChoice::Cpu);
     let world = simulation.world_mut();
     let size = sinew::backend::step::record_size(world.resource::<Signals>());
     let layout = sinew::backend::step::Step::LAYOUT;
     let mut readers = 0;
     for (_, kernel) in all_kernels(world).0 {
-        let composed = compose(&kernel.fragments).unwrap();
+        let composed = composer.compose(&kernel).unwrap();
         let Some(binding) = composed.binding("step") else { continue };
         readers += 1;
         assert_eq!(binding.size as usize, size, "{}", kernel.label);
@@ -263,7 +269,10 @@ fn the_steps_record_is_what_kernels_read() {
 #[test]
 fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
     let fragments = |effects: &Effects| -> BTreeSet<String> {
-        kernels(effects).iter().flat_map(|(_, k)| k.fragments.iter().map(|f| f.path.clone())).collect()
+        kernels(effects)
+            .iter()
+            .flat_map(|(_, k)| k.all_fragments().iter().map(|f| f.path.clone()).collect::<Vec<_>>())
+            .collect()
     };
     let buffers = |effects: &Effects| -> BTreeSet<String> {
         kernels(effects).iter().flat_map(|(_, k)| k.bindings.iter().map(|(name, _)| name.to_string())).collect()
@@ -291,6 +300,7 @@ fn a_scene_without_an_effect_has_neither_its_fragments_nor_its_buffers() {
         "internal_work",
         "step",
         "tensor",
+        "inverse_cbrt",
         "tet4",
         "volume_ratio",
     ];
@@ -368,7 +378,8 @@ fn all_fragments_of_the_folder_are_in_use() {
     used.extend(fragments.filter_map(|f| f.path.strip_prefix("shaders/").map(str::to_owned)));
     for effects in Effects::combinations() {
         for (_, kernel) in all(&effects) {
-            used.extend(kernel.fragments.iter().filter_map(|f| f.path.strip_prefix("shaders/").map(str::to_owned)));
+            let all = kernel.all_fragments();
+            used.extend(all.iter().filter_map(|f| f.path.strip_prefix("shaders/").map(str::to_owned)));
         }
     }
     let files: BTreeSet<String> =

@@ -162,6 +162,7 @@ impl BlockKernels {
         let elastic = ElasticPart::of(&self.law.elastic);
         let mut kernel = kernel
             .fragment(shader!("tensor"))
+            .fragment(shader!("inverse_cbrt"))
             .fragment(shader!("kinematics"))
             .fragment(shader!("point"))
             .fragment(element_shader(self.block.kind))

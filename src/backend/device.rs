@@ -2,12 +2,13 @@
 
 use super::Buffers;
 use super::gpu::{BufferKind, Gpu, GpuLimits};
-use super::kernel::{BindingKind, BufferId, Kernel, KernelId, MostBuffers, compose};
+use super::kernel::{BindingKind, BufferId, Composed, Kernel, KernelError, KernelId, MostBuffers};
 use crate::components::*;
 use crate::error::Error;
 use bevy_ecs::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
+use std::sync::Arc;
 
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 enum Truth {
@@ -123,7 +124,7 @@ impl Device {
 
     fn prepare_kernel(&mut self, kernel: &Kernel) -> Result<KernelId, Error> {
         let id = self.gpu.prepare(kernel)?;
-        let composed = compose(&kernel.fragments).map_err(super::gpu::GpuError::from)?;
+        let composed = self.gpu.compose(kernel).map_err(super::gpu::GpuError::from)?;
         let writes = |name: &str| composed.binding(name).is_some_and(|binding| binding.kind == BindingKind::ReadWrite);
         let buffers: BTreeSet<BufferId> =
             kernel.bindings.iter().filter(|(name, _)| writes(name)).map(|(_, buffer)| *buffer).collect();
@@ -258,6 +259,10 @@ impl Buffers for Binder<'_> {
             self.fresh.push(key);
         }
         buffer
+    }
+
+    fn compose(&mut self, kernel: &Kernel) -> Result<Arc<Composed>, KernelError> {
+        self.device.gpu.compose(kernel)
     }
 
     fn most_buffers(&self) -> MostBuffers {

@@ -1,23 +1,27 @@
 //! Kernels as data: what a system wants to run on a GPU, said without a word of any GPU interface.
 //!
 //! A [`Kernel`] is a list of WGSL [`Fragment`]s, an entry point, buffers by the name of the WGSL variable they belong
-//! to, and the number of invocations. [`compose`] concatenates the fragments, checks them and tells what they declare;
-//! it needs no GPU.
+//! to, and the number of invocations. What several authors have written stands in [`Unit`]s, which do not see each
+//! other's names. A [`Composer`] puts it together as a module of naga's, checks it and tells what it declares; it needs
+//! no GPU.
 
 mod compose;
 mod diagnose;
+mod link;
 mod reflect;
 #[cfg(test)]
 mod tests;
+mod unit;
 
 use bevy_ecs::prelude::Entity;
 use std::borrow::Cow;
 
 pub(crate) use crate::uniform::uniform;
 pub use crate::uniform::{Layout, Uniform};
-pub use compose::{Composed, Entry, compose};
+pub use compose::{Composed, Composer, Entry, compose};
 pub use diagnose::{KernelError, NameMismatch};
 pub use reflect::{Binding, BindingKind, Member};
+pub use unit::{Link, Unit, UnitId};
 
 /// Name of the uniform variable that holds the step's record; the GPU layer binds it, a kernel must not.
 pub const STEP_VARIABLE: &str = "step";
@@ -119,8 +123,16 @@ pub struct Kernel {
     pub entry: &'static str,
     /// The element block that it works on, if it is one.
     pub block: Option<Entity>,
+    /// Systems that it is put together from, where it is.
+    pub systems: Vec<Cow<'static, str>>,
     /// The WGSL, in any order: WGSL declarations are order-free.
     pub fragments: Vec<Fragment>,
+    /// More of it, which units have too: what these pieces declare is there once.
+    pub common: Vec<Fragment>,
+    /// WGSL that is read apart from that.
+    pub units: Vec<Unit>,
+    /// Functions of `fragments` that call those of units.
+    pub links: Vec<Link>,
     /// (WGSL variable, buffer). Every variable the entry point uses needs one, [`STEP_VARIABLE`] excepted.
     pub bindings: Vec<(Cow<'static, str>, BufferId)>,
     /// Structs of its uniforms as Rust sees them, by WGSL variable: what tests compare with the WGSL.
@@ -136,7 +148,11 @@ impl Kernel {
             label: label.into(),
             entry,
             block: None,
+            systems: Vec::new(),
             fragments: Vec::new(),
+            common: Vec::new(),
+            units: Vec::new(),
+            links: Vec::new(),
             bindings: Vec::new(),
             layouts: Vec::new(),
             threads: 0,
@@ -169,6 +185,6 @@ impl Kernel {
 
     /// The paths of the fragments, for messages: `shaders/tet4.wgsl + shaders/row.wgsl`.
     pub fn paths(&self) -> String {
-        self.fragments.iter().map(|f| f.path.as_str()).collect::<Vec<_>>().join(" + ")
+        self.all_fragments().iter().map(|f| f.path.as_str()).collect::<Vec<_>>().join(" + ")
     }
 }

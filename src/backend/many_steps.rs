@@ -2,8 +2,8 @@
 //! `shaders/many_steps.wgsl` is the kernel.
 
 use super::Buffers;
-use super::kernel::{Kernel, MostBuffers};
-use super::node_stage::{self, NodeStage};
+use super::kernel::Kernel;
+use super::node_stage::{self, Frame, NodeStage};
 use super::patch_lists::{BATCH_GROUPS, WEBGPU_WORKGROUP_MEMORY, workgroup_memory};
 use super::step::record_size;
 use crate::components::{Authoring, Block, Label, Patches, Signals};
@@ -61,14 +61,9 @@ pub fn take_small_bodies(
         let kernel = width(&blocks, most_elements, world, buffers).and_then(|width| {
             let step = whole_step(&blocks, body, stages, world);
             let step: Vec<&NodeStage> = step.iter().collect();
-            // the records of the steps are a storage buffer in place of a uniform one
             let most = buffers.most_buffers();
-            let (storage, together) = (most.storage.saturating_sub(1), most.together.saturating_sub(1));
-            let most = MostBuffers { storage, together, ..most };
-            match node_stage::why_apart(&step, most) {
-                None => Ok(node_stage::many_steps(&step, width, buffers)),
-                Some(reason) => Err(reason),
-            }
+            let pass = node_stage::together(&step, Frame::many_steps(width), most, buffers)?;
+            Ok(node_stage::many_steps(pass, &step, width, buffers))
         });
         let (many_steps, because) = match kernel {
             Ok(kernel) => {

@@ -16,6 +16,7 @@ pub mod user_law;
 
 use bevy_ecs::prelude::*;
 use kernel::BufferId;
+use std::sync::Arc;
 
 /// What systems bind their kernels to. The GPU backend makes device buffers, `explain` only counts them.
 pub trait Buffers {
@@ -30,6 +31,13 @@ pub trait Buffers {
     /// How many invocations a workgroup may have.
     fn workgroup_invocations(&self) -> usize {
         kernel::DESKTOP_WORKGROUP
+    }
+    /// A kernel put together: once, where what hands out the buffers remembers it.
+    ///
+    /// # Errors
+    /// Those of [`kernel::Composer::compose`].
+    fn compose(&mut self, kernel: &kernel::Kernel) -> Result<Arc<kernel::Composed>, kernel::KernelError> {
+        kernel::Composer::default().compose(kernel)
     }
     /// A uniform buffer of parameters.
     fn uniform(&mut self, label: String, bytes: &[u8]) -> BufferId;

@@ -1,17 +1,17 @@
 //! Systems that work node by node: each in a kernel of its own, or neighbours of a step in one. Of small bodies the
 //! element forces come into that kernel, too, which then takes many steps.
 
-mod fused;
-mod items;
+mod frames;
+mod pass;
 
 use super::Buffers;
-use super::kernel::{BufferId, Fragment, Kernel, Layout, MostBuffers, Uniform, uniform};
-use super::step::{step_fragments, step_in_a_uniform};
-use crate::components::{Column, Displacement, ElementForce, GROUP_ROWS, Mass};
+use super::kernel::{BufferId, Fragment, Kernel, Layout, Uniform, uniform};
+use super::step::{step_fragments, step_record};
+use crate::components::{Column, Displacement, ElementForce, Mass};
 use crate::shader;
 use bevy_ecs::prelude::*;
-use fused::Fused;
-pub(crate) use items::renamed;
+pub use frames::node_kernels;
+pub(super) use frames::{Frame, MOST_SHARED, many_steps, patch_step, together};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
@@ -33,13 +33,25 @@ pub struct NodeStage {
     within: Range<u32>,
     rows: Rows,
     own: Vec<Fragment>,
-    shared: Vec<Fragment>,
+    calls: Vec<Called>,
+    /// What declares the step's record, but for where it is.
+    step: Option<[Fragment; 2]>,
     columns: Vec<(&'static str, BufferId)>,
     bindings: Vec<(Cow<'static, str>, BufferId)>,
     layouts: Vec<(Cow<'static, str>, Layout)>,
     elsewhere: Vec<&'static str>,
     loaded: bool,
     forces: Forces,
+}
+
+/// A function that a stage calls and that somebody else has written, who may name things as the stage does.
+#[derive(Clone, Debug)]
+struct Called {
+    /// What it is called by the stage, which declares it with an empty body.
+    function: &'static str,
+    /// What it is called by who has written it.
+    name: Cow<'static, str>,
+    own: Vec<Fragment>,
 }
 
 /// What a stage does with the forces on nodes.
@@ -82,7 +94,8 @@ impl NodeStage {
             within: 0..nodes,
             rows: Rows::All,
             own: vec![fragment],
-            shared: Vec::new(),
+            calls: Vec::new(),
+            step: None,
             columns: Vec::new(),
             bindings: Vec::new(),
             layouts: Vec::new(),
@@ -101,13 +114,13 @@ impl NodeStage {
     /// The kernel of a block's patches, but for its frame: forces that others in the same kernel can go on with.
     pub(crate) fn of_patch(kernel: Kernel, body: Entity, world: &World) -> Self {
         let (step, frame) = (step_fragments(world), shader!("patch_pass"));
-        let fragments = kernel.fragments.into_iter().filter(|fragment| *fragment != frame);
-        let (shared, own) = fragments.partition(|fragment| step.contains(fragment));
+        let not_declared_by_all = |fragment: &Fragment| *fragment != frame && !step.contains(fragment);
+        let own: Vec<Fragment> = kernel.fragments.into_iter().filter(not_declared_by_all).collect();
         let column = |name: &str| [Displacement::NAME, ElementForce::NAME].into_iter().find(|column| *column == name);
         let columns = kernel.bindings.iter().filter_map(|(name, buffer)| Some((column(name)?, *buffer))).collect();
         let bindings = kernel.bindings.iter().filter(|(name, _)| column(name).is_none()).cloned().collect();
-        let stage = Self::new("element_forces", "sum_patch", body, rows_of(body, world), frame);
-        Self { rows: Rows::Patch, own, shared, columns, bindings, layouts: kernel.layouts, ..stage }
+        let stage = Self::new("element_forces", "sum_patch", body, rows_of(body, world), frame).with_step(world);
+        Self { rows: Rows::Patch, own, columns, bindings, layouts: kernel.layouts, ..stage }
     }
 
     /// The same for some of the body's nodes, one after the other; `None` where there is nothing to do for them.
@@ -144,21 +157,22 @@ impl NodeStage {
         self
     }
 
-    /// Adds a piece of WGSL that may name things as it likes: what another stage calls the same is renamed.
+    /// Adds a piece of WGSL. It may name things as it likes, whatever other stages call the same.
     pub fn own(mut self, fragment: Fragment) -> Self {
         self.own.push(fragment);
         self
     }
 
-    /// Adds a piece of WGSL that other stages may have too, and share.
-    pub fn shared(mut self, fragment: Fragment) -> Self {
-        self.shared.push(fragment);
+    /// Calls a function of somebody else's: the stage declares `function` with an empty body, and `own` the function
+    /// `name`, which takes and gives the same. They do not see each other's names.
+    pub fn calling(mut self, function: &'static str, name: impl Into<Cow<'static, str>>, own: Vec<Fragment>) -> Self {
+        self.calls.push(Called { function, name: name.into(), own });
         self
     }
 
     /// Adds what declares `step` for a world's signals.
     pub fn with_step(self, world: &World) -> Self {
-        step_fragments(world).into_iter().fold(self, Self::shared)
+        Self { step: Some(step_record(world)), ..self }
     }
 
     /// Binds a column of the body, or of a block of it, that other stages may use under the same name.
@@ -216,87 +230,3 @@ struct NodePass {
     first: u32,
 }
 uniform!(NodePass { count, first });
-
-/// Kernels of stages that follow one another in a step. Those of one body share as few kernels as can be: none in which
-/// a stage reads of other nodes what another writes, and none with more storage buffers than the device has for a
-/// kernel. With `fuse` false each has its own.
-pub fn node_kernels(stages: Vec<NodeStage>, fuse: bool, buffers: &mut dyn Buffers) -> Vec<Kernel> {
-    let mut bodies: Vec<Entity> = Vec::new();
-    for stage in &stages {
-        if !bodies.contains(&stage.body) {
-            bodies.push(stage.body);
-        }
-    }
-    let mut kernels = Vec::new();
-    for body in bodies {
-        let mut waiting: Vec<&NodeStage> = Vec::new();
-        for stage in stages.iter().filter(|stage| stage.body == body) {
-            waiting.push(stage);
-            if waiting.len() == 1 || (fuse && why_apart(&waiting, buffers.most_buffers()).is_none()) {
-                continue;
-            }
-            let before = &waiting[..waiting.len() - 1];
-            kernels.push(node_pass(before, buffers));
-            waiting = vec![stage];
-        }
-        if !waiting.is_empty() {
-            kernels.push(node_pass(&waiting, buffers));
-        }
-    }
-    kernels
-}
-
-/// Buffers of a kernel that several stages share, however many the device allows: what more loads gain is little.
-pub(super) const MOST_SHARED: MostBuffers = MostBuffers::new(32, 32);
-
-/// Why not all may run in one kernel, where nodes go their way independently of each other, if so.
-pub(super) fn why_apart(stages: &[&NodeStage], most: MostBuffers) -> Option<String> {
-    let fused = Fused::of(stages);
-    let looks =
-        |stage: &&&NodeStage| stage.elsewhere.iter().any(|name| fused.written().any(|written| written == *name));
-    if let Some(stage) = stages.iter().find(looks) {
-        return Some(format!("`{}` looks at other nodes than its own, which must not have moved", stage.system));
-    }
-    let (storage, uniform) = (fused.storage(), fused.uniforms());
-    MOST_SHARED.exceeded_by(storage, uniform).or_else(|| most.exceeded_by(storage, uniform))
-}
-
-/// A kernel of stages that may run in one, an invocation a node.
-fn node_pass(stages: &[&NodeStage], buffers: &mut dyn Buffers) -> Kernel {
-    let Range { start, end } = stages[0].within;
-    let rows = match (stages, &stages[0].rows) {
-        // places among the rows
-        ([_], Rows::Some(rows)) => [start, end].map(|bound| rows.partition_point(|&row| row < bound) as u32),
-        _ => [start, end],
-    };
-    let [first, count] = rows;
-    let kernel = Fused::of(stages).into_kernel("node_pass", stages, NodePass { count, first }, buffers);
-    kernel.fragment(shader!("row")).fragment(shader!("node_pass")).threads(count - first)
-}
-
-/// The same in one workgroup of so many invocations (a multiple of 128), for all steps of a submission: the stages of a
-/// whole step.
-pub(super) fn many_steps(stages: &[&NodeStage], invocations: usize, buffers: &mut dyn Buffers) -> Kernel {
-    let width = format!("const INVOCATIONS: u32 = {invocations}u;\n");
-    let rows = NodePass { count: stages[0].nodes, first: 0 };
-    let mut kernel = Fused::of(stages).into_kernel("many_steps", stages, rows, buffers);
-    // many_steps.wgsl says where `step` is
-    kernel.fragments.retain(|fragment| *fragment != step_in_a_uniform());
-    kernel
-        .fragment(shader!("many_steps"))
-        .fragment(Fragment::new("generated: how large the workgroup is", width))
-        .threads(invocations as u32)
-}
-
-/// The kernel of a block's patches, of so many invocations in all, that moves the nodes inside each of them: the stages
-/// of a whole step of these nodes.
-pub(super) fn patch_step(stages: &[&NodeStage], invocations: u32, buffers: &mut dyn Buffers) -> Kernel {
-    let least = format!("const LEAST_INSIDE: u32 = {GROUP_ROWS}u;\n");
-    let node = &stages[stages.len() - 1];
-    let rows = NodePass { count: node.nodes, first: node.within.start };
-    Fused::of(stages)
-        .into_kernel("patch_step", stages, rows, buffers)
-        .fragment(shader!("patch_step"))
-        .fragment(Fragment::new("generated: the least nodes inside a patch", least))
-        .threads(invocations)
-}

@@ -4,9 +4,9 @@
 use super::Buffers;
 use super::kernel::Kernel;
 use super::many_steps::{Dispatched, block_of, bodies};
-use super::node_stage::{self, NodeStage};
+use super::node_stage::{self, Frame, NodeStage};
 use super::patch_lists::{BATCH_GROUPS, WEBGPU_WORKGROUP_MEMORY, workgroup_memory};
-use crate::components::{Corners, GROUP_ROWS, Patches};
+use crate::components::{Corners, GROUP_ROWS, Label, Patches};
 use crate::math::LANES;
 use crate::shader;
 use bevy_ecs::prelude::*;
@@ -68,9 +68,7 @@ fn of_body(
         return Err(format!("no patch has {GROUP_ROWS} nodes that no other has"));
     }
     // of all nodes: those that stay may look at those that move
-    if let Some(reason) = node_stage::why_apart(&of_nodes, node_stage::MOST_SHARED) {
-        return Err(reason);
-    }
+    node_stage::together(&of_nodes, Frame::node_pass(), node_stage::MOST_SHARED, buffers)?;
     let most = buffers.most_buffers();
     let mut steps = Vec::new();
     for kernel in blocks {
@@ -78,18 +76,17 @@ fn of_body(
         let forces = NodeStage::of_patch(kernel.clone(), body, world).within(inside.clone());
         let nodes = of_nodes.iter().filter_map(|stage| stage.within(inside.clone())).map(NodeStage::in_patch);
         let step: Vec<NodeStage> = forces.into_iter().chain(nodes).collect();
-        match node_stage::why_apart(&step.iter().collect::<Vec<_>>(), most) {
-            None => steps.push((kernel, step)),
-            Some(reason) => return Err(reason),
-        }
+        let pass = node_stage::together(&step.iter().collect::<Vec<_>>(), Frame::patch_step(), most, buffers)?;
+        steps.push((kernel, step, pass));
     }
-    let put_together = |(kernel, step): (&Kernel, Vec<NodeStage>)| {
+    let mut put_together = |(kernel, step, pass): (&Kernel, Vec<NodeStage>, _)| {
         let stages: Vec<&NodeStage> = step.iter().collect();
-        let together = node_stage::patch_step(&stages, kernel.threads, buffers);
-        let of_block = kernel.label.split_once(" of ").map_or("", |(_, block)| block);
-        Kernel { label: format!("{} of {of_block}", together.label), block: kernel.block, ..together }
+        let together = node_stage::patch_step(pass, &stages, kernel.threads, buffers);
+        let label = kernel.block.and_then(|block| world.get::<Label>(block));
+        let label = label.map_or_else(|| together.label.clone(), |block| format!("{} of {}", together.label, block.0));
+        Kernel { label, block: kernel.block, ..together }
     };
-    Ok((steps.into_iter().map(put_together).collect(), first_shared))
+    Ok((steps.into_iter().map(&mut put_together).collect(), first_shared))
 }
 
 /// The rows inside the patches of a kernel's block, if there are any; or why a workgroup has no room for what is done

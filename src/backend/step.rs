@@ -105,9 +105,15 @@ pub(crate) fn with_step(kernel: Kernel, world: &World) -> Kernel {
 
 /// The fragments that declare `step` for a world's signals.
 pub(crate) fn step_fragments(world: &World) -> [Fragment; 3] {
+    let [step, signals] = step_record(world);
+    [step, signals, step_in_a_uniform()]
+}
+
+/// The fragments that declare a step's record for a world's signals, but not where it is.
+pub(crate) fn step_record(world: &World) -> [Fragment; 2] {
     let slots = world.get_resource::<Signals>().map_or(1, slots);
     let signals = Fragment::new("generated: signals of the scene", format!("const SIGNALS: u32 = {slots}u;\n"));
-    [crate::shader!("step"), signals, step_in_a_uniform()]
+    [crate::shader!("step"), signals]
 }
 
 /// Declares `step` where a kernel is dispatched once a step.
@@ -116,4 +122,9 @@ pub(crate) fn step_in_a_uniform() -> Fragment {
         "generated: where the step's record is",
         format!("@group(0) @binding(0) var<uniform> {STEP_VARIABLE}: Step;\n"),
     )
+}
+
+/// Declares `step` where a workgroup takes many steps, from one record to the next.
+pub(crate) fn step_in_a_workgroup() -> Fragment {
+    Fragment::new("generated: where the step's record is", format!("var<workgroup> {STEP_VARIABLE}: Step;\n"))
 }

@@ -3,13 +3,14 @@
 
 use bevy_ecs::prelude::*;
 use sinew::backend::Buffers;
-use sinew::backend::kernel::{BufferId, Kernel, MostBuffers};
+use sinew::backend::kernel::{BufferId, Composed, Composer, Kernel, KernelError, MostBuffers};
 use sinew::backend::many_steps::{Dispatched, step_by_step, take_small_bodies};
 use sinew::backend::node_stage::{NodeStage, node_kernels};
 use sinew::backend::patch_step::take_inner_nodes;
 use sinew::components::*;
 use sinew::systems::{OnDevice, Registry};
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
+use std::sync::Arc;
 
 mod noise;
 #[allow(unused_imports)]
@@ -260,16 +261,21 @@ pub struct Described {
     pub most: MostBuffers,
     pub uniforms: Vec<(String, usize)>,
     pub columns: Vec<(Entity, &'static str)>,
+    pub composer: Composer,
 }
 
 impl Default for Described {
     /// As on the smallest device.
     fn default() -> Self {
-        Self { most: MostBuffers::WEBGPU, uniforms: Vec::new(), columns: Vec::new() }
+        let composer = Composer::default();
+        Self { most: MostBuffers::WEBGPU, uniforms: Vec::new(), columns: Vec::new(), composer }
     }
 }
 
 impl Buffers for Described {
+    fn compose(&mut self, kernel: &Kernel) -> Result<Arc<Composed>, KernelError> {
+        self.composer.compose(kernel)
+    }
     fn most_buffers(&self) -> MostBuffers {
         self.most
     }

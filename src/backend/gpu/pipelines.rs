@@ -15,19 +15,20 @@ use super::quirks::read_from_storage;
 use super::run::PACKED_HEADER;
 use super::{BufferKind, Gpu, GpuError};
 use crate::backend::kernel::{
-    Binding, BindingKind, Composed, Entry, Kernel, KernelError, KernelId, NameMismatch, STEP_RECORDS_VARIABLE,
-    STEP_VARIABLE, compose,
+    Binding, BindingKind, Composed, Composer, Entry, Kernel, KernelError, KernelId, NameMismatch,
+    STEP_RECORDS_VARIABLE, STEP_VARIABLE,
 };
 
 /// Modules by text and pipelines by text and entry point: bodies of one kind share them.
 #[derive(Default)]
 pub(super) struct Pipelines {
+    composer: Composer,
     modules: HashMap<String, Arc<Module>>,
     pipelines: HashMap<(String, &'static str), (ComputePipeline, BindGroupLayout)>,
 }
 
 struct Module {
-    composed: Composed,
+    composed: Arc<Composed>,
     shader: ShaderModule,
     /// Uniforms that are read from storage buffers.
     moved: Vec<String>,
@@ -55,9 +56,9 @@ impl Gpu {
     /// small or of the wrong kind, [`GpuError::OverLimit`] for too many storage buffers or threads.
     pub fn prepare(&mut self, kernel: &Kernel) -> Result<KernelId, GpuError> {
         self.check("an earlier call")?;
-        let key = kernel.fragments.iter().flat_map(|f| [f.text.as_ref(), "\n"]).collect::<String>();
+        let key = kernel.key();
         let module = self.module(kernel, &key)?;
-        let composed = &module.composed;
+        let composed = module.composed.as_ref();
         let entry = composed.entry(kernel.entry).ok_or_else(|| KernelError::NoEntry {
             label: kernel.label.clone(),
             entry: kernel.entry.to_owned(),
@@ -90,6 +91,14 @@ impl Gpu {
         Ok(KernelId(self.kernels.len() as u32 - 1))
     }
 
+    /// A kernel put together, once for all that have its text.
+    ///
+    /// # Errors
+    /// Those of [`Composer::compose`].
+    pub fn compose(&mut self, kernel: &Kernel) -> Result<Arc<Composed>, KernelError> {
+        self.pipelines.composer.compose(kernel)
+    }
+
     /// Changes the number of invocations of a kernel, for the runs to come.
     ///
     /// # Errors
@@ -115,7 +124,7 @@ impl Gpu {
         if let Some(known) = self.pipelines.modules.get(key) {
             return Ok(known.clone());
         }
-        let composed = compose(&kernel.fragments)?;
+        let composed = self.compose(kernel)?;
         let mut module = composed.module().clone();
         let moved = self.safe_uniforms.map(|safe| read_from_storage(&mut module, safe)).unwrap_or_default();
         let source = ShaderSource::Naga(std::borrow::Cow::Owned(module));

@@ -1,12 +1,15 @@
-//! From fragments to one checked WGSL module.
+//! From fragments, and units of them, to one checked module.
 
 use naga::proc::Layouter;
 use naga::valid::{Capabilities, ValidationFlags, Validator};
 use naga::{AddressSpace, Module, ResourceBinding, ShaderStage};
 
 use super::diagnose::Sources;
+use super::link::link;
 use super::reflect::{binding, members, type_name};
-use super::{Binding, BindingKind, Fragment, KernelError, Member, STEP_RECORDS_VARIABLE, STEP_VARIABLE};
+use super::{Binding, BindingKind, Fragment, Kernel, KernelError, Member, STEP_RECORDS_VARIABLE, STEP_VARIABLE, Unit};
+use std::collections::HashMap;
+use std::sync::Arc;
 
 /// A compute entry point.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,8 +27,6 @@ pub struct Entry {
 /// Fragments put together, found valid, and what they declare.
 #[derive(Clone, Debug)]
 pub struct Composed {
-    /// The WGSL text as a whole.
-    pub source: String,
     /// Every buffer variable declared, used or not.
     pub bindings: Vec<Binding>,
     /// Every compute entry point.
@@ -49,7 +50,61 @@ struct Struct {
 /// and for a `step` that is no uniform.
 pub fn compose(fragments: &[Fragment]) -> Result<Composed, KernelError> {
     let sources = Sources::new(fragments);
-    let mut module = naga::front::wgsl::parse_str(sources.text()).map_err(|e| sources.parse_error(&e))?;
+    checked(parsed(&sources)?, &sources)
+}
+
+/// Kernels put together so far: each text is parsed once, and each kernel composed once, whatever asks for it.
+#[derive(Debug, Default)]
+pub struct Composer {
+    parsed: HashMap<String, Arc<Module>>,
+    composed: HashMap<String, Arc<Composed>>,
+}
+
+impl Composer {
+    /// Composes a kernel, units and all.
+    ///
+    /// # Errors
+    /// Those of [`compose`], [`KernelError::NoFunction`] for a unit without a function that others call, and
+    /// [`KernelError::Variable`] for a buffer that is of different types to its units.
+    pub fn compose(&mut self, kernel: &Kernel) -> Result<Arc<Composed>, KernelError> {
+        let key = kernel.key();
+        if let Some(known) = self.composed.get(&key) {
+            return Ok(known.clone());
+        }
+        let composed = Arc::new(self.put_together(kernel)?);
+        self.composed.insert(key, composed.clone());
+        Ok(composed)
+    }
+
+    fn put_together(&mut self, kernel: &Kernel) -> Result<Composed, KernelError> {
+        if kernel.units.is_empty() {
+            return compose(&kernel.fragments);
+        }
+        let root = kernel.root();
+        let mut units: Vec<(&Unit, Arc<Module>)> = Vec::new();
+        for unit in kernel.units.iter().chain([&root]) {
+            let text = unit.text();
+            let module = match self.parsed.get(&text) {
+                Some(known) => known.clone(),
+                None => {
+                    let module = Arc::new(parsed(&Sources::new(unit.fragments()))?);
+                    self.parsed.insert(text, module.clone());
+                    module
+                }
+            };
+            units.push((unit, module));
+        }
+        let sources = Sources::new(kernel.units.iter().chain([&root]).flat_map(Unit::fragments));
+        checked(link(&units, &sources)?, &sources)
+    }
+}
+
+fn parsed(sources: &Sources) -> Result<Module, KernelError> {
+    naga::front::wgsl::parse_str(sources.text()).map_err(|e| sources.parse_error(&e))
+}
+
+/// Checks a module, and tells what it declares.
+fn checked(mut module: Module, sources: &Sources) -> Result<Composed, KernelError> {
     number_bindings(&mut module);
     let mut validator = Validator::new(ValidationFlags::all(), Capabilities::empty());
     let info = validator.validate(&module).map_err(|e| sources.validation_error(&e))?;
@@ -92,7 +147,7 @@ pub fn compose(fragments: &[Fragment]) -> Result<Composed, KernelError> {
         Some(Struct { name: ty.name.clone()?, size: layouts[handle].size, members })
     });
     let structs = structs.collect();
-    Ok(Composed { source: sources.into_text(), bindings, entries, module, structs })
+    Ok(Composed { bindings, entries, module, structs })
 }
 
 /// Fragments of different authors may use the same `@binding` number: buffers are bound by name, numbers are given

@@ -44,6 +44,16 @@ pub enum KernelError {
         /// The entry points there are.
         found: Vec<String>,
     },
+    /// A function that others call is not there.
+    #[error("no function `{name}` in {paths}; there is {}", listed(found))]
+    NoFunction {
+        /// The function.
+        name: String,
+        /// The fragments that should have it.
+        paths: String,
+        /// The functions there are.
+        found: Vec<String>,
+    },
     /// Buffers and variables do not match by name.
     #[error(transparent)]
     Bindings(#[from] Box<NameMismatch>),
@@ -113,7 +123,7 @@ pub(super) struct Sources {
 
 impl Sources {
     /// Concatenates the fragments, each starting on a line of its own.
-    pub(super) fn new(fragments: &[Fragment]) -> Self {
+    pub(super) fn new<'a>(fragments: impl IntoIterator<Item = &'a Fragment>) -> Self {
         let mut sources = Self { text: String::new(), files: SimpleFiles::new(), ranges: Vec::new() };
         for fragment in fragments {
             let start = sources.text.len();
@@ -128,11 +138,6 @@ impl Sources {
     /// The concatenated text.
     pub(super) fn text(&self) -> &str {
         &self.text
-    }
-
-    /// Gives the concatenated text away.
-    pub(super) fn into_text(self) -> String {
-        self.text
     }
 
     /// A parse error, mapped to its fragments.
@@ -158,6 +163,11 @@ impl Sources {
             .collect();
         labels.sort_by_key(|(span, _)| span.to_range().map_or(usize::MAX, |range| range.len()));
         self.error(message, labels, chain)
+    }
+
+    /// An error at one place.
+    pub(super) fn error_at(&self, message: String, span: Span, notes: &[String]) -> KernelError {
+        self.error(message, vec![(span, String::new())], notes.to_vec())
     }
 
     fn error(&self, message: String, labels: Vec<(Span, String)>, notes: Vec<String>) -> KernelError {

@@ -3,7 +3,6 @@
 use super::names::{law_owners, owners_among, to_call};
 use crate::backend::kernel::Fragment;
 use crate::materials::J_FLOOR;
-use crate::materials::program::{is_name, words};
 use crate::shader;
 use std::collections::HashMap;
 
@@ -84,7 +83,7 @@ impl Form {
 
     /// Of a load by the name of its function: the force on a node.
     pub(super) fn load(name: &str) -> Self {
-        let ours = vec![shader!("node_state"), shader!("elementary")];
+        let ours = ground_of_load();
         Self {
             word: "system",
             functions: vec![function((name, "Node", "vec3<f32>", "node"))],
@@ -98,11 +97,7 @@ impl Form {
     }
 }
 
-/// The fragments of ours without which a load's text does not compile.
-pub(crate) fn ground_of_load(text: &str) -> Vec<Fragment> {
-    let elementary = shader!("elementary");
-    let names: Vec<String> = super::declared_names(&elementary.text).collect();
-    let calls =
-        words(text).map(|range| &text[range]).any(|word| is_name(word) && names.iter().any(|name| name == word));
-    std::iter::once(shader!("node_state")).chain(calls.then_some(elementary)).collect()
+/// The fragments of ours that a load's text may call.
+pub(crate) fn ground_of_load() -> Vec<Fragment> {
+    vec![shader!("node_state"), shader!("elementary")]
 }

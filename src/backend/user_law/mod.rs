@@ -19,7 +19,6 @@ pub use checks::Findings;
 pub use energy::read_formula;
 pub(crate) use form::ground_of_load;
 pub use load::{check_load, read_load};
-pub(crate) use names::declared_names;
 
 use crate::materials::{ElasticLaw, IsochoricStress, LawPrograms, UserLaw};
 use form::{Form, OF_LAWS};

@@ -46,7 +46,7 @@ pub(super) fn declared(text: &str) -> Vec<Declared> {
 }
 
 /// The names of what a text declares, however it is laid out.
-pub(crate) fn declared_names(text: &str) -> impl Iterator<Item = String> {
+fn declared_names(text: &str) -> impl Iterator<Item = String> {
     declared(text).into_iter().map(|declared| declared.name)
 }
 
@@ -60,7 +60,14 @@ pub(super) fn member(text: &str, of: &Declared, member: &str) -> Range<usize> {
 
 /// The fragments that a law may call, and with which it is compiled.
 pub(super) fn to_call() -> Vec<Fragment> {
-    vec![shader!("tensor"), shader!("kinematics"), shader!("elementary"), shader!("eigen"), shader!("invariants")]
+    vec![
+        shader!("tensor"),
+        shader!("inverse_cbrt"),
+        shader!("kinematics"),
+        shader!("elementary"),
+        shader!("eigen"),
+        shader!("invariants"),
+    ]
 }
 
 /// The other fragments that can be in one kernel with a law.
@@ -103,8 +110,9 @@ pub(super) fn beside() -> Vec<Fragment> {
 }
 
 /// Names that kernels are generated with.
-const GENERATED: [&str; 19] = [
+const GENERATED: [&str; 20] = [
     "add_forces",
+    "force_of_patch",
     "call_all",
     "finish_all",
     "sum_all",

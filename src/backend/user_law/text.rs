@@ -2,7 +2,6 @@
 
 use super::form::Form;
 use crate::backend::kernel::Fragment;
-use crate::materials::program::KNOWN_BY_NAME;
 
 /// Our fragments that a text may call, then the text.
 pub(super) fn fragments(form: &Form, path: &str, text: &str) -> Vec<Fragment> {
@@ -10,32 +9,41 @@ pub(super) fn fragments(form: &Form, path: &str, text: &str) -> Vec<Fragment> {
     form.ours.iter().cloned().chain([own]).collect()
 }
 
-/// The same as one text that can be read in double precision; the user's stands at its end.
+/// The same as one text that can be read in double precision; the user's stands at its end. Functions that look at the
+/// bits of numbers have no twin there: the translation knows them by their names.
 pub(super) fn in_double_precision(form: &Form, text: &str) -> String {
     let mut whole = String::new();
     for fragment in &form.ours {
-        whole.push_str(&without_bits(&fragment.text));
-        whole.push('\n');
+        match OF_BITS.iter().find(|(path, _)| *path == fragment.path) {
+            Some((_, functions)) => {
+                let without_body = functions.iter().map(|name| format!("fn {name}(x: f32) -> f32 {{ return x; }}\n"));
+                whole.extend(without_body);
+            }
+            None => whole.extend([fragment.text.as_ref(), "\n"]),
+        }
     }
     whole + text
 }
 
-/// Without the bodies of functions that the translation knows by their names, and without others that look at bits.
-fn without_bits(text: &str) -> String {
-    let mut parts = text.split("\nfn ");
-    let mut whole = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        let (head, body) = part.split_once("{\n").unwrap_or((part, ""));
-        let end = body.find("\n}").map_or(body.len(), |at| at + 2);
-        let name = head.split('(').next().unwrap_or_default();
-        whole.push('\n');
-        if KNOWN_BY_NAME.contains(&name) {
-            whole.push_str(&format!("fn {head}{{\n    return x;\n}}{}", &body[end..]));
-        } else if body[..end].contains("bitcast") {
-            whole.push_str(&body[end..]);
-        } else {
-            whole.push_str(&format!("fn {part}"));
-        }
+/// Our fragments that look at the bits of numbers, with those of their functions that a text may call.
+const OF_BITS: [(&str, &[&str]); 2] = [
+    ("shaders/inverse_cbrt.wgsl", &["inverse_cbrt"]),
+    ("shaders/elementary.wgsl", &["exponential", "exponential_less_one", "logarithm_of_one_plus"]),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::materials::program::KNOWN_BY_NAME;
+
+    #[test]
+    fn what_has_no_twin_is_known_by_name() {
+        let functions: Vec<&str> = OF_BITS.iter().flat_map(|(_, functions)| functions.iter().copied()).collect();
+        assert_eq!(functions, KNOWN_BY_NAME);
+        let ours = Form::law().ours;
+        assert!(OF_BITS.iter().all(|(path, _)| ours.iter().any(|fragment| fragment.path == *path)));
+        let others = ours.iter().filter(|fragment| !OF_BITS.iter().any(|(path, _)| *path == fragment.path));
+        let looking: Vec<&str> = others.filter(|f| f.text.contains("bitcast")).map(|f| f.path.as_str()).collect();
+        assert!(looking.is_empty(), "{looking:?}");
     }
-    whole
 }

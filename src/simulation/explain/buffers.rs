@@ -3,10 +3,11 @@
 use super::Buffer;
 use crate::backend::Buffers;
 use crate::backend::gpu::GpuLimits;
-use crate::backend::kernel::{BufferId, DESKTOP_WORKGROUP, MostBuffers};
+use crate::backend::kernel::{BufferId, Composed, Composer, DESKTOP_WORKGROUP, Kernel, KernelError, MostBuffers};
 use crate::components::{Corners, Label, Patches, RestPosition, all_columns, columns_in};
 use bevy_ecs::prelude::*;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Bytes of every column of every entity, and what the entities are called.
 pub struct Sizes {
@@ -80,6 +81,7 @@ pub struct Counter<'a> {
     columns: BTreeMap<(Entity, &'static str), BufferId>,
     /// What the device allows, if there is one.
     limits: Option<GpuLimits>,
+    composer: Composer,
     /// All buffers; the place is the id.
     pub buffers: Vec<Buffer>,
 }
@@ -87,7 +89,7 @@ pub struct Counter<'a> {
 impl<'a> Counter<'a> {
     /// Nothing counted yet.
     pub fn new(sizes: &'a Sizes, limits: Option<GpuLimits>) -> Self {
-        Self { sizes, columns: BTreeMap::new(), limits, buffers: Vec::new() }
+        Self { sizes, columns: BTreeMap::new(), limits, composer: Composer::default(), buffers: Vec::new() }
     }
 
     /// The buffer of an id.
@@ -112,6 +114,10 @@ impl Buffers for Counter<'_> {
         let id = self.add(self.sizes.name_of(entity), buffer.into(), "column", bytes);
         self.columns.extend(there.into_iter().map(|name| ((entity, name), id)));
         id
+    }
+
+    fn compose(&mut self, kernel: &Kernel) -> Result<Arc<Composed>, KernelError> {
+        self.composer.compose(kernel)
     }
 
     fn most_buffers(&self) -> MostBuffers {

@@ -2,9 +2,10 @@
 
 use super::buffers::{Counter, Sizes};
 use super::{Bound, Buffer, KernelInUse, Piece};
+use crate::backend::Buffers;
 use crate::backend::device::Device;
 use crate::backend::gpu::GpuError;
-use crate::backend::kernel::{BindingKind, Kernel, compose};
+use crate::backend::kernel::{BindingKind, Kernel};
 use crate::backend::many_steps::Dispatched;
 use crate::error::Error;
 use crate::simulation::plan::{Over, Plan};
@@ -31,20 +32,22 @@ pub fn describe(plan: &Plan, systems: &[&System], sizes: &Sizes, world: &mut Wor
     let mut described = Vec::new();
     for (kernels, pass) in kernels.iter().zip(plan.passes(true)) {
         for kernel in kernels {
-            let systems = kernel.label.split_once(" of ").map_or(kernel.label.as_str(), |(systems, _)| systems);
-            let system = if pass.over == Over::Nodes { systems } else { &plan.systems[pass.systems[0]].name };
-            described.push(in_use(system, kernel, &counter)?);
+            let system = match pass.over == Over::Nodes && !kernel.systems.is_empty() {
+                true => kernel.systems.join(" + "),
+                false => plan.systems[pass.systems[0]].name.clone(),
+            };
+            described.push(in_use(system, kernel, &mut counter)?);
         }
     }
     Ok(OnGpu { kernels: described, buffers: counter.buffers, dispatched })
 }
 
-fn in_use(system: &str, kernel: &Kernel, counter: &Counter<'_>) -> Result<KernelInUse, Error> {
-    let composed = compose(&kernel.fragments).map_err(GpuError::from)?;
+fn in_use(system: String, kernel: &Kernel, counter: &mut Counter<'_>) -> Result<KernelInUse, Error> {
+    let composed = counter.compose(kernel).map_err(GpuError::from)?;
     let entry = composed.entry(kernel.entry);
     let fragments: Vec<Piece> = kernel
-        .fragments
-        .iter()
+        .all_fragments()
+        .into_iter()
         .map(|fragment| Piece { path: fragment.path.clone(), lines: fragment.text.lines().count() })
         .collect();
     let bindings = kernel.bindings.iter().map(|(variable, id)| {
@@ -62,7 +65,7 @@ fn in_use(system: &str, kernel: &Kernel, counter: &Counter<'_>) -> Result<Kernel
     });
     Ok(KernelInUse {
         label: kernel.label.clone(),
-        system: system.to_string(),
+        system,
         entry: kernel.entry,
         threads: kernel.threads,
         workgroup: entry.map_or(1, |entry| entry.workgroup_size.iter().product()),

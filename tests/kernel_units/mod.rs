@@ -1,0 +1,97 @@
+//! Units: parts of a kernel that do not see each other's names. No GPU needed.
+
+use sinew::backend::kernel::{BindingKind, Composed, Composer, Fragment, Kernel, KernelError, Link, Unit, UnitId};
+use std::sync::Arc;
+
+/// What both units have.
+const COUNTER: &str = "var<private> calls: u32;\nfn count() { calls += 1u; }\n";
+
+/// Two units, whose `add` a kernel calls one after the other.
+fn in_units(first: &str, second: &str) -> Kernel {
+    let common = vec![Fragment::new("counter.wgsl", COUNTER)];
+    let unit = |path: &str, text: &str, name: &'static str| Unit {
+        common: common.clone(),
+        own: vec![Fragment::new(path, text.to_owned())],
+        variables: vec![("sums".into(), "sums".into()), ("load".into(), name.into())],
+        links: Vec::new(),
+    };
+    let main = "fn add_all(i: u32) {}\n@compute @workgroup_size(64)\n\
+                fn main(@builtin(global_invocation_id) id: vec3<u32>) { add_all(id.x); count(); }\n";
+    let calls = [0, 1].map(|unit| (UnitId(unit), "add".into())).into();
+    Kernel {
+        common: common.clone(),
+        units: vec![unit("first.wgsl", first, "load"), unit("second.wgsl", second, "load_1")],
+        links: vec![Link { function: "add_all".into(), calls }],
+        ..Kernel::new("both", "main").fragment(Fragment::new("main.wgsl", main))
+    }
+}
+
+const FIRST: &str = "struct Load { push: f32 }
+@group(0) @binding(0) var<uniform> load: Load;
+@group(0) @binding(0) var<storage, read_write> sums: array<f32>;
+var<private> own: f32;
+fn add(i: u32) { count(); own += load.push; sums[i] += own; }
+";
+
+const SECOND: &str = "struct Load { axis: u32, pull: vec2<f32> }
+@group(0) @binding(0) var<uniform> load: Load;
+@group(0) @binding(0) var<storage, read> sums: array<f32>;
+@group(0) @binding(0) var<storage, read_write> kept: array<f32>;
+var<private> own: u32;
+fn unused() { kept[0] = 1.0; }
+fn add(i: u32) { count(); own += load.axis + u32(sums[i]); }
+";
+
+fn names(composed: &Composed) -> Vec<&str> {
+    composed.bindings.iter().map(|binding| binding.name.as_str()).collect()
+}
+
+#[test]
+fn units_share_what_is_common_and_buffers_of_one_name_and_nothing_else() {
+    let composed = Composer::default().compose(&in_units(FIRST, SECOND)).unwrap();
+    let mut all = names(&composed);
+    all.sort_unstable();
+    assert_eq!(all, ["kept", "load", "load_1", "sums"]);
+    let types = ["load", "load_1"].map(|name| composed.binding(name).unwrap().size);
+    assert_eq!(types, [4, 16]);
+    // as accessible as either wants it, and used by the entry point; nobody calls what writes `kept`
+    assert_eq!(composed.binding("sums").unwrap().kind, BindingKind::ReadWrite);
+    let entry = composed.entry("main").unwrap();
+    assert_eq!((entry.uses.len(), composed.storage_buffers(entry)), (3, 1));
+}
+
+#[test]
+fn a_kernel_is_composed_once() {
+    let mut composer = Composer::default();
+    let one = composer.compose(&in_units(FIRST, SECOND)).unwrap();
+    assert!(Arc::ptr_eq(&one, &composer.compose(&in_units(FIRST, SECOND)).unwrap()));
+    let other = composer.compose(&in_units(SECOND, FIRST)).unwrap();
+    assert!(!Arc::ptr_eq(&one, &other));
+    let mut again = in_units(FIRST, SECOND);
+    again.units[0].variables.clear();
+    // the same texts, put together otherwise: nobody else has the first unit's buffers
+    let again = composer.compose(&again).unwrap();
+    let mut all = names(&again);
+    all.sort_unstable();
+    assert_eq!(all, ["kept", "load", "load_1", "sums", "sums_"]);
+}
+
+#[test]
+fn what_is_invalid_only_when_put_together_is_told_at_its_place() {
+    let later = "@group(0) @binding(0) var<storage, read> rest: array<f32>;\n\nfn add(i: u32) { rest[0] = 1.0; }\n";
+    let KernelError::Wgsl { path, line, report, .. } =
+        Composer::default().compose(&in_units(FIRST, later)).unwrap_err()
+    else {
+        panic!("not a WGSL error");
+    };
+    assert_eq!((path.as_str(), line), ("second.wgsl", 3), "{report}");
+    assert!(!report.contains("naga"), "{report}");
+}
+
+#[test]
+fn a_buffer_of_two_types_is_refused_by_name() {
+    let words = SECOND.replace("sums: array<f32>", "sums: array<u32>");
+    let error = Composer::default().compose(&in_units(FIRST, &words)).unwrap_err().to_string();
+    let problem = "WGSL variable `sums`: is `array<f32>` to one part of the kernel and `array<u32>` to another";
+    assert!(error.starts_with(problem), "{error}");
+}
