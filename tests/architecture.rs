@@ -87,9 +87,9 @@ fn named_too_early(parts: &[String], part: &str, code: &str) -> Vec<String> {
 #[test]
 fn imports_run_one_way() {
     let parts = parts();
-    let folders = |of: &str| {
+    let folders = |of: &'static str| {
         let entries = std::fs::read_dir(root().join(of)).unwrap().map(|entry| entry.unwrap().path());
-        entries.filter(|path| path.is_dir()).map(|path| format!("{of}/{}", path.file_name().unwrap().display()))
+        entries.filter(|path| path.is_dir()).map(move |path| format!("{of}/{}", path.file_name().unwrap().display()))
     };
     let mut all: Vec<String> = folders("src").chain(folders("crates")).chain(["systems".to_owned()]).collect();
     let mut told = parts.clone();
