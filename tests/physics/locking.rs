@@ -16,7 +16,7 @@ enum Bound {
 
 #[test]
 fn elements_lock_as_told_or_not_at_all() {
-    let bounds = [Above(0.40), Below(0.09), Below(0.05), Below(0.02), Below(0.05)];
+    let bounds = [Above(0.40), Below(0.09), Below(0.05), Below(0.02), Below(0.05), Below(0.02)];
     for (run, (elements, bound)) in
         configurations().iter().flat_map(|run| ELEMENTS.iter().zip(&bounds).map(move |e| (run, e)))
     {
