@@ -141,7 +141,7 @@ fn which_bodies_take_many_steps_in_one_dispatch_is_told_with_the_reason() {
             "`pressure` looks at other nodes than its own, which must not have moved",
             (0, "`pressure` looks at other nodes than its own, which must not have moved"),
         ),
-        (&["--set", FIBRES], 1, "it would need 16 storage buffers, and 15 may be", (64, none)),
+        (&["--set", FIBRES], 1, "it would need 17 storage buffers, and 16 may be", (64, none)),
     ] {
         let inside = (inside.0, inside.1.to_string());
         assert_eq!(told(more), (kernels, because.to_string(), inside), "{more:?}");
