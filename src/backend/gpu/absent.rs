@@ -3,7 +3,8 @@
 use bytemuck::{AnyBitPattern, NoUninit};
 
 use super::{AdapterReport, BufferKind, Choice, GpuError, GpuLimits, KernelTime, Memory, NoGpu, SmallerLimits};
-use crate::backend::kernel::{BufferId, Kernel, KernelId};
+use crate::backend::kernel::{BufferId, Composed, Kernel, KernelError, KernelId};
+use std::sync::Arc;
 
 /// A GPU, of which there is none.
 pub enum Gpu {}
@@ -85,6 +86,10 @@ impl Gpu {
     }
 
     pub fn prepare(&mut self, _: &Kernel) -> Result<KernelId, GpuError> {
+        match *self {}
+    }
+
+    pub fn compose(&mut self, _: &Kernel) -> Result<Arc<Composed>, KernelError> {
         match *self {}
     }
 
