@@ -46,11 +46,7 @@ fn take_amplitude(load: &mut Load, now: &Load) {
     if load.amplitude() == DVec3::ZERO {
         return;
     }
-    match (load, now) {
-        (Load::Gravity { acceleration: vector, .. }, Load::Gravity { acceleration: now, .. })
-        | (Load::NodalForce { force: vector, .. }, Load::NodalForce { force: now, .. })
-        | (Load::Traction { traction: vector, .. }, Load::Traction { traction: now, .. }) => *vector = *now,
-        (Load::Pressure { pressure, .. }, Load::Pressure { pressure: now, .. }) => *pressure = *now,
-        _ => {}
+    if load.parts().name == now.parts().name {
+        load.set_amplitude(now.amplitude());
     }
 }

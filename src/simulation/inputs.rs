@@ -7,7 +7,7 @@ use super::Simulation;
 use crate::components::{Change, Clock, Input, InputState, Signals};
 use crate::error::Error;
 use crate::output::{OutputError, replace};
-use crate::scene::schema::{Constraint, Curve, Load, Scene, WhenUnstable};
+use crate::scene::schema::{Constraint, Curve, Scene, WhenUnstable};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -362,12 +362,7 @@ fn uses(scene: &Scene, name: &str) -> Vec<InputUse> {
         }
     }
     for (i, load) in scene.loads.iter().enumerate().filter(|(_, load)| is(load.curve())) {
-        let (of, unit) = match load {
-            Load::Gravity { .. } => ("acceleration", "m/s²"),
-            Load::NodalForce { .. } => ("force", "N"),
-            Load::Pressure { .. } => ("pressure", "Pa"),
-            Load::Traction { .. } => ("traction", "Pa"),
-        };
+        let (of, unit) = load.parts().field;
         add(format!("loads[{i}].curve"), of, Some(unit));
     }
     for (system, _) in scene.systems.iter().filter(|(_, system)| is(&system.curve)) {

@@ -1,4 +1,4 @@
-//! What acts on bodies: constraints, loads, their course in time, removal.
+//! What holds bodies and takes from them: constraints, courses in time, removal.
 
 use super::Select;
 use glam::DVec3;
@@ -66,102 +66,6 @@ impl Constraint {
             Constraint::Prescribed { curve, .. } => Some(curve),
         }
     }
-}
-
-/// What pushes and pulls.
-#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
-#[serde(deny_unknown_fields)]
-pub enum Load {
-    /// Gravity on one body, or on all.
-    Gravity {
-        /// The body; left out: all.
-        #[serde(default)]
-        body: Option<String>,
-        /// Acceleration (m/s²).
-        acceleration: DVec3,
-        /// Course in time.
-        #[serde(default)]
-        curve: Curve,
-    },
-    /// A force on nodes.
-    NodalForce {
-        /// The body; may be left out when there is one only.
-        #[serde(default)]
-        body: Option<String>,
-        /// Which nodes.
-        on: Select,
-        /// Force (N).
-        force: DVec3,
-        /// Whether each node gets the force, or all together.
-        #[serde(default)]
-        share: Share,
-        /// What the force is multiplied with on the first and on the last of the body's copies; on those between
-        /// evenly.
-        #[serde(default)]
-        per_copy: Option<(f64, f64)>,
-        /// Course in time.
-        #[serde(default)]
-        curve: Curve,
-    },
-    /// A pressure that follows the surface and pushes inwards.
-    Pressure {
-        /// The body; may be left out when there is one only.
-        #[serde(default)]
-        body: Option<String>,
-        /// Which faces of the surface.
-        on: Select,
-        /// Pressure (Pa), positive inwards.
-        pressure: f64,
-        /// Course in time.
-        #[serde(default)]
-        curve: Curve,
-    },
-    /// A dead load: force per rest area in a fixed direction.
-    Traction {
-        /// The body; may be left out when there is one only.
-        #[serde(default)]
-        body: Option<String>,
-        /// Which faces of the surface.
-        on: Select,
-        /// Force per rest area (Pa).
-        traction: DVec3,
-        /// Course in time.
-        #[serde(default)]
-        curve: Curve,
-    },
-}
-
-impl Load {
-    /// Its course in time.
-    pub fn curve(&self) -> &Curve {
-        match self {
-            Load::Gravity { curve, .. }
-            | Load::NodalForce { curve, .. }
-            | Load::Pressure { curve, .. }
-            | Load::Traction { curve, .. } => curve,
-        }
-    }
-
-    /// What the course multiplies: an acceleration (m/s²), a force (N), a pressure (Pa, in the first number), a
-    /// traction (Pa).
-    pub fn amplitude(&self) -> DVec3 {
-        match self {
-            Load::Gravity { acceleration: vector, .. }
-            | Load::NodalForce { force: vector, .. }
-            | Load::Traction { traction: vector, .. } => *vector,
-            Load::Pressure { pressure, .. } => DVec3::X * *pressure,
-        }
-    }
-}
-
-/// How a force is shared among nodes.
-#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
-pub enum Share {
-    /// Each node gets it.
-    #[default]
-    Each,
-    /// All nodes together get it, in equal parts.
-    Total,
 }
 
 /// A factor over time; what it multiplies is said where it is used.

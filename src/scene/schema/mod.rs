@@ -3,6 +3,7 @@
 mod accuracy;
 mod action;
 mod body;
+mod load;
 mod material;
 mod output;
 mod picture;
@@ -13,8 +14,9 @@ mod system;
 pub use crate::materials::Elasticity;
 pub use crate::mesh::ElementKind;
 pub use accuracy::{Accuracy, AccuracyReference};
-pub use action::{Axis, Constraint, Curve, Load, Removal, Share, When};
+pub use action::{Axis, Constraint, Curve, Removal, When};
 pub use body::{Body, MeshSource, Region, Start};
+pub use load::{Load, LoadParts, Share};
 pub use material::{
     Direction, ELASTIC_LAWS, ExponentialFibres, Fibres, Inversion, Material, OwnLaw, Prony, PronyTerm,
     ViscousIntegrator, comparable_laws, laws_for_large_strains,
@@ -30,11 +32,12 @@ pub fn texts() -> impl Iterator<Item = &'static str> {
     TEXT.iter().chain(crate::materials::TEXTS).copied()
 }
 
-const TEXT: [&str; 9] = [
+const TEXT: [&str; 10] = [
     include_str!("scene.rs"),
     include_str!("body.rs"),
     include_str!("material.rs"),
     include_str!("action.rs"),
+    include_str!("load.rs"),
     include_str!("selection.rs"),
     include_str!("system.rs"),
     include_str!("output.rs"),

@@ -1,6 +1,6 @@
 //! Selections by place, name or number, and probes on them.
 
-use super::{Constraint, Load, Scene};
+use super::{Constraint, Scene};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -150,15 +150,12 @@ impl Select {
 
 impl Scene {
     /// All selections that are written in the scene.
-    pub(crate) fn selections(&self) -> impl Iterator<Item = &Select> {
+    pub fn selections(&self) -> impl Iterator<Item = &Select> {
         let regions = self.bodies.values().flat_map(|body| body.regions.iter().map(|region| &region.on));
         let constraints = self.constraints.iter().map(|constraint| match constraint {
             Constraint::Fixed { on, .. } | Constraint::Prescribed { on, .. } => on,
         });
-        let loads = self.loads.iter().filter_map(|load| match load {
-            Load::NodalForce { on, .. } | Load::Pressure { on, .. } | Load::Traction { on, .. } => Some(on),
-            Load::Gravity { .. } => None,
-        });
+        let loads = self.loads.iter().filter_map(|load| load.parts().on);
         let removal = self.removal.iter().map(|removal| &removal.on);
         let systems = self.systems.values().map(|system| &system.on);
         let probes = self.probes.values().map(|probe| &probe.on);

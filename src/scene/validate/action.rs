@@ -21,23 +21,19 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
         }
     }
     for (i, load) in scene_.loads.iter().enumerate() {
-        let path = scene("loads").index(i).name("on");
-        match load {
-            Load::Gravity { .. } => {}
-            Load::NodalForce { body, on, per_copy, .. } if per_copy.is_some() => {
-                let bodies = &scene_.bodies;
-                let named = body.as_ref().map_or(bodies.values().next(), |name| bodies.get(name));
-                if named.is_some_and(|body| body.copies < 2) {
-                    judge
-                        .out
-                        .error_at(scene("loads").index(i).name("per_copy"), "the body has one copy only")
-                        .note("give the body `copies`, or leave `per_copy` out");
-                }
-                select::validate(judge, &path, on);
+        let path = scene("loads").index(i);
+        if let Load::NodalForce { body, per_copy: Some(_), .. } = load {
+            let bodies = &scene_.bodies;
+            let named = body.as_ref().map_or(bodies.values().next(), |name| bodies.get(name));
+            if named.is_some_and(|body| body.copies < 2) {
+                judge
+                    .out
+                    .error_at(path.name("per_copy"), "the body has one copy only")
+                    .note("give the body `copies`, or leave `per_copy` out");
             }
-            Load::NodalForce { on, .. } | Load::Pressure { on, .. } | Load::Traction { on, .. } => {
-                select::validate(judge, &path, on);
-            }
+        }
+        if let Some(on) = load.parts().on {
+            select::validate(judge, &path.name("on"), on);
         }
     }
     for (i, removal) in scene_.removal.iter().enumerate() {

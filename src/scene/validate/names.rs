@@ -1,7 +1,7 @@
 //! Names: every body and material that is named must exist, and names must do as names of files and columns.
 
 use super::{Judge, scene};
-use crate::scene::schema::{Constraint, Load, Scene};
+use crate::scene::schema::{Constraint, LoadParts, Scene};
 use crate::scene::suggest::{choice, list};
 use crate::scene::syntax::Path;
 
@@ -62,14 +62,10 @@ fn bodies(scene_: &Scene, judge: &mut Judge) {
         body_named(scene_, judge, &scene("constraints").index(i), body.as_ref());
     }
     for (i, load) in scene_.loads.iter().enumerate() {
-        let path = scene("loads").index(i);
-        match load {
-            // gravity without a body is for all
-            Load::Gravity { body: None, .. } => {}
-            Load::Gravity { body, .. }
-            | Load::NodalForce { body, .. }
-            | Load::Pressure { body, .. }
-            | Load::Traction { body, .. } => body_named(scene_, judge, &path, body.as_ref()),
+        let LoadParts { body, on, .. } = load.parts();
+        // what acts on whole bodies is for all of them, where it names none
+        if on.is_some() || body.is_some() {
+            body_named(scene_, judge, &scene("loads").index(i), body);
         }
     }
     for (name, system) in &scene_.systems {

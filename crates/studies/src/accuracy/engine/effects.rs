@@ -1,7 +1,7 @@
 //! Effects of a scene that can be switched off, one at a time.
 
 use glam::DVec3;
-use sinew::scene::schema::{Load, Scene};
+use sinew::scene::schema::Scene;
 
 /// Something in a scene, and how to take it out.
 struct Effect {
@@ -45,12 +45,7 @@ fn list(scene: &Scene) -> Vec<Effect> {
         }
     }
     for (number, load) in scene.loads.iter().enumerate() {
-        let word = match load {
-            Load::Gravity { .. } => "gravity",
-            Load::NodalForce { .. } => "nodal force",
-            Load::Pressure { .. } => "pressure",
-            Load::Traction { .. } => "traction",
-        };
+        let word = load.parts().name;
         let name = if scene.loads.len() == 1 { word.to_string() } else { format!("{word} (loads[{number}])") };
         add(name, Box::new(move |scene| drop(scene.loads.remove(number))));
     }

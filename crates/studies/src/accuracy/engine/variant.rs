@@ -5,9 +5,7 @@ use super::ladder::climb;
 use crate::accuracy::configuration::{Configuration, Digits, Factor, Place};
 use sinew::mesh::{CellKind, ElementKind};
 use sinew::scene::SceneFile;
-use sinew::scene::schema::{
-    Analysis, Axis, Constraint, InitialState, Load, MeshSource, Probe, Quantity, Scene, Select,
-};
+use sinew::scene::schema::{Analysis, Axis, Constraint, InitialState, MeshSource, Probe, Quantity, Scene, Select};
 
 /// The residual that searches for equilibrium in f64 end with.
 const TOLERANCE: f64 = 1e-8;
@@ -24,12 +22,12 @@ pub enum Finer {
 /// How the meshes of a scene can be made finer: all bodies in one way, so that one factor means the same everywhere.
 pub fn finer(scene: &Scene) -> Finer {
     let files = scene.bodies.values().any(|body| matches!(body.mesh, MeshSource::File { .. }));
-    if files || selections(scene).any(|select| by_number(select, true)) { Finer::Cut } else { Finer::Cells }
+    if files || scene.selections().any(|select| by_number(select, true)) { Finer::Cut } else { Finer::Cells }
 }
 
 /// Whether elements are named by number: another kind of them has other numbers.
 pub fn names_elements(scene: &Scene) -> bool {
-    selections(scene).any(|select| by_number(select, false))
+    scene.selections().any(|select| by_number(select, false))
 }
 
 fn by_number(select: &Select, or_nodes: bool) -> bool {
@@ -40,21 +38,6 @@ fn by_number(select: &Select, or_nodes: bool) -> bool {
         Select::Not(one) => by_number(one, or_nodes),
         _ => false,
     }
-}
-
-fn selections(scene: &Scene) -> impl Iterator<Item = &Select> {
-    let regions = scene.bodies.values().flat_map(|body| body.regions.iter().map(|region| &region.on));
-    let constraints = scene.constraints.iter().map(|constraint| match constraint {
-        Constraint::Fixed { on, .. } | Constraint::Prescribed { on, .. } => on,
-    });
-    let loads = scene.loads.iter().filter_map(|load| match load {
-        Load::NodalForce { on, .. } | Load::Pressure { on, .. } | Load::Traction { on, .. } => Some(on),
-        Load::Gravity { .. } => None,
-    });
-    let removal = scene.removal.iter().map(|removal| &removal.on);
-    let systems = scene.systems.values().map(|system| &system.on);
-    let probes = scene.probes.values().map(|probe| &probe.on);
-    regions.chain(constraints).chain(loads).chain(systems).chain(removal).chain(probes)
 }
 
 /// The cells of a generated mesh along its directions.
