@@ -78,7 +78,7 @@ pub fn run_block_fast<E: Element>(
     let effects = kernel_effects::<E>(law);
     let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
     // known when this is compiled: no code is made of what follows for the other kinds
-    if !E::SPECIALISED {
+    if !is_specialised::<E>() {
         return block.run::<_, ASK>(&law.elastic);
     }
     match &law.elastic {
@@ -89,6 +89,12 @@ pub fn run_block_fast<E: Element>(
         ElasticLaw::Ogden(elastic) => block.run::<_, 0>(elastic),
         asked => block.run::<_, ASK>(asked),
     }
+}
+
+/// Whether an element type has kernels of its own. In the library's unit tests none has: they take most of the time of
+/// compiling, and are tested from outside (`tests/kernels`, `tests/physics`).
+const fn is_specialised<E: Element>() -> bool {
+    E::SPECIALISED && !cfg!(test)
 }
 
 /// Whether a law's kernel in f32 is one that has fibres, and one that has viscosity, and nothing that it need not have;
@@ -103,7 +109,7 @@ pub fn kernel_effects<E: Element>(law: &BlockLaw<f32>) -> Option<[bool; 2]> {
         }
         _ => false,
     };
-    (E::SPECIALISED && is_there && !others).then_some(effects)
+    (is_specialised::<E>() && is_there && !others).then_some(effects)
 }
 
 /// Effects of a kernel, as bits.
