@@ -4,7 +4,7 @@
 
 use super::Reals;
 use super::column::columns;
-use crate::mesh::CellKind;
+use crate::elements::elements_a_patch;
 use crate::scene::schema::{ElementKind, Inversion};
 use bevy_ecs::prelude::*;
 
@@ -78,14 +78,9 @@ columns! {
     AddedMass(Vec<f64>) = "added_mass", State, Elements;
 }
 
-/// Elements of a patch: enough to be worth a task, few enough that their nodes and forces stay in a core's cache.
+/// Groups of elements of each of a block's patches but the last.
 pub const fn patch_groups(kind: ElementKind) -> usize {
-    let elements = match kind.cell() {
-        CellKind::Tet4 => 1024,
-        CellKind::Wedge6 => 448,
-        _ => 224,
-    };
-    elements / crate::math::LANES
+    elements_a_patch(kind) / crate::math::LANES
 }
 
 /// Elements of each of a block's patches but the last, which may have less.

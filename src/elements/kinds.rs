@@ -91,3 +91,8 @@ pub const fn point_count(kind: ElementKind) -> usize {
 pub fn averages(kind: ElementKind) -> bool {
     with_element!(kind, E => E::PRESSURE == PressureFrom::Nodes)
 }
+
+/// How many elements of a kind a patch has.
+pub const fn elements_a_patch(kind: ElementKind) -> usize {
+    with_element!(kind, E => E::ELEMENTS_A_PATCH)
+}

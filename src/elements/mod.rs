@@ -11,7 +11,7 @@ mod wedge6;
 
 pub use hex8::{Hex8, Hexahedron, Parallelepiped};
 pub use hex8_mean_dilatation::Hex8MeanDilatation;
-pub use kinds::{ElementTask, averages, mass_shares, node_count, point_count, run_with_element};
+pub use kinds::{ElementTask, averages, elements_a_patch, mass_shares, node_count, point_count, run_with_element};
 pub(crate) use kinds::{with_element, with_element_of};
 pub use tet4::Tet4;
 pub use tet4_nodal_pressure::Tet4NodalPressure;
@@ -57,6 +57,8 @@ pub trait Element: Copy + Send + Sync + 'static {
     /// Where the pressure comes from.
     const PRESSURE: PressureFrom;
 
+    /// Elements of a patch: enough to be worth a task, few enough that their nodes and forces stay in a core's cache.
+    const ELEMENTS_A_PATCH: usize = 224;
     /// Whether the CPU has kernels in f32 of its own for what is asked for most, beside the one that asks the law for
     /// each effect at each point. They take most of the time of compiling, so only kinds whose speed was measured with
     /// and without have them.

@@ -21,6 +21,7 @@ impl Element for Tet4 {
     const VOLUME_ROW: usize = 9;
     const FORCE_ROW: Option<usize> = None;
     const PRESSURE: PressureFrom = PressureFrom::Point;
+    const ELEMENTS_A_PATCH: usize = 1024;
     const SPECIALISED: bool = true;
 
     fn rest_shape(points: &[DVec3], _young: f64) -> [f64; MOST_ROWS] {

@@ -23,6 +23,7 @@ impl Element for Tet4NodalPressure {
     const VOLUME_ROW: usize = Tet4::VOLUME_ROW;
     const FORCE_ROW: Option<usize> = Tet4::FORCE_ROW;
     const PRESSURE: PressureFrom = PressureFrom::Nodes;
+    const ELEMENTS_A_PATCH: usize = 1024;
     const SPECIALISED: bool = true;
 
     type Simple = Self;

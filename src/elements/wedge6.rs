@@ -62,6 +62,7 @@ impl Element for Wedge6 {
     const VOLUME_ROW: usize = 15;
     const FORCE_ROW: Option<usize> = Some(THERE_ROW);
     const PRESSURE: PressureFrom = PressureFrom::MeanOverPoints;
+    const ELEMENTS_A_PATCH: usize = 448;
 
     type Simple = Self;
     /// Coefficients of each component.

@@ -1,0 +1,124 @@
+//! What is added from outside the crate, by its public API alone: a law, a load and a contact plane, each by its Rust
+//! file and its WGSL file, or by one of them. They run on both backends.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod plane;
+mod wind;
+
+use sinew::backend::gpu::gpu_or_reason;
+use sinew::prelude::*;
+use std::path::Path;
+
+/// A cube of tissue with a law of its own, a hand's breadth above a floor, in the wind.
+const SCENE: &str = r#"(
+    duration: 0.25,
+    bodies: {"cube": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4)), material: "tissue")},
+    materials: {"tissue": (
+        density: 1000,
+        law: (file: "law.wgsl", parameters: {"mu": 2000, "b": 0.5, "bulk": 2e4}),
+        damping: 20,
+    )},
+    loads: [Gravity(acceleration: (0, 0, -9.81))],
+    schedule: ["boundary", "element_forces", "gather", "gravity", "wind", "plane", "integrate", "observe"],
+    parameters: {
+        "wind": (acceleration: (0.5, 0, 0), height: 0.1),
+        "plane": (height: -0.005, stiffness: 4e6, damping: 200),
+    },
+)"#;
+
+fn scene(sets: &[&str]) -> SceneFile {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/extend");
+    let sets: Vec<String> = sets.iter().map(ToString::to_string).collect();
+    SceneFile::from_text("extended.ron", SCENE, &folder, &sets)
+        .unwrap_or_else(|wrong| panic!("{}", wrong.render(false)))
+}
+
+fn begun(backend: BackendChoice, sets: &[&str]) -> Simulation {
+    let registry = Registry::default().with(wind::system()).with(plane::system());
+    let options = Options { backend, ..Options::default() };
+    Simulation::with_systems(&scene(sets), &options, &registry).unwrap()
+}
+
+/// Lowest point (m), and how far the middle has been blown (m).
+fn lowest_and_blown(simulation: &mut Simulation) -> (f64, f64) {
+    let moved = simulation.displacements("cube").unwrap();
+    let rest = simulation.rest_positions("cube").unwrap();
+    let lowest = rest.iter().zip(&moved).map(|(rest, moved)| (*rest + *moved).z).fold(f64::INFINITY, f64::min);
+    let blown = moved.iter().map(|u| u.x).sum::<f64>() / moved.len() as f64;
+    (lowest, blown)
+}
+
+#[test]
+fn a_law_a_load_and_a_contact_plane_from_outside_run_on_both_backends() {
+    let mut host = begun(BackendChoice::Cpu, &[]);
+    host.finish().unwrap();
+    let (lowest, blown) = lowest_and_blown(&mut host);
+    // the nodes below, an eighth of the mass, bear the weight: they sink by 8 g/4e6 1/s², and swing no more by then
+    let sunk = -0.005 - 8.0 * 9.81 / 4e6;
+    assert!((lowest - sunk).abs() < 2e-5, "lowest at {lowest}, to be {sunk}");
+    // a part of a a t²/2 = 16 mm; damping takes from it
+    assert!((2e-3..16e-3).contains(&blown), "blown by {blown}");
+    if gpu_or_reason().is_none() {
+        return;
+    }
+    let mut device = begun(BackendChoice::Gpu, &[]);
+    device.finish().unwrap();
+    let of_device = lowest_and_blown(&mut device);
+    // f32 on both; where it touches first is a matter of the last digit, which damping forgets
+    assert!((of_device.0 - lowest).abs() < 1e-6 && (of_device.1 - blown).abs() < 1e-4 * blown, "{of_device:?}");
+}
+
+#[test]
+fn they_share_a_pass_with_the_engines_own() {
+    let told = begun(BackendChoice::Cpu, &[]).summary("begun").unwrap();
+    let names: Vec<&str> = told.systems.iter().map(|system| system.name.as_str()).collect();
+    assert!(
+        names.iter().any(|name| ["gravity", "wind", "plane", "integrate"].iter().all(|s| name.contains(s))),
+        "{names:?}"
+    );
+}
+
+#[test]
+fn the_stable_step_knows_how_stiff_the_plane_is() {
+    let step =
+        |stiffness: &str| begun(BackendChoice::Cpu, &[&format!("parameters.plane.stiffness={stiffness}")]).time_step();
+    let (soft, stiff) = (step("1"), step("4e8"));
+    // ω² of the whole is at least that of the plane, and at most the sum
+    assert!(stiff < 2.0 / 4e8f64.sqrt() && stiff > 0.4 * 2.0 / 4e8f64.sqrt(), "{stiff}");
+    assert!(soft > 3.0 * stiff, "{soft} without, {stiff} with it");
+}
+
+/// Files in which a word stands.
+fn files_with(word: &str, folders: &[&str]) -> Vec<String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut waiting: Vec<_> = folders.iter().map(|folder| root.join(folder)).collect();
+    let mut found = Vec::new();
+    while let Some(path) = waiting.pop() {
+        if path.is_dir() {
+            waiting.extend(std::fs::read_dir(&path).unwrap().map(|entry| entry.unwrap().path()));
+        } else if std::fs::read_to_string(&path)
+            .is_ok_and(|text| text.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|part| part == word))
+        {
+            found.push(path.strip_prefix(root).unwrap().display().to_string());
+        }
+    }
+    found.sort();
+    found
+}
+
+/// An element is a Rust file with its `mod` line, a WGSL file and a line in the list of kinds; what a kind of cell is
+/// stands in files of its own.
+#[test]
+fn an_element_is_named_in_its_files_and_in_the_list() {
+    let of_engine = files_with("Wedge6", &["src", "systems"]);
+    let own = [
+        "src/elements/mod.rs",
+        "src/elements/wedge6.rs",
+        "src/mesh/generators/mod.rs",
+        "src/mesh/topology/mod.rs",
+        "src/mesh/topology/wedge6.rs",
+    ];
+    assert_eq!(of_engine, own, "where `Wedge6` is named");
+    let named = files_with("wedge6", &["src", "systems", "shaders"]);
+    assert!(named.iter().all(|file| own.contains(&file.as_str())), "where `wedge6` is named: {named:?}");
+}
