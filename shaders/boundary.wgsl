@@ -1,5 +1,6 @@
-// Where prescribed nodes go, u = A·(X − center) + b; twin of systems/boundary.rs. lost_of is in lost.wgsl, or generated
-// where sums are not compensated; keep_previous_step in previous_prescribed_step.wgsl, or generated where nothing is booked.
+// Where prescribed nodes go, u = A·(X − center) + b; twin of systems/boundary.rs. compensation_of is in
+// compensation.wgsl, or generated where sums are not compensated; keep_previous_step in previous_prescribed_step.wgsl,
+// or generated where nothing is booked.
 struct Motion {
     axes: u32, // bits 0, 1, 2: x, y, z
     signal: u32, // first of three slots: rows of A, with b's component
@@ -16,7 +17,7 @@ fn boundary(i: u32, node: u32) {
             let at = 3u * node + axis;
             let goal = dot(step.signals[motion.signal + axis], arm);
             keep_previous_step(at);
-            displacement_step[at] = (goal - displacement[at]) + lost_of(node, axis);
+            displacement_step[at] = (goal - displacement[at]) + compensation_of(node, axis);
         }
     }
 }

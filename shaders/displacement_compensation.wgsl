@@ -35,7 +35,7 @@ fn add_to_step(node: u32, before: vec3<f32>, change: vec3<f32>) -> vec3<f32> {
     return compensated_add(of_step(node), before, change);
 }
 
-// A parked node has no step, and nothing of it is left out.
+// A inactive node has no step, and nothing of it is left out.
 fn forget_step(node: u32) {
     displacement_compensation[of_step(node)] = 0.0;
     displacement_compensation[of_step(node) + 1u] = 0.0;
@@ -44,6 +44,6 @@ fn forget_step(node: u32) {
 
 // The displacement after the step; what boundary wrote is the whole of a constrained one.
 fn add_step(node: u32, u: vec3<f32>, d: vec3<f32>, constrained: vec3<bool>) -> vec3<f32> {
-    let lost = select(lost_at(of_step(node)), vec3<f32>(0.0), constrained);
-    return compensated_add(3u * node, u, d - lost);
+    let compensation = select(lost_at(of_step(node)), vec3<f32>(0.0), constrained);
+    return compensated_add(3u * node, u, d - compensation);
 }

@@ -1,4 +1,4 @@
-// Takes away the elements whose time has come; twin of systems/element_removal.rs. extinguish is generated from the block's
+// Takes away the elements whose time has come; twin of systems/element_removal.rs. deactivate is generated from the block's
 // element type. criterion.wgsl sets the time of elements that pass a limit, removed_motion.wgsl books their motion.
 @group(0) @binding(0) var<storage, read_write> rest_shape: array<f32>;
 @group(0) @binding(1) var<storage, read_write> alive: array<u32>;
@@ -14,5 +14,5 @@ fn element_removal(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
     let e = element_of(element);
     removed_energy[element] += energy_density(element, e) * e.volume + hourglass_energy(element, e);
     alive[element] = 0u;
-    extinguish(element);
+    deactivate(element);
 }

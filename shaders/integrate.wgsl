@@ -16,19 +16,19 @@ fn constrained_at(node: u32) -> vec3<bool> {
 }
 
 // Whether a node has no mass, by its bits: comparisons of floats might be turned round, and park what is no number.
-fn is_parked(node: u32) -> bool {
+fn is_inactive(node: u32) -> bool {
     let bits = bitcast<u32>(mass[node]);
     let size = bits & 0x7fffffffu;
     return size == 0u || (bits != size && size <= 0x7f800000u);
 }
 
-// The node's next step (m); constrained axes keep what boundary wrote, nodes without mass are parked.
+// The node's next step (m); constrained axes keep what boundary wrote, nodes without mass are inactive.
 fn push(node: u32) -> vec3<f32> {
     let at = 3u * node;
     let inner = internal_force_of(node);
     let outer = external_force_of(node);
     var after = vec3<f32>(0.0);
-    if !is_parked(node) {
+    if !is_inactive(node) {
         let per_mass = 1.0 / mass[node];
         let before = step_of(node);
         let change = damped(node, before, step.force_factor * ((outer - inner) * per_mass), per_mass);

@@ -15,10 +15,10 @@ fn book_work(
     // in the middle of each step the balance is exact: from middle to middle, in the first step half of it
     let mean = 0.5 * (select(before, kept, constrained) + after);
     let along = step.booked * mean;
-    let lost = coefficient_of(node) * step.rate * mean * along;
-    let held = select(vec3<f32>(0.0), (inner - outer) * along + lost, constrained);
+    let compensation = coefficient_of(node) * step.rate * mean * along;
+    let held = select(vec3<f32>(0.0), (inner - outer) * along + compensation, constrained);
     work[first] += dot(outer, along);
-    work[first + 1u] += lost.x + lost.y + lost.z;
+    work[first + 1u] += compensation.x + compensation.y + compensation.z;
     work[first + 2u] += held.x + held.y + held.z;
     work[first + 3u] += dot(inner, along);
     let last = select(kept, after, constrained);

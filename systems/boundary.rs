@@ -48,7 +48,7 @@ impl NodeSystem for Prescribed {
     }
 
     fn act<T: SimdScalar>(&self, motion: &[[f64; 4]; 3], _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
-        let lost = nodes.compensation.as_ref().map(|[of_u, _]| &**of_u);
+        let compensation = nodes.compensation.as_ref().map(|[of_u, _]| &**of_u);
         let own = places_within(&self.rows, nodes.first, nodes.axes.len());
         for (&row, arm) in self.rows[own.clone()].iter().zip(&self.arms[own]) {
             let row = row as usize - nodes.first;
@@ -56,12 +56,12 @@ impl NodeSystem for Prescribed {
                 let [x, y, z, shift] = motion[axis];
                 let place = 3 * row + axis;
                 let target = T::from_f64(x * arm.x + y * arm.y + z * arm.z + shift);
-                let lost = lost.map_or(T::default(), |lost| lost[place]);
+                let compensation = compensation.map_or(T::default(), |compensation| compensation[place]);
                 // for the work that integrate accumulates
                 if let Some(previous) = nodes.previous_prescribed.get_mut(place) {
                     *previous = nodes.step[place].to_f64() as f32;
                 }
-                nodes.step[place] = (target - nodes.u[place]) + lost;
+                nodes.step[place] = (target - nodes.u[place]) + compensation;
             }
         }
     }
@@ -91,12 +91,12 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
             .column(DisplacementStep::NAME, buffers.column(body, DisplacementStep::NAME))
             .of_rows(set.rows);
         stage = if world.get::<DisplacementCompensation>(body).is_some() {
-            let lost = buffers.column(body, DisplacementCompensation::NAME);
-            stage.own(shader!("lost")).column(DisplacementCompensation::NAME, lost)
+            let compensation = buffers.column(body, DisplacementCompensation::NAME);
+            stage.own(shader!("compensation")).column(DisplacementCompensation::NAME, compensation)
         } else {
             stage.own(Fragment::new(
                 "generated: sums that are not compensated",
-                "fn lost_of(node: u32, axis: u32) -> f32 {\n    return 0.0;\n}\n",
+                "fn compensation_of(node: u32, axis: u32) -> f32 {\n    return 0.0;\n}\n",
             ))
         };
         stage = if world.get::<PreviousPrescribedStep>(body).is_some() {

@@ -10,7 +10,7 @@ use crate::components::*;
 use crate::elements::Element;
 use crate::elements::{mass_shares, with_element_of};
 use crate::error::missing;
-use crate::evaluation::{BlockView, ElementState, add_nodal_masses, extinguish};
+use crate::evaluation::{BlockView, ElementState, add_nodal_masses, deactivate};
 use crate::math::lane_place;
 use crate::shader;
 use bevy_ecs::prelude::*;
@@ -22,7 +22,7 @@ pub const CRITERION_STEPS: u64 = 10;
 
 /// At the end of a step, elements go whose time has come or that pass a limit. Their volume and hourglass stiffness
 /// become zero, so that they exert nothing; what their nodes weigh is summed anew, and nodes without elements are
-/// parked; faces of removed elements bear no load. The energy they held is booked, and what of it constraints had
+/// inactive; faces of removed elements bear no load. The energy they held is booked, and what of it constraints had
 /// given.
 pub fn system() -> System {
     System::built_in(
@@ -130,7 +130,7 @@ fn element_removal(
             energies.set(row, held);
             given.set(row, by_constraints);
             alive[row] = 0;
-            extinguish(block, row, &mut shape);
+            deactivate(block, row, &mut shape);
         }
         if !gone.is_empty() && !touched.contains(&block.body) {
             touched.push(block.body);
@@ -325,7 +325,7 @@ fn motion_kernel(block: &BlockKernels, world: &World, buffers: &mut dyn Buffers)
 
 fn removal_kernel(block: &BlockKernels, buffers: &mut dyn Buffers) -> Kernel {
     let (volume, further) = with_element_of!(block.block, E => (E::VOLUME_ROW, E::FORCE_ROW));
-    let mut text = String::from("fn extinguish(element: u32) {\n");
+    let mut text = String::from("fn deactivate(element: u32) {\n");
     for row in std::iter::once(volume).chain(further) {
         text += &format!("    rest_shape[place(element, ROWS, {row}u)] = 0.0;\n");
     }

@@ -12,7 +12,7 @@ use crate::shader;
 use bevy_ecs::prelude::*;
 
 /// Pulls each held node by itself: the forces of a hand on the nodes of a face then sum up to that of a spring at the
-/// point that was grabbed, and no node has to know where the others are. A parked node is not pulled.
+/// point that was grabbed, and no node has to know where the others are. A inactive node is not pulled.
 pub fn system() -> System {
     System::built_in_nodes::<Grabs>(
         "grab",

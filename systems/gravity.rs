@@ -55,7 +55,7 @@ impl<T: SimdScalar> WithSimd for Pull<'_, T> {
         let components: [T; 3 * LANES] = std::array::from_fn(|at| self.acceleration[at % 3]);
         let acceleration = [0, 1, 2].map(|k| T::load(simd, &components[k * width..]));
         for (mass, external) in self.mass.chunks(width).zip(self.external.chunks_mut(3 * width)) {
-            let mass = T::thrice(T::load_part(simd, mass));
+            let mass = T::broadcast3(T::load_part(simd, mass));
             for ((mass, acceleration), external) in mass.into_iter().zip(acceleration).zip(external.chunks_mut(width)) {
                 T::store_part(T::load_part(simd, external) + mass * acceleration, external);
             }

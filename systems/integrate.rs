@@ -19,7 +19,7 @@ use std::sync::atomic::Ordering;
 /// ωΔt ≤ 2 for any damping. The classical form with three coefficients loses 2 to 10 % in f32, this one 1e-6; with
 /// [`DisplacementCompensation`] the sum of steps is as good as in f64. Where Δt changes, d is scaled to the new one
 /// beforehand, and forces act over the mean of both, (Δt + Δt')/2 in place of Δt in the push and in a. Constrained axes
-/// take the step that `boundary` wrote; nodes without mass are parked.
+/// take the step that `boundary` wrote; nodes without mass are inactive.
 ///
 /// In a static analysis the same recursion relaxes: the mass is [`FictitiousMass`], a is one number for all nodes, and
 /// forces are multiplied with a gain ([`Relaxation`]).
@@ -91,16 +91,16 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
         push.extend(damped.then_some(DampingCoefficient::NAME));
         push.extend(worked.then_some(Work::NAME));
         let mut displace = vec![Displacement::NAME, FirstNonFinite::BUFFER];
-        let lost = compensated.then_some(DisplacementCompensation::NAME);
+        let compensation = compensated.then_some(DisplacementCompensation::NAME);
         if push.len() + displace.len() + usize::from(compensated) <= most {
             push.extend(displace);
-            push.extend(lost);
+            push.extend(compensation);
             stages.push(stage("integrate", &push));
         } else {
             displace.extend([DisplacementStep::NAME, ConstrainedAxes::NAME]);
             push.extend(guarded.map(|_| InternalWork::BUFFER));
-            push.extend(lost);
-            displace.extend(lost);
+            push.extend(compensation);
+            displace.extend(compensation);
             stages.push(stage("integrate_push", &push));
             stages.push(stage("integrate_move", &displace));
         }

@@ -12,7 +12,7 @@ use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
 
-/// Adds a force to each of the load's nodes that has mass: a parked node bears nothing.
+/// Adds a force to each of the load's nodes that has mass: a inactive node bears nothing.
 pub fn system() -> System {
     System::built_in_nodes::<NodalForce>(
         "nodal_force",

@@ -58,7 +58,7 @@ pub struct Before<'a> {
 pub struct NodesAtRest<'a> {
     /// Where they are at rest (m).
     pub rest: &'a RestPosition,
-    /// Their masses (kg); 0: parked.
+    /// Their masses (kg); 0: inactive.
     pub mass: &'a Mass,
     /// Which axes are held, as bits.
     pub axes: Option<&'a ConstrainedAxes>,

@@ -31,8 +31,8 @@ pub use removal::step_of;
 pub use renew::renew_materials;
 pub use select::Selection;
 pub use time_step::{
-    SquaresAtRest, StableStep, StepSetter, alike_in_any_precision, author_of, damped, damping_time, square_frequencies,
-    stable_step, undamped_square_frequencies,
+    CriticalElement, SquaresAtRest, StableStep, alike_in_any_precision, author_of, damped, damping_time,
+    square_frequencies, stable_step, undamped_square_frequencies,
 };
 
 use crate::components::*;

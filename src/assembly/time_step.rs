@@ -23,12 +23,12 @@ pub struct StableStep {
     /// The same of a usual element (s): half of the volume is in elements that need no smaller step.
     pub usual: f64,
     /// The elements with the smallest bounds, the smallest first: at most [`NAMED`].
-    pub worst: Vec<StepSetter>,
+    pub worst: Vec<CriticalElement>,
 }
 
 /// An element that sets the step.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct StepSetter {
+pub struct CriticalElement {
     /// The body.
     pub body: String,
     /// The element, in the author's numbering.
@@ -43,11 +43,11 @@ pub struct StepSetter {
 
 impl StableStep {
     /// The element that sets the step: its body and the author's number.
-    pub fn culprit(&self) -> (String, u64) {
+    pub fn critical(&self) -> (String, u64) {
         self.worst.first().map_or_else(Default::default, |worst| (worst.body.clone(), worst.element))
     }
 
-    /// What the worst element costs: see [`StepSetter::cost`].
+    /// What the worst element costs: see [`CriticalElement::cost`].
     pub fn cost(&self) -> f64 {
         self.worst.first().map_or(1.0, |worst| worst.cost)
     }
@@ -188,7 +188,7 @@ pub fn stable_step(world: &mut World) -> Option<StableStep> {
         let (body, number) = author_of(world, element.block, element.row)?;
         let next = all.get(place + 1).map_or(first, bound);
         let own = bound(element);
-        Some(StepSetter { body, element: number, bound: own, cost: usual / own, gain: next / first })
+        Some(CriticalElement { body, element: number, bound: own, cost: usual / own, gain: next / first })
     });
     Some(StableStep { time_step: first, usual, worst: named.collect() })
 }

@@ -24,7 +24,7 @@ pub fn rest_volume(block: &Block, row: usize, shape: &Reals) -> f64 {
 }
 
 /// Makes an element exert nothing and weigh nothing.
-pub fn extinguish(block: &Block, row: usize, shape: &mut Reals) {
+pub fn deactivate(block: &Block, row: usize, shape: &mut Reals) {
     with_element_of!(block, E => {
         shape.set(lane_place(row, E::ROWS, E::VOLUME_ROW), 0.0);
         if let Some(further) = E::FORCE_ROW {

@@ -1,13 +1,13 @@
 //! Numbers and small tensors. Everything pointwise in sinew (elements, materials) is written once over [`Real`]:
 //! with `f64` it is the reference, with [`F32s`] and [`F64s`] it is what the CPU backend runs, a register at a time.
 
+mod broadcast;
 mod eigen;
 mod elementary;
 mod real;
 mod rows;
 mod simd;
 mod tensor;
-mod thrice;
 mod trigonometry;
 
 pub use real::refine_inverse_cbrt;

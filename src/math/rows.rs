@@ -6,10 +6,10 @@ use pulp::Simd;
 use pulp::x86::{V3, V4};
 
 /// As many rows as a `u16` can name, so that no index is ever out of bounds. Only those in use are ever touched.
-pub const MOST_ROWS_AT_HAND: usize = 1 << 16;
+pub const MOST_LOCAL_ROWS: usize = 1 << 16;
 
 /// Rows of four numbers: a vector and one more.
-pub type Rows<T> = [[T; 4]; MOST_ROWS_AT_HAND];
+pub type Rows<T> = [[T; 4]; MOST_LOCAL_ROWS];
 
 /// What a thread computes a patch with.
 pub struct Scratch<T: SimdScalar> {
@@ -21,7 +21,7 @@ pub struct Scratch<T: SimdScalar> {
 
 impl<T: SimdScalar> Default for Scratch<T> {
     fn default() -> Self {
-        let rows = || match vec![[T::default(); 4]; MOST_ROWS_AT_HAND].into_boxed_slice().try_into() {
+        let rows = || match vec![[T::default(); 4]; MOST_LOCAL_ROWS].into_boxed_slice().try_into() {
             Ok(rows) => rows,
             Err(_) => unreachable!("the length is that of the array"),
         };

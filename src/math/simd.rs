@@ -1,10 +1,10 @@
 //! Vector registers as [`Real`] numbers, of the width that the machine turns out to have at run time.
 
+use super::broadcast::{broadcast3_f32s, broadcast3_f64s};
 use super::real::{
     GUESS_F32, GUESS_F64, ONE_F32, ONE_F64, ROOT_HALF_F32, ROOT_HALF_F64, STEPS_F32, STEPS_F64, refine_inverse_cbrt,
 };
 use super::rows::{Rows, Scratch, add_f32s, add_f64s, load_f32s, load_f64s};
-use super::thrice::{thrice_f32s, thrice_f64s};
 use super::{Real, Scalar, Task};
 use pulp::{Simd, WithSimd};
 use std::cell::{Cell, RefCell};
@@ -49,7 +49,7 @@ pub trait SimdScalar: Scalar {
     /// The same number in all places.
     fn splat<S: Simd>(simd: S, value: Self) -> Self::Vector<S>;
     /// Each number three times, over three registers.
-    fn thrice<S: Simd>(numbers: Self::Vector<S>) -> [Self::Vector<S>; 3];
+    fn broadcast3<S: Simd>(numbers: Self::Vector<S>) -> [Self::Vector<S>; 3];
     /// The four columns of rows, a row a lane.
     fn load_rows<S: Simd>(simd: S, rows: &Rows<Self>, at: &[u16]) -> [Self::Vector<S>; 4];
     /// Adds vectors to rows, one lane after the other.
@@ -64,7 +64,7 @@ macro_rules! vector {
     ($name:ident, $scalar:ty, $raw:ident, $lanes:ident, $load:ident, $store:ident, $splat:ident, $add:ident, $sub:ident,
      $mul:ident, $div:ident, $neg:ident, $max:ident, $mul_add:ident, $guess:ident, $steps:expr, $min:ident, $sqrt:ident,
      $above:ident, $select:ident, $to_bits:ident, $from_bits:ident, $power:ident, $split:ident, $load_rows:ident, $add_rows:ident,
-     $load_part:ident, $store_part:ident, $thrice:ident) => {
+     $load_part:ident, $store_part:ident, $broadcast3:ident) => {
         #[doc = concat!("A register of `", stringify!($scalar), "`.")]
         #[derive(Clone, Copy)]
         pub struct $name<S: Simd> {
@@ -228,8 +228,8 @@ macro_rules! vector {
                 $add_rows(simd, rows, &at[..S::$lanes], [x.value, y.value, z.value]);
             }
             #[inline(always)]
-            fn thrice<S: Simd>(numbers: $name<S>) -> [$name<S>; 3] {
-                let [a, b, c] = $thrice(numbers.simd, numbers.value);
+            fn broadcast3<S: Simd>(numbers: $name<S>) -> [$name<S>; 3] {
+                let [a, b, c] = $broadcast3(numbers.simd, numbers.value);
                 [numbers.with(a), numbers.with(b), numbers.with(c)]
             }
             fn with_scratch<O>(task: impl FnOnce(&mut Scratch<Self>) -> O) -> O {
@@ -341,7 +341,7 @@ vector!(
     add_f32s,
     partial_load_f32s,
     partial_store_f32s,
-    thrice_f32s
+    broadcast3_f32s
 );
 vector!(
     F64s,
@@ -372,5 +372,5 @@ vector!(
     add_f64s,
     partial_load_f64s,
     partial_store_f64s,
-    thrice_f64s
+    broadcast3_f64s
 );

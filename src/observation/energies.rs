@@ -32,7 +32,7 @@ pub(super) fn values(e: &Energies) -> Vec<f64> {
     held.into_iter().chain(booked.into_iter().flatten()).collect()
 }
 
-/// Total mass of all bodies (kg), parked nodes and removed elements left out.
+/// Total mass of all bodies (kg), inactive nodes and removed elements left out.
 ///
 /// # Errors
 /// What the GPU says.

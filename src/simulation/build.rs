@@ -1,10 +1,10 @@
 //! From a scene to a simulation.
 
-use super::beat::Beat;
 use super::follow::Follower;
 use super::frequency::largest_eigenvalue;
 use super::history::History;
 use super::inputs::Tape;
+use super::interval::RunInterval;
 use super::known::Known;
 use super::options::{BackendChoice, Chosen, choose};
 use super::plan::{Over, Pass, Plan, Planned, each_once};
@@ -228,7 +228,7 @@ fn host_job(system: HostSystem, schedule: &[Scheduled<'_>], plan: &Plan, pass: &
     let names = |of: fn(&Planned) -> &Vec<&'static str>| each_once(plan.systems_of(pass).flat_map(of).copied());
     Job::Host {
         system,
-        beat: Beat::new(first.every, first.interval),
+        interval: RunInterval::new(first.every, first.interval),
         observes: first.system.observes,
         reads: names(|system| &system.reads),
         writes: names(|system| &system.writes),

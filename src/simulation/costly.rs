@@ -2,7 +2,7 @@
 
 use super::mass_scaling;
 use super::stable_step::Stability;
-use crate::assembly::StepSetter;
+use crate::assembly::CriticalElement;
 use crate::scene::Diagnostics;
 use bevy_ecs::prelude::*;
 
@@ -28,7 +28,7 @@ pub(super) fn warn_of_costly(stability: &Stability, world: &mut World, diagnosti
     if cost.is_nan() || cost < COSTLY {
         return;
     }
-    let (body, element) = bound.culprit();
+    let (body, element) = bound.critical();
     let with_mass = mass_scaling::step_for(world, PROPOSED, bound.time_step, bound.usual);
     let warning = diagnostics.warn_at(
         "bodies",
@@ -39,7 +39,7 @@ pub(super) fn warn_of_costly(stability: &Stability, world: &mut World, diagnosti
         ),
     );
     for worst in &bound.worst {
-        warning.note(setter(worst));
+        warning.note(critical(worst));
     }
     if limit >= HELPS * stable {
         warning.note(format!(
@@ -59,8 +59,8 @@ pub(super) fn warn_of_costly(stability: &Stability, world: &mut World, diagnosti
 }
 
 /// An element that sets the step, in a line.
-fn setter(worst: &StepSetter) -> String {
-    let StepSetter { body, element, bound, cost, gain } = worst;
+fn critical(worst: &CriticalElement) -> String {
+    let CriticalElement { body, element, bound, cost, gain } = worst;
     format!(
         "element {element} of {body}: stable up to {bound:.3e} s, {cost:.4} times below the usual; without it and those \
          before it the step could be {gain:.4} times longer"

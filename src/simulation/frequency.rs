@@ -246,7 +246,7 @@ pub(super) fn bodies(world: &mut World) -> Vec<Entity> {
     bodies
 }
 
-/// 1/√M of every free axis, 0 of held and parked ones. M is the mass that nodes are moved with.
+/// 1/√M of every free axis, 0 of held and inactive ones. M is the mass that nodes are moved with.
 pub(super) fn roots_of_mass(world: &World, bodies: &[Entity]) -> Vec<f64> {
     let mut roots = Vec::new();
     for &body in bodies {

@@ -141,7 +141,7 @@ pub(super) fn weigh(world: &mut World) -> Added {
         let Ok((mass, mut inertia, step)) = columns.get_mut(world, body) else { continue };
         for node in 0..count {
             let real = mass.get(node);
-            // nodes without elements stay parked
+            // nodes without elements stay inactive
             let now = if real > 0.0 { real + added[node] } else { 0.0 };
             sum.energy += 0.5 * (now - inertia.get(node)) * step.vector(node).length_squared() * rate * rate;
             inertia.set(node, now);

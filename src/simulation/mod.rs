@@ -3,7 +3,6 @@
 mod access;
 mod adapt;
 mod added_mass;
-mod beat;
 mod block_forces;
 mod budget;
 mod build;
@@ -18,6 +17,7 @@ mod grab;
 mod growth;
 mod history;
 mod inputs;
+mod interval;
 mod keep;
 mod known;
 mod lineage;
@@ -74,8 +74,8 @@ use crate::backend::kernel::KernelId;
 use crate::scene::schema::Scene;
 use crate::scene::{Diagnostics, SceneFile};
 use crate::systems::{HostSystem, Phase};
-use beat::Beat;
 use bevy_ecs::prelude::*;
+use interval::RunInterval;
 use std::time::Duration;
 
 /// A simulation: make it from a scene, step it, look at it.
@@ -129,7 +129,13 @@ struct Entry {
 }
 
 enum Job {
-    Host { system: HostSystem, beat: Beat, observes: bool, reads: Vec<&'static str>, writes: Vec<&'static str> },
+    Host {
+        system: HostSystem,
+        interval: RunInterval,
+        observes: bool,
+        reads: Vec<&'static str>,
+        writes: Vec<&'static str>,
+    },
     Kernels(Vec<KernelId>),
 }
 

@@ -1,9 +1,9 @@
 //! What a simulation remembers of its pace, beside the clock: for snapshots, so that what goes on from one takes the
 //! same steps.
 
-use super::beat::Beat;
 use super::follow::Followed;
 use super::grab::AllGrabs;
+use super::interval::RunInterval;
 use super::step_change::relax_as;
 use super::{Job, Simulation};
 use crate::components::{Clock, Grabs, InputState};
@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 #[serde(deny_unknown_fields)]
 pub(super) struct Pace {
     /// When systems on the host run next, by name.
-    beats: BTreeMap<String, Beat>,
+    intervals: BTreeMap<String, RunInterval>,
     /// What is known of the stable step.
     found: Option<Followed>,
     /// What programs set.
@@ -63,12 +63,12 @@ impl Simulation {
 
     /// Notes the pace in a snapshot of the world.
     pub(super) fn note_pace(&mut self, snapshot: &mut Snapshot) -> Result<(), SnapshotError> {
-        let beat = |entry: &super::Entry| match &entry.job {
-            Job::Host { beat, .. } => Some((entry.name.clone(), *beat)),
+        let interval = |entry: &super::Entry| match &entry.job {
+            Job::Host { interval, .. } => Some((entry.name.clone(), *interval)),
             Job::Kernels(_) => None,
         };
         let pace = Pace {
-            beats: self.entries.iter().filter_map(beat).collect(),
+            intervals: self.entries.iter().filter_map(interval).collect(),
             found: self.solver.follower().map(|follower| follower.followed()),
             inputs: self.input_states(),
             can_grab: self.world.query::<&Grabs>().iter(&self.world).next().is_some(),
@@ -87,7 +87,7 @@ impl Simulation {
         self.check_grabs(&pace.grabs)?;
         self.check_changed(pace.scene.as_deref())?;
         snapshot.fits(&mut self.world)?;
-        if let Some((name, _)) = pace.beats.iter().find(|(_, beat)| !beat.is_sound()) {
+        if let Some((name, _)) = pace.intervals.iter().find(|(_, interval)| !interval.is_sound()) {
             return Err(senseless(format!("the system `{name}` can never run")).into());
         }
         self.check_input_states(&pace.inputs).map_err(senseless)?;
@@ -109,8 +109,8 @@ impl Simulation {
         let clock = *self.world.resource::<Clock>();
         relax_as(&mut self.world, &clock)?;
         for entry in &mut self.entries {
-            if let (Job::Host { beat, .. }, Some(kept)) = (&mut entry.job, pace.beats.get(&entry.name)) {
-                *beat = *kept;
+            if let (Job::Host { interval, .. }, Some(kept)) = (&mut entry.job, pace.intervals.get(&entry.name)) {
+                *interval = *kept;
             }
         }
         // the scene may last longer than that of the snapshot

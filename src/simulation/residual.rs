@@ -66,8 +66,8 @@ impl State {
             .map(|(entity, u, step, lost, internal, external)| {
                 let all = 0..u.len();
                 let load = |i: usize| external.map_or(0.0, |external| external.get(i));
-                let lost_of = |i: usize| lost.map_or(0.0, |lost| lost.get(i));
-                let exact = |i: usize| u.get(i) - lost_of(i);
+                let compensation_of = |i: usize| lost.map_or(0.0, |lost| lost.get(i));
+                let exact = |i: usize| u.get(i) - compensation_of(i);
                 Body {
                     entity,
                     displacement: u.0.clone(),
@@ -156,7 +156,7 @@ pub(super) struct Motion {
     pub displaced: f64,
 }
 
-/// The axes among some along which a body's nodes move freely: not held, and not parked.
+/// The axes among some along which a body's nodes move freely: not held, and not inactive.
 fn free(body: Entity, axes: Range<usize>, world: &World) -> impl Iterator<Item = usize> + '_ {
     let held = world.get::<ConstrainedAxes>(body);
     let mass = world.get::<FictitiousMass>(body);

@@ -214,15 +214,15 @@ impl Simulation {
         let custom_due = |step: u64| {
             self.entries
                 .iter()
-                .any(|entry| matches!(entry.job, Job::Host { beat, observes: false, .. } if beat.is_due(step)))
+                .any(|entry| matches!(entry.job, Job::Host { interval, observes: false, .. } if interval.is_due(step)))
         };
         if custom_due(step) {
             return self.device_step_around_hosts(step);
         }
         let mut until = target.min(self.world.resource::<Observer>().next_due(step));
         for entry in &self.entries {
-            if let Job::Host { beat, observes: false, .. } = entry.job {
-                until = until.min(beat.next_after(step));
+            if let Job::Host { interval, observes: false, .. } = entry.job {
+                until = until.min(interval.next_after(step));
             }
         }
         let kernels: Vec<KernelId> = self.entries.iter().flat_map(Entry::kernels).copied().collect();
@@ -260,7 +260,7 @@ impl Simulation {
                 Job::Kernels(kernels) if after => self.run_kernels(&kernels.clone(), step, 1)?,
                 Job::Kernels(kernels) => waiting.extend(kernels),
                 Job::Host { observes: true, .. } => {}
-                Job::Host { beat, .. } if !beat.is_due(step) => {}
+                Job::Host { interval, .. } if !interval.is_due(step) => {}
                 Job::Host { reads, writes, .. } => {
                     let (reads, writes) = (reads.clone(), writes.clone());
                     self.run_kernels(&std::mem::take(&mut waiting), step, 1)?;
@@ -308,8 +308,8 @@ impl Entry {
 
     /// Runs a host system if this is one of its steps.
     fn run_on_host(&mut self, step: u64, world: &mut World) -> Result<(), Error> {
-        let Job::Host { system, beat, .. } = &mut self.job else { return Ok(()) };
-        if !beat.is_due(step) {
+        let Job::Host { system, interval, .. } = &mut self.job else { return Ok(()) };
+        if !interval.is_due(step) {
             return Ok(());
         }
         let started = Instant::now();

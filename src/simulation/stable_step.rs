@@ -297,7 +297,7 @@ pub(super) fn found_bound(world: &mut World, diagnostics: &mut Diagnostics) -> O
         return None;
     };
     if !(bound.time_step.is_finite() && bound.time_step > 0.0) {
-        let (body, element) = bound.culprit();
+        let (body, element) = bound.critical();
         let message = format!(
             "no stable time step can be found: element {element} of {body} has a bound of {} s",
             bound.time_step
@@ -319,7 +319,7 @@ fn taken(scene: &Scene, stability: &Stability, diagnostics: &mut Diagnostics) ->
     let limit = stability.limit.unwrap_or(stability.stable_step);
     // what needs a smaller step goes before it does harm
     if step > limit && scene.when_unstable() != WhenUnstable::Remove {
-        let (body, element) = stability.bound.culprit();
+        let (body, element) = stability.bound.critical();
         let message = format!(
             "a step of {step} s is beyond the stable one of {limit:.4e} s (the stiffest is element {element} of {body})"
         );

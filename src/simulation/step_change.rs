@@ -53,8 +53,8 @@ impl Simulation {
         relax_on(world, &now)?;
         remove_in_time(world, &now);
         for entry in &mut self.entries {
-            if let Job::Host { beat, .. } = &mut entry.job {
-                beat.change_step(now.step, before.time_step, now.time_step);
+            if let Job::Host { interval, .. } = &mut entry.job {
+                interval.change_step(now.step, before.time_step, now.time_step);
             }
         }
         self.facts.steps = last_step;

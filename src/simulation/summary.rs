@@ -180,7 +180,7 @@ impl Simulation {
             nodes: facts.nodes,
             elements: facts.elements,
             stable_step: facts.stability.stable_step,
-            stable_step_element: facts.stability.bound.culprit(),
+            stable_step_element: facts.stability.bound.critical(),
             stability: facts.stability.clone(),
             time_step: self.time_step(),
             share_of_limit: facts.stability.limit.map(|limit| facts.stability.step / limit),

@@ -160,7 +160,7 @@ impl<'a> Search<'a> {
             Err(other) => return Err(other),
         };
         if self.halvings > 0 {
-            // what led astray is no guide
+            // what led non_finite is no guide
             self.tried.clear();
             self.halvings = 0;
         }

@@ -190,7 +190,7 @@ fn near(what: &str, a: &Run, b: &Run, most: f64) -> Result<(), String> {
         return Ok(());
     }
     // where rounding has decided when a step that follows became another, what differs is the error of the scheme
-    // itself: of motion that holds so much of the energy as a run says went astray, amplitudes go with its root
+    // itself: of motion that holds so much of the energy as a run says went non_finite, amplitudes go with its root
     let alike = a.steps == b.steps && (a.time_step - b.time_step).abs() <= 1e-9 * a.time_step;
     let most = if alike { most } else { most.max(0.05).max(a.imbalance.max(b.imbalance).sqrt()) };
     let apart = apart(&a.displacements, &b.displacements);

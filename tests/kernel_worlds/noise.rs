@@ -48,7 +48,7 @@ pub fn randomize(world: &mut World, seed: u64) {
             (0..two_pass_length(world, entity)).for_each(|_| _ = noise.next());
         }
         fill!(ViscousMemory: 200.0, Work: 1e-6, ElementVolume: 1e-6, NodalVolumeChange: 0.05);
-        // parked nodes, and axes held without a load
+        // inactive nodes, and axes held without a load
         if let Some(mut mass) = world.get_mut::<Mass>(entity) {
             mass.set(3, 0.0);
         }

@@ -6,7 +6,7 @@ use super::pair::{Pair, UNIT, entities, run};
 use bevy_ecs::prelude::*;
 use sinew::components::*;
 use sinew::elements::{node_count, point_count};
-use sinew::evaluation::{ElementState, extinguish, row_count};
+use sinew::evaluation::{ElementState, deactivate, row_count};
 use sinew::math::lane_place;
 use sinew::mesh::ElementKind;
 use std::collections::{BTreeMap, BTreeSet};
@@ -112,7 +112,7 @@ fn parallelepipeds_exert_the_same_forces() {
         &Effects { fibres: Some(AROUND), prony: 2, scheme: Scheme::TwoPass, ..cells.clone() },
         |_| {},
     );
-    compare_element_forces(&Effects { removal: true, prony: 1, ..cells }, extinguish_some);
+    compare_element_forces(&Effects { removal: true, prony: 1, ..cells }, deactivate_some);
 }
 
 /// Wedges with every effect, in both schemes, and with elements gone.
@@ -126,7 +126,7 @@ fn wedges_exert_the_same_forces() {
     for law in LAWS {
         compare_element_forces(&Effects { law: Some(law), volumetric: true, prony: 1, ..wedges.clone() }, |_| {});
     }
-    compare_element_forces(&Effects { removal: true, prony: 1, ..wedges }, extinguish_some);
+    compare_element_forces(&Effects { removal: true, prony: 1, ..wedges }, deactivate_some);
 }
 
 /// The scheme of two passes, with a law that has all effects and with the plain one.
@@ -139,11 +139,11 @@ fn elements_exert_the_same_forces_in_two_passes() {
     }
 }
 
-fn extinguish_some(world: &mut World) {
+fn deactivate_some(world: &mut World) {
     for block in entities::<Alive>(world) {
         let data = world.get::<Block>(block).unwrap().clone();
         let mut shape = world.get_mut::<RestShape>(block).unwrap();
-        (0..data.count).filter(|row| row % 7 < 3).for_each(|row| extinguish(&data, row, &mut shape));
+        (0..data.count).filter(|row| row % 7 < 3).for_each(|row| deactivate(&data, row, &mut shape));
     }
 }
 
@@ -152,7 +152,7 @@ fn extinguish_some(world: &mut World) {
 fn elements_that_are_left_exert_the_same_forces() {
     for averaged in [false, true] {
         let effects = Effects { removal: true, averaged, prony: 1, ..Effects::default() };
-        compare_element_forces(&effects, extinguish_some);
+        compare_element_forces(&effects, deactivate_some);
     }
 }
 

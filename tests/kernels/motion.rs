@@ -22,8 +22,8 @@ fn prescribed_nodes_go_to_the_same_places() {
 /// What rounding has left out, larger than it can ever be: it must not go under in the bound.
 fn lose_much(world: &mut World) {
     for body in entities::<DisplacementCompensation>(world) {
-        let mut lost = world.get_mut::<DisplacementCompensation>(body).unwrap();
-        (0..lost.len()).for_each(|i| lost.set(i, 1e-4 * (1.0 + i as f64 / 1e4)));
+        let mut compensation = world.get_mut::<DisplacementCompensation>(body).unwrap();
+        (0..compensation.len()).for_each(|i| compensation.set(i, 1e-4 * (1.0 + i as f64 / 1e4)));
     }
 }
 
@@ -99,12 +99,12 @@ fn compare_motion(pair: &mut Pair, effects: &Effects, prescribed: f64) {
             for i in 0..pair.host().get::<Displacement>(body).unwrap().len() {
                 // u less what was lost is the exact sum, but for the rounding of what was lost
                 let sum = |world: &World| {
-                    let lost = world.get::<DisplacementCompensation>(body).unwrap();
-                    let lost = lost.get(i);
-                    (world.get::<Displacement>(body).unwrap().get(i) - lost, lost)
+                    let compensation = world.get::<DisplacementCompensation>(body).unwrap();
+                    let compensation = compensation.get(i);
+                    (world.get::<Displacement>(body).unwrap().get(i) - compensation, compensation)
                 };
-                let ((host, lost), (device, _)) = (sum(pair.host()), sum(pair.device.world()));
-                let allowed = step_bound(pair, body, i) + 2.0 * UNIT * lost.abs().max(1e-9);
+                let ((host, compensation), (device, _)) = (sum(pair.host()), sum(pair.device.world()));
+                let allowed = step_bound(pair, body, i) + 2.0 * UNIT * compensation.abs().max(1e-9);
                 assert!((host - device).abs() <= allowed, "{i} of {body}: host {host:e}, GPU {device:e}");
             }
         }
@@ -166,10 +166,10 @@ fn a_node_without_a_mass_that_is_a_number_is_not_parked_in_silence() {
         };
         let mut pair = pair;
         // an infinite mass stays where it is, as it should
-        let lost = if bits == 0x7f80_0000 { u32::MAX } else { 17 };
+        let compensation = if bits == 0x7f80_0000 { u32::MAX } else { 17 };
         for body in entities::<FirstNonFinite>(pair.device.world_mut()) {
-            assert_eq!(pair.device.world().get::<FirstNonFinite>(body).unwrap()[0], lost, "{bits:x}");
-            assert_eq!(pair.host().get::<FirstNonFinite>(body).unwrap()[0], lost, "{bits:x}");
+            assert_eq!(pair.device.world().get::<FirstNonFinite>(body).unwrap()[0], compensation, "{bits:x}");
+            assert_eq!(pair.host().get::<FirstNonFinite>(body).unwrap()[0], compensation, "{bits:x}");
         }
     }
 }

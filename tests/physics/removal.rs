@@ -136,7 +136,7 @@ fn nodes_without_elements_are_parked() {
             removal: [(on: Box(min: (4, 0, 0), max: (6, 1, 1)), when: At(0.05))]";
         let mut simulation = bar(run, elements, rest);
         simulation.advance(51).unwrap();
-        let parked: Vec<usize> = simulation
+        let inactive: Vec<usize> = simulation
             .rest_positions("b")
             .unwrap()
             .iter()
@@ -147,8 +147,8 @@ fn nodes_without_elements_are_parked() {
         let before = simulation.displacements("b").unwrap();
         simulation.advance(100).unwrap();
         let after = simulation.displacements("b").unwrap();
-        for &node in &parked {
-            assert_eq!(before[node], after[node], "{}, {elements}: node {node} is not parked", run.name);
+        for &node in &inactive {
+            assert_eq!(before[node], after[node], "{}, {elements}: node {node} is not inactive", run.name);
             assert_eq!(masses(&mut simulation, "b")[node], 0.0);
         }
         assert!(after.iter().all(|u| u.is_finite()));

@@ -1,8 +1,8 @@
 //! Forces of all elements of a block, a register full at a time.
 
-mod at_hand;
 mod effects;
 mod fetch;
+mod patch_local;
 mod stress;
 
 use super::{BlockLaw, Cpu, NodeColumns};
@@ -10,8 +10,8 @@ use crate::components::{FamilyDirection, Patches};
 use crate::elements::{Element, MOST_NODES, PressureFrom};
 use crate::materials::{Elastic, ElasticLaw, FLATTEST, NeoHookean};
 use crate::math::{LANES, Real, Scratch, SimdScalar};
-use at_hand::{AtHand, part, parts};
 use fetch::{AHEAD, NEAR};
+use patch_local::{PatchLocal, part, parts};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
 use std::sync::{Mutex, PoisonError};
@@ -159,7 +159,7 @@ impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
             None => (&mut [][..], None),
         };
         let mut inside = inside.iter_mut();
-        let tasks = tasks.into_iter().enumerate().map(move |(index, (force, at_hand))| {
+        let tasks = tasks.into_iter().enumerate().map(move |(index, (force, patch_local))| {
             let patch = Patch::<E, T, L, EFFECTS> {
                 index,
                 displacement: columns.displacement,
@@ -178,7 +178,7 @@ impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
                 memory: memories.next().unwrap_or_default(),
                 memory_rows: memory_an_element,
                 force,
-                at_hand,
+                patch_local,
                 inverted_go: columns.inverted_go,
                 far,
                 elastic,
@@ -230,7 +230,7 @@ struct Patch<'a, E, T: SimdScalar, L, const EFFECTS: u8> {
     /// Rows that a group has of it.
     memory_rows: usize,
     force: &'a mut [T],
-    at_hand: Option<AtHand<'a>>,
+    patch_local: Option<PatchLocal<'a>>,
     inverted_go: bool,
     /// Whether what comes next has to be fetched from memory.
     far: bool,

@@ -61,9 +61,9 @@ impl<T: SimdScalar> Task<'_, '_, T> {
             let at = 3 * row..3 * row + 3;
             let columns = &mut self.columns;
             let node = OneNode::of(columns, row);
-            let lost = columns.compensation.as_mut();
-            let lost = lost.map(|[of_u, of_step]| [&mut of_u[at.clone()], &mut of_step[at.clone()]]);
-            let mut sum = Sum { u: &mut columns.u[at.clone()], step: &mut columns.step[at], lost };
+            let compensation = columns.compensation.as_mut();
+            let compensation = compensation.map(|[of_u, of_step]| [&mut of_u[at.clone()], &mut of_step[at.clone()]]);
+            let mut sum = Sum { u: &mut columns.u[at.clone()], step: &mut columns.step[at], compensation };
             let work = columns.work.as_mut().map(|w| &mut w[WORK_NUMBERS * row..WORK_NUMBERS * (row + 1)]);
             spent += move_node(&node, self.factors, &mut sum, work);
             // what is not finite in one component is not finite in the sum
@@ -84,9 +84,12 @@ impl<T: SimdScalar> Task<'_, '_, T> {
             external: columns.external.as_ref().map(|all| &all[numbers.clone()]),
             u: &mut columns.u[numbers.clone()],
             step: &mut columns.step[numbers.clone()],
-            lost: columns.compensation.as_mut().map(|lost| lost.each_mut().map(|all| &mut all[numbers.clone()])),
+            compensation: columns
+                .compensation
+                .as_mut()
+                .map(|compensation| compensation.each_mut().map(|all| &mut all[numbers.clone()])),
             force: T::splat(simd, factors.force),
-            astray: T::splat(simd, T::default()),
+            non_finite: T::splat(simd, T::default()),
             spent: T::splat(simd, T::default()),
         };
         let width = T::width::<S>();
@@ -115,7 +118,7 @@ impl<T: SimdScalar> Task<'_, '_, T> {
             T::store(register, &mut lanes);
             lanes
         };
-        let finite = lanes(chunk.astray).iter().all(|&lane| lane == T::default());
+        let finite = lanes(chunk.non_finite).iter().all(|&lane| lane == T::default());
         if columns.internal_work.is_empty() {
             return (0.0, finite);
         }
@@ -157,12 +160,12 @@ impl<T: SimdScalar> Constants<'_, T> {
         let mass = T::load_part(simd, self.mass);
         // places without a node have no mass
         let per_mass = mass.if_positive(splat(one) / mass, splat(zero));
-        let [x, y, z] = T::thrice(per_mass);
+        let [x, y, z] = T::broadcast3(per_mass);
         let damping = (self.damping.is_some() || relaxation > zero).then(|| {
             let coefficient = self.damping.map_or(splat(zero), |all| T::load_part(simd, all));
             let a = coefficient * splat(half_step) * per_mass + splat(relaxation);
             let shrink = a.if_positive(splat(one) / (splat(one) + splat(divide) * a), splat(one));
-            let ([ax, ay, az], [sx, sy, sz]) = (T::thrice(splat(one + divide) * a), T::thrice(shrink));
+            let ([ax, ay, az], [sx, sy, sz]) = (T::broadcast3(splat(one + divide) * a), T::broadcast3(shrink));
             [[ax, sx], [ay, sy], [az, sz]]
         });
         let [dx, dy, dz] = match damping {
@@ -199,10 +202,10 @@ struct Chunk<'a, T: SimdScalar, S: Simd> {
     external: Option<&'a [T]>,
     u: &'a mut [T],
     step: &'a mut [T],
-    lost: Option<[&'a mut [T]; 2]>,
+    compensation: Option<[&'a mut [T]; 2]>,
     force: T::Vector<S>,
     /// Not 0 where a displacement is not finite.
-    astray: T::Vector<S>,
+    non_finite: T::Vector<S>,
     /// Internal forces times twice the mean step, but along constrained axes.
     spent: T::Vector<S>,
 }
@@ -239,7 +242,7 @@ impl<T: SimdScalar, S: Simd> Chunk<'_, T, S> {
             None => moved,
         };
         let (after, new);
-        match &mut self.lost {
+        match &mut self.compensation {
             None => {
                 after = if_free(before + change, before);
                 new = old + after;
@@ -258,7 +261,7 @@ impl<T: SimdScalar, S: Simd> Chunk<'_, T, S> {
         store!(after, self.step);
         store!(new, self.u);
         // what is no number stays none
-        self.astray += new * zero;
+        self.non_finite += new * zero;
         self.spent += if_free(inner * (before + after), zero);
     }
 }

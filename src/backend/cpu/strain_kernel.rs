@@ -139,8 +139,8 @@ impl<E: Element, T: SimdScalar> WithSimd for Groups<'_, '_, E, T> {
 }
 
 /// Size, squeeze and both speeds; infinite where they are no numbers.
-fn sound<T: SimdScalar>([size, squeeze, speed, mean_speed, astray]: [T; 5]) -> [f64; 4] {
-    let number = |of: T| if astray == T::default() { of.to_f64() } else { f64::INFINITY };
+fn sound<T: SimdScalar>([size, squeeze, speed, mean_speed, non_finite]: [T; 5]) -> [f64; 4] {
+    let number = |of: T| if non_finite == T::default() { of.to_f64() } else { f64::INFINITY };
     [size, squeeze, speed, mean_speed].map(number)
 }
 
@@ -157,7 +157,7 @@ fn register<E: Element, T: SimdScalar, S: Simd>(
     let u = E::prepare(&corner_registers::<E, T, S>(simd, u, at));
     let d = E::prepare(&corner_registers::<E, T, S>(simd, d, at));
     let zero = T::splat(simd, T::default());
-    let (mut size, mut squeeze, mut speed, mut mean_speed, mut astray) = (zero, zero, zero, zero, zero);
+    let (mut size, mut squeeze, mut speed, mut mean_speed, mut non_finite) = (zero, zero, zero, zero, zero);
     for point in 0..E::POINTS {
         let state = E::at_point(
             &u,
@@ -190,9 +190,9 @@ fn register<E: Element, T: SimdScalar, S: Simd>(
         speed = speed.max(change * squeezed);
         mean_speed = mean_speed.max(change * inverse);
         // what is no number, or infinite, stays none
-        astray += (inverse + change * squeezed) * zero;
+        non_finite += (inverse + change * squeezed) * zero;
     }
-    [size, squeeze, speed, mean_speed, astray]
+    [size, squeeze, speed, mean_speed, non_finite]
 }
 
 /// F = I + ∇u.

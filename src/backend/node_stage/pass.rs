@@ -193,12 +193,12 @@ fn forces_between(stages: &[&NodeStage]) -> Vec<Fragment> {
     let calls = |name: &str| stages.iter().any(|stage| stage.columns.iter().any(|(column, _)| *column == name));
     let (inner, outer) = (calls(InternalForce::NAME), calls(ExternalForce::NAME));
     let do_with_them = |what: Forces| stages.iter().any(|stage| stage.forces == what);
-    let at_hand = do_with_them(Forces::Sums) && do_with_them(Forces::UsesUp);
+    let patch_local = do_with_them(Forces::Sums) && do_with_them(Forces::UsesUp);
     let loaded = stages.iter().any(|stage| stage.loaded);
     let integrates = do_with_them(Forces::UsesUp) || do_with_them(Forces::AsksFor);
     let mut fragments = Vec::new();
-    match (inner, at_hand) {
-        (true, true) => fragments.push(shader!("internal_force_at_hand")),
+    match (inner, patch_local) {
+        (true, true) => fragments.push(shader!("internal_force_local")),
         (true, false) => fragments.push(shader!("internal_force")),
         (false, _) if integrates => fragments.push(Fragment::new(
             "generated: no forces of elements",
@@ -206,8 +206,8 @@ fn forces_between(stages: &[&NodeStage]) -> Vec<Fragment> {
         )),
         (false, _) => {}
     }
-    match (outer && loaded, at_hand) {
-        (true, true) => fragments.push(shader!("external_force_at_hand")),
+    match (outer && loaded, patch_local) {
+        (true, true) => fragments.push(shader!("external_force_local")),
         (true, false) => fragments.push(shader!("external_force")),
         (false, _) if inner || integrates => fragments.push(Fragment::new(
             "generated: no loads",

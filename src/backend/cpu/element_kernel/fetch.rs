@@ -22,8 +22,8 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
     #[inline(always)]
     pub(super) fn fetch(&self, group: usize) {
         ask(self.rest_shape, group, E::ROWS);
-        match &self.at_hand {
-            Some(at_hand) => ask(at_hand.corners, group, E::NODES),
+        match &self.patch_local {
+            Some(patch_local) => ask(patch_local.corners, group, E::NODES),
             None => ask(self.connectivity, group, E::NODES),
         }
         ask(&*self.memory, group, self.memory_rows * LANES);

@@ -8,7 +8,7 @@ pub(super) struct Sum<'a, T> {
     pub(super) u: &'a mut [T],
     pub(super) step: &'a mut [T],
     /// Of the displacement, and of the step.
-    pub(super) lost: Option<[&'a mut [T]; 2]>,
+    pub(super) compensation: Option<[&'a mut [T]; 2]>,
 }
 
 impl<T: Scalar> Sum<'_, T> {
@@ -16,16 +16,16 @@ impl<T: Scalar> Sum<'_, T> {
     /// compensation.
     #[inline(always)]
     fn push(&mut self, i: usize, change: T) {
-        match &mut self.lost {
+        match &mut self.compensation {
             None => self.step[i] += change,
-            Some([_, lost]) => compensated_add(&mut self.step[i], &mut lost[i], change),
+            Some([_, compensation]) => compensated_add(&mut self.step[i], &mut compensation[i], change),
         }
     }
 
     /// Takes the step.
     #[inline(always)]
     fn go(&mut self, i: usize, constrained: bool) {
-        match &mut self.lost {
+        match &mut self.compensation {
             None => self.u[i] += self.step[i],
             Some([of_u, of_step]) => {
                 // what boundary wrote is the whole of a constrained step
@@ -41,10 +41,10 @@ impl<T: Scalar> Sum<'_, T> {
 
 /// sum += change, where `lost` is what rounding has made of the sum too much (Kahan 1965).
 #[inline(always)]
-fn compensated_add<T: Scalar>(sum: &mut T, lost: &mut T, change: T) {
-    let exact = change - *lost;
+fn compensated_add<T: Scalar>(sum: &mut T, compensation: &mut T, change: T) {
+    let exact = change - *compensation;
     let rounded = *sum + exact;
-    *lost = (rounded - *sum) - exact;
+    *compensation = (rounded - *sum) - exact;
     *sum = rounded;
 }
 
@@ -123,12 +123,12 @@ pub(super) fn move_node<T: Scalar>(
             let before = if constrained { std::mem::replace(&mut work[4 + i], step) } else { before };
             let mean = T::from_f64(0.5) * (before + step);
             let along = booked * mean;
-            let lost = coefficient * rate * mean * along;
+            let compensation = coefficient * rate * mean * along;
             work[0] += external * along;
-            work[1] += lost;
+            work[1] += compensation;
             work[3] += internal * along;
             if constrained {
-                work[2] += (internal - external) * along + lost;
+                work[2] += (internal - external) * along + compensation;
             }
         }
     }

@@ -38,8 +38,8 @@ pub fn islands(trial: &mut Trial<'_>) -> Result<(), Error> {
     trial.near("removed mass", summary.removed_mass, initial / 3.0, 1e-6);
     let masses = simulation.masses("body")?;
     let rest = simulation.rest_positions("body")?;
-    let parked = (0..rest.len()).filter(|&node| (rest[node].z - 0.03).abs() < 1e-6).all(|node| masses[node] == 0.0);
-    trial.holds("nodes without elements are parked", parked);
+    let inactive = (0..rest.len()).filter(|&node| (rest[node].z - 0.03).abs() < 1e-6).all(|node| masses[node] == 0.0);
+    trial.holds("nodes without elements are inactive", inactive);
     Ok(())
 }
 
@@ -48,12 +48,12 @@ pub fn everything(trial: &mut Trial<'_>) -> Result<(), Error> {
     let mut simulation = trial.start(&[])?;
     let initial: f64 = simulation.masses("body")?.iter().sum();
     simulation.advance_to(0.07)?;
-    let parked = simulation.displacements("body")?;
+    let inactive = simulation.displacements("body")?;
     simulation.finish()?;
     let summary = simulation.summary("finished")?;
     trial.near("removed mass", summary.removed_mass, initial, 1e-6);
-    let finite = parked.iter().all(|u| u.is_finite());
-    trial.holds("nodes stay where they were left", finite && parked == simulation.displacements("body")?);
+    let finite = inactive.iter().all(|u| u.is_finite());
+    trial.holds("nodes stay where they were left", finite && inactive == simulation.displacements("body")?);
     trial.holds("nothing weighs any more", simulation.masses("body")?.iter().all(|&mass| mass == 0.0));
     Ok(())
 }

@@ -4,14 +4,14 @@ use serde::{Deserialize, Serialize};
 
 /// Every so many steps, counted from one of them.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-pub(super) struct Beat {
+pub(super) struct RunInterval {
     every: u64,
     from: u64,
     /// Time between two runs (s), where it is a time and no number of steps.
     interval: Option<f64>,
 }
 
-impl Beat {
+impl RunInterval {
     pub fn new(every: u64, interval: Option<f64>) -> Self {
         Self { every, from: 0, interval }
     }
@@ -45,13 +45,13 @@ mod tests {
 
     #[test]
     fn runs_keep_their_times_to_a_step_when_the_step_changes() {
-        let mut beat = Beat::new(10, Some(0.1));
-        assert!((0..25).all(|step| beat.is_due(step) == (step % 10 == 0)));
+        let mut interval = RunInterval::new(10, Some(0.1));
+        assert!((0..25).all(|step| interval.is_due(step) == (step % 10 == 0)));
         // half way to the run at 0.3 s the steps become half as long
-        beat.change_step(25, 0.01, 0.005);
-        assert_eq!((beat.next_after(25), beat.next_after(35)), (35, 55));
-        assert!(!beat.is_due(30) && beat.is_due(35));
-        let mut steps = Beat::new(3, None);
+        interval.change_step(25, 0.01, 0.005);
+        assert_eq!((interval.next_after(25), interval.next_after(35)), (35, 55));
+        assert!(!interval.is_due(30) && interval.is_due(35));
+        let mut steps = RunInterval::new(3, None);
         steps.change_step(4, 0.01, 0.001);
         assert!(steps.is_due(6) && !steps.is_due(5));
     }

@@ -19,7 +19,7 @@ pub(super) fn parts<'a, T>(
     patches: Option<&'a Patches>,
     forces_a_patch: usize,
     corners_a_patch: usize,
-) -> Vec<(&'a mut [T], Option<AtHand<'a>>)> {
+) -> Vec<(&'a mut [T], Option<PatchLocal<'a>>)> {
     let Some(patches) = patches else {
         return force.chunks_mut(forces_a_patch).map(|force| (force, None)).collect();
     };
@@ -28,7 +28,7 @@ pub(super) fn parts<'a, T>(
     let mut parts = Vec::with_capacity(patches.count());
     for (nodes, corners) in nodes.zip(corners) {
         let (own, others) = force.split_at_mut(3 * nodes.len());
-        parts.push((own, Some(AtHand { nodes, corners })));
+        parts.push((own, Some(PatchLocal { nodes, corners })));
         force = others;
     }
     parts
@@ -46,7 +46,7 @@ fn of_group<E: Element, X>(rows: &[X], group: usize) -> &[X] {
 }
 
 /// A patch's nodes, to have at hand.
-pub(super) struct AtHand<'a> {
+pub(super) struct PatchLocal<'a> {
     /// Rows of the body.
     pub(super) nodes: &'a [u32],
     /// Which of them each corner is.
@@ -57,12 +57,12 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
     /// Displacements of the patch's nodes, and θ where elements take their pressure from it, to hand; no forces yet.
     #[inline(always)]
     pub(super) fn bring(&self, inside: Option<&NodeColumns<'_, T>>, scratch: &mut Scratch<T>) {
-        let Some(at_hand) = &self.at_hand else { return };
+        let Some(patch_local) = &self.patch_local else { return };
         let theta = |node: u32| match E::PRESSURE {
             PressureFrom::Nodes => self.nodal_volume_change[node as usize],
             _ => T::default(),
         };
-        let (own, others) = at_hand.nodes.split_at(inside.map_or(0, |columns| columns.rows()));
+        let (own, others) = patch_local.nodes.split_at(inside.map_or(0, |columns| columns.rows()));
         if let Some(columns) = inside {
             for ((row, &node), u) in scratch.read.iter_mut().zip(own).zip(columns.u.chunks_exact(3)) {
                 *row = [u[0], u[1], u[2], theta(node)];
@@ -73,7 +73,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
             let u = &self.displacement[first..first + 3];
             *row = [u[0], u[1], u[2], theta(node)];
         }
-        scratch.sums[..at_hand.nodes.len()].fill([T::default(); 4]);
+        scratch.sums[..patch_local.nodes.len()].fill([T::default(); 4]);
     }
 
     /// The sums of forces from at hand: to the nodes inside that move now, all others to where patches are gathered.
@@ -86,7 +86,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
                 force.copy_from_slice(&sum[..3]);
             }
         }
-        if self.at_hand.is_some() {
+        if self.patch_local.is_some() {
             for (force, sum) in self.force[3 * rows..].chunks_exact_mut(3).zip(&scratch.sums[rows..]) {
                 force.copy_from_slice(&sum[..3]);
             }
@@ -133,10 +133,10 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         at: usize,
         scratch: &Scratch<T>,
     ) -> ([T::Vector<S>; 3], T::Vector<S>) {
-        match &self.at_hand {
-            Some(at_hand) => {
+        match &self.patch_local {
+            Some(patch_local) => {
                 let [x, y, z, theta] =
-                    T::load_rows(simd, &scratch.read, &of_group::<E, _>(at_hand.corners, group)[corner][at..]);
+                    T::load_rows(simd, &scratch.read, &of_group::<E, _>(patch_local.corners, group)[corner][at..]);
                 ([x, y, z], theta)
             }
             None => self.read_columns(simd, &of_group::<E, _>(self.connectivity, group)[corner][at..]),
@@ -193,9 +193,9 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         scratch: &mut Scratch<T>,
         force: [T::Vector<S>; 3],
     ) {
-        match &self.at_hand {
-            Some(at_hand) => {
-                let rows = &of_group::<E, _>(at_hand.corners, group)[corner][at..];
+        match &self.patch_local {
+            Some(patch_local) => {
+                let rows = &of_group::<E, _>(patch_local.corners, group)[corner][at..];
                 T::add_to_rows(simd, &mut scratch.sums, rows, force);
             }
             None => {

@@ -8,7 +8,7 @@ use pulp::x86::{V3, V4};
 
 /// Each number three times, over three registers: a b c … become a a a b, b b c c, …
 #[inline(always)]
-pub(super) fn thrice_f32s<S: Simd>(simd: S, numbers: S::f32s) -> [S::f32s; 3] {
+pub(super) fn broadcast3_f32s<S: Simd>(simd: S, numbers: S::f32s) -> [S::f32s; 3] {
     #[cfg(target_arch = "x86_64")]
     {
         if let Some(v4) = coerced::<S, V4>(simd) {
@@ -27,9 +27,9 @@ pub(super) fn thrice_f32s<S: Simd>(simd: S, numbers: S::f32s) -> [S::f32s; 3] {
     spread
 }
 
-/// As [`thrice_f32s`].
+/// As [`broadcast3_f32s`].
 #[inline(always)]
-pub(super) fn thrice_f64s<S: Simd>(simd: S, numbers: S::f64s) -> [S::f64s; 3] {
+pub(super) fn broadcast3_f64s<S: Simd>(simd: S, numbers: S::f64s) -> [S::f64s; 3] {
     let mut spread = [simd.splat_f64s(0.0); 3];
     spread_out::<f64>(bytemuck::cast_slice(&[numbers]), bytemuck::cast_slice_mut(&mut spread));
     spread
@@ -68,7 +68,7 @@ mod tests {
         fn with_simd<S: Simd>(self, simd: S) -> Vec<f64> {
             let numbers: Vec<T> = (0..LANES).map(|i| T::from_f64(i as f64)).collect();
             let mut lanes = [T::default(); 3 * LANES];
-            for (k, register) in T::thrice(T::load(simd, &numbers)).into_iter().enumerate() {
+            for (k, register) in T::broadcast3(T::load(simd, &numbers)).into_iter().enumerate() {
                 T::store(register, &mut lanes[k * T::width::<S>()..]);
             }
             lanes[..3 * T::width::<S>()].iter().map(|number| number.to_f64()).collect()
