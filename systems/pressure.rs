@@ -14,7 +14,8 @@ use crate::math::{Scalar, SimdScalar};
 use crate::shader;
 use bevy_ecs::prelude::*;
 
-/// Adds −p ∫ N_a n dA over the deformed faces, exact for triangles and for bilinear quadrilaterals.
+/// Adds −p ∫ N_a n dA over the deformed faces, exact for triangles and for bilinear quadrilaterals; the force on a curved
+/// face is exact, too, as the weighted sum of those on flat ones.
 ///
 /// Each loaded node sums what its own faces bring, in a fixed order. A face of a removed element bears no load, and the
 /// surface that removal uncovers is not loaded.
@@ -73,9 +74,12 @@ fn areas_of<T: Scalar>(faces: &FaceCorners, rest: &RestPosition, displacement: &
         let (x, u) = (rest.0[node as usize], &displacement[3 * node as usize..3 * node as usize + 3]);
         [T::from_f64(x.x) + u[0], T::from_f64(x.y) + u[1], T::from_f64(x.z) + u[2]]
     };
-    for (&[a, b, c, d], &alive) in faces.faces.iter().zip(&faces.alive) {
-        let there = alive != 0;
-        let of_face = if there { corner_areas([at(a), at(b), at(c), at(d)]) } else { [[T::default(); 3]; 4] };
+    for ((&[a, b, c, d], &weight), &alive) in faces.faces.iter().zip(&faces.weights).zip(&faces.alive) {
+        let (there, weight) = (alive != 0, T::from_f64(weight));
+        let mut of_face = if there { corner_areas([at(a), at(b), at(c), at(d)]) } else { [[T::default(); 3]; 4] };
+        for number in of_face.as_flattened_mut() {
+            *number = *number * weight;
+        }
         areas.extend_from_slice(of_face.as_flattened());
     }
     areas
@@ -136,8 +140,10 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
                 missing("a column of a body");
                 continue;
             };
-            let face = |(nodes, behind): (&[u32; 4], &(u32, u32))| [nodes[0], nodes[1], nodes[2], nodes[3], behind.1];
-            let nodes: Vec<[u32; 5]> = faces.faces.iter().zip(&faces.elements).map(face).collect();
+            let face = |((&[a, b, c, d], behind), &weight): ((&[u32; 4], &(u32, u32)), &f64)| {
+                [a, b, c, d, behind.1, (weight as f32).to_bits()]
+            };
+            let nodes: Vec<[u32; 6]> = faces.faces.iter().zip(&faces.elements).zip(&faces.weights).map(face).collect();
             let points: Vec<[f32; 3]> =
                 faces.faces.iter().flatten().map(|&node| rest.0[node as usize].as_vec3().to_array()).collect();
             let load = PressureLoad { signal: pressure.signal as u32 };

@@ -2,6 +2,7 @@
 
 use super::{Assembly, BodyParts};
 use crate::components::*;
+use crate::mesh::{CellKind, SurfaceFace};
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Load, Select, Share};
 use bevy_ecs::prelude::*;
@@ -90,16 +91,22 @@ fn loaded_faces(
 fn face_corners(body: &BodyParts, places: &[usize]) -> FaceCorners {
     let mut corners = FaceCorners::default();
     let mut by_node: Vec<(u32, u32)> = Vec::new();
-    for (number, face) in places.iter().map(|&place| body.placed.surface()[place]).enumerate() {
-        let count = face.corners().len();
-        let points = face.nodes.map(|node| body.placed.mesh.points[node as usize]);
-        let nodes = face.nodes.map(|node| body.node_rows[node as usize]);
+    for (face, (nodes, weight)) in places
+        .iter()
+        .map(|&place| &body.placed.surface()[place])
+        .flat_map(|face| parts(face).map(move |part| (face, part)))
+    {
+        let number = corners.faces.len() as u32;
+        let count = CellKind::of_face(&nodes).node_count();
+        let points = nodes.map(|node| body.placed.mesh.points[node as usize]);
+        let nodes = nodes.map(|node| body.node_rows[node as usize]);
         for (corner, &node) in nodes.iter().enumerate().take(count) {
-            by_node.push((node, 4 * number as u32 + corner as u32));
+            by_node.push((node, 4 * number + corner as u32));
         }
         corners.faces.push(nodes);
+        corners.weights.push(weight);
         corners.elements.push(body.element_rows[face.element as usize]);
-        corners.areas.push(corner_areas(&points, count == 3));
+        corners.areas.push(corner_areas(&points, count == 3).map(|area| weight * area));
         corners.alive.push(1);
     }
     by_node.sort_unstable();
@@ -112,6 +119,19 @@ fn face_corners(body: &BodyParts, places: &[usize]) -> FaceCorners {
     }
     corners.starts.push(corners.corners.len() as u32);
     corners
+}
+
+/// The flat faces that a face is loaded as, each with its weight: itself, or of one with middles its four facets, 4/3
+/// each, and the triangle of its corners, −1/3.
+///
+/// The chord of a parabola leaves out two thirds of base times height, two chords leave out a quarter of that: so
+/// weighted, area vectors are exactly those of the curved face, and pressure is the derivative of a volume, of no total
+/// force and moment on a closed surface. On a flat face with straight edges a third of the area falls to each middle
+/// and none to a corner, as ∫ N_a dA has it.
+fn parts(face: &SurfaceFace) -> impl Iterator<Item = ([u32; 4], f64)> + use<> {
+    let curved = face.middles.is_some();
+    let weight = if curved { 4.0 / 3.0 } else { 1.0 };
+    face.facets().map(move |facet| (facet, weight)).chain(curved.then_some((face.nodes, -1.0 / 3.0)))
 }
 
 /// ∫ N_a dA of each corner (m²): a third of a triangle; 2×2 Gauss points for a quadrilateral, exact when it is flat.

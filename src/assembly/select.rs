@@ -1,7 +1,7 @@
 //! Selections: names, places and numbers become marks on the author's nodes, faces and elements.
 
 use super::PlacedMesh;
-use crate::mesh::SurfaceFace;
+use crate::mesh::{SurfaceFace, nodes_of_face};
 use crate::scene::choice;
 use crate::scene::schema::Select;
 use glam::DVec3;
@@ -207,14 +207,17 @@ fn nodes(placed: &PlacedMesh, select: &Select) -> Vec<bool> {
     match select {
         Select::Set(name) => {
             mesh.node_sets.get(name).into_iter().flatten().for_each(|&node| mark(node));
-            mesh.face_sets.get(name).into_iter().flatten().flatten().for_each(|&node| mark(node));
+            if let Some(faces) = mesh.face_sets.get(name) {
+                let middles = mesh.middles();
+                faces.iter().flat_map(|face| nodes_of_face(face, &middles)).for_each(&mut mark);
+            }
             let members = mesh.element_sets.get(name).into_iter().flatten();
             members.flat_map(|&element| mesh.element(element as usize)).for_each(|&node| mark(node));
         }
         Select::Surface { .. } => {
             let picked = faces(placed, select);
             let picked = placed.surface().iter().zip(picked).filter(|(_, picked)| *picked);
-            picked.flat_map(|(face, _)| face.nodes).for_each(mark);
+            picked.flat_map(|(face, _)| face.all_nodes()).for_each(mark);
         }
         Select::Nodes(ids) => {
             // with the points between them that refining has made
@@ -274,7 +277,7 @@ fn faces(placed: &PlacedMesh, select: &Select) -> Vec<bool> {
 
 fn all_nodes(placed: &PlacedMesh, select: &Select) -> Vec<bool> {
     let marks = nodes(placed, select);
-    placed.surface().iter().map(|face| face.nodes.iter().all(|&node| marks[node as usize])).collect()
+    placed.surface().iter().map(|face| face.all_nodes().all(|node| marks[node as usize])).collect()
 }
 
 fn face_normal(placed: &PlacedMesh, face: &SurfaceFace) -> DVec3 {

@@ -49,10 +49,12 @@ pub struct FaceCorners {
     pub corners: Vec<u32>,
     /// Nodes of each face, outward normal by the right hand; a triangle repeats its last node.
     pub faces: Vec<[u32; 4]>,
+    /// How much each face counts: a curved one is the weighted sum of flat ones.
+    pub weights: Vec<f64>,
     /// The element behind each face: place of its block in the body's list, and its row there. A removed element's
     /// faces bear no load.
     pub elements: Vec<(u32, u32)>,
-    /// Rest area of each face that falls to each of its corners (m²).
+    /// Rest area of each face that falls to each of its corners (m²), times its weight.
     pub areas: Vec<[f64; 4]>,
     /// 1 while the face's element is there, else 0.
     pub alive: Vec<u32>,

@@ -5,6 +5,7 @@
 mod hex8;
 mod hex8_mean_dilatation;
 mod kinds;
+mod tet10;
 mod tet4;
 mod tet4_nodal_pressure;
 mod wedge6;
@@ -15,6 +16,7 @@ pub use kinds::{ElementTask, averages, elements_a_patch, mass_shares, node_count
 pub(crate) use kinds::{with_element, with_element_of};
 pub use tet4::Tet4;
 pub use tet4_nodal_pressure::Tet4NodalPressure;
+pub use tet10::Tet10;
 pub use wedge6::Wedge6;
 
 use crate::math::{Mat3, Real};
@@ -22,7 +24,7 @@ use crate::mesh::CellKind;
 use glam::DVec3;
 
 /// Nodes of the element type that has most: kernels have room for so many.
-pub const MOST_NODES: usize = 8;
+pub const MOST_NODES: usize = 10;
 /// Rest-shape numbers of the element type that has most.
 pub const MOST_ROWS: usize = 32;
 /// Integration points of the element type that has most.
@@ -109,8 +111,9 @@ pub trait Element: Copy + Send + Sync + 'static {
     /// Upper bound of the largest squared angular frequency (1/s²) of the free element with lumped mass.
     ///
     /// ω² ≤ (n/ρ)(λ tr G + 2μ' λ_max(G)), G = Σ g gᵀ, n as in [`NODES_OF_LEAST_MASS`](Element::NODES_OF_LEAST_MASS): no
-    /// node has less than m/n; λ, μ' and ρ as [`Stiffness`] has them; plus what the hourglass control adds. Rigorous at
-    /// rest; stretch raises the true value by about 1/σ_min(F)².
+    /// node has less than m/n; λ, μ' and ρ as [`Stiffness`] has them; plus what the hourglass control adds. Where nodes
+    /// have different shares s of the mass, g/√s stands for √n g. Rigorous at rest; stretch raises the true value by
+    /// about 1/σ_min(F)².
     fn frequency_bound(shape: &[f64; MOST_ROWS], stiffness: &Stiffness) -> f64;
 }
 

@@ -29,6 +29,7 @@ pub use locate::{Location, Locator};
 pub use quality::Quality;
 pub use report::{MeshReport, SetReport, extent};
 pub use surface::SurfaceFace;
+pub(crate) use surface::nodes_of_face;
 pub use topology::CellKind;
 
 use glam::DVec3;

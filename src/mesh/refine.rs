@@ -1,5 +1,6 @@
 //! Uniform subdivision: every element becomes some of the same kind, as its [`Split`] says.
 
+use super::surface::nodes_of_face;
 use super::topology::{MOST_NODES, MOST_PARENTS, MOST_SPLIT_POINTS, Split};
 use super::{CellKind, Cells, Ids, Mesh, MeshError, SurfaceFace};
 use glam::DVec3;
@@ -50,24 +51,29 @@ impl Mesh {
     }
 
     fn halve(&mut self) {
-        let surface = self.surface();
+        let (surface, there) = (self.surface(), self.middles());
         let whole = std::mem::take(&mut self.cells);
         let before = self.points.len();
-        let mut middles = Middles { points: std::mem::take(&mut self.points), known: HashMap::new() };
+        // those that are there are no new points
+        let known = there.iter().map(|(ends, &middle)| (key(ends), middle)).collect();
+        let mut middles = Middles { points: std::mem::take(&mut self.points), known };
         // where the parts of each element begin, and the last of them end
         let mut parts = vec![0];
         for (kind, nodes) in &whole {
             if let Some(split) = kind.topology().split {
-                middles.cut(split, nodes, |part| self.cells.push_nodes(kind, part));
+                middles.cut((kind, split), nodes, |part| self.cells.push_nodes(kind, part));
             }
             parts.push(self.cells.len() as u32);
         }
         let parts_of = |parent: u32| parts[parent as usize]..parts[parent as usize + 1];
         if !self.node_sets.is_empty() || !self.point_lists.is_empty() {
-            let near = Near::of(&middles, &surface, &whole);
+            let near = Near::of(&middles, before, &surface, &whole);
             for (name, set) in &mut self.node_sets {
-                let own = self.face_sets.get(name).filter(|faces| same_points(faces, set));
-                middles.join(&near, set, own);
+                let own: Option<Vec<Vec<u32>>> = self
+                    .face_sets
+                    .get(name)
+                    .map(|faces| faces.iter().map(|face| nodes_of_face(face, &there)).collect());
+                middles.join(&near, set, own.filter(|faces| same_points(faces, set)).as_ref());
             }
             self.point_lists.values_mut().for_each(|list| middles.join(&near, list, None));
         }
@@ -105,7 +111,7 @@ fn free_numbers(ids: &[u64], count: usize) -> Vec<u64> {
     }
 }
 
-fn same_points(faces: &[[u32; 4]], points: &[u32]) -> bool {
+fn same_points(faces: &[Vec<u32>], points: &[u32]) -> bool {
     let of_faces: BTreeSet<u32> = faces.iter().flatten().copied().collect();
     of_faces.into_iter().eq(points.iter().copied())
 }
@@ -134,8 +140,9 @@ impl Middles {
         self.known.get(&key(parents)).copied()
     }
 
-    /// The parts of a cell, right-handed if it is, by the rows of their nodes.
-    fn cut(&mut self, split: &Split, nodes: &[u32], mut see: impl FnMut(&[u32])) {
+    /// The parts of a cell, right-handed if it is, by the rows of their nodes. Of a cell of second order the middles of
+    /// the parts' edges are halfway between nodes.
+    fn cut(&mut self, (kind, split): (CellKind, &Split), nodes: &[u32], mut see: impl FnMut(&[u32])) {
         let mut rows = [0; MOST_SPLIT_POINTS];
         for (place, corners) in split.points.iter().enumerate() {
             let mut parents = [0; MOST_PARENTS];
@@ -144,6 +151,7 @@ impl Middles {
             }
             rows[place] = if let [corner] = corners { nodes[*corner] } else { self.of(&parents[..corners.len()]) };
         }
+        let (topology, mut parts) = (kind.topology(), Vec::with_capacity(split.count()));
         split.parts(
             |place| self.points[rows[place] as usize],
             |part| {
@@ -151,9 +159,15 @@ impl Middles {
                 for (node, &place) in part.iter().enumerate() {
                     nodes[node] = rows[place];
                 }
-                see(&nodes[..part.len()]);
+                parts.push(nodes);
             },
         );
+        for mut nodes in parts {
+            for (node, &[a, b]) in (topology.corners..kind.node_count()).zip(topology.edges) {
+                nodes[node] = self.of(&[nodes[a], nodes[b]]);
+            }
+            see(&nodes[..kind.node_count()]);
+        }
     }
 
     /// The four parts of a face; none of one that no element has.
@@ -174,7 +188,7 @@ impl Middles {
     /// Adds to a set of points the new ones that belong to it: those on the faces of its own, else on faces of the
     /// surface, else also in elements, that have all their corners in it; and those between points of the set of which
     /// one is on none of these.
-    fn join(&self, near: &Near<'_>, set: &mut Vec<u32>, own: Option<&Vec<[u32; 4]>>) {
+    fn join(&self, near: &Near<'_>, set: &mut Vec<u32>, own: Option<&Vec<Vec<u32>>>) {
         if set.len() < 2 {
             return;
         }
@@ -226,7 +240,7 @@ struct Near<'a> {
 }
 
 impl<'a> Near<'a> {
-    fn of(middles: &'a Middles, surface: &[SurfaceFace], whole: &Cells) -> Self {
+    fn of(middles: &'a Middles, before: usize, surface: &[SurfaceFace], whole: &Cells) -> Self {
         let by_lowest = |parts: &mut dyn Iterator<Item = Vec<u32>>| {
             let mut found = ByLowest::new();
             for part in parts {
@@ -237,11 +251,15 @@ impl<'a> Near<'a> {
             found
         };
         let mut points: HashMap<u32, Vec<(&Key, u32)>> = HashMap::new();
-        for (key, &row) in &middles.known {
+        for (key, &row) in middles.known.iter().filter(|(_, row)| **row as usize >= before) {
             points.entry(key[0]).or_default().push((key, row));
         }
         Self {
-            faces: by_lowest(&mut surface.iter().map(|face| face.nodes.to_vec())),
+            faces: by_lowest(
+                &mut surface
+                    .iter()
+                    .map(|face| face.nodes.into_iter().chain(face.middles.into_iter().flatten()).collect()),
+            ),
             elements: by_lowest(&mut whole.iter().map(|(_, nodes)| nodes.to_vec())),
             points,
         }

@@ -61,7 +61,7 @@ impl Mesh {
     pub fn summary(&self) -> MeshReport {
         let (min, max) = extent(self.points.iter().copied());
         let surface = self.surface();
-        let surface_nodes: BTreeSet<u32> = surface.iter().flat_map(|face| face.nodes).collect();
+        let surface_nodes: BTreeSet<u32> = surface.iter().flat_map(|face| face.all_nodes()).collect();
         let quality = self.quality();
         let centroid = |row: usize| {
             let nodes = self.element(row);

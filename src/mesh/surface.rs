@@ -1,7 +1,8 @@
 //! The surface of a mesh: faces that belong to exactly one element.
 
 use super::Mesh;
-use super::topology::MOST_FACES;
+use super::topology::{CellKind, MOST_FACES};
+use std::collections::HashMap;
 
 /// A face of the surface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -10,6 +11,8 @@ pub struct SurfaceFace {
     pub nodes: [u32; 4],
     /// The element it belongs to.
     pub element: u32,
+    /// Of a face of second order the middles of its edges, from that between its first two points on.
+    pub middles: Option<[u32; 3]>,
 }
 
 impl SurfaceFace {
@@ -18,10 +21,24 @@ impl SurfaceFace {
         &self.nodes[..if self.nodes[2] == self.nodes[3] { 3 } else { 4 }]
     }
 
-    /// The triangles it is made of: two of a quadrilateral.
+    /// Its points, each once: corners, then middles of edges.
+    pub fn all_nodes(&self) -> impl Iterator<Item = u32> + '_ {
+        self.corners().iter().copied().chain(self.middles.into_iter().flatten())
+    }
+
+    /// The flat polygons that it is taken for: itself, or four triangles where it has middles; a triangle repeats its
+    /// last point.
+    pub fn facets(&self) -> impl Iterator<Item = [u32; 4]> + use<> {
+        let [a, b, c, _] = self.nodes;
+        let four =
+            self.middles.map(|[ab, bc, ca]| [[a, ab, ca, ca], [ab, b, bc, bc], [ca, bc, c, c], [ab, bc, ca, ca]]);
+        let whole = four.is_none().then_some(self.nodes);
+        whole.into_iter().chain(four.into_iter().flatten())
+    }
+
+    /// The triangles it is made of: two of a quadrilateral, four of one with middles.
     pub fn triangles(&self) -> impl Iterator<Item = [u32; 3]> + use<> {
-        let [a, b, c, d] = self.nodes;
-        std::iter::once([a, b, c]).chain((c != d).then_some([a, c, d]))
+        self.facets().flat_map(|[a, b, c, d]| std::iter::once([a, b, c]).chain((c != d).then_some([a, c, d])))
     }
 }
 
@@ -32,7 +49,8 @@ impl Mesh {
     /// Faces that belong to exactly one element, sorted by element, then by local face.
     ///
     /// Where a quadrilateral of a hexahedron lies on two triangles of tetrahedra, both sides count as surface: they are
-    /// different faces, and nothing but their shared nodes joins them.
+    /// different faces, and nothing but their shared nodes joins them. So they do where a face of second order lies on
+    /// one that has no middles.
     pub fn surface(&self) -> Vec<SurfaceFace> {
         let mut single = self.single_faces();
         single.sort_unstable();
@@ -43,14 +61,34 @@ impl Mesh {
     fn face(&self, number: u64) -> SurfaceFace {
         let (element, local) = ((number / FACES) as usize, (number % FACES) as usize);
         let corners = self.cells.nodes(element);
-        let nodes = self.cells.kind(element).topology().faces[local].corners(corners);
-        SurfaceFace { nodes, element: element as u32 }
+        let face = &self.cells.kind(element).topology().faces[local];
+        let middles = face.middles().map(|middles| middles.map(|place| corners[place]));
+        SurfaceFace { nodes: face.corners(corners), element: element as u32, middles }
+    }
+
+    /// Nodes in the middle of edges, by the corners at the ends of these, ascending.
+    pub fn middles(&self) -> HashMap<[u32; 2], u32> {
+        let mut middles = HashMap::new();
+        for (kind, rows, _) in self.cells.blocks() {
+            let topology = kind.topology();
+            for nodes in rows.map(|row| self.cells.nodes(row)).take_while(|nodes| nodes.len() > topology.corners) {
+                for (&[a, b], &middle) in topology.edges.iter().zip(&nodes[topology.corners..]) {
+                    middles.insert(ascending(nodes[a], nodes[b]), middle);
+                }
+            }
+        }
+        middles
     }
 
     fn each_face(&self, mut see: impl FnMut(u64, [u32; 4])) {
         for (element, (kind, corners)) in (0..).zip(self.cells.iter()) {
             for (local, face) in (0..).zip(kind.topology().faces) {
-                see(element * FACES + local, sorted(face.corners(corners)));
+                let mut nodes = sorted(face.corners(corners));
+                if let Some(middles) = face.middles() {
+                    // else than a face without middles at the same corners
+                    nodes[3] = middles.map(|place| corners[place]).into_iter().fold(u32::MAX, u32::min);
+                }
+                see(element * FACES + local, nodes);
             }
         }
     }
@@ -78,6 +116,19 @@ impl Mesh {
         }
         single
     }
+}
+
+/// The ends of an edge, as [`Mesh::middles`] names it.
+pub fn ascending(a: u32, b: u32) -> [u32; 2] {
+    [a.min(b), a.max(b)]
+}
+
+/// The points of a face, each once, by its corners, of which a triangle repeats the last: these, then the
+/// [middles](Mesh::middles) of its edges, in their order, where there are some.
+pub fn nodes_of_face(face: &[u32; 4], middles: &HashMap<[u32; 2], u32>) -> Vec<u32> {
+    let corners = &face[..CellKind::of_face(face).node_count()];
+    let ends = (0..corners.len()).map(|place| (corners[place], corners[(place + 1) % corners.len()]));
+    corners.iter().copied().chain(ends.filter_map(|(a, b)| middles.get(&ascending(a, b)).copied())).collect()
 }
 
 /// The nodes of a face in ascending order; of a triangle's repeated last node the copy is moved to the end, so that it

@@ -3,7 +3,7 @@
 use crate::backend::cpu::{Cpu, ROWS_A_TASK};
 use crate::backend::device::bring_to_host;
 use crate::components::*;
-use crate::elements::node_count;
+use crate::elements::{MOST_NODES, node_count};
 use crate::error::Error;
 use crate::evaluation::BlockView;
 use bevy_ecs::prelude::*;
@@ -28,7 +28,7 @@ const COLUMNS: [&str; 5] =
     [Displacement::NAME, DisplacementStep::NAME, RestShape::NAME, ViscousMemory::NAME, Alive::NAME];
 
 /// What an element contributes: J, Cauchy stress, whether it is there, nodal forces.
-type ElementRow = (f64, [f64; 6], u8, [[f64; 3]; 8]);
+type ElementRow = (f64, [f64; 6], u8, [[f64; 3]; MOST_NODES]);
 
 /// The fields of a body at the present step.
 ///
@@ -81,7 +81,7 @@ fn elements_of(world: &World, entity: Entity) -> Vec<ElementRow> {
         let alive = world.get::<Alive>(entity);
         let element = |row: usize| {
             if alive.is_some_and(|alive| alive[row] == 0) {
-                return (1.0, [0.0; 6], 0, [[0.0; 3]; 8]);
+                return (1.0, [0.0; 6], 0, [[0.0; 3]; MOST_NODES]);
             }
             let state = view.element(row);
             (state.volume_ratio(), view.cauchy(row, &state), 1, view.forces(row, &state))

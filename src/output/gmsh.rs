@@ -2,7 +2,7 @@
 //! faces and elements, numbers, and vectors of elements, and that other programs read.
 
 use super::{OutputError, replace};
-use crate::mesh::{CellKind, Mesh};
+use crate::mesh::{CellKind, Mesh, nodes_of_face};
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{BufWriter, Result, Write};
@@ -30,18 +30,24 @@ fn groups(mesh: &Mesh) -> Vec<Group<'_>> {
     for (name, elements) in &mesh.element_sets {
         all.push(Group { name, dimension: 3, cells: Vec::new(), elements });
     }
+    let middles = mesh.middles();
     for (name, faces) in &mesh.face_sets {
         let cell = |face: &[u32; 4]| {
             let kind = CellKind::of_face(face);
-            (kind, face[..kind.node_count()].to_vec())
+            let mut nodes = nodes_of_face(face, &middles);
+            if kind == CellKind::Triangle && nodes.len() == CellKind::Triangle6.node_count() {
+                return (CellKind::Triangle6, nodes);
+            }
+            nodes.truncate(kind.node_count());
+            (kind, nodes)
         };
         all.push(Group { name, dimension: 2, cells: faces.iter().map(cell).collect(), elements: &[] });
     }
     for (name, nodes) in &mesh.node_sets {
         // faces and elements of the name bring their points
-        let faces = mesh.face_sets.get(name).into_iter().flatten().flatten();
+        let faces = mesh.face_sets.get(name).into_iter().flatten().flat_map(|face| nodes_of_face(face, &middles));
         let elements = mesh.element_sets.get(name).into_iter().flatten();
-        let brought: BTreeSet<u32> = faces.chain(elements.flat_map(|&e| mesh.element(e as usize))).copied().collect();
+        let brought: BTreeSet<u32> = faces.chain(elements.flat_map(|&e| mesh.element(e as usize)).copied()).collect();
         let left: Vec<(CellKind, Vec<u32>)> =
             nodes.iter().filter(|node| !brought.contains(node)).map(|&node| (CellKind::Point, vec![node])).collect();
         if !left.is_empty() {

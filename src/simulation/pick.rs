@@ -18,7 +18,7 @@ pub struct Pick {
     pub body: String,
     /// The author's number of the element behind the face.
     pub element: u64,
-    /// The face's nodes, as places in the author's order, counter-clockwise seen from outside; a triangle repeats its
+    /// The face's corners, as places in the author's order, counter-clockwise seen from outside; a triangle repeats its
     /// last one.
     pub face: [u32; 4],
     /// The triangle of it that the ray meets: three of its nodes.

@@ -141,10 +141,12 @@ impl Effects {
         all.push(Self { averaged: true, ..Self::default() });
         all.push(Self { grabs: true, ..Self::default() });
         all.push(Self { averaged: true, ..Self::all() });
-        for scheme in [Scheme::Patches, Scheme::TwoPass] {
-            all.push(Self { others: Some("Wedge6"), scheme, ..Self::default() });
+        for others in ["Wedge6", "Tet10"].map(Some) {
+            for scheme in [Scheme::Patches, Scheme::TwoPass] {
+                all.push(Self { others, scheme, ..Self::default() });
+            }
+            all.push(Self { others, ..Self::all() });
         }
-        all.push(Self { others: Some("Wedge6"), ..Self::all() });
         all
     }
 

@@ -118,15 +118,25 @@ fn parallelepipeds_exert_the_same_forces() {
 /// Wedges with every effect, in both schemes, and with elements gone.
 #[test]
 fn wedges_exert_the_same_forces() {
-    let wedges = Effects { others: Some("Wedge6"), ..Effects::default() };
+    others_exert_the_same_forces("Wedge6");
+}
+
+/// The same of curved tetrahedra of second order.
+#[test]
+fn ten_node_tetrahedra_exert_the_same_forces() {
+    others_exert_the_same_forces("Tet10");
+}
+
+fn others_exert_the_same_forces(kind: &'static str) {
+    let others = Effects { others: Some(kind), ..Effects::default() };
     for (fibres, prony) in [(None, 0), (Some(ALONG), 0), (Some(AROUND), 2)] {
-        compare_element_forces(&Effects { fibres, prony, ..wedges.clone() }, |_| {});
-        compare_element_forces(&Effects { fibres, prony, scheme: Scheme::TwoPass, ..wedges.clone() }, |_| {});
+        compare_element_forces(&Effects { fibres, prony, ..others.clone() }, |_| {});
+        compare_element_forces(&Effects { fibres, prony, scheme: Scheme::TwoPass, ..others.clone() }, |_| {});
     }
     for law in LAWS {
-        compare_element_forces(&Effects { law: Some(law), volumetric: true, prony: 1, ..wedges.clone() }, |_| {});
+        compare_element_forces(&Effects { law: Some(law), volumetric: true, prony: 1, ..others.clone() }, |_| {});
     }
-    compare_element_forces(&Effects { removal: true, prony: 1, ..wedges }, deactivate_some);
+    compare_element_forces(&Effects { removal: true, prony: 1, ..others }, deactivate_some);
 }
 
 /// The scheme of two passes, with a law that has all effects and with the plain one.

@@ -2,8 +2,7 @@
 
 use bevy_ecs::prelude::*;
 use sinew::components::*;
-use sinew::elements::node_count;
-use sinew::elements::{Element, Hex8, Hex8MeanDilatation, MOST_NODES, Parallelepiped, Wedge6};
+use sinew::elements::{Element, Hex8, Hex8MeanDilatation, MOST_NODES, Parallelepiped, Tet10, Wedge6, node_count};
 use sinew::evaluation::{ElementState, row_count};
 use sinew::materials::Elastic;
 use sinew::math::lane_place;
@@ -32,6 +31,8 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
         ElementKind::Hex8MeanDilatation => natural_gradients::<Hex8MeanDilatation>(number),
         // in the triangle coordinates run from 0 to 1: what they multiply is a difference of two displacements
         ElementKind::Wedge6 => 2.0 * natural_gradients::<Wedge6>(number),
+        // one difference and six deviations, whose slopes are below 8 together
+        ElementKind::Tet10 => 9.0 * natural_gradients::<Tet10>(number),
         // a node's gradient is the sum of the slopes of all modes, each with either sign
         ElementKind::Hex8 => {
             let slopes = if data.simple { 3 } else { 6 };
@@ -72,7 +73,9 @@ fn natural_gradients<E: Element>(number: impl Fn(usize) -> f64) -> f64 {
     let still = E::prepare(&[[0.0; 3]; MOST_NODES]);
     let inverse = |point: usize| {
         let at = E::at_point(&still, point, &number);
-        let determinant = at.volume / E::CELL.topology().solid.unwrap().quadrature[point].1;
+        // the determinant of the adjugate is its square
+        let [a, b, c] = at.adjugate.0.map(glam::DVec3::from_array);
+        let determinant = a.cross(b).dot(c).sqrt();
         at.adjugate.0.into_iter().flatten().map(move |x| (x / determinant).abs())
     };
     (0..E::POINTS).flat_map(inverse).fold(0.0, f64::max)

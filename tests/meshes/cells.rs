@@ -2,7 +2,7 @@
 
 use super::topology::solids;
 use glam::DVec3;
-use sinew::mesh::topology::{CellKind, Listing};
+use sinew::mesh::topology::{CellKind, Listing, Topology};
 use sinew::mesh::{Cells, Locator, Mesh};
 use sinew::output::{Frame, write_gmsh, write_vtu};
 
@@ -12,6 +12,7 @@ fn push(cells: &mut Cells, kind: CellKind, nodes: &[u32]) {
         [a, b, c, d] => cells.push(kind, [a, b, c, d]),
         [a, b, c, d, e, f] => cells.push(kind, [a, b, c, d, e, f]),
         [a, b, c, d, e, f, g, h] => cells.push(kind, [a, b, c, d, e, f, g, h]),
+        [a, b, c, d, e, f, g, h, i, j] => cells.push(kind, [a, b, c, d, e, f, g, h, i, j]),
         _ => panic!("{kind:?} has {} nodes", nodes.len()),
     };
     done.unwrap();
@@ -95,7 +96,8 @@ fn reference_mesh(kind: CellKind) -> Mesh {
 #[test]
 fn cells_of_every_kind_are_refined_or_refused() {
     for (kind, topology, _, p) in solids() {
-        let mut mesh = Mesh { points: p, ..reference_mesh(kind) };
+        // with straight edges, which keep their volume
+        let mut mesh = Mesh { points: straightened(topology, p), ..reference_mesh(kind) };
         mesh.element_sets.insert("all".into(), vec![0]);
         mesh.element_vectors.insert("along".into(), vec![DVec3::X]);
         mesh.element_ids = sinew::mesh::Ids::Named(vec![17]);
@@ -113,9 +115,123 @@ fn cells_of_every_kind_are_refined_or_refused() {
         assert_eq!(mesh.element_vectors["along"], vec![DVec3::X; parts]);
         assert_eq!(mesh.element_ids, sinew::mesh::Ids::Named(vec![17; parts]));
     }
-    for kind in [CellKind::Tet4, CellKind::Hex8, CellKind::Wedge6] {
+    for kind in [CellKind::Tet4, CellKind::Hex8, CellKind::Wedge6, CellKind::Tet10] {
         assert_eq!(kind.topology().split.map(|split| split.count()), Some(8), "{kind:?}");
     }
+}
+
+#[test]
+fn a_tetrahedron_of_second_order_is_cut_at_its_middles() {
+    let mut mesh = reference_mesh(CellKind::Tet10);
+    mesh.points[4] = DVec3::new(0.5, -0.05, 0.0);
+    mesh.face_sets.insert("bottom".into(), vec![[0, 2, 1, 1]]);
+    mesh.node_sets.insert("bottom".into(), vec![0, 1, 2, 4, 5, 6]);
+    mesh.node_sets.insert("edge".into(), vec![0, 1, 4]);
+    mesh.refine(1).unwrap();
+    // ten nodes, two on each half of the six edges, three between the middles of each of four faces, and one inside
+    assert_eq!((mesh.element_count(), mesh.points.len()), (8, 10 + 12 + 12 + 1));
+    assert!(mesh.soundness().is_sound(), "{:?}", mesh.soundness());
+    let faces = &mesh.face_sets["bottom"];
+    let corners: std::collections::BTreeSet<u32> = faces.iter().flatten().copied().collect();
+    assert_eq!((faces.len(), corners), (4, (0..7).filter(|&node| node != 3).collect()));
+    let height = |node: &u32| mesh.points[*node as usize].z;
+    assert_eq!(mesh.node_sets["bottom"].len(), 15);
+    assert!(mesh.node_sets["bottom"].iter().all(|node| height(node) == 0.0));
+    // what is new on the edge is halfway between nodes of it
+    let mut edge: Vec<f64> = mesh.node_sets["edge"].iter().map(|&node| mesh.points[node as usize].x).collect();
+    edge.sort_by(f64::total_cmp);
+    assert_eq!(edge, [0.0, 0.25, 0.5, 0.75, 1.0]);
+}
+
+/// With the middles of edges halfway between their ends.
+fn straightened(topology: &Topology, mut p: Vec<DVec3>) -> Vec<DVec3> {
+    for (node, [a, b]) in (topology.corners..topology.nodes.len()).zip(topology.edges) {
+        p[node] = 0.5 * (p[*a] + p[*b]);
+    }
+    p
+}
+
+/// A file as Gmsh writes it with elements of second order: faces and lines with names are sets, with their middles.
+#[test]
+fn a_gmsh_file_of_second_order_has_its_sets_and_is_written_so() {
+    let text = r#"$MeshFormat
+2.2 0 8
+$EndMeshFormat
+$PhysicalNames
+3
+1 1 "edge"
+2 2 "bottom"
+3 3 "all"
+$EndPhysicalNames
+$Nodes
+10
+1 0 0 0
+2 1 0 0
+3 0 1 0
+4 0 0 1
+5 0.5 0 0
+6 0.5 0.5 0
+7 0 0.5 0
+8 0 0 0.5
+9 0 0.5 0.5
+10 0.5 0 0.5
+$EndNodes
+$Elements
+3
+1 8 2 1 1 1 2 5
+2 9 2 2 2 1 3 2 7 6 5
+3 11 2 3 3 1 2 3 4 5 6 7 8 9 10
+$EndElements
+"#;
+    let read =
+        |text: &[u8]| Mesh::from_bytes("second.msh".into(), text, false).unwrap_or_else(|error| panic!("{error}"));
+    let mesh = read(text.as_bytes());
+    // the last two middles are the other way round
+    assert_eq!(mesh.cells.of_kind(CellKind::Tet10).unwrap(), [[0, 1, 2, 3, 4, 5, 6, 7, 9, 8]]);
+    assert_eq!(mesh.face_sets["bottom"], [[0, 2, 1, 1]]);
+    assert_eq!((&mesh.node_sets["edge"][..], &mesh.node_sets["bottom"][..]), (&[0, 1, 4][..], &[0, 1, 2, 4, 5, 6][..]));
+    assert_eq!(mesh.element_sets["all"], [0]);
+    assert!(mesh.notes.is_empty() && mesh.soundness().is_sound(), "{:?}", mesh.notes);
+    assert!((mesh.volume() - 1.0 / 6.0).abs() < 1e-15);
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("again.msh");
+    write_gmsh(&file, &mesh).unwrap();
+    let written = std::fs::read(&file).unwrap();
+    assert!(
+        String::from_utf8_lossy(&written).contains(" 9 2 2 2 1 3 2 7 6 5\n"),
+        "{}",
+        String::from_utf8_lossy(&written)
+    );
+    let again = read(&written);
+    assert_eq!((&again.cells, &again.points, &again.face_sets), (&mesh.cells, &mesh.points, &mesh.face_sets));
+    assert_eq!(again.node_sets["bottom"], mesh.node_sets["bottom"]);
+}
+
+/// A curved edge may fold a cell whose corners are sound.
+#[test]
+fn a_cell_that_its_edges_fold_is_refused() {
+    let mut mesh = reference_mesh(CellKind::Tet10);
+    mesh.points[4] = DVec3::new(0.5, -0.05, 0.0);
+    assert!(mesh.soundness().is_sound(), "{:?}", mesh.soundness());
+    mesh.points[4] = DVec3::new(0.5, 0.6, 0.0);
+    let errors = mesh.soundness().errors;
+    assert!(errors.len() == 1 && errors[0].to_string().contains("folded where its edges curve"), "{errors:?}");
+}
+
+/// Two cells of second order share a face; one of first order at the same corners does not.
+#[test]
+fn faces_of_second_order_are_inside_or_surface() {
+    let mut mesh = reference_mesh(CellKind::Tet10);
+    mesh.points.extend([DVec3::new(0.0, 0.0, -1.0), DVec3::new(0.0, 0.0, -0.5), DVec3::new(0.5, 0.0, -0.5)]);
+    mesh.points.push(DVec3::new(0.0, 0.5, -0.5));
+    let mut other = mesh.clone();
+    push(&mut mesh.cells, CellKind::Tet10, &[0, 2, 1, 10, 6, 5, 4, 11, 13, 12]);
+    assert_eq!(mesh.surface().len(), 6);
+    assert!(mesh.soundness().is_sound(), "{:?}", mesh.soundness());
+    let face = mesh.surface()[0];
+    assert_eq!((face.corners().len(), face.all_nodes().count(), face.triangles().count()), (3, 6, 4));
+    push(&mut other.cells, CellKind::Tet4, &[0, 2, 1, 10]);
+    assert_eq!(other.surface().len(), 8);
 }
 
 #[test]
@@ -185,7 +301,14 @@ fn files_have_the_numbers_and_the_orders_of_their_formats() {
     const VTK_WEDGE: Places = &[[0, 0, 0], [0, 1, 0], [1, 0, 0], [0, 0, 1], [0, 1, 1], [1, 0, 1]];
     const PIXEL: Places = &[[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]];
     const VOXEL: Places = &[[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1], [1, 1, 1]];
-    let known: [Known<'_>; 7] = [
+    // of second order in halves
+    const LINE3: Places = &[[0, 0, 0], [2, 0, 0], [1, 0, 0]];
+    const TRIANGLE6: Places = &[[0, 0, 0], [2, 0, 0], [0, 2, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]];
+    const TET10: Places =
+        &[[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1]];
+    const GMSH_TET10: Places =
+        &[[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [0, 1, 1], [1, 0, 1]];
+    let known: [Known<'_>; 10] = [
         (CellKind::Point, &[(1, &[[0; 3]])], (15, &[[0; 3]])),
         (CellKind::Line, &[(3, &[[0, 0, 0], [1, 0, 0]])], (1, &[[0, 0, 0], [1, 0, 0]])),
         (CellKind::Triangle, &[(5, TET.split_at(3).0)], (2, TET.split_at(3).0)),
@@ -193,6 +316,9 @@ fn files_have_the_numbers_and_the_orders_of_their_formats() {
         (CellKind::Tet4, &[(10, TET)], (4, TET)),
         (CellKind::Hex8, &[(12, CUBE), (11, VOXEL)], (5, CUBE)),
         (CellKind::Wedge6, &[(13, VTK_WEDGE)], (6, PRISM)),
+        (CellKind::Line3, &[(21, LINE3)], (8, LINE3)),
+        (CellKind::Triangle6, &[(22, TRIANGLE6)], (9, TRIANGLE6)),
+        (CellKind::Tet10, &[(24, TET10)], (11, GMSH_TET10)),
     ];
     assert_eq!(known.map(|of| of.0), CellKind::ALL);
     for (kind, vtk, gmsh) in known {
@@ -205,6 +331,7 @@ fn files_have_the_numbers_and_the_orders_of_their_formats() {
                 x => x,
             })
         };
+        let unit = if topology.nodes.len() > topology.corners { 2.0 } else { 1.0 };
         let check = |listing: &Listing, (number, places): (u8, Places)| {
             let used = |axis: usize| axis < usize::from(topology.dimension);
             let nodes: Vec<usize> = (0..topology.nodes.len()).collect();
@@ -212,7 +339,7 @@ fn files_have_the_numbers_and_the_orders_of_their_formats() {
                 .write(&nodes)
                 .map(|node| {
                     let place = place(node);
-                    [0, 1, 2].map(|axis| if used(axis) { place[axis] as i8 } else { 0 })
+                    [0, 1, 2].map(|axis| if used(axis) { (unit * place[axis]) as i8 } else { 0 })
                 })
                 .collect();
             assert_eq!((listing.number, &listed[..]), (number, places), "{kind:?}");

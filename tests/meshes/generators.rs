@@ -3,6 +3,7 @@
 //! A ball of radii a, b, c has 4π/3·abc; a lens of two caps of height h on a circle of radius a has πh/3·(3a² + h²); a
 //! mesh inscribed into a smooth surface misses a share of the volume that falls with the square of the cell size.
 
+use super::topology::flux;
 use glam::DVec3;
 use sinew::mesh::generators::{box_mesh, cylinder_mesh, ellipsoid_mesh, hexahedron_mesh, lens_mesh, tube_mesh};
 use sinew::mesh::measure::longest_edge;
@@ -235,6 +236,47 @@ fn a_tube_is_closed_sound_and_named_as_ring_and_as_sector() {
     for (set, flat) in [("start", DVec3::Y), ("end", DVec3::X)] {
         let rows = &quarter.node_sets[set];
         assert!(rows.len() == 6 && rows.iter().all(|&row| quarter.points[row as usize].dot(flat) == 0.0), "{set}");
+    }
+}
+
+/// Volume inside a surface of triangles of second order.
+fn enclosed_by_curves(mesh: &Mesh) -> f64 {
+    let at = |node: u32| mesh.points[node as usize];
+    mesh.surface().iter().map(|face| flux(&face.all_nodes().map(at).collect::<Vec<_>>())).sum()
+}
+
+/// Middles of edges lie on round surfaces: what lacks falls with the third power of the cells' size at least.
+#[test]
+fn shapes_of_second_order_follow_their_surface() {
+    let kind = ElementKind::Tet10;
+    let block = box_mesh(DVec3::new(0.1, 0.02, 0.03), (5, 2, 3), kind).unwrap();
+    assert_eq!((block.points.len(), block.element_count()), (11 * 5 * 7, 6 * 5 * 2 * 3));
+    assert!((block.volume() / (0.1 * 0.02 * 0.03) - 1.0).abs() < 1e-12);
+    assert_eq!((block.node_sets["x1"].len(), block.face_sets["x1"].len()), (5 * 7, 2 * 2 * 3));
+    for (name, make, exact) in round_shapes() {
+        let miss = |n: u32| (1.0 - make(n, kind).volume() / exact).abs();
+        let (coarse, fine) = (miss(8), miss(16));
+        println!("{name}: lacks {coarse:.1e} of the volume, and {fine:.1e}");
+        assert!(fine < 1e-3 && coarse / fine > 7.0, "{name}: {coarse:.2e} to {fine:.2e}");
+    }
+    let tube = |angle, cells| tube_mesh(0.01, 0.02, 0.03, angle, cells, kind).unwrap();
+    let round = [2, 3, 8, 11].into_iter().flat_map(|n| round_shapes().map(|(name, make, _)| (name, make(n, kind))));
+    let tubes = [(360.0, 3), (360.0, 16), (90.0, 1), (300.0, 12)];
+    let tubes = tubes.map(|(angle, around)| ("tube", tube(angle, (3, around, 2))));
+    let panel = [("hexahedron", hexahedron_mesh(panel(), (6, 5, 2), kind).unwrap()), ("box", block)];
+    for (name, mesh) in round.chain(tubes).chain(panel) {
+        let what = format!("{name} of {} elements", mesh.element_count());
+        let soundness = mesh.soundness();
+        assert!(soundness.is_sound() && soundness.warnings.is_empty(), "{what}: {soundness:?}");
+        let (inside, volume) = (enclosed_by_curves(&mesh), mesh.volume());
+        assert!((inside / volume - 1.0).abs() < 1e-12, "{what}: surface encloses {inside}, elements fill {volume}");
+        for (set, faces) in &mesh.face_sets {
+            assert!(faces.len() <= mesh.surface().len(), "{set}");
+        }
+        if name == "cylinder" {
+            let at = |row: &u32| mesh.points[*row as usize].truncate().length();
+            assert!(mesh.node_sets["side"].iter().all(|row| (at(row) - 0.05).abs() < 1e-15), "{what}");
+        }
     }
 }
 

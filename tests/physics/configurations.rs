@@ -6,7 +6,7 @@ use sinew::{BackendChoice, Options, SceneFile, Simulation};
 use std::path::Path;
 
 /// All kinds of elements, as scenes name them.
-pub const ELEMENTS: [&str; 5] = ["Tet4", "Tet4NodalPressure", "Hex8", "Hex8MeanDilatation", "Wedge6"];
+pub const ELEMENTS: [&str; 6] = ["Tet4", "Tet4NodalPressure", "Hex8", "Hex8MeanDilatation", "Wedge6", "Tet10"];
 
 /// A backend with a number type.
 pub struct Configuration {

@@ -1,7 +1,7 @@
 //! Copies of a body go their own ways: each as the body would by itself under its own load, to the rounding of sums in
 //! another order (1e-11 of the largest displacement in f64, 1e-4 in f32, after 300 steps).
 
-use crate::configurations::{Configuration, configurations};
+use crate::configurations::{Configuration, ELEMENTS, configurations};
 use glam::DVec3;
 
 fn end(run: &Configuration, elements: &str, copies: &str, load: &str) -> Vec<DVec3> {
@@ -25,7 +25,7 @@ fn load(force: f64, more: &str) -> String {
 #[test]
 fn copies_do_what_the_body_does_by_itself() {
     for run in configurations() {
-        for elements in ["Tet4", "Tet4NodalPressure", "Hex8", "Hex8MeanDilatation", "Wedge6"] {
+        for elements in ELEMENTS {
             // at the same place and apart, along x, so that the plane picks the ends of all
             for apart in ["", "apart: (0.05, 0, 0)"] {
                 let many = end(&run, elements, &format!("copies: 5, {apart}"), &load(0.01, "per_copy: (-1, 1),"));

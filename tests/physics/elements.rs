@@ -6,10 +6,12 @@
 //! in f32 at worst.
 
 use crate::configurations::configurations;
-use crate::grids::{Grid, grid};
+use crate::grids::{EDGES, Grid, grid};
 use crate::random::{Random, gradient, rows};
 use glam::{DMat3, DVec3};
-use sinew::elements::{Element, Hex8, Hex8MeanDilatation, MOST_NODES, MOST_ROWS, Tet4, Tet4NodalPressure, Wedge6};
+use sinew::elements::{
+    Element, Hex8, Hex8MeanDilatation, MOST_NODES, MOST_ROWS, Tet4, Tet4NodalPressure, Tet10, Wedge6,
+};
 use sinew::materials::{Elastic, Kinematics, NeoHookean};
 use sinew::math::{Mat3, Scalar, Sym3};
 use sinew::mesh::ElementKind;
@@ -23,9 +25,29 @@ pub fn corners(kind: ElementKind) -> Vec<DVec3> {
     grid.elements[0].iter().map(|&point| grid.points[point]).collect()
 }
 
-/// A shape that is no parallelepiped but convex.
+/// A shape that is no parallelepiped but convex; of second order with curved edges.
 pub fn distorted(kind: ElementKind, random: &mut Random) -> Vec<DVec3> {
-    corners(kind).iter().map(|&x| x + random.vector() * 0.2).collect()
+    let moved = corners(kind).iter().map(|&x| x + random.vector() * 0.2).collect();
+    straight(moved)
+        .into_iter()
+        .zip(0..)
+        .map(|(x, node)| if node < 4 || !is_curved(kind) { x } else { x + random.vector() * 0.05 })
+        .collect()
+}
+
+/// Whether elements of a kind may have curved edges.
+fn is_curved(kind: ElementKind) -> bool {
+    kind.cell().node_count() > kind.cell().topology().corners
+}
+
+/// With the middles of edges, if it has any, halfway between their ends.
+pub fn straight(mut points: Vec<DVec3>) -> Vec<DVec3> {
+    if points.len() == 10 {
+        for (node, [a, b]) in (4..).zip(EDGES) {
+            points[node] = 0.5 * (points[a] + points[b]);
+        }
+    }
+    points
 }
 
 pub fn displacements<T: Scalar>(points: &[DVec3], of: impl Fn(DVec3) -> DVec3) -> [[T; 3]; MOST_NODES] {
@@ -101,7 +123,7 @@ fn affine_fields_are_reproduced<E: Element>(kind: ElementKind) {
 /// V = ∮ x·n dA/3, by 4×4 Gauss points on each of the bilinear faces, of which a triangle is one with two corners in
 /// one place; or by three edges.
 fn volume(points: &[DVec3]) -> f64 {
-    if points.len() == 4 {
+    if [4, 10].contains(&points.len()) {
         return (points[1] - points[0]).cross(points[2] - points[0]).dot(points[3] - points[0]) / 6.0;
     }
     let hexahedron = [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
@@ -134,7 +156,8 @@ fn volume(points: &[DVec3]) -> f64 {
 fn volume_is_exact<E: Element>(kind: ElementKind) {
     let mut random = Random(12);
     for _ in 0..100 {
-        let points = distorted(kind, &mut random);
+        // of curved ones it is that of the points, which energy and forces are made of
+        let points = straight(distorted(kind, &mut random));
         let (found, expected) = (E::rest_shape(&points, YOUNG)[E::VOLUME_ROW], volume(&points));
         assert!((found - expected).abs() < 1e-14, "{found} instead of {expected}");
     }
@@ -226,6 +249,7 @@ elements! {
     hex8: Hex8, ElementKind::Hex8;
     hex8_mean_dilatation: Hex8MeanDilatation, ElementKind::Hex8;
     wedge6: Wedge6, ElementKind::Wedge6;
+    tet10: Tet10, ElementKind::Tet10;
 }
 
 /// Closed form 8, H31: interior nodes of a distorted mesh feel nothing of any homogeneous deformation.
@@ -239,10 +263,11 @@ fn patch_test_leaves_interior_nodes_without_force() {
     let mut random = Random(15);
     let mixed = |layer: usize| if layer < 2 { ElementKind::Hex8 } else { ElementKind::Tet4 };
     let wedges = |layer: usize| if layer < 2 { ElementKind::Wedge6 } else { ElementKind::Hex8 };
-    let meshes: [(&str, Grid); 5] = [
+    let meshes: [(&str, Grid); 6] = [
         ("Tet4", grid([3, 3, 3], |_| ElementKind::Tet4).distorted(|_| random.vector() * 0.2)),
         ("Hex8", grid([3, 3, 3], |_| ElementKind::Hex8).distorted(|_| Random(16).vector() * 0.2)),
         ("Wedge6", grid([3, 3, 3], |_| ElementKind::Wedge6).distorted(|_| Random(17).vector() * 0.2)),
+        ("Tet10", grid([2, 2, 2], |_| ElementKind::Tet10).distorted(|_| Random(18).vector() * 0.2).straight()),
         // triangles of wedges below the quadrilaterals of hexahedra
         (
             "wedges and hexahedra",

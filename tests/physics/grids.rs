@@ -3,6 +3,7 @@
 use glam::DVec3;
 use sinew::Simulation;
 use sinew::mesh::{CellKind, ElementKind};
+use std::collections::HashMap;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -13,6 +14,9 @@ const HEX: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 
 /// Two wedges along a diagonal of the bottom, their triangles counter-clockwise seen from above.
 const WEDGES: [[usize; 6]; 2] = [[0, 1, 3, 4, 5, 7], [0, 3, 2, 4, 7, 6]];
+
+/// Ends of the edges of a tetrahedron whose middles are nodes, in VTK's order.
+pub const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
 
 /// Points and elements.
 #[derive(Clone)]
@@ -41,17 +45,47 @@ pub fn grid(cells: [usize; 3], kind: impl Fn(usize) -> ElementKind) -> Grid {
             for i in 0..cells[0] {
                 let corner = |bits: usize| at(i + (bits & 1), j + (bits >> 1 & 1), k + (bits >> 2));
                 match kind(k).cell() {
-                    CellKind::Tet4 => grid.elements.extend(KUHN.map(|tet| tet.map(corner).to_vec())),
+                    CellKind::Tet4 | CellKind::Tet10 => grid.elements.extend(KUHN.map(|tet| tet.map(corner).to_vec())),
                     CellKind::Wedge6 => grid.elements.extend(WEDGES.map(|wedge| wedge.map(corner).to_vec())),
                     _ => grid.elements.push(HEX.map(corner).to_vec()),
                 }
             }
         }
     }
+    if (0..cells[2]).any(|layer| kind(layer).cell() == CellKind::Tet10) {
+        grid.add_middles(cells.map(|n| n as f64));
+    }
     grid
 }
 
 impl Grid {
+    /// Makes the tetrahedra ones of ten nodes; `size`: of the box.
+    fn add_middles(&mut self, size: [f64; 3]) {
+        let mut middles = HashMap::new();
+        for element in self.elements.iter_mut().filter(|element| element.len() == 4) {
+            for [a, b] in EDGES.map(|edge| edge.map(|end| element[end])) {
+                let row = *middles.entry([a.min(b), a.max(b)]).or_insert_with(|| {
+                    let at = 0.5 * (self.points[a] + self.points[b]);
+                    self.points.push(at);
+                    let inside = |axis: usize| at[axis] > 0.0 && at[axis] < size[axis];
+                    self.interior.push((0..3).all(inside));
+                    self.points.len() - 1
+                });
+                element.push(row);
+            }
+        }
+    }
+
+    /// With all middles of edges halfway between their ends.
+    pub fn straight(mut self) -> Self {
+        for element in self.elements.iter().filter(|element| element.len() == 10) {
+            for (node, [a, b]) in (4..).zip(EDGES.map(|edge| edge.map(|end| element[end]))) {
+                self.points[element[node]] = 0.5 * (self.points[a] + self.points[b]);
+            }
+        }
+        self
+    }
+
     /// With all points moved.
     pub fn moved(mut self, to: impl FnMut(DVec3) -> DVec3) -> Self {
         self.points = self.points.into_iter().map(to).collect();
@@ -99,7 +133,7 @@ impl Grid {
         }
         writeln!(text, "CELL_TYPES {}", self.elements.len()).unwrap();
         for element in &self.elements {
-            writeln!(text, "{}", [10, 13, 12][element.len() / 2 - 2]).unwrap();
+            writeln!(text, "{}", [10, 13, 12, 24][element.len() / 2 - 2]).unwrap();
         }
         std::fs::write(path, text).unwrap();
     }

@@ -18,7 +18,7 @@ enum Bound {
 fn elements_lock_as_told_or_not_at_all() {
     // wedges hold two volumes where hexahedra hold one, 1.5 degrees of freedom for each: they lock a little (8.2 % with
     // half the cells along each edge, 5.6 % here; hardly anything at ν = .3)
-    let bounds = [Above(0.40), Below(0.09), Below(0.05), Below(0.02), Below(0.06)];
+    let bounds = [Above(0.40), Below(0.09), Below(0.05), Below(0.02), Below(0.06), Below(0.02)];
     for (run, (elements, bound)) in
         configurations().iter().flat_map(|run| ELEMENTS.iter().zip(&bounds).map(move |e| (run, e)))
     {

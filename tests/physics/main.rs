@@ -50,6 +50,7 @@ mod programs;
 mod random;
 mod refined_lists;
 mod removal;
+mod second_order;
 mod snapshots;
 mod statics;
 mod stiffness_damping;

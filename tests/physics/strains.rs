@@ -9,7 +9,7 @@ use glam::{DMat3, DVec3};
 use sinew::backend::cpu::{Cpu, Strain, StrainColumns, strains};
 use sinew::bevy_ecs::prelude::Entity;
 use sinew::components::*;
-use sinew::elements::{Element, Hex8, Hex8MeanDilatation, Tet4, Tet4NodalPressure, Wedge6};
+use sinew::elements::{Element, Hex8, Hex8MeanDilatation, Tet4, Tet4NodalPressure, Tet10, Wedge6};
 use sinew::math::{LANES, SimdScalar};
 use sinew::mesh::ElementKind;
 use sinew::{BackendChoice, Simulation};
@@ -72,6 +72,7 @@ fn all(simulation: &Simulation, body: Entity) -> Vec<Strain> {
         ElementKind::Hex8 => run!(Hex8),
         ElementKind::Hex8MeanDilatation => run!(Hex8MeanDilatation),
         ElementKind::Wedge6 => run!(Wedge6),
+        ElementKind::Tet10 => run!(Tet10),
     }
 }
 

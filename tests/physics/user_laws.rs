@@ -1,6 +1,6 @@
 //! Laws of one's own in WGSL: what the translation makes of our own WGSL twins is the Rust law, on every backend.
 
-use crate::configurations::{configurations, near};
+use crate::configurations::{ELEMENTS, configurations, near};
 use crate::random::Random;
 use sinew::backend::user_law::{Findings, read};
 use sinew::glam::DMat3;
@@ -122,7 +122,7 @@ fn a_run_under_a_law_of_ones_own_goes_as_under_the_same_law_built_in() {
     let built_in = "neo_hookean: Moduli(shear: 1034.4828, bulk: 1e4)";
     let own = r#"law: (file: "neo_hookean.wgsl", parameters: {"shear": 1034.4828, "bulk": 1e4})"#;
     let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/shaders"));
-    for elements in ["Tet4", "Hex8", "Tet4NodalPressure", "Hex8MeanDilatation", "Wedge6"] {
+    for elements in ELEMENTS {
         for configuration in configurations() {
             let mut runs = [built_in, own].map(|law| {
                 let mut run = configuration.start_in(&scene(law, elements), folder);

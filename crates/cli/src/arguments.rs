@@ -4,7 +4,7 @@ mod before_a_run;
 mod suites;
 
 pub use before_a_run::{MeshArguments, ModesArguments, UnloadArguments};
-pub use suites::{BenchArguments, HardArguments};
+pub use suites::{BenchArguments, ELEMENTS, HardArguments};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::Vec3;

@@ -1,6 +1,6 @@
 //! `sinew bench`: what a step costs.
 
-use super::arguments::BenchArguments;
+use super::arguments::{BenchArguments, ELEMENTS};
 use super::failure::Failure;
 use super::{Outcome, interrupt, terminal};
 use sinew::mesh::ElementKind;
@@ -65,13 +65,9 @@ pub fn command(arguments: &BenchArguments) -> Outcome {
 }
 
 fn plan(arguments: &BenchArguments) -> Plan {
-    let element = |name: &String| match name.as_str() {
-        "tet4" => ElementKind::Tet4,
-        "tet4-nodal-pressure" => ElementKind::Tet4NodalPressure,
-        "hex8" => ElementKind::Hex8,
-        "wedge6" => ElementKind::Wedge6,
-        _ => ElementKind::Hex8MeanDilatation,
-    };
+    // the parser lets no other word through
+    let element =
+        |name: &String| ELEMENTS.iter().find(|(word, _)| word == name).map_or_else(ElementKind::default, |of| of.1);
     let effects = |name: &String| match name.as_str() {
         "fibres" => Effects::Fibres,
         "viscosity" => Effects::Viscosity,

@@ -15,7 +15,7 @@ pub fn box_mesh(size: DVec3, cells: (u32, u32, u32), elements: ElementKind) -> R
     positive("Box", "size.z", size.z)?;
     let cells = [cells.0, cells.1, cells.2];
     let grid = Grid::new("Box", "cells", cells, elements)?;
-    let share = |index: u32, axis: usize| size[axis] * (f64::from(index) / f64::from(cells[axis]));
+    let share = |index: f64, axis: usize| size[axis] * (index / f64::from(cells[axis]));
     let mut mesh = grid.mesh(|index| DVec3::from_array([0, 1, 2].map(|axis| share(index[axis], axis))))?;
     for (name, side) in ["x0", "x1", "y0", "y1", "z0", "z1"].into_iter().zip(SIDES) {
         grid.name_faces(&mut mesh, name, &[side], |_| true);

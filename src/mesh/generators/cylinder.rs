@@ -23,7 +23,7 @@ pub fn cylinder_mesh(
     let grid = grid.outward([true, true, false]);
     let mut mesh = grid.mesh(|[i, j, k]| {
         let flat = radius * disc(DVec2::new(centred(i, across), centred(j, across)));
-        flat.extend(height * (f64::from(k) / f64::from(along)))
+        flat.extend(height * (k / f64::from(along)))
     })?;
     let everywhere = |_: DVec3| true;
     grid.name_faces(&mut mesh, "bottom", &SIDES[4..5], everywhere);

@@ -1,9 +1,11 @@
 //! The grid of cells that every generator deforms.
 
+use super::super::surface::{ascending, nodes_of_face};
 use super::super::topology::{CellKind, MOST_NODES, Solid};
 use super::super::{Mesh, MeshError};
 use super::ElementKind;
 use glam::DVec3;
+use std::collections::HashMap;
 
 /// The most cells a generator makes: points and elements are counted in 32 bits.
 const MOST_CELLS: u64 = 1_000_000_000;
@@ -64,7 +66,9 @@ impl Grid {
         }
         let most = MOST_CELLS.min(u64::from(u32::MAX / parts));
         let count = cells.iter().try_fold(1u64, |product, &n| product.checked_mul(u64::from(n)));
-        let points = cells.iter().try_fold(1u64, |product, &n| product.checked_mul(u64::from(n) + 1));
+        // with middles of edges a point at each half index
+        let times = 1 + u64::from(kind.cell().node_count() > kind.cell().topology().corners);
+        let points = cells.iter().try_fold(1u64, |product, &n| product.checked_mul(times * u64::from(n) + 1));
         let fits = |value: Option<u64>, limit: u64| value.is_some_and(|value| value <= limit);
         if !fits(count, most) || !fits(points, u64::from(u32::MAX)) {
             return refuse(format!(
@@ -94,8 +98,9 @@ impl Grid {
         if self.ring { self.cells[1] } else { self.cells[1] + 1 }
     }
 
-    /// The mesh with points placed by their indices. Refuses a grid that does not fit into memory.
-    pub fn mesh(&self, place: impl Fn([u32; 3]) -> DVec3) -> Result<Mesh, MeshError> {
+    /// The mesh with points placed by their indices, those in the middle of edges by the mean of the indices at their
+    /// ends: they are on a curved surface, too. Refuses a grid that does not fit into memory.
+    pub fn mesh(&self, place: impl Fn([f64; 3]) -> DVec3) -> Result<Mesh, MeshError> {
         let [nx, ny, nz] = self.cells;
         let mut mesh = Mesh::default();
         let cells = nx as usize * ny as usize * nz as usize;
@@ -109,13 +114,27 @@ impl Grid {
         }
         for k in 0..=nz {
             for j in 0..self.points_along_y() {
-                mesh.points.extend((0..=nx).map(|i| place([i, j, k])));
+                mesh.points.extend((0..=nx).map(|i| place([i, j, k].map(f64::from))));
             }
         }
+        let mut middles = HashMap::new();
         for k in 0..nz {
             for j in 0..ny {
                 for i in 0..nx {
-                    self.cut([i, j, k], |nodes| mesh.cells.push_nodes(kind, nodes));
+                    let cell = [i, j, k];
+                    let halfway = |[a, b]: [usize; 2]| {
+                        let along = |corner: usize, axis: usize| f64::from(cell[axis] + (corner >> axis & 1) as u32);
+                        place([0, 1, 2].map(|axis| 0.5 * (along(a, axis) + along(b, axis))))
+                    };
+                    self.elements(cell, |corners| {
+                        let nodes = self.nodes(cell, corners, |ends, rows| {
+                            *middles.entry(rows).or_insert_with(|| {
+                                mesh.points.push(halfway(ends));
+                                mesh.points.len() as u32 - 1
+                            })
+                        });
+                        mesh.cells.push_nodes(kind, &nodes[..kind.node_count()]);
+                    });
                 }
             }
         }
@@ -150,15 +169,22 @@ impl Grid {
         }
     }
 
-    /// The elements of a cell as rows of points.
-    fn cut(&self, cell: [u32; 3], mut see: impl FnMut(&[u32])) {
-        self.elements(cell, |corners| {
-            let mut rows = [0; MOST_NODES];
-            for (place, &corner) in corners.iter().enumerate() {
-                rows[place] = self.row(cell, corner);
-            }
-            see(&rows[..corners.len()]);
-        });
+    /// The nodes of an element by its corners in a cell; `middle`: that of the edge between two corners and two rows.
+    fn nodes(
+        &self,
+        cell: [u32; 3],
+        corners: &[usize],
+        mut middle: impl FnMut([usize; 2], [u32; 2]) -> u32,
+    ) -> [u32; MOST_NODES] {
+        let topology = self.kind.topology();
+        let mut rows = [0; MOST_NODES];
+        for (place, &corner) in corners.iter().enumerate() {
+            rows[place] = self.row(cell, corner);
+        }
+        for (place, &[a, b]) in (topology.corners..topology.nodes.len()).zip(topology.edges) {
+            rows[place] = middle([corners[a], corners[b]], ascending(rows[a], rows[b]));
+        }
+        rows
     }
 
     /// Adds a set of faces and one of their nodes: faces of `sides` that `keep` keeps by their centre.
@@ -168,7 +194,8 @@ impl Grid {
             let at = |row: u32| mesh.points[row as usize];
             keep(if c == d { (at(a) + at(b) + at(c)) / 3.0 } else { (at(a) + at(b) + at(c) + at(d)) / 4.0 })
         });
-        let mut nodes: Vec<u32> = faces.iter().flatten().copied().collect();
+        let middles = mesh.middles();
+        let mut nodes: Vec<u32> = faces.iter().flat_map(|face| nodes_of_face(face, &middles)).collect();
         nodes.sort_unstable();
         nodes.dedup();
         mesh.face_sets.insert(name.into(), faces);

@@ -33,7 +33,7 @@ pub fn hexahedron_mesh(corners: [DVec3; 8], cells: (u32, u32, u32), elements: El
     let cells = [cells.0, cells.1, cells.2];
     let grid = Grid::new("Hexahedron", "cells", cells, elements)?;
     let mut mesh = grid.mesh(|index| {
-        let [r, s, t] = [0, 1, 2].map(|axis| f64::from(index[axis]) / f64::from(cells[axis]));
+        let [r, s, t] = [0, 1, 2].map(|axis| index[axis] / f64::from(cells[axis]));
         let quad = |a: usize| corners[a].lerp(corners[a + 1], r).lerp(corners[a + 3].lerp(corners[a + 2], r), s);
         quad(0).lerp(quad(4), t)
     })?;

@@ -1,7 +1,8 @@
 //! Meshes made from a few numbers: one file a shape.
 //!
-//! All of them deform a grid of cells; a cell is one hexahedron or six tetrahedra. Points run along x fastest, then y,
-//! then z; the elements of a cell follow each other.
+//! All of them deform a grid of cells; a cell is one hexahedron, two wedges or six tetrahedra. Points run along x
+//! fastest, then y, then z; middles of edges follow them, in the order of the elements. The elements of a cell follow
+//! each other.
 
 mod r#box;
 mod cylinder;
@@ -40,6 +41,8 @@ macro_rules! each_element_kind {
             Hex8MeanDilatation: Hex8, "hex8_mean_dilatation";
             /// Six-node wedges with six points and mean dilatation: what meshes of layers are made of.
             Wedge6: Wedge6, "wedge6";
+            /// Ten-node tetrahedra with four points and mean dilatation: accurate on meshes of tetrahedra.
+            Tet10: Tet10, "tet10";
         }
     };
 }

@@ -14,8 +14,8 @@ const INNER_SQUARE: f64 = 0.78;
 const INNER_CUBE: f64 = 0.68;
 
 /// An index of 0 to `cells` as a number of −1 to 1, exactly symmetric.
-pub(super) fn centred(index: u32, cells: u32) -> f64 {
-    (2.0 * f64::from(index) - f64::from(cells)) / f64::from(cells)
+pub(super) fn centred(index: f64, cells: u32) -> f64 {
+    (2.0 * index - f64::from(cells)) / f64::from(cells)
 }
 
 /// From the square [−1, 1]² to the unit disc; rims of equal cells get equal arcs.

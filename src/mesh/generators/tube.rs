@@ -38,9 +38,9 @@ pub fn tube_mesh(
     let grid = Grid::new("Tube", "cells", [through, around, along], elements)?;
     let grid = if closed { grid.ring() } else { grid };
     let mut mesh = grid.mesh(|[i, j, k]| {
-        let radius = inner + (outer - inner) * (f64::from(i) / f64::from(through));
-        let (x, y) = direction(angle * f64::from(j) / f64::from(around));
-        DVec3::new(radius * x, radius * y, height * (f64::from(k) / f64::from(along)))
+        let radius = inner + (outer - inner) * (i / f64::from(through));
+        let (x, y) = direction(angle * j / f64::from(around));
+        DVec3::new(radius * x, radius * y, height * (k / f64::from(along)))
     })?;
     let names = ["inner", "outer", "start", "end", "bottom", "top"];
     for (name, side) in names.into_iter().zip(SIDES) {

@@ -77,7 +77,7 @@ impl Mesh {
         let corners = &self.places(row)[..];
         let (edge, altitude) = (longest_edge(kind, corners), (solid.smallest_altitude)(corners));
         let (mut volume, mut folded) = ((solid.volume)(corners), false);
-        if !solid.frames.is_empty() {
+        if !solid.is_affine() {
             let middle = solid.middle_volume(corners);
             let least = solid.corner_volumes(corners).fold(middle, f64::min);
             folded = least < -FLAT * edge.powi(3);
@@ -89,7 +89,8 @@ impl Mesh {
         } else if volume < 0.0 {
             all.inverted.push((row, format!("volume {volume:.2e} m³")));
         } else if folded {
-            all.inverted.push((row, "folded at a corner".into()));
+            let place = if solid.samples.is_empty() { "at a corner" } else { "where its edges curve" };
+            all.inverted.push((row, format!("folded {place}")));
         } else if altitude < SLIVER * edge {
             all.slivers.push((row, altitude / edge));
         }

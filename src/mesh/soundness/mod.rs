@@ -23,7 +23,7 @@ pub enum Defect {
     RepeatedElement,
     /// An element without volume.
     Flat,
-    /// An element with negative volume, or a hexahedron folded at a corner.
+    /// An element with negative volume, or one folded at a corner or where its edges curve.
     Inverted,
     /// A very thin element (warning).
     Sliver,

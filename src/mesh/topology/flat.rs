@@ -11,6 +11,7 @@ pub static POINT: Topology = Topology {
     corners: 1,
     edges: &[],
     faces: &[],
+    facets: &[],
     vtk: &[Listing { number: 1, order: &[0] }],
     gmsh: Listing { number: 15, order: &[0] },
     split: None,
@@ -26,6 +27,7 @@ pub static LINE: Topology = Topology {
     corners: 2,
     edges: &[[0, 1]],
     faces: &[],
+    facets: &[],
     vtk: &[Listing { number: 3, order: &[0, 1] }],
     gmsh: Listing { number: 1, order: &[0, 1] },
     split: None,
@@ -41,6 +43,7 @@ pub static TRIANGLE: Topology = Topology {
     corners: 3,
     edges: &[[0, 1], [1, 2], [2, 0]],
     faces: &[],
+    facets: &[[0, 1, 2, 2]],
     vtk: &[Listing { number: 5, order: &[0, 1, 2] }],
     gmsh: Listing { number: 2, order: &[0, 1, 2] },
     split: Some(&Split {
@@ -48,6 +51,39 @@ pub static TRIANGLE: Topology = Topology {
         parts: &[&[0, 3, 5], &[3, 1, 4], &[5, 4, 2], &[3, 4, 5]],
         inner: &[],
     }),
+    solid: None,
+};
+
+/// The ends of a line, and its middle.
+pub static LINE3: Topology = Topology {
+    name: "Line3",
+    plural: "3-node lines",
+    dimension: 1,
+    nodes: &[[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]],
+    corners: 2,
+    edges: &[[0, 1]],
+    faces: &[],
+    facets: &[],
+    vtk: &[Listing { number: 21, order: &[0, 1, 2] }],
+    gmsh: Listing { number: 8, order: &[0, 1, 2] },
+    split: None,
+    solid: None,
+};
+
+/// The corners of a triangle, and the middles of its edges.
+pub static TRIANGLE6: Topology = Topology {
+    name: "Triangle6",
+    plural: "6-node triangles",
+    dimension: 2,
+    nodes: &[[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.0, 0.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.0]],
+    corners: 3,
+    edges: &[[0, 1], [1, 2], [2, 0]],
+    faces: &[],
+    facets: &[[0, 3, 5, 5], [3, 1, 4, 4], [5, 4, 2, 2], [3, 4, 5, 5]],
+    vtk: &[Listing { number: 22, order: &[0, 1, 2, 3, 4, 5] }],
+    gmsh: Listing { number: 9, order: &[0, 1, 2, 3, 4, 5] },
+    // by its corners
+    split: TRIANGLE.split,
     solid: None,
 };
 
@@ -60,6 +96,7 @@ pub static QUAD: Topology = Topology {
     corners: 4,
     edges: &[[0, 1], [1, 2], [2, 3], [3, 0]],
     faces: &[],
+    facets: &[[0, 1, 2, 3]],
     vtk: &[Listing { number: 9, order: &[0, 1, 2, 3] }, Listing { number: 8, order: &[0, 1, 3, 2] }],
     gmsh: Listing { number: 3, order: &[0, 1, 2, 3] },
     split: Some(&Split {

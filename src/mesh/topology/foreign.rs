@@ -19,18 +19,16 @@ const fn cell(plural: &'static str, nodes: usize, dimension: u8, vtk: Option<u8>
 }
 
 /// All that are known.
-pub static CELLS: [Foreign; 42] = [
+pub static CELLS: [Foreign; 39] = [
     cell("empty cells", 0, 0, Some(0), None),
     cell("poly-vertices", 0, 0, Some(2), None),
     cell("polylines", 0, 1, Some(4), None),
-    cell("3-node lines", 3, 1, Some(21), Some(8)),
     cell("4-node lines", 4, 1, Some(35), Some(26)),
     cell("5-node lines", 5, 1, None, Some(27)),
     cell("6-node lines", 6, 1, None, Some(28)),
     cell("polygons", 0, 2, Some(7), None),
     cell("triangle strips", 0, 2, Some(6), None),
     cell("6-node quadrilaterals", 6, 2, Some(30), None),
-    cell("6-node triangles", 6, 2, Some(22), Some(9)),
     cell("7-node triangles", 7, 2, Some(34), None),
     cell("8-node quadrilaterals", 8, 2, Some(23), Some(16)),
     cell("9-node quadrilaterals", 9, 2, Some(28), Some(10)),
@@ -46,7 +44,6 @@ pub static CELLS: [Foreign; 42] = [
     cell("Lagrange tetrahedra", 0, 3, Some(71), None),
     cell("polyhedra", 0, 3, Some(42), None),
     cell("pyramids", 5, 3, Some(14), Some(7)),
-    cell("10-node tetrahedra", 10, 3, Some(24), Some(11)),
     cell("pentagonal prisms", 10, 3, Some(15), None),
     cell("12-node wedges", 12, 3, Some(31), None),
     cell("hexagonal prisms", 12, 3, Some(16), None),

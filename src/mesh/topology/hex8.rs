@@ -20,6 +20,7 @@ pub static HEX8: Topology = Topology {
         Face { kind: CellKind::Quad, nodes: &[2, 3, 7, 6] },
         Face { kind: CellKind::Quad, nodes: &[3, 0, 4, 7] },
     ],
+    facets: &[],
     vtk: &[Listing { number: 12, order: &[0, 1, 2, 3, 4, 5, 6, 7] }, Listing { number: 11, order: &ROW_BY_ROW }],
     gmsh: Listing { number: 5, order: &[0, 1, 2, 3, 4, 5, 6, 7] },
     // points of a 3×3×3 grid, row by row: each the middle of the corners that agree with it; a part at each corner
@@ -89,6 +90,7 @@ pub static HEX8: Topology = Topology {
             [6, 5, 7, 2],
             [7, 6, 4, 3],
         ],
+        samples: &[],
         axes: |p| axes(first(p)),
         unit_volume: 1.0,
         volume: |p| volume(first(p)),

@@ -8,6 +8,7 @@ pub mod flat;
 pub mod foreign;
 pub mod hex8;
 mod isoparametric;
+pub mod tet10;
 pub mod tet4;
 pub mod wedge6;
 
@@ -16,7 +17,7 @@ pub use isoparametric::{Located, Shape};
 use glam::DVec3;
 
 /// Nodes of the kind that has most.
-pub const MOST_NODES: usize = 8;
+pub const MOST_NODES: usize = 10;
 /// Faces of the kind that has most.
 pub const MOST_FACES: usize = 6;
 /// Points of the [`Split`] that has most.
@@ -87,6 +88,12 @@ cell_kinds! {
     Hex8 => hex8::HEX8,
     /// Six-node wedge: the bottom counter-clockwise seen from the top, then the top.
     Wedge6 => wedge6::WEDGE6,
+    /// A line of second order: its ends, then its middle.
+    Line3 => flat::LINE3,
+    /// A triangle of second order: its corners, then the middles of its edges.
+    Triangle6 => flat::TRIANGLE6,
+    /// Ten-node tetrahedron: corners as of four nodes, then the middles of its edges.
+    Tet10 => tet10::TET10,
 }
 
 /// What is known of a kind of cell.
@@ -105,6 +112,9 @@ pub struct Topology {
     pub edges: &'static [[usize; 2]],
     /// Faces by local nodes, counter-clockwise seen from outside; none but of cells that fill space.
     pub faces: &'static [Face],
+    /// The flat polygons that a cell of two dimensions is taken for where flat ones are needed: in pictures, and by rays
+    /// and areas; a triangle repeats its last node.
+    pub facets: &'static [[usize; 4]],
     /// VTK's types: the first is written, all are read.
     pub vtk: &'static [Listing],
     /// Gmsh's type.
@@ -130,6 +140,16 @@ impl Face {
         let last = self.kind.topology().corners - 1;
         [0, 1, 2, last].map(|place| nodes[self.nodes[place]])
     }
+
+    /// Which nodes of the cell are the middles of its edges, if it has middles: a triangle's.
+    pub fn middles(&self) -> Option<[usize; 3]> {
+        self.nodes.get(self.kind.topology().corners..)?.first_chunk().copied()
+    }
+
+    /// The [facets](Topology::facets) of the face of a cell.
+    pub fn facets<T: Copy>(&self, nodes: &[T]) -> impl Iterator<Item = [T; 4]> {
+        self.kind.topology().facets.iter().map(move |facet| facet.map(|place| nodes[self.nodes[place]]))
+    }
 }
 
 /// How files name a kind and in which order they list its nodes.
@@ -144,7 +164,7 @@ pub struct Listing {
 pub struct Split {
     /// Points of the parts: each the middle of these corners. New ones are made in this order.
     pub points: &'static [&'static [usize]],
-    /// Parts by places in `points`.
+    /// Parts by places in `points`; of cells of second order by their corners.
     pub parts: &'static [&'static [usize]],
     /// Ways to cut what these parts leave: that with the shortest diagonal is taken.
     pub inner: &'static [Diagonal],
@@ -181,9 +201,11 @@ pub struct Solid {
     /// shape (for [`MassRule::Hrz`], ∫ N_a² with its own Jacobian).
     pub shares: &'static [f64],
     /// Three neighbours of each corner at which the Jacobian has to be looked at, so that corner and neighbours make a
-    /// right-handed frame; none where the determinant is the same everywhere. Edges are straight: a curved cell of
-    /// second order would need the Jacobian of its shape functions at sample points instead.
+    /// right-handed frame; none where the determinant is the same everywhere, or edges may be curved.
     pub frames: &'static [[usize; 4]],
+    /// Places of the reference cell at which the Jacobian of the shape functions has to be looked at, where edges may be
+    /// curved.
+    pub samples: &'static [[f64; 3]],
     /// Mean edges along the three directions (m); their triple product is proportional to the determinant in the
     /// middle.
     pub axes: fn(&[DVec3]) -> [DVec3; 3],
@@ -200,7 +222,7 @@ pub struct Solid {
     /// The order in which the nodes stand when the cell is turned inside out.
     pub turned: &'static [usize],
     /// How many of them fill a cube whose corners are named by bits (1 upper in the first direction, 2 in the second, 4
-    /// in the third), by these; none where corners alone do not say. Cubes side by side meet in the same faces.
+    /// in the third), by their corners; none where these do not say. Cubes side by side meet in the same faces.
     pub in_cube: &'static [&'static [usize]],
 }
 
@@ -303,15 +325,21 @@ impl Solid {
         a.cross(b).dot(c) * self.unit_volume
     }
 
-    /// The same of the corners that have to be looked at.
+    /// The same of the corners, and of the places within, that have to be looked at.
     pub fn corner_volumes<'a>(&'a self, p: &'a [DVec3]) -> impl Iterator<Item = f64> + 'a {
         let frame = |&[o, a, b, c]: &[usize; 4]| (p[a] - p[o]).cross(p[b] - p[o]).dot(p[c] - p[o]);
-        self.frames.iter().map(move |corners| frame(corners) * self.unit_volume)
+        let sample = |at: &[f64; 3]| (self.shape)(*at).jacobian(p).determinant();
+        self.frames.iter().map(frame).chain(self.samples.iter().map(sample)).map(|product| product * self.unit_volume)
+    }
+
+    /// Whether the Jacobian is the same everywhere.
+    pub const fn is_affine(&self) -> bool {
+        self.frames.is_empty() && self.samples.is_empty()
     }
 
     /// Whether a cell lists its nodes in the other order: it is negative everywhere.
     pub fn is_inside_out(&self, p: &[DVec3]) -> bool {
-        match self.frames.is_empty() {
+        match self.is_affine() {
             true => (self.volume)(p) < 0.0,
             false => self.corner_volumes(p).chain([self.middle_volume(p)]).all(|value| value < 0.0),
         }

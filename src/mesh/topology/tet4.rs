@@ -18,6 +18,7 @@ pub static TET4: Topology = Topology {
         Face { kind: CellKind::Triangle, nodes: &[1, 2, 3] },
         Face { kind: CellKind::Triangle, nodes: &[0, 3, 2] },
     ],
+    facets: &[],
     vtk: &[Listing { number: 10, order: &[0, 1, 2, 3] }],
     gmsh: Listing { number: 4, order: &[0, 1, 2, 3] },
     // one in each corner, and four around a diagonal of the octahedron between them
@@ -36,6 +37,7 @@ pub static TET4: Topology = Topology {
         mass: MassRule::RowSum,
         shares: &[0.25; 4],
         frames: &[],
+        samples: &[],
         axes: |p| [p[1] - p[0], p[2] - p[0], p[3] - p[0]],
         unit_volume: 1.0 / 6.0,
         volume: |p| volume(first(p)),

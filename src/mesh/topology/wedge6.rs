@@ -20,6 +20,7 @@ pub static WEDGE6: Topology = Topology {
         Face { kind: CellKind::Quad, nodes: &[1, 2, 5, 4] },
         Face { kind: CellKind::Quad, nodes: &[2, 0, 3, 5] },
     ],
+    facets: &[],
     vtk: &[Listing { number: 13, order: &[0, 2, 1, 3, 5, 4] }],
     gmsh: Listing { number: 6, order: &[0, 1, 2, 3, 4, 5] },
     // the triangle's four parts in two layers; points layer by layer
@@ -70,6 +71,7 @@ pub static WEDGE6: Topology = Topology {
         mass: MassRule::RowSum,
         shares: &[1.0 / 6.0; 6],
         frames: &[[0, 1, 2, 3], [1, 2, 0, 4], [2, 0, 1, 5], [3, 5, 4, 0], [4, 3, 5, 1], [5, 4, 3, 2]],
+        samples: &[],
         axes: |p| axes(first(p)),
         unit_volume: 0.5,
         volume: |p| volume(first(p)),

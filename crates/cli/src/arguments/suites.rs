@@ -2,7 +2,18 @@
 
 use super::BackendName;
 use clap::Args;
+use sinew::mesh::ElementKind;
 use std::path::PathBuf;
+
+/// All element types by the words of benchmarks.
+pub const ELEMENTS: [(&str, ElementKind); ElementKind::ALL.len()] = [
+    ("tet4", ElementKind::Tet4),
+    ("tet4-nodal-pressure", ElementKind::Tet4NodalPressure),
+    ("hex8", ElementKind::Hex8),
+    ("hex8-mean-dilatation", ElementKind::Hex8MeanDilatation),
+    ("wedge6", ElementKind::Wedge6),
+    ("tet10", ElementKind::Tet10),
+];
 
 #[derive(Args)]
 pub struct HardArguments {
@@ -37,7 +48,7 @@ pub struct BenchArguments {
         value_name = "NAME,..",
         value_delimiter = ',',
         default_values_t = ["tet4".to_string(), "hex8".to_string()],
-        value_parser = ["tet4", "tet4-nodal-pressure", "hex8", "hex8-mean-dilatation", "wedge6"]
+        value_parser = ELEMENTS.map(|(word, _)| word)
     )]
     pub elements: Vec<String>,
     /// Effects beside neo-Hookean elasticity

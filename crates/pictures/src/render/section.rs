@@ -47,7 +47,8 @@ impl Section {
         };
         let all: [usize; MOST_NODES] = std::array::from_fn(|row| row);
         let centre = mean(&all[..points.len()]);
-        for face in kind.topology().faces.iter().map(|face| face.nodes) {
+        for facet in kind.topology().faces.iter().flat_map(|face| face.facets(&all)) {
+            let face = &facet[..if facet[2] == facet[3] { 3 } else { 4 }];
             let middle = mean(face);
             for side in 0..face.len() {
                 let (a, b) = (corner(face[side]), corner(face[(side + 1) % face.len()]));

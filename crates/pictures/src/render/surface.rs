@@ -1,4 +1,4 @@
-//! The outer faces of what is left of a mesh.
+//! The outer faces of what is left of a mesh; faces of second order as their flat facets.
 
 use rayon::prelude::*;
 use sinew::mesh::Cells;
@@ -25,7 +25,8 @@ impl Faces {
         let mut faces = Vec::with_capacity(cells.kinds().map(|(kind, n)| kind.topology().faces.len() * n).sum());
         for (cell, (kind, nodes)) in (0..).zip(cells.iter()) {
             let own = kind.topology().faces.iter();
-            faces.extend(own.map(|face| Face { points: drawn(face.corners(nodes), nodes), cell, beyond: NONE }));
+            let facets = own.flat_map(|face| face.facets(nodes));
+            faces.extend(facets.map(|points| Face { points: drawn(points, nodes), cell, beyond: NONE }));
         }
         faces.par_sort_unstable_by_key(|face| (key(face.points), face.cell));
         faces.dedup_by(|later, first| {

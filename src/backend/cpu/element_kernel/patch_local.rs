@@ -8,7 +8,7 @@ use crate::math::{LANES, Real, Scratch, SimdScalar};
 use pulp::Simd;
 
 // corners are written out below: an element that has more needs more there
-const _: () = assert!(MOST_NODES == 8);
+const _: () = assert!(MOST_NODES == 10);
 
 /// A vector at each corner.
 pub(super) type AtNodes<R> = [[R; 3]; MOST_NODES];
@@ -119,7 +119,18 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
                 }
             };
         }
-        let u = [corner!(0), corner!(1), corner!(2), corner!(3), corner!(4), corner!(5), corner!(6), corner!(7)];
+        let u = [
+            corner!(0),
+            corner!(1),
+            corner!(2),
+            corner!(3),
+            corner!(4),
+            corner!(5),
+            corner!(6),
+            corner!(7),
+            corner!(8),
+            corner!(9),
+        ];
         (u, pressure * zero.constant(1.0 / E::NODES as f64))
     }
 
@@ -179,7 +190,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
             };
         }
         // node 0 last: its force is what balances the others'
-        give!(1 2 3 4 5 6 7 0);
+        give!(1 2 3 4 5 6 7 8 9 0);
     }
 
     /// The force on a corner of a register full of elements.

@@ -8,6 +8,9 @@ use std::collections::HashMap;
 /// are flat, larger ones are edges of the body itself.
 const ROUNDED: std::ops::RangeInclusive<f64> = 2.0..=60.0;
 
+/// How far the middle of an edge may be from halfway between its ends, as a share of its length, and it counts as straight.
+const STRAIGHT: f64 = 1e-6;
+
 /// The share of a surface's edges from which on it is taken for curved.
 const CURVED: f64 = 0.25;
 
@@ -20,7 +23,7 @@ struct Face {
 }
 
 /// The volume between the faces of a mesh and a smooth surface through its corners, as a share of the mesh's own
-/// volume; `None` where its faces are flat or meet at edges.
+/// volume; `None` where its faces are flat or meet at edges, or are curved as the surface is.
 ///
 /// Where faces meet at an angle θ and their middles are d apart, the curvature is κ = θ / d; over a face of area A
 /// whose corners are r away from its middle (root mean square) the surface then lies κ r² · 3/8 off on the mean, on a
@@ -28,6 +31,14 @@ struct Face {
 pub fn left_out(mesh: &Mesh) -> Option<f64> {
     let mut edges: HashMap<[u32; 2], Vec<usize>> = HashMap::new();
     let mut faces = Vec::new();
+    let bent = |ends: [u32; 2], middle: u32| {
+        let [a, b, middle] = [ends[0], ends[1], middle].map(|row| mesh.points[row as usize]);
+        (0.5 * (a + b)).distance(middle) > STRAIGHT * a.distance(b)
+    };
+    if mesh.middles().into_iter().any(|(ends, middle)| bent(ends, middle)) {
+        // its faces are curved themselves
+        return None;
+    }
     for face in mesh.surface() {
         let [a, b, c, d] = face.nodes;
         let corners = if c == d { vec![a, b, c] } else { vec![a, b, c, d] };

@@ -4,12 +4,13 @@ use super::{FAINT, FRAME, FRONT, INK, LAW, OTHER, Point, is_mesh};
 use sinew_pictures::plot::svg::Svg;
 
 /// Colours that people with every kind of sight can tell apart (M. Okabe, K. Ito 2008), by element.
-const COLOURS: [(&str, &str); 5] = [
+const COLOURS: [(&str, &str); 6] = [
     ("Tet4", "#d55e00"),
     ("Tet4NodalPressure", "#cc79a7"),
     ("Hex8", "#0072b2"),
     ("Hex8MeanDilatation", "#009e73"),
     ("Wedge6", "#e69f00"),
+    ("Tet10", "#56b4e9"),
 ];
 
 /// The colour of an element's ladder.
