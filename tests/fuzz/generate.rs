@@ -87,7 +87,7 @@ struct Geometry {
 impl Geometry {
     fn of(number_of_it: usize, r: &mut Dice) -> Self {
         let size = size(r, 1e-3, 1.0);
-        let kind = one_of(r, &["Tet4", "Tet4NodalPressure", "Hex8", "Hex8MeanDilatation"]);
+        let kind = one_of(r, &["Tet4", "Tet4NodalPressure", "Hex8", "Hex8MeanDilatation", "Wedge6", "Tet10"]);
         let cells = |r: &mut Rng| (r.u8(1..=3), r.u8(1..=3), r.u8(1..=3));
         let mesh = match r.u8(..8) {
             0 => {

@@ -5,6 +5,7 @@ use sinew::components::{Alive, Authoring, Block, DisplacementStep, Label, Precis
 use sinew::elements::node_count;
 use sinew::glam::{DMat3, DVec3};
 use sinew::materials::FLATTEST;
+use sinew::mesh::topology::tet10::POINTS;
 use sinew::scene::schema::{ElementKind, Inversion};
 
 /// What is wrong with a finished run, if anything.
@@ -85,11 +86,23 @@ fn size(gradient: &DMat3, lost: f64) -> f64 {
 }
 
 /// ∇u where an element of a kind looks at it: of tetrahedra the one there is, of hexahedra at eight Gauss points, or
-/// the mean of those by volume.
+/// the mean of those by volume; of wedges and of cells of second order at their points.
 fn gradients(kind: ElementKind, rest: &[DVec3], moved: &[DVec3]) -> Vec<DMat3> {
     if rest.len() == 4 {
         let edges = |at: &[DVec3]| DMat3::from_cols(at[1] - at[0], at[2] - at[0], at[3] - at[0]);
         return vec![edges(moved) * edges(rest).inverse()];
+    }
+    if ![ElementKind::Hex8, ElementKind::Hex8MeanDilatation].contains(&kind) {
+        let Some(solid) = kind.cell().topology().solid else { return Vec::new() };
+        let at_point = |at: [f64; 3]| {
+            let shape = (solid.shape)(at);
+            let from_first: Vec<DVec3> = moved.iter().map(|u| *u - moved[0]).collect();
+            shape.jacobian(&from_first) * shape.jacobian(rest).inverse()
+        };
+        return match kind {
+            ElementKind::Tet10 => POINTS.map(at_point).to_vec(),
+            _ => solid.quadrature.iter().map(|(at, _)| at_point(*at)).collect(),
+        };
     }
     let signs = [(-1, -1), (1, -1), (1, 1), (-1, 1)];
     let corner = |a: usize| {
@@ -129,9 +142,13 @@ fn the_check_knows_an_element_that_is_inside_out() {
     // bottom first, then top
     let cube: Vec<DVec3> = cube.iter().step_by(2).chain(cube.iter().skip(1).step_by(2)).copied().collect();
     let wanted = DMat3::from_cols_array(&[0.2, 0.3, 0.0, -0.1, 0.1, 0.4, 0.5, 0.0, -1.7]);
-    for kind in [ElementKind::Hex8, ElementKind::Hex8MeanDilatation, ElementKind::Tet4] {
+    for kind in ElementKind::ALL {
+        let tet = [0, 1, 3, 4].map(|i| cube[i]);
+        let middles = kind.cell().topology().edges.iter().map(|&[a, b]| 0.5 * (tet[a % 4] + tet[b % 4]));
         let rest: Vec<DVec3> = match node_count(kind) {
-            4 => [0, 1, 3, 4].map(|i| cube[i]).to_vec(),
+            4 => tet.to_vec(),
+            6 => [0, 1, 3, 4, 5, 7].map(|i| cube[i]).to_vec(),
+            10 => tet.into_iter().chain(middles).collect(),
             _ => cube.clone(),
         };
         let moved: Vec<DVec3> = rest.iter().map(|x| wanted * *x + DVec3::splat(3.0)).collect();

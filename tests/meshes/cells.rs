@@ -183,8 +183,7 @@ $Elements
 3 11 2 3 3 1 2 3 4 5 6 7 8 9 10
 $EndElements
 "#;
-    let read =
-        |text: &[u8]| Mesh::from_bytes("second.msh".into(), text, false).unwrap_or_else(|error| panic!("{error}"));
+    let read = |text: &[u8]| Mesh::from_bytes("second.msh", text, false).unwrap_or_else(|error| panic!("{error}"));
     let mesh = read(text.as_bytes());
     // the last two middles are the other way round
     assert_eq!(mesh.cells.of_kind(CellKind::Tet10).unwrap(), [[0, 1, 2, 3, 4, 5, 6, 7, 9, 8]]);

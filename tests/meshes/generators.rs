@@ -239,6 +239,12 @@ fn a_tube_is_closed_sound_and_named_as_ring_and_as_sector() {
     }
 }
 
+/// Whether all middles of edges are halfway between their ends.
+fn is_straight(mesh: &Mesh) -> bool {
+    let at = |row: u32| mesh.points[row as usize];
+    mesh.middles().into_iter().all(|([a, b], middle)| (0.5 * (at(a) + at(b))).distance(at(middle)) < 1e-12)
+}
+
 /// Volume inside a surface of triangles of second order.
 fn enclosed_by_curves(mesh: &Mesh) -> f64 {
     let at = |node: u32| mesh.points[node as usize];
@@ -278,6 +284,13 @@ fn shapes_of_second_order_follow_their_surface() {
             assert!(mesh.node_sets["side"].iter().all(|row| (at(row) - 0.05).abs() < 1e-15), "{what}");
         }
     }
+}
+
+/// The middle of the blunt edge of a lens of one cell would be at its rim, and fold elements.
+#[test]
+fn edges_are_straight_where_curved_ones_would_fold_elements() {
+    assert!(is_straight(&lens(3, ElementKind::Tet10)));
+    assert!(!is_straight(&lens(4, ElementKind::Tet10)));
 }
 
 #[test]

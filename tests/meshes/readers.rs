@@ -114,7 +114,7 @@ fn wrong_gmsh_files_are_refused_with_place_and_reason() {
         "a.msh: the number 80 is given to two nodes; each node needs a number of its own",
         "a.msh:16: element 101 is of the unknown type 44; sinew uses points (15), lines (1), triangles (2), \
          quadrilaterals (3), tetrahedra (4), hexahedra (5)",
-        "a.msh: the file holds 1 pyramid; sinew simulates 4-node tetrahedra, 8-node hexahedra (voxels too) and 6-node wedges: save the \
+        "a.msh: the file holds 1 pyramid; sinew simulates tetrahedra of 4 and of 10 nodes, 8-node hexahedra (voxels too) and 6-node wedges: save the \
          mesh with those alone",
         "a.msh:2: Gmsh format 4; sinew reads the formats 1, 2.0 to 2.2 and 4.1 (in Gmsh: -format msh41 or msh22)",
         "4 elements are claimed, its blocks hold 3; the two counts must agree",

@@ -115,14 +115,15 @@ fn is_never_below_the_true_one_of_ten_node_tetrahedra() {
     is_never_below::<Tet10>(ElementKind::Tet10);
 }
 
-/// The bound knows which nodes have how much of the mass: at rest it is not twice the true ω.
+/// The bound knows which nodes have how much of the mass, and the 64th norm of ten eigenvalues is at most 3.7 % above the
+/// largest: it was 1.02 to 1.07 of the true ω, where one by the least share would be 2.3 of it.
 #[test]
 fn is_near_the_true_one_of_ten_node_tetrahedra() {
     let mut random = Random(33);
     for _ in 0..60 {
         let points = distorted(ElementKind::Tet10, &mut random);
         let (omega, bound) = (highest::<Tet10>(&points, 0.0, DVec3::X), bound::<Tet10>(&points, 0.0));
-        assert!(bound < 4.0 * omega, "{points:?}: bound {bound}, true {omega}");
+        assert!(bound < 1.25 * omega, "{points:?}: bound {bound}, true {omega}");
     }
 }
 

@@ -99,7 +99,7 @@ impl Grid {
     }
 
     /// The mesh with points placed by their indices, those in the middle of edges by the mean of the indices at their
-    /// ends: they are on a curved surface, too. Refuses a grid that does not fit into memory.
+    /// ends: they are on a curved surface, too, but where that would fold an element: then all edges are straight. Refuses a grid that does not fit into memory.
     pub fn mesh(&self, place: impl Fn([f64; 3]) -> DVec3) -> Result<Mesh, MeshError> {
         let [nx, ny, nz] = self.cells;
         let mut mesh = Mesh::default();
@@ -117,7 +117,7 @@ impl Grid {
                 mesh.points.extend((0..=nx).map(|i| place([i, j, k].map(f64::from))));
             }
         }
-        let mut middles = HashMap::new();
+        let (topology, mut middles) = (kind.topology(), HashMap::new());
         for k in 0..nz {
             for j in 0..ny {
                 for i in 0..nx {
@@ -137,6 +137,9 @@ impl Grid {
                     });
                 }
             }
+        }
+        if topology.nodes.len() > topology.corners && mesh.is_folded() {
+            mesh.straighten();
         }
         Ok(mesh)
     }
@@ -220,5 +223,23 @@ impl Grid {
             }
         }
         faces
+    }
+}
+
+impl Mesh {
+    /// Whether an element is turned inside out somewhere.
+    fn is_folded(&self) -> bool {
+        let folded = |row: usize| {
+            let solid = self.cells.kind(row).topology().solid;
+            solid.is_some_and(|solid| solid.corner_volumes(&self.places(row)).any(|volume| volume <= 0.0))
+        };
+        (0..self.element_count()).any(folded)
+    }
+
+    /// Puts the middles of edges halfway between their ends.
+    fn straighten(&mut self) {
+        for ([a, b], middle) in self.middles() {
+            self.points[middle as usize] = 0.5 * (self.points[a as usize] + self.points[b as usize]);
+        }
     }
 }

@@ -103,6 +103,12 @@ mod tests {
     }
 
     #[test]
+    fn curved_faces_stand_for_themselves() {
+        assert_eq!(left_out(&ellipsoid_mesh(DVec3::splat(0.02), 6, ElementKind::Tet10).unwrap()), None);
+        assert_eq!(left_out(&box_mesh(DVec3::ONE, (3, 4, 5), ElementKind::Tet10).unwrap()), None);
+    }
+
+    #[test]
     fn a_cylinder_is_curved_though_its_ends_are_flat() {
         for kind in KINDS {
             let mesh = cylinder_mesh(0.01, 0.03, 6, 9, kind).unwrap();
