@@ -156,7 +156,9 @@ impl Cantilever {
         for (i, j, k) in (0..10 * n).flat_map(|i| (0..n).flat_map(move |j| (0..n).map(move |k| (i, j, k)))) {
             let nodes = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)]
                 .map(|(x, y, z)| self.node(i + x, j + y, k + z));
-            let local = Hex8::prepare(&nodes.map(|node| u[node]));
+            let mut own = [[0.0; 3]; MOST_NODES];
+            own.iter_mut().zip(nodes).for_each(|(own, node)| *own = u[node]);
+            let local = Hex8::prepare(&own);
             let gradient = Hex8::at_point(&local, 0, |k| self.shape[k]).gradient;
             let h = gradient.0;
             let pressure = self.lambda * (h[0][0] + h[1][1] + h[2][2]);

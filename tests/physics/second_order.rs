@@ -2,7 +2,7 @@
 
 use crate::columns::external_forces;
 use crate::configurations::{configurations, near};
-use crate::elements::{corners, displacements, distorted, forces, isochoric};
+use crate::elements::{corners, displacements, forces, isochoric};
 use crate::frequency_bound::eigenvalues;
 use crate::grids::grid;
 use crate::random::Random;
