@@ -66,14 +66,17 @@ fn a_mesh_has_six_modes_without_energy_and_one_element_three_more() {
     assert!(stiff < 1e-7, "{stiff:e} N");
 }
 
-/// Closed form 5: a cantilever under a force at its end, Timoshenko's deflection 1.344633e-3 m at 1e-5 N. One layer of
-/// 10-node tetrahedra bends; as many 4-node ones are several times too stiff.
+/// Closed form 5: a cantilever under a force at its end, Timoshenko's deflection 1.344633e-3 m at 1e-5 N, where as many
+/// 4-node tetrahedra are several times too stiff. With one pressure an element the change of volume that goes with
+/// bending costs nothing within it: one layer is too soft by half, two layers by 3 % (1.4728 and 1.0285 by an
+/// independent code with dense matrices; with a pressure a point 0.925 and 0.969).
 #[test]
-fn one_layer_bends() {
+fn two_layers_bend_and_one_is_too_soft() {
     for run in configurations() {
-        let sinks = |elements: &str| {
+        let sinks = |elements: &str, layers: usize| {
+            let cells = 10 * layers;
             let mut simulation = run.start(&format!(
-                "(duration: 1, analysis: Static(), bodies: {{\"b\": (mesh: Box(size: (0.1, 0.01, 0.01), cells: (10, 1, 1), elements: {elements}), material: \"m\")}},
+                "(duration: 1, analysis: Static(), bodies: {{\"b\": (mesh: Box(size: (0.1, 0.01, 0.01), cells: ({cells}, {layers}, {layers}), elements: {elements}), material: \"m\")}},
                 materials: {{\"m\": (density: 1000, linear: Young(young: 3e3, poisson: 0.45))}},
                 constraints: [Fixed(on: Plane(normal: (1, 0, 0), at: 0))],
                 loads: [Traction(on: Plane(normal: (1, 0, 0), at: 0.1), traction: (0, 0, -0.1))],
@@ -82,9 +85,10 @@ fn one_layer_bends() {
             simulation.finish().unwrap();
             -simulation.probe("end").unwrap()[2] / 1.344633e-3
         };
-        let (second, first) = (sinks("Tet10"), sinks("Tet4"));
-        println!("{}: {second:.4} of Timoshenko's deflection by Tet10, {first:.4} by Tet4", run.name);
-        assert!((0.93..1.02).contains(&second), "{}: {second}", run.name);
+        let [one, two, first] = [("Tet10", 1), ("Tet10", 2), ("Tet4", 1)].map(|(kind, layers)| sinks(kind, layers));
+        println!("{}: {one:.4} and {two:.4} of Timoshenko's deflection by Tet10, {first:.4} by Tet4", run.name);
+        // the residual that a search for rest ends with
+        assert!((one - 1.4728).abs() < 5e-3 && (two - 1.0285).abs() < 5e-3, "{}: {one}, {two}", run.name);
         assert!(first < 0.5, "{}: {first}", run.name);
     }
 }
