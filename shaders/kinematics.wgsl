@@ -8,13 +8,6 @@ struct Kinematics {
     j_m23: f32,
 }
 
-// J − 1: first + second + third invariant of ∇u
-fn volume_change_of(h: mat3x3<f32>) -> f32 {
-    let cofactor = cross(h[1], h[2]);
-    let second = cofactor.x + minor(h[0][0], h[0][1], h[1][0], h[1][1]) + minor(h[0][0], h[0][2], h[2][0], h[2][2]);
-    return (h[0][0] + h[1][1] + h[2][2]) + second + dot(h[0], cofactor);
-}
-
 fn kinematics(h: mat3x3<f32>) -> Kinematics {
     let c0 = vec3<f32>(h[0][0], h[1][0], h[2][0]);
     let c1 = vec3<f32>(h[0][1], h[1][1], h[2][1]);

@@ -86,3 +86,18 @@ fn plus_identity_times(m: mat3x3<f32>, s: Sym3) -> mat3x3<f32> {
 fn plus_outer(m: mat3x3<f32>, a: vec3<f32>, b: vec3<f32>) -> mat3x3<f32> {
     return mat3x3<f32>(m[0] + a.x * b, m[1] + a.y * b, m[2] + a.z * b);
 }
+
+// det(I + h) − 1: first + second + third invariant
+fn volume_change_of(h: mat3x3<f32>) -> f32 {
+    let cofactor = cross(h[1], h[2]);
+    let second = cofactor.x + minor(h[0][0], h[0][1], h[1][0], h[1][1]) + minor(h[0][0], h[0][2], h[2][0], h[2][2]);
+    return (h[0][0] + h[1][1] + h[2][2]) + second + dot(h[0], cofactor);
+}
+
+// cof(I + h)
+fn cofactor_with_identity(h: mat3x3<f32>) -> mat3x3<f32> {
+    let f0 = vec3<f32>(1.0, 0.0, 0.0) + h[0];
+    let f1 = vec3<f32>(0.0, 1.0, 0.0) + h[1];
+    let f2 = vec3<f32>(0.0, 0.0, 1.0) + h[2];
+    return mat3x3<f32>(cross(f1, f2), cross(f2, f0), cross(f0, f1));
+}

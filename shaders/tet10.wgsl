@@ -15,6 +15,7 @@ const FAR: f32 = 0.58541019662;
 const NEAR: f32 = 0.13819660113;
 const WEIGHT: f32 = 0.04166666667;
 const THERE: u32 = 28u;
+const STIFFNESS: u32 = 29u;
 
 // How far a middle is from halfway between two corners.
 fn deviation(middle: vec3<f32>, a: vec3<f32>, b: vec3<f32>) -> vec3<f32> {
@@ -100,8 +101,26 @@ fn add_stress(forces: Forces, point: u32, at: PointState, stress: mat3x3<f32>) -
     return Forces(f);
 }
 
+// What J of each point is beside their mean.
+fn volume_deviations(e: Element) -> vec4<f32> {
+    var volumes = vec4<f32>();
+    var changes = vec4<f32>();
+    for (var point = 0u; point < POINTS; point++) {
+        let at = at_point(e, point);
+        volumes[point] = at.volume;
+        changes[point] = volume_change_of(at.gradient);
+    }
+    return changes - dot(volumes, changes) / dot(volumes, vec4<f32>(1.0));
+}
+
 // Nodal forces (N).
-fn corner_forces(row: u32, e: Element, forces: Forces) -> array<vec3<f32>, NODES> {
+fn corner_forces(row: u32, e: Element, of_stress: Forces) -> array<vec3<f32>, NODES> {
+    let deviations = rest_shape[place(row, ROWS, STIFFNESS)] * volume_deviations(e);
+    var forces = of_stress;
+    for (var point = 0u; point < POINTS; point++) {
+        let at = at_point(e, point);
+        forces = add_stress(forces, point, at, deviations[point] * cofactor_with_identity(at.gradient));
+    }
     let share = WEIGHT * rest_shape[place(row, ROWS, THERE)];
     let f4 = share * forces.f[3];
     let f5 = share * forces.f[4];
@@ -116,6 +135,12 @@ fn corner_forces(row: u32, e: Element, forces: Forces) -> array<vec3<f32>, NODES
     return array<vec3<f32>, NODES>(f0, f1, f2, f3, f4, f5, f6, f7, f8, f9);
 }
 
+// J
 fn hourglass_energy(row: u32, e: Element) -> f32 {
-    return 0.0;
+    let deviations = volume_deviations(e);
+    var sum = 0.0;
+    for (var point = 0u; point < POINTS; point++) {
+        sum += at_point(e, point).volume * deviations[point] * deviations[point];
+    }
+    return 0.5 * rest_shape[place(row, ROWS, STIFFNESS)] * rest_shape[place(row, ROWS, THERE)] * sum;
 }

@@ -11,10 +11,14 @@ use glam::{DMat3, DVec3};
 /// pressure from its mean volume as in [`Hex8MeanDilatation`](super::Hex8MeanDilatation): it bends, and does not lock as
 /// ν → ½. Its WGSL twin is `shaders/tet10.wgsl`.
 ///
-/// Energy V U(θ̄) + Σ_q V_q Ψ_iso(F_q), θ̄ = Σ V_q θ_q / V; forces are its exact derivative. With barycentric coordinates
-/// L a field is u₀ + Σ_k L_k e_k + Σ_ab 4 L_a L_b d_ab: the differences e_k = u_k − u₀ to the other three corners, and
-/// at each edge the deviation d_ab of its middle from halfway, so that a common displacement never enters. Rest shape:
-/// e and d of X (m, rows 0 to 26), volume (27), 1 while the element is there (28).
+/// Energy V U(θ̄) + Σ_q V_q Ψ_iso(F_q) + ½ k Σ_q V_q (J_q − J̄)², θ̄ = Σ V_q θ_q / V; forces are its exact derivative. By
+/// one pressure alone three modes that swell one end and shrink the other, without change of shape, had no energy, and
+/// a single layer bent half as far again as it should; with k = ⅔ μ they have one, and the stable step is as without.
+///
+/// With barycentric coordinates L a field is u₀ + Σ_k L_k e_k + Σ_ab 4 L_a L_b d_ab: the differences e_k = u_k − u₀ to
+/// the other three corners, and at each edge the deviation d_ab of its middle from halfway, so that a common
+/// displacement never enters. Rest shape: e and d of X (m, rows 0 to 26), volume (27), 1 while the element is there
+/// (28), k (Pa, 29).
 #[derive(Clone, Copy, Debug)]
 pub struct Tet10;
 
@@ -24,6 +28,9 @@ const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
 /// Weight of a point: a quarter of the reference volume.
 const WEIGHT: f64 = 1.0 / 24.0;
 const THERE_ROW: usize = 28;
+const STIFFNESS_ROW: usize = 29;
+/// k over Young's modulus: ⅔ μ as ν → ½, and less below, for μ = E/(2 (1 + ν)).
+const STIFFNESS: f64 = 2.0 / 9.0;
 
 /// ∂L_a/∂L_k for k = 1 to 3, with L₀ = 1 − L₁ − L₂ − L₃.
 const fn slope(corner: usize, k: usize) -> f64 {
@@ -74,11 +81,32 @@ fn natural_gradient<R: Real>(c: &[R; MODES], point: usize) -> [R; 3] {
     by
 }
 
+/// The points, and what J of each is beside the mean J̄ = Σ V_q J_q / V.
+#[inline(always)]
+fn volume_deviations<R: Real>(u: &[[R; MODES]; 3], shape: &impl Fn(usize) -> R) -> [(PointState<R>, R); Tet10::POINTS] {
+    let first = Tet10::at_point(u, 0, shape);
+    let change = first.gradient.volume_change();
+    let mut points = [(first, change); Tet10::POINTS];
+    let (mut volume, mut sum) = (first.volume, first.volume * change);
+    for point in 1..Tet10::POINTS {
+        let state = Tet10::at_point(u, point, shape);
+        let change = state.gradient.volume_change();
+        points[point] = (state, change);
+        volume += state.volume;
+        sum = state.volume.mul_add(change, sum);
+    }
+    let mean = sum / volume;
+    for point in 0..Tet10::POINTS {
+        points[point].1 -= mean;
+    }
+    points
+}
+
 impl Element for Tet10 {
     const NAME: &'static str = "tet10";
     const CELL: CellKind = CellKind::Tet10;
     const POINTS: usize = 4;
-    const ROWS: usize = 29;
+    const ROWS: usize = 30;
     const VOLUME_ROW: usize = 27;
     const FORCE_ROW: Option<usize> = Some(THERE_ROW);
     const PRESSURE: PressureFrom = PressureFrom::MeanOverPoints;
@@ -89,7 +117,7 @@ impl Element for Tet10 {
     /// Forces on the coefficients of each component.
     type Forces<R: Real> = [[R; MODES]; 3];
 
-    fn rest_shape(points: &[DVec3], _young: f64) -> [f64; MOST_ROWS] {
+    fn rest_shape(points: &[DVec3], young: f64) -> [f64; MOST_ROWS] {
         let mut from_first = [[0.0; 3]; MOST_NODES];
         for a in 0..10 {
             from_first[a] = (points[a] - points[0]).to_array();
@@ -104,6 +132,7 @@ impl Element for Tet10 {
         shape[Self::VOLUME_ROW] =
             POINTS.into_iter().map(|at| WEIGHT * shape_at(at).jacobian(points).determinant()).sum();
         shape[THERE_ROW] = 1.0;
+        shape[STIFFNESS_ROW] = STIFFNESS * young;
         shape
     }
 
@@ -170,6 +199,13 @@ impl Element for Tet10 {
     ) {
         let share = shape(THERE_ROW) * u[0][0].constant(WEIGHT);
         let half = share.constant(0.5);
+        let stiffness = shape(STIFFNESS_ROW);
+        let mut forces = *forces;
+        for (point, (state, deviation)) in volume_deviations(u, &shape).iter().enumerate() {
+            // ∂J/∂F is cof F
+            let stress = state.gradient.cofactor_with_identity().scaled(*deviation * stiffness);
+            Self::add_stress(&mut forces, point, state, &stress);
+        }
         for i in 0..3 {
             let mut f = forces[i];
             for m in 0..MODES {
@@ -193,13 +229,18 @@ impl Element for Tet10 {
     }
 
     #[inline(always)]
-    fn hourglass_energy<R: Real>(u: &[[R; MODES]; 3], _: &Mat3<R>, _: impl Fn(usize) -> R) -> R {
-        u[0][0].constant(0.0)
+    fn hourglass_energy<R: Real>(u: &[[R; MODES]; 3], _: &Mat3<R>, shape: impl Fn(usize) -> R) -> R {
+        let mut sum = u[0][0].constant(0.0);
+        for (state, deviation) in volume_deviations(u, &shape) {
+            sum = (state.volume * deviation).mul_add(deviation, sum);
+        }
+        sum * shape(STIFFNESS_ROW) * shape(THERE_ROW) * sum.constant(0.5)
     }
 
     /// With s the nodes' shares of the mass, b the mean gradients and L_ab = Σ_q V_q ∇N_a·∇N_b:
     /// ω² ≤ (λ Σ b·b/s + 2μ' λ_max(L_ab/√(s_a s_b))/V)/ρ, since V U(θ̄) needs b only, |sym ∇u| ≤ |∇u|, and u√s are the
-    /// displacements whose squares are all weighted alike.
+    /// displacements whose squares are all weighted alike. k adds nothing: μ |dev ε|² + ½ k (tr ε)² ≤ μ |ε|² for
+    /// 3k ≤ 2μ.
     fn frequency_bound(shape: &[f64; MOST_ROWS], stiffness: &Stiffness) -> f64 {
         let c: [DVec3; MODES] = std::array::from_fn(|m| DVec3::from_slice(&shape[3 * m..]));
         let shares = Self::CELL.shares();

@@ -1,6 +1,6 @@
 //! What every law starts from: strain measures of a displacement gradient.
 
-use crate::math::{Mat3, Real, Sym3, dot_plus, minor};
+use crate::math::{Mat3, Real, Sym3, dot_plus};
 
 /// Below this volume ratio the laws use this value instead, so that no kernel ever makes a NaN. The element is reported
 /// as inverted when J ≤ 0 and the run stops; what lies between is far beyond any tissue.
@@ -38,7 +38,7 @@ impl<R: Real> Kinematics<R> {
         let green_strain = Sym3(twice).scaled(half);
         let c = Sym3([one + twice[0], one + twice[1], one + twice[2], twice[3], twice[4], twice[5]]);
 
-        let change = volume_change(gradient);
+        let change = gradient.volume_change();
         let volume_change = change.max(one.constant(J_FLOOR - 1.0));
         let j = one + volume_change;
         let j_m13 = j.inverse_cbrt();
@@ -50,7 +50,7 @@ impl<R: Real> Kinematics<R> {
     /// J or C⁻¹ in it keeps its floor.
     #[inline(always)]
     pub fn of_any_volume(gradient: &Mat3<R>) -> Self {
-        Self { volume_change: volume_change(gradient), ..Self::new(gradient) }
+        Self { volume_change: gradient.volume_change(), ..Self::new(gradient) }
     }
 
     /// Strain measures of the linear theory: ε = ½(∇u + ∇uᵀ) as `green_strain`, tr ε as change of volume, and no
@@ -67,7 +67,7 @@ impl<R: Real> Kinematics<R> {
             adjugate_c: Sym3([one, one, one, zero, zero, zero]),
             volume_change: trace,
             j: one,
-            true_j: one + volume_change(gradient),
+            true_j: one + gradient.volume_change(),
             j_m23: one,
         }
     }
@@ -128,18 +128,4 @@ pub(super) fn twice_green_strain<R: Real>(gradient: &Mat3<R>) -> [R; 6] {
         twice[entry] = dot_plus(column[i], column[j], h[i][j] + h[j][i]);
     }
     twice
-}
-
-/// J − 1 = tr K + first row of ∇u · first row of K less what both have, with K = cof F − I: exact to rounding for small
-/// ∇u.
-#[inline(always)]
-pub(super) fn volume_change<R: Real>(gradient: &Mat3<R>) -> R {
-    let h = &gradient.0;
-    let k = [
-        minor(h[1][1], h[1][2], h[2][1], h[2][2]) + (h[1][1] + h[2][2]),
-        minor(h[1][2], h[1][0], h[2][2], h[2][0]) - h[1][0],
-        minor(h[1][0], h[1][1], h[2][0], h[2][1]) - h[2][0],
-    ];
-    // (e + h)·(e + k) − 1 with the first axis e
-    dot_plus(h[0], k, h[0][0] + k[0])
 }

@@ -1,7 +1,7 @@
 //! The neo-Hookean law in isochoric and volumetric parts.
 
 use super::elasticity::by_moduli;
-use super::kinematics::{twice_green_strain, volume_change};
+use super::kinematics::twice_green_strain;
 use super::{Elastic, Fibres, J_FLOOR, Kinematics, Law};
 use crate::math::{Mat3, Real, Sym3, dot, dot_plus, minor};
 use crate::uniform::uniform;
@@ -127,7 +127,7 @@ impl<R: Real> Elastic<R> for NeoHookean<R> {
         relax: impl FnOnce(Sym3<R>, Sym3<R>) -> Sym3<R>,
     ) -> (Mat3<R>, R) {
         let (one, two, three) = (self.shear.constant(1.0), self.shear.constant(2.0), self.shear.constant(3.0));
-        let change = volume_change(gradient);
+        let change = gradient.volume_change();
         let true_j = one + change;
         let change = change.max(one.constant(J_FLOOR - 1.0));
         let j_m13 = (one + change).inverse_cbrt();

@@ -29,6 +29,37 @@ pub fn minor<R: Real>(a: R, b: R, c: R, d: R) -> R {
 }
 
 impl<R: Real> Mat3<R> {
+    /// det(I + A) − 1 = tr K + first row of A · first row of K less what both have, with K = cof(I + A) − I: exact to
+    /// rounding for small A.
+    #[inline(always)]
+    pub fn volume_change(&self) -> R {
+        let h = &self.0;
+        let k = [
+            minor(h[1][1], h[1][2], h[2][1], h[2][2]) + (h[1][1] + h[2][2]),
+            minor(h[1][2], h[1][0], h[2][2], h[2][0]) - h[1][0],
+            minor(h[1][0], h[1][1], h[2][0], h[2][1]) - h[2][0],
+        ];
+        // (e + h)·(e + k) − 1 with the first axis e
+        dot_plus(h[0], k, h[0][0] + k[0])
+    }
+
+    /// cof(I + A).
+    #[inline(always)]
+    pub fn cofactor_with_identity(&self) -> Self {
+        let mut f = self.0;
+        for i in 0..3 {
+            f[i][i] += f[i][i].constant(1.0);
+        }
+        let [a, b, c] = f;
+        let cross = [[b, c], [c, a], [a, b]];
+        let mut rows = f;
+        for i in 0..3 {
+            let [v, w] = cross[i];
+            rows[i] = [minor(v[1], v[2], w[1], w[2]), minor(v[2], v[0], w[2], w[0]), minor(v[0], v[1], w[0], w[1])];
+        }
+        Self(rows)
+    }
+
     /// All zero, of the same kind as a number.
     #[inline(always)]
     pub fn zero(like: R) -> Self {

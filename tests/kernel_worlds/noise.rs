@@ -63,6 +63,11 @@ pub fn randomize(world: &mut World, seed: u64) {
 
 /// A thousandth of the displacements that noise has made: strains of about 1e-4.
 pub fn small_strains(world: &mut World) {
+    scale_strains(world, 1e-3);
+}
+
+/// So many times the displacements that noise has made.
+pub fn scale_strains(world: &mut World, factor: f64) {
     let mut entities = world.query::<Entity>();
     for entity in entities.iter(world).collect::<Vec<_>>() {
         macro_rules! scale {
@@ -70,7 +75,7 @@ pub fn small_strains(world: &mut World) {
                 if let Some(mut column) = world.get_mut::<$column>(entity) {
                     (0..column.len()).for_each(|i| {
                         let value = column.get(i);
-                        column.set(i, 1e-3 * value);
+                        column.set(i, factor * value);
                     });
                 }
             )*};

@@ -1,6 +1,6 @@
 //! `element_forces`.
 
-use super::kernel_worlds::{ALONG, AROUND, Effects, FAMILIES, GROWING, LAWS, small_strains};
+use super::kernel_worlds::{ALONG, AROUND, Effects, FAMILIES, GROWING, LAWS, scale_strains, small_strains};
 use super::magnitude::{OGDEN_ROUNDINGS, ROUNDINGS, magnitude};
 use super::pair::{Pair, UNIT, entities, run};
 use bevy_ecs::prelude::*;
@@ -118,25 +118,30 @@ fn parallelepipeds_exert_the_same_forces() {
 /// Wedges with every effect, in both schemes, and with elements gone.
 #[test]
 fn wedges_exert_the_same_forces() {
-    others_exert_the_same_forces("Wedge6");
+    others_exert_the_same_forces("Wedge6", 1.0);
 }
 
-/// The same of curved tetrahedra of second order.
+/// The same of curved tetrahedra of second order. Their nodes are half as far apart, and strains of second order grow
+/// towards corners: the noise that other elements bear would turn points inside out.
 #[test]
 fn ten_node_tetrahedra_exert_the_same_forces() {
-    others_exert_the_same_forces("Tet10");
+    others_exert_the_same_forces("Tet10", 0.2);
 }
 
-fn others_exert_the_same_forces(kind: &'static str) {
+fn others_exert_the_same_forces(kind: &'static str, of_noise: f64) {
     let others = Effects { others: Some(kind), ..Effects::default() };
+    let calm = |world: &mut World| scale_strains(world, of_noise);
     for (fibres, prony) in [(None, 0), (Some(ALONG), 0), (Some(AROUND), 2)] {
-        compare_element_forces(&Effects { fibres, prony, ..others.clone() }, |_| {});
-        compare_element_forces(&Effects { fibres, prony, scheme: Scheme::TwoPass, ..others.clone() }, |_| {});
+        compare_element_forces(&Effects { fibres, prony, ..others.clone() }, calm);
+        compare_element_forces(&Effects { fibres, prony, scheme: Scheme::TwoPass, ..others.clone() }, calm);
     }
     for law in LAWS {
-        compare_element_forces(&Effects { law: Some(law), volumetric: true, prony: 1, ..others.clone() }, |_| {});
+        compare_element_forces(&Effects { law: Some(law), volumetric: true, prony: 1, ..others.clone() }, calm);
     }
-    compare_element_forces(&Effects { removal: true, prony: 1, ..others }, deactivate_some);
+    compare_element_forces(&Effects { removal: true, prony: 1, ..others }, |world| {
+        calm(world);
+        deactivate_some(world);
+    });
 }
 
 /// The scheme of two passes, with a law that has all effects and with the plain one.

@@ -51,7 +51,9 @@ pub fn magnitude(world: &World, block: Entity, row: usize) -> Magnitude {
         let exponent = family.k2 * strain * strain;
         4.0 * family.k1 * exponent.exp() * (1.0 + 2.0 * exponent)
     });
-    let moduli = 2.0 * shear + bulk + 2.0 * eta + families.sum::<f64>();
+    // the stiffness by which the volume at points is held to their mean
+    let held = if data.kind == ElementKind::Tet10 { number(Tet10::ROWS - 1) } else { 0.0 };
+    let moduli = 2.0 * shear + bulk + 2.0 * eta + 2.0 * held + families.sum::<f64>();
     let compressed = state.points().iter().map(|point| point.kinematics.j).fold(1.0, f64::min);
     let memory = world.get::<ViscousMemory>(block).map_or(0.0, |_| 400.0);
     let nodal = world.get::<NodalVolumeChange>(block).map_or(0.0, |means| {
