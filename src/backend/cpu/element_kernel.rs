@@ -190,10 +190,7 @@ impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
         cpu.for_each(tasks, |(patch, inside)| {
             let index = patch.index;
             let run = |patch: Patch<'_, E, T, L, EFFECTS>, inside: Option<&mut NodeColumns<'_, T>>| {
-                T::with_scratch(|scratch| {
-                    let task = OfPatch { patch, inside, scratch };
-                    if EFFECTS == ASK { cpu.dispatch(task) } else { cpu.dispatch_widest(task) }
-                })
+                T::with_scratch(|scratch| E::run_patch(cpu, OfPatch { patch, inside, scratch }))
             };
             let is_inverted = match (inside, then) {
                 (Some(inside), Some((then, observed))) => inside.with_forces(observed, |inside| {
@@ -245,6 +242,19 @@ struct OfPatch<'a, 'i, 'n, 's, E, T: SimdScalar, L, const EFFECTS: u8> {
     inside: Option<&'i mut NodeColumns<'n, T>>,
     scratch: &'s mut Scratch<T>,
 }
+
+/// Where kernels are compiled: the compiler keeps a method of a trait with the type it is for, and takes what is in
+/// different modules to different cores. Else all of them were in one piece, most of the time that compiling takes.
+trait InOwnModule: Element {
+    #[inline(never)]
+    fn run_patch<T: SimdScalar, L: Elastic<T>, const EFFECTS: u8>(
+        cpu: &Cpu,
+        task: OfPatch<'_, '_, '_, '_, Self, T, L, EFFECTS>,
+    ) -> bool {
+        if EFFECTS == ASK { cpu.dispatch(task) } else { cpu.dispatch_widest(task) }
+    }
+}
+impl<E: Element> InOwnModule for E {}
 
 impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd
     for OfPatch<'_, '_, '_, '_, E, T, L, EFFECTS>

@@ -107,6 +107,7 @@ impl Cpu {
 
     /// Runs a task with the machine's vector registers, of 256 bits where it has wider ones too: most kernels are not
     /// worth their code a third time.
+    #[inline] // so that what it runs is compiled where it is asked for
     pub(crate) fn dispatch<O: pulp::WithSimd>(&self, task: O) -> O::Output {
         #[cfg(target_arch = "x86_64")]
         {
@@ -123,6 +124,7 @@ impl Cpu {
     }
 
     /// Runs a task with the widest registers that the machine has.
+    #[inline]
     pub fn dispatch_widest<O: pulp::WithSimd>(&self, task: O) -> O::Output {
         self.arch.dispatch(task)
     }
