@@ -118,7 +118,8 @@ pub fn stiffness(world: &World, material: Entity) -> Stiffness {
     Stiffness {
         // a negative λ only softens
         lambda: (bulk - 2.0 / 3.0 * shear).max(0.0),
-        deviatoric: 2.0 * shear + 8.0 / 3.0 * (fibres + families),
+        shear,
+        eta: fibres + families,
         density: world.get::<Density>(material).map_or(0.0, |d| d.0),
     }
 }

@@ -77,7 +77,7 @@ fn slowest_shear(world: &mut World) -> f64 {
     let materials: Vec<Entity> = world.query::<&Block>().iter(world).map(|block| block.material).collect();
     let ratio = |&material: &Entity| {
         let found = stiffness(world, material);
-        ((found.lambda + found.deviatoric) / (0.5 * found.deviatoric)).sqrt()
+        ((found.lambda + found.deviatoric()) / (0.5 * found.deviatoric())).sqrt()
     };
     materials.iter().map(ratio).fold(1.0, f64::max)
 }

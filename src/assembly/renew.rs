@@ -84,14 +84,14 @@ fn rows_of<E: Element>(
     connectivity: &Connectivity,
     young: f64,
 ) -> Vec<(usize, f64)> {
-    let Some(further) = E::FORCE_ROW else { return Vec::new() };
     let of_row = |row: usize| {
         let mut points = [DVec3::ZERO; MOST_NODES];
         for (corner, point) in points[..E::NODES].iter_mut().enumerate() {
             *point = rest.0[connectivity[lane_place(row, E::NODES, corner)] as usize];
         }
-        let shape = E::rest_shape(&points[..E::NODES], young);
-        (lane_place(row, E::ROWS, further), shape[further])
+        let [shape, twice] = [young, 2.0 * young].map(|young| E::rest_shape(&points[..E::NODES], young));
+        let stiff = (0..E::ROWS).filter(move |&k| shape[k] != twice[k]);
+        stiff.map(move |k| (lane_place(row, E::ROWS, k), shape[k]))
     };
-    (0..block.count).map(of_row).collect()
+    (0..block.count).flat_map(of_row).collect()
 }

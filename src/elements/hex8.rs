@@ -258,7 +258,7 @@ impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
         let b: [DVec3; 8] = std::array::from_fn(|a| (0..SLOPES).map(|mode| slope(mode, a)).sum());
         let (trace, largest) = gradient_measure(b.into_iter());
         let nodes = Self::NODES_OF_LEAST_MASS;
-        let material = nodes / stiffness.density * (stiffness.lambda * trace + stiffness.deviatoric * largest);
+        let material = nodes / stiffness.density * (stiffness.lambda * trace + stiffness.deviatoric() * largest);
 
         let gamma = |m: usize, a: usize| {
             let arm = Self::arm(&|row: usize| shape[row], m).map_or(DVec3::ZERO, DVec3::from);

@@ -187,7 +187,7 @@ impl Element for Hex8MeanDilatation {
         }
         let (trace, _) = gradient_measure(mean.into_iter().map(|b| b / volume));
         let largest = largest_eigenvalue_bound(laplacian) / volume;
-        Self::NODES_OF_LEAST_MASS / stiffness.density * (stiffness.lambda * trace + stiffness.deviatoric * largest)
+        Self::NODES_OF_LEAST_MASS / stiffness.density * (stiffness.lambda * trace + stiffness.deviatoric() * largest)
     }
 }
 

@@ -150,10 +150,19 @@ fn vector<R: Real>(shape: &impl Fn(usize) -> R, row: usize) -> [R; 3] {
 pub struct Stiffness {
     /// First Lamé modulus (Pa).
     pub lambda: f64,
-    /// Twice the shear modulus, plus 8η/3 of fibres (Pa).
-    pub deviatoric: f64,
+    /// Shear modulus μ (Pa).
+    pub shear: f64,
+    /// η of all fibres (Pa).
+    pub eta: f64,
     /// Density (kg/m³).
     pub density: f64,
+}
+
+impl Stiffness {
+    /// 2μ + 8η/3 (Pa): of all that changes shape.
+    pub fn deviatoric(&self) -> f64 {
+        2.0 * self.shear + 8.0 / 3.0 * self.eta
+    }
 }
 
 /// tr G and the largest eigenvalue of G = Σ g gᵀ, rigorously from above (by Frobenius norm and trace).

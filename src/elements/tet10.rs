@@ -239,8 +239,8 @@ impl Element for Tet10 {
 
     /// With s the nodes' shares of the mass, b the mean gradients and L_ab = Σ_q V_q ∇N_a·∇N_b:
     /// ω² ≤ (λ Σ b·b/s + 2μ' λ_max(L_ab/√(s_a s_b))/V)/ρ, since V U(θ̄) needs b only, |sym ∇u| ≤ |∇u|, and u√s are the
-    /// displacements whose squares are all weighted alike. k adds nothing: μ |dev ε|² + ½ k (tr ε)² ≤ μ |ε|² for
-    /// 3k ≤ 2μ.
+    /// displacements whose squares are all weighted alike. With μ |dev ε|² + ½ k (tr ε)² ≤ ½ max(2μ, 3k) |ε|²,
+    /// k adds to 2μ' only where hourglass control is made stiffer than it is by itself.
     fn frequency_bound(shape: &[f64; MOST_ROWS], stiffness: &Stiffness) -> f64 {
         let c: [DVec3; MODES] = std::array::from_fn(|m| DVec3::from_slice(&shape[3 * m..]));
         let shares = Self::CELL.shares();
@@ -262,6 +262,7 @@ impl Element for Tet10 {
         }
         let trace: f64 = mean.iter().map(|b| (*b / volume).length_squared()).sum();
         let largest = largest_eigenvalue_bound(laplacian) / volume;
-        (stiffness.lambda * trace + stiffness.deviatoric * largest) / stiffness.density
+        let beyond = (3.0 * shape[STIFFNESS_ROW] - 2.0 * stiffness.shear).max(0.0);
+        (stiffness.lambda * trace + (stiffness.deviatoric() + beyond) * largest) / stiffness.density
     }
 }

@@ -97,6 +97,6 @@ impl Element for Tet4 {
     fn frequency_bound(shape: &[f64; MOST_ROWS], stiffness: &Stiffness) -> f64 {
         let g = |a: usize| DVec3::from_slice(&shape[3 * a..]);
         let (trace, largest) = gradient_measure([g(0), g(1), g(2), -(g(0) + g(1) + g(2))].into_iter());
-        Self::NODES_OF_LEAST_MASS / stiffness.density * (stiffness.lambda * trace + stiffness.deviatoric * largest)
+        Self::NODES_OF_LEAST_MASS / stiffness.density * (stiffness.lambda * trace + stiffness.deviatoric() * largest)
     }
 }

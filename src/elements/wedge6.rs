@@ -199,6 +199,6 @@ impl Element for Wedge6 {
         }
         let (trace, _) = gradient_measure(mean.into_iter().map(|b| b / volume));
         let largest = largest_eigenvalue_bound(laplacian) / volume;
-        Self::NODES_OF_LEAST_MASS / stiffness.density * (stiffness.lambda * trace + stiffness.deviatoric * largest)
+        Self::NODES_OF_LEAST_MASS / stiffness.density * (stiffness.lambda * trace + stiffness.deviatoric() * largest)
     }
 }

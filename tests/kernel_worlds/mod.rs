@@ -14,7 +14,7 @@ use std::sync::Arc;
 
 mod noise;
 #[allow(unused_imports)]
-pub use noise::{Noise, randomize, small_strains};
+pub use noise::{Noise, randomize, scale_strains, small_strains};
 
 /// What a scene calls for.
 #[derive(Clone, Debug, Default)]

@@ -68,7 +68,7 @@ pub fn eigenvalues(mut a: Vec<Vec<f64>>) -> Vec<f64> {
 
 fn bound<E: Element>(points: &[DVec3], eta: f64) -> f64 {
     let lambda = NEO_HOOKEAN.bulk - 2.0 / 3.0 * NEO_HOOKEAN.shear;
-    let stiffness = Stiffness { lambda, deviatoric: 2.0 * NEO_HOOKEAN.shear + 8.0 / 3.0 * eta, density: DENSITY };
+    let stiffness = Stiffness { lambda, shear: NEO_HOOKEAN.shear, eta, density: DENSITY };
     E::frequency_bound(&E::rest_shape(points, YOUNG), &stiffness)
 }
 

@@ -48,7 +48,8 @@ pub struct Body {
     /// moved.
     #[serde(default)]
     pub start: Option<Start>,
-    /// Multiplies the hourglass stiffness of one-point hexahedra; 0 leaves their hourglass modes free.
+    /// Multiplies the hourglass stiffness of one-point hexahedra, and what holds the volume at the points of ten-node
+    /// tetrahedra to their mean; 0 leaves their hourglass modes free.
     #[serde(default = "one")]
     pub hourglass: f64,
 }
