@@ -53,10 +53,12 @@ fn element_of(row: u32) -> Element {
     return Element(u, x, rest_shape[place(row, ROWS, VOLUME_ROW)]);
 }
 
-// Four times the barycentric coordinates of a point.
+// Four times the barycentric coordinates of a point; after the integration points come the corners.
 fn four_shares(point: u32) -> vec4<f32> {
-    let near = vec4<f32>(4.0 * NEAR);
-    return select(near, vec4<f32>(4.0 * FAR), vec4<u32>(0u, 1u, 2u, 3u) == vec4<u32>(point));
+    let is_corner = point >= POINTS;
+    let near = vec4<f32>(4.0 * select(NEAR, 0.0, is_corner));
+    let far = vec4<f32>(4.0 * select(FAR, 1.0, is_corner));
+    return select(near, far, vec4<u32>(0u, 1u, 2u, 3u) == vec4<u32>(point % 4u));
 }
 
 // Columns: derivatives by the coordinates of the corners 1, 2 and 3.

@@ -98,7 +98,7 @@ impl BlockPartsItem<'_, '_> {
             inverted_go: self.policy.is_some_and(|policy| policy.0 == Inversion::Remove),
             inside,
         };
-        with_element_of!(block, E => T::run::<E>(cpu, columns, (self.law, self.rounded), patch_groups(block.kind)))
+        with_element_of!(block, E => T::run::<E>(cpu, columns, (self.law, self.rounded), block))
     }
 
     /// Looks through patches in which the kernel found elements with J < 0, before their nodes move.
@@ -131,7 +131,7 @@ pub(super) trait Precise: SimdScalar {
         cpu: &Cpu,
         columns: BlockColumns<'_, '_, Self>,
         law: (&BlockLaw<f64>, Option<&BlockLaw<f32>>),
-        groups_a_patch: usize,
+        block: &Block,
     ) -> Vec<usize>;
 }
 
@@ -140,9 +140,9 @@ impl Precise for f64 {
         cpu: &Cpu,
         columns: BlockColumns<'_, '_, f64>,
         (law, _): (&BlockLaw<f64>, Option<&BlockLaw<f32>>),
-        groups_a_patch: usize,
+        block: &Block,
     ) -> Vec<usize> {
-        run_block::<E, f64>(cpu, columns, law, groups_a_patch)
+        run_block::<E, f64>(cpu, columns, law, patch_groups(block.kind))
     }
 }
 
@@ -151,11 +151,20 @@ impl Precise for f32 {
         cpu: &Cpu,
         columns: BlockColumns<'_, '_, f32>,
         (exact, law): (&BlockLaw<f64>, Option<&BlockLaw<f32>>),
-        groups_a_patch: usize,
+        block: &Block,
     ) -> Vec<usize> {
-        match law {
-            Some(law) => run_block_fast::<E>(cpu, columns, law, groups_a_patch),
-            None => run_block_fast::<E>(cpu, columns, &exact.rounded(), groups_a_patch),
+        let groups_a_patch = patch_groups(block.kind);
+        let rounded;
+        let law = match law {
+            Some(law) => law,
+            None => {
+                rounded = exact.rounded();
+                &rounded
+            }
+        };
+        match &law.own_kernels {
+            Some(own) => own.run(cpu, columns, law, block, groups_a_patch),
+            None => run_block_fast::<E>(cpu, columns, law, groups_a_patch),
         }
     }
 }

@@ -7,8 +7,10 @@ use crate::backend::Buffers;
 use crate::backend::kernel::Fragment;
 use crate::backend::kernel::Kernel;
 use crate::backend::node_stage::{DescribeStages, NodeStage, node_kernels};
+use crate::backend::user_law::NamedLaw;
 use crate::components::{Body, OfBody};
 use crate::error::Error;
+use crate::materials::RustLaw;
 use crate::snapshot::StateAccess;
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::IntoSystem;
@@ -321,14 +323,15 @@ impl System {
     }
 }
 
-/// The systems that a scene may name.
+/// The systems and the laws in Rust that a scene may name.
 pub struct Registry {
     systems: Vec<System>,
+    laws: Vec<NamedLaw>,
 }
 
 impl Default for Registry {
     fn default() -> Self {
-        Self { systems: super::standard() }
+        Self { systems: super::standard(), laws: Vec::new() }
     }
 }
 
@@ -338,6 +341,20 @@ impl Registry {
         self.systems.retain(|s| s.name != system.name);
         self.systems.push(system);
         self
+    }
+
+    /// Adds a law in Rust, which materials name by `law: (rust: "name", parameters: {…})`; one of the same name is
+    /// replaced.
+    pub fn with_law<L: RustLaw>(mut self, name: impl Into<String>) -> Self {
+        let law = NamedLaw::of::<L>(name);
+        self.laws.retain(|known| known.name != law.name);
+        self.laws.push(law);
+        self
+    }
+
+    /// The laws that were added.
+    pub fn laws(&self) -> &[NamedLaw] {
+        &self.laws
     }
 
     /// All systems: the built-in ones in the order of the step, then those added.

@@ -1,7 +1,7 @@
 //! Node columns of a body, and what blocks need once the time step is known.
 
 use super::Assembly;
-use crate::backend::cpu::BlockLaw;
+use crate::backend::cpu::{BlockLaw, OwnKernels};
 use crate::components::*;
 use crate::elements::Stiffness;
 use crate::elements::{node_count, point_count};
@@ -145,6 +145,7 @@ pub fn insert_laws(precision: Precision, world: &mut World) {
             prony: terms,
             volumetric,
             reproject: prony.is_some_and(|prony| prony.reproject),
+            own_kernels: world.get::<OwnKernels>(block.material).cloned(),
         };
         let memory = law.memory_numbers(point_count(block.kind)) * block.count.div_ceil(LANES) * LANES;
         let mut entity = world.entity_mut(entity);

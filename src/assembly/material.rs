@@ -20,8 +20,11 @@ pub(super) fn spawn(
         if let Some(law) = material.elastic_law() {
             insert(&mut entity, law);
         }
-        if let Some(user_laws::Read { law, built_in, findings, .. }) = laws.remove(name) {
+        if let Some(user_laws::Read { law, built_in, own_kernels, findings, .. }) = laws.remove(name) {
             entity.insert(findings);
+            if let Some(kernels) = own_kernels {
+                entity.insert(kernels);
+            }
             insert(&mut entity, built_in.unwrap_or(ElasticLaw::UserLaw(law)));
         }
         if let Some(fibres) = &material.fibres {

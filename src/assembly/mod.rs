@@ -35,6 +35,7 @@ pub use time_step::{
     square_frequencies, stable_step, undamped_square_frequencies,
 };
 
+use crate::backend::user_law::NamedLaw;
 use crate::components::*;
 use crate::scene::SceneFile;
 use crate::scene::diagnostic::Diagnostics;
@@ -57,11 +58,12 @@ pub struct Assembly<'a> {
 }
 
 /// Puts a scene's world together, without a time step yet. Complaints go to `diagnostics`. `None` when the bodies
-/// cannot be made; there may be errors all the same when they can.
+/// cannot be made; there may be errors all the same when they can. `laws` are those in Rust that it may name.
 pub fn assemble<'a>(
     scene: &'a SceneFile,
     precision: Precision,
     scheme: Scheme,
+    laws: &[NamedLaw],
     world: &mut World,
     diagnostics: &mut Diagnostics,
 ) -> Option<Assembly<'a>> {
@@ -69,7 +71,7 @@ pub fn assemble<'a>(
         return None;
     }
     let meshes = meshes::meshes(scene, diagnostics);
-    let mut laws = user_laws::read(scene, diagnostics);
+    let mut laws = user_laws::read(scene, laws, diagnostics);
     let systems = own_systems::read(scene, diagnostics);
     if diagnostics.has_errors() {
         return None;

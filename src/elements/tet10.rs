@@ -43,14 +43,14 @@ const fn slope(corner: usize, k: usize) -> f64 {
     }
 }
 
-/// ∂(4 L_a L_b)/∂L_k of each edge at each point.
-const SLOPES: [[[f64; 6]; 3]; 4] = {
-    let mut slopes = [[[0.0; 6]; 3]; 4];
+/// ∂(4 L_a L_b)/∂L_k of each edge at each point, then at each corner.
+const SLOPES: [[[f64; 6]; 3]; 8] = {
+    let mut slopes = [[[0.0; 6]; 3]; 8];
     let mut place = 0;
-    while place < 4 * 3 * 6 {
+    while place < 8 * 3 * 6 {
         let (point, k, edge) = (place / 18, place / 6 % 3, place % 6);
-        let mut share = [NEAR; 4];
-        share[point] = FAR;
+        let mut share = if point < 4 { [NEAR; 4] } else { [0.0; 4] };
+        share[point % 4] = if point < 4 { FAR } else { 1.0 };
         let [a, b] = EDGES[edge];
         slopes[point][k][edge] = 4.0 * (share[a] * slope(b, k) + share[b] * slope(a, k));
         place += 1;
@@ -106,6 +106,8 @@ impl Element for Tet10 {
     const NAME: &'static str = "tet10";
     const CELL: CellKind = CellKind::Tet10;
     const POINTS: usize = 4;
+    /// The corners, too: gradients are linear in place, and farthest from their mean there.
+    const LOOKED_AT: usize = 8;
     const ROWS: usize = 30;
     const VOLUME_ROW: usize = 27;
     const FORCE_ROW: Option<usize> = Some(THERE_ROW);

@@ -30,6 +30,8 @@ pub struct ElementState {
     pub displacements: [[f64; 3]; MOST_NODES],
     /// Rest volume (m³); 0 once removed.
     pub volume: f64,
+    /// The least J of the points that are [looked at](Element::LOOKED_AT).
+    pub least_volume_ratio: f64,
     simple: bool,
     points: [PointKinematics; MOST_POINTS],
 }
@@ -63,7 +65,11 @@ impl ElementState {
             };
             let mut points = [at(&states[0]); MOST_POINTS];
             points.iter_mut().zip(&states).skip(1).for_each(|(point, state)| *point = at(state));
-            Self { kind, nodes, displacements, volume: number(E::VOLUME_ROW), simple, points }
+            let beside = (E::POINTS..E::LOOKED_AT).map(|point| E::at_point(&u, point, number).gradient);
+            let ratios = points[..E::POINTS].iter().map(|point| point.kinematics.true_j);
+            let ratios = ratios.chain(beside.map(|gradient| 1.0 + gradient.volume_change()));
+            let least_volume_ratio = ratios.fold(f64::INFINITY, f64::min);
+            Self { kind, nodes, displacements, volume: number(E::VOLUME_ROW), least_volume_ratio, simple, points }
         })
     }
 
@@ -77,14 +83,14 @@ impl ElementState {
         self.points().iter().map(|point| point.share * point.kinematics.true_j).sum()
     }
 
-    /// Whether it is turned inside out at one of its points.
+    /// Whether it is turned inside out at one of the points that are looked at.
     pub fn is_inverted(&self) -> bool {
         self.is_flatter_than(0.0)
     }
 
-    /// Whether J is below a value at one of its points.
+    /// Whether J is below a value at one of these.
     pub fn is_flatter_than(&self, least: f64) -> bool {
-        self.volume > 0.0 && self.points().iter().any(|point| point.kinematics.true_j < least)
+        self.volume > 0.0 && self.least_volume_ratio < least
     }
 
     /// Nodal forces (N) for a first Piola-Kirchhoff stress (Pa) at each point.

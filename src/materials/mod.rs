@@ -31,7 +31,7 @@ pub use elasticity::Elasticity;
 pub use exponential_fibres::ExponentialFibre;
 pub use fibres::Fibres;
 pub use kinematics::{FLATTEST, J_FLOOR, Kinematics};
-pub use law::{Law, Prerequisite};
+pub use law::{Law, Prerequisite, RustLaw};
 pub use ogden::{OGDEN_TERMS, OgdenParameters, OgdenTerm};
 pub use prony::PronyTerm;
 pub use user_law::{EnergySlopes, IsochoricStress, LawPrograms, UserLaw};

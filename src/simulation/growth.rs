@@ -287,7 +287,15 @@ mod tests {
     use crate::materials::{Linear, NeoHookean};
 
     fn law(elastic: ElasticLaw<f64>) -> BlockLaw<f64> {
-        BlockLaw { elastic, fibres: None, exponential: vec![], prony: vec![], volumetric: vec![], reproject: false }
+        BlockLaw {
+            elastic,
+            fibres: None,
+            exponential: vec![],
+            prony: vec![],
+            volumetric: vec![],
+            reproject: false,
+            own_kernels: None,
+        }
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! The systems that a scene may name: those of a registry, and those that it has of its own.
 
+use crate::backend::user_law::NamedLaw;
 use crate::scene::Diagnostics;
 use crate::scene::schema::Scene;
 use crate::scene::syntax::Path;
@@ -15,6 +16,11 @@ impl<'a> Known<'a> {
     /// Those of a scene and a registry.
     pub fn of(registry: &'a Registry, scene: &Scene) -> Self {
         Self { registry, own: crate::systems::of_scene(scene) }
+    }
+
+    /// The laws in Rust.
+    pub fn laws(&self) -> &[NamedLaw] {
+        self.registry.laws()
     }
 
     /// All systems: the built-in ones in the order of the step, among them, after the other loads, the scene's own;

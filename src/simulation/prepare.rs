@@ -51,7 +51,7 @@ fn prepare_with<'a>(
     world: &mut World,
     diagnostics: &mut Diagnostics,
 ) -> Option<(Prepared<'a>, Option<LoadRates>)> {
-    let assembly = assemble(scene, options.precision, options.scheme, world, diagnostics);
+    let assembly = assemble(scene, options.precision, options.scheme, known.laws(), world, diagnostics);
     known.check(diagnostics);
     check_names(scene.scene.schedule.as_deref().unwrap_or_default(), known, diagnostics);
     let assembly = assembly?;

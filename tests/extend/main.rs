@@ -2,6 +2,8 @@
 //! file and its WGSL file, or by one of them. They run on both backends.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod gent;
+mod laws;
 mod plane;
 mod wind;
 
@@ -57,8 +59,9 @@ fn a_law_a_load_and_a_contact_plane_from_outside_run_on_both_backends() {
     // swing no more by then; corners, which have least mass, sink deeper
     let sunk = (-0.005 - lowest) / (8.0 * 9.81 / 4e6);
     assert!((1.0..4.0).contains(&sunk), "lowest at {lowest}: {sunk} times as deep as the average");
-    // a part of a a t²/2 = 16 mm; damping takes from it
-    assert!((2e-3..16e-3).contains(&blown), "blown by {blown}");
+    // a s/c (t − (1 − exp(−c t))/c) with the share s = z/(2 h) of the middle: 1.252 mm at z = 50 mm, 1.127 mm at 45 mm,
+    // where it is from .03 s on; columns of nodes are not all of the same mass
+    assert!((1.1e-3..1.2e-3).contains(&blown), "blown by {blown}");
     if gpu_or_reason().is_none() {
         return;
     }

@@ -141,7 +141,7 @@ fn loads_on_flat_faces_go_to_middles() {
                 let expected = 100.0 * halves * 0.5 / 3.0;
                 near(&format!("{} at {x}", run.name), f.x, expected, 100.0, run.bound(1e-12, 1e-6));
             }
-            near(&run.name, found.iter().map(|f| f.x).sum(), 100.0, 100.0, run.bound(1e-12, 1e-6));
+            near(run.name, found.iter().map(|f| f.x).sum(), 100.0, 100.0, run.bound(1e-12, 1e-6));
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Forces of all elements of a block, a register full at a time.
 
+mod corners;
 mod effects;
 mod fetch;
 mod patch_local;
@@ -10,6 +11,7 @@ use crate::components::{FamilyDirection, Patches};
 use crate::elements::{Element, MOST_NODES, PressureFrom};
 use crate::materials::{Elastic, ElasticLaw, FLATTEST, NeoHookean};
 use crate::math::{LANES, Real, Scratch, SimdScalar};
+pub(super) use corners::{corner_registers, group_vectors};
 use fetch::{AHEAD, NEAR};
 use patch_local::{PatchLocal, part, parts};
 use pulp::{Simd, WithSimd};
@@ -89,6 +91,18 @@ pub fn run_block_fast<E: Element>(
         ElasticLaw::Ogden(elastic) => block.run::<_, 0>(elastic),
         asked => block.run::<_, ASK>(asked),
     }
+}
+
+/// The same with a law that is known when this is compiled: a user's own.
+pub(super) fn run_block_of<E: Element, L: Elastic<f32>>(
+    cpu: &Cpu,
+    columns: BlockColumns<'_, '_, f32>,
+    law: &BlockLaw<f32>,
+    elastic: &L,
+    groups_a_patch: usize,
+) -> Vec<usize> {
+    let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
+    if is_specialised::<E>() && law.is_elastic() { block.run::<_, 0>(elastic) } else { block.run::<_, ASK>(elastic) }
 }
 
 /// Whether an element type has kernels of its own. In the library's unit tests none has: they take most of the time of
@@ -289,38 +303,6 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd
     }
 }
 
-/// Vectors of a group's nodes, brought side by side.
-#[inline(always)]
-pub(super) fn group_vectors<E: Element, T: SimdScalar>(nodes: &[u32], column: &[T]) -> [[[T; LANES]; 3]; MOST_NODES] {
-    let mut vectors = [[[T::default(); LANES]; 3]; MOST_NODES];
-    for corner in 0..E::NODES {
-        for lane in 0..LANES {
-            let row = 3 * nodes[corner * LANES + lane] as usize;
-            let vector = &column[row..row + 3];
-            for i in 0..3 {
-                vectors[corner][i][lane] = vector[i];
-            }
-        }
-    }
-    vectors
-}
-
-/// A register full of nodal vectors, from lane `at` on.
-#[inline(always)]
-pub(super) fn corner_registers<E: Element, T: SimdScalar, S: Simd>(
-    simd: S,
-    vectors: &[[[T; LANES]; 3]; MOST_NODES],
-    at: usize,
-) -> [[T::Vector<S>; 3]; MOST_NODES] {
-    let mut u = [[T::splat(simd, T::default()); 3]; MOST_NODES];
-    for corner in 0..E::NODES {
-        for i in 0..3 {
-            u[corner][i] = T::load(simd, &vectors[corner][i][at..]);
-        }
-    }
-    u
-}
-
 impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
     /// One register full of elements, from lane `at` on. Returns −J V, positive for inverted elements.
     #[inline(always)]
@@ -358,6 +340,10 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
             E::add_stress(&mut forces, point, &state, &stress);
             worst = worst.max(least - j);
         }
+        for point in E::POINTS..E::LOOKED_AT {
+            let j = volume_ratio::<E, T, S>(simd, &u, rest_shape, point, at);
+            worst = worst.max(least - j);
+        }
         let worst = worst * T::load(simd, &rest_shape[E::VOLUME_ROW][at..]);
         let mut out = [[zero; 3]; MOST_NODES];
         E::store_forces(
@@ -376,6 +362,24 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         self.give(simd, group, at, scratch, &out);
         worst
     }
+}
+
+/// J at a point that has no weight.
+#[inline(always)]
+fn volume_ratio<E: Element, T: SimdScalar, S: Simd>(
+    simd: S,
+    u: &E::Prepared<T::Vector<S>>,
+    rest_shape: &[[T; LANES]],
+    point: usize,
+    at: usize,
+) -> T::Vector<S> {
+    let state = E::at_point(
+        u,
+        point,
+        #[inline(always)]
+        |row: usize| T::load(simd, &rest_shape[row][at..]),
+    );
+    state.gradient.volume_change() + state.volume.constant(1.0)
 }
 
 /// θ̄ = Σ V_q θ_q / V of elements with several points.

@@ -1,5 +1,6 @@
 //! The material of a block, ready for its kernel.
 
+use super::OwnKernels;
 use crate::components::FamilyDirection;
 use crate::materials::{Elastic, ElasticLaw, ExponentialFibre, Fibres, PronyTerm};
 use crate::math::Scalar;
@@ -21,6 +22,8 @@ pub struct BlockLaw<T: Scalar> {
     pub volumetric: Vec<PronyTerm<T>>,
     /// Whether the relaxed isochoric stress is freed of what is a pressure by now.
     pub reproject: bool,
+    /// Kernels in f32 that know the elastic law since they were compiled.
+    pub own_kernels: Option<OwnKernels>,
 }
 
 impl<T: Scalar> BlockLaw<T> {
@@ -34,6 +37,12 @@ impl<T: Scalar> BlockLaw<T> {
     /// Numbers of viscous history that an element with so many integration points has.
     pub fn memory_numbers(&self, points: usize) -> usize {
         6 * self.prony.len() * points + self.volumetric.len()
+    }
+
+    /// Whether it is its elastic law and nothing else.
+    pub fn is_elastic(&self) -> bool {
+        let fibres = self.fibres.is_some() || !self.exponential.is_empty();
+        !fibres && self.prony.is_empty() && self.volumetric.is_empty() && !self.reproject
     }
 
     /// Rounds to another precision.
@@ -51,6 +60,7 @@ impl<T: Scalar> BlockLaw<T> {
             prony: terms(&self.prony),
             volumetric: terms(&self.volumetric),
             reproject: self.reproject,
+            own_kernels: self.own_kernels.clone(),
         }
     }
 }

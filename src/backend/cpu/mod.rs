@@ -3,6 +3,7 @@
 mod element_kernel;
 mod law;
 mod node_kernel;
+mod own_kernels;
 mod strain_kernel;
 mod volume_kernel;
 mod watch_kernel;
@@ -10,6 +11,7 @@ mod watch_kernel;
 pub use element_kernel::{BlockColumns, Inside, kernel_effects, run_block, run_block_fast};
 pub use law::BlockLaw;
 pub use node_kernel::{Factors, NodeColumns, move_nodes};
+pub use own_kernels::OwnKernels;
 pub use strain_kernel::{Strain, StrainColumns, Visit, strains};
 pub(crate) use strain_kernel::{sizes, with_identity};
 pub use volume_kernel::run_volumes;

@@ -143,6 +143,10 @@ impl<E: Element, T: SimdScalar> Patch<'_, E, T> {
                 hourglass = E::hourglass_energy(&u, &state.gradient, number);
             }
         }
+        for point in E::POINTS..E::LOOKED_AT {
+            let change = E::at_point(&u, point, number).gradient.volume_change();
+            least = least.min(change + change.constant(1.0));
+        }
         // an element that fills up its group may have no volume at all
         let volume = volume.if_positive(volume, zero.constant(1.0));
         let volumetric = match E::PRESSURE {

@@ -69,6 +69,17 @@ impl Told {
         Self::derived(&About::File)
     }
 
+    /// Of a law in Rust.
+    pub(super) fn rust() -> Self {
+        Self {
+            parts: ["isochoric", "pressure", "isochoric_energy", "volumetric_energy"]
+                .map(|name| (format!("`{name}`"), About::File)),
+            exact: "compute from `k.green_strain` and `k.volume_change`, which are exact for small strains",
+            volume: "theta",
+            isotropic: "use the strains in `k` as a whole; directions come with a material's `fibres`",
+        }
+    }
+
     fn derived(about: &About) -> Self {
         let parts =
             ["the energy's isochoric stress", "the energy's pressure", "the isochoric energy", "the volumetric energy"];

@@ -47,7 +47,7 @@ pub(super) fn read(
         }
     });
     [findings.shear, findings.bulk] = moduli;
-    Ok(Read { law: UserLaw::new(LawPrograms { moduli, ..law }), built_in, findings, warnings })
+    Ok(Read { law: UserLaw::new(LawPrograms { moduli, ..law }), built_in, own_kernels: None, findings, warnings })
 }
 
 /// The built-in law whose derivatives are constants.

@@ -13,13 +13,16 @@ mod limits;
 mod load;
 mod names;
 mod reading;
+mod rust;
 mod text;
 
 pub use checks::Findings;
 pub use energy::read_formula;
 pub(crate) use form::ground_of_load;
 pub use load::{check_load, read_load};
+pub use rust::NamedLaw;
 
+use crate::backend::cpu::OwnKernels;
 use crate::materials::{ElasticLaw, IsochoricStress, LawPrograms, UserLaw};
 use form::{Form, OF_LAWS};
 use reading::Reading;
@@ -71,6 +74,8 @@ pub struct Read {
     pub law: UserLaw<f64>,
     /// The same law built in, where an energy turns out to be that of one: it has kernels of its own.
     pub built_in: Option<ElasticLaw<f64>>,
+    /// Kernels of its own, of a law in Rust.
+    pub own_kernels: Option<OwnKernels>,
     /// What was found.
     pub findings: Findings,
     /// Warnings.
@@ -100,5 +105,5 @@ pub fn read(path: &str, text: &str, parameters: &BTreeMap<String, f64>) -> Resul
     };
     let (findings, warnings) = checks::check(&law, &checks::Told::law(text))?;
     let law = LawPrograms { moduli: [findings.shear, findings.bulk], ..law };
-    Ok(Read { law: UserLaw::new(law), built_in: None, findings, warnings })
+    Ok(Read { law: UserLaw::new(law), built_in: None, own_kernels: None, findings, warnings })
 }

@@ -110,7 +110,7 @@ pub(super) fn beside() -> Vec<Fragment> {
 }
 
 /// Names that kernels are generated with.
-const GENERATED: [&str; 20] = [
+const GENERATED: [&str; 21] = [
     "add_forces",
     "force_of_patch",
     "call_all",
@@ -128,6 +128,7 @@ const GENERATED: [&str; 20] = [
     "LANES",
     "NODES",
     "POINTS",
+    "LOOKED_AT",
     "ROWS",
     "VOLUME_ROW",
     "J_FLOOR",

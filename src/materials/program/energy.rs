@@ -218,7 +218,7 @@ fn some<const COUNT: usize>(values: &[Id], at: Span) -> Result<[Id; COUNT], Untr
 }
 
 /// Whether values are made of no more than an element can be asked to compute.
-fn bearable(graph: &Graph, values: &[Id], at: Span) -> Result<(), Untranslatable> {
+pub(super) fn bearable(graph: &Graph, values: &[Id], at: Span) -> Result<(), Untranslatable> {
     let count = graph.wanted(values).into_iter().filter(|wanted| *wanted).count();
     if count <= MOST_VALUES {
         return Ok(());
@@ -227,6 +227,6 @@ fn bearable(graph: &Graph, values: &[Id], at: Span) -> Result<(), Untranslatable
     Err(Untranslatable::new(at, message).note("a shorter formula, or fewer rounds of its loops"))
 }
 
-fn function(head: &str, result: &str, lines: &str, value: &str) -> String {
+pub(super) fn function(head: &str, result: &str, lines: &str, value: &str) -> String {
     format!("\nfn {head} -> {result} {{\n{lines}    return {value};\n}}\n")
 }

@@ -14,6 +14,7 @@ mod expression;
 mod flow;
 mod functions;
 mod graph;
+mod record;
 mod tape;
 mod tidy;
 mod translate;
@@ -22,6 +23,7 @@ mod value;
 mod words;
 
 pub use energy::{DerivedLaw, INVARIANTS};
+pub use record::{Recorded, RecordedLaw, record};
 pub use tape::{Program, SLOTS};
 pub(crate) use words::{is_name, words};
 

@@ -16,7 +16,7 @@ macro_rules! material {
             $($(#[$doc])* #[doc = ""] #[doc = "Every material has exactly one elastic law."]
             #[serde(default)]
             pub $word: Option<<materials::$law<f64> as Law>::Parameters>,)*
-            /// An elastic law of your own: a formula of its energy, or written in WGSL.
+            /// An elastic law of your own: a formula of its energy, or written in WGSL or Rust.
             #[serde(default)]
             pub law: Option<OwnLaw>,
             /// Fibres in one direction (transverse isotropy), on top of the elastic law.
@@ -144,7 +144,7 @@ impl Material {
     }
 }
 
-/// An elastic law of your own: a formula of its energy, or a WGSL file; and the parameters it needs.
+/// An elastic law of your own: a formula of its energy, a WGSL file, or one in Rust; and the parameters it needs.
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct OwnLaw {
@@ -154,7 +154,11 @@ pub struct OwnLaw {
     /// In place of `energy` the file (.wgsl), its path relative to the scene file; empty where there is none.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub file: String,
-    /// A number for each name in the formula, or for each member of the struct of `var<uniform> elastic`.
+    /// In place of both the name of a law in Rust, which the program adds to its registry.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rust: Option<String>,
+    /// A number for each name in the formula, for each member of the struct of `var<uniform> elastic`, or for each
+    /// parameter of the law in Rust.
     #[serde(default)]
     pub parameters: BTreeMap<String, f64>,
 }

@@ -62,13 +62,20 @@ fn tell(judge: &mut Judge, law: &Path, complaint: Complaint) {
 }
 
 fn own_law(judge: &mut Judge, path: &Path, law: &OwnLaw) {
-    match &law.energy {
-        Some(_) if !law.file.is_empty() => {
+    let ways = [("energy", law.energy.is_some()), ("file", !law.file.is_empty()), ("rust", law.rust.is_some())];
+    let mut ways = ways.into_iter().filter_map(|(way, is_there)| is_there.then_some(way));
+    match (ways.next(), ways.next()) {
+        (Some(first), Some(second)) => {
             judge
                 .out
-                .error_at(path.name("file"), "the law has both `energy` and `file`")
-                .note("a law is a formula of its energy, or a file of WGSL: leave the other out");
+                .error_at(path.name(second), format!("the law has both `{first}` and `{second}`"))
+                .note("a law is a formula of its energy, a file of WGSL, or one in Rust: leave the other out");
+            return;
         }
+        (Some("rust"), None) => return,
+        _ => {}
+    }
+    match &law.energy {
         Some(energy) if energy.trim().is_empty() => {
             judge.out.error_at(path.name("energy"), "the formula is empty").note(FOR_INSTANCE);
         }
@@ -79,7 +86,7 @@ fn own_law(judge: &mut Judge, path: &Path, law: &OwnLaw) {
         None if law.file.is_empty() => {
             judge
                 .out
-                .error_at(path.name("file"), "the law has neither `energy` nor `file`")
+                .error_at(path.name("file"), "the law has neither `energy` nor `file` nor `rust`")
                 .note(FOR_INSTANCE)
                 .note("or file: \"law.wgsl\", a law in WGSL");
         }

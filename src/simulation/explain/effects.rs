@@ -220,6 +220,7 @@ fn cpu_variant(entity: &EntityRef<'_>, block: &Block, world: &World) -> String {
     let law = ElasticLaw::of(world.entity(block.material)).map_or("no law", |law| law.name());
     let rounded = entity.get::<BlockLaw<f32>>();
     let variant = match rounded.and_then(|law| with_element!(block.kind, E => kernel_effects::<E>(law))) {
+        _ if rounded.is_some_and(|law| law.own_kernels.is_some()) => "compiled for it".into(),
         Some(effects) => {
             let [fibres, viscosity] = effects.map(|is| if is { "with" } else { "without" });
             format!("{fibres} fibres, {viscosity} viscosity")
