@@ -66,8 +66,7 @@ fn simulation(elements: &str, cells: u32, material: &str, precision: Precision) 
           loads: [Gravity(acceleration: (0, 0, -2))])"
     );
     let scene = SceneFile::from_text("cube", &text, Path::new("."), &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
-    let registry =
-        Registry::default().with_law::<OwnNeoHookean<f64>>("neo").with_law::<OwnMooneyRivlin<f64>>("mooney");
+    let registry = Registry::default().with_law::<OwnNeoHookean<f64>>("neo").with_law::<OwnMooneyRivlin<f64>>("mooney");
     let options = Options { backend: BackendChoice::Cpu, precision, threads: 1, ..Options::default() };
     Simulation::with_systems(&scene, &options, &registry).unwrap_or_else(|wrong| panic!("{wrong}"))
 }

@@ -17,7 +17,7 @@ use patch_local::{PatchLocal, part, parts};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
 use std::sync::{Mutex, PoisonError};
-use stress::InRegisters;
+use stress::{InRegisters, mean_volume_change, volume_ratio};
 
 /// The columns a block's kernel reads and writes; layouts as in [`components`](crate::components).
 pub struct BlockColumns<'a, 'n, T> {
@@ -362,47 +362,4 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         self.give(simd, group, at, scratch, &out);
         worst
     }
-}
-
-/// J at a point that has no weight.
-#[inline(always)]
-fn volume_ratio<E: Element, T: SimdScalar, S: Simd>(
-    simd: S,
-    u: &E::Prepared<T::Vector<S>>,
-    rest_shape: &[[T; LANES]],
-    point: usize,
-    at: usize,
-) -> T::Vector<S> {
-    let state = E::at_point(
-        u,
-        point,
-        #[inline(always)]
-        |row: usize| T::load(simd, &rest_shape[row][at..]),
-    );
-    state.gradient.volume_change() + state.volume.constant(1.0)
-}
-
-/// θ̄ = Σ V_q θ_q / V of elements with several points.
-#[inline(always)]
-fn mean_volume_change<E: Element, T: SimdScalar, L: Elastic<T>, S: Simd>(
-    simd: S,
-    elastic: &L::Of<T::Vector<S>>,
-    u: &E::Prepared<T::Vector<S>>,
-    rest_shape: &[[T; LANES]],
-    at: usize,
-) -> T::Vector<S> {
-    let mut change = T::splat(simd, T::default());
-    let mut volume = change;
-    for point in 0..E::POINTS {
-        let state = E::at_point(
-            u,
-            point,
-            #[inline(always)]
-            |row: usize| T::load(simd, &rest_shape[row][at..]),
-        );
-        let k = elastic.kinematics(&state.gradient);
-        change = state.volume.mul_add(elastic.volume_measure(&k), change);
-        volume += state.volume;
-    }
-    change / volume
 }

@@ -43,7 +43,11 @@ fn main() -> Result<(), Error> {
     let farthest = (0..moved.len()).max_by(|&a, &b| moved[a].z.total_cmp(&moved[b].z)).unwrap_or_default();
     let number = simulation.node_numbers("cube")?[farthest];
     let state = simulation.node_state(&corner)?[0];
-    println!("node {number} is {:.3} mm up; {} steps took {took:.2?}", 1e3 * state.displacement.z, simulation.step_count());
+    println!(
+        "node {number} is {:.3} mm up; {} steps took {took:.2?}",
+        1e3 * state.displacement.z,
+        simulation.step_count()
+    );
     if number != CORNER || state.rest != DVec3::splat(0.1) || moved[farthest] != state.displacement {
         return Err(Error::Options(format!("node {CORNER} at {} was pulled, and node {number} moved", state.rest)));
     }

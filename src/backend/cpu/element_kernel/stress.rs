@@ -130,3 +130,46 @@ fn six_rows<T: SimdScalar, S: Simd>(simd: S, rows: &[[T; LANES]; 6], at: usize) 
     }
     all
 }
+
+/// J at a point that has no weight.
+#[inline(always)]
+pub(super) fn volume_ratio<E: Element, T: SimdScalar, S: Simd>(
+    simd: S,
+    u: &E::Prepared<T::Vector<S>>,
+    rest_shape: &[[T; LANES]],
+    point: usize,
+    at: usize,
+) -> T::Vector<S> {
+    let state = E::at_point(
+        u,
+        point,
+        #[inline(always)]
+        |row: usize| T::load(simd, &rest_shape[row][at..]),
+    );
+    state.gradient.volume_change() + state.volume.constant(1.0)
+}
+
+/// θ̄ = Σ V_q θ_q / V of elements with several points.
+#[inline(always)]
+pub(super) fn mean_volume_change<E: Element, T: SimdScalar, L: Elastic<T>, S: Simd>(
+    simd: S,
+    elastic: &L::Of<T::Vector<S>>,
+    u: &E::Prepared<T::Vector<S>>,
+    rest_shape: &[[T; LANES]],
+    at: usize,
+) -> T::Vector<S> {
+    let mut change = T::splat(simd, T::default());
+    let mut volume = change;
+    for point in 0..E::POINTS {
+        let state = E::at_point(
+            u,
+            point,
+            #[inline(always)]
+            |row: usize| T::load(simd, &rest_shape[row][at..]),
+        );
+        let k = elastic.kinematics(&state.gradient);
+        change = state.volume.mul_add(elastic.volume_measure(&k), change);
+        volume += state.volume;
+    }
+    change / volume
+}
