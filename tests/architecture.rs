@@ -165,7 +165,7 @@ fn what_is_said_of_the_architecture_is_there() {
     let paths: Vec<&str> = text.split('`').skip(1).step_by(2).filter(is_path).collect();
     let missing: Vec<&&str> = paths.iter().filter(|path| !root().join(path).exists()).collect();
     assert!(paths.len() > 30 && missing.is_empty(), "{} paths, not there: {missing:?}", paths.len());
-    let linked = text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    let linked = text.split("](").skip(1).filter_map(|rest| rest.split([')', '#']).next());
     let broken: Vec<&str> = linked.filter(|link| !root().join(link).exists()).collect();
     assert!(broken.is_empty(), "links to nowhere: {broken:?}");
 }

@@ -13,12 +13,12 @@ use std::path::Path;
 
 /// A cube of tissue with a law of its own, a hand's breadth above a floor, in the wind.
 const SCENE: &str = r#"(
-    duration: 0.25,
+    duration: 0.6,
     bodies: {"cube": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4)), material: "tissue")},
     materials: {"tissue": (
         density: 1000,
         law: (file: "law.wgsl", parameters: {"mu": 2000, "b": 0.5, "bulk": 2e4}),
-        damping: 20,
+        damping: 60,
     )},
     loads: [Gravity(acceleration: (0, 0, -9.81))],
     schedule: ["boundary", "element_forces", "gather", "gravity", "wind", "plane", "integrate", "observe"],
@@ -59,9 +59,9 @@ fn a_law_a_load_and_a_contact_plane_from_outside_run_on_both_backends() {
     // swing no more by then; corners, which have least mass, sink deeper
     let sunk = (-0.005 - lowest) / (8.0 * 9.81 / 4e6);
     assert!((1.0..4.0).contains(&sunk), "lowest at {lowest}: {sunk} times as deep as the average");
-    // a s/c (t − (1 − exp(−c t))/c) with the share s = z/(2 h) of the middle: 1.252 mm at z = 50 mm, 1.127 mm at 45 mm,
-    // where it is from .03 s on; columns of nodes are not all of the same mass
-    assert!((1.1e-3..1.2e-3).contains(&blown), "blown by {blown}");
+    // a s/c (t − (1 − exp(−c t))/c) with the share s = z/(2 h) of the middle: 1.215 mm at z = 50 mm, 1.094 mm at 45 mm,
+    // where it is from .05 s on; columns of nodes are not all of the same mass
+    assert!((1.06e-3..1.14e-3).contains(&blown), "blown by {blown}");
     if gpu_or_reason().is_none() {
         return;
     }

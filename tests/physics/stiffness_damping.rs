@@ -217,7 +217,7 @@ fn all_backends_agree_and_snapshots_are_gone_on_from() {
             let mut finer = run.start(&everything(elements));
             finer.restore(&kept).unwrap();
             finer.set_time_step(2.5e-4).unwrap();
-            finer.advance(160).unwrap();
+            finer.advance_to(whole.time()).unwrap();
             let (found, finer) = (whole.displacements("b").unwrap(), finer.displacements("b").unwrap());
             let size = found.iter().map(|u| u.length()).fold(0.0, f64::max);
             let apart = |a: &[glam::DVec3], b: &[glam::DVec3]| {

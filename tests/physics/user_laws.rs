@@ -134,7 +134,10 @@ fn a_run_under_a_law_of_ones_own_goes_as_under_the_same_law_built_in() {
             let largest = expected.iter().fold(0.0, |largest: f64, u| largest.max(u.length()));
             let error = found.iter().zip(&expected).fold(0.0, |worst: f64, (a, b)| worst.max((*a - *b).length()));
             assert!(largest > 1e-3, "the bar falls by {largest} m only");
-            let bound = if configuration.name.starts_with("GPU") { 0.0 } else { configuration.bound(1e-10, 2e-5) };
+            // more nodes, more terms
+            let of_singles = if elements == "Tet10" { 5e-5 } else { 2e-5 };
+            let bound =
+                if configuration.name.starts_with("GPU") { 0.0 } else { configuration.bound(1e-10, of_singles) };
             near(&format!("{elements} on {}", configuration.name), error / largest, 0.0, 1.0, bound);
             near("elastic energy", energies.strain, built_in.strain, built_in.strain, configuration.bound(1e-10, 1e-4));
         }
