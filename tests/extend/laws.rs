@@ -18,7 +18,8 @@ const ELEMENTS: [&str; 6] = ["Tet4", "Tet4NodalPressure", "Hex8", "Hex8MeanDilat
 
 fn scene(elements: &str, law: &str, more: &str) -> SceneFile {
     let text = format!(
-        r#"(duration: 0.02, bodies: {{"bar": (mesh: Box(size: (0.04, 0.01, 0.01), cells: (4, 1, 1), elements: {elements}), material: "m")}},
+        // a step that follows the highest frequency differs by how exactly that is found
+        r#"(duration: 0.02, integration: (when_unstable: Watch), bodies: {{"bar": (mesh: Box(size: (0.04, 0.01, 0.01), cells: (4, 1, 1), elements: {elements}), material: "m")}},
         materials: {{"m": (density: 1000, law: ({law}), damping: 50{more})}},
         constraints: [
             Fixed(on: Plane(normal: (1, 0, 0), at: 0)),
@@ -94,7 +95,7 @@ fn wrong_parameters_are_told_at_their_place() {
         assert!(told.contains(expected) && told.contains("gent.ron:2:"), "{law}:\n{told}");
     }
     let told = complaint(IN_RUST, &Registry::default());
-    assert!(told.contains("this program has no law `gent`") && told.contains("Registry"), "{told}");
+    assert!(told.contains("this program has no law `gent`") && told.contains("registry"), "{told}");
 }
 
 /// The neo-Hookean law but for one thing, by a word.
