@@ -50,7 +50,7 @@ fn apart(a: &[DVec3], b: &[DVec3]) -> f64 {
 
 #[test]
 fn a_law_in_rust_is_that_of_its_energy_on_both_backends() {
-    let viscous = ", prony: (terms: [(alpha: 0.3, tau: 0.01)]), fibres: (eta: 3e3, direction: Uniform((1, 0, 0)))";
+    let viscous = ", prony: (terms: [(alpha: 0.3, tau: 0.01)]), fibres: (eta: 3e3, direction: Along(1, 0, 0))";
     for (elements, more) in ELEMENTS.into_iter().flat_map(|elements| ["", viscous].map(|more| (elements, more))) {
         let (in_rust, by_energy) = (scene(elements, IN_RUST, more), scene(elements, ENERGY, more));
         let reference = moved(&by_energy, BackendChoice::Cpu, Precision::F64);
