@@ -53,12 +53,10 @@ fn element_of(row: u32) -> Element {
     return Element(u, x, rest_shape[place(row, ROWS, VOLUME_ROW)]);
 }
 
-// Four times the barycentric coordinates of a point; after the integration points come the corners.
+// Four times the barycentric coordinates of a point; after the integration points comes the middle.
 fn four_shares(point: u32) -> vec4<f32> {
-    let is_corner = point >= POINTS;
-    let near = vec4<f32>(4.0 * select(NEAR, 0.0, is_corner));
-    let far = vec4<f32>(4.0 * select(FAR, 1.0, is_corner));
-    return select(near, far, vec4<u32>(0u, 1u, 2u, 3u) == vec4<u32>(point % 4u));
+    let near = vec4<f32>(4.0 * select(NEAR, 0.25, point >= POINTS));
+    return select(near, vec4<f32>(4.0 * FAR), vec4<u32>(0u, 1u, 2u, 3u) == vec4<u32>(point));
 }
 
 // Columns: derivatives by the coordinates of the corners 1, 2 and 3.

@@ -50,8 +50,8 @@ pub trait Element: Copy + Send + Sync + 'static {
     const NODES_OF_LEAST_MASS: f64 = 1.0 / Self::CELL.least_share();
     /// How many integration points.
     const POINTS: usize;
-    /// Points at which J is looked at, the integration points first: where edges can be curved an element can fold at a
-    /// corner while none of these sees it. The others have no weight.
+    /// Points at which J is looked at, the integration points first: where edges can be curved an element can be folded
+    /// as a whole while none of these sees it. The others have no weight.
     const LOOKED_AT: usize = Self::POINTS;
     /// How many numbers describe the rest shape.
     const ROWS: usize;

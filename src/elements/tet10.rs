@@ -43,14 +43,16 @@ const fn slope(corner: usize, k: usize) -> f64 {
     }
 }
 
-/// ∂(4 L_a L_b)/∂L_k of each edge at each point, then at each corner.
-const SLOPES: [[[f64; 6]; 3]; 8] = {
-    let mut slopes = [[[0.0; 6]; 3]; 8];
+/// ∂(4 L_a L_b)/∂L_k of each edge at each point, then in the middle.
+const SLOPES: [[[f64; 6]; 3]; 5] = {
+    let mut slopes = [[[0.0; 6]; 3]; 5];
     let mut place = 0;
-    while place < 8 * 3 * 6 {
+    while place < 5 * 3 * 6 {
         let (point, k, edge) = (place / 18, place / 6 % 3, place % 6);
-        let mut share = if point < 4 { [NEAR; 4] } else { [0.0; 4] };
-        share[point % 4] = if point < 4 { FAR } else { 1.0 };
+        let mut share = if point < 4 { [NEAR; 4] } else { [0.25; 4] };
+        if point < 4 {
+            share[point] = FAR;
+        }
         let [a, b] = EDGES[edge];
         slopes[point][k][edge] = 4.0 * (share[a] * slope(b, k) + share[b] * slope(a, k));
         place += 1;
@@ -106,8 +108,9 @@ impl Element for Tet10 {
     const NAME: &'static str = "tet10";
     const CELL: CellKind = CellKind::Tet10;
     const POINTS: usize = 4;
-    /// The corners, too: gradients are linear in place, and farthest from their mean there.
-    const LOOKED_AT: usize = 8;
+    /// The middle, too, which has the mean gradient: a face can be pulled through the opposite corner while J stays above
+    /// 0 at all four.
+    const LOOKED_AT: usize = 5;
     const ROWS: usize = 30;
     const VOLUME_ROW: usize = 27;
     const FORCE_ROW: Option<usize> = Some(THERE_ROW);
