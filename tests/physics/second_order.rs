@@ -57,10 +57,12 @@ fn six_modes_are_without_energy() {
 #[test]
 fn one_layer_bends_and_two_bend_as_they_should() {
     for run in configurations() {
+        // in f32 rounding keeps so soft a motion awake
+        let tolerance = run.bound(1e-6, 1e-4);
         let sinks = |elements: &str, layers: usize| {
             let cells = 10 * layers;
             let mut simulation = run.start(&format!(
-                "(duration: 1, analysis: Static(), bodies: {{\"b\": (mesh: Box(size: (0.1, 0.01, 0.01), cells: ({cells}, {layers}, {layers}), elements: {elements}), material: \"m\")}},
+                "(duration: 1, analysis: Static(tolerance: {tolerance:?}), bodies: {{\"b\": (mesh: Box(size: (0.1, 0.01, 0.01), cells: ({cells}, {layers}, {layers}), elements: {elements}), material: \"m\")}},
                 materials: {{\"m\": (density: 1000, linear: Young(young: 3e3, poisson: 0.45))}},
                 constraints: [Fixed(on: Plane(normal: (1, 0, 0), at: 0))],
                 loads: [Traction(on: Plane(normal: (1, 0, 0), at: 0.1), traction: (0, 0, -0.1))],
