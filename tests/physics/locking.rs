@@ -22,8 +22,10 @@ fn elements_lock_as_told_or_not_at_all() {
     for (run, (elements, bound)) in
         configurations().iter().flat_map(|run| ELEMENTS.iter().zip(&bounds).map(move |e| (run, e)))
     {
+        // as many nodes; with as many cells Tet10 is 0.1 % too stiff
+        let cells = if *elements == "Tet10" { "10, 2, 2" } else { "20, 4, 4" };
         let mut simulation = run.start(&format!(
-            "(duration: 1, analysis: Static(), bodies: {{\"b\": (mesh: Box(size: (0.1, 0.02, 0.02), cells: (20, 4, 4), elements: {elements}), material: \"m\")}},
+            "(duration: 1, analysis: Static(), bodies: {{\"b\": (mesh: Box(size: (0.1, 0.02, 0.02), cells: ({cells}), elements: {elements}), material: \"m\")}},
             materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 2.98e4, poisson: 0.49))}},
             constraints: [Fixed(on: Plane(normal: (1, 0, 0), at: 0))], loads: [Gravity(acceleration: (0, 0, -9.81))],
             probes: {{\"end\": (what: Displacement, on: Plane(normal: (1, 0, 0), at: 0.1))}})"
