@@ -180,6 +180,7 @@ fn members(layout: &Layout) -> Vec<(String, u32, u32)> {
 }
 
 #[test]
+#[ignore = "long"]
 fn every_combination_of_effects_composes_with_no_more_buffers_than_there_may_be() {
     let mut composer = Composer::default();
     for effects in Effects::combinations() {
@@ -209,6 +210,7 @@ fn every_combination_of_effects_composes_with_no_more_buffers_than_there_may_be(
 }
 
 #[test]
+#[ignore = "long"]
 fn every_variable_in_use_has_a_buffer_and_every_buffer_is_in_use() {
     let mut composer = Composer::default();
     for effects in Effects::combinations() {
@@ -366,6 +368,7 @@ fn every_shader_is_named_after_a_system_an_element_or_a_material_or_listed() {
 }
 
 #[test]
+#[ignore = "long"]
 fn all_fragments_of_the_folder_are_in_use() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
     let mut used: BTreeSet<String> = BTreeSet::new();

@@ -295,6 +295,7 @@ fn whole_of(run: &Run) -> Run {
 }
 
 #[test]
+#[ignore = "long"]
 fn made_up_scenes_keep_their_word() {
     let count = number("SINEW_FUZZ_SCENES", EVERYDAY) as u64;
     let first = number("SINEW_FUZZ_SEED", 0) as u64 * 1_000_000;

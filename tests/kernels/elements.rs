@@ -87,6 +87,7 @@ fn compare_element_forces(effects: &Effects, change: impl Fn(&mut World)) {
 }
 
 #[test]
+#[ignore = "long"]
 fn elements_exert_the_same_forces() {
     for fibres in [None, Some(ALONG), Some(AROUND)] {
         for (prony, tension_only, backward_euler) in
@@ -117,6 +118,7 @@ fn parallelepipeds_exert_the_same_forces() {
 
 /// Wedges with every effect, in both schemes, and with elements gone.
 #[test]
+#[ignore = "long"]
 fn wedges_exert_the_same_forces() {
     others_exert_the_same_forces("Wedge6", 1.0);
 }
@@ -124,6 +126,7 @@ fn wedges_exert_the_same_forces() {
 /// The same of curved tetrahedra of second order. Their nodes are half as far apart, and strains of second order grow
 /// towards corners: the noise that other elements bear would turn points inside out.
 #[test]
+#[ignore = "long"]
 fn ten_node_tetrahedra_exert_the_same_forces() {
     others_exert_the_same_forces("Tet10", 0.2);
 }
@@ -202,6 +205,7 @@ fn patches_give_the_same_bits_from_run_to_run() {
 }
 
 #[test]
+#[ignore = "long"]
 fn laws_of_the_ladder_exert_the_same_forces() {
     for law in LAWS {
         for averaged in [false, true] {
@@ -225,6 +229,7 @@ fn laws_from_an_energy_exert_the_same_forces_at_small_strains() {
 }
 
 #[test]
+#[ignore = "long"]
 fn pressures_relax_alike() {
     for averaged in [false, true] {
         for prony in [0, 2] {

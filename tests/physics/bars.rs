@@ -39,6 +39,7 @@ fn bar(run: &crate::configurations::Configuration, mesh: &str, constraints: &str
 }
 
 #[test]
+#[ignore = "long"]
 fn bar_held_sideways_sounds_at_8_4333_hertz() {
     for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
         let mesh = format!("size: (0.1, 0.01, 0.01), cells: (20, 2, 2), elements: {elements}");
@@ -50,6 +51,7 @@ fn bar_held_sideways_sounds_at_8_4333_hertz() {
 
 /// A quarter of the bar, with planes of symmetry.
 #[test]
+#[ignore = "long"]
 fn slender_bar_sounds_at_4_3301_hertz() {
     let planes =
         "Fixed(on: Plane(normal: (0, 1, 0), at: 0), axes: [Y]), Fixed(on: Plane(normal: (0, 0, 1), at: 0), axes: [Z])";

@@ -49,6 +49,7 @@ fn moved(simulation: &mut Simulation, steps: u64) -> Vec<DVec3> {
 }
 
 #[test]
+#[ignore = "long"]
 fn what_is_changed_before_the_first_step_is_as_if_the_scene_had_been_so() {
     const OWN: &str = "integration: (step: 5e-5, bound: Elements)";
     for run in configurations() {
@@ -67,6 +68,7 @@ fn what_is_changed_before_the_first_step_is_as_if_the_scene_had_been_so() {
 }
 
 #[test]
+#[ignore = "long"]
 fn what_goes_on_from_a_snapshot_has_what_was_changed_and_going_back_takes_it_back() {
     // elements that could go have their rest shapes in snapshots
     for further in ["", "removal: [(body: \"b\", on: All, when: VolumeRatioBelow(0.01))]"] {
@@ -97,6 +99,7 @@ fn what_goes_on_from_a_snapshot_has_what_was_changed_and_going_back_takes_it_bac
 }
 
 #[test]
+#[ignore = "long"]
 fn the_step_follows_a_material_that_becomes_stiffer_and_softer() {
     for run in configurations() {
         let mut simulation = run.start(&block("Tet4", false, ""));

@@ -236,6 +236,7 @@ fn a_step_close_to_the_limit_is_looked_at_before_it_is_beyond_it() {
 /// where it is thinnest. Looks that went by the mean of the stretches came too late in half of these runs, and steps
 /// that grew at once by more than twofold made energy.
 #[test]
+#[ignore = "long"]
 fn what_is_crushed_quickly_springs_back_whatever_the_mesh_and_the_share_of_the_stable_step() {
     let pressed = |cells: usize, elements: &str, poisson: f64, integration: &str| {
         format!(

@@ -37,6 +37,7 @@ fn momenta(simulation: &mut Simulation) -> (DVec3, DVec3) {
 }
 
 #[test]
+#[ignore = "long"]
 fn free_body_keeps_its_momentum_and_angular_momentum() {
     for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
         for effects in ["", "fibres: (eta: 2000, direction: Along(1, 2, 3)), prony: (terms: [(alpha: 0.5, tau: 0.1)])"]

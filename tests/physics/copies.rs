@@ -23,6 +23,7 @@ fn load(force: f64, more: &str) -> String {
 }
 
 #[test]
+#[ignore = "long"]
 fn copies_do_what_the_body_does_by_itself() {
     for run in configurations() {
         for elements in ELEMENTS {

@@ -15,6 +15,7 @@ enum Bound {
 }
 
 #[test]
+#[ignore = "long"]
 fn elements_lock_as_told_or_not_at_all() {
     // wedges hold two volumes where hexahedra hold one, 1.5 degrees of freedom for each: they lock a little (8.2 % with
     // half the cells along each edge, 5.6 % here; hardly anything at ν = .3)

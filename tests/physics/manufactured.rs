@@ -95,6 +95,7 @@ fn error(run: &Configuration, elements: &str, cells: usize) -> f64 {
 }
 
 #[test]
+#[ignore = "long"]
 fn displacements_converge_with_the_square_of_the_cell_size() {
     let mut wrong = Vec::new();
     for run in configurations() {

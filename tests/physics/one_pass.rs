@@ -49,6 +49,7 @@ fn end(run: &Configuration, text: &str) -> Vec<DVec3> {
 }
 
 #[test]
+#[ignore = "long"]
 fn a_shared_pass_changes_nothing() {
     for (more, loads) in [("", ""), ("output: (energies_every: 0.1)", ""), ("", PRESSURE)] {
         for run in configurations() {
@@ -102,6 +103,7 @@ fn small_bodies(run: &Configuration, effect: &str, output: &str, fuse: bool) -> 
 
 /// The same operations in the same order, but compilers may contract them otherwise: see above.
 #[test]
+#[ignore = "long"]
 fn small_bodies_take_many_steps_in_one_dispatch() {
     let Some(run) = configurations().into_iter().find(|run| run.options.backend == BackendChoice::Gpu) else { return };
     // where energies are observed, integrate books them node by node, and invocations need not meet for that
@@ -348,6 +350,7 @@ fn on_a_gpu(run: &Configuration, text: &str, steps: u64, fuse: bool) -> Run {
 /// The same operations in the same order, but compilers may contract them otherwise: see above. What is counted is a
 /// dispatch a block and one for the nodes that patches share, beside those of systems that stay apart.
 #[test]
+#[ignore = "long"]
 fn on_a_gpu_nodes_inside_patches_go_where_they_go_with_all_others() {
     let Some(run) = configurations().into_iter().find(|run| run.options.backend == BackendChoice::Gpu) else { return };
     let viscous = "damping: 2, prony: (terms: [(alpha: 0.4, tau: 0.05)])";

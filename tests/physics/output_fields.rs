@@ -88,6 +88,7 @@ fn fields_of_a_homogeneous_deformation_are_those_of_the_formulas() {
 }
 
 #[test]
+#[ignore = "long"]
 fn fibres_are_stretched_as_far_as_the_deformation_says() {
     let place = tempfile::tempdir().unwrap();
     let fibres = r#", fibres: (eta: 100, direction: Along(1, 1, 0)),

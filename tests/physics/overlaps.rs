@@ -39,6 +39,7 @@ fn warned(options: &Options, elements: &str, cells: &[Cube], rest: &str) -> Vec<
 }
 
 #[test]
+#[ignore = "long"]
 fn bodies_that_overlap_at_the_start_are_warned_of_once_and_those_beside_each_other_are_not() {
     let cases: [(&str, &[Cube], bool); 8] = [
         ("apart", &[(2, 0.1, [0.0; 3]), (3, 0.1, [0.2, 0.0, 0.0])], false),

@@ -55,6 +55,7 @@ fn six_modes_are_without_energy() {
 /// in place of κ: one layer is too soft by 13 %, two layers by half a percent (with one pressure and no more 1.47 and
 /// 1.03, with a pressure a point 0.925 and 0.969).
 #[test]
+#[ignore = "long"]
 fn one_layer_bends_and_two_bend_as_they_should() {
     for run in configurations() {
         // in f32 rounding keeps so soft a motion awake

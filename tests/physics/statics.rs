@@ -51,6 +51,7 @@ pub fn sag_under_weight(gravity: f64) -> f64 {
 }
 
 #[test]
+#[ignore = "long"]
 fn column_sags_by_its_weight() {
     for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
         for gravity in [9.81e-3, 9.81] {

@@ -74,6 +74,7 @@ fn damping_of(course: &[f64]) -> f64 {
 }
 
 #[test]
+#[ignore = "long"]
 fn modes_decay_in_proportion_to_their_frequencies() {
     let beta = 0.02 / frequency(1);
     for (run, elements) in configurations().iter().flat_map(|run| ["Hex8", "Hex8MeanDilatation"].map(|e| (run, e))) {
@@ -140,6 +141,7 @@ fn steps_that_are_found_are_stable_while_tissue_is_squeezed() {
 }
 
 #[test]
+#[ignore = "long"]
 fn rigid_rotation_is_not_damped() {
     for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|e| (run, e))) {
         let forces = |motion: &str| {

@@ -69,6 +69,7 @@ fn rest_shape_of_a_rod_that_sinks_by_a_third_is_found_again() {
 
 /// In every number type, on every backend: what begins there stands where the scan shows it.
 #[test]
+#[ignore = "long"]
 fn motion_from_the_rest_shape_begins_and_stays_where_the_scan_is() {
     let folder = tempfile::tempdir().unwrap();
     let (file, _) = scanned(folder.path());
@@ -95,6 +96,7 @@ fn motion_from_the_rest_shape_begins_and_stays_where_the_scan_is() {
 }
 
 #[test]
+#[ignore = "long"]
 fn what_cannot_be_unloaded_is_refused_with_the_distance_reached() {
     let folder = tempfile::tempdir().unwrap();
     let (file, _) = scanned(folder.path());

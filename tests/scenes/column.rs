@@ -26,6 +26,7 @@ fn a_whole_turn_keeps_the_volume_and_turns_no_element_inside_out() {
 }
 
 #[test]
+#[ignore = "long"]
 fn so_do_two_turns() {
     let twice = ["constraints[1].rotation=(0, 0, 720)", "duration=3", "constraints[1].curve=Smooth(end: 2.5)"];
     for (smallest, mean) in volumes(&twice) {

@@ -37,6 +37,7 @@ fn hash(simulation: &mut Simulation) -> String {
 }
 
 #[test]
+#[ignore = "long"]
 fn golden_hashes_of_shipped_scenes() {
     let mut kept: Hashes = ron::from_str(&std::fs::read_to_string(path()).unwrap_or_else(|_| "{}".into())).unwrap();
     let writes = std::env::var("SINEW_GOLDEN").is_ok_and(|what| what == "write");

@@ -13,6 +13,7 @@ const SHORT: [&str; 4] = [
 ];
 
 #[test]
+#[ignore = "long"]
 fn the_mass_that_went_is_the_core_s_volume_times_its_density() {
     let mesh = Mesh::read(format!("{}/scenes/meshes/lens_814.msh", env!("CARGO_MANIFEST_DIR")), false).unwrap();
     let core = &mesh.element_sets["core"];
@@ -23,6 +24,7 @@ fn the_mass_that_went_is_the_core_s_volume_times_its_density() {
 }
 
 #[test]
+#[ignore = "long"]
 fn the_front_sinks_as_the_core_goes() {
     let mut simulation = Simulation::new(&scene("lens_tets", &SHORT), &reference()).unwrap();
     simulation.advance_to(0.03).unwrap();
@@ -33,6 +35,7 @@ fn the_front_sinks_as_the_core_goes() {
 }
 
 #[test]
+#[ignore = "long"]
 fn energies_of_the_lens_balance_to_two_percent() {
     let e = run("lens_tets", &SHORT).energies().unwrap();
     let (work, loss) = (e.load_work.unwrap() + e.constraint_work.unwrap(), e.damping_loss.unwrap());

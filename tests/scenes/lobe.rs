@@ -3,6 +3,7 @@
 use super::{near, run};
 
 #[test]
+#[ignore = "long"]
 fn forceps_and_bed_bear_the_weight_and_no_element_is_crushed() {
     let simulation = &mut run("retracted_lobe", &["bodies.lobe.mesh.across=10"]);
     let mut probe = |name: &str| simulation.probe(name).unwrap();
@@ -20,6 +21,7 @@ fn forceps_and_bed_bear_the_weight_and_no_element_is_crushed() {
 /// An element between nodes of the forceps is crushed; it moves nobody, and another that is crushed beside it is one of
 /// a thousand.
 #[test]
+#[ignore = "long"]
 fn what_is_crushed_between_the_forceps_does_not_shorten_the_step() {
     let simulation = run("retracted_lobe", &["bodies.lobe.mesh.across=10"]);
     let history = simulation.step_history().unwrap();

@@ -99,6 +99,7 @@ fn in_folder(folder: &str, sets: &[&str]) -> Vec<(String, SceneFile)> {
 }
 
 #[test]
+#[ignore = "long"]
 fn shipped_scenes_resume_at_every_snapshot() {
     let mut scenes = in_folder("scenes", &[]);
     scenes.extend(in_folder("scenes/accuracy", &[]));
@@ -106,11 +107,13 @@ fn shipped_scenes_resume_at_every_snapshot() {
 }
 
 #[test]
+#[ignore = "long"]
 fn hard_cases_resume_at_every_snapshot() {
     all(in_folder("scenes/hard", &[]), 25);
 }
 
 #[test]
+#[ignore = "long"]
 fn scenes_that_ended_wrongly_resume_at_every_snapshot() {
     all(in_folder("tests/endings", &[]), 6);
     let scaled = ["constraints[1].displacement=(0,0,-0.06)", "integration.when_unstable=ScaleMass(most: 1)"];

@@ -73,6 +73,7 @@ fn a_scene_written_and_read_again_is_the_same() {
 }
 
 #[test]
+#[ignore = "long"]
 fn every_backend_and_precision_ends_with_the_same_displacements() {
     let gpu = sinew::backend::gpu::gpu_or_reason().is_some();
     for (name, sets) in SCENES {

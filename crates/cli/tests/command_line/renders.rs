@@ -8,6 +8,7 @@ use std::io::BufReader;
 use std::path::Path;
 
 #[test]
+#[ignore = "long"]
 fn a_scene_is_run_only_when_its_output_is_missing_or_older() {
     let place = Place::new();
     let first = place.sinew(&["render", "block.ron"]);
@@ -104,6 +105,7 @@ fn what_cannot_be_drawn_is_told() {
 }
 
 #[test]
+#[ignore = "long"]
 fn modes_swing_with_their_number_and_frequency_and_relative_amplitudes() {
     let place = Place::new();
     place.done(&["modes", "block.ron", "--count", "2"]);

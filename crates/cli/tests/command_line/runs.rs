@@ -81,6 +81,7 @@ fn a_summary_can_be_read_without_the_manual() {
 }
 
 #[test]
+#[ignore = "long"]
 fn writing_more_is_no_slower_solving() {
     let place = Place::new();
     let run = |every: &str| {

@@ -140,6 +140,7 @@ fn a_series_becomes_a_picture() {
 }
 
 #[test]
+#[ignore = "long"]
 fn other_fields_sizes_and_directions_can_be_drawn() {
     let folder = example("others", 3);
     for (field, size, from, edges) in [
@@ -158,6 +159,7 @@ fn other_fields_sizes_and_directions_can_be_drawn() {
 }
 
 #[test]
+#[ignore = "long"]
 fn an_animation_has_all_frames_and_loops() {
     let folder = example("animation", 21);
     let picture = schema::Picture { size: (480, 360), ..schema::Picture::default() };
@@ -310,6 +312,7 @@ fn colours_mean_the_same_in_all_frames() {
 }
 
 #[test]
+#[ignore = "long"]
 fn a_run_that_broke_can_still_be_drawn() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("render/broken");
     let bar = Bar::new();
@@ -334,6 +337,7 @@ fn a_run_that_broke_can_still_be_drawn() {
 }
 
 #[test]
+#[ignore = "long"]
 fn what_cannot_be_drawn_is_said() {
     let folder = example("wrong", 2);
     let good = options(folder.join("none.png"));
