@@ -4,14 +4,12 @@
 //! `cargo run --release --example custom_system [FOLDER]` runs examples/magnet.ron on the CPU and, if there is one, on
 //! the GPU, prints what each pass cost, and writes what a run writes into FOLDER, for `sinew render` and ParaView.
 
-use sinew::backend::cpu::{Cpu, NodeColumns};
-use sinew::backend::gpu::NoGpu;
+use sinew::NoGpu;
 use sinew::bevy_ecs::prelude::*;
 use sinew::components::{Displacement, ExternalForce, Mass, RestPosition};
 use sinew::glam::DVec3;
-use sinew::math::SimdScalar;
-use sinew::systems::{Before, NodeSystem, Phase, Registry, System};
-use sinew::{BackendChoice, Options, SceneFile, Simulation, output::Folder};
+use sinew::systems::{Before, Cpu, NodeColumns, NodeSystem, Phase, Registry, SimdScalar, System};
+use sinew::{BackendChoice, Folder, Options, SceneFile, Simulation};
 use std::path::Path;
 
 /// What the scene says under `parameters`.

@@ -4,7 +4,7 @@
 //! `cargo run --release --example host_system` runs examples/magnet.ron on the CPU and, if there is one, on the GPU,
 //! and prints what the system cost.
 
-use sinew::backend::gpu::NoGpu;
+use sinew::NoGpu;
 use sinew::bevy_ecs::prelude::*;
 use sinew::components::{Clock, Displacement, ExternalForce, Mass, RestPosition};
 use sinew::glam::DVec3;

@@ -15,22 +15,31 @@
 //! # }
 //! ```
 
-pub mod assembly;
-pub mod backend;
 pub mod components;
-pub mod elements;
 mod error;
-pub mod evaluation;
 pub mod materials;
 pub mod math;
 pub mod mesh;
-pub mod observation;
-pub mod output;
 pub mod scene;
 mod simulation;
 pub mod snapshot;
 #[path = "../systems/mod.rs"]
 pub mod systems;
+
+// what the other crates of the workspace and the tests see into: no version keeps its names and types
+#[doc(hidden)]
+pub mod assembly;
+#[doc(hidden)]
+pub mod backend;
+#[doc(hidden)]
+pub mod elements;
+#[doc(hidden)]
+pub mod evaluation;
+#[doc(hidden)]
+pub mod observation;
+#[doc(hidden)]
+pub mod output;
+#[doc(hidden)]
 pub mod uniform;
 
 // custom systems are written with these, and must be so in the same versions
@@ -38,7 +47,9 @@ pub use bevy_ecs;
 pub use glam;
 pub use serde;
 
+pub use backend::gpu::{NoGpu, gpu_or_reason};
 pub use error::{Error, GpuFailure, Instability, NotConverged, NotUnloaded, shell_word};
+pub use output::Folder;
 pub use scene::SceneFile;
 pub use simulation::explain;
 pub use simulation::{

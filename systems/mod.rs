@@ -38,6 +38,8 @@ mod pressure;
 mod registry;
 mod traction;
 
+pub use crate::backend::cpu::{Cpu, NodeColumns};
+pub use crate::math::SimdScalar;
 pub(crate) use gather::sum_corners;
 pub(crate) use grab::{bytes_of as grab_bytes, uniform_of as grab_uniform};
 pub(crate) use nodal_volume::means_of;

@@ -17,6 +17,7 @@ mod linear;
 mod mooney_rivlin;
 mod neo_hookean;
 mod ogden;
+#[doc(hidden)]
 pub mod program;
 mod prony;
 mod st_venant_kirchhoff;

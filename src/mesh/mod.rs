@@ -5,20 +5,26 @@
 
 mod cells;
 mod error;
+#[doc(hidden)]
 pub mod generators;
 mod gmsh;
 mod locate;
+#[doc(hidden)]
 pub mod measure;
 mod placement;
+#[doc(hidden)]
 pub mod quality;
 mod read;
 mod refine;
 mod repeat;
 mod report;
+#[doc(hidden)]
 pub mod soundness;
 mod surface;
+#[doc(hidden)]
 pub mod topology;
 mod vtk;
+#[doc(hidden)]
 pub mod vtu;
 
 pub use cells::Cells;

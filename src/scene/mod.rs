@@ -2,18 +2,27 @@
 
 mod adjust;
 mod beside;
+#[doc(hidden)]
 pub mod check;
 pub mod diagnostic;
 mod excerpt;
+#[doc(hidden)]
 pub mod limits;
+#[doc(hidden)]
 pub mod load;
 mod partial;
 pub mod schema;
+#[doc(hidden)]
 pub mod set;
+#[doc(hidden)]
 pub mod source;
+#[doc(hidden)]
 pub mod suggest;
+#[doc(hidden)]
 pub mod syntax;
+#[doc(hidden)]
 pub mod validate;
+#[doc(hidden)]
 pub mod words;
 
 pub(crate) use adjust::other_than_parameters;

@@ -1,8 +1,8 @@
 //! Laws in Rust from outside: the same as the same law from its energy, on both backends; and what is refused.
 
 use super::gent::Gent;
-use sinew::backend::gpu::gpu_or_reason;
 use sinew::components::Precision;
+use sinew::gpu_or_reason;
 use sinew::materials::{Elastic, Kinematics, RustLaw};
 use sinew::math::{Mat3, Real, Sym3};
 use sinew::prelude::*;

@@ -7,7 +7,7 @@ mod laws;
 mod plane;
 mod wind;
 
-use sinew::backend::gpu::gpu_or_reason;
+use sinew::gpu_or_reason;
 use sinew::prelude::*;
 use std::path::Path;
 

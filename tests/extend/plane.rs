@@ -1,9 +1,7 @@
 //! A contact plane: a floor that pushes back what has sunk into it, as a spring and a damper that only push.
 
-use sinew::backend::cpu::{Cpu, NodeColumns};
-use sinew::math::SimdScalar;
 use sinew::prelude::*;
-use sinew::systems::{Before, ForceSlopes, NodeSystem, NodesAtRest};
+use sinew::systems::{Before, Cpu, ForceSlopes, NodeColumns, NodeSystem, NodesAtRest, SimdScalar};
 
 /// What the scene says under `parameters`.
 #[derive(Component, Clone, serde::Deserialize, serde::Serialize)]

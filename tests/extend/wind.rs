@@ -1,9 +1,7 @@
 //! A load: wind that blows above a height.
 
-use sinew::backend::cpu::{Cpu, NodeColumns};
-use sinew::math::SimdScalar;
 use sinew::prelude::*;
-use sinew::systems::{Before, NodeSystem};
+use sinew::systems::{Before, Cpu, NodeColumns, NodeSystem, SimdScalar};
 
 /// What the scene says under `parameters`.
 #[derive(Component, Clone, serde::Deserialize, serde::Serialize)]

@@ -77,7 +77,7 @@ pub fn run_block_fast<E: Element>(
     law: &BlockLaw<f32>,
     groups_a_patch: usize,
 ) -> Vec<usize> {
-    let effects = kernel_effects::<E>(law);
+    let effects = kernel_effects::<E>(cpu, law);
     let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
     // known when this is compiled: no code is made of what follows for the other kinds
     if !is_specialised::<E>() {
@@ -102,7 +102,10 @@ pub(super) fn run_block_of<E: Element, L: Elastic<f32>>(
     groups_a_patch: usize,
 ) -> Vec<usize> {
     let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
-    if is_specialised::<E>() && law.is_elastic() { block.run::<_, 0>(elastic) } else { block.run::<_, ASK>(elastic) }
+    match is_specialised::<E>() && law.is_elastic() && cpu.has_vectors() {
+        true => block.run::<_, 0>(elastic),
+        false => block.run::<_, ASK>(elastic),
+    }
 }
 
 /// Whether an element type has kernels of its own. In the library's unit tests none has: they take most of the time of
@@ -112,8 +115,8 @@ const fn is_specialised<E: Element>() -> bool {
 }
 
 /// Whether a law's kernel in f32 is one that has fibres, and one that has viscosity, and nothing that it need not have;
-/// `None`: it is the one that asks for each effect.
-pub fn kernel_effects<E: Element>(law: &BlockLaw<f32>) -> Option<[bool; 2]> {
+/// `None`: it is the one that asks for each effect, as always on machines without vector registers.
+pub fn kernel_effects<E: Element>(cpu: &Cpu, law: &BlockLaw<f32>) -> Option<[bool; 2]> {
     let effects = [law.fibres.is_some(), !law.prony.is_empty()];
     let others = !law.exponential.is_empty() || !law.volumetric.is_empty() || law.reproject;
     let is_there = match law.elastic {
@@ -123,7 +126,7 @@ pub fn kernel_effects<E: Element>(law: &BlockLaw<f32>) -> Option<[bool; 2]> {
         }
         _ => false,
     };
-    (is_specialised::<E>() && is_there && !others).then_some(effects)
+    (is_specialised::<E>() && cpu.has_vectors() && is_there && !others).then_some(effects)
 }
 
 /// Effects of a kernel, as bits.
@@ -265,7 +268,12 @@ trait InOwnModule: Element {
         cpu: &Cpu,
         task: OfPatch<'_, '_, '_, '_, Self, T, L, EFFECTS>,
     ) -> bool {
-        if EFFECTS == ASK { cpu.dispatch(task) } else { cpu.dispatch_widest(task) }
+        if EFFECTS == ASK {
+            return cpu.dispatch(task);
+        }
+        let is_inverted = cpu.dispatch_vectors(task);
+        debug_assert!(is_inverted.is_some(), "a kernel for vector registers on a machine without");
+        is_inverted.unwrap_or(true)
     }
 }
 impl<E: Element> InOwnModule for E {}

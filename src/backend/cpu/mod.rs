@@ -125,6 +125,28 @@ impl Cpu {
         self.arch.dispatch(task)
     }
 
+    /// Whether there are registers for more than one number.
+    pub(crate) fn has_vectors(&self) -> bool {
+        !matches!(self.arch, pulp::Arch::Scalar)
+    }
+
+    /// Runs a task with the widest registers that the machine has; `None` where it has [none](Self::has_vectors): there
+    /// is no code for that.
+    #[inline]
+    pub(crate) fn dispatch_vectors<O: pulp::WithSimd>(&self, task: O) -> Option<O::Output> {
+        #[cfg(target_arch = "x86_64")]
+        {
+            use pulp::Simd;
+            match self.arch {
+                pulp::Arch::V4(simd) => Some(Simd::vectorize(simd, task)),
+                pulp::Arch::V3(simd) => Some(Simd::vectorize(simd, task)),
+                _ => None,
+            }
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        Some(self.arch.dispatch(task))
+    }
+
     /// Runs a task with the widest registers that the machine has.
     #[inline]
     pub fn dispatch_widest<O: pulp::WithSimd>(&self, task: O) -> O::Output {

@@ -63,7 +63,7 @@ pub fn strains<E: Element, T: SimdScalar>(
     more: Option<OfStretch<'_>>,
     visit: Option<Visit<'_>>,
 ) -> (Strain, usize) {
-    cpu.dispatch_widest(Groups::<E, T> { columns, groups, more, visit, element: PhantomData })
+    cpu.dispatch(Groups::<E, T> { columns, groups, more, visit, element: PhantomData })
 }
 
 struct Groups<'a, 'v, E, T> {

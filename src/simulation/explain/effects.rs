@@ -1,7 +1,7 @@
 //! What blocks and bodies have or lack, and what would give it to them.
 
 use super::{Effect, Part};
-use crate::backend::cpu::{BlockLaw, kernel_effects};
+use crate::backend::cpu::{BlockLaw, Cpu, kernel_effects};
 use crate::backend::user_law::Findings;
 use crate::components::*;
 use crate::elements::with_element;
@@ -219,7 +219,8 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, can_be_held: bool,
 fn cpu_variant(entity: &EntityRef<'_>, block: &Block, world: &World) -> String {
     let law = ElasticLaw::of(world.entity(block.material)).map_or("no law", |law| law.name());
     let rounded = entity.get::<BlockLaw<f32>>();
-    let variant = match rounded.and_then(|law| with_element!(block.kind, E => kernel_effects::<E>(law))) {
+    let cpu = world.resource::<Cpu>();
+    let variant = match rounded.and_then(|law| with_element!(block.kind, E => kernel_effects::<E>(cpu, law))) {
         _ if rounded.is_some_and(|law| law.own_kernels.is_some()) => "compiled for it".into(),
         Some(effects) => {
             let [fibres, viscosity] = effects.map(|is| if is { "with" } else { "without" });
