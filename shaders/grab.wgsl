@@ -16,7 +16,7 @@ struct HeldRow {
 @group(0) @binding(0) var<uniform> grabs: array<HeldRow, MOST_HELD>;
 @group(0) @binding(1) var<storage, read> mass: array<f32>;
 @group(0) @binding(2) var<storage, read> displacement: array<f32>;
-@group(0) @binding(3) var<storage, read> displacement_step: array<f32>;
+@group(0) @binding(3) var<storage, read> displacement_increment: array<f32>;
 
 fn grab(node: u32) {
     for (var i = 0u; i < MOST_HELD && grabs[i].row != 0xffffffffu; i++) {
@@ -24,7 +24,7 @@ fn grab(node: u32) {
             let held = grabs[i];
             let at = 3u * node;
             let u = vec3<f32>(displacement[at], displacement[at + 1u], displacement[at + 2u]);
-            let last = vec3<f32>(displacement_step[at], displacement_step[at + 1u], displacement_step[at + 2u]);
+            let last = vec3<f32>(displacement_increment[at], displacement_increment[at + 1u], displacement_increment[at + 2u]);
             let goal = vec3<f32>(held.goal_x, held.goal_y, held.goal_z);
             // what elements that go take of the mass makes the spring softer: the stable step stays
             let stiffness = min(held.stiffness, held.stiffness_over_mass * mass[node]);

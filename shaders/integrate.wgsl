@@ -3,12 +3,12 @@
 @group(0) @binding(1) var<storage, read> mass: array<f32>; // fictitious in a static analysis
 @group(0) @binding(3) var<storage, read> constrained_axes: array<u32>;
 @group(0) @binding(4) var<storage, read_write> displacement: array<f32>;
-@group(0) @binding(5) var<storage, read_write> displacement_step: array<f32>;
+@group(0) @binding(5) var<storage, read_write> displacement_increment: array<f32>;
 @group(0) @binding(6) var<storage, read_write> node_diagnostics: array<atomic<u32>>;
 
 fn step_of(node: u32) -> vec3<f32> {
     let at = 3u * node;
-    return vec3<f32>(displacement_step[at], displacement_step[at + 1u], displacement_step[at + 2u]);
+    return vec3<f32>(displacement_increment[at], displacement_increment[at + 1u], displacement_increment[at + 2u]);
 }
 
 fn constrained_at(node: u32) -> vec3<bool> {
@@ -39,9 +39,9 @@ fn push(node: u32) -> vec3<f32> {
     } else {
         forget_step(node);
     }
-    displacement_step[at] = after.x;
-    displacement_step[at + 1u] = after.y;
-    displacement_step[at + 2u] = after.z;
+    displacement_increment[at] = after.x;
+    displacement_increment[at + 1u] = after.y;
+    displacement_increment[at + 2u] = after.z;
     return after;
 }
 

@@ -6,7 +6,7 @@ struct OwnLoadUniform {
 @group(0) @binding(0) var<uniform> load: OwnLoadUniform;
 @group(0) @binding(1) var<storage, read> mass: array<f32>;
 @group(0) @binding(2) var<storage, read> displacement: array<f32>;
-@group(0) @binding(3) var<storage, read> displacement_step: array<f32>;
+@group(0) @binding(3) var<storage, read> displacement_increment: array<f32>;
 @group(0) @binding(4) var<storage, read> rest_position: array<f32>;
 
 // The scene's function: linked.
@@ -21,7 +21,7 @@ fn own_load_on(node: u32) {
         var state: Node;
         state.rest_position = vec3<f32>(rest_position[at], rest_position[at + 1u], rest_position[at + 2u]);
         state.displacement = vec3<f32>(displacement[at], displacement[at + 1u], displacement[at + 2u]);
-        let last = vec3<f32>(displacement_step[at], displacement_step[at + 1u], displacement_step[at + 2u]);
+        let last = vec3<f32>(displacement_increment[at], displacement_increment[at + 1u], displacement_increment[at + 2u]);
         state.velocity = last * (step.rate * f32(load.velocity_factor));
         state.mass = mass[node];
         state.curve = step.signals[load.signal].x;

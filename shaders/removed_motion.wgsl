@@ -9,7 +9,7 @@ struct Removal {
 @group(0) @binding(2) var<storage, read> alive: array<u32>;
 @group(0) @binding(3) var<storage, read> removal_step: array<u32>;
 @group(0) @binding(4) var<storage, read_write> removed_energy: array<f32>;
-@group(0) @binding(5) var<storage, read> displacement_step: array<f32>;
+@group(0) @binding(5) var<storage, read> displacement_increment: array<f32>;
 @group(0) @binding(6) var<storage, read> constrained_axes: array<u32>;
 @group(0) @binding(7) var<storage, read_write> removed_work: array<f32>;
 
@@ -26,7 +26,7 @@ fn removed_motion(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wor
     for (var corner = 0u; corner < NODES; corner++) {
         let node = connectivity[place(element, NODES, corner)];
         let at = 3u * node;
-        let v = step.rate * vec3<f32>(displacement_step[at], displacement_step[at + 1u], displacement_step[at + 2u]);
+        let v = step.rate * vec3<f32>(displacement_increment[at], displacement_increment[at + 1u], displacement_increment[at + 2u]);
         squares += shares[corner] * dot(v, v);
         let along = (vec3<u32>(constrained_axes[node]) & vec3<u32>(1u, 2u, 4u)) != vec3<u32>(0u);
         let held = select(vec3<f32>(0.0), v, along);

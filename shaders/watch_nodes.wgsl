@@ -6,7 +6,7 @@ struct WatchedNodes {
 @group(0) @binding(0) var<uniform> nodes: WatchedNodes;
 @group(0) @binding(1) var<storage, read> mass: array<f32>;
 @group(0) @binding(2) var<storage, read> displacement: array<f32>;
-@group(0) @binding(3) var<storage, read> displacement_step: array<f32>;
+@group(0) @binding(3) var<storage, read> displacement_increment: array<f32>;
 @group(0) @binding(4) var<storage, read_write> middle_displacement: array<f32>;
 @group(0) @binding(5) var<storage, read_write> node_sums: array<u32>; // four words a workgroup
 
@@ -28,7 +28,7 @@ fn watch_nodes(
     reaches[local] = 0.0;
     if node < nodes.count {
         let at = 3u * node;
-        let d = vec3<f32>(displacement_step[at], displacement_step[at + 1u], displacement_step[at + 2u]);
+        let d = vec3<f32>(displacement_increment[at], displacement_increment[at + 1u], displacement_increment[at + 2u]);
         middle_displacement[at] = displacement[at] - 0.5 * d.x;
         middle_displacement[at + 1u] = displacement[at + 1u] - 0.5 * d.y;
         middle_displacement[at + 2u] = displacement[at + 2u] - 0.5 * d.z;

@@ -64,7 +64,7 @@ pub use snapshot::Snapshot;
 /// The derive macros of bevy_ecs name their crate `bevy_ecs`; it is among these, so that `#[derive(Resource)]` compiles
 /// in a crate that depends on sinew alone. Those of serde need `#[serde(crate = "sinew::serde")]` there.
 pub mod prelude {
-    pub use crate::components::{Clock, Displacement, DisplacementStep, ExternalForce, Mass, RestPosition};
+    pub use crate::components::{Clock, Displacement, DisplacementIncrement, ExternalForce, Mass, RestPosition};
     pub use crate::systems::{Phase, Registry, System};
     pub use crate::{BackendChoice, Error, NodeSet, Options, SceneFile, Simulation, bevy_ecs, glam, serde};
     pub use bevy_ecs::prelude::*;

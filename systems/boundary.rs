@@ -12,7 +12,7 @@ use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
 
-/// Prescribed nodes: u(t + Δt) = A·(X − center) + b. The step that leads there is written to [`DisplacementStep`] on
+/// Prescribed nodes: u(t + Δt) = A·(X − center) + b. The step that leads there is written to [`DisplacementIncrement`] on
 /// the constrained axes, and `integrate` adds it as it adds all others. Fixed axes have a step of 0 from the start and
 /// need no work.
 pub fn system() -> System {
@@ -37,8 +37,8 @@ impl NodeSystem for Prescribed {
     type Columns = (
         &'static Displacement,
         Option<&'static DisplacementCompensation>,
-        &'static mut DisplacementStep,
-        Option<&'static mut PreviousPrescribedStep>,
+        &'static mut DisplacementIncrement,
+        Option<&'static mut PreviousPrescribedIncrement>,
     );
     /// Rows of A and b.
     type Prepared = [[f64; 4]; 3];
@@ -88,7 +88,7 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
             .bind_uniform::<Motion>("motion", buffers.uniform("boundary".into(), &motion.bytes()))
             .bind("arms", buffers.constants("arms of boundary".into(), bytemuck::cast_slice(&arms)))
             .column(Displacement::NAME, buffers.column(body, Displacement::NAME))
-            .column(DisplacementStep::NAME, buffers.column(body, DisplacementStep::NAME))
+            .column(DisplacementIncrement::NAME, buffers.column(body, DisplacementIncrement::NAME))
             .of_rows(set.rows);
         stage = if world.get::<DisplacementCompensation>(body).is_some() {
             let compensation = buffers.column(body, DisplacementCompensation::NAME);
@@ -99,14 +99,14 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
                 "fn compensation_of(node: u32, axis: u32) -> f32 {\n    return 0.0;\n}\n",
             ))
         };
-        stage = if world.get::<PreviousPrescribedStep>(body).is_some() {
-            let diagnostics = buffers.column(body, PreviousPrescribedStep::NAME);
-            let place = place_in_buffer::<PreviousPrescribedStep>(body, world);
+        stage = if world.get::<PreviousPrescribedIncrement>(body).is_some() {
+            let diagnostics = buffers.column(body, PreviousPrescribedIncrement::NAME);
+            let place = place_in_buffer::<PreviousPrescribedIncrement>(body, world);
             let place = Fragment::new(
                 "generated: where previous steps lie",
                 format!("const PREVIOUS_PRESCRIBED_AT: u32 = {place}u;\n"),
             );
-            stage.own(shader!("previous_prescribed_step")).own(place).column(FirstNonFinite::BUFFER, diagnostics)
+            stage.own(shader!("previous_prescribed_increment")).own(place).column(FirstNonFinite::BUFFER, diagnostics)
         } else {
             stage.own(Fragment::new("generated: previous steps are not kept", "fn keep_previous_step(at: u32) {}\n"))
         };

@@ -54,7 +54,7 @@ type BlockQuery<'a> = (
 type BodyQuery<'a> = (
     &'a Authoring,
     &'a Displacement,
-    &'a DisplacementStep,
+    &'a DisplacementIncrement,
     &'a ConstrainedAxes,
     &'a mut Mass,
     Option<&'a mut DampingCoefficient>,
@@ -317,7 +317,7 @@ fn motion_kernel(block: &BlockKernels, world: &World, buffers: &mut dyn Buffers)
         .fragment(shader!("due"))
         .fragment(block.generated("mass shares", shares))
         .bind_uniform::<Removal>("removal", buffers.uniform("element_removal".into(), &removal.bytes()))
-        .bind(DisplacementStep::NAME, buffers.column(block.block.body, DisplacementStep::NAME))
+        .bind(DisplacementIncrement::NAME, buffers.column(block.block.body, DisplacementIncrement::NAME))
         .bind(ConstrainedAxes::NAME, buffers.column(block.block.body, ConstrainedAxes::NAME))
         .bind(RemovedWork::NAME, buffers.column(block.entity, RemovedWork::NAME));
     REMOVED.iter().fold(kernel, |k, &name| k.bind(name, buffers.column(block.entity, name)))

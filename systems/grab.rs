@@ -25,7 +25,7 @@ pub fn system() -> System {
 }
 
 impl NodeSystem for Grabs {
-    type Columns = (&'static Displacement, &'static DisplacementStep, &'static Mass, &'static mut ExternalForce);
+    type Columns = (&'static Displacement, &'static DisplacementIncrement, &'static Mass, &'static mut ExternalForce);
     /// What turns the last step into a velocity (1/s).
     type Prepared = f64;
 
@@ -138,7 +138,7 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
         let mut stage = NodeStage::new("grab", "grab", body, rows_of(body, world), shader!("grab"))
             .own(most)
             .bind_uniform::<HeldRow>("grabs", buffers.uniform(uniform_of(&label), &bytes_of(&grabs)));
-        for column in [Mass::NAME, Displacement::NAME, DisplacementStep::NAME, ExternalForce::NAME] {
+        for column in [Mass::NAME, Displacement::NAME, DisplacementIncrement::NAME, ExternalForce::NAME] {
             stage = stage.column(column, buffers.column(body, column));
         }
         stages.push(stage.with_step(world).loaded(true));

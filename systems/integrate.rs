@@ -38,8 +38,8 @@ impl NodeSystem for Body {
     type Columns = (
         (&'static Mass, Option<&'static FictitiousMass>, Option<&'static DampingCoefficient>),
         (&'static InternalForce, Option<&'static ExternalForce>, &'static ConstrainedAxes),
-        (&'static mut Displacement, &'static mut DisplacementStep, Option<&'static mut DisplacementCompensation>),
-        (Option<&'static mut Work>, Option<&'static mut InternalWork>, Option<&'static PreviousPrescribedStep>),
+        (&'static mut Displacement, &'static mut DisplacementIncrement, Option<&'static mut DisplacementCompensation>),
+        (Option<&'static mut Work>, Option<&'static mut InternalWork>, Option<&'static PreviousPrescribedIncrement>),
         &'static mut FirstNonFinite,
     );
     type Prepared = Clock;
@@ -64,8 +64,8 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
     for (body, count, optional) in bodies {
         let relaxed = world.get_resource::<Clock>().is_some_and(|clock| clock.relaxation.is_some());
         let guarded = world.get::<InternalWork>(body).map(|_| place_in_buffer::<InternalWork>(body, world));
-        let previous = world.get::<PreviousPrescribedStep>(body);
-        let previous = previous.map(|_| place_in_buffer::<PreviousPrescribedStep>(body, world));
+        let previous = world.get::<PreviousPrescribedIncrement>(body);
+        let previous = previous.map(|_| place_in_buffer::<PreviousPrescribedIncrement>(body, world));
         let fictitious = world.get::<FictitiousMass>(body).is_some();
         let compensated = world.get::<DisplacementCompensation>(body).is_some();
         let [external, damped, worked] = optional;
@@ -86,7 +86,7 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
             });
             if guarded.is_some() && call != "integrate_move" { stage.finish("add_up_internal_work") } else { stage }
         };
-        let mut push = vec![Mass::NAME, InternalForce::NAME, ConstrainedAxes::NAME, DisplacementStep::NAME];
+        let mut push = vec![Mass::NAME, InternalForce::NAME, ConstrainedAxes::NAME, DisplacementIncrement::NAME];
         push.extend(external.then_some(ExternalForce::NAME));
         push.extend(damped.then_some(DampingCoefficient::NAME));
         push.extend(worked.then_some(Work::NAME));
@@ -97,7 +97,7 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
             push.extend(compensation);
             stages.push(stage("integrate", &push));
         } else {
-            displace.extend([DisplacementStep::NAME, ConstrainedAxes::NAME]);
+            displace.extend([DisplacementIncrement::NAME, ConstrainedAxes::NAME]);
             push.extend(guarded.map(|_| InternalWork::BUFFER));
             push.extend(compensation);
             displace.extend(compensation);

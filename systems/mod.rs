@@ -1,7 +1,7 @@
 //! The step: every system a file of its own here, its kernel a file of the same stem in `shaders/`.
 //!
 //! ```text
-//! boundary         Prescribed                   -> DisplacementStep of constrained axes   per node
+//! boundary         Prescribed                   -> DisplacementIncrement of constrained axes   per node
 //! nodal_volume     Displacement, RestShape      -> NodalVolumeChange                      per element, per node
 //! element_forces   Displacement, RestShape, law -> ElementForce                           per element, patch by patch
 //! gather           ElementForce, Corners        -> InternalForce (ExternalForce: zero)    per node, over its patches, in a fixed order
@@ -10,7 +10,7 @@
 //! pressure         Displacement                 -> ExternalForce                          per loaded node
 //! traction                                      -> ExternalForce                          per loaded node
 //! grab             Displacement                 -> ExternalForce                          per held node
-//! integrate        forces, Mass                 -> DisplacementStep, Displacement         per node
+//! integrate        forces, Mass                 -> DisplacementIncrement, Displacement         per node
 //! element_removal  criteria, times              -> Alive, RestShape, Mass                 per element, per node
 //! observe          all, read only               -> probes, energies, guards, files
 //! ```

@@ -25,12 +25,12 @@ pub(super) struct BodyColumns {
     axes: &'static ConstrainedAxes,
     damping: Option<&'static DampingCoefficient>,
     pub(super) u: &'static mut Displacement,
-    step: &'static mut DisplacementStep,
+    step: &'static mut DisplacementIncrement,
     compensation: Option<&'static mut DisplacementCompensation>,
     work: Option<&'static mut Work>,
     first_non_finite: &'static mut FirstNonFinite,
     internal_work: Option<&'static mut InternalWork>,
-    previous_prescribed: Option<&'static mut PreviousPrescribedStep>,
+    previous_prescribed: Option<&'static mut PreviousPrescribedIncrement>,
 }
 
 impl BodyColumnsItem<'_, '_> {

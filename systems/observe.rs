@@ -77,7 +77,7 @@ pub fn watch_kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel
             .bind_uniform::<WatchedNodes>("nodes", buffers.uniform("watch_nodes".into(), &nodes.bytes()))
             .threads(nodes.count);
         let columns =
-            [Mass::NAME, Displacement::NAME, DisplacementStep::NAME, MiddleDisplacement::NAME, NodeSums::NAME];
+            [Mass::NAME, Displacement::NAME, DisplacementIncrement::NAME, MiddleDisplacement::NAME, NodeSums::NAME];
         kernels.push(columns.iter().fold(kernel, |kernel, &name| kernel.bind(name, buffers.column(body, name))));
     }
     let means = super::nodal_volume::kernels(world, buffers);

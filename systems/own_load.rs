@@ -54,7 +54,7 @@ impl NodeSystem for OwnLoad {
     type Columns = (
         &'static RestPosition,
         &'static Displacement,
-        &'static DisplacementStep,
+        &'static DisplacementIncrement,
         &'static Mass,
         &'static mut ExternalForce,
     );
@@ -217,7 +217,7 @@ fn stages(number: usize, world: &mut World, buffers: &mut dyn Buffers) -> Vec<No
         let mut stage = NodeStage::new(name.clone(), "own_load", body, rows_of(body, world), shader!("own_load"))
             .bind_uniform::<OwnLoadUniform>("load", buffers.uniform(name.clone(), &load.bytes()))
             .bind("rest_position", buffers.constants("rest_position".into(), bytemuck::cast_slice(&rest)));
-        for column in [Mass::NAME, Displacement::NAME, DisplacementStep::NAME, ExternalForce::NAME] {
+        for column in [Mass::NAME, Displacement::NAME, DisplacementIncrement::NAME, ExternalForce::NAME] {
             stage = stage.column(column, buffers.column(body, column));
         }
         let arguments = if rows.is_some() { "i: u32, node: u32" } else { "node: u32" };

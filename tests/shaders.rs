@@ -58,7 +58,7 @@ const SUPPORT: &[(&str, &str)] = &[
     ("step", "what is the same for a whole step"),
     ("tensor", "small tensors"),
     ("inverse_cbrt", "a root from the bits of a number"),
-    ("previous_prescribed_step", "the step that boundary writes over"),
+    ("previous_prescribed_increment", "the step that boundary writes over"),
     ("internal_work", "work against internal forces, in integrate"),
     ("watch_elements", "what the guards look at"),
     ("watch_nodes", "what the guards look at"),

@@ -36,7 +36,7 @@ pub(super) fn insert_node_columns(
         Body,
         RestPosition(rest),
         Displacement(vectors()),
-        DisplacementStep(vectors()),
+        DisplacementIncrement(vectors()),
         InternalForce(vectors()),
         ConstrainedAxes(vec![0; count]),
     ));
@@ -53,7 +53,7 @@ pub(super) fn insert_node_columns(
     } else if !scene.is_static() && !scene.guards.off.contains(&Guard::Energy) {
         entity.insert(InternalWork::zero(count));
         if moved {
-            entity.insert(PreviousPrescribedStep(vec![0.0; 3 * count]));
+            entity.insert(PreviousPrescribedIncrement(vec![0.0; 3 * count]));
         }
     }
     entity.insert(FirstNonFinite(vec![u32::MAX; 2]));
@@ -172,7 +172,7 @@ pub(super) fn start(assembly: &Assembly<'_>, world: &mut World) {
         if body.velocity == DVec3::ZERO && body.spin == DVec3::ZERO {
             continue;
         }
-        let mut query = world.query::<(&RestPosition, &Mass, &ConstrainedAxes, &mut DisplacementStep)>();
+        let mut query = world.query::<(&RestPosition, &Mass, &ConstrainedAxes, &mut DisplacementIncrement)>();
         let Ok((rest, mass, axes, mut step)) = query.get_mut(world, parts.entity) else { continue };
         let total: f64 = (0..rest.0.len()).map(|row| mass.get(row)).sum();
         let center: DVec3 = (0..rest.0.len()).map(|row| rest.0[row] * mass.get(row)).sum::<DVec3>() / total;

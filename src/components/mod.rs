@@ -40,9 +40,9 @@ pub use input::{Change, Input, InputState};
 pub use load::{FaceCorners, Gravity, NodalForce, Pressure, Traction};
 pub use material::{Damping, Density, ExponentialFibres, Prony, StiffnessDamping, memory_terms};
 pub use nodes::{
-    Authoring, ConstrainedAxes, Corners, DampingCoefficient, Displacement, DisplacementCompensation, DisplacementStep,
-    ElementForce, ExternalForce, FictitiousMass, FirstNonFinite, GROUP_ROWS, InternalForce, InternalWork, Mass,
-    MiddleDisplacement, NodeSums, PreviousPrescribedStep, RestPosition, WORK_NUMBERS, Work,
+    Authoring, ConstrainedAxes, Corners, DampingCoefficient, Displacement, DisplacementCompensation,
+    DisplacementIncrement, ElementForce, ExternalForce, FictitiousMass, FirstNonFinite, GROUP_ROWS, InternalForce,
+    InternalWork, Mass, MiddleDisplacement, NodeSums, PreviousPrescribedIncrement, RestPosition, WORK_NUMBERS, Work,
 };
 pub use observation::{Cadence, Energies, Observed, Probe};
 pub use own_load::{LoadText, NodeAtRest, OfSystem, OwnLoad};

@@ -15,7 +15,7 @@ columns! {
     Displacement(Reals) = "displacement", State, Nodes(3);
     /// Displacement of the last step, u_n − u_{n−1} (m), a vector a node: velocity in the middle of the step times Δt.
     /// On constrained axes `boundary` writes the step to come here.
-    DisplacementStep(Reals) = "displacement_step", State, Nodes(3), increments: All;
+    DisplacementIncrement(Reals) = "displacement_increment", State, Nodes(3), increments: All;
     /// What rounding has made of the displacements too much (m), a vector a node, and then what of their steps,
     /// likewise. Exists in f32 where sums are compensated.
     DisplacementCompensation(Reals) = "displacement_compensation", State, Other, increments: SecondHalf;
@@ -45,9 +45,9 @@ columns! {
     /// Exists in a motion without [`Work`] whose energy is guarded.
     InternalWork(Vec<f32>) = "internal_work", State, Other, in "node_diagnostics";
     /// Displacement of the last step along prescribed axes (m), which `boundary` has written over in
-    /// [`DisplacementStep`], in f32 whatever the run's precision: a vector a node. Exists with [`InternalWork`] where
+    /// [`DisplacementIncrement`], in f32 whatever the run's precision: a vector a node. Exists with [`InternalWork`] where
     /// nodes are prescribed.
-    PreviousPrescribedStep(Vec<f32>) = "previous_prescribed_step", State, Nodes(3), increments: All, in "node_diagnostics";
+    PreviousPrescribedIncrement(Vec<f32>) = "previous_prescribed_increment", State, Nodes(3), increments: All, in "node_diagnostics";
     /// Displacement in the middle of the last step (m), a vector a node: for the guards on a GPU.
     MiddleDisplacement(Reals) = "middle_displacement", Scratch, Nodes(3);
     /// What each 64 nodes come to, four words each: bits of ½ m d² (kg m²) and of the longest step's square (m²), its

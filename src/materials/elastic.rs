@@ -31,7 +31,7 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
     /// `fibres.1` at rest; with its own pressure, or one that the element gives (Pa). A law that knows a shorter way
     /// than by S takes it.
     #[inline(always)]
-    fn stress_at_once(
+    fn direct_stress(
         &self,
         gradient: &Mat3<R>,
         pressure: Option<R>,

@@ -48,7 +48,7 @@ impl<R: Real> Elastic<R> for NeoHookean<R> {
     /// = 2η(Ī₄ − 1)J^(−2/3) and q = (μ' tr C + s I₄)/(3J) − p. Terms of the size of μ cancel: what is left is written
     /// out, with H + Hᵀ first, so that small strains keep their digits. A third less work than by way of S.
     #[inline(always)]
-    fn stress_at_once(
+    fn direct_stress(
         &self,
         gradient: &Mat3<R>,
         pressure: Option<R>,

@@ -44,7 +44,7 @@ pub trait Real:
 
     /// Does a task out of line, with the instructions that this kind of number has: compiled once for the kind of
     /// number, not once more at each place.
-    fn apart<T: Task<Self>>(self, task: T) -> T::Output;
+    fn outlined<T: Task<Self>>(self, task: T) -> T::Output;
 
     /// |x|.
     #[inline(always)]
@@ -90,7 +90,7 @@ pub trait Real:
     }
 }
 
-/// Something large to compute with a kind of number: see [`Real::apart`].
+/// Something large to compute with a kind of number: see [`Real::outlined`].
 pub trait Task<R> {
     /// What comes of it.
     type Output;
@@ -153,7 +153,7 @@ macro_rules! scalar {
                 refine_inverse_cbrt(self, <$scalar>::from_bits($guess.wrapping_sub(self.to_bits() / 3)), $steps)
             }
             #[inline(never)]
-            fn apart<T: Task<Self>>(self, task: T) -> T::Output {
+            fn outlined<T: Task<Self>>(self, task: T) -> T::Output {
                 task.run()
             }
             #[inline(always)]

@@ -153,7 +153,7 @@ macro_rules! vector {
                 refine_inverse_cbrt(self, guess, $steps)
             }
             #[inline(never)]
-            fn apart<T: Task<Self>>(self, task: T) -> T::Output {
+            fn outlined<T: Task<Self>>(self, task: T) -> T::Output {
                 self.simd.vectorize(WithInstructions::<Self, T>(task, PhantomData))
             }
             #[inline(always)]

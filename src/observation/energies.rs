@@ -48,7 +48,7 @@ pub fn mass(world: &mut World) -> Result<f64, Error> {
 pub fn energies(world: &mut World) -> Result<Energies, Error> {
     let wanted = [
         Displacement::NAME,
-        DisplacementStep::NAME,
+        DisplacementIncrement::NAME,
         Mass::NAME,
         FictitiousMass::NAME,
         Work::NAME,
@@ -59,8 +59,13 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
     bring_to_host(world, |_, name| wanted.contains(&name))?;
     let rate = world.resource::<Clock>().rate();
     let mut sum = Energies::default();
-    let mut bodies =
-        world.query::<(Entity, (&Mass, Option<&FictitiousMass>), &DisplacementStep, &ConstrainedAxes, Option<&Work>)>();
+    let mut bodies = world.query::<(
+        Entity,
+        (&Mass, Option<&FictitiousMass>),
+        &DisplacementIncrement,
+        &ConstrainedAxes,
+        Option<&Work>,
+    )>();
     for (_, (mass, inertia), step, axes, work) in bodies.iter(world) {
         // what moves is all that resists acceleration
         let mass = inertia.map_or(&mass.0, |inertia| &inertia.0);
@@ -121,7 +126,7 @@ pub(super) fn not_finite(world: &mut World) -> Result<Option<(&'static str, f64)
 
 /// Displacements in the middle of the last step, where velocities are: only there do the energies add up.
 fn middle_of_step(world: &World, body: Entity) -> Option<Reals> {
-    let (u, step) = (world.get::<Displacement>(body)?, world.get::<DisplacementStep>(body)?);
+    let (u, step) = (world.get::<Displacement>(body)?, world.get::<DisplacementIncrement>(body)?);
     // before the first step the column of steps holds the initial velocity; at rest there is no middle
     let clock = world.resource::<Clock>();
     let back = if clock.step > 0 && clock.relaxation.is_none() { 0.5 } else { 0.0 };

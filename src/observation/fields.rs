@@ -25,7 +25,7 @@ pub struct BodyFields {
 }
 
 const COLUMNS: [&str; 5] =
-    [Displacement::NAME, DisplacementStep::NAME, RestShape::NAME, ViscousMemory::NAME, Alive::NAME];
+    [Displacement::NAME, DisplacementIncrement::NAME, RestShape::NAME, ViscousMemory::NAME, Alive::NAME];
 
 /// What an element contributes: J, Cauchy stress, whether it is there, nodal forces.
 type ElementRow = (f64, [f64; 6], u8, [[f64; 3]; MOST_NODES]);
@@ -39,7 +39,7 @@ pub fn body_fields(world: &mut World, body: Entity) -> Result<BodyFields, Error>
     let rate = world.resource::<Clock>().rate();
     let mut fields = BodyFields::default();
     let Some(authoring) = world.get::<Authoring>(body) else { return Ok(fields) };
-    if let (Some(u), Some(step)) = (world.get::<Displacement>(body), world.get::<DisplacementStep>(body)) {
+    if let (Some(u), Some(step)) = (world.get::<Displacement>(body), world.get::<DisplacementIncrement>(body)) {
         fields.displacement = authoring.node_rows.iter().map(|&row| u.vector(row as usize)).collect();
         fields.velocity = authoring.node_rows.iter().map(|&row| step.vector(row as usize) * rate).collect();
     }

@@ -162,7 +162,7 @@ fn node_vectors(field: OutputField, body: Entity, world: &mut World) -> Result<V
     let columns: &[&str] = match field {
         OutputField::InternalForce => return internal_forces(world, body),
         OutputField::Displacement => &[Displacement::NAME],
-        OutputField::Velocity => &[DisplacementStep::NAME],
+        OutputField::Velocity => &[DisplacementIncrement::NAME],
         OutputField::ExternalForce => &[ExternalForce::NAME],
         _ => &[InternalForce::NAME, ExternalForce::NAME],
     };
@@ -179,7 +179,7 @@ fn node_vectors(field: OutputField, body: Entity, world: &mut World) -> Result<V
     };
     let value = |row: usize| match field {
         OutputField::Displacement => vector(entity.get::<Displacement>().map(|u| &u.0), row),
-        OutputField::Velocity => vector(entity.get::<DisplacementStep>().map(|d| &d.0), row) * rate,
+        OutputField::Velocity => vector(entity.get::<DisplacementIncrement>().map(|d| &d.0), row) * rate,
         OutputField::ExternalForce => external(row),
         _ => reaction(row),
     };

@@ -97,7 +97,7 @@ fn not_finite(seen: &Look, world: &World) -> Option<(String, f64)> {
     };
     let of_nodes = [
         ("the kinetic energy", seen.kinetic),
-        ("the work against internal forces", seen.spent),
+        ("the work against internal forces", seen.internal_work),
         ("the largest speed", seen.fastest.map_or(0.0, |(.., speed)| speed)),
         ("the largest displacement", seen.reach.iter().map(|(_, reach)| *reach).fold(0.0, larger)),
     ];
@@ -158,7 +158,7 @@ pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch) -> Result
     let what = format!(
         "elements hold {held:.3e} J, but only {:.3e} J were spent on them: {:.1} % of the largest energy so far came from \
          nothing, {:.1} % are allowed (guards.energy.stop)",
-        seen.spent,
+        seen.internal_work,
         100.0 * made / scale,
         100.0 * stop
     );
@@ -176,11 +176,11 @@ pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch) -> Result
 /// that went.
 fn balance(memory: &mut GuardMemory, seen: &Look, watch: &Watch, world: &World) -> (f64, f64) {
     let Held { lasting: held, all, viscous } = held_by(seen, world);
-    memory.scale = memory.scale.max(all).max(seen.spent.abs());
+    memory.scale = memory.scale.max(all).max(seen.internal_work.abs());
     if watch.limits.off.contains(&Guard::Energy) {
         return (0.0, held);
     }
-    let made = held - seen.spent - memory.at_start;
+    let made = held - seen.internal_work - memory.at_start;
     let made = if viscous || watch.removal { made.max(0.0) } else { made };
     let limit = watch.limits.energy.warn;
     // what rounding alone may have made of it is no imbalance

@@ -21,7 +21,7 @@ pub struct Look {
     /// ½ m v² (J).
     pub kinetic: f64,
     /// Work against internal forces since the start (J).
-    pub spent: f64,
+    pub internal_work: f64,
     /// The body, row and speed (m/s) of the fastest node.
     pub fastest: Option<(Entity, u32, f64)>,
     /// Each body, and the largest displacement of a node (m).
@@ -36,7 +36,7 @@ pub struct Look {
 /// What the GPU says.
 pub fn look(world: &mut World) -> Result<Look, Error> {
     let kernels = world.get_resource::<WatchKernels>().map(|kernels| kernels.0.clone()).unwrap_or_default();
-    let mut look = Look { spent: spent(world)?, ..Look::default() };
+    let mut look = Look { internal_work: internal_work(world)?, ..Look::default() };
     if kernels.is_empty() {
         look_at_nodes(&mut look, world);
         look_at_elements(&mut look, world);
@@ -63,7 +63,7 @@ pub fn look(world: &mut World) -> Result<Look, Error> {
 }
 
 /// Work against internal forces (J) of all bodies, as it is booked.
-fn spent(world: &mut World) -> Result<f64, Error> {
+fn internal_work(world: &mut World) -> Result<f64, Error> {
     bring_to_host(world, |_, name| name == InternalWork::NAME || name == Work::NAME)?;
     let mut sum = 0.0;
     for (guarded, work) in world.query::<(Option<&InternalWork>, Option<&Work>)>().iter(world) {
@@ -103,7 +103,7 @@ fn add_up_nodes(look: &mut Look, world: &mut World) {
 
 fn look_at_nodes(look: &mut Look, world: &mut World) {
     let rate = world.resource::<Clock>().rate();
-    for (body, mass, step, u) in world.query::<(Entity, &Mass, &DisplacementStep, &Displacement)>().iter(world) {
+    for (body, mass, step, u) in world.query::<(Entity, &Mass, &DisplacementIncrement, &Displacement)>().iter(world) {
         let (mut motion, mut fastest, mut reach) = (0.0, (-1.0, u32::MAX), 0.0_f64);
         for row in 0..mass.len() {
             reach = reach.max(u.vector(row).length_squared());
@@ -159,7 +159,7 @@ pub fn look_at_result(world: &mut World) -> Result<Vec<(Entity, BlockSums)>, Err
 
 /// Displacements in the middle of the last step, in the run's precision.
 fn middle_of_step(world: &World, body: Entity) -> Option<Displacement> {
-    let (u, step) = (world.get::<Displacement>(body)?, world.get::<DisplacementStep>(body)?);
+    let (u, step) = (world.get::<Displacement>(body)?, world.get::<DisplacementIncrement>(body)?);
     Some(Displacement(match (&u.0, &step.0) {
         (Reals::F32(u), Reals::F32(step)) => Reals::F32(u.iter().zip(step).map(|(u, d)| u - 0.5 * d).collect()),
         (Reals::F64(u), Reals::F64(step)) => Reals::F64(u.iter().zip(step).map(|(u, d)| u - 0.5 * d).collect()),

@@ -37,10 +37,10 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
     };
     let columns: &[&str] = match probe.what {
         Quantity::Displacement | Quantity::Position => &[Displacement::NAME],
-        Quantity::Velocity => &[DisplacementStep::NAME],
+        Quantity::Velocity => &[DisplacementIncrement::NAME],
         Quantity::Reaction | Quantity::Force { .. } => &[InternalForce::NAME, ExternalForce::NAME],
         Quantity::Moment { .. } | Quantity::Torque { .. } => {
-            &[InternalForce::NAME, ExternalForce::NAME, Displacement::NAME, DisplacementStep::NAME]
+            &[InternalForce::NAME, ExternalForce::NAME, Displacement::NAME, DisplacementIncrement::NAME]
         }
         Quantity::Stress | Quantity::VolumeRatio => &[Displacement::NAME, RestShape::NAME, ViscousMemory::NAME],
     };
@@ -56,7 +56,7 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
     let entity = world.entity(body);
     let vector = |reals: Option<&Reals>, row: usize| reals.map_or(DVec3::ZERO, |reals| reals.vector(row));
     let displacement = entity.get::<Displacement>().map(|u| &u.0);
-    let step = entity.get::<DisplacementStep>().map(|d| &d.0);
+    let step = entity.get::<DisplacementIncrement>().map(|d| &d.0);
     let internal = entity.get::<InternalForce>().map(|f| &f.0);
     let external = entity.get::<ExternalForce>().map(|f| &f.0);
     let force = |row: usize| vector(internal, row) - vector(external, row);

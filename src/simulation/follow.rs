@@ -330,7 +330,7 @@ impl Simulation {
     }
 
     fn look_with(&mut self, follower: &mut Follower) -> Result<(), Error> {
-        let moving = [Displacement::NAME, DisplacementStep::NAME, RestShape::NAME];
+        let moving = [Displacement::NAME, DisplacementIncrement::NAME, RestShape::NAME];
         bring_to_host(&mut self.world, |_, name| moving.contains(&name))?;
         if follower.watched.is_empty() {
             follower.watched = Watched::all(&mut self.world);

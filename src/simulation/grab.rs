@@ -214,12 +214,12 @@ impl Simulation {
     pub fn grab_force(&mut self, id: GrabId) -> Result<DVec3, Error> {
         let grab = self.grabs.get(&id).ok_or_else(released)?.clone();
         let body = self.body(&grab.body)?;
-        let wanted = [Displacement::NAME, DisplacementStep::NAME, Mass::NAME];
+        let wanted = [Displacement::NAME, DisplacementIncrement::NAME, Mass::NAME];
         bring_to_host(&mut self.world, |entity, name| entity == body && wanted.contains(&name))?;
         let rate = self.world.resource::<Clock>().rate();
         let entity = self.world.entity(body);
         let (Some(u), Some(d), Some(mass)) =
-            (entity.get::<Displacement>(), entity.get::<DisplacementStep>(), entity.get::<Mass>())
+            (entity.get::<Displacement>(), entity.get::<DisplacementIncrement>(), entity.get::<Mass>())
         else {
             return Ok(DVec3::ZERO);
         };

@@ -137,7 +137,7 @@ pub(super) fn weigh(world: &mut World) -> Added {
         for block in blocks {
             sum.mass += spread(world, block, &mut added);
         }
-        let mut columns = world.query::<(&Mass, &mut FictitiousMass, &DisplacementStep)>();
+        let mut columns = world.query::<(&Mass, &mut FictitiousMass, &DisplacementIncrement)>();
         let Ok((mass, mut inertia, step)) = columns.get_mut(world, body) else { continue };
         for node in 0..count {
             let real = mass.get(node);

@@ -1,7 +1,7 @@
 //! The author's nodes in the engine's columns: one call that translates, checked.
 
 use super::Simulation;
-use crate::components::{Authoring, Displacement, DisplacementStep, ExternalForce, Mass, RestPosition};
+use crate::components::{Authoring, Displacement, DisplacementIncrement, ExternalForce, Mass, RestPosition};
 use crate::error::Error;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -127,7 +127,7 @@ impl Simulation {
     pub fn node_state(&mut self, nodes: &NodeSet) -> Result<Vec<NodeState>, Error> {
         self.settle()?;
         use crate::components::{Column, Reals};
-        let wanted = [Displacement::NAME, DisplacementStep::NAME, Mass::NAME];
+        let wanted = [Displacement::NAME, DisplacementIncrement::NAME, Mass::NAME];
         crate::backend::device::bring_to_host(&mut self.world, |entity, name| {
             entity == nodes.body && wanted.contains(&name)
         })?;
@@ -138,7 +138,7 @@ impl Simulation {
         let state = |&row: &usize| NodeState {
             rest: rest.0[row],
             displacement: vector(body.get::<Displacement>().map(|u| &u.0), row),
-            velocity: vector(body.get::<DisplacementStep>().map(|d| &d.0), row) * rate,
+            velocity: vector(body.get::<DisplacementIncrement>().map(|d| &d.0), row) * rate,
             mass: body.get::<Mass>().map_or(0.0, |mass| mass.get(row)),
         };
         Ok(nodes.rows.iter().map(state).collect())

@@ -41,7 +41,7 @@ impl State {
     /// What must be on the host to see a state and to go back to one.
     pub const COLUMNS: [&'static str; 7] = [
         Displacement::NAME,
-        DisplacementStep::NAME,
+        DisplacementIncrement::NAME,
         DisplacementCompensation::NAME,
         InternalForce::NAME,
         ExternalForce::NAME,
@@ -55,7 +55,7 @@ impl State {
         type Columns<'a> = (
             Entity,
             &'a Displacement,
-            &'a DisplacementStep,
+            &'a DisplacementIncrement,
             Option<&'a DisplacementCompensation>,
             &'a InternalForce,
             Option<&'a ExternalForce>,
@@ -107,7 +107,7 @@ impl State {
                 // at rest the step is exact
                 (lost.len() / 2..lost.len()).for_each(|i| lost.set(i, 0.0));
             }
-            if let Some(mut step) = entity.get_mut::<DisplacementStep>() {
+            if let Some(mut step) = entity.get_mut::<DisplacementIncrement>() {
                 step.bytes_mut().fill(0);
             }
             if let Some(mut found) = entity.get_mut::<FirstNonFinite>() {

@@ -25,7 +25,7 @@ impl NodeSystem for Plane {
     type Columns = (
         &'static RestPosition,
         &'static Displacement,
-        &'static DisplacementStep,
+        &'static DisplacementIncrement,
         &'static Mass,
         &'static mut ExternalForce,
     );

@@ -1,7 +1,7 @@
 //! Whether what is called a result is one: checked anew, from positions and what the scene says.
 
 use sinew::Simulation;
-use sinew::components::{Alive, Authoring, Block, DisplacementStep, Label, Precision};
+use sinew::components::{Alive, Authoring, Block, DisplacementIncrement, Label, Precision};
 use sinew::elements::node_count;
 use sinew::glam::{DMat3, DVec3};
 use sinew::materials::FLATTEST;
@@ -39,7 +39,7 @@ fn inside_out(simulation: &mut Simulation, body: &str, rest: &[DVec3], moved: &[
     let entity = simulation.body(body).map_err(|e| e.to_string())?;
     let (world, scene) = (simulation.world(), simulation.scene());
     let Some(authoring) = world.get::<Authoring>(entity) else { return Ok(()) };
-    let Some(last) = world.get::<DisplacementStep>(entity) else { return Ok(()) };
+    let Some(last) = world.get::<DisplacementIncrement>(entity) else { return Ok(()) };
     let before: Vec<DVec3> =
         moved.iter().zip(&authoring.node_rows).map(|(u, &row)| *u - last.vector(row as usize)).collect();
     for (element, &(place, row)) in authoring.element_rows.iter().enumerate() {

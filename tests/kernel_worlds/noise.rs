@@ -39,7 +39,7 @@ pub fn randomize(world: &mut World, seed: u64) {
             )*};
         }
         fill!(
-            Displacement: 0.1 * SPACING, DisplacementStep: 1e-5, DisplacementCompensation: 1e-11,
+            Displacement: 0.1 * SPACING, DisplacementIncrement: 1e-5, DisplacementCompensation: 1e-11,
             InternalForce: 0.01, ExternalForce: 0.01
         );
         // whose length depends on the scheme: all else is the same in both

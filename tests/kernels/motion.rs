@@ -14,8 +14,8 @@ fn prescribed_nodes_go_to_the_same_places() {
         let effects = Effects { moved: true, compensated, ..Effects::default() };
         let Some(mut pair) = run("boundary", &effects, 500, lose_much) else { return };
         // three products of a gradient under 1 and an arm under 0.1 m, and a displacement: ten roundings
-        pair.agree::<DisplacementStep>(|_, _, _| 10.0 * UNIT * 0.1);
-        assert!(pair.changed::<DisplacementStep>() > 20);
+        pair.agree::<DisplacementIncrement>(|_, _, _| 10.0 * UNIT * 0.1);
+        assert!(pair.changed::<DisplacementIncrement>() > 20);
     }
 }
 
@@ -85,12 +85,12 @@ fn compare_motion(pair: &mut Pair, effects: &Effects, prescribed: f64) {
         let dt = pair.before().resource::<Clock>().time_step;
         let fictitious = pair.before().get::<FictitiousMass>(body).map(|mass| 0.5 * mass.get(i / 3));
         let mass = fictitious.unwrap_or_else(|| pair.before().get::<Mass>(body).unwrap().get(i / 3));
-        let old = pair.before().get::<DisplacementStep>(body).unwrap().get(i).abs();
+        let old = pair.before().get::<DisplacementIncrement>(body).unwrap().get(i).abs();
         let push = if mass > 0.0 { dt * dt * 0.02 / mass } else { 0.0 };
         let constrained = pair.before().get::<ConstrainedAxes>(body).unwrap()[i / 3] >> (i % 3) & 1 == 1;
         12.0 * UNIT * (old + push) + if constrained { prescribed } else { 0.0 }
     };
-    pair.agree::<DisplacementStep>(step_bound);
+    pair.agree::<DisplacementIncrement>(step_bound);
     let at = |pair: &Pair, body: Entity, i: usize| pair.before().get::<Displacement>(body).unwrap().get(i).abs();
     // one rounding each, to either side: an ulp of the displacement
     pair.agree::<Displacement>(|pair, body, i| step_bound(pair, body, i) + 2.0 * UNIT * at(pair, body, i).max(1e-3));
@@ -115,8 +115,9 @@ fn compare_motion(pair: &mut Pair, effects: &Effects, prescribed: f64) {
             let old = pair.before().get::<Work>(body).unwrap().get(i).abs();
             let node = i / WORK_NUMBERS;
             let damping = pair.before().get::<DampingCoefficient>(body).map_or(0.0, |c| c.get(node));
-            let moved =
-                |world: &World, axis: usize| world.get::<DisplacementStep>(body).unwrap().get(3 * node + axis).abs();
+            let moved = |world: &World, axis: usize| {
+                world.get::<DisplacementIncrement>(body).unwrap().get(3 * node + axis).abs()
+            };
             let kept = |axis: usize| pair.before().get::<Work>(body).unwrap().get(WORK_NUMBERS * node + 4 + axis).abs();
             let steps: f64 =
                 (0..3).map(|axis| moved(pair.before(), axis) + kept(axis) + moved(pair.host(), axis)).sum();
@@ -137,8 +138,9 @@ fn compare_noticed(pair: &mut Pair) {
         assert_eq!(first(pair.host()), first(pair.device.world()));
         let work = |world: &World| world.get::<InternalWork>(body).map(|work| work.0.clone());
         let (Some(host), Some(device)) = (work(pair.host()), work(pair.device.world())) else { continue };
-        let moved =
-            |world: &World, node: usize| world.get::<DisplacementStep>(body).unwrap().vector(node).abs().element_sum();
+        let moved = |world: &World, node: usize| {
+            world.get::<DisplacementIncrement>(body).unwrap().vector(node).abs().element_sum()
+        };
         let count = pair.host().get::<Mass>(body).unwrap().len();
         assert_eq!(host.len(), device.len());
         for group in (0..count).step_by(64) {
@@ -203,7 +205,7 @@ fn compensated_sums_keep_what_f32_would_lose() {
     for &body in &bodies {
         let mut u = world.get_mut::<Displacement>(body).unwrap();
         (0..u.len()).for_each(|i| u.set(i, 0.01));
-        let mut steps = world.get_mut::<DisplacementStep>(body).unwrap();
+        let mut steps = world.get_mut::<DisplacementIncrement>(body).unwrap();
         (0..steps.len()).for_each(|i| steps.set(i, f64::from(step)));
     }
     world.resource_mut::<Clock>().step = 1;

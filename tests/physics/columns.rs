@@ -3,7 +3,7 @@
 use glam::DVec3;
 use sinew::Simulation;
 use sinew::backend::device::bring_to_host;
-use sinew::components::{Authoring, Column, DisplacementStep, ExternalForce, InternalForce, Mass, Reals};
+use sinew::components::{Authoring, Column, DisplacementIncrement, ExternalForce, InternalForce, Mass, Reals};
 
 fn column<C: Column + std::ops::Deref<Target = Reals>>(simulation: &mut Simulation, body: &str) -> Vec<DVec3> {
     let entity = simulation.body(body).unwrap();
@@ -26,7 +26,7 @@ pub fn external_forces(simulation: &mut Simulation, body: &str) -> Vec<DVec3> {
 /// Velocities (m/s) in the middle of the last step.
 pub fn velocities(simulation: &mut Simulation, body: &str) -> Vec<DVec3> {
     let time_step = simulation.time_step();
-    column::<DisplacementStep>(simulation, body).into_iter().map(|step| step / time_step).collect()
+    column::<DisplacementIncrement>(simulation, body).into_iter().map(|step| step / time_step).collect()
 }
 
 /// Positions (m).

@@ -6,7 +6,7 @@ use bevy_ecs::prelude::*;
 use glam::DVec3;
 use sinew::backend::device::{Device, bring_to_host, send_to_device};
 use sinew::components::{
-    Column, DisplacementStep, ExternalForce, InternalForce, InternalWork, Mass, Patches, Precision, RemovalStep,
+    Column, DisplacementIncrement, ExternalForce, InternalForce, InternalWork, Mass, Patches, Precision, RemovalStep,
 };
 use sinew::systems::{Phase, Registry, System};
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
@@ -145,7 +145,7 @@ fn shares(text: &str, registry: &Registry, one: &str, other: &str) -> bool {
 /// Boundary waits for the nodes to move, unless somebody in between looks at the steps it writes.
 #[test]
 fn who_shares_a_pass_is_told_and_what_must_stay_apart_does() {
-    fn looks(steps: Query<&DisplacementStep>) {
+    fn looks(steps: Query<&DisplacementIncrement>) {
         let _ = steps.iter().count();
     }
     fn pushes(mut forces: Query<&mut ExternalForce>) {

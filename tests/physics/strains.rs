@@ -35,7 +35,7 @@ fn all(simulation: &Simulation, body: Entity) -> Vec<Strain> {
         let block = world.get::<Block>(entity).unwrap();
         let columns = StrainColumns::<T> {
             displacement: world.get::<Displacement>(body).unwrap().slice(),
-            step: world.get::<DisplacementStep>(body).unwrap().slice(),
+            step: world.get::<DisplacementIncrement>(body).unwrap().slice(),
             connectivity: world.get::<Connectivity>(entity).unwrap(),
             rest_shape: world.get::<RestShape>(entity).unwrap().slice(),
             ends: true,
@@ -102,7 +102,7 @@ fn sizes_and_speeds_of_an_affine_motion_are_the_closed_forms_for_every_element_t
             let u = Reals::from_f64(run.options.precision, moved(&simulation, body, matrix(GRADIENT)));
             let d = Reals::from_f64(run.options.precision, moved(&simulation, body, change));
             simulation.world_mut().get_mut::<Displacement>(body).unwrap().0 = u;
-            simulation.world_mut().get_mut::<DisplacementStep>(body).unwrap().0 = d;
+            simulation.world_mut().get_mut::<DisplacementIncrement>(body).unwrap().0 = d;
             let found = all(&simulation, body);
             let bound = run.bound(1e-13, 3e-5);
             let what = |of: &str| format!("{} {elements} {mesh}: {of}", run.name);

@@ -65,7 +65,7 @@ pub fn run_block<E: Element, T: SimdScalar>(
     law: &BlockLaw<T>,
     groups_a_patch: usize,
 ) -> Vec<usize> {
-    Block::<E, T> { cpu, columns, law, groups_a_patch, element: PhantomData }.run::<_, ASK>(&law.elastic)
+    Block::<E, T> { cpu, columns, law, groups_a_patch, element: PhantomData }.run::<_, GENERIC>(&law.elastic)
 }
 
 /// The same in f32, where speed counts, with a kernel of its own for what is asked for most: the neo-Hookean law with
@@ -81,15 +81,15 @@ pub fn run_block_fast<E: Element>(
     let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
     // known when this is compiled: no code is made of what follows for the other kinds
     if !is_specialised::<E>() {
-        return block.run::<_, ASK>(&law.elastic);
+        return block.run::<_, GENERIC>(&law.elastic);
     }
     match &law.elastic {
-        asked if effects.is_none() => block.run::<_, ASK>(asked),
+        asked if effects.is_none() => block.run::<_, GENERIC>(asked),
         ElasticLaw::NeoHookean(elastic) => block.run_neo_hookean(elastic),
         ElasticLaw::StableNeoHookean(elastic) => block.run::<_, 0>(elastic),
         ElasticLaw::MooneyRivlin(elastic) => block.run::<_, 0>(elastic),
         ElasticLaw::Ogden(elastic) => block.run::<_, 0>(elastic),
-        asked => block.run::<_, ASK>(asked),
+        asked => block.run::<_, GENERIC>(asked),
     }
 }
 
@@ -104,7 +104,7 @@ pub(super) fn run_block_of<E: Element, L: Elastic<f32>>(
     let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
     match is_specialised::<E>() && law.is_elastic() && cpu.has_vectors() {
         true => block.run::<_, 0>(elastic),
-        false => block.run::<_, ASK>(elastic),
+        false => block.run::<_, GENERIC>(elastic),
     }
 }
 
@@ -133,7 +133,7 @@ pub fn kernel_effects<E: Element>(cpu: &Cpu, law: &BlockLaw<f32>) -> Option<[boo
 const FIBRES: u8 = 1;
 const VISCOSITY: u8 = 2;
 /// The kernel asks the block's law which effects it has.
-const ASK: u8 = 4;
+const GENERIC: u8 = 4;
 
 struct Block<'a, 'n, E, T: SimdScalar> {
     cpu: &'a Cpu,
@@ -268,7 +268,7 @@ trait InOwnModule: Element {
         cpu: &Cpu,
         task: OfPatch<'_, '_, '_, '_, Self, T, L, EFFECTS>,
     ) -> bool {
-        if EFFECTS == ASK {
+        if EFFECTS == GENERIC {
             return cpu.dispatch(task);
         }
         let is_inverted = cpu.dispatch_vectors(task);

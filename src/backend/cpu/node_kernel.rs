@@ -35,9 +35,9 @@ impl<T: SimdScalar> WithSimd for Task<'_, '_, T> {
             let to = rows.min(from + CHUNK);
             let mass = &self.columns.inertia[from..to];
             let plain = self.columns.work.is_none() && mass.iter().all(|&mass| mass > T::default());
-            let (spent, finite) = if plain { self.chunk(simd, from, to) } else { self.one_by_one(from, to) };
+            let (internal_work, finite) = if plain { self.chunk(simd, from, to) } else { self.one_by_one(from, to) };
             if let Some(sum) = self.columns.sum_of(from) {
-                add_to_sum(sum, spent);
+                add_to_sum(sum, internal_work);
             }
             if bad.is_none() && !finite {
                 let u = &self.columns.u;
@@ -56,7 +56,7 @@ impl<T: SimdScalar> Task<'_, '_, T> {
     /// Any nodes, one after the other. Returns the work against internal forces (J), and whether displacements are
     /// finite.
     fn one_by_one(&mut self, from: usize, to: usize) -> (f64, bool) {
-        let (mut spent, mut finite) = (0.0, true);
+        let (mut internal_work, mut finite) = (0.0, true);
         for row in from..to {
             let at = 3 * row..3 * row + 3;
             let columns = &mut self.columns;
@@ -65,11 +65,11 @@ impl<T: SimdScalar> Task<'_, '_, T> {
             let compensation = compensation.map(|[of_u, of_step]| [&mut of_u[at.clone()], &mut of_step[at.clone()]]);
             let mut sum = Sum { u: &mut columns.u[at.clone()], step: &mut columns.step[at], compensation };
             let work = columns.work.as_mut().map(|w| &mut w[WORK_NUMBERS * row..WORK_NUMBERS * (row + 1)]);
-            spent += move_node(&node, self.factors, &mut sum, work);
+            internal_work += move_node(&node, self.factors, &mut sum, work);
             // what is not finite in one component is not finite in the sum
             finite &= (sum.u[0] + sum.u[1] + sum.u[2]).to_f64().is_finite();
         }
-        (spent, finite)
+        (internal_work, finite)
     }
 
     /// At most [`CHUNK`] nodes with mass whose work is not booked: the same operations in the same order as one by one,
@@ -90,7 +90,7 @@ impl<T: SimdScalar> Task<'_, '_, T> {
                 .map(|compensation| compensation.each_mut().map(|all| &mut all[numbers.clone()])),
             force: T::splat(simd, factors.force),
             non_finite: T::splat(simd, T::default()),
-            spent: T::splat(simd, T::default()),
+            internal_work: T::splat(simd, T::default()),
         };
         let width = T::width::<S>();
         for node in (from..to).step_by(width) {
@@ -122,15 +122,15 @@ impl<T: SimdScalar> Task<'_, '_, T> {
         if columns.internal_work.is_empty() {
             return (0.0, finite);
         }
-        let mut spent: f64 = lanes(chunk.spent).iter().map(|lane| lane.to_f64()).sum();
+        let mut internal_work: f64 = lanes(chunk.internal_work).iter().map(|lane| lane.to_f64()).sum();
         // along prescribed axes the last step was kept apart
         for (row, axes) in (from..to).map(|row| (row, columns.axes[row])).filter(|&(_, axes)| axes != 0) {
             for at in (0..3).filter(|i| axes >> i & 1 == 1).map(|i| 3 * row + i) {
                 let last = columns.previous_prescribed.get(at).map_or(0.0, |&step| f64::from(step));
-                spent += columns.internal[at].to_f64() * (last + columns.step[at].to_f64());
+                internal_work += columns.internal[at].to_f64() * (last + columns.step[at].to_f64());
             }
         }
-        (0.5 * factors.booked.to_f64() * spent, finite)
+        (0.5 * factors.booked.to_f64() * internal_work, finite)
     }
 }
 
@@ -207,7 +207,7 @@ struct Chunk<'a, T: SimdScalar, S: Simd> {
     /// Not 0 where a displacement is not finite.
     non_finite: T::Vector<S>,
     /// Internal forces times twice the mean step, but along constrained axes.
-    spent: T::Vector<S>,
+    internal_work: T::Vector<S>,
 }
 
 impl<T: SimdScalar, S: Simd> Chunk<'_, T, S> {
@@ -262,6 +262,6 @@ impl<T: SimdScalar, S: Simd> Chunk<'_, T, S> {
         store!(new, self.u);
         // what is no number stays none
         self.non_finite += new * zero;
-        self.spent += if_free(inner * (before + after), zero);
+        self.internal_work += if_free(inner * (before + after), zero);
     }
 }

@@ -76,8 +76,8 @@ fn alike<L: RustLaw>(
 ) -> Result<(), Vec<Complaint>> {
     let all = deformations::all();
     for deformation in all.iter().filter(|d| finite_up_to.is_none_or(|limit| d.size < limit)) {
-        let (own, _) = law.stress_at_once(&deformation.gradient, None, None);
-        let (expected, _) = recorded.stress_at_once(&deformation.gradient, None, None);
+        let (own, _) = law.direct_stress(&deformation.gradient, None, None);
+        let (expected, _) = recorded.direct_stress(&deformation.gradient, None, None);
         let [own, expected] = [own, expected].map(|stress| stress.0);
         let mut differences = [0.0; 9];
         for (difference, (a, b)) in differences.iter_mut().zip(own.as_flattened().iter().zip(expected.as_flattened())) {
@@ -89,7 +89,7 @@ fn alike<L: RustLaw>(
             let message =
                 format!("the law `{name}` has a shorter way to its stress that leads elsewhere: by {apart:.1e} of it");
             return Err(vec![Complaint::new(About::File, message).note(
-                "`first_stress`, `stress_at_once` and `stress_relaxed` must be what they are without being written",
+                "`first_stress`, `direct_stress` and `stress_relaxed` must be what they are without being written",
             )]);
         }
     }

@@ -263,7 +263,7 @@ impl Real for Recorded {
     fn mantissa_and_exponent(self) -> (Self, Self) {
         (self.unknown("mantissa_and_exponent"), self)
     }
-    fn apart<T: Task<Self>>(self, task: T) -> T::Output {
+    fn outlined<T: Task<Self>>(self, task: T) -> T::Output {
         task.run()
     }
     fn abs(self) -> Self {

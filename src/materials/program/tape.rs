@@ -102,8 +102,8 @@ impl Program {
         let like = inputs[0];
         // what is not touched need not be made
         match self.slots {
-            0..=32 => like.apart(Walk::<R, INPUTS, OUTPUTS, 32> { program: self, inputs }),
-            _ => like.apart(Walk::<R, INPUTS, OUTPUTS, SLOTS> { program: self, inputs }),
+            0..=32 => like.outlined(Walk::<R, INPUTS, OUTPUTS, 32> { program: self, inputs }),
+            _ => like.outlined(Walk::<R, INPUTS, OUTPUTS, SLOTS> { program: self, inputs }),
         }
     }
 

@@ -49,7 +49,7 @@ impl Parser<'_> {
     fn file(&mut self) -> Parsed<Node> {
         self.blanks()?;
         while self.scan.rest().starts_with("#!") {
-            // `#![enable(...)]`: for ron to judge
+            // `#![enable(...)]`: for ron to validator
             let end = self.scan.rest().find(']').map_or(self.scan.text.len(), |end| self.scan.at + end + 1);
             self.scan.at = end;
             self.blanks()?;

@@ -1,20 +1,20 @@
 //! Constraints, loads, removal and probes: what they select and what they do.
 
-use super::{Judge, scene, select, show};
+use super::{Validator, scene, select, show};
 use crate::scene::schema::{Axis, Constraint, Load, Quantity, Scene, When};
 use crate::scene::syntax::Path;
 use glam::DVec3;
 
-pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
+pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
     for (i, constraint) in scene_.constraints.iter().enumerate() {
         let path = scene("constraints").index(i);
         let (Constraint::Fixed { on, axes, .. } | Constraint::Prescribed { on, axes, .. }) = constraint;
-        select::validate(judge, &path.name("on"), on);
-        validate_axes(judge, &path.name("axes"), axes);
+        select::validate(validator, &path.name("on"), on);
+        validate_axes(validator, &path.name("axes"), axes);
         if let Constraint::Prescribed { displacement, gradient, rotation, .. } = constraint
             && [displacement, rotation].into_iter().chain(gradient).all(|part| *part == DVec3::ZERO)
         {
-            judge
+            validator
                 .out
                 .warn_at(&path, "this prescribes no motion: it holds the nodes as `Fixed` does")
                 .note("give `displacement`, `gradient` or `rotation`");
@@ -26,48 +26,48 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
             let bodies = &scene_.bodies;
             let named = body.as_ref().map_or(bodies.values().next(), |name| bodies.get(name));
             if named.is_some_and(|body| body.copies < 2) {
-                judge
+                validator
                     .out
                     .error_at(path.name("per_copy"), "the body has one copy only")
                     .note("give the body `copies`, or leave `per_copy` out");
             }
         }
         if let Some(on) = load.parts().on {
-            select::validate(judge, &path.name("on"), on);
+            select::validate(validator, &path.name("on"), on);
         }
     }
     for (i, removal) in scene_.removal.iter().enumerate() {
         let path = scene("removal").index(i);
-        select::validate(judge, &path.name("on"), &removal.on);
-        criterion(judge, &path.name("when"), removal.when);
+        select::validate(validator, &path.name("on"), &removal.on);
+        criterion(validator, &path.name("when"), removal.when);
     }
     for (name, probe) in &scene_.probes {
-        select::validate(judge, &scene("probes").name(name).name("on"), &probe.on);
+        select::validate(validator, &scene("probes").name(name).name("on"), &probe.on);
         let what = scene("probes").name(name).name("what");
         match probe.what {
-            Quantity::Force { direction } => judge.has_direction(&what.name("direction"), direction),
-            Quantity::Torque { axis, .. } => judge.has_direction(&what.name("axis"), axis),
+            Quantity::Force { direction } => validator.has_direction(&what.name("direction"), direction),
+            Quantity::Torque { axis, .. } => validator.has_direction(&what.name("axis"), axis),
             _ => {}
         }
     }
 }
 
-fn validate_axes(judge: &mut Judge, path: &Path, axes: &[Axis]) {
+fn validate_axes(validator: &mut Validator, path: &Path, axes: &[Axis]) {
     if axes.is_empty() {
-        judge
+        validator
             .out
             .error_at(path, "the list of `axes` is empty: nothing would be held")
             .note("leave `axes` out for all three, or name some of X, Y, Z");
     }
     for (i, axis) in axes.iter().enumerate() {
         if axes[..i].contains(axis) {
-            judge.out.warn_at(path.index(i), format!("the axis {axis:?} stands here twice"));
+            validator.out.warn_at(path.index(i), format!("the axis {axis:?} stands here twice"));
         }
     }
 }
 
 /// What is wrong with a threshold; at rest every stretch and volume ratio is 1.
-fn criterion(judge: &mut Judge, path: &Path, when: When) {
+fn criterion(validator: &mut Validator, path: &Path, when: When) {
     let (word, value, senseless) = match when {
         When::At(_) | When::During { .. } => return,
         When::StretchAbove(value) => ("StretchAbove", value, value < 1.0),
@@ -77,9 +77,9 @@ fn criterion(judge: &mut Judge, path: &Path, when: When) {
     };
     if value < 0.0 || (value == 0.0 && word != "EnergyDensityAbove") {
         let allowed = if word == "EnergyDensityAbove" { "0 or above" } else { "above 0" };
-        judge.out.error_at(path.index(0), format!("`{word}` must be {allowed}, found {}", show(value)));
+        validator.out.error_at(path.index(0), format!("`{word}` must be {allowed}, found {}", show(value)));
     } else if senseless {
-        judge
+        validator
             .out
             .warn_at(path.index(0), format!("`{word}` of {} holds at rest: all elements go at once", show(value)))
             .note("at rest the stretch and the volume ratio are 1");

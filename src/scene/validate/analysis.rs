@@ -1,21 +1,21 @@
 //! Static analyses and motions that begin at equilibrium: their numbers, and what of a scene has no meaning at rest.
 
-use super::{Judge, scene, show};
+use super::{Validator, scene, show};
 use crate::scene::limits::PSEUDO_STEPS;
 use crate::scene::schema::{Analysis, Constraint, InitialState, Inversion, Load, Quantity, Scene};
 use crate::scene::syntax::Path;
 use glam::DVec3;
 
-pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
-    start(scene_, judge);
+pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
+    start(scene_, validator);
     let Analysis::Static { tolerance, max_steps, load_steps, at } = scene_.analysis else { return };
     let path = scene("analysis");
-    numbers(&path, tolerance, max_steps, load_steps, judge);
+    numbers(&path, tolerance, max_steps, load_steps, validator);
     if let Some(at) = at {
-        judge.not_negative(&path.name("at"), at, "s");
+        validator.not_negative(&path.name("at"), at, "s");
     }
     if !scene_.removal.is_empty() {
-        judge
+        validator
             .out
             .error_at(scene("removal"), "a static analysis cannot remove elements")
             .note("which ones go depends on the way to rest, and pseudo-steps are no way that a body takes")
@@ -23,37 +23,37 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
     }
     for (name, material) in &scene_.materials {
         if material.inversion == Some(Inversion::Remove) {
-            judge
+            validator
                 .out
                 .error_at(scene("materials").name(name).name("inversion"), "a static analysis cannot remove elements")
                 .note("allowed: Stop, and Recover for stable_neo_hookean");
         }
     }
-    meaningless(scene_, judge);
-    held(scene_, &path, judge);
+    meaningless(scene_, validator);
+    held(scene_, &path, validator);
 }
 
 /// How well equilibrium is sought, and how long.
-fn numbers(path: &Path, tolerance: Option<f64>, max_steps: u64, load_steps: Option<u64>, judge: &mut Judge) {
+fn numbers(path: &Path, tolerance: Option<f64>, max_steps: u64, load_steps: Option<u64>, validator: &mut Validator) {
     if let Some(tolerance) = tolerance
         && (tolerance <= 0.0 || tolerance >= 1.0)
     {
-        judge
+        validator
             .must(&path.name("tolerance"), "above 0 and below 1", show(tolerance))
             .note("it is a share of loads and reactions; 1e-6 in f64 and 1e-5 in f32 when left out");
     }
     if max_steps == 0 {
-        judge.must(&path.name("max_steps"), "at least 1", max_steps);
+        validator.must(&path.name("max_steps"), "at least 1", max_steps);
     }
     if max_steps > PSEUDO_STEPS {
-        judge.must(&path.name("max_steps"), &format!("at most {PSEUDO_STEPS}"), max_steps);
+        validator.must(&path.name("max_steps"), &format!("at most {PSEUDO_STEPS}"), max_steps);
     }
     match load_steps {
         Some(0) => {
-            judge.must(&path.name("load_steps"), "at least 1", 0).note("left out, it is found from the mesh");
+            validator.must(&path.name("load_steps"), "at least 1", 0).note("left out, it is found from the mesh");
         }
         Some(steps) if steps > max_steps => {
-            judge
+            validator
                 .must(&path.name("load_steps"), "at most `max_steps`", steps)
                 .note(format!("`max_steps` is {max_steps}: loads would never act in full"));
         }
@@ -62,14 +62,14 @@ fn numbers(path: &Path, tolerance: Option<f64>, max_steps: u64, load_steps: Opti
 }
 
 /// A motion that begins at equilibrium.
-fn start(scene_: &Scene, judge: &mut Judge) {
+fn start(scene_: &Scene, validator: &mut Validator) {
     let InitialState::Equilibrium { tolerance, max_steps, load_steps } = scene_.start else { return };
     let path = scene("start");
     if scene_.is_static() {
-        judge.out.warn_at(&path, "a static analysis ignores `start`: it seeks an equilibrium anyway");
+        validator.out.warn_at(&path, "a static analysis ignores `start`: it seeks an equilibrium anyway");
         return;
     }
-    numbers(&path, tolerance, max_steps, load_steps, judge);
+    numbers(&path, tolerance, max_steps, load_steps, validator);
     for (name, body) in &scene_.bodies {
         let body_path = scene("bodies").name(name);
         let own = [
@@ -78,7 +78,7 @@ fn start(scene_: &Scene, judge: &mut Judge) {
             ("spin", body.spin != DVec3::ZERO),
         ];
         for (field, _) in own.iter().filter(|(_, there)| *there) {
-            judge
+            validator
                 .out
                 .error_at(body_path.name(*field), format!("`{field}` has no meaning beside `start: Equilibrium()`"))
                 .note("bodies begin at rest where loads and constraints hold them; leave one of the two out");
@@ -87,22 +87,22 @@ fn start(scene_: &Scene, judge: &mut Judge) {
     let curves = scene_.loads.iter().map(Load::curve).chain(scene_.constraints.iter().filter_map(Constraint::curve));
     let curves = curves.chain(scene_.systems.values().map(|system| &system.curve));
     if curves.map(|curve| curve.value(0.0)).all(|factor| factor == 0.0) {
-        judge.out.warn_at(&path, "nothing acts at t = 0: bodies start undeformed").note(
+        validator.out.warn_at(&path, "nothing acts at t = 0: bodies start undeformed").note(
             "curves count as they stand at 0: a ramp that begins there is 0; a load without `curve` acts in full",
         );
     }
-    held(scene_, &path, judge);
+    held(scene_, &path, validator);
 }
 
 /// Who is held by nothing is at rest only by chance.
-fn held(scene_: &Scene, path: &Path, judge: &mut Judge) {
+fn held(scene_: &Scene, path: &Path, validator: &mut Validator) {
     for name in scene_.bodies.keys() {
         let holds = |constraint: &Constraint| {
             let (Constraint::Fixed { body, .. } | Constraint::Prescribed { body, .. }) = constraint;
             body.as_ref().is_none_or(|body| body == name)
         };
         if !scene_.constraints.iter().any(holds) {
-            judge
+            validator
                 .out
                 .warn_at(path, format!("nothing holds the body {name:?}: it is at rest only where its loads balance"))
                 .note("add `Fixed(...)` or `Prescribed(...)` under `constraints`");
@@ -111,9 +111,9 @@ fn held(scene_: &Scene, path: &Path, judge: &mut Judge) {
 }
 
 /// What may stand in a scene that is also run over time, and does nothing at rest.
-fn meaningless(scene_: &Scene, judge: &mut Judge) {
+fn meaningless(scene_: &Scene, validator: &mut Validator) {
     let mut ignore = |path, what: &str| {
-        judge.out.warn_at(&path, format!("a static analysis ignores {what}"));
+        validator.out.warn_at(&path, format!("a static analysis ignores {what}"));
     };
     if scene_.output.snapshots_every.is_some() {
         ignore(

@@ -1,6 +1,6 @@
 //! The elastic law of a material: exactly one, with moduli that make sense.
 
-use super::Judge;
+use super::Validator;
 use crate::materials::complaints::Complaint;
 use crate::scene::limits::FORMULA_BYTES;
 use crate::scene::schema::{ELASTIC_LAWS, Material, OwnLaw, laws_for_large_strains};
@@ -10,10 +10,10 @@ use crate::scene::syntax::Path;
 const FOR_INSTANCE: &str =
     "for instance energy: \"mu/2*I1bar_minus_3 + kappa/2*J_minus_1^2\", parameters: {\"mu\": 1000, \"kappa\": 1e4}";
 
-pub(super) fn validate(judge: &mut Judge, path: &Path, name: &str, material: &Material) {
+pub(super) fn validate(validator: &mut Validator, path: &Path, name: &str, material: &Material) {
     match material.elastic_laws()[..] {
         [] => {
-            judge
+            validator
                 .out
                 .error_at(path.name("neo_hookean"), format!("the material `{name}` has no elastic law"))
                 .note("add for instance neo_hookean: Young(young: 3000, poisson: 0.45)")
@@ -22,7 +22,7 @@ pub(super) fn validate(judge: &mut Judge, path: &Path, name: &str, material: &Ma
         [_] => {}
         [first, ref others @ ..] => {
             for law in others {
-                judge
+                validator
                     .out
                     .error_at(path.name(*law), format!("the material `{name}` has two elastic laws, {first} and {law}"))
                     .note("a material has exactly one: leave the others out");
@@ -30,10 +30,10 @@ pub(super) fn validate(judge: &mut Judge, path: &Path, name: &str, material: &Ma
         }
     }
     for (word, complaints) in material.check_elastic_laws() {
-        complaints.list.into_iter().for_each(|complaint| tell(judge, &path.name(word), complaint));
+        complaints.list.into_iter().for_each(|complaint| tell(validator, &path.name(word), complaint));
     }
     if let Some(law) = &material.law {
-        own_law(judge, &path.name("law"), law);
+        own_law(validator, &path.name("law"), law);
     }
     let large = laws_for_large_strains();
     if let [word] = material.elastic_laws()[..]
@@ -42,7 +42,7 @@ pub(super) fn validate(judge: &mut Judge, path: &Path, name: &str, material: &Ma
         let fibres =
             [("fibres", material.fibres.is_some()), ("exponential_fibres", material.exponential_fibres.is_some())];
         for (effect, _) in fibres.into_iter().filter(|(_, there)| *there) {
-            judge
+            validator
                 .out
                 .error_at(path.name(effect), format!("`{effect}` need an elastic law for large strains, not `{word}`"))
                 .note(format!("elastic laws: {}", large.join(", ")));
@@ -50,23 +50,23 @@ pub(super) fn validate(judge: &mut Judge, path: &Path, name: &str, material: &Ma
     }
 }
 
-fn tell(judge: &mut Judge, law: &Path, complaint: Complaint) {
+fn tell(validator: &mut Validator, law: &Path, complaint: Complaint) {
     let at = format!("{law}.{}", complaint.at);
     let told = match complaint.is_error {
-        true => judge.out.error_at(at, complaint.message),
-        false => judge.out.warn_at(at, complaint.message),
+        true => validator.out.error_at(at, complaint.message),
+        false => validator.out.warn_at(at, complaint.message),
     };
     for note in complaint.notes {
         told.note(note);
     }
 }
 
-fn own_law(judge: &mut Judge, path: &Path, law: &OwnLaw) {
+fn own_law(validator: &mut Validator, path: &Path, law: &OwnLaw) {
     let ways = [("energy", law.energy.is_some()), ("file", !law.file.is_empty()), ("rust", law.rust.is_some())];
     let mut ways = ways.into_iter().filter_map(|(way, is_there)| is_there.then_some(way));
     match (ways.next(), ways.next()) {
         (Some(first), Some(second)) => {
-            judge
+            validator
                 .out
                 .error_at(path.name(second), format!("the law has both `{first}` and `{second}`"))
                 .note("a law is a formula of its energy, a file of WGSL, or one in Rust: leave the other out");
@@ -77,14 +77,14 @@ fn own_law(judge: &mut Judge, path: &Path, law: &OwnLaw) {
     }
     match &law.energy {
         Some(energy) if energy.trim().is_empty() => {
-            judge.out.error_at(path.name("energy"), "the formula is empty").note(FOR_INSTANCE);
+            validator.out.error_at(path.name("energy"), "the formula is empty").note(FOR_INSTANCE);
         }
         Some(energy) if energy.len() > FORMULA_BYTES => {
             let message = format!("a formula has at most {FORMULA_BYTES} bytes, found {}", energy.len());
-            judge.out.error_at(path.name("energy"), message).note("a file of WGSL may be longer");
+            validator.out.error_at(path.name("energy"), message).note("a file of WGSL may be longer");
         }
         None if law.file.is_empty() => {
-            judge
+            validator
                 .out
                 .error_at(path.name("file"), "the law has neither `energy` nor `file` nor `rust`")
                 .note(FOR_INSTANCE)

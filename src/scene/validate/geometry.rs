@@ -1,6 +1,6 @@
 //! Bodies and their meshes.
 
-use super::{Judge, scene, select};
+use super::{Validator, scene, select};
 use crate::mesh::CellKind;
 use crate::mesh::generators::cells_around;
 use crate::scene::beside::{FileKind, FileSource, Outside};
@@ -13,28 +13,28 @@ use crate::scene::syntax::Path;
 /// What mesh files may end in.
 const MESH_FILES: [&str; 3] = ["msh", "vtk", "vtu"];
 
-pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
+pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
     for (name, body) in &file.scene.bodies {
         let path = scene("bodies").name(name);
-        mesh(file, judge, &path.name("mesh"), &body.mesh);
-        judge.above_zero(&path.name("scale"), body.scale, "");
+        mesh(file, validator, &path.name("mesh"), &body.mesh);
+        validator.above_zero(&path.name("scale"), body.scale, "");
         if body.refine > MOST_REFINEMENT {
-            judge
+            validator
                 .must(&path.name("refine"), &format!("at most {MOST_REFINEMENT}"), body.refine)
                 .note("each time makes eight elements of one: 10 times make a billion of it");
         }
         if body.copies == 0 || body.copies > MOST_COPIES {
-            judge.must(&path.name("copies"), &format!("between 1 and {MOST_COPIES}"), body.copies);
+            validator.must(&path.name("copies"), &format!("between 1 and {MOST_COPIES}"), body.copies);
         }
         if !(body.apart * f64::from(body.copies)).is_finite() {
-            judge.out.error_at(path.name("apart"), "the last copy would stand beyond all numbers");
+            validator.out.error_at(path.name("apart"), "the last copy would stand beyond all numbers");
         }
-        judge.not_negative(&path.name("hourglass"), body.hourglass, "");
+        validator.not_negative(&path.name("hourglass"), body.hourglass, "");
         if let Some(Start::Scrambled { amplitude, .. }) = body.start {
-            judge.not_negative(&path.name("start").name("amplitude"), amplitude, "m");
+            validator.not_negative(&path.name("start").name("amplitude"), amplitude, "m");
         }
         if body.hourglass == 0.0 {
-            judge
+            validator
                 .out
                 .warn_at(
                     path.name("hourglass"),
@@ -43,26 +43,26 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) {
                 .note("they grow unseen and spoil what is computed: leave `hourglass` out, or use Hex8MeanDilatation");
         }
         for (i, region) in body.regions.iter().enumerate() {
-            select::validate(judge, &path.name("regions").index(i).name("on"), &region.on);
+            select::validate(validator, &path.name("regions").index(i).name("on"), &region.on);
         }
     }
-    accuracy(file, judge);
+    accuracy(file, validator);
 }
 
-fn accuracy(file: &SceneFile, judge: &mut Judge) {
+fn accuracy(file: &SceneFile, validator: &mut Validator) {
     let wanted = &file.scene.accuracy;
     let path = scene("accuracy");
     if let Some(target) = wanted.target {
         let own = path.name("target");
-        judge.above_zero(&own, target, "");
+        validator.above_zero(&own, target, "");
         if target >= 1.0 && target.is_finite() {
             let (percent, plain) = (100.0 * target, target / 100.0);
-            judge.out.warn_at(own, format!("an error of {percent} % is allowed here: {target} % would be {plain}"));
+            validator.out.warn_at(own, format!("an error of {percent} % is allowed here: {target} % would be {plain}"));
         }
     }
     for (quantity, &size) in &wanted.uncertainty {
         let own = path.name("uncertainty").name(quantity);
-        judge.not_negative(&own, size, "");
+        validator.not_negative(&own, size, "");
         let message = match &wanted.reference {
             AccuracyReference::SelfMade => {
                 "a reference that is made knows its own uncertainty; this is for `Values` and `Files`"
@@ -72,12 +72,12 @@ fn accuracy(file: &SceneFile, judge: &mut Judge) {
             }
             _ => continue,
         };
-        judge.out.error_at(own, message);
+        validator.out.error_at(own, message);
     }
     if let AccuracyReference::Files(files) = &wanted.reference {
         for (i, name) in files.iter().enumerate() {
             if let Err(outside) = file.file(name) {
-                tell_outside(judge, &path.name("reference").index(i), &outside);
+                tell_outside(validator, &path.name("reference").index(i), &outside);
             }
         }
     }
@@ -88,96 +88,101 @@ fn accuracy(file: &SceneFile, judge: &mut Judge) {
     };
     if empty {
         let message = "the reference is empty: there is nothing to measure errors against";
-        judge.out.error_at(path.name("reference"), message).note("leave `reference` out to have one made");
+        validator.out.error_at(path.name("reference"), message).note("leave `reference` out to have one made");
     }
 }
 
-fn mesh(file: &SceneFile, judge: &mut Judge, path: &Path, mesh: &MeshSource) {
+fn mesh(file: &SceneFile, validator: &mut Validator, path: &Path, mesh: &MeshSource) {
     match mesh {
         MeshSource::File { path: name, tets, hexes, .. } => {
-            mesh_file(file, judge, &path.name("path"), name);
+            mesh_file(file, validator, &path.name("path"), name);
             if tets.cell() != CellKind::Tet4 {
-                judge.must(&path.name("tets"), "Tet4 or Tet4NodalPressure", format!("{tets:?}"));
+                validator.must(&path.name("tets"), "Tet4 or Tet4NodalPressure", format!("{tets:?}"));
             }
             if hexes.cell() != CellKind::Hex8 {
-                judge.must(&path.name("hexes"), "Hex8 or Hex8MeanDilatation", format!("{hexes:?}"));
+                validator.must(&path.name("hexes"), "Hex8 or Hex8MeanDilatation", format!("{hexes:?}"));
             }
         }
         MeshSource::Box { size, cells, .. } => {
-            judge.all_above_zero(&path.name("size"), *size, "m");
-            each_way(judge, &path.name("cells"), *cells);
+            validator.all_above_zero(&path.name("size"), *size, "m");
+            each_way(validator, &path.name("cells"), *cells);
         }
-        MeshSource::Hexahedron { cells, .. } => each_way(judge, &path.name("cells"), *cells),
+        MeshSource::Hexahedron { cells, .. } => each_way(validator, &path.name("cells"), *cells),
         MeshSource::Tube { inner, outer, height, angle, cells, .. } => {
-            judge.above_zero(&path.name("inner"), *inner, "m");
-            judge.above_zero(&path.name("height"), *height, "m");
+            validator.above_zero(&path.name("inner"), *inner, "m");
+            validator.above_zero(&path.name("height"), *height, "m");
             if outer <= inner {
                 let found = super::with_unit(*outer, "m");
                 let note = format!("`inner` is {}", super::with_unit(*inner, "m"));
-                judge.must(&path.name("outer"), "more than `inner`", found).note(note);
+                validator.must(&path.name("outer"), "more than `inner`", found).note(note);
             }
             if !(*angle > 0.0 && *angle <= 360.0) {
-                judge.must(&path.name("angle"), "above 0 and at most 360 degrees", angle);
+                validator.must(&path.name("angle"), "above 0 and at most 360 degrees", angle);
             } else if cells.1 > 0 && cells.1 < cells_around(*angle) {
                 let be = format!("{} or more for an angle of {angle} degrees", cells_around(*angle));
-                judge.must(&path.name("cells").index(1), &be, cells.1).note("a cell turns by less than 180 degrees");
+                validator
+                    .must(&path.name("cells").index(1), &be, cells.1)
+                    .note("a cell turns by less than 180 degrees");
             }
-            each_way(judge, &path.name("cells"), *cells);
+            each_way(validator, &path.name("cells"), *cells);
         }
         MeshSource::Cylinder { radius, height, across, along, .. } => {
-            judge.above_zero(&path.name("radius"), *radius, "m");
-            judge.above_zero(&path.name("height"), *height, "m");
-            at_least_one(judge, &path.name("across"), *across);
-            at_least_one(judge, &path.name("along"), *along);
+            validator.above_zero(&path.name("radius"), *radius, "m");
+            validator.above_zero(&path.name("height"), *height, "m");
+            at_least_one(validator, &path.name("across"), *across);
+            at_least_one(validator, &path.name("along"), *along);
         }
         MeshSource::Ellipsoid { radii, across, .. } => {
-            judge.all_above_zero(&path.name("radii"), *radii, "m");
-            at_least_one(judge, &path.name("across"), *across);
+            validator.all_above_zero(&path.name("radii"), *radii, "m");
+            at_least_one(validator, &path.name("across"), *across);
         }
         MeshSource::Lens { diameter, thickness, across, through, .. } => {
-            judge.above_zero(&path.name("diameter"), *diameter, "m");
-            judge.above_zero(&path.name("thickness"), *thickness, "m");
+            validator.above_zero(&path.name("diameter"), *diameter, "m");
+            validator.above_zero(&path.name("thickness"), *thickness, "m");
             if thickness > diameter && *diameter > 0.0 {
-                judge.must(&path.name("thickness"), "at most the diameter", super::with_unit(*thickness, "m")).note(
-                    format!("`diameter` is {}; a lens as thick as wide is a ball", super::with_unit(*diameter, "m")),
-                );
+                validator
+                    .must(&path.name("thickness"), "at most the diameter", super::with_unit(*thickness, "m"))
+                    .note(format!(
+                        "`diameter` is {}; a lens as thick as wide is a ball",
+                        super::with_unit(*diameter, "m")
+                    ));
             }
-            at_least_one(judge, &path.name("across"), *across);
-            at_least_one(judge, &path.name("through"), *through);
+            at_least_one(validator, &path.name("across"), *across);
+            at_least_one(validator, &path.name("through"), *through);
         }
     }
 }
 
 /// Cells in three directions: at least one in each.
-fn each_way(judge: &mut Judge, path: &Path, cells: (u32, u32, u32)) {
+fn each_way(validator: &mut Validator, path: &Path, cells: (u32, u32, u32)) {
     let cells = [cells.0, cells.1, cells.2];
     for (i, count) in cells.into_iter().enumerate() {
-        at_least_one(judge, &path.index(i), count);
+        at_least_one(validator, &path.index(i), count);
     }
 }
 
-fn at_least_one(judge: &mut Judge, path: &Path, count: u32) {
+fn at_least_one(validator: &mut Validator, path: &Path, count: u32) {
     if count == 0 {
-        judge.must(path, "1 or more", count);
+        validator.must(path, "1 or more", count);
     }
 }
 
-fn mesh_file(file: &SceneFile, judge: &mut Judge, path: &Path, name: &str) {
+fn mesh_file(file: &SceneFile, validator: &mut Validator, path: &Path, name: &str) {
     let (found, full, mut there) = match file.file(name).and_then(|full| Ok((full, file.look_up(name)?))) {
         Ok((full, (found, there))) => (found, full, there),
-        Err(outside) => return tell_outside(judge, path, &outside),
+        Err(outside) => return tell_outside(validator, path, &outside),
     };
     let ending = full.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
     if name.is_empty() {
-        judge.out.error_at(path, "the path of the mesh file is empty");
+        validator.out.error_at(path, "the path of the mesh file is empty");
     } else if found == FileKind::Folder {
-        judge.out.error_at(path, format!("`{name}` is a folder, not a mesh file"));
+        validator.out.error_at(path, format!("`{name}` is a folder, not a mesh file"));
     } else if found == FileKind::Nothing {
         let is_mesh =
             |name: &str| MESH_FILES.iter().any(|ending| name.to_ascii_lowercase().ends_with(&format!(".{ending}")));
         there.retain(|name| is_mesh(name));
         let wanted = full.file_name().and_then(|name| name.to_str()).unwrap_or(name);
-        let diagnostic = judge.out.error_at(path, format!("there is no file `{name}`"));
+        let diagnostic = validator.out.error_at(path, format!("there is no file `{name}`"));
         if there.is_empty() {
             let folder = full.parent().unwrap_or(&file.folder);
             let place = match file.files {
@@ -194,7 +199,7 @@ fn mesh_file(file: &SceneFile, judge: &mut Judge, path: &Path, name: &str) {
             diagnostic.notes(notes);
         }
     } else if !MESH_FILES.contains(&ending.as_str()) {
-        judge
+        validator
             .out
             .error_at(path, format!("`{name}` is no mesh file that can be read"))
             .note("allowed: Gmsh (.msh), legacy VTK (.vtk), VTU (.vtu)");
@@ -202,7 +207,7 @@ fn mesh_file(file: &SceneFile, judge: &mut Judge, path: &Path, name: &str) {
 }
 
 /// Notes a file that the scene may not read.
-pub(super) fn tell_outside(judge: &mut Judge, path: &Path, outside: &Outside) {
+pub(super) fn tell_outside(validator: &mut Validator, path: &Path, outside: &Outside) {
     let message = format!("`{}` lies outside the scene's folder", outside.name);
-    judge.out.error_at(path, message).note(Outside::HOW);
+    validator.out.error_at(path, message).note(Outside::HOW);
 }

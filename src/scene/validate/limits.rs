@@ -1,16 +1,16 @@
 //! Whether a scene has more of anything than is allowed. Looked at first: all else may take its time with what is too
 //! much.
 
-use super::{Judge, scene};
+use super::{Validator, scene};
 use crate::scene::limits::{ACTIONS, BODIES, MOST_REFINEMENT, NAME_BYTES, SYSTEMS, TABLE_POINTS, TERMS};
 use crate::scene::load::SceneFile;
 use crate::scene::schema::{Curve, MeshSource};
 use crate::scene::syntax::Path;
 
 /// Whether there is not too much of anything that is looked at one by one.
-pub(super) fn validate(file: &SceneFile, judge: &mut Judge) -> bool {
+pub(super) fn validate(file: &SceneFile, validator: &mut Validator) -> bool {
     let found = &file.scene;
-    let mut limits = Limits { judge, kept: true };
+    let mut limits = Limits { validator, kept: true };
     limits.at_most(BODIES, found.bodies.len(), "bodies", || scene("bodies"));
     limits.at_most(BODIES, found.materials.len(), "materials", || scene("materials"));
     limits.at_most(ACTIONS, found.constraints.len(), "constraints", || scene("constraints"));
@@ -52,21 +52,21 @@ pub(super) fn validate(file: &SceneFile, judge: &mut Judge) -> bool {
 }
 
 struct Limits<'a, 'b> {
-    judge: &'a mut Judge<'b>,
+    validator: &'a mut Validator<'b>,
     kept: bool,
 }
 
 impl Limits<'_, '_> {
     fn at_most(&mut self, most: usize, found: usize, what: &str, path: impl Fn() -> Path) {
         if found > most {
-            self.judge.out.error_at(path(), format!("{found} {what}; at most {most} are allowed"));
+            self.validator.out.error_at(path(), format!("{found} {what}; at most {most} are allowed"));
             self.kept = false;
         }
     }
 }
 
 /// Elements of all generated meshes, after `refine`. Those of files are counted when they are read.
-pub(super) fn elements(file: &SceneFile, judge: &mut Judge) {
+pub(super) fn elements(file: &SceneFile, validator: &mut Validator) {
     let most = file.allowed.elements;
     let mut all = 0_u128;
     for (name, body) in &file.scene.bodies {
@@ -79,7 +79,7 @@ pub(super) fn elements(file: &SceneFile, judge: &mut Judge) {
             let copied = if body.copies > 1 { format!(", {} copies", body.copies) } else { String::new() };
             let message = format!("the mesh would have {made} elements: {cells} cells{refined}{copied}");
             let others = if all > made { format!(", {all} with the bodies before") } else { String::new() };
-            judge
+            validator
                 .out
                 .error_at(scene("bodies").name(name).name("mesh").name(field), message + &others)
                 .note(format!("at most {most} elements are allowed in all bodies together"));

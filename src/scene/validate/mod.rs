@@ -23,31 +23,31 @@ use glam::DVec3;
 /// Adds all that is wrong with the values of a scene, each mistake with its place, the value found and what is allowed.
 /// Gives whether it makes sense to go on: a scene with more of something than is allowed is not looked at further.
 pub fn validate(file: &SceneFile, diagnostics: &mut Diagnostics) -> bool {
-    let mut judge = Judge { out: diagnostics };
-    if !limits::validate(file, &mut judge) {
+    let mut validator = Validator { out: diagnostics };
+    if !limits::validate(file, &mut validator) {
         return false;
     }
-    limits::elements(file, &mut judge);
-    numbers::validate(file, &mut judge);
-    names::validate(&file.scene, &mut judge);
-    material::validate(&file.scene, &mut judge);
-    geometry::validate(file, &mut judge);
-    action::validate(&file.scene, &mut judge);
-    own_system::validate(&file.scene, &mut judge);
-    time::validate(&file.scene, &mut judge);
-    analysis::validate(&file.scene, &mut judge);
-    output::validate(&file.scene, &mut judge);
-    picture::validate(&file.scene, &mut judge);
+    limits::elements(file, &mut validator);
+    numbers::validate(file, &mut validator);
+    names::validate(&file.scene, &mut validator);
+    material::validate(&file.scene, &mut validator);
+    geometry::validate(file, &mut validator);
+    action::validate(&file.scene, &mut validator);
+    own_system::validate(&file.scene, &mut validator);
+    time::validate(&file.scene, &mut validator);
+    analysis::validate(&file.scene, &mut validator);
+    output::validate(&file.scene, &mut validator);
+    picture::validate(&file.scene, &mut validator);
     true
 }
 
 /// Adds what is wrong with how a scene is drawn, and nothing else: of a scene that has been run already.
 pub fn validate_picture(file: &SceneFile, diagnostics: &mut Diagnostics) {
-    picture::validate(&file.scene, &mut Judge { out: diagnostics });
+    picture::validate(&file.scene, &mut Validator { out: diagnostics });
 }
 
 /// Notes mistakes of the common kinds.
-struct Judge<'a> {
+struct Validator<'a> {
     out: &'a mut Diagnostics,
 }
 
@@ -65,7 +65,7 @@ fn called(path: &Path) -> String {
     format!("`{}`", name.unwrap_or("the scene"))
 }
 
-impl Judge<'_> {
+impl Validator<'_> {
     /// Notes that a value must be something else.
     fn must(&mut self, path: &Path, be: &str, found: impl std::fmt::Display) -> &mut Diagnostic {
         self.out.error_at(path, format!("{} must be {be}, found {found}", called(path)))

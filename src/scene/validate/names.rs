@@ -1,27 +1,27 @@
 //! Names: every body and material that is named must exist, and names must do as names of files and columns.
 
-use super::{Judge, scene};
+use super::{Validator, scene};
 use crate::scene::schema::{Constraint, LoadParts, Scene};
 use crate::scene::suggest::{choice, list};
 use crate::scene::syntax::Path;
 
-pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
+pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
     if scene_.bodies.is_empty() {
-        judge
+        validator
             .out
             .error_at(scene("bodies"), "the scene has no body")
             .note("a body: \"cube\": (mesh: ..., material: ...)");
     }
-    materials(scene_, judge);
-    bodies(scene_, judge);
+    materials(scene_, validator);
+    bodies(scene_, validator);
     for name in scene_.bodies.keys() {
-        file_name(judge, &scene("bodies").name(name), "body", name);
+        file_name(validator, &scene("bodies").name(name), "body", name);
     }
     for name in scene_.probes.keys() {
-        file_name(judge, &scene("probes").name(name), "probe", name);
+        file_name(validator, &scene("probes").name(name), "probe", name);
     }
     if scene_.schedule.as_ref().is_some_and(Vec::is_empty) {
-        judge
+        validator
             .out
             .error_at(scene("schedule"), "the schedule is empty: nothing would happen")
             .note("leave `schedule` out to have it derived from the scene");
@@ -41,55 +41,55 @@ fn used(scene_: &Scene) -> Vec<(Path, &String)> {
     used
 }
 
-fn materials(scene_: &Scene, judge: &mut Judge) {
+fn materials(scene_: &Scene, validator: &mut Validator) {
     let used = used(scene_);
     for (path, name) in &used {
         if !scene_.materials.contains_key(*name) {
             let materials = scene_.materials.keys().map(String::as_str);
-            judge.out.error_at(path, format!("there is no material `{name}`")).notes(choice(name, materials));
+            validator.out.error_at(path, format!("there is no material `{name}`")).notes(choice(name, materials));
         }
     }
     for name in scene_.materials.keys() {
         if !used.iter().any(|(_, used)| *used == name) {
-            judge.out.warn_at(scene("materials").name(name), format!("no body uses the material `{name}`"));
+            validator.out.warn_at(scene("materials").name(name), format!("no body uses the material `{name}`"));
         }
     }
 }
 
-fn bodies(scene_: &Scene, judge: &mut Judge) {
+fn bodies(scene_: &Scene, validator: &mut Validator) {
     for (i, constraint) in scene_.constraints.iter().enumerate() {
         let (Constraint::Fixed { body, .. } | Constraint::Prescribed { body, .. }) = constraint;
-        body_named(scene_, judge, &scene("constraints").index(i), body.as_ref());
+        body_named(scene_, validator, &scene("constraints").index(i), body.as_ref());
     }
     for (i, load) in scene_.loads.iter().enumerate() {
         let LoadParts { body, on, .. } = load.parts();
         // what acts on whole bodies is for all of them, where it names none
         if on.is_some() || body.is_some() {
-            body_named(scene_, judge, &scene("loads").index(i), body);
+            body_named(scene_, validator, &scene("loads").index(i), body);
         }
     }
     for (name, system) in &scene_.systems {
         if system.body.is_some() {
-            body_named(scene_, judge, &scene("systems").name(name), system.body.as_ref());
+            body_named(scene_, validator, &scene("systems").name(name), system.body.as_ref());
         }
     }
     for (i, removal) in scene_.removal.iter().enumerate() {
-        body_named(scene_, judge, &scene("removal").index(i), removal.body.as_ref());
+        body_named(scene_, validator, &scene("removal").index(i), removal.body.as_ref());
     }
     for (name, probe) in &scene_.probes {
-        body_named(scene_, judge, &scene("probes").name(name), probe.body.as_ref());
+        body_named(scene_, validator, &scene("probes").name(name), probe.body.as_ref());
     }
 }
 
-fn body_named(scene_: &Scene, judge: &mut Judge, owner: &Path, body: Option<&String>) {
+fn body_named(scene_: &Scene, validator: &mut Validator, owner: &Path, body: Option<&String>) {
     let path = owner.name("body");
     let bodies: Vec<&str> = scene_.bodies.keys().map(String::as_str).collect();
     match body {
         Some(name) if !scene_.bodies.contains_key(name) => {
-            judge.out.error_at(path, format!("there is no body `{name}`")).notes(choice(name, bodies));
+            validator.out.error_at(path, format!("there is no body `{name}`")).notes(choice(name, bodies));
         }
         None if bodies.len() > 1 => {
-            judge
+            validator
                 .out
                 .error_at(path, format!("which body? The scene has {}", bodies.len()))
                 .label("needs `body`")
@@ -100,16 +100,19 @@ fn body_named(scene_: &Scene, judge: &mut Judge, owner: &Path, body: Option<&Str
 }
 
 /// Names become names of files and of columns of tables.
-fn file_name(judge: &mut Judge, path: &Path, what: &str, name: &str) {
+fn file_name(validator: &mut Validator, path: &Path, what: &str, name: &str) {
     let notes = "letters, digits, _ and - do everywhere";
     // what is refused here, an output folder refuses too
     let fits = |letter: char| letter.is_alphanumeric() || matches!(letter, '_' | '-' | '.' | ' ');
     if name.is_empty() || name.starts_with('.') || !name.chars().all(fits) {
-        judge
+        validator
             .out
             .error_at(path, format!("the {what} `{name}` needs another name: files are named after it"))
             .note(notes);
     } else if !name.chars().all(|c| c.is_alphanumeric() || c == '_' || c == '-') {
-        judge.out.warn_at(path, format!("the name of the {what} `{name}` is awkward in files and tables")).note(notes);
+        validator
+            .out
+            .warn_at(path, format!("the name of the {what} `{name}` is awkward in files and tables"))
+            .note(notes);
     }
 }

@@ -1,17 +1,17 @@
 //! Fields of VTU files: each once, and such as the scene has.
 
-use super::{Judge, scene};
+use super::{Validator, scene};
 use crate::scene::schema::{Field, Material, OutputField, Scene};
 
-pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
+pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
     let path = scene("output").name("fields");
     let Some(fields) = &scene_.output.fields else { return };
     for (i, field) in fields.iter().enumerate() {
         if fields[..i].contains(field) {
-            judge.out.error_at(path.index(i), format!("`{field:?}` is there twice")).note("name each field once");
+            validator.out.error_at(path.index(i), format!("`{field:?}` is there twice")).note("name each field once");
         }
         if *field == OutputField::FibreStretch && !scene_.materials.values().any(has_fibres) {
-            judge
+            validator
                 .out
                 .error_at(path.index(i), "no material has fibres whose stretch could be written")
                 .note("add `fibres` or `exponential_fibres` to a material, or leave `FibreStretch` out");
@@ -31,7 +31,7 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
             OutputField::Displacement => "`sinew render` would draw the shape at rest".to_string(),
             _ => format!("`sinew render` would not find the scene's `picture: (field: {:?})`", scene_.picture.field),
         };
-        judge
+        validator
             .out
             .warn_at(path, format!("{what}: `{field:?}` is not among `fields`"))
             .note("add it, if you want pictures");

@@ -1,6 +1,6 @@
 //! Durations, steps, intervals and curves.
 
-use super::{Judge, scene, show, with_unit};
+use super::{Validator, scene, show, with_unit};
 use crate::scene::schema::{Curve, EnergyGuard, Guard, Guards, Scene, When, WhenUnstable};
 use crate::scene::syntax::Path;
 use std::collections::BTreeMap;
@@ -8,22 +8,22 @@ use std::collections::BTreeMap;
 /// More states than are of use after a breakdown.
 const MOST_STATES: u64 = 100;
 
-pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
-    judge.above_zero(&scene("duration"), scene_.duration, "s");
+pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
+    validator.above_zero(&scene("duration"), scene_.duration, "s");
     let path = scene("integration");
     if let Some(step) = scene_.integration.step {
-        every(judge, &path.name("step"), step, scene_.duration);
+        every(validator, &path.name("step"), step, scene_.duration);
     }
     let safety = scene_.integration.safety;
     if safety <= 0.0 || safety > 1.0 {
-        judge
+        validator
             .must(&path.name("safety"), "above 0 and at most 1", show(safety))
             .note("it is the share of the stable step that is taken; 0.9 when left out");
     }
     if let Some(WhenUnstable::ScaleMass { most }) = scene_.integration.when_unstable
         && (most <= 0.0 || most > 1.0)
     {
-        judge
+        validator
             .must(&path.name("when_unstable").name("most"), "above 0 and at most 1", show(most))
             .note("it is the share of all mass that may be added; 0.05 when left out");
     }
@@ -34,34 +34,34 @@ pub(super) fn validate(scene_: &Scene, judge: &mut Judge) {
         ("snapshots_every", scene_.output.snapshots_every),
     ] {
         if let Some(value) = value {
-            every(judge, &path.name(field), value, scene_.duration);
+            every(validator, &path.name(field), value, scene_.duration);
         }
     }
-    guards(scene_, judge);
+    guards(scene_, validator);
     for (name, probe) in &scene_.probes {
         if let Some(value) = probe.every {
-            every(judge, &scene("probes").name(name).name("every"), value, scene_.duration);
+            every(validator, &scene("probes").name(name).name("every"), value, scene_.duration);
         }
     }
-    actions(scene_, judge);
+    actions(scene_, validator);
 }
 
-fn guards(scene_: &Scene, judge: &mut Judge) {
+fn guards(scene_: &Scene, validator: &mut Validator) {
     let (guards, path) = (&scene_.guards, scene("guards"));
     if guards.every == 0 {
-        judge.must(&path.name("every"), "at least 1", 0).note("it is the number of steps between two looks");
+        validator.must(&path.name("every"), "at least 1", 0).note("it is the number of steps between two looks");
     }
     let Guards { energy: EnergyGuard { warn, stop }, hourglass, .. } = *guards;
-    judge.above_zero(&path.name("energy").name("warn"), warn, "");
-    judge.above_zero(&path.name("energy").name("stop"), stop, "");
-    judge.above_zero(&path.name("hourglass"), hourglass, "");
+    validator.above_zero(&path.name("energy").name("warn"), warn, "");
+    validator.above_zero(&path.name("energy").name("stop"), stop, "");
+    validator.above_zero(&path.name("hourglass"), hourglass, "");
     if guards.window > MOST_STATES {
-        judge
+        validator
             .must(&path.name("window"), &format!("at most {MOST_STATES}"), guards.window)
             .note("each state takes as much memory as the columns that steps carry on");
     }
     if scene_.integration.beyond_stable_step && guards.off.contains(&Guard::Energy) {
-        judge
+        validator
             .out
             .error_at(path.name("off"), "a step beyond the stable one needs the balance of energy")
             .note("it is what shows that the step was too large; leave `Energy` out of `off`");
@@ -69,66 +69,66 @@ fn guards(scene_: &Scene, judge: &mut Judge) {
 }
 
 /// A time between two things that happen.
-fn every(judge: &mut Judge, path: &Path, value: f64, duration: f64) {
-    judge.above_zero(path, value, "s");
+fn every(validator: &mut Validator, path: &Path, value: f64, duration: f64) {
+    validator.above_zero(path, value, "s");
     if value > duration && duration > 0.0 {
         let message = format!("{} is longer than the scene: {}", super::called(path), with_unit(value, "s"));
-        judge.out.warn_at(path, message).note(format!("`duration` is {}", with_unit(duration, "s")));
+        validator.out.warn_at(path, message).note(format!("`duration` is {}", with_unit(duration, "s")));
     }
 }
 
-fn actions(scene_: &Scene, judge: &mut Judge) {
+fn actions(scene_: &Scene, validator: &mut Validator) {
     for (path, curve) in scene_.curves() {
-        validate_curve(judge, &path, curve, scene_.duration);
+        validate_curve(validator, &path, curve, scene_.duration);
     }
-    inputs(scene_, judge);
+    inputs(scene_, validator);
     for (i, removal) in scene_.removal.iter().enumerate() {
         let path = scene("removal").index(i).name("when");
         match removal.when {
             When::At(time) => {
                 if time < 0.0 {
-                    judge
+                    validator
                         .out
                         .error_at(path.index(0), format!("`At` must be 0 or above, found {}", with_unit(time, "s")));
                 }
-                too_late(judge, &path.index(0), time, scene_.duration);
+                too_late(validator, &path.index(0), time, scene_.duration);
             }
             When::During { start, end } => {
-                judge.not_negative(&path.name("start"), start, "s");
-                interval(judge, &path, start, end);
-                too_late(judge, &path.name("start"), start, scene_.duration);
+                validator.not_negative(&path.name("start"), start, "s");
+                interval(validator, &path, start, end);
+                too_late(validator, &path.name("start"), start, scene_.duration);
             }
             _ => {}
         }
     }
 }
 
-fn validate_curve(judge: &mut Judge, path: &Path, curve: &Curve, duration: f64) {
+fn validate_curve(validator: &mut Validator, path: &Path, curve: &Curve, duration: f64) {
     match curve {
         Curve::Step { start, end } => {
             if let Some(end) = end {
-                interval(judge, path, *start, *end);
+                interval(validator, path, *start, *end);
             }
-            too_late(judge, &path.name("start"), *start, duration);
+            too_late(validator, &path.name("start"), *start, duration);
         }
         Curve::Ramp { start, end } | Curve::Smooth { start, end } => {
-            interval(judge, path, *start, *end);
-            too_late(judge, &path.name("start"), *start, duration);
+            interval(validator, path, *start, *end);
+            too_late(validator, &path.name("start"), *start, duration);
         }
-        Curve::Table(points) => table(judge, path, points),
+        Curve::Table(points) => table(validator, path, points),
         Curve::Input { name, rate, .. } => {
             if name.is_empty() {
-                judge.out.error_at(path.name("name"), "an input needs a name, by which a program sets it");
+                validator.out.error_at(path.name("name"), "an input needs a name, by which a program sets it");
             }
             if let Some(rate) = rate {
-                judge.above_zero(&path.name("rate"), *rate, "a second");
+                validator.above_zero(&path.name("rate"), *rate, "a second");
             }
         }
     }
 }
 
 /// What has the same name is one input, and must be the same everywhere.
-fn inputs(scene_: &Scene, judge: &mut Judge) {
+fn inputs(scene_: &Scene, validator: &mut Validator) {
     let curves = scene_.curves();
     let mut first: BTreeMap<&str, &Curve> = BTreeMap::new();
     for (path, curve) in &curves {
@@ -136,44 +136,44 @@ fn inputs(scene_: &Scene, judge: &mut Judge) {
         let Curve::Input { initial: there, rate: bound, .. } = first.entry(name).or_insert(curve) else { continue };
         let note = format!("the same name is the same input; `{name}` stands somewhere before");
         if initial != there {
-            judge.must(&path.name("initial"), &format!("{}, as before", show(*there)), show(*initial)).note(&note);
+            validator.must(&path.name("initial"), &format!("{}, as before", show(*there)), show(*initial)).note(&note);
         }
         let said = |rate: &Option<f64>| rate.map_or("none".into(), show);
         if rate != bound {
             let found = if rate.is_some() { path.name("rate") } else { path.clone() };
             let message = format!("`rate` must be {}, as before, found {}", said(bound), said(rate));
-            judge.out.error_at(found, message).note(&note);
+            validator.out.error_at(found, message).note(&note);
         }
     }
 }
 
-fn interval(judge: &mut Judge, path: &Path, start: f64, end: f64) {
+fn interval(validator: &mut Validator, path: &Path, start: f64, end: f64) {
     if end <= start {
-        judge
+        validator
             .must(&path.name("end"), "after `start`", with_unit(end, "s"))
             .note(format!("`start` is {}", with_unit(start, "s")));
     }
 }
 
-fn too_late(judge: &mut Judge, path: &Path, start: f64, duration: f64) {
+fn too_late(validator: &mut Validator, path: &Path, start: f64, duration: f64) {
     if start >= duration && duration > 0.0 {
-        judge
+        validator
             .out
             .warn_at(path, format!("this begins at {}, when the scene is over", with_unit(start, "s")))
             .note(format!("`duration` is {}", with_unit(duration, "s")));
     }
 }
 
-fn table(judge: &mut Judge, path: &Path, points: &[(f64, f64)]) {
+fn table(validator: &mut Validator, path: &Path, points: &[(f64, f64)]) {
     if points.is_empty() {
-        judge
+        validator
             .out
             .error_at(path, "the table has no points")
             .note("a point is (time, factor): Table([(0, 0), (0.1, 1)])");
     }
     for (i, pair) in points.windows(2).enumerate() {
         if pair[1].0 <= pair[0].0 {
-            judge
+            validator
                 .out
                 .error_at(
                     path.index(i + 1).index(0),

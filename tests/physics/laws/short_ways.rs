@@ -24,7 +24,7 @@ fn short<R: Scalar>(h: &Mat3<R>, a: [R; 3]) -> Found<R> {
         isochoric.scaled(R::from_f64(REST)).plus(&volumetric)
     };
     let relaxed = elastic.stress_relaxed(h, None, Some((fibres, Sym3::square_of(a))), relax).0;
-    Found(seen.unwrap(), relaxed, elastic.stress_at_once(h, None, Some((fibres, a))).0)
+    Found(seen.unwrap(), relaxed, elastic.direct_stress(h, None, Some((fibres, a))).0)
 }
 
 fn long<R: Scalar>(h: &Mat3<R>, a: [R; 3]) -> Found<R> {

@@ -138,7 +138,7 @@ impl Real for Counted {
         let exponent = self.0.log2().round();
         (counted(1, self.0 / exponent.exp2()), counted(1, exponent))
     }
-    fn apart<T: Task<Self>>(self, task: T) -> T::Output {
+    fn outlined<T: Task<Self>>(self, task: T) -> T::Output {
         task.run()
     }
 }
@@ -185,7 +185,7 @@ fn flops<E: Element>(effects: Effects) -> f64 {
             };
             law.stress_relaxed(&state.gradient, shared, fibres, relax).0
         } else {
-            law.stress_at_once(&state.gradient, shared, fibred.then_some(fibres)).0
+            law.direct_stress(&state.gradient, shared, fibred.then_some(fibres)).0
         };
         E::add_stress(&mut forces, point, &state, &stress);
     }

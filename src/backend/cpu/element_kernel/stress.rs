@@ -1,6 +1,6 @@
 //! Stress at a point of a register full of elements: the law's, with what the material has on top.
 
-use super::{ASK, FIBRES, Patch, VISCOSITY};
+use super::{FIBRES, GENERIC, Patch, VISCOSITY};
 use crate::elements::{Element, PressureFrom};
 use crate::materials::{Elastic, Fibres, Kinematics};
 use crate::math::{LANES, Mat3, Real, SimdScalar, Sym3};
@@ -43,8 +43,8 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         gradient: &Mat3<T::Vector<S>>,
         shared: T::Vector<S>,
     ) -> (Mat3<T::Vector<S>>, T::Vector<S>) {
-        if EFFECTS == ASK {
-            return self.stress_asked_for(simd, law, group, at, point, gradient, shared);
+        if EFFECTS == GENERIC {
+            return self.generic_stress(simd, law, group, at, point, gradient, shared);
         }
         let pressure = (E::PRESSURE != PressureFrom::Point).then_some(shared);
         if EFFECTS & VISCOSITY == 0 {
@@ -52,7 +52,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
                 #[inline(always)]
                 || (law.fibres, self.along(simd, group, at)),
             );
-            return law.elastic.stress_at_once(gradient, pressure, fibres);
+            return law.elastic.direct_stress(gradient, pressure, fibres);
         }
         let fibres = (EFFECTS & FIBRES != 0).then(
             #[inline(always)]
@@ -69,7 +69,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
 
     /// The same with all that a material can have, by way of S.
     #[inline(always)]
-    fn stress_asked_for<S: Simd>(
+    fn generic_stress<S: Simd>(
         &mut self,
         simd: S,
         law: &InRegisters<L::Of<T::Vector<S>>, T, S>,

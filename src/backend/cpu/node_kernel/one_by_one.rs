@@ -100,7 +100,7 @@ pub(super) fn move_node<T: Scalar>(
     let coefficient = node.damping;
     let a = coefficient * half_step * per_mass + relaxation;
     let shrink = if a > zero { one / (one + divide * a) } else { one };
-    let mut spent = zero;
+    let mut internal_work = zero;
     for i in 0..3 {
         let internal = node.internal[i];
         let external = node.external[i];
@@ -116,7 +116,7 @@ pub(super) fn move_node<T: Scalar>(
             Some(previous) if constrained => T::from_f64(f64::from(previous[i])),
             _ => before,
         };
-        spent += internal * (last + step);
+        internal_work += internal * (last + step);
         if let Some(work) = &mut work {
             // forces at the beginning of the step work along the mean of the steps before and after, in the first step
             // along half of it: so the balance of the scheme is exact in the middle of each step
@@ -132,5 +132,5 @@ pub(super) fn move_node<T: Scalar>(
             }
         }
     }
-    0.5 * (booked * spent).to_f64()
+    0.5 * (booked * internal_work).to_f64()
 }

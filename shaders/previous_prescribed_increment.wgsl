@@ -3,5 +3,5 @@
 @group(0) @binding(0) var<storage, read_write> node_diagnostics: array<atomic<u32>>;
 
 fn keep_previous_step(at: u32) {
-    atomicStore(&node_diagnostics[PREVIOUS_PRESCRIBED_AT + at], bitcast<u32>(displacement_step[at]));
+    atomicStore(&node_diagnostics[PREVIOUS_PRESCRIBED_AT + at], bitcast<u32>(displacement_increment[at]));
 }
