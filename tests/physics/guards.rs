@@ -72,7 +72,7 @@ fn work_against_internal_forces_is_booked_without_being_asked_for() {
             );
             let mut simulation = run.start(&scene("Hex8", "damping: 3,", &further));
             simulation.advance(300).unwrap();
-            let spent = look(simulation.world_mut()).unwrap().spent;
+            let spent = look(simulation.world_mut()).unwrap().internal_work;
             (spent, simulation.energies().unwrap())
         };
         let ((spent, plain), (asked, full)) = (of(""), of("output: (energies_every: 1),"));
