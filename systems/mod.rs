@@ -10,6 +10,7 @@
 //! pressure         Displacement                 -> ExternalForce                          per loaded node
 //! traction                                      -> ExternalForce                          per loaded node
 //! grab             Displacement                 -> ExternalForce                          per held node
+//! tool_contact     forces, Displacement, motion -> ExternalForce, ToolTouch               per node that may touch
 //! integrate        forces, Mass                 -> DisplacementIncrement, Displacement         per node
 //! element_removal  criteria, times              -> Alive, RestShape, Mass                 per element, per node
 //! observe          all, read only               -> probes, energies, guards, files
@@ -36,6 +37,7 @@ mod own_load;
 mod patch_pass;
 mod pressure;
 mod registry;
+mod tool_contact;
 mod traction;
 
 pub use crate::backend::cpu::{Cpu, NodeColumns};
@@ -79,6 +81,7 @@ pub fn standard() -> Vec<System> {
         pressure::system(),
         traction::system(),
         grab::system(),
+        tool_contact::system(),
         integrate::system(),
         element_removal::system(),
         observe::system(),

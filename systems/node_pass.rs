@@ -3,7 +3,7 @@
 
 use super::node_system::{Before, BoundSystems, NodeRows, OfRun};
 use super::registry::HostSystem;
-use crate::backend::cpu::{Cpu, NodeColumns, ROWS_A_TASK};
+use crate::backend::cpu::{Cpu, NodeColumns, ROWS_A_TASK, Touches};
 use crate::backend::step::step_number;
 use crate::components::*;
 use crate::error::Error;
@@ -31,6 +31,8 @@ pub(super) struct BodyColumns {
     first_non_finite: &'static mut FirstNonFinite,
     internal_work: Option<&'static mut InternalWork>,
     previous_prescribed: Option<&'static mut PreviousPrescribedIncrement>,
+    contacts: Option<&'static ToolContacts>,
+    touch: Option<&'static mut ToolTouch>,
 }
 
 impl BodyColumnsItem<'_, '_> {
@@ -58,6 +60,11 @@ impl BodyColumnsItem<'_, '_> {
             work: self.work.as_mut().map(|w| w.slice_mut()),
             internal_work: self.internal_work.as_mut().map_or(&mut [], |work| work.as_mut_slice()),
             previous_prescribed: self.previous_prescribed.as_mut().map_or(&mut [], |step| step.as_mut_slice()),
+            touches: self.contacts.zip(self.touch.as_mut()).map(|(contacts, touch)| Touches {
+                rows: &contacts.rows,
+                values: touch.slice_mut(),
+                numbers: contacts.numbers(),
+            }),
         }
     }
 

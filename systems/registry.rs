@@ -29,6 +29,8 @@ pub enum Phase {
     Gather,
     /// Adds to the external forces.
     Loads,
+    /// Adds forces that depend on where the others would move nodes.
+    Contact,
     /// Moves the nodes; after it the clock shows the end of the step.
     Integrate,
     /// Takes elements away.

@@ -4,6 +4,7 @@
 mod body;
 mod columns;
 mod constraints;
+mod contacts;
 mod fibres;
 mod loads;
 mod locality;
@@ -23,6 +24,7 @@ mod user_laws;
 
 pub use body::BodyParts;
 pub use columns::insert_laws;
+pub use contacts::motion;
 pub use meshes::{PlacedMesh, mesh_of};
 pub use observation::steps_of;
 pub use patches::insert_forces;
@@ -94,6 +96,7 @@ pub fn assemble<'a>(
     // what is wrong with these does not keep other mistakes from being found
     constraints::spawn(&assembly, world, diagnostics);
     loads::spawn(&assembly, world, diagnostics);
+    contacts::spawn(&assembly, world, diagnostics);
     own_systems::spawn(&assembly, &systems, world, diagnostics);
     Some(assembly)
 }
@@ -105,6 +108,7 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     insert_laws(assembly.precision, world);
     columns::start(assembly, world);
     start::deform(assembly, world, diagnostics);
+    contacts::check(assembly, world, diagnostics);
     let scene = &assembly.scene.scene;
     if scene.when_unstable() == schema::WhenUnstable::Remove && !scene.is_static() {
         let blocks = assembly.bodies.values().flat_map(|body| &body.blocks);

@@ -11,9 +11,17 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
     let time_step = world.resource::<Clock>().time_step;
     let scene = &assembly.scene.scene;
     for (name, probe) in &scene.probes {
+        let every = probe.every.unwrap_or_else(|| scene.fields_every());
+        let every = Cadence::new(every, time_step);
+        let (what, peak) = (probe.what.clone(), probe.peak);
+        let Some(on) = &probe.on else {
+            // of a tool, whatever it touches
+            world.spawn((Label(name.clone()), Probe { what, nodes: Vec::new(), elements: Vec::new(), every, peak }));
+            continue;
+        };
         let Some(body) = assembly.body(&probe.body) else { continue };
         let path = format!("probes.\"{name}\".on");
-        let Some(picked) = assembly.pick(body, &probe.on, &path, diagnostics) else { continue };
+        let Some(picked) = assembly.pick(body, on, &path, diagnostics) else { continue };
         let of_elements = matches!(probe.what, Quantity::Stress | Quantity::VolumeRatio);
         let marks = if of_elements { picked.elements(&body.placed) } else { picked.nodes(&body.placed) };
         let marks = match marks {
@@ -30,13 +38,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         } else {
             nodes = body.rows_of(&marks);
         }
-        let every = probe.every.unwrap_or_else(|| scene.fields_every());
-        let every = Cadence::new(every, time_step);
-        world.spawn((
-            Label(name.clone()),
-            Probe { what: probe.what, nodes, elements, every, peak: probe.peak },
-            OfBody(body.entity),
-        ));
+        world.spawn((Label(name.clone()), Probe { what, nodes, elements, every, peak }, OfBody(body.entity)));
     }
 }
 

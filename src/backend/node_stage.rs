@@ -63,7 +63,7 @@ enum Forces {
     Sums,
     /// It uses them up, by moving the nodes.
     UsesUp,
-    /// A part of what moves the nodes in several kernels: its text asks for forces.
+    /// Its text asks for forces: a part of what moves the nodes in several kernels, or what foresees where they go.
     AsksFor,
 }
 
@@ -208,6 +208,11 @@ impl NodeStage {
     /// it.
     pub fn that_moves_nodes(self, several: bool) -> Self {
         Self { forces: if several { Forces::AsksFor } else { Forces::UsesUp }, ..self }
+    }
+
+    /// Says that it asks for forces that others have summed, and adds to them.
+    pub(crate) fn that_asks_for_forces(self) -> Self {
+        Self { forces: Forces::AsksFor, ..self }
     }
 
     /// Says whether the body has loads: whether there is a column of external forces.

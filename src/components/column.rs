@@ -231,7 +231,7 @@ pub fn place_in_buffer<C: Column>(entity: Entity, world: &World) -> usize {
 
 /// Every kind of column there is, as the modules declare them.
 pub fn all_columns() -> Vec<ColumnAccess> {
-    [super::nodes::accesses(), super::block::accesses()].concat()
+    [super::nodes::accesses(), super::block::accesses(), super::tool::accesses()].concat()
 }
 
 /// Declares components that are columns, each with its name, its [`Role`], what its [`Rows`] belong to and, where they

@@ -63,6 +63,21 @@ impl Curve {
         corners.map(|at| at - std::mem::replace(&mut before, at)).reduce(f64::min)
     }
 
+    /// How fast the factor changes at most (1/s); jumps count as 0, and inputs by their rate.
+    pub fn fastest(&self) -> f64 {
+        match self {
+            Curve::Step { .. } => 0.0,
+            Curve::Ramp { start, end } => 1.0 / (end - start),
+            // in the middle
+            Curve::Smooth { start, end } => 1.875 / (end - start),
+            Curve::Table(points) => {
+                let slope = |pair: &[(f64, f64)]| ((pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0)).abs();
+                points.windows(2).map(slope).fold(0.0, f64::max)
+            }
+            Curve::Input { rate, .. } => rate.unwrap_or(0.0),
+        }
+    }
+
     /// The first time after one (s) at which the curve begins to move, or to move more than twice as fast as ever
     /// before.
     pub fn quickens_after(&self, time: f64) -> Option<f64> {

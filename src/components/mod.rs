@@ -23,6 +23,8 @@ pub mod nodes;
 mod observation;
 mod own_load;
 mod patches;
+mod signal;
+mod tool;
 mod touched;
 
 pub use block::{
@@ -30,7 +32,7 @@ pub use block::{
     FirstInverted, NodalVolumeChange, OnInversion, RemovalStep, RemovalTime, RemovedEnergy, RemovedWork, RestShape,
     ViscousMemory, patch_groups, patch_length,
 };
-pub use clock::{Clock, Relaxation, Signal, Signals};
+pub use clock::{Clock, Relaxation};
 pub use column::{Column, ColumnAccess, Precision, Reals, Role, all_columns, columns_in, place_in_buffer};
 pub use column_layout::{Increments, Rows};
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
@@ -47,6 +49,8 @@ pub use nodes::{
 pub use observation::{Cadence, Energies, Observed, Probe};
 pub use own_load::{LoadText, NodeAtRest, OfSystem, OwnLoad};
 pub use patches::{Patches, Scheme};
+pub use signal::{Signal, Signals};
+pub use tool::{Pose, TOUCH_NUMBERS, ToolContact, ToolContacts, ToolMotion, ToolTouch};
 pub use touched::Touched;
 
 use bevy_ecs::prelude::*;

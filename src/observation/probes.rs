@@ -9,7 +9,7 @@ use bevy_ecs::prelude::*;
 use glam::DVec3;
 
 /// The columns of a probe's table.
-pub fn header(what: Quantity) -> Vec<&'static str> {
+pub fn header(what: &Quantity) -> Vec<&'static str> {
     let columns: &[&str] = match what {
         Quantity::Displacement => &["ux (m)", "uy (m)", "uz (m)"],
         Quantity::Position => &["x (m)", "y (m)", "z (m)"],
@@ -20,6 +20,9 @@ pub fn header(what: Quantity) -> Vec<&'static str> {
         Quantity::Torque { .. } => &["torque (N m)"],
         Quantity::Stress => &["xx (Pa)", "yy (Pa)", "zz (Pa)", "xy (Pa)", "yz (Pa)", "xz (Pa)"],
         Quantity::VolumeRatio => &["J"],
+        Quantity::ToolForce { .. } => &["Fx (N)", "Fy (N)", "Fz (N)"],
+        Quantity::ToolTorque { .. } => &["Tx (N m)", "Ty (N m)", "Tz (N m)"],
+        Quantity::ToolPlace { .. } => &["x (m)", "y (m)", "z (m)"],
     };
     std::iter::once("time (s)").chain(columns.iter().copied()).collect()
 }
@@ -31,10 +34,20 @@ pub fn header(what: Quantity) -> Vec<&'static str> {
 /// # Errors
 /// What the GPU says.
 pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error> {
-    let (Some(body), Some(probe)) = (world.get::<OfBody>(probe).map(|of| of.0), world.get::<Probe>(probe).cloned())
-    else {
+    let (body, Some(probe)) = (world.get::<OfBody>(probe).map(|of| of.0), world.get::<Probe>(probe).cloned()) else {
         return Ok(Vec::new());
     };
+    if let Some(tool) = probe.what.tool() {
+        let felt = super::tools::felt(world, tool)?;
+        return Ok(match probe.what {
+            Quantity::ToolForce { .. } => felt.force,
+            Quantity::ToolTorque { .. } => felt.torque,
+            _ => felt.place,
+        }
+        .to_array()
+        .to_vec());
+    }
+    let Some(body) = body else { return Ok(Vec::new()) };
     let columns: &[&str] = match probe.what {
         Quantity::Displacement | Quantity::Position => &[Displacement::NAME],
         Quantity::Velocity => &[DisplacementIncrement::NAME],
@@ -42,7 +55,7 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
         Quantity::Moment { .. } | Quantity::Torque { .. } => {
             &[InternalForce::NAME, ExternalForce::NAME, Displacement::NAME, DisplacementIncrement::NAME]
         }
-        Quantity::Stress | Quantity::VolumeRatio => &[Displacement::NAME, RestShape::NAME, ViscousMemory::NAME],
+        _ => &[Displacement::NAME, RestShape::NAME, ViscousMemory::NAME],
     };
     let of_body = |world: &World, entity: Entity| world.get::<OfBody>(entity).is_some_and(|of| of.0 == body);
     let entities: Vec<Entity> =
@@ -76,7 +89,7 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
         Quantity::Moment { center } => moment(center).to_array().to_vec(),
         Quantity::Torque { center, axis } => vec![moment(center).dot(axis.normalize())],
         Quantity::Stress => element_mean(world, body, &probe, |view, row, state| view.cauchy(row, state).to_vec()),
-        Quantity::VolumeRatio => element_mean(world, body, &probe, |_, _, state| vec![state.volume_ratio()]),
+        _ => element_mean(world, body, &probe, |_, _, state| vec![state.volume_ratio()]),
     })
 }
 
@@ -102,7 +115,7 @@ fn element_mean(
     probe: &Probe,
     of: impl Fn(&BlockView<'_>, usize, &ElementState) -> Vec<f64>,
 ) -> Vec<f64> {
-    let length = header(probe.what).len() - 1;
+    let length = header(&probe.what).len() - 1;
     let (mut sum, mut volume) = (vec![0.0; length], 0.0);
     let Some(authoring) = world.get::<Authoring>(body) else { return sum };
     let mut views: Vec<Option<BlockView<'_>>> = authoring.blocks.iter().map(|_| None).collect();

@@ -9,15 +9,15 @@ pub const SET_BYTES: usize = 64 << 10;
 pub const SETS: usize = 1000;
 /// Numbers, texts, words and brackets of a scene, counted one by one.
 pub const VALUES: usize = 2_000_000;
-/// Bodies; materials; regions of a body.
+/// Bodies; materials; regions of a body; tools.
 pub const BODIES: usize = 1000;
-/// Constraints; loads; removals; probes.
+/// Constraints; loads; contacts; removals; probes.
 pub const ACTIONS: usize = 10_000;
 /// Systems of a scene's own.
 pub const SYSTEMS: usize = 100;
-/// Points of a table; a longer signal is thinned out before.
+/// Points of a table, places of a tool's path; a longer signal is thinned out before.
 pub const TABLE_POINTS: usize = 100_000;
-/// Terms of each of a material's series (viscosity, families of fibres).
+/// Terms of each of a material's series (viscosity, families of fibres); moves of a tool.
 pub const TERMS: usize = 100;
 /// Bytes of a name in UTF-8, of a body, material, set or probe: files are named after some, and no file name may have
 /// more than 255.

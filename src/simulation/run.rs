@@ -185,8 +185,8 @@ impl Simulation {
         let clock = *self.world.resource::<Clock>();
         let mut signals = self.world.resource_mut::<Signals>();
         match &clock.relaxation {
-            Some(relaxation) => signals.approach(relaxation.end, relaxation.share(step + 1)),
-            None => signals.evaluate(clock.window_at(step), clock.time_at(step + 1)),
+            Some(relaxation) => signals.approach(relaxation.end, [step, step + 1].map(|step| relaxation.share(step))),
+            None => signals.evaluate(clock.window_at(step), [step, step + 1].map(|step| clock.time_at(step))),
         }
     }
 

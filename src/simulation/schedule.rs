@@ -77,12 +77,13 @@ pub fn resolve<'a>(
     schedule
 }
 
-const PHASES: [Phase; 8] = [
+const PHASES: [Phase; 9] = [
     Phase::Boundary,
     Phase::NodalMeans,
     Phase::ElementForces,
     Phase::Gather,
     Phase::Loads,
+    Phase::Contact,
     Phase::Integrate,
     Phase::Removal,
     Phase::Observe,
@@ -95,6 +96,7 @@ fn phase_word(phase: Phase) -> &'static str {
         Phase::ElementForces => "fills in element forces",
         Phase::Gather => "sums forces at the nodes",
         Phase::Loads => "adds external forces",
+        Phase::Contact => "keeps what touches apart",
         Phase::Integrate => "moves the nodes",
         Phase::Removal => "takes elements away",
         Phase::Observe => "only reads",

@@ -4,7 +4,7 @@ mod columns;
 mod factors;
 mod one_by_one;
 
-pub use columns::NodeColumns;
+pub use columns::{NodeColumns, Touches};
 pub use factors::Factors;
 
 use super::Cpu;

@@ -10,9 +10,11 @@ mod picture;
 mod scene;
 mod selection;
 mod system;
+mod tool;
 
 pub use crate::materials::Elasticity;
 pub use crate::mesh::ElementKind;
+pub use crate::tools::Shape;
 pub use accuracy::{Accuracy, AccuracyReference};
 pub use action::{Axis, Constraint, Curve, Removal, When};
 pub use body::{Body, MeshSource, Region, Start};
@@ -26,13 +28,14 @@ pub use picture::{Colours, Cut, Field, Opacity, Picture};
 pub use scene::{Analysis, EnergyGuard, Guard, Guards, InitialState, Integration, Scene, StepBound, WhenUnstable};
 pub use selection::{Probe, Quantity, Select};
 pub use system::OwnSystem;
+pub use tool::{Contact, Tool, ToolMove, ToolPlace};
 
 /// The texts of these files and those of laws: what a field means is told in the words it is documented with.
 pub fn texts() -> impl Iterator<Item = &'static str> {
-    TEXT.iter().chain(crate::materials::TEXTS).copied()
+    TEXT.iter().chain(crate::materials::TEXTS).chain(crate::tools::TEXTS).copied()
 }
 
-const TEXT: [&str; 10] = [
+const TEXT: [&str; 11] = [
     include_str!("scene.rs"),
     include_str!("body.rs"),
     include_str!("material.rs"),
@@ -40,6 +43,7 @@ const TEXT: [&str; 10] = [
     include_str!("load.rs"),
     include_str!("selection.rs"),
     include_str!("system.rs"),
+    include_str!("tool.rs"),
     include_str!("output.rs"),
     include_str!("picture.rs"),
     include_str!("accuracy.rs"),

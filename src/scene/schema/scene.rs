@@ -1,6 +1,8 @@
 //! The whole scene, its time step, its guards.
 
-use super::{Accuracy, Body, Constraint, Curve, Load, Material, Output, OwnSystem, Picture, Probe, Removal};
+use super::{
+    Accuracy, Body, Constraint, Contact, Curve, Load, Material, Output, OwnSystem, Picture, Probe, Removal, Tool,
+};
 use crate::scene::syntax::Path;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -30,6 +32,12 @@ pub struct Scene {
     /// What pushes and pulls.
     #[serde(default)]
     pub loads: Vec<Load>,
+    /// Rigid tools, by name.
+    #[serde(default)]
+    pub tools: BTreeMap<String, Tool>,
+    /// What touches what.
+    #[serde(default)]
+    pub contacts: Vec<Contact>,
     /// Loads of your own in WGSL, by the name of their function.
     #[serde(default)]
     pub systems: BTreeMap<String, OwnSystem>,
@@ -269,7 +277,12 @@ impl Scene {
         let constraints = constraints.filter_map(|(i, moved)| Some((to("constraints").index(i), moved.curve()?)));
         let loads = self.loads.iter().enumerate().map(|(i, load)| (to("loads").index(i), load.curve()));
         let systems = self.systems.iter().map(|(name, system)| (to("systems").name(name), &system.curve));
-        constraints.chain(loads).chain(systems).map(|(path, curve)| (path.name("curve"), curve)).collect()
+        let moves = self.tools.iter().flat_map(|(name, tool)| {
+            let path = move |number| to("tools").name(name).name("moves").index(number);
+            tool.moves.iter().enumerate().map(move |(number, part)| (path(number), &part.curve))
+        });
+        let all = constraints.chain(loads).chain(systems).chain(moves);
+        all.map(|(path, curve)| (path.name("curve"), curve)).collect()
     }
 
     /// Whether equilibrium is sought instead of motion.

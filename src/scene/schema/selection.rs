@@ -1,6 +1,6 @@
 //! Selections by place, name or number, and probes on them.
 
-use super::{Constraint, Scene};
+use super::{Constraint, Contact, Scene};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -83,8 +83,9 @@ pub struct Probe {
     pub body: Option<String>,
     /// What to observe.
     pub what: Quantity,
-    /// On which nodes or elements.
-    pub on: Select,
+    /// On which nodes or elements; left out of what tools feel.
+    #[serde(default)]
+    pub on: Option<Select>,
     /// Time between observations (s).
     #[serde(default)]
     pub every: Option<f64>,
@@ -94,7 +95,7 @@ pub struct Probe {
 }
 
 /// What a probe observes.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub enum Quantity {
     /// Mean displacement of the nodes (m).
@@ -127,12 +128,35 @@ pub enum Quantity {
     Stress,
     /// Volume mean of the volume ratio J of the elements.
     VolumeRatio,
+    /// The force that a tool feels: minus that on the nodes that it touches (N).
+    ToolForce {
+        /// The tool.
+        tool: String,
+    },
+    /// The moment of these forces about the tool's origin (N m).
+    ToolTorque {
+        /// The tool.
+        tool: String,
+    },
+    /// Where the tool's origin is (m).
+    ToolPlace {
+        /// The tool.
+        tool: String,
+    },
 }
 
 impl Quantity {
     /// Whether it is made of the forces that hold nodes.
-    pub fn is_of_reactions(self) -> bool {
+    pub fn is_of_reactions(&self) -> bool {
         matches!(self, Self::Reaction | Self::Force { .. } | Self::Moment { .. } | Self::Torque { .. })
+    }
+
+    /// The tool that it is of, if it is of one.
+    pub fn tool(&self) -> Option<&String> {
+        match self {
+            Self::ToolForce { tool } | Self::ToolTorque { tool } | Self::ToolPlace { tool } => Some(tool),
+            _ => None,
+        }
     }
 }
 
@@ -158,8 +182,9 @@ impl Scene {
         let loads = self.loads.iter().filter_map(|load| load.parts().on);
         let removal = self.removal.iter().map(|removal| &removal.on);
         let systems = self.systems.values().map(|system| &system.on);
-        let probes = self.probes.values().map(|probe| &probe.on);
-        regions.chain(constraints).chain(loads).chain(systems).chain(removal).chain(probes)
+        let probes = self.probes.values().filter_map(|probe| probe.on.as_ref());
+        let contacts = self.contacts.iter().map(|Contact::Tool { on, .. }| on);
+        regions.chain(constraints).chain(loads).chain(systems).chain(contacts).chain(removal).chain(probes)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::{Validator, scene, select, show};
 use crate::scene::schema::{Axis, Constraint, Load, Quantity, Scene, When};
+use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use glam::DVec3;
 
@@ -42,12 +43,29 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
         criterion(validator, &path.name("when"), removal.when);
     }
     for (name, probe) in &scene_.probes {
-        select::validate(validator, &scene("probes").name(name).name("on"), &probe.on);
-        let what = scene("probes").name(name).name("what");
-        match probe.what {
-            Quantity::Force { direction } => validator.has_direction(&what.name("direction"), direction),
-            Quantity::Torque { axis, .. } => validator.has_direction(&what.name("axis"), axis),
+        let path = scene("probes").name(name);
+        let what = path.name("what");
+        match &probe.what {
+            Quantity::Force { direction } => validator.has_direction(&what.name("direction"), *direction),
+            Quantity::Torque { axis, .. } => validator.has_direction(&what.name("axis"), *axis),
             _ => {}
+        }
+        match (probe.what.tool(), &probe.on) {
+            (None, Some(on)) => select::validate(validator, &path.name("on"), on),
+            (None, None) => {
+                let message = format!("the probe `{name}` lacks `on`: which nodes or elements it is of");
+                validator.out.error_at(&path, message).note("on: All, Set(...), Plane(...), ...");
+            }
+            (Some(tool), on) => {
+                if !scene_.tools.contains_key(tool) {
+                    let tools = scene_.tools.keys().map(String::as_str);
+                    let message = format!("there is no tool `{tool}`");
+                    validator.out.error_at(what.name("tool"), message).notes(choice(tool, tools));
+                }
+                if on.is_some() {
+                    validator.out.error_at(path.name("on"), "what a tool feels is of the whole tool").note("leave `on` out");
+                }
+            }
         }
     }
 }

@@ -16,6 +16,8 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) -> bool {
     limits.at_most(ACTIONS, found.constraints.len(), "constraints", || scene("constraints"));
     limits.at_most(ACTIONS, found.loads.len(), "loads", || scene("loads"));
     limits.at_most(SYSTEMS, found.systems.len(), "systems", || scene("systems"));
+    limits.at_most(BODIES, found.tools.len(), "tools", || scene("tools"));
+    limits.at_most(ACTIONS, found.contacts.len(), "contacts", || scene("contacts"));
     limits.at_most(ACTIONS, found.removal.len(), "removals", || scene("removal"));
     limits.at_most(ACTIONS, found.probes.len(), "probes", || scene("probes"));
     if !limits.kept {
@@ -32,6 +34,10 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) -> bool {
             limits.at_most(TERMS, terms.map_or(0, Vec::len), "terms", || path().name("prony").name(field));
         }
     }
+    for (name, tool) in &found.tools {
+        limits.at_most(TABLE_POINTS, tool.path.len(), "places of a path", || scene("tools").name(name).name("path"));
+        limits.at_most(TERMS, tool.moves.len(), "moves", || scene("tools").name(name).name("moves"));
+    }
     for (path, curve) in found.curves() {
         match curve {
             Curve::Table(points) => limits.at_most(TABLE_POINTS, points.len(), "points in a table", || path.clone()),
@@ -45,7 +51,8 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) -> bool {
     let materials = found.materials.keys().map(|name| ("materials", name));
     let systems = found.systems.keys().map(|name| ("systems", name));
     let probes = found.probes.keys().map(|name| ("probes", name));
-    for (what, name) in bodies.chain(materials).chain(systems).chain(probes) {
+    let tools = found.tools.keys().map(|name| ("tools", name));
+    for (what, name) in bodies.chain(materials).chain(systems).chain(probes).chain(tools) {
         limits.at_most(NAME_BYTES, name.len(), "bytes in a name", || scene(what).name(name));
     }
     limits.kept

@@ -76,12 +76,12 @@ fn bodies(scene_: &Scene, validator: &mut Validator) {
     for (i, removal) in scene_.removal.iter().enumerate() {
         body_named(scene_, validator, &scene("removal").index(i), removal.body.as_ref());
     }
-    for (name, probe) in &scene_.probes {
+    for (name, probe) in scene_.probes.iter().filter(|(_, probe)| probe.what.tool().is_none() || probe.body.is_some()) {
         body_named(scene_, validator, &scene("probes").name(name), probe.body.as_ref());
     }
 }
 
-fn body_named(scene_: &Scene, validator: &mut Validator, owner: &Path, body: Option<&String>) {
+pub(super) fn body_named(scene_: &Scene, validator: &mut Validator, owner: &Path, body: Option<&String>) {
     let path = owner.name("body");
     let bodies: Vec<&str> = scene_.bodies.keys().map(String::as_str).collect();
     match body {

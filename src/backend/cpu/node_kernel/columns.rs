@@ -40,6 +40,31 @@ pub struct NodeColumns<'a, T> {
     pub internal_work: &'a mut [f32],
     /// The last steps (m) along prescribed axes; none where nothing is prescribed or the whole work is accumulated.
     pub previous_prescribed: &'a mut [f32],
+    /// What tools do to those that they may touch; none where there are no tools.
+    pub touches: Option<Touches<'a, T>>,
+}
+
+/// What tools do to some nodes.
+pub struct Touches<'a, T> {
+    /// The nodes' rows in the body, ascending.
+    pub rows: &'a [u32],
+    /// See [`ToolTouch`](crate::components::ToolTouch): `numbers` for each of them.
+    pub values: &'a mut [T],
+    /// How many.
+    pub numbers: usize,
+}
+
+impl<'a, T> Touches<'a, T> {
+    /// Those of rows before one.
+    fn take(&mut self, until: usize) -> Self {
+        let count = self.rows.partition_point(|&row| (row as usize) < until);
+        let numbers = self.numbers;
+        Touches { rows: first(&mut self.rows, count), values: first_mut(&mut self.values, numbers * count), numbers }
+    }
+
+    fn again(&mut self) -> Touches<'_, T> {
+        Touches { rows: self.rows, values: &mut *self.values, numbers: self.numbers }
+    }
 }
 
 impl<T: SimdScalar> NodeColumns<'_, T> {
@@ -67,6 +92,7 @@ impl<T: SimdScalar> NodeColumns<'_, T> {
                 work: self.work.as_deref_mut(),
                 internal_work: &mut *self.internal_work,
                 previous_prescribed: &mut *self.previous_prescribed,
+                touches: self.touches.as_mut().map(Touches::again),
             })
         })
     }
@@ -102,6 +128,7 @@ impl<'a, T> NodeColumns<'a, T> {
     /// Takes the first so many of them away.
     pub fn take(&mut self, rows: usize) -> Self {
         let places = 2 * self.places_until(rows);
+        let until = self.first + rows;
         let taken = NodeColumns {
             first: self.first,
             rest: first(&mut self.rest, rows),
@@ -119,6 +146,7 @@ impl<'a, T> NodeColumns<'a, T> {
             work: self.work.as_mut().map(|all| first_mut(all, WORK_NUMBERS * rows)),
             internal_work: first_mut(&mut self.internal_work, places),
             previous_prescribed: first_mut(&mut self.previous_prescribed, 3 * rows),
+            touches: self.touches.as_mut().map(|all| all.take(until)),
         };
         self.first += rows;
         taken
@@ -192,6 +220,7 @@ mod tests {
                 work: None,
                 internal_work: &mut work,
                 previous_prescribed: &mut [],
+                touches: None,
             };
             let mut places = 0;
             for cut in cuts {

@@ -8,17 +8,17 @@ use crate::math::Scalar;
 pub struct Factors<T> {
     /// Δt times the time between the middles of the last and of this step (see [`Clock::between_middles`]), times the
     /// gain of a static analysis (s²).
-    pub(super) force: T,
+    pub force: T,
     /// Half the time between the middles, in the first step Δt/2 (s).
-    pub(super) half_step: T,
+    pub half_step: T,
     /// 1, in the first step 0.
-    pub(super) divide: T,
+    pub divide: T,
     /// 1/Δt (1/s).
-    pub(super) rate: T,
+    pub rate: T,
     /// Share of a step's work that is booked, the time between the middles over Δt: 1, in the first step ½.
-    pub(super) booked: T,
+    pub booked: T,
     /// a of a static analysis, else 0.
-    pub(super) relaxation: T,
+    pub relaxation: T,
 }
 
 impl<T: Scalar> Factors<T> {

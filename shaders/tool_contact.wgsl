@@ -1,0 +1,176 @@
+// Rigid tools keep nodes outside; twin of systems/tool_contact.rs. TOOLS and damping_of are generated; tool_distance is in
+// tool_shape.wgsl.
+struct ToolRow {
+    kind: u32,
+    size_0: f32,
+    size_1: f32,
+    size_2: f32,
+    size_3: f32,
+    size_4: f32,
+    size_5: f32,
+    rounding: f32,
+    signal: u32, // first of six slots: where it is, and how that differs from where it was
+    sticking: f32, // coefficients of friction
+    sliding: f32,
+    unused: u32,
+}
+struct Limits {
+    edge: f32, // who is farther off cannot be there within a step (m)
+    settling: f32, // how fast nodes inside a tool come out (m/s); in a static analysis a tenth of an edge a step
+    books: u32, // whether work is counted
+}
+@group(0) @binding(0) var<uniform> tools: array<ToolRow, TOOLS>;
+@group(0) @binding(1) var<uniform> limits: Limits;
+@group(0) @binding(2) var<storage, read> touchable: array<vec4<f32>>; // place at rest (m), and a bit for each tool
+@group(0) @binding(3) var<storage, read> mass: array<f32>;
+@group(0) @binding(4) var<storage, read> constrained_axes: array<u32>;
+@group(0) @binding(5) var<storage, read> displacement: array<f32>;
+@group(0) @binding(6) var<storage, read> displacement_increment: array<f32>;
+@group(0) @binding(7) var<storage, read_write> tool_touch: array<f32>;
+
+const TOUCH_NUMBERS: u32 = 7u;
+const STICKS: f32 = 1.0;
+const SLIDES: f32 = 2.0;
+const TURNS: u32 = 12u;
+
+struct Touch {
+    normal: vec3<f32>,
+    gap: f32, // without contact (m)
+    tool_step: vec3<f32>, // (m)
+    friction: f32,
+    drag: vec3<f32>, // what the tool adds along the surface (m)
+    push: f32, // and along the normal
+    touches: bool,
+}
+
+// A point of the scene in the frame of a pose whose rows and places are in three slots.
+fn into_frame(rows: array<vec4<f32>, 3>, x: vec3<f32>) -> vec3<f32> {
+    let y = x - vec3<f32>(rows[0].w, rows[1].w, rows[2].w);
+    return y.x * rows[0].xyz + y.y * rows[1].xyz + y.z * rows[2].xyz;
+}
+
+fn distance_to(tool: u32, y: vec3<f32>) -> vec4<f32> {
+    let row = tools[tool];
+    return tool_distance(
+        ToolShape(row.kind, row.size_0, row.size_1, row.size_2, row.size_3, row.size_4, row.size_5, row.rounding), y);
+}
+
+fn predict(tool: u32, place: vec3<f32>, predicted: vec3<f32>, sticks: bool) -> Touch {
+    let at = tools[tool].signal;
+    let pose = array<vec4<f32>, 3>(step.signals[at], step.signals[at + 1u], step.signals[at + 2u]);
+    let change = array<vec4<f32>, 3>(step.signals[at + 3u], step.signals[at + 4u], step.signals[at + 5u]);
+    let of_tool = into_frame(pose, place + predicted);
+    let found = distance_to(tool, of_tool);
+    var gap = found.w;
+    if gap < 0.0 {
+        let earlier = array<vec4<f32>, 3>(pose[0] - change[0], pose[1] - change[1], pose[2] - change[2]);
+        var out = limits.settling * step.time_step;
+        if limits.books == 0u {
+            out = 0.1 * limits.edge;
+        }
+        gap -= min(distance_to(tool, into_frame(earlier, place)).w + out, 0.0);
+    }
+    let at_tool = vec4<f32>(of_tool, 1.0);
+    var touch: Touch;
+    touch.normal = vec3<f32>(dot(pose[0].xyz, found.xyz), dot(pose[1].xyz, found.xyz), dot(pose[2].xyz, found.xyz));
+    touch.gap = gap;
+    touch.tool_step = vec3<f32>(dot(change[0], at_tool), dot(change[1], at_tool), dot(change[2], at_tool));
+    touch.friction = select(tools[tool].sliding, tools[tool].sticking, sticks);
+    touch.drag = vec3<f32>(0.0);
+    touch.push = 0.0;
+    touch.touches = found.w <= limits.edge;
+    return touch;
+}
+
+fn along_surface(v: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
+    return v - normal * dot(v, normal);
+}
+
+fn tool_contact(i: u32, node: u32) {
+    let first = TOUCH_NUMBERS * TOOLS * i;
+    let inertia = mass[node];
+    let at = 3u * node;
+    let bits = bitcast<u32>(touchable[i].w);
+    let u = vec3<f32>(displacement[at], displacement[at + 1u], displacement[at + 2u]);
+    let before = vec3<f32>(displacement_increment[at], displacement_increment[at + 1u], displacement_increment[at + 2u]);
+    let place = touchable[i].xyz + u;
+    let held = (vec3<u32>(constrained_axes[node]) & vec3<u32>(1u, 2u, 4u)) != vec3<u32>(0u);
+    let free = select(vec3<f32>(1.0), vec3<f32>(0.0), held);
+    var predicted = vec3<f32>(0.0);
+    var to_force = 0.0;
+    if inertia > 0.0 {
+        let force = external_force_of(node) - internal_force_of(node);
+        let a = damping_of(node, inertia);
+        let damped = 1.0 + step.divide * a;
+        let change = (step.force_factor / inertia) * force - ((1.0 + step.divide) * a) * before;
+        predicted = before + free * change / damped;
+        to_force = inertia * damped / step.force_factor;
+    }
+    var all: array<Touch, TOOLS>;
+    var touched = 0u;
+    for (var tool = 0u; tool < TOOLS; tool++) {
+        let at_tool = first + TOUCH_NUMBERS * tool;
+        let stuck = tool_touch[at_tool + 3u] == STICKS;
+        for (var k = 0u; k < 4u; k++) {
+            tool_touch[at_tool + k] = 0.0;
+        }
+        all[tool].touches = false;
+        if inertia > 0.0 && ((bits >> tool) & 1u) == 1u {
+            all[tool] = predict(tool, place, predicted, stuck);
+            if all[tool].touches {
+                touched++;
+            }
+        }
+    }
+    if touched == 0u {
+        return;
+    }
+    var sum = vec3<f32>(0.0);
+    let turns = select(TURNS, 1u, touched == 1u && all(free == vec3<f32>(1.0)));
+    for (var turn = 0u; turn < turns; turn++) {
+        for (var tool = 0u; tool < TOOLS; tool++) {
+            if !all[tool].touches {
+                continue;
+            }
+            let normal = all[tool].normal;
+            let along = dot(normal, free * normal);
+            if along > 1e-9 {
+                let push = max(all[tool].push - (all[tool].gap + dot(normal, sum)) / along, 0.0);
+                sum += free * normal * (push - all[tool].push);
+                all[tool].push = push;
+            }
+            if all[tool].friction > 0.0 {
+                let slip = along_surface(predicted + sum - all[tool].tool_step, normal);
+                let wanted = all[tool].drag - slip;
+                let most = all[tool].friction * all[tool].push;
+                let size = length(wanted);
+                let drag = select(wanted, wanted * (most / max(size, 1e-38)), size > most);
+                sum += free * (drag - all[tool].drag);
+                all[tool].drag = drag;
+            }
+        }
+    }
+    let d = predicted + sum;
+    var load = vec3<f32>(0.0);
+    for (var tool = 0u; tool < TOOLS; tool++) {
+        if !all[tool].touches || all[tool].push <= 0.0 {
+            continue;
+        }
+        let force = to_force * (all[tool].normal * all[tool].push + all[tool].drag);
+        load += force;
+        let at_tool = first + TOUCH_NUMBERS * tool;
+        tool_touch[at_tool] = force.x;
+        tool_touch[at_tool + 1u] = force.y;
+        tool_touch[at_tool + 2u] = force.z;
+        let sticks = length(all[tool].drag) < all[tool].friction * all[tool].push;
+        tool_touch[at_tool + 3u] = select(SLIDES, STICKS, sticks);
+        if limits.books != 0u {
+            let work = step.booked * dot(force, all[tool].tool_step);
+            let on_node = step.booked * dot(force * free, 0.5 * (before + d));
+            tool_touch[at_tool + 4u] += length(along_surface(d - all[tool].tool_step, all[tool].normal));
+            tool_touch[at_tool + 5u] += work;
+            tool_touch[at_tool + 6u] += work - on_node;
+        }
+    }
+    add_load(node, load);
+}

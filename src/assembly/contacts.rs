@@ -1,0 +1,216 @@
+//! Contacts with tools: selections become rows, and what stands in each other's way at the start is told.
+
+use super::columns::stiffness;
+use super::{Assembly, BodyParts};
+use crate::components::*;
+use crate::scene::diagnostic::Diagnostics;
+use crate::scene::schema::{Contact, Select, Tool, ToolPlace, WhenUnstable};
+use crate::tools::{Geometry, Solid};
+use bevy_ecs::prelude::*;
+use glam::{DQuat, DVec3};
+use std::collections::BTreeMap;
+
+/// How deep nodes may be inside a tool at the start, in edges: those come out by and by.
+const DEEPEST: f64 = 0.5;
+
+/// How far a tool may go in a step, in edges: beyond, it may be through a surface before anybody sees it.
+const FARTHEST: f64 = 0.5;
+
+/// Nodes that a complaint names.
+const NAMED: usize = 10;
+
+/// Spawns what tools may touch on each body.
+pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
+    let scene = &assembly.scene.scene;
+    for (name, body) in &assembly.bodies {
+        let mut marks: BTreeMap<u32, u32> = BTreeMap::new();
+        let mut tools = Vec::new();
+        let reference = reference(&body.placed.mesh.points);
+        let edge = edge(body);
+        for (number, contact) in scene.contacts.iter().enumerate() {
+            let Contact::Tool { tool, body: of, on, friction, static_friction } = contact;
+            if of.as_ref().is_some_and(|of| of != name) {
+                continue;
+            }
+            let path = format!("contacts[{number}].on");
+            let (Some(found), Some(rows)) = (scene.tools.get(tool), rows(assembly, name, body, on, &path, diagnostics))
+            else {
+                continue;
+            };
+            if found.shape.smallest_radius().is_some_and(|radius| radius < edge) {
+                let message = format!("the tool `{tool}` may slip between nodes: it is thinner than the faces that it meets");
+                let size = found.shape.smallest_radius().unwrap_or(0.0);
+                diagnostics
+                    .warn_at(format!("tools.\"{tool}\".shape").as_str(), message)
+                    .note(format!("its radius is {size:.3e} m, and faces of `{name}` have edges of {edge:.3e} m"));
+            }
+            let bit = 1 << tools.len();
+            rows.into_iter().for_each(|row| *marks.entry(row).or_default() |= bit);
+            let signal = Signal::Pose { motion: motion(found), reference };
+            let signal = world.resource_mut::<Signals>().add(signal);
+            let geometry = Geometry::Analytic(Solid { shape: found.shape.clone(), rounding: found.rounding });
+            let friction = [static_friction.unwrap_or(*friction), *friction];
+            tools.push(ToolContact { tool: tool.clone(), geometry, signal, friction });
+        }
+        if tools.is_empty() {
+            continue;
+        }
+        let settling = settling(body, edge, world);
+        let (rows, masks) = marks.into_iter().unzip();
+        let contacts = ToolContacts { tools, reference, rows, masks, edge, settling };
+        let touch = Reals::zeros(assembly.precision, contacts.numbers() * contacts.rows.len());
+        world.entity_mut(body.entity).insert((contacts, ToolTouch(touch)));
+    }
+}
+
+/// The nodes that a tool may touch: of bodies that lose elements those inside, too, which may come to the surface.
+fn rows(
+    assembly: &Assembly<'_>,
+    name: &String,
+    body: &BodyParts,
+    on: &Select,
+    path: &str,
+    diagnostics: &mut Diagnostics,
+) -> Option<Vec<u32>> {
+    let scene = &assembly.scene.scene;
+    let removed = scene.removal.iter().any(|removal| removal.body.as_ref().is_none_or(|body| body == name));
+    let whole = matches!(on, Select::Surface { normal: None, .. });
+    if whole && (removed || scene.when_unstable() == WhenUnstable::Remove) {
+        return Some((0..body.node_rows.len() as u32).collect());
+    }
+    let picked = assembly.pick(body, on, path, diagnostics)?;
+    match picked.nodes(&body.placed) {
+        Ok(marks) => Some(body.rows_of(&marks)),
+        Err(problem) => {
+            diagnostics.error_at(path, problem.message).notes(problem.notes);
+            None
+        }
+    }
+}
+
+/// The middle of the box around points (m).
+fn reference(points: &[DVec3]) -> DVec3 {
+    let (low, high) = bounds(points);
+    0.5 * (low + high)
+}
+
+fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
+    let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
+    (low, points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max))
+}
+
+/// The mean length of a surface's edges (m).
+fn edge(body: &BodyParts) -> f64 {
+    let points = &body.placed.mesh.points;
+    let (mut sum, mut count) = (0.0, 0.0);
+    for facet in body.placed.surface().iter().flat_map(|face| face.facets()) {
+        let corners = crate::mesh::CellKind::of_face(&facet).node_count();
+        for i in 0..corners {
+            let [from, to] = [i, (i + 1) % corners].map(|i| points[facet[i] as usize]);
+            sum += from.distance(to);
+            count += 1.0;
+        }
+    }
+    if count > 0.0 { sum / count } else { 0.0 }
+}
+
+/// How fast nodes inside a tool come out (m/s): half an edge in the time that a wave takes through the body.
+fn settling(body: &BodyParts, edge: f64, world: &World) -> f64 {
+    let (low, high) = bounds(&body.placed.mesh.points);
+    let of_block = |&block: &Entity| {
+        let stiffness = world.get::<Block>(block).map(|block| stiffness(world, block.material));
+        stiffness.map_or(0.0, |of| (of.lambda + 2.0 * of.shear + of.eta) / of.density)
+    };
+    let speed = body.blocks.iter().map(of_block).fold(0.0, f64::max).sqrt();
+    0.5 * edge * speed / (high - low).length()
+}
+
+/// How a tool of the scene moves.
+pub fn motion(tool: &Tool) -> ToolMotion {
+    let radians = |degrees: DVec3| degrees * std::f64::consts::PI / 180.0;
+    let place = |place: &ToolPlace| (place.t, place.at, DQuat::from_scaled_axis(radians(place.rotation)));
+    ToolMotion {
+        path: tool.places().iter().map(place).collect(),
+        moves: tool.moves.iter().map(|part| (part.displacement, radians(part.rotation))).collect(),
+        curves: tool.moves.iter().map(|part| part.curve.clone()).collect(),
+    }
+}
+
+/// Looks for nodes inside tools at the start, and for tools that are too fast for the step.
+pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Diagnostics) {
+    let clock = world.resource::<Clock>();
+    for (name, body) in &assembly.bodies {
+        let Some(contacts) = world.get::<ToolContacts>(body.entity) else { continue };
+        for (bit, contact) in contacts.tools.iter().enumerate() {
+            let Some(tool) = assembly.scene.scene.tools.get(&contact.tool) else { continue };
+            let motion = motion(tool);
+            let path = format!("tools.\"{}\"", contact.tool);
+            inside(name, body, (contacts, bit), &motion, world, &path, diagnostics);
+            if clock.relaxation.is_some() {
+                continue;
+            }
+            let reach = contact.geometry.bounding_sphere().map_or(0.0, |(center, radius)| center.length() + radius);
+            let speed = motion.fastest(reach);
+            if speed * clock.time_step > FARTHEST * contacts.edge {
+                let message = format!(
+                    "the tool `{}` goes up to {speed:.3e} m/s, {:.3e} m a step, and faces of `{name}` have edges of {:.3e} m",
+                    contact.tool,
+                    speed * clock.time_step,
+                    contacts.edge,
+                );
+                diagnostics
+                    .error_at(path.as_str(), message)
+                    .note("it could be through a surface before anybody sees it: give it more time, or take a smaller `step`");
+            }
+        }
+    }
+}
+
+/// Nodes that are inside a tool at the start: deep ones are an error.
+fn inside(
+    name: &str,
+    body: &BodyParts,
+    (contacts, bit): (&ToolContacts, usize),
+    motion: &ToolMotion,
+    world: &World,
+    path: &str,
+    diagnostics: &mut Diagnostics,
+) {
+    let (Some(rest), Some(u)) = (world.get::<RestPosition>(body.entity), world.get::<Displacement>(body.entity)) else {
+        return;
+    };
+    let contact = &contacts.tools[bit];
+    let pose = motion.pose(0.0, |number| motion.curves[number].value(0.0));
+    let touched = contacts.rows.iter().zip(&contacts.masks).filter(|(_, mask)| **mask >> bit & 1 == 1);
+    let mut found: Vec<(f64, u32)> = touched
+        .map(|(&row, _)| {
+            let place = rest.0[row as usize] + u.vector(row as usize);
+            (contact.geometry.distance(pose.inverse(place)).0, row)
+        })
+        .filter(|(distance, _)| *distance < -1e-3 * contacts.edge)
+        .collect();
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let Some(&(deepest, _)) = found.first() else { return };
+    let authoring = world.get::<Authoring>(body.entity);
+    let number = |row: u32| authoring.map_or(u64::from(row), |authoring| authoring.node_id(row as usize));
+    let mut nodes: Vec<String> = found.iter().take(NAMED).map(|&(_, row)| number(row).to_string()).collect();
+    if found.len() > NAMED {
+        nodes.push("...".into());
+    }
+    let message = format!(
+        "{} of `{name}` {} inside the tool `{}` at the start, the deepest by {:.3e} m",
+        if found.len() == 1 { "a node".to_string() } else { format!("{} nodes", found.len()) },
+        if found.len() == 1 { "is" } else { "are" },
+        contact.tool,
+        -deepest,
+    );
+    let nodes = format!("nodes: {}", nodes.join(", "));
+    if -deepest > DEEPEST * contacts.edge {
+        diagnostics
+            .error_at(path, message)
+            .note(nodes)
+            .note(format!("up to half an edge of a face, {:.3e} m, is pushed out", DEEPEST * contacts.edge));
+    } else {
+        diagnostics.warn_at(path, message).note(nodes).note("they are pushed out while a wave goes through the body");
+    }
+}

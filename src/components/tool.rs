@@ -1,0 +1,165 @@
+//! Rigid tools: where they are, and what they touch.
+
+use super::column::columns;
+use super::Reals;
+use super::signal::Use;
+use crate::scene::schema::Curve;
+use crate::tools::Geometry;
+use bevy_ecs::prelude::*;
+use glam::{DMat3, DQuat, DVec3};
+
+columns! {
+    /// What tools do to the nodes that they may touch: for each of [`ToolContacts::rows`] and each of its tools
+    /// [`TOUCH_NUMBERS`] numbers: the force on the node in the last step (N); 0 where it did not touch, 1 where it stuck
+    /// to the tool, 2 where it slid; since the start the length it has slid (m), the work that the tool has done and
+    /// what of that impact and friction have taken (J). Exists where tools may touch the body.
+    ToolTouch(Reals) = "tool_touch", State, Other;
+}
+
+/// Numbers of a node and a tool in [`ToolTouch`].
+pub const TOUCH_NUMBERS: usize = 7;
+
+/// Where a tool is: a point y of its own is at rotation · y + at (m).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pose {
+    /// From the tool's axes to the scene's.
+    pub rotation: DMat3,
+    /// Where its origin is (m).
+    pub at: DVec3,
+}
+
+impl Pose {
+    /// A point of the scene (m) in the tool's frame.
+    pub fn inverse(&self, x: DVec3) -> DVec3 {
+        self.rotation.transpose() * (x - self.at)
+    }
+
+    /// A point of the tool (m) in the scene; of a difference of poses, how far the point goes.
+    pub fn place(&self, y: DVec3) -> DVec3 {
+        self.rotation * y + self.at
+    }
+
+    /// What leads from another pose to this one.
+    pub fn less(&self, other: &Self) -> Self {
+        Self { rotation: self.rotation - other.rotation, at: self.at - other.at }
+    }
+
+    /// From three slots.
+    pub fn of_slots(slots: &[[f64; 4]]) -> Self {
+        let row = |i: usize| DVec3::new(slots[i][0], slots[i][1], slots[i][2]);
+        let rotation = DMat3::from_cols(row(0), row(1), row(2)).transpose();
+        Self { rotation, at: DVec3::new(slots[0][3], slots[1][3], slots[2][3]) }
+    }
+
+    /// As three slots: each a row of the rotation and a component of the place.
+    pub(super) fn fill(&self, slots: &mut [[f64; 4]]) {
+        for (i, slot) in slots.iter_mut().enumerate() {
+            let row = self.rotation.row(i);
+            *slot = [row.x, row.y, row.z, self.at[i]];
+        }
+    }
+}
+
+/// How a tool moves.
+#[derive(Clone, Debug)]
+pub struct ToolMotion {
+    /// Places on its way: time (s), where the origin is (m), how it is turned. One at least, in the order of time;
+    /// straight and evenly turned between them, at rest before the first and after the last.
+    pub path: Vec<(f64, DVec3, DQuat)>,
+    /// What is added to that: a displacement (m) and a rotation about the tool's origin (axis times angle, rad), each
+    /// multiplied by its curve.
+    pub moves: Vec<(DVec3, DVec3)>,
+    /// Their curves.
+    pub curves: Vec<Curve>,
+}
+
+impl ToolMotion {
+    /// Where it is at a time (s) with such factors of its curves.
+    pub fn pose(&self, time: f64, factor: impl Fn(usize) -> f64) -> Pose {
+        let (mut at, mut turn) = self.on_path(time);
+        for (number, (displacement, rotation)) in self.moves.iter().enumerate() {
+            let factor = factor(number);
+            at += *displacement * factor;
+            turn = DQuat::from_scaled_axis(*rotation * factor) * turn;
+        }
+        Pose { rotation: DMat3::from_quat(turn), at }
+    }
+
+    fn on_path(&self, time: f64) -> (DVec3, DQuat) {
+        let after = self.path.partition_point(|key| key.0 <= time);
+        match (after.checked_sub(1).map(|i| self.path[i]), self.path.get(after)) {
+            (Some((t0, at, turn)), Some(&(t1, next, turned))) => {
+                let share = (time - t0) / (t1 - t0);
+                (at.lerp(next, share), turn.slerp(turned, share))
+            }
+            (Some((_, at, turn)), None) | (None, Some(&(_, at, turn))) => (at, turn),
+            (None, None) => (DVec3::ZERO, DQuat::IDENTITY),
+        }
+    }
+
+    /// How fast a point may go (m/s) that is so far from its origin (m), as far as the scene tells; jumps count as 0.
+    pub fn fastest(&self, reach: f64) -> f64 {
+        let leg = |pair: &[(f64, DVec3, DQuat)]| {
+            let way = pair[0].1.distance(pair[1].1) + reach * pair[0].2.angle_between(pair[1].2);
+            way / (pair[1].0 - pair[0].0)
+        };
+        let path = self.path.windows(2).map(leg).fold(0.0, f64::max);
+        let moves = self.moves.iter().zip(&self.curves);
+        let moves = moves.map(|((displacement, rotation), curve)| {
+            (displacement.length() + reach * rotation.length()) * curve.fastest()
+        });
+        path + moves.sum::<f64>()
+    }
+
+    /// The first time after one (s) at which it turns a corner of its path.
+    pub fn corner_after(&self, time: f64) -> Option<f64> {
+        self.path.iter().map(|key| key.0).find(|corner| *corner > time)
+    }
+}
+
+/// What a tool may do to a body.
+#[derive(Clone, Debug)]
+pub struct ToolContact {
+    /// The tool's name.
+    pub tool: String,
+    /// Its shape.
+    pub geometry: Geometry,
+    /// The first of six slots of [`Signals`](super::Signals): see [`Signal::Pose`](super::Signal::Pose), from
+    /// [`ToolContacts::reference`].
+    pub signal: usize,
+    /// Coefficients of friction: while it sticks, and while it slides.
+    pub friction: [f64; 2],
+}
+
+/// What may touch a body's nodes. On the body.
+#[derive(Component, Clone, Debug)]
+pub struct ToolContacts {
+    /// The tools.
+    pub tools: Vec<ToolContact>,
+    /// A point near the body (m), from which places are counted: so they keep their digits far from the scene's origin.
+    pub reference: DVec3,
+    /// The nodes that a tool may touch, ascending.
+    pub rows: Vec<u32>,
+    /// Of each of them, which tools: bit i is tool i.
+    pub masks: Vec<u32>,
+    /// Length of an edge of the surface (m): who is farther off cannot be there within a step.
+    pub edge: f64,
+    /// How fast nodes that are inside a tool at the start are pushed out (m/s).
+    pub settling: f64,
+}
+
+impl ToolContacts {
+    /// Tools that one body may meet: bits of a mask.
+    pub const MOST: usize = 8;
+
+    /// Numbers a node in [`ToolTouch`].
+    pub fn numbers(&self) -> usize {
+        TOUCH_NUMBERS * self.tools.len()
+    }
+}
+
+/// Where it is at the end of a step and at its beginning (s), with such factors of its curves.
+pub(super) fn poses(motion: &ToolMotion, times: [f64; 2], factor: impl Fn(usize, Use) -> f64) -> [Pose; 2] {
+    [(times[1], Use::Motion), (times[0], Use::MotionBefore)]
+        .map(|(time, of)| motion.pose(time, |number| factor(number, of)))
+}

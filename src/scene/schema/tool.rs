@@ -1,0 +1,95 @@
+//! Rigid tools, and what they touch.
+
+use super::{Curve, Select};
+use crate::tools::Shape;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// A rigid tool: its shape, where it is, how it moves.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Tool {
+    /// Its shape, in its own frame.
+    pub shape: Shape,
+    /// Radius (m) by which its edges are rounded off.
+    #[serde(default)]
+    pub rounding: f64,
+    /// Where its origin is (m): the tip of what is long, the middle of a ball and of a box. Not with a `path`.
+    #[serde(default)]
+    pub at: Option<DVec3>,
+    /// How it is turned: axis times angle (degrees). Not with a `path`.
+    #[serde(default)]
+    pub rotation: Option<DVec3>,
+    /// Places on its way, in the order of time; straight between them, at rest before the first and after the last.
+    #[serde(default)]
+    pub path: Vec<ToolPlace>,
+    /// What is added to that, each by a curve of its own.
+    #[serde(default)]
+    pub moves: Vec<ToolMove>,
+}
+
+/// A place on a tool's way.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct ToolPlace {
+    /// When (s).
+    pub t: f64,
+    /// Where its origin is (m).
+    pub at: DVec3,
+    /// How it is turned: axis times angle (degrees).
+    #[serde(default)]
+    pub rotation: DVec3,
+}
+
+/// A motion of a tool: by displacement and rotation, both multiplied by the curve.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct ToolMove {
+    /// By how much it goes (m).
+    #[serde(default)]
+    pub displacement: DVec3,
+    /// By how much it turns about its origin: axis times angle (degrees), the axis along the scene's axes.
+    #[serde(default)]
+    pub rotation: DVec3,
+    /// Course in time.
+    #[serde(default)]
+    pub curve: Curve,
+}
+
+/// What touches what.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub enum Contact {
+    /// A tool and nodes of a body: these stay outside the tool.
+    Tool {
+        /// The tool's name.
+        tool: String,
+        /// The body; may be left out when there is one only.
+        #[serde(default)]
+        body: Option<String>,
+        /// Which nodes; those of the whole surface when left out.
+        #[serde(default = "surface")]
+        on: Select,
+        /// The coefficient of friction.
+        #[serde(default)]
+        friction: f64,
+        /// The coefficient while nodes stick to the tool; that of `friction` when left out.
+        #[serde(default)]
+        static_friction: Option<f64>,
+    },
+}
+
+fn surface() -> Select {
+    Select::Surface { normal: None, within: 30.0 }
+}
+
+impl Tool {
+    /// Its places, in the order of time: that of `at` where it has no path.
+    pub fn places(&self) -> Vec<ToolPlace> {
+        if !self.path.is_empty() {
+            return self.path.clone();
+        }
+        let (at, rotation) = (self.at.unwrap_or_default(), self.rotation.unwrap_or_default());
+        vec![ToolPlace { t: 0.0, at, rotation }]
+    }
+}

@@ -1,0 +1,96 @@
+//! Tools and contacts: whether they are somewhere, go somewhere, and touch something.
+
+use super::names::body_named;
+use super::{Validator, scene, select, show};
+use crate::components::ToolContacts;
+use crate::scene::schema::{Contact, Scene, Tool};
+use crate::scene::suggest::choice;
+use crate::scene::syntax::Path;
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
+    for (name, found) in &scene_.tools {
+        let path = scene("tools").name(name);
+        tool(validator, &path, found);
+        let touches = |contact: &Contact| {
+            let Contact::Tool { tool, .. } = contact;
+            tool == name
+        };
+        if !scene_.contacts.iter().any(touches) {
+            validator
+                .out
+                .warn_at(&path, format!("nothing touches the tool `{name}`"))
+                .note(format!("under `contacts`: Tool(tool: \"{name}\")"));
+        }
+    }
+    contacts(scene_, validator);
+}
+
+fn tool(validator: &mut Validator, path: &Path, tool: &Tool) {
+    if let Some(problem) = tool.shape.problem(tool.rounding) {
+        let path = if problem.field == "rounding" { path.name("rounding") } else { path.name("shape").name(problem.field) };
+        validator.out.error_at(path, problem.message);
+    }
+    for (field, there) in [("at", tool.at.is_some()), ("rotation", tool.rotation.is_some())] {
+        if there && !tool.path.is_empty() {
+            let message = format!("`{field}` beside a `path`, which says where the tool is at all times");
+            validator.out.error_at(path.name(field), message).note("leave one of both out; `moves` may be added to a path");
+        }
+    }
+    for (number, pair) in tool.path.windows(2).enumerate() {
+        if pair[1].t <= pair[0].t {
+            let path = path.name("path").index(number + 1).name("t");
+            let message = format!("places are in the order of time: after {} s this is {} s", show(pair[0].t), show(pair[1].t));
+            let far = (pair[1].at - pair[0].at).length();
+            let jumps = pair[1].t == pair[0].t && far > 0.0;
+            let note = format!("the tool would jump by {} m; give it time to go there", show(far));
+            validator.out.error_at(path, message).notes(jumps.then_some(note));
+        }
+    }
+    for (number, part) in tool.moves.iter().enumerate() {
+        if (part.displacement, part.rotation) == (DVec3::ZERO, DVec3::ZERO) {
+            validator
+                .out
+                .warn_at(path.name("moves").index(number), "this moves nothing")
+                .note("give `displacement` or `rotation`");
+        }
+    }
+}
+
+fn contacts(scene_: &Scene, validator: &mut Validator) {
+    let mut of_body: BTreeMap<Option<&String>, usize> = BTreeMap::new();
+    for (number, contact) in scene_.contacts.iter().enumerate() {
+        let path = scene("contacts").index(number);
+        let Contact::Tool { tool, body, on, friction, static_friction } = contact;
+        if !scene_.tools.contains_key(tool) {
+            let tools = scene_.tools.keys().map(String::as_str);
+            validator.out.error_at(path.name("tool"), format!("there is no tool `{tool}`")).notes(choice(tool, tools));
+        }
+        body_named(scene_, validator, &path, body.as_ref());
+        select::validate(validator, &path.name("on"), on);
+        validator.not_negative(&path.name("friction"), *friction, "");
+        if let Some(sticking) = static_friction {
+            validator.not_negative(&path.name("static_friction"), *sticking, "");
+            if *sticking < *friction {
+                let message = format!("`static_friction` is {}, and `friction` is {}", show(*sticking), show(*friction));
+                validator
+                    .out
+                    .error_at(path.name("static_friction"), message)
+                    .note("what sticks is held as least as well as what slides");
+            }
+        }
+        if scene_.is_static() && (*friction > 0.0 || static_friction.is_some_and(|sticking| sticking > 0.0)) {
+            validator
+                .out
+                .warn_at(path.name("friction"), "rest with friction depends on the way there, and this is one of many")
+                .note("a transient analysis goes the way that the scene tells");
+        }
+        let count = of_body.entry(body.as_ref().or(scene_.bodies.keys().next())).or_default();
+        *count += 1;
+        if *count == ToolContacts::MOST + 1 {
+            let message = format!("a body may meet at most {} tools", ToolContacts::MOST);
+            validator.out.error_at(&path, message);
+        }
+    }
+}

@@ -1,0 +1,345 @@
+//! `tool_contact`: rigid tools keep nodes outside. `shaders/tool_contact.wgsl` is its twin.
+
+use super::node_system::{Before, NodeSystem};
+use super::places_within;
+use super::registry::{Phase, System};
+use crate::backend::Buffers;
+use crate::backend::cpu::{Cpu, Factors, NodeColumns};
+use crate::backend::kernel::{Fragment, Uniform, uniform};
+use crate::backend::node_stage::{NodeStage, rows_of};
+use crate::components::*;
+use crate::math::SimdScalar;
+use crate::shader;
+use crate::tools::Geometry;
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+/// The explicit Lagrange correction of the predicted step: each node's next step d* is predicted as `integrate` will
+/// find it, and where it would end inside a tool, the force is found that makes it end on the surface. That force is a
+/// load like others, so that `integrate`, the balance of energy and the residual of a static analysis need not know of
+/// tools. A node and a rigid tool are one equation: it is solved exactly, for any mass and step, and leaves the stable
+/// step as it is. The touching node stops: what it loses is an impact's plastic part, half a layer's kinetic energy.
+///
+/// Friction holds the node at the tool's surface with at most μ times this step's normal force; who does not slide moves
+/// with the tool exactly. Nodes between several tools take turns, until their forces fit.
+pub fn system() -> System {
+    System::built_in_nodes::<ToolContacts>(
+        "tool_contact",
+        Phase::Contact,
+        "keeps nodes out of rigid tools",
+        "`Tool(...)` under `contacts`",
+        |world| {
+            let all = world.query::<&ToolContacts>().iter(world).map(|contacts| contacts.tools.len());
+            match all.sum() {
+                0 => None,
+                1 => Some("1 tool at a body".into()),
+                count => Some(format!("{count} tools at bodies")),
+            }
+        },
+    )
+    .on_nodes(stages)
+}
+
+/// What a tool and a node do that touch.
+const STICKS: f64 = 1.0;
+const SLIDES: f64 = 2.0;
+
+/// How often tools at one node take turns.
+const TURNS: usize = 12;
+
+/// What a step needs.
+pub struct Step {
+    factors: Factors<f64>,
+    /// How far a node that is inside a tool comes out in this step (m).
+    out: f64,
+    /// Whether work is counted: not on the way to rest.
+    books: bool,
+    /// Of each tool where it is, how that differs from where it was, and a ball around all of it.
+    tools: Vec<(Pose, Pose, Option<(DVec3, f64)>)>,
+}
+
+/// A tool at a node.
+#[derive(Clone, Copy)]
+struct Touch {
+    tool: usize,
+    /// Outward normal, and distance from the surface without contact (m).
+    normal: DVec3,
+    gap: f64,
+    /// How far the tool goes there (m).
+    tool_step: DVec3,
+    /// What holds it: the largest tangential part of the normal one.
+    friction: f64,
+    /// Displacements that the tool adds (m): along the normal, and along the surface.
+    push: f64,
+    drag: DVec3,
+}
+
+impl NodeSystem for ToolContacts {
+    type Columns = (
+        (&'static Mass, Option<&'static FictitiousMass>, Option<&'static DampingCoefficient>),
+        (&'static InternalForce, &'static ConstrainedAxes, &'static Displacement, &'static DisplacementIncrement),
+        (&'static mut ExternalForce, &'static mut ToolTouch),
+    );
+    type Prepared = Step;
+
+    fn prepare(&self, before: &Before<'_>) -> Step {
+        let values = before.signals.values();
+        let tools = self.tools.iter().map(|contact| {
+            let [pose, change] = [0, 3].map(|slot| Pose::of_slots(&values[contact.signal + slot..]));
+            let ball = contact.geometry.bounding_sphere();
+            (pose, change, ball.map(|(center, radius)| (pose.place(center), radius + self.edge)))
+        });
+        Step {
+            factors: Factors::of(before.clock),
+            out: self.out(before.clock),
+            books: before.clock.relaxation.is_none(),
+            tools: tools.collect(),
+        }
+    }
+
+    fn act<T: SimdScalar>(&self, step: &Step, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        let Some(mut touches) = nodes.touches.take() else { return };
+        let own = places_within(&self.rows, nodes.first, nodes.rows());
+        for (place, (&row, &mask)) in self.rows[own.clone()].iter().zip(&self.masks[own]).enumerate() {
+            let values = &mut touches.values[touches.numbers * place..touches.numbers * (place + 1)];
+            self.touch(step, row as usize - nodes.first, mask, nodes, values);
+        }
+        nodes.touches = Some(touches);
+    }
+}
+
+impl ToolContacts {
+    /// How far a node that is inside a tool comes out in a step (m).
+    fn out(&self, clock: &Clock) -> f64 {
+        match clock.relaxation {
+            Some(_) => 0.1 * self.edge,
+            None => self.settling * clock.time_step,
+        }
+    }
+
+    /// What tools do to one node.
+    fn touch<T: SimdScalar>(
+        &self,
+        step: &Step,
+        row: usize,
+        mask: u32,
+        nodes: &mut NodeColumns<'_, T>,
+        values: &mut [T],
+    ) {
+        let inertia = nodes.inertia[row].to_f64();
+        let place = nodes.rest[row] - self.reference + nodes.displacement(row);
+        let far = |tool: usize| match step.tools[tool].2 {
+            Some((center, radius)) => center.distance_squared(place) > radius * radius,
+            None => false,
+        };
+        let mut stuck = [false; ToolContacts::MOST];
+        for (stuck, of_tool) in stuck.iter_mut().zip(values.chunks_exact_mut(TOUCH_NUMBERS)) {
+            *stuck = of_tool[3] == T::from_f64(STICKS);
+            of_tool[..4].fill(T::default());
+        }
+        let near = |tool: &usize| mask >> tool & 1 == 1 && !far(*tool);
+        if inertia <= 0.0 || !(0..self.tools.len()).any(|tool| near(&tool)) {
+            return;
+        }
+        // as integrate will find it
+        let Factors { force: factor, half_step, divide, booked, relaxation, .. } = step.factors;
+        let vector = |all: &[T]| DVec3::from_array([0, 1, 2].map(|i| all[3 * row + i].to_f64()));
+        let before = vector(nodes.step);
+        let force = nodes.external.as_deref().map_or(DVec3::ZERO, vector) - vector(nodes.internal);
+        let free = DVec3::from_array([0, 1, 2].map(|i| f64::from(1 - (nodes.axes[row] >> i & 1))));
+        let a = nodes.damping.map_or(0.0, |all| all[row].to_f64()) * half_step / inertia + relaxation;
+        let damped = 1.0 + divide * a;
+        let predicted = before + free * (force * (factor / inertia) - before * ((1.0 + divide) * a)) / damped;
+        let mut all = [None; ToolContacts::MOST];
+        let mut touched = 0;
+        for tool in (0..self.tools.len()).filter(near) {
+            if let Some(touch) = self.predict(step, tool, place, predicted, stuck[tool]) {
+                all[touched] = Some(touch);
+                touched += 1;
+            }
+        }
+        let all = &mut all[..touched];
+        let d = predicted + push_apart(all, predicted, free);
+        let to_force = inertia * damped / factor;
+        let mut sum = DVec3::ZERO;
+        for touch in all.iter().flatten().filter(|touch| touch.push > 0.0) {
+            let change = touch.normal * touch.push + touch.drag;
+            let force = to_force * change;
+            sum += force;
+            let of_tool = &mut values[TOUCH_NUMBERS * touch.tool..TOUCH_NUMBERS * (touch.tool + 1)];
+            let slip = tangential(d - touch.tool_step, touch.normal).length();
+            let sticks = touch.drag.length() < touch.friction * touch.push;
+            for i in 0..3 {
+                of_tool[i] = T::from_f64(force[i]);
+            }
+            of_tool[3] = T::from_f64(if sticks { STICKS } else { SLIDES });
+            if step.books {
+                let work = booked * force.dot(touch.tool_step);
+                let on_node = booked * (force * free).dot(0.5 * (before + d));
+                of_tool[4] = of_tool[4] + T::from_f64(slip);
+                of_tool[5] = of_tool[5] + T::from_f64(work);
+                of_tool[6] = of_tool[6] + T::from_f64(work - on_node);
+            }
+        }
+        if touched > 0 {
+            nodes.add_load(row, sum);
+        }
+    }
+
+    /// What a tool does to a node that is at a place (m, from the reference) and goes on by a step (m); `None` where it
+    /// ends an edge or more from the tool.
+    fn predict(&self, step: &Step, tool: usize, place: DVec3, predicted: DVec3, stuck: bool) -> Option<Touch> {
+        let contact = &self.tools[tool];
+        let (pose, change, _) = &step.tools[tool];
+        let end = place + predicted;
+        let of_tool = pose.inverse(end);
+        let (distance, normal) = contact.geometry.distance(of_tool);
+        if distance > self.edge {
+            return None;
+        }
+        let mut gap = distance;
+        if distance < 0.0 {
+            // who is inside already comes out by and by
+            let earlier = Pose { rotation: pose.rotation - change.rotation, at: pose.at - change.at };
+            let now = contact.geometry.distance(earlier.inverse(place)).0;
+            gap -= (now + step.out).min(0.0);
+        }
+        let [sticking, sliding] = contact.friction;
+        Some(Touch {
+            tool,
+            normal: pose.rotation * normal,
+            gap,
+            tool_step: change.place(of_tool),
+            friction: if stuck { sticking } else { sliding },
+            push: 0.0,
+            drag: DVec3::ZERO,
+        })
+    }
+}
+
+/// The part of a vector along a surface.
+fn tangential(vector: DVec3, normal: DVec3) -> DVec3 {
+    vector - normal * vector.dot(normal)
+}
+
+/// Finds how far tools push a node that would go by `predicted`, and along which axes it can; gives the sum (m).
+fn push_apart(all: &mut [Option<Touch>], predicted: DVec3, free: DVec3) -> DVec3 {
+    let mut sum = DVec3::ZERO;
+    let turns = if all.len() == 1 && free == DVec3::ONE { 1 } else { TURNS };
+    for _ in 0..turns {
+        for touch in all.iter_mut().flatten() {
+            let along = touch.normal.dot(free * touch.normal);
+            // held along the normal: nobody can push it there
+            if along > 1e-9 {
+                let push = (touch.push - (touch.gap + touch.normal.dot(sum)) / along).max(0.0);
+                sum += free * touch.normal * (push - touch.push);
+                touch.push = push;
+            }
+            if touch.friction > 0.0 {
+                let slip = tangential(predicted + sum - touch.tool_step, touch.normal);
+                let wanted = touch.drag - slip;
+                let most = touch.friction * touch.push;
+                let size = wanted.length();
+                let drag = if size > most { wanted * (most / size) } else { wanted };
+                sum += free * (drag - touch.drag);
+                touch.drag = drag;
+            }
+        }
+    }
+    sum
+}
+
+/// A tool at a body, as kernels see it.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+struct ToolRow {
+    kind: u32,
+    size_0: f32,
+    size_1: f32,
+    size_2: f32,
+    size_3: f32,
+    size_4: f32,
+    size_5: f32,
+    rounding: f32,
+    signal: u32,
+    sticking: f32,
+    sliding: f32,
+    unused: u32,
+}
+uniform!(ToolRow { kind, size_0, size_1, size_2, size_3, size_4, size_5, rounding, signal, sticking, sliding, unused });
+
+/// What is the same for all tools of a body.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+struct Limits {
+    edge: f32,
+    settling: f32,
+    books: u32,
+}
+uniform!(Limits { edge, settling, books });
+
+/// One stage for each body that tools may touch.
+fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
+    let all: Vec<(Entity, ToolContacts)> =
+        world.query::<(Entity, &ToolContacts)>().iter(world).map(|(body, contacts)| (body, contacts.clone())).collect();
+    all.into_iter().map(|(body, contacts)| stage(body, &contacts, world, buffers)).collect()
+}
+
+fn stage(body: Entity, contacts: &ToolContacts, world: &mut World, buffers: &mut dyn Buffers) -> NodeStage {
+    let clock = *world.resource::<Clock>();
+    let fictitious = world.get::<FictitiousMass>(body).is_some();
+    let damped = world.get::<DampingCoefficient>(body).is_some();
+    let relaxed = clock.relaxation.is_some();
+    let limits = Limits { edge: contacts.edge as f32, settling: contacts.settling as f32, books: u32::from(!relaxed) };
+    let places: Vec<[f32; 4]> = contacts.rows.iter().zip(&contacts.masks).map(|(&row, &mask)| {
+        let rest = world.get::<RestPosition>(body).map_or(DVec3::ZERO, |rest| rest.0[row as usize]);
+        let [x, y, z] = (rest - contacts.reference).as_vec3().to_array();
+        [x, y, z, f32::from_bits(mask)]
+    }).collect();
+    let tools: Vec<u8> = contacts.tools.iter().flat_map(|contact| row_of(contact).bytes()).collect();
+    let count = Fragment::new("generated: how many tools", format!("const TOOLS: u32 = {}u;\n", contacts.tools.len()));
+    let coefficient = match (damped, relaxed) {
+        (true, _) => "damping_coefficient[node] * step.half_step / inertia",
+        (false, true) => "step.relaxation",
+        (false, false) => "0.0",
+    };
+    let damping = format!("fn damping_of(node: u32, inertia: f32) -> f32 {{\n    return {coefficient};\n}}\n");
+    let mass = if fictitious { FictitiousMass::NAME } else { Mass::NAME };
+    let mut stage = NodeStage::new("tool_contact", "tool_contact", body, rows_of(body, world), shader!("tool_contact"))
+        .own(shader!("tool_shape"))
+        .own(count)
+        .own(Fragment::new("generated: damping of the body", damping))
+        .bind_uniform::<ToolRow>("tools", buffers.uniform("tools".into(), &tools))
+        .bind_uniform::<Limits>("limits", buffers.uniform("tool contact".into(), &limits.bytes()))
+        .bind("touchable", buffers.constants("nodes that tools may touch".into(), bytemuck::cast_slice(&places)))
+        .of_rows(contacts.rows.clone())
+        .column(Mass::NAME, buffers.column(body, mass));
+    for column in [ConstrainedAxes::NAME, Displacement::NAME, DisplacementIncrement::NAME, ToolTouch::NAME] {
+        stage = stage.column(column, buffers.column(body, column));
+    }
+    for column in [InternalForce::NAME, ExternalForce::NAME] {
+        stage = stage.column(column, buffers.column(body, column));
+    }
+    if damped {
+        stage = stage.own(shader!("damping_column")).column(DampingCoefficient::NAME, buffers.column(body, DampingCoefficient::NAME));
+    }
+    stage.with_step(world).loaded(true).that_asks_for_forces()
+}
+
+fn row_of(contact: &ToolContact) -> ToolRow {
+    let [kind, size_0, size_1, size_2, size_3, size_4, size_5, rounding] = contact.geometry.packed();
+    ToolRow {
+        kind: kind.to_bits(),
+        size_0,
+        size_1,
+        size_2,
+        size_3,
+        size_4,
+        size_5,
+        rounding,
+        signal: contact.signal as u32,
+        sticking: contact.friction[0] as f32,
+        sliding: contact.friction[1] as f32,
+        unused: 0,
+    }
+}
