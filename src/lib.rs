@@ -25,6 +25,7 @@ mod simulation;
 pub mod snapshot;
 #[path = "../systems/mod.rs"]
 pub mod systems;
+pub mod tools;
 
 // what the other crates of the workspace and the tests see into: no version keeps its names and types
 #[doc(hidden)]

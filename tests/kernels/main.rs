@@ -16,3 +16,4 @@ mod motion;
 mod pair;
 mod patches;
 mod removal;
+mod shapes;
