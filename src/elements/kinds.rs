@@ -87,6 +87,11 @@ pub const fn point_count(kind: ElementKind) -> usize {
     with_element!(kind, E => E::POINTS)
 }
 
+/// How much rounding leaves of a residual: see [`Element::ROUNDING`].
+pub const fn rounding(kind: ElementKind) -> f64 {
+    with_element!(kind, E => E::ROUNDING)
+}
+
 /// Whether elements of a kind take their pressure from nodal means.
 pub fn averages(kind: ElementKind) -> bool {
     with_element!(kind, E => E::PRESSURE == PressureFrom::Nodes)

@@ -12,7 +12,9 @@ mod wedge6;
 
 pub use hex8::{Hex8, Hexahedron, Parallelepiped};
 pub use hex8_mean_dilatation::Hex8MeanDilatation;
-pub use kinds::{ElementTask, averages, elements_a_patch, mass_shares, node_count, point_count, run_with_element};
+pub use kinds::{
+    ElementTask, averages, elements_a_patch, mass_shares, node_count, point_count, rounding, run_with_element,
+};
 pub(crate) use kinds::{with_element, with_element_of};
 pub use tet4::Tet4;
 pub use tet4_nodal_pressure::Tet4NodalPressure;
@@ -62,6 +64,9 @@ pub trait Element: Copy + Send + Sync + 'static {
     /// Where the pressure comes from.
     const PRESSURE: PressureFrom;
 
+    /// How many times as much of the residual rounding may leave as a node's stiffness says, as against elements whose
+    /// points are not balanced against each other.
+    const ROUNDING: f64 = 1.0;
     /// Elements of a patch: enough to be worth a task, few enough that their nodes and forces stay in a core's cache.
     const ELEMENTS_A_PATCH: usize = 224;
     /// Whether the CPU has kernels in f32 of its own for what is asked for most, beside the one that asks the law for

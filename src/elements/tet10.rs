@@ -114,6 +114,8 @@ impl Element for Tet10 {
     const ROWS: usize = 30;
     const VOLUME_ROW: usize = 27;
     const FORCE_ROW: Option<usize> = Some(THERE_ROW);
+    /// Seen in static analyses: up to 7.7 times the estimate, where other elements leave 4.3.
+    const ROUNDING: f64 = 7.7 / 4.3;
     const PRESSURE: PressureFrom = PressureFrom::MeanOverPoints;
 
     type Simple = Self;

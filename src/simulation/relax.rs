@@ -27,8 +27,8 @@ const MOST_DAMPING: f64 = 1.0;
 /// Motion that tells of frequencies makes forces so many times what rounding makes.
 const CLEAR_OF_ROUNDING: f64 = 10.0;
 /// What rounding may make of the residual, in units of its estimate: lightly damped, it keeps stiff motion awake (seen:
-/// up to 4.3, of ten-node tetrahedra up to 7.7).
-const ROUNDING: f64 = 10.0;
+/// up to 4.3).
+const ROUNDING: f64 = 6.0;
 /// What the remaining motion may be, in tolerances of the residual: it errs on the side of too much.
 const MOTION: f64 = 10.0;
 /// From a turning point to the middle of the slowest motion in units of 1/a, and somewhat more: π/2, if a is right.

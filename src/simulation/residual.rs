@@ -1,6 +1,7 @@
 //! What a static analysis sees of all bodies when it looks: displacements, forces, and what has changed.
 
 use crate::components::*;
+use crate::elements::rounding;
 use bevy_ecs::prelude::*;
 use std::ops::Range;
 
@@ -166,6 +167,13 @@ fn free(body: Entity, axes: Range<usize>, world: &World) -> impl Iterator<Item =
     })
 }
 
+/// The largest [`Element::ROUNDING`](crate::elements::Element::ROUNDING) of a body's elements.
+fn rounding_of_elements(body: Entity, world: &World) -> f64 {
+    let blocks = world.get::<Authoring>(body).into_iter().flat_map(|authoring| &authoring.blocks);
+    let kinds = blocks.filter_map(|&block| world.get::<Block>(block)).map(|block| block.kind);
+    kinds.map(rounding).fold(1.0, f64::max)
+}
+
 impl Residual {
     /// Of a state.
     pub fn of(state: &State, world: &World) -> Self {
@@ -179,6 +187,7 @@ impl Residual {
                 Reals::F32(_) => f64::from(f32::EPSILON),
                 Reals::F64(_) => f64::EPSILON,
             };
+            let of_elements = rounding_of_elements(body.entity, world);
             let mass = world.get::<FictitiousMass>(body.entity);
             let stiffness = |node: usize| mass.map_or(0.0, |mass| mass.get(node)) / (time_step * time_step);
             let mut node = (usize::MAX, 0.0);
@@ -186,7 +195,7 @@ impl Residual {
                 let part = net(i) * net(i);
                 square += part;
                 sum.scale_square += body.load[i] * body.load[i];
-                sum.rounding_square += (stiffness(i / 3) * sum.digit * body.place[i]).powi(2);
+                sum.rounding_square += (of_elements * stiffness(i / 3) * sum.digit * body.place[i]).powi(2);
                 node = (i / 3, if node.0 == i / 3 { node.1 + part } else { part });
                 if sum.worst.is_none_or(|(.., most)| node.1 > most) {
                     sum.worst = Some((body.entity, node.0, node.1));

@@ -248,7 +248,7 @@ cube.ron:1:60: error: the law needs the parameter `bulk` | the parameters of own
         ),
         (
             r#"law: (file: "")"#,
-            "cube.ron:1:67: error: the law has neither `energy` nor `file` | for instance energy: \"mu/2*I1bar_minus_3 + kappa/2*J_minus_1^2\", parameters: {\"mu\": 1000, \"kappa\": 1e4} | or file: \"law.wgsl\", a law in WGSL",
+            "cube.ron:1:67: error: the law has neither `energy` nor `file` nor `rust` | for instance energy: \"mu/2*I1bar_minus_3 + kappa/2*J_minus_1^2\", parameters: {\"mu\": 1000, \"kappa\": 1e4} | or file: \"law.wgsl\", a law in WGSL",
         ),
         (
             r#"law: (file: "own.wgsl", parameters: {"mu": 1, "bulk": 2}), neo_hookean: Moduli(shear: 1, bulk: 2)"#,
