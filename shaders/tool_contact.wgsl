@@ -60,8 +60,8 @@ fn predict(tool: u32, place: vec3<f32>, predicted: vec3<f32>, sticks: bool) -> T
     let pose = array<vec4<f32>, 3>(step.signals[at], step.signals[at + 1u], step.signals[at + 2u]);
     let change = array<vec4<f32>, 3>(step.signals[at + 3u], step.signals[at + 4u], step.signals[at + 5u]);
     let of_tool = into_frame(pose, place + predicted);
-    let found = distance_to(tool, of_tool);
-    var gap = found.w;
+    let surface = distance_to(tool, of_tool);
+    var gap = surface.w;
     if gap < 0.0 {
         let earlier = array<vec4<f32>, 3>(pose[0] - change[0], pose[1] - change[1], pose[2] - change[2]);
         var out = limits.settling * step.time_step;
@@ -72,13 +72,13 @@ fn predict(tool: u32, place: vec3<f32>, predicted: vec3<f32>, sticks: bool) -> T
     }
     let at_tool = vec4<f32>(of_tool, 1.0);
     var touch: Touch;
-    touch.normal = vec3<f32>(dot(pose[0].xyz, found.xyz), dot(pose[1].xyz, found.xyz), dot(pose[2].xyz, found.xyz));
+    touch.normal = vec3<f32>(dot(pose[0].xyz, surface.xyz), dot(pose[1].xyz, surface.xyz), dot(pose[2].xyz, surface.xyz));
     touch.gap = gap;
     touch.tool_step = vec3<f32>(dot(change[0], at_tool), dot(change[1], at_tool), dot(change[2], at_tool));
     touch.friction = select(tools[tool].sliding, tools[tool].sticking, sticks);
     touch.drag = vec3<f32>(0.0);
     touch.push = 0.0;
-    touch.touches = found.w <= limits.edge;
+    touch.touches = surface.w <= limits.edge;
     return touch;
 }
 
@@ -106,7 +106,7 @@ fn tool_contact(i: u32, node: u32) {
         predicted = before + free * change / damped;
         to_force = inertia * damped / step.force_factor;
     }
-    var all: array<Touch, TOOLS>;
+    var found: array<Touch, TOOLS>;
     var touched = 0u;
     for (var tool = 0u; tool < TOOLS; tool++) {
         let at_tool = first + TOUCH_NUMBERS * tool;
@@ -114,10 +114,10 @@ fn tool_contact(i: u32, node: u32) {
         for (var k = 0u; k < 4u; k++) {
             tool_touch[at_tool + k] = 0.0;
         }
-        all[tool].touches = false;
+        found[tool].touches = false;
         if inertia > 0.0 && ((bits >> tool) & 1u) == 1u {
-            all[tool] = predict(tool, place, predicted, stuck);
-            if all[tool].touches {
+            found[tool] = predict(tool, place, predicted, stuck);
+            if found[tool].touches {
                 touched++;
             }
         }
@@ -129,45 +129,45 @@ fn tool_contact(i: u32, node: u32) {
     let turns = select(TURNS, 1u, touched == 1u && all(free == vec3<f32>(1.0)));
     for (var turn = 0u; turn < turns; turn++) {
         for (var tool = 0u; tool < TOOLS; tool++) {
-            if !all[tool].touches {
+            if !found[tool].touches {
                 continue;
             }
-            let normal = all[tool].normal;
+            let normal = found[tool].normal;
             let along = dot(normal, free * normal);
             if along > 1e-9 {
-                let push = max(all[tool].push - (all[tool].gap + dot(normal, sum)) / along, 0.0);
-                sum += free * normal * (push - all[tool].push);
-                all[tool].push = push;
+                let push = max(found[tool].push - (found[tool].gap + dot(normal, sum)) / along, 0.0);
+                sum += free * normal * (push - found[tool].push);
+                found[tool].push = push;
             }
-            if all[tool].friction > 0.0 {
-                let slip = along_surface(predicted + sum - all[tool].tool_step, normal);
-                let wanted = all[tool].drag - slip;
-                let most = all[tool].friction * all[tool].push;
+            if found[tool].friction > 0.0 {
+                let slip = along_surface(predicted + sum - found[tool].tool_step, normal);
+                let wanted = found[tool].drag - slip;
+                let most = found[tool].friction * found[tool].push;
                 let size = length(wanted);
                 let drag = select(wanted, wanted * (most / max(size, 1e-38)), size > most);
-                sum += free * (drag - all[tool].drag);
-                all[tool].drag = drag;
+                sum += free * (drag - found[tool].drag);
+                found[tool].drag = drag;
             }
         }
     }
     let d = predicted + sum;
     var load = vec3<f32>(0.0);
     for (var tool = 0u; tool < TOOLS; tool++) {
-        if !all[tool].touches || all[tool].push <= 0.0 {
+        if !found[tool].touches || found[tool].push <= 0.0 {
             continue;
         }
-        let force = to_force * (all[tool].normal * all[tool].push + all[tool].drag);
+        let force = to_force * (found[tool].normal * found[tool].push + found[tool].drag);
         load += force;
         let at_tool = first + TOUCH_NUMBERS * tool;
         tool_touch[at_tool] = force.x;
         tool_touch[at_tool + 1u] = force.y;
         tool_touch[at_tool + 2u] = force.z;
-        let sticks = length(all[tool].drag) < all[tool].friction * all[tool].push;
+        let sticks = length(found[tool].drag) < found[tool].friction * found[tool].push;
         tool_touch[at_tool + 3u] = select(SLIDES, STICKS, sticks);
         if limits.books != 0u {
-            let work = step.booked * dot(force, all[tool].tool_step);
+            let work = step.booked * dot(force, found[tool].tool_step);
             let on_node = step.booked * dot(force * free, 0.5 * (before + d));
-            tool_touch[at_tool + 4u] += length(along_surface(d - all[tool].tool_step, all[tool].normal));
+            tool_touch[at_tool + 4u] += length(along_surface(d - found[tool].tool_step, found[tool].normal));
             tool_touch[at_tool + 5u] += work;
             tool_touch[at_tool + 6u] += work - on_node;
         }

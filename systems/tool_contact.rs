@@ -10,7 +10,6 @@ use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
 use crate::math::SimdScalar;
 use crate::shader;
-use crate::tools::Geometry;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -29,8 +28,8 @@ pub fn system() -> System {
         "keeps nodes out of rigid tools",
         "`Tool(...)` under `contacts`",
         |world| {
-            let all = world.query::<&ToolContacts>().iter(world).map(|contacts| contacts.tools.len());
-            match all.sum() {
+            let count: usize = world.query::<&ToolContacts>().iter(world).map(|contacts| contacts.tools.len()).sum();
+            match count {
                 0 => None,
                 1 => Some("1 tool at a body".into()),
                 count => Some(format!("{count} tools at bodies")),
@@ -98,7 +97,7 @@ impl NodeSystem for ToolContacts {
     }
 
     fn act<T: SimdScalar>(&self, step: &Step, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
-        let Some(mut touches) = nodes.touches.take() else { return };
+        let Some(touches) = nodes.touches.take() else { return };
         let own = places_within(&self.rows, nodes.first, nodes.rows());
         for (place, (&row, &mask)) in self.rows[own.clone()].iter().zip(&self.masks[own]).enumerate() {
             let values = &mut touches.values[touches.numbers * place..touches.numbers * (place + 1)];
@@ -291,11 +290,16 @@ fn stage(body: Entity, contacts: &ToolContacts, world: &mut World, buffers: &mut
     let damped = world.get::<DampingCoefficient>(body).is_some();
     let relaxed = clock.relaxation.is_some();
     let limits = Limits { edge: contacts.edge as f32, settling: contacts.settling as f32, books: u32::from(!relaxed) };
-    let places: Vec<[f32; 4]> = contacts.rows.iter().zip(&contacts.masks).map(|(&row, &mask)| {
-        let rest = world.get::<RestPosition>(body).map_or(DVec3::ZERO, |rest| rest.0[row as usize]);
-        let [x, y, z] = (rest - contacts.reference).as_vec3().to_array();
-        [x, y, z, f32::from_bits(mask)]
-    }).collect();
+    let places: Vec<[f32; 4]> = contacts
+        .rows
+        .iter()
+        .zip(&contacts.masks)
+        .map(|(&row, &mask)| {
+            let rest = world.get::<RestPosition>(body).map_or(DVec3::ZERO, |rest| rest.0[row as usize]);
+            let [x, y, z] = (rest - contacts.reference).as_vec3().to_array();
+            [x, y, z, f32::from_bits(mask)]
+        })
+        .collect();
     let tools: Vec<u8> = contacts.tools.iter().flat_map(|contact| row_of(contact).bytes()).collect();
     let count = Fragment::new("generated: how many tools", format!("const TOOLS: u32 = {}u;\n", contacts.tools.len()));
     let coefficient = match (damped, relaxed) {
@@ -321,7 +325,9 @@ fn stage(body: Entity, contacts: &ToolContacts, world: &mut World, buffers: &mut
         stage = stage.column(column, buffers.column(body, column));
     }
     if damped {
-        stage = stage.own(shader!("damping_column")).column(DampingCoefficient::NAME, buffers.column(body, DampingCoefficient::NAME));
+        stage = stage
+            .own(shader!("damping_column"))
+            .column(DampingCoefficient::NAME, buffers.column(body, DampingCoefficient::NAME));
     }
     stage.with_step(world).loaded(true).that_asks_for_forces()
 }

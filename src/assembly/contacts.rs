@@ -5,7 +5,7 @@ use super::{Assembly, BodyParts};
 use crate::components::*;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Contact, Select, Tool, ToolPlace, WhenUnstable};
-use crate::tools::{Geometry, Solid};
+use crate::tools::Solid;
 use bevy_ecs::prelude::*;
 use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
@@ -32,14 +32,14 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             if of.as_ref().is_some_and(|of| of != name) {
                 continue;
             }
+            let Some(found) = scene.tools.get(tool) else { continue };
+            // what is wrong with it has been said
+            let Ok(geometry) = Solid::new(found.shape.clone(), found.rounding) else { continue };
             let path = format!("contacts[{number}].on");
-            let (Some(found), Some(rows)) = (scene.tools.get(tool), rows(assembly, name, body, on, &path, diagnostics))
-            else {
-                continue;
-            };
-            if found.shape.smallest_radius().is_some_and(|radius| radius < edge) {
-                let message = format!("the tool `{tool}` may slip between nodes: it is thinner than the faces that it meets");
-                let size = found.shape.smallest_radius().unwrap_or(0.0);
+            let Some(rows) = rows(assembly, name, body, on, &path, diagnostics) else { continue };
+            if let Some(size) = geometry.smallest_radius().filter(|radius| *radius < edge) {
+                let message =
+                    format!("the tool `{tool}` may slip between nodes: it is thinner than the faces that it meets");
                 diagnostics
                     .warn_at(format!("tools.\"{tool}\".shape").as_str(), message)
                     .note(format!("its radius is {size:.3e} m, and faces of `{name}` have edges of {edge:.3e} m"));
@@ -48,7 +48,6 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             rows.into_iter().for_each(|row| *marks.entry(row).or_default() |= bit);
             let signal = Signal::Pose { motion: motion(found), reference };
             let signal = world.resource_mut::<Signals>().add(signal);
-            let geometry = Geometry::Analytic(Solid { shape: found.shape.clone(), rounding: found.rounding });
             let friction = [static_friction.unwrap_or(*friction), *friction];
             tools.push(ToolContact { tool: tool.clone(), geometry, signal, friction });
         }
@@ -158,9 +157,9 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
                     speed * clock.time_step,
                     contacts.edge,
                 );
-                diagnostics
-                    .error_at(path.as_str(), message)
-                    .note("it could be through a surface before anybody sees it: give it more time, or take a smaller `step`");
+                diagnostics.error_at(path.as_str(), message).note(
+                    "it could be through a surface before anybody sees it: give it more time, or take a smaller `step`",
+                );
             }
         }
     }

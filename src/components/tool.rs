@@ -1,10 +1,10 @@
 //! Rigid tools: where they are, and what they touch.
 
-use super::column::columns;
 use super::Reals;
+use super::column::columns;
 use super::signal::Use;
 use crate::scene::schema::Curve;
-use crate::tools::Geometry;
+use crate::tools::Solid;
 use bevy_ecs::prelude::*;
 use glam::{DMat3, DQuat, DVec3};
 
@@ -123,7 +123,7 @@ pub struct ToolContact {
     /// The tool's name.
     pub tool: String,
     /// Its shape.
-    pub geometry: Geometry,
+    pub geometry: Solid,
     /// The first of six slots of [`Signals`](super::Signals): see [`Signal::Pose`](super::Signal::Pose), from
     /// [`ToolContacts::reference`].
     pub signal: usize,

@@ -10,6 +10,7 @@ mod overlaps;
 mod probes;
 mod rounding;
 mod tables;
+mod tools;
 mod track;
 
 pub use energies::{energies, energy_header, mass};
@@ -19,6 +20,7 @@ pub use guards::{Watch, begin as begin_to_guard, held_for_long};
 pub use look::{Look, WatchKernels, look};
 pub use probes::{header, observe_probe};
 pub use rounding::{Rounding, shortest_edge};
+pub use tools::{Felt, felt};
 pub use track::Track;
 
 use self::track::Moment;
@@ -154,7 +156,7 @@ impl Observer {
         for Watched { entity, name, .. } in &self.probes {
             let Some(probe) = world.get::<Probe>(*entity) else { continue };
             let path = folder.claim(&format!("probe_{name}.csv"))?;
-            probes.insert(name.clone(), Table::create(&path, &header(probe.what))?);
+            probes.insert(name.clone(), Table::create(&path, &header(&probe.what))?);
         }
         let convergence = match world.resource::<Clock>().relaxation {
             None => None,

@@ -40,7 +40,9 @@ pub fn felt(world: &mut World, tool: &str) -> Result<Felt, Error> {
     let mut bodies = world.query::<(&ToolContacts, &ToolTouch, &RestPosition, &Displacement, &DisplacementIncrement)>();
     for (contacts, touch, rest, u, step) in bodies.iter(world) {
         for (number, contact) in contacts.tools.iter().enumerate().filter(|(_, contact)| contact.tool == tool) {
-            let Some(pose) = now.iter().find(|(slot, _)| *slot == contact.signal).map(|(_, pose)| *pose) else { continue };
+            let Some(pose) = now.iter().find(|(slot, _)| *slot == contact.signal).map(|(_, pose)| *pose) else {
+                continue;
+            };
             felt.place = pose.at + contacts.reference;
             for (place, (&row, &mask)) in contacts.rows.iter().zip(&contacts.masks).enumerate() {
                 if mask >> number & 1 == 0 {

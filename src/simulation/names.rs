@@ -48,7 +48,7 @@ impl Names {
         let mut columns: BTreeMap<String, Vec<(String, String)>> = scene
             .probes
             .iter()
-            .map(|(name, probe)| (format!("probe_{name}.csv"), with_units(&observation::header(probe.what))))
+            .map(|(name, probe)| (format!("probe_{name}.csv"), with_units(&observation::header(&probe.what))))
             .collect();
         if scene.output.energies_every.is_some() {
             let header = observation::energy_header(scene.is_static());

@@ -7,5 +7,8 @@ mod surface;
 pub use form::Form;
 pub use shape::{Problem, Shape, Solid};
 
+/// What says the words of scenes here: messages quote it.
+pub const TEXTS: &[&str] = &[include_str!("shape.rs")];
+
 #[cfg(test)]
 mod tests;

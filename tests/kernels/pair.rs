@@ -34,8 +34,8 @@ pub fn run_all(systems: &[&str], effects: &Effects, step: u64, change: impl Fn(&
         change(world);
         let mut clock = world.resource_mut::<Clock>();
         clock.step = step;
-        let (window, end) = (clock.window_at(step), (step + 1) as f64 * clock.time_step);
-        world.resource_mut::<Signals>().evaluate(window, end);
+        let (window, times) = (clock.window_at(step), [step, step + 1].map(|step| step as f64 * clock.time_step));
+        world.resource_mut::<Signals>().evaluate(window, times);
         simulation
     };
     let (before, mut host, mut device) = (world(), world(), world());

@@ -208,7 +208,7 @@ fn mass(summary: &Summary, page: &mut Page) {
 
 fn probes(summary: &Summary, scene: &SceneFile, page: &mut Page) {
     let lines = summary.probes.iter().map(|(name, (time, values))| {
-        let header = scene.scene.probes.get(name).map(|probe| sinew::observation::header(probe.what));
+        let header = scene.scene.probes.get(name).map(|probe| sinew::observation::header(&probe.what));
         let columns = header.iter().flatten().skip(1);
         let values: Vec<String> = values.iter().zip(columns).map(|(value, column)| named(column, *value)).collect();
         format!("{name} at t = {} s: {}", digits(*time), values.join(", "))

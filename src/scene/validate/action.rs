@@ -63,7 +63,10 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
                     validator.out.error_at(what.name("tool"), message).notes(choice(tool, tools));
                 }
                 if on.is_some() {
-                    validator.out.error_at(path.name("on"), "what a tool feels is of the whole tool").note("leave `on` out");
+                    validator
+                        .out
+                        .error_at(path.name("on"), "what a tool feels is of the whole tool")
+                        .note("leave `on` out");
                 }
             }
         }

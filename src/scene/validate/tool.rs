@@ -29,19 +29,24 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
 
 fn tool(validator: &mut Validator, path: &Path, tool: &Tool) {
     if let Some(problem) = tool.shape.problem(tool.rounding) {
-        let path = if problem.field == "rounding" { path.name("rounding") } else { path.name("shape").name(problem.field) };
+        let path =
+            if problem.field == "rounding" { path.name("rounding") } else { path.name("shape").name(problem.field) };
         validator.out.error_at(path, problem.message);
     }
     for (field, there) in [("at", tool.at.is_some()), ("rotation", tool.rotation.is_some())] {
         if there && !tool.path.is_empty() {
             let message = format!("`{field}` beside a `path`, which says where the tool is at all times");
-            validator.out.error_at(path.name(field), message).note("leave one of both out; `moves` may be added to a path");
+            validator
+                .out
+                .error_at(path.name(field), message)
+                .note("leave one of both out; `moves` may be added to a path");
         }
     }
     for (number, pair) in tool.path.windows(2).enumerate() {
         if pair[1].t <= pair[0].t {
             let path = path.name("path").index(number + 1).name("t");
-            let message = format!("places are in the order of time: after {} s this is {} s", show(pair[0].t), show(pair[1].t));
+            let message =
+                format!("places are in the order of time: after {} s this is {} s", show(pair[0].t), show(pair[1].t));
             let far = (pair[1].at - pair[0].at).length();
             let jumps = pair[1].t == pair[0].t && far > 0.0;
             let note = format!("the tool would jump by {} m; give it time to go there", show(far));
@@ -73,7 +78,8 @@ fn contacts(scene_: &Scene, validator: &mut Validator) {
         if let Some(sticking) = static_friction {
             validator.not_negative(&path.name("static_friction"), *sticking, "");
             if *sticking < *friction {
-                let message = format!("`static_friction` is {}, and `friction` is {}", show(*sticking), show(*friction));
+                let message =
+                    format!("`static_friction` is {}, and `friction` is {}", show(*sticking), show(*friction));
                 validator
                     .out
                     .error_at(path.name("static_friction"), message)

@@ -40,11 +40,11 @@ impl Looks {
         let count = if steps < 10 * grain { FIELDS } else { (steps / 10 / grain).clamp(1, 10) * grain };
         let mut probes: Vec<(String, Quantity, Vec<usize>)> = Vec::new();
         for (name, probe) in &scene.scene.probes {
-            let all = 0..sinew::observation::header(probe.what).len() - 1;
-            probes.push((name.clone(), probe.what, all.collect()));
+            let all = 0..sinew::observation::header(&probe.what).len() - 1;
+            probes.push((name.clone(), probe.what.clone(), all.collect()));
         }
         for (name, probe, axes) in reactions {
-            probes.push((name.clone(), probe.what, axes.iter().map(|axis| *axis as usize).collect()));
+            probes.push((name.clone(), probe.what.clone(), axes.iter().map(|axis| *axis as usize).collect()));
         }
         probes.sort_by(|a, b| a.0.cmp(&b.0));
         probes.dedup_by(|a, b| a.0 == b.0);
@@ -54,7 +54,7 @@ impl Looks {
     /// The names of all channels.
     pub fn names(&self) -> Vec<String> {
         let probes = self.probes.iter().flat_map(|(name, what, components)| {
-            components.iter().map(move |&component| column(name, *what, component).0)
+            components.iter().map(move |&component| column(name, what, component).0)
         });
         probes.chain(["energy.kinetic".into(), "energy.strain".into()]).collect()
     }
@@ -67,7 +67,7 @@ impl Looks {
 }
 
 /// The name and the unit of a probe's component: `tip.uz` and `m`.
-fn column(probe: &str, what: Quantity, component: usize) -> (String, String) {
+fn column(probe: &str, what: &Quantity, component: usize) -> (String, String) {
     let header = sinew::observation::header(what);
     let text = header.get(component + 1).copied().unwrap_or_default();
     let (name, unit) = text.strip_suffix(')').and_then(|text| text.split_once(" (")).unwrap_or((text, ""));
@@ -187,7 +187,7 @@ impl Run<'_> {
     fn take(&mut self, sample: Sample) {
         let time = sample.time;
         for ((name, what, components), values) in self.looks.probes.iter().zip(&sample.probes) {
-            self.keep(name, *what, components, time, values);
+            self.keep(name, what, components, time, values);
         }
         for (name, value) in ["energy.kinetic", "energy.strain"].into_iter().zip(sample.energies.into_iter().flatten())
         {
@@ -201,7 +201,7 @@ impl Run<'_> {
         }
     }
 
-    fn keep(&mut self, probe: &str, what: Quantity, components: &[usize], time: f64, values: &[f64]) {
+    fn keep(&mut self, probe: &str, what: &Quantity, components: &[usize], time: f64, values: &[f64]) {
         for &component in components {
             let (name, unit) = column(probe, what, component);
             self.push(name, probe, unit, time, values.get(component).copied().unwrap_or(f64::NAN));

@@ -154,11 +154,12 @@ pub fn reactions(scene: &Scene) -> Vec<(String, Probe, Vec<Axis>)> {
     let many = scene.constraints.len() > 1;
     for (number, constraint) in scene.constraints.iter().enumerate() {
         let (Constraint::Fixed { body, on, axes } | Constraint::Prescribed { body, on, axes, .. }) = constraint;
-        let same = |probe: &Probe| probe.what == Quantity::Reaction && probe.on == *on && probe.body == *body;
+        let same =
+            |probe: &Probe| probe.what == Quantity::Reaction && probe.on.as_ref() == Some(on) && probe.body == *body;
         let name = if many { format!("reaction{number}") } else { "reaction".into() };
         if !scene.probes.values().any(same) && !scene.probes.contains_key(&name) {
             let probe =
-                Probe { body: body.clone(), what: Quantity::Reaction, on: on.clone(), every: None, peak: false };
+                Probe { body: body.clone(), what: Quantity::Reaction, on: Some(on.clone()), every: None, peak: false };
             found.push((name, probe, axes.clone()));
         }
     }
