@@ -37,6 +37,12 @@ pub enum MeshError {
         /// What is to be known about how it was read.
         notes: Vec<String>,
     },
+    /// This sinew was built without the feature `files`.
+    #[error("{}: this sinew was built without reading mesh files (feature `files`)", file.display())]
+    NotBuilt {
+        /// The file.
+        file: PathBuf,
+    },
     /// A parameter of a generator or of a placement is outside its range.
     #[error("{name}: {parameter} is {value}; {allowed}")]
     Parameter {
