@@ -85,8 +85,12 @@ fn one_copy_of(body: &Body, scene: &SceneFile) -> Result<Mesh, MeshError> {
     Ok(mesh)
 }
 
-/// What a mesh file holds, if the scene may read it.
+/// The mesh of a name: a program's, or what a file holds, if the scene may read it.
 fn mesh_file(scene: &SceneFile, name: &str, flip_inverted: bool) -> Result<Mesh, MeshError> {
+    if let Some(mesh) = scene.meshes.get(name) {
+        mesh.require_sound(name)?;
+        return Ok(Mesh::clone(mesh));
+    }
     let path = scene.file(name).unwrap_or_else(|_| name.into());
     match scene.bytes(name, u64::MAX) {
         Ok(bytes) => Mesh::from_bytes(path, &bytes, flip_inverted),

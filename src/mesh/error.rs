@@ -37,6 +37,12 @@ pub enum MeshError {
         /// What is to be known about how it was read.
         notes: Vec<String>,
     },
+    /// This sinew was built without the feature `files`.
+    #[error("{}: this sinew was built without reading mesh files (feature `files`)", file.display())]
+    NotBuilt {
+        /// The file.
+        file: PathBuf,
+    },
     /// A parameter of a generator or of a placement is outside its range.
     #[error("{name}: {parameter} is {value}; {allowed}")]
     Parameter {
@@ -74,24 +80,4 @@ impl fmt::Display for Place {
 
 fn list(sentences: &[impl fmt::Display]) -> String {
     sentences.iter().map(|sentence| format!("\n  {sentence}")).collect()
-}
-
-/// A fault found while a file is read, before its name is added.
-#[derive(Debug)]
-pub(super) struct Fault {
-    pub at: Place,
-    pub what: String,
-    pub allowed: String,
-}
-
-impl Fault {
-    /// A fault of the file as a whole.
-    pub fn whole(what: impl Into<String>, allowed: impl Into<String>) -> Self {
-        Fault { at: Place::File, what: what.into(), allowed: allowed.into() }
-    }
-
-    /// The error that names the file.
-    pub fn in_file(self, file: &std::path::Path) -> MeshError {
-        MeshError::Format { file: file.to_path_buf(), at: self.at, what: self.what, allowed: self.allowed }
-    }
 }

@@ -3,10 +3,13 @@
 //! A [`Mesh`] is what generators make and files hold; the engine renumbers it for locality when a body is built from
 //! it.
 
+#[cfg(not(feature = "files"))]
+mod absent;
 mod cells;
 mod error;
 #[doc(hidden)]
 pub mod generators;
+#[cfg(feature = "files")]
 mod gmsh;
 mod locate;
 #[doc(hidden)]
@@ -14,6 +17,7 @@ pub mod measure;
 mod placement;
 #[doc(hidden)]
 pub mod quality;
+#[cfg(feature = "files")]
 mod read;
 mod refine;
 mod repeat;
@@ -23,7 +27,9 @@ pub mod soundness;
 mod surface;
 #[doc(hidden)]
 pub mod topology;
+#[cfg(feature = "files")]
 mod vtk;
+#[cfg(feature = "files")]
 #[doc(hidden)]
 pub mod vtu;
 

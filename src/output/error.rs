@@ -84,6 +84,12 @@ pub enum OutputError {
         /// Columns of the table.
         columns: usize,
     },
+    /// This sinew was built without the feature `files`.
+    #[error("{}: this sinew was built without writing result files (feature `files`)", path.display())]
+    NotBuilt {
+        /// The file or folder.
+        path: PathBuf,
+    },
     /// Something cannot be expressed in the file's format.
     #[error("{}: {reason}", path.display())]
     Format {

@@ -13,26 +13,26 @@
 //! Every file is readable at every moment: whole files are written under another name and renamed, files that grow do
 //! so by whole rows. One process at a time writes into a folder: [`Folder`] holds a [`Lock`]. A run that is interrupted
 //! leaves what it had written until then.
+//!
+//! Without the feature `files` there are no such files, and no [`Folder`] can be made.
 
+#[cfg(not(feature = "files"))]
+mod absent;
 mod atomic;
 mod error;
+#[cfg(feature = "files")]
+mod files;
 mod finite;
-mod folder;
-mod gmsh;
-mod lock;
+mod frame;
 pub mod nodes;
-mod pvd;
 pub mod summary;
-mod table;
-mod vtu;
 
+#[cfg(not(feature = "files"))]
+pub use absent::{Folder, Lock, Series, Table, write_table, write_vtu};
 pub use atomic::replace;
 pub use error::OutputError;
+#[cfg(feature = "files")]
+pub use files::{FIELDS, Folder, Lock, Series, Table, write_gmsh, write_table, write_vtu};
 pub use finite::not_finite;
-pub use folder::{Folder, WHOLE};
-pub use gmsh::write as write_gmsh;
-pub use lock::Lock;
+pub use frame::{Array, Frame, Values, WHOLE};
 pub use nodes::Node;
-pub use pvd::{FIELDS, Series};
-pub use table::Table;
-pub use vtu::{Array, Frame, Values, write as write_vtu};

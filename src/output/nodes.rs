@@ -1,6 +1,6 @@
 //! `nodes.csv`: where every node ended up, in the author's numbering.
 
-use super::{OutputError, replace};
+use super::{OutputError, write_table};
 use glam::DVec3;
 use std::path::Path;
 
@@ -40,17 +40,12 @@ pub fn file_name(body: &str, bodies: usize) -> String {
 }
 
 /// Writes the table, one row a node, with as many digits as give each number back exactly.
+///
+/// # Errors
+/// Files that cannot be written.
 pub fn write(path: &Path, nodes: impl IntoIterator<Item = Node>) -> Result<(), OutputError> {
-    let refused = |error: csv::Error| match error.into_kind() {
-        csv::ErrorKind::Io(source) => OutputError::system("write", path)(source),
-        other => OutputError::Format { path: path.to_path_buf(), reason: format!("{other:?}") },
+    let row = |Node { id, position: x, displacement: u, force: f, mass }| {
+        (id, x.x, x.y, x.z, u.x, u.y, u.z, f.x, f.y, f.z, mass)
     };
-    replace(path, |file| {
-        let mut table = csv::WriterBuilder::new().has_headers(false).from_writer(file);
-        table.write_record(COLUMNS.map(|(name, _)| name)).map_err(refused)?;
-        for Node { id, position: x, displacement: u, force: f, mass } in nodes {
-            table.serialize((id, x.x, x.y, x.z, u.x, u.y, u.z, f.x, f.y, f.z, mass)).map_err(refused)?;
-        }
-        table.flush().map_err(OutputError::system("write", path))
-    })
+    write_table(path, &COLUMNS.map(|(name, _)| name), nodes.into_iter().map(row))
 }

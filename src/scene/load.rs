@@ -9,6 +9,7 @@ use super::schema::Scene;
 use super::set;
 use super::source::Source;
 use super::syntax::{Span, Tree, parse};
+use crate::mesh::Mesh;
 use glam::DVec3;
 use ron::extensions::Extensions;
 use std::collections::BTreeMap;
@@ -32,6 +33,9 @@ pub struct SceneFile {
     /// Where nodes of bodies are at rest (m), in the author's order, where a program knows better than the scene: in
     /// place of what `rest_shape` says.
     pub rest_shapes: BTreeMap<String, Vec<DVec3>>,
+    /// Meshes that a program has made, by the names that `File(path: ...)` and `rest_shape` give them, before files of
+    /// those names. They are taken as they are: `flip_inverted` turns nothing in them.
+    pub meshes: BTreeMap<String, Arc<Mesh>>,
     source: Arc<Source>,
     tree: Arc<Tree>,
 }
@@ -136,7 +140,12 @@ impl SceneFile {
     pub(crate) fn again(&self, text: &str, sets: &[String]) -> Result<Self, Diagnostics> {
         let name = self.path.display().to_string();
         let again = Self::from_parts(&name, text, (&self.folder, self.files.clone()), sets, self.allowed)?;
-        Ok(Self { path: self.path.clone(), rest_shapes: self.rest_shapes.clone(), ..again })
+        Ok(Self {
+            path: self.path.clone(),
+            rest_shapes: self.rest_shapes.clone(),
+            meshes: self.meshes.clone(),
+            ..again
+        })
     }
 
     fn from_parts(
@@ -177,6 +186,7 @@ impl SceneFile {
             files: files.clone(),
             allowed,
             rest_shapes: BTreeMap::new(),
+            meshes: BTreeMap::new(),
             source,
             tree,
         };

@@ -1,9 +1,12 @@
 //! Scenes whose files are in memory: nothing is read from a disk.
 
+use sinew::glam::DVec3;
+use sinew::mesh::{CellKind, Cells, Ids, Mesh};
 use sinew::scene::SceneFile;
 use sinew::systems::Registry;
 use sinew::{BackendChoice, Options, Simulation};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 const SCENE: &str = r#"(duration: 0.1,
 bodies: {"a": (mesh: File(path: "meshes/a.msh"), material: "tissue")},
@@ -61,4 +64,42 @@ fn what_is_not_in_memory_is_told_and_never_looked_for_on_a_disk() {
     let broken = files().into_keys().map(|name| (name, b"no mesh".to_vec())).collect();
     let broken = told(SCENE, broken);
     assert!(broken.contains("meshes/a.msh: "), "{broken}");
+}
+
+/// The scene with a mesh that a program has made in place of the file.
+fn made(mesh: Mesh) -> SceneFile {
+    let mut scene = SceneFile::from_memory("memory", SCENE, files(), &[]).unwrap();
+    scene.meshes.insert("meshes/a.msh".into(), Arc::new(mesh));
+    scene
+}
+
+fn corner(nodes: [u32; 4]) -> Mesh {
+    Mesh {
+        points: vec![DVec3::ZERO, DVec3::X, DVec3::Y, 0.1 * DVec3::Z],
+        point_ids: Ids::Named(vec![1, 2, 3, 4]),
+        cells: Cells::of(CellKind::Tet4, &[nodes]).unwrap(),
+        ..Mesh::default()
+    }
+}
+
+#[test]
+fn a_mesh_that_a_program_has_made_runs_as_the_same_in_a_file() {
+    let file = SceneFile::from_memory("memory", SCENE, files(), &[]).unwrap();
+    let [file, made] = [file, made(corner([0, 1, 2, 3]))].map(|scene| {
+        let options = Options { backend: BackendChoice::Cpu, ..Options::default() };
+        let mut simulation = Simulation::new(&scene, &options).unwrap();
+        simulation.finish().unwrap();
+        simulation.displacements("a").unwrap()
+    });
+    assert!(made[3].z > 0.0, "{made:?}");
+    assert_eq!(made, file);
+}
+
+#[test]
+fn a_made_mesh_that_cannot_be_simulated_is_told() {
+    let told = |mesh: Mesh| Simulation::check(&made(mesh), &Registry::default()).to_string();
+    let beyond = told(corner([0, 1, 2, 7]));
+    assert!(beyond.contains("meshes/a.msh: the mesh cannot be simulated"), "{beyond}");
+    let inside_out = told(corner([0, 2, 1, 3]));
+    assert!(inside_out.contains("list their nodes in the other order"), "{inside_out}");
 }

@@ -1,7 +1,7 @@
 //! `$ElementData`: vectors of elements.
 
 use super::File;
-use crate::mesh::error::Fault;
+use crate::mesh::read::Fault;
 use crate::mesh::read::cursor::Form;
 use glam::DVec3;
 

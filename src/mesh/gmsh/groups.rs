@@ -1,6 +1,6 @@
 //! Physical groups and their names.
 
-use crate::mesh::error::Fault;
+use crate::mesh::read::Fault;
 use crate::mesh::read::cursor::Cursor;
 use std::collections::BTreeMap;
 

@@ -7,7 +7,7 @@ mod version1;
 mod version2;
 mod version4;
 
-use super::error::Fault;
+use super::read::Fault;
 use super::read::cursor::{Cursor, Form};
 use super::read::draft::Draft;
 use groups::Groups;

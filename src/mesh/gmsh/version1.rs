@@ -2,7 +2,7 @@
 
 use super::{File, kinds};
 use crate::mesh::CellKind;
-use crate::mesh::error::Fault;
+use crate::mesh::read::Fault;
 use glam::DVec3;
 
 impl File<'_> {

@@ -1,7 +1,7 @@
 //! Formats 2.0 to 2.2.
 
 use super::{File, kinds};
-use crate::mesh::error::Fault;
+use crate::mesh::read::Fault;
 use crate::mesh::read::cursor::Form;
 use glam::DVec3;
 

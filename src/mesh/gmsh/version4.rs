@@ -1,7 +1,7 @@
 //! Format 4.1.
 
 use super::{File, kinds};
-use crate::mesh::error::Fault;
+use crate::mesh::read::Fault;
 use crate::mesh::read::cursor::Form;
 use glam::DVec3;
 

@@ -1,6 +1,7 @@
 //! A place in a file's bytes that moves on as words and binary numbers are read, and knows where it is.
 
-use crate::mesh::error::{Fault, Place};
+use crate::mesh::Place;
+use crate::mesh::read::Fault;
 use std::str::FromStr;
 
 /// How numbers are written from here on.

@@ -2,9 +2,11 @@
 
 pub mod cursor;
 pub mod draft;
+mod fault;
 mod orientation;
 
-use super::error::Fault;
+pub use fault::Fault;
+
 use super::{Mesh, MeshError, gmsh, vtk, vtu};
 use std::path::Path;
 

@@ -1,7 +1,7 @@
 //! Point and cell data of legacy files.
 
 use super::File;
-use crate::mesh::error::Fault;
+use crate::mesh::read::Fault;
 use crate::mesh::vtu::DataArray;
 use crate::mesh::vtu::scalar::Scalar;
 use std::collections::BTreeMap;

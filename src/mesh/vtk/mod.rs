@@ -2,7 +2,7 @@
 
 mod attributes;
 
-use super::error::Fault;
+use super::read::Fault;
 use super::read::cursor::{Cursor, Form};
 use super::vtu::scalar::Scalar;
 use super::vtu::{DataArray, VtuFile};

@@ -1,6 +1,6 @@
 //! Data appended behind the XML of a file.
 
-use crate::mesh::error::Fault;
+use crate::mesh::read::Fault;
 
 /// A file in two parts.
 pub struct Split<'a> {

@@ -1,7 +1,7 @@
 //! From the cells of a VTK grid to a draft of a mesh; legacy files take the same road.
 
 use super::{DataArray, VtuFile};
-use crate::mesh::error::Fault;
+use crate::mesh::read::Fault;
 use crate::mesh::read::draft::Draft;
 use crate::mesh::topology::CellKind;
 use glam::DVec3;

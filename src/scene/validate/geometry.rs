@@ -168,6 +168,9 @@ fn at_least_one(validator: &mut Validator, path: &Path, count: u32) {
 }
 
 fn mesh_file(file: &SceneFile, validator: &mut Validator, path: &Path, name: &str) {
+    if file.meshes.contains_key(name) {
+        return;
+    }
     let (found, full, mut there) = match file.file(name).and_then(|full| Ok((full, file.look_up(name)?))) {
         Ok((full, (found, there))) => (found, full, there),
         Err(outside) => return tell_outside(validator, path, &outside),

@@ -2,7 +2,7 @@
 
 use super::numbering::Numbering;
 use super::{Cell, Draft};
-use crate::mesh::error::Fault;
+use crate::mesh::read::Fault;
 use crate::mesh::topology::singular;
 use crate::mesh::{CellKind, Ids, Mesh};
 use glam::DVec3;

@@ -1,6 +1,7 @@
 //! The series of frames: `fields_000000.vtu` and so on, and `fields.pvd`, which gives ParaView their times.
 
-use super::{Folder, Frame, OutputError, write_vtu};
+use super::{Folder, write_vtu};
+use crate::output::{Frame, OutputError};
 use std::fs::File;
 use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! Who writes into an output folder: one process at a time. The system lets go of a lock when its process ends, however
 //! it ends; nothing is left to be cleared away by hand.
 
-use super::OutputError;
+use crate::output::OutputError;
 use serde_json::{Value, json};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, Write};

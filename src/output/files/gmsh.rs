@@ -1,8 +1,8 @@
 //! A mesh as a Gmsh file (format 2.2, text): the format that holds all that a mesh of sinew has, named sets of points,
 //! faces and elements, numbers, and vectors of elements, and that other programs read.
 
-use super::{OutputError, replace};
 use crate::mesh::{CellKind, Mesh, nodes_of_face};
+use crate::output::{OutputError, replace};
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{BufWriter, Result, Write};

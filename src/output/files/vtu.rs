@@ -1,51 +1,15 @@
 //! One frame as a VTU file (VTK XML, unstructured grid): appended raw data in zlib blocks, as ParaView writes it
 //! itself.
 
-use super::{OutputError, replace};
 use crate::mesh::topology::Listing;
 use crate::mesh::{CellKind, Cells};
+use crate::output::{Frame, OutputError, Values, replace};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
-use glam::DVec3;
 use rayon::prelude::*;
 use std::fs::File;
 use std::io::{BufWriter, Seek, SeekFrom, Write};
 use std::path::Path;
-
-/// The state of all bodies at one time, as slices of what the engine holds.
-pub struct Frame<'a> {
-    /// Time (s).
-    pub time: f64,
-    /// Rest positions (m), one row a point.
-    pub points: &'a [DVec3],
-    /// Cells by rows of `points`.
-    pub cells: &'a Cells,
-    /// One row a point.
-    pub point_arrays: Vec<Array<'a>>,
-    /// One row a cell.
-    pub cell_arrays: Vec<Array<'a>>,
-}
-
-/// A named array of a [`Frame`].
-pub struct Array<'a> {
-    /// What ParaView shows.
-    pub name: &'a str,
-    /// Values a row: 1, 3 (a vector) or 6 (a symmetric tensor: xx, yy, zz, xy, yz, xz).
-    pub components: usize,
-    /// The values, row by row.
-    pub values: Values<'a>,
-}
-
-/// Values of an [`Array`], as many as rows times components.
-#[derive(Clone, Copy)]
-#[allow(missing_docs)]
-pub enum Values<'a> {
-    F32(&'a [f32]),
-    F64(&'a [f64]),
-    U8(&'a [u8]),
-    U32(&'a [u32]),
-    I64(&'a [i64]),
-}
 
 impl<'a> Values<'a> {
     /// The type's name in the file, the number of values, and their bytes.

@@ -1,6 +1,7 @@
 //! The output folder: made, recognised and cleared of the previous run.
 
-use super::{FIELDS, Lock, OutputError, summary};
+use super::{FIELDS, Lock};
+use crate::output::{OutputError, WHOLE, summary};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use std::fs;
@@ -9,8 +10,6 @@ use std::sync::Arc;
 
 /// The mark of an output folder, written before anything else; it also names the tables of the run.
 const MARK: &str = "sinew.json";
-/// The mesh that bodies began with, of a run whose first frame lacks some of it already.
-pub const WHOLE: &str = "whole_mesh.vtu";
 /// Files that every run may leave.
 const KNOWN: [&str; 6] = [FIELDS, WHOLE, "last_states.pvd", "energy.csv", "nodes.csv", "summary.json"];
 

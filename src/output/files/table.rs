@@ -1,6 +1,6 @@
-//! CSV tables that grow by whole rows.
+//! CSV tables: those that grow by whole rows, and those written at once.
 
-use super::OutputError;
+use crate::output::{OutputError, replace};
 use serde::Serialize;
 use std::fs::File;
 use std::io::{Seek, SeekFrom, Write};
@@ -54,4 +54,23 @@ impl Table {
         }
         written.map_err(OutputError::system("write", &self.path))
     }
+}
+
+/// Writes a whole table; the file appears when it is complete.
+///
+/// # Errors
+/// Files that cannot be written, and what cannot stand in a row.
+pub fn write(path: &Path, header: &[&str], rows: impl Iterator<Item = impl Serialize>) -> Result<(), OutputError> {
+    let refused = |error: csv::Error| match error.into_kind() {
+        csv::ErrorKind::Io(source) => OutputError::system("write", path)(source),
+        other => OutputError::Format { path: path.to_path_buf(), reason: format!("{other:?}") },
+    };
+    replace(path, |file| {
+        let mut table = csv::WriterBuilder::new().has_headers(false).from_writer(file);
+        table.write_record(header).map_err(refused)?;
+        for row in rows {
+            table.serialize(row).map_err(refused)?;
+        }
+        table.flush().map_err(OutputError::system("write", path))
+    })
 }
