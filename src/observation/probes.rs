@@ -38,11 +38,11 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
         return Ok(Vec::new());
     };
     if let Some(tool) = probe.what.tool() {
-        let felt = super::tools::felt(world, tool)?;
+        let reading = super::tools::read_tool(world, tool)?;
         return Ok(match probe.what {
-            Quantity::ToolForce { .. } => felt.force,
-            Quantity::ToolTorque { .. } => felt.torque,
-            _ => felt.place,
+            Quantity::ToolForce { .. } => reading.force,
+            Quantity::ToolTorque { .. } => reading.torque,
+            _ => reading.place,
         }
         .to_array()
         .to_vec());

@@ -7,17 +7,17 @@ use bevy_ecs::prelude::*;
 use glam::DVec3;
 
 /// What a tool feels of all bodies that it touches, in the step that has just been taken.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Felt {
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct ToolReading {
     /// The force on it (N).
     pub force: DVec3,
     /// The moment of this force about its origin (N m).
     pub torque: DVec3,
     /// Where its origin is (m).
     pub place: DVec3,
-    /// Nodes that it touches.
+    /// How many nodes it touches.
     pub nodes: usize,
-    /// How deep the deepest of the nodes that it may touch is inside (m); 0 where none is.
+    /// How deep the deepest of the nodes that it may touch is inside it (m); 0 where none is.
     pub depth: f64,
     /// The work that it has done since the start (J).
     pub work: f64,
@@ -29,21 +29,21 @@ pub struct Felt {
 ///
 /// # Errors
 /// What the GPU says.
-pub fn felt(world: &mut World, tool: &str) -> Result<Felt, Error> {
+pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
     bring_to_host(world, |_, name| [ToolTouch::NAME, Displacement::NAME, DisplacementIncrement::NAME].contains(&name))?;
     let clock = *world.resource::<Clock>();
     let now = match &clock.relaxation {
         Some(relaxation) => world.resource::<Signals>().poses_at_share(relaxation.end, relaxation.share(clock.step)),
         None => world.resource::<Signals>().poses_at(clock.time()),
     };
-    let mut felt = Felt::default();
+    let mut reading = ToolReading::default();
     let mut bodies = world.query::<(&ToolContacts, &ToolTouch, &RestPosition, &Displacement, &DisplacementIncrement)>();
     for (contacts, touch, rest, u, step) in bodies.iter(world) {
         for (number, contact) in contacts.tools.iter().enumerate().filter(|(_, contact)| contact.tool == tool) {
             let Some(pose) = now.iter().find(|(slot, _)| *slot == contact.signal).map(|(_, pose)| *pose) else {
                 continue;
             };
-            felt.place = pose.at + contacts.reference;
+            reading.place = pose.at + contacts.reference;
             for (place, (&row, &mask)) in contacts.rows.iter().zip(&contacts.masks).enumerate() {
                 if mask >> number & 1 == 0 {
                     continue;
@@ -51,18 +51,18 @@ pub fn felt(world: &mut World, tool: &str) -> Result<Felt, Error> {
                 let row = row as usize;
                 let at = TOUCH_NUMBERS * (contacts.tools.len() * place + number);
                 let number = |i: usize| touch.get(at + i);
-                felt.work += number(5);
-                felt.loss += number(6);
+                reading.work += number(5);
+                reading.loss += number(6);
                 let end = rest.0[row] - contacts.reference + u.vector(row);
-                felt.depth = felt.depth.max(-contact.geometry.distance(pose.inverse(end)).0);
+                reading.depth = reading.depth.max(-contact.geometry.distance(pose.inverse(end)).0);
                 if number(3) > 0.0 {
                     let force = -DVec3::new(number(0), number(1), number(2));
-                    felt.nodes += 1;
-                    felt.force += force;
-                    felt.torque += (end - step.vector(row) - pose.at).cross(force);
+                    reading.nodes += 1;
+                    reading.force += force;
+                    reading.torque += (end - step.vector(row) - pose.at).cross(force);
                 }
             }
         }
     }
-    Ok(felt)
+    Ok(reading)
 }

@@ -4,6 +4,7 @@ use super::Simulation;
 use crate::components::*;
 use crate::error::{Criterion, Error};
 use crate::observation::Observer;
+use crate::observation::ToolReading;
 use crate::output::{Folder, Node, nodes};
 use crate::scene::Diagnostics;
 use crate::scene::schema::Scene;
@@ -168,6 +169,19 @@ impl Simulation {
                 Err(Error::Options(format!("there is no probe named {name:?}; there is {}", names.join(", "))))
             }
         }
+    }
+
+    /// What a tool of the scene feels.
+    ///
+    /// # Errors
+    /// No such tool; what the GPU says.
+    pub fn tool(&mut self, name: &str) -> Result<ToolReading, Error> {
+        self.settle()?;
+        if !self.scene.tools.contains_key(name) {
+            let names: Vec<&str> = self.scene.tools.keys().map(String::as_str).collect();
+            return Err(Error::Options(format!("there is no tool named {name:?}; there is {}", names.join(", "))));
+        }
+        crate::observation::read_tool(&mut self.world, name)
     }
 
     /// Writes all that is observed from now on into a folder.

@@ -83,6 +83,8 @@ pub struct Summary {
     pub inversions: Vec<Inversions>,
     /// What each probe saw last: time (s) and values.
     pub probes: BTreeMap<String, (f64, Vec<f64>)>,
+    /// What each tool feels at the end.
+    pub tools: BTreeMap<String, crate::observation::ToolReading>,
     /// What the guards have seen and warned of.
     pub guards: GuardMemory,
     /// How it broke down, if it did.
@@ -167,6 +169,12 @@ impl Simulation {
         let solving = (run - writing).max(0.0);
         let (first, since) = self.began;
         let a_step = solving / steps.saturating_sub(first).max(1) as f64;
+        let names: Vec<String> = self.scene.tools.keys().cloned().collect();
+        let mut tools = BTreeMap::new();
+        for name in names {
+            let reading = crate::observation::read_tool(&mut self.world, &name)?;
+            tools.insert(name, reading);
+        }
         let facts = &self.facts;
         Ok(Summary {
             version: env!("CARGO_PKG_VERSION"),
@@ -206,6 +214,7 @@ impl Simulation {
             removed_elements: removed,
             inversions: inversions(&mut self.world)?,
             probes: self.world.resource::<Observer>().latest.clone(),
+            tools,
             guards: self.guards(),
             failure: self.failure.clone(),
             ended: ended.into(),

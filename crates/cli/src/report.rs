@@ -33,6 +33,7 @@ pub fn text(summary: &Summary, scene: &SceneFile, folder: &Path, paint: Paint) -
     guards(summary, &mut page);
     mass(summary, &mut page);
     probes(summary, scene, &mut page);
+    tools(summary, &mut page);
     outputs(folder, &mut page);
     page.text
 }
@@ -204,6 +205,20 @@ fn mass(summary: &Summary, page: &mut Page) {
         format!("elements of {} were inside out, one of them {}; {left}", found.body, found.element)
     });
     page.rows("inversion", inversions.collect::<Vec<_>>());
+}
+
+fn tools(summary: &Summary, page: &mut Page) {
+    let lines = summary.tools.iter().map(|(name, reading)| {
+        let [x, y, z] = reading.force.to_array().map(|part| quantity(part, "N"));
+        let inside = match reading.depth > 0.0 {
+            true => format!(", the deepest {} inside", quantity(reading.depth, "m")),
+            false => String::new(),
+        };
+        let (work, loss) = (quantity(reading.work, "J"), quantity(reading.loss, "J"));
+        let nodes = counted(reading.nodes as u64, "node");
+        format!("{name} feels ({x}, {y}, {z}) of {nodes}{inside}; it did {work}, lost to impact and friction {loss}")
+    });
+    page.rows("tools", lines.collect::<Vec<_>>());
 }
 
 fn probes(summary: &Summary, scene: &SceneFile, page: &mut Page) {
