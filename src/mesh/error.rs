@@ -78,7 +78,7 @@ fn list(sentences: &[impl fmt::Display]) -> String {
 
 /// A fault found while a file is read, before its name is added.
 #[derive(Debug)]
-pub(super) struct Fault {
+pub(crate) struct Fault {
     pub at: Place,
     pub what: String,
     pub allowed: String,

@@ -28,11 +28,13 @@ mod vtk;
 pub mod vtu;
 
 pub use cells::Cells;
+pub(crate) use error::Fault;
 pub use error::{MeshError, Place};
 pub use generators::ElementKind;
 pub(crate) use generators::each_element_kind;
 pub use locate::{Location, Locator};
 pub use quality::Quality;
+pub(crate) use read::cursor::{Cursor, Form as NumberForm};
 pub use report::{MeshReport, SetReport, extent};
 pub use surface::SurfaceFace;
 pub(crate) use surface::nodes_of_face;

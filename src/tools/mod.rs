@@ -3,6 +3,7 @@
 mod closed;
 mod form;
 mod grid;
+mod read;
 mod shape;
 mod surface;
 #[cfg(test)]
