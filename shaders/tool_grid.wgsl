@@ -50,8 +50,8 @@ fn tool_grid_within(grid: ToolGrid, y: vec3<f32>) -> vec4<f32> {
     return vec4<f32>(1.0, 0.0, 0.0, found.x);
 }
 
-// The unit gradient, and in w the signed distance (m) from a place in the tool's frame (m); outside the grid the distance
-// to where the surface is nearest to the nearest place of the grid.
+// The unit gradient, and in w the signed distance (m) from a place in the tool's frame (m); outside the grid the
+// distance to where the surface is nearest to the nearest place of the grid.
 fn tool_grid_distance(grid: ToolGrid, far_place: vec3<f32>) -> vec4<f32> {
     let y = clamp(far_place, vec3<f32>(-GRID_FAR), vec3<f32>(GRID_FAR));
     let origin = vec3<f32>(grid.x, grid.y, grid.z);

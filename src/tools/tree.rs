@@ -72,7 +72,7 @@ impl Tree {
     }
 
     /// What is nearest to a place; a triangle that may be near (what was nearest to a place beside this one) saves
-    /// time. Of what is farther than `exact` (m), one that is no more than [`SLACK`] of its distance farther is as good.
+    /// time. Of those farther than `exact` (m) one that is no more than [`SLACK`] of its distance farther is as good.
     /// None of no triangles.
     pub fn nearest(&self, y: DVec3, near: Option<Nearest>, exact: f64) -> Option<Nearest> {
         let found = |place: u32| {
