@@ -1,5 +1,5 @@
 // Rigid tools keep nodes outside; twin of systems/tool_contact.rs. TOOLS and damping_of are generated; tool_distance is in
-// tool_shape.wgsl.
+// tool_shape.wgsl, grid_distance in tool_of_grid.wgsl, or generated where no tool is a grid.
 struct ToolRow {
     kind: u32,
     size_0: f32,
@@ -12,7 +12,11 @@ struct ToolRow {
     signal: u32, // first of six slots: where it is, and how that differs from where it was
     sticking: f32, // coefficients of friction
     sliding: f32,
-    unused: u32,
+    spacing: f32, // of a grid, whose first point is at the first three sizes (m)
+    nx: u32,
+    ny: u32,
+    nz: u32,
+    first: u32,
 }
 struct Limits {
     edge: f32, // who is farther off cannot be there within a step (m)
@@ -29,6 +33,7 @@ struct Limits {
 @group(0) @binding(7) var<storage, read_write> tool_touch: array<f32>;
 
 const TOUCH_NUMBERS: u32 = 7u;
+const TOOL_GRID: u32 = 0xffffffffu;
 const STICKS: f32 = 1.0;
 const SLIDES: f32 = 2.0;
 const TURNS: u32 = 12u;
@@ -51,6 +56,9 @@ fn into_frame(rows: array<vec4<f32>, 3>, x: vec3<f32>) -> vec3<f32> {
 
 fn distance_to(tool: u32, y: vec3<f32>) -> vec4<f32> {
     let row = tools[tool];
+    if row.kind == TOOL_GRID {
+        return grid_distance(row, y);
+    }
     return tool_distance(
         ToolShape(row.kind, row.size_0, row.size_1, row.size_2, row.size_3, row.size_4, row.size_5, row.rounding), y);
 }

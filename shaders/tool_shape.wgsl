@@ -4,8 +4,8 @@
 struct ToolShape {
     kind: u32,
     // sizes (m), but for directions: radius of a sphere; half edges of a box; radius of a capsule, z of the ends of its
-    // axis; radius of a cylinder, z of its ends; radii at the ends of a cone, z of these, parts across and along z of the
-    // mantle's normal; inner and outer radius of a tube, z of its ends, sine and cosine of the bevel
+    // axis; radius of a cylinder, z of its ends; radii at the ends of a cone, z of these, parts across and along z of
+    // the mantle's normal; inner and outer radius of a tube, z of its ends, sine and cosine of the bevel
     a: f32,
     b: f32,
     c: f32,

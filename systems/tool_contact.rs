@@ -10,6 +10,7 @@ use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
 use crate::math::SimdScalar;
 use crate::shader;
+use crate::tools::Geometry;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -263,9 +264,33 @@ struct ToolRow {
     signal: u32,
     sticking: f32,
     sliding: f32,
-    unused: u32,
+    spacing: f32,
+    nx: u32,
+    ny: u32,
+    nz: u32,
+    first: u32,
 }
-uniform!(ToolRow { kind, size_0, size_1, size_2, size_3, size_4, size_5, rounding, signal, sticking, sliding, unused });
+uniform!(ToolRow {
+    kind,
+    size_0,
+    size_1,
+    size_2,
+    size_3,
+    size_4,
+    size_5,
+    rounding,
+    signal,
+    sticking,
+    sliding,
+    spacing,
+    nx,
+    ny,
+    nz,
+    first
+});
+
+/// The kind of what is known by a grid of distances.
+const GRID: u32 = u32::MAX;
 
 /// What is the same for all tools of a body.
 #[derive(Clone, Copy, Debug)]
@@ -300,7 +325,14 @@ fn stage(body: Entity, contacts: &ToolContacts, world: &mut World, buffers: &mut
             [x, y, z, f32::from_bits(mask)]
         })
         .collect();
-    let tools: Vec<u8> = contacts.tools.iter().flat_map(|contact| row_of(contact).bytes()).collect();
+    let mut grids: Vec<f32> = Vec::new();
+    let mut tools: Vec<u8> = Vec::new();
+    for contact in &contacts.tools {
+        tools.extend(row_of(contact, grids.len() as u32).bytes());
+        if let Geometry::Grid(grid) = &contact.geometry {
+            grids.extend(grid.values());
+        }
+    }
     let count = Fragment::new("generated: how many tools", format!("const TOOLS: u32 = {}u;\n", contacts.tools.len()));
     let coefficient = match (damped, relaxed) {
         (true, _) => "damping_coefficient[node] * step.half_step / inertia",
@@ -329,13 +361,37 @@ fn stage(body: Entity, contacts: &ToolContacts, world: &mut World, buffers: &mut
             .own(shader!("damping_column"))
             .column(DampingCoefficient::NAME, buffers.column(body, DampingCoefficient::NAME));
     }
+    stage = if grids.is_empty() {
+        stage.own(Fragment::new(
+            "generated: no tool is a grid",
+            "fn grid_distance(row: ToolRow, y: vec3<f32>) -> vec4<f32> {\n    return vec4<f32>(0.0);\n}\n",
+        ))
+    } else {
+        let values = buffers.constants("distances of tools".into(), bytemuck::cast_slice(&grids));
+        stage.own(shader!("tool_grid")).own(shader!("tool_of_grid")).bind("tool_grid_values", values)
+    };
     stage.with_step(world).loaded(true).that_asks_for_forces()
 }
 
-fn row_of(contact: &ToolContact) -> ToolRow {
-    let [kind, size_0, size_1, size_2, size_3, size_4, size_5, rounding] = contact.geometry.packed();
+/// `first`: where the values of its grid begin, if it has one.
+fn row_of(contact: &ToolContact, first: u32) -> ToolRow {
+    let (kind, sizes, rounding, grid) = match &contact.geometry {
+        Geometry::Analytic(solid) => {
+            let [kind, sizes @ .., rounding] = solid.packed();
+            (kind.to_bits(), sizes, rounding, [0.0; 5])
+        }
+        Geometry::Grid(grid) => {
+            let [x, y, z, grid @ ..] = grid.packed(first);
+            (GRID, [x, y, z, 0.0, 0.0, 0.0], 0.0, grid)
+        }
+    };
+    let [size_0, size_1, size_2, size_3, size_4, size_5] = sizes;
+    let [spacing, nx, ny, nz, first] = grid;
+    let [nx, ny, nz, first] = [nx, ny, nz, first].map(f32::to_bits);
+    let [sticking, sliding] = contact.friction.map(|number| number as f32);
+    let signal = contact.signal as u32;
     ToolRow {
-        kind: kind.to_bits(),
+        kind,
         size_0,
         size_1,
         size_2,
@@ -343,9 +399,13 @@ fn row_of(contact: &ToolContact) -> ToolRow {
         size_4,
         size_5,
         rounding,
-        signal: contact.signal as u32,
-        sticking: contact.friction[0] as f32,
-        sliding: contact.friction[1] as f32,
-        unused: 0,
+        signal,
+        sticking,
+        sliding,
+        spacing,
+        nx,
+        ny,
+        nz,
+        first,
     }
 }

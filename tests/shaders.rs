@@ -57,6 +57,7 @@ const SUPPORT: &[(&str, &str)] = &[
     ("row", "the row of an invocation"),
     ("step", "what is the same for a whole step"),
     ("tensor", "small tensors"),
+    ("tool_grid", "distances to tools that are triangles"),
     ("tool_shape", "distances to tools"),
     ("inverse_cbrt", "a root from the bits of a number"),
     ("previous_prescribed_increment", "the step that boundary writes over"),
@@ -376,7 +377,7 @@ fn all_fragments_of_the_folder_are_in_use() {
     // the guards' own kernels, which look now and then
     used.extend(["watch_elements.wgsl".to_owned(), "watch_nodes.wgsl".to_owned()]);
     // those of tools, which are in no step yet
-    used.insert("tool_shape.wgsl".to_owned());
+    used.extend(["tool_grid.wgsl".to_owned(), "tool_shape.wgsl".to_owned()]);
     // those of loads that a scene has of its own
     let scene = SceneFile::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/own_system.ron"), &[]).unwrap();
     let mut simulation = Simulation::new(&scene, &Options::default()).unwrap();

@@ -3,12 +3,14 @@
 use super::columns::stiffness;
 use super::{Assembly, BodyParts};
 use crate::components::*;
+use crate::scene::SceneFile;
 use crate::scene::diagnostic::Diagnostics;
-use crate::scene::schema::{Contact, Select, Tool, ToolPlace, WhenUnstable};
-use crate::tools::Solid;
+use crate::scene::schema::{Contact, Select, Tool, ToolMesh, ToolPlace, WhenUnstable};
+use crate::tools::{DistanceGrid, Geometry, Solid, Triangles};
 use bevy_ecs::prelude::*;
 use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// How deep nodes may be inside a tool at the start, in edges: those come out by and by.
 const DEEPEST: f64 = 0.5;
@@ -22,6 +24,10 @@ const NAMED: usize = 10;
 /// Spawns what tools may touch on each body.
 pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
     let scene = &assembly.scene.scene;
+    if scene.contacts.is_empty() {
+        return;
+    }
+    let geometries = geometries(assembly.scene, diagnostics);
     for (name, body) in &assembly.bodies {
         let mut marks: BTreeMap<u32, u32> = BTreeMap::new();
         let mut tools = Vec::new();
@@ -32,16 +38,15 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             if of.as_ref().is_some_and(|of| of != name) {
                 continue;
             }
-            let Some(found) = scene.tools.get(tool) else { continue };
             // what is wrong with it has been said
-            let Ok(geometry) = Solid::new(found.shape.clone(), found.rounding) else { continue };
+            let (Some(found), Some(geometry)) = (scene.tools.get(tool), geometries.get(tool)) else { continue };
             let path = format!("contacts[{number}].on");
             let Some(rows) = rows(assembly, name, body, on, &path, diagnostics) else { continue };
             if let Some(size) = geometry.smallest_radius().filter(|radius| *radius < edge) {
                 let message =
                     format!("the tool `{tool}` may slip between nodes: it is thinner than the faces that it meets");
                 diagnostics
-                    .warn_at(format!("tools.\"{tool}\".shape").as_str(), message)
+                    .warn_at(format!("tools.\"{tool}\"").as_str(), message)
                     .note(format!("its radius is {size:.3e} m, and faces of `{name}` have edges of {edge:.3e} m"));
             }
             let bit = 1 << tools.len();
@@ -49,7 +54,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             let signal = Signal::Pose { motion: motion(found), reference };
             let signal = world.resource_mut::<Signals>().add(signal);
             let friction = [static_friction.unwrap_or(*friction), *friction];
-            tools.push(ToolContact { tool: tool.clone(), geometry, signal, friction });
+            tools.push(ToolContact { tool: tool.clone(), geometry: geometry.clone(), signal, friction });
         }
         if tools.is_empty() {
             continue;
@@ -60,6 +65,40 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let touch = Reals::zeros(assembly.precision, contacts.numbers() * contacts.rows.len());
         world.entity_mut(body.entity).insert((contacts, ToolTouch(touch)));
     }
+}
+
+/// What the tools are made of, by name.
+fn geometries(scene: &SceneFile, diagnostics: &mut Diagnostics) -> BTreeMap<String, Geometry> {
+    let mut all = BTreeMap::new();
+    for (name, tool) in &scene.scene.tools {
+        if let Some(shape) = &tool.shape {
+            let solid = Solid::new(shape.clone(), tool.rounding);
+            all.extend(solid.ok().map(|solid| (name.clone(), Geometry::Analytic(solid))));
+        } else if let Some(mesh) = &tool.mesh {
+            let path = format!("tools.\"{name}\".mesh");
+            match grid(scene, mesh) {
+                Ok(grid) => {
+                    for note in grid.notes() {
+                        diagnostics.warn_at(path.as_str(), format!("{}: {note}", mesh.path));
+                    }
+                    all.insert(name.clone(), Geometry::Grid(Arc::new(grid)));
+                }
+                Err(message) => {
+                    diagnostics.error_at(path.as_str(), message);
+                }
+            }
+        }
+    }
+    all
+}
+
+/// The distances of a tool that is a file of triangles.
+fn grid(scene: &SceneFile, mesh: &ToolMesh) -> Result<DistanceGrid, String> {
+    let bytes = scene.bytes(&mesh.path, u64::MAX).map_err(|error| format!("{}: {error}", mesh.path))?;
+    let mut surface = Triangles::from_bytes(&mesh.path, &bytes).map_err(|error| error.to_string())?;
+    surface.points.iter_mut().for_each(|point| *point *= mesh.scale);
+    let spacing = mesh.spacing.unwrap_or_else(|| DistanceGrid::usual_spacing(&surface));
+    DistanceGrid::new(&surface, spacing).map_err(|error| format!("{}: {error}", mesh.path))
 }
 
 /// The nodes that a tool may touch: of bodies that lose elements those inside, too, which may come to the surface.

@@ -4,7 +4,7 @@ use super::Reals;
 use super::column::columns;
 use super::signal::Use;
 use crate::scene::schema::Curve;
-use crate::tools::Solid;
+use crate::tools::Geometry;
 use bevy_ecs::prelude::*;
 use glam::{DMat3, DQuat, DVec3};
 
@@ -123,7 +123,7 @@ pub struct ToolContact {
     /// The tool's name.
     pub tool: String,
     /// Its shape.
-    pub geometry: Solid,
+    pub geometry: Geometry,
     /// The first of six slots of [`Signals`](super::Signals): see [`Signal::Pose`](super::Signal::Pose), from
     /// [`ToolContacts::reference`].
     pub signal: usize,

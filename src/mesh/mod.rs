@@ -39,6 +39,10 @@ pub use generators::ElementKind;
 pub(crate) use generators::each_element_kind;
 pub use locate::{Location, Locator};
 pub use quality::Quality;
+#[cfg(feature = "files")]
+pub(crate) use read::Fault;
+#[cfg(feature = "files")]
+pub(crate) use read::cursor::{Cursor, Form as NumberForm};
 pub use report::{MeshReport, SetReport, extent};
 pub use surface::SurfaceFace;
 pub(crate) use surface::nodes_of_face;

@@ -4,6 +4,7 @@ use crate::backend::cpu::BlockLaw;
 use crate::components::*;
 use crate::materials::ElasticLaw;
 use crate::scene::schema::{InitialState, Scene};
+use crate::tools::Geometry;
 use bevy_ecs::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -36,6 +37,19 @@ pub fn identity(scene: &Scene, world: &mut World) -> Identity {
             systems.write(&load.text.uniform);
         }
         add("systems", systems.finish());
+    }
+    if !scene.contacts.is_empty() {
+        let mut tools = XxHash64::default();
+        tools.write_u64(of_text(&(&scene.tools, &scene.contacts)));
+        for contacts in world.query::<&ToolContacts>().iter(world) {
+            // the scene only names the file
+            let grids = contacts.tools.iter().filter_map(|contact| match &contact.geometry {
+                Geometry::Grid(grid) => Some(grid.values()),
+                Geometry::Analytic(_) => None,
+            });
+            grids.for_each(|values| tools.write(bytemuck::cast_slice(values)));
+        }
+        add("tools and contacts", tools.finish());
     }
     add("removal", of_text(&scene.removal));
     add("integration", of_text(&scene.integration));

@@ -20,10 +20,10 @@ const CONE: u32 = 5;
 const TUBE: u32 = 6;
 
 /// From this far away (m) all places are as one on the way there: no square overflows, in f32 neither.
-const FAR: f64 = 1e15;
+pub(super) const FAR: f64 = 1e15;
 
 /// What is no longer than this (m) has no direction, for the same reason.
-const NEAR: f64 = 1e-18;
+pub(super) const NEAR: f64 = 1e-18;
 
 impl Form {
     /// Of a shape in whose numbers nothing is wrong. What is round already is not rounded.

@@ -1,14 +1,62 @@
 //! Rigid tools: shapes that touch bodies, known by the signed distance to their surface in a frame of their own.
 
+#[cfg(not(feature = "files"))]
+mod absent;
+mod closed;
 mod form;
+mod grid;
+#[cfg(feature = "files")]
+mod read;
 mod shape;
 mod surface;
+#[cfg(test)]
+mod tests;
+mod tree;
+mod triangles;
 
 pub use form::Form;
+pub use grid::DistanceGrid;
 pub use shape::{Problem, Shape, Solid};
+pub use triangles::{EdgeFault, SurfaceError, Triangles};
+
+use glam::DVec3;
+use std::sync::Arc;
 
 /// What says the words of scenes here: messages quote it.
 pub const TEXTS: &[&str] = &[include_str!("shape.rs")];
 
-#[cfg(test)]
-mod tests;
+/// What a tool is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Geometry {
+    /// A shape in closed form.
+    Analytic(Solid),
+    /// A closed surface of triangles.
+    Grid(Arc<DistanceGrid>),
+}
+
+impl Geometry {
+    /// φ, the signed distance (m) from a place in the tool's frame to the surface, negative inside, and the direction
+    /// of its gradient, a unit vector: see [`Solid::distance`] and [`DistanceGrid::distance`].
+    pub fn distance(&self, y: DVec3) -> (f64, DVec3) {
+        match self {
+            Self::Analytic(solid) => solid.distance(y),
+            Self::Grid(grid) => grid.distance(y),
+        }
+    }
+
+    /// Centre and radius (m) of a ball around it; none of a plane.
+    pub fn bounding_sphere(&self) -> Option<(DVec3, f64)> {
+        match self {
+            Self::Analytic(solid) => solid.bounding_sphere(),
+            Self::Grid(grid) => Some(grid.bounding_sphere()),
+        }
+    }
+
+    /// Half of what it measures across where it is thinnest (m), of a grid where it is thickest; none of a plane.
+    pub fn smallest_radius(&self) -> Option<f64> {
+        match self {
+            Self::Analytic(solid) => solid.smallest_radius(),
+            Self::Grid(grid) => Some(grid.depth()),
+        }
+    }
+}

@@ -5,7 +5,7 @@ use glam::DVec3;
 use sinew::backend::gpu::{BufferKind, Gpu, gpu_or_reason};
 use sinew::backend::kernel::{Fragment, Kernel};
 use sinew::shader;
-use sinew::tools::{Shape, Solid};
+use sinew::tools::{DistanceGrid, Shape, Solid, Triangles};
 
 const MAIN: &str = "@group(0) @binding(0) var<uniform> tool: ToolShape;
 @group(0) @binding(1) var<storage, read> places: array<vec4<f32>>;
@@ -111,5 +111,66 @@ fn special_places_have_a_distance_and_a_direction_on_a_gpu_too() {
             let is_sound = distance.is_finite() && (length - 1.0).abs() < 8.0 * UNIT;
             assert!(is_sound, "{solid:?} at {place:?}: {distance} {x} {y} {z}");
         }
+    }
+}
+
+#[test]
+fn distances_on_grids_are_those_of_the_host() {
+    let Some(mut gpu) = gpu_or_reason() else { return };
+    let of_shape = |shape: Shape| {
+        let (points, triangles) = Solid::new(shape, 0.2e-3).unwrap().surface(24, 0.0);
+        let surface = Triangles { points, triangles };
+        DistanceGrid::new(&surface, 0.7 * DistanceGrid::usual_spacing(&surface)).unwrap()
+    };
+    let grids = [
+        of_shape(Shape::Box { size: DVec3::new(4e-3, 9e-3, 2e-3) }),
+        of_shape(Shape::Tube { length: 12e-3, inner: 2e-3, outer: 3e-3, bevel: 30.0 }),
+    ];
+    // both in one buffer
+    let values: Vec<f32> = grids.iter().flat_map(|grid| grid.values()).copied().collect();
+    let buffer = gpu.create_with("values", &values, BufferKind::Storage).unwrap();
+    let main = MAIN.replace("ToolShape", "ToolGrid").replace("tool_distance", "tool_grid_distance");
+    let mut dice = fastrand::Rng::with_seed(6);
+    let mut first = 0;
+    for grid in &grids {
+        let (center, radius) = grid.bounding_sphere();
+        let places: Vec<[f32; 4]> = (0..8000)
+            .map(|i| {
+                let half = [1.0, 3.0, 40.0, 1e20][if i < 8 { 3 } else { i % 8 / 3 }] * radius;
+                let mut way = || (2.0 * dice.f64() - 1.0) * half;
+                let mut y = center + DVec3::new(way(), way(), way());
+                if i % 4 == 0 {
+                    let (distance, gradient) = grid.distance(y);
+                    y -= distance * gradient;
+                }
+                y.as_vec3().extend(0.0).to_array()
+            })
+            .collect();
+        let uniform = gpu.create_with("tool", &grid.packed(first), BufferKind::Uniform).unwrap();
+        first += grid.values().len() as u32;
+        let kernel = Kernel::new("tool", "main").fragment(Fragment::new("main.wgsl", main.clone()));
+        let kernel = kernel.fragment(shader!("tool_grid")).bind("tool", uniform).bind("tool_grid_values", buffer);
+        let (mut worst, mut turned, mut directions) = (0.0_f64, 0.0_f64, 0);
+        for (&[x, y, z, _], got) in places.iter().zip(found(&mut gpu, kernel, &places)) {
+            let y = DVec3::new(x.into(), y.into(), z.into());
+            let (distance, gradient) = grid.distance(y);
+            let device = DVec3::new(got[0].into(), got[1].into(), got[2].into());
+            assert!((device.length() - 1.0).abs() < 8.0 * UNIT, "at {y}: {device}");
+            if y.length() > 1e15 {
+                assert!(got[3] > 1e14);
+                continue;
+            }
+            let size = y.length() + 2.0 * radius;
+            worst = worst.max((f64::from(got[3]) - distance).abs() / size);
+            // from cell to cell the direction jumps
+            let near = DVec3::AXES.map(|axis| [1e-6, -1e-6].map(|h| grid.distance(y + h * size * axis).1));
+            let spread = near.iter().flatten().map(|other| other.distance(gradient)).fold(0.0, f64::max);
+            if spread < 1e-3 {
+                directions += 1;
+                turned = turned.max(device.distance(gradient));
+            }
+        }
+        assert!(worst < 16.0 * UNIT, "{worst:e}");
+        assert!(turned < 1e-3 && directions > 4000, "{turned:e} of {directions}");
     }
 }

@@ -9,8 +9,12 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct Tool {
-    /// Its shape, in its own frame.
-    pub shape: Shape,
+    /// Its shape, in its own frame; left out where it has a `mesh`.
+    #[serde(default)]
+    pub shape: Option<Shape>,
+    /// A closed surface of triangles, in its own frame; left out where it has a `shape`.
+    #[serde(default)]
+    pub mesh: Option<ToolMesh>,
     /// Radius (m) by which its edges are rounded off.
     #[serde(default)]
     pub rounding: f64,
@@ -26,6 +30,24 @@ pub struct Tool {
     /// What is added to that, each by a curve of its own.
     #[serde(default)]
     pub moves: Vec<ToolMove>,
+}
+
+/// A closed surface of triangles as a tool.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct ToolMesh {
+    /// The file (STL or OBJ), its path relative to the scene file.
+    pub path: String,
+    /// What its coordinates are multiplied with: 0.001 where they are in mm.
+    #[serde(default = "one")]
+    pub scale: f64,
+    /// Distance between the places at which its distance is known (m); a 64th of its longest side when left out.
+    #[serde(default)]
+    pub spacing: Option<f64>,
+}
+
+fn one() -> f64 {
+    1.0
 }
 
 /// A place on a tool's way.

@@ -2,7 +2,7 @@
 
 use super::{Validator, scene, show};
 use crate::scene::limits::PSEUDO_STEPS;
-use crate::scene::schema::{Analysis, Constraint, InitialState, Inversion, Load, Quantity, Scene};
+use crate::scene::schema::{Analysis, Constraint, Contact, InitialState, Inversion, Load, Quantity, Scene};
 use crate::scene::syntax::Path;
 use glam::DVec3;
 
@@ -101,7 +101,11 @@ fn held(scene_: &Scene, path: &Path, validator: &mut Validator) {
             let (Constraint::Fixed { body, .. } | Constraint::Prescribed { body, .. }) = constraint;
             body.as_ref().is_none_or(|body| body == name)
         };
-        if !scene_.constraints.iter().any(holds) {
+        let touched = scene_.contacts.iter().any(|contact| {
+            let Contact::Tool { body, .. } = contact;
+            body.as_ref().is_none_or(|body| body == name)
+        });
+        if !touched && !scene_.constraints.iter().any(holds) {
             validator
                 .out
                 .warn_at(path, format!("nothing holds the body {name:?}: it is at rest only where its loads balance"))

@@ -167,7 +167,7 @@ fn at_least_one(validator: &mut Validator, path: &Path, count: u32) {
     }
 }
 
-fn mesh_file(file: &SceneFile, validator: &mut Validator, path: &Path, name: &str) {
+pub(super) fn mesh_file(file: &SceneFile, validator: &mut Validator, path: &Path, name: &str) {
     if file.meshes.contains_key(name) {
         return;
     }

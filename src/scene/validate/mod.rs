@@ -35,7 +35,7 @@ pub fn validate(file: &SceneFile, diagnostics: &mut Diagnostics) -> bool {
     geometry::validate(file, &mut validator);
     action::validate(&file.scene, &mut validator);
     own_system::validate(&file.scene, &mut validator);
-    tool::validate(&file.scene, &mut validator);
+    tool::validate(file, &mut validator);
     time::validate(&file.scene, &mut validator);
     analysis::validate(&file.scene, &mut validator);
     output::validate(&file.scene, &mut validator);

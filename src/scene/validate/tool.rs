@@ -1,17 +1,21 @@
 //! Tools and contacts: whether they are somewhere, go somewhere, and touch something.
 
+use super::geometry::mesh_file;
 use super::names::body_named;
 use super::{Validator, scene, select, show};
 use crate::components::ToolContacts;
+use crate::scene::load::SceneFile;
 use crate::scene::schema::{Contact, Scene, Tool};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
+pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
+    let scene_ = &file.scene;
     for (name, found) in &scene_.tools {
         let path = scene("tools").name(name);
+        geometry(file, validator, &path, found);
         tool(validator, &path, found);
         let touches = |contact: &Contact| {
             let Contact::Tool { tool, .. } = contact;
@@ -27,12 +31,37 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
     contacts(scene_, validator);
 }
 
-fn tool(validator: &mut Validator, path: &Path, tool: &Tool) {
-    if let Some(problem) = tool.shape.problem(tool.rounding) {
-        let path =
-            if problem.field == "rounding" { path.name("rounding") } else { path.name("shape").name(problem.field) };
-        validator.out.error_at(path, problem.message);
+fn geometry(file: &SceneFile, validator: &mut Validator, path: &Path, tool: &Tool) {
+    let one_of = "a tool has either a `shape` or a `mesh`";
+    match (&tool.shape, &tool.mesh) {
+        (Some(shape), None) => {
+            if let Some(problem) = shape.problem(tool.rounding) {
+                let rounding = problem.field == "rounding";
+                let path = if rounding { path.name("rounding") } else { path.name("shape").name(problem.field) };
+                validator.out.error_at(path, problem.message);
+            }
+        }
+        (None, Some(mesh)) => {
+            let path_of = path.name("mesh");
+            mesh_file(file, validator, &path_of.name("path"), &mesh.path);
+            validator.above_zero(&path_of.name("scale"), mesh.scale, "");
+            if let Some(spacing) = mesh.spacing {
+                validator.above_zero(&path_of.name("spacing"), spacing, "m");
+            }
+            if tool.rounding != 0.0 {
+                validator.out.error_at(path.name("rounding"), "a mesh is not rounded").note("leave `rounding` out");
+            }
+        }
+        (Some(_), Some(_)) => {
+            validator.out.error_at(path.name("mesh"), "a `mesh` beside a `shape`").note(one_of);
+        }
+        (None, None) => {
+            validator.out.error_at(path, "the tool has no `shape`").note(one_of);
+        }
     }
+}
+
+fn tool(validator: &mut Validator, path: &Path, tool: &Tool) {
     for (field, there) in [("at", tool.at.is_some()), ("rotation", tool.rotation.is_some())] {
         if there && !tool.path.is_empty() {
             let message = format!("`{field}` beside a `path`, which says where the tool is at all times");

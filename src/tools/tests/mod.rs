@@ -1,6 +1,8 @@
 //! What tests of tools measure with: triangles, one after the other.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod files;
+mod grids;
 mod shapes;
 
 use glam::DVec3;
