@@ -46,6 +46,7 @@ struct Touch {
     drag: vec3<f32>, // what the tool adds along the surface (m)
     push: f32, // and along the normal
     touches: bool,
+    slides: bool, // whether friction does not hold it
 }
 
 // A point of the scene in the frame of a pose whose rows and places are in three slots.
@@ -86,6 +87,7 @@ fn predict(tool: u32, place: vec3<f32>, predicted: vec3<f32>, sticks: bool) -> T
     touch.friction = select(tools[tool].sliding, tools[tool].sticking, sticks);
     touch.drag = vec3<f32>(0.0);
     touch.push = 0.0;
+    touch.slides = true;
     touch.touches = surface.w <= limits.edge;
     return touch;
 }
@@ -152,7 +154,8 @@ fn tool_contact(i: u32, node: u32) {
                 let wanted = found[tool].drag - slip;
                 let most = found[tool].friction * found[tool].push;
                 let size = length(wanted);
-                let drag = select(wanted, wanted * (most / max(size, 1e-38)), size > most);
+                found[tool].slides = size > most;
+                let drag = select(wanted, wanted * (most / max(size, 1e-30)), size > most);
                 sum += free * (drag - found[tool].drag);
                 found[tool].drag = drag;
             }
@@ -170,8 +173,7 @@ fn tool_contact(i: u32, node: u32) {
         tool_touch[at_tool] = force.x;
         tool_touch[at_tool + 1u] = force.y;
         tool_touch[at_tool + 2u] = force.z;
-        let sticks = length(found[tool].drag) < found[tool].friction * found[tool].push;
-        tool_touch[at_tool + 3u] = select(SLIDES, STICKS, sticks);
+        tool_touch[at_tool + 3u] = select(STICKS, SLIDES, found[tool].slides);
         if limits.books != 0u {
             let work = step.booked * dot(force, found[tool].tool_step);
             let on_node = step.booked * dot(force * free, 0.5 * (before + d));

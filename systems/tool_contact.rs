@@ -72,6 +72,8 @@ struct Touch {
     /// Displacements that the tool adds (m): along the normal, and along the surface.
     push: f64,
     drag: DVec3,
+    /// Whether friction does not hold it.
+    slides: bool,
 }
 
 impl NodeSystem for ToolContacts {
@@ -168,11 +170,10 @@ impl ToolContacts {
             sum += force;
             let of_tool = &mut values[TOUCH_NUMBERS * touch.tool..TOUCH_NUMBERS * (touch.tool + 1)];
             let slip = tangential(d - touch.tool_step, touch.normal).length();
-            let sticks = touch.drag.length() < touch.friction * touch.push;
             for i in 0..3 {
                 of_tool[i] = T::from_f64(force[i]);
             }
-            of_tool[3] = T::from_f64(if sticks { STICKS } else { SLIDES });
+            of_tool[3] = T::from_f64(if touch.slides { SLIDES } else { STICKS });
             if step.books {
                 let work = booked * force.dot(touch.tool_step);
                 let on_node = booked * (force * free).dot(0.5 * (before + d));
@@ -213,6 +214,7 @@ impl ToolContacts {
             friction: if stuck { sticking } else { sliding },
             push: 0.0,
             drag: DVec3::ZERO,
+            slides: true,
         })
     }
 }
@@ -240,7 +242,8 @@ fn push_apart(all: &mut [Option<Touch>], predicted: DVec3, free: DVec3) -> DVec3
                 let wanted = touch.drag - slip;
                 let most = touch.friction * touch.push;
                 let size = wanted.length();
-                let drag = if size > most { wanted * (most / size) } else { wanted };
+                touch.slides = size > most;
+                let drag = if touch.slides { wanted * (most / size) } else { wanted };
                 sum += free * (drag - touch.drag);
                 touch.drag = drag;
             }

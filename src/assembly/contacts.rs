@@ -218,7 +218,9 @@ fn inside(
         return;
     };
     let contact = &contacts.tools[bit];
-    let pose = motion.pose(0.0, |number| motion.curves[number].value(0.0));
+    // a static analysis lets every motion grow from nothing
+    let grows = world.resource::<Clock>().relaxation.is_some();
+    let pose = motion.pose(0.0, |number| if grows { 0.0 } else { motion.curves[number].value(0.0) });
     let touched = contacts.rows.iter().zip(&contacts.masks).filter(|(_, mask)| **mask >> bit & 1 == 1);
     let mut found: Vec<(f64, u32)> = touched
         .map(|(&row, _)| {

@@ -17,3 +17,4 @@ mod pair;
 mod patches;
 mod removal;
 mod shapes;
+mod tools;

@@ -19,7 +19,7 @@ const MATERIAL: &str = "\"m\": (density: 1000, neo_hookean: Young(young: 3e3, po
 
 /// Runs to rest and says how many steps that took.
 #[track_caller]
-fn rest(what: &str, simulation: &mut Simulation) -> u64 {
+pub fn rest(what: &str, simulation: &mut Simulation) -> u64 {
     simulation.finish().unwrap_or_else(|error| panic!("{what}: {error}"));
     let found = simulation.equilibrium().unwrap();
     println!("{what}: at rest after {} steps, {found:?}", simulation.step_count());

@@ -56,6 +56,8 @@ mod statics;
 mod stiffness_damping;
 mod strains;
 mod tables;
+mod tool_friction;
+mod tools;
 mod true_limit;
 mod unload;
 mod unstable_elements;
