@@ -38,6 +38,7 @@ mod patch_pass;
 mod pressure;
 mod registry;
 mod tool_contact;
+mod tool_row;
 mod traction;
 
 pub use crate::backend::cpu::{Cpu, NodeColumns};

@@ -3,6 +3,7 @@
 use super::node_system::{Before, NodeSystem};
 use super::places_within;
 use super::registry::{Phase, System};
+use super::tool_row::{ToolRow, row_of};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, Factors, NodeColumns};
 use crate::backend::kernel::{Fragment, Uniform, uniform};
@@ -252,49 +253,6 @@ fn push_apart(all: &mut [Option<Touch>], predicted: DVec3, free: DVec3) -> DVec3
     sum
 }
 
-/// A tool at a body, as kernels see it.
-#[derive(Clone, Copy, Debug)]
-#[repr(C)]
-struct ToolRow {
-    kind: u32,
-    size_0: f32,
-    size_1: f32,
-    size_2: f32,
-    size_3: f32,
-    size_4: f32,
-    size_5: f32,
-    rounding: f32,
-    signal: u32,
-    sticking: f32,
-    sliding: f32,
-    spacing: f32,
-    nx: u32,
-    ny: u32,
-    nz: u32,
-    first: u32,
-}
-uniform!(ToolRow {
-    kind,
-    size_0,
-    size_1,
-    size_2,
-    size_3,
-    size_4,
-    size_5,
-    rounding,
-    signal,
-    sticking,
-    sliding,
-    spacing,
-    nx,
-    ny,
-    nz,
-    first
-});
-
-/// The kind of what is known by a grid of distances.
-const GRID: u32 = u32::MAX;
-
 /// What is the same for all tools of a body.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
@@ -374,41 +332,4 @@ fn stage(body: Entity, contacts: &ToolContacts, world: &mut World, buffers: &mut
         stage.own(shader!("tool_grid")).own(shader!("tool_of_grid")).bind("tool_grid_values", values)
     };
     stage.with_step(world).loaded(true).that_asks_for_forces()
-}
-
-/// `first`: where the values of its grid begin, if it has one.
-fn row_of(contact: &ToolContact, first: u32) -> ToolRow {
-    let (kind, sizes, rounding, grid) = match &contact.geometry {
-        Geometry::Analytic(solid) => {
-            let [kind, sizes @ .., rounding] = solid.packed();
-            (kind.to_bits(), sizes, rounding, [0.0; 5])
-        }
-        Geometry::Grid(grid) => {
-            let [x, y, z, grid @ ..] = grid.packed(first);
-            (GRID, [x, y, z, 0.0, 0.0, 0.0], 0.0, grid)
-        }
-    };
-    let [size_0, size_1, size_2, size_3, size_4, size_5] = sizes;
-    let [spacing, nx, ny, nz, first] = grid;
-    let [nx, ny, nz, first] = [nx, ny, nz, first].map(f32::to_bits);
-    let [sticking, sliding] = contact.friction.map(|number| number as f32);
-    let signal = contact.signal as u32;
-    ToolRow {
-        kind,
-        size_0,
-        size_1,
-        size_2,
-        size_3,
-        size_4,
-        size_5,
-        rounding,
-        signal,
-        sticking,
-        sliding,
-        spacing,
-        nx,
-        ny,
-        nz,
-        first,
-    }
 }

@@ -377,7 +377,6 @@ fn all_fragments_of_the_folder_are_in_use() {
     // the guards' own kernels, which look now and then
     used.extend(["watch_elements.wgsl".to_owned(), "watch_nodes.wgsl".to_owned()]);
     // those of tools, which are in no step yet
-    used.extend(["tool_grid.wgsl".to_owned(), "tool_shape.wgsl".to_owned()]);
     // those of loads that a scene has of its own
     let scene = SceneFile::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/own_system.ron"), &[]).unwrap();
     let mut simulation = Simulation::new(&scene, &Options::default()).unwrap();

@@ -18,6 +18,9 @@ const DEEPEST: f64 = 0.5;
 /// How far a tool may go in a step, in edges: beyond, it may be through a surface before anybody sees it.
 const FARTHEST: f64 = 0.5;
 
+/// Half of what a tool measures across, in edges, below which it may slip between nodes.
+const THINNEST: f64 = 2.0;
+
 /// Nodes that a complaint names.
 const NAMED: usize = 10;
 
@@ -42,9 +45,10 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             let (Some(found), Some(geometry)) = (scene.tools.get(tool), geometries.get(tool)) else { continue };
             let path = format!("contacts[{number}].on");
             let Some(rows) = rows(assembly, name, body, on, &path, diagnostics) else { continue };
-            if let Some(size) = geometry.smallest_radius().filter(|radius| *radius < edge) {
-                let message =
-                    format!("the tool `{tool}` may slip between nodes: it is thinner than the faces that it meets");
+            if let Some(size) = geometry.smallest_radius().filter(|radius| *radius < THINNEST * edge) {
+                let message = format!(
+                    "the tool `{tool}` may slip between nodes: it is hardly thicker than the faces that it meets"
+                );
                 diagnostics
                     .warn_at(format!("tools.\"{tool}\"").as_str(), message)
                     .note(format!("its radius is {size:.3e} m, and faces of `{name}` have edges of {edge:.3e} m"));

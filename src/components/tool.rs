@@ -150,7 +150,7 @@ pub struct ToolContacts {
 
 impl ToolContacts {
     /// Tools that one body may meet: bits of a mask.
-    pub const MOST: usize = 8;
+    pub const MOST: usize = crate::scene::limits::TOOLS_OF_A_BODY;
 
     /// Numbers a node in [`ToolTouch`].
     pub fn numbers(&self) -> usize {

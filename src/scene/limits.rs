@@ -13,6 +13,8 @@ pub const VALUES: usize = 2_000_000;
 pub const BODIES: usize = 1000;
 /// Constraints; loads; contacts; removals; probes.
 pub const ACTIONS: usize = 10_000;
+/// Tools that a body may meet.
+pub const TOOLS_OF_A_BODY: usize = 8;
 /// Systems of a scene's own.
 pub const SYSTEMS: usize = 100;
 /// Points of a table, places of a tool's path; a longer signal is thinned out before.

@@ -8,6 +8,7 @@ mod grid;
 #[cfg(feature = "files")]
 mod read;
 mod shape;
+mod solid;
 mod surface;
 #[cfg(test)]
 mod tests;
@@ -16,7 +17,8 @@ mod triangles;
 
 pub use form::Form;
 pub use grid::DistanceGrid;
-pub use shape::{Problem, Shape, Solid};
+pub use shape::Shape;
+pub use solid::{Problem, Solid};
 pub use triangles::{EdgeFault, SurfaceError, Triangles};
 
 use glam::DVec3;

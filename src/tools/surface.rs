@@ -1,6 +1,7 @@
 //! Triangles on the surface of a shape, for pictures.
 
-use super::shape::{Shape, Solid};
+use super::shape::Shape;
+use super::solid::Solid;
 use glam::{DVec2, DVec3};
 use std::collections::HashMap;
 

@@ -11,6 +11,7 @@ mod lobe;
 mod parameters;
 mod resume;
 mod shipped;
+mod tools;
 
 use sinew::components::Precision;
 use sinew::{BackendChoice, Options, SceneFile, Simulation};

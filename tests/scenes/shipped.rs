@@ -8,8 +8,10 @@ use sinew::systems::Registry;
 use sinew::{BackendChoice, Options, Simulation};
 
 /// The scenes, and what makes each of them short and coarse.
-pub const SCENES: [(&str, &[&str]); 8] = [
+pub const SCENES: [(&str, &[&str]); 10] = [
     ("cube_under_gravity", &["bodies.cube.mesh.cells=(5, 5, 5)", "duration=0.3"]),
+    ("indentation", &["bodies.layer.mesh.cells=(12, 12, 4)"]),
+    ("probe", &["bodies.tissue.mesh.cells=(16, 8, 4)", "duration=0.2"]),
     ("retracted_lobe", &["bodies.lobe.mesh.across=8", "duration=0.3"]),
     ("stretched_bar", &["bodies.bar.mesh.cells=(20, 2, 2)", "duration=0.5"]),
     ("training_set", &["bodies.tissue.copies=4", "probes.last.on=Set(\"copy 3\")", "duration=0.02"]),

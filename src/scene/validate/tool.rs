@@ -3,7 +3,7 @@
 use super::geometry::mesh_file;
 use super::names::body_named;
 use super::{Validator, scene, select, show};
-use crate::components::ToolContacts;
+use crate::scene::limits::TOOLS_OF_A_BODY;
 use crate::scene::load::SceneFile;
 use crate::scene::schema::{Contact, Scene, Tool};
 use crate::scene::suggest::choice;
@@ -123,8 +123,8 @@ fn contacts(scene_: &Scene, validator: &mut Validator) {
         }
         let count = of_body.entry(body.as_ref().or(scene_.bodies.keys().next())).or_default();
         *count += 1;
-        if *count == ToolContacts::MOST + 1 {
-            let message = format!("a body may meet at most {} tools", ToolContacts::MOST);
+        if *count == TOOLS_OF_A_BODY + 1 {
+            let message = format!("a body may meet at most {} tools", TOOLS_OF_A_BODY);
             validator.out.error_at(&path, message);
         }
     }

@@ -1,0 +1,49 @@
+//! The scenes with tools.
+
+use super::{near, reference, scene};
+use sinew::Simulation;
+
+/// What a quarter of the ball feels (N): Hertz' force on a half space, times 1.474 for a layer as thick as the ball's
+/// radius that is pressed by a tenth of it, from an axisymmetric solution of linear elasticity with the ball's own shape
+/// (the formula of Dimitriadis et al. 2002 has 1.452).
+fn on_the_ball(young: f64) -> f64 {
+    let (radius, depth, poisson) = (5e-3_f64, 5e-4_f64, 0.45);
+    1.474 * 4.0 / 3.0 * young / (1.0 - poisson * poisson) * radius.sqrt() * depth.powf(1.5) / 4.0
+}
+
+#[test]
+fn the_ball_feels_what_the_layer_formula_says() {
+    for (young, cells, bound) in [(3e3, "(24, 24, 8)", 0.08), (3e3, "(36, 36, 12)", 0.04), (2e4, "(36, 36, 12)", 0.04)]
+    {
+        let sets = [
+            format!("bodies.layer.mesh.cells={cells}"),
+            format!("materials.tissue.neo_hookean=Young(young: {young}, poisson: 0.45)"),
+        ];
+        let sets: Vec<&str> = sets.iter().map(String::as_str).collect();
+        let mut simulation = Simulation::new(&scene("indentation", &sets), &reference()).unwrap();
+        simulation.finish().unwrap();
+        let force = simulation.tool("ball").unwrap().force;
+        assert!(near(force.z, on_the_ball(young), bound), "{cells} of {young} Pa: {force}");
+        // the planes of symmetry cut it into equal halves
+        assert!((force.x - force.y).abs() < 1e-6 * force.z, "{force}");
+    }
+}
+
+#[test]
+fn the_probe_feels_depth_and_friction_and_leaves_nothing_behind() {
+    let mut simulation = Simulation::new(&scene("probe", &[]), &reference()).unwrap();
+    simulation.advance_to(0.15).unwrap();
+    let pressed = simulation.tool("probe").unwrap();
+    simulation.advance_to(0.4).unwrap();
+    let drawn = simulation.tool("probe").unwrap();
+    // the depth stays, and so does the force; tissue in front makes more of it than friction alone
+    assert!(near(drawn.force.z, pressed.force.z, 0.1), "{pressed:?} {drawn:?}");
+    let ratio = -drawn.force.x / drawn.force.z;
+    assert!(ratio > 0.1 && ratio < 0.2, "friction of 0.1 and the wall in front: {ratio}");
+    assert!(drawn.force.y.abs() < 1e-3 * drawn.force.z && drawn.depth < 1e-9, "{drawn:?}");
+    simulation.finish().unwrap();
+    let gone = simulation.tool("probe").unwrap();
+    assert!(gone.nodes == 0 && gone.loss > 0.0 && gone.loss < gone.work, "{gone:?}");
+    let left = simulation.displacements("tissue").unwrap().iter().map(|u| u.length()).fold(0.0, f64::max);
+    assert!(left < 1e-4, "{left} m");
+}
