@@ -58,6 +58,8 @@ const SUPPORT: &[(&str, &str)] = &[
     ("step", "what is the same for a whole step"),
     ("tensor", "small tensors"),
     ("tool_grid", "distances to tools that are triangles"),
+    ("tool_of_grid", "the same, in tool_contact"),
+    ("damping_column", "damping, in tool_contact"),
     ("tool_shape", "distances to tools"),
     ("inverse_cbrt", "a root from the bits of a number"),
     ("previous_prescribed_increment", "the step that boundary writes over"),
@@ -376,13 +378,13 @@ fn all_fragments_of_the_folder_are_in_use() {
     let mut used: BTreeSet<String> = BTreeSet::new();
     // the guards' own kernels, which look now and then
     used.extend(["watch_elements.wgsl".to_owned(), "watch_nodes.wgsl".to_owned()]);
-    // those of tools, which are in no step yet
     // those of loads that a scene has of its own
     let scene = SceneFile::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/own_system.ron"), &[]).unwrap();
     let mut simulation = Simulation::new(&scene, &Options::default()).unwrap();
     let explained = simulation.explain_on_gpu(&Registry::default()).unwrap();
     let fragments = explained.kernels.iter().flat_map(|kernel| &kernel.fragments);
     used.extend(fragments.filter_map(|f| f.path.strip_prefix("shaders/").map(str::to_owned)));
+    used.extend(kernel_units::of_tools());
     for effects in Effects::combinations() {
         for (_, kernel) in all(&effects) {
             let all = kernel.all_fragments();

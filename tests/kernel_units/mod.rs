@@ -1,6 +1,8 @@
 //! Units: parts of a kernel that do not see each other's names. No GPU needed.
 
 use sinew::backend::kernel::{BindingKind, Composed, Composer, Fragment, Kernel, KernelError, Link, Unit, UnitId};
+use sinew::systems::Registry;
+use sinew::{Options, SceneFile, Simulation};
 use std::sync::Arc;
 
 /// What both units have.
@@ -94,4 +96,19 @@ fn a_buffer_of_two_types_is_refused_by_name() {
     let error = Composer::default().compose(&in_units(FIRST, &words)).unwrap_err().to_string();
     let problem = "WGSL variable `sums`: is `array<f32>` to one part of the kernel and `array<u32>` to another";
     assert!(error.starts_with(problem), "{error}");
+}
+
+/// The fragments of a scene with a tool of triangles.
+pub fn of_tools() -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n";
+    std::fs::write(folder.path().join("tool.obj"), obj).unwrap();
+    let text = "(duration: 1, bodies: {\"b\": (mesh: Box(size: (1, 1, 1), cells: (2, 2, 2)), material: \"m\", translate: (0, 0, 2))},
+        materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 1)},
+        tools: {\"t\": (mesh: (path: \"tool.obj\"))}, contacts: [Tool(tool: \"t\")])";
+    let scene = SceneFile::from_text("tools", text, folder.path(), &[]).unwrap();
+    let mut simulation = Simulation::new(&scene, &Options::default()).unwrap();
+    let explained = simulation.explain_on_gpu(&Registry::default()).unwrap();
+    let fragments = explained.kernels.iter().flat_map(|kernel| &kernel.fragments);
+    fragments.filter_map(|f| f.path.strip_prefix("shaders/").map(str::to_owned)).collect()
 }

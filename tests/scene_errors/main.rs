@@ -14,5 +14,6 @@ mod outside;
 mod own_systems;
 mod set;
 mod several;
+mod tools;
 mod values;
 mod words;

@@ -112,7 +112,7 @@ fn contacts(scene_: &Scene, validator: &mut Validator) {
                 validator
                     .out
                     .error_at(path.name("static_friction"), message)
-                    .note("what sticks is held as least as well as what slides");
+                    .note("what sticks is held at least as well as what slides");
             }
         }
         if scene_.is_static() && (*friction > 0.0 || static_friction.is_some_and(|sticking| sticking > 0.0)) {

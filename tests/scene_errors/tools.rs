@@ -1,0 +1,124 @@
+//! Tools that cannot be, go nowhere, go too fast, or stand in the way.
+
+use sinew::systems::Registry;
+use sinew::{SceneFile, Simulation};
+
+/// An open tetrahedron.
+const OPEN: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n";
+
+/// What is said of a tool and its contact, each complaint in one line without its place in the line.
+fn told(tool: &str, contact: &str, more: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("open.obj"), OPEN).unwrap();
+    let text = format!(
+        "(duration: 0.1, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4)), material: \"m\")}},
+materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
+constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))], {more}
+tools: {{\"rod\": {tool}}},
+contacts: [{contact}])"
+    );
+    let found = match SceneFile::from_text("t.ron", &text, folder.path(), &[]) {
+        Err(wrong) => wrong,
+        Ok(scene) => Simulation::check(&scene, &Registry::default()),
+    };
+    let each = found.lines().into_iter().zip(found.list()).map(|(line, complaint)| {
+        let line = line.strip_prefix("t.ron:").unwrap_or(&line).to_string();
+        let (row, message) = line.split_once(": ").unwrap_or(("", &line));
+        let row = row.split(':').next().unwrap_or("");
+        complaint.notes.iter().fold(format!("{row}: {message}"), |text, note| format!("{text} | {note}"))
+    });
+    each.collect::<Vec<_>>().join("\n")
+}
+
+const ROD: &str = "(shape: Capsule(length: 0.2, radius: 0.06), at: (0.05, 0.05, 0.11))";
+const TOUCH: &str = "Tool(tool: \"rod\")";
+
+#[test]
+fn a_good_tool_has_no_complaints() {
+    assert_eq!(told(ROD, TOUCH, ""), "");
+}
+
+#[test]
+fn what_is_wrong_with_a_tool_is_told_with_what_is_allowed() {
+    let cases = [
+        ("(at: (0, 0, 1))", TOUCH, "4: error: the tool has no `shape` | a tool has either a `shape` or a `mesh`"),
+        (
+            "(shape: Sphere(radius: 0.1), mesh: (path: \"open.obj\"))",
+            TOUCH,
+            "4: error: a `mesh` beside a `shape` | a tool has either a `shape` or a `mesh`",
+        ),
+        (
+            "(shape: Sphere(radius: -0.1), at: (0, 0, 1))",
+            TOUCH,
+            "4: error: `radius` must be between 1e-9 m and 1e6 m, found -0.1 m",
+        ),
+        (
+            "(shape: Sphere(radius: 0.1), at: (0, 0, 1), path: [(t: 0, at: (0, 0, 1))])",
+            TOUCH,
+            "4: error: `at` beside a `path`, which says where the tool is at all times | leave one of both out; `moves` may be \
+             added to a path",
+        ),
+        (
+            "(shape: Sphere(radius: 0.1), path: [(t: 0, at: (0, 0, 1)), (t: 0, at: (0, 0, 2))])",
+            TOUCH,
+            "4: error: places are in the order of time: after 0.0000 s this is 0.0000 s | the tool would jump by 1.0000 m; give \
+             it time to go there",
+        ),
+        (
+            "(shape: Sphere(radius: 0.1), path: [(t: 0, at: (0, 0, 0.5)), (t: 1e-4, at: (0, 0, 0.3))])",
+            TOUCH,
+            "the tool `rod` goes up to 2.000e3 m/s",
+        ),
+        (ROD, "", "4: warning: nothing touches the tool `rod` | under `contacts`: Tool(tool: \"rod\")"),
+        (ROD, "Tool(tool: \"rot\")", "there is no tool `rot` | did you mean `rod`?"),
+        (ROD, "Tool(tool: \"rod\", friction: -0.1)", "5: error: `friction` must be 0 or above, found -0.1000"),
+        (
+            ROD,
+            "Tool(tool: \"rod\", friction: 0.3, static_friction: 0.2)",
+            "what sticks is held at least as well as what slides",
+        ),
+        (ROD, "Tool(tool: \"rod\", on: Set(\"lid\"))", "there is no set"),
+        (
+            "(shape: Capsule(length: 0.2, radius: 0.06), at: (0.05, 0.05, 0.095))",
+            TOUCH,
+            "inside the tool `rod` at the start, the deepest by 5.000e-3 m | nodes: ",
+        ),
+        (
+            "(shape: Capsule(length: 0.2, radius: 0.06), at: (0.05, 0.05, 0.05))",
+            TOUCH,
+            "4: error: 9 nodes of `b` are inside the tool `rod` at the start, the deepest by 5.000e-2 m",
+        ),
+        ("(mesh: (path: \"open.obj\"))", TOUCH, "4: error: open.obj: "),
+        ("(mesh: (path: \"none.obj\"))", TOUCH, "there is no file `none.obj`"),
+        (
+            "(shape: Capsule(length: 0.2, radius: 0.01), at: (0.05, 0.05, 0.11))",
+            TOUCH,
+            "4: warning: the tool `rod` may slip between nodes",
+        ),
+        (
+            "(shape: Sphere(radius: 0.1), at: (0.05, 0.05, 0.3), moves: [(curve: Smooth(end: 1))])",
+            TOUCH,
+            "4: warning: this moves nothing | give `displacement` or `rotation`",
+        ),
+    ];
+    for (tool, contact, expected) in cases {
+        let found = told(tool, contact, "");
+        println!("{found}");
+        assert!(found.contains(expected), "{tool} {contact}:\n{found}\nexpected\n{expected}");
+    }
+}
+
+#[test]
+fn friction_in_a_static_analysis_is_warned_of() {
+    let found = told(ROD, "Tool(tool: \"rod\", friction: 0.3)", "analysis: Static(),");
+    assert!(found.contains("rest with friction depends on the way there"), "{found}");
+}
+
+#[test]
+fn probes_of_tools_name_one_that_is_there_and_no_nodes() {
+    let of = |probe: &str| told(ROD, TOUCH, &format!("probes: {{\"p\": ({probe})}},"));
+    assert_eq!(of("what: ToolForce(tool: \"rod\")"), "");
+    assert!(of("what: ToolForce(tool: \"ro\")").contains("there is no tool `ro` | did you mean `rod`?"));
+    assert!(of("what: ToolTorque(tool: \"rod\"), on: All").contains("what a tool feels is of the whole tool"));
+    assert!(of("what: Displacement").contains("the probe `p` lacks `on`"));
+}
