@@ -5,7 +5,7 @@ use super::{Assembly, BodyParts};
 use crate::components::*;
 use crate::scene::SceneFile;
 use crate::scene::diagnostic::Diagnostics;
-use crate::scene::schema::{Contact, Select, Tool, ToolMesh, ToolPlace, WhenUnstable};
+use crate::scene::schema::{Contact, Curve, Select, Tool, ToolMesh, ToolPlace, WhenUnstable};
 use crate::tools::{DistanceGrid, Geometry, Solid, Triangles};
 use bevy_ecs::prelude::*;
 use glam::{DQuat, DVec3};
@@ -191,6 +191,7 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
             if clock.relaxation.is_some() {
                 continue;
             }
+            jumps(&contact.tool, tool, diagnostics);
             let reach = contact.geometry.bounding_sphere().map_or(0.0, |(center, radius)| center.length() + radius);
             let speed = motion.fastest(reach);
             if speed * clock.time_step > FARTHEST * contacts.edge {
@@ -205,6 +206,25 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
                 );
             }
         }
+    }
+}
+
+/// Warns of moves that happen all at once: what is in the way is then pushed out by and by.
+fn jumps(name: &str, tool: &Tool, diagnostics: &mut Diagnostics) {
+    for (number, part) in tool.moves.iter().enumerate() {
+        let (message, note) = match &part.curve {
+            Curve::Step { start, end } if *start > 0.0 || end.is_some() => (
+                "the tool jumps: nodes that it meets there are pushed out by and by",
+                "let it take time: curve: Smooth(end: ...), Ramp(end: ...) or Table([...])",
+            ),
+            Curve::Input { rate: None, .. } => (
+                "an input without `rate` lets the tool jump: nodes that it meets there are pushed out by and by",
+                "bound its change a second: Input(name: ..., rate: ...)",
+            ),
+            _ => continue,
+        };
+        let path = format!("tools.\"{name}\".moves[{number}].curve");
+        diagnostics.warn_at(path.as_str(), message).note(note);
     }
 }
 

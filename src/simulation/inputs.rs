@@ -365,6 +365,15 @@ fn uses(scene: &Scene, name: &str) -> Vec<InputUse> {
         let (of, unit) = load.parts().field;
         add(format!("loads[{i}].curve"), of, Some(unit));
     }
+    for (name, tool) in &scene.tools {
+        for (i, part) in tool.moves.iter().enumerate().filter(|(_, part)| is(&part.curve)) {
+            let path = format!("tools.{name}.moves[{i}].curve");
+            let parts = [(part.displacement, "displacement", "m"), (part.rotation, "rotation", "degrees")];
+            for (_, of, unit) in parts.into_iter().filter(|(size, ..)| *size != glam::DVec3::ZERO) {
+                add(path.clone(), of, Some(unit));
+            }
+        }
+    }
     for (system, _) in scene.systems.iter().filter(|(_, system)| is(&system.curve)) {
         add(format!("systems.{system}.curve"), "node.curve", None);
     }

@@ -100,6 +100,11 @@ fn what_is_wrong_with_a_tool_is_told_with_what_is_allowed() {
             TOUCH,
             "4: warning: this moves nothing | give `displacement` or `rotation`",
         ),
+        (
+            "(shape: Sphere(radius: 0.1), at: (0.05, 0.05, 0.3), moves: [(displacement: (0, 0, -0.1), curve: Step(start: 0.05))])",
+            TOUCH,
+            "4: warning: the tool jumps",
+        ),
     ];
     for (tool, contact, expected) in cases {
         let found = told(tool, contact, "");
