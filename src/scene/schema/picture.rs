@@ -29,6 +29,8 @@ pub struct Picture {
     pub ghost: bool,
     /// What can be seen through; of several that fit the last one counts.
     pub opacity: Vec<Opacity>,
+    /// Whether the tools of the scene are drawn.
+    pub tools: bool,
     /// Soft shadows.
     pub shadow: bool,
     /// Width and height (pixels).
@@ -49,6 +51,7 @@ impl Default for Picture {
             cut: None,
             ghost: false,
             opacity: Vec::new(),
+            tools: true,
             shadow: true,
             size: (960, 720),
         }

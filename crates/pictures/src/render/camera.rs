@@ -1,5 +1,6 @@
 //! Where the eye stands.
 
+use super::clip::Extent;
 use glam::{Mat3, Vec2, Vec3};
 use sinew::scene::schema::Picture;
 
@@ -27,6 +28,8 @@ pub struct Camera {
     focal: f32,
     /// Where what lies straight ahead appears (pixels).
     middle: Vec2,
+    /// What is nearer along the line of sight (m) is not drawn.
+    near: f32,
 }
 
 /// Finds the place from which a camera sees all points of a series and fills its part of the picture with them.
@@ -45,7 +48,12 @@ pub struct Fit {
     depth: (f32, f32),
     /// The direction that is up in the world, of length 1, and the lowest point along it (m).
     ground: (Vec3, f32),
+    /// What all points fill.
+    extent: Extent,
 }
+
+/// What is nearer to the eye is not drawn, as a share of the distance of the nearest point that was to be seen.
+const NEAR: f32 = 0.05;
 
 /// Tangent of half the angle that the height of the view spans: a long lens, little distortion.
 const HALF_ANGLE: f32 = 0.22;
@@ -81,7 +89,7 @@ impl Fit {
         let axes = Mat3::from_cols(right, back.cross(right), back).transpose();
         let extent = (right_bottom - left_top).max(Vec2::ONE);
         let focal = extent.y / (2.0 * HALF_ANGLE);
-        let camera = Camera { eye: Vec3::ZERO, axes, focal, middle: (left_top + right_bottom) / 2.0 };
+        let camera = Camera { eye: Vec3::ZERO, axes, focal, middle: (left_top + right_bottom) / 2.0, near: 0.0 };
         Fit {
             camera,
             look_at: view.look_at,
@@ -90,23 +98,37 @@ impl Fit {
             reach: [Vec2::MIN; 2],
             depth: (f32::MIN, f32::MAX),
             ground: (wanted, f32::MAX),
+            extent: Extent::NOTHING,
         }
     }
 
     /// Adds a point that is to be seen (m); one that is not finite is left out.
     pub fn see(&mut self, point: Vec3) {
+        self.see_above_ground(point);
+        if self.camera.turn(point).is_finite() {
+            self.ground.1 = self.ground.1.min(point.dot(self.ground.0));
+        }
+    }
+
+    /// As [`Fit::see`]; the ground stays where it is.
+    pub fn see_above_ground(&mut self, point: Vec3) {
         let turned = self.camera.turn(point);
         if turned.is_finite() {
             let aside = turned.truncate() * self.slope;
             self.reach = [self.reach[0].max(aside + turned.z), self.reach[1].max(turned.z - aside)];
             self.depth = (self.depth.0.max(turned.z), self.depth.1.min(turned.z));
-            self.ground.1 = self.ground.1.min(point.dot(self.ground.0));
+            self.extent.add(point);
         }
     }
 
     /// The direction that is up in the world, of length 1, and the lowest of all points along it (m).
     pub fn ground(&self) -> (Vec3, f32) {
         self.ground
+    }
+
+    /// What all points fill.
+    pub fn extent(&self) -> Extent {
+        self.extent
     }
 
     /// The camera, or nothing when there is no point. The planes through the eye that bound the view touch the points;
@@ -128,8 +150,9 @@ impl Fit {
                 (target, (ahead - aside).max(behind + aside).max_element())
             }
         };
-        let eye = self.camera.axes.transpose() * target.extend(distance.max(least));
-        Some(Camera { eye, focal: self.camera.focal * self.zoom, ..self.camera })
+        let distance = distance.max(least);
+        let eye = self.camera.axes.transpose() * target.extend(distance);
+        Some(Camera { eye, focal: self.camera.focal * self.zoom, near: NEAR * (distance - near), ..self.camera })
     }
 }
 
@@ -141,6 +164,11 @@ impl Camera {
         let inverse = -1.0 / seen.z;
         let place = self.middle + Vec2::new(seen.x, -seen.y) * inverse * self.focal;
         place.extend(inverse)
+    }
+
+    /// How far a point is beyond what is too near to be drawn, along the line of sight (m).
+    pub fn ahead(&self, point: Vec3) -> f32 {
+        -self.turn(point - self.eye).z - self.near
     }
 
     /// Where the eye is (m).

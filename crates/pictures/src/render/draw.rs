@@ -3,10 +3,12 @@
 use super::camera::View;
 use super::colour::Scale;
 use super::frame::FrameFile;
+use super::legend::top;
 use super::picture::{Picture, paint, stage};
 use super::range::Seen;
 use super::series::Series;
 use super::state::Reader;
+use super::tools::Tools;
 use super::{Fit, Image, RenderError, animation, encode};
 use glam::DVec3;
 use sinew::scene::limits::{PICTURE, ZOOM};
@@ -29,6 +31,8 @@ pub struct Options {
     pub out: PathBuf,
     /// What stands below each frame, in their order; the time when left out.
     pub captions: Vec<String>,
+    /// The tools of the scene, drawn where the picture wants them and frames do not swing.
+    pub tools: Tools,
     /// Frames are shapes that swing about the one at rest: so many pictures of each; 0 shows each once as it is.
     pub swing: usize,
 }
@@ -36,7 +40,8 @@ pub struct Options {
 impl Options {
     /// A picture of the last frame, as a scene says it.
     pub fn new(picture: schema::Picture, out: PathBuf) -> Options {
-        Options { picture, field: None, at: None, animate: false, out, captions: Vec::new(), swing: 0 }
+        let (captions, tools) = (Vec::new(), Tools::default());
+        Options { picture, field: None, at: None, animate: false, out, captions, tools, swing: 0 }
     }
 }
 
@@ -98,7 +103,17 @@ pub fn draw_with_progress(
         progress(row + 1, total);
     }
     let mut done = series.frames.len();
-    let camera = fit.camera().ok_or_else(|| RenderError::Nothing { path: series.path.clone() })?;
+    let nothing = || RenderError::Nothing { path: series.path.clone() };
+    let no_tools = Tools::default();
+    let drawn = how.tools && options.swing == 0 && !fit.extent().is_nothing();
+    let tools = if drawn { &options.tools } else { &no_tools };
+    let times: Vec<f64> = series.frames.iter().map(|frame| frame.0).collect();
+    let spanned = tools.look(&times, &mut fit);
+    let placed = |row: usize| tools.placed(row, times[row], &spanned);
+    let camera = fit.camera().ok_or_else(nothing)?;
+    let mut shown = if options.animate { 0..=last } else { last..=last };
+    let bottom = top(size) as f32;
+    let low = shown.any(|row| placed(row).iter().any(|tool| tool.reaches(&camera, bottom)));
     let centre = reader.field().centre;
     let scale = match how.range.map(|(low, high)| (low as f32, high as f32)) {
         Some(range) => Scale { range, centre: centre.filter(|centre| range.0 < *centre && *centre < range.1) },
@@ -116,8 +131,10 @@ pub fn draw_with_progress(
         }
         // the legend of an animation does not change on the way
         let keys = if options.animate { keys_of_all.clone() } else { state.keys(&reader) };
+        let placed = placed(row);
+        let tools = placed.iter().map(|tool| tool.layer(&camera, &spanned, |normal| state.depth(normal)));
         let picture = Picture {
-            layers: reader.layers(&state, how.edges),
+            layers: reader.layers(&state, how.edges).into_iter().chain(tools).collect(),
             scale,
             quantity: &quantity,
             unit,
@@ -125,8 +142,8 @@ pub fn draw_with_progress(
             keys: &keys,
             plane: reader.plane(),
             ground: how.shadow.then(|| fit.ground()),
-            // enlarged or looking elsewhere, surfaces may reach into the legend
-            panel: how.zoom > 1.0 || how.look_at.is_some(),
+            // enlarged or looking elsewhere, surfaces may reach into the legend, as tools may
+            panel: how.zoom > 1.0 || how.look_at.is_some() || low,
         };
         let image = paint(&picture, &camera, size)?;
         done += 1;

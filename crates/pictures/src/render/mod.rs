@@ -9,11 +9,13 @@
 //! groups   bodies, materials -> opacity        state    a frame -> layers of faces
 //! range    values -> what the colours span     camera   where the eye stands
 //! picture  all of that -> image                triangles, raster, normals, light, occlusion, colour, legend
+//! tools    a scene -> layers of its tools       clip     polygons -> what of them is near
 //! encode   images -> PNG                       animation, palette -> GIF
 //! ```
 
 mod animation;
 mod camera;
+mod clip;
 mod colour;
 mod draw;
 mod encode;
@@ -36,6 +38,7 @@ mod section;
 mod series;
 mod state;
 mod surface;
+mod tools;
 mod triangles;
 
 pub use camera::{Camera, Fit, View};
@@ -47,3 +50,4 @@ pub use legend::Key;
 pub use picture::{Colouring, Layer, Lines, Picture, paint, stage};
 pub use plane::Plane;
 pub use raster::Finish;
+pub use tools::{Tools, copy_of};

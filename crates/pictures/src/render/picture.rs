@@ -92,7 +92,7 @@ pub fn paint(picture: &Picture<'_>, camera: &Camera, (width, height): (usize, us
     let lights = Light::new();
     let look = Look { ramp: &ramp, light: &lights, edge: 0.35 * FINE as f32 * thickness(height) };
     let shade = Shade::new(picture, camera, &lights);
-    let sheets = triangles.iter().any(|triangle| matches!(triangle.finish, Finish::Sheet(_) | Finish::Ghost));
+    let sheets = triangles.iter().any(|triangle| triangle.finish.is_clear());
     let rows = ROWS[usize::from(sheets)];
     let end = if picture.panel { legend::top((width, height)) } else { height };
     // forty samples deep within two: no surface that we see well is that steep
@@ -127,6 +127,8 @@ pub fn paint(picture: &Picture<'_>, camera: &Camera, (width, height): (usize, us
 struct Shade<'a> {
     camera: &'a Camera,
     sky: Option<(Sky, Ground)>,
+    /// Planes on which bodies may stand: their normals, of length 1, where they are along these (m), and their shadows.
+    tables: Vec<(Vec3, f32, Ground)>,
 }
 
 impl Shade<'_> {
@@ -137,7 +139,11 @@ impl Shade<'_> {
             let below = sky.ground(ground);
             Some((sky, below))
         });
-        Shade { camera, sky }
+        let planes = picture.layers.iter().filter(|layer| layer.finish == Finish::Table);
+        let planes = planes.filter_map(|layer| Some((layer.flat?, layer.flat?.dot(*layer.vertices.first()?))));
+        let shadow = |(normal, at)| sky.as_ref().map(|(sky, _)| (normal, at, sky.ground((normal, at))));
+        let tables = planes.filter_map(shadow).collect();
+        Shade { camera, sky, tables }
     }
 
     /// The share of light on the ground at a pixel.
@@ -149,8 +155,15 @@ impl Shade<'_> {
     /// The share of light on a surface at a pixel, of known nearness (1/m) and normal as the eye sees it.
     fn on_surface(&self, pixel: Vec2, nearness: f32, normal: Vec3) -> f32 {
         let Some((sky, _)) = &self.sky else { return 1.0 };
-        let point = self.camera.eye() + self.camera.ray(pixel) / nearness;
-        DARKEST[0] + (1.0 - DARKEST[0]) * sky.seen(point, self.camera.turn_back(normal))
+        let ray = self.camera.ray(pixel);
+        let (point, normal) = (self.camera.eye() + ray / nearness, self.camera.turn_back(normal));
+        let near = 1e-3 / nearness;
+        let lies_in =
+            |(of, at, _): &&(Vec3, f32, Ground)| normal.dot(*of) > 0.999 && (point.dot(*of) - at).abs() < near;
+        match self.tables.iter().find(lies_in) {
+            Some((_, _, table)) => DARKEST[1] + (1.0 - DARKEST[1]) * table.seen(self.camera.eye(), ray),
+            None => DARKEST[0] + (1.0 - DARKEST[0]) * sky.seen(point, normal),
+        }
     }
 }
 

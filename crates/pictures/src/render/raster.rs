@@ -15,6 +15,12 @@ pub enum Finish {
     Sheet(f32),
     /// Without a value: the shape at rest.
     Ghost,
+    /// A tool.
+    Steel,
+    /// A tool that is a plane, seen from the side where bodies are.
+    Table,
+    /// The same from its back, through which bodies are seen.
+    Pane,
 }
 
 /// A triangle in the picture.
@@ -72,6 +78,18 @@ pub struct Strip {
     pub nearness: Vec<f32>,
     /// Sheets, the nearest first; empty when there are none.
     sheets: Vec<[Sheet; SHEETS]>,
+}
+
+impl Finish {
+    /// Whether what lies behind is seen.
+    pub fn is_clear(self) -> bool {
+        matches!(self, Finish::Sheet(_) | Finish::Ghost | Finish::Pane)
+    }
+
+    /// Whether it is that of a tool.
+    pub fn is_tool(self) -> bool {
+        matches!(self, Finish::Steel | Finish::Table | Finish::Pane)
+    }
 }
 
 impl Strip {
@@ -187,6 +205,12 @@ fn sample(triangle: &Triangle, look: &Look<'_>, share: Vec3, ink: f32) -> (Vec3,
         Finish::Sheet(opacity) => {
             let cover = askew(opacity);
             (lit(value()), normal, Some(cover + (1.0 - cover) * ink * 0.6 * opacity.sqrt()))
+        }
+        Finish::Steel => (look.light.steel(normal), normal, None),
+        Finish::Table => (lit(look.light.table()), normal, None),
+        Finish::Pane => {
+            let cover = askew(0.12);
+            (lit(look.light.table()), normal, Some(cover + (1.0 - cover) * 0.6 * ink))
         }
         Finish::Ghost => {
             let cover = askew(0.07);

@@ -271,6 +271,12 @@ impl State {
         [(bared, Key::Bared), (reader.ghost, Key::Ghost)].into_iter().filter(|key| key.0).map(|key| key.1).collect()
     }
 
+    /// How far its bodies are behind a plane through the origin with a normal (m).
+    pub fn depth(&self, normal: Vec3) -> f32 {
+        let points = self.parts.iter().flat_map(|part| part.faces.iter().flatten());
+        points.map(|point| -normal.dot(self.vertices[*point as usize])).fold(f32::MIN, f32::max)
+    }
+
     /// Adds what this frame shows.
     pub fn look(&self, reader: &Reader, seen: &mut Seen, fit: &mut Fit) {
         for part in &self.parts {

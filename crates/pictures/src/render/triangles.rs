@@ -1,6 +1,7 @@
 //! Faces to triangles: those that are drawn, and those that cast shadows.
 
 use super::camera::Camera;
+use super::clip::{Extent, kept};
 use super::normals;
 use super::occlusion::Caster;
 use super::picture::{Colouring, Layer, Lines, Picture};
@@ -55,6 +56,9 @@ impl Maker<'_> {
             let sides = face.map(|point| beyond[point as usize]);
             let hidden = sides.iter().all(|beyond| *beyond > 0.0);
             if hidden || !corners.iter().all(|corner| corner.is_finite() && corner.z > 0.0) {
+                if layer.finish.is_tool() {
+                    self.before_the_eye(face, &normals[row], triangles);
+                }
                 continue;
             }
             let values = match layer.values {
@@ -93,6 +97,32 @@ impl Maker<'_> {
                 (one.normals[0], one.values[0], one.beyond[0]) = (normal, value, self.beyond(middle));
                 triangles.push(one);
             }
+        }
+    }
+
+    /// The part before the eye of a triangle that reaches behind it: instruments may be long.
+    fn before_the_eye(&self, face: &[u32; 4], normals: &[Vec3; 4], triangles: &mut Vec<Triangle>) {
+        let corner = |row: usize| (self.layer.vertices[face[row] as usize], normals[row]);
+        let mix = |from: &(Vec3, Vec3), to: &(Vec3, Vec3), share: f32| {
+            (from.0.lerp(to.0, share), from.1.lerp(to.1, share).normalize_or(from.1))
+        };
+        let left = kept(&[0, 1, 2].map(corner), |(point, _)| self.camera.ahead(*point), mix);
+        for pair in left.windows(2).skip(1) {
+            let of = [left[0], pair[0], pair[1]];
+            let places = of.map(|(point, _)| sampled(self.camera.project(point)));
+            if !places.iter().all(|place| place.is_finite()) {
+                continue;
+            }
+            let corners = [places[0], places[1], places[2], places[2]];
+            triangles.push(Triangle {
+                places,
+                normals: of.map(|(point, normal)| self.turned(normal, &corners, point)),
+                values: [0.0; 3],
+                beyond: [-1.0; 3],
+                edges: [false; 3],
+                ink: 0.0,
+                finish: self.layer.finish,
+            });
         }
     }
 
@@ -144,7 +174,10 @@ fn area(corners: &[Vec3; 4]) -> f32 {
     triangle + (c - a).perp_dot(d - a)
 }
 
-/// What casts shadows: all that is solid.
+/// How far from the bodies tools cast shadows, in diagonals of what these fill.
+const NEAR_BODIES: f32 = 0.5;
+
+/// What casts shadows: all that is solid, but of tools only what is near the bodies, and no planes.
 pub fn casters(picture: &Picture<'_>) -> Vec<Caster> {
     let mut casters = Vec::new();
     for layer in picture.layers.iter().filter(|layer| matches!(layer.finish, Finish::Plain | Finish::Bared)) {
@@ -159,5 +192,20 @@ pub fn casters(picture: &Picture<'_>) -> Vec<Caster> {
         }
     }
     casters.retain(|(_, beyond)| beyond.iter().any(|beyond| *beyond <= 0.0));
+    let steel = || picture.layers.iter().filter(|layer| layer.finish == Finish::Steel);
+    if steel().next().is_none() {
+        return casters;
+    }
+    let mut bodies = Extent::NOTHING;
+    for layer in picture.layers.iter().filter(|layer| !layer.finish.is_tool()) {
+        layer.faces.iter().flatten().for_each(|point| bodies.add(layer.vertices[*point as usize]));
+    }
+    let near = bodies.grown(NEAR_BODIES);
+    for layer in steel() {
+        for face in layer.faces {
+            let left = near.part_of([face[0], face[1], face[2]].map(|point| layer.vertices[point as usize]));
+            casters.extend(left.windows(2).skip(1).map(|pair| ([left[0], pair[0], pair[1]], [-1.0; 3])));
+        }
+    }
     casters
 }

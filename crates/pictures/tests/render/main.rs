@@ -2,6 +2,7 @@
 //! at.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod tools;
 mod words;
 
 use glam::{DQuat, DVec3, Vec3};

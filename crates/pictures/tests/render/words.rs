@@ -5,33 +5,33 @@ use glam::{DVec3, Vec2, Vec3};
 use sinew::mesh::{CellKind, Cells};
 use sinew::output::{Array, Folder, Frame, Series, Values};
 use sinew::scene::schema::{Colours, Cut, Opacity, Picture};
-use sinew_pictures::render::{Camera, Fit, Options, View, draw, stage};
+use sinew_pictures::render::{Camera, Fit, Options, Tools, View, draw, stage};
 use std::path::{Path, PathBuf};
 
 const SIZE: (usize, usize) = (480, 360);
 
 /// A run of one frame or two: a box of hexahedra (or six tetrahedra each), of which the second frame lacks some.
-struct Run {
-    cells: [u32; 3],
-    tets: bool,
+pub struct Run {
+    pub cells: [u32; 3],
+    pub tets: bool,
     /// Of all nodes (m).
-    displacement: Vec3,
+    pub displacement: Vec3,
     /// What gives the colour, by where an element is.
-    value: fn(DVec3) -> f32,
+    pub value: fn(DVec3) -> f32,
     /// Which elements are of the material `core`.
-    core: fn(DVec3) -> bool,
-    removed: Option<Removed>,
+    pub core: fn(DVec3) -> bool,
+    pub removed: Option<Removed>,
 }
 
 /// Which elements go in a second frame, and whether the file keeps them.
-type Removed = (fn(DVec3) -> bool, bool);
+pub type Removed = (fn(DVec3) -> bool, bool);
 
-const BOX: Run =
+pub const BOX: Run =
     Run { cells: [5; 3], tets: false, displacement: Vec3::ZERO, value: |_| 1.0, core: |_| false, removed: None };
 
 impl Run {
     /// Elements are unit cubes.
-    fn write(&self, name: &str) -> PathBuf {
+    pub fn write(&self, name: &str) -> PathBuf {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("render").join(name);
         let [nx, ny, nz] = self.cells;
         let row = |x: u32, y: u32, z: u32| (x * (ny + 1) + y) * (nz + 1) + z;
@@ -86,18 +86,22 @@ impl Run {
 }
 
 /// Without what would change colours from place to place.
-fn plain() -> Picture {
+pub fn plain() -> Picture {
     let size = (SIZE.0 as u32, SIZE.1 as u32);
     Picture { edges: false, shadow: false, range: Some((0.0, 2.0)), size, ..Picture::default() }
 }
 
-struct Seen {
-    bytes: Vec<u8>,
+pub struct Seen {
+    pub bytes: Vec<u8>,
 }
 
 fn seen_at(folder: &Path, picture: Picture, at: Option<f64>) -> Seen {
+    seen_with(folder, picture, at, Tools::default())
+}
+
+pub fn seen_with(folder: &Path, picture: Picture, at: Option<f64>, tools: Tools) -> Seen {
     let out = folder.join(format!("{}.png", std::thread::current().name().unwrap_or("x").replace("::", "_")));
-    let options = Options { field: Some("von_mises".into()), at, ..Options::new(picture, out) };
+    let options = Options { field: Some("von_mises".into()), at, tools, ..Options::new(picture, out) };
     draw(folder, &options).unwrap();
     Seen { bytes: read_png(&options.out).1 }
 }
@@ -107,17 +111,17 @@ fn seen(folder: &Path, picture: Picture) -> Seen {
 }
 
 impl Seen {
-    fn at(&self, x: usize, y: usize) -> [u8; 3] {
+    pub fn at(&self, x: usize, y: usize) -> [u8; 3] {
         let at = 3 * (y * SIZE.0 + x);
         [self.bytes[at], self.bytes[at + 1], self.bytes[at + 2]]
     }
 
     /// Pixels above the legend that are like this.
-    fn count(&self, like: impl Fn([u8; 3]) -> bool) -> usize {
+    pub fn count(&self, like: impl Fn([u8; 3]) -> bool) -> usize {
         self.places(like).len()
     }
 
-    fn places(&self, like: impl Fn([u8; 3]) -> bool) -> Vec<(usize, usize)> {
+    pub fn places(&self, like: impl Fn([u8; 3]) -> bool) -> Vec<(usize, usize)> {
         let bottom = stage(SIZE).1.y as usize;
         let all = (0..bottom).flat_map(|y| (0..SIZE.0).map(move |x| (x, y)));
         all.filter(|&(x, y)| like(self.at(x, y))).collect()
