@@ -10,7 +10,7 @@ use sinew::output::Lock;
 use sinew::scene::schema::{MeshSource, Picture, Scene};
 use sinew::scene::validate_picture;
 use sinew::{Options as RunOptions, SceneFile};
-use sinew_pictures::render::{Options, draw_with_progress};
+use sinew_pictures::render::{Options, Tools, draw_with_progress};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -18,17 +18,18 @@ use std::time::SystemTime;
 /// Draws.
 pub fn command(arguments: &RenderArguments) -> Outcome {
     let files = files(arguments)?;
-    let (folder, mut picture, ended) = source(arguments)?;
+    let (folder, mut picture, scene, ended) = source(arguments)?;
     let _lock = match files.iter().any(|(_, file)| file.is_none()) {
         true => Some(Lock::of_pictures(&folder, "sinew render")?),
         false => None,
     };
     picture.from = arguments.from.map_or(picture.from, |from| from.as_dvec3());
     picture.size = arguments.size.unwrap_or(picture.size);
+    let tools = scene.filter(|_| picture.tools).map(|scene| tools_of(&scene, &folder)).unwrap_or_default();
     for (animate, file) in files {
         let out = file.unwrap_or_else(|| folder.join(PICTURES[usize::from(animate)]));
-        let (field, at) = (arguments.field.clone(), arguments.at);
-        let options = Options { field, at, animate, ..Options::new(picture.clone(), out) };
+        let (field, at, tools) = (arguments.field.clone(), arguments.at, tools.clone());
+        let options = Options { field, at, animate, tools, ..Options::new(picture.clone(), out) };
         draw(&folder, &as_modes(&folder, options)?)?;
     }
     ended
@@ -48,29 +49,40 @@ fn files(arguments: &RenderArguments) -> Result<Vec<(bool, Option<PathBuf>)>, Fa
     }
 }
 
-/// The folder to draw, how its scene wants to be drawn, and how the run ended where one was needed.
-fn source(arguments: &RenderArguments) -> Result<(PathBuf, Picture, Outcome), Failure> {
+/// The tools of a scene that was run into a folder; says which are left out.
+fn tools_of(scene: &SceneFile, folder: &Path) -> Tools {
+    let (tools, missing) = Tools::of_scene(scene, folder);
+    missing.iter().for_each(|note| terminal::note(&format!("{note}\n")));
+    tools
+}
+
+/// What is to be drawn: the folder, how its scene wants that, the scene if there is one, and how the run ended where
+/// one was needed.
+type Source = (PathBuf, Picture, Option<SceneFile>, Outcome);
+
+fn source(arguments: &RenderArguments) -> Result<Source, Failure> {
     let what = &arguments.what;
     if what.is_dir() {
-        return Ok((what.clone(), picture_of(what, &arguments.set)?, Ok(())));
+        let (picture, scene) = picture_of(what, &arguments.set)?;
+        return Ok((what.clone(), picture, scene, Ok(())));
     }
     let scene = SceneFile::load_allowing(what, &arguments.set, allowed(arguments.allow_outside))?;
     let (folder, picture) = (default_folder(what), checked(&scene)?);
     let Some(reason) = why_run(&scene, &folder) else {
         terminal::note(&format!("drawing {}, which is of this scene\n", folder.display()));
-        return Ok((folder, picture, Ok(())));
+        return Ok((folder, picture, Some(scene), Ok(())));
     };
     terminal::note(&format!("running {} first: {reason}\n", what.display()));
     let (_, ended) = run::run(&scene, &RunOptions::default(), &folder, None)?;
     match ended {
         Err(Failure::Interrupted) => Err(Failure::Interrupted),
         // what was written until a breakdown can be seen, and often says why
-        ended => Ok((folder, picture, ended)),
+        ended => Ok((folder, picture, Some(scene), ended)),
     }
 }
 
-/// How the scene of an output folder wants to be drawn, with values put into that.
-fn picture_of(folder: &Path, set: &[String]) -> Result<Picture, Failure> {
+/// How the scene of an output folder wants to be drawn, with values put into that, and the scene if there is one.
+fn picture_of(folder: &Path, set: &[String]) -> Result<(Picture, Option<SceneFile>), Failure> {
     if !folder.join("sinew.json").exists() {
         let text = format!("{} is no output folder of sinew (it has no sinew.json)", folder.display());
         return Err(Failure::Options(text));
@@ -78,14 +90,15 @@ fn picture_of(folder: &Path, set: &[String]) -> Result<Picture, Failure> {
     let path = folder.join(SCENE);
     if set.is_empty() {
         // what is no run, a mesh for instance, has no scene
-        return Ok(SceneFile::load(path, &[]).map(|scene| scene.scene.picture).unwrap_or_default());
+        let scene = SceneFile::load(path, &[]).ok();
+        return Ok((scene.as_ref().map(|scene| scene.scene.picture.clone()).unwrap_or_default(), scene));
     }
     if !path.exists() {
         return Err(Failure::Options(format!("{} has no {SCENE} that --set could put a value into", folder.display())));
     }
     let (run, wanted) = (SceneFile::load(&path, &[])?, SceneFile::load(&path, set)?);
     match is_the_same_run(&run.scene, &wanted.scene) {
-        true => checked(&wanted),
+        true => Ok((checked(&wanted)?, Some(wanted))),
         false => Err(Failure::Options(format!(
             "--set: {} is drawn as it was run, and only its `picture` can be changed, such as picture.zoom=2; name the scene \
              to have it run with another value",
@@ -123,7 +136,8 @@ fn why_run(scene: &SceneFile, folder: &Path) -> Option<String> {
         MeshSource::File { path, .. } => scene.file(path).ok(),
         _ => None,
     });
-    let newer = meshes.into_iter().find(|mesh| changed(mesh) > written);
+    let tools = scene.scene.tools.values().filter_map(|tool| scene.file(&tool.mesh.as_ref()?.path).ok());
+    let newer = meshes.into_iter().chain(tools).find(|mesh| changed(mesh) > written);
     newer.map(|mesh| format!("{} has changed since {} was written", mesh.display(), folder.display()))
 }
 
