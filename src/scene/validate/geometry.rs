@@ -11,7 +11,22 @@ use crate::scene::suggest::{choice, list};
 use crate::scene::syntax::Path;
 
 /// What mesh files may end in.
-const MESH_FILES: [&str; 3] = ["msh", "vtk", "vtu"];
+/// Files of a kind: what they are called, how their names end, and what the formats are.
+pub(super) struct KindOfFile {
+    what: &'static str,
+    endings: &'static [&'static str],
+    formats: &'static str,
+}
+
+const MESHES: KindOfFile = KindOfFile {
+    what: "mesh file",
+    endings: &["msh", "vtk", "vtu"],
+    formats: "Gmsh (.msh), legacy VTK (.vtk), VTU (.vtu)",
+};
+
+/// Files of triangles that are tools.
+pub(super) const TOOLS: KindOfFile =
+    KindOfFile { what: "surface file", endings: &["stl", "obj"], formats: "STL (.stl), OBJ (.obj)" };
 
 pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
     for (name, body) in &file.scene.bodies {
@@ -167,23 +182,28 @@ fn at_least_one(validator: &mut Validator, path: &Path, count: u32) {
     }
 }
 
-pub(super) fn mesh_file(file: &SceneFile, validator: &mut Validator, path: &Path, name: &str) {
-    if file.meshes.contains_key(name) {
-        return;
+fn mesh_file(file: &SceneFile, validator: &mut Validator, path: &Path, name: &str) {
+    if !file.meshes.contains_key(name) {
+        named_file(file, validator, path, name, &MESHES);
     }
+}
+
+/// Whether a file that the scene names can be one of a kind.
+pub(super) fn named_file(file: &SceneFile, validator: &mut Validator, path: &Path, name: &str, kind: &KindOfFile) {
+    let KindOfFile { what, endings, formats } = *kind;
     let (found, full, mut there) = match file.file(name).and_then(|full| Ok((full, file.look_up(name)?))) {
         Ok((full, (found, there))) => (found, full, there),
         Err(outside) => return tell_outside(validator, path, &outside),
     };
     let ending = full.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
     if name.is_empty() {
-        validator.out.error_at(path, "the path of the mesh file is empty");
+        validator.out.error_at(path, format!("the path of the {what} is empty"));
     } else if found == FileKind::Folder {
-        validator.out.error_at(path, format!("`{name}` is a folder, not a mesh file"));
+        validator.out.error_at(path, format!("`{name}` is a folder, not a {what}"));
     } else if found == FileKind::Nothing {
-        let is_mesh =
-            |name: &str| MESH_FILES.iter().any(|ending| name.to_ascii_lowercase().ends_with(&format!(".{ending}")));
-        there.retain(|name| is_mesh(name));
+        let may_be =
+            |name: &str| endings.iter().any(|ending| name.to_ascii_lowercase().ends_with(&format!(".{ending}")));
+        there.retain(|name| may_be(name));
         let wanted = full.file_name().and_then(|name| name.to_str()).unwrap_or(name);
         let diagnostic = validator.out.error_at(path, format!("there is no file `{name}`"));
         if there.is_empty() {
@@ -193,7 +213,8 @@ pub(super) fn mesh_file(file: &SceneFile, validator: &mut Validator, path: &Path
                 FileSource::Disk if folder.as_os_str().is_empty() => "in this folder".to_string(),
                 FileSource::Disk => format!("in the folder `{}`", folder.display()),
             };
-            diagnostic.note(format!("no mesh files (.msh, .vtk, .vtu) {place}; paths are relative to the scene file"));
+            diagnostic
+                .note(format!("no {what}s (.{}) {place}; paths are relative to the scene file", endings.join(", .")));
         } else {
             let mut notes = choice(wanted, there.iter().map(String::as_str));
             if let Some(last) = notes.last_mut() {
@@ -201,11 +222,11 @@ pub(super) fn mesh_file(file: &SceneFile, validator: &mut Validator, path: &Path
             }
             diagnostic.notes(notes);
         }
-    } else if !MESH_FILES.contains(&ending.as_str()) {
+    } else if !endings.contains(&ending.as_str()) {
         validator
             .out
-            .error_at(path, format!("`{name}` is no mesh file that can be read"))
-            .note("allowed: Gmsh (.msh), legacy VTK (.vtk), VTU (.vtu)");
+            .error_at(path, format!("`{name}` is no {what} that can be read"))
+            .note(format!("allowed: {formats}"));
     }
 }
 

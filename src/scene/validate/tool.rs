@@ -1,6 +1,6 @@
 //! Tools and contacts: whether they are somewhere, go somewhere, and touch something.
 
-use super::geometry::mesh_file;
+use super::geometry::{TOOLS, named_file};
 use super::names::body_named;
 use super::{Validator, scene, select, show};
 use crate::scene::limits::TOOLS_OF_A_BODY;
@@ -43,7 +43,7 @@ fn geometry(file: &SceneFile, validator: &mut Validator, path: &Path, tool: &Too
         }
         (None, Some(mesh)) => {
             let path_of = path.name("mesh");
-            mesh_file(file, validator, &path_of.name("path"), &mesh.path);
+            named_file(file, validator, &path_of.name("path"), &mesh.path, &TOOLS);
             validator.above_zero(&path_of.name("scale"), mesh.scale, "");
             if let Some(spacing) = mesh.spacing {
                 validator.above_zero(&path_of.name("spacing"), spacing, "m");
