@@ -38,7 +38,6 @@ mod patch_pass;
 mod pressure;
 mod registry;
 mod tool_contact;
-mod tool_row;
 mod traction;
 
 pub use crate::backend::cpu::{Cpu, NodeColumns};

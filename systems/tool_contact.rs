@@ -1,9 +1,10 @@
 //! `tool_contact`: rigid tools keep nodes outside. `shaders/tool_contact.wgsl` is its twin.
 
+mod row;
+
 use super::node_system::{Before, NodeSystem};
 use super::places_within;
 use super::registry::{Phase, System};
-use super::tool_row::{ToolRow, row_of};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, Factors, NodeColumns};
 use crate::backend::kernel::{Fragment, Uniform, uniform};
@@ -14,6 +15,7 @@ use crate::shader;
 use crate::tools::Geometry;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+use row::{ToolRow, row_of};
 
 /// The explicit Lagrange correction of the predicted step: each node's next step d* is predicted as `integrate` will
 /// find it, and where it would end inside a tool, the force is found that makes it end on the surface. That force is a

@@ -1,4 +1,4 @@
-//! A tool as kernels see it: `tool_contact`.
+//! A tool as kernels see it.
 
 use crate::backend::kernel::uniform;
 use crate::components::ToolContact;
