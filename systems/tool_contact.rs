@@ -57,8 +57,17 @@ pub struct Step {
     out: f64,
     /// Whether work is counted: not on the way to rest.
     books: bool,
-    /// Of each tool where it is, how that differs from where it was, and a ball around all of it.
-    tools: Vec<(Pose, Pose, Option<(DVec3, f64)>)>,
+    tools: Vec<ToolInStep>,
+}
+
+/// A tool in a step.
+struct ToolInStep {
+    /// Where it is at the end.
+    pose: Pose,
+    /// How that differs from where it was.
+    change: Pose,
+    /// Middle and radius of a ball (m) with all that the tool may touch; none of a plane.
+    ball: Option<(DVec3, f64)>,
 }
 
 /// A tool at a node.
@@ -92,7 +101,8 @@ impl NodeSystem for ToolContacts {
         let tools = self.tools.iter().map(|contact| {
             let [pose, change] = [0, 3].map(|slot| Pose::of_slots(&values[contact.signal + slot..]));
             let ball = contact.geometry.bounding_sphere();
-            (pose, change, ball.map(|(center, radius)| (pose.place(center), radius + self.edge)))
+            let ball = ball.map(|(center, radius)| (pose.place(center), radius + self.edge));
+            ToolInStep { pose, change, ball }
         });
         Step {
             factors: Factors::of(before.clock),
@@ -133,7 +143,7 @@ impl ToolContacts {
     ) {
         let inertia = nodes.inertia[row].to_f64();
         let place = nodes.rest[row] - self.reference + nodes.displacement(row);
-        let far = |tool: usize| match step.tools[tool].2 {
+        let far = |tool: usize| match step.tools[tool].ball {
             Some((center, radius)) => center.distance_squared(place) > radius * radius,
             None => false,
         };
@@ -180,9 +190,9 @@ impl ToolContacts {
             if step.books {
                 let work = booked * force.dot(touch.tool_step);
                 let on_node = booked * (force * free).dot(0.5 * (before + d));
-                of_tool[4] = of_tool[4] + T::from_f64(slip);
-                of_tool[5] = of_tool[5] + T::from_f64(work);
-                of_tool[6] = of_tool[6] + T::from_f64(work - on_node);
+                of_tool[4] += T::from_f64(slip);
+                of_tool[5] += T::from_f64(work);
+                of_tool[6] += T::from_f64(work - on_node);
             }
         }
         if touched > 0 {
@@ -194,7 +204,7 @@ impl ToolContacts {
     /// ends an edge or more from the tool.
     fn predict(&self, step: &Step, tool: usize, place: DVec3, predicted: DVec3, stuck: bool) -> Option<Touch> {
         let contact = &self.tools[tool];
-        let (pose, change, _) = &step.tools[tool];
+        let ToolInStep { pose, change, .. } = &step.tools[tool];
         let end = place + predicted;
         let of_tool = pose.inverse(end);
         let (distance, normal) = contact.geometry.distance(of_tool);

@@ -221,7 +221,7 @@ fn words_that_do_not_fit_are_told_with_those_that_do() {
         (
             r#""tip": (what: Displacement, on: Surface(normal: (0, 0, 1)))"#,
             r#""tip": (what: Stress)"#,
-            r"20:16: error: the field `on` is missing in `tip` | Probe needs `on` | on: On which nodes or elements.",
+            r"20:16: error: the probe `tip` lacks `on`: which nodes or elements it is of | on: All, Set(...), Plane(...), ...",
         ),
         (
             "probes: {",
