@@ -87,7 +87,8 @@ fn what_is_without_tools_is_drawn_as_ever() {
 fn tools_are_where_they_are_at_the_time_of_a_frame() {
     // the run's frames are at 0 and 1 s
     let folder = Run { removed: Some((|_| false, true)), ..BOX }.write("tool_moves");
-    let way = r#""ball": (shape: Sphere(radius: 1), at: (-0.5, 2.5, 6), moves: [(displacement: (12, 0, 0), curve: Ramp(end: 2))])"#;
+    let way = r#""ball": (shape: Sphere(radius: 1), at: (-0.5, 2.5, 6),
+        moves: [(displacement: (12, 0, 0), curve: Ramp(end: 2))])"#;
     let course = |analysis: &str| {
         let (tools, _) = Tools::of_scene(&scene(way, analysis, Path::new("")), Path::new(""));
         [0.0, 1.0].map(|time| {
