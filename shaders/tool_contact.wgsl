@@ -37,14 +37,17 @@ const TOOL_GRID: u32 = 0xffffffffu;
 const STICKS: f32 = 1.0;
 const SLIDES: f32 = 2.0;
 const TURNS: u32 = 12u;
+const SETTLED: f32 = 1e-7; // changes of a turn, in edges, that are none
 
 struct Touch {
     normal: vec3<f32>,
-    gap: f32, // without contact (m)
+    gap: f32, // how far from where it may be it ends (m)
+    target_gap: f32, // where it may be: the distance from the surface (m)
+    outwards: vec3<f32>, // what the tool adds (m)
     tool_step: vec3<f32>, // (m)
     friction: f32,
     drag: vec3<f32>, // what the tool adds along the surface (m)
-    push: f32, // and along the normal
+    push: f32, // and how far outwards
     touches: bool,
     slides: bool, // whether friction does not hold it
 }
@@ -70,25 +73,42 @@ fn predict(tool: u32, place: vec3<f32>, predicted: vec3<f32>, sticks: bool) -> T
     let change = array<vec4<f32>, 3>(step.signals[at + 3u], step.signals[at + 4u], step.signals[at + 5u]);
     let of_tool = into_frame(pose, place + predicted);
     let surface = distance_to(tool, of_tool);
-    var gap = surface.w;
-    if gap < 0.0 {
+    var allowed = 0.0;
+    if surface.w < 0.0 {
         let earlier = array<vec4<f32>, 3>(pose[0] - change[0], pose[1] - change[1], pose[2] - change[2]);
         var out = limits.settling * step.time_step;
         if limits.books == 0u {
             out = 0.1 * limits.edge;
         }
-        gap -= min(distance_to(tool, into_frame(earlier, place)).w + out, 0.0);
+        allowed = min(distance_to(tool, into_frame(earlier, place)).w + out, 0.0);
     }
     let at_tool = vec4<f32>(of_tool, 1.0);
     var touch: Touch;
     touch.normal = vec3<f32>(dot(pose[0].xyz, surface.xyz), dot(pose[1].xyz, surface.xyz), dot(pose[2].xyz, surface.xyz));
-    touch.gap = gap;
+    touch.gap = surface.w - allowed;
+    touch.target_gap = allowed;
+    touch.outwards = vec3<f32>(0.0);
     touch.tool_step = vec3<f32>(dot(change[0], at_tool), dot(change[1], at_tool), dot(change[2], at_tool));
     touch.friction = select(tools[tool].sliding, tools[tool].sticking, sticks);
     touch.drag = vec3<f32>(0.0);
     touch.push = 0.0;
     touch.slides = true;
     touch.touches = surface.w <= limits.edge;
+    return touch;
+}
+
+// Where the node ends by now.
+fn look_again(tool: u32, end: vec3<f32>, before: Touch) -> Touch {
+    var touch = before;
+    let at = tools[tool].signal;
+    let pose = array<vec4<f32>, 3>(step.signals[at], step.signals[at + 1u], step.signals[at + 2u]);
+    let of_tool = into_frame(pose, end);
+    let surface = distance_to(tool, of_tool);
+    let at_tool = vec4<f32>(of_tool, 1.0);
+    touch.normal = vec3<f32>(dot(pose[0].xyz, surface.xyz), dot(pose[1].xyz, surface.xyz), dot(pose[2].xyz, surface.xyz));
+    touch.gap = surface.w - touch.target_gap;
+    touch.tool_step = vec3<f32>(
+        dot(step.signals[at + 3u], at_tool), dot(step.signals[at + 4u], at_tool), dot(step.signals[at + 5u], at_tool));
     return touch;
 }
 
@@ -136,29 +156,39 @@ fn tool_contact(i: u32, node: u32) {
         return;
     }
     var sum = vec3<f32>(0.0);
-    let turns = select(TURNS, 1u, touched == 1u && all(free == vec3<f32>(1.0)));
-    for (var turn = 0u; turn < turns; turn++) {
+    for (var turn = 0u; turn < TURNS; turn++) {
+        var most = 0.0;
         for (var tool = 0u; tool < TOOLS; tool++) {
             if !found[tool].touches {
                 continue;
             }
+            if turn > 0u {
+                found[tool] = look_again(tool, place + predicted + sum, found[tool]);
+            }
             let normal = found[tool].normal;
             let along = dot(normal, free * normal);
             if along > 1e-9 {
-                let push = max(found[tool].push - (found[tool].gap + dot(normal, sum)) / along, 0.0);
-                sum += free * normal * (push - found[tool].push);
+                let push = max(found[tool].push - found[tool].gap / along, 0.0);
+                let outwards = normal * (push - found[tool].push);
+                sum += free * outwards;
+                found[tool].outwards += outwards;
+                most = max(most, abs(push - found[tool].push));
                 found[tool].push = push;
             }
             if found[tool].friction > 0.0 {
                 let slip = along_surface(predicted + sum - found[tool].tool_step, normal);
-                let wanted = found[tool].drag - slip;
-                let most = found[tool].friction * found[tool].push;
+                let wanted = along_surface(found[tool].drag, normal) - slip;
+                let bound = found[tool].friction * found[tool].push;
                 let size = length(wanted);
-                found[tool].slides = size > most;
-                let drag = select(wanted, wanted * (most / max(size, 1e-30)), size > most);
+                found[tool].slides = size > bound;
+                let drag = select(wanted, wanted * (bound / max(size, 1e-30)), size > bound);
                 sum += free * (drag - found[tool].drag);
+                most = max(most, length(drag - found[tool].drag));
                 found[tool].drag = drag;
             }
+        }
+        if most <= SETTLED * limits.edge {
+            break;
         }
     }
     let d = predicted + sum;
@@ -167,7 +197,7 @@ fn tool_contact(i: u32, node: u32) {
         if !found[tool].touches || found[tool].push <= 0.0 {
             continue;
         }
-        let force = to_force * (found[tool].normal * found[tool].push + found[tool].drag);
+        let force = to_force * (found[tool].outwards + found[tool].drag);
         load += force;
         let at_tool = first + TOUCH_NUMBERS * tool;
         tool_touch[at_tool] = force.x;

@@ -74,14 +74,17 @@ struct ToolInStep {
 #[derive(Clone, Copy)]
 struct Touch {
     tool: usize,
-    /// Outward normal, and distance from the surface without contact (m).
+    /// Outward normal where the node ends, and how far from where it may be it ends there (m).
     normal: DVec3,
     gap: f64,
+    /// Where it may be: the distance from the surface (m), 0 but for nodes that are inside already.
+    target: f64,
     /// How far the tool goes there (m).
     tool_step: DVec3,
     /// What holds it: the largest tangential part of the normal one.
     friction: f64,
-    /// Displacements that the tool adds (m): along the normal, and along the surface.
+    /// Displacements that the tool adds (m): outwards, how far that is, and along the surface.
+    outwards: DVec3,
     push: f64,
     drag: DVec3,
     /// Whether friction does not hold it.
@@ -174,11 +177,11 @@ impl ToolContacts {
             }
         }
         let all = &mut all[..touched];
-        let d = predicted + push_apart(all, predicted, free);
+        let d = predicted + self.push_apart(step, all, (place, predicted), free);
         let to_force = inertia * damped / factor;
         let mut sum = DVec3::ZERO;
         for touch in all.iter().flatten().filter(|touch| touch.push > 0.0) {
-            let change = touch.normal * touch.push + touch.drag;
+            let change = touch.outwards + touch.drag;
             let force = to_force * change;
             sum += force;
             let of_tool = &mut values[TOUCH_NUMBERS * touch.tool..TOUCH_NUMBERS * (touch.tool + 1)];
@@ -211,58 +214,86 @@ impl ToolContacts {
         if distance > self.edge {
             return None;
         }
-        let mut gap = distance;
+        let mut target = 0.0;
         if distance < 0.0 {
             // who is inside already comes out by and by
             let earlier = Pose { rotation: pose.rotation - change.rotation, at: pose.at - change.at };
             let now = contact.geometry.distance(earlier.inverse(place)).0;
-            gap -= (now + step.out).min(0.0);
+            target = (now + step.out).min(0.0);
         }
         let [sticking, sliding] = contact.friction;
         Some(Touch {
             tool,
             normal: pose.rotation * normal,
-            gap,
+            gap: distance - target,
+            target,
             tool_step: change.place(of_tool),
             friction: if stuck { sticking } else { sliding },
+            outwards: DVec3::ZERO,
             push: 0.0,
             drag: DVec3::ZERO,
             slides: true,
         })
     }
+
+    /// Finds how far tools push a node from a place (m, from the reference) that would go by a step (m), and along which
+    /// axes it can; gives the sum (m). Tools take turns, and each looks anew where the node ends by now: surfaces are
+    /// curved, and distances that are no more than a bound of the true ones grow more slowly.
+    fn push_apart(
+        &self,
+        step: &Step,
+        all: &mut [Option<Touch>],
+        (place, predicted): (DVec3, DVec3),
+        free: DVec3,
+    ) -> DVec3 {
+        let mut sum = DVec3::ZERO;
+        for turn in 0..TURNS {
+            let mut most = 0.0_f64;
+            for touch in all.iter_mut().flatten() {
+                if turn > 0 {
+                    let tool = &step.tools[touch.tool];
+                    let of_tool = tool.pose.inverse(place + predicted + sum);
+                    let (distance, normal) = self.tools[touch.tool].geometry.distance(of_tool);
+                    touch.normal = tool.pose.rotation * normal;
+                    touch.gap = distance - touch.target;
+                    touch.tool_step = tool.change.place(of_tool);
+                }
+                let along = touch.normal.dot(free * touch.normal);
+                // held along the normal: nobody can push it there
+                if along > 1e-9 {
+                    let push = (touch.push - touch.gap / along).max(0.0);
+                    let outwards = touch.normal * (push - touch.push);
+                    sum += free * outwards;
+                    touch.outwards += outwards;
+                    most = most.max((push - touch.push).abs());
+                    touch.push = push;
+                }
+                if touch.friction > 0.0 {
+                    let slip = tangential(predicted + sum - touch.tool_step, touch.normal);
+                    let wanted = tangential(touch.drag, touch.normal) - slip;
+                    let bound = touch.friction * touch.push;
+                    let size = wanted.length();
+                    touch.slides = size > bound;
+                    let drag = if touch.slides { wanted * (bound / size) } else { wanted };
+                    sum += free * (drag - touch.drag);
+                    most = most.max((drag - touch.drag).length());
+                    touch.drag = drag;
+                }
+            }
+            if most <= SETTLED * self.edge {
+                break;
+            }
+        }
+        sum
+    }
 }
+
+/// Changes of a turn, in edges, that are none.
+const SETTLED: f64 = 1e-7;
 
 /// The part of a vector along a surface.
 fn tangential(vector: DVec3, normal: DVec3) -> DVec3 {
     vector - normal * vector.dot(normal)
-}
-
-/// Finds how far tools push a node that would go by `predicted`, and along which axes it can; gives the sum (m).
-fn push_apart(all: &mut [Option<Touch>], predicted: DVec3, free: DVec3) -> DVec3 {
-    let mut sum = DVec3::ZERO;
-    let turns = if all.len() == 1 && free == DVec3::ONE { 1 } else { TURNS };
-    for _ in 0..turns {
-        for touch in all.iter_mut().flatten() {
-            let along = touch.normal.dot(free * touch.normal);
-            // held along the normal: nobody can push it there
-            if along > 1e-9 {
-                let push = (touch.push - (touch.gap + touch.normal.dot(sum)) / along).max(0.0);
-                sum += free * touch.normal * (push - touch.push);
-                touch.push = push;
-            }
-            if touch.friction > 0.0 {
-                let slip = tangential(predicted + sum - touch.tool_step, touch.normal);
-                let wanted = touch.drag - slip;
-                let most = touch.friction * touch.push;
-                let size = wanted.length();
-                touch.slides = size > most;
-                let drag = if touch.slides { wanted * (most / size) } else { wanted };
-                sum += free * (drag - touch.drag);
-                touch.drag = drag;
-            }
-        }
-    }
-    sum
 }
 
 /// What is the same for all tools of a body.
