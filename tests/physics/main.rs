@@ -57,6 +57,7 @@ mod stiffness_damping;
 mod strains;
 mod tables;
 mod tool_friction;
+mod tool_meshes;
 mod tools;
 mod true_limit;
 mod unload;

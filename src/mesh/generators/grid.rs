@@ -99,7 +99,8 @@ impl Grid {
     }
 
     /// The mesh with points placed by their indices, those in the middle of edges by the mean of the indices at their
-    /// ends: they are on a curved surface, too, but where that would fold an element: then all edges are straight. Refuses a grid that does not fit into memory.
+    /// ends: they are on a curved surface, too, but where that would fold an element: then all edges are straight.
+    /// Refuses a grid that does not fit into memory.
     pub fn mesh(&self, place: impl Fn([f64; 3]) -> DVec3) -> Result<Mesh, MeshError> {
         let [nx, ny, nz] = self.cells;
         let mut mesh = Mesh::default();

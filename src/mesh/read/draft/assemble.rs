@@ -8,7 +8,8 @@ use crate::mesh::{CellKind, Ids, Mesh};
 use glam::DVec3;
 use std::collections::{BTreeMap, HashSet};
 
-const SUPPORTED: &str = "sinew simulates tetrahedra of 4 and of 10 nodes, 8-node hexahedra (voxels too) and 6-node wedges: save the mesh with those alone";
+const SUPPORTED: &str = "sinew simulates tetrahedra of 4 and of 10 nodes, 8-node hexahedra (voxels too) and \
+                         6-node wedges: save the mesh with those alone";
 
 /// Vectors of elements that a file need not give.
 const SPARSE_VECTORS: usize = 1_000_000;
