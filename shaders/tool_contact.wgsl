@@ -1,4 +1,5 @@
-// Rigid tools keep nodes outside; twin of systems/tool_contact.rs. TOOLS and damping_of are generated; tool_distance is in
+// Rigid tools keep nodes outside; twin of systems/tool_contact.rs. TOOLS is generated; damped is in
+// damping_coefficient.wgsl, relaxation.wgsl or generated; tool_distance is in
 // tool_shape.wgsl, grid_distance in tool_of_grid.wgsl, or generated where no tool is a grid.
 struct ToolRow {
     kind: u32,
@@ -25,7 +26,7 @@ struct Limits {
 }
 @group(0) @binding(0) var<uniform> tools: array<ToolRow, TOOLS>;
 @group(0) @binding(1) var<uniform> limits: Limits;
-@group(0) @binding(2) var<storage, read> touchable: array<vec4<f32>>; // place at rest (m), and a bit for each tool
+@group(0) @binding(2) var<storage, read> touchable: array<vec4<u32>>; // bits of the place at rest (m), and a bit for each tool
 @group(0) @binding(3) var<storage, read> mass: array<f32>;
 @group(0) @binding(4) var<storage, read> constrained_axes: array<u32>;
 @group(0) @binding(5) var<storage, read> displacement: array<f32>;
@@ -46,7 +47,7 @@ struct Touch {
     outwards: vec3<f32>, // what the tool adds (m)
     tool_step: vec3<f32>, // (m)
     friction: f32,
-    drag: vec3<f32>, // what the tool adds along the surface (m)
+    tangential: vec3<f32>, // what the tool adds along the surface (m)
     push: f32, // and how far outwards
     touches: bool,
     slides: bool, // whether friction does not hold it
@@ -90,7 +91,7 @@ fn predict(tool: u32, place: vec3<f32>, predicted: vec3<f32>, sticks: bool) -> T
     touch.outwards = vec3<f32>(0.0);
     touch.tool_step = vec3<f32>(dot(change[0], at_tool), dot(change[1], at_tool), dot(change[2], at_tool));
     touch.friction = select(tools[tool].sliding, tools[tool].sticking, sticks);
-    touch.drag = vec3<f32>(0.0);
+    touch.tangential = vec3<f32>(0.0);
     touch.push = 0.0;
     touch.slides = true;
     touch.touches = surface.w <= limits.edge;
@@ -120,21 +121,20 @@ fn tool_contact(i: u32, node: u32) {
     let first = TOUCH_NUMBERS * TOOLS * i;
     let inertia = mass[node];
     let at = 3u * node;
-    let bits = bitcast<u32>(touchable[i].w);
+    let bits = touchable[i].w;
     let u = vec3<f32>(displacement[at], displacement[at + 1u], displacement[at + 2u]);
     let before = vec3<f32>(displacement_increment[at], displacement_increment[at + 1u], displacement_increment[at + 2u]);
-    let place = touchable[i].xyz + u;
+    let place = bitcast<vec3<f32>>(touchable[i].xyz) + u;
     let held = (vec3<u32>(constrained_axes[node]) & vec3<u32>(1u, 2u, 4u)) != vec3<u32>(0u);
     let free = select(vec3<f32>(1.0), vec3<f32>(0.0), held);
     var predicted = vec3<f32>(0.0);
     var to_force = 0.0;
     if inertia > 0.0 {
         let force = external_force_of(node) - internal_force_of(node);
-        let a = damping_of(node, inertia);
-        let damped = 1.0 + step.divide * a;
-        let change = (step.force_factor / inertia) * force - ((1.0 + step.divide) * a) * before;
-        predicted = before + free * change / damped;
-        to_force = inertia * damped / step.force_factor;
+        let per_mass = 1.0 / inertia;
+        predicted = before + free * damped(node, before, (step.force_factor * per_mass) * force, per_mass);
+        // what a push of 1 comes to
+        to_force = inertia / (step.force_factor * damped(node, vec3<f32>(0.0), vec3<f32>(1.0), per_mass).x);
     }
     var found: array<Touch, TOOLS>;
     var touched = 0u;
@@ -177,14 +177,14 @@ fn tool_contact(i: u32, node: u32) {
             }
             if found[tool].friction > 0.0 {
                 let slip = along_surface(predicted + sum - found[tool].tool_step, normal);
-                let wanted = along_surface(found[tool].drag, normal) - slip;
+                let wanted = along_surface(found[tool].tangential, normal) - slip;
                 let bound = found[tool].friction * found[tool].push;
                 let size = length(wanted);
                 found[tool].slides = size > bound;
-                let drag = select(wanted, wanted * (bound / max(size, 1e-30)), size > bound);
-                sum += free * (drag - found[tool].drag);
-                most = max(most, length(drag - found[tool].drag));
-                found[tool].drag = drag;
+                let tangential = select(wanted, wanted * (bound / max(size, 1e-30)), size > bound);
+                sum += free * (tangential - found[tool].tangential);
+                most = max(most, length(tangential - found[tool].tangential));
+                found[tool].tangential = tangential;
             }
         }
         if most <= SETTLED * limits.edge {
@@ -197,7 +197,7 @@ fn tool_contact(i: u32, node: u32) {
         if !found[tool].touches || found[tool].push <= 0.0 {
             continue;
         }
-        let force = to_force * (found[tool].outwards + found[tool].drag);
+        let force = to_force * (found[tool].outwards + found[tool].tangential);
         load += force;
         let at_tool = first + TOUCH_NUMBERS * tool;
         tool_touch[at_tool] = force.x;

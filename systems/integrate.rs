@@ -108,6 +108,19 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
     stages
 }
 
+/// What declares `damped`: what is left of a push.
+pub(super) fn damping_fragment(damped: bool, relaxed: bool) -> Fragment {
+    match (damped, relaxed) {
+        (true, _) => shader!("damping_coefficient"),
+        (false, true) => shader!("relaxation"),
+        (false, false) => Fragment::new(
+            "generated: no damping",
+            "fn damped(node: u32, before: vec3<f32>, pushed: vec3<f32>, per_mass: f32) -> vec3<f32> {\n    return \
+             pushed;\n}\n",
+        ),
+    }
+}
+
 /// Fragments of the columns a body has, and a line for each that it has not.
 fn with_optional(
     stage: NodeStage,
@@ -118,14 +131,7 @@ fn with_optional(
 ) -> NodeStage {
     let mut without = String::new();
     let mut fragments = Vec::new();
-    if damped {
-        fragments.push(shader!("damping_coefficient"));
-    } else if relaxed {
-        fragments.push(shader!("relaxation"));
-    } else {
-        without += "fn damped(node: u32, before: vec3<f32>, pushed: vec3<f32>, per_mass: f32) -> vec3<f32> {\n    \
-                    return pushed;\n}\n";
-    }
+    fragments.push(damping_fragment(damped, relaxed));
     if worked {
         fragments.push(shader!("work"));
         if !damped {

@@ -2,6 +2,7 @@
 
 mod row;
 
+use super::integrate::damping_fragment;
 use super::node_system::{Before, NodeSystem};
 use super::places_within;
 use super::registry::{Phase, System};
@@ -64,7 +65,9 @@ pub struct Step {
 struct ToolInStep {
     /// Where it is at the end.
     pose: Pose,
-    /// How that differs from where it was.
+    /// Where it was at the beginning.
+    earlier: Pose,
+    /// How these differ.
     change: Pose,
     /// Middle and radius of a ball (m) with all that the tool may touch; none of a plane.
     ball: Option<(DVec3, f64)>,
@@ -86,7 +89,7 @@ struct Touch {
     /// Displacements that the tool adds (m): outwards, how far that is, and along the surface.
     outwards: DVec3,
     push: f64,
-    drag: DVec3,
+    tangential: DVec3,
     /// Whether friction does not hold it.
     slides: bool,
 }
@@ -105,7 +108,8 @@ impl NodeSystem for ToolContacts {
             let [pose, change] = [0, 3].map(|slot| Pose::of_slots(&values[contact.signal + slot..]));
             let ball = contact.geometry.bounding_sphere();
             let ball = ball.map(|(center, radius)| (pose.place(center), radius + self.edge));
-            ToolInStep { pose, change, ball }
+            let earlier = pose.less(&change);
+            ToolInStep { pose, earlier, change, ball }
         });
         Step {
             factors: Factors::of(before.clock),
@@ -153,7 +157,10 @@ impl ToolContacts {
         let mut stuck = [false; ToolContacts::MOST];
         for (stuck, of_tool) in stuck.iter_mut().zip(values.chunks_exact_mut(TOUCH_NUMBERS)) {
             *stuck = of_tool[3] == T::from_f64(STICKS);
-            of_tool[..4].fill(T::default());
+            // most nodes are never touched: nothing is written there
+            if of_tool[..4].iter().any(|&number| number != T::default()) {
+                of_tool[..4].fill(T::default());
+            }
         }
         let near = |tool: &usize| mask >> tool & 1 == 1 && !far(*tool);
         if inertia <= 0.0 || !(0..self.tools.len()).any(|tool| near(&tool)) {
@@ -181,11 +188,11 @@ impl ToolContacts {
         let to_force = inertia * damped / factor;
         let mut sum = DVec3::ZERO;
         for touch in all.iter().flatten().filter(|touch| touch.push > 0.0) {
-            let change = touch.outwards + touch.drag;
+            let change = touch.outwards + touch.tangential;
             let force = to_force * change;
             sum += force;
             let of_tool = &mut values[TOUCH_NUMBERS * touch.tool..TOUCH_NUMBERS * (touch.tool + 1)];
-            let slip = tangential(d - touch.tool_step, touch.normal).length();
+            let slip = along_surface(d - touch.tool_step, touch.normal).length();
             for i in 0..3 {
                 of_tool[i] = T::from_f64(force[i]);
             }
@@ -207,7 +214,7 @@ impl ToolContacts {
     /// ends an edge or more from the tool.
     fn predict(&self, step: &Step, tool: usize, place: DVec3, predicted: DVec3, stuck: bool) -> Option<Touch> {
         let contact = &self.tools[tool];
-        let ToolInStep { pose, change, .. } = &step.tools[tool];
+        let ToolInStep { pose, earlier, change, .. } = &step.tools[tool];
         let end = place + predicted;
         let of_tool = pose.inverse(end);
         let (distance, normal) = contact.geometry.distance(of_tool);
@@ -217,7 +224,6 @@ impl ToolContacts {
         let mut target = 0.0;
         if distance < 0.0 {
             // who is inside already comes out by and by
-            let earlier = Pose { rotation: pose.rotation - change.rotation, at: pose.at - change.at };
             let now = contact.geometry.distance(earlier.inverse(place)).0;
             target = (now + step.out).min(0.0);
         }
@@ -231,7 +237,7 @@ impl ToolContacts {
             friction: if stuck { sticking } else { sliding },
             outwards: DVec3::ZERO,
             push: 0.0,
-            drag: DVec3::ZERO,
+            tangential: DVec3::ZERO,
             slides: true,
         })
     }
@@ -269,15 +275,15 @@ impl ToolContacts {
                     touch.push = push;
                 }
                 if touch.friction > 0.0 {
-                    let slip = tangential(predicted + sum - touch.tool_step, touch.normal);
-                    let wanted = tangential(touch.drag, touch.normal) - slip;
+                    let slip = along_surface(predicted + sum - touch.tool_step, touch.normal);
+                    let wanted = along_surface(touch.tangential, touch.normal) - slip;
                     let bound = touch.friction * touch.push;
                     let size = wanted.length();
                     touch.slides = size > bound;
-                    let drag = if touch.slides { wanted * (bound / size) } else { wanted };
-                    sum += free * (drag - touch.drag);
-                    most = most.max((drag - touch.drag).length());
-                    touch.drag = drag;
+                    let tangential = if touch.slides { wanted * (bound / size) } else { wanted };
+                    sum += free * (tangential - touch.tangential);
+                    most = most.max((tangential - touch.tangential).length());
+                    touch.tangential = tangential;
                 }
             }
             if most <= SETTLED * self.edge {
@@ -292,7 +298,7 @@ impl ToolContacts {
 const SETTLED: f64 = 1e-7;
 
 /// The part of a vector along a surface.
-fn tangential(vector: DVec3, normal: DVec3) -> DVec3 {
+fn along_surface(vector: DVec3, normal: DVec3) -> DVec3 {
     vector - normal * vector.dot(normal)
 }
 
@@ -319,14 +325,15 @@ fn stage(body: Entity, contacts: &ToolContacts, world: &mut World, buffers: &mut
     let damped = world.get::<DampingCoefficient>(body).is_some();
     let relaxed = clock.relaxation.is_some();
     let limits = Limits { edge: contacts.edge as f32, settling: contacts.settling as f32, books: u32::from(!relaxed) };
-    let places: Vec<[f32; 4]> = contacts
+    // bits of floats: those of a mask would be a float so small that a device may take it for 0
+    let places: Vec<[u32; 4]> = contacts
         .rows
         .iter()
         .zip(&contacts.masks)
         .map(|(&row, &mask)| {
             let rest = world.get::<RestPosition>(body).map_or(DVec3::ZERO, |rest| rest.0[row as usize]);
-            let [x, y, z] = (rest - contacts.reference).as_vec3().to_array();
-            [x, y, z, f32::from_bits(mask)]
+            let [x, y, z] = (rest - contacts.reference).as_vec3().to_array().map(f32::to_bits);
+            [x, y, z, mask]
         })
         .collect();
     let mut grids: Vec<f32> = Vec::new();
@@ -338,17 +345,11 @@ fn stage(body: Entity, contacts: &ToolContacts, world: &mut World, buffers: &mut
         }
     }
     let count = Fragment::new("generated: how many tools", format!("const TOOLS: u32 = {}u;\n", contacts.tools.len()));
-    let coefficient = match (damped, relaxed) {
-        (true, _) => "damping_coefficient[node] * step.half_step / inertia",
-        (false, true) => "step.relaxation",
-        (false, false) => "0.0",
-    };
-    let damping = format!("fn damping_of(node: u32, inertia: f32) -> f32 {{\n    return {coefficient};\n}}\n");
     let mass = if fictitious { FictitiousMass::NAME } else { Mass::NAME };
     let mut stage = NodeStage::new("tool_contact", "tool_contact", body, rows_of(body, world), shader!("tool_contact"))
         .own(shader!("tool_shape"))
         .own(count)
-        .own(Fragment::new("generated: damping of the body", damping))
+        .own(damping_fragment(damped, relaxed))
         .bind_uniform::<ToolRow>("tools", buffers.uniform("tools".into(), &tools))
         .bind_uniform::<Limits>("limits", buffers.uniform("tool contact".into(), &limits.bytes()))
         .bind("touchable", buffers.constants("nodes that tools may touch".into(), bytemuck::cast_slice(&places)))
@@ -361,9 +362,7 @@ fn stage(body: Entity, contacts: &ToolContacts, world: &mut World, buffers: &mut
         stage = stage.column(column, buffers.column(body, column));
     }
     if damped {
-        stage = stage
-            .own(shader!("damping_column"))
-            .column(DampingCoefficient::NAME, buffers.column(body, DampingCoefficient::NAME));
+        stage = stage.column(DampingCoefficient::NAME, buffers.column(body, DampingCoefficient::NAME));
     }
     stage = if grids.is_empty() {
         stage.own(Fragment::new(

@@ -59,7 +59,6 @@ const SUPPORT: &[(&str, &str)] = &[
     ("tensor", "small tensors"),
     ("tool_grid", "distances to tools that are triangles"),
     ("tool_of_grid", "the same, in tool_contact"),
-    ("damping_column", "damping, in tool_contact"),
     ("tool_shape", "distances to tools"),
     ("inverse_cbrt", "a root from the bits of a number"),
     ("previous_prescribed_increment", "the step that boundary writes over"),

@@ -249,12 +249,15 @@ impl Signals {
 
     /// Whether nodes have been moved as told by a jump until a time (s).
     pub fn have_jumped(&self, until: f64) -> bool {
-        let jumped = |(curve, input): (&Curve, &Option<usize>)| match (curve, input) {
-            (Curve::Step { start, .. }, _) => *start <= until,
-            (_, Some(input)) => self.inputs[*input].has_jumped(),
-            _ => false,
+        let any = |(source, inputs): &(Signal, Vec<Option<usize>>)| {
+            // a tool may be anywhere at the start, nodes are at rest
+            let begins_there = matches!(source, Signal::Pose { .. });
+            source.curves().iter().zip(inputs).any(|(curve, input)| match (curve, input) {
+                (Curve::Step { start, .. }, _) => *start <= until && !(begins_there && *start <= 0.0),
+                (_, Some(input)) => self.inputs[*input].has_jumped(),
+                _ => false,
+            })
         };
-        let any = |(source, inputs): &(Signal, Vec<Option<usize>>)| source.curves().iter().zip(inputs).any(jumped);
         self.sources.iter().any(|source| source.0.moves() && any(source))
     }
 

@@ -18,7 +18,7 @@ pub struct ToolReading {
     /// How many nodes it touches.
     pub nodes: usize,
     /// How deep the deepest of the nodes that it may touch is inside it (m); 0 where none is.
-    pub depth: f64,
+    pub penetration: f64,
     /// The work that it has done since the start (J).
     pub work: f64,
     /// What of this work impact and friction have taken (J).
@@ -44,6 +44,7 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
                 continue;
             };
             reading.place = pose.at + contacts.reference;
+            let ball = contact.geometry.bounding_sphere().map(|(center, radius)| (pose.place(center), radius));
             for (place, (&row, &mask)) in contacts.rows.iter().zip(&contacts.masks).enumerate() {
                 if mask >> number & 1 == 0 {
                     continue;
@@ -54,7 +55,11 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
                 reading.work += number(5);
                 reading.loss += number(6);
                 let end = rest.0[row] - contacts.reference + u.vector(row);
-                reading.depth = reading.depth.max(-contact.geometry.distance(pose.inverse(end)).0);
+                // who is outside a ball around all of it is not inside
+                if ball.is_none_or(|(center, radius)| end.distance_squared(center) <= radius * radius) {
+                    let distance = contact.geometry.distance(pose.inverse(end)).0;
+                    reading.penetration = reading.penetration.max(-distance);
+                }
                 if number(3) > 0.0 {
                     let force = -DVec3::new(number(0), number(1), number(2));
                     reading.nodes += 1;

@@ -143,7 +143,7 @@ pub const UNITS: &[(&str, &str)] = &[
     ("tools.*.force", "N"),
     ("tools.*.torque", "N m"),
     ("tools.*.place", "m"),
-    ("tools.*.depth", "m"),
+    ("tools.*.penetration", "m"),
     ("tools.*.work", "J"),
     ("tools.*.loss", "J"),
     ("guards.rounding", "J"),

@@ -40,7 +40,7 @@ fn the_probe_feels_depth_and_friction_and_leaves_nothing_behind() {
     assert!(near(drawn.force.z, pressed.force.z, 0.1), "{pressed:?} {drawn:?}");
     let ratio = -drawn.force.x / drawn.force.z;
     assert!(ratio > 0.1 && ratio < 0.2, "friction of 0.1 and the wall in front: {ratio}");
-    assert!(drawn.force.y.abs() < 1e-3 * drawn.force.z && drawn.depth < 1e-9, "{drawn:?}");
+    assert!(drawn.force.y.abs() < 1e-3 * drawn.force.z && drawn.penetration < 1e-9, "{drawn:?}");
     simulation.finish().unwrap();
     let gone = simulation.tool("probe").unwrap();
     assert!(gone.nodes == 0 && gone.loss > 0.0 && gone.loss < gone.work, "{gone:?}");

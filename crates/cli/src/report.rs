@@ -210,8 +210,8 @@ fn mass(summary: &Summary, page: &mut Page) {
 fn tools(summary: &Summary, page: &mut Page) {
     let lines = summary.tools.iter().map(|(name, reading)| {
         let [x, y, z] = reading.force.to_array().map(|part| quantity(part, "N"));
-        let inside = match reading.depth > 0.0 {
-            true => format!(", the deepest {} inside", quantity(reading.depth, "m")),
+        let inside = match reading.penetration > 0.0 {
+            true => format!(", the deepest {} inside", quantity(reading.penetration, "m")),
             false => String::new(),
         };
         let (work, loss) = (quantity(reading.work, "J"), quantity(reading.loss, "J"));
