@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! boundary         Prescribed                   -> DisplacementIncrement of constrained axes   per node
+//! suction_mouth    Displacement, Alive, motion  -> SuctionMarks, SuctionPressure          per face
 //! nodal_volume     Displacement, RestShape      -> NodalVolumeChange                      per element, per node
 //! element_forces   Displacement, RestShape, law -> ElementForce                           per element, patch by patch
 //! gather           ElementForce, Corners        -> InternalForce (ExternalForce: zero)    per node, over its patches, in a fixed order
@@ -9,9 +10,11 @@
 //! nodal_force                                   -> ExternalForce                          per loaded node
 //! pressure         Displacement                 -> ExternalForce                          per loaded node
 //! traction                                      -> ExternalForce                          per loaded node
+//! suction          Displacement                 -> ExternalForce                          per sucked node
 //! grab             Displacement                 -> ExternalForce                          per held node
 //! tool_contact     forces, Displacement, motion -> ExternalForce, ToolTouch               per node that may touch
 //! integrate        forces, Mass                 -> DisplacementIncrement, Displacement         per node
+//! tool_removal     Displacement, motion         -> RemovalStep, ToolIntake                per element in reach
 //! element_removal  criteria, times              -> Alive, RestShape, Mass                 per element, per node
 //! observe          all, read only               -> probes, energies, guards, files
 //! ```
@@ -37,7 +40,10 @@ mod own_load;
 mod patch_pass;
 mod pressure;
 mod registry;
+mod suction;
+mod suction_mouth;
 mod tool_contact;
+mod tool_removal;
 mod traction;
 
 pub use crate::backend::cpu::{Cpu, NodeColumns};
@@ -73,6 +79,7 @@ pub(crate) fn of_scene(scene: &Scene) -> Vec<System> {
 pub fn standard() -> Vec<System> {
     vec![
         boundary::system(),
+        suction_mouth::system(),
         nodal_volume::system(),
         element_forces::system(),
         gather::system(),
@@ -80,9 +87,11 @@ pub fn standard() -> Vec<System> {
         nodal_force::system(),
         pressure::system(),
         traction::system(),
+        suction::system(),
         grab::system(),
         tool_contact::system(),
         integrate::system(),
+        tool_removal::system(),
         element_removal::system(),
         observe::system(),
     ]

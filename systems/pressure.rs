@@ -40,27 +40,32 @@ impl NodeSystem for Pressure {
     }
 
     fn act<T: SimdScalar>(&self, (pressure, areas): &(f64, Reals), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
-        let (faces, first) = (&self.faces, nodes.first);
-        let Some(external) = nodes.external.as_deref_mut() else { return };
-        let (areas, pressure) = (areas.slice::<T>(), T::from_f64(*pressure));
-        for i in places_within(&faces.rows, first, external.len() / 3) {
-            let mut sum = [T::default(); 3];
-            for &corner in &faces.corners[faces.starts[i] as usize..faces.starts[i + 1] as usize] {
-                let area = &areas[3 * corner as usize..3 * corner as usize + 3];
-                for i in 0..3 {
-                    sum[i] += area[i];
-                }
-            }
-            let row = faces.rows[i] as usize - first;
+        push(&self.faces, *pressure, areas, nodes);
+    }
+}
+
+/// Adds −p times the areas that fall to some nodes (m²) to the loads on them.
+pub(super) fn push<T: SimdScalar>(faces: &FaceCorners, pressure: f64, areas: &Reals, nodes: &mut NodeColumns<'_, T>) {
+    let first = nodes.first;
+    let Some(external) = nodes.external.as_deref_mut() else { return };
+    let (areas, pressure) = (areas.slice::<T>(), T::from_f64(pressure));
+    for i in places_within(&faces.rows, first, external.len() / 3) {
+        let mut sum = [T::default(); 3];
+        for &corner in &faces.corners[faces.starts[i] as usize..faces.starts[i + 1] as usize] {
+            let area = &areas[3 * corner as usize..3 * corner as usize + 3];
             for i in 0..3 {
-                external[3 * row + i] -= pressure * sum[i];
+                sum[i] += area[i];
             }
+        }
+        let row = faces.rows[i] as usize - first;
+        for i in 0..3 {
+            external[3 * row + i] -= pressure * sum[i];
         }
     }
 }
 
 /// Area vectors of each face's corners (m²), twelve numbers a face: of all faces before any node moves.
-fn areas(faces: &FaceCorners, rest: &RestPosition, displacement: &Displacement) -> Reals {
+pub(super) fn areas(faces: &FaceCorners, rest: &RestPosition, displacement: &Displacement) -> Reals {
     match &displacement.0 {
         Reals::F32(u) => Reals::F32(areas_of(faces, rest, u)),
         Reals::F64(u) => Reals::F64(areas_of(faces, rest, u)),
@@ -148,6 +153,7 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
                 faces.faces.iter().flatten().map(|&node| rest.0[node as usize].as_vec3().to_array()).collect();
             let load = PressureLoad { signal: pressure.signal as u32 };
             let stage = NodeStage::new("pressure", "pressure", body, rows_of(body, world), shader!("pressure"))
+                .own(shader!("face_area"))
                 .bind_uniform::<PressureLoad>("load", buffers.uniform("pressure".into(), &load.bytes()))
                 .bind("starts", buffers.constants("starts of pressure".into(), bytemuck::cast_slice(&faces.starts)))
                 .bind("corners", buffers.constants("corners of pressure".into(), bytemuck::cast_slice(&faces.corners)))

@@ -131,7 +131,7 @@ fn rows(
 }
 
 /// The middle of the box around points (m).
-fn reference(points: &[DVec3]) -> DVec3 {
+pub(super) fn reference(points: &[DVec3]) -> DVec3 {
     let (low, high) = bounds(points);
     0.5 * (low + high)
 }

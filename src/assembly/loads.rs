@@ -89,13 +89,21 @@ fn loaded_faces(
 
 /// Chosen faces of the surface, by the nodes they load.
 fn face_corners(body: &BodyParts, places: &[usize]) -> FaceCorners {
+    corners_of(body, places.iter().map(|&place| &body.placed.surface()[place])).0
+}
+
+/// Faces by the nodes they load, and for each flat one which of them it is of.
+pub(super) fn corners_of<'a>(
+    body: &BodyParts,
+    faces: impl Iterator<Item = &'a SurfaceFace>,
+) -> (FaceCorners, Vec<u32>) {
     let mut corners = FaceCorners::default();
+    let mut of_part = Vec::new();
     let mut by_node: Vec<(u32, u32)> = Vec::new();
-    for (face, (nodes, weight)) in places
-        .iter()
-        .map(|&place| &body.placed.surface()[place])
-        .flat_map(|face| parts(face).map(move |part| (face, part)))
+    for (place, face, (nodes, weight)) in
+        (0..).zip(faces).flat_map(|(place, face)| parts(face).map(move |part| (place, face, part)))
     {
+        of_part.push(place);
         let number = corners.faces.len() as u32;
         let count = CellKind::of_face(&nodes).node_count();
         let points = nodes.map(|node| body.placed.mesh.points[node as usize]);
@@ -118,7 +126,7 @@ fn face_corners(body: &BodyParts, places: &[usize]) -> FaceCorners {
         corners.corners.push(corner);
     }
     corners.starts.push(corners.corners.len() as u32);
-    corners
+    (corners, of_part)
 }
 
 /// The flat faces that a face is loaded as, each with its weight: itself, or of one with middles its four facets, 4/3

@@ -19,7 +19,9 @@ mod removal;
 mod renew;
 mod select;
 mod start;
+mod suction;
 mod time_step;
+mod tool_removal;
 mod user_laws;
 
 pub use body::BodyParts;
@@ -114,6 +116,7 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
         let blocks = assembly.bodies.values().flat_map(|body| &body.blocks);
         blocks.for_each(|&block| removal::insert_columns(assembly.precision, block, world));
     }
+    suction::spawn(assembly, world, diagnostics);
     if scene.is_static() {
         relaxation::insert_fictitious_masses(assembly, world);
     }

@@ -3,7 +3,8 @@
 use super::Assembly;
 use crate::components::*;
 use crate::scene::diagnostic::Diagnostics;
-use crate::scene::schema::Quantity;
+use crate::observation::volume_left;
+use crate::scene::schema::{Quantity, Select};
 use bevy_ecs::prelude::*;
 
 /// Spawns all probes.
@@ -14,15 +15,18 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let every = probe.every.unwrap_or_else(|| scene.fields_every());
         let every = Cadence::new(every, time_step);
         let (what, peak) = (probe.what.clone(), probe.peak);
-        let Some(on) = &probe.on else {
+        let whole = Select::All;
+        let of_volume = what == Quantity::RemovedVolume;
+        let Some(on) = probe.on.as_ref().or(of_volume.then_some(&whole)) else {
             // of a tool, whatever it touches
-            world.spawn((Label(name.clone()), Probe { what, nodes: Vec::new(), elements: Vec::new(), every, peak }));
+            let (nodes, elements) = (Vec::new(), Vec::new());
+            world.spawn((Label(name.clone()), Probe { what, nodes, elements, volume: 0.0, every, peak }));
             continue;
         };
         let Some(body) = assembly.body(&probe.body) else { continue };
         let path = format!("probes.\"{name}\".on");
         let Some(picked) = assembly.pick(body, on, &path, diagnostics) else { continue };
-        let of_elements = matches!(probe.what, Quantity::Stress | Quantity::VolumeRatio);
+        let of_elements = probe.what.is_of_elements();
         let marks = if of_elements { picked.elements(&body.placed) } else { picked.nodes(&body.placed) };
         let marks = match marks {
             Ok(marks) => marks,
@@ -38,7 +42,8 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         } else {
             nodes = body.rows_of(&marks);
         }
-        world.spawn((Label(name.clone()), Probe { what, nodes, elements, every, peak }, OfBody(body.entity)));
+        let volume = if of_volume { volume_left(&body.blocks, &elements, world) } else { 0.0 };
+        world.spawn((Label(name.clone()), Probe { what, nodes, elements, volume, every, peak }, OfBody(body.entity)));
     }
 }
 

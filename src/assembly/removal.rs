@@ -1,6 +1,6 @@
 //! Removal: what goes by time gets its step, what goes by criterion its limit.
 
-use super::{Assembly, BodyParts, select};
+use super::{Assembly, BodyParts, select, tool_removal};
 use crate::components::*;
 use crate::math::LANES;
 use crate::scene::diagnostic::Diagnostics;
@@ -30,25 +30,26 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             }
         };
         body.blocks.iter().for_each(|&block| insert_columns(assembly.precision, block, world));
-        match removal.when {
-            When::At(time) => by_time(body, &marks, time_step, world, |_| time),
-            When::During { start, end } => {
+        match &removal.when {
+            &When::At(time) => by_time(body, &marks, time_step, world, |_| time),
+            &When::During { start, end } => {
                 let ranks = ranks_from_center(body, &marks);
                 let last = ranks.iter().max().copied().unwrap_or(0).max(1) as f64;
                 by_time(body, &marks, time_step, world, |element| {
                     start + (end - start) * f64::from(ranks[element]) / last
                 });
             }
-            When::StretchAbove(limit) => by_criterion(body, &removal.on, &marks, Measure::Stretch, limit, world),
-            When::VolumeRatioAbove(limit) => {
+            &When::StretchAbove(limit) => by_criterion(body, &removal.on, &marks, Measure::Stretch, limit, world),
+            &When::VolumeRatioAbove(limit) => {
                 by_criterion(body, &removal.on, &marks, Measure::VolumeRatio, limit, world);
             }
-            When::VolumeRatioBelow(limit) => {
+            &When::VolumeRatioBelow(limit) => {
                 by_criterion(body, &removal.on, &marks, Measure::NegativeVolumeRatio, -limit, world);
             }
-            When::EnergyDensityAbove(limit) => {
+            &When::EnergyDensityAbove(limit) => {
                 by_criterion(body, &removal.on, &marks, Measure::EnergyDensity, limit, world);
             }
+            when @ When::InTool { .. } => tool_removal::add(assembly, body, &marks, when, world),
         }
     }
 }

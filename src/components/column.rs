@@ -231,7 +231,8 @@ pub fn place_in_buffer<C: Column>(entity: Entity, world: &World) -> usize {
 
 /// Every kind of column there is, as the modules declare them.
 pub fn all_columns() -> Vec<ColumnAccess> {
-    [super::nodes::accesses(), super::block::accesses(), super::tool::accesses()].concat()
+    let of_tools = [super::tool::accesses(), super::tool_removal::accesses(), super::suction::accesses()].concat();
+    [super::nodes::accesses(), super::block::accesses(), of_tools].concat()
 }
 
 /// Declares components that are columns, each with its name, its [`Role`], what its [`Rows`] belong to and, where they

@@ -24,7 +24,9 @@ mod observation;
 mod own_load;
 mod patches;
 mod signal;
+mod suction;
 mod tool;
+mod tool_removal;
 mod touched;
 
 pub use block::{
@@ -50,7 +52,11 @@ pub use observation::{Cadence, Energies, Observed, Probe};
 pub use own_load::{LoadText, NodeAtRest, OfSystem, OwnLoad};
 pub use patches::{Patches, Scheme};
 pub use signal::{Signal, Signals};
+pub use suction::{
+    BodyFaces, FacePresence, NO_FACE, SUCTION_NUMBERS, Suction, SuctionMarks, SuctionPressure,
+};
 pub use tool::{Pose, TOUCH_NUMBERS, ToolContact, ToolContacts, ToolMotion, ToolTouch};
+pub use tool_removal::{INTAKE_NUMBERS, Mouth, ToolIntake, ToolReach, ToolRemoval, ToolRemovals};
 pub use touched::Touched;
 
 use bevy_ecs::prelude::*;

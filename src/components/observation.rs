@@ -12,6 +12,8 @@ pub struct Probe {
     pub nodes: Vec<u32>,
     /// Elements: place of the block in the body's list, and row there.
     pub elements: Vec<(u32, u32)>,
+    /// Volume at rest of these elements at the start (m³), where it is of what is gone.
+    pub volume: f64,
     /// How often.
     pub every: Cadence,
     /// Whether it holds of each number the value of the largest size so far.

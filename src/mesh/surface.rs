@@ -57,6 +57,22 @@ impl Mesh {
         single.into_iter().map(|face| self.face(face)).collect()
     }
 
+    /// Every face of every element, by element, then by local face, each with the place of the same face of the element
+    /// on its other side; `none` where there is no such element.
+    pub fn faces_and_opposites(&self, none: u32) -> Vec<(SurfaceFace, u32)> {
+        let (mut faces, mut alike) = (Vec::new(), Vec::new());
+        self.each_face(|number, nodes| {
+            alike.push((nodes, faces.len() as u32));
+            faces.push((self.face(number), none));
+        });
+        alike.sort_unstable();
+        for pair in alike.chunk_by(|a, b| a.0 == b.0).filter(|alike| alike.len() == 2) {
+            faces[pair[0].1 as usize].1 = pair[1].1;
+            faces[pair[1].1 as usize].1 = pair[0].1;
+        }
+        faces
+    }
+
     /// The face of a number, its normal outwards.
     fn face(&self, number: u64) -> SurfaceFace {
         let (element, local) = ((number / FACES) as usize, (number % FACES) as usize);

@@ -18,7 +18,7 @@ pub use fields::{BodyFields, body_fields, internal_forces};
 pub use frame::{WrittenFields, write as write_fields, write_whole};
 pub use guards::{Watch, begin as begin_to_guard, held_for_long};
 pub use look::{Look, WatchKernels, look};
-pub use probes::{header, observe_probe};
+pub use probes::{header, observe_probe, volume_left};
 pub use rounding::{Rounding, shortest_edge};
 pub use tools::{ToolReading, read_tool};
 pub use track::Track;

@@ -3,7 +3,7 @@
 use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::error::Error;
-use crate::evaluation::{BlockView, ElementState};
+use crate::evaluation::{BlockView, ElementState, rest_volume};
 use crate::scene::schema::Quantity;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -20,6 +20,7 @@ pub fn header(what: &Quantity) -> Vec<&'static str> {
         Quantity::Torque { .. } => &["torque (N m)"],
         Quantity::Stress => &["xx (Pa)", "yy (Pa)", "zz (Pa)", "xy (Pa)", "yz (Pa)", "xz (Pa)"],
         Quantity::VolumeRatio => &["J"],
+        Quantity::RemovedVolume => &["volume (m³)"],
         Quantity::ToolForce { .. } => &["Fx (N)", "Fy (N)", "Fz (N)"],
         Quantity::ToolTorque { .. } => &["Tx (N m)", "Ty (N m)", "Tz (N m)"],
         Quantity::ToolPlace { .. } => &["x (m)", "y (m)", "z (m)"],
@@ -55,6 +56,7 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
         Quantity::Moment { .. } | Quantity::Torque { .. } => {
             &[InternalForce::NAME, ExternalForce::NAME, Displacement::NAME, DisplacementIncrement::NAME]
         }
+        Quantity::RemovedVolume => &[RestShape::NAME],
         _ => &[Displacement::NAME, RestShape::NAME, ViscousMemory::NAME],
     };
     let of_body = |world: &World, entity: Entity| world.get::<OfBody>(entity).is_some_and(|of| of.0 == body);
@@ -88,6 +90,10 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
         Quantity::Force { direction } => vec![reaction().dot(direction.normalize())],
         Quantity::Moment { center } => moment(center).to_array().to_vec(),
         Quantity::Torque { center, axis } => vec![moment(center).dot(axis.normalize())],
+        Quantity::RemovedVolume => {
+            let blocks = entity.get::<Authoring>().map_or(&[][..], |authoring| &authoring.blocks);
+            vec![probe.volume - volume_left(blocks, &probe.elements, world)]
+        }
         Quantity::Stress => element_mean(world, body, &probe, |view, row, state| view.cauchy(row, state).to_vec()),
         _ => element_mean(world, body, &probe, |_, _, state| vec![state.volume_ratio()]),
     })
@@ -106,6 +112,16 @@ pub fn with_peaks(world: &mut World, probe: Entity, name: &str, values: Vec<f64>
         }
     }
     peaks.clone()
+}
+
+/// Volume at rest (m³) of those of some elements that are still there; `elements`: place of the block, and row there.
+pub fn volume_left(blocks: &[Entity], elements: &[(u32, u32)], world: &World) -> f64 {
+    let of_element = |&(place, row): &(u32, u32)| {
+        let block = blocks[place as usize];
+        let parts = world.get::<Block>(block).zip(world.get::<RestShape>(block));
+        parts.map_or(0.0, |(block, shape)| rest_volume(block, row as usize, shape))
+    };
+    elements.iter().map(of_element).sum()
 }
 
 /// Mean over the probe's elements that are still there, by rest volume.

@@ -19,6 +19,8 @@ pub struct ToolReading {
     pub nodes: usize,
     /// How deep the deepest of the nodes that it may touch is inside it (m); 0 where none is.
     pub penetration: f64,
+    /// The part of the force that is of what it sucks (N).
+    pub suction: DVec3,
     /// The work that it has done since the start (J).
     pub work: f64,
     /// What of this work impact and friction have taken (J).
@@ -30,7 +32,14 @@ pub struct ToolReading {
 /// # Errors
 /// What the GPU says.
 pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
-    bring_to_host(world, |_, name| [ToolTouch::NAME, Displacement::NAME, DisplacementIncrement::NAME].contains(&name))?;
+    let wanted = [
+        ToolTouch::NAME,
+        Displacement::NAME,
+        DisplacementIncrement::NAME,
+        SuctionMarks::NAME,
+        SuctionPressure::NAME,
+    ];
+    bring_to_host(world, |_, name| wanted.contains(&name))?;
     let clock = *world.resource::<Clock>();
     let now = match &clock.relaxation {
         Some(relaxation) => world.resource::<Signals>().poses_at_share(relaxation.end, relaxation.share(clock.step)),
@@ -69,5 +78,46 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
             }
         }
     }
+    let place = |slot: usize, reference: DVec3| {
+        now.iter().find(|(of, _)| *of == slot).map(|(_, pose)| pose.at + reference)
+    };
+    let mut takers = world.query::<&ToolRemovals>();
+    for removals in takers.iter(world) {
+        for removal in removals.all.iter().filter(|removal| removal.tool == tool) {
+            reading.place = place(removal.pose, removals.reference).unwrap_or(reading.place);
+        }
+    }
+    let mut suctions = world.query::<(&Suction, &OfBody)>();
+    for (suction, body) in suctions.iter(world).filter(|(suction, _)| suction.tool == tool) {
+        reading.place = place(suction.pose, suction.reference).unwrap_or(reading.place);
+        let at = reading.place;
+        if let Some((force, torque)) = suction_at(world, suction, body.0, at) {
+            reading.force += force;
+            reading.torque += torque;
+            reading.suction += force;
+        }
+    }
     Ok(reading)
+}
+
+/// The force on a tool of what it sucks at a body (N), and its moment about a place (N m): faces as they were at the
+/// beginning of the step that led here, each with its force at its centroid.
+fn suction_at(world: &World, suction: &Suction, body: Entity, about: DVec3) -> Option<(DVec3, DVec3)> {
+    let (rest, u, step) = (
+        world.get::<RestPosition>(body)?,
+        world.get::<Displacement>(body)?,
+        world.get::<DisplacementIncrement>(body)?,
+    );
+    let mut now = suction.clone();
+    now.renew(world.get::<SuctionMarks>(body)?, world.get::<SuctionPressure>(body)?);
+    let place = |node: u32| rest.0[node as usize] + u.vector(node as usize) - step.vector(node as usize);
+    let mut sums = (DVec3::ZERO, DVec3::ZERO);
+    for (nodes, weight) in now.active.faces.iter().zip(&now.active.weights) {
+        let [a, b, c, d] = nodes.map(place);
+        let force = -now.now * weight * 0.5 * (c - a).cross(d - b);
+        let centroid = if nodes[2] == nodes[3] { (a + b + c) / 3.0 } else { (a + b + c + d) / 4.0 };
+        sums.0 += force;
+        sums.1 += (centroid - about).cross(force);
+    }
+    Some(sums)
 }

@@ -141,6 +141,7 @@ pub const UNITS: &[(&str, &str)] = &[
     ("mass", "kg"),
     ("removed_mass", "kg"),
     ("tools.*.force", "N"),
+    ("tools.*.suction", "N"),
     ("tools.*.torque", "N m"),
     ("tools.*.place", "m"),
     ("tools.*.penetration", "m"),

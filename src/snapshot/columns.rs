@@ -61,11 +61,20 @@ pub fn state_columns(world: &mut World, further: &[&'static str]) -> Vec<StateCo
     columns
 }
 
-/// Faces of removed elements bear no load: the marks of faces follow from the elements'.
+/// Faces of removed elements bear no load: the marks of faces follow from the elements'. What tools suck is in columns,
+/// too.
 pub fn update_faces(world: &mut World) {
     let mut loads: Vec<(Entity, Entity)> = Vec::new();
     for (load, body) in world.query_filtered::<(Entity, &OfBody), Or<(With<Pressure>, With<Traction>)>>().iter(world) {
         loads.push((load, body.0));
+    }
+    let suctions: Vec<(Entity, Entity)> =
+        world.query::<(Entity, &OfBody, &Suction)>().iter(world).map(|(entity, body, _)| (entity, body.0)).collect();
+    for (suction, body) in suctions {
+        let columns = (world.get::<SuctionMarks>(body).cloned(), world.get::<SuctionPressure>(body).cloned());
+        if let ((Some(marks), Some(pressure)), Some(mut suction)) = (columns, world.get_mut::<Suction>(suction)) {
+            suction.renew(&marks, &pressure);
+        }
     }
     for (load, body) in loads {
         let Some(blocks) = world.get::<Authoring>(body).map(|authoring| authoring.blocks.clone()) else { continue };

@@ -38,9 +38,12 @@ pub fn identity(scene: &Scene, world: &mut World) -> Identity {
         }
         add("systems", systems.finish());
     }
-    if !scene.contacts.is_empty() {
+    if !scene.tools.is_empty() {
         let mut tools = XxHash64::default();
         tools.write_u64(of_text(&(&scene.tools, &scene.contacts)));
+        if !scene.suction.is_empty() {
+            tools.write_u64(of_text(&scene.suction));
+        }
         for contacts in world.query::<&ToolContacts>().iter(world) {
             // the scene only names the file
             let grids = contacts.tools.iter().filter_map(|contact| match &contact.geometry {

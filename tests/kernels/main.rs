@@ -17,4 +17,5 @@ mod pair;
 mod patches;
 mod removal;
 mod shapes;
+mod tool_removal;
 mod tools;

@@ -58,6 +58,7 @@ mod strains;
 mod tables;
 mod tool_friction;
 mod tool_meshes;
+mod tool_removal;
 mod tools;
 mod true_limit;
 mod unload;

@@ -133,7 +133,7 @@ pub struct Removal {
 }
 
 /// When elements are removed.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub enum When {
     /// All at one time (s).
@@ -153,6 +153,39 @@ pub enum When {
     VolumeRatioAbove(f64),
     /// Each as soon as its strain energy per rest volume exceeds this (J/m³).
     EnergyDensityAbove(f64),
+    /// One after the other as a tool takes them, the nearest first.
+    InTool {
+        /// The tool.
+        tool: String,
+        /// How far from its mouth an element's centroid may be (m).
+        reach: f64,
+        /// The volume that the tool takes in a second (m³/s), by rest volume, while there is something in its reach.
+        rate: f64,
+        /// Radius of the mouth (m), a disc about the tool's origin; a tube's `inner` when left out, and all round tools
+        /// of other shapes.
+        #[serde(default)]
+        bore: Option<f64>,
+        /// Elements that go at most at a time.
+        #[serde(default = "sixty_four")]
+        burst: u32,
+        /// Course of the rate in time.
+        #[serde(default)]
+        curve: Curve,
+    },
+}
+
+fn sixty_four() -> u32 {
+    64
+}
+
+impl When {
+    /// The tool that takes the elements, if one does.
+    pub fn tool(&self) -> Option<&String> {
+        match self {
+            Self::InTool { tool, .. } => Some(tool),
+            _ => None,
+        }
+    }
 }
 
 fn all_axes() -> Vec<Axis> {

@@ -1,7 +1,8 @@
 //! The whole scene, its time step, its guards.
 
 use super::{
-    Accuracy, Body, Constraint, Contact, Curve, Load, Material, Output, OwnSystem, Picture, Probe, Removal, Tool,
+    Accuracy, Body, Constraint, Contact, Curve, Load, Material, Output, OwnSystem, Picture, Probe, Removal, Suction,
+    Tool, When,
 };
 use crate::scene::syntax::Path;
 use serde::{Deserialize, Serialize};
@@ -38,6 +39,9 @@ pub struct Scene {
     /// What touches what.
     #[serde(default)]
     pub contacts: Vec<Contact>,
+    /// Tools that suck.
+    #[serde(default)]
+    pub suction: Vec<Suction>,
     /// Loads of your own in WGSL, by the name of their function.
     #[serde(default)]
     pub systems: BTreeMap<String, OwnSystem>,
@@ -281,8 +285,18 @@ impl Scene {
             let path = move |number| to("tools").name(name).name("moves").index(number);
             tool.moves.iter().enumerate().map(move |(number, part)| (path(number), &part.curve))
         });
-        let all = constraints.chain(loads).chain(systems).chain(moves);
+        let removals = self.removal.iter().enumerate().filter_map(|(i, removal)| match &removal.when {
+            When::InTool { curve, .. } => Some((to("removal").index(i).name("when"), curve)),
+            _ => None,
+        });
+        let suction = self.suction.iter().enumerate().map(|(i, suction)| (to("suction").index(i), &suction.curve));
+        let all = constraints.chain(loads).chain(systems).chain(moves).chain(removals).chain(suction);
         all.map(|(path, curve)| (path.name("curve"), curve)).collect()
+    }
+
+    /// Whether tools put forces on nodes.
+    pub fn has_tools_that_push(&self) -> bool {
+        !self.contacts.is_empty() || !self.suction.is_empty()
     }
 
     /// Whether equilibrium is sought instead of motion.

@@ -83,7 +83,8 @@ pub struct Probe {
     pub body: Option<String>,
     /// What to observe.
     pub what: Quantity,
-    /// On which nodes or elements; left out of what tools feel.
+    /// On which nodes or elements; left out of what tools feel, and of a whole body's
+    /// removed volume.
     #[serde(default)]
     pub on: Option<Select>,
     /// Time between observations (s).
@@ -128,6 +129,8 @@ pub enum Quantity {
     Stress,
     /// Volume mean of the volume ratio J of the elements.
     VolumeRatio,
+    /// Volume at rest of the elements that have been removed (m³).
+    RemovedVolume,
     /// The force that a tool feels: minus that on the nodes that it touches (N).
     ToolForce {
         /// The tool.
@@ -149,6 +152,11 @@ impl Quantity {
     /// Whether it is made of the forces that hold nodes.
     pub fn is_of_reactions(&self) -> bool {
         matches!(self, Self::Reaction | Self::Force { .. } | Self::Moment { .. } | Self::Torque { .. })
+    }
+
+    /// Whether it is of elements, not of nodes.
+    pub fn is_of_elements(&self) -> bool {
+        matches!(self, Self::Stress | Self::VolumeRatio | Self::RemovedVolume)
     }
 
     /// The tool that it is of, if it is of one.

@@ -101,6 +101,30 @@ pub enum Contact {
     },
 }
 
+/// A tool that sucks: exposed faces in its mouth are drawn into it.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Suction {
+    /// The tool's name.
+    pub tool: String,
+    /// The body; may be left out when there is one only.
+    #[serde(default)]
+    pub body: Option<String>,
+    /// The pressure (Pa) by which it sucks when its mouth is closed; of what is closed to a share χ, χ² of it.
+    pub pressure: f64,
+    /// Radius of the mouth (m), a disc about the tool's origin, across its axis; a tube's `inner` when left out.
+    #[serde(default)]
+    pub bore: Option<f64>,
+    /// How far before and behind the mouth faces are sucked (m).
+    pub reach: f64,
+    /// The time (s) in which the pressure follows what closes the mouth, and its course.
+    #[serde(default)]
+    pub delay: f64,
+    /// Course of the pressure in time.
+    #[serde(default)]
+    pub curve: Curve,
+}
+
 fn surface() -> Select {
     Select::Surface { normal: None, within: 30.0 }
 }

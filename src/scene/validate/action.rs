@@ -40,7 +40,8 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
     for (i, removal) in scene_.removal.iter().enumerate() {
         let path = scene("removal").index(i);
         select::validate(validator, &path.name("on"), &removal.on);
-        criterion(validator, &path.name("when"), removal.when);
+        criterion(validator, &path.name("when"), &removal.when);
+        super::tool::takes(scene_, validator, &path.name("when"), removal);
     }
     for (name, probe) in &scene_.probes {
         let path = scene("probes").name(name);
@@ -52,6 +53,7 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
         }
         match (probe.what.tool(), &probe.on) {
             (None, Some(on)) => select::validate(validator, &path.name("on"), on),
+            (None, None) if probe.what == Quantity::RemovedVolume => {}
             (None, None) => {
                 let message = format!("the probe `{name}` lacks `on`: which nodes or elements it is of");
                 validator.out.error_at(&path, message).note("on: All, Set(...), Plane(...), ...");
@@ -88,9 +90,9 @@ fn validate_axes(validator: &mut Validator, path: &Path, axes: &[Axis]) {
 }
 
 /// What is wrong with a threshold; at rest every stretch and volume ratio is 1.
-fn criterion(validator: &mut Validator, path: &Path, when: When) {
-    let (word, value, senseless) = match when {
-        When::At(_) | When::During { .. } => return,
+fn criterion(validator: &mut Validator, path: &Path, when: &When) {
+    let (word, value, senseless) = match *when {
+        When::At(_) | When::During { .. } | When::InTool { .. } => return,
         When::StretchAbove(value) => ("StretchAbove", value, value < 1.0),
         When::VolumeRatioBelow(value) => ("VolumeRatioBelow", value, value > 1.0),
         When::VolumeRatioAbove(value) => ("VolumeRatioAbove", value, value < 1.0),

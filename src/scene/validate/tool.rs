@@ -3,9 +3,9 @@
 use super::geometry::{TOOLS, named_file};
 use super::names::body_named;
 use super::{Validator, scene, select, show};
-use crate::scene::limits::TOOLS_OF_A_BODY;
+use crate::scene::limits::{MOST_BURST, TOOLS_OF_A_BODY};
 use crate::scene::load::SceneFile;
-use crate::scene::schema::{Contact, Scene, Tool};
+use crate::scene::schema::{Contact, Removal, Scene, Shape, Tool, When};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use glam::DVec3;
@@ -21,7 +21,10 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
             let Contact::Tool { tool, .. } = contact;
             tool == name
         };
-        if !scene_.contacts.iter().any(touches) {
+        let takes = |removal: &Removal| removal.when.tool() == Some(name);
+        if !scene_.contacts.iter().any(touches) && !scene_.removal.iter().any(takes)
+            && !scene_.suction.iter().any(|suction| suction.tool == *name)
+        {
             validator
                 .out
                 .warn_at(&path, format!("nothing touches the tool `{name}`"))
@@ -29,6 +32,8 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
         }
     }
     contacts(scene_, validator);
+    takers(scene_, validator);
+    suction(scene_, validator);
 }
 
 fn geometry(file: &SceneFile, validator: &mut Validator, path: &Path, tool: &Tool) {
@@ -97,10 +102,7 @@ fn contacts(scene_: &Scene, validator: &mut Validator) {
     for (number, contact) in scene_.contacts.iter().enumerate() {
         let path = scene("contacts").index(number);
         let Contact::Tool { tool, body, on, friction, static_friction } = contact;
-        if !scene_.tools.contains_key(tool) {
-            let tools = scene_.tools.keys().map(String::as_str);
-            validator.out.error_at(path.name("tool"), format!("there is no tool `{tool}`")).notes(choice(tool, tools));
-        }
+        named(scene_, validator, &path, tool);
         body_named(scene_, validator, &path, body.as_ref());
         select::validate(validator, &path.name("on"), on);
         validator.not_negative(&path.name("friction"), *friction, "");
@@ -126,6 +128,78 @@ fn contacts(scene_: &Scene, validator: &mut Validator) {
         if *count == TOOLS_OF_A_BODY + 1 {
             let message = format!("a body may meet at most {} tools", TOOLS_OF_A_BODY);
             validator.out.error_at(&path, message);
+        }
+    }
+}
+
+/// Whether there is a tool of a name.
+fn named(scene_: &Scene, validator: &mut Validator, owner: &Path, tool: &str) {
+    if !scene_.tools.contains_key(tool) {
+        let tools = scene_.tools.keys().map(String::as_str);
+        validator.out.error_at(owner.name("tool"), format!("there is no tool `{tool}`")).notes(choice(tool, tools));
+    }
+}
+
+/// What is wrong with a tool that takes elements.
+pub(super) fn takes(scene_: &Scene, validator: &mut Validator, path: &Path, removal: &Removal) {
+    let When::InTool { tool, reach, rate, bore, burst, .. } = &removal.when else { return };
+    named(scene_, validator, path, tool);
+    validator.above_zero(&path.name("reach"), *reach, "m");
+    validator.above_zero(&path.name("rate"), *rate, "m³/s");
+    if let Some(bore) = bore {
+        validator.above_zero(&path.name("bore"), *bore, "m");
+    } else if scene_.tools.get(tool).is_some_and(|tool| tool.shape.is_none()) {
+        validator
+            .out
+            .error_at(path, format!("the tool `{tool}` is a mesh: where is its mouth?"))
+            .note("give `bore`, the radius of a disc about the tool's origin, across its axis z");
+    }
+    if !(1..=MOST_BURST).contains(burst) {
+        validator.must(&path.name("burst"), &format!("between 1 and {MOST_BURST}"), burst);
+    }
+}
+
+/// How many tools take elements of a body.
+fn takers(scene_: &Scene, validator: &mut Validator) {
+    let mut of_body: BTreeMap<Option<&String>, usize> = BTreeMap::new();
+    for (number, removal) in scene_.removal.iter().enumerate().filter(|(_, removal)| removal.when.tool().is_some()) {
+        let count = of_body.entry(removal.body.as_ref().or(scene_.bodies.keys().next())).or_default();
+        *count += 1;
+        if *count == TOOLS_OF_A_BODY + 1 {
+            let message = format!("at most {TOOLS_OF_A_BODY} tools may take elements of a body");
+            validator.out.error_at(scene("removal").index(number), message);
+        }
+    }
+}
+
+fn suction(scene_: &Scene, validator: &mut Validator) {
+    let mut of_body: BTreeMap<Option<&String>, usize> = BTreeMap::new();
+    for (number, suction) in scene_.suction.iter().enumerate() {
+        let path = scene("suction").index(number);
+        named(scene_, validator, &path, &suction.tool);
+        body_named(scene_, validator, &path, suction.body.as_ref());
+        validator.above_zero(&path.name("pressure"), suction.pressure, "Pa");
+        validator.above_zero(&path.name("reach"), suction.reach, "m");
+        validator.not_negative(&path.name("delay"), suction.delay, "s");
+        let tool = scene_.tools.get(&suction.tool);
+        if let Some(bore) = suction.bore {
+            validator.above_zero(&path.name("bore"), bore, "m");
+        } else if tool.is_some_and(|tool| !matches!(tool.shape, Some(Shape::Tube { .. }))) {
+            validator
+                .out
+                .error_at(&path, format!("the tool `{}` is no tube: where is its mouth?", suction.tool))
+                .note("give `bore`, the radius of a disc about the tool's origin, across its axis z");
+        }
+        if scene_.is_static() {
+            validator
+                .out
+                .error_at(&path, "a static analysis cannot suck: what is sucked depends on the way there")
+                .note("leave `suction` out, or use `analysis: Transient`");
+        }
+        let count = of_body.entry(suction.body.as_ref().or(scene_.bodies.keys().next())).or_default();
+        *count += 1;
+        if *count == TOOLS_OF_A_BODY + 1 {
+            validator.out.error_at(&path, format!("at most {TOOLS_OF_A_BODY} tools may suck at a body"));
         }
     }
 }

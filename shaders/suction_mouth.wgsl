@@ -1,0 +1,62 @@
+// Marks the faces that a tool sucks; twin of systems/suction_mouth.rs. suction_presence.wgsl comes before it,
+// suction_nodes.wgsl and suction_pressure.wgsl after it; looks is generated.
+struct SuctionMouth {
+    faces: u32, // of the body
+    nodes: u32, // of these faces
+    parts: u32, // flat faces that they are loaded as
+    first: u32, // where the tool's marks begin: of faces, then of nodes
+    numbers: u32, // and its numbers in suction_pressure
+    pose: u32, // first slot of where it is
+    pressure: u32, // slot of the pressure with a closed mouth (Pa)
+    bore: f32, // (m)
+    reach: f32, // (m)
+    delay: f32, // (s)
+    area: f32, // of the mouth (m²)
+}
+@group(0) @binding(0) var<uniform> mouth: SuctionMouth;
+@group(0) @binding(1) var<storage, read_write> suction_marks: array<u32>;
+@group(0) @binding(2) var<storage, read> faces: array<u32>; // five a face: corners, the face seen from behind
+@group(0) @binding(3) var<storage, read> rest_points: array<f32>; // of nodes, from the reference (m)
+@group(0) @binding(4) var<storage, read> displacement: array<f32>;
+@group(0) @binding(5) var<storage, read> face_presence: array<u32>;
+
+const NO_FACE: u32 = 0xffffffffu;
+
+fn place_of(node: u32) -> vec3<f32> {
+    let at = 3u * node;
+    return vec3<f32>(rest_points[at], rest_points[at + 1u], rest_points[at + 2u])
+        + vec3<f32>(displacement[at], displacement[at + 1u], displacement[at + 2u]);
+}
+
+fn is_sucked(face: u32) -> bool {
+    let at = 5u * face;
+    let opposite = faces[at + 4u];
+    if face_presence[face] == 0u {
+        return false;
+    }
+    if opposite != NO_FACE {
+        if face_presence[opposite] == 1u {
+            return false;
+        }
+    }
+    var sum = place_of(faces[at]) + place_of(faces[at + 1u]) + place_of(faces[at + 2u]);
+    var corners = 3.0;
+    if faces[at + 2u] != faces[at + 3u] {
+        sum += place_of(faces[at + 3u]);
+        corners = 4.0;
+    }
+    let rows = array<vec4<f32>, 3>(
+        step.signals[mouth.pose], step.signals[mouth.pose + 1u], step.signals[mouth.pose + 2u]);
+    let x = sum / corners - vec3<f32>(rows[0].w, rows[1].w, rows[2].w);
+    let y = x.x * rows[0].xyz + x.y * rows[1].xyz + x.z * rows[2].xyz;
+    return abs(y.z) <= mouth.reach && dot(y.xy, y.xy) < mouth.bore * mouth.bore;
+}
+
+@compute @workgroup_size(64)
+fn suction_mouth(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let face = row(id, groups);
+    if face >= mouth.faces || !looks() {
+        return;
+    }
+    suction_marks[mouth.first + face] = select(0u, 1u, is_sucked(face));
+}

@@ -1,0 +1,30 @@
+// Marks the nodes of the faces that suction_mouth.wgsl has marked. looks is generated.
+struct SuctionMouth {
+    faces: u32,
+    nodes: u32,
+    parts: u32,
+    first: u32,
+    numbers: u32,
+    pose: u32,
+    pressure: u32,
+    bore: f32,
+    reach: f32,
+    delay: f32,
+    area: f32,
+}
+@group(0) @binding(0) var<uniform> mouth: SuctionMouth;
+@group(0) @binding(1) var<storage, read_write> suction_marks: array<u32>;
+@group(0) @binding(2) var<storage, read> faces_of_nodes: array<u32>; // where each node's begin, then they
+
+@compute @workgroup_size(64)
+fn suction_nodes(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = row(id, groups);
+    if i >= mouth.nodes || !looks() {
+        return;
+    }
+    var mark = 0u;
+    for (var at = faces_of_nodes[i]; at < faces_of_nodes[i + 1u]; at++) {
+        mark = max(mark, suction_marks[mouth.first + faces_of_nodes[at]]);
+    }
+    suction_marks[mouth.first + mouth.faces + i] = mark;
+}

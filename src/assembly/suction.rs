@@ -1,0 +1,103 @@
+//! Tools that suck: names become mouths, and bodies tell their faces.
+
+use super::columns::stiffness;
+use super::contacts::{motion, reference};
+use super::loads::corners_of;
+use super::{Assembly, BodyParts};
+use crate::components::*;
+use crate::scene::diagnostic::Diagnostics;
+use crate::scene::schema;
+use crate::tools::Shape;
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// Spawns all tools that suck.
+pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
+    let scene = &assembly.scene.scene;
+    let mut of_body: BTreeMap<Entity, (Arc<BodyFaces>, usize)> = BTreeMap::new();
+    for (number, suction) in scene.suction.iter().enumerate() {
+        let (Some(body), Some(tool)) = (assembly.body(&suction.body), scene.tools.get(&suction.tool)) else { continue };
+        let Some(bore) = suction.bore.or(bore(tool)) else { continue };
+        soft(body, (number, suction), world, diagnostics);
+        let (faces, count) =
+            of_body.entry(body.entity).or_insert_with(|| (Arc::new(faces(body, world)), 0));
+        let reference = reference(&body.placed.mesh.points);
+        let mut signals = world.resource_mut::<Signals>();
+        let pose = signals.add(Signal::Pose { motion: motion(tool), reference });
+        let amplitude = DVec3::X * suction.pressure;
+        let pressure = signals.add(Signal::Load { curve: suction.curve.clone(), amplitude });
+        let sucks = Suction {
+            tool: suction.tool.clone(),
+            number: *count,
+            pose,
+            reference,
+            pressure,
+            bore,
+            reach: suction.reach,
+            delay: suction.delay,
+            faces: faces.clone(),
+            active: FaceCorners::default(),
+            now: 0.0,
+        };
+        *count += 1;
+        world.spawn((sucks, OfBody(body.entity)));
+    }
+    for (body, (faces, count)) in of_body {
+        let pressure = Reals::zeros(assembly.precision, SUCTION_NUMBERS * count);
+        let marks = vec![0; faces.words() * count];
+        let presence = vec![1; faces.len()];
+        world.entity_mut(body).insert((SuctionPressure(pressure), SuctionMarks(marks), FacePresence(presence)));
+    }
+}
+
+/// The radius of a tool's own mouth (m).
+fn bore(tool: &schema::Tool) -> Option<f64> {
+    match &tool.shape {
+        Some(Shape::Tube { inner, .. }) => Some(*inner),
+        _ => None,
+    }
+}
+
+/// Warns of tissue that is drawn into the mouth without end.
+fn soft(
+    body: &BodyParts,
+    (number, suction): (usize, &schema::Suction),
+    world: &World,
+    diagnostics: &mut Diagnostics,
+) {
+    let young = |&block: &Entity| {
+        let of = stiffness(world, world.get::<Block>(block)?.material);
+        Some((of.shear * (3.0 * of.lambda + 2.0 * of.shear) / (of.lambda + of.shear), of.eta))
+    };
+    // fibres stiffen it
+    let softest = body.blocks.iter().filter_map(young).filter(|of| of.1 == 0.0).map(|of| of.0).reduce(f64::min);
+    if let Some(young) = softest.filter(|young| suction.pressure > *young) {
+        let message = format!(
+            "the suction of {:.3e} Pa is more than Young's modulus of what it sucks, {young:.3e} Pa",
+            suction.pressure
+        );
+        diagnostics
+            .warn_at(format!("suction[{number}].pressure").as_str(), message)
+            .note("such tissue may be drawn into the mouth without end");
+    }
+}
+
+/// The faces that may be sucked.
+fn faces(body: &BodyParts, world: &World) -> BodyFaces {
+    let goes = body.blocks.iter().any(|&block| world.get::<Alive>(block).is_some());
+    let all: Vec<(crate::mesh::SurfaceFace, u32)> = match goes {
+        true => body.placed.mesh.faces_and_opposites(NO_FACE),
+        false => body.placed.surface().iter().map(|face| (*face, NO_FACE)).collect(),
+    };
+    let rows = |nodes: [u32; 4]| nodes.map(|node| body.node_rows[node as usize]);
+    let (parts, of_part) = corners_of(body, all.iter().map(|(face, _)| face));
+    BodyFaces {
+        corners: all.iter().map(|(face, _)| rows(face.nodes)).collect(),
+        elements: all.iter().map(|(face, _)| body.element_rows[face.element as usize]).collect(),
+        opposites: all.iter().map(|(_, opposite)| *opposite).collect(),
+        parts,
+        of_part,
+    }
+}

@@ -1,0 +1,266 @@
+//! `suction_mouth`: which faces tools suck, and by what pressure. `shaders/suction_mouth.wgsl` is its twin, with
+//! `shaders/suction_presence.wgsl`, `shaders/suction_nodes.wgsl` and `shaders/suction_pressure.wgsl`.
+
+use super::element_removal::CRITERION_STEPS;
+use super::registry::{Phase, System};
+use super::suction::parts_of;
+use crate::backend::Buffers;
+use crate::backend::block_kernel::BlockKernels;
+use crate::backend::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};
+use crate::backend::step::with_step;
+use crate::components::*;
+use crate::error::missing;
+use crate::shader;
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+/// Exposed faces whose centroids are in the mouth are sucked: in every tenth step it is looked which those are, and what
+/// share χ of the mouth they close, seen along its axis. An open mouth leaks: the pressure goes to Δp χ², and follows in
+/// the time that the scene names.
+///
+/// A face is exposed while its element is there and its neighbour's is not: what removal bares is sucked at once.
+pub fn system() -> System {
+    System::built_in(
+        "suction_mouth",
+        Phase::Boundary,
+        "finds the faces that tools suck, and by what pressure",
+        "an entry under `suction`",
+        |world| super::registry::count::<Suction>(world, "tool that sucks", "tools that suck"),
+        suction_mouth,
+    )
+    .on_device(kernels)
+}
+
+type BodyQuery<'a> =
+    (&'a Authoring, &'a RestPosition, &'a Displacement, &'a mut SuctionMarks, &'a mut SuctionPressure);
+
+fn suction_mouth(
+    clock: Res<Clock>,
+    signals: Res<Signals>,
+    mut all: Query<(&mut Suction, &OfBody)>,
+    mut bodies: Query<BodyQuery>,
+    blocks: Query<Option<&Alive>, With<Block>>,
+) {
+    for (mut suction, body) in &mut all {
+        let Ok((authoring, rest, displacement, mut marks, mut pressures)) = bodies.get_mut(body.0) else {
+            missing("a column of a body");
+            continue;
+        };
+        let at = SUCTION_NUMBERS * suction.number;
+        let looks = clock.step.is_multiple_of(CRITERION_STEPS);
+        if looks {
+            let of_block = |&block: &Entity| blocks.get(block).ok().flatten().map(|alive| alive.0.as_slice());
+            let alive: Vec<Option<&[u32]>> = authoring.blocks.iter().map(of_block).collect();
+            let is_there = |face: usize| {
+                let (block, row) = suction.faces.elements[face];
+                alive[block as usize].is_none_or(|alive| alive[row as usize] == 1)
+            };
+            let pose = suction.pose_in(&signals);
+            let place = |node: u32| rest.0[node as usize] - suction.reference + displacement.vector(node as usize);
+            let first = suction.first_mark();
+            mark(&suction, &pose, is_there, place, &mut marks[first..first + suction.faces.words()]);
+            pressures.set(at + 1, closed(&suction, &pose, place, &marks[first..]));
+        }
+        let (share, follows) = (pressures.get(at + 1), follows(suction.delay, clock.time_step));
+        let wanted = signals.values()[suction.pressure][0] * share * share;
+        let now = pressures.get(at);
+        pressures.set(at, now + follows * (wanted - now));
+        if looks {
+            suction.renew(&marks, &pressures);
+        } else {
+            suction.now = pressures.get(at);
+        }
+    }
+}
+
+/// By what share pressure comes nearer in a step (s) to what it goes to.
+fn follows(delay: f64, time_step: f64) -> f64 {
+    if delay > time_step { time_step / delay } else { 1.0 }
+}
+
+/// Marks the faces that are sucked, then their nodes.
+fn mark(
+    suction: &Suction,
+    pose: &Pose,
+    is_there: impl Fn(usize) -> bool,
+    place: impl Fn(u32) -> DVec3,
+    marks: &mut [u32],
+) {
+    let faces = &suction.faces;
+    let is_sucked = |face: usize| {
+        let opposite = faces.opposites[face];
+        if !is_there(face) || opposite != NO_FACE && is_there(opposite as usize) {
+            return false;
+        }
+        let corners = faces.places(face);
+        let sum: DVec3 = corners.iter().map(|&node| place(node)).sum();
+        suction.is_in_mouth(pose.inverse(sum / corners.len() as f64))
+    };
+    let (of_faces, of_nodes) = marks.split_at_mut(faces.len());
+    of_faces.iter_mut().enumerate().for_each(|(face, mark)| *mark = u32::from(is_sucked(face)));
+    let parts = &faces.parts;
+    for (i, mark) in of_nodes.iter_mut().enumerate() {
+        let corners = &parts.corners[parts.starts[i] as usize..parts.starts[i + 1] as usize];
+        let sucked = |corner: &u32| of_faces[faces.of_part[*corner as usize / 4] as usize] == 1;
+        *mark = u32::from(corners.iter().any(sucked));
+    }
+}
+
+/// The share of the mouth that marked faces close, seen along its axis: from 0 to 1.
+fn closed(suction: &Suction, pose: &Pose, place: impl Fn(u32) -> DVec3, marks: &[u32]) -> f64 {
+    let (faces, axis) = (&suction.faces, pose.rotation.z_axis);
+    let mut sum = 0.0;
+    for ((nodes, weight), &face) in faces.parts.faces.iter().zip(&faces.parts.weights).zip(&faces.of_part) {
+        if marks[face as usize] == 1 {
+            let [a, b, c, d] = nodes.map(&place);
+            sum += weight * 0.5 * (c - a).cross(d - b).dot(axis);
+        }
+    }
+    (sum / mouth_area(suction)).clamp(0.0, 1.0)
+}
+
+fn mouth_area(suction: &Suction) -> f64 {
+    std::f64::consts::PI * suction.bore * suction.bore
+}
+
+/// A mouth as kernels see it.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+struct SuctionMouth {
+    faces: u32,
+    nodes: u32,
+    parts: u32,
+    first: u32,
+    numbers: u32,
+    pose: u32,
+    pressure: u32,
+    bore: f32,
+    reach: f32,
+    delay: f32,
+    area: f32,
+}
+uniform!(SuctionMouth { faces, nodes, parts, first, numbers, pose, pressure, bore, reach, delay, area });
+
+/// For each body what tells which faces are there, block by block; for each tool what marks faces, what marks nodes, and
+/// what finds the pressure.
+fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+    let blocks = BlockKernels::of_world(world, buffers);
+    let all: Vec<(Suction, Entity)> =
+        world.query::<(&Suction, &OfBody)>().iter(world).map(|(suction, body)| (suction.clone(), body.0)).collect();
+    let mut kernels = Vec::new();
+    let mut seen: Vec<Entity> = Vec::new();
+    for (suction, body) in all {
+        let (Some(authoring), Some(rest)) = (world.get::<Authoring>(body), world.get::<RestPosition>(body)) else {
+            missing("a column of a body");
+            continue;
+        };
+        if !seen.contains(&body) {
+            seen.push(body);
+            for (place, &entity) in (0..).zip(&authoring.blocks) {
+                let block = blocks.iter().find(|block| block.entity == entity);
+                if let Some(block) = block.filter(|_| world.get::<Alive>(entity).is_some()) {
+                    kernels.push(with_step(presence(block, place, &suction.faces, buffers), world));
+                }
+            }
+        }
+        let points: Vec<[f32; 3]> = rest.0.iter().map(|&x| (x - suction.reference).as_vec3().to_array()).collect();
+        let of_tool = OfTool {
+            body,
+            points: buffers.constants("places of nodes".into(), bytemuck::cast_slice(&points)),
+            mouth: mouth(&suction, buffers),
+            suction,
+        };
+        kernels.extend(of_tool.kernels(buffers).map(|kernel| with_step(kernel, world)));
+    }
+    kernels
+}
+
+fn mouth(suction: &Suction, buffers: &mut dyn Buffers) -> BufferId {
+    let mouth = SuctionMouth {
+        faces: suction.faces.len() as u32,
+        nodes: suction.faces.parts.rows.len() as u32,
+        parts: suction.faces.parts.faces.len() as u32,
+        first: suction.first_mark() as u32,
+        numbers: (SUCTION_NUMBERS * suction.number) as u32,
+        pose: suction.pose as u32,
+        pressure: suction.pressure as u32,
+        bore: suction.bore as f32,
+        reach: suction.reach as f32,
+        delay: suction.delay as f32,
+        area: mouth_area(suction) as f32,
+    };
+    buffers.uniform("mouth of suction".into(), &mouth.bytes())
+}
+
+/// Where each row of a block has its faces, and which of them are there.
+fn presence(block: &BlockKernels, place: u32, faces: &BodyFaces, buffers: &mut dyn Buffers) -> Kernel {
+    let mut of_rows: Vec<(u32, u32)> =
+        (0..).zip(&faces.elements).filter(|(_, of)| of.0 == place).map(|(face, of)| (of.1, face)).collect();
+    of_rows.sort_unstable();
+    let start = |row: usize| of_rows.partition_point(|&(of, _)| (of as usize) < row) as u32;
+    let count = block.block.count;
+    let starts = (0..=count).map(|row| start(row) + count as u32 + 1);
+    let lists: Vec<u32> = starts.chain(of_rows.iter().map(|&(_, face)| face)).collect();
+    block
+        .of_columns("suction_presence")
+        .fragment(shader!("suction_presence"))
+        .fragment(looks())
+        .bind("faces_of_elements", buffers.constants("faces of elements".into(), bytemuck::cast_slice(&lists)))
+        .bind(Alive::NAME, buffers.column(block.entity, Alive::NAME))
+        .bind(FacePresence::NAME, buffers.column(block.block.body, FacePresence::NAME))
+}
+
+/// What the kernels of a tool have in common.
+struct OfTool {
+    body: Entity,
+    points: BufferId,
+    mouth: BufferId,
+    suction: Suction,
+}
+
+impl OfTool {
+    fn kernel(&self, entry: &'static str, shader: Fragment, buffers: &mut dyn Buffers) -> Kernel {
+        Kernel::new(entry, entry)
+            .fragment(shader)
+            .fragment(shader!("row"))
+            .fragment(looks())
+            .bind_uniform::<SuctionMouth>("mouth", self.mouth)
+            .bind(SuctionMarks::NAME, buffers.column(self.body, SuctionMarks::NAME))
+    }
+
+    fn kernels(&self, buffers: &mut dyn Buffers) -> [Kernel; 3] {
+        let faces = &self.suction.faces;
+        let of_faces: Vec<[u32; 5]> =
+            faces.corners.iter().zip(&faces.opposites).map(|(&[a, b, c, d], &opposite)| [a, b, c, d, opposite]).collect();
+        let of_faces = buffers.constants("faces of a body".into(), bytemuck::cast_slice(&of_faces));
+        let lists: Vec<u32> = faces.parts.starts.iter().map(|start| start + faces.parts.starts.len() as u32).collect();
+        let of_corner = |corner: &u32| faces.of_part[*corner as usize / 4];
+        let lists: Vec<u32> = lists.into_iter().chain(faces.parts.corners.iter().map(of_corner)).collect();
+        let lists = buffers.constants("faces of nodes".into(), bytemuck::cast_slice(&lists));
+        let parts = buffers.constants("parts of faces".into(), bytemuck::cast_slice(&parts_of(faces)));
+        let displacement = buffers.column(self.body, Displacement::NAME);
+        [
+            self.kernel("suction_mouth", shader!("suction_mouth"), buffers)
+                .bind("faces", of_faces)
+                .bind("rest_points", self.points)
+                .bind(Displacement::NAME, displacement)
+                .bind(FacePresence::NAME, buffers.column(self.body, FacePresence::NAME))
+                .threads(faces.len() as u32),
+            self.kernel("suction_nodes", shader!("suction_nodes"), buffers)
+                .bind("faces_of_nodes", lists)
+                .threads(faces.parts.rows.len() as u32),
+            self.kernel("suction_pressure_of", shader!("suction_pressure"), buffers)
+                .bind("parts", parts)
+                .bind("rest_points", self.points)
+                .bind(Displacement::NAME, displacement)
+                .bind(SuctionPressure::NAME, buffers.column(self.body, SuctionPressure::NAME))
+                .threads(256),
+        ]
+    }
+}
+
+/// Whether a step begins with a look.
+fn looks() -> Fragment {
+    let text = format!("fn looks() -> bool {{\n    return step.number % {CRITERION_STEPS}u == 0u;\n}}\n");
+    Fragment::new("generated: when mouths look", text)
+}
