@@ -28,28 +28,37 @@ fn place_of(node: u32) -> vec3<f32> {
         + vec3<f32>(displacement[at], displacement[at + 1u], displacement[at + 2u]);
 }
 
-fn is_sucked(face: u32) -> bool {
+// What share of the face is in the mouth.
+fn sucked_share(face: u32) -> f32 {
     let at = 5u * face;
     let opposite = faces[at + 4u];
     if face_presence[face] == 0u {
-        return false;
+        return 0.0;
     }
     if opposite != NO_FACE {
         if face_presence[opposite] == 1u {
-            return false;
+            return 0.0;
         }
-    }
-    var sum = place_of(faces[at]) + place_of(faces[at + 1u]) + place_of(faces[at + 2u]);
-    var corners = 3.0;
-    if faces[at + 2u] != faces[at + 3u] {
-        sum += place_of(faces[at + 3u]);
-        corners = 4.0;
     }
     let rows = array<vec4<f32>, 3>(
         step.signals[mouth.pose], step.signals[mouth.pose + 1u], step.signals[mouth.pose + 2u]);
-    let x = sum / corners - vec3<f32>(rows[0].w, rows[1].w, rows[2].w);
-    let y = x.x * rows[0].xyz + x.y * rows[1].xyz + x.z * rows[2].xyz;
-    return abs(y.z) <= mouth.reach && dot(y.xy, y.xy) < mouth.bore * mouth.bore;
+    let origin = vec3<f32>(rows[0].w, rows[1].w, rows[2].w);
+    let corners = select(4u, 3u, faces[at + 2u] == faces[at + 3u]);
+    var inside = 0.0;
+    var sizes = 0.0;
+    var height = 0.0;
+    for (var corner = 0u; corner < corners; corner++) {
+        let x = place_of(faces[at + corner]) - origin;
+        let y = x.x * rows[0].xyz + x.y * rows[1].xyz + x.z * rows[2].xyz;
+        let off = mouth.bore - length(y.xy);
+        inside += max(off, 0.0);
+        sizes += abs(off);
+        height += y.z;
+    }
+    if abs(height) > mouth.reach * f32(corners) || inside <= 0.0 {
+        return 0.0;
+    }
+    return inside / sizes;
 }
 
 @compute @workgroup_size(64)
@@ -58,5 +67,5 @@ fn suction_mouth(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     if face >= mouth.faces || !looks() {
         return;
     }
-    suction_marks[mouth.first + face] = select(0u, 1u, is_sucked(face));
+    suction_marks[mouth.first + face] = bitcast<u32>(sucked_share(face));
 }

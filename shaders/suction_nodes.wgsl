@@ -24,7 +24,9 @@ fn suction_nodes(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_work
     }
     var mark = 0u;
     for (var at = faces_of_nodes[i]; at < faces_of_nodes[i + 1u]; at++) {
-        mark = max(mark, suction_marks[mouth.first + faces_of_nodes[at]]);
+        if suction_marks[mouth.first + faces_of_nodes[at]] != 0u {
+            mark = 1u;
+        }
     }
     suction_marks[mouth.first + mouth.faces + i] = mark;
 }

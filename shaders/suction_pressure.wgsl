@@ -36,10 +36,11 @@ fn suction_pressure_of(@builtin(local_invocation_index) lane: u32) {
         var sum = 0.0;
         for (var part = lane; part < mouth.parts; part += 256u) {
             let at = 6u * part;
-            if suction_marks[mouth.first + parts[at + 4u]] == 1u {
+            let share = bitcast<f32>(suction_marks[mouth.first + parts[at + 4u]]);
+            if share > 0.0 {
                 let across = place_of(parts[at + 2u]) - place_of(parts[at]);
                 let other = place_of(parts[at + 3u]) - place_of(parts[at + 1u]);
-                sum += bitcast<f32>(parts[at + 5u]) * 0.5 * dot(cross(across, other), axis);
+                sum += share * bitcast<f32>(parts[at + 5u]) * 0.5 * dot(cross(across, other), axis);
             }
         }
         sums[lane] = sum;

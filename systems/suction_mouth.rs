@@ -14,8 +14,8 @@ use crate::shader;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
-/// Exposed faces whose centroids are in the mouth are sucked: in every tenth step it is looked which those are, and what
-/// share χ of the mouth they close, seen along its axis. An open mouth leaks: the pressure goes to Δp χ², and follows in
+/// Exposed faces in the mouth are sucked, those at its edge by the share that is within: in every tenth step it is looked
+/// which those are, and what share χ of the mouth they close, seen along its axis. An open mouth leaks: the pressure goes to Δp χ², and follows in
 /// the time that the scene names.
 ///
 /// A face is exposed while its element is there and its neighbour's is not: what removal bares is sucked at once.
@@ -87,21 +87,20 @@ fn mark(
     marks: &mut [u32],
 ) {
     let faces = &suction.faces;
-    let is_sucked = |face: usize| {
+    let of_face = |face: usize| {
         let opposite = faces.opposites[face];
         if !is_there(face) || opposite != NO_FACE && is_there(opposite as usize) {
-            return false;
+            return 0;
         }
-        let corners = faces.places(face);
-        let sum: DVec3 = corners.iter().map(|&node| place(node)).sum();
-        suction.is_in_mouth(pose.inverse(sum / corners.len() as f64))
+        let corners = faces.places(face).iter().map(|&node| pose.inverse(place(node)));
+        suction.share_in_mouth(corners).to_bits()
     };
     let (of_faces, of_nodes) = marks.split_at_mut(faces.len());
-    of_faces.iter_mut().enumerate().for_each(|(face, mark)| *mark = u32::from(is_sucked(face)));
+    of_faces.iter_mut().enumerate().for_each(|(face, mark)| *mark = of_face(face));
     let parts = &faces.parts;
     for (i, mark) in of_nodes.iter_mut().enumerate() {
         let corners = &parts.corners[parts.starts[i] as usize..parts.starts[i + 1] as usize];
-        let sucked = |corner: &u32| of_faces[faces.of_part[*corner as usize / 4] as usize] == 1;
+        let sucked = |corner: &u32| of_faces[faces.of_part[*corner as usize / 4] as usize] != 0;
         *mark = u32::from(corners.iter().any(sucked));
     }
 }
@@ -111,9 +110,9 @@ fn closed(suction: &Suction, pose: &Pose, place: impl Fn(u32) -> DVec3, marks: &
     let (faces, axis) = (&suction.faces, pose.rotation.z_axis);
     let mut sum = 0.0;
     for ((nodes, weight), &face) in faces.parts.faces.iter().zip(&faces.parts.weights).zip(&faces.of_part) {
-        if marks[face as usize] == 1 {
+        if marks[face as usize] != 0 {
             let [a, b, c, d] = nodes.map(&place);
-            sum += weight * 0.5 * (c - a).cross(d - b).dot(axis);
+            sum += share(marks[face as usize]) * weight * 0.5 * (c - a).cross(d - b).dot(axis);
         }
     }
     (sum / mouth_area(suction)).clamp(0.0, 1.0)
@@ -140,6 +139,14 @@ struct SuctionMouth {
     area: f32,
 }
 uniform!(SuctionMouth { faces, nodes, parts, first, numbers, pose, pressure, bore, reach, delay, area });
+
+/// The elements whose faces are there or not.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+struct Presence {
+    count: u32,
+}
+uniform!(Presence { count });
 
 /// For each body what tells which faces are there, block by block; for each tool what marks faces, what marks nodes, and
 /// what finds the pressure.
@@ -201,10 +208,13 @@ fn presence(block: &BlockKernels, place: u32, faces: &BodyFaces, buffers: &mut d
     let count = block.block.count;
     let starts = (0..=count).map(|row| start(row) + count as u32 + 1);
     let lists: Vec<u32> = starts.chain(of_rows.iter().map(|&(_, face)| face)).collect();
-    block
-        .of_columns("suction_presence")
+    let presence = buffers.uniform("suction_presence".into(), &Presence { count: count as u32 }.bytes());
+    Kernel::new("suction_presence", "suction_presence")
         .fragment(shader!("suction_presence"))
+        .fragment(shader!("row"))
         .fragment(looks())
+        .threads(count as u32)
+        .bind_uniform::<Presence>("presence", presence)
         .bind("faces_of_elements", buffers.constants("faces of elements".into(), bytemuck::cast_slice(&lists)))
         .bind(Alive::NAME, buffers.column(block.entity, Alive::NAME))
         .bind(FacePresence::NAME, buffers.column(block.block.body, FacePresence::NAME))

@@ -163,6 +163,15 @@ struct Choice {
 }
 uniform!(Choice { rate, intake, burst, chosen });
 
+/// Where a block's elements find whether they are chosen.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+struct Chosen {
+    count: u32,
+    chosen: u32,
+}
+uniform!(Chosen { count, chosen });
+
 /// For each tool: what finds the elements in its reach, block by block; what chooses among them; what marks the chosen.
 fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let blocks = BlockKernels::of_world(world, buffers);
@@ -199,11 +208,14 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
                     .bind("rest_points", points)
                     .bind("numbers", numbers);
                 kernels.push(with_step(kernel, world));
-                let mark = block
-                    .of_columns("tool_removal_due")
+                let count = block.block.count as u32;
+                let due_of = buffers.uniform("tool_removal_due".into(), &Chosen { count, chosen }.bytes());
+                let mark = Kernel::new("tool_removal_due", "tool_removal_due")
                     .fragment(shader!("tool_removal_due"))
+                    .fragment(shader!("row"))
                     .fragment(looks())
-                    .bind_uniform::<Choice>("choice", choice((removal, number), chosen, buffers))
+                    .threads(count)
+                    .bind_uniform::<Chosen>("due", due_of)
                     .bind(RemovalStep::NAME, due)
                     .bind(ToolReach::NAME, reach)
                     .bind("numbers", numbers);

@@ -53,7 +53,7 @@ pub use own_load::{LoadText, NodeAtRest, OfSystem, OwnLoad};
 pub use patches::{Patches, Scheme};
 pub use signal::{Signal, Signals};
 pub use suction::{
-    BodyFaces, FacePresence, NO_FACE, SUCTION_NUMBERS, Suction, SuctionMarks, SuctionPressure,
+    BodyFaces, FacePresence, NO_FACE, SUCTION_NUMBERS, Suction, SuctionMarks, SuctionPressure, share,
 };
 pub use tool::{Pose, TOUCH_NUMBERS, ToolContact, ToolContacts, ToolMotion, ToolTouch};
 pub use tool_removal::{INTAKE_NUMBERS, Mouth, ToolIntake, ToolReach, ToolRemoval, ToolRemovals};

@@ -10,8 +10,8 @@ columns! {
     /// For each of a body's [`Suction`]s two numbers: the pressure by which faces are sucked (Pa), and the share of the
     /// mouth that they close. Exists where something sucks.
     SuctionPressure(Reals) = "suction_pressure", State, Other;
-    /// For each of a body's [`Suction`]s and each of [`BodyFaces`] 1 while it is sucked, else 0; then the same for each
-    /// of the faces' nodes. Exists where something sucks.
+    /// For each of a body's [`Suction`]s and each of [`BodyFaces`] the bits of the share (f32) of it that is sucked; then
+    /// for each of the faces' nodes 1 where one of its faces is, else 0. Exists where something sucks.
     SuctionMarks(Vec<u32>) = "suction_marks", State, Other;
     /// For each of [`BodyFaces`] 1 while its element is there, else 0. Exists where something sucks.
     FacePresence(Vec<u32>) = "face_presence", Scratch, Other;
@@ -66,10 +66,10 @@ impl BodyFaces {
         let all = &self.parts;
         let mut some = FaceCorners { starts: vec![0], ..FaceCorners::default() };
         let mut places = vec![NO_FACE; all.faces.len()];
-        for (part, &face) in self.of_part.iter().enumerate().filter(|(_, face)| marks[**face as usize] == 1) {
+        for (part, &face) in self.of_part.iter().enumerate().filter(|(_, face)| marks[**face as usize] != 0) {
             places[part] = some.faces.len() as u32;
             some.faces.push(all.faces[part]);
-            some.weights.push(all.weights[part]);
+            some.weights.push(all.weights[part] * share(marks[face as usize]));
             some.elements.push(self.elements[face as usize]);
             some.alive.push(1);
         }
@@ -122,9 +122,19 @@ impl Suction {
         self.number * self.faces.words()
     }
 
-    /// Whether a place in the tool's frame is in the mouth.
-    pub fn is_in_mouth(&self, y: DVec3) -> bool {
-        y.z.abs() <= self.reach && y.truncate().length_squared() < self.bore * self.bore
+    /// What share of a face is in the mouth, by its corners in the tool's frame: as if the distance to the mouth's edge
+    /// were linear between them, and whether in reach, as its centroid is.
+    pub fn share_in_mouth(&self, corners: impl Iterator<Item = DVec3>) -> f32 {
+        let (mut inside, mut sizes, mut height, mut count) = (0.0, 0.0, 0.0, 0.0);
+        for y in corners {
+            let off = self.bore - y.truncate().length();
+            inside += off.max(0.0);
+            sizes += off.abs();
+            height += y.z;
+            count += 1.0;
+        }
+        let in_reach = f64::abs(height) <= self.reach * count;
+        if in_reach && inside > 0.0 { (inside / sizes) as f32 } else { 0.0 }
     }
 
     /// Takes over what the body's columns say.
@@ -133,4 +143,9 @@ impl Suction {
         self.active = self.faces.marked(&marks[first..first + self.faces.words()]);
         self.now = pressure.get(SUCTION_NUMBERS * self.number);
     }
+}
+
+/// The share that a mark of a face stands for.
+pub fn share(mark: u32) -> f64 {
+    f64::from(f32::from_bits(mark))
 }

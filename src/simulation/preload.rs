@@ -57,6 +57,7 @@ pub(super) fn at_rest(scene: &Scene) -> Option<Scene> {
         analysis: Analysis::Static { tolerance, max_steps, load_steps, at: Some(0.0) },
         start: InitialState::Undeformed,
         removal: Vec::new(),
+        suction: Vec::new(),
         probes: Default::default(),
         integration: Integration { safety, bound, compensated, ..Integration::default() },
         schedule: None,

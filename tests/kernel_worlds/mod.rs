@@ -34,6 +34,8 @@ pub struct Effects {
     pub compensated: bool,
     pub energies: bool,
     pub removal: bool,
+    /// A tool that sucks at each body, and another.
+    pub sucks: bool,
     /// A static analysis; nothing is removed in one.
     pub at_rest: bool,
     /// A removal criterion for all elements, as RON writes it.
@@ -208,6 +210,12 @@ impl Effects {
         };
         let criterion = self.criterion.map_or(String::new(), |when| both(&format!("(body: \"BODY\", when: {when}),")));
         let energies = if self.energies { "output: (energies_every: 0.1)," } else { "" };
+        let sucks = if self.sucks {
+            both("(tool: \"tip\", body: \"BODY\", pressure: 90, bore: 0.025, reach: 0.03, delay: 0.1),
+                 (tool: \"side\", body: \"BODY\", pressure: 80, bore: 0.04, reach: 0.02),")
+        } else {
+            String::new()
+        };
         let analysis = if self.at_rest { "Static()" } else { "Transient" };
         let body = |kind: &str| {
             let mesh = match self.cells && kind.starts_with("Hex8") {
@@ -221,6 +229,12 @@ impl Effects {
                   regions: [(on: Box(min: (0, -1, -1), max: (1, 1, 1)), material: \"plain\")])"
             )
         };
+        let tools = if self.sucks {
+            "tools: {\"tip\": (shape: Sphere(radius: 0.01), at: (0.01, 0.005, 0.05), rotation: (10, 20, 0)),
+                \"side\": (shape: Sphere(radius: 0.01), at: (0.04, 0, 0), rotation: (0, 80, 0))},"
+        } else {
+            ""
+        };
         format!(
             "(title: \"effects\", duration: 1, analysis: {analysis},
             bodies: {{ \"tets\": {}, \"hexes\": {} }},
@@ -231,6 +245,8 @@ impl Effects {
             constraints: [{moved}],
             loads: [{loads}],
             removal: [{removal} {criterion}],
+            {tools}
+            suction: [{sucks}],
             integration: (compensated: {}),
             {energies}
             )",

@@ -17,5 +17,6 @@ mod pair;
 mod patches;
 mod removal;
 mod shapes;
+mod suction;
 mod tool_removal;
 mod tools;

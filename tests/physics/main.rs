@@ -55,6 +55,7 @@ mod snapshots;
 mod statics;
 mod stiffness_damping;
 mod strains;
+mod suction;
 mod tables;
 mod tool_friction;
 mod tool_meshes;

@@ -61,7 +61,7 @@ fn a_tool_takes_its_rate_from_any_mesh() {
             }
             let summary = simulation.summary("").unwrap();
             let count = summary.removed_elements as f64;
-            assert!(count > 2.0, "{what}: {count}");
+            assert!(count > 1.0, "{what}: {count}");
             near(&format!("{what}: elements"), before, count * element, before, run.bound(1e-9, 1e-4));
             near(&format!("{what}: mass"), summary.removed_mass, 1000.0 * before, 1000.0 * before, run.bound(1e-9, 1e-4));
         }
@@ -85,13 +85,14 @@ fn energies_balance_while_a_tool_takes_elements() {
     }
 }
 
-/// What nothing is left of in reach takes nothing in: the volume waits for what comes.
+/// While nothing is in reach nothing goes, whatever the rate.
 #[test]
 fn out_of_reach_nothing_goes() {
     for run in configurations() {
-        let mut simulation = run.start(&drilled(4, "Hex8", "").replace("reach: 6e-3", "reach: 1e-3"));
-        // the first centroids are 2.5 mm below the surface, and the tip goes 7 mm in 0.2 s
-        simulation.advance_to(0.04).unwrap();
+        let scene = drilled(4, "Hex8", "").replace("reach: 6e-3", "reach: 2e-3").replace("rate: 2e-6", "rate: 1");
+        let mut simulation = run.start(&scene);
+        // the first centroids are 2.5 mm below the surface, half a millimetre above which the tip begins
+        simulation.advance_to(0.01).unwrap();
         assert_eq!(gone(&mut simulation), 0.0, "{}", run.name);
         simulation.advance_to(0.2).unwrap();
         assert!(gone(&mut simulation) > 0.0, "{}", run.name);

@@ -127,3 +127,39 @@ fn probes_of_tools_name_one_that_is_there_and_no_nodes() {
     assert!(of("what: ToolTorque(tool: \"rod\"), on: All").contains("what a tool feels is of the whole tool"));
     assert!(of("what: Displacement").contains("the probe `p` lacks `on`"));
 }
+
+#[test]
+fn what_is_wrong_with_what_a_tool_takes_and_sucks_is_told() {
+    let takes = |fields: &str| format!("removal: [(when: InTool({fields}))],");
+    let sucks = |fields: &str| format!("suction: [({fields})],");
+    let good = "tool: \"rod\", reach: 0.1, rate: 1e-6";
+    let mouth = "tool: \"rod\", reach: 0.1, pressure: 100, bore: 0.01";
+    for good in [takes(good), sucks(mouth)] {
+        assert_eq!(told(ROD, TOUCH, &good), "");
+        // who takes or sucks need not touch
+        assert_eq!(told(ROD, "", &good), "");
+    }
+    let cases = [
+        (takes("tool: \"ro\", reach: 0.1, rate: 1"), "3: error: there is no tool `ro` | did you mean `rod`?"),
+        (takes("tool: \"rod\", reach: 0, rate: 1"), "3: error: `reach` must be above 0, found 0 m"),
+        (takes("tool: \"rod\", reach: 1, rate: -1"), "3: error: `rate` must be above 0, found -1 m³/s"),
+        (takes(&format!("{good}, bore: 0")), "3: error: `bore` must be above 0, found 0 m"),
+        (takes(&format!("{good}, burst: 0")), "3: error: `burst` must be between 1 and 1024, found 0"),
+        (takes(&format!("{good}, curve: Smooth(start: 1, end: 0)")), "3: error: "),
+        (takes("tool: \"rod\", rate: 1"), "`reach`"),
+        (sucks("tool: \"ro\", reach: 0.1, pressure: 1"), "3: error: there is no tool `ro` | did you mean `rod`?"),
+        (sucks("tool: \"rod\", reach: 0.1, pressure: 1"), "3: error: the tool `rod` is no tube: where is its mouth?"),
+        (sucks("tool: \"rod\", reach: 0.1, pressure: -1, bore: 1"), "3: error: `pressure` must be above 0, found -1 Pa"),
+        (sucks(&format!("{mouth}, delay: -1")), "3: error: `delay` must be 0 or above, found -1 s"),
+        (sucks("tool: \"rod\", reach: 0.1, pressure: 4e3, bore: 0.01"), "3: warning: the suction of 4.000e3 Pa is more than"),
+        (format!("analysis: Static(), {}", sucks(mouth)), "3: error: a static analysis cannot suck"),
+        (format!("analysis: Static(), {}", takes(good)), "3: error: a static analysis cannot remove elements"),
+        (format!("removal: [{}],", format!("(when: InTool({good})),").repeat(9)), "at most 8 tools may take elements"),
+        (format!("suction: [{}],", format!("({mouth}),").repeat(9)), "at most 8 tools may suck at a body"),
+    ];
+    for (more, expected) in cases {
+        let found = told(ROD, TOUCH, &more);
+        println!("{found}");
+        assert!(found.contains(expected), "{more}:\n{found}\nexpected\n{expected}");
+    }
+}

@@ -8,7 +8,17 @@ use sinew::systems::Registry;
 use sinew::{BackendChoice, Options, Simulation};
 
 /// The scenes, and what makes each of them short and coarse.
-pub const SCENES: [(&str, &[&str]); 10] = [
+pub const SCENES: [(&str, &[&str]); 11] = [
+    (
+        "cataract",
+        &[
+            "bodies.lens.mesh.across=8",
+            "bodies.lens.mesh.through=4",
+            "duration=0.15",
+            "suction[0].curve=Smooth(end: 0.05)",
+            "removal[0].when=InTool(tool: \"tip\", bore: 3.5e-4, reach: 1e-3, rate: 3e-8)",
+        ],
+    ),
     ("cube_under_gravity", &["bodies.cube.mesh.cells=(5, 5, 5)", "duration=0.3"]),
     ("indentation", &["bodies.layer.mesh.cells=(12, 12, 4)"]),
     ("probe", &["bodies.tissue.mesh.cells=(16, 8, 4)", "duration=0.2"]),

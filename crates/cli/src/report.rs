@@ -214,9 +214,13 @@ fn tools(summary: &Summary, page: &mut Page) {
             true => format!(", the deepest {} inside", quantity(reading.penetration, "m")),
             false => String::new(),
         };
+        let sucks = match reading.suction.length() > 0.0 {
+            true => format!(", {} of it what it sucks", quantity(reading.suction.length(), "N")),
+            false => String::new(),
+        };
         let (work, loss) = (quantity(reading.work, "J"), quantity(reading.loss, "J"));
         let nodes = counted(reading.nodes as u64, "node");
-        format!("{name} feels ({x}, {y}, {z}) of {nodes}{inside}; it did {work}, lost to impact and friction {loss}")
+        format!("{name} feels ({x}, {y}, {z}) of {nodes}{inside}{sucks}; it did {work}, lost to impact and friction {loss}")
     });
     page.rows("tools", lines.collect::<Vec<_>>());
 }

@@ -1,0 +1,148 @@
+//! Suction (C28): a closed mouth holds by Δp π r², an open one by χ² of that of what closes it; who is sucked and who
+//! sucks feel the same.
+//!
+//! Faces at the mouth's edge count by the share that is within: at six faces on the radius the area is that of the circle
+//! to .5 %, so that χ² times it is Δp π r² to 1.5 %; 3 % are allowed.
+
+use crate::configurations::{Configuration, configurations, near, scene_of};
+use sinew::components::Precision;
+use sinew::{Options, Simulation};
+use std::f64::consts::PI;
+
+const BORE: f64 = 6e-3;
+const PRESSURE: f64 = 1e3;
+
+/// A stiff plate of 20 × 20 × 4 mm, and a tube over it, .2 mm off and a little off its middle.
+fn plate(elements: &str, held: &str, rest: &str) -> String {
+    format!(
+        "(duration: 0.2, bodies: {{\"b\": (mesh: Box(size: (0.02, 0.02, 0.004), cells: (20, 20, 2),
+            elements: {elements}), material: \"m\")}},
+        materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e5, poisson: 0.3), damping: 200)}},
+        {held} tools: {{\"tip\": (shape: Tube(length: 0.03, inner: {BORE}, outer: 8e-3), at: (0.0103, 0.0099, 0.0042))}},
+        contacts: [Tool(tool: \"tip\")],
+        suction: [(tool: \"tip\", pressure: {PRESSURE}, reach: 5e-4 {rest})],
+        probes: {{\"felt\": (what: ToolForce(tool: \"tip\")), \"held\": (what: Reaction, on: Plane(normal: (0, 0, 1), at: 0))}},
+        output: (energies_every: 0.05))"
+    )
+}
+
+const GLUED: &str = "constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))],";
+
+#[test]
+fn a_closed_mouth_pulls_by_pressure_times_area() {
+    for run in configurations() {
+        for elements in ["Hex8", "Tet4", "Tet10"] {
+            let mut simulation = run.start(&plate(elements, GLUED, ""));
+            simulation.advance_to(0.2).unwrap();
+            let expected = PRESSURE * PI * BORE * BORE;
+            let what = format!("{}, {elements}", run.name);
+            let (felt, held) = (simulation.probe("felt").unwrap(), simulation.probe("held").unwrap());
+            near(&format!("{what}: felt"), -felt[2], expected, expected, 0.03);
+            near(&format!("{what}: held"), -held[2], -felt[2], expected, 1e-3);
+            let reading = simulation.tool("tip").unwrap();
+            assert_eq!(reading.nodes, 0, "{what}: nothing touches");
+            assert_eq!(reading.force, reading.suction, "{what}");
+            // about the tool's origin the pull is along its axis
+            near(&format!("{what}: moment"), reading.torque.length(), 0.0, expected * BORE, 0.02);
+        }
+    }
+}
+
+/// A plate that is drawn away with less than the mouth holds stays at it, with more it comes off.
+#[test]
+fn a_plate_comes_off_beyond_the_holding_force() {
+    for run in configurations() {
+        for (share, stays) in [(0.93, true), (1.06, false)] {
+            let weight = 1000.0 * 0.02 * 0.02 * 0.004;
+            let g = share * PRESSURE * PI * BORE * BORE / weight;
+            let loads = format!(
+                "loads: [Gravity(acceleration: (0, 0, -{g}), curve: Smooth(start: 0.05, end: 0.15))],
+                constraints: [Fixed(on: All, axes: [X, Y])],"
+            );
+            let mut simulation = run.start(&plate("Hex8", &loads, ""));
+            simulation.advance_to(0.2).unwrap();
+            let low = simulation.displacements("b").unwrap().iter().map(|u| u.z).fold(f64::INFINITY, f64::min);
+            assert_eq!(low > -2e-4, stays, "{}: at {share} of the force the plate is {low:e} m off", run.name);
+        }
+    }
+}
+
+/// A mouth that is half over the edge of the plate leaks: χ is a half, and a quarter of the pressure is left.
+#[test]
+fn an_open_mouth_leaks() {
+    for run in configurations() {
+        let scene = plate("Hex8", GLUED, ", delay: 0.05").replace("at: (0.0103, 0.0099,", "at: (0.0, 0.0099,");
+        let mut simulation = run.start(&scene);
+        let expected = PRESSURE * PI * BORE * BORE / 8.0;
+        simulation.advance_to(0.05).unwrap();
+        // follows from the first step on
+        let share = 1.0 - (-1.0_f64).exp();
+        near(&format!("{}: after the delay", run.name), -simulation.probe("felt").unwrap()[2], share * expected, expected, 0.03);
+        simulation.advance_to(0.2).unwrap();
+        let share = 1.0 - (-4.0_f64).exp();
+        near(&format!("{}: after four", run.name), -simulation.probe("felt").unwrap()[2], share * expected, expected, 0.03);
+    }
+}
+
+/// What removal bares is sucked in the next step; the energy of it all balances.
+#[test]
+fn bared_faces_are_sucked_at_once() {
+    for run in configurations() {
+        let rest = "), (tool: \"tip\", pressure: 1, bore: 1e-9, reach: 1e-9";
+        let scene = plate("Hex8", GLUED, rest).replace("reach: 5e-4", "reach: 2.5e-3").replace(
+            "probes:",
+            "removal: [(on: Box(min: (0, 0, 0.002), max: (0.02, 0.02, 0.004)), when: At(0.1))], probes:",
+        );
+        let mut simulation = run.start(&scene);
+        // a look follows removal at once where both are in a tenth step
+        simulation.advance_to(0.1).unwrap();
+        simulation.advance(30).unwrap();
+        assert_eq!(simulation.summary("").unwrap().removed_elements, 400, "{}", run.name);
+        let expected = PRESSURE * PI * BORE * BORE;
+        near(run.name, -simulation.probe("felt").unwrap()[2], expected, expected, 0.03);
+        let e = simulation.energies().unwrap();
+        let held = e.kinetic + e.strain + e.hourglass + e.removed;
+        let balance = e.load_work.unwrap() + e.constraint_work.unwrap() - e.damping_loss.unwrap() - held;
+        near(&format!("{}: {e:?}", run.name), balance, 0.0, e.load_work.unwrap().abs().max(held), 5e-3);
+    }
+}
+
+fn bits_of(simulation: &mut Simulation) -> Vec<u64> {
+    let reading = simulation.tool("tip").unwrap();
+    let u = simulation.displacements("b").unwrap();
+    u.iter().flat_map(|u| u.to_array()).chain(reading.force.to_array()).map(f64::to_bits).collect()
+}
+
+#[test]
+fn bits_with_suction_do_not_depend_on_how_steps_are_taken() {
+    for run in configurations() {
+        let of = |threads: usize, fuse: bool, resume: Option<u64>| {
+            let removal = "removal: [(when: InTool(tool: \"tip\", reach: 1.5e-3, rate: 1e-5))], probes:";
+            let scene = plate("Tet4", GLUED, ", delay: 0.01").replace("probes:", removal);
+            let scene = if fuse { scene } else { scene.replace("duration:", "fuse: false, duration:") };
+            let options = Options { threads, ..run.options.clone() };
+            let mut simulation = Simulation::new(&scene_of(&scene, std::path::Path::new(".")), &options).unwrap();
+            if let Some(step) = resume {
+                simulation.advance(step).unwrap();
+                let snapshot = simulation.snapshot().unwrap();
+                simulation = Simulation::new(&scene_of(&scene, std::path::Path::new(".")), &options).unwrap();
+                simulation.restore(&snapshot).unwrap();
+            }
+            simulation.advance(100 - simulation.step_count()).unwrap();
+            assert!(simulation.summary("").unwrap().removed_elements > 0, "{}: nothing has gone", run.name);
+            bits_of(&mut simulation)
+        };
+        let first = of(1, true, None);
+        for step in [37, 40] {
+            assert!(first == of(1, true, Some(step)), "{}: resumed at {step}", run.name);
+        }
+        if !is_gpu(&run) {
+            assert!(first == of(1, false, None), "{}: apart", run.name);
+            [2, 3].into_iter().for_each(|n| assert!(first == of(n, true, None), "{}: {n} threads", run.name));
+        }
+    }
+}
+
+fn is_gpu(run: &Configuration) -> bool {
+    run.options.precision == Precision::F32 && run.name.starts_with("GPU")
+}
