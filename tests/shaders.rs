@@ -1,9 +1,7 @@
 //! Kernels compose, validate and fit what Rust knows of them, for every combination of effects; no GPU needed.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
-
 mod kernel_units;
 mod kernel_worlds;
-
 use bevy_ecs::prelude::World;
 use kernel_worlds::{AROUND, Described, Effects, OF_NODES, all_kernels, shared_kernels};
 use sinew::backend::kernel::{BindingKind, Composer, Kernel, Layout, MostBuffers, Uniform};

@@ -34,6 +34,7 @@ pub struct ToolReading {
 pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
     let wanted = [
         ToolTouch::NAME,
+        Mass::NAME,
         Displacement::NAME,
         DisplacementIncrement::NAME,
         SuctionMarks::NAME,
@@ -46,8 +47,9 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
         None => world.resource::<Signals>().poses_at(clock.time()),
     };
     let mut reading = ToolReading::default();
-    let mut bodies = world.query::<(&ToolContacts, &ToolTouch, &RestPosition, &Displacement, &DisplacementIncrement)>();
-    for (contacts, touch, rest, u, step) in bodies.iter(world) {
+    let mut bodies =
+        world.query::<(&ToolContacts, &ToolTouch, &Mass, &RestPosition, &Displacement, &DisplacementIncrement)>();
+    for (contacts, touch, mass, rest, u, step) in bodies.iter(world) {
         for (number, contact) in contacts.tools.iter().enumerate().filter(|(_, contact)| contact.tool == tool) {
             let Some(pose) = now.iter().find(|(slot, _)| *slot == contact.signal).map(|(_, pose)| *pose) else {
                 continue;
@@ -63,6 +65,10 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
                 let number = |i: usize| touch.get(at + i);
                 reading.work += number(5);
                 reading.loss += number(6);
+                // what is left of nodes whose elements are gone is nowhere
+                if mass.get(row) <= 0.0 {
+                    continue;
+                }
                 let end = rest.0[row] - contacts.reference + u.vector(row);
                 // who is outside a ball around all of it is not inside
                 if ball.is_none_or(|(center, radius)| end.distance_squared(center) <= radius * radius) {
