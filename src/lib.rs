@@ -33,6 +33,8 @@ pub mod assembly;
 #[doc(hidden)]
 pub mod backend;
 #[doc(hidden)]
+pub mod contact;
+#[doc(hidden)]
 pub mod elements;
 #[doc(hidden)]
 pub mod evaluation;

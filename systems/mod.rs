@@ -10,6 +10,7 @@
 //! pressure         Displacement                 -> ExternalForce                          per loaded node
 //! traction                                      -> ExternalForce                          per loaded node
 //! grab             Displacement                 -> ExternalForce                          per held node
+//! surface_contact  forces, Displacement         -> ExternalForce, ContactForce, SurfaceTouch   per point that may touch
 //! tool_contact     forces, Displacement, motion -> ExternalForce, ToolTouch               per node that may touch
 //! integrate        forces, Mass                 -> DisplacementIncrement, Displacement         per node
 //! element_removal  criteria, times              -> Alive, RestShape, Mass                 per element, per node
@@ -37,6 +38,7 @@ mod own_load;
 mod patch_pass;
 mod pressure;
 mod registry;
+mod surface_contact;
 mod tool_contact;
 mod traction;
 
@@ -50,6 +52,7 @@ pub use node_system::{Before, ForceSlopes, NodeRows, NodeSystem, NodesAtRest};
 pub use observe::{add_watch_columns, watch_kernels};
 pub(crate) use patch_pass::patch_pass;
 pub use registry::{Because, DescribeKernels, HostSystem, OnDevice, OnHost, Outcome, Phase, Registry, System};
+pub use surface_contact::{Meeting, SurfaceContacts};
 
 use crate::scene::schema::{OwnSystem, Scene};
 
@@ -81,6 +84,7 @@ pub fn standard() -> Vec<System> {
         pressure::system(),
         traction::system(),
         grab::system(),
+        surface_contact::system(),
         tool_contact::system(),
         integrate::system(),
         element_removal::system(),

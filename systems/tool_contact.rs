@@ -7,7 +7,7 @@ use super::node_system::{Before, NodeSystem};
 use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::{Cpu, Factors, NodeColumns};
+use crate::backend::cpu::{Cpu, Factors, Foreseen, NodeColumns};
 use crate::backend::kernel::{Fragment, Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
@@ -167,14 +167,11 @@ impl ToolContacts {
             return;
         }
         // as integrate will find it
-        let Factors { force: factor, half_step, divide, booked, relaxation, .. } = step.factors;
         let vector = |all: &[T]| DVec3::from_array([0, 1, 2].map(|i| all[3 * row + i].to_f64()));
-        let before = vector(nodes.step);
         let force = nodes.external.as_deref().map_or(DVec3::ZERO, vector) - vector(nodes.internal);
-        let free = DVec3::from_array([0, 1, 2].map(|i| f64::from(1 - (nodes.axes[row] >> i & 1))));
-        let a = nodes.damping.map_or(0.0, |all| all[row].to_f64()) * half_step / inertia + relaxation;
-        let damped = 1.0 + divide * a;
-        let predicted = before + free * (force * (factor / inertia) - before * ((1.0 + divide) * a)) / damped;
+        let damping = nodes.damping.map_or(0.0, |all| all[row].to_f64());
+        let Foreseen { before, step: predicted, free, to_force } =
+            step.factors.foresee(inertia, damping, nodes.axes[row], vector(nodes.step), force);
         let mut all = [None; ToolContacts::MOST];
         let mut touched = 0;
         for tool in (0..self.tools.len()).filter(near) {
@@ -185,7 +182,7 @@ impl ToolContacts {
         }
         let all = &mut all[..touched];
         let d = predicted + self.push_apart(step, all, (place, predicted), free);
-        let to_force = inertia * damped / factor;
+        let booked = step.factors.booked;
         let mut sum = DVec3::ZERO;
         for touch in all.iter().flatten().filter(|touch| touch.push > 0.0) {
             let change = touch.outwards + touch.tangential;

@@ -37,7 +37,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let reference = reference(&body.placed.mesh.points);
         let edge = edge(body);
         for (number, contact) in scene.contacts.iter().enumerate() {
-            let Contact::Tool { tool, body: of, on, friction, static_friction } = contact;
+            let Contact::Tool { tool, body: of, on, .. } = contact else { continue };
             if of.as_ref().is_some_and(|of| of != name) {
                 continue;
             }
@@ -57,7 +57,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             rows.into_iter().for_each(|row| *marks.entry(row).or_default() |= bit);
             let signal = Signal::Pose { motion: motion(found), reference };
             let signal = world.resource_mut::<Signals>().add(signal);
-            let friction = [static_friction.unwrap_or(*friction), *friction];
+            let friction = contact.friction();
             tools.push(ToolContact { tool: tool.clone(), geometry: geometry.clone(), signal, friction });
         }
         if tools.is_empty() {
@@ -131,18 +131,18 @@ fn rows(
 }
 
 /// The middle of the box around points (m).
-fn reference(points: &[DVec3]) -> DVec3 {
+pub(super) fn reference(points: &[DVec3]) -> DVec3 {
     let (low, high) = bounds(points);
     0.5 * (low + high)
 }
 
-fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
+pub(super) fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
     let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     (low, points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max))
 }
 
 /// The mean length of a surface's edges (m).
-fn edge(body: &BodyParts) -> f64 {
+pub(super) fn edge(body: &BodyParts) -> f64 {
     let points = &body.placed.mesh.points;
     let (mut sum, mut count) = (0.0, 0.0);
     for facet in body.placed.surface().iter().flat_map(|face| face.facets()) {
@@ -157,7 +157,7 @@ fn edge(body: &BodyParts) -> f64 {
 }
 
 /// How fast nodes inside a tool come out (m/s): half an edge in the time that a wave takes through the body.
-fn settling(body: &BodyParts, edge: f64, world: &World) -> f64 {
+pub(super) fn settling(body: &BodyParts, edge: f64, world: &World) -> f64 {
     let (low, high) = bounds(&body.placed.mesh.points);
     let of_block = |&block: &Entity| {
         let stiffness = world.get::<Block>(block).map(|block| stiffness(world, block.material));

@@ -19,6 +19,7 @@ mod removal;
 mod renew;
 mod select;
 mod start;
+mod surface_contacts;
 mod time_step;
 mod user_laws;
 
@@ -97,6 +98,7 @@ pub fn assemble<'a>(
     constraints::spawn(&assembly, world, diagnostics);
     loads::spawn(&assembly, world, diagnostics);
     contacts::spawn(&assembly, world, diagnostics);
+    surface_contacts::spawn(&assembly, world);
     own_systems::spawn(&assembly, &systems, world, diagnostics);
     Some(assembly)
 }
@@ -109,6 +111,7 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     columns::start(assembly, world);
     start::deform(assembly, world, diagnostics);
     contacts::check(assembly, world, diagnostics);
+    surface_contacts::check(assembly, world, diagnostics);
     let scene = &assembly.scene.scene;
     if scene.when_unstable() == schema::WhenUnstable::Remove && !scene.is_static() {
         let blocks = assembly.bodies.values().flat_map(|body| &body.blocks);

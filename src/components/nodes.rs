@@ -2,7 +2,7 @@
 
 use super::Reals;
 use super::column::columns;
-use crate::mesh::{Cells, Ids};
+use crate::mesh::{Cells, Ids, Mesh, SurfaceFace};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -113,6 +113,23 @@ impl Authoring {
     pub fn node_id(&self, row: usize) -> u64 {
         let place = self.node_rows.iter().position(|&r| r as usize == row).unwrap_or(row);
         self.node_ids.of(place)
+    }
+
+    /// Faces of the surface, by places in the author's order. `alive` tells which elements are there, by their block's
+    /// place and their row there.
+    pub fn surface(&self, alive: impl Fn(u32, u32) -> bool) -> Vec<SurfaceFace> {
+        let there = |&element: &usize| {
+            let (block, row) = self.element_rows[element];
+            alive(block, row)
+        };
+        let elements: Vec<usize> = (0..self.cells.len()).filter(there).collect();
+        let left = Mesh {
+            points: vec![DVec3::ZERO; self.node_rows.len()],
+            cells: self.cells.select(elements.iter().copied(), |node| node),
+            ..Mesh::default()
+        };
+        let numbered = |face: SurfaceFace| SurfaceFace { element: elements[face.element as usize] as u32, ..face };
+        left.surface().into_iter().map(numbered).collect()
     }
 
     /// The author's number of an element, from its block's place and its row there.

@@ -53,6 +53,8 @@ pub const LAW_WORDS: usize = 20_000;
 pub const LAW_DECLARATIONS: usize = 500;
 /// Operators, brackets and branches of a law or system of one's own that are within each other.
 pub const LAW_DEPTH: usize = 500;
+/// Corrections of contact forces in a step.
+pub const MOST_SWEEPS: u32 = 100;
 /// Mistakes that are kept; there is enough to do.
 pub(super) const MISTAKES: usize = 100_000;
 /// Places where a text is no RON, after which reading it is given up.

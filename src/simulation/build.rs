@@ -117,7 +117,8 @@ impl Simulation {
             false => entry.system.host.nodes().is_none(),
         };
         let custom = schedule.iter().any(|entry| entry.system.custom && alone(entry));
-        observer.all_on_device = on_gpu && !custom;
+        let is_of_host = |entry: &Scheduled<'_>| !entry.system.device.is_some() && !entry.system.observes;
+        observer.all_on_device = on_gpu && !schedule.iter().any(is_of_host);
         let facts = Facts {
             on_gpu,
             custom,

@@ -183,7 +183,10 @@ impl Scene {
         let removal = self.removal.iter().map(|removal| &removal.on);
         let systems = self.systems.values().map(|system| &system.on);
         let probes = self.probes.values().filter_map(|probe| probe.on.as_ref());
-        let contacts = self.contacts.iter().map(|Contact::Tool { on, .. }| on);
+        let contacts = self.contacts.iter().filter_map(|contact| match contact {
+            Contact::Tool { on, .. } => Some(on),
+            Contact::Between { .. } | Contact::Itself { .. } => None,
+        });
         regions.chain(constraints).chain(loads).chain(systems).chain(contacts).chain(removal).chain(probes)
     }
 }

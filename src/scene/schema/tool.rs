@@ -99,6 +99,55 @@ pub enum Contact {
         #[serde(default)]
         static_friction: Option<f64>,
     },
+    /// The surfaces of two bodies: each stays outside the other.
+    Between {
+        /// Their names.
+        bodies: (String, String),
+        /// The coefficient of friction.
+        #[serde(default)]
+        friction: f64,
+        /// The coefficient while points stick; that of `friction` when left out.
+        #[serde(default)]
+        static_friction: Option<f64>,
+        /// How far the surfaces stay apart (m).
+        #[serde(default)]
+        thickness: f64,
+        /// How often forces are corrected in a step.
+        #[serde(default = "one_sweep")]
+        sweeps: u32,
+    },
+    /// The surface of a body and itself: folds and copies stay outside of each other.
+    Itself {
+        /// The body; may be left out when there is one only.
+        #[serde(default)]
+        body: Option<String>,
+        /// The coefficient of friction.
+        #[serde(default)]
+        friction: f64,
+        /// The coefficient while points stick; that of `friction` when left out.
+        #[serde(default)]
+        static_friction: Option<f64>,
+        /// How far the surface stays apart from itself (m).
+        #[serde(default)]
+        thickness: f64,
+        /// How often forces are corrected in a step.
+        #[serde(default = "one_sweep")]
+        sweeps: u32,
+    },
+}
+
+fn one_sweep() -> u32 {
+    1
+}
+
+impl Contact {
+    /// The coefficients of friction: while something sticks, and while it slides.
+    pub fn friction(&self) -> [f64; 2] {
+        let (Contact::Tool { friction, static_friction, .. }
+        | Contact::Between { friction, static_friction, .. }
+        | Contact::Itself { friction, static_friction, .. }) = self;
+        [static_friction.unwrap_or(*friction), *friction]
+    }
 }
 
 fn surface() -> Select {

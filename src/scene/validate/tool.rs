@@ -3,7 +3,7 @@
 use super::geometry::{TOOLS, named_file};
 use super::names::body_named;
 use super::{Validator, scene, select, show};
-use crate::scene::limits::TOOLS_OF_A_BODY;
+use crate::scene::limits::{MOST_SWEEPS, TOOLS_OF_A_BODY};
 use crate::scene::load::SceneFile;
 use crate::scene::schema::{Contact, Scene, Tool};
 use crate::scene::suggest::choice;
@@ -17,10 +17,7 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
         let path = scene("tools").name(name);
         geometry(file, validator, &path, found);
         tool(validator, &path, found);
-        let touches = |contact: &Contact| {
-            let Contact::Tool { tool, .. } = contact;
-            tool == name
-        };
+        let touches = |contact: &Contact| matches!(contact, Contact::Tool { tool, .. } if tool == name);
         if !scene_.contacts.iter().any(touches) {
             validator
                 .out
@@ -96,36 +93,68 @@ fn contacts(scene_: &Scene, validator: &mut Validator) {
     let mut of_body: BTreeMap<Option<&String>, usize> = BTreeMap::new();
     for (number, contact) in scene_.contacts.iter().enumerate() {
         let path = scene("contacts").index(number);
-        let Contact::Tool { tool, body, on, friction, static_friction } = contact;
+        friction(scene_, validator, &path, contact);
+        let Contact::Tool { tool, body, on, .. } = contact else {
+            surfaces(scene_, validator, &path, contact);
+            continue;
+        };
         if !scene_.tools.contains_key(tool) {
             let tools = scene_.tools.keys().map(String::as_str);
             validator.out.error_at(path.name("tool"), format!("there is no tool `{tool}`")).notes(choice(tool, tools));
         }
         body_named(scene_, validator, &path, body.as_ref());
         select::validate(validator, &path.name("on"), on);
-        validator.not_negative(&path.name("friction"), *friction, "");
-        if let Some(sticking) = static_friction {
-            validator.not_negative(&path.name("static_friction"), *sticking, "");
-            if *sticking < *friction {
-                let message =
-                    format!("`static_friction` is {}, and `friction` is {}", show(*sticking), show(*friction));
-                validator
-                    .out
-                    .error_at(path.name("static_friction"), message)
-                    .note("what sticks is held at least as well as what slides");
-            }
-        }
-        if scene_.is_static() && (*friction > 0.0 || static_friction.is_some_and(|sticking| sticking > 0.0)) {
-            validator
-                .out
-                .warn_at(path.name("friction"), "rest with friction depends on the way there, and this is one of many")
-                .note("a transient analysis goes the way that the scene tells");
-        }
         let count = of_body.entry(body.as_ref().or(scene_.bodies.keys().next())).or_default();
         *count += 1;
         if *count == TOOLS_OF_A_BODY + 1 {
             let message = format!("a body may meet at most {} tools", TOOLS_OF_A_BODY);
             validator.out.error_at(&path, message);
         }
+    }
+}
+
+fn friction(scene_: &Scene, validator: &mut Validator, path: &Path, contact: &Contact) {
+    let [sticking, sliding] = contact.friction();
+    validator.not_negative(&path.name("friction"), sliding, "");
+    if sticking < sliding {
+        validator.not_negative(&path.name("static_friction"), sticking, "");
+        let message = format!("`static_friction` is {}, and `friction` is {}", show(sticking), show(sliding));
+        validator
+            .out
+            .error_at(path.name("static_friction"), message)
+            .note("what sticks is held at least as well as what slides");
+    }
+    if scene_.is_static() && sticking.max(sliding) > 0.0 {
+        validator
+            .out
+            .warn_at(path.name("friction"), "rest with friction depends on the way there, and this is one of many")
+            .note("a transient analysis goes the way that the scene tells");
+    }
+}
+
+/// Surfaces that meet: whose, and how.
+fn surfaces(scene_: &Scene, validator: &mut Validator, path: &Path, contact: &Contact) {
+    let (sweeps, thickness) = match contact {
+        Contact::Tool { .. } => return,
+        Contact::Between { bodies: (a, b), sweeps, thickness, .. } => {
+            for name in [a, b].into_iter().filter(|name| !scene_.bodies.contains_key(*name)) {
+                let bodies = scene_.bodies.keys().map(String::as_str);
+                let message = format!("there is no body `{name}`");
+                validator.out.error_at(path.name("bodies"), message).notes(choice(name, bodies));
+            }
+            if a == b {
+                let note = format!("a body that meets itself: Itself(body: \"{a}\")");
+                validator.out.error_at(path.name("bodies"), format!("`{a}` twice")).note(note);
+            }
+            (*sweeps, *thickness)
+        }
+        Contact::Itself { body, sweeps, thickness, .. } => {
+            body_named(scene_, validator, path, body.as_ref());
+            (*sweeps, *thickness)
+        }
+    };
+    validator.not_negative(&path.name("thickness"), thickness, "m");
+    if !(1..=MOST_SWEEPS).contains(&sweeps) {
+        validator.must(&path.name("sweeps"), &format!("from 1 to {MOST_SWEEPS}"), sweeps);
     }
 }

@@ -1,0 +1,18 @@
+//! What bodies do to each other where their surfaces meet.
+
+use super::Reals;
+use super::column::columns;
+
+columns! {
+    /// Force of other bodies, and of the body itself, on the node in the last step (N), a vector a node. Exists where
+    /// the body may meet others or itself.
+    ContactForce(Reals) = "contact_force", State, Nodes(3);
+    /// What each node carries on as a point of a surface, [`MEETING_NUMBERS`] a node: how far it has slipped elastically
+    /// (m, a vector); how deep it may be inside (m, 0 or negative); 0 where it touched nothing in the last step, 1 where
+    /// it stuck, 2 where it slid; where it touched, how far it is outside after the step (m), else 0; since the start the
+    /// length it has slid (m), and what impact and friction have taken (J). Exists with [`ContactForce`].
+    SurfaceTouch(Reals) = "surface_touch", State, Nodes(MEETING_NUMBERS);
+}
+
+/// Numbers a node in [`SurfaceTouch`].
+pub const MEETING_NUMBERS: usize = 8;
