@@ -20,7 +20,8 @@ const NAMED: usize = 10;
 /// Notes which bodies may meet, if there are some.
 pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World) {
     let scene = &assembly.scene.scene;
-    let pairs: Vec<(&Contact, [&String; 2])> = scene.contacts.iter().filter_map(|contact| bodies(assembly, contact)).collect();
+    let pairs: Vec<(&Contact, [&String; 2])> =
+        scene.contacts.iter().filter_map(|contact| bodies(assembly, contact)).collect();
     let meets = |name: &String| pairs.iter().any(|(_, pair)| pair.contains(&name));
     let meeting: Vec<(&String, &BodyParts)> = assembly.bodies.iter().filter(|(name, _)| meets(name)).collect();
     if meeting.is_empty() {

@@ -7,10 +7,6 @@ use glam::DVec3;
 /// Surfaces face one another where the cosine between their normals is below this.
 const TURNED_AWAY: f64 = 0.2;
 
-/// The cosine from the normal of a side or corner within which a place is off it, outside and inside. Beyond, another
-/// part of the surface is nearer: so the flat surroundings of a point of the same surface are not in its way.
-const OFF: [f64; 2] = [0.1, 0.5];
-
 /// What counts for nothing of a distance between two faces that are in a point's way, in edges: there the one that it
 /// faces more is.
 const ALIKE: f64 = 0.05;
@@ -107,18 +103,24 @@ impl Surfaces {
             return None;
         }
         let off = at - found.at;
-        let facing = |normal: DVec3, gap: f64| {
-            Some(Facing { triangle, weights: found.weights, at: found.at, normal, gap })
-        };
+        let facing =
+            |normal: DVec3, gap: f64| Some(Facing { triangle, weights: found.weights, at: found.at, normal, gap });
         let distance = off.length();
         if found.part == 0 || distance <= 1e-3 * edge {
             return facing(normal, off.dot(normal));
         }
-        let cosine = off.dot(self.normal_of_part(places, triangle, found.part)) / distance;
-        match cosine {
-            cosine if cosine >= OFF[0] => facing(off / distance, distance),
-            cosine if cosine <= -OFF[1] => facing(-off / distance, -distance),
-            _ => None,
+        // the surface around a place that is nearest is nowhere nearer: not the flat surroundings of a point's own, nor a
+        // side that leads round a corner
+        let closer = |other: u32| {
+            let corners = self.corners(places, other);
+            other != triangle && OnTriangle::nearest(at, corners).at.distance(at) < (1.0 - 1e-6) * distance
+        };
+        if self.around_part(triangle, found.part).any(closer) {
+            return None;
+        }
+        match off.dot(self.normal_of_part(places, triangle, found.part)) {
+            out if out >= 0.0 => facing(off / distance, distance),
+            _ => facing(-off / distance, -distance),
         }
     }
 }
@@ -150,12 +152,19 @@ mod tests {
         }
     }
 
+    /// Of a strip the second half is not in any list: still it is seen that it is nearer.
     #[test]
-    fn what_is_beside_a_face_in_its_plane_does_not_face_it() {
-        let (surfaces, mut places) = square(0.0);
-        for beside in [DVec3::new(1.3, 0.5, 0.0), DVec3::new(-0.2, -0.2, 1e-9), DVec3::new(0.5, -0.3, -1e-9)] {
-            places[4] = beside;
-            assert_eq!(surfaces.faced(&places, &Point::node(1, 4), &[0, 1], |_| 1.0, 1.0).first, None, "{beside}");
+    fn where_the_surface_goes_on_its_other_parts_are_not_faced() {
+        let corners = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (0.0, 1.0), (1.0, 1.0), (2.0, 1.0)];
+        let mut places: Vec<DVec3> = corners.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
+        places.push(DVec3::ZERO);
+        let triangles = vec![[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]];
+        let surfaces = Surfaces::new(7, triangles, vec![0; 4], vec![0.5; 4]);
+        for place in [(1.3, 0.5, 0.0), (1.3, 0.5, 0.1), (1.1, 0.0, -0.2), (1.4, 1.0, 1e-9), (1.4, 1.0, -1e-9)] {
+            places[6] = place.into();
+            let faced = |triangles: &[u32]| surfaces.faced(&places, &Point::node(1, 6), triangles, |_| 1.0, 1.0).first;
+            assert_eq!(faced(&[0, 1]), None, "{place:?}");
+            assert!((faced(&[0, 1, 2, 3]).unwrap().gap - place.2).abs() < 1e-15);
         }
     }
 

@@ -111,6 +111,15 @@ impl Surfaces {
         }
     }
 
+    /// The triangles that share a part of one.
+    pub(super) fn around_part(&self, triangle: u32, part: usize) -> impl Iterator<Item = u32> + '_ {
+        let side = self.beside[triangle as usize][(part + 2) % 3];
+        let beside = (matches!(part, 1..=3) && side != NONE).then_some(side);
+        let node = self.triangles[triangle as usize][part.saturating_sub(4).min(2)] as usize;
+        let around = if part > 3 { self.starts[node] as usize..self.starts[node + 1] as usize } else { 0..0 };
+        beside.into_iter().chain(self.around[around].iter().copied())
+    }
+
     /// The normal of a node, weighted with angles.
     pub fn normal_of_node(&self, places: &[DVec3], node: u32) -> DVec3 {
         let at = places[node as usize];

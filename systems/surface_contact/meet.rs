@@ -33,6 +33,16 @@ impl SurfaceContacts {
         let body = self.surface.triangles.bodies[facing.triangle as usize];
         facing.gap - self.meeting(point.body, body).map_or(0.0, |meeting| meeting.thickness)
     }
+
+    /// How far points that are inside and may be come out in this step (m): what they began with while a wave goes
+    /// through the body, what the corners of faces have let in later a hundred times as slowly, since that does work.
+    fn settling(&self, clock: &Clock) -> f64 {
+        match clock.relaxation {
+            Some(_) => f64::INFINITY,
+            None if clock.time() * self.settling < 0.5 * self.edge => self.settling * clock.time_step,
+            None => 0.01 * self.settling * clock.time_step,
+        }
+    }
 }
 
 /// What points face now: those in the lists that may be near something.
@@ -90,7 +100,7 @@ pub(super) fn meet(
 ) {
     let found = faced(contacts, reach, cpu);
     let factors = Factors::<f64>::of(clock);
-    let settling = if clock.relaxation.is_some() { f64::INFINITY } else { contacts.settling * clock.time_step };
+    let settling = contacts.settling(clock);
     begin(contacts, &found, settling, bodies);
     let (met, foreseen) = gather(contacts, &found, (&factors, settling), bodies);
     let mut set = std::mem::take(&mut contacts.surface.set);

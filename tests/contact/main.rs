@@ -6,4 +6,3 @@
 #[path = "../physics/configurations.rs"]
 mod configurations;
 mod surfaces;
-mod probe;

@@ -3,6 +3,7 @@
 use crate::configurations::{configurations, near};
 use glam::DVec3;
 use sinew::components::{ContactForce, DisplacementIncrement, MEETING_NUMBERS, SurfaceTouch};
+use sinew::mesh::{Locator, Mesh};
 use sinew::{Options, Simulation};
 
 const TISSUE: &str = "\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))";
@@ -77,7 +78,9 @@ fn two_bars_exchange_their_velocities() {
 fn a_stack_bears_its_weight_and_stands_still() {
     let weight = 1000.0 * 8e-6 * 9.81;
     for run in configurations() {
-        for cells in [3, 4] {
+        // a step on a GPU comes to the host and goes back
+        let on_gpu = run.name.starts_with("GPU");
+        for cells in if on_gpu { vec![4] } else { vec![3, 4] } {
             let mut simulation = run.start(&format!(
                 "(duration: 2, bodies: {{
                     \"low\": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (3, 3, 3)), material: \"m\"),
@@ -89,12 +92,10 @@ fn a_stack_bears_its_weight_and_stands_still() {
             ));
             simulation.advance_to(1.5).unwrap();
             let earlier = simulation.displacements("high").unwrap();
-            let earlier_0 = earlier[0];
             simulation.advance_to(2.0).unwrap();
             let what = format!("{}, {cells} cells above", run.name);
             let moved = simulation.displacements("high").unwrap().into_iter().zip(earlier);
             let farthest = moved.map(|(now, then)| now.distance(then)).fold(0.0, f64::max);
-            println!("{what}: {:?}", simulation.displacements("high").unwrap()[0] - earlier_0);
             assert!(farthest < 1e-7, "{what}: {farthest} m in half a second");
             let between = force(&mut simulation, "high");
             near(&what, between.z, weight, weight, 1e-3);
@@ -152,7 +153,7 @@ fn an_oblique_collision_keeps_momentum_and_its_moment() {
                 let now = simulation.energies().unwrap();
                 let share = (now.kinetic + now.internal_work.unwrap()) / before;
                 highest = highest.max(share);
-                assert!(share <= 1.002, "{}: {now:?} of {before} J", run.name);
+                assert!(share <= 1.0 + run.bound(1e-9, 1e-5), "{}: {now:?} of {before} J", run.name);
             }
             assert!(most > 0.1, "they never met: {most} N");
             let (now, moment_now) = moments(&mut simulation);
@@ -160,8 +161,9 @@ fn an_oblique_collision_keeps_momentum_and_its_moment() {
             println!("{what}: at most {highest} of the energy");
             let scale = momentum.length();
             near(&what, (now - momentum).length(), 0.0, scale, run.bound(1e-10, 1e-5));
-            // the law acts at the places of the beginning of the step
-            near(&what, (moment_now - moment).length(), 0.0, scale * 0.02, run.bound(1e-3, 1e-3));
+            // friction acts across the gap between a point and its face
+            let bound = if friction == "0" { run.bound(1e-10, 1e-5) } else { 1e-3 };
+            near(&what, (moment_now - moment).length(), 0.0, scale * 0.02, bound);
         }
     }
 }
@@ -230,26 +232,34 @@ fn a_tube_pressed_flat_does_not_pass_itself() {
                 contacts: [Tool(tool: \"top\"), Tool(tool: \"bottom\"){contact}])"
             )
         };
-        let gap = |simulation: &mut Simulation| {
-            let rest = simulation.rest_positions("t").unwrap();
-            let u = simulation.displacements("t").unwrap();
-            // inner nodes of the upper half stay above those of the lower
-            let inner = |sign: f64| {
-                let places = rest.iter().zip(&u).filter(move |(x, _)| {
-                    (x.y * x.y + x.z * x.z).sqrt() < 0.0081 && x.z * sign > 0.004
-                });
-                places.map(move |(x, u)| sign * (x.z + u.z)).fold(f64::INFINITY, f64::min)
-            };
-            inner(1.0) + inner(-1.0)
-        };
         let mut alone = run.start(&scene(""));
         alone.advance_to(0.4).unwrap();
-        let passed = gap(&mut alone);
-        assert!(passed < -5e-4, "without contact the walls pass: {passed} m");
+        let passed = passed_by(&mut alone, &scene(""));
+        assert!(passed > 10, "without contact the walls pass each other: {passed} nodes");
         let mut simulation = run.start(&scene(", Itself()"));
         simulation.advance_to(0.4).unwrap();
-        let found = gap(&mut simulation);
-        println!("{}: {found:.3e} m between the walls, {passed:.3e} m without contact", run.name);
-        assert!(found > -2e-5, "{}: {found} m", run.name);
+        let view = simulation.column::<SurfaceTouch>("t").unwrap();
+        let numbers = view.values();
+        let rows = numbers.len() / MEETING_NUMBERS;
+        let touching = (0..rows).filter(|row| numbers.get(MEETING_NUMBERS * row + 4) > 0.0).count();
+        let deepest = (0..rows).map(|row| numbers.get(MEETING_NUMBERS * row + 5)).fold(0.0, f64::min);
+        println!("{}: {touching} nodes touch, {deepest:.2e} m; without contact {passed} are inside", run.name);
+        assert!(touching > 30 && deepest > -2e-4, "{}: {touching} touch, {deepest} m", run.name);
+        assert_eq!(passed_by(&mut simulation, &scene("")), 0, "{}", run.name);
     }
+}
+
+/// How many nodes of the upper half of the tube are a tenth of an edge (.2 mm) deep in elements of the lower half.
+fn passed_by(simulation: &mut Simulation, scene: &str) -> usize {
+    let file = crate::configurations::scene_of(scene, std::path::Path::new("."));
+    let mut mesh = sinew::assembly::mesh_of(&file.scene.bodies["t"], &file).unwrap();
+    let rest = simulation.rest_positions("t").unwrap();
+    let u = simulation.displacements("t").unwrap();
+    mesh.points = rest.iter().zip(u).map(|(place, u)| *place + u).collect();
+    let below = |element: &usize| mesh.element(*element).iter().all(|&node| rest[node as usize].z < -1e-3);
+    let lower = mesh.cells.select((0..mesh.element_count()).filter(below), |node| node);
+    let lower = Mesh { points: mesh.points.clone(), cells: lower, ..Mesh::default() };
+    let locator = Locator::new(&lower);
+    let upper = rest.iter().zip(&mesh.points).filter(|(rest, _)| rest.z > 1e-3);
+    upper.filter(|(_, place)| locator.holds(**place + DVec3::Z * 2e-4).is_some()).count()
 }

@@ -8,7 +8,7 @@ fn vector(random: &mut Rng) -> DVec3 {
 }
 
 /// Nodes of masses that differ a thousand times, some held along an axis, in random contacts; the masses.
-fn random_set(random: &mut Rng, friction: f64) -> (ContactSet, Vec<f64>) {
+fn random_set(random: &mut Rng, friction: f64, least: f64) -> (ContactSet, Vec<f64>) {
     let count = random.usize(6..30);
     let masses: Vec<f64> = (0..count).map(|_| 10.0_f64.powf(3.0 * random.f64())).collect();
     let mut set = ContactSet {
@@ -18,7 +18,7 @@ fn random_set(random: &mut Rng, friction: f64) -> (ContactSet, Vec<f64>) {
     };
     for _ in 0..random.usize(1..40) {
         let normal = vector(random).normalize();
-        let mut contact = Contact::new((normal, 0.3 * random.f64()), (friction, DVec3::ZERO));
+        let mut contact = Contact::new((normal, 0.4 * random.f64() - least), (friction, DVec3::ZERO));
         let mut nodes: Vec<u32> = (0..count as u32).collect();
         random.shuffle(&mut nodes);
         let weights = [random.f64(), random.f64(), random.f64()];
@@ -48,8 +48,10 @@ fn momentum_stays_and_energy_is_below_its_bound() {
     let mut random = Rng::with_seed(18);
     for round in 0..3000 {
         let friction = if round % 2 == 0 { 0.0 } else { random.f64() };
-        let (mut set, masses) = random_set(&mut random, friction);
-        let sweeps = 1 + round % 3;
+        // a third of the sets begin inside one another
+        let least = if round % 3 == 0 { 0.1 } else { 0.0 };
+        let (mut set, masses) = random_set(&mut random, friction, least);
+        let sweeps = 1 + round % 5 / 2;
         let before = set.clone();
         set.solve(sweeps);
         let momentum = |steps: &[DVec3]| masses.iter().zip(steps).map(|(mass, step)| *step * *mass).sum::<DVec3>();
@@ -57,10 +59,11 @@ fn momentum_stays_and_energy_is_below_its_bound() {
         let change = (momentum(&set.steps) - momentum(&before.steps)).length();
         assert!(change <= 1e-12 * scale, "momentum changed by {change} of {scale}");
         let [earlier, later] = [&before, &set].map(|set| kinetic(&masses, &set.steps));
-        assert!(later <= earlier * (1.0 + 1e-12), "{later} of {earlier} J");
-        // the bound of one sweep: each contact takes at least what its own point mass would lose
+        assert!(least > 0.0 || later <= earlier * (1.0 + 1e-12), "{later} of {earlier} J");
+        // the bound of one sweep: each contact takes at least what a point of its own would lose, and gives at most what
+        // that would get
         if sweeps == 1 {
-            let least: f64 = before
+            let most: f64 = before
                 .contacts
                 .iter()
                 .zip(&set.contacts)
@@ -70,15 +73,13 @@ fn momentum_stays_and_energy_is_below_its_bound() {
                     (contact.gap * contact.gap - relative * relative) / (2.0 * after.yields)
                 })
                 .sum();
-            assert!(later <= earlier + least + 1e-12 * earlier, "{later} of {earlier} and {least} J");
+            assert!(later <= earlier + most + 1e-12 * earlier, "{later} of {earlier} and {most} J");
         }
         // what is lost is what the forces took
         let took: f64 = set
             .contacts
             .iter()
-            .map(|contact| {
-                contact.force().dot(0.5 * (contact.relative(&before.steps) + contact.relative(&set.steps)))
-            })
+            .map(|contact| contact.force().dot(0.5 * (contact.relative(&before.steps) + contact.relative(&set.steps))))
             .sum();
         assert!((later - earlier - took).abs() <= 1e-11 * earlier, "{} and {took}", later - earlier);
         for contact in &set.contacts {
@@ -93,7 +94,7 @@ fn shares_of_mass_majorise_the_coupling_of_contacts() {
     let mut random = Rng::with_seed(81);
     let mut largest = 0.0_f64;
     for _ in 0..300 {
-        let (mut set, _) = random_set(&mut random, 0.0);
+        let (mut set, _) = random_set(&mut random, 0.0, 0.0);
         set.split();
         let count = set.contacts.len();
         let mut forces: Vec<f64> = (0..count).map(|_| random.f64()).collect();
