@@ -47,7 +47,7 @@ pub use crate::math::SimdScalar;
 pub(crate) use gather::sum_corners;
 pub(crate) use grab::{bytes_of as grab_bytes, uniform_of as grab_uniform};
 pub(crate) use nodal_volume::means_of;
-pub(crate) use node_pass::{NodePass, node_pass};
+pub(crate) use node_pass::{NodePass, node_pass, shared_pass};
 pub use node_system::{Before, ForceSlopes, NodeRows, NodeSystem, NodesAtRest};
 pub use observe::{add_watch_columns, watch_kernels};
 pub(crate) use patch_pass::patch_pass;

@@ -17,7 +17,7 @@ use glam::DVec3;
 /// must know of. Places and normals are those at the beginning of the step, only the steps of points against faces are
 /// predicted.
 pub fn system() -> System {
-    System::built_in(
+    let system = System::built_in(
         "surface_contact",
         Phase::Contact,
         "keeps bodies outside of each other",
@@ -28,7 +28,14 @@ pub fn system() -> System {
             Some(format!("surfaces of {bodies} {} that may meet", if bodies == 1 { "body" } else { "bodies" }))
         },
         surface_contact,
-    )
+    );
+    System { shared_only: surfaces_stay, ..system }
+}
+
+/// Whether no surface of theirs changes, so that no patch moves its nodes by itself.
+fn surfaces_stay(world: &World) -> bool {
+    let contacts = world.get_resource::<SurfaceContacts>();
+    contacts.is_some_and(|contacts| contacts.bodies.iter().all(|&body| world.get::<SurfaceRows>(body).is_some()))
 }
 
 /// How far points may go before it is looked anew what is near what, in edges.

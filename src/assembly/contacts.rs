@@ -5,7 +5,7 @@ use super::{Assembly, BodyParts};
 use crate::components::*;
 use crate::scene::SceneFile;
 use crate::scene::diagnostic::Diagnostics;
-use crate::scene::schema::{Contact, Curve, Select, Tool, ToolMesh, ToolPlace, WhenUnstable};
+use crate::scene::schema::{Contact, Curve, Select, Tool, ToolMesh, ToolPlace};
 use crate::tools::{DistanceGrid, Geometry, Solid, Triangles};
 use bevy_ecs::prelude::*;
 use glam::{DQuat, DVec3};
@@ -114,10 +114,8 @@ fn rows(
     path: &str,
     diagnostics: &mut Diagnostics,
 ) -> Option<Vec<u32>> {
-    let scene = &assembly.scene.scene;
-    let removed = scene.removal.iter().any(|removal| removal.body.as_ref().is_none_or(|body| body == name));
     let whole = matches!(on, Select::Surface { normal: None, .. });
-    if whole && (removed || scene.when_unstable() == WhenUnstable::Remove) {
+    if whole && assembly.scene.scene.may_lose_elements(name) {
         return Some((0..body.node_rows.len() as u32).collect());
     }
     let picked = assembly.pick(body, on, path, diagnostics)?;

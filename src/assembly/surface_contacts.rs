@@ -1,10 +1,11 @@
 //! Surfaces that meet: which, and whether they are in each other at the start.
 
 use super::contacts::{bounds, edge, reference, settling};
-use super::{Assembly, BodyParts};
+use super::{Assembly, BodyParts, PlacedMesh};
 use crate::components::*;
 use crate::contact::{Surfaces, Tree};
-use crate::mesh::{Locator, Mesh};
+use crate::mesh::{Locator, Mesh, SurfaceFace};
+use crate::scene::SceneFile;
 use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::Contact;
 use crate::systems::{Meeting, SurfaceContacts};
@@ -52,6 +53,24 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World) {
     world.insert_resource(contacts);
 }
 
+/// The author's nodes of a body's surface that no patch moves by itself, ascending: where it may meet others, and the
+/// surface stays the same.
+pub(super) fn apart(scene: &SceneFile, name: &str, placed: &PlacedMesh) -> Vec<u32> {
+    let scene = &scene.scene;
+    let meets = |contact: &Contact| match contact {
+        Contact::Tool { .. } => false,
+        Contact::Between { bodies: (a, b), .. } => a == name || b == name,
+        Contact::Itself { body, .. } => body.as_ref().is_none_or(|body| body == name),
+    };
+    if !scene.contacts.iter().any(meets) || scene.may_lose_elements(name) {
+        return Vec::new();
+    }
+    let mut nodes: Vec<u32> = placed.surface().iter().flat_map(SurfaceFace::all_nodes).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}
+
 /// The bodies whose surfaces a contact is between.
 fn bodies<'a>(assembly: &'a Assembly<'_>, contact: &'a Contact) -> Option<(&'a Contact, [&'a String; 2])> {
     match contact {
@@ -97,7 +116,7 @@ fn overlap(
     let (Some(of_body), Some(other_body)) = (assembly.bodies.get(of), assembly.bodies.get(other)) else { return };
     let (mesh, solid) = (at_start(of_body, world), at_start(other_body, world));
     let locator = Locator::new(&solid);
-    let mut nodes: Vec<u32> = of_body.placed.surface().iter().flat_map(|face| face.all_nodes()).collect();
+    let mut nodes: Vec<u32> = of_body.placed.surface().iter().flat_map(SurfaceFace::all_nodes).collect();
     nodes.sort_unstable();
     nodes.dedup();
     let inside: Vec<u32> =

@@ -2,6 +2,7 @@
 
 use super::Reals;
 use super::column::columns;
+use bevy_ecs::prelude::*;
 
 columns! {
     /// Force of other bodies, and of the body itself, on the node in the last step (N), a vector a node. Exists where
@@ -16,3 +17,8 @@ columns! {
 
 /// Numbers a node in [`SurfaceTouch`].
 pub const MEETING_NUMBERS: usize = 8;
+
+/// Rows of the nodes of a body's surface that may meet others, ascending: no patch moves them as one of its own, so that
+/// all forces on them are known before they move. On bodies whose surface stays the same.
+#[derive(Component, Clone, Debug)]
+pub struct SurfaceRows(pub Vec<u32>);

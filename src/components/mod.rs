@@ -37,7 +37,7 @@ pub use clock::{Clock, Relaxation};
 pub use column::{Column, ColumnAccess, Precision, Reals, Role, all_columns, columns_in, place_in_buffer};
 pub use column_layout::{Increments, Rows};
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
-pub use contact::{ContactForce, MEETING_NUMBERS, SurfaceTouch};
+pub use contact::{ContactForce, MEETING_NUMBERS, SurfaceRows, SurfaceTouch};
 pub use grab::{Grabs, HeldNode};
 pub use guard::{GuardMemory, Notice, Seen};
 pub use input::{Change, Input, InputState};

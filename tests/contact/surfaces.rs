@@ -1,6 +1,6 @@
 //! Bodies against each other and themselves: closed forms of impact and rest, momentum, energy, bits.
 
-use crate::configurations::{configurations, near};
+use crate::configurations::{ELEMENTS, configurations, near};
 use glam::DVec3;
 use sinew::components::{ContactForce, DisplacementIncrement, MEETING_NUMBERS, SurfaceTouch};
 use sinew::mesh::{Locator, Mesh};
@@ -75,6 +75,7 @@ fn two_bars_exchange_their_velocities() {
 /// Two cubes of 2 cm, one on the other, with meshes that do not match, on a table that weighs them: 2 m g below, m g
 /// between, and nobody creeps.
 #[test]
+#[ignore = "long"]
 fn a_stack_bears_its_weight_and_stands_still() {
     let weight = 1000.0 * 8e-6 * 9.81;
     for run in configurations() {
@@ -164,6 +165,50 @@ fn an_oblique_collision_keeps_momentum_and_its_moment() {
             // friction acts across the gap between a point and its face
             let bound = if friction == "0" { run.bound(1e-10, 1e-5) } else { 1e-3 };
             near(&what, (moment_now - moment).length(), 0.0, scale * 0.02, bound);
+        }
+    }
+}
+
+/// Two cubes of every kind of element that meet face on: momentum stays, none is inside the other, and the law loses no
+/// more than touching half layers.
+#[test]
+fn cubes_of_every_kind_of_element_bounce_off_each_other() {
+    for run in configurations() {
+        for elements in ELEMENTS {
+            let cube = |cells: u32| {
+                format!(
+                    "mesh: Box(size: (0.02, 0.02, 0.02), cells: ({cells}, {cells}, {cells}), elements: {elements}), material: \"m\""
+                )
+            };
+            let mut simulation = run.start(&format!(
+                "(duration: 0.05, bodies: {{\"a\": ({}), \"b\": ({}, translate: (0.003, 0.002, 0.0201), velocity: (0, 0, -0.2))}},
+                materials: {{{TISSUE}}}, contacts: [Between(bodies: (\"a\", \"b\"))], output: (energies_every: 0.01))",
+                cube(4),
+                cube(3)
+            ));
+            let what = format!("{}, {elements}", run.name);
+            let before = simulation.energies().unwrap().kinetic;
+            let momentum_before = momentum(&mut simulation, "b").z;
+            let mut most = 0.0_f64;
+            let mut deepest = 0.0_f64;
+            while simulation.time() < 0.05 {
+                simulation.advance(3).unwrap();
+                most = most.max(force(&mut simulation, "b").z);
+                for body in ["a", "b"] {
+                    let view = simulation.column::<SurfaceTouch>(body).unwrap();
+                    let numbers = view.values();
+                    let gaps = (0..numbers.len() / MEETING_NUMBERS).map(|row| numbers.get(MEETING_NUMBERS * row + 5));
+                    deepest = gaps.fold(deepest, f64::min);
+                }
+            }
+            let [a, b] = ["a", "b"].map(|body| momentum(&mut simulation, body).z);
+            near(&what, a + b, momentum_before, momentum_before, run.bound(1e-10, 1e-5));
+            assert!(a < 0.5 * momentum_before, "{what}: {a} of {momentum_before} kg m/s went over");
+            let energies = simulation.energies().unwrap();
+            let share = (energies.kinetic + energies.internal_work.unwrap()) / before;
+            println!("{what}: {share:.4} of the energy, {deepest:.2e} m, {most:.3} N");
+            assert!(share > 0.8 && share <= 1.0 + run.bound(1e-9, 1e-5), "{what}: {share} of the energy");
+            assert!(deepest > -2.5e-4, "{what}: {deepest} m");
         }
     }
 }

@@ -265,6 +265,17 @@ impl Scene {
         self.integration.when_unstable.unwrap_or(if insists { WhenUnstable::Watch } else { WhenUnstable::Adapt })
     }
 
+    /// Whether a body may lose elements.
+    pub fn may_lose_elements(&self, body: &str) -> bool {
+        let material = |name: &String| self.materials.get(name).map(|material| material.inversion());
+        let of_body = self.bodies.get(body).into_iter();
+        let mut materials = of_body
+            .flat_map(|body| std::iter::once(&body.material).chain(body.regions.iter().map(|region| &region.material)));
+        self.removal.iter().any(|removal| removal.body.as_deref().is_none_or(|name| name == body))
+            || self.when_unstable() == WhenUnstable::Remove
+            || materials.any(|name| material(name) == Some(super::Inversion::Remove))
+    }
+
     /// Whether elements are made heavier.
     pub fn scales_mass(&self) -> bool {
         matches!(self.when_unstable(), WhenUnstable::ScaleMass { .. }) && !self.is_static()
