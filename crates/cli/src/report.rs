@@ -230,7 +230,7 @@ fn ports(summary: &Summary, page: &mut Page) {
     page.rows("ports", lines.collect::<Vec<_>>());
     if let Some(kept) = &summary.real_time {
         let waited = quantity(kept.waited, "s");
-        page.row("pace", format!("waited {waited} for life; late {} times of {}", kept.late, kept.ticks));
+        page.row("pace", format!("waited {waited} for life; late {} of {}", counted(kept.late, "time"), kept.ticks));
     }
 }
 

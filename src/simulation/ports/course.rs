@@ -79,10 +79,10 @@ impl PortState {
         let (aim, turned) = match (self.target, port.follow) {
             (None, _) => (place, turn),
             (Some(target), Follow::Position) => target,
-            // the spring as it is at the end of the batch, the force as it was in the last one
+            // both springs as they are at the end of the batch: tissue answers with the force that it had and its stiffness
             (Some((aim, turned)), Follow::Proxy { stiffness, damping }) => {
                 let pulled = stiffness * (aim - place) + self.force;
-                (place + pulled / (stiffness + damping / batch), turned)
+                (place + pulled / (stiffness + self.stiffness() + damping / batch), turned)
             }
         };
         let [way, angle] = [aim.distance(place), turn.angle_between(turned)];
@@ -99,14 +99,12 @@ impl PortState {
     /// Ends the batch at its last step.
     pub fn end(&mut self, felt: Felt, step: u64) {
         let middle = 0.5 * (self.path[0].1 + self.path[1].1);
-        match (self.touched, felt.in_contact) {
-            (Some(before), true) => {
-                let out = felt.force.normalize_or_zero();
-                let (way, change) = ((middle - before).dot(out), (felt.force - self.force).dot(out));
-                let [squares, products] = self.ways.map(|sum| FORGET * sum);
-                self.ways = [squares + way * way, products - way * change];
-            }
-            _ => self.ways = [0.0; 2],
+        self.ways = self.ways.map(|sum| FORGET * sum);
+        if let Some(before) = self.touched.filter(|_| felt.in_contact) {
+            let out = felt.force.normalize_or_zero();
+            let (way, change) = ((middle - before).dot(out), (felt.force - self.force).dot(out));
+            self.ways[0] += way * way;
+            self.ways[1] -= way * change;
         }
         self.touched = felt.in_contact.then_some(middle);
         self.force = felt.force;
@@ -124,6 +122,6 @@ impl PortState {
     pub fn stiffness(&self) -> f64 {
         let [squares, products] = self.ways;
         let found = products / squares;
-        if found.is_finite() { found.max(0.0) } else { 0.0 }
+        if self.touched.is_some() && found.is_finite() { found.max(0.0) } else { 0.0 }
     }
 }
