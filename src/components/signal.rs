@@ -71,9 +71,7 @@ impl Signal {
             Signal::Motion { displacement, gradient, rotation, .. } => {
                 (*displacement, *gradient, *rotation) != (DVec3::ZERO, DMat3::ZERO, DVec3::ZERO)
             }
-            Signal::Pose { motion, .. } => {
-                motion.path.len() > 1 || !motion.moves.is_empty() || motion.hand.is_some()
-            }
+            Signal::Pose { motion, .. } => motion.path.len() > 1 || !motion.moves.is_empty() || motion.hand.is_some(),
         }
     }
 

@@ -19,7 +19,8 @@ pub struct VirtualCoupling {
     /// B (N s/m).
     pub damping: f64,
     /// s: what share of the force on the tool is passed on at once. 0 for a proxy, which the coupling pulls; 1 for a
-    /// tool that goes where the device is, whose spring has nothing to tell.
+    /// tool that goes where the device is, whose spring has nothing to tell. That is late by the age of the touch, and
+    /// gives energy: tissue of stiffness k is held by no hand with less damping than k (T/2 + τ).
     pub feed_forward: f64,
     /// The largest force of the device (N).
     pub most_force: f64,

@@ -58,7 +58,15 @@ pub struct Touch {
 impl Default for DevicePose {
     fn default() -> Self {
         let zero = DVec3::ZERO;
-        Self { time: 0.0, place: zero, orientation: DQuat::IDENTITY, velocity: zero, spin: zero, buttons: 0, sequence: 0 }
+        Self {
+            time: 0.0,
+            place: zero,
+            orientation: DQuat::IDENTITY,
+            velocity: zero,
+            spin: zero,
+            buttons: 0,
+            sequence: 0,
+        }
     }
 }
 

@@ -236,7 +236,9 @@ impl Simulation {
             if !self.ports.all.contains_key(port) {
                 let names: Vec<&str> = self.ports.all.keys().map(String::as_str).collect();
                 let there = if names.is_empty() { "none".into() } else { names.join(", ") };
-                return Err(Error::Options(format!("the recording has a port {port:?}; in the scene there is {there}")));
+                return Err(Error::Options(format!(
+                    "the recording has a port {port:?}; in the scene there is {there}"
+                )));
             }
             if *step < last || !pose.is_sound() {
                 return Err(Error::Options(format!("the recording cannot move {port:?} at step {step} to {pose:?}")));

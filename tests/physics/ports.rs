@@ -70,7 +70,9 @@ fn a_tool_goes_where_the_hand_is_no_faster_than_its_port_allows() {
         near(run.name, early, 2.0 - 90.0 * answered[5].time, 2.0, 1e-6);
         near(run.name, there, 0.0, 2.0, 1e-6);
         // one touch a batch, in order, each of the pose that the batch began with
-        assert!(answered.windows(2).all(|pair| pair[1].sequence == pair[0].sequence + 1 && pair[1].step > pair[0].step));
+        assert!(
+            answered.windows(2).all(|pair| pair[1].sequence == pair[0].sequence + 1 && pair[1].step > pair[0].step)
+        );
         assert!(answered.windows(2).all(|pair| pair[1].answers > pair[0].answers), "{}", run.name);
         assert!(answered.iter().all(|touch| !touch.in_contact && touch.force == DVec3::ZERO && touch.stiffness == 0.0));
         near(run.name, batch, 1e-3, simulation.time_step(), 0.5);
@@ -214,9 +216,7 @@ fn feed(simulation: &mut Simulation, steps: u64, at_once: u64) -> Vec<Touch> {
 #[test]
 fn a_replay_has_the_same_bits() {
     for run in configurations() {
-        let start = |options: &Options| {
-            Simulation::new(&scene_of(&above(PROXY), Path::new(".")), options).unwrap()
-        };
+        let start = |options: &Options| Simulation::new(&scene_of(&above(PROXY), Path::new(".")), options).unwrap();
         let mut first = start(&run.options);
         first.record_inputs();
         feed(&mut first, 103, 7);

@@ -56,14 +56,17 @@ fn together(
 }
 
 /// A hand presses into a block, holds, presses more, holds, leaves: while it holds the coupling gives nothing that it was
-/// not given, and in all it gives less than it takes.
+/// not given, and with a proxy gives less than it takes in all.
 #[test]
 fn a_coupled_device_is_passive() {
-    for run in configurations() {
+    // on soft tissue, and on some that is stiffer than the coupling and the hand
+    let modulus = |young: &'static str| move |run| (run, young);
+    let others = ["3e3", "3e5"].into_iter().flat_map(|young| configurations().into_iter().take(1).map(modulus(young)));
+    for (run, young) in configurations().into_iter().map(modulus("3e4")).chain(others) {
         for (port, feed_forward) in
             [("speed: 0.5, follow: Proxy(stiffness: 400, damping: 0.2)", 0.0), ("speed: 0.5", 1.0)]
         {
-            let mut simulation = run.start(&above(port));
+            let mut simulation = run.start(&above(port).replace("young: 3e4", &format!("young: {young}")));
             let mut port = simulation.open_port("hand").unwrap();
             let start = DVec3::new(0.01, 0.01, 0.0175);
             // touches are two ticks old
@@ -97,7 +100,8 @@ fn a_coupled_device_is_passive() {
             }
             let sum: f64 = all.iter().map(|(_, taken)| taken).sum();
             println!("{} {feed_forward}: {sum:e} J in all, up to {largest} N", run.name);
-            assert!(sum >= -1e-6, "{} {feed_forward}: {sum:e} J in all", run.name);
+            // a force that is passed on late is not passive: the hand's own damping has to take what it gives
+            assert!(sum >= -1e-6 || feed_forward > 0.0, "{}, {young} Pa: {sum:e} J in all", run.name);
             assert!(largest > 5e-3 && largest < 3.0, "{}: {largest} N", run.name);
             // held at rest it feels what the tool feels
             let (held, _) = all[at(0.58)];
