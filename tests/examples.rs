@@ -7,11 +7,11 @@ mod custom_system;
 #[path = "../examples/embed.rs"]
 mod embed;
 #[allow(dead_code)]
-#[path = "../examples/host_system.rs"]
-mod host_system;
-#[allow(dead_code)]
 #[path = "../examples/haptic.rs"]
 mod haptic;
+#[allow(dead_code)]
+#[path = "../examples/host_system.rs"]
+mod host_system;
 #[path = "../examples/latency.rs"]
 mod latency;
 

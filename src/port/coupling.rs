@@ -53,9 +53,9 @@ impl VirtualCoupling {
     }
 
     /// The largest stiffness (N/m) that a device does not oscillate with: b/(T/2 + τ), b the damping of the device and
-    /// the hand (N s/m), T the tick (s), τ the age of what goes through the proxy (s). Found by bisection to be within
-    /// 3 % of the limit for τ from 0 to 5 ticks (`the_largest_stiffness_is_that_of_the_sampled_device`); the mass of
-    /// the device does not matter. Of a proxy that stays where it is, as against a wall, τ is 0.
+    /// the hand (N s/m), T the tick (s), τ the age of what goes through the proxy (s). The
+    /// limit found by bisection is at most 1 % larger for devices of 100 g and more, 5 % for 20 g, with τ from 0 to 5
+    /// ticks (`the_largest_stiffness_is_that_of_the_sampled_device`). Of a proxy that stays where it is, as against a wall, τ is 0.
     pub fn largest_stiffness(damping: f64, tick: f64, age: f64) -> f64 {
         damping / (0.5 * tick + age)
     }
@@ -90,34 +90,33 @@ mod tests {
 
     const TICK: f64 = 1e-3;
     const DAMPING: f64 = 1.0;
-    const MASS: f64 = 0.1;
 
     /// A mass with a damper under a force that is held for a tick, exactly: place and velocity after it.
-    fn tick((x, v): (f64, f64), force: f64) -> (f64, f64) {
-        let (rest, rate) = (force / DAMPING, DAMPING / MASS);
+    fn tick(mass: f64, (x, v): (f64, f64), force: f64) -> (f64, f64) {
+        let (rest, rate) = (force / DAMPING, DAMPING / mass);
         let decay = (-rate * TICK).exp();
         (x + rest * TICK + (v - rest) * (1.0 - decay) / rate, rest + (v - rest) * decay)
     }
 
-    /// Whether the swings of a device, moved out of rest, grow.
-    fn grows(mut force: impl FnMut(f64, f64, f64) -> f64) -> bool {
-        let mut state = (1e-3, 0.0);
-        let (mut early, mut late) = (0.0_f64, 0.0_f64);
-        for step in 0..8000 {
-            state = tick(state, force(state.0, state.1, f64::from(step) * TICK));
-            let most = if step < 4000 { &mut early } else { &mut late };
-            *most = most.max(state.0.abs());
+    /// Whether the swings of a device, moved out of rest, are larger after some seconds.
+    fn grows(mass: f64, mut force: impl FnMut(f64, f64, f64) -> f64) -> bool {
+        let (mut state, mut late) = ((1e-3, 0.0), 0.0_f64);
+        for step in 0..16_000 {
+            state = tick(mass, state, force(state.0, state.1, f64::from(step) * TICK));
+            if step >= 8000 {
+                late = late.max(state.0.abs());
+            }
         }
-        assert!(early.is_finite() && late.is_finite(), "{early} {late}");
-        late > early
+        assert!(late.is_finite());
+        late > 1e-3
     }
 
     #[test]
     fn the_largest_stiffness_is_that_of_the_sampled_device() {
-        for (ticks, found) in [(0, 2048.0), (1, 675.0), (2, 405.0), (5, 185.0)] {
+        for (mass, ticks) in [0.02, 0.1, 0.3].into_iter().flat_map(|mass| [0, 1, 2, 5].map(|ticks| (mass, ticks))) {
             let unstable = |stiffness: f64| {
                 let mut past = vec![1e-3; ticks];
-                grows(|x, ..| {
+                grows(mass, |x, _, _| {
                     past.push(x);
                     (-stiffness * past.remove(0)).clamp(-1e3, 1e3)
                 })
@@ -128,9 +127,9 @@ mod tests {
                 let middle = 0.5 * (low + high);
                 if unstable(middle) { high = middle } else { low = middle }
             }
-            let formula = VirtualCoupling::largest_stiffness(DAMPING, TICK, ticks as f64 * TICK);
-            assert!((low / found - 1.0).abs() < 0.01, "{ticks} ticks: {low} N/m, found before: {found}");
-            assert!(low > formula && low < 1.03 * formula, "{ticks} ticks: {low} N/m, formula {formula}");
+            let share = low / VirtualCoupling::largest_stiffness(DAMPING, TICK, ticks as f64 * TICK);
+            let most = if mass < 0.1 { 1.05 } else { 1.01 };
+            assert!(share > 0.999 && share < most, "{mass} kg, {ticks} ticks: {low} N/m, {share} of the formula");
         }
     }
 
@@ -142,7 +141,7 @@ mod tests {
         for (share, expected) in [(0.9, false), (1.2, true)] {
             let mut coupling = VirtualCoupling::new(share * bound, 0.0, 100.0);
             (coupling.fastest, coupling.decay) = (1e3, f64::INFINITY);
-            let swings = grows(|x, v, t| coupling.force(&touch, DVec3::X * x, DVec3::X * v, t).x);
+            let swings = grows(0.1, |x, v, t| coupling.force(&touch, DVec3::X * x, DVec3::X * v, t).x);
             assert_eq!(swings, expected, "at {share} of {bound} N/m");
         }
     }
