@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 const SCENE: &str = r#"(
     title: "A probe that a hand moves presses a block",
     duration: 3600,
-    bodies: {"block": (mesh: Box(size: (0.03, 0.03, 0.015), cells: (9, 9, 5)), material: "tissue")},
+    bodies: {"block": (mesh: Box(size: (0.03, 0.03, 0.015), cells: (7, 7, 4)), material: "tissue")},
     materials: {"tissue": (density: 1000, neo_hookean: Young(young: 1e4, poisson: 0.45), damping: 30)},
     constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))],
     tools: {"probe": (

@@ -256,6 +256,14 @@ fn a_replay_has_the_same_bits() {
         first.replay_inputs(&late).unwrap();
         first.advance(200).unwrap();
         assert!(bits(&mut first) == expected, "{}: taken back", run.name);
+        let felt = first.tool("ball").unwrap();
+        first.reset().unwrap();
+        assert_eq!(first.tool("ball").unwrap().place, DVec3::new(0.01, 0.01, 0.0175));
+        first.replay_inputs(&early).unwrap();
+        first.advance(103).unwrap();
+        first.replay_inputs(&late).unwrap();
+        first.advance(200).unwrap();
+        assert!(bits(&mut first) == expected && first.tool("ball").unwrap() == felt, "{}: from the start", run.name);
         refusals(&run, &mut first, &late);
     }
 }

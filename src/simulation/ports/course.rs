@@ -81,8 +81,8 @@ impl PortState {
             (Some(target), Follow::Position) => target,
             // both springs as they are at the end of the batch: tissue answers with the force that it had and its stiffness
             (Some((aim, turned)), Follow::Proxy { stiffness, damping }) => {
-                let pulled = stiffness * (aim - place) + self.force;
-                (place + pulled / (stiffness + self.stiffness() + damping / batch), turned)
+                let sum = stiffness + self.stiffness() + damping / batch;
+                (place + (aim - place) * (stiffness / sum) + self.force / sum, turned)
             }
         };
         let [way, angle] = [aim.distance(place), turn.angle_between(turned)];
