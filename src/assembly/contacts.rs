@@ -208,9 +208,10 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
                     speed * clock.time_step,
                     contacts.edge,
                 );
-                diagnostics.error_at(path.as_str(), message).note(
-                    "it could be through a surface before anybody sees it: give it more time, or take a smaller `step`",
-                );
+                let way_out = if tool.port.is_some() { "lower the `speed` of its port" } else { "give it more time" };
+                diagnostics.error_at(path.as_str(), message).note(format!(
+                    "it could be through a surface before anybody sees it: {way_out}, or take a smaller `step`"
+                ));
             }
         }
     }
