@@ -53,9 +53,9 @@ impl VirtualCoupling {
     }
 
     /// The largest stiffness (N/m) that a device does not oscillate with: b/(T/2 + τ), b the damping of the device and
-    /// the hand (N s/m), T the tick (s), τ the age of what goes through the proxy (s). The
-    /// limit found by bisection is at most 1 % larger for devices of 100 g and more, 5 % for 20 g, with τ from 0 to 5
-    /// ticks (`the_largest_stiffness_is_that_of_the_sampled_device`). Of a proxy that stays where it is, as against a wall, τ is 0.
+    /// the hand (N s/m), T the tick (s), τ the age of what goes through the proxy (s). The limit
+    /// found by bisection is at most 1 % larger for devices of 100 g and more, 5 % for 20 g, with τ from 0 to 5 ticks
+    /// (`the_largest_stiffness_is_that_of_the_sampled_device`). Of a proxy that stays, as against a wall, τ is 0.
     pub fn largest_stiffness(damping: f64, tick: f64, age: f64) -> f64 {
         damping / (0.5 * tick + age)
     }

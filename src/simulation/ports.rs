@@ -178,7 +178,8 @@ impl Simulation {
             port.used.batches += 1;
             let Some(end) = &mut port.end else { continue };
             port.told += 1;
-            let [(from, ..), (until, place, orientation)] = state.path;
+            let [(from, ..), (until, ..)] = state.path;
+            let (place, orientation) = state.pose(clock.time());
             let seconds = port.began.map_or(0.0, |began| began.elapsed().as_secs_f64());
             end.tell(&Touch {
                 time: clock.time(),

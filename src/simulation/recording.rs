@@ -7,8 +7,9 @@ use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::Path;
 
-/// Every change of the inputs of a run and all that hands did, with the step that began with it. Replayed on a simulation that is where this
-/// one was, it gives the same bits. Serialised as RON, JSON or anything else that keeps numbers to the last bit.
+/// Every change of the inputs of a run and all that hands did, with the step that began with it. Replayed on a
+/// simulation that is where this one was, it gives the same bits. Serialised as RON, JSON or anything else that keeps
+/// numbers to the last bit.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct InputRecording {

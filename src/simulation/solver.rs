@@ -58,7 +58,8 @@ impl Solver {
 
 impl Simulation {
     /// What comes before a step, in an order that does not depend on how the program asks for steps: the state is kept,
-    /// inputs and what hands do are taken up, and then the stable step is looked at. A second time before the same step it does nothing.
+    /// inputs and what hands do are taken up, and then the stable step is looked at. A second time before the same step
+    /// it does nothing.
     fn begin_step(&mut self) -> Result<(), Error> {
         self.before_the_look()?;
         self.follow()

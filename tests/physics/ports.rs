@@ -150,7 +150,8 @@ fn the_stiffness_told_is_that_of_a_bar() {
             "(duration: 1, bodies: {\"b\": (mesh: Box(size: (0.01, 0.01, 0.01), cells: (2, 2, 2)), material: \"m\")},
             materials: {\"m\": (density: 1000, neo_hookean: Young(young: 1e5, poisson: 0), damping: 200)},
             constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))],
-            tools: {\"plate\": (shape: Box(size: (0.04, 0.04, 0.01)), at: (0.005, 0.005, 0.015), port: (name: \"hand\", speed: 1))},
+            tools: {\"plate\": (shape: Box(size: (0.04, 0.04, 0.01)), at: (0.005, 0.005, 0.015),
+                port: (name: \"hand\", speed: 1))},
             contacts: [Tool(tool: \"plate\")])",
         );
         let mut port = simulation.open_port("hand").unwrap();

@@ -55,8 +55,8 @@ fn together(
     all
 }
 
-/// A hand presses into a block, holds, presses more, holds, leaves: while it holds the coupling gives nothing that it was
-/// not given, and with a proxy gives less than it takes in all.
+/// A hand presses into a block, holds, presses more, holds, leaves: while it holds the coupling gives nothing that it
+/// was not given, and with a proxy gives less than it takes in all.
 #[test]
 fn a_coupled_device_is_passive() {
     // on soft tissue, and on some that is stiffer than the coupling and the hand

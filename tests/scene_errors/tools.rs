@@ -150,8 +150,8 @@ fn what_is_wrong_with_a_port_is_told_with_what_is_allowed() {
         (
             "name: \"h\", speed: 1",
             ", moves: [(displacement: (0, 0, 1))]",
-            "4: error: a `port` beside `moves`: a hand moves the tool, and nobody else | leave one of both out; `at` says where the \
-             tool is at first",
+            "4: error: a `port` beside `moves`: a hand moves the tool, and nobody else | leave one of both out; \
+             `at` says where the tool is at first",
         ),
     ];
     for (words, more, expected) in cases {

@@ -74,12 +74,12 @@ impl PortState {
         let steps = steps_of(port.every, clock.time_step);
         (self.begins, self.ends) = (clock.step, clock.step.saturating_add(steps));
         let (now, until) = (clock.time(), clock.time_at(self.ends));
-        let [_, (_, place, turn)] = self.path;
+        let (place, turn) = self.pose(now);
         let batch = until - now;
         let (aim, turned) = match (self.target, port.follow) {
             (None, _) => (place, turn),
             (Some(target), Follow::Position) => target,
-            // both springs as they are at the end of the batch: tissue answers with the force that it had and its stiffness
+            // both springs as they are at the end of the batch: tissue goes on from the force that it had
             (Some((aim, turned)), Follow::Proxy { stiffness, damping }) => {
                 let sum = stiffness + self.stiffness() + damping / batch;
                 (place + (aim - place) * (stiffness / sum) + self.force / sum, turned)
@@ -94,6 +94,15 @@ impl PortState {
         let quickens = share > 2.0 * self.fastest;
         self.fastest = self.fastest.max(share);
         quickens
+    }
+
+    /// Where the tool is at a time (s): at the end of the way, unless steps have become shorter meanwhile.
+    pub fn pose(&self, time: f64) -> (DVec3, DQuat) {
+        let [(from, before, turn), (until, after, turned)] = self.path;
+        match (time - from) / (until - from) {
+            share if share < 1.0 => (before.lerp(after, share.max(0.0)), turn.slerp(turned, share.max(0.0))),
+            _ => (after, turned),
+        }
     }
 
     /// Ends the batch at its last step.
@@ -123,5 +132,33 @@ impl PortState {
         let [squares, products] = self.ways;
         let found = products / squares;
         if self.touched.is_some() && found.is_finite() { found.max(0.0) } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Steps become shorter, or longer, within a batch: the next one begins where the tool is.
+    #[test]
+    fn no_tool_jumps_when_the_step_changes_within_a_batch() {
+        let port = Port { name: "hand".into(), speed: 10.0, spin: 1e4, every: 0.01, follow: Follow::Position };
+        for (step, expected) in [(0.5e-3, 0.75), (4e-3, 1.0)] {
+            let mut state = PortState::at((0.0, DVec3::ZERO, DQuat::IDENTITY));
+            let aim = (DVec3::X * 0.01, DQuat::from_rotation_z(0.4));
+            state.target(&DevicePose { place: aim.0, orientation: aim.1, ..DevicePose::default() });
+            let mut clock = Clock::with_step(1e-3);
+            assert!(state.begin(&port, &clock) && state.ends == 10 && state.is_sound());
+            clock.step = 5;
+            clock.change_step(step);
+            clock.step = state.ends;
+            let (place, turn) = state.pose(clock.time());
+            assert!((place.x - 0.01 * expected).abs() < 1e-15, "{step}: {place}");
+            assert!((turn.angle_between(DQuat::IDENTITY) - 0.4 * expected).abs() < 1e-7, "{step}: {turn}");
+            state.end(Felt::default(), clock.step);
+            assert!(!state.begin(&port, &clock), "no quicker than before");
+            assert_eq!((state.path[0].0, state.path[0].1), (clock.time(), place));
+            assert_eq!(state.path[1].1, aim.0);
+        }
     }
 }
