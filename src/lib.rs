@@ -20,6 +20,7 @@ mod error;
 pub mod materials;
 pub mod math;
 pub mod mesh;
+pub mod port;
 pub mod scene;
 mod simulation;
 pub mod snapshot;
@@ -57,8 +58,9 @@ pub use scene::SceneFile;
 pub use simulation::explain;
 pub use simulation::{
     Advanced, BackendChoice, ColumnView, Ended, Equilibrium, FieldName, Grab, GrabId, Grip, InputChange,
-    InputRecording, InputUse, InputValue, Inversions, Mode, Names, NodeSet, NodeState, Options, Pick, Preload,
-    Simulation, Stability, StepHistory, Summary, SystemTime, Unloaded, Unloading, UnloadingStep, unload,
+    InputRecording, InputUse, InputValue, Inversions, Mode, Names, NodeSet, NodeState, Options, Pick, PortUse,
+    PoseChange, Preload, RealTime, Simulation, Stability, StepHistory, Summary, SystemTime, Unloaded, Unloading,
+    UnloadingStep, unload,
 };
 pub use snapshot::Snapshot;
 

@@ -155,7 +155,7 @@ impl ToolContacts {
             None => false,
         };
         let mut stuck = [false; ToolContacts::MOST];
-        for (stuck, of_tool) in stuck.iter_mut().zip(values.chunks_exact_mut(TOUCH_NUMBERS)) {
+        for (stuck, of_tool) in stuck.iter_mut().zip(values.chunks_exact_mut(self.numbers_a_tool())) {
             *stuck = of_tool[3] == T::from_f64(STICKS);
             // most nodes are never touched: nothing is written there
             if of_tool[..4].iter().any(|&number| number != T::default()) {
@@ -188,10 +188,14 @@ impl ToolContacts {
             let change = touch.outwards + touch.tangential;
             let force = to_force * change;
             sum += force;
-            let of_tool = &mut values[TOUCH_NUMBERS * touch.tool..TOUCH_NUMBERS * (touch.tool + 1)];
+            let numbers = self.numbers_a_tool();
+            let of_tool = &mut values[numbers * touch.tool..numbers * (touch.tool + 1)];
             let slip = along_surface(d - touch.tool_step, touch.normal).length();
             for i in 0..3 {
                 of_tool[i] = T::from_f64(force[i]);
+            }
+            for (i, felt) in of_tool[TOUCH_NUMBERS..].iter_mut().enumerate() {
+                *felt += T::from_f64(force[i]);
             }
             of_tool[3] = T::from_f64(if touch.slides { SLIDES } else { STICKS });
             if step.books {
@@ -309,6 +313,12 @@ struct Limits {
 }
 uniform!(Limits { edge, settling, books });
 
+/// How many tools there are, and how many numbers of each.
+fn counts(contacts: &ToolContacts) -> String {
+    let (tools, numbers) = (contacts.tools.len(), contacts.numbers_a_tool());
+    format!("const TOOLS: u32 = {tools}u;\nconst NUMBERS: u32 = {numbers}u;\n")
+}
+
 /// One stage for each body that tools may touch.
 fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
     let all: Vec<(Entity, ToolContacts)> =
@@ -341,7 +351,7 @@ fn stage(body: Entity, contacts: &ToolContacts, world: &mut World, buffers: &mut
             grids.extend(grid.values());
         }
     }
-    let count = Fragment::new("generated: how many tools", format!("const TOOLS: u32 = {}u;\n", contacts.tools.len()));
+    let count = Fragment::new("generated: how many tools", counts(contacts));
     let mass = if fictitious { FictitiousMass::NAME } else { Mass::NAME };
     let mut stage = NodeStage::new("tool_contact", "tool_contact", body, rows_of(body, world), shader!("tool_contact"))
         .own(shader!("tool_shape"))

@@ -64,8 +64,10 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             continue;
         }
         let settling = settling(body, edge, world);
+        let led = |contact: &ToolContact| scene.tools.get(&contact.tool).is_some_and(|tool| tool.port.is_some());
+        let felt = tools.iter().any(led);
         let (rows, masks) = marks.into_iter().unzip();
-        let contacts = ToolContacts { tools, reference, rows, masks, edge, settling };
+        let contacts = ToolContacts { tools, reference, rows, masks, edge, settling, felt };
         let touch = Reals::zeros(assembly.precision, contacts.numbers() * contacts.rows.len());
         world.entity_mut(body.entity).insert((contacts, ToolTouch(touch)));
     }
@@ -173,6 +175,11 @@ pub fn motion(tool: &Tool) -> ToolMotion {
         path: tool.places().iter().map(place).collect(),
         moves: tool.moves.iter().map(|part| (part.displacement, radians(part.rotation))).collect(),
         curves: tool.moves.iter().map(|part| part.curve.clone()).collect(),
+        hand: tool.port.as_ref().map(|port| Hand {
+            port: port.name.clone(),
+            speed: port.speed,
+            spin: port.spin.to_radians(),
+        }),
     }
 }
 
@@ -199,9 +206,10 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
                     speed * clock.time_step,
                     contacts.edge,
                 );
-                diagnostics.error_at(path.as_str(), message).note(
-                    "it could be through a surface before anybody sees it: give it more time, or take a smaller `step`",
-                );
+                let way_out = if tool.port.is_some() { "lower the `speed` of its port" } else { "give it more time" };
+                diagnostics.error_at(path.as_str(), message).note(format!(
+                    "it could be through a surface before anybody sees it: {way_out}, or take a smaller `step`"
+                ));
             }
         }
     }

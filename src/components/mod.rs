@@ -52,7 +52,7 @@ pub use observation::{Cadence, Energies, Observed, Probe};
 pub use own_load::{LoadText, NodeAtRest, OfSystem, OwnLoad};
 pub use patches::{Patches, Scheme};
 pub use signal::{Signal, Signals};
-pub use tool::{Pose, TOUCH_NUMBERS, ToolContact, ToolContacts, ToolMotion, ToolTouch};
+pub use tool::{FELT_NUMBERS, Hand, Key, Pose, TOUCH_NUMBERS, ToolContact, ToolContacts, ToolMotion, ToolTouch};
 pub use touched::Touched;
 
 use bevy_ecs::prelude::*;

@@ -20,7 +20,7 @@ pub use guards::{Watch, begin as begin_to_guard, held_for_long};
 pub use look::{Look, WatchKernels, look};
 pub use probes::{header, observe_probe};
 pub use rounding::{Rounding, shortest_edge};
-pub use tools::{ToolReading, read_tool};
+pub use tools::{Felt, ToolReading, feel, read_tool};
 pub use track::Track;
 
 use self::track::Moment;

@@ -1,6 +1,6 @@
 //! What tools feel.
 
-use crate::backend::device::bring_to_host;
+use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::Error;
 use bevy_ecs::prelude::*;
@@ -50,7 +50,7 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
                     continue;
                 }
                 let row = row as usize;
-                let at = TOUCH_NUMBERS * (contacts.tools.len() * place + number);
+                let at = contacts.numbers_a_tool() * (contacts.tools.len() * place + number);
                 let number = |i: usize| touch.get(at + i);
                 reading.work += number(5);
                 reading.loss += number(6);
@@ -70,4 +70,50 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
         }
     }
     Ok(reading)
+}
+
+/// What the tool of a hand felt in a batch of steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Felt {
+    /// The mean of the force on it (N).
+    pub force: DVec3,
+    /// The moment of this force about its origin, where nodes and tool are at the end (N m).
+    pub torque: DVec3,
+    /// Whether it touched anything.
+    pub in_contact: bool,
+}
+
+/// What the tools of hands felt in so many steps; another batch begins for each tool that is asked for.
+///
+/// # Errors
+/// What the GPU says.
+pub fn feel(world: &mut World, tool: &str, steps: u64) -> Result<Felt, Error> {
+    bring_to_host(world, |_, name| [ToolTouch::NAME, Displacement::NAME].contains(&name))?;
+    let now = world.resource::<Signals>().poses_at(world.resource::<Clock>().time());
+    let mut felt = Felt::default();
+    let mut bodies = world.query::<(&ToolContacts, &mut ToolTouch, &RestPosition, &Displacement)>();
+    for (contacts, mut touch, rest, u) in bodies.iter_mut(world).filter(|(contacts, ..)| contacts.felt) {
+        let numbers = contacts.numbers_a_tool();
+        for (bit, contact) in contacts.tools.iter().enumerate().filter(|(_, contact)| contact.tool == tool) {
+            let Some(at) = now.iter().find(|(slot, _)| *slot == contact.signal).map(|(_, pose)| pose.at) else {
+                continue;
+            };
+            for (place, &row) in contacts.rows.iter().enumerate() {
+                let first = numbers * (contacts.tools.len() * place + bit) + TOUCH_NUMBERS;
+                let force = -DVec3::from_array([0, 1, 2].map(|i| touch.get(first + i))) / steps as f64;
+                if force == DVec3::ZERO {
+                    continue;
+                }
+                (0..FELT_NUMBERS).for_each(|i| touch.set(first + i, 0.0));
+                let end = rest.0[row as usize] - contacts.reference + u.vector(row as usize);
+                felt.force += force;
+                felt.torque += (end - at).cross(force);
+                felt.in_contact = true;
+            }
+        }
+    }
+    if felt.in_contact {
+        send_to_device(world, |_, name| name == ToolTouch::NAME)?;
+    }
+    Ok(felt)
 }

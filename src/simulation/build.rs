@@ -153,6 +153,8 @@ impl Simulation {
             preload: None,
             solver,
             tape: Tape::default(),
+            ports: super::ports::Ports::of(&scene.scene),
+            metronome: Default::default(),
             history: History::default(),
             surfaces: Default::default(),
             grabs: Default::default(),

@@ -146,6 +146,7 @@ pub const UNITS: &[(&str, &str)] = &[
     ("tools.*.penetration", "m"),
     ("tools.*.work", "J"),
     ("tools.*.loss", "J"),
+    ("real_time.waited", "s"),
     ("guards.rounding", "J"),
     ("guards.at_start", "J"),
     ("guards.scale", "J"),

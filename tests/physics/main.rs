@@ -43,6 +43,8 @@ mod overlaps;
 mod own_systems;
 mod pick;
 mod points;
+mod ports;
+mod ports_devices;
 mod precision;
 mod preload;
 mod probes;

@@ -120,6 +120,52 @@ fn friction_in_a_static_analysis_is_warned_of() {
 }
 
 #[test]
+fn what_is_wrong_with_a_port_is_told_with_what_is_allowed() {
+    let port = |words: &str, more: &str| {
+        format!("(shape: Sphere(radius: 0.06), at: (0.05, 0.05, 0.2), port: ({words}) {more})")
+    };
+    assert_eq!(told(&port("name: \"hand\", speed: 0.1", ""), TOUCH, ""), "");
+    let cases = [
+        (
+            "speed: 0.1",
+            "",
+            "4: error: the field `name` is missing in `port` | name: Its name, by which a program opens it.",
+        ),
+        ("name: \"\", speed: 0.1", "", "4: error: a port needs a name, by which a program opens it"),
+        ("name: \"h\", speed: 0", "", "4: error: `speed` must be above 0, found 0 m/s"),
+        ("name: \"h\", speed: 1, spin: -1", "", "4: error: `spin` must be above 0, found -1 degrees a second"),
+        ("name: \"h\", speed: 1, every: 0", "", "4: error: `every` must be above 0, found 0 s"),
+        (
+            "name: \"h\", speed: 1, follow: Proxy(stiffness: 0)",
+            "",
+            "4: error: `stiffness` must be above 0, found 0 N/m",
+        ),
+        (
+            "name: \"h\", speed: 1, follow: Proxy(stiffness: 1, damping: -1)",
+            "",
+            "4: error: `damping` must be 0 or above, found -1 N s/m",
+        ),
+        ("name: \"h\", speed: 1, follow: Pull", "", "`follow` cannot be `Pull`"),
+        ("name: \"h\", speed: 100", "", "4: error: the tool `rod` goes up to 1.0"),
+        (
+            "name: \"h\", speed: 1",
+            ", moves: [(displacement: (0, 0, 1))]",
+            "4: error: a `port` beside `moves`: a hand moves the tool, and nobody else | leave one of both out; \
+             `at` says where the tool is at first",
+        ),
+    ];
+    for (words, more, expected) in cases {
+        let found = told(&port(words, more), TOUCH, "");
+        assert!(found.contains(expected), "{words}{more}:\n{found}\nexpected\n{expected}");
+    }
+    let found = told(&port("name: \"h\", speed: 1", ""), TOUCH, "analysis: Static(),");
+    assert!(found.contains("4: warning: the tool stays where it is: in a static analysis"), "{found}");
+    let two = format!("{}, \"tip\": {}", port("name: \"h\", speed: 1", ""), port("name: \"h\", speed: 1", ""));
+    let found = told(&two, "Tool(tool: \"rod\"), Tool(tool: \"tip\")", "");
+    assert!(found.contains("4: error: `rod` has the port `h` already | a device moves one tool"), "{found}");
+}
+
+#[test]
 fn probes_of_tools_name_one_that_is_there_and_no_nodes() {
     let of = |probe: &str| told(ROD, TOUCH, &format!("probes: {{\"p\": ({probe})}},"));
     assert_eq!(of("what: ToolForce(tool: \"rod\")"), "");

@@ -34,6 +34,7 @@ pub fn text(summary: &Summary, scene: &SceneFile, folder: &Path, paint: Paint) -
     mass(summary, &mut page);
     probes(summary, scene, &mut page);
     tools(summary, &mut page);
+    ports(summary, &mut page);
     outputs(folder, &mut page);
     page.text
 }
@@ -219,6 +220,18 @@ fn tools(summary: &Summary, page: &mut Page) {
         format!("{name} feels ({x}, {y}, {z}) of {nodes}{inside}; it did {work}, lost to impact and friction {loss}")
     });
     page.rows("tools", lines.collect::<Vec<_>>());
+}
+
+fn ports(summary: &Summary, page: &mut Page) {
+    let lines = summary.ports.iter().map(|(name, port)| {
+        let told = format!("{name} moved {} by {}", port.tool, counted(port.poses, "pose"));
+        if port.warning.is_empty() { told } else { format!("{told}: {}", port.warning) }
+    });
+    page.rows("ports", lines.collect::<Vec<_>>());
+    if let Some(kept) = &summary.real_time {
+        let waited = quantity(kept.waited, "s");
+        page.row("pace", format!("waited {waited} for life; late {} of {}", counted(kept.late, "time"), kept.ticks));
+    }
 }
 
 fn probes(summary: &Summary, scene: &SceneFile, page: &mut Page) {

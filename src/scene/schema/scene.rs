@@ -53,6 +53,9 @@ pub struct Scene {
     /// Systems in the order they run in each step; left out, it is derived from what the scene contains.
     #[serde(default)]
     pub schedule: Option<Vec<String>>,
+    /// Whether the motion goes as fast as life: a second of it takes a second, or longer where steps do.
+    #[serde(default)]
+    pub real_time: bool,
     /// Whether neighbouring systems that work node by node share a pass.
     #[serde(default = "yes")]
     pub fuse: bool,

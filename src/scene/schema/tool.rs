@@ -30,6 +30,53 @@ pub struct Tool {
     /// What is added to that, each by a curve of its own.
     #[serde(default)]
     pub moves: Vec<ToolMove>,
+    /// The device of a hand that moves it from where it is at first. Not with a `path` or `moves`.
+    #[serde(default)]
+    pub port: Option<Port>,
+}
+
+/// The port of a device that a hand holds, and how the tool follows it.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Port {
+    /// Its name, by which a program opens it.
+    pub name: String,
+    /// How fast the tool goes at most (m/s).
+    pub speed: f64,
+    /// How fast it turns at most (degrees a second).
+    #[serde(default = "a_turn")]
+    pub spin: f64,
+    /// Time between two readings of the device (s): a batch of steps.
+    #[serde(default = "a_millisecond")]
+    pub every: f64,
+    /// Where the tool goes.
+    #[serde(default)]
+    pub follow: Follow,
+}
+
+fn a_turn() -> f64 {
+    360.0
+}
+
+fn a_millisecond() -> f64 {
+    1e-3
+}
+
+/// How a tool follows a device.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub enum Follow {
+    /// It goes where the device is.
+    #[default]
+    Position,
+    /// It is drawn there by a spring, without a mass, and yields to what it touches; it is turned as the device is.
+    Proxy {
+        /// Stiffness of the spring (N/m).
+        stiffness: f64,
+        /// Damping of its own motion (N s/m).
+        #[serde(default)]
+        damping: f64,
+    },
 }
 
 /// A closed surface of triangles as a tool.

@@ -5,7 +5,7 @@ use super::names::body_named;
 use super::{Validator, scene, select, show};
 use crate::scene::limits::{MOST_SWEEPS, TOOLS_OF_A_BODY};
 use crate::scene::load::SceneFile;
-use crate::scene::schema::{Contact, Scene, Tool};
+use crate::scene::schema::{Contact, Follow, Port, Scene, Tool};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use glam::DVec3;
@@ -17,6 +17,9 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
         let path = scene("tools").name(name);
         geometry(file, validator, &path, found);
         tool(validator, &path, found);
+        if let Some(found) = &found.port {
+            port(scene_, validator, name, &path.name("port"), found);
+        }
         let touches = |contact: &Contact| matches!(contact, Contact::Tool { tool, .. } if tool == name);
         if !scene_.contacts.iter().any(touches) {
             validator
@@ -86,6 +89,40 @@ fn tool(validator: &mut Validator, path: &Path, tool: &Tool) {
                 .warn_at(path.name("moves").index(number), "this moves nothing")
                 .note("give `displacement` or `rotation`");
         }
+    }
+}
+
+fn port(scene_: &Scene, validator: &mut Validator, tool: &str, path: &Path, port: &Port) {
+    if port.name.is_empty() {
+        validator.out.error_at(path.name("name"), "a port needs a name, by which a program opens it");
+    }
+    validator.above_zero(&path.name("speed"), port.speed, "m/s");
+    validator.above_zero(&path.name("spin"), port.spin, "degrees a second");
+    validator.above_zero(&path.name("every"), port.every, "s");
+    if let Follow::Proxy { stiffness, damping } = port.follow {
+        validator.above_zero(&path.name("follow").name("stiffness"), stiffness, "N/m");
+        validator.not_negative(&path.name("follow").name("damping"), damping, "N s/m");
+    }
+    let named = |other: &Tool| other.port.as_ref().is_some_and(|other| other.name == port.name);
+    let before = scene_.tools.iter().take_while(|(name, _)| *name != tool);
+    if let Some((other, _)) = before.into_iter().find(|(_, other)| named(other)) {
+        validator
+            .out
+            .error_at(path.name("name"), format!("`{other}` has the port `{}` already", port.name))
+            .note("a device moves one tool: give each port a name of its own");
+    }
+    let has = |what: fn(&Tool) -> bool| scene_.tools.get(tool).is_some_and(what);
+    for (field, there) in [("path", has(|tool| !tool.path.is_empty())), ("moves", has(|tool| !tool.moves.is_empty()))] {
+        if there {
+            let message = format!("a `port` beside `{field}`: a hand moves the tool, and nobody else");
+            validator.out.error_at(path, message).note("leave one of both out; `at` says where the tool is at first");
+        }
+    }
+    if scene_.is_static() {
+        validator
+            .out
+            .warn_at(path, "the tool stays where it is: in a static analysis no time passes in which a hand moves")
+            .note("leave `port` out, or `analysis`");
     }
 }
 
