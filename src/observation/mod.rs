@@ -1,5 +1,6 @@
 //! Looking at a run: probes, energies, fields and guards, when they are due. Reads only.
 
+mod contacts;
 mod element_fields;
 mod energies;
 mod fields;
@@ -13,6 +14,7 @@ mod tables;
 mod tools;
 mod track;
 
+pub use contacts::{ContactReading, read_contact};
 pub use energies::{energies, energy_header, mass};
 pub use fields::{BodyFields, body_fields, internal_forces};
 pub use frame::{WrittenFields, write as write_fields, write_whole};

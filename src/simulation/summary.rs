@@ -85,6 +85,8 @@ pub struct Summary {
     pub probes: BTreeMap<String, (f64, Vec<f64>)>,
     /// What each tool feels at the end.
     pub tools: BTreeMap<String, crate::observation::ToolReading>,
+    /// What each body feels of others and itself at the end, where they may touch.
+    pub contacts: BTreeMap<String, crate::observation::ContactReading>,
     /// What came through the ports of tools.
     pub ports: BTreeMap<String, super::PortUse>,
     /// How the run kept up with life, where the scene has `real_time`.
@@ -179,6 +181,11 @@ impl Simulation {
             let reading = crate::observation::read_tool(&mut self.world, &name)?;
             tools.insert(name, reading);
         }
+        let mut contacts = BTreeMap::new();
+        for name in self.scene.bodies.keys().cloned().collect::<Vec<_>>() {
+            let body = self.body(&name)?;
+            contacts.extend(crate::observation::read_contact(&mut self.world, body)?.map(|reading| (name, reading)));
+        }
         let facts = &self.facts;
         Ok(Summary {
             version: env!("CARGO_PKG_VERSION"),
@@ -219,6 +226,7 @@ impl Simulation {
             inversions: inversions(&mut self.world)?,
             probes: self.world.resource::<Observer>().latest.clone(),
             tools,
+            contacts,
             ports: self.ports(),
             real_time: self.scene.real_time.then(|| self.metronome.kept()),
             guards: self.guards(),

@@ -14,6 +14,7 @@ mod outside;
 mod own_systems;
 mod set;
 mod several;
+mod surfaces;
 mod tools;
 mod values;
 mod words;

@@ -34,6 +34,7 @@ pub fn text(summary: &Summary, scene: &SceneFile, folder: &Path, paint: Paint) -
     mass(summary, &mut page);
     probes(summary, scene, &mut page);
     tools(summary, &mut page);
+    contacts(summary, &mut page);
     ports(summary, &mut page);
     outputs(folder, &mut page);
     page.text
@@ -220,6 +221,19 @@ fn tools(summary: &Summary, page: &mut Page) {
         format!("{name} feels ({x}, {y}, {z}) of {nodes}{inside}; it did {work}, lost to impact and friction {loss}")
     });
     page.rows("tools", lines.collect::<Vec<_>>());
+}
+
+fn contacts(summary: &Summary, page: &mut Page) {
+    let lines = summary.contacts.iter().map(|(name, reading)| {
+        let [x, y, z] = reading.force.to_array().map(|part| quantity(part, "N"));
+        let inside = match reading.penetration > 0.0 {
+            true => format!(", the deepest {} inside", quantity(reading.penetration, "m")),
+            false => String::new(),
+        };
+        let (nodes, loss) = (counted(reading.nodes as u64, "node"), quantity(reading.loss, "J"));
+        format!("{name} feels ({x}, {y}, {z}) and touches with {nodes}{inside}; lost to impact and friction {loss}")
+    });
+    page.rows("contacts", lines.collect::<Vec<_>>());
 }
 
 fn ports(summary: &Summary, page: &mut Page) {

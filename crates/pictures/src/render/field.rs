@@ -39,6 +39,8 @@ const KNOWN: [(&str, &str, &str, &str, Option<f32>); 16] = [
     ("reaction", "", "reaction", "N", None),
     ("internal_force", "", "internal force", "N", None),
     ("external_force", "", "external force", "N", None),
+    ("contact_force", "", "contact force", "N", None),
+    ("contact_traction", "", "contact traction", "Pa", None),
     ("green_strain", "", "Green-Lagrange strain", "", Some(0.0)),
     ("energy_density", "", "energy density", "J/m³", None),
     ("fibre_stretch", "", "stretch of fibres", "", Some(1.0)),
