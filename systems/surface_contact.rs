@@ -38,7 +38,7 @@ fn surfaces_stay(world: &World) -> bool {
     contacts.is_some_and(|contacts| contacts.bodies.iter().all(|&body| world.get::<SurfaceRows>(body).is_some()))
 }
 
-/// How far points may go before it is looked anew what is near what, in edges.
+/// How far points may go before it is looked anew what is near what, in edges; four times that of fast ones.
 const SKIN: f64 = 0.25;
 
 /// How points of one body meet faces of another.
@@ -83,7 +83,8 @@ struct Surface {
     apart: Vec<(u32, u32)>,
     /// Elements that are there; `None` before anything is known.
     elements: Option<usize>,
-    tree: Tree,
+    /// One a body.
+    trees: Vec<Tree>,
     lists: Lists,
     /// Where the nodes are (m, from the reference).
     places: Vec<DVec3>,

@@ -126,7 +126,7 @@ fn overlap(
     }
     let triangles: Vec<[u32; 3]> = other_body.placed.surface().iter().flat_map(|face| face.triangles()).collect();
     let surfaces = Surfaces::new(solid.points.len(), triangles.clone(), vec![0; triangles.len()], Vec::new());
-    let tree = Tree::new(triangles.len(), |triangle| surfaces.corners(&solid.points, triangle));
+    let tree = Tree::new(0..triangles.len() as u32, |triangle| surfaces.corners(&solid.points, triangle));
     // none within the depth that comes out by itself: deeper
     let depth = |node: u32| {
         let (at, mut nearest) = (mesh.points[node as usize], f64::INFINITY);

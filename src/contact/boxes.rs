@@ -1,6 +1,7 @@
 //! A tree of boxes over triangles that deform: its shape is made once, its boxes follow.
 
 use glam::DVec3;
+use std::ops::Range;
 
 /// Triangles in a leaf.
 const LEAF: usize = 4;
@@ -26,21 +27,23 @@ impl Box3 {
 /// and 2i + 1, the first is number 1.
 #[derive(Clone, Debug, Default)]
 pub struct Tree {
+    /// Their numbers.
     order: Vec<u32>,
     boxes: Vec<Box3>,
 }
 
 impl Tree {
-    /// Of so many triangles, whose corners are at these places now.
-    pub fn new(count: usize, corners: impl Fn(u32) -> [DVec3; 3]) -> Self {
+    /// Of triangles of these numbers, whose corners are at these places now.
+    pub fn new(numbers: Range<u32>, corners: impl Fn(u32) -> [DVec3; 3]) -> Self {
+        let count = numbers.len();
         let middle = |triangle: u32| corners(triangle).into_iter().sum::<DVec3>() / 3.0;
-        let all = (0..count as u32).map(middle).fold(Box3::EMPTY, |all, at| all.join(Box3 { low: at, high: at }));
+        let all = numbers.clone().map(middle).fold(Box3::EMPTY, |all, at| all.join(Box3 { low: at, high: at }));
         let size = (all.high - all.low).max_element().max(f64::MIN_POSITIVE);
         let number = |triangle: u32| {
             let at = (middle(triangle) - all.low) / size * f64::from((1_u32 << BITS) - 1);
             at.to_array().iter().enumerate().fold(0_u64, |sum, (axis, &place)| sum | spread(place as u64) << axis)
         };
-        let mut keyed: Vec<(u64, u32)> = (0..count as u32).map(|triangle| (number(triangle), triangle)).collect();
+        let mut keyed: Vec<(u64, u32)> = numbers.map(|triangle| (number(triangle), triangle)).collect();
         keyed.sort_unstable();
         let order = keyed.into_iter().map(|(_, triangle)| triangle).collect();
         let leaves = count.div_ceil(LEAF).next_power_of_two();
@@ -125,7 +128,7 @@ mod tests {
                     [at, at + 0.1 * place(), at + 0.1 * place()]
                 })
                 .collect();
-            let mut tree = Tree::new(count, |triangle| corners[triangle as usize]);
+            let mut tree = Tree::new(0..count as u32, |triangle| corners[triangle as usize]);
             corners.iter_mut().flatten().for_each(|corner| *corner += 0.3 * DVec3::new(corner.y, -corner.x, 1.0));
             tree.refit(|triangle| corners[triangle as usize]);
             for _ in 0..20 {

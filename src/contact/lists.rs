@@ -56,8 +56,8 @@ impl Lists {
         reach + 2.0 * most <= self.radius
     }
 
-    /// Finds all triangles within a radius (m) of points.
-    pub fn find(finder: &Finder<'_>, tree: &Tree, places: &[DVec3], radius: f64, cpu: &Cpu) -> Self {
+    /// Finds all triangles within a radius (m) of points, in a tree a body.
+    pub fn find(finder: &Finder<'_>, trees: &[Tree], places: &[DVec3], radius: f64, cpu: &Cpu) -> Self {
         let task = |task: usize| {
             let (mut found, mut near) = (Vec::new(), Vec::new());
             let points = task * POINTS_A_TASK..finder.points.len().min((task + 1) * POINTS_A_TASK);
@@ -65,14 +65,17 @@ impl Lists {
                 near.clear();
                 let point = &finder.points[number];
                 let at = point.place(places);
-                tree.near(at, radius, |triangle| {
-                    if finder.may_meet(number as u32, triangle) {
-                        let corners = finder.surfaces.corners(places, triangle);
-                        if OnTriangle::nearest(at, corners).at.distance_squared(at) <= radius * radius {
-                            near.push(triangle);
+                let met = trees.iter().zip(0..).filter(|(_, body)| (finder.reach)(point.body, *body).is_some());
+                for (tree, _) in met {
+                    tree.near(at, radius, |triangle| {
+                        if finder.may_meet(number as u32, triangle) {
+                            let corners = finder.surfaces.corners(places, triangle);
+                            if OnTriangle::nearest(at, corners).at.distance_squared(at) <= radius * radius {
+                                near.push(triangle);
+                            }
                         }
-                    }
-                });
+                    });
+                }
                 if !near.is_empty() {
                     near.sort_unstable();
                     found.push((number as u32, near.clone()));
@@ -91,12 +94,10 @@ impl Lists {
 }
 
 impl Finder<'_> {
-    /// Whether a triangle may be in a point's way: of a body that it meets, none of its own nodes' triangles.
+    /// Whether a triangle of a body that a point meets may be in its way: none of its own nodes' triangles.
     fn may_meet(&self, number: u32, triangle: u32) -> bool {
         let point = &self.points[number as usize];
-        let body = self.surfaces.bodies[triangle as usize];
-        (self.reach)(point.body, body).is_some()
-            && (body != point.body || !self.is_of_point(point, triangle))
+        (self.surfaces.bodies[triangle as usize] != point.body || !self.is_of_point(point, triangle))
             && (self.apart.is_empty() || self.apart.binary_search(&(number, triangle)).is_err())
     }
 

@@ -101,7 +101,12 @@ fn survey(
         .iter()
         .map(|&(body, row)| columns[body as usize].rest.0[row as usize] - contacts.reference)
         .collect();
-    surface.tree = Tree::new(surface.triangles.triangles.len(), |number| surface.triangles.corners(&rest, number));
+    let bodies = &surface.triangles.bodies;
+    let of_body = |body: u32| {
+        let range = bodies.partition_point(|&other| other < body)..bodies.partition_point(|&other| other <= body);
+        Tree::new(range.start as u32..range.end as u32, |number| surface.triangles.corners(&rest, number))
+    };
+    surface.trees = (0..contacts.bodies.len() as u32).map(of_body).collect();
     contacts.surface = surface;
     near_at_rest(contacts, &rest);
 }
@@ -138,7 +143,7 @@ fn near_at_rest(contacts: &mut SurfaceContacts, rest: &[DVec3]) {
     let surface = &contacts.surface;
     let finder = Finder { surfaces: &surface.triangles, points: &surface.points, reach: &reach, apart: &[] };
     let cpu = Cpu::new(1, 0, Default::default());
-    let lists = Lists::find(&finder, &surface.tree, rest, radius, &cpu);
+    let lists = Lists::find(&finder, &surface.trees, rest, radius, &cpu);
     let mut apart = Vec::new();
     for (place, &point) in lists.points.iter().enumerate() {
         apart.extend(lists.triangles(place).iter().map(|&triangle| (point, triangle)));
@@ -168,13 +173,15 @@ pub(super) fn search(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
     if contacts.surface.lists.hold(&contacts.surface.places, farthest) {
         return;
     }
-    let mut tree = std::mem::take(&mut contacts.surface.tree);
+    let mut trees = std::mem::take(&mut contacts.surface.trees);
     let meets = |point: u32, face: u32| contacts.meeting(point, face).map(|of| of.thickness + reach);
     let Surface { triangles, points, places, apart, .. } = &contacts.surface;
-    tree.refit(|number| triangles.corners(places, number));
+    trees.iter_mut().for_each(|tree| tree.refit(|number| triangles.corners(places, number)));
     let finder = Finder { surfaces: triangles, points, reach: &meets, apart };
-    let lists = Lists::find(&finder, &tree, places, farthest + contacts.skin * contacts.edge, cpu);
+    // reach is four steps of the fastest and a little: of what is fast lists serve some steps, too
+    let skin = contacts.skin * (contacts.edge + 40.0 * reach).min(4.0 * contacts.edge);
+    let lists = Lists::find(&finder, &trees, places, farthest + skin, cpu);
     let surface = &mut contacts.surface;
     surface.wake = vec![0.0; lists.points.len()];
-    (surface.tree, surface.lists, surface.travelled) = (tree, lists, 0.0);
+    (surface.trees, surface.lists, surface.travelled) = (trees, lists, 0.0);
 }

@@ -11,6 +11,7 @@ mod lobe;
 mod parameters;
 mod resume;
 mod shipped;
+mod surfaces;
 mod tools;
 
 use sinew::components::Precision;

@@ -28,7 +28,7 @@ enum Pick {
 }
 
 /// What is known of arrays: name in the file, other name, what it is, its length in words, unit, middle.
-const KNOWN: [(&str, &str, &str, &str, Option<f32>); 16] = [
+const KNOWN: [(&str, &str, &str, &str, Option<f32>); 18] = [
     ("displacement", "", "displacement", "m", None),
     ("velocity", "speed", "speed", "m/s", None),
     ("von_mises", "", "von Mises stress", "Pa", None),
