@@ -8,7 +8,7 @@ use super::partial::wrong_values;
 use super::parts::{self, Problem, Together};
 use super::schema::Scene;
 use super::source::Source;
-use super::syntax::{Span, Tree};
+use super::syntax::{Kind, Path as Way, Span, Tree};
 use crate::mesh::Mesh;
 use glam::DVec3;
 use ron::extensions::Extensions;
@@ -229,6 +229,14 @@ impl SceneFile {
     /// The syntax tree of [`Self::text`], in which what parts hold has the names that the scene knows it by.
     pub fn tree(&self) -> &Tree {
         &self.tree
+    }
+
+    /// The names of the scene's parts, in the order in which the scene names them.
+    pub fn part_names(&self) -> Vec<&str> {
+        let parts = Way::from("parts").find(&self.tree.root).ok();
+        let Some(Kind::Map(entries)) = parts.map(|parts| &parts.kind) else { return Vec::new() };
+        let names = entries.iter().map(|entry| &entry.key.kind);
+        names.filter_map(|name| if let Kind::Text(name) = name { Some(name.as_str()) } else { None }).collect()
     }
 
     /// An empty list for complaints about this scene.

@@ -41,6 +41,7 @@ mod one_pass;
 mod output_fields;
 mod overlaps;
 mod own_systems;
+mod parts;
 mod pick;
 mod points;
 mod precision;

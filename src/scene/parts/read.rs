@@ -198,7 +198,7 @@ impl Reader<'_> {
         let found = self.put_together(Source::of(number, text), &inner, overrides);
         self.chain.pop();
         // names in it are relative to its own folder, those in the scene to the scene's
-        let ahead = inner.strip_prefix(folder).unwrap_or(&inner);
+        let ahead = name.rfind('/').map_or("", |slash| &name[..=slash]);
         found.map(|found| if ahead.is_empty() { found } else { ahead_of_paths(&found, ahead) })
     }
 
