@@ -8,7 +8,7 @@ use super::partial::wrong_values;
 use super::parts::{self, Problem, Together};
 use super::schema::Scene;
 use super::source::Source;
-use super::syntax::{Kind, Path as Way, Span, Tree};
+use super::syntax::{Kind, Node, Path as Way, Segment, Span, Tree};
 use crate::mesh::Mesh;
 use glam::DVec3;
 use ron::extensions::Extensions;
@@ -231,18 +231,23 @@ impl SceneFile {
         &self.tree
     }
 
-    /// The names of the scene's parts, in the order in which the scene names them.
-    pub fn part_names(&self) -> Vec<&str> {
+    /// The scene's parts: their names, and the files that they come from, empty where there is none.
+    pub fn parts(&self) -> Vec<(&str, &str)> {
         let parts = Way::from("parts").find(&self.tree.root).ok();
         let Some(Kind::Map(entries)) = parts.map(|parts| &parts.kind) else { return Vec::new() };
-        let names = entries.iter().map(|entry| &entry.key.kind);
-        names.filter_map(|name| if let Kind::Text(name) = name { Some(name.as_str()) } else { None }).collect()
+        let scene = Segment::Name("scene".into());
+        let file = entries.iter().map(|entry| entry.value.child(&scene).and_then(text).unwrap_or_default());
+        entries.iter().zip(file).filter_map(|(entry, file)| Some((text(&entry.key)?, file))).collect()
     }
 
     /// An empty list for complaints about this scene.
     pub fn diagnostics(&self) -> Diagnostics {
         Diagnostics::new(Arc::clone(&self.source), Arc::clone(&self.tree))
     }
+}
+
+fn text(node: &Node) -> Option<&str> {
+    if let Kind::Text(text) = &node.inner().kind { Some(text) } else { None }
 }
 
 fn too_long(name: &str) -> String {

@@ -8,7 +8,7 @@ use crate::scene::syntax::Path;
 
 pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
     let scene_ = &file.scene;
-    let parts = file.part_names();
+    let parts = file.parts();
     if scene_.bodies.is_empty() {
         validator
             .out
@@ -103,8 +103,8 @@ pub(super) fn body_named(scene_: &Scene, validator: &mut Validator, owner: &Path
 }
 
 /// The name that something has in its part.
-fn own<'a>(name: &'a str, parts: &[&str]) -> &'a str {
-    let of_a_part = name.split_once('.').is_some_and(|(part, _)| parts.contains(&part));
+fn own<'a>(name: &'a str, parts: &[(&str, &str)]) -> &'a str {
+    let of_a_part = name.split_once('.').is_some_and(|(first, _)| parts.iter().any(|(part, _)| *part == first));
     if of_a_part { name.rsplit('.').next().unwrap_or(name) } else { name }
 }
 
