@@ -78,8 +78,7 @@ impl Source {
         let mut pieces = Vec::with_capacity(self.pieces.len() + parts.len() + 1);
         let mut start = 0;
         let mut put = false;
-        let new: Vec<Piece> =
-            parts.iter().map(|(text, from)| Piece { length: text.len(), from: *from }).collect();
+        let new: Vec<Piece> = parts.iter().map(|(text, from)| Piece { length: text.len(), from: *from }).collect();
         for piece in &self.pieces {
             let end = start + piece.length;
             if start < span.start {

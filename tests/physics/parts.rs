@@ -66,7 +66,11 @@ fn a_part_that_is_turned_and_moved_moves_turned() {
     let turn = [DMat3::from_rotation_z, DMat3::from_rotation_y, DMat3::from_rotation_x];
     let turn = turn[0](rotate.z.to_radians()) * turn[1](rotate.y.to_radians()) * turn[2](rotate.x.to_radians());
     for run in configurations() {
-        let placement = format!("rotate: {:?}, translate: {:?}", <(f64, f64, f64)>::from(rotate), <(f64, f64, f64)>::from(translate));
+        let placement = format!(
+            "rotate: {:?}, translate: {:?}",
+            <(f64, f64, f64)>::from(rotate),
+            <(f64, f64, f64)>::from(translate)
+        );
         let (mut alone, mut part) = (end(&run, &alone()), end(&run, &placed(&placement)));
         let (before, after) = (alone.displacements("b").unwrap(), part.displacements("p.b").unwrap());
         let size = before.iter().map(|u| u.length()).fold(0.0, f64::max);

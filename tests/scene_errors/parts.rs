@@ -153,7 +153,12 @@ fn mistakes_in_parts_are_shown_in_their_files() {
         (EYE, "title:", "duration: 3, title:", "eye.ron:3:5: error: `duration` belongs into the whole scene"),
         (EYE, "(0, 0, 1), at", "(0, 0, 0), at", "eye.ron:6:43: error: `normal` has no direction"),
         (EYE, "\"lens\":", "\"l.ens\":", "eye.ron:4:23: error: the name `l.ens` in a part has a dot"),
-        (EYE, "],\n    probes", ", Gravity(acceleration: (0, 0, 1))],\n    probes", "eye.ron:7:88: error: gravity belongs"),
+        (
+            EYE,
+            "],\n    probes",
+            ", Gravity(acceleration: (0, 0, 1))],\n    probes",
+            "eye.ron:7:88: error: gravity belongs",
+        ),
         (EYE, ") // the end", " // the end", "eye.ron:9:12: error: the file ends too early | the end of the file"),
         (TIP, "\"needle\"))", "\"nedle\"))", "tools/tip.ron:3:46: error: there is no tool `tip.nedle`"),
         (TIP, "probes:", "removal: [(when: At(1))], probes:", "tools/tip.ron:3:15: error: the part `tip` has no body"),
@@ -179,13 +184,33 @@ fn mistakes_around_parts_are_shown_where_the_part_is_named() {
         ("\"eye.ron\"", "\"ey.ron\"", "whole.ron:4:24: error: there is no file `ey.ron` | did you mean `eye.ron`?"),
         ("\"eye.ron\"", "\"\"", "whole.ron:4:24: error: the path of the part is empty"),
         ("scene: \"eye.ron\"", "", "whole.ron:4:16: error: the part `eye` has no `scene`"),
-        ("scene: \"eye.ron\"", "scale: 0, scene: \"eye.ron\"", "whole.ron:4:24: error: `scale` must be above 0, found 0"),
+        (
+            "scene: \"eye.ron\"",
+            "scale: 0, scene: \"eye.ron\"",
+            "whole.ron:4:24: error: `scale` must be above 0, found 0",
+        ),
         ("\"eye\":", "\"e.ye\":", "whole.ron:4:17: error: the part `e.ye` needs another name"),
-        ("\"eye.ron\"", "\"eye.ron\", set: {\"bodies.len.refine\": 1}", "whole.ron:4:41: error: `set`: there is no `len` in `bodies` | did you mean `lens`?"),
-        ("\"eye.ron\"", "\"eye.ron\", set: {\"bodies.lens.refine\": -1}", "whole.ron:4:63: error: `refine` must be a whole number, 0 or above, found -1"),
+        (
+            "\"eye.ron\"",
+            "\"eye.ron\", set: {\"bodies.len.refine\": 1}",
+            "whole.ron:4:41: error: `set`: there is no `len` in `bodies` | did you mean `lens`?",
+        ),
+        (
+            "\"eye.ron\"",
+            "\"eye.ron\", set: {\"bodies.lens.refine\": -1}",
+            "whole.ron:4:63: error: `refine` must be a whole number, 0 or above, found -1",
+        ),
         ("\"eye.ron\"", "\"eye.ron\", set: {\"bodies.lens.refin\": 1}", "whole.ron:4:54: error: unknown field `refin`"),
-        ("duration: 0.1,", "duration: 0.1, materials: {}, tools: {\"tip.needle\": (shape: Plane())},", "tools/tip.ron:2:23: error: `tip.needle` is in the scene already"),
-        ("body: \"eye.lens\"", "body: \"eye.len\"", "whole.ron:7:47: error: there is no body `eye.len` | did you mean `eye.lens`?"),
+        (
+            "duration: 0.1,",
+            "duration: 0.1, materials: {}, tools: {\"tip.needle\": (shape: Plane())},",
+            "tools/tip.ron:2:23: error: `tip.needle` is in the scene already",
+        ),
+        (
+            "body: \"eye.lens\"",
+            "body: \"eye.len\"",
+            "whole.ron:7:47: error: there is no body `eye.len` | did you mean `eye.lens`?",
+        ),
     ];
     let mut wrong = Vec::new();
     for (old, new, expected) in cases {

@@ -69,7 +69,11 @@ fn whole(name: &str, part: Part, path: &Path, problems: &mut Vec<Problem>) -> Op
         tell(path, format!("the part `{name}` needs another name"), note);
     }
     if !(part.scale > 0.0 && part.scale.is_finite()) {
-        tell(&path.name("scale"), format!("`scale` must be above 0, found {}", part.scale), "1 leaves sizes as they are");
+        tell(
+            &path.name("scale"),
+            format!("`scale` must be above 0, found {}", part.scale),
+            "1 leaves sizes as they are",
+        );
         return None;
     }
     let placement = Placement::of(&part);
@@ -255,7 +259,8 @@ impl Naming<'_> {
         for (number, constraint) in content.constraints.iter_mut().enumerate() {
             if placement.constraint(constraint).is_none() {
                 let path = self.path.name("constraints").index(number).name("axes");
-                let message = format!("as the part `{}` is turned, these axes lie along none of the scene's", self.part);
+                let message =
+                    format!("as the part `{}` is turned, these axes lie along none of the scene's", self.part);
                 self.tell(path, message, "hold or move all three, or turn the part by right angles");
             }
         }

@@ -67,7 +67,8 @@ impl Placement {
 
     fn gradient(&self, rows: &mut [DVec3; 3]) {
         if let Some(turn) = self.turn {
-            let turned = turn * DMat3::from_cols_array_2d(&rows.map(|row| row.to_array())).transpose() * turn.transpose();
+            let turned =
+                turn * DMat3::from_cols_array_2d(&rows.map(|row| row.to_array())).transpose() * turn.transpose();
             *rows = [0, 1, 2].map(|row| turned.row(row));
         }
     }

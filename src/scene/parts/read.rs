@@ -22,7 +22,8 @@ pub struct Together {
 /// from the folder that files are beside.
 pub fn read(mut source: Source, sets: &[String], beside: Beside<'_>, name: &str) -> Together {
     let texts = source.texts.clone();
-    let mut reader = Reader { beside, texts, chain: vec![shortest(name)], depth: 0, parts: 0, bytes: 0, mistakes: Vec::new() };
+    let mut reader =
+        Reader { beside, texts, chain: vec![shortest(name)], depth: 0, parts: 0, bytes: 0, mistakes: Vec::new() };
     let mut view = View::of(&source);
     if view.written().faults.is_empty() {
         let (first, then): (Vec<_>, Vec<_>) = sets.iter().enumerate().partition(|(_, set)| is_of_parts(set));
@@ -39,10 +40,12 @@ pub fn read(mut source: Source, sets: &[String], beside: Beside<'_>, name: &str)
 /// Whether a value says what parts there are: others may be for what these hold.
 fn is_of_parts(set: &str) -> bool {
     let way = Path::parse(set.split('=').next().unwrap_or_default()).unwrap_or_default();
-    let name = |number: usize| way.0.get(number).and_then(|segment: &Segment| match segment {
-        Segment::Name(name) => Some(name.as_str()),
-        Segment::Index(_) => None,
-    });
+    let name = |number: usize| {
+        way.0.get(number).and_then(|segment: &Segment| match segment {
+            Segment::Name(name) => Some(name.as_str()),
+            Segment::Index(_) => None,
+        })
+    };
     name(0) == Some("parts") && name(2) != Some("content")
 }
 
@@ -137,7 +140,10 @@ impl Reader<'_> {
             return;
         }
         if self.depth == PART_DEPTH {
-            self.tell(place(&marked), format!("parts of parts of parts: at most {PART_DEPTH} within each other are allowed"));
+            self.tell(
+                place(&marked),
+                format!("parts of parts of parts: at most {PART_DEPTH} within each other are allowed"),
+            );
             return;
         }
         self.depth += 1;
@@ -165,7 +171,8 @@ impl Reader<'_> {
     fn file(&mut self, name: &str, folder: &str, at: (usize, Span), overrides: &[Override]) -> Option<Stretches> {
         let full = if is_absolute(name) { name.to_string() } else { shortest(&format!("{folder}{name}")) };
         if name.is_empty() || name.contains(['"', '\\']) {
-            let message = if name.is_empty() { "the path of the part is empty" } else { "a path of a part has no \" or \\" };
+            let message =
+                if name.is_empty() { "the path of the part is empty" } else { "a path of a part has no \" or \\" };
             self.tell(at, message.to_string()).note("relative to this file, with slashes: \"tools/probe.ron\"");
             return None;
         }
@@ -208,12 +215,14 @@ impl Reader<'_> {
             Err(_) => drop(self.tell(at, format!("`{full}` lies outside the scene's folder")).note(Outside::HOW)),
             Ok((FileKind::Nothing, there)) => {
                 let wanted = full.rsplit('/').next().unwrap_or(full);
-                let scenes: Vec<&str> = there.iter().map(String::as_str).filter(|name| name.ends_with(".ron")).collect();
+                let scenes: Vec<&str> =
+                    there.iter().map(String::as_str).filter(|name| name.ends_with(".ron")).collect();
                 let notes = if scenes.is_empty() { Vec::new() } else { choice(wanted, scenes) };
                 self.tell(at, format!("there is no file `{full}`")).notes(notes);
             }
             Ok(_) if error.kind() == ErrorKind::FileTooLarge => {
-                let message = format!("with `{full}` the scene has more than {TEXT_BYTES} bytes, the most that are allowed");
+                let message =
+                    format!("with `{full}` the scene has more than {TEXT_BYTES} bytes, the most that are allowed");
                 self.tell(at, message);
             }
             Ok(_) => drop(self.tell(at, format!("the part `{full}` cannot be read: {error}"))),

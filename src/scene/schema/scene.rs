@@ -1,8 +1,7 @@
 //! The whole scene, its time step, its guards.
 
 use super::{
-    Accuracy, Body, Constraint, Contact, Curve, Load, Material, Output, OwnSystem, Part, Picture, Probe, Removal,
-    Tool,
+    Accuracy, Body, Constraint, Contact, Curve, Load, Material, Output, OwnSystem, Part, Picture, Probe, Removal, Tool,
 };
 use crate::scene::syntax::Path;
 use serde::{Deserialize, Serialize};
