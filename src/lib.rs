@@ -22,6 +22,7 @@ pub mod math;
 pub mod mesh;
 pub mod scene;
 mod simulation;
+pub mod skins;
 pub mod snapshot;
 #[path = "../systems/mod.rs"]
 pub mod systems;

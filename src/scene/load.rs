@@ -165,10 +165,10 @@ impl SceneFile {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let beside = Beside { folder, files: &files, outside: allowed.outside };
         let own = Path::new(name).strip_prefix(folder).unwrap_or(Path::new(name)).display().to_string();
-        let Together { source, view, mut mistakes } = parts::read(Source::new(name, text, sets), sets, beside, &own);
+        let Together { source, view, mut mistakes, is_whole } =
+            parts::read(Source::new(name, text, sets), sets, beside, &own);
         let written = view.written();
         mistakes.extend(written.faults.iter().cloned().map(Diagnostic::from));
-        let parts_are_read = mistakes.is_empty();
         let (partial, wrong_words) = check::<Scene>(&written.root, source.text());
         mistakes.extend(wrong_words);
         let tell = |problem: &Problem| {
@@ -182,7 +182,7 @@ impl SceneFile {
         };
         let without_parts = |mut scene: Scene, mistakes: &mut Vec<Diagnostic>| {
             let problems = parts::flatten(&mut scene);
-            if parts_are_read {
+            if is_whole {
                 mistakes.extend(problems.iter().map(tell));
             }
             scene
@@ -210,7 +210,8 @@ impl SceneFile {
                 }
                 Err(error) => mistakes.push(unforeseen(&error, diagnostics.text())),
             }
-        } else if let Some(scene) = partial {
+        } else if let Some(scene) = partial.filter(|_| is_whole) {
+            // what names something of a part that was not read is not wrong
             let scene = without_parts(scene, &mut mistakes);
             let wrong = wrong_values(&file(scene), &mistakes);
             mistakes.extend(wrong);

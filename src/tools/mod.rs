@@ -12,7 +12,7 @@ mod solid;
 mod surface;
 #[cfg(test)]
 mod tests;
-mod tree;
+pub(crate) mod tree;
 mod triangles;
 
 pub use form::Form;

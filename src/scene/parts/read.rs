@@ -16,14 +16,24 @@ pub struct Together {
     pub view: View,
     /// What is wrong with files of parts and with values.
     pub mistakes: Vec<Diagnostic>,
+    /// Whether all parts were read.
+    pub is_whole: bool,
 }
 
 /// Puts the values of `--set` and the files of parts into a text. `name` is that of the scene's own file, by its path
 /// from the folder that files are beside.
 pub fn read(mut source: Source, sets: &[String], beside: Beside<'_>, name: &str) -> Together {
     let texts = source.texts.clone();
-    let mut reader =
-        Reader { beside, texts, chain: vec![shortest(name)], depth: 0, parts: 0, bytes: 0, mistakes: Vec::new() };
+    let mut reader = Reader {
+        beside,
+        texts,
+        chain: vec![shortest(name)],
+        depth: 0,
+        parts: 0,
+        bytes: 0,
+        mistakes: Vec::new(),
+        is_whole: true,
+    };
     let mut view = View::of(&source);
     if view.written().faults.is_empty() {
         let (first, then): (Vec<_>, Vec<_>) = sets.iter().enumerate().partition(|(_, set)| is_of_parts(set));
@@ -34,7 +44,7 @@ pub fn read(mut source: Source, sets: &[String], beside: Beside<'_>, name: &str)
         reader.apply(&mut source, &mut view, &then);
     }
     source.texts = reader.texts;
-    Together { source, view, mistakes: reader.mistakes }
+    Together { source, view, mistakes: reader.mistakes, is_whole: reader.is_whole }
 }
 
 /// Whether a value says what parts there are: others may be for what these hold.
@@ -58,6 +68,8 @@ struct Reader<'a> {
     parts: usize,
     bytes: usize,
     mistakes: Vec<Diagnostic>,
+    /// Whether all parts were read.
+    is_whole: bool,
 }
 
 /// A value for a part, from the `set` of the file around it.
@@ -94,6 +106,7 @@ impl Reader<'_> {
     fn tell(&mut self, (text, span): (usize, Span), message: String) -> &mut Diagnostic {
         let mut mistake = Diagnostic::error(span, message);
         mistake.file = self.texts.get(text).cloned();
+        self.is_whole = false;
         self.mistakes.push(mistake);
         let last = self.mistakes.len() - 1;
         &mut self.mistakes[last]
