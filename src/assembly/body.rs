@@ -115,6 +115,7 @@ pub(super) fn spawn(
     super::columns::insert_node_columns(assembly, name, mesh, &node_rows, &authoring, world, body);
     world.entity_mut(body).insert(authoring);
     insert_forces(assembly.scheme, body, world);
+    super::skins::insert(assembly, name, &placed, body, world, diagnostics);
     Some(BodyParts { entity: body, placed, copies, node_rows, element_rows, blocks })
 }
 

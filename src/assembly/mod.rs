@@ -18,6 +18,7 @@ mod relaxation;
 mod removal;
 mod renew;
 mod select;
+mod skins;
 mod start;
 mod time_step;
 mod user_laws;

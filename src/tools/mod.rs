@@ -6,6 +6,8 @@ mod closed;
 mod form;
 mod grid;
 #[cfg(feature = "files")]
+mod ply;
+#[cfg(feature = "files")]
 mod read;
 mod shape;
 mod solid;

@@ -198,3 +198,64 @@ fn normals_point_outwards_and_have_length_one() {
         assert!((normal.length() - 1.0).abs() < 1e-12 && normal.dot(outwards) > 0.97, "{normal} at {outwards}");
     }
 }
+
+/// A tetrahedron and a square as PLY, in a form: text, or the bytes of numbers.
+fn ply(form: &str) -> Vec<u8> {
+    let mut bytes = format!(
+        "ply\nformat {form} 1.0\ncomment a test\nelement vertex 4\nproperty float x\nproperty double y\nproperty short z\n\
+         property uchar red\nelement face 2\nproperty uchar quality\nproperty list uchar int vertex_indices\nelement edge 0\n\
+         property int a\nend_header\n"
+    )
+    .into_bytes();
+    let points = [(0.0, 0.0, 0), (1.5, 0.0, 0), (1.5, -2.25, 0), (0.0, 1.0, -300)];
+    let big = form.contains("big");
+    let mut put = |text: String, little: &[u8]| match form {
+        "ascii" => bytes.extend(format!("{text} ").bytes()),
+        _ if big => bytes.extend(little.iter().rev()),
+        _ => bytes.extend(little),
+    };
+    for (x, y, z) in points {
+        put(x.to_string(), &(x as f32).to_le_bytes());
+        put(y.to_string(), &f64::to_le_bytes(y));
+        put(z.to_string(), &i16::to_le_bytes(z));
+        put("7".into(), &[7]);
+    }
+    for corners in [&[0, 1, 2][..], &[0, 1, 2, 3]] {
+        put("1".into(), &[1]);
+        put(corners.len().to_string(), &[corners.len() as u8]);
+        corners.iter().for_each(|corner| put(corner.to_string(), &i32::to_le_bytes(*corner)));
+    }
+    bytes
+}
+
+#[test]
+fn ply_files_are_read_in_all_their_forms_and_cut_short_ones_refused() {
+    for form in ["ascii", "binary_little_endian", "binary_big_endian"] {
+        let read = Triangles::from_bytes("a.ply", &ply(form)).unwrap();
+        assert_eq!(read.points[3], DVec3::new(0.0, 1.0, -300.0), "{form}");
+        assert_eq!((read.points[2].y, &read.triangles[..]), (-2.25, &[[0, 1, 2], [0, 1, 2], [0, 2, 3]][..]), "{form}");
+        let whole = ply(form);
+        for length in 0..whole.len() - 1 {
+            let cut = Triangles::from_bytes("a.ply", &whole[..length]);
+            // a text may end within its last number
+            assert!(cut.is_err() || form == "ascii", "{form}, {length} bytes");
+        }
+    }
+    let told = |from: &str, to: &str| {
+        let text = String::from_utf8(ply("ascii")).unwrap();
+        assert!(text.contains(from), "{from}");
+        Triangles::from_bytes("a.ply", text.replacen(from, to, 1).as_bytes()).unwrap_err().to_string()
+    };
+    for (from, to, expected) in [
+        ("format ascii 1.0\n", "", "the head names no format"),
+        ("property float x", "property quad x", "`property quad x` in the head"),
+        ("1.5 ", "abc ", "the file ends, or is no number, in vertex 1"),
+        ("1.5 ", "nan ", "vertex 1 is no place"),
+        ("1 4 0 1 2 3", "1 4 0 1 2 9", "a face names vertex 9; there are 4"),
+        ("1 3 0 1 2", "1 2 0 1", "face 0 is no polygon"),
+        ("1 3 0 1 2", "1 3 0 1 -2", "face 0 is no polygon"),
+        ("end_header\n", "", "the head of the file has no end"),
+    ] {
+        assert!(told(from, to).contains(expected), "{to}: {}", told(from, to));
+    }
+}

@@ -52,6 +52,7 @@ mod random;
 mod refined_lists;
 mod removal;
 mod second_order;
+mod skins;
 mod snapshots;
 mod statics;
 mod stiffness_damping;

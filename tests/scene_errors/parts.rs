@@ -286,3 +286,29 @@ fn what_is_not_placed_keeps_its_bits() {
     let Probe { on, .. } = &plain.probes["eye.top"];
     assert_eq!(on, &Some(Select::Set("z1".into())));
 }
+
+#[test]
+fn parts_with_any_letter_missing_or_another_are_read_or_refused() {
+    let whole = WHOLE.replace("\"eye.ron\"", "\"eye.ron\", rotate: (0, 0, 90), set: {\"bodies.lens.refine\": 1}");
+    let mut texts = Vec::new();
+    for (file, text) in [("whole.ron", whole.as_str()), ("eye.ron", EYE)] {
+        for at in (0..text.len()).filter(|at| text.is_char_boundary(*at) && text.is_char_boundary(at + 1)) {
+            for new in ["", "(", ")", "{", "\"", ",", ".", "-", "9"] {
+                texts.push((file, format!("{}{new}{}", &text[..at], &text[at + 1..])));
+            }
+        }
+    }
+    for (file, text) in &texts {
+        let of_part = with(&[("eye.ron", if *file == "eye.ron" { text } else { EYE })]);
+        let found = read(if *file == "eye.ron" { &whole } else { text }, of_part, &[]);
+        match found {
+            Err(wrong) => assert!(wrong.has_errors() && wrong.render(true).len() > 20, "{text}"),
+            Ok(scene) => {
+                let mut told = scene.diagnostics();
+                validate(&scene, &mut told);
+                assert_eq!(told.lines().len(), told.list().len());
+                assert_eq!(read(scene.text(), BTreeMap::new(), &[]).unwrap().scene, scene.scene, "{text}");
+            }
+        }
+    }
+}

@@ -285,9 +285,10 @@ fn overrides(source: &Source, set: &Node) -> Vec<Override> {
 }
 
 /// Fields that name files; a star stands for any name.
-const PATHS: [&[&str]; 4] = [
+const PATHS: [&[&str]; 5] = [
     &["bodies", "*", "mesh", "path"],
     &["bodies", "*", "rest_shape"],
+    &["bodies", "*", "skin", "file"],
     &["materials", "*", "law", "file"],
     &["tools", "*", "mesh", "path"],
 ];

@@ -18,7 +18,7 @@ pub use crate::mesh::ElementKind;
 pub use crate::tools::Shape;
 pub use accuracy::{Accuracy, AccuracyReference};
 pub use action::{Axis, Constraint, Curve, Removal, When};
-pub use body::{Body, MeshSource, Region, Start};
+pub use body::{Body, MeshSource, Region, SkinFile, Start};
 pub use load::{Load, LoadParts, Share};
 pub use material::{
     Direction, ELASTIC_LAWS, ExponentialFibres, Fibres, Inversion, Material, OwnLaw, Prony, PronyTerm,
