@@ -2,7 +2,7 @@
 
 use sinew::glam::DVec3;
 use sinew::scene::schema::{Axis, Constraint, Contact, MeshSource, Probe, Quantity, Select};
-use sinew::scene::{Diagnostics, SceneFile, validate};
+use sinew::scene::{Allowed, Diagnostics, SceneFile, validate};
 use std::collections::BTreeMap;
 
 const WHOLE: &str = r#"(
@@ -311,4 +311,33 @@ fn parts_with_any_letter_missing_or_another_are_read_or_refused() {
             }
         }
     }
+}
+
+#[test]
+fn parts_on_a_disk_are_beside_the_scene_or_below() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::create_dir_all(at("scenes/tools")).unwrap();
+    std::fs::write(at("scenes/whole.ron"), WHOLE).unwrap();
+    std::fs::write(at("scenes/eye.ron"), EYE).unwrap();
+    std::fs::write(at("tip.ron"), TIP).unwrap();
+    let load = |allowed: Allowed, set: &str| {
+        let sets: Vec<String> = [set].iter().filter(|set| !set.is_empty()).map(|set| set.to_string()).collect();
+        SceneFile::load_allowing(at("scenes/whole.ron"), &sets, allowed).map_err(|wrong| wrong.lines().join("\n"))
+    };
+    let told = load(Allowed::default(), "").unwrap_err();
+    assert!(told.ends_with("whole.ron:5:24: error: there is no file `tools/tip.ron`"), "{told}");
+    let outside = "parts.tip.scene=../tip.ron";
+    let told = load(Allowed::default(), outside).unwrap_err();
+    assert_eq!(told, "--set:1:17: error: `../tip.ron` lies outside the scene's folder");
+    assert!(load(Allowed::files_anywhere(), outside).unwrap().scene.tools.contains_key("tip.needle"));
+    let absolute = format!("parts.tip.scene={}", at("tip.ron").display());
+    assert!(load(Allowed::files_anywhere(), &absolute).unwrap().scene.tools.contains_key("tip.needle"));
+    let told = load(Allowed::default(), "parts.tip.scene=tools").unwrap_err();
+    assert!(told.contains("the part `tools` cannot be read"), "{told}");
+    std::fs::write(at("scenes/tools/tip.ron"), [0xff, 0xfe, 0x00]).unwrap();
+    assert!(load(Allowed::default(), "").unwrap_err().contains("`tools/tip.ron` is not a text in UTF-8"));
+    std::fs::write(at("scenes/tools/tip.ron"), TIP).unwrap();
+    let file = load(Allowed::default(), "").unwrap();
+    assert_eq!(file.parts(), [("eye", "eye.ron"), ("tip", "tools/tip.ron")]);
 }
