@@ -341,3 +341,11 @@ fn parts_on_a_disk_are_beside_the_scene_or_below() {
     let file = load(Allowed::default(), "").unwrap();
     assert_eq!(file.parts(), [("eye", "eye.ron"), ("tip", "tools/tip.ron")]);
 }
+
+#[test]
+fn lists_of_parts_are_told_of_in_the_files_that_they_come_from() {
+    let whole = "(duration: 1, parts: {\"z\": (scene: \"bad.ron\"), \"a\": (scene: \"eye.ron\")})";
+    let bad = EYE.replace("normal: (0, 0, 1)", "normal: (0, 0, 0)");
+    let told = brief(whole, with(&[("bad.ron", &bad)]), &[]);
+    assert!(told.starts_with("bad.ron:6:43: error: `normal` has no direction"), "{told}");
+}
