@@ -5,6 +5,7 @@ use crate::scene::schema::{Constraint, Contact, Curve, Load, Part, PartScene, Qu
 use crate::scene::suggest::list;
 use crate::scene::syntax::Path;
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 /// What keeps a part from being a part of its scene.
 pub struct Problem {
@@ -45,15 +46,19 @@ struct Taken<'a> {
 impl Taken<'_> {
     fn join<T>(&mut self, all: &mut BTreeMap<String, T>, added: BTreeMap<String, T>, field: &str) {
         for (name, value) in added {
-            if all.contains_key(&name) {
-                let inner = name.strip_prefix(self.part).and_then(|rest| rest.strip_prefix('.')).unwrap_or(&name);
-                self.problems.push(Problem {
-                    path: self.path.name("content").name(field).name(inner),
-                    message: format!("`{name}` is in the scene already"),
-                    note: format!("name the part, or the other one of the {field}, otherwise"),
-                });
-            } else {
-                all.insert(name, value);
+            match all.entry(name) {
+                Entry::Vacant(free) => {
+                    free.insert(value);
+                }
+                Entry::Occupied(taken) => {
+                    let name = taken.key();
+                    let inner = name.strip_prefix(self.part).and_then(|rest| rest.strip_prefix('.')).unwrap_or(name);
+                    self.problems.push(Problem {
+                        path: self.path.name("content").name(field).name(inner),
+                        message: format!("`{name}` is in the scene already"),
+                        note: format!("name the part, or the other one of the {field}, otherwise"),
+                    });
+                }
             }
         }
     }
