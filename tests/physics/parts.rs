@@ -110,3 +110,25 @@ fn scale_multiplies_lengths() {
     let place = simulation.tool("p.t").unwrap().place;
     near("the tool", place.distance(DVec3::new(5e-3, 5e-3, 1.0195)), 0.0, 1e-3, 1e-12);
 }
+
+#[test]
+fn what_a_part_brings_changes_while_it_runs_and_snapshots_hold_it() {
+    for run in configurations() {
+        let scene = placed("translate: (1, 0, 0)");
+        let mut simulation = run.start(&scene);
+        simulation.advance_to(0.02).unwrap();
+        simulation.change(&["materials.\"p.m\".neo_hookean=Young(young: 6e3, poisson: 0.4)".into()]).unwrap();
+        simulation.change(&["loads[0].force=(0, 0, 2e-4)".into()]).unwrap();
+        let file = tempfile::NamedTempFile::new().unwrap();
+        simulation.snapshot().unwrap().write(file.path()).unwrap();
+        let mut again = run.start(&scene);
+        again.restore(&sinew::Snapshot::read(file.path()).unwrap()).unwrap();
+        simulation.finish().unwrap();
+        again.finish().unwrap();
+        let (ends, same) = (simulation.displacements("p.b").unwrap(), again.displacements("p.b").unwrap());
+        assert_eq!(ends, same, "{}", run.name);
+        assert_ne!(ends, end(&run, &scene).displacements("p.b").unwrap(), "{}", run.name);
+        let refused = again.change(&["parts.p.translate=(0, 0, 0)".into()]).unwrap_err().to_string();
+        assert!(refused.contains("this cannot change while the scene runs"), "{refused}");
+    }
+}
