@@ -23,6 +23,7 @@ pub mod mesh;
 pub mod port;
 pub mod scene;
 mod simulation;
+pub mod skins;
 pub mod snapshot;
 #[path = "../systems/mod.rs"]
 pub mod systems;

@@ -122,6 +122,7 @@ pub(super) fn spawn(
         world.entity_mut(body).insert(SurfaceRows(rows));
     }
     insert_forces(assembly.scheme, body, world);
+    super::skins::insert(assembly, name, &placed, body, world, diagnostics);
     Some(BodyParts { entity: body, placed, copies, node_rows, element_rows, blocks })
 }
 

@@ -18,6 +18,7 @@ mod relaxation;
 mod removal;
 mod renew;
 mod select;
+mod skins;
 mod start;
 mod surface_contacts;
 mod time_step;

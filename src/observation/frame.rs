@@ -73,7 +73,7 @@ pub fn write(world: &mut World, series: &mut Series) -> Result<Option<String>, E
 }
 
 /// The bodies in the order of their names.
-fn bodies(world: &mut World) -> Vec<Entity> {
+pub(super) fn bodies(world: &mut World) -> Vec<Entity> {
     let mut bodies: Vec<(Label, Entity)> =
         world.query_filtered::<(&Label, Entity), With<Authoring>>().iter(world).map(|(l, e)| (l.clone(), e)).collect();
     bodies.sort();

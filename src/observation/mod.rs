@@ -10,6 +10,7 @@ mod look;
 mod overlaps;
 mod probes;
 mod rounding;
+mod skins;
 mod tables;
 mod tools;
 mod track;
@@ -22,6 +23,7 @@ pub use guards::{Watch, begin as begin_to_guard, held_for_long};
 pub use look::{Look, WatchKernels, look};
 pub use probes::{header, observe_probe};
 pub use rounding::{Rounding, shortest_edge};
+pub use skins::{SkinState, skin_of};
 pub use tools::{Felt, ToolReading, feel, read_tool};
 pub use track::Track;
 
@@ -92,6 +94,8 @@ struct Files {
     energies: Option<Table>,
     probes: BTreeMap<String, Table>,
     convergence: Option<Table>,
+    /// Of bodies with a skin.
+    skins: Vec<(Entity, Series)>,
 }
 
 /// The columns of `convergence.csv`, plain numbers all.
@@ -164,8 +168,14 @@ impl Observer {
             None => None,
             Some(_) => Some(Table::create(&folder.claim("convergence.csv")?, &CONVERGENCE)?),
         };
+        let mut skins = Vec::new();
+        for (body, name) in skins::with_skins(world) {
+            let name = format!("skin_{name}");
+            folder.claim(&format!("{name}.pvd"))?;
+            skins.push((body, Series::named(folder.path(), &name)?));
+        }
         let (folder, _lock) = (folder.path().to_path_buf(), folder.lock());
-        self.files = Some(Files { folder, _lock, series, energies, probes, convergence });
+        self.files = Some(Files { folder, _lock, series, energies, probes, convergence, skins });
         Ok(())
     }
 

@@ -15,6 +15,10 @@ pub const BODIES: usize = 1000;
 pub const ACTIONS: usize = 10_000;
 /// Tools that a body may meet.
 pub const TOOLS_OF_A_BODY: usize = 8;
+/// Parts, parts of parts among them.
+pub const PARTS: usize = 1000;
+/// Parts within each other.
+pub const PART_DEPTH: usize = 8;
 /// Systems of a scene's own.
 pub const SYSTEMS: usize = 100;
 /// Points of a table, places of a tool's path; a longer signal is thinned out before.

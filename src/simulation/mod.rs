@@ -46,6 +46,7 @@ mod rounding;
 mod run;
 mod schedule;
 mod scheme;
+mod skins;
 mod solver;
 mod stable_step;
 mod step_change;

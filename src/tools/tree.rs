@@ -16,10 +16,10 @@ struct Branch {
 }
 
 /// How much farther than the nearest may be (relative) what is taken for it where that need not be exact.
-pub(super) const SLACK: f64 = 2e-3;
+pub(crate) const SLACK: f64 = 2e-3;
 
 /// A tree over triangles.
-pub(super) struct Tree {
+pub(crate) struct Tree {
     branches: Vec<Branch>,
     /// In the order of leaves.
     corners: Vec<[DVec3; 3]>,
@@ -29,7 +29,7 @@ pub(super) struct Tree {
 
 /// What is nearest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Nearest {
+pub(crate) struct Nearest {
     /// The square of the distance (m²).
     pub square: f64,
     /// The place of the triangle in the tree.

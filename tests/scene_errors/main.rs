@@ -12,6 +12,7 @@ mod memory;
 mod mutations;
 mod outside;
 mod own_systems;
+mod parts;
 mod set;
 mod several;
 mod surfaces;

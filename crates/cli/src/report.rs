@@ -272,7 +272,9 @@ fn outputs(folder: &Path, page: &mut Page) {
     });
     let frames = names.iter().filter(|name| name.starts_with("fields_") && name.ends_with(".vtu")).count();
     let mut others: Vec<&str> = names.iter().map(String::as_str).collect();
-    others.retain(|name| (name.ends_with(".csv") || name.ends_with(".json")) && *name != "sinew.json");
+    let is_skin = |name: &str| name.starts_with("skin_") && name.ends_with(".pvd");
+    others.retain(|name| name.ends_with(".csv") || name.ends_with(".json") || is_skin(name));
+    others.retain(|name| *name != "sinew.json");
     others.retain(|name| !PICTURES.contains(name));
     others.sort_unstable();
     let fields = format!("fields.pvd ({})", counted(frames as u64, "frame"));

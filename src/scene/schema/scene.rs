@@ -1,7 +1,7 @@
 //! The whole scene, its time step, its guards.
 
 use super::{
-    Accuracy, Body, Constraint, Contact, Curve, Load, Material, Output, OwnSystem, Picture, Probe, Removal, Tool,
+    Accuracy, Body, Constraint, Contact, Curve, Load, Material, Output, OwnSystem, Part, Picture, Probe, Removal, Tool,
 };
 use crate::scene::syntax::Path;
 use serde::{Deserialize, Serialize};
@@ -22,9 +22,14 @@ pub struct Scene {
     /// How bodies stand when the motion begins.
     #[serde(default)]
     pub start: InitialState,
+    /// What stands in files of its own, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub parts: BTreeMap<String, Part>,
     /// The bodies, by name.
+    #[serde(default)]
     pub bodies: BTreeMap<String, Body>,
     /// The materials, by name.
+    #[serde(default)]
     pub materials: BTreeMap<String, Material>,
     /// What holds or moves nodes.
     #[serde(default)]

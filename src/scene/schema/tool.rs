@@ -83,7 +83,7 @@ pub enum Follow {
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct ToolMesh {
-    /// The file (STL or OBJ), its path relative to the scene file.
+    /// The file (STL, OBJ or PLY), its path relative to the scene file.
     pub path: String,
     /// What its coordinates are multiplied with: 0.001 where they are in mm.
     #[serde(default = "one")]
