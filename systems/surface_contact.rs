@@ -94,8 +94,10 @@ struct Surface {
     wake: Vec<f64>,
     /// Nodes that bore a force in the last step.
     pressed: Vec<u32>,
-    /// Points that touched something.
+    /// Points that touched or faced something.
     touching: Vec<u32>,
+    /// How far the fastest node went in the last step (m).
+    largest: f64,
     /// Place of a node in the set, or none.
     slots: Vec<u32>,
     set: ContactSet,
@@ -162,6 +164,7 @@ fn surface_contact(
     let contacts = &mut *contacts;
     survey::follow(contacts, &mut bodies, &authorings, &blocks);
     let largest = survey::look(contacts, &bodies);
+    contacts.surface.largest = largest;
     contacts.surface.travelled += 2.0 * largest;
     let reach = 4.0 * largest + survey::MARGIN * contacts.edge;
     survey::search(contacts, reach, &cpu);

@@ -9,9 +9,10 @@ columns! {
     /// the body may meet others or itself.
     ContactForce(Reals) = "contact_force", State, Nodes(3);
     /// What each node carries on as a point of a surface, [`MEETING_NUMBERS`] a node: how far it has slipped elastically
-    /// (m, a vector); how deep it may be inside (m, 0 or negative); 0 where it touched nothing in the last step, 1 where
-    /// it stuck, 2 where it slid; where it touched, how far it is outside after the step (m), else 0; since the start the
-    /// length it has slid (m), and what impact and friction have taken (J). Exists with [`ContactForce`].
+    /// (m, a vector); how deep it may be inside (m, 0 or negative); 0 where it faced nothing in the last step, 1 where
+    /// it faced something, 2 where it stuck to it, 3 where it slid; how far it was outside of that before the step, where
+    /// it touched after the step (m); since the start the length it has slid (m), and what impact and friction have taken
+    /// (J). Exists with [`ContactForce`].
     SurfaceTouch(Reals) = "surface_touch", State, Nodes(MEETING_NUMBERS);
 }
 

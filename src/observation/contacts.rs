@@ -30,8 +30,10 @@ pub fn read_contact(world: &mut World, body: Entity) -> Result<Option<ContactRea
     };
     let mut reading = ContactReading { force: force.vectors().sum(), ..ContactReading::default() };
     for first in (0..touch.len()).step_by(MEETING_NUMBERS) {
-        reading.nodes += usize::from(touch.get(first + 4) > 0.0);
-        reading.penetration = reading.penetration.max(-touch.get(first + 5));
+        if touch.get(first + 4) > 1.0 {
+            reading.nodes += 1;
+            reading.penetration = reading.penetration.max(-touch.get(first + 5));
+        }
         reading.loss += touch.get(first + 7);
     }
     Ok(Some(reading))

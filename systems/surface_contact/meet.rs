@@ -9,8 +9,9 @@ use glam::DVec3;
 
 /// What a point did in the last step, in [`SurfaceTouch`].
 pub(super) const FREE: f64 = 0.0;
-const STICKS: f64 = 1.0;
-const SLIDES: f64 = 2.0;
+const FACES: f64 = 1.0;
+const STICKS: f64 = 2.0;
+const SLIDES: f64 = 3.0;
 
 /// How far a point that is inside comes out in a step at most, in edges.
 const OUT: f64 = 0.1;
@@ -119,7 +120,6 @@ pub(super) fn meet(
             touch.set_vector_at(at, contact.slip);
             touch.set(at + 4, if contact.slides { SLIDES } else { STICKS });
             touch.set(at + 5, met.gap + contact.normal.dot(contact.relative(&set.steps)));
-            contacts.surface.touching.push(met.point);
         }
         if let Some(booked) = books {
             let after = contact.relative(&set.steps);
@@ -166,7 +166,12 @@ fn begin(contacts: &mut SurfaceContacts, found: &[(u32, Faced)], settling: f64, 
         let before = columns.touch.get(at + 3);
         let allowed = faced.first.map_or(0.0, |facing| {
             let gap = contacts.gap(point, &facing);
-            let expected = if columns.touch.get(at + 4) > FREE { columns.touch.get(at + 5) } else { 0.0 };
+            let expected = match columns.touch.get(at + 4) {
+                FREE => 0.0,
+                // as deep as any motion may have brought it
+                FACES => columns.touch.get(at + 5) - 2.0 * contacts.surface.largest,
+                _ => columns.touch.get(at + 5),
+            };
             (before + (gap - expected).min(0.0) + settling).min(0.0).max(gap.min(0.0))
         });
         if allowed != before {
@@ -233,7 +238,7 @@ fn gather(
             }
         }
     }
-    // who touched before may do so no more
+    // who touched or faced something before may do so no more
     for point in touched {
         let (body, row) = contacts.surface.nodes[contacts.surface.points[point as usize].nodes[0] as usize];
         if let Ok(mut columns) = bodies.get_mut(contacts.bodies[body as usize]) {
@@ -242,6 +247,18 @@ fn gather(
             columns.touch.set(at + 4, FREE);
             columns.touch.set(at + 5, 0.0);
         }
+    }
+    for (place, faced) in found {
+        let Some(first) = faced.first else { continue };
+        let number = contacts.surface.lists.points[*place as usize];
+        let point = contacts.surface.points[number as usize];
+        let gap = contacts.gap(&point, &first);
+        let (body, row) = contacts.surface.nodes[point.nodes[0] as usize];
+        if let Ok(mut columns) = bodies.get_mut(contacts.bodies[body as usize]) {
+            columns.touch.set(MEETING_NUMBERS * row as usize + 4, FACES);
+            columns.touch.set(MEETING_NUMBERS * row as usize + 5, gap);
+        }
+        contacts.surface.touching.push(number);
     }
     (contacts.surface.set, contacts.surface.slots) = (set, slots);
     (met, foreseen)
