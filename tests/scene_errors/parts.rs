@@ -73,7 +73,7 @@ fn names_of_a_part_begin_with_its_own() {
     assert_eq!(scene.probes["tip.force"].what, Quantity::ToolForce { tool: "tip.needle".into() });
     let Constraint::Fixed { body, .. } = &scene.constraints[0] else { panic!() };
     assert_eq!(body.as_deref(), Some("eye.lens"));
-    let Contact::Tool { tool, .. } = &scene.contacts[0];
+    let Contact::Tool { tool, .. } = &scene.contacts[0] else { panic!("a tool") };
     assert!(scene.tools.contains_key(tool));
     assert!(format!("{:?}", scene.loads[0].curve()).contains("eye.pull"));
 }
