@@ -1,4 +1,4 @@
-// Rigid tools keep nodes outside; twin of systems/tool_contact.rs. TOOLS is generated; damped is in
+// Rigid tools keep nodes outside; twin of systems/tool_contact.rs. TOOLS and NUMBERS are generated; damped is in
 // damping_coefficient.wgsl, relaxation.wgsl or generated; tool_distance is in
 // tool_shape.wgsl, grid_distance in tool_of_grid.wgsl, or generated where no tool is a grid.
 struct ToolRow {
@@ -118,7 +118,7 @@ fn along_surface(v: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
 }
 
 fn tool_contact(i: u32, node: u32) {
-    let first = TOUCH_NUMBERS * TOOLS * i;
+    let first = NUMBERS * TOOLS * i;
     let inertia = mass[node];
     let at = 3u * node;
     let bits = touchable[i].w;
@@ -139,7 +139,7 @@ fn tool_contact(i: u32, node: u32) {
     var found: array<Touch, TOOLS>;
     var touched = 0u;
     for (var tool = 0u; tool < TOOLS; tool++) {
-        let at_tool = first + TOUCH_NUMBERS * tool;
+        let at_tool = first + NUMBERS * tool;
         let stuck = tool_touch[at_tool + 3u] == STICKS;
         for (var k = 0u; k < 4u; k++) {
             tool_touch[at_tool + k] = 0.0;
@@ -199,11 +199,17 @@ fn tool_contact(i: u32, node: u32) {
         }
         let force = to_force * (found[tool].outwards + found[tool].tangential);
         load += force;
-        let at_tool = first + TOUCH_NUMBERS * tool;
+        let at_tool = first + NUMBERS * tool;
         tool_touch[at_tool] = force.x;
         tool_touch[at_tool + 1u] = force.y;
         tool_touch[at_tool + 2u] = force.z;
         tool_touch[at_tool + 3u] = select(STICKS, SLIDES, found[tool].slides);
+        if NUMBERS > TOUCH_NUMBERS {
+            // a hand feels the mean over a batch of steps
+            tool_touch[at_tool + 7u] += force.x;
+            tool_touch[at_tool + 8u] += force.y;
+            tool_touch[at_tool + 9u] += force.z;
+        }
         if limits.books != 0u {
             let work = step.booked * dot(force, found[tool].tool_step);
             let on_node = step.booked * dot(force * free, 0.5 * (before + d));

@@ -20,8 +20,10 @@ mod error;
 pub mod materials;
 pub mod math;
 pub mod mesh;
+pub mod port;
 pub mod scene;
 mod simulation;
+pub mod skins;
 pub mod snapshot;
 #[path = "../systems/mod.rs"]
 pub mod systems;
@@ -32,6 +34,8 @@ pub mod tools;
 pub mod assembly;
 #[doc(hidden)]
 pub mod backend;
+#[doc(hidden)]
+pub mod contact;
 #[doc(hidden)]
 pub mod elements;
 #[doc(hidden)]
@@ -55,8 +59,9 @@ pub use scene::SceneFile;
 pub use simulation::explain;
 pub use simulation::{
     Advanced, BackendChoice, ColumnView, Ended, Equilibrium, FieldName, Grab, GrabId, Grip, InputChange,
-    InputRecording, InputUse, InputValue, Inversions, Mode, Names, NodeSet, NodeState, Options, Pick, Preload,
-    Simulation, Stability, StepHistory, Summary, SystemTime, Unloaded, Unloading, UnloadingStep, unload,
+    InputRecording, InputUse, InputValue, Inversions, Mode, Names, NodeSet, NodeState, Options, Pick, PortUse,
+    PoseChange, Preload, RealTime, Simulation, Stability, StepHistory, Summary, SystemTime, Unloaded, Unloading,
+    UnloadingStep, unload,
 };
 pub use snapshot::Snapshot;
 

@@ -12,6 +12,7 @@
 //! traction                                      -> ExternalForce                          per loaded node
 //! suction          Displacement                 -> ExternalForce                          per sucked node
 //! grab             Displacement                 -> ExternalForce                          per held node
+//! surface_contact  forces, Displacement         -> ExternalForce, ContactForce, SurfaceTouch   per point that may touch
 //! tool_contact     forces, Displacement, motion -> ExternalForce, ToolTouch               per node that may touch
 //! integrate        forces, Mass                 -> DisplacementIncrement, Displacement         per node
 //! tool_removal     Displacement, motion         -> RemovalStep, ToolIntake                per element in reach
@@ -42,6 +43,7 @@ mod pressure;
 mod registry;
 mod suction;
 mod suction_mouth;
+mod surface_contact;
 mod tool_contact;
 mod tool_removal;
 mod traction;
@@ -51,11 +53,12 @@ pub use crate::math::SimdScalar;
 pub(crate) use gather::sum_corners;
 pub(crate) use grab::{bytes_of as grab_bytes, uniform_of as grab_uniform};
 pub(crate) use nodal_volume::means_of;
-pub(crate) use node_pass::{NodePass, node_pass};
+pub(crate) use node_pass::{NodePass, node_pass, shared_pass};
 pub use node_system::{Before, ForceSlopes, NodeRows, NodeSystem, NodesAtRest};
 pub use observe::{add_watch_columns, watch_kernels};
 pub(crate) use patch_pass::patch_pass;
 pub use registry::{Because, DescribeKernels, HostSystem, OnDevice, OnHost, Outcome, Phase, Registry, System};
+pub use surface_contact::{Meeting, SurfaceContacts};
 
 use crate::scene::schema::{OwnSystem, Scene};
 
@@ -89,6 +92,7 @@ pub fn standard() -> Vec<System> {
         traction::system(),
         suction::system(),
         grab::system(),
+        surface_contact::system(),
         tool_contact::system(),
         integrate::system(),
         tool_removal::system(),

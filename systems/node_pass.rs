@@ -87,6 +87,11 @@ pub(super) struct InStep<'w> {
 }
 
 impl InStep<'_> {
+    /// Whether somebody may look at what is made and used in a pass after it.
+    pub(super) fn is_observed(&self) -> bool {
+        self.observed.0
+    }
+
     /// Whether somebody may look at the forces of a pass after it.
     pub(super) fn observes(&self, pass: &NodePass) -> bool {
         self.observed.0 || !pass.has_forces_of_its_own()
@@ -103,6 +108,11 @@ impl NodePass {
     /// Of systems that follow one another in a step.
     pub(crate) fn new(systems: Vec<NodeRows>) -> Self {
         Self { systems }
+    }
+
+    /// Whether there are none.
+    pub(super) fn is_empty(&self) -> bool {
+        self.systems.is_empty()
     }
 
     /// Whether forces are made in it, used, and not needed any more.
@@ -132,7 +142,7 @@ impl NodePass {
 }
 
 /// Does what bound systems do to some rows, one after the other.
-fn act<T: OfRun>(systems: &BoundSystems<'_>, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+pub(super) fn act<T: OfRun>(systems: &BoundSystems<'_>, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
     for system in systems {
         T::act(system.as_ref(), cpu, nodes);
     }
@@ -150,22 +160,31 @@ pub(super) fn act_after_gather<T: OfRun>(systems: &BoundSystems<'_>, cpu: &Cpu, 
 
 /// Node systems as one pass over all nodes, in their order.
 pub(crate) fn node_pass(pass: NodePass, world: &mut World) -> HostSystem {
+    pass_over(pass, |_| 0, world)
+}
+
+/// The same over those nodes that are inside no patch.
+pub(crate) fn shared_pass(pass: NodePass, world: &mut World) -> HostSystem {
+    pass_over(pass, |corners| corners.map_or(0, |corners| corners.first_shared), world)
+}
+
+/// Node systems as one pass over the nodes from a row on.
+fn pass_over(pass: NodePass, first: fn(Option<&Corners>) -> usize, world: &mut World) -> HostSystem {
+    type Bodies<'w, 's> = Query<'w, 's, (BodyColumns, Option<&'static ElementForce>, Option<&'static Corners>)>;
     let parameters = (
         pass.parameters(),
         ParamBuilder::of::<InStep>(),
-        ParamBuilder::query::<(BodyColumns, Option<&ElementForce>)>(),
+        ParamBuilder::query::<(BodyColumns, Option<&'static ElementForce>, Option<&'static Corners>)>(),
     );
     let mut system = parameters.build_state(world).build_system(
-        move |mut callers: Vec<DynSystemParam>,
-              step: InStep,
-              mut bodies: Query<(BodyColumns, Option<&ElementForce>)>|
-              -> Result<(), Error> {
+        move |mut callers: Vec<DynSystemParam>, step: InStep, mut bodies: Bodies| -> Result<(), Error> {
             let observed = step.observes(&pass);
-            for (mut body, force) in &mut bodies {
+            for (mut body, force, corners) in &mut bodies {
                 let systems = pass.bind(&mut callers, &step, &body);
+                let first = first(corners);
                 match body.u.precision() {
-                    Precision::F32 => move_all::<f32>((&step, observed), &mut body, force, &systems),
-                    Precision::F64 => move_all::<f64>((&step, observed), &mut body, force, &systems),
+                    Precision::F32 => move_from::<f32>(first, (&step, observed), &mut body, force, &systems),
+                    Precision::F64 => move_from::<f64>(first, (&step, observed), &mut body, force, &systems),
                 }
             }
             Ok(())
@@ -175,15 +194,19 @@ pub(crate) fn node_pass(pass: NodePass, world: &mut World) -> HostSystem {
     Box::new(system)
 }
 
-fn move_all<T: OfRun>(
+fn move_from<T: OfRun>(
+    first: usize,
     (step, observed): (&InStep<'_>, bool),
     body: &mut BodyColumnsItem<'_, '_>,
     force: Option<&ElementForce>,
     systems: &BoundSystems<'_>,
 ) {
     let non_finite = AtomicU32::new(u32::MAX);
-    let tasks = body.columns::<T>(force.map_or(&[], |force| force.slice()), &non_finite).tasks(ROWS_A_TASK);
-    move_rows(&step.cpu, observed, tasks, systems);
+    let mut columns = body.columns::<T>(force.map_or(&[], |force| force.slice()), &non_finite);
+    if first > 0 {
+        columns.take(first);
+    }
+    move_rows(&step.cpu, observed, columns.tasks(ROWS_A_TASK), &[systems]);
     body.note_non_finite(non_finite, &step.clock);
 }
 
@@ -192,9 +215,9 @@ pub(super) fn move_rows<T: OfRun>(
     cpu: &Cpu,
     observed: bool,
     tasks: Vec<NodeColumns<'_, T>>,
-    systems: &BoundSystems<'_>,
+    systems: &[&BoundSystems<'_>],
 ) {
     cpu.for_each(tasks.into_iter(), |mut rows| {
-        rows.with_forces(observed, |rows| act(systems, cpu, rows));
+        rows.with_forces(observed, |rows| systems.iter().for_each(|systems| act(systems, cpu, rows)));
     });
 }

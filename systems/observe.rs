@@ -25,6 +25,7 @@ pub fn system() -> System {
         device: OnDevice::None,
         observes: true,
         every: 1,
+        shared_only: |_| false,
         custom: false,
         parameters: None,
         state: None,

@@ -2,7 +2,7 @@
 //! move while they are in the core's cache, those that patches share when all patches are done.
 
 use super::element_forces::{BlockParts, Precise};
-use super::node_pass::{BodyColumns, BodyColumnsItem, InStep, NodePass, act_after_gather, move_rows};
+use super::node_pass::{BodyColumns, BodyColumnsItem, InStep, NodePass, act, act_after_gather, move_rows};
 use super::node_system::{BoundSystems, OfRun};
 use super::registry::HostSystem;
 use crate::backend::cpu::{Cpu, Inside, NodeColumns, ROWS_A_TASK};
@@ -12,10 +12,12 @@ use bevy_ecs::prelude::*;
 use bevy_ecs::system::{DynSystemParam, ParamBuilder, SystemParamBuilder};
 use std::sync::atomic::AtomicU32;
 
-/// `element_forces` and a pass over the nodes as one.
-pub(crate) fn patch_pass(pass: NodePass, world: &mut World) -> HostSystem {
+/// `element_forces` and a pass over the nodes as one. Nodes inside patches go through the systems of another pass, too,
+/// which the others come to later.
+pub(crate) fn patch_pass(pass: NodePass, ahead: NodePass, world: &mut World) -> HostSystem {
+    let count = pass.parameters().len();
     let parameters = (
-        pass.parameters(),
+        [pass.parameters(), ahead.parameters()].into_iter().flatten().collect::<Vec<_>>(),
         ParamBuilder::of::<InStep>(),
         ParamBuilder::query::<BlockParts>(),
         ParamBuilder::query::<(BodyColumns, &Authoring, &Corners, &mut ElementForce)>(),
@@ -26,14 +28,17 @@ pub(crate) fn patch_pass(pass: NodePass, world: &mut World) -> HostSystem {
               mut blocks: Query<BlockParts>,
               mut bodies: Query<(BodyColumns, &Authoring, &Corners, &mut ElementForce)>|
               -> Result<(), Error> {
+            let (callers, callers_ahead) = callers.split_at_mut(count);
             for (mut body, authoring, corners, mut force) in &mut bodies {
                 let of_body = StepOfBody {
                     cpu: &step.cpu,
                     clock: &step.clock,
-                    observed: step.observes(&pass),
+                    observed: step.is_observed(),
+                    to_come: !ahead.is_empty(),
                     blocks: &authoring.blocks,
                     first_shared: corners.first_shared,
-                    systems: pass.bind(&mut callers, &step, &body),
+                    systems: pass.bind(callers, &step, &body),
+                    ahead: ahead.bind(callers_ahead, &step, &body),
                 };
                 match body.u.precision() {
                     Precision::F32 => of_body.take::<f32>(&mut body, &mut force, &mut blocks),
@@ -51,11 +56,15 @@ pub(crate) fn patch_pass(pass: NodePass, world: &mut World) -> HostSystem {
 struct StepOfBody<'a> {
     cpu: &'a Cpu,
     clock: &'a Clock,
+    /// Whether somebody may look at forces after the pass; and whether those on nodes outside patches are used later.
     observed: bool,
+    to_come: bool,
     blocks: &'a [Entity],
     first_shared: usize,
     /// What is done to nodes; to those inside a patch as soon as that has summed their forces.
     systems: BoundSystems<'a>,
+    /// What is done to those inside a patch afterwards, and to others later.
+    ahead: BoundSystems<'a>,
 }
 
 impl StepOfBody<'_> {
@@ -72,7 +81,10 @@ impl StepOfBody<'_> {
         };
         let rows: Vec<Vec<u32>> = self.blocks.iter().map(|&entity| patches(blocks, entity)).collect();
         let (mut inside, shared) = inside_patches(body.columns::<T>(&[], &non_finite), &rows);
-        let then = |nodes: &mut NodeColumns<'_, T>| act_after_gather(&self.systems, self.cpu, nodes);
+        let then = |nodes: &mut NodeColumns<'_, T>| {
+            act_after_gather(&self.systems, self.cpu, nodes);
+            act(&self.ahead, self.cpu, nodes);
+        };
         let mut found = Vec::new();
         for (&entity, nodes) in self.blocks.iter().zip(&mut inside) {
             let inside = Inside { nodes, then: &then, observed: self.observed };
@@ -100,8 +112,13 @@ impl StepOfBody<'_> {
         } else {
             shared.take(self.first_shared);
         }
-        left.extend(shared.tasks(ROWS_A_TASK));
-        move_rows(self.cpu, self.observed, left, &self.systems);
+        if !self.to_come {
+            left.extend(shared.tasks(ROWS_A_TASK));
+            move_rows(self.cpu, self.observed, left, &[&self.systems]);
+        } else {
+            move_rows(self.cpu, self.observed, left, &[&self.systems, &self.ahead]);
+            move_rows(self.cpu, true, shared.tasks(ROWS_A_TASK), &[&self.systems]);
+        }
         body.note_non_finite(non_finite, self.clock);
     }
 }

@@ -121,6 +121,8 @@ pub struct System {
     pub(crate) observes: bool,
     /// Steps between two runs (host systems only).
     pub every: u64,
+    /// Whether, in a world, it concerns only nodes that are inside no patch.
+    pub(crate) shared_only: fn(&World) -> bool,
     /// Whether it is not one of the engine's own.
     pub(crate) custom: bool,
     /// Reads its parameters and inserts them as a resource.
@@ -184,6 +186,7 @@ impl System {
             device: OnDevice::None,
             observes: false,
             every: 1,
+            shared_only: |_| false,
             custom: true,
             parameters: None,
             state: None,

@@ -52,9 +52,8 @@ uniform!(SuctionLoad { faces, first, pressure, lists });
 
 /// The parts of a body's faces as kernels see them: nodes, face, weight.
 pub(super) fn parts_of(faces: &BodyFaces) -> Vec<[u32; 6]> {
-    let part = |((&[a, b, c, d], &face), &weight): ((&[u32; 4], &u32), &f64)| {
-        [a, b, c, d, face, (weight as f32).to_bits()]
-    };
+    let part =
+        |((&[a, b, c, d], &face), &weight): ((&[u32; 4], &u32), &f64)| [a, b, c, d, face, (weight as f32).to_bits()];
     faces.parts.faces.iter().zip(&faces.of_part).zip(&faces.parts.weights).map(part).collect()
 }
 

@@ -31,8 +31,7 @@ pub fn system() -> System {
     .on_device(kernels)
 }
 
-type BodyQuery<'a> =
-    (&'a Authoring, &'a RestPosition, &'a Displacement, &'a mut SuctionMarks, &'a mut SuctionPressure);
+type BodyQuery<'a> = (&'a Authoring, &'a RestPosition, &'a Displacement, &'a mut SuctionMarks, &'a mut SuctionPressure);
 
 fn suction_mouth(
     clock: Res<Clock>,
@@ -240,8 +239,12 @@ impl OfTool {
 
     fn kernels(&self, buffers: &mut dyn Buffers) -> [Kernel; 3] {
         let faces = &self.suction.faces;
-        let of_faces: Vec<[u32; 5]> =
-            faces.corners.iter().zip(&faces.opposites).map(|(&[a, b, c, d], &opposite)| [a, b, c, d, opposite]).collect();
+        let of_faces: Vec<[u32; 5]> = faces
+            .corners
+            .iter()
+            .zip(&faces.opposites)
+            .map(|(&[a, b, c, d], &opposite)| [a, b, c, d, opposite])
+            .collect();
         let of_faces = buffers.constants("faces of a body".into(), bytemuck::cast_slice(&of_faces));
         let lists: Vec<u32> = faces.parts.starts.iter().map(|start| start + faces.parts.starts.len() as u32).collect();
         let of_corner = |corner: &u32| faces.of_part[*corner as usize / 4];

@@ -7,7 +7,7 @@ use super::node_system::{Before, NodeSystem};
 use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::{Cpu, Factors, NodeColumns};
+use crate::backend::cpu::{Cpu, Factors, Foreseen, NodeColumns};
 use crate::backend::kernel::{Fragment, Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
@@ -155,7 +155,7 @@ impl ToolContacts {
             None => false,
         };
         let mut stuck = [false; ToolContacts::MOST];
-        for (stuck, of_tool) in stuck.iter_mut().zip(values.chunks_exact_mut(TOUCH_NUMBERS)) {
+        for (stuck, of_tool) in stuck.iter_mut().zip(values.chunks_exact_mut(self.numbers_a_tool())) {
             *stuck = of_tool[3] == T::from_f64(STICKS);
             // most nodes are never touched: nothing is written there
             if of_tool[..4].iter().any(|&number| number != T::default()) {
@@ -167,14 +167,11 @@ impl ToolContacts {
             return;
         }
         // as integrate will find it
-        let Factors { force: factor, half_step, divide, booked, relaxation, .. } = step.factors;
         let vector = |all: &[T]| DVec3::from_array([0, 1, 2].map(|i| all[3 * row + i].to_f64()));
-        let before = vector(nodes.step);
         let force = nodes.external.as_deref().map_or(DVec3::ZERO, vector) - vector(nodes.internal);
-        let free = DVec3::from_array([0, 1, 2].map(|i| f64::from(1 - (nodes.axes[row] >> i & 1))));
-        let a = nodes.damping.map_or(0.0, |all| all[row].to_f64()) * half_step / inertia + relaxation;
-        let damped = 1.0 + divide * a;
-        let predicted = before + free * (force * (factor / inertia) - before * ((1.0 + divide) * a)) / damped;
+        let damping = nodes.damping.map_or(0.0, |all| all[row].to_f64());
+        let Foreseen { before, step: predicted, free, to_force } =
+            step.factors.foresee(inertia, damping, nodes.axes[row], vector(nodes.step), force);
         let mut all = [None; ToolContacts::MOST];
         let mut touched = 0;
         for tool in (0..self.tools.len()).filter(near) {
@@ -185,16 +182,20 @@ impl ToolContacts {
         }
         let all = &mut all[..touched];
         let d = predicted + self.push_apart(step, all, (place, predicted), free);
-        let to_force = inertia * damped / factor;
+        let booked = step.factors.booked;
         let mut sum = DVec3::ZERO;
         for touch in all.iter().flatten().filter(|touch| touch.push > 0.0) {
             let change = touch.outwards + touch.tangential;
             let force = to_force * change;
             sum += force;
-            let of_tool = &mut values[TOUCH_NUMBERS * touch.tool..TOUCH_NUMBERS * (touch.tool + 1)];
+            let numbers = self.numbers_a_tool();
+            let of_tool = &mut values[numbers * touch.tool..numbers * (touch.tool + 1)];
             let slip = along_surface(d - touch.tool_step, touch.normal).length();
             for i in 0..3 {
                 of_tool[i] = T::from_f64(force[i]);
+            }
+            for (i, felt) in of_tool[TOUCH_NUMBERS..].iter_mut().enumerate() {
+                *felt += T::from_f64(force[i]);
             }
             of_tool[3] = T::from_f64(if touch.slides { SLIDES } else { STICKS });
             if step.books {
@@ -312,6 +313,12 @@ struct Limits {
 }
 uniform!(Limits { edge, settling, books });
 
+/// How many tools there are, and how many numbers of each.
+fn counts(contacts: &ToolContacts) -> String {
+    let (tools, numbers) = (contacts.tools.len(), contacts.numbers_a_tool());
+    format!("const TOOLS: u32 = {tools}u;\nconst NUMBERS: u32 = {numbers}u;\n")
+}
+
 /// One stage for each body that tools may touch.
 fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
     let all: Vec<(Entity, ToolContacts)> =
@@ -344,7 +351,7 @@ fn stage(body: Entity, contacts: &ToolContacts, world: &mut World, buffers: &mut
             grids.extend(grid.values());
         }
     }
-    let count = Fragment::new("generated: how many tools", format!("const TOOLS: u32 = {}u;\n", contacts.tools.len()));
+    let count = Fragment::new("generated: how many tools", counts(contacts));
     let mass = if fictitious { FictitiousMass::NAME } else { Mass::NAME };
     let mut stage = NodeStage::new("tool_contact", "tool_contact", body, rows_of(body, world), shader!("tool_contact"))
         .own(shader!("tool_shape"))

@@ -42,8 +42,7 @@ pub fn system() -> System {
     .on_device(kernels)
 }
 
-type BodyQuery<'a> =
-    (&'a ToolRemovals, &'a mut ToolIntake, &'a Authoring, &'a RestPosition, &'a Displacement);
+type BodyQuery<'a> = (&'a ToolRemovals, &'a mut ToolIntake, &'a Authoring, &'a RestPosition, &'a Displacement);
 
 type BlockQuery<'a> = (&'a Block, &'a Connectivity, &'a RestShape, &'a Alive, &'a mut RemovalStep);
 

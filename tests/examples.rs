@@ -7,6 +7,9 @@ mod custom_system;
 #[path = "../examples/embed.rs"]
 mod embed;
 #[allow(dead_code)]
+#[path = "../examples/haptic.rs"]
+mod haptic;
+#[allow(dead_code)]
 #[path = "../examples/host_system.rs"]
 mod host_system;
 #[path = "../examples/latency.rs"]
@@ -27,6 +30,17 @@ fn a_touched_lens_pushes_back() {
     let sets: Vec<String> = latency::TOUCHED.iter().map(|set| set.to_string()).collect();
     let felt = latency::run(&SceneFile::load(path, &sets).unwrap(), 1, 0.12).unwrap();
     assert!(felt > 1e-5 && felt < 1e-2, "{felt} N");
+}
+
+/// How long it takes is the machine's business; what the hand did gives the same bits again.
+#[test]
+fn a_hand_feels_a_block_and_is_replayed() {
+    let options = Options { backend: BackendChoice::Cpu, threads: 1, ..Options::default() };
+    let (felt, recording, mut simulation) = haptic::press(&options, 0.6).unwrap();
+    let most = felt.iter().map(|felt| felt.force.length()).fold(0.0, f64::max);
+    assert!(most > 1e-3 && most <= 3.0, "{most} N");
+    assert!(felt.iter().all(|felt| felt.force.is_finite() && felt.depth < 4e-3));
+    assert!(!recording.poses.is_empty() && haptic::replays(&options, &recording, &mut simulation).unwrap());
 }
 
 /// A system of one's own shares the pass of those of the engine, on both backends, and does what a system on the host

@@ -89,7 +89,9 @@ pub(super) fn spawn(
         |(key, elements): ((ElementKind, _), _)| (key, element_order(mesh, elements, copies, patch_length(key.0)));
     let members: Vec<((ElementKind, &str), Vec<u32>)> = members.into_iter().map(order).collect();
     let patches = members.iter().flat_map(|((kind, _), elements)| elements.chunks(patch_length(*kind)));
-    let node_rows = node_rows(mesh.points.len(), patches.map(|patch| patch.iter().map(|&e| mesh.element(e as usize))));
+    let apart = super::surface_contacts::apart(assembly.scene, name, &placed);
+    let patches = patches.map(|patch| patch.iter().map(|&e| mesh.element(e as usize)));
+    let node_rows = node_rows(mesh.points.len(), patches, &apart);
     let members: Vec<((ElementKind, &str), Vec<u32>)> =
         members.into_iter().map(|(key, elements)| (key, strided(elements, key.0))).collect();
 
@@ -114,7 +116,13 @@ pub(super) fn spawn(
     };
     super::columns::insert_node_columns(assembly, name, mesh, &node_rows, &authoring, world, body);
     world.entity_mut(body).insert(authoring);
+    if !apart.is_empty() {
+        let mut rows: Vec<u32> = apart.iter().map(|&node| node_rows[node as usize]).collect();
+        rows.sort_unstable();
+        world.entity_mut(body).insert(SurfaceRows(rows));
+    }
     insert_forces(assembly.scheme, body, world);
+    super::skins::insert(assembly, name, &placed, body, world, diagnostics);
     Some(BodyParts { entity: body, placed, copies, node_rows, element_rows, blocks })
 }
 

@@ -5,7 +5,7 @@ use super::{Assembly, BodyParts};
 use crate::components::*;
 use crate::scene::SceneFile;
 use crate::scene::diagnostic::Diagnostics;
-use crate::scene::schema::{Contact, Curve, Select, Tool, ToolMesh, ToolPlace, WhenUnstable};
+use crate::scene::schema::{Contact, Curve, Select, Tool, ToolMesh, ToolPlace};
 use crate::tools::{DistanceGrid, Geometry, Solid, Triangles};
 use bevy_ecs::prelude::*;
 use glam::{DQuat, DVec3};
@@ -37,7 +37,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let reference = reference(&body.placed.mesh.points);
         let edge = edge(body);
         for (number, contact) in scene.contacts.iter().enumerate() {
-            let Contact::Tool { tool, body: of, on, friction, static_friction } = contact;
+            let Contact::Tool { tool, body: of, on, .. } = contact else { continue };
             if of.as_ref().is_some_and(|of| of != name) {
                 continue;
             }
@@ -57,15 +57,17 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             rows.into_iter().for_each(|row| *marks.entry(row).or_default() |= bit);
             let signal = Signal::Pose { motion: motion(found), reference };
             let signal = world.resource_mut::<Signals>().add(signal);
-            let friction = [static_friction.unwrap_or(*friction), *friction];
+            let friction = contact.friction();
             tools.push(ToolContact { tool: tool.clone(), geometry: geometry.clone(), signal, friction });
         }
         if tools.is_empty() {
             continue;
         }
         let settling = settling(body, edge, world);
+        let led = |contact: &ToolContact| scene.tools.get(&contact.tool).is_some_and(|tool| tool.port.is_some());
+        let felt = tools.iter().any(led);
         let (rows, masks) = marks.into_iter().unzip();
-        let contacts = ToolContacts { tools, reference, rows, masks, edge, settling };
+        let contacts = ToolContacts { tools, reference, rows, masks, edge, settling, felt };
         let touch = Reals::zeros(assembly.precision, contacts.numbers() * contacts.rows.len());
         world.entity_mut(body.entity).insert((contacts, ToolTouch(touch)));
     }
@@ -114,10 +116,8 @@ fn rows(
     path: &str,
     diagnostics: &mut Diagnostics,
 ) -> Option<Vec<u32>> {
-    let scene = &assembly.scene.scene;
-    let removed = scene.removal.iter().any(|removal| removal.body.as_ref().is_none_or(|body| body == name));
     let whole = matches!(on, Select::Surface { normal: None, .. });
-    if whole && (removed || scene.when_unstable() == WhenUnstable::Remove) {
+    if whole && assembly.scene.scene.may_lose_elements(name) {
         return Some((0..body.node_rows.len() as u32).collect());
     }
     let picked = assembly.pick(body, on, path, diagnostics)?;
@@ -136,13 +136,13 @@ pub(super) fn reference(points: &[DVec3]) -> DVec3 {
     0.5 * (low + high)
 }
 
-fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
+pub(super) fn bounds(points: &[DVec3]) -> (DVec3, DVec3) {
     let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     (low, points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max))
 }
 
 /// The mean length of a surface's edges (m).
-fn edge(body: &BodyParts) -> f64 {
+pub(super) fn edge(body: &BodyParts) -> f64 {
     let points = &body.placed.mesh.points;
     let (mut sum, mut count) = (0.0, 0.0);
     for facet in body.placed.surface().iter().flat_map(|face| face.facets()) {
@@ -157,7 +157,7 @@ fn edge(body: &BodyParts) -> f64 {
 }
 
 /// How fast nodes inside a tool come out (m/s): half an edge in the time that a wave takes through the body.
-fn settling(body: &BodyParts, edge: f64, world: &World) -> f64 {
+pub(super) fn settling(body: &BodyParts, edge: f64, world: &World) -> f64 {
     let (low, high) = bounds(&body.placed.mesh.points);
     let of_block = |&block: &Entity| {
         let stiffness = world.get::<Block>(block).map(|block| stiffness(world, block.material));
@@ -175,6 +175,11 @@ pub fn motion(tool: &Tool) -> ToolMotion {
         path: tool.places().iter().map(place).collect(),
         moves: tool.moves.iter().map(|part| (part.displacement, radians(part.rotation))).collect(),
         curves: tool.moves.iter().map(|part| part.curve.clone()).collect(),
+        hand: tool.port.as_ref().map(|port| Hand {
+            port: port.name.clone(),
+            speed: port.speed,
+            spin: port.spin.to_radians(),
+        }),
     }
 }
 
@@ -201,9 +206,10 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
                     speed * clock.time_step,
                     contacts.edge,
                 );
-                diagnostics.error_at(path.as_str(), message).note(
-                    "it could be through a surface before anybody sees it: give it more time, or take a smaller `step`",
-                );
+                let way_out = if tool.port.is_some() { "lower the `speed` of its port" } else { "give it more time" };
+                diagnostics.error_at(path.as_str(), message).note(format!(
+                    "it could be through a surface before anybody sees it: {way_out}, or take a smaller `step`"
+                ));
             }
         }
     }

@@ -78,10 +78,16 @@ fn spread(x: u64) -> u64 {
 
 /// For each of the author's nodes its new row. `patches` are elements, each a list of nodes. First come, patch by
 /// patch, the nodes that no other patch has, if a patch has at least [`GROUP_ROWS`] such; then those that patches
-/// share, and last nodes without elements; each in the order in which elements first touch them.
-pub fn node_rows<'a>(node_count: usize, patches: impl Iterator<Item = impl Iterator<Item = &'a [u32]>>) -> Vec<u32> {
+/// share, and last nodes without elements; each in the order in which elements first touch them. Nodes that are kept
+/// `apart`, ascending, count as shared.
+pub fn node_rows<'a>(
+    node_count: usize,
+    patches: impl Iterator<Item = impl Iterator<Item = &'a [u32]>>,
+    apart: &[u32],
+) -> Vec<u32> {
     let mut last = vec![u32::MAX; node_count];
     let mut patches_of = vec![0_u32; node_count];
+    apart.iter().for_each(|&node| patches_of[node as usize] += 1);
     let mut touched: Vec<Vec<u32>> = Vec::new();
     for (patch, elements) in (0..).zip(patches) {
         let mut nodes = Vec::new();
@@ -127,7 +133,7 @@ mod tests {
         sorted.sort_unstable();
         assert!(sorted.iter().enumerate().all(|(i, &e)| i as u32 == e));
         let patches = order.chunks(128).map(|patch| patch.iter().map(|&e| mesh.element(e as usize)));
-        let mut rows = node_rows(mesh.points.len() + 2, patches);
+        let mut rows = node_rows(mesh.points.len() + 2, patches, &[]);
         assert!(rows[mesh.points.len()..].iter().all(|&row| row as usize >= mesh.points.len()));
         rows.sort_unstable();
         assert!(rows.iter().enumerate().all(|(i, &row)| i as u32 == row));
@@ -139,7 +145,8 @@ mod tests {
         let shuffled: Vec<u32> = (0..1728_u32).map(|i| i * 1009 % 1728).collect();
         let order = element_order(&mesh, shuffled.clone(), 1, 1728);
         let spread = |order: &[u32]| {
-            let rows = node_rows(mesh.points.len(), std::iter::once(order.iter().map(|&e| mesh.element(e as usize))));
+            let rows =
+                node_rows(mesh.points.len(), std::iter::once(order.iter().map(|&e| mesh.element(e as usize))), &[]);
             let width = |&e: &u32| {
                 let of = mesh.element(e as usize).iter().map(|&n| rows[n as usize]);
                 of.clone().max().unwrap_or(0) - of.min().unwrap_or(0)
@@ -155,7 +162,7 @@ mod tests {
         let mesh = box_mesh(DVec3::ONE, (20, 20, 20), ElementKind::Hex8).expect("a box");
         let order = element_order(&mesh, (0..8000).collect(), 1, 224);
         let patches = || order.chunks(224).map(|patch| patch.iter().map(|&e| mesh.element(e as usize)));
-        let rows = node_rows(mesh.points.len(), patches());
+        let rows = node_rows(mesh.points.len(), patches(), &[]);
         let mut of_patches: Vec<Vec<u32>> =
             patches().map(|p| p.flatten().map(|&n| rows[n as usize]).collect()).collect();
         let mut patches_of = vec![0; rows.len()];

@@ -18,8 +18,10 @@ mod relaxation;
 mod removal;
 mod renew;
 mod select;
+mod skins;
 mod start;
 mod suction;
+mod surface_contacts;
 mod time_step;
 mod tool_removal;
 mod user_laws;
@@ -99,6 +101,7 @@ pub fn assemble<'a>(
     constraints::spawn(&assembly, world, diagnostics);
     loads::spawn(&assembly, world, diagnostics);
     contacts::spawn(&assembly, world, diagnostics);
+    surface_contacts::spawn(&assembly, world);
     own_systems::spawn(&assembly, &systems, world, diagnostics);
     Some(assembly)
 }
@@ -111,6 +114,7 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     columns::start(assembly, world);
     start::deform(assembly, world, diagnostics);
     contacts::check(assembly, world, diagnostics);
+    surface_contacts::check(assembly, world, diagnostics);
     let scene = &assembly.scene.scene;
     if scene.when_unstable() == schema::WhenUnstable::Remove && !scene.is_static() {
         let blocks = assembly.bodies.values().flat_map(|body| &body.blocks);

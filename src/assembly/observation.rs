@@ -2,8 +2,8 @@
 
 use super::Assembly;
 use crate::components::*;
-use crate::scene::diagnostic::Diagnostics;
 use crate::observation::volume_left;
+use crate::scene::diagnostic::Diagnostics;
 use crate::scene::schema::{Quantity, Select};
 use bevy_ecs::prelude::*;
 

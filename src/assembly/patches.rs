@@ -78,9 +78,10 @@ pub fn insert_forces(scheme: Scheme, body: Entity, world: &mut World) {
     }
     let stride = if scheme == Scheme::Patches { 1 } else { LANES };
     let mut corners = corners(count, &places, stride);
+    let apart = world.get::<SurfaceRows>(body).map_or(Vec::new(), |rows| rows.0.clone());
     for entity in of_patches {
         if let Some(mut patches) = world.get_mut::<Patches>(entity) {
-            find_inside(&mut patches, &mut corners);
+            find_inside(&mut patches, &mut corners, &apart);
         }
     }
     world.entity_mut(body).insert((corners, ElementForce(Reals::zeros(precision, length))));
@@ -100,9 +101,11 @@ fn corners(nodes: usize, places: &[(u32, u32)], stride: usize) -> Corners {
     Corners { starts, corners, stride, first_shared: 0 }
 }
 
-/// Counts the nodes of each patch that nobody else has and that follow those of the patches before.
-fn find_inside(patches: &mut Patches, corners: &mut Corners) {
-    let alone = |row: usize| corners.starts[row + 1] - corners.starts[row] == 1;
+/// Counts the nodes of each patch that nobody else has and that follow those of the patches before; but those that are
+/// kept apart.
+fn find_inside(patches: &mut Patches, corners: &mut Corners, apart: &[u32]) {
+    let is_apart = |row: usize| apart.binary_search(&(row as u32)).is_ok();
+    let alone = |row: usize| corners.starts[row + 1] - corners.starts[row] == 1 && !is_apart(row);
     let mut next = corners.first_shared;
     for ends in patches.starts.windows(2) {
         let nodes = patches.nodes[ends[0] as usize..ends[1] as usize].iter().zip(next..);

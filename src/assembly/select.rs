@@ -1,7 +1,7 @@
 //! Selections: names, places and numbers become marks on the author's nodes, faces and elements.
 
 use super::PlacedMesh;
-use crate::mesh::{SurfaceFace, nodes_of_face};
+use crate::mesh::{SurfaceFace, nodes_of_face, rotation_about_axes};
 use crate::scene::choice;
 use crate::scene::schema::Select;
 use glam::DVec3;
@@ -146,7 +146,13 @@ fn distance_to(select: &Select) -> Option<Box<dyn Fn(DVec3) -> f64>> {
             let (normal, tolerance) = (normal.normalize(), tolerance.unwrap_or(0.0));
             Some(Box::new(move |x| ((normal.dot(x) - at).abs() - tolerance).max(0.0)))
         }
-        Select::Box { min, max } => Some(Box::new(move |x| x.distance(x.max(min).min(max)))),
+        Select::Box { min, max, rotate } => {
+            let back = back(rotate, min.midpoint(max));
+            Some(Box::new(move |x| {
+                let x = back(x);
+                x.distance(x.max(min).min(max))
+            }))
+        }
         Select::Sphere { center, radius } => Some(Box::new(move |x| (x.distance(center) - radius).max(0.0))),
         _ => None,
     }
@@ -168,6 +174,12 @@ fn combine(placed: &PlacedMesh, select: &Select, marks: fn(&PlacedMesh, &Select)
     }
 }
 
+/// Where a point would be if what is turned about a centre (degrees) were not.
+fn back(rotate: DVec3, center: DVec3) -> impl Fn(DVec3) -> DVec3 {
+    let turn = (rotate != DVec3::ZERO).then(|| rotation_about_axes(rotate).transpose());
+    move |x| turn.map_or(x, |turn| center + turn * (x - center))
+}
+
 /// Whether a point lies in a region of space; `None` for selections that are none.
 fn contains(placed: &PlacedMesh, select: &Select) -> Option<Box<dyn Fn(DVec3) -> bool>> {
     // far enough off a wall for points that were computed to lie on it
@@ -178,9 +190,13 @@ fn contains(placed: &PlacedMesh, select: &Select) -> Option<Box<dyn Fn(DVec3) ->
             let (normal, tolerance) = (normal.normalize(), tolerance.unwrap_or(1e-6 * placed.size()));
             Some(Box::new(move |x| (normal.dot(x) - at).abs() <= tolerance))
         }
-        Select::Box { min, max } => {
+        Select::Box { min, max, rotate } => {
+            let back = back(rotate, min.midpoint(max));
             let (min, max) = (min - rounding, max + rounding);
-            Some(Box::new(move |x| x.cmpge(min).all() && x.cmple(max).all()))
+            Some(Box::new(move |x| {
+                let x = back(x);
+                x.cmpge(min).all() && x.cmple(max).all()
+            }))
         }
         Select::Sphere { center, radius } => Some(Box::new(move |x| x.distance(center) <= radius + rounding)),
         Select::Cylinder { from, to, radius } => Some(Box::new(move |x| {
@@ -189,9 +205,9 @@ fn contains(placed: &PlacedMesh, select: &Select) -> Option<Box<dyn Fn(DVec3) ->
             let within = along >= -rounding && along <= axis.length() + rounding;
             within && (arm - axis * (along / axis.length())).length() <= radius + rounding
         })),
-        Select::Ellipsoid { center, radii } => {
-            let radii = radii + rounding;
-            Some(Box::new(move |x| ((x - center) / radii).length_squared() <= 1.0))
+        Select::Ellipsoid { center, radii, rotate } => {
+            let (back, radii) = (back(rotate, center), radii + rounding);
+            Some(Box::new(move |x| ((back(x) - center) / radii).length_squared() <= 1.0))
         }
         _ => None,
     }

@@ -21,8 +21,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let (Some(body), Some(tool)) = (assembly.body(&suction.body), scene.tools.get(&suction.tool)) else { continue };
         let Some(bore) = suction.bore.or(bore(tool)) else { continue };
         soft(body, (number, suction), world, diagnostics);
-        let (faces, count) =
-            of_body.entry(body.entity).or_insert_with(|| (Arc::new(faces(body, world)), 0));
+        let (faces, count) = of_body.entry(body.entity).or_insert_with(|| (Arc::new(faces(body, world)), 0));
         let reference = reference(&body.placed.mesh.points);
         let mut signals = world.resource_mut::<Signals>();
         let pose = signals.add(Signal::Pose { motion: motion(tool), reference });
@@ -61,12 +60,7 @@ fn bore(tool: &schema::Tool) -> Option<f64> {
 }
 
 /// Warns of tissue that is drawn into the mouth without end.
-fn soft(
-    body: &BodyParts,
-    (number, suction): (usize, &schema::Suction),
-    world: &World,
-    diagnostics: &mut Diagnostics,
-) {
+fn soft(body: &BodyParts, (number, suction): (usize, &schema::Suction), world: &World, diagnostics: &mut Diagnostics) {
     let young = |&block: &Entity| {
         let of = stiffness(world, world.get::<Block>(block)?.material);
         Some((of.shear * (3.0 * of.lambda + 2.0 * of.shear) / (of.lambda + of.shear), of.eta))

@@ -13,10 +13,10 @@ pub(super) fn add(assembly: &Assembly<'_>, body: &BodyParts, marks: &[bool], whe
     let When::InTool { tool: name, reach, rate, bore, burst, curve } = when else { return };
     let Some(tool) = assembly.scene.scene.tools.get(name) else { return };
     let Some(mouth) = mouth(tool, *bore) else { return };
-    let mut removals = world.get::<ToolRemovals>(body.entity).cloned().unwrap_or_else(|| ToolRemovals {
-        all: Vec::new(),
-        reference: reference(&body.placed.mesh.points),
-    });
+    let mut removals = world
+        .get::<ToolRemovals>(body.entity)
+        .cloned()
+        .unwrap_or_else(|| ToolRemovals { all: Vec::new(), reference: reference(&body.placed.mesh.points) });
     let mut signals = world.resource_mut::<Signals>();
     let pose = signals.add(Signal::Pose { motion: motion(tool), reference: removals.reference });
     let rate = signals.add(Signal::Load { curve: curve.clone(), amplitude: DVec3::X * *rate });

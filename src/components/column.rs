@@ -88,13 +88,23 @@ impl Reals {
 
     /// Row `row` of a column of vectors.
     pub fn vector(&self, row: usize) -> DVec3 {
-        either!(self, v => DVec3::new(v[3 * row].to_f64(), v[3 * row + 1].to_f64(), v[3 * row + 2].to_f64()))
+        self.vector_at(3 * row)
+    }
+
+    /// The vector that begins with a number.
+    pub fn vector_at(&self, index: usize) -> DVec3 {
+        either!(self, v => DVec3::new(v[index].to_f64(), v[index + 1].to_f64(), v[index + 2].to_f64()))
     }
 
     /// Writes row `row` of a column of vectors, rounded.
     pub fn set_vector(&mut self, row: usize, value: DVec3) {
+        self.set_vector_at(3 * row, value);
+    }
+
+    /// Writes the vector that begins with a number, rounded.
+    pub fn set_vector_at(&mut self, index: usize, value: DVec3) {
         either!(self, v => {
-            for (place, x) in v[3 * row..3 * row + 3].iter_mut().zip(value.to_array()) {
+            for (place, x) in v[index..index + 3].iter_mut().zip(value.to_array()) {
                 *place = Scalar::from_f64(x);
             }
         });
@@ -232,7 +242,7 @@ pub fn place_in_buffer<C: Column>(entity: Entity, world: &World) -> usize {
 /// Every kind of column there is, as the modules declare them.
 pub fn all_columns() -> Vec<ColumnAccess> {
     let of_tools = [super::tool::accesses(), super::tool_removal::accesses(), super::suction::accesses()].concat();
-    [super::nodes::accesses(), super::block::accesses(), of_tools].concat()
+    [super::nodes::accesses(), super::block::accesses(), super::contact::accesses(), of_tools].concat()
 }
 
 /// Declares components that are columns, each with its name, its [`Role`], what its [`Rows`] belong to and, where they

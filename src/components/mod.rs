@@ -13,6 +13,7 @@ mod clock;
 mod column;
 mod column_layout;
 mod constraint;
+mod contact;
 mod curve;
 mod grab;
 mod guard;
@@ -38,6 +39,7 @@ pub use clock::{Clock, Relaxation};
 pub use column::{Column, ColumnAccess, Precision, Reals, Role, all_columns, columns_in, place_in_buffer};
 pub use column_layout::{Increments, Rows};
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
+pub use contact::{ContactForce, MEETING_NUMBERS, SurfaceRows, SurfaceTouch};
 pub use grab::{Grabs, HeldNode};
 pub use guard::{GuardMemory, Notice, Seen};
 pub use input::{Change, Input, InputState};
@@ -52,10 +54,8 @@ pub use observation::{Cadence, Energies, Observed, Probe};
 pub use own_load::{LoadText, NodeAtRest, OfSystem, OwnLoad};
 pub use patches::{Patches, Scheme};
 pub use signal::{Signal, Signals};
-pub use suction::{
-    BodyFaces, FacePresence, NO_FACE, SUCTION_NUMBERS, Suction, SuctionMarks, SuctionPressure, share,
-};
-pub use tool::{Pose, TOUCH_NUMBERS, ToolContact, ToolContacts, ToolMotion, ToolTouch};
+pub use suction::{BodyFaces, FacePresence, NO_FACE, SUCTION_NUMBERS, Suction, SuctionMarks, SuctionPressure, share};
+pub use tool::{FELT_NUMBERS, Hand, Key, Pose, TOUCH_NUMBERS, ToolContact, ToolContacts, ToolMotion, ToolTouch};
 pub use tool_removal::{INTAKE_NUMBERS, Mouth, ToolIntake, ToolReach, ToolRemoval, ToolRemovals};
 pub use touched::Touched;
 

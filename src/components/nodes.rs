@@ -2,7 +2,7 @@
 
 use super::Reals;
 use super::column::columns;
-use crate::mesh::{Cells, Ids};
+use crate::mesh::{Cells, Ids, Mesh, SurfaceFace};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -113,6 +113,17 @@ impl Authoring {
     pub fn node_id(&self, row: usize) -> u64 {
         let place = self.node_rows.iter().position(|&r| r as usize == row).unwrap_or(row);
         self.node_ids.of(place)
+    }
+
+    /// Faces of the surface, by places in the author's order. `alive` tells which elements are there, by their block's
+    /// place and their row there.
+    pub fn surface(&self, alive: impl Fn(u32, u32) -> bool) -> Vec<SurfaceFace> {
+        let points = vec![DVec3::ZERO; self.node_rows.len()];
+        let whole = Mesh { points, cells: self.cells.clone(), ..Mesh::default() };
+        whole.exposed(|element| {
+            let (block, row) = self.element_rows[element];
+            alive(block, row)
+        })
     }
 
     /// The author's number of an element, from its block's place and its row there.

@@ -1,7 +1,7 @@
 //! What depends on time alone: courses of loads and motions, and their values in a step.
 
 use super::input::Input;
-use super::tool::{Pose, ToolMotion, poses};
+use super::tool::{Key, Pose, ToolMotion, poses};
 use crate::scene::schema::{Curve, Load};
 use bevy_ecs::prelude::*;
 use glam::{DMat3, DVec3};
@@ -71,7 +71,7 @@ impl Signal {
             Signal::Motion { displacement, gradient, rotation, .. } => {
                 (*displacement, *gradient, *rotation) != (DVec3::ZERO, DMat3::ZERO, DVec3::ZERO)
             }
-            Signal::Pose { motion, .. } => motion.path.len() > 1 || !motion.moves.is_empty(),
+            Signal::Pose { motion, .. } => motion.path.len() > 1 || !motion.moves.is_empty() || motion.hand.is_some(),
         }
     }
 
@@ -208,6 +208,17 @@ impl Signals {
             let course = |number: usize| inputs[number].map_or(&curves[number], |input| self.inputs[input].course());
             source.fill(times, |number, of| factor(course(number), of), &mut self.values[slot..]);
             slot += source.slots();
+        }
+    }
+
+    /// Leads the tools of a port along a path, from its first place to its last.
+    pub fn lead(&mut self, port: &str, path: &[Key]) {
+        for (source, _) in &mut self.sources {
+            if let Signal::Pose { motion, .. } = source
+                && motion.hand.as_ref().is_some_and(|hand| hand.port == port)
+            {
+                motion.path = path.to_vec();
+            }
         }
     }
 

@@ -12,12 +12,16 @@ columns! {
     /// What tools do to the nodes that they may touch: for each of [`ToolContacts::rows`] and each of its tools
     /// [`TOUCH_NUMBERS`] numbers: the force on the node in the last step (N); 0 where it did not touch, 1 where it stuck
     /// to the tool, 2 where it slid; since the start the length it has slid (m), the work that the tool has done and
-    /// what of that impact and friction have taken (J). Exists where tools may touch the body.
+    /// what of that impact and friction have taken (J). Where a hand moves one of the tools, [`FELT_NUMBERS`] more: the
+    /// sum of the forces since its batch of steps began (N). Exists where tools may touch the body.
     ToolTouch(Reals) = "tool_touch", State, Other;
 }
 
 /// Numbers of a node and a tool in [`ToolTouch`].
 pub const TOUCH_NUMBERS: usize = 7;
+
+/// Numbers more where a hand moves one of the body's tools.
+pub const FELT_NUMBERS: usize = 3;
 
 /// Where a tool is: a point y of its own is at rotation · y + at (m).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,13 +69,29 @@ impl Pose {
 pub struct ToolMotion {
     /// Places on its way: time (s), where the origin is (m), how it is turned. One at least, in the order of time;
     /// straight and evenly turned between them, at rest before the first and after the last.
-    pub path: Vec<(f64, DVec3, DQuat)>,
+    pub path: Vec<Key>,
     /// What is added to that: a displacement (m) and a rotation about the tool's origin (axis times angle, rad), each
     /// multiplied by its curve.
     pub moves: Vec<(DVec3, DVec3)>,
     /// Their curves.
     pub curves: Vec<Curve>,
+    /// The hand that moves it: then `path` is that of the present batch of steps, and at first where the tool is.
+    pub hand: Option<Hand>,
 }
+
+/// How a hand may move a tool.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hand {
+    /// The name of its port.
+    pub port: String,
+    /// How fast the tool goes at most (m/s).
+    pub speed: f64,
+    /// How fast it turns at most (rad/s).
+    pub spin: f64,
+}
+
+/// A place on a tool's way: time (s), where the origin is (m), how it is turned.
+pub type Key = (f64, DVec3, DQuat);
 
 impl ToolMotion {
     /// Where it is at a time (s) with such factors of its curves.
@@ -99,6 +119,9 @@ impl ToolMotion {
 
     /// How fast a point may go (m/s) that is so far from its origin (m), as far as the scene tells; jumps count as 0.
     pub fn fastest(&self, reach: f64) -> f64 {
+        if let Some(hand) = &self.hand {
+            return hand.speed + reach * hand.spin;
+        }
         let leg = |pair: &[(f64, DVec3, DQuat)]| {
             let way = pair[0].1.distance(pair[1].1) + reach * pair[0].2.angle_between(pair[1].2);
             way / (pair[1].0 - pair[0].0)
@@ -111,9 +134,10 @@ impl ToolMotion {
         path + moves.sum::<f64>()
     }
 
-    /// The first time after one (s) at which it turns a corner of its path.
+    /// The first time after one (s) at which it turns a corner of its path; where a hand will turn nobody knows.
     pub fn corner_after(&self, time: f64) -> Option<f64> {
-        self.path.iter().map(|key| key.0).find(|corner| *corner > time)
+        let known = if self.hand.is_some() { &[] } else { &self.path[..] };
+        known.iter().map(|key| key.0).find(|corner| *corner > time)
     }
 }
 
@@ -146,6 +170,8 @@ pub struct ToolContacts {
     pub edge: f64,
     /// How fast nodes that are inside a tool at the start are pushed out (m/s).
     pub settling: f64,
+    /// Whether a hand moves one of the tools, which wants the mean of what it feels.
+    pub felt: bool,
 }
 
 impl ToolContacts {
@@ -154,7 +180,12 @@ impl ToolContacts {
 
     /// Numbers a node in [`ToolTouch`].
     pub fn numbers(&self) -> usize {
-        TOUCH_NUMBERS * self.tools.len()
+        self.numbers_a_tool() * self.tools.len()
+    }
+
+    /// Numbers a node and a tool.
+    pub fn numbers_a_tool(&self) -> usize {
+        TOUCH_NUMBERS + if self.felt { FELT_NUMBERS } else { 0 }
     }
 }
 

@@ -8,6 +8,7 @@ mod real;
 mod rows;
 mod simd;
 mod tensor;
+mod triangle;
 mod trigonometry;
 
 pub use real::refine_inverse_cbrt;
@@ -15,3 +16,4 @@ pub use real::{Real, Scalar, Task};
 pub use rows::{Rows, Scratch};
 pub use simd::{F32s, F64s, LANES, SimdScalar, lane_place};
 pub use tensor::{Mat3, Sym3, dot, dot_plus, minor};
+pub use triangle::OnTriangle;

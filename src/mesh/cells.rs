@@ -53,6 +53,13 @@ impl Cells {
         Ok(all)
     }
 
+    /// Triangles alone: a surface to be written, no mesh of elements.
+    pub fn triangles(corners: &[[u32; 3]]) -> Self {
+        let mut all = Self::default();
+        all.block(CellKind::Triangle).extend(corners.as_flattened().iter().copied());
+        all
+    }
+
     /// Adds a cell by its nodes; behind the others of its kind, so before those of later kinds.
     ///
     /// # Errors

@@ -107,13 +107,19 @@ impl<'a> Locator<'a> {
 
     /// An element that a point (m) lies in, if one does.
     pub fn holds(&self, x: DVec3) -> Option<usize> {
+        self.holds_among(x, |_| true)
+    }
+
+    /// The same of some of the elements; the first of several.
+    pub fn holds_among(&self, x: DVec3, counts: impl Fn(usize) -> bool) -> Option<usize> {
         if self.elements.is_empty() || !x.is_finite() {
             return None;
         }
         // elements stand in every box that they touch; a point beside the mesh is taken to the last box, and is in none
         let number = self.number(self.cell(x)) as usize;
         let near = &self.elements[self.starts[number] as usize..self.starts[number + 1] as usize];
-        near.iter().map(|&element| element as usize).find(|&element| self.in_element(element, x).outside <= ROUNDING)
+        let mut near = near.iter().map(|&element| element as usize).filter(|&element| counts(element));
+        near.find(|&element| self.in_element(element, x).outside <= ROUNDING)
     }
 
     fn in_element(&self, element: usize, x: DVec3) -> Location {

@@ -12,7 +12,7 @@ pub fn longest_edge(kind: CellKind, p: &[DVec3]) -> f64 {
 }
 
 /// Places of the nodes of a cell (m).
-pub(super) struct Places {
+pub(crate) struct Places {
     all: [DVec3; MOST_NODES],
     count: usize,
 }
@@ -46,7 +46,7 @@ impl Mesh {
     }
 
     /// Places of the nodes of an element (m).
-    pub(super) fn places(&self, row: usize) -> Places {
+    pub(crate) fn places(&self, row: usize) -> Places {
         Places::new(&self.cells, row, &self.points)
     }
 

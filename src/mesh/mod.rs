@@ -38,6 +38,7 @@ pub use error::{MeshError, Place};
 pub use generators::ElementKind;
 pub(crate) use generators::each_element_kind;
 pub use locate::{Location, Locator};
+pub(crate) use placement::{angles_about_axes, rotation_about_axes};
 pub use quality::Quality;
 #[cfg(feature = "files")]
 pub(crate) use read::Fault;

@@ -19,12 +19,7 @@ impl Mesh {
         if !translate.is_finite() {
             return refuse("translate", format!("{translate}"), "it must be finite (m)");
         }
-        let turn = |angle: f64, about: fn(f64) -> DMat3| {
-            if angle == 0.0 { DMat3::IDENTITY } else { about(angle.to_radians()) }
-        };
-        let turn = turn(rotate_degrees.z, DMat3::from_rotation_z)
-            * turn(rotate_degrees.y, DMat3::from_rotation_y)
-            * turn(rotate_degrees.x, DMat3::from_rotation_x);
+        let turn = rotation_about_axes(rotate_degrees);
         for point in &mut self.points {
             *point = turn * (scale * *point) + translate;
         }
@@ -32,5 +27,43 @@ impl Mesh {
             *vector = turn * *vector;
         }
         Ok(())
+    }
+}
+
+/// The rotation about the axes x, then y, then z through the origin (degrees).
+pub fn rotation_about_axes(degrees: DVec3) -> DMat3 {
+    let turn = |angle: f64, about: fn(f64) -> DMat3| {
+        if angle == 0.0 { DMat3::IDENTITY } else { about(angle.to_radians()) }
+    };
+    turn(degrees.z, DMat3::from_rotation_z)
+        * turn(degrees.y, DMat3::from_rotation_y)
+        * turn(degrees.x, DMat3::from_rotation_x)
+}
+
+/// The angles (degrees) of which [`rotation_about_axes`] makes a rotation. Where that about y is 90 degrees, those
+/// about x and z are not the only ones that do.
+pub fn angles_about_axes(turn: DMat3) -> DVec3 {
+    let at = |row: usize, column: usize| turn.col(column)[row];
+    let z = at(1, 0).atan2(at(0, 0));
+    let (sine, cosine) = z.sin_cos();
+    let y = (-at(2, 0)).atan2(cosine * at(0, 0) + sine * at(1, 0));
+    // as R_z R_y have been taken away, also where the last row says nothing of it
+    let x = (sine * at(0, 2) - cosine * at(1, 2)).atan2(cosine * at(1, 1) - sine * at(0, 1));
+    DVec3::new(x.to_degrees(), y.to_degrees(), z.to_degrees())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_make_the_rotation_that_they_are_of() {
+        for degrees in
+            [(0.0, 0.0, 0.0), (10.0, -70.0, 160.0), (200.0, 90.0, 30.0), (40.0, -90.0, 0.0), (0.0, 180.0, 90.0)]
+        {
+            let turn = rotation_about_axes(degrees.into());
+            let again = rotation_about_axes(angles_about_axes(turn));
+            assert!((turn - again).to_cols_array().iter().all(|part| part.abs() < 1e-15), "{degrees:?}");
+        }
     }
 }

@@ -52,7 +52,14 @@ impl Mesh {
     /// different faces, and nothing but their shared nodes joins them. So they do where a face of second order lies on
     /// one that has no middles.
     pub fn surface(&self) -> Vec<SurfaceFace> {
-        let mut single = self.single_faces();
+        self.exposed(|_| true)
+    }
+
+    /// The same of the mesh that is left of it: faces that belong to exactly one of the elements that live. Where they
+    /// do not touch other kinds of faces, every edge belongs to an even number of them, whatever has been removed: they
+    /// are the boundary of what is left, and a boundary has none.
+    pub fn exposed(&self, lives: impl Fn(usize) -> bool) -> Vec<SurfaceFace> {
+        let mut single = self.single_faces(lives);
         single.sort_unstable();
         single.into_iter().map(|face| self.face(face)).collect()
     }
@@ -61,10 +68,13 @@ impl Mesh {
     /// on its other side; `none` where there is no such element.
     pub fn faces_and_opposites(&self, none: u32) -> Vec<(SurfaceFace, u32)> {
         let (mut faces, mut alike) = (Vec::new(), Vec::new());
-        self.each_face(|number, nodes| {
-            alike.push((nodes, faces.len() as u32));
-            faces.push((self.face(number), none));
-        });
+        self.each_face(
+            |_| true,
+            |number, nodes| {
+                alike.push((nodes, faces.len() as u32));
+                faces.push((self.face(number), none));
+            },
+        );
         alike.sort_unstable();
         for pair in alike.chunk_by(|a, b| a.0 == b.0).filter(|alike| alike.len() == 2) {
             faces[pair[0].1 as usize].1 = pair[1].1;
@@ -96,8 +106,8 @@ impl Mesh {
         middles
     }
 
-    fn each_face(&self, mut see: impl FnMut(u64, [u32; 4])) {
-        for (element, (kind, corners)) in (0..).zip(self.cells.iter()) {
+    fn each_face(&self, lives: impl Fn(usize) -> bool, mut see: impl FnMut(u64, [u32; 4])) {
+        for (element, (kind, corners)) in (0..).zip(self.cells.iter()).filter(|(element, _)| lives(*element as usize)) {
             for (local, face) in (0..).zip(kind.topology().faces) {
                 let mut nodes = sorted(face.corners(corners));
                 if let Some(middles) = face.middles() {
@@ -111,15 +121,15 @@ impl Mesh {
 
     /// Numbers of faces that occur once. Faces are dealt into one bucket a smallest node, where few remain to compare:
     /// several times faster than sorting all faces.
-    fn single_faces(&self) -> Vec<u64> {
+    fn single_faces(&self, lives: impl Fn(usize) -> bool) -> Vec<u64> {
         let mut starts = vec![0usize; self.points.len() + 1];
-        self.each_face(|_, nodes| starts[nodes[0] as usize + 1] += 1);
+        self.each_face(&lives, |_, nodes| starts[nodes[0] as usize + 1] += 1);
         for node in 0..self.points.len() {
             starts[node + 1] += starts[node];
         }
         let mut next = starts.clone();
         let mut dealt = vec![([0u32; 3], 0u64); starts[self.points.len()]];
-        self.each_face(|number, [smallest, rest @ ..]| {
+        self.each_face(&lives, |number, [smallest, rest @ ..]| {
             dealt[next[smallest as usize]] = (rest, number);
             next[smallest as usize] += 1;
         });

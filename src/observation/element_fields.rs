@@ -142,7 +142,9 @@ impl ElementFields {
                 | OutputField::Velocity
                 | OutputField::Reaction
                 | OutputField::InternalForce
-                | OutputField::ExternalForce => {}
+                | OutputField::ExternalForce
+                | OutputField::ContactForce
+                | OutputField::ContactTraction => {}
             }
         }
     }

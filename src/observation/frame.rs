@@ -1,5 +1,6 @@
 //! One frame of a series: the mesh, who is who in it, and the fields that the scene asks for.
 
+use super::contacts::{contact_forces, contact_tractions};
 use super::element_fields::{BodyElements, ElementFields, ElementRows};
 use super::fields::internal_forces;
 use crate::backend::cpu::Cpu;
@@ -72,7 +73,7 @@ pub fn write(world: &mut World, series: &mut Series) -> Result<Option<String>, E
 }
 
 /// The bodies in the order of their names.
-fn bodies(world: &mut World) -> Vec<Entity> {
+pub(super) fn bodies(world: &mut World) -> Vec<Entity> {
     let mut bodies: Vec<(Label, Entity)> =
         world.query_filtered::<(&Label, Entity), With<Authoring>>().iter(world).map(|(l, e)| (l.clone(), e)).collect();
     bodies.sort();
@@ -161,6 +162,8 @@ fn put_together(
 fn node_vectors(field: OutputField, body: Entity, world: &mut World) -> Result<Vec<DVec3>, Error> {
     let columns: &[&str] = match field {
         OutputField::InternalForce => return internal_forces(world, body),
+        OutputField::ContactForce => return contact_forces(body, world),
+        OutputField::ContactTraction => return contact_tractions(body, world),
         OutputField::Displacement => &[Displacement::NAME],
         OutputField::Velocity => &[DisplacementIncrement::NAME],
         OutputField::ExternalForce => &[ExternalForce::NAME],

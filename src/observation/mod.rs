@@ -1,5 +1,6 @@
 //! Looking at a run: probes, energies, fields and guards, when they are due. Reads only.
 
+mod contacts;
 mod element_fields;
 mod energies;
 mod fields;
@@ -9,10 +10,12 @@ mod look;
 mod overlaps;
 mod probes;
 mod rounding;
+mod skins;
 mod tables;
 mod tools;
 mod track;
 
+pub use contacts::{ContactReading, read_contact};
 pub use energies::{energies, energy_header, mass};
 pub use fields::{BodyFields, body_fields, internal_forces};
 pub use frame::{WrittenFields, write as write_fields, write_whole};
@@ -20,7 +23,8 @@ pub use guards::{Watch, begin as begin_to_guard, held_for_long};
 pub use look::{Look, WatchKernels, look};
 pub use probes::{header, observe_probe, volume_left};
 pub use rounding::{Rounding, shortest_edge};
-pub use tools::{ToolReading, read_tool};
+pub use skins::{SkinState, skin_of};
+pub use tools::{Felt, ToolReading, feel, read_tool};
 pub use track::Track;
 
 use self::track::Moment;
@@ -90,6 +94,8 @@ struct Files {
     energies: Option<Table>,
     probes: BTreeMap<String, Table>,
     convergence: Option<Table>,
+    /// Of bodies with a skin.
+    skins: Vec<(Entity, Series)>,
 }
 
 /// The columns of `convergence.csv`, plain numbers all.
@@ -162,8 +168,14 @@ impl Observer {
             None => None,
             Some(_) => Some(Table::create(&folder.claim("convergence.csv")?, &CONVERGENCE)?),
         };
+        let mut skins = Vec::new();
+        for (body, name) in skins::with_skins(world) {
+            let name = format!("skin_{name}");
+            folder.claim(&format!("{name}.pvd"))?;
+            skins.push((body, Series::named(folder.path(), &name)?));
+        }
         let (folder, _lock) = (folder.path().to_path_buf(), folder.lock());
-        self.files = Some(Files { folder, _lock, series, energies, probes, convergence });
+        self.files = Some(Files { folder, _lock, series, energies, probes, convergence, skins });
         Ok(())
     }
 

@@ -1,5 +1,5 @@
-//! Bodies that are where others are. Nothing keeps bodies apart as long as there is no contact: what they do to each
-//! other then is nothing, and that must be known.
+//! Bodies that are where others are. Nothing keeps bodies apart that no contact is between: what they do to each other
+//! then is nothing, and that must be known.
 
 use crate::backend::device::bring_to_host;
 use crate::components::*;
@@ -33,6 +33,8 @@ struct Placed<'a> {
     points: Vec<DVec3>,
     low: DVec3,
     high: DVec3,
+    /// Whether contact keeps it away from others.
+    meets: bool,
 }
 
 /// Looks for pairs of bodies that overlap, and warns once of each. Boxes around bodies are compared first: those of one
@@ -66,7 +68,7 @@ pub(super) fn look(world: &mut World) -> Result<(), Error> {
             let found = overlap(&near_a, &near_b, a, b).map(|found| (found, a, b));
             let found = found.or_else(|| overlap(&near_b, &near_a, b, a).map(|found| (found, b, a)));
             if let Some((found, one, other)) = found {
-                let message = message(&found, one.label, other.label);
+                let message = message(&found, one.label, other.label, one.meets && other.meets);
                 let criterion = OVERLAP.to_string();
                 memory.warnings.push(Notice { criterion, part, time, step, value: 1.0, limit: 0.0, message });
             }
@@ -76,12 +78,15 @@ pub(super) fn look(world: &mut World) -> Result<(), Error> {
     Ok(())
 }
 
-fn message(found: &Overlap, one: &str, other: &str) -> String {
+fn message(found: &Overlap, one: &str, other: &str, meet: bool) -> String {
     let at = found.at.to_array().map(|x| format!("{x:.4}")).join(", ");
     let Overlap { node, element, .. } = found;
     format!(
-        "{one} and {other} overlap at ({at}) m: the surface of {one} at its node {node} is in element {element} of {other}; there \
-         is no contact yet, bodies pass through each other"
+        "{one} and {other} overlap at ({at}) m: the surface of {one} at its node {node} is in element {element} of {other}; {}",
+        match meet {
+            true => "contact has let them: finer faces, `sweeps` or slower motion keep them apart better".into(),
+            false => format!("nothing keeps them apart: `contacts: [Between(bodies: (\"{one}\", \"{other}\"))]` does"),
+        }
     )
 }
 
@@ -92,7 +97,8 @@ fn place(world: &World, entity: Entity) -> Option<Placed<'_>> {
     let points: Vec<DVec3> = authoring.node_rows.iter().map(point).collect();
     let low = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
     let high = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-    Some(Placed { label: &world.get::<Label>(entity)?.0, authoring, points, low, high })
+    let meets = world.get::<ContactForce>(entity).is_some();
+    Some(Placed { label: &world.get::<Label>(entity)?.0, authoring, points, low, high, meets })
 }
 
 /// The elements of a body that are there and reach into a box, with their places in the author's order and those of

@@ -2,7 +2,7 @@
 
 use super::probes::with_peaks;
 use super::track::{Moment, Row};
-use super::{Observer, energies, observe_probe, overlaps, write_fields, write_whole};
+use super::{Observer, energies, observe_probe, overlaps, skins, write_fields, write_whole};
 use crate::components::Clock;
 use crate::error::Error;
 use crate::output::WHOLE;
@@ -53,6 +53,11 @@ impl Observer {
             && let Some(what) = write_fields(world, &mut files.series)?
         {
             self.finite(world, [f64::NAN].into_iter(), || what.clone())?;
+        }
+        if moment.is_due(&self.fields)
+            && let Some(files) = &mut self.files
+        {
+            files.skins.iter_mut().try_for_each(|(body, series)| skins::write(world, *body, series))?;
         }
         if moment.is_due(&self.fields) && (self.files.is_some() || clock.step == 0) {
             overlaps::look(world)?;

@@ -1,6 +1,6 @@
 //! What tools feel.
 
-use crate::backend::device::bring_to_host;
+use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::Error;
 use bevy_ecs::prelude::*;
@@ -61,7 +61,7 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
                     continue;
                 }
                 let row = row as usize;
-                let at = TOUCH_NUMBERS * (contacts.tools.len() * place + number);
+                let at = contacts.numbers_a_tool() * (contacts.tools.len() * place + number);
                 let number = |i: usize| touch.get(at + i);
                 reading.work += number(5);
                 reading.loss += number(6);
@@ -84,9 +84,8 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
             }
         }
     }
-    let place = |slot: usize, reference: DVec3| {
-        now.iter().find(|(of, _)| *of == slot).map(|(_, pose)| pose.at + reference)
-    };
+    let place =
+        |slot: usize, reference: DVec3| now.iter().find(|(of, _)| *of == slot).map(|(_, pose)| pose.at + reference);
     let mut takers = world.query::<&ToolRemovals>();
     for removals in takers.iter(world) {
         for removal in removals.all.iter().filter(|removal| removal.tool == tool) {
@@ -109,11 +108,8 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
 /// The force on a tool of what it sucks at a body (N), and its moment about a place (N m): faces as they were at the
 /// beginning of the step that led here, each with its force at its centroid.
 fn suction_at(world: &World, suction: &Suction, body: Entity, about: DVec3) -> Option<(DVec3, DVec3)> {
-    let (rest, u, step) = (
-        world.get::<RestPosition>(body)?,
-        world.get::<Displacement>(body)?,
-        world.get::<DisplacementIncrement>(body)?,
-    );
+    let (rest, u, step) =
+        (world.get::<RestPosition>(body)?, world.get::<Displacement>(body)?, world.get::<DisplacementIncrement>(body)?);
     let mut now = suction.clone();
     now.renew(world.get::<SuctionMarks>(body)?, world.get::<SuctionPressure>(body)?);
     let place = |node: u32| rest.0[node as usize] + u.vector(node as usize) - step.vector(node as usize);
@@ -126,4 +122,50 @@ fn suction_at(world: &World, suction: &Suction, body: Entity, about: DVec3) -> O
         sums.1 += (centroid - about).cross(force);
     }
     Some(sums)
+}
+
+/// What the tool of a hand felt in a batch of steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Felt {
+    /// The mean of the force on it (N).
+    pub force: DVec3,
+    /// The moment of this force about its origin, where nodes and tool are at the end (N m).
+    pub torque: DVec3,
+    /// Whether it touched anything.
+    pub in_contact: bool,
+}
+
+/// What the tools of hands felt in so many steps; another batch begins for each tool that is asked for.
+///
+/// # Errors
+/// What the GPU says.
+pub fn feel(world: &mut World, tool: &str, steps: u64) -> Result<Felt, Error> {
+    bring_to_host(world, |_, name| [ToolTouch::NAME, Displacement::NAME].contains(&name))?;
+    let now = world.resource::<Signals>().poses_at(world.resource::<Clock>().time());
+    let mut felt = Felt::default();
+    let mut bodies = world.query::<(&ToolContacts, &mut ToolTouch, &RestPosition, &Displacement)>();
+    for (contacts, mut touch, rest, u) in bodies.iter_mut(world).filter(|(contacts, ..)| contacts.felt) {
+        let numbers = contacts.numbers_a_tool();
+        for (bit, contact) in contacts.tools.iter().enumerate().filter(|(_, contact)| contact.tool == tool) {
+            let Some(at) = now.iter().find(|(slot, _)| *slot == contact.signal).map(|(_, pose)| pose.at) else {
+                continue;
+            };
+            for (place, &row) in contacts.rows.iter().enumerate() {
+                let first = numbers * (contacts.tools.len() * place + bit) + TOUCH_NUMBERS;
+                let force = -DVec3::from_array([0, 1, 2].map(|i| touch.get(first + i))) / steps as f64;
+                if force == DVec3::ZERO {
+                    continue;
+                }
+                (0..FELT_NUMBERS).for_each(|i| touch.set(first + i, 0.0));
+                let end = rest.0[row as usize] - contacts.reference + u.vector(row as usize);
+                felt.force += force;
+                felt.torque += (end - at).cross(force);
+                felt.in_contact = true;
+            }
+        }
+    }
+    if felt.in_contact {
+        send_to_device(world, |_, name| name == ToolTouch::NAME)?;
+    }
+    Ok(felt)
 }

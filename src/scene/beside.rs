@@ -44,21 +44,27 @@ pub enum FileKind {
     Nothing,
 }
 
+/// Where files are that a scene names, and which of them it may read.
+#[derive(Clone, Copy)]
+pub(super) struct Beside<'a> {
+    pub(super) folder: &'a Path,
+    pub(super) files: &'a FileSource,
+    /// Whether files may lie outside the folder.
+    pub(super) outside: bool,
+}
+
 impl SceneFile {
+    fn beside(&self) -> Beside<'_> {
+        Beside { folder: &self.folder, files: &self.files, outside: self.allowed.outside }
+    }
+
     /// Where a file is that the scene names, its path relative to the scene's folder. Links are followed: what counts
     /// is where a file really is. A file in memory is where its name says.
     ///
     /// # Errors
     /// The file lies outside the folder, and that is not [allowed](super::limits::Allowed::outside).
     pub fn file(&self, name: &str) -> Result<PathBuf, Outside> {
-        if let FileSource::Memory(_) = self.files {
-            return Ok(name.into());
-        }
-        let full = self.folder.join(name);
-        if self.allowed.outside || is_inside(&self.folder, name, &full) {
-            return Ok(full);
-        }
-        Err(Outside { name: name.to_string() })
+        self.beside().file(name)
     }
 
     /// What a file holds that the scene names, if that is no more than `most` bytes.
@@ -66,9 +72,34 @@ impl SceneFile {
     /// # Errors
     /// The file lies outside the scene's folder, is not there, is no plain file, is longer, or cannot be read.
     pub fn bytes(&self, name: &str, most: u64) -> io::Result<Cow<'_, [u8]>> {
+        self.beside().bytes(name, most)
+    }
+
+    /// What a name stands for, and the names of the files that are where it should be.
+    ///
+    /// # Errors
+    /// As [`Self::file`].
+    pub fn look_up(&self, name: &str) -> Result<(FileKind, Vec<String>), Outside> {
+        self.beside().look_up(name)
+    }
+}
+
+impl<'a> Beside<'a> {
+    pub(super) fn file(&self, name: &str) -> Result<PathBuf, Outside> {
+        if let FileSource::Memory(_) = self.files {
+            return Ok(name.into());
+        }
+        let full = self.folder.join(name);
+        if self.outside || is_inside(self.folder, name, &full) {
+            return Ok(full);
+        }
+        Err(Outside { name: name.to_string() })
+    }
+
+    pub(super) fn bytes(&self, name: &str, most: u64) -> io::Result<Cow<'a, [u8]>> {
         let path = self.file(name).map_err(|outside| io::Error::new(ErrorKind::PermissionDenied, outside))?;
-        let bytes: Cow<'_, [u8]> = match &self.files {
-            FileSource::Memory(files) => files.get(name).map(|bytes| bytes.into()).ok_or(ErrorKind::NotFound)?,
+        let bytes: Cow<'a, [u8]> = match self.files {
+            FileSource::Memory(files) => in_memory(files, name).map(|bytes| bytes.into()).ok_or(ErrorKind::NotFound)?,
             FileSource::Disk => {
                 let kind = std::fs::metadata(&path)?;
                 if !kind.is_file() {
@@ -87,21 +118,17 @@ impl SceneFile {
         Ok(bytes)
     }
 
-    /// What a name stands for, and the names of the files that are where it should be.
-    ///
-    /// # Errors
-    /// As [`Self::file`].
-    pub fn look_up(&self, name: &str) -> Result<(FileKind, Vec<String>), Outside> {
+    pub(super) fn look_up(&self, name: &str) -> Result<(FileKind, Vec<String>), Outside> {
         let full = self.file(name)?;
-        Ok(match &self.files {
+        Ok(match self.files {
             FileSource::Memory(files) => {
-                let found = if files.contains_key(name) { FileKind::File } else { FileKind::Nothing };
+                let found = if in_memory(files, name).is_some() { FileKind::File } else { FileKind::Nothing };
                 (found, files.keys().cloned().collect())
             }
             FileSource::Disk if full.is_file() => (FileKind::File, Vec::new()),
             FileSource::Disk if full.is_dir() => (FileKind::Folder, Vec::new()),
             FileSource::Disk => {
-                let folder = full.parent().unwrap_or(&self.folder);
+                let folder = full.parent().unwrap_or(self.folder);
                 let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
                 let entries = std::fs::read_dir(folder).into_iter().flatten();
                 let mut there: Vec<String> =
@@ -111,6 +138,24 @@ impl SceneFile {
             }
         })
     }
+}
+
+/// A file in memory, by its name or another that means the same: `tools/../lens.msh`.
+fn in_memory<'a>(files: &'a BTreeMap<String, Vec<u8>>, name: &str) -> Option<&'a Vec<u8>> {
+    files.get(name).or_else(|| files.get(&shortest(name)))
+}
+
+/// A relative path without ways down and up again: `lens.msh` of `tools/../lens.msh`.
+pub(super) fn shortest(name: &str) -> String {
+    let mut parts: Vec<&str> = Vec::new();
+    for part in name.split('/') {
+        match part {
+            "." => {}
+            ".." if parts.last().is_some_and(|last| !matches!(*last, "" | "..")) => drop(parts.pop()),
+            _ => parts.push(part),
+        }
+    }
+    parts.join("/")
 }
 
 fn is_inside(folder: &Path, name: &str, full: &Path) -> bool {

@@ -264,10 +264,8 @@ impl Diagnostics {
         }
         let source = self.source.as_ref()?;
         let place = source.place(at);
-        Some(match place.text.checked_sub(1) {
-            None => (&source.name, &source.file, place.span.start),
-            Some(set) => ("--set", &source.sets[set], place.span.start),
-        })
+        let text = source.texts.get(place.text)?;
+        Some((&text.name, &text.text, place.span.start))
     }
 
     fn sorted(&self) -> Vec<&Diagnostic> {
@@ -281,8 +279,7 @@ impl Diagnostics {
     pub fn render(&self, color: bool) -> String {
         let mut texts: Vec<(&str, &str)> = Vec::new();
         if let Some(source) = &self.source {
-            texts.push((&source.name, &source.file));
-            texts.extend(source.sets.iter().map(|set| ("--set", set.as_str())));
+            texts.extend(source.texts.iter().map(|text| (text.name.as_str(), text.text.as_str())));
         }
         let own = texts.len();
         let sorted = self.sorted();

@@ -17,6 +17,10 @@ pub const ACTIONS: usize = 10_000;
 pub const TOOLS_OF_A_BODY: usize = 8;
 /// Elements that a tool takes at a time.
 pub const MOST_BURST: u32 = 1024;
+/// Parts, parts of parts among them.
+pub const PARTS: usize = 1000;
+/// Parts within each other.
+pub const PART_DEPTH: usize = 8;
 /// Systems of a scene's own.
 pub const SYSTEMS: usize = 100;
 /// Points of a table, places of a tool's path; a longer signal is thinned out before.
@@ -55,6 +59,8 @@ pub const LAW_WORDS: usize = 20_000;
 pub const LAW_DECLARATIONS: usize = 500;
 /// Operators, brackets and branches of a law or system of one's own that are within each other.
 pub const LAW_DEPTH: usize = 500;
+/// Corrections of contact forces in a step.
+pub const MOST_SWEEPS: u32 = 100;
 /// Mistakes that are kept; there is enough to do.
 pub(super) const MISTAKES: usize = 100_000;
 /// Places where a text is no RON, after which reading it is given up.

@@ -1,14 +1,14 @@
 //! From a scene file to a [`Scene`].
 
-use super::beside::FileSource;
+use super::beside::{Beside, FileSource};
 use super::check::check;
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::limits::{self, Allowed};
 use super::partial::wrong_values;
+use super::parts::{self, Problem, Together};
 use super::schema::Scene;
-use super::set;
 use super::source::Source;
-use super::syntax::{Span, Tree, parse};
+use super::syntax::{Kind, Node, Path as Way, Segment, Span, Tree};
 use crate::mesh::Mesh;
 use glam::DVec3;
 use ron::extensions::Extensions;
@@ -163,21 +163,31 @@ impl SceneFile {
             return Err(Diagnostics::of(format!("--set is given {found} times; at most {most} are allowed")));
         }
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let mut source = Source::new(name, text, sets);
-        let mut tree = parse(source.text());
-        let mut mistakes: Vec<Diagnostic> = Vec::new();
-        if tree.faults.is_empty() {
-            for number in 0..sets.len() {
-                match set::apply(&mut source, &tree, number) {
-                    Ok(()) => tree = parse(source.text()),
-                    Err(mistake) => mistakes.push(*mistake),
-                }
-            }
-        }
-        mistakes.extend(tree.faults.iter().cloned().map(Diagnostic::from));
-        let (partial, wrong_words) = check::<Scene>(&tree.root, source.text());
+        let beside = Beside { folder, files: &files, outside: allowed.outside };
+        let own = Path::new(name).strip_prefix(folder).unwrap_or(Path::new(name)).display().to_string();
+        let Together { source, view, mut mistakes, is_whole } =
+            parts::read(Source::new(name, text, sets), sets, beside, &own);
+        let written = view.written();
+        mistakes.extend(written.faults.iter().cloned().map(Diagnostic::from));
+        let (partial, wrong_words) = check::<Scene>(&written.root, source.text());
         mistakes.extend(wrong_words);
-        let (source, tree) = (Arc::new(source), Arc::new(tree));
+        let tell = |problem: &Problem| {
+            let at = match problem.path.find(&written.root) {
+                Ok(node) => node.mark(),
+                Err(_) => problem.path.span(&written.root),
+            };
+            let mut mistake = Diagnostic::error(at, problem.message.clone());
+            mistake.note(problem.note.clone());
+            mistake
+        };
+        let without_parts = |mut scene: Scene, mistakes: &mut Vec<Diagnostic>| {
+            let problems = parts::flatten(&mut scene);
+            if is_whole {
+                mistakes.extend(problems.iter().map(tell));
+            }
+            scene
+        };
+        let (source, tree) = (Arc::new(source), Arc::new(view.merged()));
         let mut diagnostics = Diagnostics::new(Arc::clone(&source), Arc::clone(&tree));
         let file = |scene| Self {
             scene,
@@ -192,11 +202,19 @@ impl SceneFile {
         };
         if mistakes.is_empty() {
             match options().from_str::<Scene>(diagnostics.text()) {
-                Ok(scene) => return Ok(file(scene)),
+                Ok(scene) => {
+                    let scene = without_parts(scene, &mut mistakes);
+                    if mistakes.is_empty() {
+                        return Ok(file(scene));
+                    }
+                }
                 Err(error) => mistakes.push(unforeseen(&error, diagnostics.text())),
             }
-        } else if let Some(scene) = partial {
-            mistakes.extend(wrong_values(&file(scene), &mistakes));
+        } else if let Some(scene) = partial.filter(|_| is_whole) {
+            // what names something of a part that was not read is not wrong
+            let scene = without_parts(scene, &mut mistakes);
+            let wrong = wrong_values(&file(scene), &mistakes);
+            mistakes.extend(wrong);
         }
         for mistake in mistakes {
             diagnostics.push(mistake);
@@ -204,20 +222,33 @@ impl SceneFile {
         Err(diagnostics)
     }
 
-    /// The text of the scene with the values of `--set` in it.
+    /// The text of the scene with the values of `--set` and what its parts hold in it.
     pub fn text(&self) -> &str {
         self.source.text()
     }
 
-    /// The syntax tree of [`Self::text`].
+    /// The syntax tree of [`Self::text`], in which what parts hold has the names that the scene knows it by.
     pub fn tree(&self) -> &Tree {
         &self.tree
+    }
+
+    /// The scene's parts: their names, and the files that they come from, empty where there is none.
+    pub fn parts(&self) -> Vec<(&str, &str)> {
+        let parts = Way::from("parts").find(&self.tree.root).ok();
+        let Some(Kind::Map(entries)) = parts.map(|parts| &parts.kind) else { return Vec::new() };
+        let scene = Segment::Name("scene".into());
+        let file = entries.iter().map(|entry| entry.value.child(&scene).and_then(text).unwrap_or_default());
+        entries.iter().zip(file).filter_map(|(entry, file)| Some((text(&entry.key)?, file))).collect()
     }
 
     /// An empty list for complaints about this scene.
     pub fn diagnostics(&self) -> Diagnostics {
         Diagnostics::new(Arc::clone(&self.source), Arc::clone(&self.tree))
     }
+}
+
+fn text(node: &Node) -> Option<&str> {
+    if let Kind::Text(text) = &node.inner().kind { Some(text) } else { None }
 }
 
 fn too_long(name: &str) -> String {

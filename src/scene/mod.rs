@@ -11,6 +11,7 @@ pub mod limits;
 #[doc(hidden)]
 pub mod load;
 mod partial;
+mod parts;
 pub mod schema;
 #[doc(hidden)]
 pub mod set;

@@ -4,6 +4,7 @@
 use super::check::wants_text;
 use super::diagnostic::Diagnostic;
 use super::limits::SET_BYTES;
+use super::parts::merged;
 use super::schema::Scene;
 use super::source::{Origin, Source};
 use super::suggest::choice;
@@ -13,8 +14,7 @@ use super::syntax::{Kind, Lost, Node, Path, Segment, Span, Tree, parse};
 ///
 /// # Errors
 /// Why it cannot be put in: a path that leads nowhere, a value that is not RON.
-pub fn apply(source: &mut Source, tree: &Tree, number: usize) -> Result<(), Box<Diagnostic>> {
-    let argument = source.sets[number].clone();
+pub fn apply(source: &mut Source, view: &View, (number, argument): (usize, &str)) -> Result<(), Box<Diagnostic>> {
     if argument.len() > SET_BYTES {
         let begin: String = argument.chars().take(40).collect();
         let message = format!("--set {begin}...: {} bytes; at most {SET_BYTES} are allowed", argument.len());
@@ -37,17 +37,19 @@ pub fn apply(source: &mut Source, tree: &Tree, number: usize) -> Result<(), Box<
     if value.is_empty() {
         return Err(fail("a value is missing after the =".to_string()));
     }
-    let slot = Slot::find(&way, &tree.root, path).map_err(|(message, notes)| {
+    let slot = view.slot(&way, path).map_err(|(message, notes)| {
         let mut diagnostic = fail(message);
         diagnostic.notes(notes);
         diagnostic
     })?;
+    // texts are counted from the scene's own file on
+    let number = number + 1;
     let put = |source: &Source, parts: &[(&str, Origin)]| {
         let mut source = source.clone();
-        let span = slot.put(&mut source, number, parts);
+        let span = slot.put(&mut source, (number, 0), parts);
         (source, span)
     };
-    let plain = (value, Origin::Set(number, value_at));
+    let plain = (value, Origin::of(number, value_at));
     let faults = parse(value).faults;
     if faults.is_empty() {
         let (with, span) = put(source, std::slice::from_ref(&plain));
@@ -56,7 +58,7 @@ pub fn apply(source: &mut Source, tree: &Tree, number: usize) -> Result<(), Box<
             return Ok(());
         }
     } else {
-        let (with, span) = put(source, &[("x", plain.1.clone())]);
+        let (with, span) = put(source, &[("x", plain.1)]);
         if value.contains('"') || !wants_text::<Scene>(&with, &span) {
             let fault = &faults[0];
             return Err(fail(format!(
@@ -66,10 +68,64 @@ pub fn apply(source: &mut Source, tree: &Tree, number: usize) -> Result<(), Box<
         }
     }
     // the shell has eaten the quotes, or the author never wrote them
-    let quote = || ("\"", Origin::Glue(number, value_at));
+    let quote = || ("\"", Origin::put_in(number, value_at));
     let escaped = value.replace('\\', "\\\\").replace('"', "\\\"");
     *source = put(source, &[quote(), (&escaped, plain.1), quote()]).0;
     Ok(())
+}
+
+/// Puts a value in at a path, of which the text of that number has the name from that byte on.
+///
+/// # Errors
+/// Why it cannot be put in, and what is allowed.
+pub fn put(
+    source: &mut Source,
+    view: &View,
+    (path, from): (&str, (usize, usize)),
+    value: &[(&str, Origin)],
+) -> Result<(), (String, Vec<String>)> {
+    let way = Path::parse(path).map_err(|message| (message, Vec::new()))?;
+    if way.0.is_empty() {
+        return Err(("a path is missing".to_string(), Vec::new()));
+    }
+    view.slot(&way, path)?.put(source, from, value);
+    Ok(())
+}
+
+/// A text's tree, as it is written and with what its parts bring.
+pub struct View {
+    written: Tree,
+    merged: Option<Node>,
+}
+
+impl View {
+    /// Of a text as it is now.
+    pub fn of(source: &Source) -> Self {
+        let written = parse(source.text());
+        Self { merged: merged(&written.root), written }
+    }
+
+    /// The tree as it is written.
+    pub fn written(&self) -> &Tree {
+        &self.written
+    }
+
+    /// The tree with what parts bring, under the names that the scene knows it by.
+    pub fn merged(&self) -> Tree {
+        let root = self.merged.as_ref().unwrap_or(&self.written.root).clone();
+        Tree { root, faults: self.written.faults.clone() }
+    }
+
+    /// Where the value at a path is, or would be.
+    fn slot<'a>(&self, way: &'a Path, text: &str) -> Result<Slot<'a>, (String, Vec<String>)> {
+        let reach = |root: &Node| way.find(root).map_or_else(|lost| lost.reached, |_| way.0.len());
+        let written = &self.written.root;
+        match &self.merged {
+            Some(merged) if reach(merged) > reach(written) => Slot::find(way, merged, text),
+            Some(merged) => Slot::find(way, written, text).or_else(|_| Slot::find(way, merged, text)),
+            None => Slot::find(way, written, text),
+        }
+    }
 }
 
 /// Where a value goes.
@@ -136,6 +192,10 @@ impl<'a> Slot<'a> {
             let at = text[from..].find(name.as_str()).map_or(0, |found| from + found);
             new.push((name.as_str(), at));
         }
+        if holder.span.is_empty() {
+            let name = new.first().map_or("", |(name, _)| name);
+            return Err((format!("only parts have such: there is nothing to put `{name}` into"), Vec::new()));
+        }
         // before the first that is there, where the comma after it is right; comments may stand anywhere else
         let first = match &holder.kind {
             Kind::Fields(fields) => fields.first().map(|field| field.name.span.start),
@@ -147,15 +207,15 @@ impl<'a> Slot<'a> {
     }
 
     /// Puts the value in and tells where it now stands.
-    fn put(&self, source: &mut Source, number: usize, value: &[(&str, Origin)]) -> Span {
+    fn put(&self, source: &mut Source, (text, from): (usize, usize), value: &[(&str, Origin)]) -> Span {
         let mut parts: Vec<(&str, Origin)> = Vec::new();
-        let glue = |at: usize| Origin::Glue(number, at);
+        let glue = |at: usize| Origin::put_in(text, from + at);
         let span = self.span.clone();
         if let Some((_, at)) = self.new.last() {
             for (i, (name, at)) in self.new.iter().enumerate() {
                 let quoted = self.in_map && i == 0;
                 parts.extend([(if i > 0 { "(" } else { "" }, glue(*at)), (if quoted { "\"" } else { "" }, glue(*at))]);
-                parts.push((name, Origin::Set(number, *at)));
+                parts.push((name, Origin::of(text, from + at)));
                 parts.push((if quoted { "\": " } else { ": " }, glue(*at)));
             }
             let before: usize = parts.iter().map(|(text, _)| text.len()).sum();

@@ -1,16 +1,15 @@
-//! The text of a scene after `--set`, and where each byte of it came from.
+//! The text of a scene after `--set` and with its parts, and where each byte of it came from.
 
+use super::diagnostic::TextFile;
 use super::syntax::Span;
+use std::sync::Arc;
 
-/// A scene's text: what the file holds, with the values of `--set` in their places.
+/// A scene's text: what its file holds, with the values of `--set` and the files of parts in their places.
 #[derive(Clone, Debug)]
 pub struct Source {
-    /// The name of the file, as messages show it.
-    pub name: String,
-    /// What the file holds.
-    pub file: String,
-    /// The `path=value` of each `--set`.
-    pub sets: Vec<String>,
+    /// All that the text is made of, with the names that messages show: the file first, then each `--set`, then the
+    /// files of parts.
+    pub texts: Vec<Arc<TextFile>>,
     text: String,
     pieces: Vec<Piece>,
 }
@@ -23,34 +22,53 @@ struct Piece {
 }
 
 /// Where a stretch of the text came from.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Origin {
-    /// The file, from this byte on.
-    File(usize),
-    /// The `--set` of that number, from this byte of its argument on.
-    Set(usize, usize),
-    /// Punctuation put in for the `--set` of that number; stands for this byte of its argument.
-    Glue(usize, usize),
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Origin {
+    /// The number of the text in [`Source::texts`].
+    text: usize,
+    /// From this byte of it on.
+    at: usize,
+    /// Put in for what stands at that byte: all of the stretch stands for that one place.
+    put_in: bool,
 }
 
-/// Bytes of the file (0) or of the `--set` number n - 1 (n).
+/// Bytes of one of the texts.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Place {
-    /// 0 for the file, n for the n-th `--set`.
+    /// The number of the text in [`Source::texts`]: 0 for the file, n for the n-th `--set`.
     pub text: usize,
     /// The bytes in it.
     pub span: Span,
 }
 
+/// Stretches of text with where they came from.
+pub type Stretches = Vec<(String, Origin)>;
+
 impl Source {
-    /// A text as it is.
+    /// The text of a file as it is.
     pub fn new(name: impl Into<String>, file: impl Into<String>, sets: &[String]) -> Self {
+        let named = |name: String, text: String| Arc::new(TextFile { name, text });
         let file = file.into();
-        let pieces = vec![Piece { length: file.len(), from: Origin::File(0) }];
-        Self { name: name.into(), text: file.clone(), file, sets: sets.to_vec(), pieces }
+        let mut texts = vec![named(name.into(), file.clone())];
+        texts.extend(sets.iter().map(|set| named("--set".into(), set.clone())));
+        Self { texts, ..Self::of(0, file) }
     }
 
-    /// The text with the values of all `--set` so far.
+    /// A text that is to be put into another one, in which it has a number.
+    pub fn of(number: usize, text: impl Into<String>) -> Self {
+        let text = text.into();
+        let pieces = vec![Piece { length: text.len(), from: Origin::of(number, 0) }];
+        Self { texts: Vec::new(), text, pieces }
+    }
+
+    /// A text made of stretches of others.
+    pub fn made_of(stretches: &Stretches) -> Self {
+        let piece = |(text, from): &(String, Origin)| Piece { length: text.len(), from: *from };
+        let text = stretches.iter().map(|(text, _)| text.as_str()).collect();
+        Self { texts: Vec::new(), text, pieces: stretches.iter().map(piece).collect() }
+    }
+
+    /// The text with all that was put in so far.
     pub fn text(&self) -> &str {
         &self.text
     }
@@ -60,12 +78,11 @@ impl Source {
         let mut pieces = Vec::with_capacity(self.pieces.len() + parts.len() + 1);
         let mut start = 0;
         let mut put = false;
-        let new: Vec<Piece> =
-            parts.iter().map(|(text, from)| Piece { length: text.len(), from: from.clone() }).collect();
+        let new: Vec<Piece> = parts.iter().map(|(text, from)| Piece { length: text.len(), from: *from }).collect();
         for piece in &self.pieces {
             let end = start + piece.length;
             if start < span.start {
-                pieces.push(Piece { length: end.min(span.start) - start, from: piece.from.clone() });
+                pieces.push(Piece { length: end.min(span.start) - start, from: piece.from });
             }
             if !put && span.start <= end {
                 pieces.extend(new.iter().cloned());
@@ -83,16 +100,31 @@ impl Source {
         self.text.replace_range(span, &inserted);
     }
 
-    /// Where a stretch of the text came from; cut off where it leaves the file or `--set` it begins in.
+    /// What a stretch of the text is made of.
+    pub fn stretches(&self, span: &Span) -> Stretches {
+        let mut start = 0;
+        let mut found = Vec::new();
+        for piece in &self.pieces {
+            let end = start + piece.length;
+            let (from, to) = (start.max(span.start), end.min(span.end));
+            if from < to {
+                found.push((self.text[from..to].to_string(), piece.from.forward(from - start)));
+            }
+            start = end;
+        }
+        found
+    }
+
+    /// Where a stretch of the text came from; cut off where it leaves the text it begins in.
     pub fn place(&self, span: &Span) -> Place {
         let mut start = 0;
         let mut found = Place { text: 0, span: 0..0 };
         for (i, piece) in self.pieces.iter().enumerate() {
             let end = start + piece.length;
             if span.start < end || i + 1 == self.pieces.len() {
-                let (text, first) = piece.from.locate(span.start.min(end) - start);
-                let last = self.locate_end(span, text).unwrap_or(piece.from.locate(piece.length).1);
-                found = Place { text, span: first..last.max(first) };
+                let first = piece.from.forward(span.start.min(end) - start);
+                let last = self.locate_end(span, first.text).unwrap_or(piece.from.forward(piece.length).at);
+                found = Place { text: first.text, span: first.at..last.max(first.at) };
                 break;
             }
             start = end;
@@ -107,8 +139,8 @@ impl Source {
             let end = start + piece.length;
             // the end belongs to the piece before it: the bytes after it may come from elsewhere
             if span.end <= end {
-                let (text, at) = piece.from.locate(span.end - start);
-                return (text == wanted).then_some(at);
+                let from = piece.from.forward(span.end - start);
+                return (from.text == wanted).then_some(from.at);
             }
             start = end;
         }
@@ -117,19 +149,18 @@ impl Source {
 }
 
 impl Origin {
-    fn forward(&self, bytes: usize) -> Self {
-        match self {
-            Origin::File(at) => Origin::File(at + bytes),
-            Origin::Set(set, at) => Origin::Set(*set, at + bytes),
-            Origin::Glue(..) => self.clone(),
-        }
+    /// The text of that number, from this byte on.
+    pub fn of(text: usize, at: usize) -> Self {
+        Self { text, at, put_in: false }
     }
 
-    fn locate(&self, offset: usize) -> (usize, usize) {
-        match self.forward(offset) {
-            Origin::File(at) => (0, at),
-            Origin::Set(set, at) | Origin::Glue(set, at) => (set + 1, at),
-        }
+    /// Something put in for what stands at that byte of the text of that number.
+    pub fn put_in(text: usize, at: usize) -> Self {
+        Self { text, at, put_in: true }
+    }
+
+    fn forward(self, bytes: usize) -> Self {
+        Self { at: if self.put_in { self.at } else { self.at + bytes }, ..self }
     }
 }
 
@@ -140,14 +171,28 @@ mod tests {
     #[test]
     fn bytes_know_where_they_came_from() {
         let mut source = Source::new("a.ron", "(a: 1, b: 2)", &["a=777".into()]);
-        source.replace(4..5, &[("777", Origin::Set(0, 2))]);
+        source.replace(4..5, &[("777", Origin::of(1, 2))]);
         assert_eq!(source.text(), "(a: 777, b: 2)");
         assert_eq!(source.place(&(4..7)), Place { text: 1, span: 2..5 });
         assert_eq!(source.place(&(12..13)), Place { text: 0, span: 10..11 });
         // a span that holds a replaced value reaches around it
         assert_eq!(source.place(&(0..14)), Place { text: 0, span: 0..12 });
-        source.replace(5..6, &[("", Origin::Set(0, 0))]);
+        source.replace(5..6, &[("", Origin::of(1, 0))]);
         assert_eq!(source.text(), "(a: 77, b: 2)");
         assert_eq!(source.place(&(5..6)), Place { text: 1, span: 4..5 });
+    }
+
+    #[test]
+    fn a_text_put_into_another_keeps_where_it_came_from() {
+        let mut part = Source::of(2, "(c: 3)");
+        part.replace(4..5, &[("4", Origin::of(1, 2))]);
+        let mut source = Source::new("a.ron", "(a: 1)", &["a=4".into()]);
+        let stretches = part.stretches(&(1..6));
+        let stretches: Vec<_> = stretches.iter().map(|(text, from)| (text.as_str(), *from)).collect();
+        source.replace(4..5, &stretches);
+        assert_eq!(source.text(), "(a: c: 4))");
+        assert_eq!(source.place(&(4..5)), Place { text: 2, span: 1..2 });
+        assert_eq!(source.place(&(7..8)), Place { text: 1, span: 2..3 });
+        assert_eq!(source.place(&(9..10)), Place { text: 0, span: 5..6 });
     }
 }

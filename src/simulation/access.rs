@@ -4,7 +4,7 @@ use super::Simulation;
 use crate::components::*;
 use crate::error::{Criterion, Error};
 use crate::observation::Observer;
-use crate::observation::ToolReading;
+use crate::observation::{ContactReading, ToolReading};
 use crate::output::{Folder, Node, nodes};
 use crate::scene::Diagnostics;
 use crate::scene::schema::Scene;
@@ -169,6 +169,17 @@ impl Simulation {
                 Err(Error::Options(format!("there is no probe named {name:?}; there is {}", names.join(", "))))
             }
         }
+    }
+
+    /// What a body feels where it touches others or itself.
+    ///
+    /// # Errors
+    /// No such body, or none that may touch another or itself; what the GPU says.
+    pub fn contact(&mut self, body: &str) -> Result<ContactReading, Error> {
+        self.settle()?;
+        let entity = self.body(body)?;
+        let reading = crate::observation::read_contact(&mut self.world, entity)?;
+        reading.ok_or_else(|| Error::Options(format!("nothing under `contacts` lets {body:?} touch a body")))
     }
 
     /// What a tool of the scene feels.

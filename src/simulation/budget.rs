@@ -72,7 +72,7 @@ impl Simulation {
             if left == 0 {
                 break Ended::Reached;
             }
-            let batch = Instant::now();
+            let (batch, waited) = (Instant::now(), self.metronome.waited());
             self.advance(fits.clamp(1, left))?;
             if let Some(mut device) = self.world.get_resource_mut::<Device>() {
                 device.gpu().wait()?;
@@ -82,7 +82,8 @@ impl Simulation {
             if steps == 0 {
                 break Ended::Rest;
             }
-            let each = took.as_secs_f64() / steps as f64;
+            let solving = took.saturating_sub(self.metronome.waited().saturating_sub(waited));
+            let each = solving.as_secs_f64() / steps as f64;
             self.seconds_a_step = Some(self.seconds_a_step.map_or(each, |before| 0.5 * (before + each)));
         };
         Ok(Advanced {

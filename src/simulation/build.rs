@@ -26,7 +26,7 @@ use crate::observation::{Observer, Track, Watch, WatchKernels, WrittenFields};
 use crate::scene::SceneFile;
 use crate::scene::schema::Analysis;
 use crate::snapshot::{Keeping, identity};
-use crate::systems::{HostSystem, NodePass, OnHost, Phase, Registry, System, node_pass, patch_pass};
+use crate::systems::{HostSystem, NodePass, OnHost, Phase, Registry, System, node_pass, patch_pass, shared_pass};
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemAccess;
 use std::time::{Duration, Instant};
@@ -117,7 +117,8 @@ impl Simulation {
             false => entry.system.host.nodes().is_none(),
         };
         let custom = schedule.iter().any(|entry| entry.system.custom && alone(entry));
-        observer.all_on_device = on_gpu && !custom;
+        let is_of_host = |entry: &Scheduled<'_>| !entry.system.device.is_some() && !entry.system.observes;
+        observer.all_on_device = on_gpu && !schedule.iter().any(is_of_host);
         let facts = Facts {
             on_gpu,
             custom,
@@ -152,6 +153,8 @@ impl Simulation {
             preload: None,
             solver,
             tape: Tape::default(),
+            ports: super::ports::Ports::of(&scene.scene),
+            metronome: Default::default(),
             history: History::default(),
             surfaces: Default::default(),
             grabs: Default::default(),
@@ -203,12 +206,17 @@ fn entries(
     for pass in plan.passes(on_gpu) {
         let first = pass.systems[0];
         let kernels = kernels.next().filter(|_| plan.systems[first].on_device);
-        let of_nodes = pass.systems.iter().filter_map(|&place| schedule[place].system.host.nodes());
-        let nodes = || NodePass::new(of_nodes.collect());
+        let of_nodes = |places: &[usize]| {
+            NodePass::new(places.iter().filter_map(|&place| schedule[place].system.host.nodes()).collect())
+        };
+        let nodes = || of_nodes(&pass.systems);
         let host = hosts[first].take();
         let job = match (kernels, pass.over, host) {
             (Some(kernels), ..) => Job::Kernels(kernels),
-            (None, Over::Elements, _) => host_job(patch_pass(nodes(), world), schedule, plan, pass),
+            (None, Over::Elements, _) => {
+                host_job(patch_pass(nodes(), of_nodes(&pass.ahead), world), schedule, plan, pass)
+            }
+            (None, Over::Shared, _) => host_job(shared_pass(nodes(), world), schedule, plan, pass),
             // what a GPU has no kernels for may be one of nodes on the host
             (None, _, Some(host)) if schedule[first].system.host.nodes().is_none() => {
                 host_job(host, schedule, plan, pass)

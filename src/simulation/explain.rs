@@ -30,6 +30,8 @@ pub struct Explanation {
     pub on_gpu: bool,
     /// `f32` or `f64`.
     pub precision: &'static str,
+    /// The parts that the scene is made of.
+    pub scene_parts: Vec<ScenePart>,
     /// Nodes of all bodies.
     pub nodes: usize,
     /// Elements of all bodies.
@@ -56,6 +58,17 @@ pub struct Explanation {
     pub device_bytes: u64,
     /// Bytes an element, of the device's buffers in a GPU run, else of the host's columns.
     pub bytes_an_element: f64,
+}
+
+/// A part of the scene.
+#[derive(Clone, Debug, Serialize)]
+pub struct ScenePart {
+    /// Its name.
+    pub name: String,
+    /// The file that it comes from; empty where the scene holds it itself.
+    pub file: String,
+    /// The bodies and tools that it brings.
+    pub brings: Vec<String>,
 }
 
 /// A system of the step.
@@ -242,6 +255,7 @@ impl Simulation {
         let counted = if on_gpu { device_bytes } else { host_bytes };
         Ok(Explanation {
             title: self.scene.title.clone(),
+            scene_parts: effects::scene_parts(&self.file),
             backend: if on_gpu && !self.facts.on_gpu { "a GPU".into() } else { self.facts.backend.clone() },
             backend_because: self.facts.why.clone(),
             on_gpu,

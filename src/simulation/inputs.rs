@@ -3,15 +3,13 @@
 //! What is set is taken up when the next step begins, and nothing of it is known before: a run depends on the last
 //! value of each input in each step alone, not on how many calls led there.
 
-use super::Simulation;
+use super::ports::Poses;
+use super::{InputChange, InputRecording, PoseChange, Simulation};
 use crate::components::{Change, Clock, Input, InputState, Signals};
 use crate::error::Error;
-use crate::output::{OutputError, replace};
+use crate::port::DevicePose;
 use crate::scene::schema::{Constraint, Curve, Scene, WhenUnstable};
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::io::Write;
-use std::path::Path;
 
 /// An input of a scene, at the present step.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,71 +37,13 @@ pub struct InputUse {
     pub unit: Option<&'static str>,
 }
 
-/// Every change of the inputs of a run, with the step that began with it. Replayed on a simulation that is where this
-/// one was, it gives the same bits. Serialised as RON, JSON or anything else that keeps numbers to the last bit.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct InputRecording {
-    /// Steps taken before it began.
-    pub from: u64,
-    /// In the order of steps.
-    pub changes: Vec<InputChange>,
-}
-
-/// One change of an input.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct InputChange {
-    /// Steps taken before it.
-    pub step: u64,
-    /// The input.
-    pub name: String,
-    /// What it was set to.
-    pub value: f64,
-}
-
-impl InputRecording {
-    /// As RON.
-    ///
-    /// # Errors
-    /// What RON cannot hold.
-    pub fn to_ron(&self) -> Result<String, Error> {
-        let pretty = ron::ser::PrettyConfig::new().depth_limit(2);
-        ron::ser::to_string_pretty(self, pretty).map_err(|error| Error::Options(format!("the recording: {error}")))
-    }
-
-    /// From RON.
-    ///
-    /// # Errors
-    /// What is no recording, with line and column.
-    pub fn from_ron(text: &str) -> Result<Self, Error> {
-        ron::from_str(text).map_err(|error| Error::Options(format!("this is no recording of inputs: {error}")))
-    }
-
-    /// Writes it as RON; the file appears when it is complete.
-    ///
-    /// # Errors
-    /// Files that cannot be written.
-    pub fn write(&self, path: &Path) -> Result<(), Error> {
-        let text = self.to_ron()?;
-        Ok(replace(path, |file| file.write_all(text.as_bytes()).map_err(OutputError::system("write", path)))?)
-    }
-
-    /// Reads one.
-    ///
-    /// # Errors
-    /// As [`InputRecording::from_ron`], and files that cannot be read.
-    pub fn read(path: &Path) -> Result<Self, Error> {
-        let text = std::fs::read_to_string(path).map_err(OutputError::system("read", path))?;
-        Self::from_ron(&text)
-    }
-}
-
 /// What is being recorded and replayed.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Tape {
     recording: Option<InputRecording>,
     replayed: Vec<InputChange>,
+    /// Of each port, in the order of steps.
+    poses: Poses,
 }
 
 impl Tape {
@@ -119,15 +59,30 @@ impl Tape {
         &self.replayed[place(step)..place(step + 1)]
     }
 
+    /// The last pose of a port that is due when a batch begins with a step, taken off.
+    pub fn pose_due(&mut self, step: u64, port: &str) -> Option<DevicePose> {
+        let poses = self.poses.get_mut(port)?;
+        std::iter::from_fn(|| poses.pop_front_if(|(due, _)| *due <= step)).last().map(|(_, pose)| pose)
+    }
+
+    /// Takes note of a pose that was taken up.
+    pub fn note_pose(&mut self, change: PoseChange) {
+        if let Some(recording) = &mut self.recording {
+            recording.poses.push(change);
+        }
+    }
+
     /// The run goes on from another step, of its own past or not: what was recorded after it has not been, and what was
     /// to be replayed is of another run.
     fn go_on_from(&mut self, step: u64, ours: bool) {
         self.replayed.clear();
+        self.poses.clear();
         let Some(recording) = &mut self.recording else { return };
         if ours && recording.from <= step {
             recording.changes.retain(|change| change.step < step);
+            recording.poses.retain(|change| change.step < step);
         } else {
-            *recording = InputRecording { from: step, changes: Vec::new() };
+            *recording = InputRecording { from: step, ..InputRecording::default() };
         }
     }
 }
@@ -208,7 +163,7 @@ impl Simulation {
     /// snapshot of this run, with the same changes before it, takes back what was recorded since; one from elsewhere
     /// begins the recording anew.
     pub fn record_inputs(&mut self) {
-        self.tape.recording = Some(InputRecording { from: self.step_count(), changes: Vec::new() });
+        self.tape.recording = Some(InputRecording { from: self.step_count(), ..InputRecording::default() });
     }
 
     /// What has been recorded so far; `None` where nothing is.
@@ -231,7 +186,7 @@ impl Simulation {
     /// the first step of a static analysis.
     pub fn replay_inputs(&mut self, recording: &InputRecording) -> Result<(), Error> {
         let (from, now) = (recording.from, self.step_count());
-        if from != now && !recording.changes.is_empty() {
+        if from != now && !(recording.changes.is_empty() && recording.poses.is_empty()) {
             let text = format!("the recording began after {from} steps, and {now} have been taken");
             return Err(Error::Options(format!("{text}: replay it from the state that it began with")));
         }
@@ -260,6 +215,7 @@ impl Simulation {
             }
             changes.push(change.clone());
         }
+        self.tape.poses = self.checked_poses(&recording.poses)?;
         self.tape.replayed = changes;
         Ok(())
     }

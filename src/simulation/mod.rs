@@ -35,14 +35,18 @@ mod pick;
 mod plan;
 mod plausible;
 mod policies;
+mod ports;
 mod preload;
 mod prepare;
+mod real_time;
+mod recording;
 mod relax;
 mod residual;
 mod rounding;
 mod run;
 mod schedule;
 mod scheme;
+mod skins;
 mod solver;
 mod stable_step;
 mod step_change;
@@ -58,13 +62,16 @@ pub use budget::{Advanced, Ended};
 pub use column_view::ColumnView;
 pub use follow::StepHistory;
 pub use grab::{Grab, GrabId, Grip};
-pub use inputs::{InputChange, InputRecording, InputUse, InputValue};
+pub use inputs::{InputUse, InputValue};
 pub use modes::Mode;
 pub use names::{FieldName, Names};
 pub use node_set::{NodeSet, NodeState};
 pub use options::{BackendChoice, Options};
 pub use pick::Pick;
+pub use ports::{PortUse, PoseChange};
 pub use preload::Preload;
+pub use real_time::RealTime;
+pub use recording::{InputChange, InputRecording};
 pub use relax::Equilibrium;
 pub use stable_step::Stability;
 pub use summary::{Inversions, Summary, SystemTime};
@@ -98,6 +105,10 @@ pub struct Simulation {
     preload: Option<Preload>,
     /// Inputs that are recorded and replayed.
     tape: inputs::Tape,
+    /// Devices that move tools.
+    ports: ports::Ports,
+    /// What keeps up with life.
+    metronome: real_time::Metronome,
     /// Surfaces for picking.
     surfaces: pick::Surfaces,
     grabs: grab::AllGrabs,

@@ -4,6 +4,7 @@
 use super::follow::Followed;
 use super::grab::AllGrabs;
 use super::interval::RunInterval;
+use super::ports::PortState;
 use super::step_change::relax_as;
 use super::{Job, Simulation};
 use crate::components::{Clock, Grabs, InputState};
@@ -25,6 +26,9 @@ pub(super) struct Pace {
     /// What programs set.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     inputs: BTreeMap<String, InputState>,
+    /// What hands do.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    ports: BTreeMap<String, PortState>,
     /// Whether they may hold something.
     #[serde(default, skip_serializing_if = "is_default")]
     can_grab: bool,
@@ -71,6 +75,7 @@ impl Simulation {
             intervals: self.entries.iter().filter_map(interval).collect(),
             found: self.solver.follower().map(|follower| follower.followed()),
             inputs: self.input_states(),
+            ports: self.port_states(),
             can_grab: self.world.query::<&Grabs>().iter(&self.world).next().is_some(),
             grabs: self.grabs.clone(),
             scene: self.changed_text(),
@@ -91,6 +96,7 @@ impl Simulation {
             return Err(senseless(format!("the system `{name}` can never run")).into());
         }
         self.check_input_states(&pace.inputs).map_err(senseless)?;
+        self.check_port_states(&pace.ports).map_err(senseless)?;
         let found = pace.found.as_ref().filter(|_| self.solver.follower().is_some());
         match found.is_none_or(|found| found.fits(&mut self.world)) {
             true => Ok(pace),
@@ -103,6 +109,7 @@ impl Simulation {
     pub(super) fn take_up_pace(&mut self, pace: Pace, before: u64) -> Result<bool, Error> {
         let ours = self.lineage.go_on_from(self.step_count(), pace.changes, before);
         self.take_up_input_states(pace.inputs, ours);
+        self.take_up_port_states(pace.ports);
         self.take_up_grabs(pace.grabs)?;
         self.take_up_changed(pace.scene)?;
         self.surfaces.clear();

@@ -7,6 +7,7 @@ use crate::components::{ColumnAccess, Touched};
 use crate::systems::{OnDevice, OnHost, Phase};
 use bevy_ecs::prelude::World;
 use bevy_ecs::system::SystemAccess;
+use std::collections::VecDeque;
 
 /// A step as passes over what its systems touch.
 pub(super) struct Plan {
@@ -45,6 +46,9 @@ pub(super) struct Pass {
     pub over: Over,
     /// Places in [`Plan::systems`], in the order in which they run.
     pub systems: Vec<usize>,
+    /// Systems that nodes inside patches go through at once, and the others only in passes to come: what is between
+    /// concerns nodes that are inside no patch.
+    pub ahead: Vec<usize>,
 }
 
 /// What a pass goes over.
@@ -57,6 +61,8 @@ pub(super) enum Over {
     /// Patches of elements, whose forces the first system finds; nodes inside a patch go through the other systems
     /// while they are in the core's cache, all others afterwards.
     Elements,
+    /// Nodes that are inside no patch.
+    Shared,
 }
 
 impl Plan {
@@ -80,7 +86,9 @@ impl Plan {
         let passes = |on_gpu: bool| -> Vec<Pass> {
             let grouping = Grouping { schedule, access, on_gpu };
             let groups = if fuse { grouping.groups() } else { (0..schedule.len()).map(|place| vec![place]).collect() };
-            groups.into_iter().map(|systems| Pass { over: grouping.over(&systems), systems }).collect()
+            let pass = |systems: Vec<usize>| Pass { over: grouping.over(&systems), systems, ahead: Vec::new() };
+            let passes = groups.into_iter().map(pass).collect();
+            if fuse && !on_gpu { grouping.ahead(passes, world) } else { passes }
         };
         let (on_cpu, on_gpu) = (passes(false), passes(true));
         let gpu = Grouping { schedule, access, on_gpu: true };
@@ -168,6 +176,38 @@ impl Grouping<'_> {
             }
         }
         together
+    }
+
+    /// On the CPU what concerns only nodes that are inside no patch (contact between surfaces) does not keep those inside
+    /// from moving with their patch.
+    fn ahead(&self, passes: Vec<Pass>, world: &World) -> Vec<Pass> {
+        let mut passes: VecDeque<Pass> = passes.into();
+        let mut all = Vec::new();
+        while let Some(mut elements) = passes.pop_front() {
+            let sums =
+                |pass: &Pass| self.schedule[pass.systems[0]].system.host.nodes().is_some_and(|of| of.sums_forces);
+            let is_between = |pass: &Pass| {
+                let of = &self.schedule[pass.systems[0]];
+                pass.over == Over::Itself && of.every == 1 && of.interval.is_none() && (of.system.shared_only)(world)
+            };
+            let fits = self.is_of_elements(&elements.systems)
+                && passes.len() > 2
+                && sums(&passes[0])
+                && is_between(&passes[1])
+                && self.moves_nodes(&passes[2].systems);
+            if !fits {
+                all.push(elements);
+                continue;
+            }
+            let three = [passes.pop_front(), passes.pop_front(), passes.pop_front()];
+            if let [Some(sums), Some(between), Some(mut moves)] = three {
+                elements.systems.extend(sums.systems);
+                elements.ahead.clone_from(&moves.systems);
+                (elements.over, moves.over) = (Over::Elements, Over::Shared);
+                all.extend([elements, between, moves]);
+            }
+        }
+        all
     }
 
     /// Moves a system on to just before the first that it must not be exchanged with, if that one works node by node

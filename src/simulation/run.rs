@@ -122,13 +122,11 @@ impl Simulation {
     /// [`Simulation::begin_step`] as a part of the run.
     fn begin_step_in_time(&mut self) -> Result<(), Error> {
         self.keep_start();
+        let started = Instant::now();
         self.before_the_look()?;
         // threads are not called together for nothing
-        if self.solver.next_look() > self.step_count() {
-            return Ok(());
-        }
-        let started = Instant::now();
-        let followed = self.on_threads(Self::follow);
+        let looks = self.solver.next_look() <= self.step_count();
+        let followed = if looks { self.on_threads(Self::follow) } else { Ok(()) };
         self.elapsed += started.elapsed();
         followed
     }

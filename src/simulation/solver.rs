@@ -58,7 +58,8 @@ impl Solver {
 
 impl Simulation {
     /// What comes before a step, in an order that does not depend on how the program asks for steps: the state is kept,
-    /// inputs are taken up, and then the stable step is looked at. A second time before the same step it does nothing.
+    /// inputs and what hands do are taken up, and then the stable step is looked at. A second time before the same step
+    /// it does nothing.
     fn begin_step(&mut self) -> Result<(), Error> {
         self.before_the_look()?;
         self.follow()
@@ -66,8 +67,10 @@ impl Simulation {
 
     /// All of it but the look.
     pub(super) fn before_the_look(&mut self) -> Result<(), Error> {
+        self.wait_for_life();
         self.keep_history_if_due()?;
-        self.take_up_inputs()
+        self.take_up_inputs()?;
+        self.begin_batches()
     }
 
     /// Takes steps up to `target`, or to equilibrium.
@@ -78,7 +81,9 @@ impl Simulation {
                 Solver::Explicit(_) => {
                     let look = self.solver.next_look().min(self.next_change());
                     let next = look.min(self.next_kept().max(self.step_count() + 1));
+                    let next = next.min(self.ports.next_end()).min(self.next_tick());
                     self.some_steps(target.min(next))?;
+                    self.end_batches()?;
                 }
                 Solver::Relaxation(relaxing) if relaxing.equilibrium.reached => return Ok(()),
                 Solver::Relaxation(relaxing) => {

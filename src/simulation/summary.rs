@@ -85,6 +85,12 @@ pub struct Summary {
     pub probes: BTreeMap<String, (f64, Vec<f64>)>,
     /// What each tool feels at the end.
     pub tools: BTreeMap<String, crate::observation::ToolReading>,
+    /// What each body feels of others and itself at the end, where they may touch.
+    pub contacts: BTreeMap<String, crate::observation::ContactReading>,
+    /// What came through the ports of tools.
+    pub ports: BTreeMap<String, super::PortUse>,
+    /// How the run kept up with life, where the scene has `real_time`.
+    pub real_time: Option<super::RealTime>,
     /// What the guards have seen and warned of.
     pub guards: GuardMemory,
     /// How it broke down, if it did.
@@ -166,7 +172,7 @@ impl Simulation {
             .sum();
         let (steps, run) = (self.step_count(), self.elapsed.as_secs_f64());
         let writing = self.world.resource::<Observer>().writing.as_secs_f64();
-        let solving = (run - writing).max(0.0);
+        let solving = (run - writing - self.metronome.waited().as_secs_f64()).max(0.0);
         let (first, since) = self.began;
         let a_step = solving / steps.saturating_sub(first).max(1) as f64;
         let names: Vec<String> = self.scene.tools.keys().cloned().collect();
@@ -174,6 +180,11 @@ impl Simulation {
         for name in names {
             let reading = crate::observation::read_tool(&mut self.world, &name)?;
             tools.insert(name, reading);
+        }
+        let mut contacts = BTreeMap::new();
+        for name in self.scene.bodies.keys().cloned().collect::<Vec<_>>() {
+            let body = self.body(&name)?;
+            contacts.extend(crate::observation::read_contact(&mut self.world, body)?.map(|reading| (name, reading)));
         }
         let facts = &self.facts;
         Ok(Summary {
@@ -215,6 +226,9 @@ impl Simulation {
             inversions: inversions(&mut self.world)?,
             probes: self.world.resource::<Observer>().latest.clone(),
             tools,
+            contacts,
+            ports: self.ports(),
+            real_time: self.scene.real_time.then(|| self.metronome.kept()),
             guards: self.guards(),
             failure: self.failure.clone(),
             ended: ended.into(),

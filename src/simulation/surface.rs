@@ -3,7 +3,7 @@
 use super::Simulation;
 use crate::components::*;
 use crate::error::Error;
-use crate::mesh::{Mesh, SurfaceFace};
+use crate::mesh::SurfaceFace;
 use bevy_ecs::prelude::*;
 
 impl Simulation {
@@ -22,18 +22,10 @@ impl Simulation {
     /// Faces of a body's surface, by places in the author's order; elements are what is known of on the host.
     pub(super) fn surface_faces(&self, body: Entity) -> Vec<SurfaceFace> {
         let Some(authoring) = self.world.get::<Authoring>(body) else { return Vec::new() };
-        let there = |&element: &usize| {
-            let (block, row) = authoring.element_rows[element];
+        let alive = |block: u32, row: u32| {
             let alive = self.world.get::<Alive>(authoring.blocks[block as usize]);
             alive.is_none_or(|alive| alive[row as usize] == 1)
         };
-        let elements: Vec<usize> = (0..authoring.cells.len()).filter(there).collect();
-        let left = Mesh {
-            points: vec![glam::DVec3::ZERO; authoring.node_rows.len()],
-            cells: authoring.cells.select(elements.iter().copied(), |node| node),
-            ..Mesh::default()
-        };
-        let numbered = |face: SurfaceFace| SurfaceFace { element: elements[face.element as usize] as u32, ..face };
-        left.surface().into_iter().map(numbered).collect()
+        authoring.surface(alive)
     }
 }

@@ -6,13 +6,15 @@ mod closed;
 mod form;
 mod grid;
 #[cfg(feature = "files")]
+mod ply;
+#[cfg(feature = "files")]
 mod read;
 mod shape;
 mod solid;
 mod surface;
 #[cfg(test)]
 mod tests;
-mod tree;
+pub(crate) mod tree;
 mod triangles;
 
 pub use form::Form;

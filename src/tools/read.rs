@@ -1,18 +1,19 @@
-//! Files of triangles: STL, as text or binary, and OBJ. The format is told from the content.
+//! Files of triangles: STL, as text or binary, OBJ, and PLY. The format is told from the content.
 
+use super::ply;
 use super::triangles::Triangles;
 use crate::mesh::{Cursor, Fault, MeshError, NumberForm};
 use glam::DVec3;
 use std::path::Path;
 
-const FORMATS: &str = "tools are read from STL (text or binary) and OBJ files";
+const FORMATS: &str = "surfaces are read from STL (text or binary), OBJ and PLY files";
 
 /// What stands in a binary STL file before its triangles, and the bytes of one of these.
 const HEAD: usize = 84;
 const RECORD: usize = 50;
 
 impl Triangles {
-    /// Reads a file of triangles, STL or OBJ, whose coordinates are taken for metres. Points of equal coordinates are
+    /// Reads a file of triangles, STL, OBJ or PLY, whose coordinates are taken for metres. Points of equal coordinates are
     /// made one; polygons become fans about their first corner; normals, colours and the like are not read.
     ///
     /// # Errors
@@ -41,6 +42,8 @@ fn parse(bytes: &[u8], path: &Path) -> Result<Triangles, Fault> {
     // a binary file may begin as one of text does; its length tells them apart
     let read = if claimed(bytes).is_some_and(|count| bytes.len() as u64 == HEAD as u64 + RECORD as u64 * count) {
         stl_binary(bytes)?
+    } else if start.starts_with(b"ply\n") || start.starts_with(b"ply\r\n") {
+        ply::read(start)?
     } else if start.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid")) {
         stl_text(Cursor::new(bytes, bytes.len() - start.len()))?
     } else if has_vertices(start) {

@@ -56,3 +56,20 @@ pub enum Shape {
         bevel: f64,
     },
 }
+
+impl Shape {
+    /// The same shape so many times as large.
+    pub fn scaled(&self, by: f64) -> Self {
+        match *self {
+            Self::Plane {} => Self::Plane {},
+            Self::Sphere { radius } => Self::Sphere { radius: by * radius },
+            Self::Box { size } => Self::Box { size: by * size },
+            Self::Capsule { length, radius } => Self::Capsule { length: by * length, radius: by * radius },
+            Self::Cylinder { length, radius } => Self::Cylinder { length: by * length, radius: by * radius },
+            Self::Cone { length, tip, base } => Self::Cone { length: by * length, tip: by * tip, base: by * base },
+            Self::Tube { length, inner, outer, bevel } => {
+                Self::Tube { length: by * length, inner: by * inner, outer: by * outer, bevel }
+            }
+        }
+    }
+}

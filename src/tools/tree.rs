@@ -1,5 +1,6 @@
 //! The nearest triangle of many, by a tree of boxes.
 
+use crate::math::OnTriangle;
 use glam::DVec3;
 
 /// Triangles in a leaf.
@@ -15,10 +16,10 @@ struct Branch {
 }
 
 /// How much farther than the nearest may be (relative) what is taken for it where that need not be exact.
-pub(super) const SLACK: f64 = 2e-3;
+pub(crate) const SLACK: f64 = 2e-3;
 
 /// A tree over triangles.
-pub(super) struct Tree {
+pub(crate) struct Tree {
     branches: Vec<Branch>,
     /// In the order of leaves.
     corners: Vec<[DVec3; 3]>,
@@ -28,12 +29,12 @@ pub(super) struct Tree {
 
 /// What is nearest.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Nearest {
+pub(crate) struct Nearest {
     /// The square of the distance (m²).
     pub square: f64,
     /// The place of the triangle in the tree.
     place: u32,
-    /// Which part of it: 0 its inside, 1 to 3 the sides from each corner to the next, 4 to 6 the corners.
+    /// Which part of it: see [`OnTriangle::part`].
     pub part: usize,
     /// The place (m).
     pub at: DVec3,
@@ -76,7 +77,7 @@ impl Tree {
     /// None of no triangles.
     pub fn nearest(&self, y: DVec3, near: Option<Nearest>, exact: f64) -> Option<Nearest> {
         let found = |place: u32| {
-            let (at, part) = in_triangle(y, self.corners[place as usize]);
+            let OnTriangle { at, part, .. } = OnTriangle::nearest(y, self.corners[place as usize]);
             Nearest { square: y.distance_squared(at), place, part, at }
         };
         let mut best = found(near.map_or(0, |near| near.place).min(self.numbers.len().checked_sub(1)? as u32));
@@ -125,37 +126,4 @@ impl Tree {
 
 fn bounds(places: impl Iterator<Item = DVec3>) -> [DVec3; 2] {
     places.fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], at| [low.min(at), high.max(at)])
-}
-
-/// The nearest place in a triangle and the part that it is in, by the seven regions about it.
-fn in_triangle(y: DVec3, [a, b, c]: [DVec3; 3]) -> (DVec3, usize) {
-    let (ab, ac, ay) = (b - a, c - a, y - a);
-    let (d1, d2) = (ab.dot(ay), ac.dot(ay));
-    if d1 <= 0.0 && d2 <= 0.0 {
-        return (a, 4);
-    }
-    let by = y - b;
-    let (d3, d4) = (ab.dot(by), ac.dot(by));
-    if d3 >= 0.0 && d4 <= d3 {
-        return (b, 5);
-    }
-    let cy = y - c;
-    let (d5, d6) = (ab.dot(cy), ac.dot(cy));
-    if d6 >= 0.0 && d5 <= d6 {
-        return (c, 6);
-    }
-    let off_ab = d1 * d4 - d3 * d2;
-    if off_ab <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
-        return (a + ab * (d1 / (d1 - d3)), 1);
-    }
-    let off_ca = d5 * d2 - d1 * d6;
-    if off_ca <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
-        return (a + ac * (d2 / (d2 - d6)), 3);
-    }
-    let off_bc = d3 * d6 - d5 * d4;
-    if off_bc <= 0.0 && d4 >= d3 && d5 >= d6 {
-        return (b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6))), 2);
-    }
-    let all = off_ab + off_bc + off_ca;
-    (a + ab * (off_ca / all) + ac * (off_ab / all), 0)
 }

@@ -141,7 +141,7 @@ impl Triangles {
     }
 
     /// That rows and places are such as can be reckoned with.
-    pub(super) fn check_numbers(&self) -> Result<(), SurfaceError> {
+    pub(crate) fn check_numbers(&self) -> Result<(), SurfaceError> {
         let points = self.points.len();
         for (triangle, corners) in self.triangles.iter().enumerate() {
             if let Some(&point) = corners.iter().find(|&&row| row as usize >= points) {

@@ -211,8 +211,10 @@ impl Effects {
         let criterion = self.criterion.map_or(String::new(), |when| both(&format!("(body: \"BODY\", when: {when}),")));
         let energies = if self.energies { "output: (energies_every: 0.1)," } else { "" };
         let sucks = if self.sucks {
-            both("(tool: \"tip\", body: \"BODY\", pressure: 90, bore: 0.025, reach: 0.03, delay: 0.1),
-                 (tool: \"side\", body: \"BODY\", pressure: 80, bore: 0.04, reach: 0.02),")
+            both(
+                "(tool: \"tip\", body: \"BODY\", pressure: 90, bore: 0.025, reach: 0.03, delay: 0.1),
+                 (tool: \"side\", body: \"BODY\", pressure: 80, bore: 0.04, reach: 0.02),",
+            )
         } else {
             String::new()
         };

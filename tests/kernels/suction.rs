@@ -64,8 +64,10 @@ fn what_is_sucked_feels_the_same() {
             }
             for suction in entities::<Suction>(world) {
                 let body = world.get::<OfBody>(suction).unwrap().0;
-                let (marks, pressure) =
-                    (world.get::<SuctionMarks>(body).unwrap().clone(), world.get::<SuctionPressure>(body).unwrap().clone());
+                let (marks, pressure) = (
+                    world.get::<SuctionMarks>(body).unwrap().clone(),
+                    world.get::<SuctionPressure>(body).unwrap().clone(),
+                );
                 world.get_mut::<Suction>(suction).unwrap().renew(&marks, &pressure);
             }
         };

@@ -40,6 +40,7 @@ fn touch(world: &mut World, (of_grid, several): (bool, bool)) {
                 ],
                 moves: Vec::new(),
                 curves: Vec::new(),
+                hand: None,
             };
             let signal = world.resource_mut::<Signals>().add(Signal::Pose { motion, reference: middle });
             ToolContact { tool: number.to_string(), geometry, signal, friction: [0.4, 0.3] }
@@ -56,7 +57,9 @@ fn touch(world: &mut World, (of_grid, several): (bool, bool)) {
             }
         };
         let masks = rows.iter().map(|row| mask(*row)).collect();
-        let contacts = ToolContacts { tools, reference: middle, rows, masks, edge: 0.2 * size, settling: 1.0 };
+        // a hand wants the sum of forces, too
+        let (edge, felt) = (0.2 * size, several);
+        let contacts = ToolContacts { tools, reference: middle, rows, masks, edge, settling: 1.0, felt };
         let touch = Reals::from_f64(
             Precision::F32,
             (0..contacts.numbers() * contacts.rows.len()).map(|i| f64::from(u8::from(i % 3 == 0))),
@@ -95,13 +98,12 @@ fn tools_push_the_same_nodes_with_the_same_forces() {
             };
             pair.agree::<ExternalForce>(|pair, body, i| rounding * bound(pair, body, i / 3));
             assert!(pair.changed::<ExternalForce>() > 50, "few were touched");
-            let numbers = 3 * TOUCH_NUMBERS;
             pair.agree::<ToolTouch>(|pair, body, i| {
                 let contacts = pair.before().get::<ToolContacts>(body).unwrap();
-                let node = contacts.rows[i / numbers] as usize;
+                let node = contacts.rows[i / contacts.numbers()] as usize;
                 let force = bound(pair, body, node);
-                match i % TOUCH_NUMBERS {
-                    0..3 => rounding * force,
+                match i % contacts.numbers_a_tool() {
+                    0..3 | 7.. => rounding * force,
                     3 => 0.0,
                     _ => 2.0 * rounding * (force * contacts.edge * 5.0 + contacts.edge * 5.0 + 1.0),
                 }

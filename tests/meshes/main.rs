@@ -10,6 +10,7 @@ mod samples;
 mod samples_vtk;
 mod shared;
 mod shipped;
+mod skins;
 mod soundness;
 mod topology;
 mod written;

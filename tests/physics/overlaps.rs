@@ -57,7 +57,10 @@ fn bodies_that_overlap_at_the_start_are_warned_of_once_and_those_beside_each_oth
             assert_eq!(told.len(), usize::from(overlap), "{}, {elements}, {what}: {told:?}", run.name);
             for notice in told {
                 assert_eq!((notice.part.as_str(), notice.time, notice.step), ("b0 and b1", 0.0, 0));
-                assert!(notice.message.contains("overlap at (") && notice.message.contains("no contact"), "{notice:?}");
+                assert!(
+                    notice.message.contains("overlap at (") && notice.message.contains("nothing keeps them apart"),
+                    "{notice:?}"
+                );
             }
         }
     }

@@ -78,10 +78,22 @@ fn an_open_mouth_leaks() {
         simulation.advance_to(0.05).unwrap();
         // follows from the first step on
         let share = 1.0 - (-1.0_f64).exp();
-        near(&format!("{}: after the delay", run.name), -simulation.probe("felt").unwrap()[2], share * expected, expected, 0.03);
+        near(
+            &format!("{}: after the delay", run.name),
+            -simulation.probe("felt").unwrap()[2],
+            share * expected,
+            expected,
+            0.03,
+        );
         simulation.advance_to(0.2).unwrap();
         let share = 1.0 - (-4.0_f64).exp();
-        near(&format!("{}: after four", run.name), -simulation.probe("felt").unwrap()[2], share * expected, expected, 0.03);
+        near(
+            &format!("{}: after four", run.name),
+            -simulation.probe("felt").unwrap()[2],
+            share * expected,
+            expected,
+            0.03,
+        );
     }
 }
 
@@ -91,10 +103,12 @@ fn bared_faces_are_sucked_at_once() {
     for run in configurations() {
         let rest = ", delay: 0.005, curve: Smooth(end: 0.05)), (tool: \"tip\", pressure: 1, bore: 1e-9, reach: 1e-9";
         // where faces change the force jumps: waves of a few steps a period are booked to a few percent
-        let scene = plate("Hex8", &format!("{GLUED} integration: (safety: 0.3),"), rest).replace("reach: 5e-4", "reach: 2.5e-3").replace(
-            "probes:",
-            "removal: [(on: Box(min: (0, 0, 0.002), max: (0.02, 0.02, 0.004)), when: At(0.1))], probes:",
-        );
+        let scene = plate("Hex8", &format!("{GLUED} integration: (safety: 0.3),"), rest)
+            .replace("reach: 5e-4", "reach: 2.5e-3")
+            .replace(
+                "probes:",
+                "removal: [(on: Box(min: (0, 0, 0.002), max: (0.02, 0.02, 0.004)), when: At(0.1))], probes:",
+            );
         let mut simulation = run.start(&scene);
         // a look follows removal at once where both are in a tenth step
         simulation.advance_to(0.1).unwrap();

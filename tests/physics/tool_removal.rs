@@ -63,7 +63,13 @@ fn a_tool_takes_its_rate_from_any_mesh() {
             let count = summary.removed_elements as f64;
             assert!(count > 1.0, "{what}: {count}");
             near(&format!("{what}: elements"), before, count * element, before, run.bound(1e-9, 1e-4));
-            near(&format!("{what}: mass"), summary.removed_mass, 1000.0 * before, 1000.0 * before, run.bound(1e-9, 1e-4));
+            near(
+                &format!("{what}: mass"),
+                summary.removed_mass,
+                1000.0 * before,
+                1000.0 * before,
+                run.bound(1e-9, 1e-4),
+            );
         }
     }
 }
@@ -142,7 +148,8 @@ fn bits_of(simulation: &mut Simulation) -> Vec<u64> {
 fn bits_with_what_tools_take_do_not_depend_on_how_steps_are_taken() {
     for run in configurations() {
         let of = |threads: usize, resume: Option<u64>| {
-            let scene = scene_of(&drilled(8, "Tet4", "").replace("rate: 2e-6", "rate: 2e-5"), std::path::Path::new("."));
+            let scene =
+                scene_of(&drilled(8, "Tet4", "").replace("rate: 2e-6", "rate: 2e-5"), std::path::Path::new("."));
             let options = Options { threads, ..run.options.clone() };
             let mut simulation = Simulation::new(&scene, &options).unwrap();
             if let Some(step) = resume {

@@ -120,6 +120,52 @@ fn friction_in_a_static_analysis_is_warned_of() {
 }
 
 #[test]
+fn what_is_wrong_with_a_port_is_told_with_what_is_allowed() {
+    let port = |words: &str, more: &str| {
+        format!("(shape: Sphere(radius: 0.06), at: (0.05, 0.05, 0.2), port: ({words}) {more})")
+    };
+    assert_eq!(told(&port("name: \"hand\", speed: 0.1", ""), TOUCH, ""), "");
+    let cases = [
+        (
+            "speed: 0.1",
+            "",
+            "4: error: the field `name` is missing in `port` | name: Its name, by which a program opens it.",
+        ),
+        ("name: \"\", speed: 0.1", "", "4: error: a port needs a name, by which a program opens it"),
+        ("name: \"h\", speed: 0", "", "4: error: `speed` must be above 0, found 0 m/s"),
+        ("name: \"h\", speed: 1, spin: -1", "", "4: error: `spin` must be above 0, found -1 degrees a second"),
+        ("name: \"h\", speed: 1, every: 0", "", "4: error: `every` must be above 0, found 0 s"),
+        (
+            "name: \"h\", speed: 1, follow: Proxy(stiffness: 0)",
+            "",
+            "4: error: `stiffness` must be above 0, found 0 N/m",
+        ),
+        (
+            "name: \"h\", speed: 1, follow: Proxy(stiffness: 1, damping: -1)",
+            "",
+            "4: error: `damping` must be 0 or above, found -1 N s/m",
+        ),
+        ("name: \"h\", speed: 1, follow: Pull", "", "`follow` cannot be `Pull`"),
+        ("name: \"h\", speed: 100", "", "4: error: the tool `rod` goes up to 1.0"),
+        (
+            "name: \"h\", speed: 1",
+            ", moves: [(displacement: (0, 0, 1))]",
+            "4: error: a `port` beside `moves`: a hand moves the tool, and nobody else | leave one of both out; \
+             `at` says where the tool is at first",
+        ),
+    ];
+    for (words, more, expected) in cases {
+        let found = told(&port(words, more), TOUCH, "");
+        assert!(found.contains(expected), "{words}{more}:\n{found}\nexpected\n{expected}");
+    }
+    let found = told(&port("name: \"h\", speed: 1", ""), TOUCH, "analysis: Static(),");
+    assert!(found.contains("4: warning: the tool stays where it is: in a static analysis"), "{found}");
+    let two = format!("{}, \"tip\": {}", port("name: \"h\", speed: 1", ""), port("name: \"h\", speed: 1", ""));
+    let found = told(&two, "Tool(tool: \"rod\"), Tool(tool: \"tip\")", "");
+    assert!(found.contains("4: error: `rod` has the port `h` already | a device moves one tool"), "{found}");
+}
+
+#[test]
 fn probes_of_tools_name_one_that_is_there_and_no_nodes() {
     let of = |probe: &str| told(ROD, TOUCH, &format!("probes: {{\"p\": ({probe})}},"));
     assert_eq!(of("what: ToolForce(tool: \"rod\")"), "");
@@ -149,9 +195,15 @@ fn what_is_wrong_with_what_a_tool_takes_and_sucks_is_told() {
         (takes("tool: \"rod\", rate: 1"), "`reach`"),
         (sucks("tool: \"ro\", reach: 0.1, pressure: 1"), "3: error: there is no tool `ro` | did you mean `rod`?"),
         (sucks("tool: \"rod\", reach: 0.1, pressure: 1"), "3: error: the tool `rod` is no tube: where is its mouth?"),
-        (sucks("tool: \"rod\", reach: 0.1, pressure: -1, bore: 1"), "3: error: `pressure` must be above 0, found -1 Pa"),
+        (
+            sucks("tool: \"rod\", reach: 0.1, pressure: -1, bore: 1"),
+            "3: error: `pressure` must be above 0, found -1 Pa",
+        ),
         (sucks(&format!("{mouth}, delay: -1")), "3: error: `delay` must be 0 or above, found -1 s"),
-        (sucks("tool: \"rod\", reach: 0.1, pressure: 4e3, bore: 0.01"), "3: warning: the suction of 4.000e3 Pa is more than"),
+        (
+            sucks("tool: \"rod\", reach: 0.1, pressure: 4e3, bore: 0.01"),
+            "3: warning: the suction of 4.000e3 Pa is more than",
+        ),
         (format!("analysis: Static(), {}", sucks(mouth)), "3: error: a static analysis cannot suck"),
         (format!("analysis: Static(), {}", takes(good)), "3: error: a static analysis cannot remove elements"),
         (format!("removal: [{}],", format!("(when: InTool({good})),").repeat(9)), "at most 8 tools may take elements"),

@@ -3,7 +3,6 @@
 
 mod accuracy;
 mod bar;
-mod cataract;
 mod column;
 mod cube;
 mod golden;
@@ -12,6 +11,7 @@ mod lobe;
 mod parameters;
 mod resume;
 mod shipped;
+mod surfaces;
 mod tools;
 
 use sinew::components::Precision;

@@ -8,21 +8,21 @@ use sinew::systems::Registry;
 use sinew::{BackendChoice, Options, Simulation};
 
 /// The scenes, and what makes each of them short and coarse.
-pub const SCENES: [(&str, &[&str]); 11] = [
-    (
-        "cataract",
-        &[
-            "bodies.lens.mesh.across=8",
-            "bodies.lens.mesh.through=4",
-            "duration=0.15",
-            "suction[0].curve=Smooth(end: 0.05)",
-            "removal[0].when=InTool(tool: \"tip\", bore: 3.5e-4, reach: 1e-3, rate: 3e-8)",
-        ],
-    ),
+pub const SCENES: [(&str, &[&str]); 12] = [
     ("cube_under_gravity", &["bodies.cube.mesh.cells=(5, 5, 5)", "duration=0.3"]),
+    ("folded_strip", &["bodies.strip.mesh.cells=(24, 3, 2)", "duration=0.5"]),
     ("indentation", &["bodies.layer.mesh.cells=(12, 12, 4)"]),
     ("probe", &["bodies.tissue.mesh.cells=(16, 8, 4)", "duration=0.2"]),
     ("retracted_lobe", &["bodies.lobe.mesh.across=8", "duration=0.3"]),
+    (
+        "stacked_blocks",
+        &[
+            "bodies.low.mesh.cells=(3, 3, 3)",
+            "bodies.middle.mesh.cells=(4, 4, 4)",
+            "bodies.high.mesh.cells=(3, 3, 3)",
+            "duration=0.2",
+        ],
+    ),
     ("stretched_bar", &["bodies.bar.mesh.cells=(20, 2, 2)", "duration=0.5"]),
     ("training_set", &["bodies.tissue.copies=4", "probes.last.on=Set(\"copy 3\")", "duration=0.02"]),
     ("twisted_column", &["bodies.column.mesh.cells=(4, 4, 16)", "duration=1.2"]),

@@ -33,16 +33,16 @@ fn the_ball_feels_what_the_layer_formula_says() {
 fn the_probe_feels_depth_and_friction_and_leaves_nothing_behind() {
     let mut simulation = Simulation::new(&scene("probe", &[]), &reference()).unwrap();
     simulation.advance_to(0.15).unwrap();
-    let pressed = simulation.tool("probe").unwrap();
+    let pressed = simulation.tool("probe.tip").unwrap();
     simulation.advance_to(0.4).unwrap();
-    let drawn = simulation.tool("probe").unwrap();
+    let drawn = simulation.tool("probe.tip").unwrap();
     // the depth stays, and so does the force; tissue in front makes more of it than friction alone
     assert!(near(drawn.force.z, pressed.force.z, 0.1), "{pressed:?} {drawn:?}");
     let ratio = -drawn.force.x / drawn.force.z;
     assert!(ratio > 0.1 && ratio < 0.2, "friction of 0.1 and the wall in front: {ratio}");
     assert!(drawn.force.y.abs() < 1e-3 * drawn.force.z && drawn.penetration < 1e-9, "{drawn:?}");
     simulation.finish().unwrap();
-    let gone = simulation.tool("probe").unwrap();
+    let gone = simulation.tool("probe.tip").unwrap();
     assert!(gone.nodes == 0 && gone.loss > 0.0 && gone.loss < gone.work, "{gone:?}");
     let left = simulation.displacements("tissue").unwrap().iter().map(|u| u.length()).fold(0.0, f64::max);
     assert!(left < 1e-4, "{left} m");

@@ -109,6 +109,8 @@ fn outputs(simulation: &Simulation, steps: u64) -> Vec<String> {
     // none of the start, one of the end
     let snapshots = scene.output.snapshots_every.filter(|_| !scene.is_static());
     files.extend(snapshots.map(|every| counted(whole_steps(every) - 1, "snapshot")));
+    let skins = scene.bodies.iter().filter(|(_, body)| body.skin.is_some());
+    files.extend(skins.map(|(name, _)| format!("skin_{name}.pvd")));
     for (name, probe) in &scene.probes {
         let every = probe.every.unwrap_or_else(|| scene.fields_every());
         files.push(format!("probe_{name}.csv ({} rows)", count(rows(every))));

@@ -137,7 +137,8 @@ fn why_run(scene: &SceneFile, folder: &Path) -> Option<String> {
         _ => None,
     });
     let tools = scene.scene.tools.values().filter_map(|tool| scene.file(&tool.mesh.as_ref()?.path).ok());
-    let newer = meshes.into_iter().chain(tools).find(|mesh| changed(mesh) > written);
+    let skins = scene.scene.bodies.values().filter_map(|body| scene.file(&body.skin.as_ref()?.file).ok());
+    let newer = meshes.into_iter().chain(tools).chain(skins).find(|mesh| changed(mesh) > written);
     newer.map(|mesh| format!("{} has changed since {} was written", mesh.display(), folder.display()))
 }
 

@@ -34,6 +34,8 @@ pub fn text(summary: &Summary, scene: &SceneFile, folder: &Path, paint: Paint) -
     mass(summary, &mut page);
     probes(summary, scene, &mut page);
     tools(summary, &mut page);
+    contacts(summary, &mut page);
+    ports(summary, &mut page);
     outputs(folder, &mut page);
     page.text
 }
@@ -220,9 +222,36 @@ fn tools(summary: &Summary, page: &mut Page) {
         };
         let (work, loss) = (quantity(reading.work, "J"), quantity(reading.loss, "J"));
         let nodes = counted(reading.nodes as u64, "node");
-        format!("{name} feels ({x}, {y}, {z}) of {nodes}{inside}{sucks}; it did {work}, lost to impact and friction {loss}")
+        format!(
+            "{name} feels ({x}, {y}, {z}) of {nodes}{inside}{sucks}; it did {work}, lost to impact and friction {loss}"
+        )
     });
     page.rows("tools", lines.collect::<Vec<_>>());
+}
+
+fn contacts(summary: &Summary, page: &mut Page) {
+    let lines = summary.contacts.iter().map(|(name, reading)| {
+        let [x, y, z] = reading.force.to_array().map(|part| quantity(part, "N"));
+        let inside = match reading.penetration > 0.0 {
+            true => format!(", the deepest {} inside", quantity(reading.penetration, "m")),
+            false => String::new(),
+        };
+        let (nodes, loss) = (counted(reading.nodes as u64, "node"), quantity(reading.loss, "J"));
+        format!("{name} feels ({x}, {y}, {z}) and touches with {nodes}{inside}; lost to impact and friction {loss}")
+    });
+    page.rows("contacts", lines.collect::<Vec<_>>());
+}
+
+fn ports(summary: &Summary, page: &mut Page) {
+    let lines = summary.ports.iter().map(|(name, port)| {
+        let told = format!("{name} moved {} by {}", port.tool, counted(port.poses, "pose"));
+        if port.warning.is_empty() { told } else { format!("{told}: {}", port.warning) }
+    });
+    page.rows("ports", lines.collect::<Vec<_>>());
+    if let Some(kept) = &summary.real_time {
+        let waited = quantity(kept.waited, "s");
+        page.row("pace", format!("waited {waited} for life; late {} of {}", counted(kept.late, "time"), kept.ticks));
+    }
 }
 
 fn probes(summary: &Summary, scene: &SceneFile, page: &mut Page) {
@@ -249,7 +278,9 @@ fn outputs(folder: &Path, page: &mut Page) {
     });
     let frames = names.iter().filter(|name| name.starts_with("fields_") && name.ends_with(".vtu")).count();
     let mut others: Vec<&str> = names.iter().map(String::as_str).collect();
-    others.retain(|name| (name.ends_with(".csv") || name.ends_with(".json")) && *name != "sinew.json");
+    let is_skin = |name: &str| name.starts_with("skin_") && name.ends_with(".pvd");
+    others.retain(|name| name.ends_with(".csv") || name.ends_with(".json") || is_skin(name));
+    others.retain(|name| *name != "sinew.json");
     others.retain(|name| !PICTURES.contains(name));
     others.sort_unstable();
     let fields = format!("fields.pvd ({})", counted(frames as u64, "frame"));

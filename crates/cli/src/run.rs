@@ -137,6 +137,11 @@ fn keep_tools(scene: &SceneFile, folder: &mut Folder) -> Outcome {
 fn tell_of_inputs(simulation: &Simulation) {
     let inputs = simulation.inputs();
     let all: Vec<String> = inputs.iter().map(|input| format!("{} stays at {}", input.name, input.target)).collect();
+    let ports: Vec<String> = simulation.ports().keys().cloned().collect();
+    if !ports.is_empty() {
+        let text = "nobody feeds it: a program does (docs/interaction.md), this command does not";
+        terminal::note(&format!("{}: {text}\n", ports.join(", ")));
+    }
     if !all.is_empty() {
         let text = "a program sets inputs while it runs (docs/interaction.md), this command does not";
         terminal::note(&format!("{}: {text}\n", all.join(", ")));

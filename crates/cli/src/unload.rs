@@ -73,6 +73,11 @@ fn write(scene: &SceneFile, found: &Unloaded, path: &Path) -> Result<Vec<String>
         }
         names.push(file);
     }
+    for (name, body) in &scene.scene.bodies {
+        if let Some(skin) = &body.skin {
+            sets.push(format!("bodies.\"{name}\".skin.file=\"{}\"", copies.of(&skin.file, scene, &mut folder)?));
+        }
+    }
     for (name, material) in &scene.scene.materials {
         if let Some(law) = material.law.as_ref().filter(|law| !law.file.is_empty()) {
             sets.push(format!("materials.\"{name}\".law.file=\"{}\"", copies.of(&law.file, scene, &mut folder)?));

@@ -10,7 +10,7 @@ mod watch_kernel;
 
 pub use element_kernel::{BlockColumns, Inside, kernel_effects, run_block, run_block_fast};
 pub use law::BlockLaw;
-pub use node_kernel::{Factors, NodeColumns, Touches, move_nodes};
+pub use node_kernel::{Factors, Foreseen, NodeColumns, Touches, move_nodes};
 pub use own_kernels::OwnKernels;
 pub use strain_kernel::{Strain, StrainColumns, Visit, strains};
 pub(crate) use strain_kernel::{sizes, with_identity};

@@ -5,7 +5,7 @@ mod factors;
 mod one_by_one;
 
 pub use columns::{NodeColumns, Touches};
-pub use factors::Factors;
+pub use factors::{Factors, Foreseen};
 
 use super::Cpu;
 use crate::components::WORK_NUMBERS;

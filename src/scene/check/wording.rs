@@ -2,6 +2,7 @@
 
 use super::value::Value;
 use crate::scene::diagnostic::Diagnostic;
+use crate::scene::schema::OF_THE_WHOLE;
 use crate::scene::suggest::{choice, nearest};
 use crate::scene::syntax::{Field, Kind};
 use crate::scene::words::meaning;
@@ -93,6 +94,13 @@ impl<'a> Value<'a> {
 
     pub(super) fn unknown_field(&self, owner: &str, field: &Field, fields: &'static [&'static str]) {
         let name = &field.name.text;
+        if owner == "PartScene" && OF_THE_WHOLE.contains(&name.as_str()) {
+            let message = format!("`{name}` belongs into the whole scene, not into a part of it");
+            let mut diagnostic = Diagnostic::error(field.name.span.clone(), message);
+            diagnostic.label("not in a part").note(format!("a part may have: {}", fields.join(", ")));
+            drop(self.about.tell(diagnostic));
+            return;
+        }
         let mut diagnostic = Diagnostic::error(field.name.span.clone(), format!("unknown field `{name}`"));
         diagnostic.label(format!("not a field of {owner}"));
         if fields.is_empty() {

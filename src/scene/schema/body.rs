@@ -44,6 +44,9 @@ pub struct Body {
     /// Angular velocity at the start about the centre of mass (rad/s).
     #[serde(default)]
     pub spin: DVec3,
+    /// A fine surface that the mesh carries, for pictures.
+    #[serde(default)]
+    pub skin: Option<SkinFile>,
     /// How the body is deformed at the start, at rest and let go; nodes keep their place along axes that are held or
     /// moved.
     #[serde(default)]
@@ -52,6 +55,17 @@ pub struct Body {
     /// tetrahedra to their mean; 0 leaves their hourglass modes free.
     #[serde(default = "one")]
     pub hourglass: f64,
+}
+
+/// A fine surface that a body's mesh carries: it stands where the mesh does, and is scaled, turned and moved with it.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct SkinFile {
+    /// The file (STL, OBJ or PLY), its path relative to the scene file.
+    pub file: String,
+    /// What its coordinates are multiplied with to be those of the mesh.
+    #[serde(default = "one")]
+    pub scale: f64,
 }
 
 fn single() -> u32 {

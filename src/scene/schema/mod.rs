@@ -6,6 +6,7 @@ mod body;
 mod load;
 mod material;
 mod output;
+mod part;
 mod picture;
 mod scene;
 mod selection;
@@ -17,26 +18,28 @@ pub use crate::mesh::ElementKind;
 pub use crate::tools::Shape;
 pub use accuracy::{Accuracy, AccuracyReference};
 pub use action::{Axis, Constraint, Curve, Removal, When};
-pub use body::{Body, MeshSource, Region, Start};
+pub use body::{Body, MeshSource, Region, SkinFile, Start};
 pub use load::{Load, LoadParts, Share};
 pub use material::{
     Direction, ELASTIC_LAWS, ExponentialFibres, Fibres, Inversion, Material, OwnLaw, Prony, PronyTerm,
     ViscousIntegrator, comparable_laws, laws_for_large_strains,
 };
 pub use output::{Output, OutputField};
+pub use part::{OF_THE_WHOLE, Part, PartScene};
 pub use picture::{Colours, Cut, Field, Opacity, Picture};
 pub use scene::{Analysis, EnergyGuard, Guard, Guards, InitialState, Integration, Scene, StepBound, WhenUnstable};
 pub use selection::{Probe, Quantity, Select};
 pub use system::OwnSystem;
-pub use tool::{Contact, Suction, Tool, ToolMesh, ToolMove, ToolPlace};
+pub use tool::{Contact, Follow, Port, Suction, Tool, ToolMesh, ToolMove, ToolPlace};
 
 /// The texts of these files and those of laws: what a field means is told in the words it is documented with.
 pub fn texts() -> impl Iterator<Item = &'static str> {
     TEXT.iter().chain(crate::materials::TEXTS).chain(crate::tools::TEXTS).copied()
 }
 
-const TEXT: [&str; 11] = [
+const TEXT: [&str; 12] = [
     include_str!("scene.rs"),
+    include_str!("part.rs"),
     include_str!("body.rs"),
     include_str!("material.rs"),
     include_str!("action.rs"),

@@ -33,6 +33,11 @@ pub enum OutputField {
     InternalForce,
     /// Sum R of all loads on each node (N), at the beginning of the step that led there.
     ExternalForce,
+    /// What tools, other bodies and the body itself do to each node where they touch it (N), at the beginning of the step
+    /// that led there.
+    ContactForce,
+    /// The same over the area of the surface around each node (Pa).
+    ContactTraction,
     /// Volume ratio J.
     VolumeRatio,
     /// Cauchy stress (Pa): xx, yy, zz, xy, yz, xz.
@@ -69,7 +74,10 @@ impl OutputField {
     /// Whether it has a value a node, and not one an element.
     pub fn is_of_nodes(self) -> bool {
         use OutputField::*;
-        matches!(self, Displacement | Velocity | Reaction | InternalForce | ExternalForce)
+        matches!(
+            self,
+            Displacement | Velocity | Reaction | InternalForce | ExternalForce | ContactForce | ContactTraction
+        )
     }
 
     /// The array's name in VTU files, by which `sinew render` finds it; of a second family of fibres with `_2`.
@@ -80,6 +88,8 @@ impl OutputField {
             OutputField::Reaction => "reaction",
             OutputField::InternalForce => "internal_force",
             OutputField::ExternalForce => "external_force",
+            OutputField::ContactForce => "contact_force",
+            OutputField::ContactTraction => "contact_traction",
             OutputField::VolumeRatio => "J",
             OutputField::CauchyStress => "stress",
             OutputField::VonMises => "von_mises",
@@ -99,8 +109,8 @@ impl OutputField {
         match self {
             Displacement => "m",
             Velocity => "m/s",
-            Reaction | InternalForce | ExternalForce => "N",
-            CauchyStress | VonMises | Pressure | PrincipalStresses => "Pa",
+            Reaction | InternalForce | ExternalForce | ContactForce => "N",
+            ContactTraction | CauchyStress | VonMises | Pressure | PrincipalStresses => "Pa",
             EnergyDensity => "J/m³",
             VolumeRatio | PrincipalStretches | GreenStrain | FibreStretch | HourglassShare => "1",
         }

@@ -1,8 +1,8 @@
 //! The whole scene, its time step, its guards.
 
 use super::{
-    Accuracy, Body, Constraint, Contact, Curve, Load, Material, Output, OwnSystem, Picture, Probe, Removal, Suction,
-    Tool, When,
+    Accuracy, Body, Constraint, Contact, Curve, Load, Material, Output, OwnSystem, Part, Picture, Probe, Removal,
+    Suction, Tool, When,
 };
 use crate::scene::syntax::Path;
 use serde::{Deserialize, Serialize};
@@ -23,9 +23,14 @@ pub struct Scene {
     /// How bodies stand when the motion begins.
     #[serde(default)]
     pub start: InitialState,
+    /// What stands in files of its own, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub parts: BTreeMap<String, Part>,
     /// The bodies, by name.
+    #[serde(default)]
     pub bodies: BTreeMap<String, Body>,
     /// The materials, by name.
+    #[serde(default)]
     pub materials: BTreeMap<String, Material>,
     /// What holds or moves nodes.
     #[serde(default)]
@@ -57,6 +62,9 @@ pub struct Scene {
     /// Systems in the order they run in each step; left out, it is derived from what the scene contains.
     #[serde(default)]
     pub schedule: Option<Vec<String>>,
+    /// Whether the motion goes as fast as life: a second of it takes a second, or longer where steps do.
+    #[serde(default)]
+    pub real_time: bool,
     /// Whether neighbouring systems that work node by node share a pass.
     #[serde(default = "yes")]
     pub fuse: bool,
@@ -267,6 +275,17 @@ impl Scene {
     pub fn when_unstable(&self) -> WhenUnstable {
         let insists = self.integration.beyond_stable_step;
         self.integration.when_unstable.unwrap_or(if insists { WhenUnstable::Watch } else { WhenUnstable::Adapt })
+    }
+
+    /// Whether a body may lose elements.
+    pub fn may_lose_elements(&self, body: &str) -> bool {
+        let material = |name: &String| self.materials.get(name).map(|material| material.inversion());
+        let of_body = self.bodies.get(body).into_iter();
+        let mut materials = of_body
+            .flat_map(|body| std::iter::once(&body.material).chain(body.regions.iter().map(|region| &region.material)));
+        self.removal.iter().any(|removal| removal.body.as_deref().is_none_or(|name| name == body))
+            || self.when_unstable() == WhenUnstable::Remove
+            || materials.any(|name| material(name) == Some(super::Inversion::Remove))
     }
 
     /// Whether elements are made heavier.

@@ -23,12 +23,15 @@ pub enum Select {
         #[serde(default)]
         tolerance: Option<f64>,
     },
-    /// An axis-parallel box, its walls included.
+    /// A box, its walls included.
     Box {
         /// Lower corner (m).
         min: DVec3,
         /// Upper corner (m).
         max: DVec3,
+        /// How the box is turned about its middle: about the axes x, then y, then z (degrees).
+        #[serde(default)]
+        rotate: DVec3,
     },
     /// A ball, its surface included.
     Sphere {
@@ -46,12 +49,15 @@ pub enum Select {
         /// Radius (m).
         radius: f64,
     },
-    /// An ellipsoid with axes along x, y and z, its surface included.
+    /// An ellipsoid, its surface included.
     Ellipsoid {
         /// Centre (m).
         center: DVec3,
-        /// Half-axes (m).
+        /// Half-axes along x, y and z (m).
         radii: DVec3,
+        /// How it is turned about its centre: about the axes x, then y, then z (degrees).
+        #[serde(default)]
+        rotate: DVec3,
     },
     /// Faces of the surface whose outward normal at rest lies within an angle of a direction, and their nodes.
     Surface {
@@ -191,7 +197,10 @@ impl Scene {
         let removal = self.removal.iter().map(|removal| &removal.on);
         let systems = self.systems.values().map(|system| &system.on);
         let probes = self.probes.values().filter_map(|probe| probe.on.as_ref());
-        let contacts = self.contacts.iter().map(|Contact::Tool { on, .. }| on);
+        let contacts = self.contacts.iter().filter_map(|contact| match contact {
+            Contact::Tool { on, .. } => Some(on),
+            Contact::Between { .. } | Contact::Itself { .. } => None,
+        });
         regions.chain(constraints).chain(loads).chain(systems).chain(contacts).chain(removal).chain(probes)
     }
 }

@@ -30,13 +30,60 @@ pub struct Tool {
     /// What is added to that, each by a curve of its own.
     #[serde(default)]
     pub moves: Vec<ToolMove>,
+    /// The device of a hand that moves it from where it is at first. Not with a `path` or `moves`.
+    #[serde(default)]
+    pub port: Option<Port>,
+}
+
+/// The port of a device that a hand holds, and how the tool follows it.
+#[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Port {
+    /// Its name, by which a program opens it.
+    pub name: String,
+    /// How fast the tool goes at most (m/s).
+    pub speed: f64,
+    /// How fast it turns at most (degrees a second).
+    #[serde(default = "a_turn")]
+    pub spin: f64,
+    /// Time between two readings of the device (s): a batch of steps.
+    #[serde(default = "a_millisecond")]
+    pub every: f64,
+    /// Where the tool goes.
+    #[serde(default)]
+    pub follow: Follow,
+}
+
+fn a_turn() -> f64 {
+    360.0
+}
+
+fn a_millisecond() -> f64 {
+    1e-3
+}
+
+/// How a tool follows a device.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub enum Follow {
+    /// It goes where the device is.
+    #[default]
+    Position,
+    /// It is drawn there by a spring, without a mass, and yields to what it touches; it is turned as the device is.
+    Proxy {
+        /// Stiffness of the spring (N/m).
+        stiffness: f64,
+        /// Damping of its own motion (N s/m).
+        #[serde(default)]
+        damping: f64,
+    },
 }
 
 /// A closed surface of triangles as a tool.
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct ToolMesh {
-    /// The file (STL or OBJ), its path relative to the scene file.
+    /// The file (STL, OBJ or PLY), its path relative to the scene file.
     pub path: String,
     /// What its coordinates are multiplied with: 0.001 where they are in mm.
     #[serde(default = "one")]
@@ -99,6 +146,55 @@ pub enum Contact {
         #[serde(default)]
         static_friction: Option<f64>,
     },
+    /// The surfaces of two bodies: each stays outside the other.
+    Between {
+        /// Their names.
+        bodies: (String, String),
+        /// The coefficient of friction.
+        #[serde(default)]
+        friction: f64,
+        /// The coefficient while points stick; that of `friction` when left out.
+        #[serde(default)]
+        static_friction: Option<f64>,
+        /// How far the surfaces stay apart (m).
+        #[serde(default)]
+        thickness: f64,
+        /// How often forces are corrected in a step.
+        #[serde(default = "one_sweep")]
+        sweeps: u32,
+    },
+    /// The surface of a body and itself: folds and copies stay outside of each other.
+    Itself {
+        /// The body; may be left out when there is one only.
+        #[serde(default)]
+        body: Option<String>,
+        /// The coefficient of friction.
+        #[serde(default)]
+        friction: f64,
+        /// The coefficient while points stick; that of `friction` when left out.
+        #[serde(default)]
+        static_friction: Option<f64>,
+        /// How far the surface stays apart from itself (m).
+        #[serde(default)]
+        thickness: f64,
+        /// How often forces are corrected in a step.
+        #[serde(default = "one_sweep")]
+        sweeps: u32,
+    },
+}
+
+fn one_sweep() -> u32 {
+    1
+}
+
+impl Contact {
+    /// The coefficients of friction: while something sticks, and while it slides.
+    pub fn friction(&self) -> [f64; 2] {
+        let (Contact::Tool { friction, static_friction, .. }
+        | Contact::Between { friction, static_friction, .. }
+        | Contact::Itself { friction, static_friction, .. }) = self;
+        [static_friction.unwrap_or(*friction), *friction]
+    }
 }
 
 /// A tool that sucks: exposed faces in its mouth are drawn into it.

@@ -101,9 +101,10 @@ fn held(scene_: &Scene, path: &Path, validator: &mut Validator) {
             let (Constraint::Fixed { body, .. } | Constraint::Prescribed { body, .. }) = constraint;
             body.as_ref().is_none_or(|body| body == name)
         };
-        let touched = scene_.contacts.iter().any(|contact| {
-            let Contact::Tool { body, .. } = contact;
-            body.as_ref().is_none_or(|body| body == name)
+        let touched = scene_.contacts.iter().any(|contact| match contact {
+            Contact::Tool { body, .. } => body.as_ref().is_none_or(|body| body == name),
+            Contact::Between { bodies: (a, b), .. } => a == name || b == name,
+            Contact::Itself { .. } => false,
         });
         if !touched && !scene_.constraints.iter().any(holds) {
             validator

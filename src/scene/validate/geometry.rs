@@ -26,7 +26,7 @@ const MESHES: KindOfFile = KindOfFile {
 
 /// Files of triangles that are tools.
 pub(super) const TOOLS: KindOfFile =
-    KindOfFile { what: "surface file", endings: &["stl", "obj"], formats: "STL (.stl), OBJ (.obj)" };
+    KindOfFile { what: "surface file", endings: &["stl", "obj", "ply"], formats: "STL (.stl), OBJ (.obj), PLY (.ply)" };
 
 pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
     for (name, body) in &file.scene.bodies {
@@ -47,6 +47,16 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
         validator.not_negative(&path.name("hourglass"), body.hourglass, "");
         if let Some(Start::Scrambled { amplitude, .. }) = body.start {
             validator.not_negative(&path.name("start").name("amplitude"), amplitude, "m");
+        }
+        if let Some(skin) = &body.skin {
+            named_file(file, validator, &path.name("skin").name("file"), &skin.file, &TOOLS);
+            validator.above_zero(&path.name("skin").name("scale"), skin.scale, "");
+            if body.copies > 1 {
+                validator
+                    .out
+                    .error_at(path.name("skin"), format!("a skin on {} copies of a mesh", body.copies))
+                    .note("one copy may have a skin: leave `copies` or `skin` out");
+            }
         }
         if body.hourglass == 0.0 {
             validator

@@ -53,6 +53,10 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) -> bool {
     let systems = found.systems.keys().map(|name| ("systems", name));
     let probes = found.probes.keys().map(|name| ("probes", name));
     let tools = found.tools.keys().map(|name| ("tools", name));
+    for (name, port) in found.tools.iter().filter_map(|(name, tool)| Some((name, tool.port.as_ref()?))) {
+        let path = || scene("tools").name(name).name("port").name("name");
+        limits.at_most(NAME_BYTES, port.name.len(), "bytes in a name", path);
+    }
     for (what, name) in bodies.chain(materials).chain(systems).chain(probes).chain(tools) {
         limits.at_most(NAME_BYTES, name.len(), "bytes in a name", || scene(what).name(name));
     }

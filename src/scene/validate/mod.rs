@@ -30,7 +30,7 @@ pub fn validate(file: &SceneFile, diagnostics: &mut Diagnostics) -> bool {
     }
     limits::elements(file, &mut validator);
     numbers::validate(file, &mut validator);
-    names::validate(&file.scene, &mut validator);
+    names::validate(file, &mut validator);
     material::validate(&file.scene, &mut validator);
     geometry::validate(file, &mut validator);
     action::validate(&file.scene, &mut validator);

@@ -1,11 +1,14 @@
 //! Names: every body and material that is named must exist, and names must do as names of files and columns.
 
 use super::{Validator, scene};
+use crate::scene::load::SceneFile;
 use crate::scene::schema::{Constraint, LoadParts, Scene};
 use crate::scene::suggest::{choice, list};
 use crate::scene::syntax::Path;
 
-pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
+pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
+    let scene_ = &file.scene;
+    let parts = file.parts();
     if scene_.bodies.is_empty() {
         validator
             .out
@@ -15,10 +18,10 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
     materials(scene_, validator);
     bodies(scene_, validator);
     for name in scene_.bodies.keys() {
-        file_name(validator, &scene("bodies").name(name), "body", name);
+        file_name(validator, &scene("bodies").name(name), "body", own(name, &parts));
     }
     for name in scene_.probes.keys() {
-        file_name(validator, &scene("probes").name(name), "probe", name);
+        file_name(validator, &scene("probes").name(name), "probe", own(name, &parts));
     }
     if scene_.schedule.as_ref().is_some_and(Vec::is_empty) {
         validator
@@ -97,6 +100,12 @@ pub(super) fn body_named(scene_: &Scene, validator: &mut Validator, owner: &Path
         }
         _ => {}
     }
+}
+
+/// The name that something has in its part.
+fn own<'a>(name: &'a str, parts: &[(&str, &str)]) -> &'a str {
+    let of_a_part = name.split_once('.').is_some_and(|(first, _)| parts.iter().any(|(part, _)| *part == first));
+    if of_a_part { name.rsplit('.').next().unwrap_or(name) } else { name }
 }
 
 /// Names become names of files and of columns of tables.

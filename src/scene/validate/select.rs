@@ -23,7 +23,7 @@ pub(super) fn validate(validator: &mut Validator, path: &Path, select: &Select) 
                 validator.not_negative(&path.name("tolerance"), *tolerance, "m");
             }
         }
-        Select::Box { min, max } => {
+        Select::Box { min, max, .. } => {
             for (i, (min, max)) in min.to_array().into_iter().zip(max.to_array()).enumerate() {
                 if min > max {
                     let axis = ["x", "y", "z"][i];

@@ -3,9 +3,9 @@
 use super::geometry::{TOOLS, named_file};
 use super::names::body_named;
 use super::{Validator, scene, select, show};
-use crate::scene::limits::{MOST_BURST, TOOLS_OF_A_BODY};
+use crate::scene::limits::{MOST_BURST, MOST_SWEEPS, TOOLS_OF_A_BODY};
 use crate::scene::load::SceneFile;
-use crate::scene::schema::{Contact, Removal, Scene, Shape, Tool, When};
+use crate::scene::schema::{Contact, Follow, Port, Removal, Scene, Shape, Tool, When};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use glam::DVec3;
@@ -17,12 +17,13 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
         let path = scene("tools").name(name);
         geometry(file, validator, &path, found);
         tool(validator, &path, found);
-        let touches = |contact: &Contact| {
-            let Contact::Tool { tool, .. } = contact;
-            tool == name
-        };
+        if let Some(found) = &found.port {
+            port(scene_, validator, name, &path.name("port"), found);
+        }
+        let touches = |contact: &Contact| matches!(contact, Contact::Tool { tool, .. } if tool == name);
         let takes = |removal: &Removal| removal.when.tool() == Some(name);
-        if !scene_.contacts.iter().any(touches) && !scene_.removal.iter().any(takes)
+        if !scene_.contacts.iter().any(touches)
+            && !scene_.removal.iter().any(takes)
             && !scene_.suction.iter().any(|suction| suction.tool == *name)
         {
             validator
@@ -97,32 +98,52 @@ fn tool(validator: &mut Validator, path: &Path, tool: &Tool) {
     }
 }
 
+fn port(scene_: &Scene, validator: &mut Validator, tool: &str, path: &Path, port: &Port) {
+    if port.name.is_empty() {
+        validator.out.error_at(path.name("name"), "a port needs a name, by which a program opens it");
+    }
+    validator.above_zero(&path.name("speed"), port.speed, "m/s");
+    validator.above_zero(&path.name("spin"), port.spin, "degrees a second");
+    validator.above_zero(&path.name("every"), port.every, "s");
+    if let Follow::Proxy { stiffness, damping } = port.follow {
+        validator.above_zero(&path.name("follow").name("stiffness"), stiffness, "N/m");
+        validator.not_negative(&path.name("follow").name("damping"), damping, "N s/m");
+    }
+    let named = |other: &Tool| other.port.as_ref().is_some_and(|other| other.name == port.name);
+    let before = scene_.tools.iter().take_while(|(name, _)| *name != tool);
+    if let Some((other, _)) = before.into_iter().find(|(_, other)| named(other)) {
+        validator
+            .out
+            .error_at(path.name("name"), format!("`{other}` has the port `{}` already", port.name))
+            .note("a device moves one tool: give each port a name of its own");
+    }
+    let has = |what: fn(&Tool) -> bool| scene_.tools.get(tool).is_some_and(what);
+    for (field, there) in [("path", has(|tool| !tool.path.is_empty())), ("moves", has(|tool| !tool.moves.is_empty()))] {
+        if there {
+            let message = format!("a `port` beside `{field}`: a hand moves the tool, and nobody else");
+            validator.out.error_at(path, message).note("leave one of both out; `at` says where the tool is at first");
+        }
+    }
+    if scene_.is_static() {
+        validator
+            .out
+            .warn_at(path, "the tool stays where it is: in a static analysis no time passes in which a hand moves")
+            .note("leave `port` out, or `analysis`");
+    }
+}
+
 fn contacts(scene_: &Scene, validator: &mut Validator) {
     let mut of_body: BTreeMap<Option<&String>, usize> = BTreeMap::new();
     for (number, contact) in scene_.contacts.iter().enumerate() {
         let path = scene("contacts").index(number);
-        let Contact::Tool { tool, body, on, friction, static_friction } = contact;
+        friction(scene_, validator, &path, contact);
+        let Contact::Tool { tool, body, on, .. } = contact else {
+            surfaces(scene_, validator, &path, contact);
+            continue;
+        };
         named(scene_, validator, &path, tool);
         body_named(scene_, validator, &path, body.as_ref());
         select::validate(validator, &path.name("on"), on);
-        validator.not_negative(&path.name("friction"), *friction, "");
-        if let Some(sticking) = static_friction {
-            validator.not_negative(&path.name("static_friction"), *sticking, "");
-            if *sticking < *friction {
-                let message =
-                    format!("`static_friction` is {}, and `friction` is {}", show(*sticking), show(*friction));
-                validator
-                    .out
-                    .error_at(path.name("static_friction"), message)
-                    .note("what sticks is held at least as well as what slides");
-            }
-        }
-        if scene_.is_static() && (*friction > 0.0 || static_friction.is_some_and(|sticking| sticking > 0.0)) {
-            validator
-                .out
-                .warn_at(path.name("friction"), "rest with friction depends on the way there, and this is one of many")
-                .note("a transient analysis goes the way that the scene tells");
-        }
         let count = of_body.entry(body.as_ref().or(scene_.bodies.keys().next())).or_default();
         *count += 1;
         if *count == TOOLS_OF_A_BODY + 1 {
@@ -201,5 +222,51 @@ fn suction(scene_: &Scene, validator: &mut Validator) {
         if *count == TOOLS_OF_A_BODY + 1 {
             validator.out.error_at(&path, format!("at most {TOOLS_OF_A_BODY} tools may suck at a body"));
         }
+    }
+}
+
+fn friction(scene_: &Scene, validator: &mut Validator, path: &Path, contact: &Contact) {
+    let [sticking, sliding] = contact.friction();
+    validator.not_negative(&path.name("friction"), sliding, "");
+    if sticking < sliding {
+        validator.not_negative(&path.name("static_friction"), sticking, "");
+        let message = format!("`static_friction` is {}, and `friction` is {}", show(sticking), show(sliding));
+        validator
+            .out
+            .error_at(path.name("static_friction"), message)
+            .note("what sticks is held at least as well as what slides");
+    }
+    if scene_.is_static() && sticking.max(sliding) > 0.0 {
+        validator
+            .out
+            .warn_at(path.name("friction"), "rest with friction depends on the way there, and this is one of many")
+            .note("a transient analysis goes the way that the scene tells");
+    }
+}
+
+/// Surfaces that meet: whose, and how.
+fn surfaces(scene_: &Scene, validator: &mut Validator, path: &Path, contact: &Contact) {
+    let (sweeps, thickness) = match contact {
+        Contact::Tool { .. } => return,
+        Contact::Between { bodies: (a, b), sweeps, thickness, .. } => {
+            for name in [a, b].into_iter().filter(|name| !scene_.bodies.contains_key(*name)) {
+                let bodies = scene_.bodies.keys().map(String::as_str);
+                let message = format!("there is no body `{name}`");
+                validator.out.error_at(path.name("bodies"), message).notes(choice(name, bodies));
+            }
+            if a == b {
+                let note = format!("a body that meets itself: Itself(body: \"{a}\")");
+                validator.out.error_at(path.name("bodies"), format!("`{a}` twice")).note(note);
+            }
+            (*sweeps, *thickness)
+        }
+        Contact::Itself { body, sweeps, thickness, .. } => {
+            body_named(scene_, validator, path, body.as_ref());
+            (*sweeps, *thickness)
+        }
+    };
+    validator.not_negative(&path.name("thickness"), thickness, "m");
+    if !(1..=MOST_SWEEPS).contains(&sweeps) {
+        validator.must(&path.name("sweeps"), &format!("from 1 to {MOST_SWEEPS}"), sweeps);
     }
 }

@@ -1,14 +1,25 @@
 //! What blocks and bodies have or lack, and what would give it to them.
 
-use super::{Effect, Part};
+use super::{Effect, Part, ScenePart};
 use crate::backend::cpu::{BlockLaw, Cpu, kernel_effects};
 use crate::backend::user_law::Findings;
 use crate::components::*;
 use crate::elements::with_element;
 use crate::materials::{Elastic, ElasticLaw, ExponentialFibre, Fibres, UserLaw};
 use crate::math::LANES;
+use crate::scene::SceneFile;
 use crate::scene::schema::{InitialState, Inversion, Scene};
 use bevy_ecs::prelude::*;
+
+/// The parts that a scene is made of, and what they bring.
+pub(super) fn scene_parts(file: &SceneFile) -> Vec<ScenePart> {
+    let brought = |part: &str| {
+        let of_part = |name: &&String| name.strip_prefix(part).is_some_and(|rest| rest.starts_with('.'));
+        file.scene.bodies.keys().chain(file.scene.tools.keys()).filter(of_part).cloned().collect()
+    };
+    let parts = file.parts().into_iter();
+    parts.map(|(name, file)| ScenePart { name: name.into(), file: file.into(), brings: brought(name) }).collect()
+}
 
 /// All blocks, then all bodies.
 pub fn parts(scene: &Scene, precision: Precision, on_gpu: bool, world: &mut World) -> Vec<Part> {

@@ -13,6 +13,14 @@ impl Display for Explanation {
         if let Some(time_step) = &self.time_step {
             writeln!(f, "steps of {time_step}")?;
         }
+        if !self.scene_parts.is_empty() {
+            writeln!(f, "\nParts of the scene")?;
+        }
+        for part in &self.scene_parts {
+            let from = if part.file.is_empty() { "the scene itself" } else { &part.file };
+            let brings = if part.brings.is_empty() { "nothing".into() } else { part.brings.join(", ") };
+            writeln!(f, "  {:<16}  from {from}, brings {brings}", part.name)?;
+        }
         writeln!(f, "\nSystems, in the order of a step")?;
         self.systems.iter().try_for_each(|system| write_system(system, self.on_gpu, f))?;
         if !self.systems_off.is_empty() {

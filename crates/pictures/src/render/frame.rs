@@ -165,6 +165,24 @@ impl FrameFile {
         Ok(cells)
     }
 
+    /// Triangles, in a file of nothing else: rows of points.
+    pub fn triangles(&self) -> Result<Vec<[u32; 3]>, RenderError> {
+        let missing = || RenderError::damaged(&self.path, "the array connectivity is missing");
+        let entry = self.entry(Place::Mesh, "connectivity").ok_or_else(missing)?;
+        let corners: Vec<u32> = match entry.kind.as_str() {
+            "Int32" => {
+                self.unpack(entry, 3 * self.cells)?.into_iter().map(|bytes| i32::from_ne_bytes(bytes) as u32).collect()
+            }
+            _ => {
+                self.unpack(entry, 3 * self.cells)?.into_iter().map(|bytes| i64::from_ne_bytes(bytes) as u32).collect()
+            }
+        };
+        match corners.iter().any(|&corner| corner as usize >= self.points) {
+            true => Err(self.damaged(entry, "names points that do not exist")),
+            false => Ok(corners.as_chunks::<3>().0.to_vec()),
+        }
+    }
+
     /// Unpacks an array of `count` values of `N` bytes.
     fn unpack<const N: usize>(&self, entry: &Entry, count: usize) -> Result<Vec<[u8; N]>, RenderError> {
         let short = || self.damaged(entry, "ends too early");

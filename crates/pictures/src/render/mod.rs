@@ -36,6 +36,7 @@ mod range;
 mod raster;
 mod section;
 mod series;
+mod skins;
 mod state;
 mod surface;
 mod tools;

@@ -13,6 +13,7 @@ use super::plane::Plane;
 use super::range::Seen;
 use super::raster::Finish;
 use super::section::Section;
+use super::skins::{self, Skins};
 use super::surface::{Faces, Outer, Skin};
 use glam::Vec3;
 use sinew::mesh::Cells;
@@ -31,6 +32,8 @@ pub struct Reader {
     mesh: Mesh,
     /// The surface of what the bodies began with.
     skin: Skin,
+    /// Fine surfaces that bodies have.
+    skins: Skins,
     /// That surface at rest: its faces, and which of their sides are edges of the shape.
     rest: Option<Rest>,
 }
@@ -54,6 +57,8 @@ pub struct State {
     /// Whether values are one a vertex: else one a corner of each face.
     values: Option<Vec<f32>>,
     sections: Vec<(Finish, Section)>,
+    /// Fine surfaces, each with one value a vertex.
+    skins: Vec<(Finish, skins::Skin, Vec<f32>)>,
 }
 
 /// Faces of one finish.
@@ -92,6 +97,7 @@ impl Reader {
             groups: Groups::new(folder, &picture.opacity)?,
             plane: picture.cut.as_ref().map(|cut| Plane::new(cut, low.distance(high))),
             skin: began.faces.skin(),
+            skins: Skins::open(folder),
             mesh,
             rest,
         })
@@ -126,7 +132,13 @@ impl Reader {
             let there = alive.as_ref().is_none_or(|alive| alive[cell as usize] != 0.0);
             there.then(|| of_cells.get(cell as usize).copied().unwrap_or(0))
         };
-        let outer = self.mesh.faces.surface(group, Some(&self.skin));
+        let mut outer = self.mesh.faces.surface(group, Some(&self.skin));
+        let skins = self.skins.of_frame(&frame)?;
+        let bodies = frame.entry(Place::Cells, "body").filter(|_| !skins.is_empty());
+        let bodies = bodies.map(|entry| frame.floats(entry)).transpose()?.unwrap_or_default();
+        let of_body = |cell: u32| bodies.get(cell as usize).map_or(0, |body| *body as u32);
+        // where elements went the body's own faces close the hole
+        outer.retain(|face| face.bared || !skins.iter().any(|skin| skin.body == of_body(face.cell)));
         let values = self.field.values(&frame)?;
         let source = match self.field.place {
             Place::Cells if self.smooth => {
@@ -138,8 +150,29 @@ impl Reader {
         };
         let sections = self.sections(&vertices, &source, group);
         let parts = self.parts(&outer, &source);
+        let skins = self.with_values(skins, &source, group);
         let values = if let Source::Points(values) = source { Some(values) } else { None };
-        Ok(State { rest, vertices, parts, values, sections })
+        Ok(State { rest, vertices, parts, values, sections, skins })
+    }
+
+    /// Skins with their values and what they are made of: as their bodies' faces.
+    fn with_values(
+        &self,
+        skins: Vec<skins::Skin>,
+        source: &Source,
+        group: impl Fn(u32) -> Option<u8>,
+    ) -> Vec<(Finish, skins::Skin, Vec<f32>)> {
+        let nodes: Vec<&[u32]> =
+            if skins.is_empty() { Vec::new() } else { self.mesh.cells.iter().map(|c| c.1).collect() };
+        let corners = |cell: usize| -> Vec<f32> {
+            nodes.get(cell).into_iter().flat_map(|nodes| nodes.iter()).map(|node| source.value(cell, *node)).collect()
+        };
+        let seen = |skin: skins::Skin| {
+            let first = skin.carriers.iter().find_map(|(cell, _)| group(u32::try_from(*cell).ok()?))?;
+            let values = skin.values(corners);
+            Some((self.groups.finish(first, false)?, skin, values))
+        };
+        skins.into_iter().filter_map(seen).collect()
     }
 
     /// Faces by finish.
@@ -216,7 +249,17 @@ impl Reader {
             flat: None,
             cut: true,
         });
-        surface.chain(sections).chain(ghost).collect()
+        let skins = state.skins.iter().map(|(finish, skin, values)| Layer {
+            vertices: &skin.vertices,
+            faces: &skin.faces,
+            values: Colouring::Vertices(values),
+            finish: *finish,
+            // their triangles are fine, and say nothing of elements
+            lines: Lines::None,
+            flat: None,
+            cut: true,
+        });
+        surface.chain(skins).chain(sections).chain(ghost).collect()
     }
 }
 
@@ -263,6 +306,11 @@ impl State {
         for (point, rest) in self.vertices.iter_mut().zip(&self.rest) {
             *point = *rest + (*point - *rest) * factor;
         }
+        for (_, skin, _) in &mut self.skins {
+            for (point, rest) in skin.vertices.iter_mut().zip(&skin.rest) {
+                *point = *rest + (*point - *rest) * factor;
+            }
+        }
     }
 
     /// What its surfaces are, beside coloured by values.
@@ -274,7 +322,9 @@ impl State {
     /// How far its bodies are behind a plane through the origin with a normal (m).
     pub fn depth(&self, normal: Vec3) -> f32 {
         let points = self.parts.iter().flat_map(|part| part.faces.iter().flatten());
-        points.map(|point| -normal.dot(self.vertices[*point as usize])).fold(f32::MIN, f32::max)
+        let of_skins = self.skins.iter().flat_map(|(_, skin, _)| &skin.vertices);
+        let points = points.map(|point| &self.vertices[*point as usize]).chain(of_skins);
+        points.map(|point| -normal.dot(*point)).fold(f32::MIN, f32::max)
     }
 
     /// Adds what this frame shows.
@@ -286,6 +336,12 @@ impl State {
                     Some(values) => face.iter().for_each(|point| seen.value(values[*point as usize])),
                     None => part.values[row].iter().for_each(|value| seen.value(*value)),
                 }
+            }
+        }
+        for (_, skin, values) in &self.skins {
+            for &point in skin.faces.iter().flatten() {
+                fit.see(skin.vertices[point as usize]);
+                seen.value(values[point as usize]);
             }
         }
         let cut = self.sections.iter().flat_map(|section| &section.1.values);

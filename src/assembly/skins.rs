@@ -1,0 +1,44 @@
+//! Skins of bodies: files of triangles, placed as the meshes that carry them.
+
+use super::{Assembly, PlacedMesh};
+use crate::mesh::Mesh;
+use crate::scene::diagnostic::Diagnostics;
+use crate::scene::schema::{Body, SkinFile};
+use crate::skins::Skin;
+use crate::tools::Triangles;
+use bevy_ecs::prelude::*;
+
+/// Gives a body its skin, where the scene has one for it.
+pub(super) fn insert(
+    assembly: &Assembly<'_>,
+    name: &str,
+    placed: &PlacedMesh,
+    body: Entity,
+    world: &mut World,
+    diagnostics: &mut Diagnostics,
+) {
+    let described = &assembly.scene.scene.bodies[name];
+    let Some(file) = &described.skin else { return };
+    match surface(assembly, described, file) {
+        Ok(surface) => {
+            let mesh = Mesh { points: placed.points().to_vec(), cells: placed.mesh.cells.clone(), ..Mesh::default() };
+            world.entity_mut(body).insert(Skin::new(mesh, surface));
+        }
+        Err(message) => {
+            diagnostics.error_at(format!("bodies.\"{name}\".skin.file").as_str(), message);
+        }
+    }
+}
+
+/// The surface where the body's mesh is (m).
+fn surface(assembly: &Assembly<'_>, body: &Body, skin: &SkinFile) -> Result<Triangles, String> {
+    let bytes = assembly.scene.bytes(&skin.file, u64::MAX).map_err(|error| format!("{}: {error}", skin.file))?;
+    let mut surface = Triangles::from_bytes(&skin.file, &bytes).map_err(|error| error.to_string())?;
+    let points = std::mem::take(&mut surface.points);
+    let mut placed = Mesh { points, ..Mesh::default() };
+    placed.points.iter_mut().for_each(|point| *point *= skin.scale);
+    placed.place(body.scale, body.rotate, body.translate).map_err(|error| error.to_string())?;
+    surface.points = placed.points;
+    surface.check_numbers().map_err(|error| format!("{}: {error}", skin.file))?;
+    Ok(surface)
+}

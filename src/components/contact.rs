@@ -1,0 +1,25 @@
+//! What bodies do to each other where their surfaces meet.
+
+use super::Reals;
+use super::column::columns;
+use bevy_ecs::prelude::*;
+
+columns! {
+    /// Force of other bodies, and of the body itself, on the node in the last step (N), a vector a node. Exists where
+    /// the body may meet others or itself.
+    ContactForce(Reals) = "contact_force", State, Nodes(3);
+    /// What each node carries on as a point of a surface, [`MEETING_NUMBERS`] a node: how far it has slipped elastically
+    /// (m, a vector); how deep it may be inside (m, 0 or negative); 0 where it faced nothing in the last step, 1 where
+    /// it faced something, 2 where it stuck to it, 3 where it slid; how far it was outside of that before the step, where
+    /// it touched after the step (m); since the start the length it has slid (m), and what impact and friction have taken
+    /// (J). Exists with [`ContactForce`].
+    SurfaceTouch(Reals) = "surface_touch", State, Nodes(MEETING_NUMBERS);
+}
+
+/// Numbers a node in [`SurfaceTouch`].
+pub const MEETING_NUMBERS: usize = 8;
+
+/// Rows of the nodes of a body's surface that may meet others, ascending: no patch moves them as one of its own, so that
+/// all forces on them are known before they move. On bodies whose surface stays the same.
+#[derive(Component, Clone, Debug)]
+pub struct SurfaceRows(pub Vec<u32>);

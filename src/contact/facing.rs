@@ -1,0 +1,188 @@
+//! The face that a point faces.
+
+use super::surfaces::{Point, Surfaces};
+use crate::math::OnTriangle;
+use glam::DVec3;
+
+/// Surfaces face one another where the cosine between their normals is below this.
+const TURNED_AWAY: f64 = 0.2;
+
+/// What counts for nothing of a distance between two faces that are in a point's way, in edges: there the one that it
+/// faces more is.
+const ALIKE: f64 = 0.05;
+
+/// Two faces are a corner where the cosine between their normals is below this (30°).
+const CORNER: f64 = 0.866;
+
+/// A face that a point faces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facing {
+    /// Its number.
+    pub triangle: u32,
+    /// What each of its corners has of the nearest place.
+    pub weights: [f64; 3],
+    /// The nearest place (m).
+    pub at: DVec3,
+    /// The unit normal, out of the face's body.
+    pub normal: DVec3,
+    /// How far the point is outside (m); negative inside.
+    pub gap: f64,
+}
+
+/// What a point faces: the face in its way, and where that is a wall of a corner, the other.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Faced {
+    /// The face in its way.
+    pub first: Option<Facing>,
+    /// Another one.
+    pub second: Option<Facing>,
+    /// How far the nearest of all triangles is that were looked at (m).
+    pub nearest: f64,
+}
+
+impl Surfaces {
+    /// What a point faces among triangles, ascending, that are no farther than `reach` (m). `edge` is the length of an
+    /// edge (m).
+    pub fn faced(
+        &self,
+        places: &[DVec3],
+        point: &Point,
+        triangles: &[u32],
+        reach: impl Fn(u32) -> f64,
+        edge: f64,
+    ) -> Faced {
+        let at = point.place(places);
+        let mut faced = Faced { nearest: f64::INFINITY, ..Faced::default() };
+        let mut own_normal = None;
+        let mut least = [f64::INFINITY; 2];
+        for &triangle in triangles {
+            let found = OnTriangle::nearest(at, self.corners(places, triangle));
+            let distance = at.distance(found.at);
+            faced.nearest = faced.nearest.min(distance);
+            let reach = reach(triangle);
+            if distance > reach && distance > self.depths[triangle as usize] {
+                continue;
+            }
+            let Some(facing) = self.outside(places, at, triangle, found, edge) else { continue };
+            let inside = -self.depths[triangle as usize];
+            if !(facing.gap >= inside && facing.gap <= reach) {
+                continue;
+            }
+            let own = *own_normal.get_or_insert_with(|| match point.triangle {
+                Some(triangle) => self.normal(places, triangle),
+                None => self.normal_of_node(places, point.nodes[0]),
+            });
+            let turned = facing.normal.dot(own);
+            if turned >= TURNED_AWAY {
+                continue;
+            }
+            // at an edge the walls beside a face are as near as itself
+            let way = (facing.gap.abs() + ALIKE * edge) * (1.0 + TURNED_AWAY + turned);
+            if way < least[0] {
+                if faced.first.is_some_and(|other| is_corner(&facing, &other)) {
+                    (faced.second, least[1]) = (faced.first, least[0]);
+                }
+                (faced.first, least[0]) = (Some(facing), way);
+            } else if way < least[1] {
+                (faced.second, least[1]) = (Some(facing), way);
+            }
+            let corner = |first: &Facing| faced.second.filter(|second| is_corner(first, second));
+            faced.second = faced.first.as_ref().and_then(corner);
+            if faced.second.is_none() {
+                least[1] = f64::INFINITY;
+            }
+        }
+        faced
+    }
+
+    /// How far a place is outside of a triangle, whose nearest place is known; `None` where another triangle must be
+    /// nearer, and of triangles without area.
+    fn outside(&self, places: &[DVec3], at: DVec3, triangle: u32, found: OnTriangle, edge: f64) -> Option<Facing> {
+        let normal = self.normal(places, triangle);
+        if normal == DVec3::ZERO || !found.at.is_finite() {
+            return None;
+        }
+        let off = at - found.at;
+        let facing =
+            |normal: DVec3, gap: f64| Some(Facing { triangle, weights: found.weights, at: found.at, normal, gap });
+        let distance = off.length();
+        if found.part == 0 || distance <= 1e-3 * edge {
+            return facing(normal, off.dot(normal));
+        }
+        // the surface around a place that is nearest is nowhere nearer: not the flat surroundings of a point's own, nor a
+        // side that leads round a corner
+        let closer = |other: u32| {
+            let corners = self.corners(places, other);
+            other != triangle && OnTriangle::nearest(at, corners).at.distance(at) < (1.0 - 1e-6) * distance
+        };
+        if self.around_part(triangle, found.part).any(closer) {
+            return None;
+        }
+        match off.dot(self.normal_of_part(places, triangle, found.part)) {
+            out if out >= 0.0 => facing(off / distance, distance),
+            _ => facing(-off / distance, -distance),
+        }
+    }
+}
+
+/// Whether two faces are walls of a corner that the point is in: the second rises before the first.
+fn is_corner(first: &Facing, second: &Facing) -> bool {
+    first.normal.dot(second.normal) < CORNER && first.normal.dot(second.at - first.at) > 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A flat square of two triangles, normal up, and a point above it.
+    fn square(height: f64) -> (Surfaces, Vec<DVec3>) {
+        let places = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0), (0.5, 0.5, height)];
+        let triangles = vec![[0, 1, 2], [0, 2, 3]];
+        (Surfaces::new(5, triangles, vec![0; 2], vec![0.5; 2]), places.map(DVec3::from).to_vec())
+    }
+
+    #[test]
+    fn a_place_on_the_side_of_two_faces_is_as_far_from_both() {
+        for height in [0.1, 1e-5, 0.0, -1e-5, -0.1] {
+            let (surfaces, places) = square(height);
+            let faced = surfaces.faced(&places, &Point::node(1, 4), &[0, 1], |_| 0.2, 1.0);
+            let first = faced.first.unwrap();
+            assert!((first.gap - height).abs() < 1e-15 && (first.normal - DVec3::Z).length() < 1e-12, "{first:?}");
+            assert_eq!((first.triangle, faced.second), (0, None));
+        }
+    }
+
+    /// Of a strip the second half is not in any list: still it is seen that it is nearer.
+    #[test]
+    fn where_the_surface_goes_on_its_other_parts_are_not_faced() {
+        let corners = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (0.0, 1.0), (1.0, 1.0), (2.0, 1.0)];
+        let mut places: Vec<DVec3> = corners.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
+        places.push(DVec3::ZERO);
+        let triangles = vec![[0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4]];
+        let surfaces = Surfaces::new(7, triangles, vec![0; 4], vec![0.5; 4]);
+        for place in [(1.3, 0.5, 0.0), (1.3, 0.5, 0.1), (1.1, 0.0, -0.2), (1.4, 1.0, 1e-9), (1.4, 1.0, -1e-9)] {
+            places[6] = place.into();
+            let faced = |triangles: &[u32]| surfaces.faced(&places, &Point::node(1, 6), triangles, |_| 1.0, 1.0).first;
+            assert_eq!(faced(&[0, 1]), None, "{place:?}");
+            assert!((faced(&[0, 1, 2, 3]).unwrap().gap - place.2).abs() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn farther_than_the_reach_or_deeper_than_the_inside_is_nothing() {
+        for (height, there) in [(0.21, false), (0.19, true), (-0.49, true), (-0.51, false)] {
+            let (surfaces, places) = square(height);
+            let faced = surfaces.faced(&places, &Point::node(1, 4), &[0, 1], |_| 0.2, 1.0);
+            assert_eq!(faced.first.is_some(), there, "{height}");
+        }
+    }
+
+    #[test]
+    fn triangles_without_area_are_never_faced() {
+        let places: Vec<DVec3> =
+            [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (2.0, 0.0, 0.0), (1.0, 0.0, 0.1)].map(DVec3::from).to_vec();
+        let surfaces = Surfaces::new(4, vec![[0, 1, 2], [0, 0, 0]], vec![0; 2], vec![0.5; 2]);
+        let faced = surfaces.faced(&places, &Point::node(1, 3), &[0, 1], |_| 1.0, 1.0);
+        assert_eq!(faced.first, None);
+    }
+}

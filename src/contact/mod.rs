@@ -1,0 +1,14 @@
+//! Surfaces of bodies that meet: which face a point faces, the search for it, and the law that keeps bodies apart. All
+//! in f64, of places that are counted from a point near the bodies.
+
+mod boxes;
+mod facing;
+mod law;
+mod lists;
+mod surfaces;
+
+pub use boxes::Tree;
+pub use facing::{Faced, Facing};
+pub use law::{Contact, ContactSet};
+pub use lists::{Finder, Lists};
+pub use surfaces::{Point, Surfaces};

@@ -1,0 +1,58 @@
+//! Places on triangles.
+
+use glam::DVec3;
+
+/// A place on a triangle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OnTriangle {
+    /// Where it is.
+    pub at: DVec3,
+    /// What each corner has of it: at least 0, together 1.
+    pub weights: [f64; 3],
+    /// Which part of the triangle: 0 its inside, 1 to 3 the sides from each corner to the next, 4 to 6 the corners.
+    pub part: usize,
+}
+
+impl OnTriangle {
+    /// The place nearest to another one, by the seven regions about the triangle.
+    pub fn nearest(y: DVec3, [a, b, c]: [DVec3; 3]) -> Self {
+        let corner = |corner: usize| {
+            let mut weights = [0.0; 3];
+            weights[corner] = 1.0;
+            Self { at: [a, b, c][corner], weights, part: 4 + corner }
+        };
+        let (ab, ac, ay) = (b - a, c - a, y - a);
+        let (d1, d2) = (ab.dot(ay), ac.dot(ay));
+        if d1 <= 0.0 && d2 <= 0.0 {
+            return corner(0);
+        }
+        let by = y - b;
+        let (d3, d4) = (ab.dot(by), ac.dot(by));
+        if d3 >= 0.0 && d4 <= d3 {
+            return corner(1);
+        }
+        let cy = y - c;
+        let (d5, d6) = (ab.dot(cy), ac.dot(cy));
+        if d6 >= 0.0 && d5 <= d6 {
+            return corner(2);
+        }
+        let off_ab = d1 * d4 - d3 * d2;
+        if off_ab <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+            let t = d1 / (d1 - d3);
+            return Self { at: a + ab * t, weights: [1.0 - t, t, 0.0], part: 1 };
+        }
+        let off_ca = d5 * d2 - d1 * d6;
+        if off_ca <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+            let t = d2 / (d2 - d6);
+            return Self { at: a + ac * t, weights: [1.0 - t, 0.0, t], part: 3 };
+        }
+        let off_bc = d3 * d6 - d5 * d4;
+        if off_bc <= 0.0 && d4 >= d3 && d5 >= d6 {
+            let t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+            return Self { at: b + (c - b) * t, weights: [0.0, 1.0 - t, t], part: 2 };
+        }
+        let all = off_ab + off_bc + off_ca;
+        let (v, w) = (off_ca / all, off_ab / all);
+        Self { at: a + ab * v + ac * w, weights: [1.0 - v - w, v, w], part: 0 }
+    }
+}

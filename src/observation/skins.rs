@@ -1,0 +1,107 @@
+//! Skins of bodies as they are now.
+
+use super::frame::bodies;
+use crate::backend::cpu::Cpu;
+use crate::backend::device::bring_to_host;
+use crate::components::*;
+use crate::error::Error;
+use crate::mesh::Cells;
+use crate::mesh::topology::MOST_NODES;
+use crate::output::{Array, Frame, Series, Values};
+use crate::skins::{Carrier, Skin, normals};
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+/// A skin at one moment.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SkinState {
+    /// Where its points are before anything moves (m).
+    pub rest: Vec<DVec3>,
+    /// Where they are (m).
+    pub points: Vec<DVec3>,
+    /// Outward normals there, of length 1; zero at points of no triangle.
+    pub normals: Vec<DVec3>,
+    /// The triangles that are left, by rows of `points`, the right-hand normal outwards.
+    pub triangles: Vec<[u32; 3]>,
+    /// The author's number of the element that carries each point; -1 where none is left.
+    pub elements: Vec<i64>,
+    /// The weights of that element's nodes at each point, 1 together, as far as it has some.
+    pub weights: Vec<[f32; MOST_NODES]>,
+}
+
+/// The skin of a body; nothing where it has none.
+///
+/// # Errors
+/// What the GPU says.
+pub fn skin_of(world: &mut World, body: Entity) -> Result<Option<SkinState>, Error> {
+    if world.get::<Skin>(body).is_none() {
+        return Ok(None);
+    }
+    bring_to_host(world, |entity, name| (entity == body && name == Displacement::NAME) || name == Alive::NAME)?;
+    let (Some(authoring), Some(rest), Some(moved)) =
+        (world.get::<Authoring>(body), world.get::<RestPosition>(body), world.get::<Displacement>(body))
+    else {
+        return Ok(None);
+    };
+    let row = |row: &u32| *row as usize;
+    let rest: Vec<DVec3> = authoring.node_rows.iter().map(row).map(|row| rest.0[row]).collect();
+    let nodes: Vec<DVec3> =
+        authoring.node_rows.iter().map(row).zip(&rest).map(|(row, rest)| *rest + moved.vector(row)).collect();
+    let lives: Vec<Option<&Alive>> = authoring.blocks.iter().map(|&block| world.get::<Alive>(block)).collect();
+    let alive = |(block, row): &(u32, u32)| lives[*block as usize].is_none_or(|alive| alive[*row as usize] != 0);
+    let alive: Vec<bool> = authoring.element_rows.iter().map(alive).collect();
+    let ids = authoring.element_ids.clone();
+    let Some(mut skin) = world.get_mut::<Skin>(body) else { return Ok(None) };
+    skin.look(alive);
+    let (rest, points, triangles) = (skin.places(&rest), skin.places(&nodes), skin.triangles());
+    let carriers = skin.embedding().carriers();
+    let element = |carrier: &Carrier| ids.of(carrier.element) as i64;
+    let weights = |carrier: &Carrier| carrier.weights.map(|weight| weight as f32);
+    Ok(Some(SkinState {
+        normals: normals(&points, &triangles),
+        elements: carriers.iter().map(|carrier| carrier.as_ref().map_or(-1, element)).collect(),
+        weights: carriers.iter().map(|carrier| carrier.as_ref().map_or([0.0; MOST_NODES], weights)).collect(),
+        rest,
+        points,
+        triangles,
+    }))
+}
+
+/// Bodies with a skin and their names, in the order of these.
+pub fn with_skins(world: &World) -> Vec<(Entity, String)> {
+    let named = world.iter_entities().filter(|entity| entity.contains::<Skin>());
+    let mut all: Vec<_> = named.filter_map(|e| Some((e.id(), e.get::<Label>()?.0.clone()))).collect();
+    all.sort_by(|a, b| a.1.cmp(&b.1));
+    all
+}
+
+/// Writes a body's skin as the next frame of its series.
+///
+/// # Errors
+/// What the GPU says; files that cannot be written.
+pub fn write(world: &mut World, body: Entity, series: &mut Series) -> Result<(), Error> {
+    let Some(skin) = skin_of(world, body)? else { return Ok(()) };
+    let single = |vectors: &mut dyn Iterator<Item = DVec3>| -> Vec<f32> {
+        vectors.flat_map(|vector| vector.as_vec3().to_array()).collect()
+    };
+    let displacement = single(&mut skin.points.iter().zip(&skin.rest).map(|(now, rest)| *now - *rest));
+    let normal = single(&mut skin.normals.iter().copied());
+    let number = bodies(world).iter().position(|other| *other == body).unwrap_or(0);
+    let body = vec![number as u32; skin.rest.len()];
+    let cells = Cells::triangles(&skin.triangles);
+    let frame = Frame {
+        time: world.resource::<Clock>().time(),
+        points: &skin.rest,
+        cells: &cells,
+        point_arrays: vec![
+            Array { name: "displacement", components: 3, values: Values::F32(&displacement) },
+            Array { name: "normal", components: 3, values: Values::F32(&normal) },
+            Array { name: "body", components: 1, values: Values::U32(&body) },
+            Array { name: "element", components: 1, values: Values::I64(&skin.elements) },
+            Array { name: "weights", components: MOST_NODES, values: Values::F32(skin.weights.as_flattened()) },
+        ],
+        cell_arrays: Vec::new(),
+    };
+    world.resource::<Cpu>().confine(|| series.write(&frame))?;
+    Ok(())
+}

@@ -1,0 +1,287 @@
+//! A scene without parts: what they hold, placed, under the names that it has in the scene.
+
+use super::placement::Placement;
+use crate::scene::schema::{Constraint, Contact, Curve, Load, Part, PartScene, Quantity, Scene, When};
+use crate::scene::suggest::list;
+use crate::scene::syntax::Path;
+use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
+
+/// What keeps a part from being a part of its scene.
+pub struct Problem {
+    /// Where it stands in the scene as it is written.
+    pub path: Path,
+    /// What is wrong.
+    pub message: String,
+    /// What to do about it.
+    pub note: String,
+}
+
+/// Puts what parts hold into the scene, in the order of their names and behind what the scene itself holds.
+pub fn flatten(scene: &mut Scene) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    for (name, part) in std::mem::take(&mut scene.parts) {
+        let path = Path::default().name("parts").name(&name);
+        let Some(found) = whole(&name, part, &path, &mut problems) else { continue };
+        let mut taken = Taken { part: &name, path: &path, problems: &mut problems };
+        taken.join(&mut scene.bodies, found.bodies, "bodies");
+        taken.join(&mut scene.materials, found.materials, "materials");
+        taken.join(&mut scene.tools, found.tools, "tools");
+        taken.join(&mut scene.probes, found.probes, "probes");
+        scene.constraints.extend(found.constraints);
+        scene.loads.extend(found.loads);
+        scene.contacts.extend(found.contacts);
+        scene.removal.extend(found.removal);
+    }
+    problems
+}
+
+/// Joins names of a part to those that are there.
+struct Taken<'a> {
+    part: &'a str,
+    path: &'a Path,
+    problems: &'a mut Vec<Problem>,
+}
+
+impl Taken<'_> {
+    fn join<T>(&mut self, all: &mut BTreeMap<String, T>, added: BTreeMap<String, T>, field: &str) {
+        for (name, value) in added {
+            match all.entry(name) {
+                Entry::Vacant(free) => {
+                    free.insert(value);
+                }
+                Entry::Occupied(taken) => {
+                    let name = taken.key();
+                    let inner = name.strip_prefix(self.part).and_then(|rest| rest.strip_prefix('.')).unwrap_or(name);
+                    self.problems.push(Problem {
+                        path: self.path.name("content").name(field).name(inner),
+                        message: format!("`{name}` is in the scene already"),
+                        note: format!("name the part, or the other one of the {field}, otherwise"),
+                    });
+                }
+            }
+        }
+    }
+}
+
+/// All that a part and its parts hold, placed and named; nothing where that is not known.
+fn whole(name: &str, part: Part, path: &Path, problems: &mut Vec<Problem>) -> Option<PartScene> {
+    let mut tell = |path: &Path, message: String, note: &str| {
+        problems.push(Problem { path: path.clone(), message, note: note.to_string() });
+    };
+    if !is_plain(name) {
+        let note = "letters, digits, _ and - do everywhere; a dot stands between a part and what is in it";
+        tell(path, format!("the part `{name}` needs another name"), note);
+    }
+    if !(part.scale > 0.0 && part.scale.is_finite()) {
+        tell(
+            &path.name("scale"),
+            format!("`scale` must be above 0, found {}", part.scale),
+            "1 leaves sizes as they are",
+        );
+        return None;
+    }
+    let placement = Placement::of(&part);
+    let inside = path.name("content");
+    let Some(mut content) = part.content else {
+        tell(path, format!("the part `{name}` has no `scene`"), "scene: \"eye.ron\", a file beside this one");
+        return None;
+    };
+    let bodies = content.bodies.keys().map(|key| ("bodies", key));
+    let materials = content.materials.keys().map(|key| ("materials", key));
+    let tools = content.tools.keys().map(|key| ("tools", key));
+    let probes = content.probes.keys().map(|key| ("probes", key));
+    for (field, key) in bodies.chain(materials).chain(tools).chain(probes).filter(|(_, key)| key.contains('.')) {
+        let note = "a dot stands between a part and what is in it";
+        tell(&inside.name(field).name(key), format!("the name `{key}` in a part has a dot"), note);
+    }
+    for (inner, part) in std::mem::take(&mut content.parts) {
+        let path = inside.name("parts").name(&inner);
+        let Some(found) = whole(&inner, part, &path, problems) else { continue };
+        // no name of the part has a dot, all of these have
+        content.bodies.extend(found.bodies);
+        content.materials.extend(found.materials);
+        content.tools.extend(found.tools);
+        content.probes.extend(found.probes);
+        content.constraints.extend(found.constraints);
+        content.loads.extend(found.loads);
+        content.contacts.extend(found.contacts);
+        content.removal.extend(found.removal);
+    }
+    let mut naming = Naming { part: name, only: Only::of(&content), path: inside, problems };
+    naming.rename(&mut content);
+    if !placement.is_none() {
+        naming.place(&placement, &mut content);
+    }
+    Some(content)
+}
+
+/// Whether a name can stand before a dot.
+fn is_plain(name: &str) -> bool {
+    !name.is_empty() && name.chars().all(|letter| letter.is_alphanumeric() || matches!(letter, '_' | '-'))
+}
+
+/// What stands for a body that is not named.
+enum Only {
+    Body(String),
+    None,
+    OneOf(Vec<String>),
+}
+
+impl Only {
+    fn of(content: &PartScene) -> Self {
+        let mut names: Vec<String> = content.bodies.keys().cloned().collect();
+        match names.len() {
+            0 => Self::None,
+            1 => Self::Body(names.remove(0)),
+            _ => Self::OneOf(names),
+        }
+    }
+}
+
+/// Gives what a part holds the names that it has in the scene around it.
+struct Naming<'a> {
+    part: &'a str,
+    only: Only,
+    /// The way to what the part holds.
+    path: Path,
+    problems: &'a mut Vec<Problem>,
+}
+
+impl Naming<'_> {
+    fn tell(&mut self, path: Path, message: String, note: impl Into<String>) {
+        self.problems.push(Problem { path, message, note: note.into() });
+    }
+
+    fn name(&self, name: &mut String) {
+        *name = format!("{}.{name}", self.part);
+    }
+
+    fn keys<T>(&self, map: &mut BTreeMap<String, T>) {
+        *map = std::mem::take(map).into_iter().map(|(key, value)| (format!("{}.{key}", self.part), value)).collect();
+    }
+
+    fn curve(&self, curve: &mut Curve) {
+        if let Curve::Input { name, .. } = curve {
+            self.name(name);
+        }
+    }
+
+    /// A body of the part; the only one where none is named.
+    fn body(&mut self, path: &Path, body: &mut Option<String>) {
+        if body.is_none() {
+            match &self.only {
+                Only::Body(name) => *body = Some(name.clone()),
+                Only::None => {
+                    let note = "what acts on bodies outside of the part belongs into the scene around it";
+                    return self.tell(path.clone(), format!("the part `{}` has no body", self.part), note);
+                }
+                Only::OneOf(names) => {
+                    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+                    let note = format!("`body` is one of: {}", list(&names));
+                    *body = names.first().map(ToString::to_string);
+                    self.tell(path.clone(), format!("which body? The part `{}` has {}", self.part, names.len()), note);
+                }
+            }
+        }
+        body.iter_mut().for_each(|name| self.name(name));
+    }
+
+    fn rename(&mut self, content: &mut PartScene) {
+        for body in content.bodies.values_mut() {
+            self.name(&mut body.material);
+            body.regions.iter_mut().for_each(|region| self.name(&mut region.material));
+        }
+        for (number, constraint) in content.constraints.iter_mut().enumerate() {
+            let path = self.path.name("constraints").index(number);
+            match constraint {
+                Constraint::Fixed { body, .. } => self.body(&path, body),
+                Constraint::Prescribed { body, curve, .. } => {
+                    self.body(&path, body);
+                    self.curve(curve);
+                }
+            }
+        }
+        for (number, load) in content.loads.iter_mut().enumerate() {
+            let path = self.path.name("loads").index(number);
+            match load {
+                Load::Gravity { .. } => {
+                    let note = "it acts on all that the scene holds, and does not turn with a part; with `body: \"part.name\"` \
+                                on one body only";
+                    self.tell(path, "gravity belongs into the whole scene, not into a part".to_string(), note);
+                }
+                Load::NodalForce { body, curve, .. }
+                | Load::Pressure { body, curve, .. }
+                | Load::Traction { body, curve, .. } => {
+                    self.body(&path, body);
+                    self.curve(curve);
+                }
+            }
+        }
+        for tool in content.tools.values_mut() {
+            tool.moves.iter_mut().for_each(|part| self.curve(&mut part.curve));
+        }
+        for (number, contact) in content.contacts.iter_mut().enumerate() {
+            let path = self.path.name("contacts").index(number);
+            match contact {
+                Contact::Tool { tool, body, .. } => {
+                    self.name(tool);
+                    self.body(&path, body);
+                }
+                Contact::Between { bodies: (a, b), .. } => {
+                    self.name(a);
+                    self.name(b);
+                }
+                Contact::Itself { body, .. } => self.body(&path, body),
+            }
+        }
+        for (number, removal) in content.removal.iter_mut().enumerate() {
+            let path = self.path.name("removal").index(number);
+            self.body(&path, &mut removal.body);
+            if let When::InTool { tool, curve, .. } = &mut removal.when {
+                self.name(tool);
+                self.curve(curve);
+            }
+        }
+        for (name, probe) in &mut content.probes {
+            let path = self.path.name("probes").name(name);
+            match &mut probe.what {
+                Quantity::ToolForce { tool } | Quantity::ToolTorque { tool } | Quantity::ToolPlace { tool } => {
+                    self.name(tool);
+                    probe.body.iter_mut().for_each(|body| self.name(body));
+                }
+                _ => self.body(&path, &mut probe.body),
+            }
+        }
+        self.keys(&mut content.bodies);
+        self.keys(&mut content.materials);
+        self.keys(&mut content.tools);
+        self.keys(&mut content.probes);
+    }
+
+    fn place(&mut self, placement: &Placement, content: &mut PartScene) {
+        for (name, body) in &mut content.bodies {
+            placement.body(body);
+            if body.rest_shape.is_some() {
+                let inner = name.strip_prefix(self.part).and_then(|rest| rest.strip_prefix('.')).unwrap_or(name);
+                let path = self.path.name("bodies").name(inner).name("rest_shape");
+                let message = format!("the part `{}` is placed, and a `rest_shape` is not", self.part);
+                self.problems.push(Problem { path, message, note: "it says where nodes are in the scene".to_string() });
+            }
+        }
+        content.materials.values_mut().for_each(|material| placement.material(material));
+        for (number, constraint) in content.constraints.iter_mut().enumerate() {
+            if placement.constraint(constraint).is_none() {
+                let path = self.path.name("constraints").index(number).name("axes");
+                let message =
+                    format!("as the part `{}` is turned, these axes lie along none of the scene's", self.part);
+                self.tell(path, message, "hold or move all three, or turn the part by right angles");
+            }
+        }
+        content.loads.iter_mut().for_each(|load| placement.load(load));
+        content.tools.values_mut().for_each(|tool| placement.tool(tool));
+        content.contacts.iter_mut().for_each(|contact| placement.contact(contact));
+        content.removal.iter_mut().for_each(|removal| placement.removal(removal));
+        content.probes.values_mut().for_each(|probe| placement.probe(probe));
+    }
+}

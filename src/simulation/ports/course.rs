@@ -1,0 +1,164 @@
+//! Where a tool goes in a batch of steps.
+
+use crate::assembly::steps_of;
+use crate::components::{Clock, Key};
+use crate::observation::Felt;
+use crate::port::DevicePose;
+use crate::scene::schema::{Follow, Port};
+use glam::{DQuat, DVec3};
+use serde::{Deserialize, Serialize};
+
+/// How much of what earlier batches say of the stiffness is left after another one.
+const FORGET: f64 = 0.9;
+
+/// Speeds below this share of the port's are none.
+const SLOW: f64 = 0.01;
+
+/// The present batch of a port, as snapshots have it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PortState {
+    /// Steps taken before the batch and at its end: both 0 before the first.
+    pub begins: u64,
+    pub ends: u64,
+    /// Where the tool goes: time (s), place (m), orientation.
+    pub path: [Key; 2],
+    /// The step at which it was told what the tool felt.
+    pub felt_at: u64,
+    /// Where the device was last.
+    target: Option<(DVec3, DQuat)>,
+    /// What the tool felt in the last batch (N).
+    force: DVec3,
+    /// The middle of the last batch's way (m), where it touched something.
+    touched: Option<DVec3>,
+    /// Sums of the squares of ways along the force, and of ways times what the force changed by.
+    ways: [f64; 2],
+    /// The fastest it ever went, as a share of what it may.
+    fastest: f64,
+}
+
+impl PortState {
+    /// Before the first batch, with the tool at a place.
+    pub fn at(first: Key) -> Self {
+        Self {
+            begins: 0,
+            ends: 0,
+            path: [first; 2],
+            felt_at: 0,
+            target: None,
+            force: DVec3::ZERO,
+            touched: None,
+            ways: [0.0; 2],
+            fastest: SLOW,
+        }
+    }
+
+    /// Whether a run can go on from it.
+    pub fn is_sound(&self) -> bool {
+        let [(from, ..), (until, ..)] = self.path;
+        let of = |place: DVec3, turn: DQuat| place.is_finite() && turn.is_finite() && turn.is_normalized();
+        let there = self.path.iter().all(|&(time, place, turn)| time.is_finite() && of(place, turn));
+        let aims = self.target.is_none_or(|(place, turn)| of(place, turn));
+        let numbers = self.ways.into_iter().chain([self.fastest]).chain(self.force.to_array());
+        let numbers = numbers.chain(self.touched.unwrap_or_default().to_array()).all(f64::is_finite);
+        there && aims && numbers && from <= until && self.begins <= self.ends && self.felt_at <= self.ends
+    }
+
+    /// Takes where the device is.
+    pub fn target(&mut self, pose: &DevicePose) {
+        self.target = Some((pose.place, pose.orientation.normalize()));
+    }
+
+    /// Begins a batch with the next step; whether the tool becomes much quicker than ever before.
+    pub fn begin(&mut self, port: &Port, clock: &Clock) -> bool {
+        let steps = steps_of(port.every, clock.time_step);
+        (self.begins, self.ends) = (clock.step, clock.step.saturating_add(steps));
+        let (now, until) = (clock.time(), clock.time_at(self.ends));
+        let (place, turn) = self.pose(now);
+        let batch = until - now;
+        let (aim, turned) = match (self.target, port.follow) {
+            (None, _) => (place, turn),
+            (Some(target), Follow::Position) => target,
+            // both springs as they are at the end of the batch: tissue goes on from the force that it had
+            (Some((aim, turned)), Follow::Proxy { stiffness, damping }) => {
+                let sum = stiffness + self.stiffness() + damping / batch;
+                (place + (aim - place) * (stiffness / sum) + self.force / sum, turned)
+            }
+        };
+        let [way, angle] = [aim.distance(place), turn.angle_between(turned)];
+        let [farthest, widest] = [port.speed * batch, port.spin.to_radians() * batch];
+        let end = if way > farthest { place + (aim - place) * (farthest / way) } else { aim };
+        let turned = if angle > widest { turn.slerp(turned, widest / angle) } else { turned };
+        self.path = [(now, place, turn), (until, end, turned.normalize())];
+        let share = (way / farthest).max(angle / widest).min(1.0);
+        let quickens = share > 2.0 * self.fastest;
+        self.fastest = self.fastest.max(share);
+        quickens
+    }
+
+    /// Where the tool is at a time (s): at the end of the way, unless steps have become shorter meanwhile.
+    pub fn pose(&self, time: f64) -> (DVec3, DQuat) {
+        let [(from, before, turn), (until, after, turned)] = self.path;
+        match (time - from) / (until - from) {
+            share if share < 1.0 => (before.lerp(after, share.max(0.0)), turn.slerp(turned, share.max(0.0))),
+            _ => (after, turned),
+        }
+    }
+
+    /// Ends the batch at its last step.
+    pub fn end(&mut self, felt: Felt, step: u64) {
+        let middle = 0.5 * (self.path[0].1 + self.path[1].1);
+        self.ways = self.ways.map(|sum| FORGET * sum);
+        if let Some(before) = self.touched.filter(|_| felt.in_contact) {
+            let out = felt.force.normalize_or_zero();
+            let (way, change) = ((middle - before).dot(out), (felt.force - self.force).dot(out));
+            self.ways[0] += way * way;
+            self.ways[1] -= way * change;
+        }
+        self.touched = felt.in_contact.then_some(middle);
+        self.force = felt.force;
+        self.felt_at = step;
+    }
+
+    /// How fast the tool went (m/s).
+    pub fn velocity(&self) -> DVec3 {
+        let [(from, before, _), (until, after, _)] = self.path;
+        if until > from { (after - before) / (until - from) } else { DVec3::ZERO }
+    }
+
+    /// By how much the force grows for each metre that the tool goes in (N/m): the line through what the last batches
+    /// changed by.
+    pub fn stiffness(&self) -> f64 {
+        let [squares, products] = self.ways;
+        let found = products / squares;
+        if self.touched.is_some() && found.is_finite() { found.max(0.0) } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Steps become shorter, or longer, within a batch: the next one begins where the tool is.
+    #[test]
+    fn no_tool_jumps_when_the_step_changes_within_a_batch() {
+        let port = Port { name: "hand".into(), speed: 10.0, spin: 1e4, every: 0.01, follow: Follow::Position };
+        for (step, expected) in [(0.5e-3, 0.75), (4e-3, 1.0)] {
+            let mut state = PortState::at((0.0, DVec3::ZERO, DQuat::IDENTITY));
+            let aim = (DVec3::X * 0.01, DQuat::from_rotation_z(0.4));
+            state.target(&DevicePose { place: aim.0, orientation: aim.1, ..DevicePose::default() });
+            let mut clock = Clock::with_step(1e-3);
+            assert!(state.begin(&port, &clock) && state.ends == 10 && state.is_sound());
+            clock.step = 5;
+            clock.change_step(step);
+            clock.step = state.ends;
+            let (place, turn) = state.pose(clock.time());
+            assert!((place.x - 0.01 * expected).abs() < 1e-15, "{step}: {place}");
+            assert!((turn.angle_between(DQuat::IDENTITY) - 0.4 * expected).abs() < 1e-7, "{step}: {turn}");
+            state.end(Felt::default(), clock.step);
+            assert!(!state.begin(&port, &clock), "no quicker than before");
+            assert_eq!((state.path[0].0, state.path[0].1), (clock.time(), place));
+            assert_eq!(state.path[1].1, aim.0);
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! Pace on the clock on the wall: `real_time: true` in a scene.
+
+use super::Simulation;
+use crate::assembly::steps_of;
+use crate::components::Clock;
+use serde::Serialize;
+use std::time::{Duration, Instant};
+
+/// Simulated time between two looks at the clock on the wall (s); and who is later than that goes on from there.
+const TICK: f64 = 1e-3;
+
+/// How a run kept up with life.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct RealTime {
+    /// Looks at the clock on the wall, each millisecond of simulated time.
+    pub ticks: u64,
+    /// How often more than a millisecond was missing: life went on later from there, and nothing was skipped.
+    pub late: u64,
+    /// Time waited for life (s).
+    pub waited: f64,
+}
+
+/// What is needed to keep the pace. No bit of the state depends on it.
+#[derive(Debug, Default)]
+pub(super) struct Metronome {
+    /// A moment of life, and the simulated time (s) that belongs to it.
+    from: Option<(Instant, f64)>,
+    /// The step before which it is looked at again.
+    next: u64,
+    kept: RealTime,
+}
+
+impl Metronome {
+    /// How it went.
+    pub fn kept(&self) -> RealTime {
+        self.kept
+    }
+
+    /// Time waited so far.
+    pub fn waited(&self) -> Duration {
+        Duration::from_secs_f64(self.kept.waited)
+    }
+
+    /// How long to wait at a simulated time (s).
+    fn wait(&mut self, now: Instant, time: f64) -> Duration {
+        self.kept.ticks += 1;
+        let Some((start, since)) = self.from.filter(|(_, since)| *since <= time) else {
+            self.from = Some((now, time));
+            return Duration::ZERO;
+        };
+        let due = start + Duration::from_secs_f64(time - since);
+        if now > due + Duration::from_secs_f64(TICK) {
+            self.kept.late += 1;
+            self.from = Some((now, time));
+        }
+        due.saturating_duration_since(now)
+    }
+}
+
+impl Simulation {
+    /// Waits until life is where the simulation is, if the scene asks for that.
+    pub(super) fn wait_for_life(&mut self) {
+        let clock = *self.world.resource::<Clock>();
+        if !self.scene.real_time || clock.relaxation.is_some() {
+            return;
+        }
+        let tick = steps_of(TICK, clock.time_step);
+        let soon = clock.step.saturating_add(tick);
+        // after going back it may be far off
+        if clock.step < self.metronome.next && self.metronome.next <= soon {
+            return;
+        }
+        let now = Instant::now();
+        let wait = self.metronome.wait(now, clock.time());
+        if !wait.is_zero() {
+            std::thread::sleep(wait);
+            self.metronome.kept.waited += now.elapsed().as_secs_f64();
+        }
+        self.metronome.next = soon;
+    }
+
+    /// The step before which the pace is looked at again.
+    pub(super) fn next_tick(&self) -> u64 {
+        if self.scene.real_time { self.metronome.next.max(self.step_count() + 1) } else { u64::MAX }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_is_early_waits_and_who_is_late_goes_on_from_there() {
+        let mut metronome = Metronome::default();
+        let start = Instant::now();
+        let at = |ms: f64| start + Duration::from_secs_f64(1e-3 * ms);
+        let mut wait = |life: f64, simulated: f64| {
+            let wait = metronome.wait(at(life), 1e-3 * simulated).as_secs_f64();
+            ((1e6 * wait).round(), metronome.kept.late)
+        };
+        assert_eq!(wait(5.0, 0.0), (0.0, 0));
+        assert_eq!(wait(5.4, 1.0), (600.0, 0));
+        // .8 ms behind, which it may catch up
+        assert_eq!(wait(7.8, 2.0), (0.0, 0));
+        assert_eq!(wait(7.9, 3.0), (100.0, 0));
+        // 3 ms behind: nothing is caught up
+        assert_eq!(wait(12.0, 4.0), (0.0, 1));
+        assert_eq!(wait(12.5, 5.0), (500.0, 1));
+        // back at an earlier time
+        assert_eq!(wait(20.0, 0.0), (0.0, 1));
+        assert_eq!(wait(20.0, 1.0), (1000.0, 1));
+        assert_eq!(metronome.kept.ticks, 8);
+    }
+}

@@ -1,0 +1,78 @@
+//! A fine surface on a body.
+
+use super::embedding::Embedding;
+use crate::mesh::Mesh;
+use crate::tools::Triangles;
+use bevy_ecs::prelude::Component;
+use glam::DVec3;
+
+/// A fine surface that the mesh of a body carries.
+#[derive(Component, Clone, Debug)]
+pub struct Skin {
+    /// The mesh in the shape that the surface was made for (m), in the author's numbering.
+    mesh: Mesh,
+    surface: Triangles,
+    /// With all elements alive.
+    whole: Embedding,
+    /// With those that were alive when somebody last looked.
+    now: Embedding,
+    alive: Vec<bool>,
+}
+
+impl Skin {
+    /// A surface (m) on a mesh in the same shape.
+    pub fn new(mesh: Mesh, surface: Triangles) -> Self {
+        let whole = Embedding::new(&mesh, &surface.points, &|_| true);
+        Self { alive: vec![true; mesh.element_count()], now: whole.clone(), whole, surface, mesh }
+    }
+
+    /// The surface as it is before anything moves (m).
+    pub fn surface(&self) -> &Triangles {
+        &self.surface
+    }
+
+    /// Takes note of which elements live, by the author's rows: points whose element has gone get the nearest one that
+    /// lives, by the shape that the surface was made for. What went before what does not matter.
+    pub fn look(&mut self, alive: Vec<bool>) {
+        if alive != self.alive {
+            let lives = |element: usize| alive.get(element).copied().unwrap_or_default();
+            self.now = self.whole.rebound(&self.mesh, &self.surface.points, &lives);
+            self.alive = alive;
+        }
+    }
+
+    /// The triangles that are left: all but those of which the elements of all three corners have gone.
+    pub fn triangles(&self) -> Vec<[u32; 3]> {
+        let left = |point: u32| {
+            let carrier = self.whole.carriers().get(point as usize).and_then(Option::as_ref);
+            carrier.is_some_and(|carrier| self.alive.get(carrier.element).copied().unwrap_or_default())
+        };
+        self.surface.triangles.iter().filter(|corners| corners.iter().any(|&point| left(point))).copied().collect()
+    }
+
+    /// What carries the points now.
+    pub fn embedding(&self) -> &Embedding {
+        &self.now
+    }
+
+    /// Where the points are (m) when the nodes are there, in the author's order.
+    pub fn places(&self, nodes: &[DVec3]) -> Vec<DVec3> {
+        self.now.places(&self.mesh, nodes)
+    }
+
+    /// What the points have of a field of the nodes, in the author's order.
+    pub fn values(&self, field: impl Fn(usize) -> DVec3) -> Vec<DVec3> {
+        self.now.values(&self.mesh, field)
+    }
+}
+
+/// Normals at points (m), outwards: those of the triangles around them, weighted by area; zero where there are none.
+pub fn normals(points: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
+    let mut sums = vec![DVec3::ZERO; points.len()];
+    for corners in triangles {
+        let [a, b, c] = corners.map(|row| points[row as usize]);
+        let twice = (b - a).cross(c - a);
+        corners.iter().for_each(|&row| sums[row as usize] += twice);
+    }
+    sums.into_iter().map(DVec3::normalize_or_zero).collect()
+}

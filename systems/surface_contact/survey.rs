@@ -1,0 +1,187 @@
+//! What the surfaces of the bodies are, where they are, and what may be near what.
+
+use super::{MeetingColumns, Surface, SurfaceContacts};
+use crate::backend::cpu::Cpu;
+use crate::components::*;
+use crate::contact::{Finder, Lists, Point, Surfaces, Tree};
+use crate::mesh::SurfaceFace;
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+/// Points and faces that are nearer than this at rest, in reaches, are never in each other's way.
+const NEAR_AT_REST: f64 = 1.5;
+
+/// How deep behind a face is still its inside at most, in edges; of thin elements half of what is behind it.
+const DEEPEST: f64 = 0.5;
+
+/// Which triangles a step looks at beyond those within thickness and motion (edges).
+pub(super) const MARGIN: f64 = 1e-2;
+
+/// Finds the surfaces anew where elements are gone, and in the first step.
+pub(super) fn follow(
+    contacts: &mut SurfaceContacts,
+    bodies: &mut Query<MeetingColumns>,
+    authorings: &Query<&Authoring>,
+    blocks: &Query<Ref<Alive>>,
+) {
+    if contacts.surface.elements.is_none() || blocks.iter().any(|alive| alive.is_changed()) {
+        let all = contacts.bodies.iter().filter_map(|&body| authorings.get(body).ok());
+        let left = |&block: &Entity| blocks.get(block).map_or(0, |alive| alive.iter().filter(|&&is| is == 1).count());
+        let elements = Some(all.flat_map(|authoring| &authoring.blocks).map(left).sum());
+        if contacts.surface.elements != elements {
+            contacts.surface = Surface { elements, ..Surface::default() };
+            survey(contacts, bodies, authorings, blocks);
+        }
+    }
+    remember(contacts, bodies);
+}
+
+/// Notes what bore forces or touched in the last step, where others have written that.
+fn remember(contacts: &mut SurfaceContacts, bodies: &mut Query<MeetingColumns>) {
+    let changed = |&body: &Entity| {
+        bodies.get_mut(body).is_ok_and(|columns| columns.force.is_changed() || columns.touch.is_changed())
+    };
+    if !contacts.bodies.iter().any(changed) {
+        return;
+    }
+    let Surface { nodes, pressed, touching, .. } = &mut contacts.surface;
+    pressed.clear();
+    touching.clear();
+    let columns: Vec<_> = contacts.bodies.iter().filter_map(|&body| bodies.get(body).ok()).collect();
+    for (node, &(body, row)) in (0..).zip(&*nodes) {
+        let (columns, row) = (&columns[body as usize], row as usize);
+        if columns.force.vector(row) != DVec3::ZERO {
+            pressed.push(node);
+        }
+        if columns.touch.get(MEETING_NUMBERS * row + 4) > super::meet::FREE {
+            touching.push(node);
+        }
+    }
+}
+
+/// Finds the surfaces.
+fn survey(
+    contacts: &mut SurfaceContacts,
+    bodies: &mut Query<MeetingColumns>,
+    authorings: &Query<&Authoring>,
+    blocks: &Query<Ref<Alive>>,
+) {
+    let mut surface = std::mem::take(&mut contacts.surface);
+    let (mut triangles, mut owners, mut depths) = (Vec::new(), Vec::new(), Vec::new());
+    for (number, &body) in (0..).zip(&contacts.bodies) {
+        let (Ok(authoring), Ok(columns)) = (authorings.get(body), bodies.get(body)) else { continue };
+        let is_alive = |block: u32, row: u32| {
+            blocks.get(authoring.blocks[block as usize]).map_or(true, |alive| alive[row as usize] == 1)
+        };
+        let faces = authoring.surface(is_alive);
+        let row = |node: u32| authoring.node_rows[node as usize];
+        let mut rows: Vec<u32> = faces.iter().flat_map(SurfaceFace::all_nodes).map(row).collect();
+        rows.sort_unstable();
+        rows.dedup();
+        let first = surface.nodes.len() as u32;
+        let number_of = |row: u32| first + rows.binary_search(&row).unwrap_or(0) as u32;
+        for face in &faces {
+            for corners in face.facets().flat_map(|facet| split(facet, row)) {
+                depths.push(0.5 * extent(corners, authoring.cells.nodes(face.element as usize), row, &columns.rest.0));
+                triangles.push(corners.map(number_of));
+                owners.push(number);
+            }
+        }
+        for &row in &rows {
+            surface.points.push(Point::node(number, surface.nodes.len() as u32));
+            surface.nodes.push((number, row));
+        }
+    }
+    let depths = depths.into_iter().map(|depth| f64::min(depth, DEEPEST * contacts.edge)).collect();
+    surface.triangles = Surfaces::new(surface.nodes.len(), triangles, owners, depths);
+    surface.slots = vec![u32::MAX; surface.nodes.len()];
+    let columns: Vec<_> = contacts.bodies.iter().filter_map(|&body| bodies.get(body).ok()).collect();
+    let rest: Vec<DVec3> = surface
+        .nodes
+        .iter()
+        .map(|&(body, row)| columns[body as usize].rest.0[row as usize] - contacts.reference)
+        .collect();
+    let bodies = &surface.triangles.bodies;
+    let of_body = |body: u32| {
+        let range = bodies.partition_point(|&other| other < body)..bodies.partition_point(|&other| other <= body);
+        Tree::new(range.start as u32..range.end as u32, |number| surface.triangles.corners(&rest, number))
+    };
+    surface.trees = (0..contacts.bodies.len() as u32).map(of_body).collect();
+    contacts.surface = surface;
+    near_at_rest(contacts, &rest);
+}
+
+/// Triangles of a facet; a quadrilateral is cut between the lower of its corners' rows, so that the same is cut alike
+/// from both sides.
+fn split([a, b, c, d]: [u32; 4], row: impl Fn(u32) -> u32) -> impl Iterator<Item = [u32; 3]> {
+    let [a, b, c, d] = [a, b, c, d].map(row);
+    let (first, second) = match c == d {
+        true => ([a, b, c], None),
+        false if a.min(c) < b.min(d) => ([a, b, c], Some([a, c, d])),
+        false => ([a, b, d], Some([b, c, d])),
+    };
+    std::iter::once(first).chain(second)
+}
+
+/// How far an element reaches behind a face of its (m).
+fn extent(corners: [u32; 3], element: &[u32], row: impl Fn(u32) -> u32, rest: &[DVec3]) -> f64 {
+    let [a, b, c] = corners.map(|row| rest[row as usize]);
+    let normal = (b - a).cross(c - a).normalize_or_zero();
+    element.iter().map(|&node| normal.dot(a - rest[row(node) as usize])).fold(0.0, f64::max)
+}
+
+/// Notes which points and faces of one body are near each other at rest.
+fn near_at_rest(contacts: &mut SurfaceContacts, rest: &[DVec3]) {
+    let count = contacts.bodies.len() as u32;
+    let itself = |body: u32| contacts.meeting(body, body);
+    if (0..count).all(|body| itself(body).is_none()) {
+        return;
+    }
+    let near = |body: u32| itself(body).map(|of| NEAR_AT_REST * (of.thickness + MARGIN * contacts.edge));
+    let reach = |point: u32, face: u32| if point == face { near(face) } else { None };
+    let radius = (0..count).filter_map(near).fold(0.0, f64::max);
+    let surface = &contacts.surface;
+    let finder = Finder { surfaces: &surface.triangles, points: &surface.points, reach: &reach, apart: &[] };
+    let cpu = Cpu::new(1, 0, Default::default());
+    let lists = Lists::find(&finder, &surface.trees, rest, radius, &cpu);
+    let mut apart = Vec::new();
+    for (place, &point) in lists.points.iter().enumerate() {
+        apart.extend(lists.triangles(place).iter().map(|&triangle| (point, triangle)));
+    }
+    contacts.surface.apart = apart;
+}
+
+/// Sees where the nodes are, and how far the fastest went in the last step (m).
+pub(super) fn look(contacts: &mut SurfaceContacts, bodies: &Query<MeetingColumns>) -> f64 {
+    let Surface { nodes, places, .. } = &mut contacts.surface;
+    places.clear();
+    let mut largest = 0.0_f64;
+    for of_body in nodes.chunk_by(|a, b| a.0 == b.0) {
+        let Ok(columns) = bodies.get(contacts.bodies[of_body[0].0 as usize]) else { continue };
+        for &(_, row) in of_body {
+            let row = row as usize;
+            places.push(columns.rest.0[row] - contacts.reference + columns.u.vector(row));
+            largest = largest.max(columns.step.vector(row).length_squared());
+        }
+    }
+    largest.sqrt()
+}
+
+/// Makes the lists anew where they may not hold all that is within `reach` (m) and thickness.
+pub(super) fn search(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
+    let farthest = contacts.farthest(reach);
+    if contacts.surface.lists.hold(&contacts.surface.places, farthest) {
+        return;
+    }
+    let mut trees = std::mem::take(&mut contacts.surface.trees);
+    let meets = |point: u32, face: u32| contacts.meeting(point, face).map(|of| of.thickness + reach);
+    let Surface { triangles, points, places, apart, .. } = &contacts.surface;
+    trees.iter_mut().for_each(|tree| tree.refit(|number| triangles.corners(places, number)));
+    let finder = Finder { surfaces: triangles, points, reach: &meets, apart };
+    // reach is four steps of the fastest and a little: of what is fast lists serve some steps, too
+    let skin = contacts.skin * (contacts.edge + 40.0 * reach).min(4.0 * contacts.edge);
+    let lists = Lists::find(&finder, &trees, places, farthest + skin, cpu);
+    let surface = &mut contacts.surface;
+    surface.wake = vec![0.0; lists.points.len()];
+    (surface.trees, surface.lists, surface.travelled) = (trees, lists, 0.0);
+}

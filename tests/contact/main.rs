@@ -1,0 +1,8 @@
+//! Bodies that meet each other and themselves, in f64, f32 and on the GPU.
+//!
+//! E = 3000 Pa, ν = .45, ρ = 1000 kg/m³ (so c = 3.373 m/s) unless a test says otherwise.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../physics/configurations.rs"]
+mod configurations;
+mod surfaces;

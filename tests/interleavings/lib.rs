@@ -1,0 +1,1 @@
+//! Empty: the tests beside it are what this crate is for.

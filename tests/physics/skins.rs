@@ -1,0 +1,153 @@
+//! Skins go with their bodies: on every backend, when elements go, and from a snapshot on.
+
+use crate::configurations::{Configuration, configurations, near};
+use glam::{DMat3, DVec3};
+use sinew::scene::{SceneFile, validate};
+use sinew::{Folder, Simulation, Snapshot};
+use std::collections::BTreeMap;
+
+/// A net of 12 by 12 squares .2 mm above the upper side of a box of 2 × 2 × 1 cm, in mm.
+fn net() -> String {
+    let mut text = String::new();
+    for y in 0..13 {
+        for x in 0..13 {
+            text += &format!("v {} {} 10.2\n", f64::from(x) * 20.0 / 12.0, f64::from(y) * 20.0 / 12.0);
+        }
+    }
+    for y in 0..12 {
+        for x in 0..12 {
+            let row = 13 * y + x + 1;
+            text += &format!("f {} {} {} {}\n", row, row + 1, row + 14, row + 13);
+        }
+    }
+    text
+}
+
+fn scene(elements: &str, more: &str) -> SceneFile {
+    let text = format!(
+        "(duration: 0.05, bodies: {{\"b\": (mesh: Box(size: (20, 20, 10), cells: (4, 4, 2), elements: {elements}),
+            scale: 1e-3, rotate: (0, 0, 30), translate: (0, 0, 1), material: \"m\", skin: (file: \"net.obj\"))}},
+        materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.4), damping: 20)}}, {more})"
+    );
+    let files = BTreeMap::from([("net.obj".to_string(), net().into_bytes())]);
+    SceneFile::from_memory("net.ron", &text, files, &[]).unwrap_or_else(|wrong| panic!("{wrong}"))
+}
+
+fn start(run: &Configuration, scene: &SceneFile) -> Simulation {
+    Simulation::new(scene, &run.options).unwrap_or_else(|error| panic!("{}: {error}", run.name))
+}
+
+const AFFINE: &str = "constraints: [Prescribed(on: All, displacement: (1e-3, 0, 2e-3), center: (0, 0, 1),
+    gradient: ((0.1, 0.2, 0), (0, -0.1, 0.1), (0.05, 0, 0.2)), curve: Ramp(end: 0.04))]";
+
+#[test]
+fn a_skin_goes_where_an_affine_motion_takes_it() {
+    let gradient = DMat3::from_cols(DVec3::new(0.1, 0.0, 0.05), DVec3::new(0.2, -0.1, 0.0), DVec3::new(0.0, 0.1, 0.2));
+    for run in configurations() {
+        for elements in ["Tet4", "Hex8", "Wedge6", "Tet10"] {
+            let mut simulation = start(&run, &scene(elements, AFFINE));
+            let before = simulation.skin("b").unwrap();
+            assert_eq!((before.points.len(), before.triangles.len()), (169, 288));
+            let corner = DMat3::from_rotation_z(30_f64.to_radians()) * DVec3::new(0.02, 0.02, 0.0102) + DVec3::Z;
+            near("a corner at rest", before.rest[168].distance(corner), 0.0, 1.0, 1e-15);
+            simulation.finish().unwrap();
+            let skin = simulation.skin("b").unwrap();
+            let moved = |x: DVec3| x + gradient * (x - DVec3::Z) + DVec3::new(1e-3, 0.0, 2e-3);
+            let off = skin.points.iter().zip(&before.rest).map(|(now, rest)| now.distance(moved(*rest)));
+            let worst = off.fold(0.0, f64::max);
+            // a place of 1 m in f64; displacements of some mm in f32
+            near(&format!("{} {elements}", run.name), worst, 0.0, 5e-3, run.bound(1e-12, 1e-6));
+            let normal = (DMat3::IDENTITY + gradient).inverse().transpose() * DVec3::Z;
+            let wrong = skin.normals.iter().map(|n| n.distance(normal.normalize())).fold(0.0, f64::max);
+            near("normals", wrong, 0.0, 1.0, run.bound(1e-10, 1e-4));
+        }
+    }
+}
+
+const REMOVED: &str = "constraints: [Fixed(on: Set(\"z0\"))], loads: [Gravity(acceleration: (3, 0, -9.81))],
+    removal: [(on: Sphere(center: (0, 0.01, 1.01), radius: 0.006), when: During(start: 0.01, end: 0.03)),
+        (on: Box(min: (-1, -1, 0), max: (1, 1, 1.005)), when: At(0.04))], output: (fields_every: 0.01)";
+
+#[test]
+fn a_skin_has_holes_where_elements_went_and_is_the_same_from_a_snapshot_on() {
+    for run in configurations() {
+        let scene = scene("Tet4", REMOVED);
+        let mut simulation = start(&run, &scene);
+        simulation.advance_to(0.02).unwrap();
+        let file = tempfile::NamedTempFile::new().unwrap();
+        simulation.snapshot().unwrap().write(file.path()).unwrap();
+        let half = simulation.skin("b").unwrap();
+        assert!(half.triangles.len() < 288 && half.triangles.len() > 150, "{}", half.triangles.len());
+        simulation.advance_to(0.035).unwrap();
+        let after = simulation.skin("b").unwrap();
+        assert!(after.triangles.len() < half.triangles.len());
+        assert!(
+            after.points.iter().all(|point| point.is_finite() && point.distance(DVec3::new(0.0, 0.015, 1.0)) < 0.05)
+        );
+        let mut again = start(&run, &scene);
+        again.restore(&Snapshot::read(file.path()).unwrap()).unwrap();
+        assert_eq!(again.skin("b").unwrap(), half, "{}", run.name);
+        again.advance_to(0.035).unwrap();
+        assert_eq!(again.skin("b").unwrap(), after, "{}", run.name);
+    }
+}
+
+#[test]
+fn a_run_writes_a_series_of_each_skin() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = &configurations()[0];
+    let mut simulation = start(run, &scene("Hex8", REMOVED));
+    let mut into = Folder::create(folder.path()).unwrap();
+    simulation.write_into(&mut into).unwrap();
+    simulation.observe().unwrap();
+    simulation.finish().unwrap();
+    drop((simulation, into));
+    let names = || -> Vec<String> {
+        let entries = std::fs::read_dir(folder.path()).unwrap();
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
+    };
+    let series = std::fs::read_to_string(folder.path().join("skin_b.pvd")).unwrap();
+    assert_eq!(series.matches("skin_b_00000").count(), 6);
+    let fields = names().iter().filter(|name| name.starts_with("fields_")).count();
+    assert_eq!(names().iter().filter(|name| name.starts_with("skin_b_") && name.ends_with(".vtu")).count(), fields);
+    // the next run clears them
+    drop(Folder::create(folder.path()).unwrap());
+    assert!(!names().iter().any(|name| name.starts_with("skin_")), "{:?}", names());
+}
+
+#[test]
+fn what_is_no_skin_is_told() {
+    let told = |skin: &str, more: &str| {
+        let text = format!(
+            "(duration: 1, bodies: {{\"b\": (mesh: Box(size: (1, 1, 1), cells: (1, 1, 1)), {more} material: \"m\",
+            skin: {skin})}}, materials: {{\"m\": (density: 1, neo_hookean: Young(young: 3e3, poisson: 0.4))}})"
+        );
+        let files = BTreeMap::from([
+            ("net.obj".to_string(), net().into_bytes()),
+            ("far.obj".to_string(), b"v 0 0 0\nv 1e9 0 0\nv 0 1 0\nf 1 2 3\n".to_vec()),
+            ("text.obj".to_string(), b"nothing".to_vec()),
+        ]);
+        let scene = SceneFile::from_memory("s.ron", &text, files, &[]).unwrap_or_else(|wrong| panic!("{wrong}"));
+        let mut found = scene.diagnostics();
+        validate(&scene, &mut found);
+        if !found.has_errors() {
+            let options = sinew::Options { backend: sinew::BackendChoice::Cpu, ..sinew::Options::default() };
+            return Simulation::new(&scene, &options).map(drop).unwrap_err().to_string();
+        }
+        found.to_string()
+    };
+    let near = |told: String, expected: &str| assert!(told.contains(expected), "{told}\nexpected {expected}");
+    near(told("(file: \"nets.obj\")", ""), "there is no file `nets.obj`");
+    near(told("(file: \"net.obj\", scale: 0)", ""), "`scale` must be above 0, found 0");
+    near(told("(file: \"net.obj\")", "copies: 3,"), "a skin on 3 copies of a mesh");
+    near(told("(file: \"far.obj\")", ""), "coordinates must be numbers of at most 1e6 m");
+    near(told("(file: \"text.obj\")", ""), "text.obj");
+    let plain = crate::configurations::scene_of(
+        "(duration: 1, bodies: {\"b\": (mesh: Box(size: (1, 1, 1), cells: (1, 1, 1)), material: \"m\")},
+        materials: {\"m\": (density: 1, neo_hookean: Young(young: 3e3, poisson: 0.4))})",
+        std::path::Path::new("."),
+    );
+    let mut simulation = start(&configurations()[0], &plain);
+    near(simulation.skin("b").unwrap_err().to_string(), "the body `b` has no `skin` in the scene");
+    near(simulation.skin("c").unwrap_err().to_string(), "there is no body named \"c\"");
+}

@@ -1,0 +1,69 @@
+//! Surfaces that meet wrongly: whose they are, how, and where bodies stand at the start.
+
+use sinew::systems::Registry;
+use sinew::{SceneFile, Simulation};
+
+/// What is said of a contact between two cubes of 10 cm, the second moved by so much.
+fn told(contact: &str, moved: &str) -> String {
+    let text = format!(
+        "(duration: 0.1, bodies: {{
+    \"a\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4)), material: \"m\"),
+    \"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4)), material: \"m\", translate: {moved})}},
+materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
+contacts: [{contact}])"
+    );
+    let found = match SceneFile::from_text("t.ron", &text, std::path::Path::new("."), &[]) {
+        Err(wrong) => wrong,
+        Ok(scene) => Simulation::check(&scene, &Registry::default()),
+    };
+    let each = found.lines().into_iter().zip(found.list()).map(|(line, complaint)| {
+        let line = line.strip_prefix("t.ron:").unwrap_or(&line).to_string();
+        let (row, message) = line.split_once(": ").unwrap_or(("", &line));
+        let row = row.split(':').next().unwrap_or("");
+        complaint.notes.iter().fold(format!("{row}: {message}"), |text, note| format!("{text} | {note}"))
+    });
+    each.collect::<Vec<_>>().join("\n")
+}
+
+const MEET: &str = "Between(bodies: (\"a\", \"b\"))";
+
+#[test]
+fn bodies_apart_or_face_on_face_have_no_complaints() {
+    for moved in ["(0, 0, 0.11)", "(0, 0, 0.1)", "(0.05, 0.02, 0.1)"] {
+        assert_eq!(told(MEET, moved), "", "{moved}");
+    }
+}
+
+#[test]
+fn what_is_wrong_with_surfaces_is_told_with_what_is_allowed() {
+    let cases = [
+        ("Between(bodies: (\"a\", \"c\"))", "6: error: there is no body `c`"),
+        ("Between(bodies: (\"a\", \"a\"))", "6: error: `a` twice | a body that meets itself: Itself(body: \"a\")"),
+        ("Itself()", "6: error: which body? The scene has 2 | bodies: a, b"),
+        ("Between(bodies: (\"a\", \"b\"), sweeps: 0)", "6: error: `sweeps` must be from 1 to 100, found 0"),
+        ("Between(bodies: (\"a\", \"b\"), thickness: -1)", "6: error: `thickness` must be 0 or above, found -1 m"),
+        ("Between(bodies: (\"a\", \"b\"), friction: -1)", "6: error: `friction` must be 0 or above, found -1"),
+        (
+            "Between(bodies: (\"a\", \"b\"), friction: 0.3, static_friction: 0.2)",
+            "6: error: `static_friction` is 0.2, and `friction` is 0.3 | what sticks is held at least as well as what slides",
+        ),
+    ];
+    for (contact, wanted) in cases {
+        let found = told(contact, "(0, 0, 0.11)");
+        assert!(found.starts_with(wanted), "{contact}: {found}");
+    }
+}
+
+#[test]
+fn bodies_in_each_other_at_the_start_are_told_with_their_nodes() {
+    let little = told(MEET, "(0, 0, 0.098)");
+    assert!(
+        little.contains("warning: 25 nodes of `a` are inside `b` at the start, the deepest by 2.000e-3 m"),
+        "{little}"
+    );
+    assert!(little.contains("nodes: 100, 101") && little.contains("pushed out while a wave goes"), "{little}");
+    let deep = told(MEET, "(0, 0, 0.08)");
+    assert!(deep.contains("error: 25 nodes of `a` are inside `b` at the start, 25 of them deep"), "{deep}");
+    assert!(deep.contains("up to half an edge of a face"), "{deep}");
+    assert!(told(MEET, "(0, 0, 0)").contains("error"), "{}", told(MEET, "(0, 0, 0)"));
+}
