@@ -105,7 +105,9 @@ pub fn of_tools() -> Vec<String> {
     std::fs::write(folder.path().join("tool.obj"), obj).unwrap();
     let text = "(duration: 1, bodies: {\"b\": (mesh: Box(size: (1, 1, 1), cells: (2, 2, 2)), material: \"m\", translate: (0, 0, 2))},
         materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 1)},
-        tools: {\"t\": (mesh: (path: \"tool.obj\"))}, contacts: [Tool(tool: \"t\")])";
+        tools: {\"t\": (mesh: (path: \"tool.obj\"))}, contacts: [Tool(tool: \"t\")],
+        removal: [(when: InTool(tool: \"t\", bore: 0.1, reach: 0.5, rate: 1e-3))],
+        suction: [(tool: \"t\", bore: 0.1, pressure: 100, reach: 0.5)])";
     let scene = SceneFile::from_text("tools", text, folder.path(), &[]).unwrap();
     let mut simulation = Simulation::new(&scene, &Options::default()).unwrap();
     let explained = simulation.explain_on_gpu(&Registry::default()).unwrap();
