@@ -55,7 +55,16 @@ fn json_holds_what_the_page_says() {
     assert!(said_of(&json, "gravity").contains(&"integrate".into()), "{json}");
     assert_eq!(
         names("systems_off"),
-        ["nodal_volume", "nodal_force", "pressure", "traction", "grab", "tool_contact", "element_removal"]
+        [
+            "nodal_volume",
+            "nodal_force",
+            "pressure",
+            "traction",
+            "grab",
+            "surface_contact",
+            "tool_contact",
+            "element_removal"
+        ]
     );
     let columns = json["columns"].as_array().unwrap();
     let displacement = columns.iter().find(|column| column["name"] == "displacement").unwrap();
