@@ -130,7 +130,8 @@ fn bad_files_are_refused_with_their_place() {
         ("a.obj", b"v 0 0 0\nv 1 0 0\n\nf 1 2\n".to_vec(), Place::Line(4), "`f 1 2` is no polygon"),
         ("a.obj", b"v 0 0 0\nf 1 -2 1\n".to_vec(), Place::Line(2), "`-2` is no corner"),
         ("a.vtk", b"# vtk DataFile Version 3.0\n".to_vec(), Place::File, "holds a volume mesh"),
-        ("a.ply", b"ply\n".to_vec(), Place::File, "the format of .ply files is not known"),
+        ("a.off", b"OFF\n".to_vec(), Place::File, "the format of .off files is not known"),
+        ("a.ply", b"ply\n".to_vec(), Place::File, "the head of the file has no end"),
     ];
     for (name, bytes, place, message) in cases {
         let error = Triangles::from_bytes(name, &bytes).unwrap_err();

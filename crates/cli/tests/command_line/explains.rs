@@ -63,6 +63,7 @@ fn json_holds_what_the_page_says() {
             "traction",
             "suction",
             "grab",
+            "surface_contact",
             "tool_contact",
             "tool_removal",
             "element_removal"
