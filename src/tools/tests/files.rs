@@ -112,7 +112,7 @@ fn bad_files_are_refused_with_their_place() {
     let binary = as_binary(&tube(), b"");
     let mut not_finite = binary.clone();
     not_finite[84 + 50 + 12..84 + 50 + 16].copy_from_slice(&f32::NAN.to_le_bytes());
-    let cases: [(&str, Vec<u8>, Place, &str); 18] = [
+    let cases: [(&str, Vec<u8>, Place, &str); 19] = [
         ("a.stl", with(4, "vertex 1 2 x"), Place::Line(4), "`x` where a coordinate should be"),
         ("a.stl", with(4, "vertex 1 2 inf"), Place::Line(4), "a coordinate is inf"),
         ("a.stl", with(4, "vertex 1 2"), Place::Line(5), "`vertex` where a coordinate should be"),
