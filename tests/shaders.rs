@@ -362,19 +362,17 @@ fn every_shader_is_named_after_a_system_an_element_or_a_material_or_listed() {
             .map(|entry| entry.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned())
             .collect()
     };
-    let shaders = stems("shaders");
     let mut known: BTreeSet<String> = SUPPORT.iter().map(|(stem, _)| (*stem).to_owned()).collect();
     for folder in ["systems", "src/elements"] {
         let others = ["mod", "kinds", "registry", "node_system", "node_stages"];
         known.extend(stems(folder).into_iter().filter(|stem| !others.contains(&stem.as_str())));
     }
     // some run on the host only
-    let registry = Registry::default();
-    known.retain(|stem| registry.get(stem).is_none_or(|system| system.device.is_some()));
+    known.retain(|stem| Registry::default().get(stem).is_none_or(|system| system.device.is_some()));
     // that of one's own is a file of its author
     let laws = sinew::scene::schema::ELASTIC_LAWS.iter().filter(|word| **word != "law");
     known.extend(laws.map(|word| (*word).to_owned()));
-    assert_eq!(shaders, known);
+    assert_eq!(stems("shaders"), known);
 }
 
 #[test]
@@ -382,9 +380,8 @@ fn every_shader_is_named_after_a_system_an_element_or_a_material_or_listed() {
 fn all_fragments_of_the_folder_are_in_use() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
     let mut used: BTreeSet<String> = BTreeSet::new();
-    // the guards' own kernels, which look now and then
+    // the guards' own
     used.extend(["watch_elements.wgsl".to_owned(), "watch_nodes.wgsl".to_owned()]);
-    // those of loads that a scene has of its own
     let scene = SceneFile::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/own_system.ron"), &[]).unwrap();
     let mut simulation = Simulation::new(&scene, &Options::default()).unwrap();
     let explained = simulation.explain_on_gpu(&Registry::default()).unwrap();

@@ -110,7 +110,7 @@ fn grid(scene: &SceneFile, mesh: &ToolMesh) -> Result<DistanceGrid, String> {
 /// The nodes that a tool may touch: of bodies that lose elements those inside, too, which may come to the surface.
 fn rows(
     assembly: &Assembly<'_>,
-    name: &String,
+    name: &str,
     body: &BodyParts,
     on: &Select,
     path: &str,

@@ -138,8 +138,9 @@ fn overlap(
     };
     let mut found: Vec<(f64, u32)> = inside.iter().map(|&node| (depth(node), node)).collect();
     found.sort_by(|a, b| b.0.total_cmp(&a.0));
-    // what only touches is not inside
-    found.retain(|(depth, _)| *depth > 1e-3 * edge);
+    // what only touches is not inside, but for bodies in the same place
+    let same = 2 * found.len() > nodes.len();
+    found.retain(|(depth, _)| same || *depth > 1e-3 * edge);
     let Some(&(deepest, _)) = found.first() else { return };
     let many = |count: usize| if count == 1 { "a node".to_string() } else { format!("{count} nodes") };
     let is = if found.len() == 1 { "is" } else { "are" };

@@ -132,6 +132,8 @@ fn is_corner(first: &Facing, second: &Facing) -> bool {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::expect_used)]
+
     use super::*;
 
     /// A flat square of two triangles, normal up, and a point above it.
@@ -146,7 +148,7 @@ mod tests {
         for height in [0.1, 1e-5, 0.0, -1e-5, -0.1] {
             let (surfaces, places) = square(height);
             let faced = surfaces.faced(&places, &Point::node(1, 4), &[0, 1], |_| 0.2, 1.0);
-            let first = faced.first.unwrap();
+            let first = faced.first.expect("it faces them");
             assert!((first.gap - height).abs() < 1e-15 && (first.normal - DVec3::Z).length() < 1e-12, "{first:?}");
             assert_eq!((first.triangle, faced.second), (0, None));
         }
@@ -164,7 +166,7 @@ mod tests {
             places[6] = place.into();
             let faced = |triangles: &[u32]| surfaces.faced(&places, &Point::node(1, 6), triangles, |_| 1.0, 1.0).first;
             assert_eq!(faced(&[0, 1]), None, "{place:?}");
-            assert!((faced(&[0, 1, 2, 3]).unwrap().gap - place.2).abs() < 1e-15);
+            assert!((faced(&[0, 1, 2, 3]).expect("it faces one").gap - place.2).abs() < 1e-15);
         }
     }
 

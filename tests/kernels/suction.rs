@@ -57,7 +57,7 @@ fn what_is_sucked_feels_the_same() {
                 let mut marks = world.get_mut::<SuctionMarks>(body).unwrap();
                 let words = marks.len() / 2;
                 for (i, mark) in marks.iter_mut().enumerate() {
-                    let share: f32 = if i % words % 3 == 0 { 0.75 } else { 0.0 };
+                    let share: f32 = if (i % words).is_multiple_of(3) { 0.75 } else { 0.0 };
                     *mark = if i % words < count { share.to_bits() } else { 1 };
                 }
                 world.get_mut::<SuctionPressure>(body).unwrap().set(0, 120.0);

@@ -84,8 +84,8 @@ fn actions(scene_: &Scene, validator: &mut Validator) {
     inputs(scene_, validator);
     for (i, removal) in scene_.removal.iter().enumerate() {
         let path = scene("removal").index(i).name("when");
-        match &removal.when {
-            &When::At(time) => {
+        match removal.when {
+            When::At(time) => {
                 if time < 0.0 {
                     validator
                         .out
@@ -93,7 +93,7 @@ fn actions(scene_: &Scene, validator: &mut Validator) {
                 }
                 too_late(validator, &path.index(0), time, scene_.duration);
             }
-            &When::During { start, end } => {
+            When::During { start, end } => {
                 validator.not_negative(&path.name("start"), start, "s");
                 interval(validator, &path, start, end);
                 too_late(validator, &path.name("start"), start, scene_.duration);
