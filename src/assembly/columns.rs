@@ -43,7 +43,8 @@ pub(super) fn insert_node_columns(
     if scene.integration.compensated && precision == Precision::F32 {
         entity.insert(DisplacementCompensation(Reals::zeros(precision, 6 * count)));
     }
-    if scene.loads.iter().any(super::loads::has_weight) || !scene.systems.is_empty() || !scene.contacts.is_empty() {
+    let touched = !scene.contacts.is_empty() || !scene.attachments.is_empty();
+    if scene.loads.iter().any(super::loads::has_weight) || !scene.systems.is_empty() || touched {
         entity.insert(ExternalForce(vectors()));
     }
     // pseudo-steps to rest do no work worth booking

@@ -1,6 +1,7 @@
 //! From a scene to a world of entities: meshes are made or read, renumbered for locality and turned into bodies; names
 //! and places become rows.
 
+mod attachments;
 mod body;
 mod columns;
 mod constraints;
@@ -99,6 +100,7 @@ pub fn assemble<'a>(
     loads::spawn(&assembly, world, diagnostics);
     contacts::spawn(&assembly, world, diagnostics);
     surface_contacts::spawn(&assembly, world);
+    attachments::spawn(&assembly, world, diagnostics);
     own_systems::spawn(&assembly, &systems, world, diagnostics);
     Some(assembly)
 }
@@ -112,6 +114,7 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     start::deform(assembly, world, diagnostics);
     contacts::check(assembly, world, diagnostics);
     surface_contacts::check(assembly, world, diagnostics);
+    attachments::check(assembly, world, diagnostics);
     let scene = &assembly.scene.scene;
     if scene.when_unstable() == schema::WhenUnstable::Remove && !scene.is_static() {
         let blocks = assembly.bodies.values().flat_map(|body| &body.blocks);

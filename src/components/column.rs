@@ -241,7 +241,14 @@ pub fn place_in_buffer<C: Column>(entity: Entity, world: &World) -> usize {
 
 /// Every kind of column there is, as the modules declare them.
 pub fn all_columns() -> Vec<ColumnAccess> {
-    [super::nodes::accesses(), super::block::accesses(), super::tool::accesses(), super::contact::accesses()].concat()
+    [
+        super::nodes::accesses(),
+        super::block::accesses(),
+        super::tool::accesses(),
+        super::contact::accesses(),
+        super::grasp::accesses(),
+    ]
+    .concat()
 }
 
 /// Declares components that are columns, each with its name, its [`Role`], what its [`Rows`] belong to and, where they

@@ -35,6 +35,12 @@ pub enum Signal {
         /// The point (m).
         reference: DVec3,
     },
+    /// Whether a curve is ½ or more at the beginning of the step: one slot, 1 or 0. On the way to rest it is as at the
+    /// end.
+    Switch {
+        /// Course in time.
+        curve: Curve,
+    },
 }
 
 /// What a curve is the course of.
@@ -44,13 +50,14 @@ pub(super) enum Use {
     Motion,
     /// At the beginning of the step.
     MotionBefore,
+    Switch,
 }
 
 impl Signal {
     /// How many slots it fills.
     pub fn slots(&self) -> usize {
         match self {
-            Signal::Load { .. } => 1,
+            Signal::Load { .. } | Signal::Switch { .. } => 1,
             Signal::Motion { .. } => 3,
             Signal::Pose { .. } => 6,
         }
@@ -59,7 +66,9 @@ impl Signal {
     /// Its courses in time, as the scene has them.
     fn curves(&self) -> &[Curve] {
         match self {
-            Signal::Load { curve, .. } | Signal::Motion { curve, .. } => std::slice::from_ref(curve),
+            Signal::Load { curve, .. } | Signal::Motion { curve, .. } | Signal::Switch { curve } => {
+                std::slice::from_ref(curve)
+            }
             Signal::Pose { motion, .. } => &motion.curves,
         }
     }
@@ -67,7 +76,7 @@ impl Signal {
     /// Whether it ever moves anything.
     fn moves(&self) -> bool {
         match self {
-            Signal::Load { .. } => false,
+            Signal::Load { .. } | Signal::Switch { .. } => false,
             Signal::Motion { displacement, gradient, rotation, .. } => {
                 (*displacement, *gradient, *rotation) != (DVec3::ZERO, DMat3::ZERO, DVec3::ZERO)
             }
@@ -96,6 +105,7 @@ impl Signal {
                 Pose { at: end.at - *reference, ..end }.fill(&mut slots[..3]);
                 end.less(&begin).fill(&mut slots[3..6]);
             }
+            Signal::Switch { .. } => slots[0] = [f64::from(factor(0, Use::Switch) >= 0.5), 0.0, 0.0, 0.0],
         }
     }
 }
@@ -188,7 +198,7 @@ impl Signals {
         self.fill(times, |curve, of| match of {
             Use::Load => curve.mean(window),
             Use::Motion => curve.value(times[1]),
-            Use::MotionBefore => curve.value(times[0]),
+            Use::MotionBefore | Use::Switch => curve.value(times[0]),
         });
     }
 
@@ -198,6 +208,7 @@ impl Signals {
         self.fill(shares.map(|share| share * time), |curve, of| match of {
             Use::Load | Use::Motion => shares[1] * curve.value(time),
             Use::MotionBefore => shares[0] * curve.value(time),
+            Use::Switch => curve.value(time),
         });
     }
 

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod action;
+mod attachment;
 mod body;
 mod load;
 mod material;
@@ -17,6 +18,7 @@ pub use crate::mesh::ElementKind;
 pub use crate::tools::Shape;
 pub use accuracy::{Accuracy, AccuracyReference};
 pub use action::{Axis, Constraint, Curve, Removal, When};
+pub use attachment::Attachment;
 pub use body::{Body, MeshSource, Region, Start};
 pub use load::{Load, LoadParts, Share};
 pub use material::{
@@ -35,7 +37,8 @@ pub fn texts() -> impl Iterator<Item = &'static str> {
     TEXT.iter().chain(crate::materials::TEXTS).chain(crate::tools::TEXTS).copied()
 }
 
-const TEXT: [&str; 11] = [
+const TEXT: [&str; 12] = [
+    include_str!("attachment.rs"),
     include_str!("scene.rs"),
     include_str!("body.rs"),
     include_str!("material.rs"),

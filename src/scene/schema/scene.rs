@@ -1,7 +1,8 @@
 //! The whole scene, its time step, its guards.
 
 use super::{
-    Accuracy, Body, Constraint, Contact, Curve, Load, Material, Output, OwnSystem, Picture, Probe, Removal, Tool,
+    Accuracy, Attachment, Body, Constraint, Contact, Curve, Load, Material, Output, OwnSystem, Picture, Probe, Removal,
+    Tool,
 };
 use crate::scene::syntax::Path;
 use serde::{Deserialize, Serialize};
@@ -38,6 +39,9 @@ pub struct Scene {
     /// What touches what.
     #[serde(default)]
     pub contacts: Vec<Contact>,
+    /// What holds what.
+    #[serde(default)]
+    pub attachments: Vec<Attachment>,
     /// Loads of your own in WGSL, by the name of their function.
     #[serde(default)]
     pub systems: BTreeMap<String, OwnSystem>,
@@ -296,7 +300,12 @@ impl Scene {
             tool.moves.iter().enumerate().map(move |(number, part)| (path(number), &part.curve))
         });
         let all = constraints.chain(loads).chain(systems).chain(moves);
-        all.map(|(path, curve)| (path.name("curve"), curve)).collect()
+        let all = all.map(|(path, curve)| (path.name("curve"), curve));
+        let attachments = self.attachments.iter().enumerate().map(|(number, attachment)| {
+            let Attachment::Grasp { closed, .. } = attachment;
+            (to("attachments").index(number).name("closed"), closed)
+        });
+        all.chain(attachments).collect()
     }
 
     /// Whether equilibrium is sought instead of motion.

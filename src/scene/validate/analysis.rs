@@ -2,7 +2,7 @@
 
 use super::{Validator, scene, show};
 use crate::scene::limits::PSEUDO_STEPS;
-use crate::scene::schema::{Analysis, Constraint, Contact, InitialState, Inversion, Load, Quantity, Scene};
+use crate::scene::schema::{Analysis, Attachment, Constraint, Contact, InitialState, Inversion, Load, Quantity, Scene};
 use crate::scene::syntax::Path;
 use glam::DVec3;
 
@@ -106,7 +106,11 @@ fn held(scene_: &Scene, path: &Path, validator: &mut Validator) {
             Contact::Between { bodies: (a, b), .. } => a == name || b == name,
             Contact::Itself { .. } => false,
         });
-        if !touched && !scene_.constraints.iter().any(holds) {
+        let grasped = scene_.attachments.iter().any(|attachment| {
+            let Attachment::Grasp { body, .. } = attachment;
+            body.as_ref().is_none_or(|body| body == name)
+        });
+        if !touched && !grasped && !scene_.constraints.iter().any(holds) {
             validator
                 .out
                 .warn_at(path, format!("nothing holds the body {name:?}: it is at rest only where its loads balance"))

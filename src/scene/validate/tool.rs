@@ -5,7 +5,7 @@ use super::names::body_named;
 use super::{Validator, scene, select, show};
 use crate::scene::limits::{MOST_SWEEPS, TOOLS_OF_A_BODY};
 use crate::scene::load::SceneFile;
-use crate::scene::schema::{Contact, Follow, Port, Scene, Tool};
+use crate::scene::schema::{Attachment, Contact, Follow, Port, Scene, Tool};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use glam::DVec3;
@@ -21,7 +21,8 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
             port(scene_, validator, name, &path.name("port"), found);
         }
         let touches = |contact: &Contact| matches!(contact, Contact::Tool { tool, .. } if tool == name);
-        if !scene_.contacts.iter().any(touches) {
+        let holds = |attachment: &Attachment| matches!(attachment, Attachment::Grasp { tool, .. } if tool == name);
+        if !scene_.contacts.iter().any(touches) && !scene_.attachments.iter().any(holds) {
             validator
                 .out
                 .warn_at(&path, format!("nothing touches the tool `{name}`"))
