@@ -1,6 +1,6 @@
-// Books the kinetic energy of elements that are about to be taken away, and the part of it that constraints gave them: in a
-// kernel of its own, so that neither this one nor element_removal has more than eight buffers. MASS_SHARES are generated from
-// the block's element type.
+// Books the kinetic energy and the momentum of elements that are about to be taken away, and the part of the energy that
+// constraints gave them: in a kernel of its own, so that neither this one nor element_removal has more than eight buffers.
+// MASS_SHARES are generated from the block's element type; MOMENTA_AT is where momenta begin among the books.
 struct Removal {
     density: f32, // kg/m³
 }
@@ -11,7 +11,7 @@ struct Removal {
 @group(0) @binding(4) var<storage, read_write> removed_energy: array<f32>;
 @group(0) @binding(5) var<storage, read> displacement_increment: array<f32>;
 @group(0) @binding(6) var<storage, read> constrained_axes: array<u32>;
-@group(0) @binding(7) var<storage, read_write> removed_work: array<f32>;
+@group(0) @binding(7) var<storage, read_write> removed_motion_books: array<f32>;
 
 // ½ m v² of the element's share of its nodes (J), v in the middle of the last step.
 @compute @workgroup_size(64)
@@ -23,16 +23,21 @@ fn removed_motion(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wor
     var shares = MASS_SHARES;
     var squares = 0.0;
     var constrained = 0.0;
+    var mean = vec3<f32>(0.0);
     for (var corner = 0u; corner < NODES; corner++) {
         let node = connectivity[place(element, NODES, corner)];
         let at = 3u * node;
         let v = step.rate * vec3<f32>(displacement_increment[at], displacement_increment[at + 1u], displacement_increment[at + 2u]);
         squares += shares[corner] * dot(v, v);
+        mean += shares[corner] * v;
         let along = (vec3<u32>(constrained_axes[node]) & vec3<u32>(1u, 2u, 4u)) != vec3<u32>(0u);
         let held = select(vec3<f32>(0.0), v, along);
         constrained += shares[corner] * dot(held, held);
     }
-    let half = 0.5 * removal.density * rest_shape[place(element, ROWS, VOLUME_ROW)];
-    removed_energy[element] = half * squares;
-    removed_work[element] = half * constrained;
+    let mass = removal.density * rest_shape[place(element, ROWS, VOLUME_ROW)];
+    removed_energy[element] = 0.5 * mass * squares;
+    removed_motion_books[element] = 0.5 * mass * constrained;
+    for (var i = 0u; i < 3u; i++) {
+        removed_motion_books[MOMENTA_AT + place(element, 3u, i)] = mass * mean[i];
+    }
 }

@@ -14,6 +14,7 @@ use crate::evaluation::{BlockView, ElementState, add_nodal_masses, deactivate};
 use crate::math::lane_place;
 use crate::shader;
 use bevy_ecs::prelude::*;
+use glam::DVec3;
 use std::borrow::Cow;
 
 /// Criteria are looked at in every tenth step: a wave passes a tenth of an element's height in a step, and to look
@@ -22,8 +23,8 @@ pub const CRITERION_STEPS: u64 = 10;
 
 /// At the end of a step, elements go whose time has come or that pass a limit. Their volume and hourglass stiffness
 /// become zero, so that they exert nothing; what their nodes weigh is summed anew, and nodes without elements are
-/// inactive; faces of removed elements bear no load. The energy they held is booked, and what of it constraints had
-/// given.
+/// inactive; faces of removed elements bear no load. The energy and momentum they had are booked, and what of the energy
+/// constraints had given.
 pub fn system() -> System {
     System::built_in(
         "element_removal",
@@ -49,6 +50,7 @@ type BlockQuery<'a> = (
     &'a RemovalStep,
     &'a mut RemovedEnergy,
     &'a mut RemovedWork,
+    &'a mut RemovedMomentum,
 );
 
 type BodyQuery<'a> = (
@@ -89,6 +91,7 @@ fn element_removal(
         by_time,
         mut energies,
         mut given,
+        mut momenta,
     ) in &mut blocks
     {
         let Ok((_, displacement, step, axes, ..)) = bodies.get(block.body) else {
@@ -122,13 +125,14 @@ fn element_removal(
         let held = |row: usize| {
             let state = view.element(row);
             let elastic = view.energy(row, &state) * state.volume;
-            let [kinetic, given] = kinetic_energy(&state, density, (step, axes), clock.time_step);
-            [elastic + state.hourglass_energy(row, view.shape) + kinetic, given]
+            let (kinetic, given, momentum) = motion(&state, density, (step, axes), clock.time_step);
+            (elastic + state.hourglass_energy(row, view.shape) + kinetic, given, momentum)
         };
-        let held: Vec<[f64; 2]> = gone.iter().map(|&row| held(row)).collect();
-        for (&row, [held, by_constraints]) in gone.iter().zip(held) {
+        let held: Vec<(f64, f64, DVec3)> = gone.iter().map(|&row| held(row)).collect();
+        for (&row, (held, by_constraints, momentum)) in gone.iter().zip(held) {
             energies.set(row, held);
             given.set(row, by_constraints);
+            (0..3).for_each(|i| momenta.set(lane_place(row, 3, i), momentum[i]));
             alive[row] = 0;
             deactivate(block, row, &mut shape);
         }
@@ -163,7 +167,7 @@ fn rows_where(cpu: &Cpu, count: usize, holds: impl Fn(usize) -> bool + Sync + Se
     cpu.map(count.div_ceil(ROWS_A_TASK), |task| rows(task).collect::<Vec<usize>>()).concat()
 }
 
-fn measure(measure: Measure, row: usize, view: &BlockView<'_>) -> f64 {
+pub(super) fn measure(measure: Measure, row: usize, view: &BlockView<'_>) -> f64 {
     let state = view.element(row);
     match measure {
         Measure::Stretch => state.largest_stretch(),
@@ -173,18 +177,20 @@ fn measure(measure: Measure, row: usize, view: &BlockView<'_>) -> f64 {
     }
 }
 
-/// ½ m v² of the element's share of its nodes (J), v in the middle of the last step; and the part of it along
-/// constrained axes.
-fn kinetic_energy(state: &ElementState, density: f64, (step, axes): (&Reals, &[u32]), time_step: f64) -> [f64; 2] {
+/// ½ m v² of the element's share of its nodes (J), v in the middle of the last step; the part of it along constrained
+/// axes; and m v (kg m/s).
+fn motion(state: &ElementState, density: f64, (step, axes): (&Reals, &[u32]), time_step: f64) -> (f64, f64, DVec3) {
     let mass = density * state.volume;
-    let (mut all, mut constrained) = (0.0, 0.0);
+    let (mut all, mut constrained, mut mean) = (0.0, 0.0, DVec3::ZERO);
     for (&node, share) in state.nodes.iter().zip(mass_shares(state.kind)) {
         let v = step.vector(node as usize);
         all += share * v.length_squared();
+        mean += share * v;
         let held = (0..3).filter(|&i| axes[node as usize] >> i & 1 == 1).map(|i| v[i] * v[i]);
         constrained += share * held.sum::<f64>();
     }
-    [all, constrained].map(|squares| 0.5 * mass * squares / (time_step * time_step))
+    let energy = |squares: f64| 0.5 * mass * squares / (time_step * time_step);
+    (energy(all), energy(constrained), mass / time_step * mean)
 }
 
 /// Sums the mass and damping of a body's nodes from the elements that are left.
@@ -310,7 +316,9 @@ fn motion_kernel(block: &BlockKernels, world: &World, buffers: &mut dyn Buffers)
     let removal = Removal { density: density as f32 };
     let shares: Vec<String> =
         mass_shares(block.block.kind).iter().map(|share| format!("{:?}", *share as f32)).collect();
-    let shares = format!("const MASS_SHARES = array<f32, NODES>({});\n", shares.join(", "));
+    let momenta = place_in_buffer::<RemovedMomentum>(block.entity, world);
+    let shares =
+        format!("const MASS_SHARES = array<f32, NODES>({});\nconst MOMENTA_AT: u32 = {momenta}u;\n", shares.join(", "));
     let kernel = block
         .of_columns("removed_motion")
         .fragment(shader!("removed_motion"))
@@ -319,7 +327,7 @@ fn motion_kernel(block: &BlockKernels, world: &World, buffers: &mut dyn Buffers)
         .bind_uniform::<Removal>("removal", buffers.uniform("element_removal".into(), &removal.bytes()))
         .bind(DisplacementIncrement::NAME, buffers.column(block.block.body, DisplacementIncrement::NAME))
         .bind(ConstrainedAxes::NAME, buffers.column(block.block.body, ConstrainedAxes::NAME))
-        .bind(RemovedWork::NAME, buffers.column(block.entity, RemovedWork::NAME));
+        .bind(RemovedWork::BUFFER, buffers.column(block.entity, RemovedWork::NAME));
     REMOVED.iter().fold(kernel, |k, &name| k.bind(name, buffers.column(block.entity, name)))
 }
 

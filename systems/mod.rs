@@ -16,6 +16,8 @@
 //! tool_contact     forces, Displacement, motion -> ExternalForce, ToolTouch               per node that may touch
 //! integrate        forces, Mass                 -> DisplacementIncrement, Displacement         per node
 //! tool_removal     Displacement, motion         -> RemovalStep, ToolIntake                per element in reach
+//! tool_threshold   Displacement, motion         -> RemovalStep                            per element in reach
+//! island_removal   Alive, motion                -> RemovalStep, ToolIntake                per island
 //! element_removal  criteria, times              -> Alive, RestShape, Mass                 per element, per node
 //! observe          all, read only               -> probes, energies, guards, files
 //! ```
@@ -31,6 +33,7 @@ mod gather;
 mod grab;
 mod gravity;
 mod integrate;
+mod island_removal;
 mod nodal_force;
 mod nodal_volume;
 mod node_pass;
@@ -46,6 +49,7 @@ mod suction_mouth;
 mod surface_contact;
 mod tool_contact;
 mod tool_removal;
+mod tool_threshold;
 mod traction;
 
 pub use crate::backend::cpu::{Cpu, NodeColumns};
@@ -96,6 +100,8 @@ pub fn standard() -> Vec<System> {
         tool_contact::system(),
         integrate::system(),
         tool_removal::system(),
+        tool_threshold::system(),
+        island_removal::system(),
         element_removal::system(),
         observe::system(),
     ]

@@ -28,10 +28,10 @@ pub fn system() -> System {
         "tool_removal",
         Phase::Removal,
         "chooses the elements that tools take",
-        "`InTool(...)` under `removal`",
+        "`InTool(rate: ...)` under `removal`",
         |world| {
-            let count: usize = world.query::<&ToolRemovals>().iter(world).map(|removals| removals.all.len()).sum();
-            match count {
+            let takers = world.query::<&ToolRemovals>().iter(world).flat_map(|removals| &removals.all);
+            match takers.filter(|removal| removal.threshold.is_none()).count() {
                 0 => None,
                 1 => Some("1 tool that takes elements".into()),
                 count => Some(format!("{count} tools that take elements")),
@@ -47,7 +47,12 @@ type BodyQuery<'a> = (&'a ToolRemovals, &'a mut ToolIntake, &'a Authoring, &'a R
 type BlockQuery<'a> = (&'a Block, &'a Connectivity, &'a RestShape, &'a Alive, &'a mut RemovalStep);
 
 /// An element in reach: how far from the mouth (m), the author's place of it, block and row, rest volume (m³).
-type InReach = (f64, u32, Entity, usize, f64);
+pub(super) type InReach = (f64, u32, Entity, usize, f64);
+
+/// The tools that take by a rate, with their places among all.
+fn by_rate(removals: &ToolRemovals) -> impl Iterator<Item = (usize, &ToolRemoval)> {
+    removals.all.iter().enumerate().filter(|(_, removal)| removal.threshold.is_none())
+}
 
 fn tool_removal(
     clock: Res<Clock>,
@@ -58,7 +63,7 @@ fn tool_removal(
 ) {
     for (removals, mut intake, authoring, rest, displacement) in &mut bodies {
         let place = |node: u32| rest.0[node as usize] - removals.reference + displacement.vector(node as usize);
-        for (number, removal) in removals.all.iter().enumerate() {
+        for (number, removal) in by_rate(removals) {
             let at = INTAKE_NUMBERS * number;
             let mut volume = intake.get(at);
             if intake.get(at + 1) != 0.0 {
@@ -90,7 +95,7 @@ fn tool_removal(
 }
 
 /// The elements of a block in a tool's reach, in the order of their rows.
-fn in_reach(
+pub(super) fn in_reach(
     removal: &ToolRemoval,
     pose: &Pose,
     (entity, (block, connectivity, shape, alive, due)): (
@@ -185,7 +190,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
         let points: Vec<[f32; 3]> = rest.0.iter().map(|&x| (x - removals.reference).as_vec3().to_array()).collect();
         let points = buffers.constants("places of nodes".into(), bytemuck::cast_slice(&points));
         let chosen = ToolRemovals::chosen(authoring.cells.len()) as u32;
-        for (number, removal) in removals.all.iter().enumerate() {
+        for (number, removal) in by_rate(&removals) {
             let mut marks = Vec::new();
             for (entity, numbers) in authoring.blocks.iter().zip(&removal.numbers) {
                 let Some(block) = blocks.iter().find(|block| block.entity == *entity) else { continue };

@@ -37,7 +37,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let reference = reference(&body.placed.mesh.points);
         let edge = edge(body);
         for (number, contact) in scene.contacts.iter().enumerate() {
-            let Contact::Tool { tool, body: of, on, .. } = contact else { continue };
+            let Contact::Tool { tool, body: of, on, thin, .. } = contact else { continue };
             if of.as_ref().is_some_and(|of| of != name) {
                 continue;
             }
@@ -45,13 +45,18 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             let (Some(found), Some(geometry)) = (scene.tools.get(tool), geometries.get(tool)) else { continue };
             let path = format!("contacts[{number}].on");
             let Some(rows) = rows(assembly, name, body, on, &path, diagnostics) else { continue };
-            if let Some(size) = geometry.smallest_radius().filter(|radius| *radius < THINNEST * edge) {
+            if let Some(size) = geometry.smallest_radius().filter(|radius| !thin && *radius < THINNEST * edge) {
                 let message = format!(
                     "the tool `{tool}` may slip between nodes: it is hardly thicker than the faces that it meets"
                 );
                 diagnostics
                     .warn_at(format!("tools.\"{tool}\"").as_str(), message)
-                    .note(format!("its radius is {size:.3e} m, and faces of `{name}` have edges of {edge:.3e} m"));
+                    .note(format!("its radius is {size:.3e} m, and faces of `{name}` have edges of {edge:.3e} m"))
+                    .note(format!(
+                        "give `{name}` edges of {:.1e} m or less where it is touched (more cells, `refine`), or take a thicker \
+                         tool; `thin: true` in the contact says that this is meant",
+                        size / THINNEST
+                    ));
             }
             let bit = 1 << tools.len();
             rows.into_iter().for_each(|row| *marks.entry(row).or_default() |= bit);

@@ -66,6 +66,7 @@ pub(super) fn insert_columns(precision: Precision, block: Entity, world: &mut Wo
             RemovalStep(vec![u32::MAX; padded]),
             RemovedEnergy(Reals::zeros(precision, padded)),
             RemovedWork(Reals::zeros(precision, padded)),
+            RemovedMomentum(Reals::zeros(precision, 3 * padded)),
         ));
     }
 }

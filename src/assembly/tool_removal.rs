@@ -3,14 +3,15 @@
 use super::contacts::{motion, reference};
 use super::{Assembly, BodyParts};
 use crate::components::*;
-use crate::scene::schema::{Tool, When};
+use crate::evaluation::rest_volume;
+use crate::scene::schema::{Threshold, Tool, When};
 use crate::tools::{Shape, Solid};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
 /// Adds a tool that takes marked elements of a body.
 pub(super) fn add(assembly: &Assembly<'_>, body: &BodyParts, marks: &[bool], when: &When, world: &mut World) {
-    let When::InTool { tool: name, reach, rate, bore, burst, curve } = when else { return };
+    let When::InTool { tool: name, reach, rate, threshold, bore, burst, curve, crumb } = when else { return };
     let Some(tool) = assembly.scene.scene.tools.get(name) else { return };
     let Some(mouth) = mouth(tool, *bore) else { return };
     let mut removals = world
@@ -19,7 +20,13 @@ pub(super) fn add(assembly: &Assembly<'_>, body: &BodyParts, marks: &[bool], whe
         .unwrap_or_else(|| ToolRemovals { all: Vec::new(), reference: reference(&body.placed.mesh.points) });
     let mut signals = world.resource_mut::<Signals>();
     let pose = signals.add(Signal::Pose { motion: motion(tool), reference: removals.reference });
-    let rate = signals.add(Signal::Load { curve: curve.clone(), amplitude: DVec3::X * *rate });
+    let amplitude = DVec3::X * rate.unwrap_or(1.0);
+    let rate = signals.add(Signal::Load { curve: curve.clone(), amplitude });
+    let threshold = threshold.map(|threshold| match threshold {
+        Threshold::StretchAbove(limit) => (Measure::Stretch, limit),
+        Threshold::EnergyDensityAbove(limit) => (Measure::EnergyDensity, limit),
+    });
+    let crumb = crumb.unwrap_or_else(|| CRUMB * mean_volume(body, world));
     let rows = |&block: &Entity| world.get::<Block>(block).map_or(0, |block| block.count);
     let mut numbers: Vec<Vec<u32>> = body.blocks.iter().map(|block| vec![u32::MAX; rows(block)]).collect();
     for (number, (&(block, row), &marked)) in (0..).zip(body.element_rows.iter().zip(marks)) {
@@ -27,10 +34,29 @@ pub(super) fn add(assembly: &Assembly<'_>, body: &BodyParts, marks: &[bool], whe
             numbers[block as usize][row as usize] = number;
         }
     }
-    removals.all.push(ToolRemoval { tool: name.clone(), mouth, reach: *reach, pose, rate, burst: *burst, numbers });
+    let (tool, reach, burst) = (name.clone(), *reach, *burst);
+    removals.all.push(ToolRemoval { tool, mouth, reach, pose, rate, threshold, crumb, burst, numbers });
     let intake = Reals::zeros(assembly.precision, INTAKE_NUMBERS * removals.all.len());
     let list = vec![0; removals.words(body.element_rows.len())];
     world.entity_mut(body.entity).insert((removals, ToolIntake(intake), ToolReach(list)));
+    if crumb > 0.0 && world.get::<Islands>(body.entity).is_none() {
+        let (points, cells) = (body.placed.mesh.points.len(), &body.placed.mesh.cells);
+        let (at_start, there) = (cells.pieces(points, |_| true), vec![true; cells.len()]);
+        world.entity_mut(body.entity).insert(Islands { points, at_start, there, all: Vec::new() });
+    }
+}
+
+/// Islands of so many mean elements and more are no crumbs, where the scene does not say.
+const CRUMB: f64 = 4.0;
+
+/// Mean volume of a body's elements at rest (m³).
+fn mean_volume(body: &BodyParts, world: &World) -> f64 {
+    let of_element = |&(block, row): &(u32, u32)| {
+        let block = body.blocks[block as usize];
+        let parts = world.get::<Block>(block).zip(world.get::<RestShape>(block));
+        parts.map_or(0.0, |(block, shape)| rest_volume(block, row as usize, shape))
+    };
+    body.element_rows.iter().map(of_element).sum::<f64>() / body.element_rows.len().max(1) as f64
 }
 
 /// Where a tool takes elements. A mesh has no mouth of its own; validation has asked for one.

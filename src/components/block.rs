@@ -59,7 +59,9 @@ columns! {
     RemovedEnergy(Reals) = "removed_energy", State, Elements;
     /// The part of [`RemovedEnergy`] that is kinetic along constrained axes (J): what constraints had given the mass
     /// that went, and is their work still. Exists with [`Alive`].
-    RemovedWork(Reals) = "removed_work", State, Elements;
+    RemovedWork(Reals) = "removed_work", State, Elements, in "removed_motion_books";
+    /// Momentum (kg m/s) that each element had when it was removed, three numbers each. Exists with [`Alive`].
+    RemovedMomentum(Reals) = "removed_momentum", State, Elements, in "removed_motion_books";
     /// Volume at rest (m³) of each element that is there, and that times θ, by which its law measures the change of
     /// volume. Exists with [`NodalVolumeChange`].
     ElementVolume(Reals) = "element_volume", Scratch, Elements;

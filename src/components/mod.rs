@@ -32,8 +32,8 @@ mod touched;
 
 pub use block::{
     AddedMass, Alive, Block, BlockCorners, Connectivity, ElementSums, ElementVolume, FamilyDirection, FibreDirection,
-    FirstInverted, NodalVolumeChange, OnInversion, RemovalStep, RemovalTime, RemovedEnergy, RemovedWork, RestShape,
-    ViscousMemory, patch_groups, patch_length,
+    FirstInverted, NodalVolumeChange, OnInversion, RemovalStep, RemovalTime, RemovedEnergy, RemovedMomentum,
+    RemovedWork, RestShape, ViscousMemory, patch_groups, patch_length,
 };
 pub use clock::{Clock, Relaxation};
 pub use column::{Column, ColumnAccess, Precision, Reals, Role, all_columns, columns_in, place_in_buffer};
@@ -56,7 +56,7 @@ pub use patches::{Patches, Scheme};
 pub use signal::{Signal, Signals};
 pub use suction::{BodyFaces, FacePresence, NO_FACE, SUCTION_NUMBERS, Suction, SuctionMarks, SuctionPressure, share};
 pub use tool::{FELT_NUMBERS, Hand, Key, Pose, TOUCH_NUMBERS, ToolContact, ToolContacts, ToolMotion, ToolTouch};
-pub use tool_removal::{INTAKE_NUMBERS, Mouth, ToolIntake, ToolReach, ToolRemoval, ToolRemovals};
+pub use tool_removal::{INTAKE_NUMBERS, Island, Islands, Mouth, ToolIntake, ToolReach, ToolRemoval, ToolRemovals};
 pub use touched::Touched;
 
 use bevy_ecs::prelude::*;

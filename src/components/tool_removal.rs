@@ -1,7 +1,7 @@
 //! Tools that take elements away.
 
 use super::column::columns;
-use super::{Pose, Reals, Signals};
+use super::{Measure, Pose, Reals, Signals};
 use crate::tools::Solid;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -46,8 +46,12 @@ pub struct ToolRemoval {
     /// The first of six slots of [`Signals`]: see [`Signal::Pose`](super::Signal::Pose), from
     /// [`ToolRemovals::reference`].
     pub pose: usize,
-    /// Slot of the volume that it takes in a second (m³/s).
+    /// Slot of the volume that it takes in a second (m³/s); with a threshold of a factor above 0 while it takes.
     pub rate: usize,
+    /// In place of a rate, what of the elements in reach has to exceed what.
+    pub threshold: Option<(Measure, f64)>,
+    /// The volume (m³) below which islands in reach go at once.
+    pub crumb: f64,
     /// Elements that it takes at most when it looks.
     pub burst: u32,
     /// For each of the body's blocks and each of its elements the author's place of it; `u32::MAX`: it stays.
@@ -68,6 +72,29 @@ pub struct ToolRemovals {
     pub all: Vec<ToolRemoval>,
     /// A point near the body (m), from which places are counted.
     pub reference: DVec3,
+}
+
+/// What is cut off of a body that tools take elements of: found anew where elements have gone, and nothing that is
+/// carried on. On the body, where a tool takes crumbs.
+#[derive(Component, Clone, Debug)]
+pub struct Islands {
+    /// How many nodes the author has.
+    pub points: usize,
+    /// Of each of the author's elements the piece that it belongs to at the start.
+    pub at_start: Vec<u32>,
+    /// Which of them were there when islands were last found.
+    pub there: Vec<bool>,
+    /// Those of the islands then.
+    pub all: Vec<Island>,
+}
+
+/// Elements that hang together, and not with the rest.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Island {
+    /// Their volume at rest (m³).
+    pub volume: f64,
+    /// The author's places of them, ascending.
+    pub elements: Vec<u32>,
 }
 
 /// Numbers of a tool in [`ToolIntake`].

@@ -14,6 +14,7 @@ mod gmsh;
 mod locate;
 #[doc(hidden)]
 pub mod measure;
+mod pieces;
 mod placement;
 #[doc(hidden)]
 pub mod quality;
@@ -38,6 +39,7 @@ pub use error::{MeshError, Place};
 pub use generators::ElementKind;
 pub(crate) use generators::each_element_kind;
 pub use locate::{Location, Locator};
+pub(crate) use pieces::NO_PIECE;
 pub(crate) use placement::{angles_about_axes, rotation_about_axes};
 pub use quality::Quality;
 #[cfg(feature = "files")]

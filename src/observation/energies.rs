@@ -5,7 +5,9 @@ use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::error::Error;
 use crate::evaluation::BlockView;
+use crate::math::lane_place;
 use bevy_ecs::prelude::*;
+use glam::DVec3;
 
 /// All columns.
 const HEADER: [&str; 9] = [
@@ -39,6 +41,20 @@ pub(super) fn values(e: &Energies) -> Vec<f64> {
 pub fn mass(world: &mut World) -> Result<f64, Error> {
     bring_to_host(world, |_, name| name == Mass::NAME)?;
     Ok(world.query::<&Mass>().iter(world).map(|mass| mass.sum()).sum())
+}
+
+/// Momentum that has gone with removed elements (kg m/s).
+///
+/// # Errors
+/// What the GPU says.
+pub fn removed_momentum(world: &mut World) -> Result<DVec3, Error> {
+    bring_to_host(world, |_, name| name == RemovedMomentum::NAME)?;
+    Ok(world.query::<&RemovedMomentum>().iter(world).map(momentum_of).sum())
+}
+
+fn momentum_of(momenta: &RemovedMomentum) -> DVec3 {
+    let vector = |row: usize| DVec3::from_array([0, 1, 2].map(|i| momenta.get(lane_place(row, 3, i))));
+    (0..momenta.len() / 3).map(vector).sum()
 }
 
 /// The energies of all bodies at the present step.
@@ -109,7 +125,7 @@ fn work_done(work: &Work) -> [f64; 4] {
 
 /// What of the energies that are added up from step to step is no finite number: what it is of, and the number.
 pub(super) fn not_finite(world: &mut World) -> Result<Option<(&'static str, f64)>, Error> {
-    let wanted = [Work::NAME, RemovedEnergy::NAME, RemovedWork::NAME];
+    let wanted = [Work::NAME, RemovedEnergy::NAME, RemovedWork::NAME, RemovedMomentum::NAME];
     bring_to_host(world, |_, name| wanted.contains(&name))?;
     let mut sums: Vec<(&'static str, f64)> = Vec::new();
     for work in world.query::<&Work>().iter(world) {
@@ -117,9 +133,10 @@ pub(super) fn not_finite(world: &mut World) -> Result<Option<(&'static str, f64)
             ["the work of loads", "the loss to damping", "the work of constraints", "the work against internal forces"];
         sums.extend(names.into_iter().zip(work_done(work)));
     }
-    for (energy, work) in world.query::<(&RemovedEnergy, &RemovedWork)>().iter(world) {
+    for (energy, work, momenta) in world.query::<(&RemovedEnergy, &RemovedWork, &RemovedMomentum)>().iter(world) {
         sums.push(("the energy of removed elements", energy.sum()));
         sums.push(("the work of constraints on removed elements", work.sum()));
+        sums.push(("the momentum of removed elements", momenta.sum()));
     }
     Ok(sums.into_iter().find(|(_, value)| !value.is_finite()))
 }

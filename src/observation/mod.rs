@@ -16,7 +16,7 @@ mod tools;
 mod track;
 
 pub use contacts::{ContactReading, read_contact};
-pub use energies::{energies, energy_header, mass};
+pub use energies::{energies, energy_header, mass, removed_momentum};
 pub use fields::{BodyFields, body_fields, internal_forces};
 pub use frame::{WrittenFields, write as write_fields, write_whole};
 pub use guards::{Watch, begin as begin_to_guard, held_for_long};

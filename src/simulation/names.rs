@@ -140,6 +140,7 @@ pub const UNITS: &[(&str, &str)] = &[
     ("energies.internal_work", "J"),
     ("mass", "kg"),
     ("removed_mass", "kg"),
+    ("removed_momentum", "kg m/s"),
     ("tools.*.force", "N"),
     ("tools.*.suction", "N"),
     ("tools.*.torque", "N m"),

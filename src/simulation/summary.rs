@@ -77,6 +77,8 @@ pub struct Summary {
     pub mass: f64,
     /// Mass taken out with removed elements (kg).
     pub removed_mass: f64,
+    /// Momentum that went with them (kg m/s).
+    pub removed_momentum: glam::DVec3,
     /// Elements removed.
     pub removed_elements: usize,
     /// Of each block whose elements were turned inside out and recover: who, and whether some still are.
@@ -222,6 +224,7 @@ impl Simulation {
             energies,
             mass: facts.initial_mass,
             removed_mass: facts.initial_mass - mass,
+            removed_momentum: crate::observation::removed_momentum(&mut self.world)?,
             removed_elements: removed,
             inversions: inversions(&mut self.world)?,
             probes: self.world.resource::<Observer>().latest.clone(),

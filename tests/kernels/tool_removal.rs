@@ -27,7 +27,17 @@ fn tools(world: &mut World, volume: f64) {
             let mut signals = world.resource_mut::<Signals>();
             let pose = signals.add(Signal::Pose { motion, reference: DVec3::ZERO });
             let rate = signals.add(Signal::Load { curve: Curve::default(), amplitude: DVec3::X * 1e-6 });
-            ToolRemoval { tool: number.to_string(), mouth, reach: 0.012, pose, rate, burst: 40, numbers }
+            ToolRemoval {
+                tool: number.to_string(),
+                mouth,
+                reach: 0.012,
+                pose,
+                rate,
+                threshold: None,
+                crumb: 0.0,
+                burst: 40,
+                numbers,
+            }
         });
         let removals = ToolRemovals { all: all.collect(), reference: DVec3::ZERO };
         let intake = Reals::F32(vec![volume as f32, 1.0, volume as f32, 0.0]);

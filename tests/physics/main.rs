@@ -29,6 +29,7 @@ mod history;
 mod hourglass;
 mod inputs;
 mod inversion;
+mod islands;
 mod laws;
 mod load_stiffness;
 mod loads;

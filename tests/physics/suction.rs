@@ -12,6 +12,13 @@ use std::f64::consts::PI;
 const BORE: f64 = 6e-3;
 const PRESSURE: f64 = 1e3;
 
+/// A plate of which all waves die away in a fiftieth of a second: damping of 2000/s takes any that is quicker than
+/// 1000/s down by e^-20, and the slowest, of the thickness, has π/2 · 20 m/s / 4 mm = 7900/s. Ten times less steps than
+/// with 200/s, and the same rest.
+fn calm(elements: &str) -> String {
+    plate(elements, GLUED, "").replace("damping: 200", "damping: 2000").replace("duration: 0.2", "duration: 0.02")
+}
+
 /// A stiff plate of 20 × 20 × 4 mm, and a tube over it, .2 mm off and a little off its middle.
 fn plate(elements: &str, held: &str, rest: &str) -> String {
     format!(
@@ -32,8 +39,8 @@ const GLUED: &str = "constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))],"
 fn a_closed_mouth_pulls_by_pressure_times_area() {
     for run in configurations() {
         for elements in ["Hex8", "Tet4", "Tet10"] {
-            let mut simulation = run.start(&plate(elements, GLUED, ""));
-            simulation.advance_to(0.2).unwrap();
+            let mut simulation = run.start(&calm(elements));
+            simulation.advance_to(0.02).unwrap();
             let expected = PRESSURE * PI * BORE * BORE;
             let what = format!("{}, {elements}", run.name);
             let (felt, held) = (simulation.probe("felt").unwrap(), simulation.probe("held").unwrap());

@@ -1,7 +1,7 @@
 //! Scenes made of parts: names, places, and what is said of mistakes in files of parts.
 
 use sinew::glam::DVec3;
-use sinew::scene::schema::{Axis, Constraint, Contact, MeshSource, Probe, Quantity, Select};
+use sinew::scene::schema::{Axis, Constraint, Contact, MeshSource, Probe, Quantity, Select, When};
 use sinew::scene::{Allowed, Diagnostics, SceneFile, validate};
 use std::collections::BTreeMap;
 
@@ -76,6 +76,35 @@ fn names_of_a_part_begin_with_its_own() {
     let Contact::Tool { tool, .. } = &scene.contacts[0] else { panic!("a tool") };
     assert!(scene.tools.contains_key(tool));
     assert!(format!("{:?}", scene.loads[0].curve()).contains("eye.pull"));
+}
+
+/// An instrument brings what it touches, sucks and takes; the body is that of the scene around it, where there is one.
+#[test]
+fn an_instrument_without_a_body_acts_on_the_only_one_around_it() {
+    let tip = TIP.replace(
+        "probes:",
+        "contacts: [Tool(tool: \"needle\", friction: 0.1)],
+    suction: [(tool: \"needle\", pressure: 10, bore: 0.1, reach: 0.2, curve: Input(name: \"pedal\"))],
+    removal: [(when: InTool(tool: \"needle\", reach: 0.1, rate: 1e-3, crumb: 1e-6))], probes:",
+    );
+    let whole = WHOLE.replace("translate: (0, 0, 1)", "translate: (0, 0, 1), scale: 2").replace("contacts:", "//");
+    let files = || with(&[("tools/tip.ron", &tip)]);
+    assert_eq!(brief(&whole, files(), &[]), "");
+    let scene = read(&whole, files(), &[]).unwrap().scene;
+    let (suction, removal) = (&scene.suction[0], &scene.removal[0]);
+    assert_eq!((suction.tool.as_str(), suction.body.as_ref(), removal.body.as_ref()), ("tip.needle", None, None));
+    assert_eq!((suction.bore, suction.reach, suction.pressure), (Some(0.2), 0.4, 10.0));
+    assert!(format!("{:?}", suction.curve).contains("tip.pedal"));
+    let When::InTool { tool, reach, rate, crumb, .. } = &removal.when else { panic!() };
+    assert_eq!((tool.as_str(), *reach, *rate, *crumb), ("tip.needle", 0.2, Some(8e-3), Some(8e-6)));
+    // of two bodies it is asked which, in the instrument's file
+    let two = whole.replace("\"tip\":", "\"other\": (scene: \"eye.ron\", translate: (3, 0, 0)),\n        \"tip\":");
+    let told = brief(&two, files(), &[]);
+    assert_eq!(
+        told.lines().filter(|line| line.starts_with("tools/tip.ron:") && line.contains("which body")).count(),
+        3,
+        "{told}"
+    );
 }
 
 #[test]

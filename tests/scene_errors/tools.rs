@@ -93,7 +93,9 @@ fn what_is_wrong_with_a_tool_is_told_with_what_is_allowed() {
         (
             "(shape: Capsule(length: 0.2, radius: 0.01), at: (0.05, 0.05, 0.11))",
             TOUCH,
-            "4: warning: the tool `rod` may slip between nodes",
+            "4: warning: the tool `rod` may slip between nodes: it is hardly thicker than the faces that it meets | its radius \
+             is 1.000e-2 m, and faces of `b` have edges of 2.500e-2 m | give `b` edges of 5.0e-3 m or less where it is touched \
+             (more cells, `refine`), or take a thicker tool; `thin: true` in the contact says that this is meant",
         ),
         (
             "(shape: Sphere(radius: 0.1), at: (0.05, 0.05, 0.3), moves: [(curve: Smooth(end: 1))])",
@@ -111,6 +113,12 @@ fn what_is_wrong_with_a_tool_is_told_with_what_is_allowed() {
         println!("{found}");
         assert!(found.contains(expected), "{tool} {contact}:\n{found}\nexpected\n{expected}");
     }
+}
+
+#[test]
+fn a_thin_tool_that_is_meant_is_not_warned_of() {
+    let thin = "(shape: Capsule(length: 0.2, radius: 0.01), at: (0.05, 0.05, 0.11))";
+    assert_eq!(told(thin, "Tool(tool: \"rod\", thin: true)", ""), "");
 }
 
 #[test]
@@ -180,7 +188,8 @@ fn what_is_wrong_with_what_a_tool_takes_and_sucks_is_told() {
     let sucks = |fields: &str| format!("suction: [({fields})],");
     let good = "tool: \"rod\", reach: 0.1, rate: 1e-6";
     let mouth = "tool: \"rod\", reach: 0.1, pressure: 100, bore: 0.01";
-    for good in [takes(good), sucks(mouth)] {
+    let passes = |threshold: &str| takes(&format!("tool: \"rod\", reach: 0.1, threshold: {threshold}"));
+    for good in [takes(good), takes(&format!("{good}, crumb: 0")), passes("StretchAbove(1.2)"), sucks(mouth)] {
         assert_eq!(told(ROD, TOUCH, &good), "");
         // who takes or sucks need not touch
         assert_eq!(told(ROD, "", &good), "");
@@ -193,6 +202,19 @@ fn what_is_wrong_with_what_a_tool_takes_and_sucks_is_told() {
         (takes(&format!("{good}, burst: 0")), "3: error: `burst` must be between 1 and 1024, found 0"),
         (takes(&format!("{good}, curve: Smooth(start: 1, end: 0)")), "3: error: "),
         (takes("tool: \"rod\", rate: 1"), "`reach`"),
+        (takes(&format!("{good}, crumb: -1")), "3: error: `crumb` must be 0 or above, found -1 m³"),
+        (
+            takes("tool: \"rod\", reach: 1"),
+            "3: error: the tool `rod` takes elements by nothing | either `rate`, the volume in a second (m³/s), or",
+        ),
+        (
+            takes(&format!("{good}, threshold: StretchAbove(2)")),
+            "3: error: a `threshold` beside a `rate` | either `rate`",
+        ),
+        (passes("StretchAbove(-1)"), "3: error: `StretchAbove` must be above 0, found -1"),
+        (passes("StretchAbove(0.5)"), "3: warning: `StretchAbove` of 0.5 holds at rest"),
+        (passes("EnergyDensityAbove(-1)"), "3: error: `EnergyDensityAbove` must be 0 or above, found -1"),
+        (passes("Above(1)"), "`threshold` cannot be `Above`"),
         (sucks("tool: \"ro\", reach: 0.1, pressure: 1"), "3: error: there is no tool `ro` | did you mean `rod`?"),
         (sucks("tool: \"rod\", reach: 0.1, pressure: 1"), "3: error: the tool `rod` is no tube: where is its mouth?"),
         (

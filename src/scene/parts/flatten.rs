@@ -31,6 +31,7 @@ pub fn flatten(scene: &mut Scene) -> Vec<Problem> {
         scene.constraints.extend(found.constraints);
         scene.loads.extend(found.loads);
         scene.contacts.extend(found.contacts);
+        scene.suction.extend(found.suction);
         scene.removal.extend(found.removal);
     }
     problems
@@ -106,6 +107,7 @@ fn whole(name: &str, part: Part, path: &Path, problems: &mut Vec<Problem>) -> Op
         content.constraints.extend(found.constraints);
         content.loads.extend(found.loads);
         content.contacts.extend(found.contacts);
+        content.suction.extend(found.suction);
         content.removal.extend(found.removal);
     }
     let mut naming = Naming { part: name, only: Only::of(&content), path: inside, problems };
@@ -187,6 +189,14 @@ impl Naming<'_> {
         body.iter_mut().for_each(|name| self.name(name));
     }
 
+    /// A body at which a tool of the part does something: an instrument without a body leaves open which it is, and the
+    /// scene around it has one only or is asked.
+    fn touched(&mut self, path: &Path, body: &mut Option<String>) {
+        if body.is_some() || !matches!(self.only, Only::None) {
+            self.body(path, body);
+        }
+    }
+
     fn rename(&mut self, content: &mut PartScene) {
         for body in content.bodies.values_mut() {
             self.name(&mut body.material);
@@ -226,7 +236,7 @@ impl Naming<'_> {
             match contact {
                 Contact::Tool { tool, body, .. } => {
                     self.name(tool);
-                    self.body(&path, body);
+                    self.touched(&path, body);
                 }
                 Contact::Between { bodies: (a, b), .. } => {
                     self.name(a);
@@ -237,11 +247,19 @@ impl Naming<'_> {
         }
         for (number, removal) in content.removal.iter_mut().enumerate() {
             let path = self.path.name("removal").index(number);
-            self.body(&path, &mut removal.body);
             if let When::InTool { tool, curve, .. } = &mut removal.when {
                 self.name(tool);
                 self.curve(curve);
+                self.touched(&path, &mut removal.body);
+            } else {
+                self.body(&path, &mut removal.body);
             }
+        }
+        for (number, suction) in content.suction.iter_mut().enumerate() {
+            let path = self.path.name("suction").index(number);
+            self.name(&mut suction.tool);
+            self.curve(&mut suction.curve);
+            self.touched(&path, &mut suction.body);
         }
         for (name, probe) in &mut content.probes {
             let path = self.path.name("probes").name(name);
@@ -281,6 +299,7 @@ impl Naming<'_> {
         content.loads.iter_mut().for_each(|load| placement.load(load));
         content.tools.values_mut().for_each(|tool| placement.tool(tool));
         content.contacts.iter_mut().for_each(|contact| placement.contact(contact));
+        content.suction.iter_mut().for_each(|suction| placement.suction(suction));
         content.removal.iter_mut().for_each(|removal| placement.removal(removal));
         content.probes.values_mut().for_each(|probe| placement.probe(probe));
     }

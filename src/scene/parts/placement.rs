@@ -2,8 +2,8 @@
 
 use crate::mesh::{angles_about_axes, rotation_about_axes};
 use crate::scene::schema::{
-    Axis, Body, Constraint, Contact, Direction, Load, Material, Part, Probe, Quantity, Removal, Select, Start, Tool,
-    When,
+    Axis, Body, Constraint, Contact, Direction, Load, Material, Part, Probe, Quantity, Removal, Select, Start, Suction,
+    Tool, When,
 };
 use glam::{DMat3, DQuat, DVec3};
 
@@ -229,11 +229,16 @@ impl Placement {
 
     pub fn removal(&self, removal: &mut Removal) {
         self.select(&mut removal.on);
-        if let When::InTool { reach, bore, rate, .. } = &mut removal.when {
+        if let When::InTool { reach, bore, rate, crumb, .. } = &mut removal.when {
             self.length(reach);
             bore.iter_mut().for_each(|bore| self.length(bore));
-            *rate *= self.scale.powi(3);
+            rate.iter_mut().chain(crumb).for_each(|volume| *volume *= self.scale.powi(3));
         }
+    }
+
+    pub fn suction(&self, suction: &mut Suction) {
+        self.length(&mut suction.reach);
+        suction.bore.iter_mut().for_each(|bore| self.length(bore));
     }
 
     pub fn probe(&self, probe: &mut Probe) {

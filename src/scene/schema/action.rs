@@ -153,14 +153,19 @@ pub enum When {
     VolumeRatioAbove(f64),
     /// Each as soon as its strain energy per rest volume exceeds this (J/m³).
     EnergyDensityAbove(f64),
-    /// One after the other as a tool takes them, the nearest first.
+    /// As a tool takes them: by a `rate`, one after the other, or what passes a `threshold`.
     InTool {
         /// The tool.
         tool: String,
         /// How far from its mouth an element's centroid may be (m).
         reach: f64,
-        /// The volume that the tool takes in a second (m³/s), by rest volume, while there is something in its reach.
-        rate: f64,
+        /// The volume that the tool takes in a second (m³/s), by rest volume, while there is something in its reach, the
+        /// nearest first.
+        #[serde(default)]
+        rate: Option<f64>,
+        /// In place of a rate: what elements in reach pass that go.
+        #[serde(default)]
+        threshold: Option<Threshold>,
         /// Radius of the mouth (m), a disc about the tool's origin; a tube's `inner` when left out, and all round tools
         /// of other shapes.
         #[serde(default)]
@@ -168,10 +173,24 @@ pub enum When {
         /// Elements that go at most at a time.
         #[serde(default = "sixty_four")]
         burst: u32,
-        /// Course of the rate in time.
+        /// Course of the rate in time; what passes a threshold goes while it is above 0.
         #[serde(default)]
         curve: Curve,
+        /// The volume at rest (m³) below which an island that is cut off and in reach goes at once; 4 mean elements of
+        /// the body when left out, 0: none.
+        #[serde(default)]
+        crumb: Option<f64>,
     },
+}
+
+/// What elements in a tool's reach pass that go.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub enum Threshold {
+    /// Their largest principal stretch exceeds this.
+    StretchAbove(f64),
+    /// Their strain energy per rest volume exceeds this (J/m³).
+    EnergyDensityAbove(f64),
 }
 
 fn sixty_four() -> u32 {

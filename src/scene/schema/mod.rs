@@ -17,7 +17,7 @@ pub use crate::materials::Elasticity;
 pub use crate::mesh::ElementKind;
 pub use crate::tools::Shape;
 pub use accuracy::{Accuracy, AccuracyReference};
-pub use action::{Axis, Constraint, Curve, Removal, When};
+pub use action::{Axis, Constraint, Curve, Removal, Threshold, When};
 pub use body::{Body, MeshSource, Region, SkinFile, Start};
 pub use load::{Load, LoadParts, Share};
 pub use material::{

@@ -145,6 +145,9 @@ pub enum Contact {
         /// The coefficient while nodes stick to the tool; that of `friction` when left out.
         #[serde(default)]
         static_friction: Option<f64>,
+        /// That the tool is thinner than the faces that it meets, and may slip between nodes: then it is not warned of.
+        #[serde(default)]
+        thin: bool,
     },
     /// The surfaces of two bodies: each stays outside the other.
     Between {

@@ -98,6 +98,11 @@ fn criterion(validator: &mut Validator, path: &Path, when: &When) {
         When::VolumeRatioAbove(value) => ("VolumeRatioAbove", value, value < 1.0),
         When::EnergyDensityAbove(value) => ("EnergyDensityAbove", value, false),
     };
+    limit(validator, path, word, value, senseless);
+}
+
+/// What is wrong with the limit of a criterion.
+pub(super) fn limit(validator: &mut Validator, path: &Path, word: &str, value: f64, senseless: bool) {
     if value < 0.0 || (value == 0.0 && word != "EnergyDensityAbove") {
         let allowed = if word == "EnergyDensityAbove" { "0 or above" } else { "above 0" };
         validator.out.error_at(path.index(0), format!("`{word}` must be {allowed}, found {}", show(value)));

@@ -5,7 +5,7 @@ use super::names::body_named;
 use super::{Validator, scene, select, show};
 use crate::scene::limits::{MOST_BURST, MOST_SWEEPS, TOOLS_OF_A_BODY};
 use crate::scene::load::SceneFile;
-use crate::scene::schema::{Contact, Follow, Port, Removal, Scene, Shape, Tool, When};
+use crate::scene::schema::{Contact, Follow, Port, Removal, Scene, Shape, Threshold, Tool, When};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use glam::DVec3;
@@ -163,10 +163,13 @@ fn named(scene_: &Scene, validator: &mut Validator, owner: &Path, tool: &str) {
 
 /// What is wrong with a tool that takes elements.
 pub(super) fn takes(scene_: &Scene, validator: &mut Validator, path: &Path, removal: &Removal) {
-    let When::InTool { tool, reach, rate, bore, burst, .. } = &removal.when else { return };
+    let When::InTool { tool, reach, rate, threshold, bore, burst, crumb, .. } = &removal.when else { return };
     named(scene_, validator, path, tool);
     validator.above_zero(&path.name("reach"), *reach, "m");
-    validator.above_zero(&path.name("rate"), *rate, "m³/s");
+    taken_by(validator, path, tool, (*rate, *threshold));
+    if let Some(crumb) = crumb {
+        validator.not_negative(&path.name("crumb"), *crumb, "m³");
+    }
     if let Some(bore) = bore {
         validator.above_zero(&path.name("bore"), *bore, "m");
     } else if scene_.tools.get(tool).is_some_and(|tool| tool.shape.is_none()) {
@@ -177,6 +180,29 @@ pub(super) fn takes(scene_: &Scene, validator: &mut Validator, path: &Path, remo
     }
     if !(1..=MOST_BURST).contains(burst) {
         validator.must(&path.name("burst"), &format!("between 1 and {MOST_BURST}"), burst);
+    }
+}
+
+/// By what a tool takes elements: a rate or a threshold.
+fn taken_by(validator: &mut Validator, path: &Path, tool: &str, by: (Option<f64>, Option<Threshold>)) {
+    let either =
+        "either `rate`, the volume in a second (m³/s), or `threshold`: StretchAbove(...), EnergyDensityAbove(...)";
+    match by {
+        (Some(rate), None) => validator.above_zero(&path.name("rate"), rate, "m³/s"),
+        (None, Some(threshold)) => {
+            let path = path.name("threshold");
+            let (word, value, least) = match threshold {
+                Threshold::StretchAbove(value) => ("StretchAbove", value, 1.0),
+                Threshold::EnergyDensityAbove(value) => ("EnergyDensityAbove", value, 0.0),
+            };
+            super::action::limit(validator, &path, word, value, value < least);
+        }
+        (Some(_), Some(_)) => {
+            validator.out.error_at(path.name("threshold"), "a `threshold` beside a `rate`").note(either);
+        }
+        (None, None) => {
+            validator.out.error_at(path, format!("the tool `{tool}` takes elements by nothing")).note(either);
+        }
     }
 }
 

@@ -66,6 +66,8 @@ fn json_holds_what_the_page_says() {
             "surface_contact",
             "tool_contact",
             "tool_removal",
+            "tool_threshold",
+            "island_removal",
             "element_removal"
         ]
     );

@@ -1,0 +1,52 @@
+//! Pieces of a mesh: cells that hang together by nodes which they share.
+
+use super::Cells;
+
+/// The piece of a cell that is not there.
+pub const NO_PIECE: u32 = u32::MAX;
+
+impl Cells {
+    /// For each cell the lowest node of its piece, that of all cells which are reached from it over nodes that cells
+    /// share which are there; [`NO_PIECE`] for those that are not. `points`: how many nodes there are.
+    pub fn pieces(&self, points: usize, is_there: impl Fn(usize) -> bool) -> Vec<u32> {
+        let mut lower: Vec<u32> = (0..points as u32).collect();
+        for (cell, nodes) in self.iter().enumerate().filter(|(cell, _)| is_there(*cell)) {
+            debug_assert!(!nodes.is_empty(), "cell {cell} has no nodes");
+            for pair in nodes.windows(2) {
+                let (a, b) = (lowest(&mut lower, pair[0]), lowest(&mut lower, pair[1]));
+                lower[a.max(b) as usize] = a.min(b);
+            }
+        }
+        let piece = |(cell, nodes): (usize, &[u32])| match nodes.first() {
+            Some(&node) if is_there(cell) => lowest(&mut lower, node),
+            _ => NO_PIECE,
+        };
+        self.iter().enumerate().map(piece).collect()
+    }
+}
+
+/// The lowest node that one is known to hang together with; ways there become shorter.
+fn lowest(lower: &mut [u32], mut node: u32) -> u32 {
+    while lower[node as usize] != node {
+        let next = lower[node as usize];
+        lower[node as usize] = lower[next as usize];
+        node = next;
+    }
+    node
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::CellKind;
+
+    #[test]
+    fn cells_that_share_a_node_are_one_piece_until_the_cell_between_them_is_gone() {
+        // 0-1-2-3, 3-4-5-6 over node 3, 10-11-12-13 apart, 7-8-9-6 over node 6
+        let cells = [[1, 0, 2, 3], [3, 4, 5, 6], [13, 12, 11, 10], [7, 8, 9, 6]];
+        let cells = Cells::of(CellKind::Tet4, &cells).unwrap();
+        assert_eq!(cells.pieces(14, |_| true), [0, 0, 10, 0]);
+        assert_eq!(cells.pieces(14, |cell| cell != 1), [0, NO_PIECE, 10, 6]);
+        assert_eq!(cells.pieces(14, |_| false), [NO_PIECE; 4]);
+    }
+}
