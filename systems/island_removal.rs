@@ -26,7 +26,8 @@ pub fn system() -> System {
         "chooses what tools have cut off and is too small to stay",
         "`InTool(...)` under `removal`, but for a `crumb` of 0",
         |world| {
-            let takers = world.query::<&ToolRemovals>().iter(world).flat_map(|removals| &removals.all);
+            let mut query = world.query::<&ToolRemovals>();
+            let takers = query.iter(world).flat_map(|removals| &removals.all);
             match takers.filter(|removal| removal.crumb > 0.0).count() {
                 0 => None,
                 1 => Some("1 tool that takes crumbs".into()),
@@ -89,7 +90,8 @@ fn island_removal(
                 let Some(number) = removals.all.iter().position(takes) else { continue };
                 if removals.all[number].threshold.is_none() {
                     let at = INTAKE_NUMBERS * number;
-                    intake.set(at, intake.get(at) - island.volume);
+                    let left = intake.get(at) - island.volume;
+                    intake.set(at, left);
                 }
                 going.extend(rows);
             }

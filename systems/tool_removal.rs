@@ -30,7 +30,8 @@ pub fn system() -> System {
         "chooses the elements that tools take",
         "`InTool(rate: ...)` under `removal`",
         |world| {
-            let takers = world.query::<&ToolRemovals>().iter(world).flat_map(|removals| &removals.all);
+            let mut query = world.query::<&ToolRemovals>();
+            let takers = query.iter(world).flat_map(|removals| &removals.all);
             match takers.filter(|removal| removal.threshold.is_none()).count() {
                 0 => None,
                 1 => Some("1 tool that takes elements".into()),

@@ -19,7 +19,8 @@ pub fn system() -> System {
         "chooses the elements in tools that pass a threshold",
         "`InTool(threshold: ...)` under `removal`",
         |world| {
-            let takers = world.query::<&ToolRemovals>().iter(world).flat_map(|removals| &removals.all);
+            let mut query = world.query::<&ToolRemovals>();
+            let takers = query.iter(world).flat_map(|removals| &removals.all);
             match takers.filter(|removal| removal.threshold.is_some()).count() {
                 0 => None,
                 1 => Some("1 tool with a threshold".into()),

@@ -10,18 +10,18 @@ impl Cells {
     /// share which are there; [`NO_PIECE`] for those that are not. `points`: how many nodes there are.
     pub fn pieces(&self, points: usize, is_there: impl Fn(usize) -> bool) -> Vec<u32> {
         let mut lower: Vec<u32> = (0..points as u32).collect();
-        for (cell, nodes) in self.iter().enumerate().filter(|(cell, _)| is_there(*cell)) {
-            debug_assert!(!nodes.is_empty(), "cell {cell} has no nodes");
+        for (_, (_, nodes)) in self.iter().enumerate().filter(|(cell, _)| is_there(*cell)) {
             for pair in nodes.windows(2) {
                 let (a, b) = (lowest(&mut lower, pair[0]), lowest(&mut lower, pair[1]));
                 lower[a.max(b) as usize] = a.min(b);
             }
         }
-        let piece = |(cell, nodes): (usize, &[u32])| match nodes.first() {
+        let cells = self.iter().enumerate();
+        let pieces = cells.map(|(cell, (_, nodes))| match nodes.first() {
             Some(&node) if is_there(cell) => lowest(&mut lower, node),
             _ => NO_PIECE,
-        };
-        self.iter().enumerate().map(piece).collect()
+        });
+        pieces.collect()
     }
 }
 

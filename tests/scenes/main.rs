@@ -3,6 +3,7 @@
 
 mod accuracy;
 mod bar;
+mod cataract;
 mod column;
 mod cube;
 mod golden;

@@ -47,3 +47,28 @@ fn the_probe_feels_depth_and_friction_and_leaves_nothing_behind() {
     let left = simulation.displacements("tissue").unwrap().iter().map(|u| u.length()).fold(0.0, f64::max);
     assert!(left < 1e-4, "{left} m");
 }
+
+/// Half of the slide, and the end: the needle is as deep all the time, and feels it but for a ripple from node to node.
+#[test]
+fn the_needle_slides_on_the_surface_and_does_not_pierce_it() {
+    let mut simulation = Simulation::new(&scene("needle", &[]), &reference()).unwrap();
+    let mut all = Vec::new();
+    simulation.advance_to(0.14).unwrap();
+    while simulation.time() < 0.24 {
+        simulation.advance_to(simulation.time() + 1e-3).unwrap();
+        let reading = simulation.tool("needle").unwrap();
+        assert!(reading.force.z > 0.0 && reading.penetration < 1e-9, "{reading:?}");
+        all.push(reading.force);
+    }
+    let mean = all.iter().sum::<glam::DVec3>() / all.len() as f64;
+    let ripple = all.iter().map(|force| (force.z - mean.z).abs()).fold(0.0, f64::max) / mean.z;
+    let ratio = -mean.x / mean.z;
+    println!("mean {mean} N, ripple {ripple}, ratio {ratio}");
+    // friction of 0.1, and the wall in front of a tip that is as deep as it is thick
+    assert!(ratio > 0.1 && ratio < 0.7 && ripple < 0.5, "{mean} {ripple} {ratio}");
+    assert!(mean.y.abs() < 1e-3 * mean.z, "{mean}");
+    simulation.finish().unwrap();
+    assert_eq!(simulation.tool("needle").unwrap().nodes, 0);
+    let left = simulation.displacements("tissue").unwrap().iter().map(|u| u.length()).fold(0.0, f64::max);
+    assert!(left < 1e-4, "{left} m");
+}
