@@ -31,6 +31,9 @@ fn the_same_elements_are_removed() {
             });
             // its part along constrained axes: 300 kg/m³ under 10 cm³ at 1 m/s
             pair.agree::<RemovedWork>(|_, _, _| ROUNDINGS * UNIT * 1e-5);
+            // 300 kg/m³ under 10 cm³ at 1 m/s
+            pair.agree::<RemovedMomentum>(|_, _, _| ROUNDINGS * UNIT * 3e-3);
+            assert!(pair.changed::<RemovedMomentum>() > 10);
             // sums of up to 24 shares
             pair.agree::<Mass>(|pair, body, i| 24.0 * UNIT * pair.host().get::<Mass>(body).unwrap().get(i));
             pair.agree::<DampingCoefficient>(|pair, body, i| {
