@@ -145,7 +145,8 @@ impl Watched {
         // is a part of what is removed
         assert!(spent <= 1.02 * work && spent + gone >= 0.98 * work, "{spent} J of {work} J: {e:?}");
         let tip = &summary.tools[TIP];
-        assert!(tip.work > tip.loss && tip.loss > 0.0, "{tip:?}");
+        // what goes with the tip is half a step behind it; as long as it only sucks it does nothing
+        assert!(tip.loss >= -1e-3 * tip.work && tip.loss <= tip.work, "{tip:?}");
         // means over 10 ms, and the peak
         let mut worst = 0.0_f64;
         for (i, &(start, _)) in self.forces.iter().enumerate() {
