@@ -14,6 +14,7 @@
 //! grab             Displacement                 -> ExternalForce                          per held node
 //! surface_contact  forces, Displacement         -> ExternalForce, ContactForce, SurfaceTouch   per point that may touch
 //! tool_contact     forces, Displacement, motion -> ExternalForce, ToolTouch               per node that may touch
+//! grasp            forces, Displacement, motion -> ExternalForce, ToolHold                per node that may be held
 //! integrate        forces, Mass                 -> DisplacementIncrement, Displacement         per node
 //! tool_removal     Displacement, motion         -> RemovalStep, ToolIntake                per element in reach
 //! element_removal  criteria, times              -> Alive, RestShape, Mass                 per element, per node
@@ -29,6 +30,7 @@ mod element_forces;
 mod element_removal;
 mod gather;
 mod grab;
+mod grasp;
 mod gravity;
 mod integrate;
 mod nodal_force;
@@ -94,6 +96,7 @@ pub fn standard() -> Vec<System> {
         grab::system(),
         surface_contact::system(),
         tool_contact::system(),
+        grasp::system(),
         integrate::system(),
         tool_removal::system(),
         element_removal::system(),

@@ -6,6 +6,7 @@ mod columns;
 mod constraints;
 mod contacts;
 mod fibres;
+mod grasps;
 mod loads;
 mod locality;
 mod material;
@@ -102,6 +103,7 @@ pub fn assemble<'a>(
     loads::spawn(&assembly, world, diagnostics);
     contacts::spawn(&assembly, world, diagnostics);
     surface_contacts::spawn(&assembly, world);
+    grasps::spawn(&assembly, world, diagnostics);
     own_systems::spawn(&assembly, &systems, world, diagnostics);
     Some(assembly)
 }
@@ -115,6 +117,7 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     start::deform(assembly, world, diagnostics);
     contacts::check(assembly, world, diagnostics);
     surface_contacts::check(assembly, world, diagnostics);
+    grasps::check(assembly, world, diagnostics);
     let scene = &assembly.scene.scene;
     if scene.when_unstable() == schema::WhenUnstable::Remove && !scene.is_static() {
         let blocks = assembly.bodies.values().flat_map(|body| &body.blocks);

@@ -5,6 +5,7 @@ mod element_fields;
 mod energies;
 mod fields;
 mod frame;
+mod grasps;
 mod guards;
 mod look;
 mod overlaps;

@@ -5,4 +5,5 @@
 
 #[path = "../physics/configurations.rs"]
 mod configurations;
+mod grasp;
 mod surfaces;

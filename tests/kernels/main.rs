@@ -10,6 +10,7 @@
 mod elements;
 #[path = "../kernel_worlds/mod.rs"]
 mod kernel_worlds;
+mod grasps;
 mod loads;
 mod magnitude;
 mod motion;

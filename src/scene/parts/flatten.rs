@@ -1,7 +1,7 @@
 //! A scene without parts: what they hold, placed, under the names that it has in the scene.
 
 use super::placement::Placement;
-use crate::scene::schema::{Constraint, Contact, Curve, Load, Part, PartScene, Quantity, Scene, When};
+use crate::scene::schema::{Attachment, Constraint, Contact, Curve, Load, Part, PartScene, Quantity, Scene, When};
 use crate::scene::suggest::list;
 use crate::scene::syntax::Path;
 use std::collections::BTreeMap;
@@ -31,6 +31,7 @@ pub fn flatten(scene: &mut Scene) -> Vec<Problem> {
         scene.constraints.extend(found.constraints);
         scene.loads.extend(found.loads);
         scene.contacts.extend(found.contacts);
+        scene.attachments.extend(found.attachments);
         scene.removal.extend(found.removal);
     }
     problems
@@ -106,6 +107,7 @@ fn whole(name: &str, part: Part, path: &Path, problems: &mut Vec<Problem>) -> Op
         content.constraints.extend(found.constraints);
         content.loads.extend(found.loads);
         content.contacts.extend(found.contacts);
+        content.attachments.extend(found.attachments);
         content.removal.extend(found.removal);
     }
     let mut naming = Naming { part: name, only: Only::of(&content), path: inside, problems };
@@ -235,6 +237,13 @@ impl Naming<'_> {
                 Contact::Itself { body, .. } => self.body(&path, body),
             }
         }
+        for (number, attachment) in content.attachments.iter_mut().enumerate() {
+            let path = self.path.name("attachments").index(number);
+            let Attachment::Grasp { tool, body, closed, .. } = attachment;
+            self.name(tool);
+            self.body(&path, body);
+            self.curve(closed);
+        }
         for (number, removal) in content.removal.iter_mut().enumerate() {
             let path = self.path.name("removal").index(number);
             self.body(&path, &mut removal.body);
@@ -281,6 +290,7 @@ impl Naming<'_> {
         content.loads.iter_mut().for_each(|load| placement.load(load));
         content.tools.values_mut().for_each(|tool| placement.tool(tool));
         content.contacts.iter_mut().for_each(|contact| placement.contact(contact));
+        content.attachments.iter_mut().for_each(|attachment| placement.attachment(attachment));
         content.removal.iter_mut().for_each(|removal| placement.removal(removal));
         content.probes.values_mut().for_each(|probe| placement.probe(probe));
     }

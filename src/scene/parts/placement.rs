@@ -2,7 +2,7 @@
 
 use crate::mesh::{angles_about_axes, rotation_about_axes};
 use crate::scene::schema::{
-    Axis, Body, Constraint, Contact, Direction, Load, Material, Part, Probe, Quantity, Removal, Select, Start, Tool,
+    Attachment, Axis, Body, Constraint, Contact, Direction, Load, Material, Part, Probe, Quantity, Removal, Select, Start, Tool,
     When,
 };
 use glam::{DMat3, DQuat, DVec3};
@@ -225,6 +225,14 @@ impl Placement {
             Contact::Tool { on, .. } => self.select(on),
             Contact::Between { thickness, .. } | Contact::Itself { thickness, .. } => self.length(thickness),
         }
+    }
+
+    pub fn attachment(&self, attachment: &mut Attachment) {
+        let Attachment::Grasp { on, jaws, reach, .. } = attachment;
+        on.iter_mut().for_each(|on| self.select(on));
+        // in the frame of the tool, which is placed
+        jaws.iter_mut().for_each(|jaws| *jaws = jaws.scaled(self.scale));
+        reach.iter_mut().for_each(|reach| self.length(reach));
     }
 
     pub fn removal(&self, removal: &mut Removal) {

@@ -1,6 +1,6 @@
 //! Parts of scenes: what stands in files of its own, and may stand in a scene several times.
 
-use super::{Body, Constraint, Contact, Load, Material, Probe, Removal, Tool};
+use super::{Attachment, Body, Constraint, Contact, Load, Material, Probe, Removal, Tool};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -53,6 +53,8 @@ pub struct PartScene {
     pub tools: BTreeMap<String, Tool>,
     /// What touches what in it.
     pub contacts: Vec<Contact>,
+    /// What holds what in it.
+    pub attachments: Vec<Attachment>,
     /// Which elements of its bodies go, and when.
     pub removal: Vec<Removal>,
     /// What to observe of it, by name.

@@ -1,6 +1,6 @@
 //! Selections by place, name or number, and probes on them.
 
-use super::{Constraint, Contact, Scene};
+use super::{Attachment, Constraint, Contact, Scene};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -201,7 +201,9 @@ impl Scene {
             Contact::Tool { on, .. } => Some(on),
             Contact::Between { .. } | Contact::Itself { .. } => None,
         });
-        regions.chain(constraints).chain(loads).chain(systems).chain(contacts).chain(removal).chain(probes)
+        let attachments = self.attachments.iter().filter_map(Attachment::on);
+        let all = regions.chain(constraints).chain(loads).chain(systems).chain(contacts).chain(attachments);
+        all.chain(removal).chain(probes)
     }
 }
 

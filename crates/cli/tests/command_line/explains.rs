@@ -65,6 +65,7 @@ fn json_holds_what_the_page_says() {
             "grab",
             "surface_contact",
             "tool_contact",
+            "grasp",
             "tool_removal",
             "element_removal"
         ]
