@@ -3,6 +3,7 @@
 //! ```text
 //! boundary         Prescribed                   -> DisplacementIncrement of constrained axes   per node
 //! suction_mouth    Displacement, Alive, motion  -> SuctionMarks, SuctionPressure          per face
+//! suture_tension   Displacement                 -> SutureForce, SutureState                per suture
 //! nodal_volume     Displacement, RestShape      -> NodalVolumeChange                      per element, per node
 //! element_forces   Displacement, RestShape, law -> ElementForce                           per element, patch by patch
 //! gather           ElementForce, Corners        -> InternalForce (ExternalForce: zero)    per node, over its patches, in a fixed order
@@ -11,8 +12,10 @@
 //! pressure         Displacement                 -> ExternalForce                          per loaded node
 //! traction                                      -> ExternalForce                          per loaded node
 //! suction          Displacement                 -> ExternalForce                          per sucked node
+//! suture           SutureForce                  -> ExternalForce                          per sutured node
 //! grab             Displacement                 -> ExternalForce                          per held node
 //! surface_contact  forces, Displacement         -> ExternalForce, ContactForce, SurfaceTouch   per point that may touch
+//! glue             forces, Displacement         -> ExternalForce, TieState                per tie
 //! tool_contact     forces, Displacement, motion -> ExternalForce, ToolTouch               per node that may touch
 //! grasp            forces, Displacement, motion -> ExternalForce, ToolHold                per node that may be held
 //! integrate        forces, Mass                 -> DisplacementIncrement, Displacement         per node
@@ -29,6 +32,7 @@ mod boundary;
 mod element_forces;
 mod element_removal;
 mod gather;
+mod glue;
 mod grab;
 mod grasp;
 mod gravity;
@@ -46,6 +50,8 @@ mod registry;
 mod suction;
 mod suction_mouth;
 mod surface_contact;
+mod suture;
+mod suture_tension;
 mod tool_contact;
 mod tool_removal;
 mod traction;
@@ -85,6 +91,7 @@ pub fn standard() -> Vec<System> {
     vec![
         boundary::system(),
         suction_mouth::system(),
+        suture_tension::system(),
         nodal_volume::system(),
         element_forces::system(),
         gather::system(),
@@ -93,8 +100,10 @@ pub fn standard() -> Vec<System> {
         pressure::system(),
         traction::system(),
         suction::system(),
+        suture::system(),
         grab::system(),
         surface_contact::system(),
+        glue::system(),
         tool_contact::system(),
         grasp::system(),
         integrate::system(),

@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 /// Spawns what may hold each body.
 pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
     let scene = &assembly.scene.scene;
-    if scene.attachments.is_empty() {
+    if !scene.attachments.iter().any(|attachment| attachment.tool().is_some()) {
         return;
     }
     // what is wrong with tools that touch, too, has been said
@@ -24,7 +24,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let mut grasps = Vec::new();
         let reference = reference(&body.placed.mesh.points);
         for (number, attachment) in scene.attachments.iter().enumerate().filter(|(_, all)| all.holds(name)) {
-            let Attachment::Grasp { tool, on, jaws, reach, closed, strength, .. } = attachment;
+            let Attachment::Grasp { tool, on, jaws, reach, closed, strength, .. } = attachment else { continue };
             // what is wrong with it has been said
             let (Some(found), Some(own)) = (scene.tools.get(tool), geometries.get(tool)) else { continue };
             let jaws = jaws.clone().and_then(|shape| Solid::new(shape, 0.0).ok()).map(Geometry::Analytic);
@@ -137,8 +137,7 @@ fn in_jaws(
         let message = format!("there is nothing of `{name}` in the jaws of `{tool}`, which are closed at the start");
         diagnostics.error_at(path.as_str(), message).note(far).note("give `reach`, or nodes by `on` without `jaws`");
     } else {
-        let message =
-            format!("as `{name}` is at the start, nothing of it is in the jaws of `{tool}` when they close");
+        let message = format!("as `{name}` is at the start, nothing of it is in the jaws of `{tool}` when they close");
         diagnostics.warn_at(path.as_str(), message).note(format!("at {closes:.3e} s {far}"));
     }
 }

@@ -100,7 +100,7 @@ fn unheld(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnost
         body.velocity != glam::DVec3::ZERO || body.spin != glam::DVec3::ZERO
     };
     for (name, body) in &assembly.bodies {
-        let touched = world.get::<Grasps>(body.entity).is_some()
+        let touched = assembly.scene.scene.attachments.iter().any(|attachment| attachment.holds(name))
             || world.get::<ToolContacts>(body.entity).is_some()
             || world.get::<ContactForce>(body.entity).is_some();
         if loaded.contains(&body.entity) && !touched && !held.contains(&body.entity) && !moves(name) {

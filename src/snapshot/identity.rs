@@ -125,6 +125,13 @@ fn sets_in_use(world: &mut World) -> u64 {
     world.query::<&OwnLoad>().iter(world).for_each(|l| {
         note("system", l.signal, &[bytes(l.rows.as_deref().unwrap_or_default())]);
     });
+    if let Some(glue) = world.get_resource::<Glue>() {
+        for tie in &glue.ties {
+            let nodes: Vec<u8> =
+                tie.nodes.iter().flat_map(|(row, weight)| [bytes(&[*row]), bytes(&[*weight])].concat()).collect();
+            note("tie", tie.number, &[&nodes, bytes(&tie.corners), bytes(&tie.weights), bytes(&tie.gap.to_array())]);
+        }
+    }
     world.query::<&RemovalCriterion>().iter(world).for_each(|r| {
         note("removal", r.measure as usize, &[bytes(&r.rows), &r.limit.to_le_bytes()]);
     });

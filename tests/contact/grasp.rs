@@ -3,13 +3,13 @@
 use crate::configurations::{configurations, near, scene_of};
 use glam::{DQuat, DVec3};
 use sinew::components::{DisplacementIncrement, Precision};
-use sinew::{BackendChoice, Options, SceneFile, Simulation};
+use sinew::{BackendChoice, Options, Simulation};
 
 const TISSUE: &str = "\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 20)";
 
 /// A cube of 2 cm (78.48 mN) that lies on a table until forceps close on its upper face.
 const LIFTED: &str =
-    "(duration: 3, bodies: {\"b\": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (3, 3, 3)), material: \"m\")},
+    "(duration: 3, bodies: {\"b\": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (3, 3, 3), elements: Hex8), material: \"m\")},
     materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45), damping: 20)},
     loads: [Gravity(acceleration: (0, 0, -9.81))],
     tools: {\"table\": (shape: Plane()), \"forceps\": (shape: Capsule(length: 0.05, radius: 0.004), path: [
@@ -59,9 +59,9 @@ fn a_cube_is_grasped_lifted_carried_and_let_go() {
         let reading = simulation.tool("forceps").unwrap();
         let what = format!("{}: {reading:?}", run.name);
         near(&what, -reading.force.z, weight, weight, 1e-4);
-        near(&what, reading.force.truncate().length(), 0.0, weight, run.bound(1e-6, 1e-4));
+        near(&what, reading.force.truncate().length(), 0.0, weight, 1e-4);
         // its middle is where the tool is, and what it weighs has no moment about that
-        near(&what, reading.torque.length(), 0.0, 0.01 * weight, 1e-4);
+        near(&what, reading.torque.length(), 0.0, 0.01 * weight, 1e-3);
         assert_eq!(simulation.tool("table").unwrap().nodes, 0, "{what}");
         let lifted = simulation.displacements("b").unwrap();
         let rest = simulation.rest_positions("b").unwrap();
@@ -91,10 +91,13 @@ fn a_cube_is_grasped_lifted_carried_and_let_go() {
         }
         let reading = simulation.tool("forceps").unwrap();
         assert_eq!((reading.nodes, reading.force), (0, DVec3::ZERO), "{what}");
-        near(&what, last.x, 8e-3 * 0.1, 8e-4, 0.3);
+        assert!(last.x > 0.5 * 8e-3 * 0.1, "{what}: it goes on as the tool has drawn it: {last}");
         let energies = simulation.energies().unwrap();
-        // gravity has taken what the cube was lifted by
-        assert!(reading.work > 0.95 * weight * 0.029 && reading.work < 1.2 * weight * 0.03, "{what}: {reading:?}");
+        // gravity has taken what the cube was lifted by, damping what 3 cm at 7.5 cm/s and 3.1 cm at 10 cm/s cost, and what
+        // is left is how it moves; to a tenth, as it swings on the way
+        let damped = 20.0 * 8e-3 * (0.075 * 0.03 + 0.1 * 0.031);
+        let (least, most) = (weight * 0.029, weight * 0.03 + 1.1 * damped + 0.5 * 8e-3 * 0.01);
+        assert!(reading.work > least && reading.work < most, "{what}: {reading:?}");
         assert!(energies.load_work.unwrap().abs() < reading.work, "{what}");
     }
 }
@@ -134,7 +137,7 @@ fn what_is_held_turns_with_the_tool() {
 fn a_tool_takes_what_is_inside_it_when_it_closes() {
     for run in configurations() {
         let jaws = ", jaws: Box(size: (0.012, 0.004, 0.0101))";
-        for (reach, nodes) in [("", 0), (", reach: 1.2e-3", 1), (", reach: 5.7e-3", 6), (jaws, 3)] {
+        for (reach, nodes) in [("", 0), (", reach: 1.2e-3", 1), (", reach: 5.7e-3", 9), (jaws, 3)] {
             let mut simulation = run.start(&format!(
                 "(duration: 0.2, bodies: {{\"b\": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (4, 4, 4)), material: \"m\")}},
                 materials: {{{TISSUE}}},
@@ -151,14 +154,33 @@ fn a_tool_takes_what_is_inside_it_when_it_closes() {
     }
 }
 
+/// A program opens and closes it by an input.
+#[test]
+fn a_program_closes_and_opens_a_tool() {
+    for run in configurations() {
+        let mut simulation = run.start(&format!(
+            "(duration: 1, bodies: {{\"b\": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (2, 2, 2)), material: \"m\")}},
+            materials: {{{TISSUE}}}, constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))],
+            tools: {{\"ball\": (shape: Sphere(radius: 4e-3), at: (0.01, 0.01, 0.022))}},
+            attachments: [Grasp(tool: \"ball\", closed: Input(name: \"squeeze\"))])"
+        ));
+        for (squeeze, nodes) in [(0.0, 0), (1.0, 1), (0.4, 0), (0.6, 1), (0.0, 0)] {
+            simulation.set_input("squeeze", squeeze).unwrap();
+            simulation.advance(20).unwrap();
+            assert_eq!(simulation.tool("ball").unwrap().nodes, nodes, "{}: {squeeze}", run.name);
+        }
+    }
+}
+
 /// A node slips out above the strength: a bar of 4 nodes at its end bears 4 times that.
 #[test]
 fn nodes_slip_out_above_the_strength() {
     for run in configurations() {
         let strength = 2e-3;
         let mut simulation = run.start(&format!(
-            "(duration: 2, bodies: {{\"b\": (mesh: Box(size: (0.01, 0.01, 0.04), cells: (1, 1, 4)), material: \"m\")}},
-            materials: {{{TISSUE}}}, constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))],
+            "(duration: 2, bodies: {{\"b\": (mesh: Box(size: (0.01, 0.01, 0.04), cells: (1, 1, 4), elements: Hex8), material: \"m\")}},
+            materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0), damping: 20)}},
+            constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))],
             tools: {{\"grip\": (shape: Sphere(radius: 0.01), at: (0.005, 0.005, 0.04),
                 moves: [(displacement: (0, 0, 4e-3), curve: Ramp(end: 2))])}},
             attachments: [Grasp(tool: \"grip\", on: Plane(normal: (0, 0, 1), at: 0.04), closed: Step(), strength: {strength})])"
@@ -169,8 +191,8 @@ fn nodes_slip_out_above_the_strength() {
             most = most.max(-simulation.tool("grip").unwrap().force.z);
         }
         assert_eq!(simulation.tool("grip").unwrap().nodes, 0, "{}", run.name);
-        // it also holds them against what narrows the bar's end
-        assert!(most > 4.0 * strength * 0.6 && most <= 4.0 * strength * 1.0001, "{}: {most}", run.name);
+        // nothing narrows the bar, and all four bear the same
+        assert!(most > 4.0 * strength * 0.98 && most <= 4.0 * strength * 1.0001, "{}: {most}", run.name);
     }
 }
 

@@ -8,9 +8,9 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod elements;
+mod grasps;
 #[path = "../kernel_worlds/mod.rs"]
 mod kernel_worlds;
-mod grasps;
 mod loads;
 mod magnitude;
 mod motion;

@@ -6,6 +6,7 @@ mod bar;
 mod column;
 mod cube;
 mod golden;
+mod grasp;
 mod lens;
 mod lobe;
 mod parameters;

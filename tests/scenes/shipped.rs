@@ -8,9 +8,10 @@ use sinew::systems::Registry;
 use sinew::{BackendChoice, Options, Simulation};
 
 /// The scenes, and what makes each of them short and coarse.
-pub const SCENES: [(&str, &[&str]); 12] = [
+pub const SCENES: [(&str, &[&str]); 13] = [
     ("cube_under_gravity", &["bodies.cube.mesh.cells=(5, 5, 5)", "duration=0.3"]),
     ("folded_strip", &["bodies.strip.mesh.cells=(24, 3, 2)", "duration=0.5"]),
+    ("grasped_liver", &["duration=0.3"]),
     ("indentation", &["bodies.layer.mesh.cells=(12, 12, 4)"]),
     ("probe", &["bodies.tissue.mesh.cells=(16, 8, 4)", "duration=0.2"]),
     ("retracted_lobe", &["bodies.lobe.mesh.across=8", "duration=0.3"]),

@@ -163,6 +163,11 @@ impl Naming<'_> {
         *map = std::mem::take(map).into_iter().map(|(key, value)| (format!("{}.{key}", self.part), value)).collect();
     }
 
+    /// An attachment has a name in its part, too.
+    fn attached(&self, number: usize, name: &mut Option<String>) {
+        self.name(name.get_or_insert_with(|| number.to_string()));
+    }
+
     fn curve(&self, curve: &mut Curve) {
         if let Curve::Input { name, .. } = curve {
             self.name(name);
@@ -239,10 +244,29 @@ impl Naming<'_> {
         }
         for (number, attachment) in content.attachments.iter_mut().enumerate() {
             let path = self.path.name("attachments").index(number);
-            let Attachment::Grasp { tool, body, closed, .. } = attachment;
-            self.name(tool);
-            self.body(&path, body);
-            self.curve(closed);
+            match attachment {
+                Attachment::Grasp { tool, body, closed, .. } => {
+                    self.name(tool);
+                    self.body(&path, body);
+                    self.curve(closed);
+                }
+                Attachment::Suture { name, from, to, curve, .. } => {
+                    self.attached(number, name);
+                    self.body(&path.name("from"), &mut from.body);
+                    self.body(&path.name("to"), &mut to.body);
+                    self.curve(curve);
+                }
+                Attachment::Tie { name, from, to, .. } => {
+                    self.attached(number, name);
+                    self.body(&path.name("from"), &mut from.body);
+                    self.body(&path.name("to"), &mut to.body);
+                }
+                Attachment::Glue { name, bodies: (a, b), .. } => {
+                    self.attached(number, name);
+                    self.name(a);
+                    self.name(b);
+                }
+            }
         }
         for (number, removal) in content.removal.iter_mut().enumerate() {
             let path = self.path.name("removal").index(number);
@@ -257,6 +281,10 @@ impl Naming<'_> {
             match &mut probe.what {
                 Quantity::ToolForce { tool } | Quantity::ToolTorque { tool } | Quantity::ToolPlace { tool } => {
                     self.name(tool);
+                    probe.body.iter_mut().for_each(|body| self.name(body));
+                }
+                Quantity::AttachmentForce { attachment } | Quantity::SutureLength { attachment } => {
+                    self.name(attachment);
                     probe.body.iter_mut().for_each(|body| self.name(body));
                 }
                 _ => self.body(&path, &mut probe.body),

@@ -19,7 +19,7 @@ pub use crate::mesh::ElementKind;
 pub use crate::tools::Shape;
 pub use accuracy::{Accuracy, AccuracyReference};
 pub use action::{Axis, Constraint, Curve, Removal, When};
-pub use attachment::Attachment;
+pub use attachment::{Attachment, Point};
 pub use body::{Body, MeshSource, Region, SkinFile, Start};
 pub use load::{Load, LoadParts, Share};
 pub use material::{
