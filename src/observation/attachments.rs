@@ -53,6 +53,9 @@ pub fn read_attachment(world: &mut World, number: usize) -> Result<Option<Attach
             reading.broke_at = Some(reading.broke_at.map_or(when, |first| first.min(when)));
         }
     }
+    if let Some(reading) = &mut reading {
+        reading.broken.sort_unstable();
+    }
     Ok(reading)
 }
 

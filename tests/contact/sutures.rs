@@ -124,7 +124,7 @@ fn a_stiff_suture_counts_for_the_step() {
     };
     let (soft, mut stiff) = (step("1"), step("1e5"));
     assert!(stiff.time_step() < 0.2 * soft.time_step(), "{} and {} s", stiff.time_step(), soft.time_step());
-    // so near to the limit energies of a step swing by some ten percent, but do not grow
+    // it goes slack and taut: energies in the middle of steps swing, but do not grow
     let mut most = |steps: u32| {
         let each = (0..steps).map(|_| {
             stiff.advance(1).unwrap();
