@@ -3,6 +3,7 @@
 //! ```text
 //! boundary         Prescribed                   -> DisplacementIncrement of constrained axes   per node
 //! suction_mouth    Displacement, Alive, motion  -> SuctionMarks, SuctionPressure          per face
+//! suture_tension   Displacement                 -> SutureForce, SutureState                per suture
 //! nodal_volume     Displacement, RestShape      -> NodalVolumeChange                      per element, per node
 //! element_forces   Displacement, RestShape, law -> ElementForce                           per element, patch by patch
 //! gather           ElementForce, Corners        -> InternalForce (ExternalForce: zero)    per node, over its patches, in a fixed order
@@ -11,9 +12,12 @@
 //! pressure         Displacement                 -> ExternalForce                          per loaded node
 //! traction                                      -> ExternalForce                          per loaded node
 //! suction          Displacement                 -> ExternalForce                          per sucked node
+//! suture           SutureForce                  -> ExternalForce                          per sutured node
 //! grab             Displacement                 -> ExternalForce                          per held node
 //! surface_contact  forces, Displacement         -> ExternalForce, ContactForce, SurfaceTouch   per point that may touch
+//! glue             forces, Displacement         -> ExternalForce, TieState                per tie
 //! tool_contact     forces, Displacement, motion -> ExternalForce, ToolTouch               per node that may touch
+//! grasp            forces, Displacement, motion -> ExternalForce, ToolHold                per node that may be held
 //! integrate        forces, Mass                 -> DisplacementIncrement, Displacement         per node
 //! tool_removal     Displacement, motion         -> RemovalStep, ToolIntake                per element in reach
 //! tool_threshold   Displacement, motion         -> RemovalStep                            per element in reach
@@ -30,7 +34,9 @@ mod boundary;
 mod element_forces;
 mod element_removal;
 mod gather;
+mod glue;
 mod grab;
+mod grasp;
 mod gravity;
 mod integrate;
 mod island_removal;
@@ -47,6 +53,8 @@ mod registry;
 mod suction;
 mod suction_mouth;
 mod surface_contact;
+mod suture;
+mod suture_tension;
 mod tool_contact;
 mod tool_removal;
 mod tool_threshold;
@@ -87,6 +95,7 @@ pub fn standard() -> Vec<System> {
     vec![
         boundary::system(),
         suction_mouth::system(),
+        suture_tension::system(),
         nodal_volume::system(),
         element_forces::system(),
         gather::system(),
@@ -95,9 +104,12 @@ pub fn standard() -> Vec<System> {
         pressure::system(),
         traction::system(),
         suction::system(),
+        suture::system(),
         grab::system(),
         surface_contact::system(),
+        glue::system(),
         tool_contact::system(),
+        grasp::system(),
         integrate::system(),
         tool_removal::system(),
         tool_threshold::system(),

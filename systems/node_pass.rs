@@ -33,6 +33,8 @@ pub(super) struct BodyColumns {
     previous_prescribed: Option<&'static mut PreviousPrescribedIncrement>,
     contacts: Option<&'static ToolContacts>,
     touch: Option<&'static mut ToolTouch>,
+    grasps: Option<&'static Grasps>,
+    hold: Option<&'static mut ToolHold>,
 }
 
 impl BodyColumnsItem<'_, '_> {
@@ -64,6 +66,11 @@ impl BodyColumnsItem<'_, '_> {
                 rows: &contacts.rows,
                 values: touch.slice_mut(),
                 numbers: contacts.numbers(),
+            }),
+            holds: self.grasps.zip(self.hold.as_mut()).map(|(grasps, hold)| Touches {
+                rows: &grasps.rows,
+                values: hold.slice_mut(),
+                numbers: grasps.numbers(),
             }),
         }
     }

@@ -16,7 +16,7 @@ use crate::shader;
 use crate::tools::Geometry;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
-use row::{ToolRow, row_of};
+pub(super) use row::{ToolRow, row_of};
 
 /// The explicit Lagrange correction of the predicted step: each node's next step d* is predicted as `integrate` will
 /// find it, and where it would end inside a tool, the force is found that makes it end on the surface. That force is a
@@ -319,6 +319,12 @@ fn counts(contacts: &ToolContacts) -> String {
     format!("const TOOLS: u32 = {tools}u;\nconst NUMBERS: u32 = {numbers}u;\n")
 }
 
+/// What takes the place of distances to grids where there are none.
+pub(super) fn no_grid() -> Fragment {
+    let text = "fn grid_distance(row: ToolRow, y: vec3<f32>) -> vec4<f32> {\n    return vec4<f32>(0.0);\n}\n";
+    Fragment::new("generated: no tool is a grid", text)
+}
+
 /// One stage for each body that tools may touch.
 fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
     let all: Vec<(Entity, ToolContacts)> =
@@ -372,10 +378,7 @@ fn stage(body: Entity, contacts: &ToolContacts, world: &mut World, buffers: &mut
         stage = stage.column(DampingCoefficient::NAME, buffers.column(body, DampingCoefficient::NAME));
     }
     stage = if grids.is_empty() {
-        stage.own(Fragment::new(
-            "generated: no tool is a grid",
-            "fn grid_distance(row: ToolRow, y: vec3<f32>) -> vec4<f32> {\n    return vec4<f32>(0.0);\n}\n",
-        ))
+        stage.own(no_grid())
     } else {
         let values = buffers.constants("distances of tools".into(), bytemuck::cast_slice(&grids));
         stage.own(shader!("tool_grid")).own(shader!("tool_of_grid")).bind("tool_grid_values", values)

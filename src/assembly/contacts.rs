@@ -79,7 +79,7 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
 }
 
 /// What the tools are made of, by name.
-fn geometries(scene: &SceneFile, diagnostics: &mut Diagnostics) -> BTreeMap<String, Geometry> {
+pub(super) fn geometries(scene: &SceneFile, diagnostics: &mut Diagnostics) -> BTreeMap<String, Geometry> {
     let mut all = BTreeMap::new();
     for (name, tool) in &scene.scene.tools {
         if let Some(shape) = &tool.shape {
@@ -201,7 +201,7 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
             if clock.relaxation.is_some() {
                 continue;
             }
-            jumps(&contact.tool, tool, diagnostics);
+            jumps(&contact.tool, tool, "nodes that it meets there are pushed out by and by", diagnostics);
             let reach = contact.geometry.bounding_sphere().map_or(0.0, |(center, radius)| center.length() + radius);
             let speed = motion.fastest(reach);
             if speed * clock.time_step > FARTHEST * contacts.edge {
@@ -220,22 +220,20 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
     }
 }
 
-/// Warns of moves that happen all at once: what is in the way is then pushed out by and by.
-fn jumps(name: &str, tool: &Tool, diagnostics: &mut Diagnostics) {
+/// Warns of moves that happen all at once, and of what becomes of nodes then.
+pub(super) fn jumps(name: &str, tool: &Tool, nodes: &str, diagnostics: &mut Diagnostics) {
     for (number, part) in tool.moves.iter().enumerate() {
         let (message, note) = match &part.curve {
-            Curve::Step { start, end } if *start > 0.0 || end.is_some() => (
-                "the tool jumps: nodes that it meets there are pushed out by and by",
-                "let it take time: curve: Smooth(end: ...), Ramp(end: ...) or Table([...])",
-            ),
-            Curve::Input { rate: None, .. } => (
-                "an input without `rate` lets the tool jump: nodes that it meets there are pushed out by and by",
-                "bound its change a second: Input(name: ..., rate: ...)",
-            ),
+            Curve::Step { start, end } if *start > 0.0 || end.is_some() => {
+                ("the tool jumps", "let it take time: curve: Smooth(end: ...), Ramp(end: ...) or Table([...])")
+            }
+            Curve::Input { rate: None, .. } => {
+                ("an input without `rate` lets the tool jump", "bound its change a second: Input(name: ..., rate: ...)")
+            }
             _ => continue,
         };
         let path = format!("tools.\"{name}\".moves[{number}].curve");
-        diagnostics.warn_at(path.as_str(), message).note(note);
+        diagnostics.warn_at(path.as_str(), format!("{message}: {nodes}")).note(note);
     }
 }
 

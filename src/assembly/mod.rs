@@ -1,11 +1,14 @@
 //! From a scene to a world of entities: meshes are made or read, renumbered for locality and turned into bodies; names
 //! and places become rows.
 
+mod anchors;
 mod body;
 mod columns;
 mod constraints;
 mod contacts;
 mod fibres;
+mod glue;
+mod grasps;
 mod loads;
 mod locality;
 mod material;
@@ -22,6 +25,7 @@ mod skins;
 mod start;
 mod suction;
 mod surface_contacts;
+mod sutures;
 mod time_step;
 mod tool_removal;
 mod user_laws;
@@ -102,6 +106,9 @@ pub fn assemble<'a>(
     loads::spawn(&assembly, world, diagnostics);
     contacts::spawn(&assembly, world, diagnostics);
     surface_contacts::spawn(&assembly, world);
+    grasps::spawn(&assembly, world, diagnostics);
+    sutures::spawn(&assembly, world, diagnostics);
+    glue::spawn(&assembly, world, diagnostics);
     own_systems::spawn(&assembly, &systems, world, diagnostics);
     Some(assembly)
 }
@@ -115,6 +122,8 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     start::deform(assembly, world, diagnostics);
     contacts::check(assembly, world, diagnostics);
     surface_contacts::check(assembly, world, diagnostics);
+    grasps::check(assembly, world, diagnostics);
+    sutures::measure(world, diagnostics);
     let scene = &assembly.scene.scene;
     if scene.when_unstable() == schema::WhenUnstable::Remove && !scene.is_static() {
         let blocks = assembly.bodies.values().flat_map(|body| &body.blocks);

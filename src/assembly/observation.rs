@@ -15,12 +15,17 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let every = probe.every.unwrap_or_else(|| scene.fields_every());
         let every = Cadence::new(every, time_step);
         let (what, peak) = (probe.what.clone(), probe.peak);
+        let attachments = scene.attachments.iter().enumerate();
+        let named = |wanted: &String| {
+            attachments.clone().find(|(number, of)| of.name(*number).as_ref() == Some(wanted)).map(|(number, _)| number)
+        };
+        let attachment = probe.what.attachment().and_then(named);
         let whole = Select::All;
         let of_volume = what == Quantity::RemovedVolume;
         let Some(on) = probe.on.as_ref().or(of_volume.then_some(&whole)) else {
-            // of a tool, whatever it touches
+            // of a tool, whatever it touches, or of an attachment
             let (nodes, elements) = (Vec::new(), Vec::new());
-            world.spawn((Label(name.clone()), Probe { what, nodes, elements, volume: 0.0, every, peak }));
+            world.spawn((Label(name.clone()), Probe { what, nodes, elements, volume: 0.0, attachment, every, peak }));
             continue;
         };
         let Some(body) = assembly.body(&probe.body) else { continue };
@@ -43,7 +48,11 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             nodes = body.rows_of(&marks);
         }
         let volume = if of_volume { volume_left(&body.blocks, &elements, world) } else { 0.0 };
-        world.spawn((Label(name.clone()), Probe { what, nodes, elements, volume, every, peak }, OfBody(body.entity)));
+        world.spawn((
+            Label(name.clone()),
+            Probe { what, nodes, elements, volume, attachment, every, peak },
+            OfBody(body.entity),
+        ));
     }
 }
 

@@ -40,6 +40,12 @@ pub(super) fn insert_fictitious_masses(assembly: &Assembly<'_>, world: &mut Worl
                 }
             }
         }
+        // what springs at a node are stable with at this step
+        if let Some(sutured) = world.get::<Sutured>(parts.entity) {
+            for (&row, stiffness) in sutured.rows.iter().zip(&sutured.stiffness) {
+                mass[row as usize] += 0.25 * stiffness * time_step * time_step;
+            }
+        }
         let mass = Reals::from_f64(assembly.precision, mass.into_iter());
         world.entity_mut(parts.entity).insert(FictitiousMass(mass));
     }

@@ -242,7 +242,8 @@ pub fn place_in_buffer<C: Column>(entity: Entity, world: &World) -> usize {
 /// Every kind of column there is, as the modules declare them.
 pub fn all_columns() -> Vec<ColumnAccess> {
     let of_tools = [super::tool::accesses(), super::tool_removal::accesses(), super::suction::accesses()].concat();
-    [super::nodes::accesses(), super::block::accesses(), super::contact::accesses(), of_tools].concat()
+    let attached = [super::grasp::accesses(), super::suture::accesses(), super::glue::accesses()].concat();
+    [super::nodes::accesses(), super::block::accesses(), super::contact::accesses(), of_tools, attached].concat()
 }
 
 /// Declares components that are columns, each with its name, its [`Role`], what its [`Rows`] belong to and, where they

@@ -14,6 +14,8 @@ pub struct Probe {
     pub elements: Vec<(u32, u32)>,
     /// Volume at rest of these elements at the start (m³), where it is of what is gone.
     pub volume: f64,
+    /// The place in the scene of the attachment that it is of, if it is of one.
+    pub attachment: Option<usize>,
     /// How often.
     pub every: Cadence,
     /// Whether it holds of each number the value of the largest size so far.

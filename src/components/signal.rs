@@ -35,6 +35,12 @@ pub enum Signal {
         /// The point (m).
         reference: DVec3,
     },
+    /// A curve at the beginning of the step, and 1 where that is ½ or more, else 0: one slot. On the way to rest it is as
+    /// at the end.
+    Factor {
+        /// Course in time.
+        curve: Curve,
+    },
 }
 
 /// What a curve is the course of.
@@ -44,13 +50,14 @@ pub(super) enum Use {
     Motion,
     /// At the beginning of the step.
     MotionBefore,
+    Factor,
 }
 
 impl Signal {
     /// How many slots it fills.
     pub fn slots(&self) -> usize {
         match self {
-            Signal::Load { .. } => 1,
+            Signal::Load { .. } | Signal::Factor { .. } => 1,
             Signal::Motion { .. } => 3,
             Signal::Pose { .. } => 6,
         }
@@ -59,7 +66,9 @@ impl Signal {
     /// Its courses in time, as the scene has them.
     fn curves(&self) -> &[Curve] {
         match self {
-            Signal::Load { curve, .. } | Signal::Motion { curve, .. } => std::slice::from_ref(curve),
+            Signal::Load { curve, .. } | Signal::Motion { curve, .. } | Signal::Factor { curve } => {
+                std::slice::from_ref(curve)
+            }
             Signal::Pose { motion, .. } => &motion.curves,
         }
     }
@@ -67,7 +76,7 @@ impl Signal {
     /// Whether it ever moves anything.
     fn moves(&self) -> bool {
         match self {
-            Signal::Load { .. } => false,
+            Signal::Load { .. } | Signal::Factor { .. } => false,
             Signal::Motion { displacement, gradient, rotation, .. } => {
                 (*displacement, *gradient, *rotation) != (DVec3::ZERO, DMat3::ZERO, DVec3::ZERO)
             }
@@ -95,6 +104,10 @@ impl Signal {
                 let [end, begin] = poses(motion, times, factor);
                 Pose { at: end.at - *reference, ..end }.fill(&mut slots[..3]);
                 end.less(&begin).fill(&mut slots[3..6]);
+            }
+            Signal::Factor { .. } => {
+                let now = factor(0, Use::Factor);
+                slots[0] = [now, f64::from(now >= 0.5), 0.0, 0.0];
             }
         }
     }
@@ -188,7 +201,7 @@ impl Signals {
         self.fill(times, |curve, of| match of {
             Use::Load => curve.mean(window),
             Use::Motion => curve.value(times[1]),
-            Use::MotionBefore => curve.value(times[0]),
+            Use::MotionBefore | Use::Factor => curve.value(times[0]),
         });
     }
 
@@ -198,6 +211,7 @@ impl Signals {
         self.fill(shares.map(|share| share * time), |curve, of| match of {
             Use::Load | Use::Motion => shares[1] * curve.value(time),
             Use::MotionBefore => shares[0] * curve.value(time),
+            Use::Factor => curve.value(time),
         });
     }
 

@@ -6,9 +6,11 @@ mod facing;
 mod law;
 mod lists;
 mod surfaces;
+mod ties;
 
 pub use boxes::Tree;
 pub use facing::{Faced, Facing};
 pub use law::{Contact, ContactSet};
 pub use lists::{Finder, Lists};
 pub use surfaces::{Point, Surfaces};
+pub use ties::{Tie, TieSet};

@@ -44,7 +44,7 @@ pub fn read_contact(world: &mut World, body: Entity) -> Result<Option<ContactRea
 /// # Errors
 /// What the GPU says.
 pub(super) fn contact_forces(body: Entity, world: &mut World) -> Result<Vec<DVec3>, Error> {
-    bring_to_host(world, |_, name| [ContactForce::NAME, ToolTouch::NAME].contains(&name))?;
+    bring_to_host(world, |_, name| [ContactForce::NAME, ToolTouch::NAME, ToolHold::NAME].contains(&name))?;
     let entity = world.entity(body);
     let Some(authoring) = entity.get::<Authoring>() else { return Ok(Vec::new()) };
     let count = authoring.node_rows.len();
@@ -59,6 +59,7 @@ pub(super) fn contact_forces(body: Entity, world: &mut World) -> Result<Vec<DVec
             forces[row as usize] += (0..contacts.tools.len()).map(of_tool).sum::<DVec3>();
         }
     }
+    super::grasps::forces(entity, &mut forces);
     Ok(authoring.node_rows.iter().map(|&row| forces[row as usize]).collect())
 }
 

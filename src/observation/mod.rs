@@ -1,10 +1,12 @@
 //! Looking at a run: probes, energies, fields and guards, when they are due. Reads only.
 
+mod attachments;
 mod contacts;
 mod element_fields;
 mod energies;
 mod fields;
 mod frame;
+mod grasps;
 mod guards;
 mod look;
 mod overlaps;
@@ -15,6 +17,7 @@ mod tables;
 mod tools;
 mod track;
 
+pub use attachments::{AttachmentReading, read_attachment};
 pub use contacts::{ContactReading, read_contact};
 pub use energies::{energies, energy_header, mass, removed_momentum};
 pub use fields::{BodyFields, body_fields, internal_forces};

@@ -21,6 +21,8 @@ pub fn header(what: &Quantity) -> Vec<&'static str> {
         Quantity::Stress => &["xx (Pa)", "yy (Pa)", "zz (Pa)", "xy (Pa)", "yz (Pa)", "xz (Pa)"],
         Quantity::VolumeRatio => &["J"],
         Quantity::RemovedVolume => &["volume (m³)"],
+        Quantity::AttachmentForce { .. } => &["Fx (N)", "Fy (N)", "Fz (N)"],
+        Quantity::SutureLength { .. } => &["length (m)"],
         Quantity::ToolForce { .. } => &["Fx (N)", "Fy (N)", "Fz (N)"],
         Quantity::ToolTorque { .. } => &["Tx (N m)", "Ty (N m)", "Tz (N m)"],
         Quantity::ToolPlace { .. } => &["x (m)", "y (m)", "z (m)"],
@@ -47,6 +49,12 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
         }
         .to_array()
         .to_vec());
+    }
+    if probe.what.attachment().is_some() {
+        let number = probe.attachment.unwrap_or(usize::MAX);
+        let reading = super::attachments::read_attachment(world, number)?.unwrap_or_default();
+        let of_length = matches!(probe.what, Quantity::SutureLength { .. });
+        return Ok(if of_length { vec![reading.length] } else { reading.force.to_array().to_vec() });
     }
     let Some(body) = body else { return Ok(Vec::new()) };
     let columns: &[&str] = match probe.what {

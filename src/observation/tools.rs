@@ -15,7 +15,7 @@ pub struct ToolReading {
     pub torque: DVec3,
     /// Where its origin is (m).
     pub place: DVec3,
-    /// How many nodes it touches.
+    /// How many nodes it touches or holds.
     pub nodes: usize,
     /// How deep the deepest of the nodes that it may touch is inside it (m); 0 where none is.
     pub penetration: f64,
@@ -23,7 +23,7 @@ pub struct ToolReading {
     pub suction: DVec3,
     /// The work that it has done since the start (J).
     pub work: f64,
-    /// What of this work impact and friction have taken (J).
+    /// What of this work impact, friction and catching nodes have taken (J).
     pub loss: f64,
 }
 
@@ -34,6 +34,7 @@ pub struct ToolReading {
 pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
     let wanted = [
         ToolTouch::NAME,
+        ToolHold::NAME,
         Mass::NAME,
         Displacement::NAME,
         DisplacementIncrement::NAME,
@@ -102,6 +103,7 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
             reading.suction += force;
         }
     }
+    super::grasps::read(world, tool, &now, &mut reading);
     Ok(reading)
 }
 
@@ -140,7 +142,7 @@ pub struct Felt {
 /// # Errors
 /// What the GPU says.
 pub fn feel(world: &mut World, tool: &str, steps: u64) -> Result<Felt, Error> {
-    bring_to_host(world, |_, name| [ToolTouch::NAME, Displacement::NAME].contains(&name))?;
+    bring_to_host(world, |_, name| [ToolTouch::NAME, ToolHold::NAME, Displacement::NAME].contains(&name))?;
     let now = world.resource::<Signals>().poses_at(world.resource::<Clock>().time());
     let mut felt = Felt::default();
     let mut bodies = world.query::<(&ToolContacts, &mut ToolTouch, &RestPosition, &Displacement)>();
@@ -164,8 +166,9 @@ pub fn feel(world: &mut World, tool: &str, steps: u64) -> Result<Felt, Error> {
             }
         }
     }
+    super::grasps::feel(world, tool, &now, steps, &mut felt);
     if felt.in_contact {
-        send_to_device(world, |_, name| name == ToolTouch::NAME)?;
+        send_to_device(world, |_, name| name == ToolTouch::NAME || name == ToolHold::NAME)?;
     }
     Ok(felt)
 }

@@ -11,7 +11,7 @@ pub const SETS: usize = 1000;
 pub const VALUES: usize = 2_000_000;
 /// Bodies; materials; regions of a body; tools.
 pub const BODIES: usize = 1000;
-/// Constraints; loads; contacts; removals; probes; suctions.
+/// Constraints; loads; contacts; attachments; removals; probes; suctions.
 pub const ACTIONS: usize = 10_000;
 /// Tools that a body may meet.
 pub const TOOLS_OF_A_BODY: usize = 8;

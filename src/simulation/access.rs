@@ -4,13 +4,14 @@ use super::Simulation;
 use crate::components::*;
 use crate::error::{Criterion, Error};
 use crate::observation::Observer;
-use crate::observation::{ContactReading, ToolReading};
+use crate::observation::{AttachmentReading, ContactReading, ToolReading};
 use crate::output::{Folder, Node, nodes};
 use crate::scene::Diagnostics;
 use crate::scene::schema::Scene;
 use crate::{SceneFile, systems::Registry};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 impl Simulation {
@@ -180,6 +181,29 @@ impl Simulation {
         let entity = self.body(body)?;
         let reading = crate::observation::read_contact(&mut self.world, entity)?;
         reading.ok_or_else(|| Error::Options(format!("nothing under `contacts` lets {body:?} touch a body")))
+    }
+
+    /// What a suture, a tie or glue bears, by its name, or as a text by its place among the attachments, counted from 0.
+    ///
+    /// # Errors
+    /// No such attachment; what the GPU says.
+    pub fn attachment(&mut self, name: &str) -> Result<AttachmentReading, Error> {
+        let mut all = self.attachments()?;
+        all.remove(name).ok_or_else(|| {
+            let names: Vec<&str> = all.keys().map(String::as_str).collect();
+            Error::Options(format!("there is no suture, tie or glue named {name:?}; there is {}", names.join(", ")))
+        })
+    }
+
+    /// What all sutures, ties and glue bear.
+    pub(super) fn attachments(&mut self) -> Result<BTreeMap<String, AttachmentReading>, Error> {
+        self.settle()?;
+        let mut all = BTreeMap::new();
+        for (number, attachment) in self.scene.attachments.iter().enumerate() {
+            let Some(name) = attachment.name(number) else { continue };
+            all.extend(crate::observation::read_attachment(&mut self.world, number)?.map(|reading| (name, reading)));
+        }
+        Ok(all)
     }
 
     /// What a tool of the scene feels.

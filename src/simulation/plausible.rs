@@ -100,8 +100,9 @@ fn unheld(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnost
         body.velocity != glam::DVec3::ZERO || body.spin != glam::DVec3::ZERO
     };
     for (name, body) in &assembly.bodies {
-        let touched =
-            world.get::<ToolContacts>(body.entity).is_some() || world.get::<ContactForce>(body.entity).is_some();
+        let touched = assembly.scene.scene.attachments.iter().any(|attachment| attachment.holds(name))
+            || world.get::<ToolContacts>(body.entity).is_some()
+            || world.get::<ContactForce>(body.entity).is_some();
         if loaded.contains(&body.entity) && !touched && !held.contains(&body.entity) && !moves(name) {
             let path = Path::default().name("bodies").name(name);
             let message = format!("nothing holds {name}, and loads act on it: it flies off as a whole");

@@ -89,6 +89,8 @@ pub struct Summary {
     pub tools: BTreeMap<String, crate::observation::ToolReading>,
     /// What each body feels of others and itself at the end, where they may touch.
     pub contacts: BTreeMap<String, crate::observation::ContactReading>,
+    /// What sutures, ties and glue bear at the end, by their names.
+    pub attachments: BTreeMap<String, crate::observation::AttachmentReading>,
     /// What came through the ports of tools.
     pub ports: BTreeMap<String, super::PortUse>,
     /// How the run kept up with life, where the scene has `real_time`.
@@ -230,6 +232,7 @@ impl Simulation {
             probes: self.world.resource::<Observer>().latest.clone(),
             tools,
             contacts,
+            attachments: self.attachments()?,
             ports: self.ports(),
             real_time: self.scene.real_time.then(|| self.metronome.kept()),
             guards: self.guards(),

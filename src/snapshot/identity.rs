@@ -38,19 +38,26 @@ pub fn identity(scene: &Scene, world: &mut World) -> Identity {
         }
         add("systems", systems.finish());
     }
-    if !scene.tools.is_empty() {
+    if !scene.tools.is_empty() || !scene.attachments.is_empty() {
         let mut tools = XxHash64::default();
         tools.write_u64(of_text(&(&scene.tools, &scene.contacts)));
         if !scene.suction.is_empty() {
             tools.write_u64(of_text(&scene.suction));
         }
+        if !scene.attachments.is_empty() {
+            tools.write_u64(of_text(&scene.attachments));
+        }
+        // the scene only names the file
+        let mut of_tool = |tool: &ToolContact| {
+            if let Geometry::Grid(grid) = &tool.geometry {
+                tools.write(bytemuck::cast_slice(grid.values()));
+            }
+        };
         for contacts in world.query::<&ToolContacts>().iter(world) {
-            // the scene only names the file
-            let grids = contacts.tools.iter().filter_map(|contact| match &contact.geometry {
-                Geometry::Grid(grid) => Some(grid.values()),
-                Geometry::Analytic(_) => None,
-            });
-            grids.for_each(|values| tools.write(bytemuck::cast_slice(values)));
+            contacts.tools.iter().for_each(&mut of_tool);
+        }
+        for grasps in world.query::<&Grasps>().iter(world) {
+            grasps.grasps.iter().for_each(|grasp| of_tool(&grasp.tool));
         }
         add("tools and contacts", tools.finish());
     }
@@ -118,6 +125,13 @@ fn sets_in_use(world: &mut World) -> u64 {
     world.query::<&OwnLoad>().iter(world).for_each(|l| {
         note("system", l.signal, &[bytes(l.rows.as_deref().unwrap_or_default())]);
     });
+    if let Some(glue) = world.get_resource::<Glue>() {
+        for tie in &glue.ties {
+            let nodes: Vec<u8> =
+                tie.nodes.iter().flat_map(|(row, weight)| [bytes(&[*row]), bytes(&[*weight])].concat()).collect();
+            note("tie", tie.number, &[&nodes, bytes(&tie.corners), bytes(&tie.weights), bytes(&tie.gap.to_array())]);
+        }
+    }
     world.query::<&RemovalCriterion>().iter(world).for_each(|r| {
         note("removal", r.measure as usize, &[bytes(&r.rows), &r.limit.to_le_bytes()]);
     });

@@ -82,10 +82,6 @@ fn faced(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) -> Vec<(u32, Fac
 /// Where a node would go, from what is known of its body.
 fn foresee(columns: &MeetingColumnsReadOnlyItem<'_, '_>, row: usize, factors: &Factors<f64>) -> Foreseen {
     let mass = columns.fictitious.map_or_else(|| columns.mass.get(row), |mass| mass.get(row));
-    // inactive nodes stay where they are
-    if mass <= 0.0 {
-        return Foreseen { before: DVec3::ZERO, step: DVec3::ZERO, free: DVec3::ZERO, to_force: f64::INFINITY };
-    }
     let damping = columns.damping.map_or(0.0, |damping| damping.get(row));
     let force = columns.external.vector(row) - columns.internal.vector(row);
     factors.foresee(mass, damping, columns.axes[row], columns.step.vector(row), force)

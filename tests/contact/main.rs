@@ -5,4 +5,8 @@
 
 #[path = "../physics/configurations.rs"]
 mod configurations;
+mod glue;
+mod grasp;
 mod surfaces;
+mod sutures;
+mod ties;

@@ -8,6 +8,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod elements;
+mod grasps;
 #[path = "../kernel_worlds/mod.rs"]
 mod kernel_worlds;
 mod loads;

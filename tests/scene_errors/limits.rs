@@ -233,7 +233,7 @@ fn the_reference_lists_the_limits() {
         (limits::VALUES as u64, "|values"),
         (sinew::scene::syntax::DEEPEST as u64, "|brackets"),
         (limits::BODIES as u64, "|bodies;materials;regions"),
-        (limits::ACTIONS as u64, "|constraints;loads;contacts;removals;probes;suctions"),
+        (limits::ACTIONS as u64, "|constraints;loads;contacts;attachments;removals;probes;suctions"),
         (limits::TOOLS_OF_A_BODY as u64, "|toolsthatabody"),
         (u64::from(limits::MOST_BURST), "|elementsthatatool"),
         (limits::SYSTEMS as u64, "|systemsofyourown"),

@@ -1,6 +1,7 @@
 //! What a scene author is told about mistakes: where, what, what is allowed.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod attachments;
 mod constraints;
 mod deep_laws;
 mod energies;

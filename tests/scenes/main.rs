@@ -7,6 +7,7 @@ mod cataract;
 mod column;
 mod cube;
 mod golden;
+mod grasp;
 mod lens;
 mod lobe;
 mod parameters;

@@ -8,10 +8,11 @@ use sinew::systems::Registry;
 use sinew::{BackendChoice, Options, Simulation};
 
 /// The scenes, and what makes each of them short and coarse.
-pub const SCENES: [(&str, &[&str]); 14] = [
+pub const SCENES: [(&str, &[&str]); 15] = [
     ("cataract", &crate::cataract::SHORT),
     ("cube_under_gravity", &["bodies.cube.mesh.cells=(5, 5, 5)", "duration=0.3"]),
     ("folded_strip", &["bodies.strip.mesh.cells=(24, 3, 2)", "duration=0.5"]),
+    ("grasped_liver", &["duration=0.3"]),
     ("indentation", &["bodies.layer.mesh.cells=(12, 12, 4)"]),
     ("needle", &["bodies.tissue.mesh.cells=(20, 8, 5)", "duration=0.15"]),
     ("probe", &["bodies.tissue.mesh.cells=(16, 8, 4)", "duration=0.2"]),

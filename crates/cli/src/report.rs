@@ -35,6 +35,7 @@ pub fn text(summary: &Summary, scene: &SceneFile, folder: &Path, paint: Paint) -
     probes(summary, scene, &mut page);
     tools(summary, &mut page);
     contacts(summary, &mut page);
+    attachments(summary, &mut page);
     ports(summary, &mut page);
     outputs(folder, &mut page);
     page.text
@@ -240,6 +241,26 @@ fn contacts(summary: &Summary, page: &mut Page) {
         format!("{name} feels ({x}, {y}, {z}) and touches with {nodes}{inside}; lost to impact and friction {loss}")
     });
     page.rows("contacts", lines.collect::<Vec<_>>());
+}
+
+fn attachments(summary: &Summary, page: &mut Page) {
+    let lines = summary.attachments.iter().map(|(name, reading)| {
+        let [x, y, z] = reading.force.to_array().map(|part| quantity(part, "N"));
+        let points = counted(reading.holds as u64, "point");
+        let broke = match reading.broke_at {
+            Some(time) if reading.broken.is_empty() => format!("; broke at {}", quantity(time, "s")),
+            Some(time) => {
+                let nodes = counted(reading.broken.len() as u64, "node");
+                format!("; {nodes} came off, the first at {}", quantity(time, "s"))
+            }
+            None => String::new(),
+        };
+        let length =
+            if reading.length > 0.0 { format!(", {} long", quantity(reading.length, "m")) } else { String::new() };
+        let loss = quantity(reading.loss, "J");
+        format!("{name} pulls with ({x}, {y}, {z}) at {points}{length}{broke}; lost {loss}")
+    });
+    page.rows("attachments", lines.collect::<Vec<_>>());
 }
 
 fn ports(summary: &Summary, page: &mut Page) {

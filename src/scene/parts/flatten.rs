@@ -1,7 +1,7 @@
 //! A scene without parts: what they hold, placed, under the names that it has in the scene.
 
 use super::placement::Placement;
-use crate::scene::schema::{Constraint, Contact, Curve, Load, Part, PartScene, Quantity, Scene, When};
+use crate::scene::schema::{Attachment, Constraint, Contact, Curve, Load, Part, PartScene, Quantity, Scene, When};
 use crate::scene::suggest::list;
 use crate::scene::syntax::Path;
 use std::collections::BTreeMap;
@@ -32,6 +32,7 @@ pub fn flatten(scene: &mut Scene) -> Vec<Problem> {
         scene.loads.extend(found.loads);
         scene.contacts.extend(found.contacts);
         scene.suction.extend(found.suction);
+        scene.attachments.extend(found.attachments);
         scene.removal.extend(found.removal);
     }
     problems
@@ -108,6 +109,7 @@ fn whole(name: &str, part: Part, path: &Path, problems: &mut Vec<Problem>) -> Op
         content.loads.extend(found.loads);
         content.contacts.extend(found.contacts);
         content.suction.extend(found.suction);
+        content.attachments.extend(found.attachments);
         content.removal.extend(found.removal);
     }
     let mut naming = Naming { part: name, only: Only::of(&content), path: inside, problems };
@@ -161,6 +163,11 @@ impl Naming<'_> {
 
     fn keys<T>(&self, map: &mut BTreeMap<String, T>) {
         *map = std::mem::take(map).into_iter().map(|(key, value)| (format!("{}.{key}", self.part), value)).collect();
+    }
+
+    /// An attachment has a name in its part, too.
+    fn attached(&self, number: usize, name: &mut Option<String>) {
+        self.name(name.get_or_insert_with(|| number.to_string()));
     }
 
     fn curve(&self, curve: &mut Curve) {
@@ -245,6 +252,32 @@ impl Naming<'_> {
                 Contact::Itself { body, .. } => self.body(&path, body),
             }
         }
+        for (number, attachment) in content.attachments.iter_mut().enumerate() {
+            let path = self.path.name("attachments").index(number);
+            match attachment {
+                Attachment::Grasp { tool, body, closed, .. } => {
+                    self.name(tool);
+                    self.body(&path, body);
+                    self.curve(closed);
+                }
+                Attachment::Suture { name, from, to, curve, .. } => {
+                    self.attached(number, name);
+                    self.body(&path.name("from"), &mut from.body);
+                    self.body(&path.name("to"), &mut to.body);
+                    self.curve(curve);
+                }
+                Attachment::Tie { name, from, to, .. } => {
+                    self.attached(number, name);
+                    self.body(&path.name("from"), &mut from.body);
+                    self.body(&path.name("to"), &mut to.body);
+                }
+                Attachment::Glue { name, bodies: (a, b), .. } => {
+                    self.attached(number, name);
+                    self.name(a);
+                    self.name(b);
+                }
+            }
+        }
         for (number, removal) in content.removal.iter_mut().enumerate() {
             let path = self.path.name("removal").index(number);
             if let When::InTool { tool, curve, .. } = &mut removal.when {
@@ -266,6 +299,10 @@ impl Naming<'_> {
             match &mut probe.what {
                 Quantity::ToolForce { tool } | Quantity::ToolTorque { tool } | Quantity::ToolPlace { tool } => {
                     self.name(tool);
+                    probe.body.iter_mut().for_each(|body| self.name(body));
+                }
+                Quantity::AttachmentForce { attachment } | Quantity::SutureLength { attachment } => {
+                    self.name(attachment);
                     probe.body.iter_mut().for_each(|body| self.name(body));
                 }
                 _ => self.body(&path, &mut probe.body),
@@ -300,6 +337,7 @@ impl Naming<'_> {
         content.tools.values_mut().for_each(|tool| placement.tool(tool));
         content.contacts.iter_mut().for_each(|contact| placement.contact(contact));
         content.suction.iter_mut().for_each(|suction| placement.suction(suction));
+        content.attachments.iter_mut().for_each(|attachment| placement.attachment(attachment));
         content.removal.iter_mut().for_each(|removal| placement.removal(removal));
         content.probes.values_mut().for_each(|probe| placement.probe(probe));
     }

@@ -5,7 +5,7 @@ use crate::scene::syntax::{Entry, Field, Kind, Node, Word};
 /// Fields of a part that are names with what belongs to them.
 const MAPS: [&str; 4] = ["bodies", "materials", "tools", "probes"];
 /// Those that are lists.
-const LISTS: [&str; 5] = ["constraints", "loads", "contacts", "suction", "removal"];
+const LISTS: [&str; 6] = ["constraints", "loads", "contacts", "attachments", "suction", "removal"];
 
 /// The tree under the names that the scene knows: `bodies."eye.lens"` for `parts.eye.content.bodies.lens`, which is
 /// there no more. Nothing where there are no parts.

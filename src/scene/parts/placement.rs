@@ -2,8 +2,8 @@
 
 use crate::mesh::{angles_about_axes, rotation_about_axes};
 use crate::scene::schema::{
-    Axis, Body, Constraint, Contact, Direction, Load, Material, Part, Probe, Quantity, Removal, Select, Start, Suction,
-    Tool, When,
+    Attachment, Axis, Body, Constraint, Contact, Direction, Load, Material, Part, Probe, Quantity, Removal, Select,
+    Start, Suction, Tool, When,
 };
 use glam::{DMat3, DQuat, DVec3};
 
@@ -227,6 +227,32 @@ impl Placement {
         }
     }
 
+    pub fn attachment(&self, attachment: &mut Attachment) {
+        match attachment {
+            Attachment::Grasp { on, jaws, reach, .. } => {
+                on.iter_mut().for_each(|on| self.select(on));
+                // in the frame of the tool, which is placed
+                jaws.iter_mut().for_each(|jaws| *jaws = jaws.scaled(self.scale));
+                reach.iter_mut().for_each(|reach| self.length(reach));
+            }
+            Attachment::Suture { from, to, length, tighten, .. } => {
+                self.point(&mut from.at);
+                self.point(&mut to.at);
+                length.iter_mut().for_each(|length| self.length(length));
+                self.length(tighten);
+            }
+            Attachment::Tie { from, to, .. } => {
+                self.point(&mut from.at);
+                self.point(&mut to.at);
+            }
+            Attachment::Glue { on, onto, reach, .. } => {
+                self.select(on);
+                self.select(onto);
+                reach.iter_mut().for_each(|reach| self.length(reach));
+            }
+        }
+    }
+
     pub fn removal(&self, removal: &mut Removal) {
         self.select(&mut removal.on);
         if let When::InTool { reach, bore, rate, crumb, .. } = &mut removal.when {
@@ -257,6 +283,8 @@ impl Placement {
             | Quantity::Stress
             | Quantity::VolumeRatio
             | Quantity::RemovedVolume
+            | Quantity::AttachmentForce { .. }
+            | Quantity::SutureLength { .. }
             | Quantity::ToolForce { .. }
             | Quantity::ToolTorque { .. }
             | Quantity::ToolPlace { .. } => {}

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod action;
+mod attachment;
 mod body;
 mod load;
 mod material;
@@ -18,6 +19,7 @@ pub use crate::mesh::ElementKind;
 pub use crate::tools::Shape;
 pub use accuracy::{Accuracy, AccuracyReference};
 pub use action::{Axis, Constraint, Curve, Removal, Threshold, When};
+pub use attachment::{Attachment, Point};
 pub use body::{Body, MeshSource, Region, SkinFile, Start};
 pub use load::{Load, LoadParts, Share};
 pub use material::{
@@ -37,7 +39,7 @@ pub fn texts() -> impl Iterator<Item = &'static str> {
     TEXT.iter().chain(crate::materials::TEXTS).chain(crate::tools::TEXTS).copied()
 }
 
-const TEXT: [&str; 12] = [
+const TEXT: [&str; 13] = [
     include_str!("scene.rs"),
     include_str!("part.rs"),
     include_str!("body.rs"),
@@ -47,6 +49,7 @@ const TEXT: [&str; 12] = [
     include_str!("selection.rs"),
     include_str!("system.rs"),
     include_str!("tool.rs"),
+    include_str!("attachment.rs"),
     include_str!("output.rs"),
     include_str!("picture.rs"),
     include_str!("accuracy.rs"),

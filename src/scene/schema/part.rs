@@ -1,6 +1,6 @@
 //! Parts of scenes: what stands in files of its own, and may stand in a scene several times.
 
-use super::{Body, Constraint, Contact, Load, Material, Probe, Removal, Suction, Tool};
+use super::{Attachment, Body, Constraint, Contact, Load, Material, Probe, Removal, Suction, Tool};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -53,6 +53,8 @@ pub struct PartScene {
     pub tools: BTreeMap<String, Tool>,
     /// What touches what in it; where it has no body, how its tools touch that of the scene around it.
     pub contacts: Vec<Contact>,
+    /// What holds what in it.
+    pub attachments: Vec<Attachment>,
     /// Its tools that suck; where it has no body, at that of the scene around it.
     pub suction: Vec<Suction>,
     /// Which elements of its bodies go, and when; where it has none, what its tools take of the scene's body around it.

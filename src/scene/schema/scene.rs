@@ -1,8 +1,8 @@
 //! The whole scene, its time step, its guards.
 
 use super::{
-    Accuracy, Body, Constraint, Contact, Curve, Load, Material, Output, OwnSystem, Part, Picture, Probe, Removal,
-    Suction, Tool, When,
+    Accuracy, Attachment, Body, Constraint, Contact, Curve, Load, Material, Output, OwnSystem, Part, Picture, Probe,
+    Removal, Suction, Tool, When,
 };
 use crate::scene::syntax::Path;
 use serde::{Deserialize, Serialize};
@@ -47,6 +47,9 @@ pub struct Scene {
     /// Tools that suck.
     #[serde(default)]
     pub suction: Vec<Suction>,
+    /// What holds what.
+    #[serde(default)]
+    pub attachments: Vec<Attachment>,
     /// Loads of your own in WGSL, by the name of their function.
     #[serde(default)]
     pub systems: BTreeMap<String, OwnSystem>,
@@ -310,12 +313,18 @@ impl Scene {
         });
         let suction = self.suction.iter().enumerate().map(|(i, suction)| (to("suction").index(i), &suction.curve));
         let all = constraints.chain(loads).chain(systems).chain(moves).chain(removals).chain(suction);
-        all.map(|(path, curve)| (path.name("curve"), curve)).collect()
+        let all = all.map(|(path, curve)| (path.name("curve"), curve));
+        let attachments = self.attachments.iter().enumerate();
+        let attachments = attachments.filter_map(|(number, attachment)| {
+            let (word, curve) = attachment.curve()?;
+            Some((to("attachments").index(number).name(word), curve))
+        });
+        all.chain(attachments).collect()
     }
 
-    /// Whether tools put forces on nodes.
+    /// Whether tools, other bodies or what is attached put forces on nodes.
     pub fn has_tools_that_push(&self) -> bool {
-        !self.contacts.is_empty() || !self.suction.is_empty()
+        !self.contacts.is_empty() || !self.suction.is_empty() || !self.attachments.is_empty()
     }
 
     /// Whether equilibrium is sought instead of motion.

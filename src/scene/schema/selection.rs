@@ -1,6 +1,6 @@
 //! Selections by place, name or number, and probes on them.
 
-use super::{Constraint, Contact, Scene};
+use super::{Attachment, Constraint, Contact, Scene};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -137,6 +137,16 @@ pub enum Quantity {
     VolumeRatio,
     /// Volume at rest of the elements that have been removed (m³).
     RemovedVolume,
+    /// The force of a suture, a tie or glue on the body of its first point (N).
+    AttachmentForce {
+        /// Its name.
+        attachment: String,
+    },
+    /// How long a suture is (m).
+    SutureLength {
+        /// Its name.
+        attachment: String,
+    },
     /// The force that a tool feels: minus that on the nodes that it touches (N).
     ToolForce {
         /// The tool.
@@ -163,6 +173,19 @@ impl Quantity {
     /// Whether it is of elements, not of nodes.
     pub fn is_of_elements(&self) -> bool {
         matches!(self, Self::Stress | Self::VolumeRatio | Self::RemovedVolume)
+    }
+
+    /// The attachment that it is of, if it is of one.
+    pub fn attachment(&self) -> Option<&String> {
+        match self {
+            Self::AttachmentForce { attachment } | Self::SutureLength { attachment } => Some(attachment),
+            _ => None,
+        }
+    }
+
+    /// Whether it needs nothing of a body: what tools and attachments feel.
+    pub fn is_of_no_body(&self) -> bool {
+        self.tool().is_some() || self.attachment().is_some()
     }
 
     /// The tool that it is of, if it is of one.
@@ -201,7 +224,9 @@ impl Scene {
             Contact::Tool { on, .. } => Some(on),
             Contact::Between { .. } | Contact::Itself { .. } => None,
         });
-        regions.chain(constraints).chain(loads).chain(systems).chain(contacts).chain(removal).chain(probes)
+        let attachments = self.attachments.iter().flat_map(Attachment::selections).map(|(_, on)| on);
+        let all = regions.chain(constraints).chain(loads).chain(systems).chain(contacts).chain(attachments);
+        all.chain(removal).chain(probes)
     }
 }
 

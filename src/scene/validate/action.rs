@@ -51,7 +51,15 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
             Quantity::Torque { axis, .. } => validator.has_direction(&what.name("axis"), *axis),
             _ => {}
         }
+        if let (Some(_), Some(_)) = (probe.what.attachment(), &probe.on) {
+            validator
+                .out
+                .error_at(path.name("on"), "what an attachment bears is of the whole attachment")
+                .note("leave `on` out");
+        }
         match (probe.what.tool(), &probe.on) {
+            // whether it is there is looked at with the attachments
+            _ if probe.what.attachment().is_some() => {}
             (None, Some(on)) => select::validate(validator, &path.name("on"), on),
             (None, None) if probe.what == Quantity::RemovedVolume => {}
             (None, None) => {

@@ -106,7 +106,8 @@ fn held(scene_: &Scene, path: &Path, validator: &mut Validator) {
             Contact::Between { bodies: (a, b), .. } => a == name || b == name,
             Contact::Itself { .. } => false,
         });
-        if !touched && !scene_.constraints.iter().any(holds) {
+        let grasped = scene_.attachments.iter().any(|attachment| attachment.holds(name));
+        if !touched && !grasped && !scene_.constraints.iter().any(holds) {
             validator
                 .out
                 .warn_at(path, format!("nothing holds the body {name:?}: it is at rest only where its loads balance"))

@@ -19,6 +19,7 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) -> bool {
     limits.at_most(BODIES, found.tools.len(), "tools", || scene("tools"));
     limits.at_most(ACTIONS, found.contacts.len(), "contacts", || scene("contacts"));
     limits.at_most(ACTIONS, found.suction.len(), "entries", || scene("suction"));
+    limits.at_most(ACTIONS, found.attachments.len(), "attachments", || scene("attachments"));
     limits.at_most(ACTIONS, found.removal.len(), "removals", || scene("removal"));
     limits.at_most(ACTIONS, found.probes.len(), "probes", || scene("probes"));
     if !limits.kept {

@@ -2,6 +2,7 @@
 
 mod action;
 mod analysis;
+mod attachment;
 mod elastic_law;
 mod geometry;
 mod limits;
@@ -36,6 +37,7 @@ pub fn validate(file: &SceneFile, diagnostics: &mut Diagnostics) -> bool {
     action::validate(&file.scene, &mut validator);
     own_system::validate(&file.scene, &mut validator);
     tool::validate(file, &mut validator);
+    attachment::validate(&file.scene, &mut validator);
     time::validate(&file.scene, &mut validator);
     analysis::validate(&file.scene, &mut validator);
     output::validate(&file.scene, &mut validator);

@@ -79,7 +79,7 @@ fn bodies(scene_: &Scene, validator: &mut Validator) {
     for (i, removal) in scene_.removal.iter().enumerate() {
         body_named(scene_, validator, &scene("removal").index(i), removal.body.as_ref());
     }
-    for (name, probe) in scene_.probes.iter().filter(|(_, probe)| probe.what.tool().is_none() || probe.body.is_some()) {
+    for (name, probe) in scene_.probes.iter().filter(|(_, probe)| !probe.what.is_of_no_body() || probe.body.is_some()) {
         body_named(scene_, validator, &scene("probes").name(name), probe.body.as_ref());
     }
 }

@@ -25,6 +25,7 @@ pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
         if !scene_.contacts.iter().any(touches)
             && !scene_.removal.iter().any(takes)
             && !scene_.suction.iter().any(|suction| suction.tool == *name)
+            && !scene_.attachments.iter().any(|attachment| attachment.tool() == Some(name))
         {
             validator
                 .out
@@ -154,7 +155,7 @@ fn contacts(scene_: &Scene, validator: &mut Validator) {
 }
 
 /// Whether there is a tool of a name.
-fn named(scene_: &Scene, validator: &mut Validator, owner: &Path, tool: &str) {
+pub(super) fn named(scene_: &Scene, validator: &mut Validator, owner: &Path, tool: &str) {
     if !scene_.tools.contains_key(tool) {
         let tools = scene_.tools.keys().map(String::as_str);
         validator.out.error_at(owner.name("tool"), format!("there is no tool `{tool}`")).notes(choice(tool, tools));

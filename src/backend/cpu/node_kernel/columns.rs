@@ -42,13 +42,16 @@ pub struct NodeColumns<'a, T> {
     pub previous_prescribed: &'a mut [f32],
     /// What tools do to those that they may touch; none where there are no tools.
     pub touches: Option<Touches<'a, T>>,
+    /// What tools do to those that they may hold; none where none may.
+    pub holds: Option<Touches<'a, T>>,
 }
 
 /// What tools do to some nodes.
 pub struct Touches<'a, T> {
     /// The nodes' rows in the body, ascending.
     pub rows: &'a [u32],
-    /// See [`ToolTouch`](crate::components::ToolTouch): `numbers` for each of them.
+    /// See [`ToolTouch`](crate::components::ToolTouch) and [`ToolHold`](crate::components::ToolHold): `numbers` for
+    /// each of them.
     pub values: &'a mut [T],
     /// How many.
     pub numbers: usize,
@@ -93,6 +96,7 @@ impl<T: SimdScalar> NodeColumns<'_, T> {
                 internal_work: &mut *self.internal_work,
                 previous_prescribed: &mut *self.previous_prescribed,
                 touches: self.touches.as_mut().map(Touches::again),
+                holds: self.holds.as_mut().map(Touches::again),
             })
         })
     }
@@ -147,6 +151,7 @@ impl<'a, T> NodeColumns<'a, T> {
             internal_work: first_mut(&mut self.internal_work, places),
             previous_prescribed: first_mut(&mut self.previous_prescribed, 3 * rows),
             touches: self.touches.as_mut().map(|all| all.take(until)),
+            holds: self.holds.as_mut().map(|all| all.take(until)),
         };
         self.first += rows;
         taken
@@ -221,6 +226,7 @@ mod tests {
                 internal_work: &mut work,
                 previous_prescribed: &mut [],
                 touches: None,
+                holds: None,
             };
             let mut places = 0;
             for cut in cuts {

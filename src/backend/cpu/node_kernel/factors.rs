@@ -53,8 +53,11 @@ pub struct Foreseen {
 
 impl Factors<f64> {
     /// Where a node would go with a mass (kg), a damping coefficient (kg/s), constrained axes (bits), the last step (m)
-    /// and a force (N).
+    /// and a force (N); inactive nodes, without mass, stay where they are.
     pub fn foresee(&self, mass: f64, damping: f64, axes: u32, before: DVec3, force: DVec3) -> Foreseen {
+        if mass <= 0.0 {
+            return Foreseen { before: DVec3::ZERO, step: DVec3::ZERO, free: DVec3::ZERO, to_force: f64::INFINITY };
+        }
         let free = DVec3::from_array([0, 1, 2].map(|i| f64::from(1 - (axes >> i & 1))));
         let a = damping * self.half_step / mass + self.relaxation;
         let damped = 1.0 + self.divide * a;

@@ -1,0 +1,83 @@
+//! Points of bodies that something is attached to.
+
+use super::BodyParts;
+use super::contacts::edge;
+use crate::components::Anchor;
+use crate::math::OnTriangle;
+use crate::mesh::Locator;
+use crate::scene::diagnostic::Diagnostics;
+use crate::skins::Embedding;
+use glam::DVec3;
+
+/// The place of a surface that is nearest to a point.
+pub(super) struct OnSurface {
+    /// Nodes of its triangle, in the author's order, and what each has of it.
+    pub corners: [u32; 3],
+    pub weights: [f64; 3],
+    /// The author's element behind it.
+    pub element: u32,
+    /// Where it is (m), and how far from the point.
+    pub at: DVec3,
+    pub distance: f64,
+}
+
+/// The place of a body's surface at rest nearest to a point (m), among faces that count.
+pub(super) fn nearest(body: &BodyParts, at: DVec3, counts: &dyn Fn(usize) -> bool) -> Option<OnSurface> {
+    let points = &body.placed.mesh.points;
+    let mut best: Option<OnSurface> = None;
+    for (_, face) in body.placed.surface().iter().enumerate().filter(|(place, _)| counts(*place)) {
+        for corners in face.triangles() {
+            let found = OnTriangle::nearest(at, corners.map(|node| points[node as usize]));
+            let distance = at.distance(found.at);
+            // of equally near ones the first
+            if found.at.is_finite() && best.as_ref().is_none_or(|best| distance < best.distance) {
+                let (weights, element) = (found.weights, face.element);
+                best = Some(OnSurface { corners, weights, element, at: found.at, distance });
+            }
+        }
+    }
+    best
+}
+
+/// What a point of the scene is of a body at rest: itself where the body is, else the nearest place of its surface, no
+/// farther than an edge of a face. Gives where that is, too (m).
+pub(super) fn anchor(
+    name: &str,
+    body: &BodyParts,
+    at: DVec3,
+    path: &str,
+    diagnostics: &mut Diagnostics,
+) -> Option<(Anchor, DVec3)> {
+    if body.copies > 1 {
+        diagnostics
+            .error_at(path, format!("`{name}` has {} copies: which of them?", body.copies))
+            .note("only a body without `copies` can be sutured, tied or glued");
+        return None;
+    }
+    let mesh = &body.placed.mesh;
+    let mut place = at;
+    if Locator::new(mesh).holds(at).is_none() {
+        let found = nearest(body, at, &|_| true)?;
+        let edge = edge(body);
+        if found.distance > edge {
+            let (x, y, z) = found.at.into();
+            diagnostics
+                .error_at(
+                    path,
+                    format!("nothing of `{name}` is there: the nearest place is {:.3e} m off", found.distance),
+                )
+                .note(format!(
+                    "it is at ({x:.5}, {y:.5}, {z:.5}); up to an edge of a face, {edge:.3e} m, may lie between"
+                ));
+            return None;
+        }
+        place = found.at;
+    }
+    let embedding = Embedding::new(mesh, &[place], &|_| true);
+    let carrier = embedding.carriers().first()?.as_ref()?;
+    let nodes = mesh.element(carrier.element).iter().zip(carrier.weights);
+    let nodes = nodes.map(|(&node, weight)| (body.node_rows[node as usize], weight));
+    let (block, row) = body.element_rows[carrier.element];
+    let nodes: Vec<(u32, f64)> = nodes.filter(|(_, weight)| *weight != 0.0).collect();
+    Some((Anchor { body: body.entity, nodes, element: (body.blocks[block as usize], row) }, place))
+}

@@ -1,0 +1,193 @@
+//! Ties and glue: points and nodes become weights on faces.
+
+use super::anchors::{OnSurface, anchor, nearest};
+use super::contacts::{bounds, edge, reference};
+use super::loads::corners_of;
+use super::{Assembly, BodyParts};
+use crate::components::*;
+use crate::scene::diagnostic::Diagnostics;
+use crate::scene::schema::{Attachment, Point, Select};
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// What is made of the attachments so far.
+struct Gluing<'a> {
+    assembly: &'a Assembly<'a>,
+    glue: Glue,
+    /// How many ties there are of each body's points.
+    counts: BTreeMap<usize, usize>,
+}
+
+/// Spawns all ties, single ones and those of surfaces that are glued.
+pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
+    let bodies = assembly.bodies.values().map(|body| body.entity).collect();
+    let corners: Vec<DVec3> =
+        assembly.bodies.values().flat_map(|body| <[DVec3; 2]>::from(bounds(&body.placed.mesh.points))).collect();
+    let glue = Glue { bodies, sweeps: 1, reference: reference(&corners), ..Glue::default() };
+    let mut gluing = Gluing { assembly, glue, counts: BTreeMap::new() };
+    for (number, attachment) in assembly.scene.scene.attachments.iter().enumerate() {
+        match attachment {
+            Attachment::Tie { from, to, strength, .. } => {
+                let strength = strength.map_or(Strength::Any, Strength::Force);
+                gluing.tie(number, [from, to], strength, diagnostics);
+            }
+            Attachment::Glue { sweeps, .. } => {
+                gluing.glue.sweeps = gluing.glue.sweeps.max(*sweeps as usize);
+                gluing.surface(number, attachment, diagnostics);
+            }
+            Attachment::Grasp { .. } | Attachment::Suture { .. } => {}
+        }
+    }
+    if gluing.glue.ties.is_empty() {
+        return;
+    }
+    for (body, count) in gluing.counts {
+        let state = TieState(Reals::zeros(assembly.precision, TIE_NUMBERS * count));
+        world.entity_mut(gluing.glue.bodies[body]).insert(state);
+    }
+    world.insert_resource(gluing.glue);
+}
+
+impl Gluing<'_> {
+    /// A body by its name, or the only one: its place, its name and what is known of it.
+    fn body(&self, name: Option<&String>) -> Option<(usize, &String, &BodyParts)> {
+        let mut all = self.assembly.bodies.iter().enumerate();
+        let found = all.find(|(_, (of, _))| name.is_none_or(|name| name == *of));
+        found.map(|(place, (name, body))| (place, name, body))
+    }
+
+    fn push(&mut self, point: usize, tie: TiedPoint) {
+        let count = self.counts.entry(point).or_default();
+        self.glue.ties.push(TiedPoint { place: *count, ..tie });
+        *count += 1;
+    }
+
+    /// Ties a point to the nearest face of another.
+    fn tie(&mut self, number: usize, [from, to]: [&Point; 2], strength: Strength, diagnostics: &mut Diagnostics) {
+        let (Some((of, name, body)), Some((onto, other, face))) =
+            (self.body(from.body.as_ref()), self.body(to.body.as_ref()))
+        else {
+            return;
+        };
+        let path = |field: &str| format!("attachments[{number}].{field}.at");
+        let first = anchor(name, body, from.at, &path("from"), diagnostics);
+        let second = anchor(other, face, to.at, &path("to"), diagnostics);
+        let (Some((point, at)), Some((_, place))) = (first, second) else { return };
+        let Some(found) = nearest(face, place, &|_| true) else { return };
+        let (apart, most) = (at.distance(found.at), edge(body).max(edge(face)));
+        if apart > most {
+            diagnostics.error_at(path("to").as_str(), format!("what is to be tied is {apart:.3e} m apart")).note(
+                format!("a tie holds what touches, or nearly: up to an edge of a face, {most:.3e} m; a `Suture` pulls"),
+            );
+            return;
+        }
+        if of == onto && at.distance(place) <= 1e-9 * most {
+            diagnostics.error_at(path("to").as_str(), "both points of the tie are one place");
+            return;
+        }
+        let tie = tied([of, onto], point.nodes, face, &found, at, (strength, number, None));
+        self.push(of, tie);
+    }
+
+    /// Ties the nodes of one surface that are near another one.
+    fn surface(&mut self, number: usize, attachment: &Attachment, diagnostics: &mut Diagnostics) {
+        let Attachment::Glue { bodies: (a, b), on, onto, reach, normal, shear, .. } = attachment else { return };
+        let path = |field: &str| format!("attachments[{number}].{field}");
+        let (Some((of, name, body)), Some((other, _, face))) = (self.body(Some(a)), self.body(Some(b))) else { return };
+        for (name, body) in [(name, body), (b, face)] {
+            if body.copies > 1 {
+                let message = format!("`{name}` has {} copies: which of them?", body.copies);
+                diagnostics
+                    .error_at(path("bodies").as_str(), message)
+                    .note("only a body without `copies` can be sutured, tied or glued");
+                return;
+            }
+        }
+        let (Some(points), Some(faces)) = (
+            picked_faces(self.assembly, body, on, &path("on"), diagnostics),
+            picked_faces(self.assembly, face, onto, &path("onto"), diagnostics),
+        ) else {
+            return;
+        };
+        let reach = reach.unwrap_or(0.1 * edge(body).min(edge(face)));
+        let mut marked = vec![false; face.placed.surface().len()];
+        faces.iter().for_each(|&place| marked[place] = true);
+        let surface = body.placed.surface();
+        let (corners, _) = corners_of(body, points.iter().map(|&place| &surface[place]));
+        let mut node_of = vec![0; body.node_rows.len()];
+        body.node_rows.iter().enumerate().for_each(|(node, &row)| node_of[row as usize] = node);
+        let (mut ties, mut closest) = (Vec::new(), f64::INFINITY);
+        for (i, &row) in corners.rows.iter().enumerate() {
+            let around = &corners.corners[corners.starts[i] as usize..corners.starts[i + 1] as usize];
+            let area: f64 = around.iter().map(|&c| corners.areas[c as usize / 4][c as usize % 4]).sum();
+            let node = node_of[row as usize];
+            let at = body.placed.mesh.points[node];
+            let Some(found) = nearest(face, at, &|place| marked[place]) else { continue };
+            closest = closest.min(found.distance);
+            // corners of faces with middles have none of their area
+            if found.distance > reach || area <= 0.0 {
+                continue;
+            }
+            let strength = match (normal, shear) {
+                (None, None) => Strength::Any,
+                _ => {
+                    let bound = |most: &Option<f64>| most.unwrap_or(f64::INFINITY);
+                    Strength::Stress { area, normal: bound(normal), shear: bound(shear) }
+                }
+            };
+            let id = body.placed.mesh.point_ids.of(node);
+            ties.push(tied([of, other], vec![(row, 1.0)], face, &found, at, (strength, number, Some(id))));
+        }
+        if ties.is_empty() {
+            diagnostics
+                .error_at(path("bodies").as_str(), format!("nothing of `{a}` is near `{b}`: nothing is glued"))
+                .note(format!("the nearest node is {closest:.3e} m off, and `reach` is {reach:.3e} m"));
+        }
+        ties.into_iter().for_each(|tie| self.push(of, tie));
+    }
+}
+
+fn picked_faces(
+    assembly: &Assembly<'_>,
+    body: &BodyParts,
+    select: &Select,
+    path: &str,
+    diagnostics: &mut Diagnostics,
+) -> Option<Vec<usize>> {
+    let picked = assembly.pick(body, select, path, diagnostics)?;
+    match picked.faces(&body.placed) {
+        Ok(places) => Some(places),
+        Err(problem) => {
+            diagnostics.error_at(path, problem.message).notes(problem.notes);
+            None
+        }
+    }
+}
+
+/// A point at a place (m) of which nodes have so much, tied to a place of a face.
+fn tied(
+    bodies: [usize; 2],
+    nodes: Vec<(u32, f64)>,
+    face: &BodyParts,
+    found: &OnSurface,
+    at: DVec3,
+    (strength, number, node): (Strength, usize, Option<u64>),
+) -> TiedPoint {
+    let points = &face.placed.mesh.points;
+    let axes = frame_of(found.corners.map(|node| points[node as usize]));
+    let gap = axes.map_or(DVec3::ZERO, |axes| DVec3::from_array(axes.map(|axis| axis.dot(at - found.at))));
+    let (block, row) = face.element_rows[found.element as usize];
+    TiedPoint {
+        bodies,
+        nodes,
+        corners: found.corners.map(|node| face.node_rows[node as usize]),
+        weights: found.weights,
+        element: (face.blocks[block as usize], row),
+        gap,
+        strength,
+        place: 0,
+        number,
+        node,
+    }
+}

@@ -1,0 +1,101 @@
+//! Sutures: points become weights of nodes.
+
+use super::Assembly;
+use super::anchors::anchor;
+use super::contacts::{bounds, reference};
+use crate::components::*;
+use crate::scene::diagnostic::Diagnostics;
+use crate::scene::schema::Attachment;
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+use std::collections::BTreeMap;
+
+/// Spawns all sutures.
+pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
+    let mut sutures = Sutures::default();
+    let mut of_body: BTreeMap<Entity, usize> = BTreeMap::new();
+    let mut corners = Vec::new();
+    for (number, attachment) in assembly.scene.scene.attachments.iter().enumerate() {
+        let Attachment::Suture { from, to, stiffness, length, tighten, curve, strength, .. } = attachment else {
+            continue;
+        };
+        let ends = [("from", from), ("to", to)].map(|(field, point)| {
+            let body = assembly.body(&point.body)?;
+            let name = point.body.as_ref().or(assembly.bodies.keys().next())?;
+            corners.extend(<[DVec3; 2]>::from(bounds(&body.placed.mesh.points)));
+            anchor(name, body, point.at, &format!("attachments[{number}].{field}.at"), diagnostics)
+        });
+        let [Some((first, _)), Some((second, _))] = ends else { continue };
+        let place = of_body.entry(first.body).or_default();
+        sutures.all.push(Suture {
+            number,
+            ends: [first, second],
+            stiffness: *stiffness,
+            length: *length,
+            tighten: *tighten,
+            signal: world.resource_mut::<Signals>().add(Signal::Factor { curve: curve.clone() }),
+            strength: strength.unwrap_or(f64::INFINITY),
+            place: *place,
+        });
+        *place += 1;
+    }
+    if sutures.all.is_empty() {
+        return;
+    }
+    sutures.reference = reference(&corners);
+    for (body, count) in of_body {
+        world.entity_mut(body).insert(SutureState(Reals::zeros(assembly.precision, SUTURE_NUMBERS * count)));
+    }
+    insert_rows(assembly, &sutures, world);
+    world.insert_resource(sutures);
+}
+
+/// Tells bodies which of their nodes are pulled, and how stiffly.
+fn insert_rows(assembly: &Assembly<'_>, sutures: &Sutures, world: &mut World) {
+    let mut rows: BTreeMap<Entity, BTreeMap<u32, f64>> = BTreeMap::new();
+    for suture in &sutures.all {
+        let sum: f64 = suture.ends.iter().flat_map(|end| &end.nodes).map(|(_, weight)| weight.abs()).sum();
+        for end in &suture.ends {
+            for &(row, weight) in &end.nodes {
+                *rows.entry(end.body).or_default().entry(row).or_default() += sum * suture.stiffness * weight.abs();
+            }
+        }
+    }
+    for (body, rows) in rows {
+        let mass = |row: u32| world.get::<Mass>(body).map_or(0.0, |mass| mass.get(row as usize));
+        let masses = rows.keys().map(|&row| mass(row)).collect();
+        let forces = vec![DVec3::ZERO; rows.len()];
+        let column = SutureForce(Reals::zeros(assembly.precision, 3 * rows.len()));
+        let (rows, stiffness) = rows.into_iter().unzip();
+        world.entity_mut(body).insert((Sutured { rows, stiffness, masses, forces }, column));
+    }
+}
+
+/// Finds how long sutures are, where the scene leaves it to how far their points are apart at the start.
+pub(super) fn measure(world: &mut World, diagnostics: &mut Diagnostics) {
+    let Some(mut sutures) = world.remove_resource::<Sutures>() else { return };
+    let reference = sutures.reference;
+    for suture in &mut sutures.all {
+        let [from, to] = [0, 1].map(|end| at_start(&suture.ends[end], reference, world));
+        let length = from.distance(to);
+        if length <= 1e-12 * (from.length() + to.length()) {
+            diagnostics
+                .error_at(
+                    format!("attachments[{}].to", suture.number).as_str(),
+                    "both points of the suture are one place",
+                )
+                .note("a thread goes from one point to another; what touches is held by `Tie` or `Glue`");
+        }
+        suture.length.get_or_insert(length);
+    }
+    world.insert_resource(sutures);
+}
+
+/// Where an end is at the start (m, from a reference).
+pub(super) fn at_start(end: &Anchor, reference: DVec3, world: &World) -> DVec3 {
+    let (Some(rest), Some(u)) = (world.get::<RestPosition>(end.body), world.get::<Displacement>(end.body)) else {
+        return DVec3::ZERO;
+    };
+    let of = |&(row, weight): &(u32, f64)| weight * (rest.0[row as usize] - reference + u.vector(row as usize));
+    end.nodes.iter().map(of).sum()
+}

@@ -1,0 +1,229 @@
+//! `grasp`: closed tools take nodes along. `shaders/grasp.wgsl` is its twin.
+
+use super::integrate::damping_fragment;
+use super::node_system::{Before, NodeSystem};
+use super::places_within;
+use super::registry::{Phase, System};
+use super::tool_contact::{ToolRow, row_of};
+use crate::backend::Buffers;
+use crate::backend::cpu::{Cpu, Factors, NodeColumns};
+use crate::backend::kernel::{Fragment, Uniform, uniform};
+use crate::backend::node_stage::{NodeStage, rows_of};
+use crate::components::*;
+use crate::math::SimdScalar;
+use crate::shader;
+use crate::tools::Geometry;
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+/// A node that a closed tool holds stays at the place in the tool's frame where it was when the tool closed: motion that
+/// is prescribed by a frame. Like `tool_contact` it finds the force that takes the predicted step there, after all other
+/// forces, and adds it to the loads: `integrate`, the balance of energy and the residual of a static analysis need not
+/// know of it, and the stable step stays as it is. Nothing jumps when it closes; when it opens, the node keeps the
+/// velocity of its last step.
+pub fn system() -> System {
+    System::built_in_nodes::<Grasps>(
+        "grasp",
+        Phase::Contact,
+        "takes nodes along with closed tools",
+        "`Grasp(...)` under `attachments`",
+        |world| super::registry::count::<Grasps>(world, "body that tools may hold", "bodies that tools may hold"),
+    )
+    .on_nodes(stages)
+}
+
+/// What a closed tool and a node do.
+const HELD: f64 = 1.0;
+const WITHOUT: f64 = 2.0;
+
+/// What a step needs.
+pub struct Step {
+    factors: Factors<f64>,
+    /// Whether work is counted: not on the way to rest.
+    books: bool,
+    tools: Vec<ToolInStep>,
+}
+
+/// A tool in a step.
+struct ToolInStep {
+    closed: bool,
+    /// Where it is at the end.
+    pose: Pose,
+    /// How that differs from where it was at the beginning.
+    change: Pose,
+}
+
+impl NodeSystem for Grasps {
+    type Columns = (
+        (&'static Mass, Option<&'static FictitiousMass>, Option<&'static DampingCoefficient>),
+        (&'static InternalForce, &'static ConstrainedAxes, &'static Displacement, &'static DisplacementIncrement),
+        (&'static mut ExternalForce, &'static mut ToolHold),
+    );
+    type Prepared = Step;
+
+    fn prepare(&self, before: &Before<'_>) -> Step {
+        let values = before.signals.values();
+        let tools = self.grasps.iter().map(|grasp| {
+            let [pose, change] = [0, 3].map(|slot| Pose::of_slots(&values[grasp.tool.signal + slot..]));
+            ToolInStep { closed: values[grasp.closed][1] > 0.0, pose, change }
+        });
+        Step { factors: Factors::of(before.clock), books: before.clock.relaxation.is_none(), tools: tools.collect() }
+    }
+
+    fn act<T: SimdScalar>(&self, step: &Step, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        let Some(holds) = nodes.holds.take() else { return };
+        let own = places_within(&self.rows, nodes.first, nodes.rows());
+        let count = self.numbers_a_grasp();
+        for (place, (&row, &mask)) in self.rows[own.clone()].iter().zip(&self.masks[own]).enumerate() {
+            let values = &mut holds.values[holds.numbers * place..holds.numbers * (place + 1)];
+            for (number, values) in values.chunks_exact_mut(count).enumerate() {
+                if mask >> number & 1 == 1 {
+                    self.hold(step, number, row as usize - nodes.first, nodes, values);
+                }
+            }
+        }
+        nodes.holds = Some(holds);
+    }
+}
+
+impl Grasps {
+    /// What one tool does to one node.
+    fn hold<T: SimdScalar>(
+        &self,
+        step: &Step,
+        number: usize,
+        row: usize,
+        nodes: &mut NodeColumns<'_, T>,
+        values: &mut [T],
+    ) {
+        let (grasp, ToolInStep { closed, pose, change }) = (&self.grasps[number], &step.tools[number]);
+        let open = values[3] == T::default();
+        if open && !closed {
+            return;
+        }
+        values[..3].fill(T::default());
+        if !closed {
+            values[3] = T::default();
+            return;
+        }
+        let inertia = nodes.inertia[row].to_f64();
+        if inertia <= 0.0 {
+            return;
+        }
+        let place = nodes.rest[row] - self.reference + nodes.displacement(row);
+        if open {
+            let of_tool = pose.less(change).inverse(place);
+            let within = |reach: f64| grasp.tool.geometry.distance(of_tool).0 <= reach;
+            values[3] = T::from_f64(if grasp.reach.is_none_or(within) { HELD } else { WITHOUT });
+            for (number, part) in values[6..9].iter_mut().zip(of_tool.to_array()) {
+                *number = T::from_f64(part);
+            }
+        }
+        if values[3] != T::from_f64(HELD) {
+            return;
+        }
+        let of_tool = DVec3::from_array([6, 7, 8].map(|i: usize| values[i].to_f64()));
+        // as integrate will find it
+        let vector = |all: &[T]| DVec3::from_array([0, 1, 2].map(|i| all[3 * row + i].to_f64()));
+        let force = nodes.external.as_deref().map_or(DVec3::ZERO, vector) - vector(nodes.internal);
+        let damping = nodes.damping.map_or(0.0, |all| all[row].to_f64());
+        let foreseen = step.factors.foresee(inertia, damping, nodes.axes[row], vector(nodes.step), force);
+        let gap = foreseen.free * (pose.place(of_tool) - place - foreseen.step);
+        let force = foreseen.to_force * gap;
+        if force.length() > grasp.strength {
+            values[3] = T::from_f64(WITHOUT);
+            return;
+        }
+        for i in 0..3 {
+            values[i] = T::from_f64(force[i]);
+        }
+        for (i, felt) in values[HOLD_NUMBERS..].iter_mut().enumerate() {
+            *felt += T::from_f64(force[i]);
+        }
+        if step.books {
+            let work = step.factors.booked * force.dot(change.place(of_tool));
+            let on_node = step.factors.booked * force.dot(0.5 * (foreseen.before + foreseen.step + gap));
+            values[4] += T::from_f64(work);
+            values[5] += T::from_f64(work - on_node);
+        }
+        nodes.add_load(row, force);
+    }
+}
+
+/// How a tool holds, as kernels see it.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+struct GripRow {
+    closed: u32,
+    reach: f32,
+    strength: f32,
+    books: u32,
+}
+uniform!(GripRow { closed, reach, strength, books });
+
+/// How many grasps there are, and how many numbers of each.
+fn counts(grasps: &Grasps) -> String {
+    let (count, numbers) = (grasps.grasps.len(), grasps.numbers_a_grasp());
+    format!("const GRASPS: u32 = {count}u;\nconst NUMBERS: u32 = {numbers}u;\n")
+}
+
+/// One stage for each body that tools may hold.
+fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
+    let all: Vec<(Entity, Grasps)> =
+        world.query::<(Entity, &Grasps)>().iter(world).map(|(body, grasps)| (body, grasps.clone())).collect();
+    all.into_iter().map(|(body, grasps)| stage(body, &grasps, world, buffers)).collect()
+}
+
+fn stage(body: Entity, grasps: &Grasps, world: &mut World, buffers: &mut dyn Buffers) -> NodeStage {
+    let clock = *world.resource::<Clock>();
+    let damped = world.get::<DampingCoefficient>(body).is_some();
+    let relaxed = clock.relaxation.is_some();
+    let places = grasps.rows.iter().zip(&grasps.masks).map(|(&row, &mask)| {
+        let rest = world.get::<RestPosition>(body).map_or(DVec3::ZERO, |rest| rest.0[row as usize]);
+        let [x, y, z] = (rest - grasps.reference).as_vec3().to_array().map(f32::to_bits);
+        [x, y, z, mask]
+    });
+    let places: Vec<[u32; 4]> = places.collect();
+    let (mut grids, mut tools, mut grips) = (Vec::<f32>::new(), Vec::<u8>::new(), Vec::<u8>::new());
+    for grasp in &grasps.grasps {
+        tools.extend(row_of(&grasp.tool, grids.len() as u32).bytes());
+        if let Geometry::Grid(grid) = &grasp.tool.geometry {
+            grids.extend(grid.values());
+        }
+        // infinity is no number that a shader must know
+        let number = |number: f64| (number as f32).min(f32::MAX);
+        let grip = GripRow {
+            closed: grasp.closed as u32,
+            reach: number(grasp.reach.unwrap_or(f64::INFINITY)),
+            strength: number(grasp.strength),
+            books: u32::from(!relaxed),
+        };
+        grips.extend(grip.bytes());
+    }
+    let mass = if world.get::<FictitiousMass>(body).is_some() { FictitiousMass::NAME } else { Mass::NAME };
+    let mut stage = NodeStage::new("grasp", "grasp", body, rows_of(body, world), shader!("grasp"))
+        .own(shader!("tool_shape"))
+        .own(Fragment::new("generated: how many grasps", counts(grasps)))
+        .own(damping_fragment(damped, relaxed))
+        .bind_uniform::<ToolRow>("tools", buffers.uniform("tools that hold".into(), &tools))
+        .bind_uniform::<GripRow>("grips", buffers.uniform("grips".into(), &grips))
+        .bind("holdable", buffers.constants("nodes that tools may hold".into(), bytemuck::cast_slice(&places)))
+        .of_rows(grasps.rows.clone())
+        .column(Mass::NAME, buffers.column(body, mass));
+    for column in [ConstrainedAxes::NAME, Displacement::NAME, DisplacementIncrement::NAME, ToolHold::NAME] {
+        stage = stage.column(column, buffers.column(body, column));
+    }
+    for column in [InternalForce::NAME, ExternalForce::NAME] {
+        stage = stage.column(column, buffers.column(body, column));
+    }
+    if damped {
+        stage = stage.column(DampingCoefficient::NAME, buffers.column(body, DampingCoefficient::NAME));
+    }
+    stage = if grids.is_empty() {
+        stage.own(super::tool_contact::no_grid())
+    } else {
+        let values = buffers.constants("distances of tools that hold".into(), bytemuck::cast_slice(&grids));
+        stage.own(shader!("tool_grid")).own(shader!("tool_of_grid")).bind("tool_grid_values", values)
+    };
+    stage.with_step(world).loaded(true).that_asks_for_forces()
+}

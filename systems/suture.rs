@@ -1,0 +1,62 @@
+//! `suture`: forces of threads on nodes. `shaders/suture.wgsl` is its twin.
+
+use super::node_system::{Before, ForceSlopes, NodeSystem, NodesAtRest};
+use super::places_within;
+use super::registry::{Phase, System};
+use crate::backend::Buffers;
+use crate::backend::cpu::{Cpu, NodeColumns};
+use crate::backend::node_stage::{NodeStage, rows_of};
+use crate::components::*;
+use crate::math::SimdScalar;
+use crate::shader;
+use bevy_ecs::prelude::*;
+
+/// Adds what `suture_tension` has found.
+pub fn system() -> System {
+    System::built_in_nodes::<Sutured>(
+        "suture",
+        Phase::Loads,
+        "adds forces of sutures to the external forces",
+        "`Suture(...)` under `attachments`",
+        |world| super::registry::count::<Sutured>(world, "body with sutures", "bodies with sutures"),
+    )
+    .on_nodes(stages)
+}
+
+/// Threads go slack and taut: at 0.9 of the step that is stable with them drawn each time may make energy (a thread of 1e5
+/// N/m between two cubes trebled it in 9000 steps), at 0.6 of it none was made. This is the square of their ratio.
+const SLACK: f64 = 2.25;
+
+impl NodeSystem for Sutured {
+    type Columns = (&'static SutureForce, &'static mut ExternalForce);
+    type Prepared = ();
+
+    fn prepare(&self, _: &Before<'_>) {}
+
+    fn act<T: SimdScalar>(&self, (): &(), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        for place in places_within(&self.rows, nodes.first, nodes.rows()) {
+            nodes.add_load(self.rows[place] as usize - nodes.first, self.forces[place]);
+        }
+    }
+
+    /// Of the masses at the start, to which sutures keep (see [`Sutured::masses`]), and [`SLACK`] times as large.
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        let each = self.stiffness.iter().zip(&self.masses).filter(|(_, mass)| **mass > 0.0);
+        let stiffness = each.map(|(stiffness, mass)| stiffness / mass).fold(0.0, f64::max);
+        ForceSlopes { stiffness: SLACK * stiffness, damping: 0.0 }
+    }
+}
+
+/// One stage for each body.
+fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
+    let all: Vec<(Entity, Vec<u32>)> =
+        world.query::<(Entity, &Sutured)>().iter(world).map(|(body, sutured)| (body, sutured.rows.clone())).collect();
+    let stage = |(body, rows): (Entity, Vec<u32>)| {
+        let stage = NodeStage::new("suture", "suture", body, rows_of(body, world), shader!("suture"))
+            .of_rows(rows)
+            .column(SutureForce::NAME, buffers.column(body, SutureForce::NAME))
+            .column(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME));
+        stage.with_step(world).loaded(true)
+    };
+    all.into_iter().map(stage).collect()
+}

@@ -1,0 +1,128 @@
+//! `suture_tension`: how hard sutures pull, and which of them tear.
+
+use super::registry::{Phase, System};
+use crate::components::*;
+use bevy_ecs::prelude::*;
+use bevy_ecs::query::QueryData;
+use glam::DVec3;
+
+/// A suture is a spring between two points that pulls and does not push: f = k max(0, l − l₀) along the line between
+/// them, as they are at the beginning of the step, l₀ what knots have left of its length. Where the tension is its
+/// strength it tears, and where the tissue of one of its points goes it comes out; then it is gone. The system `suture`
+/// adds its force to the loads of both bodies.
+pub fn system() -> System {
+    System::built_in(
+        "suture_tension",
+        Phase::Boundary,
+        "finds how hard sutures pull, and which tear",
+        "`Suture(...)` under `attachments`",
+        |world| {
+            let count = world.get_resource::<Sutures>()?.all.len();
+            Some(if count == 1 { "1 suture".to_string() } else { format!("{count} sutures") })
+        },
+        suture_tension,
+    )
+}
+
+/// What a suture is, in [`SutureState`].
+const HOLDS: f64 = 0.0;
+const TORE: f64 = 1.0;
+const CAME_OUT: f64 = 2.0;
+
+/// What is known of a body.
+#[derive(QueryData)]
+#[query_data(mutable)]
+struct SuturedColumns {
+    rest: &'static RestPosition,
+    mass: &'static Mass,
+    u: &'static Displacement,
+    sutured: &'static mut Sutured,
+    force: &'static mut SutureForce,
+    state: Option<&'static mut SutureState>,
+}
+
+fn suture_tension(
+    clock: Res<Clock>,
+    signals: Res<Signals>,
+    sutures: Res<Sutures>,
+    mut bodies: Query<SuturedColumns>,
+    blocks: Query<&Alive>,
+) {
+    for mut columns in &mut bodies {
+        columns.sutured.forces.fill(DVec3::ZERO);
+    }
+    for suture in &sutures.all {
+        let [first, second] = &suture.ends;
+        let at = SUTURE_NUMBERS * suture.place;
+        let state = bodies.get(first.body).ok().and_then(|columns| columns.state.map(|state| state.get(at)));
+        if state != Some(HOLDS) {
+            continue;
+        }
+        let [from, to] = [first, second].map(|end| place(end, sutures.reference, &bodies));
+        let (way, length) = (to - from, from.distance(to));
+        let whole = suture.tension(length, signals.values()[suture.signal][0]);
+        let is_there = |end: &Anchor| {
+            let alive = blocks.get(end.element.0).ok();
+            alive.is_none_or(|alive| alive[end.element.1 as usize] == 1)
+        };
+        let left = if is_there(first) && is_there(second) {
+            mass_left(first, &bodies).min(mass_left(second, &bodies))
+        } else {
+            0.0
+        };
+        // in a static analysis nothing tears: pseudo-steps are no way that a thread takes
+        let becomes = match clock.relaxation {
+            None if left <= 0.0 => CAME_OUT,
+            None if whole >= suture.strength => TORE,
+            _ => HOLDS,
+        };
+        let tension = if becomes == HOLDS { left * whole } else { 0.0 };
+        if tension > 0.0 {
+            let force = way * (tension / length);
+            pull(first, force, &mut bodies);
+            pull(second, -force, &mut bodies);
+        }
+        let Some(mut state) = bodies.get_mut(first.body).ok().and_then(|columns| columns.state) else { continue };
+        state.set(at + 2, tension);
+        state.set(at + 3, length);
+        if becomes != HOLDS {
+            state.set(at, becomes);
+            state.set(at + 1, clock.time());
+            state.set(at + 4, 0.5 * whole * whole / suture.stiffness);
+        }
+    }
+    for mut columns in &mut bodies {
+        for (place, force) in columns.sutured.forces.iter().enumerate() {
+            columns.force.set_vector(place, *force);
+        }
+    }
+}
+
+/// Where an end is (m, from the reference).
+fn place(end: &Anchor, reference: DVec3, bodies: &Query<SuturedColumns>) -> DVec3 {
+    let Ok(columns) = bodies.get(end.body) else { return DVec3::ZERO };
+    let of = |&(row, weight): &(u32, f64)| {
+        weight * (columns.rest.0[row as usize] - reference + columns.u.vector(row as usize))
+    };
+    end.nodes.iter().map(of).sum()
+}
+
+/// The least share of its mass at the start that one of the nodes of an end has left.
+fn mass_left(end: &Anchor, bodies: &Query<SuturedColumns>) -> f64 {
+    let Ok(columns) = bodies.get(end.body) else { return 0.0 };
+    let of = |&(row, _): &(u32, f64)| {
+        let start = columns.sutured.place(row).map_or(0.0, |place| columns.sutured.masses[place]);
+        if start > 0.0 { (columns.mass.get(row as usize) / start).min(1.0) } else { 0.0 }
+    };
+    end.nodes.iter().map(of).fold(1.0, f64::min)
+}
+
+/// Pulls at an end.
+fn pull(end: &Anchor, force: DVec3, bodies: &mut Query<SuturedColumns>) {
+    let Ok(mut columns) = bodies.get_mut(end.body) else { return };
+    for &(row, weight) in &end.nodes {
+        if let Some(place) = columns.sutured.place(row) {
+            columns.sutured.forces[place] += force * weight;
+        }
+    }
+}
