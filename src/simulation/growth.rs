@@ -125,6 +125,12 @@ impl Growth {
         self.own.at(size).max(self.waves.at(squeeze))
     }
 
+    /// Up to which size and which squeeze no element's own ω² grows beyond `own`, and that of all not beyond `of_all`,
+    /// without exponential fibres.
+    pub fn until(&self, own: f64, of_all: f64) -> [f64; 2] {
+        [self.own.until(own.min(of_all)), self.waves.until(of_all)]
+    }
+
     /// What a family of exponential fibres adds to the growth, for a C and its direction: k₁ e^x (4 (1 + 2x) M + 2Ē)
     /// with x = k₂Ē² and M = κ_d tr C + (1 − 3κ_d) I₄, which bounds its part of ∂P/∂F, over the isochoric part at rest.
     pub fn of_family(&self, family: &ExponentialFibre<f64>, c: [f64; 6], [x, y, z]: [f64; 3]) -> f64 {
@@ -173,6 +179,18 @@ impl Table {
             (Some((s0, g0)), Some(&(s1, g1))) => g0 + (g1 - g0) * (size - s0) / (s1 - s0),
             (None, _) => 1.0,
             (Some((s, g)), None) => (g * (size / s) * (size / s)).min(MOST_GROWTH),
+        }
+    }
+
+    /// Up to which deformation the growth is at most that, less a billionth for the rounding of [`Self::at`]: 0 where
+    /// it is more from the beginning.
+    fn until(&self, growth: f64) -> f64 {
+        let growth = growth * (1.0 - 1e-9);
+        let after = self.points.partition_point(|(_, g)| *g <= growth);
+        match (after.checked_sub(1).map(|i| self.points[i]), self.points.get(after)) {
+            (Some((s0, g0)), Some(&(s1, g1))) => s0 + (s1 - s0) * (growth - g0) / (g1 - g0),
+            (Some((s, _)), None) => s,
+            (None, _) => 0.0,
         }
     }
 }
@@ -318,6 +336,11 @@ mod tests {
         // waves through what is squeezed to half its height are twice as quick
         assert!((4.0..4.5).contains(&soft.of_all(1.0, 4.0)), "{}", soft.of_all(1.0, 4.0));
         for k in 0..2000 {
+            let growth = 1.0 + 5e-3 * f64::from(k);
+            let [size, squeeze] = soft.until(growth, 1.5 * growth);
+            assert!(soft.own(size) <= growth && soft.of_all(size, squeeze) <= 1.5 * growth, "{growth}");
+            // as far as it reaches it is also the largest
+            assert!(size >= 10.0 || soft.own((1.0 + 1e-6) * size) > growth * (1.0 - 1e-8), "{growth}");
             let size = 1.0 + 4e-3 * f64::from(k);
             let after = soft.own.points.partition_point(|(s, _)| *s < size);
             let (s0, g0) = soft.own.points[after.max(1) - 1];

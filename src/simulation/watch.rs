@@ -4,7 +4,7 @@ use super::damped_step::{growth_with_damping, is_damped};
 use super::growth::Growth;
 use super::mass_scaling::heavy_mass;
 use crate::assembly::{SquaresAtRest, square_frequencies};
-use crate::backend::cpu::{BlockLaw, Cpu, Strain, StrainColumns, Visit, strains};
+use crate::backend::cpu::{BlockLaw, Cpu, Kept, Strain, StrainColumns, Visit, strains};
 use crate::components::*;
 use crate::elements::{node_count, with_element_of};
 use crate::evaluation::rest_volume;
@@ -42,6 +42,20 @@ pub(super) struct Watched {
     counted: usize,
     /// Whether anything is damped in proportion to its stiffness.
     pub is_damped: bool,
+    /// What the last look showed, task by task.
+    deformed: Vec<Deformed>,
+}
+
+/// How far the elements of a task are deformed, and its parts as if one element were the largest in everything.
+#[derive(Default)]
+struct Deformed {
+    parts: Vec<(Strain, usize)>,
+    /// [`Strain::size`] of each element, 0 of what is not there.
+    size: Vec<f64>,
+    /// [`Strain::squeeze`] of each.
+    squeeze: Vec<f64>,
+    /// [`Strain::more`] of each, 0 where nothing more is asked for.
+    more: Vec<f64>,
 }
 
 /// What strains of a block are taken from.
@@ -132,8 +146,17 @@ impl Watched {
             let shortest_edge = shortest_edge(block, world.get::<Connectivity>(entity)?, rest);
             let (squares, parts) = (Vec::new(), Vec::new());
             let known_growth = vec![1.0; block.count];
-            let mut watched =
-                Self { entity, growth, squares, shortest_edge, known_growth, parts, counted: 0, is_damped };
+            let mut watched = Self {
+                entity,
+                growth,
+                squares,
+                shortest_edge,
+                known_growth,
+                parts,
+                counted: 0,
+                is_damped,
+                deformed: vec![],
+            };
             watched.weigh(world);
             Some(watched)
         };
@@ -192,18 +215,27 @@ impl Watched {
     /// one after the other where that comes to most.
     pub fn look(&mut self, world: &World) -> Seen {
         let (cpu, count) = (world.resource::<Cpu>(), self.squares.len());
-        let of_task = |task: usize| -> Vec<(Strain, usize)> {
+        let of_task = |task: usize| -> Deformed {
             let parts = task * PARTS_A_TASK..count.div_ceil(ROWS_A_PART).min((task + 1) * PARTS_A_TASK);
-            let Some(columns) = self.columns(world) else { return Vec::new() };
-            parts.map(|part| self.strains(&columns, part_groups(part), None)).collect()
+            let mut found = Deformed::default();
+            let Some(columns) = self.columns(world) else { return found };
+            for part in parts {
+                let widest = self.strains(&columns, part_groups(part), None, Some(&mut found));
+                found.parts.push(widest);
+            }
+            found
         };
-        let widest = cpu.map(count.div_ceil(ROWS_A_TASK), of_task).concat();
-        let most = |of: fn(&Strain) -> f64| widest.iter().map(|(most, _)| of(most)).fold(1.0, f64::max);
-        self.growth.reach(most(|part| part.size), most(|part| part.squeeze));
-        if widest.iter().map(|(_, alive)| alive).sum::<usize>() != self.counted {
+        self.deformed = cpu.map(count.div_ceil(ROWS_A_TASK), of_task);
+        let widest = || self.deformed.iter().flat_map(|task| &task.parts);
+        let most = |of: fn(&Strain) -> f64| widest().map(|(most, _)| of(most)).fold(1.0, f64::max);
+        let (size, squeeze) = (most(|part| part.size), most(|part| part.squeeze));
+        let alive = widest().map(|(_, alive)| alive).sum::<usize>();
+        self.growth.reach(size, squeeze);
+        if alive != self.counted {
             self.sum_up(world);
         }
-        let parts = widest.iter().zip(&self.parts).enumerate().filter(|(_, ((_, alive), _))| *alive > 0);
+        let widest = self.deformed.iter().flat_map(|task| &task.parts);
+        let parts = widest.zip(&self.parts).enumerate().filter(|(_, ((_, alive), _))| *alive > 0);
         let (places, parts): (Vec<usize>, Vec<Seen>) = parts
             .map(|(part, (&(widest, alive), &(at_rest, least_known)))| {
                 let [own, of_all] = self.growth_of(widest.size, widest.squeeze, widest.more);
@@ -246,7 +278,7 @@ impl Watched {
             }
             let chosen: Vec<usize> = left.drain(..left.len().min(at_once)).collect();
             at_once *= 2;
-            let one_by_one = |i: usize| self.one_by_one(world, (places[chosen[i]], parts[chosen[i]]));
+            let one_by_one = |i: usize| self.one_by_one((places[chosen[i]], parts[chosen[i]]), &known);
             for (i, found) in chosen.iter().zip(world.resource::<Cpu>().map(chosen.len(), one_by_one)) {
                 parts[*i] = found;
                 known = known.and(found);
@@ -254,21 +286,31 @@ impl Watched {
         }
     }
 
-    /// What the elements of a part come to that may all together come to `at_most`.
-    fn one_by_one(&self, world: &World, (part, at_most): (usize, Seen)) -> Seen {
-        let (mut of_elements, mut ratio) = (0.0_f64, 1.0_f64);
-        let Some(columns) = self.columns(world) else { return at_most };
-        self.strains(
-            &columns,
-            part_groups(part),
-            Some(&mut |strains: &[Strain]| {
-                for strain in strains.iter().filter(|strain| self.squares[strain.row] > 0.0) {
-                    let [own, of_all] = self.growth_of(strain.size, strain.squeeze, strain.more);
-                    of_elements = of_elements.max(self.squares[strain.row] * own);
-                    ratio = ratio.max(of_all / f64::from(self.known_growth[strain.row]));
+    /// What the elements of a part come to that may all together come to `at_most`, or what others are `known` to come
+    /// to, where that is more.
+    fn one_by_one(&self, (part, at_most): (usize, Seen), known: &Seen) -> Seen {
+        let (mut of_elements, mut ratio) = (known.of_elements, known.ratio);
+        let Some(of) = self.deformed.get(part / PARTS_A_TASK) else { return at_most };
+        let (at_rest, least_known) = self.parts[part];
+        // no element that is deformed less comes to more than what is known
+        let until = |of_elements: f64, ratio: f64| match self.is_damped || !self.growth.families.is_empty() {
+            true => [0.0; 2],
+            false => self.growth.until(of_elements / at_rest, ratio * least_known),
+        };
+        let [mut size, mut squeeze] = until(of_elements, ratio);
+        let first = part / PARTS_A_TASK * ROWS_A_TASK;
+        for row in part * ROWS_A_PART..self.squares.len().min((part + 1) * ROWS_A_PART) {
+            let place = row - first;
+            let may_be_more = of.size[place] > size || of.squeeze[place] > squeeze;
+            if of.size[place] > 0.0 && self.squares[row] > 0.0 && may_be_more {
+                let [own, of_all] = self.growth_of(of.size[place], of.squeeze[place], of.more[place]);
+                let (own, of_all) = (self.squares[row] * own, of_all / f64::from(self.known_growth[row]));
+                if own > of_elements || of_all > ratio {
+                    (of_elements, ratio) = (of_elements.max(own), ratio.max(of_all));
+                    [size, squeeze] = until(of_elements, ratio);
                 }
-            }),
-        );
+            }
+        }
         Seen { of_elements, ratio, ..at_most }
     }
 
@@ -333,7 +375,7 @@ impl Watched {
             if let Some(columns) = self.columns(world) {
                 let own = task * GROUPS_A_TASK..groups.min((task + 1) * GROUPS_A_TASK);
                 let mut visit = |strains: &[Strain]| strains.iter().for_each(|strain| visit(&mut found, strain));
-                self.strains(&columns, own, Some(&mut visit));
+                self.strains(&columns, own, Some(&mut visit), None);
             }
             found
         };
@@ -354,8 +396,15 @@ impl Watched {
         })
     }
 
-    /// Visits the elements of some groups that are there; what they come to, and how many they are.
-    fn strains(&self, of: &Columns<'_>, groups: Range<usize>, visit: Option<Visit<'_>>) -> (Strain, usize) {
+    /// Visits the elements of some groups that are there, and keeps how far those of a part are deformed; what they
+    /// come to, and how many they are.
+    fn strains(
+        &self,
+        of: &Columns<'_>,
+        groups: Range<usize>,
+        visit: Option<Visit<'_>>,
+        kept: Option<&mut Deformed>,
+    ) -> (Strain, usize) {
         let fibres = of.fibres.map(|fibres| &fibres.0);
         let families = |row: usize, c: [f64; 6]| -> f64 {
             let families = self.growth.families.iter();
@@ -368,7 +417,20 @@ impl Watched {
             ($T:ty) => {{
                 let (displacement, step, rest_shape) = (of.u.slice(), of.d.slice(), of.shape.slice());
                 let columns = StrainColumns::<$T> { displacement, step, connectivity, rest_shape, ends };
-                with_element_of!(block, E => strains::<E, $T>(of.cpu, &columns, groups, more, visit))
+                let Some(kept) = kept else {
+                    return with_element_of!(block, E => strains::<E, $T>(of.cpu, &columns, groups, more, visit, None));
+                };
+                let [mut size, mut squeeze] = [[<$T>::default(); ROWS_A_PART]; 2];
+                let mut of_more = [0.0; ROWS_A_PART];
+                let rows = groups.len() * LANES;
+                let own = Kept { size: &mut size, squeeze: &mut squeeze, more: &mut of_more };
+                let found = with_element_of!(block, E => strains::<E, $T>(of.cpu, &columns, groups, more, visit, Some(own)));
+                // what is no number is beyond all numbers
+                let number = |of: &$T| if of.is_finite() { f64::from(*of) } else { f64::INFINITY };
+                kept.size.extend(size[..rows].iter().map(number));
+                kept.squeeze.extend(squeeze[..rows].iter().map(number));
+                kept.more.extend(&of_more[..rows]);
+                found
             }};
         }
         match of.u.0 {

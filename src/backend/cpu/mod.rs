@@ -12,7 +12,7 @@ pub use element_kernel::{BlockColumns, Inside, kernel_effects, run_block, run_bl
 pub use law::BlockLaw;
 pub use node_kernel::{Factors, Foreseen, NodeColumns, Touches, move_nodes};
 pub use own_kernels::OwnKernels;
-pub use strain_kernel::{Strain, StrainColumns, Visit, strains};
+pub use strain_kernel::{Kept, Strain, StrainColumns, Visit, strains};
 pub(crate) use strain_kernel::{sizes, with_identity};
 pub use volume_kernel::run_volumes;
 pub use watch_kernel::{BlockSums, WatchedColumns, run_watch};

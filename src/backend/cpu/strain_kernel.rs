@@ -54,16 +54,29 @@ pub type OfStretch<'a> = &'a (dyn Fn(usize, [f64; 6]) -> f64 + Sync);
 /// Takes some elements at a time.
 pub type Visit<'a> = &'a mut dyn FnMut(&[Strain]);
 
-/// Visits the elements of some groups that are there, in their order, some at a time. What they come to, were one of
-/// them the largest in everything (its row says nothing), and how many they are.
-pub fn strains<E: Element, T: SimdScalar>(
+/// Where the size and the squeeze of each element of some groups are kept, row after row from the first: 0 of what is
+/// not there, no number where one is none. What more is asked for is kept where that is asked for.
+pub struct Kept<'a, T> {
+    /// [`Strain::size`] of each.
+    pub size: &'a mut [T],
+    /// [`Strain::squeeze`] of each.
+    pub squeeze: &'a mut [T],
+    /// [`Strain::more`] of each.
+    pub more: &'a mut [f64],
+}
+
+/// Visits the elements of some groups that are there, in their order, some at a time, and keeps what they come to where
+/// that is wanted. What they come to, were one of them the largest in everything (its row says nothing), and how many
+/// they are.
+pub fn strains<'v, E: Element, T: SimdScalar>(
     cpu: &Cpu,
     columns: &StrainColumns<'_, T>,
     groups: Range<usize>,
     more: Option<OfStretch<'_>>,
-    visit: Option<Visit<'_>>,
+    visit: Option<Visit<'v>>,
+    kept: Option<Kept<'v, T>>,
 ) -> (Strain, usize) {
-    cpu.dispatch(Groups::<E, T> { columns, groups, more, visit, element: PhantomData })
+    cpu.dispatch(Groups::<E, T> { columns, groups, more, visit, kept, element: PhantomData })
 }
 
 struct Groups<'a, 'v, E, T> {
@@ -71,6 +84,7 @@ struct Groups<'a, 'v, E, T> {
     groups: Range<usize>,
     more: Option<OfStretch<'a>>,
     visit: Option<Visit<'v>>,
+    kept: Option<Kept<'v, T>>,
     element: PhantomData<E>,
 }
 
@@ -79,7 +93,8 @@ impl<E: Element, T: SimdScalar> WithSimd for Groups<'_, '_, E, T> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let Self { columns, groups, more, mut visit, .. } = self;
+        let Self { columns, groups, more, mut visit, mut kept, .. } = self;
+        let first = groups.start;
         let (zero, one) = (T::splat(simd, T::default()), T::splat(simd, T::from_f64(1.0)));
         // size, squeeze, both speeds, what is no number, and how many are there
         let mut widest = [one, one, zero, zero, zero, zero];
@@ -104,10 +119,19 @@ impl<E: Element, T: SimdScalar> WithSimd for Groups<'_, '_, E, T> {
                 if visit.is_some() {
                     (0..5).for_each(|i| T::store(found[i], &mut lanes[i][at..]));
                 }
+                if let Some(kept) = &mut kept {
+                    let row = (group - first) * LANES + at;
+                    T::store(volume.if_positive(found[0] + found[4], zero), &mut kept.size[row..]);
+                    T::store(volume.if_positive(found[1] + found[4], zero), &mut kept.squeeze[row..]);
+                }
                 at += T::width::<S>();
             }
             if visit.is_none() && more.is_none() {
                 continue;
+            }
+            if let Some(kept) = &mut kept {
+                let row = (group - first) * LANES;
+                kept.more[row..row + LANES].copy_from_slice(&largest);
             }
             let mut found = [Strain::AT_REST; LANES];
             let mut count = 0;
