@@ -68,27 +68,27 @@ pub struct Kept<'a, T> {
 /// Visits the elements of some groups that are there, in their order, some at a time, and keeps what they come to where
 /// that is wanted. What they come to, were one of them the largest in everything (its row says nothing), and how many
 /// they are.
-pub fn strains<'v, E: Element, T: SimdScalar>(
+pub fn strains<E: Element, T: SimdScalar>(
     cpu: &Cpu,
     columns: &StrainColumns<'_, T>,
     groups: Range<usize>,
     more: Option<OfStretch<'_>>,
-    visit: Option<Visit<'v>>,
-    kept: Option<Kept<'v, T>>,
+    visit: Option<Visit<'_>>,
+    kept: Option<Kept<'_, T>>,
 ) -> (Strain, usize) {
     cpu.dispatch(Groups::<E, T> { columns, groups, more, visit, kept, element: PhantomData })
 }
 
-struct Groups<'a, 'v, E, T> {
+struct Groups<'a, 'v, 'k, E, T> {
     columns: &'a StrainColumns<'a, T>,
     groups: Range<usize>,
     more: Option<OfStretch<'a>>,
     visit: Option<Visit<'v>>,
-    kept: Option<Kept<'v, T>>,
+    kept: Option<Kept<'k, T>>,
     element: PhantomData<E>,
 }
 
-impl<E: Element, T: SimdScalar> WithSimd for Groups<'_, '_, E, T> {
+impl<E: Element, T: SimdScalar> WithSimd for Groups<'_, '_, '_, E, T> {
     type Output = (Strain, usize);
 
     #[inline(always)]
