@@ -37,6 +37,7 @@ fn lowest(lower: &mut [u32], mut node: u32) -> u32 {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
     use super::*;
     use crate::mesh::CellKind;
 
