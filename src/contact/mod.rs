@@ -11,4 +11,4 @@ pub use boxes::Tree;
 pub use facing::{Faced, Facing};
 pub use law::{Contact, ContactSet};
 pub use lists::{Finder, Lists};
-pub use surfaces::{Point, Surfaces};
+pub use surfaces::{Near, Placed, Point, Surfaces};
