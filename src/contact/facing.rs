@@ -36,70 +36,101 @@ pub struct Faced {
     pub first: Option<Facing>,
     /// Another one.
     pub second: Option<Facing>,
-    /// How far the nearest of all triangles is that were looked at (m).
-    pub nearest: f64,
+    /// So much nearer than when the list was made (m) something must come before there is anything to see.
+    pub wakes: f64,
+}
+
+/// Triangles that may be near a point, and how far they were when that was found.
+#[derive(Clone, Copy, Debug)]
+pub struct Listed<'a> {
+    /// Their numbers, ascending.
+    pub triangles: &'a [u32],
+    /// How far each was (m).
+    pub distances: &'a [f64],
+    /// How much nearer anything can have come since (m).
+    pub nearer: f64,
+    /// Who is farther than this (m) is in nobody's way.
+    pub farthest: f64,
+}
+
+impl Listed<'_> {
+    /// Whether a triangle cannot have come near enough.
+    fn is_far(&self, place: usize) -> bool {
+        self.distances[place] > self.farthest + self.nearer
+    }
 }
 
 /// So many triangles' nearest places are kept while it is found what a point faces; points near more are rare.
 const KEPT: usize = 16;
 
-/// Where triangles are nearest to a point, the first of them found beforehand.
+/// Where triangles are nearest to a point, the first of those that may be near found beforehand.
 struct Candidates<'a> {
     at: DVec3,
-    triangles: &'a [u32],
+    listed: Listed<'a>,
     kept: [(OnTriangle, f64); KEPT],
 }
 
 impl<'a> Candidates<'a> {
-    fn of(surfaces: &Surfaces, places: &[DVec3], at: DVec3, triangles: &'a [u32]) -> Self {
-        let mut kept = [(OnTriangle { at: DVec3::ZERO, weights: [0.0; 3], part: 0 }, 0.0); KEPT];
-        for (&triangle, kept) in triangles.iter().zip(&mut kept) {
-            *kept = nearest(surfaces, places, at, triangle);
+    fn new(at: DVec3, listed: Listed<'a>) -> Self {
+        let nowhere = (OnTriangle { at: DVec3::ZERO, weights: [0.0; 3], part: 0 }, f64::INFINITY);
+        Self { at, listed, kept: [nowhere; KEPT] }
+    }
+
+    fn find(&mut self, surfaces: &Surfaces, places: &[DVec3]) {
+        for (place, (&triangle, kept)) in self.listed.triangles.iter().zip(&mut self.kept).enumerate() {
+            if !self.listed.is_far(place) {
+                *kept = nearest(surfaces, places, self.at, triangle);
+            }
         }
-        Self { at, triangles, kept }
     }
 
     /// The nearest place of the triangle at a place in the list, and how far that is (m).
     fn nearest(&self, surfaces: &Surfaces, places: &[DVec3], place: usize) -> (OnTriangle, f64) {
         match self.kept.get(place) {
             Some(&kept) => kept,
-            None => nearest(surfaces, places, self.at, self.triangles[place]),
+            None => nearest(surfaces, places, self.at, self.listed.triangles[place]),
         }
     }
 
-    /// How far a triangle is (m), whether it is in the list or not.
+    /// How far a triangle is (m), whether it is in the list or not; infinitely far where it cannot be near enough.
     fn distance(&self, surfaces: &Surfaces, places: &[DVec3], triangle: u32) -> f64 {
-        match self.triangles.iter().take(KEPT).position(|&other| other == triangle) {
+        match self.listed.triangles.iter().take(KEPT).position(|&other| other == triangle) {
             Some(place) => self.kept[place].1,
             None => nearest(surfaces, places, self.at, triangle).1,
         }
     }
 }
 
+#[inline]
 fn nearest(surfaces: &Surfaces, places: &[DVec3], at: DVec3, triangle: u32) -> (OnTriangle, f64) {
     let found = OnTriangle::nearest(at, surfaces.corners(places, triangle));
     (found, at.distance(found.at))
 }
 
 impl Surfaces {
-    /// What a point faces among triangles, ascending, that are no farther than `reach` (m). `edge` is the length of an
-    /// edge (m).
+    /// What a point faces among triangles that are no farther than `reach` (m). `edge` is the length of an edge (m).
     pub fn faced(
         &self,
         now: Placed<'_>,
         point: &Point,
-        triangles: &[u32],
+        listed: Listed<'_>,
         reach: impl Fn(u32) -> f64,
         edge: f64,
     ) -> Faced {
         let at = point.place(now.places);
-        let candidates = Candidates::of(self, now.places, at, triangles);
-        let mut faced = Faced { nearest: f64::INFINITY, ..Faced::default() };
+        let mut candidates = Candidates::new(at, listed);
+        candidates.find(self, now.places);
+        let mut faced = Faced { wakes: f64::INFINITY, ..Faced::default() };
         let mut own_normal = None;
         let mut least = [f64::INFINITY; 2];
-        for (place, &triangle) in triangles.iter().enumerate() {
+        for (place, &triangle) in listed.triangles.iter().enumerate() {
+            if listed.is_far(place) {
+                faced.wakes = faced.wakes.min(listed.distances[place]);
+                continue;
+            }
             let (found, distance) = candidates.nearest(self, now.places, place);
-            faced.nearest = faced.nearest.min(distance);
+            // both have moved since the list was made
+            faced.wakes = faced.wakes.min(distance - listed.nearer);
             let reach = reach(triangle);
             if distance > reach && distance > self.depths[triangle as usize] {
                 continue;
@@ -191,7 +222,9 @@ mod tests {
     ) -> Faced {
         let all = 0..surfaces.triangles.len() as u32;
         let normals: Vec<DVec3> = all.map(|triangle| surfaces.normal(places, triangle)).collect();
-        surfaces.faced(Placed { places, normals: &normals }, point, triangles, reach, 1.0)
+        let distances = vec![0.0; triangles.len()];
+        let listed = Listed { triangles, distances: &distances, nearer: 0.0, farthest: 1.0 };
+        surfaces.faced(Placed { places, normals: &normals }, point, listed, reach, 1.0)
     }
 
     /// A flat square of two triangles, normal up, and a point above it.

@@ -5,6 +5,7 @@ use super::surfaces::{Point, Surfaces};
 use crate::backend::cpu::Cpu;
 use crate::math::OnTriangle;
 use glam::DVec3;
+use std::ops::Range;
 
 /// Points that a task looks for.
 const POINTS_A_TASK: usize = 256;
@@ -19,6 +20,8 @@ pub struct Lists {
     pub starts: Vec<u32>,
     /// Ascending for each point.
     pub triangles: Vec<u32>,
+    /// How far each is from the point (m).
+    pub distances: Vec<f64>,
     /// All triangles that were so near to a point are in its list (m); more than was asked for where there are none.
     pub radius: f64,
 }
@@ -38,13 +41,22 @@ pub struct Finder<'a> {
 impl Lists {
     /// The triangles that may be near the point of a place in [`points`](Self::points).
     pub fn triangles(&self, place: usize) -> &[u32] {
-        &self.triangles[self.starts[place] as usize..self.starts[place + 1] as usize]
+        &self.triangles[self.range(place)]
+    }
+
+    /// How far each of these was (m).
+    pub fn distances(&self, place: usize) -> &[f64] {
+        &self.distances[self.range(place)]
+    }
+
+    fn range(&self, place: usize) -> Range<usize> {
+        self.starts[place] as usize..self.starts[place + 1] as usize
     }
 
     /// Finds all triangles within a radius (m) of points, in a tree a body.
     pub fn find(finder: &Finder<'_>, trees: &[Tree], places: &[DVec3], radius: f64, cpu: &Cpu) -> Self {
         let task = |task: usize| {
-            let (mut counts, mut found): (Vec<(u32, u32)>, Vec<u32>) = (Vec::new(), Vec::new());
+            let (mut counts, mut found): (Vec<(u32, u32)>, Vec<(u32, f64)>) = (Vec::new(), Vec::new());
             let points = task * POINTS_A_TASK..finder.points.len().min((task + 1) * POINTS_A_TASK);
             for number in points {
                 let point = &finder.points[number];
@@ -52,16 +64,23 @@ impl Lists {
                 let met = trees.iter().zip(0..).filter(|(_, body)| (finder.reach)(point.body, *body).is_some());
                 for (tree, _) in met {
                     tree.near(at, radius, |triangle| {
+                        let corners = finder.surfaces.corners(places, triangle);
+                        let [a, b, c] = corners;
+                        // how far its box is, to save the rest for most
+                        let off = (a.min(b).min(c) - at).max(at - a.max(b).max(c)).max(DVec3::ZERO);
+                        if off.length_squared() > radius * radius {
+                            return;
+                        }
                         if finder.may_meet(number as u32, triangle) {
-                            let corners = finder.surfaces.corners(places, triangle);
-                            if OnTriangle::nearest(at, corners).at.distance_squared(at) <= radius * radius {
-                                found.push(triangle);
+                            let distance = OnTriangle::nearest(at, corners).at.distance(at);
+                            if distance <= radius {
+                                found.push((triangle, distance));
                             }
                         }
                     });
                 }
                 if found.len() > before {
-                    found[before..].sort_unstable();
+                    found[before..].sort_unstable_by_key(|(triangle, _)| *triangle);
                     counts.push((number as u32, (found.len() - before) as u32));
                 }
             }
@@ -73,7 +92,8 @@ impl Lists {
                 lists.points.push(point);
                 lists.starts.push(lists.starts[lists.starts.len() - 1] + count);
             }
-            lists.triangles.extend(found);
+            lists.triangles.extend(found.iter().map(|(triangle, _)| *triangle));
+            lists.distances.extend(found.into_iter().map(|(_, distance)| distance));
         }
         if lists.points.is_empty() {
             lists.radius = finder.apart_by(trees).max(radius);

@@ -8,7 +8,7 @@ mod lists;
 mod surfaces;
 
 pub use boxes::Tree;
-pub use facing::{Faced, Facing};
+pub use facing::{Faced, Facing, Listed};
 pub use law::{Contact, ContactSet};
 pub use lists::{Finder, Lists};
 pub use surfaces::{Near, Placed, Point, Surfaces};

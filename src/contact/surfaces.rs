@@ -107,8 +107,10 @@ impl Surfaces {
     }
 
     /// Where its corners are (m).
+    #[inline]
     pub fn corners(&self, places: &[DVec3], triangle: u32) -> [DVec3; 3] {
-        self.triangles[triangle as usize].map(|node| places[node as usize])
+        let [a, b, c] = self.triangles[triangle as usize];
+        [places[a as usize], places[b as usize], places[c as usize]]
     }
 
     /// The unit normal of a triangle; zero of one without area.

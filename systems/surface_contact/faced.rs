@@ -2,7 +2,7 @@
 
 use super::SurfaceContacts;
 use crate::backend::cpu::Cpu;
-use crate::contact::{Faced, Placed};
+use crate::contact::{Faced, Listed, Placed};
 
 /// Points that a task looks at.
 const POINTS_A_TASK: usize = 128;
@@ -34,6 +34,7 @@ pub(super) fn wake(contacts: &mut SurfaceContacts, reach: f64, nearer: f64) -> b
 
 /// Finds what those face that are awake.
 pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, nearer: f64, cpu: &Cpu) {
+    let farthest = contacts.farthest(reach);
     let mut found = std::mem::take(&mut contacts.surface.found);
     let surface = &contacts.surface;
     let now = Placed { places: &surface.places, normals: &surface.normals };
@@ -44,16 +45,16 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, nearer: f64, cpu:
                 let body = surface.triangles.bodies[triangle as usize];
                 reach + contacts.meeting(point.body, body).map_or(0.0, |meeting| meeting.thickness)
             };
-            let triangles = surface.lists.triangles(*place as usize);
-            *faced = surface.triangles.faced(now, point, triangles, reach_of, contacts.edge);
+            let place = *place as usize;
+            let (triangles, distances) = (surface.lists.triangles(place), surface.lists.distances(place));
+            let listed = Listed { triangles, distances, nearer, farthest };
+            *faced = surface.triangles.faced(now, point, listed, reach_of, contacts.edge);
         }
     });
     let surface = &mut contacts.surface;
     for Found { place, faced } in &found {
-        // nobody can be there before the nearest has come so far; both have moved since the lists were made
-        let wake = faced.nearest - nearer;
-        surface.wake[*place as usize] = wake;
-        surface.first_wake = surface.first_wake.min(wake);
+        surface.wake[*place as usize] = faced.wakes;
+        surface.first_wake = surface.first_wake.min(faced.wakes);
     }
     surface.found = found;
 }
