@@ -1,7 +1,9 @@
 //! `surface_contact`: bodies keep each other, and themselves, outside.
 
 mod columns;
+mod device;
 mod faced;
+mod kernels;
 mod meet;
 mod motion;
 mod survey;
@@ -33,7 +35,13 @@ pub fn system() -> System {
         },
         surface_contact,
     );
-    System { shared_only: surfaces_stay, ..system }
+    System {
+        shared_only: surfaces_stay,
+        // where elements go, surfaces are found anew: on the host
+        device_when: surfaces_stay,
+        before_steps: Some(device::before_steps),
+        ..system.on_device(kernels::kernels)
+    }
 }
 
 /// Whether no surface of theirs changes, so that no patch moves its nodes by itself.
@@ -116,6 +124,8 @@ struct Surface {
     foreseen: Vec<(u32, Foreseen)>,
     forces: Vec<DVec3>,
     set: ContactSet,
+    /// How far the fastest node went in a step, when lists for a GPU were made (m).
+    largest: f64,
     figures: Figures,
 }
 
@@ -132,6 +142,8 @@ pub struct Figures {
     pub looked_at: u64,
     /// Contacts, of all steps.
     pub contacts: u64,
+    /// Steps on a GPU that found their lists too old, and went through all triangles.
+    pub unlisted: u64,
 }
 
 /// What is known of a body.

@@ -142,6 +142,11 @@ impl Surfaces {
         beside.into_iter().chain(around.iter().copied())
     }
 
+    /// The triangles across the sides of one; `u32::MAX` where there is not exactly one.
+    pub fn beside(&self, triangle: u32) -> [u32; 3] {
+        self.beside[triangle as usize]
+    }
+
     /// The triangles around a node, ascending.
     pub fn around(&self, node: u32) -> &[u32] {
         &self.around[self.starts[node as usize] as usize..self.starts[node as usize + 1] as usize]

@@ -18,5 +18,6 @@ mod patches;
 mod removal;
 mod shapes;
 mod suction;
+mod surfaces;
 mod tool_removal;
 mod tools;
