@@ -1,5 +1,6 @@
-// What points of a body's surface face, and with what they would meet in this step; twin of systems/surface_contact. First
-// of a step are surface_contact_place.wgsl and surface_contact_foresee.wgsl, after it surface_contact_impulse.wgsl.
+// What points of a body's surface face, and with what they would meet in this step; twin of systems/surface_contact.
+// First of a step are surface_contact_place.wgsl and surface_contact_foresee.wgsl, after it
+// surface_contact_impulse.wgsl.
 @group(0) @binding(0) var<storage, read> surface_nodes: array<f32>;
 @group(0) @binding(0) var<storage, read> surface_rows: array<u32>;
 @group(0) @binding(0) var<storage, read_write> surface_contacts: array<u32>;

@@ -1,5 +1,6 @@
-// Where nodes of a surface would go, as integrate will find it, and how far for a force; between surface_contact_place.wgsl
-// and surface_contact.wgsl. damped is in damping_coefficient.wgsl, relaxation.wgsl or generated.
+// Where nodes of a surface would go, as integrate will find it, and how far for a force; between
+// surface_contact_place.wgsl and surface_contact.wgsl. damped is in damping_coefficient.wgsl, relaxation.wgsl or
+// generated.
 struct SurfaceBody {
     first: u32, // first node of the body's surface
     count: u32, // how many

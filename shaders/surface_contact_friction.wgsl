@@ -1,5 +1,5 @@
-// The tangential forces of contacts between surfaces, a thread a contact; twin of src/contact/law.rs. After the normal ones,
-// which surface_contact_apply.wgsl has given to nodes.
+// The tangential forces of contacts between surfaces, a thread a contact; twin of src/contact/law.rs. After the normal
+// ones, which surface_contact_apply.wgsl has given to nodes.
 @group(0) @binding(0) var<storage, read> surface_nodes: array<f32>;
 
 fn collect(contact: u32, weight: f32) -> vec3<f32> {

@@ -1,5 +1,5 @@
-// The normal forces of contacts between surfaces, a thread a contact; twin of src/contact/law.rs. After surface_contact.wgsl;
-// surface_contact_apply.wgsl gives them to nodes.
+// The normal forces of contacts between surfaces, a thread a contact; twin of src/contact/law.rs. After
+// surface_contact.wgsl; surface_contact_apply.wgsl gives them to nodes.
 @group(0) @binding(0) var<storage, read> surface_nodes: array<f32>;
 
 // Of the sum over contacts of a node: into how many shares its mass is split.

@@ -1,6 +1,6 @@
-// Where nodes of a surface are, and how far they have moved, before surface_contact.wgsl. Four words of surface_motion by
-// turns: the square of the longest step in even and odd steps, that of the largest displacement since the lists were
-// made, likewise; then how many steps had lists that did not hold.
+// Where nodes of a surface are, and how far they have moved, before surface_contact.wgsl. Four words of surface_motion
+// by turns: the square of the longest step in even and odd steps, that of the largest displacement since the lists
+// were made, likewise; then how many steps had lists that did not hold.
 struct SurfaceBody {
     first: u32, // first node of the body's surface
     count: u32, // how many

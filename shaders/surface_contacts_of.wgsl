@@ -1,5 +1,5 @@
-// Goes through the contacts that act on a node, in a fixed order: those of the point that it is, then those with triangles
-// that it is a corner of, by points ascending. collect is of who asks.
+// Goes through the contacts that act on a node, in a fixed order: those of the point that it is, then those with
+// triangles that it is a corner of, by points ascending. collect is of who asks.
 @group(0) @binding(0) var<storage, read_write> surface_contacts: array<u32>;
 
 fn number(contact: u32, word: u32) -> f32 {

@@ -1,6 +1,6 @@
 // What kernels of contact between surfaces share: the surfaces, what may be near what, and how contacts lie. Twin of
-// systems/surface_contact/device.rs. All numbers stand as words, floats as their bits. motion is in surface_motion.wgsl, or
-// in surface_motion_turns.wgsl.
+// systems/surface_contact/device.rs. All numbers stand as words, floats as their bits. motion is in
+// surface_motion.wgsl, or in surface_motion_turns.wgsl.
 struct SurfaceContact {
     nodes: u32, // of all surfaces; each is a point that may meet others
     triangles: u32,
