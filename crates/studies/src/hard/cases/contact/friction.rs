@@ -1,0 +1,119 @@
+//! Friction: what sticks, what slides, how far and where to.
+
+use super::super::super::Trial;
+use super::measures::mass;
+use sinew::Error;
+
+const G: f64 = 9.81;
+
+/// H41. Gravity stands in for the slope: its part along the table grows while the block lies on it already.
+pub fn slope(trial: &mut Trial<'_>) -> Result<(), Error> {
+    let damping = 40.0;
+    for &(side, young, friction) in trial.some(&[(0.02, 1e4, 0.5), (0.008, 4e3, 0.3)]) {
+        let height = 0.5 * side;
+        let critical = f64::atan(friction).to_degrees();
+        for beyond in [-6.5, -1.5, 3.5, 13.5] {
+            let degrees: f64 = critical + beyond;
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            let elements = trial.configuration.elements_name();
+            let sets = [
+                format!(
+                    "bodies.body.mesh=Box(size: ({side}, {side}, {height}), cells: (4, 4, 1), elements: {elements})"
+                ),
+                format!("materials.tissue.neo_hookean=Young(young: {young}, poisson: 0.45)"),
+                format!("contacts=[Tool(tool: \"slope\", friction: {friction})]"),
+                format!(
+                    "loads=[Gravity(acceleration: (0, 0, {}), curve: Smooth(end: 0.1)), \
+                     Gravity(acceleration: ({}, 0, 0), curve: Smooth(start: 0.2, end: 0.3))]",
+                    -G * cos,
+                    G * sin
+                ),
+            ];
+            let mut simulation = trial.start(&sets)?;
+            simulation.advance_to(0.5)?;
+            let before = simulation.probe("foot")?[0];
+            simulation.advance_to(0.6)?;
+            let after = simulation.probe("foot")?[0];
+            let (reading, weight) = (simulation.tool("slope")?, G * mass(&mut simulation, "body")?);
+            let what = |what: &str| format!("{what}, {beyond}° beyond the angle of friction {friction}");
+            if beyond < 0.0 {
+                trial.most(what("creeps in .1 s (m)"), after - before, trial.bound(1e-8, 5e-8));
+                trial.near(what("held along the slope (N)"), reading.force.x, weight * sin, 5e-3);
+                continue;
+            }
+            let slid = slid(sin, cos, friction, damping);
+            // it leans by ρ g sin θ H²/(2 G) beside, at most
+            let lean = 1000.0 * G * sin * height * height / (2.0 * young / 2.9);
+            trial.within(what("slides by (m)"), after, 0.99 * slid, 1.01 * slid + lean);
+            let ratio = reading.force.truncate().length() / -reading.force.z;
+            trial.near(what("tangential over normal force"), ratio, friction, 1e-3);
+        }
+    }
+    Ok(())
+}
+
+/// How far a rigid block slides in .6 s (m): v̇ = g (r sin θ − μ cos θ) − c v.
+fn slid(sin: f64, cos: f64, friction: f64, damping: f64) -> f64 {
+    const STEPS: u32 = 100_000;
+    let (mut v, mut x, step) = (0.0_f64, 0.0, 0.6 / f64::from(STEPS));
+    for number in 0..STEPS {
+        let s = ((step * (f64::from(number) + 0.5) - 0.2) / 0.1).clamp(0.0, 1.0);
+        let ramp = s * s * s * (10.0 + s * (6.0 * s - 15.0));
+        v = (v + step * (G * (sin * ramp - friction * cos) - damping * v)).max(0.0);
+        x += v * step;
+    }
+    x
+}
+
+/// H42.
+pub fn slide_to_rest(trial: &mut Trial<'_>) -> Result<(), Error> {
+    for &(speed, friction, young) in trial.some(&[(0.1, 0.3, 2e4), (0.2, 0.6, 5e4)]) {
+        let sets = [
+            format!("bodies.body.velocity=({speed}, 0, 0)"),
+            format!("contacts=[Tool(tool: \"table\", friction: {friction})]"),
+            format!("materials.tissue.neo_hookean=Young(young: {young}, poisson: 0.45)"),
+        ];
+        let mut simulation = trial.start(&sets)?;
+        let mass = mass(&mut simulation, "body")?;
+        simulation.advance_to(2.0 * speed / (friction * G))?;
+        let what = |what: &str| format!("{what}, {speed} m/s and friction {friction}");
+        let way = simulation.probe("all")?[0];
+        trial.near(what("way (m)"), way, speed * speed / (2.0 * friction * G), 0.03);
+        let loss = simulation.tool("table")?.loss;
+        trial.near(what("taken by friction (J)"), loss, 0.5 * mass * speed * speed, 0.05);
+    }
+    Ok(())
+}
+
+/// H43.
+pub fn direction(trial: &mut Trial<'_>) -> Result<(), Error> {
+    for &degrees in trial.some(&[33.0_f64, 0.0, 120.0, 250.0]) {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        let gravity = format!("loads[0].acceleration=({}, {}, -10)", 6.0 * cos, 6.0 * sin);
+        let mut simulation = trial.start(&[gravity])?;
+        let weight = 10.0 * mass(&mut simulation, "body")?;
+        simulation.finish()?;
+        let force = simulation.tool("table")?.force;
+        let off = (force.y.atan2(force.x).to_degrees() - degrees + 540.0).rem_euclid(360.0) - 180.0;
+        trial.most(format!("degrees off {degrees}"), off, 0.5);
+        trial.near(format!("tangential force (N) at {degrees}°"), force.truncate().length(), 0.2 * weight, 0.02);
+    }
+    Ok(())
+}
+
+/// H49.
+pub fn ironing(trial: &mut Trial<'_>) -> Result<(), Error> {
+    let mut simulation = trial.start(&[])?;
+    // the touching nodes have changed all round once it has gone two faces far
+    simulation.advance_to(0.18)?;
+    let (mut least, mut most, mut worst) = (f64::INFINITY, 0.0_f64, 0.0_f64);
+    while simulation.time() < 0.5 {
+        simulation.advance_to((simulation.time() + 0.002).min(0.5))?;
+        let force = simulation.tool("ball")?.force;
+        (least, most) = (least.min(force.z), most.max(force.z));
+        worst = worst.max((-force.x / force.z / 0.2 - 1.0).abs());
+    }
+    trial.most("ripple of the normal force", (most - least) / (0.5 * (most + least)), 0.2);
+    trial.most("force along the way over μ times the normal force, less 1", worst, 0.01);
+    Ok(())
+}
