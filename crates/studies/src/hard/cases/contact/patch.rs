@@ -8,14 +8,13 @@ use sinew::Error;
 pub fn contact_patch(trial: &mut Trial<'_>) -> Result<(), Error> {
     let (young, poisson, pressure) = (3e3, 0.3, 100.0);
     let law = Law::young(young, poisson);
-    // a stretch whose Cauchy stress is the pressure: what follows the surface acts on its present area
-    let (mut stretch, mut across) = (1.0, 1.0);
-    for _ in 0..50 {
-        let (sides, stress) = law.free_with_sides(stretch);
-        across = sides;
-        stretch -= (stress / (sides * sides) + pressure) / young;
+    // the stretch between walls whose stress is the pressure: J
+    let (mut low, mut high) = (0.5, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if law.confined(middle) < -pressure { low = middle } else { high = middle }
     }
-    let volume_ratio = stretch * across * across;
+    let volume_ratio = low;
     for &(below, above) in trial.some(&[(4, 6), (7, 5)]) {
         let mut sets = trial.elements_of(&["other"]);
         sets.push(format!("bodies.body.mesh.cells=({below}, {below}, 2)"));
