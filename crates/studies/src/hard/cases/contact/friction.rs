@@ -105,10 +105,10 @@ pub fn direction(trial: &mut Trial<'_>) -> Result<(), Error> {
 pub fn ironing(trial: &mut Trial<'_>) -> Result<(), Error> {
     let mut simulation = trial.start(&[])?;
     // the touching nodes have changed all round once it has gone two faces far
-    simulation.advance_to(0.18)?;
+    simulation.advance_to(0.14)?;
     let (mut least, mut most, mut worst) = (f64::INFINITY, 0.0_f64, 0.0_f64);
-    while simulation.time() < 0.5 {
-        simulation.advance_to((simulation.time() + 0.002).min(0.5))?;
+    while simulation.time() < 0.3 {
+        simulation.advance_to((simulation.time() + 0.002).min(0.3))?;
         let force = simulation.tool("ball")?.force;
         (least, most) = (least.min(force.z), most.max(force.z));
         worst = worst.max((-force.x / force.z / 0.2 - 1.0).abs());
