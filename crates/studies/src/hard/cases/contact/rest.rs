@@ -61,8 +61,27 @@ pub fn stack(trial: &mut Trial<'_>) -> Result<(), Error> {
         trial.near(what("force on the table (N)"), -simulation.tool("table")?.force.z, 2.0 * weight, 2e-3);
         let left = 0.2 * (side / 3.0) * (weight / (side * side)) / young;
         trial.most(what("inside each other (m)"), high.penetration.max(low.penetration), left);
+        if !short {
+            let ripple = ripple(trial, &sets, weight)?;
+            trial.report(what("ripple of the force with one sweep"), ripple);
+        }
     }
     Ok(())
+}
+
+/// How far the force between the cubes is off their weight at most, in a hundred steps, where forces are corrected once
+/// a step.
+fn ripple(trial: &Trial<'_>, sets: &[String], weight: f64) -> Result<f64, Error> {
+    let mut sets = sets.to_vec();
+    sets.push("contacts[1]=Between(bodies: (\"body\", \"other\"), friction: 0.5)".into());
+    let mut simulation = trial.start(&sets)?;
+    simulation.advance_to(1.5)?;
+    let mut most = 0.0_f64;
+    for _ in 0..100 {
+        simulation.advance(1)?;
+        most = most.max((simulation.contact("other")?.force.z / weight - 1.0).abs());
+    }
+    Ok(most)
 }
 
 /// H48.

@@ -86,7 +86,7 @@ pub fn wound(trial: &mut Trial<'_>) -> Result<(), Error> {
         }
         touching = touching.max(simulation.contact("body")?.nodes);
     }
-    trial.least("nodes that touch", touching as f64, 20.0);
+    trial.least("nodes that touch", touching as f64, 10.0);
     trial.least("volume over that at rest, least", volume[0], 0.97);
     trial.most("volume over that at rest, largest", volume[1], 1.03);
     let file = trial.scene(&sets)?;

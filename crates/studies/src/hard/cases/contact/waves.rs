@@ -133,6 +133,8 @@ pub fn drop(trial: &mut Trial<'_>) -> Result<(), Error> {
         let sets = [
             format!("bodies.body.mesh.cells=({layers}, {layers}, {layers})"),
             format!("bodies.body.translate=(0, 0, {height})"),
+            // of one length, so that velocities are those of the middle of steps at both ends
+            format!("integration=(step: {}, when_unstable: Watch)", 0.1 * 0.02 / f64::from(layers) / wave(BARS[0])),
         ];
         let mut simulation = trial.start(&sets)?;
         let (mass, weight) = (mass(&mut simulation, "body")?, -G * mass(&mut simulation, "body")?);
@@ -159,7 +161,8 @@ pub fn drop(trial: &mut Trial<'_>) -> Result<(), Error> {
         }
         let lost = (before - energy(&mut simulation)?) / (mass * G * height);
         let layer = 1.0 / (2.0 * f64::from(layers));
-        trial.within(what("energy lost of the touching half layer's"), lost / layer, 0.5, 1.0);
+        // and up to φ(1 − φ) of a step's internal work, φ the part of a step that is left before they touch
+        trial.within(what("energy lost of the touching half layer's"), lost / layer, 0.5, 1.05);
         let end = simulation.time() + 0.01;
         while simulation.time() < end {
             simulation.advance(1)?;
