@@ -9,7 +9,9 @@ use std::f64::consts::PI;
 
 /// H63.
 pub fn suction(trial: &mut Trial<'_>) -> Result<(), Error> {
-    for &(bore, pressure) in trial.some(&[(6e-3, 1e3), (4e-3, 4e3)]) {
+    // finer meshes of hexahedra are quick enough
+    let all: &[(f64, f64)] = if trial.configuration.is_tets() { &[(6e-3, 1e3)] } else { &[(6e-3, 1e3), (4e-3, 4e3)] };
+    for &(bore, pressure) in trial.some(all) {
         let cells = (20.0 * 6e-3 / bore) as u32;
         let elements = trial.configuration.elements_name();
         let holds = pressure * PI * bore * bore;
