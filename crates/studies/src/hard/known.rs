@@ -50,6 +50,12 @@ pub const SHORTFALLS: &[Shortfall] = &[
         why: "an elastic block that slides under constant friction rings (Adams 1995), and what hops is held less: at .5 it goes 2 % farther than a rigid one and its lean, where 1 % is allowed",
     },
     Shortfall {
+        case: "h45",
+        on: |c, _| c.is_gpu() && c.is_tets(),
+        verdict: Verdict::Failed,
+        why: "a GPU's kernels know places in f32, and nodes of tetrahedra at rest go at 2.5e-6 to 3e-6 m/s where 1.8e-6 is what their last bit makes",
+    },
+    Shortfall {
         case: "h47",
         on: |c, _| !c.is_tets(),
         verdict: Verdict::Failed,
