@@ -171,7 +171,9 @@ fn main() {
                 let [built_in, rust, energy] = best.map(|time| time * 1e9 / f64::from(cells.pow(3) * count));
                 let times = rust / built_in;
                 match built_in.is_finite() {
-                    true => print!("{kind} {word}, {name}: {built_in:.1} ns an element and step built in, in Rust {times:.2} times as much, "),
+                    true => print!(
+                        "{kind} {word}, {name}: {built_in:.1} ns an element and step built in, in Rust {times:.2} times as much, "
+                    ),
                     false => print!("{kind} {word}, {name}: "),
                 }
                 println!("{rust:.1} in Rust from outside, {energy:.1} from its energy: {:.2} times", energy / rust);
