@@ -99,7 +99,7 @@ fn predict(tool: u32, place: vec3<f32>, predicted: vec3<f32>, sticks: bool) -> T
 }
 
 // Where the node ends by now.
-fn look_again(tool: u32, end: vec3<f32>, before: Touch) -> Touch {
+fn evaluate_again(tool: u32, end: vec3<f32>, before: Touch) -> Touch {
     var touch = before;
     let at = tools[tool].signal;
     let pose = array<vec4<f32>, 3>(step.signals[at], step.signals[at + 1u], step.signals[at + 2u]);
@@ -163,7 +163,7 @@ fn tool_contact(i: u32, node: u32) {
                 continue;
             }
             if turn > 0u {
-                found[tool] = look_again(tool, place + predicted + sum, found[tool]);
+                found[tool] = evaluate_again(tool, place + predicted + sum, found[tool]);
             }
             let normal = found[tool].normal;
             let along = dot(normal, free * normal);

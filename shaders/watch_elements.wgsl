@@ -24,7 +24,7 @@ fn watch_elements(
             for (var point = 0u; point < POINTS; point++) {
                 least = min(least, elastic_kinematics(at_point(e, point).gradient).true_j);
             }
-            for (var point = POINTS; point < LOOKED_AT; point++) {
+            for (var point = POINTS; point < CHECKED_POINTS; point++) {
                 least = min(least, 1.0 + volume_change_of(at_point(e, point).gradient));
             }
             energies[local] = vec2<f32>(energy_density(element, e) * e.volume, hourglass_energy(element, e));

@@ -74,7 +74,7 @@ fn element_removal(
     mut pressures: Query<(&mut Pressure, &OfBody), Without<Traction>>,
     mut tractions: Query<(&mut Traction, &OfBody), Without<Pressure>>,
 ) {
-    let look = clock.step.is_multiple_of(CRITERION_STEPS);
+    let is_due = clock.step.is_multiple_of(CRITERION_STEPS);
     let mut touched: Vec<Entity> = Vec::new();
     for (
         entity,
@@ -105,7 +105,7 @@ fn element_removal(
             memory: memory.map(|m| &m.0),
             nodal_volume_change: means.map(|means| Cow::Borrowed(&means.0)),
         };
-        let of_block: Vec<&RemovalCriterion> = criteria.iter().filter(|c| look && c.block == entity).collect();
+        let of_block: Vec<&RemovalCriterion> = criteria.iter().filter(|c| is_due && c.block == entity).collect();
         let due = |row: usize| alive[row] == 1 && u64::from(by_time[row]) <= clock.step && by_time[row] != u32::MAX;
         let passes = |row: usize, c: &RemovalCriterion| {
             (c.rows.is_empty() || c.rows.binary_search(&(row as u32)).is_ok())

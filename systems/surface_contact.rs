@@ -163,7 +163,7 @@ fn surface_contact(
 ) {
     let contacts = &mut *contacts;
     survey::follow(contacts, &mut bodies, &authorings, &blocks);
-    let largest = survey::look(contacts, &bodies);
+    let largest = survey::update_places(contacts, &bodies);
     contacts.surface.largest = largest;
     contacts.surface.travelled += 2.0 * largest;
     let reach = 4.0 * largest + survey::MARGIN * contacts.edge;

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 #[serde(deny_unknown_fields)]
 pub struct GuardMemory {
     /// Looks so far.
-    pub looks: u64,
+    pub checks: u64,
     /// Energy that rounding may have made or lost so far (J).
     pub rounding: f64,
     /// What elements held at the start (J), where bodies start deformed.

@@ -54,7 +54,7 @@ pub trait Element: Copy + Send + Sync + 'static {
     const POINTS: usize;
     /// Points at which J is looked at, the integration points first: where edges can be curved an element can be folded
     /// as a whole while none of these sees it. The others have no weight.
-    const LOOKED_AT: usize = Self::POINTS;
+    const CHECKED_POINTS: usize = Self::POINTS;
     /// How many numbers describe the rest shape.
     const ROWS: usize;
     /// Which of them is the volume.

@@ -110,7 +110,7 @@ impl Element for Tet10 {
     const POINTS: usize = 4;
     /// The middle, too, which has the mean gradient: a face can be pulled through the opposite corner while J stays above
     /// 0 at all four.
-    const LOOKED_AT: usize = 5;
+    const CHECKED_POINTS: usize = 5;
     const ROWS: usize = 30;
     const VOLUME_ROW: usize = 27;
     const FORCE_ROW: Option<usize> = Some(THERE_ROW);

@@ -1,8 +1,8 @@
 //! Guards: what kernels found wrong in passing, and what a look at energies and elements shows, told in the author's
 //! words.
 
-use super::look::{Look, look, look_at_result};
 use super::rounding::Rounding;
+use super::sample::{Sample, sample, sample_result};
 use crate::backend::cpu::BlockSums;
 use crate::backend::device::bring_to_host;
 use crate::components::*;
@@ -18,7 +18,7 @@ const INVERTED: &str = "a load or motion too large or too sudden for the mesh (u
 const OVERFLOW: &str = "a motion, load or modulus beyond what numbers can express, or a time step that is too large (lower \
                         integration.safety)";
 /// Parts that hold less than this share of all energy are not asked for their hourglass energy.
-const WORTH_LOOKING: f64 = 1e-3;
+const WORTH_CHECKING: f64 = 1e-3;
 /// Shares of hourglass energy are told up to this one: elastic energy may be next to none.
 const MOST_SHARE: f64 = 1e6;
 
@@ -87,7 +87,7 @@ fn seen_inside_out(parts: &[(Entity, BlockSums)], world: &World) -> Option<(Stri
 }
 
 /// What of a look is no finite number: in words, with the body or part that it is of.
-fn not_finite(seen: &Look, world: &World) -> Option<(String, f64)> {
+fn not_finite(seen: &Sample, world: &World) -> Option<(String, f64)> {
     let part = |(entity, sums): &(Entity, BlockSums)| {
         let label = label(world, *entity);
         let named = [("elastic energy", sums.strain), ("hourglass energy", sums.hourglass)];
@@ -113,7 +113,7 @@ fn larger(a: f64, b: f64) -> f64 {
 /// What is wrong with the present state itself. Kernels notice what is turned inside out when they next take its
 /// forces: of a state that is handed out as a result, and of the last one, that would be too late.
 pub(super) fn find_in_result(world: &mut World, good_until: f64, watch: &Watch) -> Result<Option<Instability>, Error> {
-    let parts = look_at_result(world)?;
+    let parts = sample_result(world)?;
     if let Some((body, what, criterion)) = seen_inside_out(&parts, world) {
         return Ok(Some(instability(world, watch, body, what, INVERTED, criterion, good_until)));
     }
@@ -128,7 +128,7 @@ pub(super) fn find_in_result(world: &mut World, good_until: f64, watch: &Watch) 
 /// energy than was spent on them: so a step beyond the stable one shows that does not run away, because large motion
 /// holds it.
 pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch) -> Result<(), Error> {
-    let seen = look(world)?;
+    let seen = sample(world)?;
     if let Some((what, value)) = not_finite(&seen, world) {
         let inside_out = seen_inside_out(&seen.parts, world);
         let (body, what, cause, criterion) = match inside_out {
@@ -141,7 +141,7 @@ pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch) -> Result
     let rounding = world.get_resource::<Rounding>().map_or(0.0, |rounding| rounding.of_energy(&seen.reach));
     let clock = *world.resource::<Clock>();
     let Some(mut memory) = world.remove_resource::<GuardMemory>() else { return Ok(()) };
-    memory.looks += 1;
+    memory.checks += 1;
     memory.rounding = memory.rounding.max(rounding);
     remember(&mut memory, &seen, world);
     let (made, held) = balance(&mut memory, &seen, watch, world);
@@ -174,7 +174,7 @@ pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch) -> Result
 /// Energy (J) that has come from nothing since the start (negative: gone), and what elements hold. Of viscous parts
 /// only what remains in the long term is known to be held; the rest may have been lost, so nothing is said of energy
 /// that went.
-fn balance(memory: &mut GuardMemory, seen: &Look, watch: &Watch, world: &World) -> (f64, f64) {
+fn balance(memory: &mut GuardMemory, seen: &Sample, watch: &Watch, world: &World) -> (f64, f64) {
     let Held { lasting: held, all, viscous } = held_by(seen, world);
     memory.scale = memory.scale.max(all).max(seen.internal_work.abs());
     if watch.limits.off.contains(&Guard::Energy) {
@@ -211,7 +211,7 @@ struct Held {
     viscous: bool,
 }
 
-fn held_by(seen: &Look, world: &World) -> Held {
+fn held_by(seen: &Sample, world: &World) -> Held {
     let mut held = Held { lasting: 0.0, all: seen.kinetic, viscous: false };
     for (entity, sums) in &seen.parts {
         let prony = world.get::<Block>(*entity).and_then(|block| world.get::<Prony>(block.material));
@@ -233,7 +233,7 @@ fn held_by(seen: &Look, world: &World) -> Held {
 /// # Errors
 /// What the GPU says.
 pub fn held_for_long(world: &mut World) -> Result<f64, Error> {
-    let seen = look(world)?;
+    let seen = sample(world)?;
     Ok(held_by(&seen, world).lasting)
 }
 
@@ -242,7 +242,7 @@ pub fn held_for_long(world: &mut World) -> Result<f64, Error> {
 /// # Errors
 /// What the GPU says.
 pub fn begin(world: &mut World) -> Result<(), Error> {
-    let seen = look(world)?;
+    let seen = sample(world)?;
     let held = held_by(&seen, world);
     let rounding = Rounding::of(world);
     let mut memory = world.get_resource_or_init::<GuardMemory>();
@@ -252,13 +252,13 @@ pub fn begin(world: &mut World) -> Result<(), Error> {
     Ok(())
 }
 
-fn hourglass(memory: &mut GuardMemory, seen: &Look, watch: &Watch, world: &World) {
+fn hourglass(memory: &mut GuardMemory, seen: &Sample, watch: &Watch, world: &World) {
     let limit = watch.limits.hourglass;
     for (entity, sums) in &seen.parts {
         let Some(part) = world.get::<Label>(*entity).map(|label| label.0.clone()) else { continue };
         let peak = memory.peaks.entry(part.clone()).or_default();
         *peak = peak.max(sums.strain);
-        if sums.hourglass <= 0.0 || sums.hourglass + *peak < WORTH_LOOKING * memory.scale {
+        if sums.hourglass <= 0.0 || sums.hourglass + *peak < WORTH_CHECKING * memory.scale {
             continue;
         }
         let share = (sums.hourglass / peak.max(f64::MIN_POSITIVE)).min(MOST_SHARE);
@@ -287,7 +287,7 @@ fn warn(memory: &mut GuardMemory, world: &World, criterion: &str, part: &str, va
 }
 
 /// Notes the smallest J and the fastest node.
-fn remember(memory: &mut GuardMemory, seen: &Look, world: &World) {
+fn remember(memory: &mut GuardMemory, seen: &Sample, world: &World) {
     let time = world.resource::<Clock>().time();
     for (entity, sums) in &seen.parts {
         let (value, known) = (sums.least_volume_ratio, &memory.least_volume_ratio);

@@ -6,10 +6,10 @@ mod energies;
 mod fields;
 mod frame;
 mod guards;
-mod look;
 mod overlaps;
 mod probes;
 mod rounding;
+mod sample;
 mod skins;
 mod tables;
 mod tools;
@@ -20,9 +20,9 @@ pub use energies::{energies, energy_header, mass};
 pub use fields::{BodyFields, body_fields, internal_forces};
 pub use frame::{WrittenFields, write as write_fields, write_whole};
 pub use guards::{Watch, begin as begin_to_guard, held_for_long};
-pub use look::{Look, WatchKernels, look};
 pub use probes::{header, observe_probe, volume_left};
 pub use rounding::{Rounding, shortest_edge};
+pub use sample::{Sample, WatchKernels, sample};
 pub use skins::{SkinState, skin_of};
 pub use tools::{Felt, ToolReading, feel, read_tool};
 pub use track::Track;
@@ -54,14 +54,14 @@ pub struct Observer {
     pub energy: Option<Track>,
     /// How often snapshots are written; `None`: never.
     pub snapshots: Option<Cadence>,
-    /// How the guards look.
+    /// How the run is guarded.
     pub watch: Watch,
     /// Whether steps are taken on a GPU.
     pub on_gpu: bool,
     /// Whether they are so without a system that runs on the host.
     pub all_on_device: bool,
     /// The last step that passed all guards in a look at energies and elements.
-    pub looked_at: Option<u64>,
+    pub checked_at: Option<u64>,
     /// The last states that passed all guards, the oldest first.
     pub window: VecDeque<Snapshot>,
     /// The last step of the run, which is always observed. That of a static analysis is known when it is there.
@@ -188,7 +188,7 @@ impl Observer {
         }
         if !self.to_rest {
             let files = self.snapshots.iter().chain([&self.fields]).map(|cadence| cadence.next_after(step));
-            due = self.tracks().map(|track| track.next_look(step)).chain(files).fold(due, u64::min);
+            due = self.tracks().map(|track| track.next_sample(step)).chain(files).fold(due, u64::min);
         }
         if step < self.last_step { due.min(self.last_step) } else { due }
     }
@@ -210,9 +210,9 @@ impl Observer {
     /// Whether a state is to be kept after the present step, because it has just passed all guards and may be the last.
     /// Bringing it from a GPU takes time: there it is done in every sixteenth look.
     pub fn keeps_state(&self, step: u64) -> bool {
-        let looks = step / self.watch.limits.every.max(1);
-        let wanted = self.watch.limits.window > 0 && self.files.is_some() && self.looked_at == Some(step);
-        wanted && !self.to_rest && (!self.on_gpu || looks.is_multiple_of(16))
+        let checks = step / self.watch.limits.every.max(1);
+        let wanted = self.watch.limits.window > 0 && self.files.is_some() && self.checked_at == Some(step);
+        wanted && !self.to_rest && (!self.on_gpu || checks.is_multiple_of(16))
     }
 
     /// Keeps a state, and lets go of the oldest.
@@ -257,10 +257,10 @@ impl Observer {
         if shown && let Some(found) = guards::find_in_result(world, self.good_until, &self.watch)? {
             return Err(Error::Unstable(Box::new(found)));
         }
-        let look = clock.step.is_multiple_of(self.watch.limits.every.max(1)) || last;
-        if look && clock.step > 0 && !to_rest {
+        let is_due = clock.step.is_multiple_of(self.watch.limits.every.max(1)) || last;
+        if is_due && clock.step > 0 && !to_rest {
             guards::weigh(world, self.good_until, &self.watch)?;
-            self.looked_at = Some(clock.step);
+            self.checked_at = Some(clock.step);
         }
         let moment = match to_rest {
             false => Moment::Step(clock.step, last),

@@ -44,7 +44,7 @@ impl Simulation {
     pub(super) fn adapt(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<bool, Error> {
         let clock = *self.world.resource::<Clock>();
         let found = &mut follower.found;
-        found.lost += found.losing * clock.step.saturating_sub(found.looked) as f64;
+        found.lost += found.losing * clock.step.saturating_sub(found.checked_at) as f64;
         let gives_up = |follower: &Follower, seen: &Seen| {
             follower.wanted(follower.step_of(seen.square), seen) < LEAST * follower.first
         };
@@ -100,7 +100,7 @@ impl Simulation {
         seen.square = seen.square.min(square_with_damping(SHOWN * shown, world));
         follower.shape = Some(shape);
         follower.found.take(seen);
-        follower.history.sharp_looks += 1;
+        follower.history.eigenvalue_estimates += 1;
         Ok(true)
     }
 

@@ -118,7 +118,7 @@ impl Simulation {
         let more = held_for_long(&mut self.world)? - before;
         self.world.resource_mut::<GuardMemory>().at_start += more;
         if let Some(follower) = self.solver.follower_mut() {
-            follower.look_soon();
+            follower.check_soon();
         }
         Ok(())
     }
@@ -149,7 +149,8 @@ impl Simulation {
         let Some(mut follower) = follower.take() else { return Ok(()) };
         let (found, shape) = (follower.found.clone(), follower.shape.take());
         let watched = std::mem::replace(&mut follower.watched, Watched::all(&mut self.world));
-        let mut seen = follower.watched.iter_mut().fold(Seen::NOTHING, |seen, block| seen.and(block.look(&self.world)));
+        let mut seen =
+            follower.watched.iter_mut().fold(Seen::NOTHING, |seen, block| seen.and(block.sample(&self.world)));
         seen.square = seen.of_elements;
         let known = match follower.policy {
             WhenUnstable::Adapt | WhenUnstable::Watch => self.estimate(&mut follower, &mut seen),

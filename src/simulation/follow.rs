@@ -21,7 +21,7 @@ use std::time::Instant;
 /// Steps between two looks at all elements: where strains change slowly at least, and at most; and no more than have
 /// been taken since the beginning or since loads and motions last became quicker, because what begins smoothly becomes
 /// faster.
-const LOOKS: (u64, u64) = (16, 256);
+const CHECK_STEPS: (u64, u64) = (16, 256);
 /// Between two looks strains change by so much, at the present speed: close to the limit, and where the step is half of
 /// it or less. The stable step of what is squeezed shrinks twice as fast as it, and a twentieth is left when it counts
 /// as close.
@@ -44,9 +44,9 @@ pub struct StepHistory {
     /// The largest step taken (s).
     pub largest: f64,
     /// How often all elements were looked at.
-    pub looks: u64,
+    pub checks: u64,
     /// How often the highest frequency was found during the run.
-    pub sharp_looks: u64,
+    pub eigenvalue_estimates: u64,
     /// What looking took (s).
     pub seconds: f64,
     /// When the step was first seen to be beyond the stable one (s), where it stays all the same.
@@ -88,7 +88,7 @@ pub(super) struct Found {
     /// The step before which is looked next.
     pub next: u64,
     /// The step of the last look.
-    pub looked: u64,
+    pub checked_at: u64,
     /// The step in which loads and motions became quicker last, of those that were looked at.
     pub quickened: u64,
     /// The step from which on they become quicker, where it is looked next for that.
@@ -154,7 +154,7 @@ impl Follower {
             watched: Vec::new(),
             found: Found {
                 next: 0,
-                looked: 0,
+                checked_at: 0,
                 quickened: 0,
                 quickens_at: None,
                 loads: None,
@@ -237,7 +237,7 @@ impl Follower {
             return;
         }
         self.found.changed = Some(step);
-        let within = if quickens { 1 } else { LOOKS.0 };
+        let within = if quickens { 1 } else { CHECK_STEPS.0 };
         self.found.next = self.found.next.min(step + within);
         // what comes after that look is sought at it
         self.found.quickens_at = self.found.quickens_at.filter(|at| *at < step + within);
@@ -247,26 +247,26 @@ impl Follower {
     }
 
     /// Looks before the next step.
-    pub fn look_soon(&mut self) {
+    pub fn check_soon(&mut self) {
         // where nothing would be done about it nobody looks
         if self.found.next != u64::MAX {
-            self.found.next = self.found.next.min(self.found.looked);
+            self.found.next = self.found.next.min(self.found.checked_at);
         }
     }
 
     /// The step before which is looked next: sooner where strains change fast, where the step is close to the limit,
     /// and before loads and motions become quicker, `quicker` (s).
-    fn next_look(&mut self, step: u64, seen: &Seen, clock: &Clock, quicker: Option<f64>) -> u64 {
+    fn next_check(&mut self, step: u64, seen: &Seen, clock: &Clock, quicker: Option<f64>) -> u64 {
         // far below the limit more may happen unseen
         let room = self.most() * self.step_of(seen.square) / clock.time_step - 1.0;
         let strain = (STRAIN.1 * room).clamp(STRAIN.0, STRAIN.1);
         // what is no number, or inside out, has no speed
         let speed = if seen.speed.is_finite() { seen.speed } else { MOST_STRAIN };
-        let least = ((MOST_STRAIN / speed) as u64).clamp(1, LOOKS.0);
+        let least = ((MOST_STRAIN / speed) as u64).clamp(1, CHECK_STEPS.0);
         let calm =
-            ((strain / speed) as u64).clamp(least, LOOKS.1).min(step.saturating_sub(self.found.quickened).max(1));
+            ((strain / speed) as u64).clamp(least, CHECK_STEPS.1).min(step.saturating_sub(self.found.quickened).max(1));
         // what begins to change may be anything
-        let calm = if self.found.changed == Some(step) { calm.min(LOOKS.0) } else { calm };
+        let calm = if self.found.changed == Some(step) { calm.min(CHECK_STEPS.0) } else { calm };
         let until = |time: f64| ((time - clock.time()) / clock.time_step).ceil();
         let sooner = quicker.map(until).filter(|steps| *steps < calm as f64);
         self.found.quickens_at = sooner.map(|steps| step + steps as u64);
@@ -323,13 +323,13 @@ impl Simulation {
         let Solver::Explicit(follower) = &mut self.solver else { return Ok(()) };
         let Some(mut follower) = follower.take_if(|follower| follower.found.next <= step) else { return Ok(()) };
         let started = Instant::now();
-        let looked = self.look_with(&mut follower);
+        let checked = self.check_with(&mut follower);
         follower.history.seconds += started.elapsed().as_secs_f64();
         self.solver = Solver::Explicit(Some(follower));
-        looked.map_err(|error| self.note(error))
+        checked.map_err(|error| self.note(error))
     }
 
-    fn look_with(&mut self, follower: &mut Follower) -> Result<(), Error> {
+    fn check_with(&mut self, follower: &mut Follower) -> Result<(), Error> {
         let moving = [Displacement::NAME, DisplacementIncrement::NAME, RestShape::NAME];
         bring_to_host(&mut self.world, |_, name| moving.contains(&name))?;
         if follower.watched.is_empty() {
@@ -338,9 +338,9 @@ impl Simulation {
         let step = self.step_count();
         let mut seen = Seen::NOTHING;
         for block in &mut follower.watched {
-            seen = seen.and(block.look(&self.world));
+            seen = seen.and(block.sample(&self.world));
         }
-        follower.history.looks += 1;
+        follower.history.checks += 1;
         if let Some(at) = follower.found.quickens_at.take_if(|at| *at <= step) {
             follower.found.quickened = at;
         }
@@ -371,10 +371,10 @@ impl Simulation {
         follower.found.next = known.unwrap_or_else(|| {
             let clock = *self.world.resource::<Clock>();
             let quicker = self.world.resource::<Signals>().quickens_after(clock.time());
-            let next = follower.next_look(step, &seen, &clock, quicker);
-            if grows { next.min(step + LOOKS.0) } else { next }
+            let next = follower.next_check(step, &seen, &clock, quicker);
+            if grows { next.min(step + CHECK_STEPS.0) } else { next }
         });
-        follower.found.looked = step;
+        follower.found.checked_at = step;
         Ok(())
     }
 }

@@ -45,7 +45,7 @@ impl Simulation {
         (self.elapsed, self.metronome) = (Duration::ZERO, Default::default());
         self.failure = None;
         let mut observer = self.world.resource_mut::<Observer>();
-        (observer.good_until, observer.looked_at) = (clock.time(), None);
+        (observer.good_until, observer.checked_at) = (clock.time(), None);
         observer.window.clear();
         observer.writing = Duration::ZERO;
         Ok(())

@@ -31,7 +31,7 @@ impl Simulation {
             time_step > follower.most() * if watches { follower.step_of(square) } else { step_of(square) }
         };
         let pressing = presses(follower, seen.square);
-        let affordable = follower.history.sharp_looks < FINDINGS.0 + step / FINDINGS.1;
+        let affordable = follower.history.eigenvalue_estimates < FINDINGS.0 + step / FINDINGS.1;
         let found = match watches {
             true => pressing && affordable && self.estimate(follower, seen)?,
             false => pressing && self.find(follower, seen)?,
@@ -64,7 +64,7 @@ impl Simulation {
         }
         seen.square = square_of(limit);
         follower.found.take(seen);
-        follower.history.sharp_looks += 1;
+        follower.history.eigenvalue_estimates += 1;
         Ok(true)
     }
 

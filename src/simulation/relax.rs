@@ -1,9 +1,9 @@
 //! Dynamic relaxation: pseudo-steps to equilibrium, their damping chosen anew from what the last ones did.
 //!
-//! Every [`LOOK`] steps the residual is taken, the lowest frequency of the motion is estimated by the Rayleigh quotient
-//! ω² = Δuᵀ ΔF / Δuᵀ M Δu of what has changed since the last look, and all nodes are damped critically for it, c = 2ω
-//! (Underwood 1983). Forces count less where elements are squeezed, which raises the highest frequency. Steps that end
-//! in numbers that are not finite or in elements turned inside out are taken back.
+//! Every [`CHECK_STEPS`] steps the residual is taken, the lowest frequency of the motion is estimated by the Rayleigh
+//! quotient ω² = Δuᵀ ΔF / Δuᵀ M Δu of what has changed since the last look, and all nodes are damped critically for it,
+//! c = 2ω (Underwood 1983). Forces count less where elements are squeezed, which raises the highest frequency. Steps
+//! that end in numbers that are not finite or in elements turned inside out are taken back.
 
 use super::Simulation;
 use super::residual::{Motion, Residual, State};
@@ -17,9 +17,9 @@ use bevy_ecs::prelude::*;
 use serde::Serialize;
 
 /// Steps between two looks at the residual.
-const LOOK: u64 = 40;
+const CHECK_STEPS: u64 = 40;
 /// Elements are looked at while loads grow, then in every so many looks.
-const LOOKS_BETWEEN_STRETCHES: u64 = 10;
+const CHECKS_BETWEEN_STRETCHES: u64 = 10;
 /// How often steps may be taken back.
 const MOST_SETBACKS: u32 = 10;
 /// Damping a at most: beyond 1 a step would turn round.
@@ -63,7 +63,7 @@ pub struct Equilibrium {
 pub(super) struct Relaxing {
     pub equilibrium: Equilibrium,
     most_steps: u64,
-    next_look: u64,
+    next_check: u64,
     before: State,
     /// Step and residual when the residual was last seen to fall by a tenth.
     best: (u64, f64),
@@ -72,7 +72,7 @@ pub(super) struct Relaxing {
     /// The gain before anything is squeezed, and the share of it that squeezed elements leave.
     gain: f64,
     squeezed: f64,
-    looks: u64,
+    checks: u64,
     /// The lowest frequency, as far as it is known (1/s).
     frequency: f64,
     /// The look that first saw loads at rest.
@@ -86,14 +86,14 @@ impl Relaxing {
         Self {
             equilibrium: Equilibrium { residual: f64::INFINITY, tolerance, load_steps, ..Equilibrium::default() },
             most_steps,
-            next_look: LOOK.min(most_steps),
+            next_check: CHECK_STEPS.min(most_steps),
             before: State::of(world),
             best: (0, f64::INFINITY),
             largest_scale: 0.0,
             largest_displaced: 0.0,
             gain: world.resource::<Clock>().relaxation.map_or(1.0, |relaxation| relaxation.gain),
             squeezed: 1.0,
-            looks: 0,
+            checks: 0,
             frequency: 0.0,
             settled_at: None,
             quiet_since: None,
@@ -101,8 +101,8 @@ impl Relaxing {
     }
 
     /// The next step at whose end the residual is looked at.
-    pub fn next_look(&self) -> u64 {
-        self.next_look
+    pub fn next_check(&self) -> u64 {
+        self.next_check
     }
 }
 
@@ -126,9 +126,9 @@ impl Simulation {
     }
 
     /// Looks at the residual, and chooses how to go on.
-    pub(super) fn look(&mut self) -> Result<(), Error> {
+    pub(super) fn check_equilibrium(&mut self) -> Result<(), Error> {
         let Solver::Relaxation(relaxing) = &mut self.solver else { return Ok(()) };
-        relaxing.look(&mut self.world)?;
+        relaxing.check(&mut self.world)?;
         if relaxing.equilibrium.reached {
             self.world.resource_mut::<Observer>().last_step = self.step_count();
             self.observe_in_time()?;
@@ -138,7 +138,7 @@ impl Simulation {
 }
 
 impl Relaxing {
-    fn look(&mut self, world: &mut World) -> Result<(), Error> {
+    fn check(&mut self, world: &mut World) -> Result<(), Error> {
         let clock = *world.resource::<Clock>();
         let Some(mut relaxation) = clock.relaxation else { return Ok(()) };
         bring_to_host(world, |_, name| State::COLUMNS.contains(&name))?;
@@ -153,10 +153,10 @@ impl Relaxing {
             return self.take_back(world, relaxation, clock.step);
         }
         let share = relaxation.share(clock.step);
-        if share < 1.0 || self.looks.is_multiple_of(LOOKS_BETWEEN_STRETCHES) {
+        if share < 1.0 || self.checks.is_multiple_of(CHECKS_BETWEEN_STRETCHES) {
             self.squeezed = least_stretch(world).powi(2);
         }
-        self.looks += 1;
+        self.checks += 1;
         relaxation.gain = self.gain * self.squeezed;
         let motion = now.motion_since(&self.before, world);
         // forces of a motion are to loads about as the motion is to displacements; they must stand out from rounding
@@ -164,7 +164,7 @@ impl Relaxing {
         let tiny = CLEAR_OF_ROUNDING * noise * motion.displaced;
         if let Some(frequency) = motion.frequency.filter(|_| motion.moved > tiny) {
             // the quotient is never below the lowest frequency: with loads at rest the least is the best
-            let settled = self.settled_at.is_some_and(|step| clock.step > step + 2 * LOOK);
+            let settled = self.settled_at.is_some_and(|step| clock.step > step + 2 * CHECK_STEPS);
             self.frequency = if settled { frequency.min(self.frequency) } else { frequency };
         }
         relaxation.damping = (relaxation.gain.sqrt() * self.frequency * clock.time_step).min(MOST_DAMPING);
@@ -197,11 +197,11 @@ impl Relaxing {
             self.best = (clock.step, found.residual);
         }
         let patience = PATIENCE / relaxation.damping.max(1e-9);
-        let stalled = (clock.step - self.best.0) as f64 > patience.max(50.0 * LOOK as f64);
+        let stalled = (clock.step - self.best.0) as f64 > patience.max(50.0 * CHECK_STEPS as f64);
         if stalled || clock.step >= self.most_steps {
             return Err(self.given_up(clock.step));
         }
-        self.next_look = (clock.step + LOOK).min(self.most_steps);
+        self.next_check = (clock.step + CHECK_STEPS).min(self.most_steps);
         Ok(())
     }
 
@@ -241,7 +241,7 @@ impl Relaxing {
         send_to_device(world, |_, name| State::COLUMNS.contains(&name))?;
         world.resource_mut::<Clock>().relaxation = Some(relaxation);
         self.equilibrium.setbacks += 1;
-        self.next_look = (step + LOOK).min(self.most_steps);
+        self.next_check = (step + CHECK_STEPS).min(self.most_steps);
         Ok(())
     }
 

@@ -40,7 +40,7 @@ impl Solver {
     }
 
     /// The step before which Δt may become another; a search for equilibrium has one Δt.
-    pub fn next_look(&self) -> u64 {
+    pub fn next_check(&self) -> u64 {
         match self {
             Self::Explicit(follower) => follower.as_ref().map_or(u64::MAX, |follower| follower.found.next),
             Self::Relaxation(_) => u64::MAX,
@@ -61,12 +61,12 @@ impl Simulation {
     /// inputs and what hands do are taken up, and then the stable step is looked at. A second time before the same step
     /// it does nothing.
     fn begin_step(&mut self) -> Result<(), Error> {
-        self.before_the_look()?;
+        self.before_the_check()?;
         self.follow()
     }
 
     /// All of it but the look.
-    pub(super) fn before_the_look(&mut self) -> Result<(), Error> {
+    pub(super) fn before_the_check(&mut self) -> Result<(), Error> {
         self.wait_for_life();
         self.keep_history_if_due()?;
         self.take_up_inputs()?;
@@ -79,21 +79,21 @@ impl Simulation {
             self.begin_step()?;
             match &self.solver {
                 Solver::Explicit(_) => {
-                    let look = self.solver.next_look().min(self.next_change());
-                    let next = look.min(self.next_kept().max(self.step_count() + 1));
+                    let check = self.solver.next_check().min(self.next_change());
+                    let next = check.min(self.next_kept().max(self.step_count() + 1));
                     let next = next.min(self.ports.next_end()).min(self.next_tick());
                     self.some_steps(target.min(next))?;
                     self.end_batches()?;
                 }
                 Solver::Relaxation(relaxing) if relaxing.equilibrium.reached => return Ok(()),
                 Solver::Relaxation(relaxing) => {
-                    let next = relaxing.next_look();
+                    let next = relaxing.next_check();
                     // who asks again after it was given up is told again
                     if self.step_count() < next {
                         self.some_steps(target.min(next))?;
                     }
                     if self.step_count() >= next {
-                        self.look()?;
+                        self.check_equilibrium()?;
                     }
                 }
             }

@@ -190,7 +190,7 @@ impl Watched {
 
     /// Looks at all elements: first at what those of a part come to were one of them the largest in everything, then at
     /// one after the other where that comes to most.
-    pub fn look(&mut self, world: &World) -> Seen {
+    pub fn sample(&mut self, world: &World) -> Seen {
         let (cpu, count) = (world.resource::<Cpu>(), self.squares.len());
         let of_task = |task: usize| -> Vec<(Strain, usize)> {
             let parts = task * PARTS_A_TASK..count.div_ceil(ROWS_A_PART).min((task + 1) * PARTS_A_TASK);

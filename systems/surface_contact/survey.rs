@@ -152,7 +152,7 @@ fn near_at_rest(contacts: &mut SurfaceContacts, rest: &[DVec3]) {
 }
 
 /// Sees where the nodes are, and how far the fastest went in the last step (m).
-pub(super) fn look(contacts: &mut SurfaceContacts, bodies: &Query<MeetingColumns>) -> f64 {
+pub(super) fn update_places(contacts: &mut SurfaceContacts, bodies: &Query<MeetingColumns>) -> f64 {
     let Surface { nodes, places, .. } = &mut contacts.surface;
     places.clear();
     let mut largest = 0.0_f64;

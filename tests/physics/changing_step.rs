@@ -34,7 +34,7 @@ fn step_adapts_where_tissue_is_squeezed_and_the_run_ends_in_time() {
         assert!(simulation.time_step() <= 0.96 * limit, "{} of {limit}", simulation.time_step());
         let summary = simulation.summary("finished").unwrap();
         let seen = &summary.probes["top"];
-        near("the last look", seen.0, 2.0, 2.0, 1e-12);
+        near("the last check", seen.0, 2.0, 2.0, 1e-12);
         near("the squeezed height", seen.1[2], -0.028, 0.028, run.bound(1e-12, 1e-5));
     }
 }
@@ -42,7 +42,7 @@ fn step_adapts_where_tissue_is_squeezed_and_the_run_ends_in_time() {
 /// The step, where it began, how it went: all that a run goes on with beside its columns.
 fn pace_of(simulation: &mut Simulation) -> String {
     let history = *simulation.step_history().unwrap();
-    let taken = (history.changes, history.smallest, history.largest, history.looks, history.sharp_looks);
+    let taken = (history.changes, history.smallest, history.largest, history.checks, history.eigenvalue_estimates);
     let clock = (simulation.step_count(), simulation.time(), simulation.time_step(), simulation.planned_steps());
     format!("{clock:?} {taken:?} {:?}", simulation.energies().unwrap())
 }
@@ -87,13 +87,13 @@ fn the_same_step_all_along_becomes_unstable_there() {
 
 /// Looking at the stable step is a part of the run as its systems are.
 #[test]
-fn looks_count_as_time_of_the_run() {
+fn checks_count_as_time_of_the_run() {
     let mut simulation = configurations()[0].start(&squeezed("bound: Iterated", 0.3, "Hex8"));
     simulation.advance_towards_end(u64::MAX).unwrap();
     let summary = simulation.summary("finished").unwrap();
-    let (looks, systems) = (summary.step_history.unwrap().seconds, summary.systems.iter().filter_map(|s| s.seconds));
-    let parts = looks + systems.sum::<f64>();
-    assert!(looks > 0.0 && summary.run_seconds >= parts, "{} s of {parts} s", summary.run_seconds);
+    let (checks, systems) = (summary.step_history.unwrap().seconds, summary.systems.iter().filter_map(|s| s.seconds));
+    let parts = checks + systems.sum::<f64>();
+    assert!(checks > 0.0 && summary.run_seconds >= parts, "{} s of {parts} s", summary.run_seconds);
 }
 
 /// Free vibration of a block whose step is changed by hand every few steps.
@@ -212,7 +212,7 @@ fn what_goes_by_time_and_what_is_observed_keeps_its_times() {
 /// Tetrahedra between walls, squeezed to .3: the stable step shrinks by a tenth while strains change by a twentieth,
 /// and what was found to be stable by a twentieth was not any more when it was looked at again.
 #[test]
-fn a_step_close_to_the_limit_is_looked_at_before_it_is_beyond_it() {
+fn a_step_close_to_the_limit_is_checked_before_it_is_beyond_it() {
     for run in configurations() {
         for elements in ["Tet4", "Tet4NodalPressure"] {
             let text = squeezed("when_unstable: Adapt", 0.28, elements)
@@ -221,8 +221,8 @@ fn a_step_close_to_the_limit_is_looked_at_before_it_is_beyond_it() {
             let mut simulation = run.start(&text);
             let first = simulation.time_step();
             let mut least = f64::INFINITY;
-            for look in 1..=40 {
-                simulation.advance_to(0.04 * f64::from(look)).unwrap();
+            for check in 1..=40 {
+                simulation.advance_to(0.04 * f64::from(check)).unwrap();
                 // 3 % is how far the limit may be underestimated
                 least = least.min(simulation.stable_limit().unwrap().unwrap() / 0.97 / simulation.time_step());
             }

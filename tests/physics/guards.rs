@@ -4,7 +4,7 @@
 use crate::configurations::{configurations, scene_of};
 use sinew::bevy_ecs::prelude::*;
 use sinew::components::*;
-use sinew::observation::{HOST_GUARD_STEPS, look};
+use sinew::observation::{HOST_GUARD_STEPS, sample};
 use sinew::output::Folder;
 use sinew::systems::{Phase, Registry, System};
 use sinew::{BackendChoice, Error, Instability, Simulation, Snapshot};
@@ -23,7 +23,7 @@ fn scene(elements: &str, effects: &str, further: &str) -> String {
 /// energies by the rounding of strains of 1e-2.
 #[test]
 #[ignore = "long"]
-fn looks_see_the_energies_and_the_most_squeezed_element() {
+fn samples_see_the_energies_and_the_most_squeezed_element() {
     let fibres = "fibres: (eta: 2000, direction: Around(center: (0.05, -0.1, 0), axis: (0, 0, 1))),
         exponential_fibres: [(k1: 500, k2: 0.5, direction: Along(1, 1, 0))],";
     for (run, elements) in
@@ -36,7 +36,7 @@ fn looks_see_the_energies_and_the_most_squeezed_element() {
             simulation.advance(60).unwrap();
             let energies = simulation.energies().unwrap();
             let fields = simulation.fields("b").unwrap();
-            let seen = look(simulation.world_mut()).unwrap();
+            let seen = sample(simulation.world_mut()).unwrap();
             let name = format!("{}, {elements}", run.name);
             let sum =
                 |of: fn(&sinew::backend::cpu::BlockSums) -> f64| seen.parts.iter().map(|(_, s)| of(s)).sum::<f64>();
@@ -72,7 +72,7 @@ fn work_against_internal_forces_is_booked_without_being_asked_for() {
             );
             let mut simulation = run.start(&scene("Hex8", "damping: 3,", &further));
             simulation.advance(300).unwrap();
-            let spent = look(simulation.world_mut()).unwrap().internal_work;
+            let spent = sample(simulation.world_mut()).unwrap().internal_work;
             (spent, simulation.energies().unwrap())
         };
         let ((spent, plain), (asked, full)) = (of(""), of("output: (energies_every: 1),"));
@@ -87,7 +87,7 @@ fn work_against_internal_forces_is_booked_without_being_asked_for() {
 }
 
 #[test]
-fn a_sound_run_is_looked_at_and_warned_of_nothing() {
+fn a_sound_run_is_checked_and_warned_of_nothing() {
     for (run, elements) in configurations().iter().flat_map(|run| ["Tet4", "Hex8"].map(|elements| (run, elements))) {
         let further = "loads: [Gravity(acceleration: (0, 0, -9.81), curve: Smooth(end: 0.05))],
             constraints: [Fixed(on: Set(\"z0\"))], guards: (every: 50),";
@@ -95,7 +95,7 @@ fn a_sound_run_is_looked_at_and_warned_of_nothing() {
         simulation.advance(400).unwrap();
         let guards = simulation.guards();
         println!("{}, {elements}: {guards:?}", run.name);
-        assert_eq!(guards.looks, 8);
+        assert_eq!(guards.checks, 8);
         assert!(guards.imbalance.abs() < 0.01 && guards.imbalance != 0.0, "{guards:?}");
         assert!(guards.warnings.is_empty(), "{guards:?}");
         let least = guards.least_volume_ratio.unwrap();

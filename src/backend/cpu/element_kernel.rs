@@ -348,7 +348,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
             E::add_stress(&mut forces, point, &state, &stress);
             worst = worst.max(least - j);
         }
-        for point in E::POINTS..E::LOOKED_AT {
+        for point in E::POINTS..E::CHECKED_POINTS {
             let j = volume_ratio::<E, T, S>(simd, &u, rest_shape, point, at);
             worst = worst.max(least - j);
         }

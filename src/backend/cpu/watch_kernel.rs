@@ -143,7 +143,7 @@ impl<E: Element, T: SimdScalar> Patch<'_, E, T> {
                 hourglass = E::hourglass_energy(&u, &state.gradient, number);
             }
         }
-        for point in E::POINTS..E::LOOKED_AT {
+        for point in E::POINTS..E::CHECKED_POINTS {
             let change = E::at_point(&u, point, number).gradient.volume_change();
             least = least.min(change + change.constant(1.0));
         }

@@ -128,7 +128,7 @@ const GENERATED: [&str; 21] = [
     "LANES",
     "NODES",
     "POINTS",
-    "LOOKED_AT",
+    "CHECKED_POINTS",
     "ROWS",
     "VOLUME_ROW",
     "J_FLOOR",

@@ -95,8 +95,8 @@ fn settings(
         }
     }
     if !paths.is_empty() {
-        let looks = engine.looks().map_err(failure)?;
-        reference = Some(files::read(&paths, file.scene.duration, looks).map_err(Failure::Options)?);
+        let samples = engine.sample_count().map_err(failure)?;
+        reference = Some(files::read(&paths, file.scene.duration, samples).map_err(Failure::Options)?);
     }
     // what is named on the command line is not what the scene speaks of
     if arguments.reference.is_empty() {

@@ -92,10 +92,10 @@ pub fn draw_with_progress(
     let mut keys_of_all = Vec::new();
     for (row, (_, path)) in series.frames.iter().enumerate() {
         let mut state = reader.read(path)?;
-        state.look(&reader, &mut seen, &mut fit);
+        state.measure(&reader, &mut seen, &mut fit);
         if options.swing > 0 {
             state.scale(-1.0);
-            state.look(&reader, &mut seen, &mut fit);
+            state.measure(&reader, &mut seen, &mut fit);
         }
         if row <= last {
             keys_of_all = [keys_of_all, state.keys(&reader)].into_iter().max_by_key(Vec::len).unwrap_or_default();
@@ -108,7 +108,7 @@ pub fn draw_with_progress(
     let drawn = how.tools && options.swing == 0 && !fit.extent().is_nothing();
     let tools = if drawn { &options.tools } else { &no_tools };
     let times: Vec<f64> = series.frames.iter().map(|frame| frame.0).collect();
-    let spanned = tools.look(&times, &mut fit);
+    let spanned = tools.measure(&times, &mut fit);
     let placed = |row: usize| tools.placed(row, times[row], &spanned);
     let camera = fit.camera().ok_or_else(nothing)?;
     let mut shown = if options.animate { 0..=last } else { last..=last };

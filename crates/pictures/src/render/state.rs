@@ -328,7 +328,7 @@ impl State {
     }
 
     /// Adds what this frame shows.
-    pub fn look(&self, reader: &Reader, seen: &mut Seen, fit: &mut Fit) {
+    pub fn measure(&self, reader: &Reader, seen: &mut Seen, fit: &mut Fit) {
         for part in &self.parts {
             for (row, face) in part.faces.iter().enumerate() {
                 face.iter().for_each(|point| fit.see(self.vertices[*point as usize]));

@@ -7,16 +7,16 @@
 mod cases;
 mod configuration;
 mod known;
+mod monitor;
 mod report;
 mod trial;
-mod watch;
 
 pub use cases::CASES;
 pub use configuration::Configuration;
 pub use known::{SHORTFALLS, Shortfall, known};
+pub use monitor::Monitor;
 pub use report::{csv, markdown};
 pub use trial::{Gate, Trial};
-pub use watch::Watched;
 
 use serde::Serialize;
 use sinew::Error;

@@ -74,10 +74,10 @@ fn hostile_tables_are_read_or_refused() {
     for seed in 0..asked {
         let bytes = mutate::mutant(&mut fastrand::Rng::with_seed(seed as u64), &corpus);
         let (_keep, path) = folder(&[]);
-        for (name, looks) in [("probe_tip.csv", 0), ("probe_tip.csv", 10), ("nodes.csv", 0)] {
+        for (name, samples) in [("probe_tip.csv", 0), ("probe_tip.csv", 10), ("nodes.csv", 0)] {
             let file = path.join(name);
             fs::write(&file, &bytes).unwrap();
-            match read(&[file], 1.0, looks) {
+            match read(&[file], 1.0, samples) {
                 Err(error) => {
                     assert!(error.len() > 10, "seed {seed}: refused without a word");
                     refused += 1;

@@ -1,7 +1,7 @@
 //! What a configuration will cost, from a few steps of its kind, and from what its kind has cost so far.
 
 use super::Engine;
-use super::march::{self, FIELDS, Looks, refusal};
+use super::march::{self, FIELDS, Sampling, refusal};
 use super::variant::{reactions, variant};
 use crate::accuracy::configuration::{Configuration, Digits, Factor};
 use crate::accuracy::solver::{Cost, Refusal, Solution};
@@ -17,8 +17,8 @@ const SEARCH_SHARE: f64 = 0.05;
 /// Elements of the scene that are enough to predict with.
 const ENOUGH: f64 = 3000.0;
 
-/// Steps of a search for equilibrium that are timed at once: it looks at itself that often.
-const BETWEEN_LOOKS: u64 = 40;
+/// Steps of a search for equilibrium that are timed at once: it checks itself that often.
+const STEPS_BETWEEN_CHECKS: u64 = 40;
 
 /// How many times as many steps a search takes that was given up before anything could be seen of its end.
 const UNKNOWN: f64 = 20.0;
@@ -60,7 +60,9 @@ impl Engine<'_> {
         let steps = match self.file.scene.is_static() {
             // waves must cross the body so many times, and take a step a cell
             true => known.steps * finer,
-            false => (duration / self.looks.as_ref().map_or(most, |looks| looks.fitting(duration, most))).round(),
+            false => {
+                (duration / self.sampling.as_ref().map_or(most, |sampling| sampling.fitting(duration, most))).round()
+            }
         };
         let run = steps * known.seconds_a_step * growth;
         let again = if run < 0.1 { 3.0 } else { 1.0 };
@@ -130,11 +132,11 @@ impl Engine<'_> {
         let found = self.file.scene.integration.safety * summary.stable_step;
         let step = wanted.map_or(found, |step| step.min(found));
         let steps = simulation.planned_steps();
-        if self.looks.is_none() {
+        if self.sampling.is_none() {
             let steps = (self.file.scene.duration / step * kind.mesh.value() / mesh.value()) as u64;
-            self.looks = Some(Looks::new(self.file, &reactions(&self.file.scene), steps));
+            self.sampling = Some(Sampling::new(self.file, &reactions(&self.file.scene), steps));
         }
-        let each = if scene.scene.is_static() { BETWEEN_LOOKS } else { 1 };
+        let each = if scene.scene.is_static() { STEPS_BETWEEN_CHECKS } else { 1 };
         let (mut taken, mut count) = (0.0, each);
         while taken < CALIBRATION && simulation.step_count() < steps && !simulation.is_finished() {
             self.check_time()?;
@@ -145,10 +147,10 @@ impl Engine<'_> {
         let seconds_a_step = taken / simulation.step_count().max(1) as f64;
         let started = Instant::now();
         simulation.energies().map_err(refusal)?;
-        let look = started.elapsed().as_secs_f64();
-        // energies are looked at a few times as often as fields; setting up happens once more to find the step
-        let looks = self.looks.as_ref().map_or(FIELDS, |looks| looks.count).min(60);
-        let beside = 2.0 * setup + look * looks as f64;
+        let one = started.elapsed().as_secs_f64();
+        // energies are sampled a few times as often as fields; setting up happens once more to find the step
+        let samples = self.sampling.as_ref().map_or(FIELDS, |sampling| sampling.count).min(60);
+        let beside = 2.0 * setup + one * samples as f64;
         Ok(Calibration { mesh, elements: summary.elements as f64, step, steps: 0.0, seconds_a_step, beside, preload })
     }
 
@@ -174,7 +176,7 @@ impl Engine<'_> {
         while taken < share && simulation.step_count() < most && !simulation.is_finished() {
             self.check_time()?;
             // (one that breaks down is told of when it is its turn to run)
-            let Ok(seconds) = march::timed(&mut simulation, BETWEEN_LOOKS) else { break };
+            let Ok(seconds) = march::timed(&mut simulation, STEPS_BETWEEN_CHECKS) else { break };
             taken += seconds;
             first = first.or_else(|| simulation.equilibrium().map(|found| found.residual).filter(|r| r.is_finite()));
         }

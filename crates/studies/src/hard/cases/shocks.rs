@@ -1,14 +1,14 @@
 //! Sudden loads and motions.
 
 use super::super::Trial;
-use super::super::watch::Watched;
+use super::super::monitor::Monitor;
 use sinew::Error;
 
 /// H19.
 pub fn sudden_load(trial: &mut Trial<'_>) -> Result<(), Error> {
     let mut simulation = trial.start(&[])?;
-    match Watched::run(&mut simulation) {
-        Ok(watched) => trial.most("imbalance of energy", watched.imbalance, trial.bound(0.01, 0.02)),
+    match Monitor::run(&mut simulation) {
+        Ok(monitor) => trial.most("imbalance of energy", monitor.imbalance, trial.bound(0.01, 0.02)),
         ended => trial.stops("the bar", ended.map(|_| ()), &["element"]),
     }
     Ok(())

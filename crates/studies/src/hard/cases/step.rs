@@ -1,7 +1,7 @@
 //! The stable step: what sets it, what is beyond it, and what is done when it shrinks.
 
 use super::super::Trial;
-use super::super::watch::Watched;
+use super::super::monitor::Monitor;
 use super::cells::vtk;
 use sinew::Error;
 use sinew::Simulation;
@@ -94,7 +94,7 @@ pub fn shrinks(trial: &mut Trial<'_>) -> Result<(), Error> {
     let smallest = adapts.step_history().map_or(first, |history| history.smallest);
     trial.most("smallest step over the first", smallest / first, 0.8);
     let mut watches = trial.start(&["integration.when_unstable=Watch".into()])?;
-    let ended = Watched::run(&mut watches).map(|_| ());
+    let ended = Monitor::run(&mut watches).map(|_| ());
     let warned = watches.step_history().is_some_and(|history| history.beyond_since.is_some());
     trial.holds("who only watches is told, or the run stops", warned || matches!(ended, Err(Error::Unstable(_))));
     Ok(())
