@@ -269,7 +269,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
 fn criterion_kernel(block: &BlockKernels, criteria: &[&RemovalCriterion], buffers: &mut dyn Buffers) -> Kernel {
     let mut text = format!(
         "const LIMITS: u32 = {}u;\nconst CRITERION_STEPS: u32 = {CRITERION_STEPS}u;\n\
-         fn passes_a_limit(element: u32, watching: u32, e: Element) -> bool {{\n    return false",
+         fn passes_a_limit(element: u32, of_element: u32, e: Element) -> bool {{\n    return false",
         criteria.len()
     );
     for (bit, criterion) in criteria.iter().enumerate() {
@@ -279,7 +279,7 @@ fn criterion_kernel(block: &BlockKernels, criteria: &[&RemovalCriterion], buffer
             Measure::NegativeVolumeRatio => "-volume_ratio_of(e)",
             Measure::EnergyDensity => "energy_density(element, e)",
         };
-        text += &format!("\n        || (((watching >> {bit}u) & 1u) == 1u && {measure} > limits[{bit}].x)");
+        text += &format!("\n        || (((of_element >> {bit}u) & 1u) == 1u && {measure} > limits[{bit}].x)");
     }
     text += ";\n}\n";
     let limits: Vec<[f32; 4]> = criteria.iter().map(|criterion| [criterion.limit as f32, 0.0, 0.0, 0.0]).collect();

@@ -67,8 +67,8 @@ const SUPPORT: &[(&str, &str)] = &[
     ("inverse_cbrt", "a root from the bits of a number"),
     ("previous_prescribed_increment", "the step that boundary writes over"),
     ("internal_work", "work against internal forces, in integrate"),
-    ("watch_elements", "what the guards look at"),
-    ("watch_nodes", "what the guards look at"),
+    ("guard_elements", "what the guards look at"),
+    ("guard_nodes", "what the guards look at"),
     ("work", "energies, in integrate"),
     ("kinematics", "strain measures"),
     ("finite_strain", "laws for large strains"),
@@ -108,7 +108,7 @@ fn all(effects: &Effects) -> Vec<(String, Kernel)> {
         assert!(inner.len() >= 2, "{effects:?}");
         all.extend(inner.into_iter().chain(others).map(|kernel| (LARGER_DEVICE.to_owned(), kernel)));
     }
-    all.extend(kernel_worlds::watch_kernels(world));
+    all.extend(kernel_worlds::guard_kernels(world));
     // one of each kind is enough
     let mut seen: Vec<Vec<String>> = Vec::new();
     all.retain(|(_, kernel)| {
@@ -381,7 +381,7 @@ fn all_fragments_of_the_folder_are_in_use() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
     let mut used: BTreeSet<String> = BTreeSet::new();
     // the guards' own
-    used.extend(["watch_elements.wgsl".to_owned(), "watch_nodes.wgsl".to_owned()]);
+    used.extend(["guard_elements.wgsl".to_owned(), "guard_nodes.wgsl".to_owned()]);
     let scene = SceneFile::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/own_system.ron"), &[]).unwrap();
     let mut simulation = Simulation::new(&scene, &Options::default()).unwrap();
     let explained = simulation.explain_on_gpu(&Registry::default()).unwrap();

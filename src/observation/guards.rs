@@ -24,7 +24,7 @@ const MOST_SHARE: f64 = 1e6;
 
 /// How a scene wants to be guarded.
 #[derive(Clone, Debug, Default)]
-pub struct Watch {
+pub struct GuardSettings {
     /// Its limits.
     pub limits: Guards,
     /// Whether it insists on a step beyond the stable one.
@@ -37,7 +37,7 @@ pub struct Watch {
 }
 
 /// What broke down, if something did: the first displacement that is not finite, or element that is turned inside out.
-pub(super) fn find(world: &mut World, good_until: f64, watch: &Watch) -> Result<Option<Instability>, Error> {
+pub(super) fn find(world: &mut World, good_until: f64, settings: &GuardSettings) -> Result<Option<Instability>, Error> {
     bring_to_host(world, |_, name| name == FirstInverted::NAME || name == FirstNonFinite::NAME)?;
     let mut found: Option<(Entity, String, &str, Criterion)> = None;
     for (body, authoring, node) in world.query::<(Entity, &Authoring, &FirstNonFinite)>().iter(world) {
@@ -63,7 +63,7 @@ pub(super) fn find(world: &mut World, good_until: f64, watch: &Watch) -> Result<
     }
     let Some((body, what, cause, criterion)) = found else { return Ok(None) };
     let body = label(world, body);
-    Ok(Some(instability(world, watch, body, what, cause, criterion, good_until)))
+    Ok(Some(instability(world, settings, body, what, cause, criterion, good_until)))
 }
 
 /// That an element is turned inside out.
@@ -112,22 +112,26 @@ fn larger(a: f64, b: f64) -> f64 {
 
 /// What is wrong with the present state itself. Kernels notice what is turned inside out when they next take its
 /// forces: of a state that is handed out as a result, and of the last one, that would be too late.
-pub(super) fn find_in_result(world: &mut World, good_until: f64, watch: &Watch) -> Result<Option<Instability>, Error> {
+pub(super) fn find_in_result(
+    world: &mut World,
+    good_until: f64,
+    settings: &GuardSettings,
+) -> Result<Option<Instability>, Error> {
     let parts = sample_result(world)?;
     if let Some((body, what, criterion)) = seen_inside_out(&parts, world) {
-        return Ok(Some(instability(world, watch, body, what, INVERTED, criterion, good_until)));
+        return Ok(Some(instability(world, settings, body, what, INVERTED, criterion, good_until)));
     }
     let added_up = super::energies::not_finite(world)?;
     Ok(added_up.map(|(what, value)| {
         let (body, what) = (bodies(world), format!("{what} is {value}"));
-        instability(world, watch, body, what, OVERFLOW, Criterion::of("result"), good_until)
+        instability(world, settings, body, what, OVERFLOW, Criterion::of("result"), good_until)
     }))
 }
 
 /// Looks at energies and elements. Warns of what passes a limit, each once, and ends the run where elements hold more
 /// energy than was spent on them: so a step beyond the stable one shows that does not run away, because large motion
 /// holds it.
-pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch) -> Result<(), Error> {
+pub(super) fn weigh(world: &mut World, good_until: f64, settings: &GuardSettings) -> Result<(), Error> {
     let seen = sample(world)?;
     if let Some((what, value)) = not_finite(&seen, world) {
         let inside_out = seen_inside_out(&seen.parts, world);
@@ -135,7 +139,7 @@ pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch) -> Result
             Some((body, what, criterion)) => (body, what, INVERTED, criterion),
             None => (bodies(world), format!("{what} is {value}"), OVERFLOW, Criterion::of("result")),
         };
-        let broken = instability(world, watch, body, what, cause, criterion, good_until);
+        let broken = instability(world, settings, body, what, cause, criterion, good_until);
         return Err(Error::Unstable(Box::new(broken)));
     }
     let rounding = world.get_resource::<Rounding>().map_or(0.0, |rounding| rounding.of_energy(&seen.reach));
@@ -144,16 +148,18 @@ pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch) -> Result
     memory.checks += 1;
     memory.rounding = memory.rounding.max(rounding);
     remember(&mut memory, &seen, world);
-    let (made, held) = balance(&mut memory, &seen, watch, world);
-    hourglass(&mut memory, &seen, watch, world);
+    let (made, held) = balance(&mut memory, &seen, settings, world);
+    hourglass(&mut memory, &seen, settings, world);
     let (scale, rounding) = (memory.scale, memory.rounding);
     world.insert_resource(memory);
-    let stop = watch.limits.energy.stop;
-    if made <= stop * scale + rounding || watch.foreign {
+    let stop = settings.limits.energy.stop;
+    if made <= stop * scale + rounding || settings.foreign {
         return Ok(());
     }
     if let Some((body, what, criterion)) = seen_inside_out(&seen.parts, world) {
-        return Err(Error::Unstable(Box::new(instability(world, watch, body, what, INVERTED, criterion, good_until))));
+        return Err(Error::Unstable(Box::new(instability(
+            world, settings, body, what, INVERTED, criterion, good_until,
+        ))));
     }
     let what = format!(
         "elements hold {held:.3e} J, but only {:.3e} J were spent on them: {:.1} % of the largest energy so far came from \
@@ -167,22 +173,22 @@ pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch) -> Result
     let criterion = Criterion { value: Some(made / scale), limit: Some(stop), ..Criterion::of("energy") };
     debug_assert!(clock.relaxation.is_none());
     let body = bodies(world);
-    let broken = instability(world, watch, body, what, cause, criterion, good_until);
+    let broken = instability(world, settings, body, what, cause, criterion, good_until);
     Err(Error::Unstable(Box::new(broken)))
 }
 
 /// Energy (J) that has come from nothing since the start (negative: gone), and what elements hold. Of viscous parts
 /// only what remains in the long term is known to be held; the rest may have been lost, so nothing is said of energy
 /// that went.
-fn balance(memory: &mut GuardMemory, seen: &Sample, watch: &Watch, world: &World) -> (f64, f64) {
+fn balance(memory: &mut GuardMemory, seen: &Sample, settings: &GuardSettings, world: &World) -> (f64, f64) {
     let Held { lasting: held, all, viscous } = held_by(seen, world);
     memory.scale = memory.scale.max(all).max(seen.internal_work.abs());
-    if watch.limits.off.contains(&Guard::Energy) {
+    if settings.limits.off.contains(&Guard::Energy) {
         return (0.0, held);
     }
     let made = held - seen.internal_work - memory.at_start;
-    let made = if viscous || watch.removal { made.max(0.0) } else { made };
-    let limit = watch.limits.energy.warn;
+    let made = if viscous || settings.removal { made.max(0.0) } else { made };
+    let limit = settings.limits.energy.warn;
     // what rounding alone may have made of it is no imbalance
     let share = made.signum() * (made.abs() - memory.rounding).max(0.0) / memory.scale;
     if memory.scale > 0.0 && share.abs() > memory.imbalance.abs() {
@@ -252,8 +258,8 @@ pub fn begin(world: &mut World) -> Result<(), Error> {
     Ok(())
 }
 
-fn hourglass(memory: &mut GuardMemory, seen: &Sample, watch: &Watch, world: &World) {
-    let limit = watch.limits.hourglass;
+fn hourglass(memory: &mut GuardMemory, seen: &Sample, settings: &GuardSettings, world: &World) {
+    let limit = settings.limits.hourglass;
     for (entity, sums) in &seen.parts {
         let Some(part) = world.get::<Label>(*entity).map(|label| label.0.clone()) else { continue };
         let peak = memory.peaks.entry(part.clone()).or_default();
@@ -264,7 +270,7 @@ fn hourglass(memory: &mut GuardMemory, seen: &Sample, watch: &Watch, world: &Wor
         let share = (sums.hourglass / peak.max(f64::MIN_POSITIVE)).min(MOST_SHARE);
         let worst = memory.hourglass.entry(part.clone()).or_default();
         *worst = worst.max(share);
-        if share > limit && !watch.limits.off.contains(&Guard::Hourglass) {
+        if share > limit && !settings.limits.off.contains(&Guard::Hourglass) {
             let message = format!(
                 "hourglass control of {part} holds {:.0} % of the part's elastic energy ({:.0} % are a warning, \
                  guards.hourglass): motion that elements with one point do not feel; use Hex8MeanDilatation, a finer mesh, \
@@ -322,7 +328,7 @@ fn label(world: &World, entity: Entity) -> String {
 /// The report of a breakdown at the present step.
 pub(super) fn instability(
     world: &World,
-    watch: &Watch,
+    settings: &GuardSettings,
     body: String,
     what: String,
     cause: &str,
@@ -332,7 +338,7 @@ pub(super) fn instability(
     let clock = world.resource::<Clock>();
     let (time, step) = (clock.time(), clock.step);
     let jumped = world.get_resource::<Signals>().is_some_and(|signals| signals.have_jumped(time));
-    let cause = if watch.beyond { STEP_TOO_LARGE.into() } else { cause.to_string() };
+    let cause = if settings.beyond { STEP_TOO_LARGE.into() } else { cause.to_string() };
     let cause = if jumped { format!("{JUMP}; {cause}") } else { cause };
     Instability { time, step, body, what, cause, good_until, criterion, last_good: None }
 }

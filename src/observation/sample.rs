@@ -1,7 +1,7 @@
 //! What the guards sample: energies of parts, the smallest J, the fastest node. On the CPU by vector kernels, on the
 //! GPU by kernels whose sums of sixty-four rows each are brought to the host.
 
-use crate::backend::cpu::{BlockLaw, BlockSums, Cpu, WatchedColumns, run_watch};
+use crate::backend::cpu::{BlockLaw, BlockSums, Cpu, GuardColumns, run_guard};
 use crate::backend::device::{Device, bring_to_host};
 use crate::backend::kernel::KernelId;
 use crate::components::*;
@@ -13,7 +13,7 @@ use bevy_ecs::prelude::*;
 
 /// The kernels of the guards, on a GPU. A resource.
 #[derive(Resource, Default)]
-pub struct WatchKernels(pub Vec<KernelId>);
+pub struct GuardKernels(pub Vec<KernelId>);
 
 /// A sample of all bodies, in the middle of the last step.
 #[derive(Clone, Debug, Default)]
@@ -35,7 +35,7 @@ pub struct Sample {
 /// # Errors
 /// What the GPU says.
 pub fn sample(world: &mut World) -> Result<Sample, Error> {
-    let kernels = world.get_resource::<WatchKernels>().map(|kernels| kernels.0.clone()).unwrap_or_default();
+    let kernels = world.get_resource::<GuardKernels>().map(|kernels| kernels.0.clone()).unwrap_or_default();
     let mut sample = Sample { internal_work: internal_work(world)?, ..Sample::default() };
     if kernels.is_empty() {
         sample_nodes(&mut sample, world);
@@ -177,7 +177,7 @@ fn sums_of<T: SimdScalar>(world: &World, entity: Entity, displacement: &Displace
             (0..means.len()).map(|node| T::from_f64(means.get(node))).collect()
         }
     };
-    let columns = WatchedColumns::<T> {
+    let columns = GuardColumns::<T> {
         displacement: displacement.slice(),
         connectivity: world.get::<Connectivity>(entity)?,
         rest_shape: world.get::<RestShape>(entity)?.slice(),
@@ -185,5 +185,5 @@ fn sums_of<T: SimdScalar>(world: &World, entity: Entity, displacement: &Displace
         nodal_volume_change: &means,
     };
     let law = world.get::<BlockLaw<f64>>(entity)?.rounded::<T>();
-    Some(with_element_of!(block, E => run_watch::<E, T>(cpu, &columns, &law, patch_groups(block.kind))))
+    Some(with_element_of!(block, E => run_guard::<E, T>(cpu, &columns, &law, patch_groups(block.kind))))
 }

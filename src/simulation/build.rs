@@ -22,7 +22,7 @@ use crate::backend::gpu::Gpu;
 use crate::backend::kernel::KernelId;
 use crate::components::*;
 use crate::error::Error;
-use crate::observation::{Observer, Track, Watch, WatchKernels, WrittenFields};
+use crate::observation::{GuardKernels, GuardSettings, Observer, Track, WrittenFields};
 use crate::scene::SceneFile;
 use crate::scene::schema::Analysis;
 use crate::snapshot::{Keeping, identity};
@@ -87,7 +87,7 @@ impl Simulation {
                 Err(Error::Gpu(reason)) if options.backend == BackendChoice::Auto => {
                     why = format!("the GPU cannot take this scene: {reason}");
                     world.remove_resource::<Device>();
-                    world.remove_resource::<WatchKernels>();
+                    world.remove_resource::<GuardKernels>();
                     sum_forces(options.scheme, &mut world);
                     None
                 }
@@ -110,7 +110,7 @@ impl Simulation {
             crate::observation::begin_to_guard(&mut world)?;
         }
         let mut observer = world.resource_mut::<Observer>();
-        (observer.watch.foreign, observer.on_gpu) = (foreign, on_gpu);
+        (observer.guard_settings.foreign, observer.on_gpu) = (foreign, on_gpu);
         // what shares passes leaves no step to the host
         let alone = |entry: &Scheduled<'_>| match on_gpu {
             true => !entry.system.device.is_some(),
@@ -177,9 +177,9 @@ fn kernels_on(
 ) -> Result<Vec<Vec<KernelId>>, Error> {
     world.insert_resource(Device::new(gpu, all_columns()));
     if world.resource::<Clock>().relaxation.is_none() {
-        crate::systems::add_watch_columns(world);
-        let watch = Device::prepare(world, crate::systems::watch_kernels)?;
-        world.insert_resource(WatchKernels(watch));
+        crate::systems::add_guard_columns(world);
+        let kernels_of_guards = Device::prepare(world, crate::systems::guard_kernels)?;
+        world.insert_resource(GuardKernels(kernels_of_guards));
     }
     let systems: Vec<&System> = schedule.iter().map(|scheduled| scheduled.system).collect();
     let mut counts = Vec::new();
@@ -268,7 +268,7 @@ fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> 
     observer.fields = every(scene.scene.fields_every());
     observer.energy = scene.scene.output.energies_every.map(|time| Track::new(every(time)));
     observer.snapshots = scene.scene.output.snapshots_every.filter(|_| !scene.scene.is_static()).map(every);
-    observer.watch = Watch {
+    observer.guard_settings = GuardSettings {
         limits: scene.scene.guards.clone(),
         beyond: scene.scene.integration.beyond_stable_step && clock.relaxation.is_none(),
         foreign: false,
@@ -276,7 +276,7 @@ fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> 
     };
     observer.to_rest = clock.relaxation.is_some();
     observer.last_step = if clock.relaxation.is_some() { u64::MAX } else { steps };
-    observer.watch_probes(world);
+    observer.track_probes(world);
     observer
 }
 

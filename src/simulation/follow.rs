@@ -7,7 +7,7 @@ use super::mass_scaling;
 use super::rounding::warn_of_rounding;
 use super::solver::Solver;
 use super::stable_step::Stability;
-use super::watch::{Seen, Watched};
+use super::stiffness::{StabilitySample, StiffnessTracker};
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::Error;
@@ -74,7 +74,7 @@ pub(super) struct Follower {
     loads_at_start: LoadRates,
     pub duration: f64,
     pub first: f64,
-    pub watched: Vec<Watched>,
+    pub trackers: Vec<StiffnessTracker>,
     pub found: Found,
     /// The shape of what is quickest, when it was found last: see [`largest_near`](super::frequency::largest_near).
     pub shape: Option<Vec<f32>>,
@@ -107,7 +107,7 @@ pub(super) struct Found {
     pub own: Option<f64>,
     /// The highest ω² when it was found last (1/s²), and what was seen then.
     pub known: f64,
-    pub seen: Option<Seen>,
+    pub seen: Option<StabilitySample>,
     /// The share of each step that is lost because the highest ω² is not found anew, as far as that can be guessed; and
     /// steps that have been lost so since it was found.
     pub losing: f64,
@@ -118,7 +118,7 @@ pub(super) struct Found {
 
 impl Found {
     /// Takes what was seen as known.
-    pub fn take(&mut self, seen: &Seen) {
+    pub fn take(&mut self, seen: &StabilitySample) {
         (self.known, self.seen) = (seen.square, Some(*seen));
         (self.lost, self.losing) = (0.0, 0.0);
     }
@@ -151,7 +151,7 @@ impl Follower {
             loads_at_start: stability.loads,
             duration: scene.duration,
             first: step,
-            watched: Vec::new(),
+            trackers: Vec::new(),
             found: Found {
                 next: 0,
                 checked_at: 0,
@@ -196,7 +196,7 @@ impl Follower {
     }
 
     /// The largest step that may be taken when so much is stable (s).
-    pub fn wanted(&self, limit: f64, seen: &Seen) -> f64 {
+    pub fn wanted(&self, limit: f64, seen: &StabilitySample) -> f64 {
         let by_elements = self.by_elements || self.found.violent;
         let elements = if by_elements { self.safety * self.step_of(seen.at_rest) } else { f64::INFINITY };
         (self.safety * limit).min(elements).min(self.found.own.unwrap_or(f64::INFINITY))
@@ -206,7 +206,7 @@ impl Follower {
 impl Follower {
     /// What has been found so far.
     pub fn followed(&self) -> Followed {
-        let growths = self.watched.iter().map(|block| text_of(block.known_growth())).collect();
+        let growths = self.trackers.iter().map(|block| text_of(block.known_growth())).collect();
         // time on a clock on the wall is no part of the state
         let history = StepHistory { seconds: 0.0, ..self.history };
         Followed { found: self.found.clone(), history, growths, shape: self.shape.as_deref().map(text_of) }
@@ -214,8 +214,8 @@ impl Follower {
 
     /// Goes on from what had been found, which [fits](Followed::fits).
     pub fn take_up(&mut self, followed: Followed, world: &mut World) {
-        self.watched = if followed.growths.is_empty() { Vec::new() } else { Watched::all(world) };
-        for (block, growth) in self.watched.iter_mut().zip(&followed.growths) {
+        self.trackers = if followed.growths.is_empty() { Vec::new() } else { StiffnessTracker::all(world) };
+        for (block, growth) in self.trackers.iter_mut().zip(&followed.growths) {
             let taken = numbers_of(growth).is_some_and(|growth| block.take_known_growth(growth, world));
             debug_assert!(taken, "the growth of other elements");
         }
@@ -225,7 +225,7 @@ impl Follower {
 
     /// Elements have gone since the highest frequency was found: their mass has gone with them, and what was found
     /// holds no more.
-    pub fn has_lost(&self, seen: &Seen) -> bool {
+    pub fn has_lost(&self, seen: &StabilitySample) -> bool {
         self.found.seen.is_some_and(|before| seen.alive < before.alive)
     }
 
@@ -256,7 +256,7 @@ impl Follower {
 
     /// The step before which is looked next: sooner where strains change fast, where the step is close to the limit,
     /// and before loads and motions become quicker, `quicker` (s).
-    fn next_check(&mut self, step: u64, seen: &Seen, clock: &Clock, quicker: Option<f64>) -> u64 {
+    fn next_check(&mut self, step: u64, seen: &StabilitySample, clock: &Clock, quicker: Option<f64>) -> u64 {
         // far below the limit more may happen unseen
         let room = self.most() * self.step_of(seen.square) / clock.time_step - 1.0;
         let strain = (STRAIN.1 * room).clamp(STRAIN.0, STRAIN.1);
@@ -332,19 +332,19 @@ impl Simulation {
     fn check_with(&mut self, follower: &mut Follower) -> Result<(), Error> {
         let moving = [Displacement::NAME, DisplacementIncrement::NAME, RestShape::NAME];
         bring_to_host(&mut self.world, |_, name| moving.contains(&name))?;
-        if follower.watched.is_empty() {
-            follower.watched = Watched::all(&mut self.world);
+        if follower.trackers.is_empty() {
+            follower.trackers = StiffnessTracker::all(&mut self.world);
         }
         let step = self.step_count();
-        let mut seen = Seen::NOTHING;
-        for block in &mut follower.watched {
+        let mut seen = StabilitySample::NOTHING;
+        for block in &mut follower.trackers {
             seen = seen.and(block.sample(&self.world));
         }
         follower.history.checks += 1;
         if let Some(at) = follower.found.quickens_at.take_if(|at| *at <= step) {
             follower.found.quickened = at;
         }
-        warn_of_rounding(&follower.watched, &mut self.world);
+        warn_of_rounding(&follower.trackers, &mut self.world);
         let lost = follower.has_lost(&seen);
         // what was found of more elements says nothing
         seen.square = if lost { seen.of_elements } else { seen.of_elements.min(follower.found.known * seen.ratio) };

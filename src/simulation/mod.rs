@@ -51,12 +51,12 @@ mod solver;
 mod stable_step;
 mod step_change;
 mod step_kernels;
+mod stiffness;
 mod stretch;
 mod summary;
 mod surface;
 mod tangent;
 mod unload;
-mod watch;
 
 pub use budget::{Advanced, Ended};
 pub use column_view::ColumnView;

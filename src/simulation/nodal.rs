@@ -13,7 +13,7 @@
 
 use super::damped_step::square_with_damping;
 use super::mass_scaling::heavy_mass;
-use super::watch::Watched;
+use super::stiffness::StiffnessTracker;
 use crate::assembly::undamped_square_frequencies;
 use crate::components::*;
 use crate::elements::mass_shares;
@@ -67,9 +67,9 @@ impl NodalMeans {
 
 /// For each axis of the bodies' nodes, one body after the other, the square of the mean of ω² of the elements there as
 /// they are now, over the largest: where the highest frequency may be.
-pub(super) fn weights_now(world: &mut World, watched: &mut [Watched], bodies: &[Entity]) -> Vec<f64> {
+pub(super) fn weights_now(world: &mut World, trackers: &mut [StiffnessTracker], bodies: &[Entity]) -> Vec<f64> {
     let mut means = NodalMeans::new();
-    for block in watched {
+    for block in trackers {
         let entity = block.entity;
         let of_row = |(row, square, _): (usize, f64, f64)| Some((row, heavy_mass(world, entity, row)?.0, square));
         let elements: Vec<_> = block.now(world).into_iter().filter_map(of_row).collect();

@@ -373,8 +373,8 @@ fn stages_of(systems: &[&str], world: &mut World, buffers: &mut dyn Buffers) -> 
 }
 
 /// The kernels of the guards, which run beside the step.
-pub fn watch_kernels(world: &mut World) -> Vec<(String, Kernel)> {
-    sinew::systems::add_watch_columns(world);
-    let kernels = sinew::systems::watch_kernels(world, &mut Described::default());
+pub fn guard_kernels(world: &mut World) -> Vec<(String, Kernel)> {
+    sinew::systems::add_guard_columns(world);
+    let kernels = sinew::systems::guard_kernels(world, &mut Described::default());
     kernels.into_iter().map(|kernel| ("observe".to_string(), kernel)).collect()
 }

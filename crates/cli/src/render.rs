@@ -143,7 +143,7 @@ fn why_run(scene: &SceneFile, folder: &Path) -> Option<String> {
 }
 
 fn draw(folder: &Path, options: &Options) -> Outcome {
-    let bar = terminal::is_watched().then(|| progress::bar(0, "{bar:30} {percent:>3} %  {msg}"));
+    let bar = terminal::is_interactive().then(|| progress::bar(0, "{bar:30} {percent:>3} %  {msg}"));
     if let Some(bar) = &bar {
         bar.set_message(format!("drawing {}", options.out.display()));
     }

@@ -104,7 +104,7 @@ pub(super) fn beside() -> Vec<Fragment> {
         shader!("step"),
         shader!("tet4_nodal_pressure"),
         shader!("volume_ratio"),
-        shader!("watch_elements"),
+        shader!("guard_elements"),
     ];
     kinds.chain(others).collect()
 }

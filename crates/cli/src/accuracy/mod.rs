@@ -1,13 +1,14 @@
 //! `sinew accuracy`: what accuracy costs in time.
 
 mod page;
-mod watch;
+mod reporter;
 
 use super::arguments::{AccuracyArguments, BackendName, default_folder};
 use super::failure::Failure;
 use super::run::SCENE;
 use super::terminal::{self, Paint};
 use super::{Outcome, interrupt, progress};
+use reporter::Reporter;
 use sinew::backend::gpu::Choice;
 use sinew::output::{Folder, OutputError, replace, summary};
 use sinew::scene::schema::AccuracyReference;
@@ -19,7 +20,6 @@ use sinew_studies::accuracy::{Engine, Reference, Refusal, Settings, Study, Verdi
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use watch::Teller;
 
 /// The error that is good enough when nobody says which.
 const TARGET: f64 = 0.01;
@@ -41,7 +41,7 @@ pub fn command(arguments: &AccuracyArguments) -> Outcome {
         .up_to(arguments.finest.unwrap_or(f64::INFINITY));
     interrupt::listen();
     let made = settings(arguments, &file, started, &mut engine)
-        .and_then(|settings| study(&mut engine, &settings, &mut Teller::default()).map_err(failure));
+        .and_then(|settings| study(&mut engine, &settings, &mut Reporter::default()).map_err(failure));
     interrupt::rest();
     let study = made?;
     let title = if file.scene.title.is_empty() { "a scene" } else { &file.scene.title };

@@ -40,4 +40,4 @@ pub use findings::{Findings, Verdict};
 pub use plan::{Fate, Plan, Varied};
 pub use reference::Reference;
 pub use solver::{Choices, Cost, Refusal, Solution, Solver};
-pub use study::{Outcome, Row, Settings, Study, Watch, study};
+pub use study::{Outcome, Row, Settings, Study, StudyObserver, study};

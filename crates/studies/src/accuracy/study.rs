@@ -32,7 +32,7 @@ pub struct Settings {
 }
 
 /// What happens while a study runs.
-pub trait Watch {
+pub trait StudyObserver {
     /// Costs are being predicted.
     fn predicts(&mut self) {}
     /// Everything has been predicted.
@@ -161,17 +161,17 @@ impl Row {
 ///
 /// # Errors
 /// That the scene as it is written cannot be solved, or that a quantity is asked for that it does not have.
-pub fn study(solver: &mut dyn Solver, settings: &Settings, watch: &mut dyn Watch) -> Result<Study, Refusal> {
+pub fn study(solver: &mut dyn Solver, settings: &Settings, observer: &mut dyn StudyObserver) -> Result<Study, Refusal> {
     let clock = Clock { started: settings.started, budget: settings.budget };
     // a budget too small for anything still has a plan that says so
     solver.until(clock.end().max(Instant::now() + PLANNING));
-    watch.predicts();
+    observer.predicts();
     let choices = solver.choices()?;
     check_names(&choices, settings)?;
     let plan = plan(solver, &choices, (clock.budget, clock.started), settings.reference.is_none())?;
-    watch.planned(&plan);
+    observer.planned(&plan);
     let running = plan.rows.iter().filter(|row| matches!(row.fate, Fate::Run(_))).count();
-    let mut work = Work::new(solver, watch, clock, running);
+    let mut work = Work::new(solver, observer, clock, running);
     let needed = |place: usize| place == 0 || plan.reference.contains(&place);
 
     let mut done: Vec<Option<(Row, Option<Solution>)>> = plan.rows.iter().map(|_| None).collect();

@@ -93,9 +93,9 @@ pub fn shrinks(trial: &mut Trial<'_>) -> Result<(), Error> {
     trial.run(&mut adapts, 0.0)?;
     let smallest = adapts.step_history().map_or(first, |history| history.smallest);
     trial.most("smallest step over the first", smallest / first, 0.8);
-    let mut watches = trial.start(&["integration.when_unstable=Watch".into()])?;
-    let ended = Monitor::run(&mut watches).map(|_| ());
-    let warned = watches.step_history().is_some_and(|history| history.beyond_since.is_some());
+    let mut reporting = trial.start(&["integration.when_unstable=Watch".into()])?;
+    let ended = Monitor::run(&mut reporting).map(|_| ());
+    let warned = reporting.step_history().is_some_and(|history| history.beyond_since.is_some());
     trial.holds("who only watches is told, or the run stops", warned || matches!(ended, Err(Error::Unstable(_))));
     Ok(())
 }

@@ -1,5 +1,5 @@
 // What a block's elements come to, sixty-four at a time: energies (J), the smallest J and its element; twin of
-// src/backend/cpu/watch_kernel.rs. `displacement` is in the middle of the last step, as watch_nodes.wgsl has left it.
+// src/backend/cpu/guard_kernel.rs. `displacement` is in the middle of the last step, as guard_nodes.wgsl has left it.
 @group(0) @binding(0) var<storage, read> rest_shape: array<f32>;
 @group(0) @binding(1) var<storage, read_write> element_sums: array<u32>; // four words a workgroup
 
@@ -8,7 +8,7 @@ var<workgroup> ratios: array<f32, 64>;
 var<workgroup> elements: array<u32, 64>;
 
 @compute @workgroup_size(64)
-fn watch_elements(
+fn guard_elements(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) local: u32,

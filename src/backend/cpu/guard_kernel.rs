@@ -1,5 +1,5 @@
 //! What a block's elements come to: energies, and the one that is squeezed most; a register full at a time. Looked at
-//! every so many steps by the guards; `shaders/watch_elements.wgsl` is its twin.
+//! every so many steps by the guards; `shaders/guard_elements.wgsl` is its twin.
 
 use super::element_kernel::{corner_registers, group_vectors};
 use super::{BlockLaw, Cpu};
@@ -40,7 +40,7 @@ impl BlockSums {
 }
 
 /// The columns that the sums are taken from; layouts as in [`components`](crate::components).
-pub struct WatchedColumns<'a, T> {
+pub struct GuardColumns<'a, T> {
     /// The body's displacements (m).
     pub displacement: &'a [T],
     /// Nodes of each element.
@@ -54,9 +54,9 @@ pub struct WatchedColumns<'a, T> {
 }
 
 /// Sums over a block; the same bits for any number of threads.
-pub fn run_watch<E: Element, T: SimdScalar>(
+pub fn run_guard<E: Element, T: SimdScalar>(
     cpu: &Cpu,
-    columns: &WatchedColumns<'_, T>,
+    columns: &GuardColumns<'_, T>,
     law: &BlockLaw<T>,
     groups_a_patch: usize,
 ) -> BlockSums {
@@ -71,7 +71,7 @@ pub fn run_watch<E: Element, T: SimdScalar>(
 }
 
 struct Patch<'a, E, T: SimdScalar> {
-    columns: &'a WatchedColumns<'a, T>,
+    columns: &'a GuardColumns<'a, T>,
     law: &'a BlockLaw<T>,
     groups: std::ops::Range<usize>,
     element: PhantomData<E>,

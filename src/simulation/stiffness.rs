@@ -26,7 +26,7 @@ const PARTS_AT_FIRST: usize = 4;
 const NEARLY: f64 = 1.1;
 
 /// The elements of a block, and what is known of their frequencies.
-pub(super) struct Watched {
+pub(super) struct StiffnessTracker {
     pub entity: Entity,
     growth: Growth,
     /// Of each element the bound of ω² at rest (1/s²); 0 where all its nodes are held: it does not move by itself.
@@ -62,7 +62,7 @@ fn part_groups(part: usize) -> Range<usize> {
 
 /// What a look at all elements shows.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
-pub(super) struct Seen {
+pub(super) struct StabilitySample {
     /// ω² of all at most (1/s²): by the elements alone, or by what was known of all.
     pub square: f64,
     /// The largest bound of ω² of an element at rest, times its growth (1/s²).
@@ -79,7 +79,7 @@ pub(super) struct Seen {
     pub alive: usize,
 }
 
-impl Seen {
+impl StabilitySample {
     pub const NOTHING: Self = Self {
         square: f64::INFINITY,
         of_elements: 0.0,
@@ -119,25 +119,25 @@ fn moves(world: &World, entity: Entity, row: usize) -> bool {
     held.is_none_or(|held| (0..corners).any(|corner| held[node(corner)] & 7 != 7))
 }
 
-impl Watched {
+impl StiffnessTracker {
     /// All elements of a world.
     pub fn all(world: &mut World) -> Vec<Self> {
         let mut blocks: Vec<Entity> = world.query_filtered::<Entity, With<Block>>().iter(world).collect();
         blocks.sort();
         let is_damped = is_damped(world);
-        let watched = |&entity: &Entity| {
+        let tracked = |&entity: &Entity| {
             let growth = Growth::of(world.get::<BlockLaw<f64>>(entity)?);
             let block = world.get::<Block>(entity)?;
             let rest = world.get::<RestPosition>(block.body)?;
             let shortest_edge = shortest_edge(block, world.get::<Connectivity>(entity)?, rest);
             let (squares, parts) = (Vec::new(), Vec::new());
             let known_growth = vec![1.0; block.count];
-            let mut watched =
+            let mut tracked =
                 Self { entity, growth, squares, shortest_edge, known_growth, parts, counted: 0, is_damped };
-            watched.weigh(world);
-            Some(watched)
+            tracked.weigh(world);
+            Some(tracked)
         };
-        let all = blocks.iter().filter_map(watched).collect();
+        let all = blocks.iter().filter_map(tracked).collect();
         // from here on bodies may change
         world.remove_resource::<SquaresAtRest>();
         all
@@ -190,7 +190,7 @@ impl Watched {
 
     /// Looks at all elements: first at what those of a part come to were one of them the largest in everything, then at
     /// one after the other where that comes to most.
-    pub fn sample(&mut self, world: &World) -> Seen {
+    pub fn sample(&mut self, world: &World) -> StabilitySample {
         let (cpu, count) = (world.resource::<Cpu>(), self.squares.len());
         let of_task = |task: usize| -> Vec<(Strain, usize)> {
             let parts = task * PARTS_A_TASK..count.div_ceil(ROWS_A_PART).min((task + 1) * PARTS_A_TASK);
@@ -204,13 +204,13 @@ impl Watched {
             self.sum_up(world);
         }
         let parts = widest.iter().zip(&self.parts).enumerate().filter(|(_, ((_, alive), _))| *alive > 0);
-        let (places, parts): (Vec<usize>, Vec<Seen>) = parts
+        let (places, parts): (Vec<usize>, Vec<StabilitySample>) = parts
             .map(|(part, (&(widest, alive), &(at_rest, least_known)))| {
                 let [own, of_all] = self.growth_of(widest.size, widest.squeeze, widest.more);
                 let (of_elements, ratio) = ((at_rest * own).min(f64::MAX), (of_all / least_known).max(1.0));
                 (
                     part,
-                    Seen {
+                    StabilitySample {
                         square: f64::INFINITY,
                         of_elements,
                         at_rest,
@@ -223,15 +223,15 @@ impl Watched {
             })
             .unzip();
         let parts = self.refined(world, &places, parts);
-        parts.into_iter().fold(Seen::NOTHING, Seen::and)
+        parts.into_iter().fold(StabilitySample::NOTHING, StabilitySample::and)
     }
 
     /// Looks at elements one by one in those of some parts, at `places`, that may come to most.
-    fn refined(&self, world: &World, places: &[usize], mut parts: Vec<Seen>) -> Vec<Seen> {
+    fn refined(&self, world: &World, places: &[usize], mut parts: Vec<StabilitySample>) -> Vec<StabilitySample> {
         let at_rest = parts.iter().fold(0.0_f64, |most, part| most.max(part.at_rest));
-        let most = |part: &Seen| (part.of_elements / at_rest).max(part.ratio);
+        let most = |part: &StabilitySample| (part.of_elements / at_rest).max(part.ratio);
         // what is known to come to so much at least
-        let mut known = Seen { of_elements: at_rest, ..Seen::NOTHING };
+        let mut known = StabilitySample { of_elements: at_rest, ..StabilitySample::NOTHING };
         let mut left: Vec<usize> = (0..parts.len()).collect();
         let mut at_once = PARTS_AT_FIRST;
         loop {
@@ -255,7 +255,7 @@ impl Watched {
     }
 
     /// What the elements of a part come to that may all together come to `at_most`.
-    fn one_by_one(&self, world: &World, (part, at_most): (usize, Seen)) -> Seen {
+    fn one_by_one(&self, world: &World, (part, at_most): (usize, StabilitySample)) -> StabilitySample {
         let (mut of_elements, mut ratio) = (0.0_f64, 1.0_f64);
         let Some(columns) = self.columns(world) else { return at_most };
         self.strains(
@@ -269,7 +269,7 @@ impl Watched {
                 }
             }),
         );
-        Seen { of_elements, ratio, ..at_most }
+        StabilitySample { of_elements, ratio, ..at_most }
     }
 
     /// Remembers the present growth, now that the frequency of all is known.
