@@ -121,7 +121,7 @@ impl<'a> Group<'a> {
 /// Steps that are timed at once.
 const BLOCK: u64 = 8;
 
-/// What the guards of every run cost: blocks of steps with and without booked work by turns, the best of each, so that
+/// What the guards of every run cost: blocks of steps with and without counted work by turns, the best of each, so that
 /// other work on the machine does not count; and a sample, of which there is one in 256 steps.
 fn guards() {
     let gpu = std::env::var_os("SINEW_BENCH_GPU").is_some();
@@ -159,7 +159,7 @@ fn guards() {
             best[4] = best[1] + sample / 256.0;
             let share = |i: usize| 100.0 * (best[i] / best[0] - 1.0);
             println!(
-                "guards, {kind} {cells}^3 {word}{}: {:.1} us a step without, booking {:+.1} %, all of them {:+.1} %; booking \
+                "guards, {kind} {cells}^3 {word}{}: {:.1} us a step without, work {:+.1} %, all of them {:+.1} %; work \
                  with prescribed nodes {:+.1} %; a sample is {:.1} steps",
                 if gpu { " GPU" } else { "" },
                 best[0] * 1e6,

@@ -1,6 +1,6 @@
-// Books the kinetic energy of elements that are about to be taken away, and the part of it that constraints gave them: in a
-// kernel of its own, so that neither this one nor element_removal has more than eight buffers. MASS_SHARES are generated from
-// the block's element type.
+// Counts the kinetic energy of elements that are about to be taken away, and the part of it that constraints gave them:
+// in a kernel of its own, so that neither this one nor element_removal has more than eight buffers. MASS_SHARES are
+// generated from the block's element type.
 struct Removal {
     density: f32, // kg/m³
 }

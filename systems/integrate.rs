@@ -138,7 +138,7 @@ fn with_optional(
             without += "fn coefficient_of(node: u32) -> f32 {\n    return 0.0;\n}\n";
         }
     } else {
-        without += "fn book_work(node: u32, before: vec3<f32>, after: vec3<f32>, constrained: vec3<bool>, \
+        without += "fn accumulate_work(node: u32, before: vec3<f32>, after: vec3<f32>, constrained: vec3<bool>, \
                     inner: vec3<f32>, outer: vec3<f32>) {}\n";
     }
     if let Some(at) = guarded {

@@ -57,7 +57,7 @@ pub struct Step {
     /// How far a node that is inside a tool comes out in this step (m).
     out: f64,
     /// Whether work is counted: not on the way to rest.
-    books: bool,
+    counts_work: bool,
     tools: Vec<ToolInStep>,
 }
 
@@ -114,7 +114,7 @@ impl NodeSystem for ToolContacts {
         Step {
             factors: Factors::of(before.clock),
             out: self.out(before.clock),
-            books: before.clock.relaxation.is_none(),
+            counts_work: before.clock.relaxation.is_none(),
             tools: tools.collect(),
         }
     }
@@ -182,7 +182,7 @@ impl ToolContacts {
         }
         let all = &mut all[..touched];
         let d = predicted + self.push_apart(step, all, (place, predicted), free);
-        let booked = step.factors.booked;
+        let work_factor = step.factors.work_factor;
         let mut sum = DVec3::ZERO;
         for touch in all.iter().flatten().filter(|touch| touch.push > 0.0) {
             let change = touch.outwards + touch.tangential;
@@ -198,9 +198,9 @@ impl ToolContacts {
                 *felt += T::from_f64(force[i]);
             }
             of_tool[3] = T::from_f64(if touch.slides { SLIDES } else { STICKS });
-            if step.books {
-                let work = booked * force.dot(touch.tool_step);
-                let on_node = booked * (force * free).dot(0.5 * (before + d));
+            if step.counts_work {
+                let work = work_factor * force.dot(touch.tool_step);
+                let on_node = work_factor * (force * free).dot(0.5 * (before + d));
                 of_tool[4] += T::from_f64(slip);
                 of_tool[5] += T::from_f64(work);
                 of_tool[6] += T::from_f64(work - on_node);
@@ -309,9 +309,9 @@ fn along_surface(vector: DVec3, normal: DVec3) -> DVec3 {
 struct Limits {
     edge: f32,
     settling: f32,
-    books: u32,
+    counts_work: u32,
 }
-uniform!(Limits { edge, settling, books });
+uniform!(Limits { edge, settling, counts_work });
 
 /// How many tools there are, and how many numbers of each.
 fn counts(contacts: &ToolContacts) -> String {
@@ -331,7 +331,8 @@ fn stage(body: Entity, contacts: &ToolContacts, world: &mut World, buffers: &mut
     let fictitious = world.get::<FictitiousMass>(body).is_some();
     let damped = world.get::<DampingCoefficient>(body).is_some();
     let relaxed = clock.relaxation.is_some();
-    let limits = Limits { edge: contacts.edge as f32, settling: contacts.settling as f32, books: u32::from(!relaxed) };
+    let limits =
+        Limits { edge: contacts.edge as f32, settling: contacts.settling as f32, counts_work: u32::from(!relaxed) };
     // bits of floats: those of a mask would be a float so small that a device may take it for 0
     let places: Vec<[u32; 4]> = contacts
         .rows

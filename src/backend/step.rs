@@ -23,8 +23,8 @@ pub struct Step {
     pub zero: u32,
     /// a = cΔt/2 of a static analysis, else 0.
     pub relaxation: f32,
-    /// Share of a step's work that is booked: the time between the middles over Δt.
-    pub booked: f32,
+    /// Share of a step's work that is counted: the time between the middles over Δt.
+    pub work_factor: f32,
     /// 1 in steps after which somebody may look at forces, else 0: kernels need not leave them in memory.
     pub observed: u32,
     /// Unused: slots for signals begin at a multiple of 16 bytes.
@@ -43,7 +43,7 @@ uniform!(Step {
     number,
     zero,
     relaxation,
-    booked,
+    work_factor,
     observed,
     reserved,
     time,
@@ -63,7 +63,7 @@ impl Step {
             number: step_number(clock),
             zero: 0,
             relaxation: damping as f32,
-            booked: (between / dt) as f32,
+            work_factor: (between / dt) as f32,
             observed: 1,
             reserved: 0,
             time: clock.time() as f32,

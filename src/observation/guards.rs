@@ -129,8 +129,8 @@ pub(super) fn find_in_result(
 }
 
 /// Looks at energies and elements. Warns of what passes a limit, each once, and ends the run where elements hold more
-/// energy than was spent on them: so a step beyond the stable one shows that does not run away, because large motion
-/// holds it.
+/// energy than work was done on them: so a step beyond the stable one shows that does not run away, because large
+/// motion holds it.
 pub(super) fn weigh(world: &mut World, good_until: f64, settings: &GuardSettings) -> Result<(), Error> {
     let seen = sample(world)?;
     if let Some((what, value)) = not_finite(&seen, world) {
@@ -162,7 +162,7 @@ pub(super) fn weigh(world: &mut World, good_until: f64, settings: &GuardSettings
         ))));
     }
     let what = format!(
-        "elements hold {held:.3e} J, but only {:.3e} J were spent on them: {:.1} % of the largest energy so far came from \
+        "elements hold {held:.3e} J, but work on them was only {:.3e} J: {:.1} % of the largest energy so far came from \
          nothing, {:.1} % are allowed (guards.energy.stop)",
         seen.internal_work,
         100.0 * made / scale,

@@ -62,7 +62,7 @@ pub fn sample(world: &mut World) -> Result<Sample, Error> {
     Ok(sample)
 }
 
-/// Work against internal forces (J) of all bodies, as it is booked.
+/// Work against internal forces (J) of all bodies, as it is counted.
 fn internal_work(world: &mut World) -> Result<f64, Error> {
     bring_to_host(world, |_, name| name == InternalWork::NAME || name == Work::NAME)?;
     let mut sum = 0.0;

@@ -2,8 +2,8 @@
 //! from it in another process. What goes on from a snapshot gives the same bits as what was never interrupted, on the
 //! same backend.
 //!
-//! A snapshot holds the columns that steps carry on (compensation, viscous memory, removed elements and booked work
-//! among them), the clock, and the state that custom systems [declare](crate::systems::System::with_state). What a
+//! A snapshot holds the columns that steps carry on (compensation, viscous memory, removed elements and accumulated
+//! work among them), the clock, and the state that custom systems [declare](crate::systems::System::with_state). What a
 //! scene says stays in the scene: a snapshot fits only simulations of the same [`Identity`].
 
 mod columns;

@@ -106,7 +106,7 @@ pub(super) fn meet(
     let (met, foreseen) = gather(contacts, &found, (&factors, settling), bodies);
     let mut set = std::mem::take(&mut contacts.surface.set);
     set.solve(contacts.sweeps);
-    let books = clock.relaxation.is_none().then_some(factors.booked);
+    let work_factor = clock.relaxation.is_none().then_some(factors.work_factor);
     // forces on nodes, in the order of contacts
     let mut forces = vec![DVec3::ZERO; foreseen.len()];
     for (contact, met) in set.contacts.iter().zip(&met).filter(|(contact, _)| contact.pressing > 0.0) {
@@ -121,12 +121,12 @@ pub(super) fn meet(
             touch.set(at + 4, if contact.slides { SLIDES } else { STICKS });
             touch.set(at + 5, met.gap + contact.normal.dot(contact.relative(&set.steps)));
         }
-        if let Some(booked) = books {
+        if let Some(work_factor) = work_factor {
             let after = contact.relative(&set.steps);
             let before: DVec3 = contact.parts().map(|(slot, weight)| foreseen[slot].1.before * weight).sum();
             let along = (after - contact.normal * after.dot(contact.normal)).length();
             let slid = touch.get(at + 6) + if contact.slides { along } else { 0.0 };
-            let lost = touch.get(at + 7) - booked * force.dot(0.5 * (before + after));
+            let lost = touch.get(at + 7) - work_factor * force.dot(0.5 * (before + after));
             touch.set(at + 6, slid);
             touch.set(at + 7, lost);
         }

@@ -151,7 +151,7 @@ fn compare_noticed(pair: &mut Pair) {
             // forces under 0.01 N along both steps, each with its own twelve roundings, and sums of 64
             let allowed = 40.0 * UNIT * 0.01 * steps;
             assert!((a - b).abs() <= allowed, "{group} of {body}: host {a:e}, GPU {b:e}, allowed {allowed:e}");
-            assert!(a != 0.0, "nothing is booked");
+            assert!(a != 0.0, "nothing is counted");
         }
     }
 }

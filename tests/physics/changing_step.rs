@@ -113,7 +113,7 @@ fn vibrating(steps: &[f64]) -> (Simulation, Energies) {
 }
 
 #[test]
-fn energy_and_momentum_are_booked_across_changes_of_the_step() {
+fn energy_and_momentum_are_counted_across_changes_of_the_step() {
     let steps = [1e-3, 4e-4, 9e-4, 2e-4, 1e-3, 5e-4, 7e-4, 3e-4];
     let (mut simulation, energies) = vibrating(&steps);
     let start = 0.5 * simulation.masses("b").unwrap().iter().sum::<f64>() * 1e-3;
@@ -122,7 +122,7 @@ fn energy_and_momentum_are_booked_across_changes_of_the_step() {
     let (_, before) = vibrating(&[1e-3]);
     let first = before.kinetic + before.strain + before.hourglass - before.load_work.unwrap();
     println!("{kept:e} J of {first:e} J, scale {scale:e} J, {start:e}");
-    // each change books the work of the forces to second order in the step
+    // each change counts the work of the forces to second order in the step
     near("energy", kept, first, scale, 2e-3);
     let time: f64 = steps.iter().map(|step| 50.0 * step).sum();
     near("time", simulation.time(), time, time, 1e-14);

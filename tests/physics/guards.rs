@@ -60,9 +60,9 @@ fn samples_see_the_energies_and_the_most_squeezed_element() {
     }
 }
 
-/// The work that is always booked is the work that is booked in full where energies are asked for.
+/// The work that is always counted is the work that is counted in full where energies are asked for.
 #[test]
-fn work_against_internal_forces_is_booked_without_being_asked_for() {
+fn work_against_internal_forces_is_counted_without_being_asked_for() {
     let moved =
         "Prescribed(on: Set(\"z1\"), displacement: (0.01, 0, 0.01), rotation: (0, 0, 20), curve: Smooth(end: 0.2)), ";
     for (run, moved) in configurations().iter().flat_map(|run| ["", moved].map(|moved| (run, moved))) {
@@ -72,16 +72,16 @@ fn work_against_internal_forces_is_booked_without_being_asked_for() {
             );
             let mut simulation = run.start(&scene("Hex8", "damping: 3,", &further));
             simulation.advance(300).unwrap();
-            let spent = sample(simulation.world_mut()).unwrap().internal_work;
-            (spent, simulation.energies().unwrap())
+            let done = sample(simulation.world_mut()).unwrap().internal_work;
+            (done, simulation.energies().unwrap())
         };
-        let ((spent, plain), (asked, full)) = (of(""), of("output: (energies_every: 1),"));
+        let ((done, plain), (asked, full)) = (of(""), of("output: (energies_every: 1),"));
         assert!(plain.internal_work.is_none() && full.internal_work == Some(asked));
-        let error = (spent / asked - 1.0).abs();
-        println!("{}: {spent:e} J, {asked:e} J: {error:e}", run.name);
+        let error = (done / asked - 1.0).abs();
+        println!("{}: {done:e} J, {asked:e} J: {error:e}", run.name);
         // kept in f32, the steps of prescribed nodes have 1e-7 of their digits
         let bound = run.bound(if moved.is_empty() { 1e-9 } else { 1e-6 }, 1e-5);
-        assert!(error < bound, "{}: {spent:e} instead of {asked:e}", run.name);
+        assert!(error < bound, "{}: {done:e} instead of {asked:e}", run.name);
         assert!((full.strain + full.hourglass - asked).abs() < 0.02 * asked, "{full:?}");
     }
 }
@@ -110,7 +110,7 @@ fn broken(result: Result<(), Error>) -> Box<Instability> {
     }
 }
 
-/// Elements that hold more than was ever spent on them, because the book was forged.
+/// Elements that hold more than work was ever done on them, because the sum was forged.
 #[test]
 fn energy_from_nothing_is_warned_of_and_ends_the_run_at_the_limits_of_the_scene() {
     let lenient = "guards: (every: 8, energy: (stop: 1e3)),";
@@ -139,7 +139,7 @@ fn energy_from_nothing_is_warned_of_and_ends_the_run_at_the_limits_of_the_scene(
     }
 }
 
-/// The snapshot with the booked work taken out of it.
+/// The snapshot with the accumulated work taken out of it.
 fn forged(simulation: &mut Simulation, good: Snapshot) -> Snapshot {
     simulation.restore(&good).unwrap();
     let world = simulation.world_mut();

@@ -155,15 +155,15 @@ fn energies(summary: &Summary, page: &mut Page) {
         list.iter().map(|(name, value)| format!("{name} {}", quantity(*value, "J"))).collect::<Vec<_>>().join(", ")
     };
     page.row("energies", line(&held));
-    let booked = [
+    let works = [
         ("of loads", energies.load_work),
         ("of constraints", energies.constraint_work),
         ("against internal forces", energies.internal_work),
         ("lost to damping", energies.damping_loss),
     ];
-    let booked: Vec<(&str, f64)> = booked.iter().filter_map(|(name, value)| Some((*name, (*value)?))).collect();
-    if !booked.is_empty() {
-        page.row("work", line(&booked));
+    let works: Vec<(&str, f64)> = works.iter().filter_map(|(name, value)| Some((*name, (*value)?))).collect();
+    if !works.is_empty() {
+        page.row("work", line(&works));
     }
 }
 

@@ -72,8 +72,8 @@ impl<T: SimdScalar> Task<'_, '_, T> {
         (internal_work, finite)
     }
 
-    /// At most [`CHUNK`] nodes with mass whose work is not booked: the same operations in the same order as one by one,
-    /// for registers full of components.
+    /// At most [`CHUNK`] nodes with mass whose work is not counted: the same operations in the same order as one by
+    /// one, for registers full of components.
     #[inline(always)]
     fn chunk<S: Simd>(&mut self, simd: S, from: usize, to: usize) -> (f64, bool) {
         let factors = self.factors;
@@ -130,7 +130,7 @@ impl<T: SimdScalar> Task<'_, '_, T> {
                 internal_work += columns.internal[at].to_f64() * (last + columns.step[at].to_f64());
             }
         }
-        (0.5 * factors.booked.to_f64() * internal_work, finite)
+        (0.5 * factors.work_factor.to_f64() * internal_work, finite)
     }
 }
 

@@ -187,7 +187,7 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, can_be_held: bool,
         Precision::F32 => "`compensated: true` under `integration`",
         Precision::F64 => "`compensated: true` under `integration`, in f32 only",
     };
-    let booking = scene
+    let accumulated = scene
         .output
         .energies_every
         .map_or_else(|| "energies are asked for".into(), |every| format!("a row in every {every} s"));
@@ -219,8 +219,8 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, can_be_held: bool,
             turned_on_by: compensated.into(),
         },
         Effect {
-            name: "booking of work",
-            on: entity.contains::<Work>().then_some(booking),
+            name: "accumulated work",
+            on: entity.contains::<Work>().then_some(accumulated),
             turned_on_by: "`energies_every` under `output`".into(),
         },
     ]

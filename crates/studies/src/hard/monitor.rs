@@ -50,7 +50,7 @@ impl Monitor {
     /// What the GPU says.
     pub fn begin(simulation: &mut Simulation) -> Result<Self, Error> {
         let energies = simulation.energies()?;
-        let held = held(&energies) - spent(&energies);
+        let held = held(&energies) - work_done(&energies);
         Ok(Self {
             imbalance: 0.0,
             least_j: f64::INFINITY,
@@ -69,9 +69,10 @@ impl Monitor {
     /// What the GPU says.
     pub fn sample(&mut self, simulation: &mut Simulation) -> Result<(), Error> {
         let e = simulation.energies()?;
-        let scale = [e.kinetic + e.strain + e.hourglass, spent(&e).abs(), self.moved].into_iter().fold(0.0, f64::max);
+        let scale =
+            [e.kinetic + e.strain + e.hourglass, work_done(&e).abs(), self.moved].into_iter().fold(0.0, f64::max);
         if scale > 0.0 {
-            self.imbalance = self.imbalance.max((held(&e) - spent(&e) - self.held).abs() / scale);
+            self.imbalance = self.imbalance.max((held(&e) - work_done(&e) - self.held).abs() / scale);
         }
         if e.strain + e.hourglass > self.most_held {
             self.most_held = e.strain + e.hourglass;
@@ -93,7 +94,7 @@ fn held(e: &Energies) -> f64 {
 }
 
 /// What was put in.
-fn spent(e: &Energies) -> f64 {
+fn work_done(e: &Energies) -> f64 {
     e.load_work.unwrap_or(0.0) + e.constraint_work.unwrap_or(0.0)
 }
 

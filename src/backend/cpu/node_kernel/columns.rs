@@ -33,7 +33,7 @@ pub struct NodeColumns<'a, T> {
     pub step: &'a mut [T],
     /// What rounding left out of displacements, and of steps.
     pub compensation: Option<[&'a mut [T]; 2]>,
-    /// Work booked.
+    /// Work counted.
     pub work: Option<&'a mut [T]>,
     /// Work against internal forces: a sum and its remainder for each row that is a multiple of [`GROUP_ROWS`], and one
     /// at the end of all; none where the whole work is accumulated.

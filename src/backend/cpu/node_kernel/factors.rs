@@ -16,8 +16,8 @@ pub struct Factors<T> {
     pub divide: T,
     /// 1/Δt (1/s).
     pub rate: T,
-    /// Share of a step's work that is booked, the time between the middles over Δt: 1, in the first step ½.
-    pub booked: T,
+    /// Share of a step's work that is counted, the time between the middles over Δt: 1, in the first step ½.
+    pub work_factor: T,
     /// a of a static analysis, else 0.
     pub relaxation: T,
 }
@@ -32,7 +32,7 @@ impl<T: Scalar> Factors<T> {
             half_step: T::from_f64(0.5 * if first { dt } else { between }),
             divide: T::from_f64(if first { 0.0 } else { 1.0 }),
             rate: T::from_f64(1.0 / dt),
-            booked: T::from_f64(between / dt),
+            work_factor: T::from_f64(between / dt),
             relaxation: T::from_f64(damping),
         }
     }

@@ -1,4 +1,4 @@
-//! One node after the other: those at the end of a column, those without mass, those whose work is booked.
+//! One node after the other: those at the end of a column, those without mass, those whose work is counted.
 
 use super::{Factors, NodeColumns};
 use crate::math::Scalar;
@@ -90,7 +90,7 @@ pub(super) fn move_node<T: Scalar>(
     mut work: Option<&mut [T]>,
 ) -> f64 {
     let (zero, one) = (T::default(), T::from_f64(1.0));
-    let Factors { force: force_factor, half_step, divide, rate, booked, relaxation } = *factors;
+    let Factors { force: force_factor, half_step, divide, rate, work_factor, relaxation } = *factors;
     let (mass, axes) = (node.mass, node.axes);
     if mass <= zero {
         sum.step.fill(zero);
@@ -122,7 +122,7 @@ pub(super) fn move_node<T: Scalar>(
             // along half of it: so the balance of the scheme is exact in the middle of each step
             let before = if constrained { std::mem::replace(&mut work[4 + i], step) } else { before };
             let mean = T::from_f64(0.5) * (before + step);
-            let along = booked * mean;
+            let along = work_factor * mean;
             let compensation = coefficient * rate * mean * along;
             work[0] += external * along;
             work[1] += compensation;
@@ -132,5 +132,5 @@ pub(super) fn move_node<T: Scalar>(
             }
         }
     }
-    0.5 * (booked * internal_work).to_f64()
+    0.5 * (work_factor * internal_work).to_f64()
 }

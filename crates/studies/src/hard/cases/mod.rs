@@ -98,7 +98,7 @@ pub const CASES: &[Case] = &[
     case!("h23" "far_away" "mesh 1e4 m from the origin",
         "the same result within 1e-5", every, long_runs::far_away),
     case!("h24" "jump" "prescribed jump of 10 %, of 100 %",
-        "10 %: work booked; 100 %: an honest stop that says \"use a ramp\"", every, shocks::jump),
+        "10 %: work counted; 100 %: an honest stop that says \"use a ramp\"", every, shocks::jump),
     case!("h25" "thin_slab" "slab one element thick",
         "sag of three layers within 15 %; the share of hourglass energy tells", one_point, bending::thin_slab),
     case!("h26" "impact" "impact at 10 and 50 m/s, penalty ×1, ×10, ×100",

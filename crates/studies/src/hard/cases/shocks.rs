@@ -19,7 +19,7 @@ pub fn jump(trial: &mut Trial<'_>) -> Result<(), Error> {
     let mut simulation = trial.start(&[])?;
     trial.run(&mut simulation, 0.0)?;
     let work = simulation.energies()?.constraint_work.unwrap_or(0.0);
-    trial.holds("the work of the jump is booked", work > 0.0);
+    trial.holds("the work of the jump is counted", work > 0.0);
     let mut far = trial.start(&["constraints[1].displacement=(-0.04, 0, 0)".into()])?;
     let ended = far.finish();
     trial.stops("a jump by the whole length", ended, &["ramp"]);
