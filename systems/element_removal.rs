@@ -141,7 +141,7 @@ fn element_removal(
             missing("a column of a body");
             continue;
         };
-        weigh(authoring, (&blocks, &others), &densities, &mut mass, damping.as_deref_mut());
+        recompute_masses(authoring, (&blocks, &others), &densities, &mut mass, damping.as_deref_mut());
         // elements of blocks that lose none are always there
         let alive = |(block, row): (u32, u32)| {
             let block = authoring.blocks.get(block as usize).and_then(|&block| blocks.get(block).ok());
@@ -188,7 +188,7 @@ fn kinetic_energy(state: &ElementState, density: f64, (step, axes): (&Reals, &[u
 }
 
 /// Sums the mass and damping of a body's nodes from the elements that are left.
-fn weigh(
+fn recompute_masses(
     authoring: &Authoring,
     (blocks, others): (&Query<BlockQuery>, &Query<StayingBlock, Without<Alive>>),
     materials: &Query<(&Density, Option<&Damping>)>,
@@ -245,7 +245,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let blocks = BlockKernels::of_world(world, buffers);
     let criteria: Vec<RemovalCriterion> = world.query::<&RemovalCriterion>().iter(world).cloned().collect();
     let mut kernels = Vec::new();
-    let mut weighed = Vec::new();
+    let mut recomputed = Vec::new();
     for block in blocks.iter().filter(|block| world.get::<Alive>(block.entity).is_some()) {
         let of_block: Vec<&RemovalCriterion> = criteria.iter().filter(|c| c.block == block.entity).collect();
         // a bit for each criterion
@@ -254,11 +254,11 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
         }
         kernels.push(with_step(motion_kernel(block, world, buffers), world));
         kernels.push(with_step(removal_kernel(block, buffers), world));
-        if !weighed.contains(&block.block.body) {
-            weighed.push(block.block.body);
+        if !recomputed.contains(&block.block.body) {
+            recomputed.push(block.block.body);
         }
     }
-    for body in weighed {
+    for body in recomputed {
         for (place, block) in blocks.iter().filter(|block| block.block.body == body).enumerate() {
             kernels.extend(mass_kernel(block, place == 0, world, buffers));
         }

@@ -22,7 +22,7 @@ use std::sync::atomic::Ordering;
 /// take the step that `boundary` wrote; nodes without mass are inactive.
 ///
 /// In a static analysis the same recursion relaxes: the mass is [`FictitiousMass`], a is one number for all nodes, and
-/// forces are multiplied with a gain ([`Relaxation`]).
+/// forces are multiplied with a force scale ([`Relaxation`]).
 pub fn system() -> System {
     System::built_in_nodes::<Body>(
         "integrate",

@@ -85,7 +85,7 @@ impl NodeSystem for OwnLoad {
             for number in 0..TIMES {
                 let time = nodes.duration * number as f64 / (TIMES - 1) as f64;
                 let node = NodeAtRest { rest_position: rest[row], mass: nodes.mass.get(row), curve, time };
-                let [stiffness, damping] = self.text.growth(&node, length).map(|slope| slope / node.mass);
+                let [stiffness, damping] = self.text.slopes(&node, length).map(|slope| slope / node.mass);
                 // what is no number is the guards' business
                 largest = largest.larger(ForceSlopes { stiffness, damping });
             }

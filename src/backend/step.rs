@@ -9,7 +9,7 @@ use bevy_ecs::prelude::*;
 #[repr(C)]
 pub struct Step {
     /// Δt times the time between the middles of the last and of this step, which is Δt but in the first step and after
-    /// a change of Δt; times the gain of a static analysis (s²).
+    /// a change of Δt; times the force scale of a static analysis (s²).
     pub force_factor: f32,
     /// Half the time between the middles, in the first step Δt/2 (s).
     pub half_step: f32,
@@ -54,9 +54,10 @@ impl Step {
     /// The step that begins at the clock's time.
     pub fn of(clock: &Clock) -> Self {
         let (dt, between, first) = (clock.time_step, clock.between_middles(), clock.step == 0);
-        let (gain, damping) = clock.relaxation.map_or((1.0, 0.0), |relaxation| (relaxation.gain, relaxation.damping));
+        let (force_scale, damping) =
+            clock.relaxation.map_or((1.0, 0.0), |relaxation| (relaxation.force_scale, relaxation.damping));
         Self {
-            force_factor: (gain * dt * between) as f32,
+            force_factor: (force_scale * dt * between) as f32,
             half_step: (0.5 * if first { dt } else { between }) as f32,
             divide: if first { 0.0 } else { 1.0 },
             rate: (1.0 / dt) as f32,

@@ -94,20 +94,20 @@ impl Clock {
 pub struct Relaxation {
     /// The time whose loads and motions are wanted (s).
     pub end: f64,
-    /// A step, and how far loads had grown in it: from there they grow by `growth` a step.
+    /// A step, and how far loads had grown in it: from there they grow by `ramp_rate` a step.
     pub since: (u64, f64),
-    /// Growth of the progress of loads in a step.
-    pub growth: f64,
+    /// By how much the progress of loads grows in a step.
+    pub ramp_rate: f64,
     /// a = cΔt/2 of the damping c, the same for all nodes.
     pub damping: f64,
     /// What forces are multiplied with, over the fictitious mass: how much the bound of the stable step is outdone.
-    pub gain: f64,
+    pub force_scale: f64,
 }
 
 impl Relaxation {
     /// How far loads and motions have grown at the end of so many steps, from 0 to 1.
     pub fn progress(&self, steps: u64) -> f64 {
-        (self.since.1 + self.growth * steps.saturating_sub(self.since.0) as f64).min(1.0)
+        (self.since.1 + self.ramp_rate * steps.saturating_sub(self.since.0) as f64).min(1.0)
     }
 
     /// What loads and motions are multiplied with then: the progress by the 3-4-5 polynomial, so that nothing begins or

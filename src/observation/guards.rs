@@ -131,7 +131,7 @@ pub(super) fn find_in_result(
 /// Looks at energies and elements. Warns of what passes a limit, each once, and ends the run where elements hold more
 /// energy than work was done on them: so a step beyond the stable one shows that does not run away, because large
 /// motion holds it.
-pub(super) fn weigh(world: &mut World, good_until: f64, settings: &GuardSettings) -> Result<(), Error> {
+pub(super) fn check_balance(world: &mut World, good_until: f64, settings: &GuardSettings) -> Result<(), Error> {
     let seen = sample(world)?;
     if let Some((what, value)) = not_finite(&seen, world) {
         let inside_out = seen_inside_out(&seen.parts, world);

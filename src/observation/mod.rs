@@ -259,7 +259,7 @@ impl Observer {
         }
         let is_due = clock.step.is_multiple_of(self.guard_settings.limits.every.max(1)) || last;
         if is_due && clock.step > 0 && !to_rest {
-            guards::weigh(world, self.good_until, &self.guard_settings)?;
+            guards::check_balance(world, self.good_until, &self.guard_settings)?;
             self.checked_at = Some(clock.step);
         }
         let moment = match to_rest {

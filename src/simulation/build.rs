@@ -251,8 +251,8 @@ fn relaxing(scene: &SceneFile, precision: Precision, world: &mut World) -> Optio
     let highest = largest_eigenvalue(world, OF_RELAXATION).map_or(1.0, |found| found.at_least * half * half);
     let highest = if highest > 0.0 && highest < 1.0 { highest } else { 1.0 };
     let load_steps = world.resource_mut::<Clock>().relaxation.as_mut().map_or(0, |relaxation| {
-        relaxation.gain = scene.scene.integration.safety.powi(2) / highest;
-        (1.0 / relaxation.growth).round() as u64
+        relaxation.force_scale = scene.scene.integration.safety.powi(2) / highest;
+        (1.0 / relaxation.ramp_rate).round() as u64
     });
     // what rounding leaves of the residual in f32 is some 1e-6
     let reachable = if precision == Precision::F64 { 1e-6 } else { 1e-5 };

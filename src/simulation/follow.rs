@@ -131,7 +131,7 @@ pub(super) struct Followed {
     found: Found,
     history: StepHistory,
     /// Of each block, as base64 of f32; none before the first look.
-    growths: Vec<String>,
+    ratios: Vec<String>,
     /// The shape of what is quickest, in the same way.
     shape: Option<String>,
 }
@@ -141,7 +141,7 @@ impl Follower {
     pub fn new(scene: &Scene, stability: &Stability, initial_mass: f64, world: &mut World) -> Option<Self> {
         let (limit, integration) = (stability.limit?, &scene.integration);
         let step = world.resource::<Clock>().time_step;
-        let added = if scene.scales_mass() { mass_scaling::weigh(world).mass } else { 0.0 };
+        let added = if scene.scales_mass() { mass_scaling::scale_masses(world).mass } else { 0.0 };
         let policy = scene.when_unstable();
         Some(Self {
             policy,
@@ -206,18 +206,18 @@ impl Follower {
 impl Follower {
     /// What has been found so far.
     pub fn followed(&self) -> Followed {
-        let growths = self.trackers.iter().map(|block| text_of(block.known_growth())).collect();
+        let ratios = self.trackers.iter().map(|block| text_of(block.known_ratio())).collect();
         // time on a clock on the wall is no part of the state
         let history = StepHistory { seconds: 0.0, ..self.history };
-        Followed { found: self.found.clone(), history, growths, shape: self.shape.as_deref().map(text_of) }
+        Followed { found: self.found.clone(), history, ratios, shape: self.shape.as_deref().map(text_of) }
     }
 
     /// Goes on from what had been found, which [fits](Followed::fits).
     pub fn take_up(&mut self, followed: Followed, world: &mut World) {
-        self.trackers = if followed.growths.is_empty() { Vec::new() } else { StiffnessTracker::all(world) };
-        for (block, growth) in self.trackers.iter_mut().zip(&followed.growths) {
-            let taken = numbers_of(growth).is_some_and(|growth| block.take_known_growth(growth, world));
-            debug_assert!(taken, "the growth of other elements");
+        self.trackers = if followed.ratios.is_empty() { Vec::new() } else { StiffnessTracker::all(world) };
+        for (block, ratio) in self.trackers.iter_mut().zip(&followed.ratios) {
+            let taken = numbers_of(ratio).is_some_and(|ratio| block.take_known_ratio(ratio, world));
+            debug_assert!(taken, "the ratios of other elements");
         }
         self.shape = followed.shape.as_deref().and_then(numbers_of);
         (self.found, self.history) = (followed.found, followed.history);
@@ -280,10 +280,10 @@ impl Followed {
         let mut blocks: Vec<(Entity, usize)> =
             world.query::<(Entity, &Block)>().iter(world).map(|(entity, block)| (entity, block.count)).collect();
         blocks.sort();
-        let growths: Option<Vec<usize>> =
-            self.growths.iter().map(|text| numbers_of(text).map(|numbers| numbers.len())).collect();
+        let ratios: Option<Vec<usize>> =
+            self.ratios.iter().map(|text| numbers_of(text).map(|numbers| numbers.len())).collect();
         let counts = || blocks.iter().map(|block| block.1);
-        let fits = growths.is_some_and(|growths| growths.is_empty() || growths.into_iter().eq(counts()));
+        let fits = ratios.is_some_and(|ratios| ratios.is_empty() || ratios.into_iter().eq(counts()));
         let shape = self.shape.as_ref().is_none_or(|text| numbers_of(text).is_some());
         let loads = self.found.loads.is_none_or(|loads| loads.are_sound());
         let numbers = [self.found.known, self.found.lost, self.found.losing, self.found.latest];
@@ -352,7 +352,7 @@ impl Simulation {
         if lost && matches!(follower.policy, WhenUnstable::ScaleMass { .. }) {
             // what was added to removed elements goes with them
             bring_to_host(&mut self.world, |_, name| [Mass::NAME, FictitiousMass::NAME].contains(&name))?;
-            mass_scaling::weigh(&mut self.world);
+            mass_scaling::scale_masses(&mut self.world);
             send_to_device(&mut self.world, |_, name| name == FictitiousMass::NAME)?;
         }
         // what is no number is the guards' business

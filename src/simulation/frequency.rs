@@ -119,8 +119,8 @@ pub(super) fn largest_near(
         vector.iter_mut().for_each(|x| *x *= if length > 0.0 { to / length } else { 0.0 });
         vector
     };
-    let weighed = noise(&roots).iter().zip(weights).map(|(noise, weight)| noise * weight).collect();
-    let mut start = scaled(weighed, if shape.is_some() { NOISE } else { 1.0 });
+    let weighted = noise(&roots).iter().zip(weights).map(|(noise, weight)| noise * weight).collect();
+    let mut start = scaled(weighted, if shape.is_some() { NOISE } else { 1.0 });
     if let Some(shape) = shape.filter(|shape| shape.len() == roots.len()) {
         // axes that are held by now have no part
         let known = shape.iter().zip(&roots).map(|(&x, &root)| if root > 0.0 { f64::from(x) } else { 0.0 }).collect();

@@ -49,7 +49,7 @@ impl Simulation {
                 Ok(Some(u64::MAX))
             }
             _ if !found || !presses(follower, seen.square) => Ok(None),
-            WhenUnstable::ScaleMass { most } => self.make_heavier(follower, time_step, most).map(|()| None),
+            WhenUnstable::ScaleMass { most } => self.scale_mass(follower, time_step, most).map(|()| None),
             WhenUnstable::Remove => self.remove_quickest(follower).map(Some),
             WhenUnstable::Watch | WhenUnstable::Adapt => Ok(None),
         }
@@ -69,7 +69,7 @@ impl Simulation {
     }
 
     /// Adds mass to elements that do not allow the step any more, as long as the highest frequency does not.
-    fn make_heavier(&mut self, follower: &mut Follower, time_step: f64, most: f64) -> Result<(), Error> {
+    fn scale_mass(&mut self, follower: &mut Follower, time_step: f64, most: f64) -> Result<(), Error> {
         let columns = [Mass::NAME, FictitiousMass::NAME];
         bring_to_host(&mut self.world, |_, name| columns.contains(&name))?;
         let wanted = time_step / follower.safety;
@@ -85,9 +85,9 @@ impl Simulation {
             }
             self.may_add(&additions, follower, most)?;
             additions.make(&mut self.world);
-            let added = mass_scaling::weigh(&mut self.world);
+            let added = mass_scaling::scale_masses(&mut self.world);
             for block in &mut follower.trackers {
-                block.weigh(&self.world);
+                block.update_bounds(&self.world);
             }
             let history = &mut follower.history;
             history.added_mass = added.mass;

@@ -69,8 +69,8 @@ pub(super) struct Relaxing {
     best: (u64, f64),
     largest_scale: f64,
     largest_displaced: f64,
-    /// The gain before anything is squeezed, and the share of it that squeezed elements leave.
-    gain: f64,
+    /// The force scale before anything is squeezed, and the share of it that squeezed elements leave.
+    force_scale: f64,
     squeezed: f64,
     checks: u64,
     /// The lowest frequency, as far as it is known (1/s).
@@ -91,7 +91,7 @@ impl Relaxing {
             best: (0, f64::INFINITY),
             largest_scale: 0.0,
             largest_displaced: 0.0,
-            gain: world.resource::<Clock>().relaxation.map_or(1.0, |relaxation| relaxation.gain),
+            force_scale: world.resource::<Clock>().relaxation.map_or(1.0, |relaxation| relaxation.force_scale),
             squeezed: 1.0,
             checks: 0,
             frequency: 0.0,
@@ -157,7 +157,7 @@ impl Relaxing {
             self.squeezed = least_stretch(world).powi(2);
         }
         self.checks += 1;
-        relaxation.gain = self.gain * self.squeezed;
+        relaxation.force_scale = self.force_scale * self.squeezed;
         let motion = now.motion_since(&self.before, world);
         // forces of a motion are to loads about as the motion is to displacements; they must stand out from rounding
         let noise = residual.digit.max((residual.rounding_square / residual.scale_square).sqrt());
@@ -167,7 +167,7 @@ impl Relaxing {
             let settled = self.settled_at.is_some_and(|step| clock.step > step + 2 * CHECK_STEPS);
             self.frequency = if settled { frequency.min(self.frequency) } else { frequency };
         }
-        relaxation.damping = (relaxation.gain.sqrt() * self.frequency * clock.time_step).min(MOST_DAMPING);
+        relaxation.damping = (relaxation.force_scale.sqrt() * self.frequency * clock.time_step).min(MOST_DAMPING);
         if share >= 1.0 {
             self.settled_at.get_or_insert(clock.step);
         }
@@ -230,12 +230,12 @@ impl Relaxing {
     fn take_back(&mut self, world: &mut World, mut relaxation: Relaxation, step: u64) -> Result<(), Error> {
         if self.settled_at.is_none() {
             self.before.forget();
-            relaxation.growth *= 0.25;
+            relaxation.ramp_rate *= 0.25;
             relaxation.since = (step, 0.0);
             self.squeezed = 1.0;
         }
-        self.gain *= 0.5;
-        relaxation.gain = self.gain * self.squeezed;
+        self.force_scale *= 0.5;
+        relaxation.force_scale = self.force_scale * self.squeezed;
         self.before.restore(world);
         self.before.step = step;
         send_to_device(world, |_, name| State::COLUMNS.contains(&name))?;

@@ -1,8 +1,8 @@
 //! How much quicker elements can have become: a cheap bound, from how far they are deformed now.
 
-use super::damped_step::{growth_with_damping, is_damped};
-use super::growth::Growth;
-use super::mass_scaling::heavy_mass;
+use super::damped_step::{is_damped, ratio_with_damping};
+use super::mass_scaling::scaled_mass;
+use super::stiffness_ratio::StiffnessRatio;
 use crate::assembly::{SquaresAtRest, square_frequencies};
 use crate::backend::cpu::{BlockLaw, Cpu, Strain, StrainColumns, Visit, strains};
 use crate::components::*;
@@ -28,14 +28,14 @@ const NEARLY: f64 = 1.1;
 /// The elements of a block, and what is known of their frequencies.
 pub(super) struct StiffnessTracker {
     pub entity: Entity,
-    growth: Growth,
+    stiffness: StiffnessRatio,
     /// Of each element the bound of ω² at rest (1/s²); 0 where all its nodes are held: it does not move by itself.
     pub squares: Vec<f64>,
     /// The shortest distance between two nodes of an element at rest (m).
     pub shortest_edge: f64,
-    /// The growth of ω² of all, by each element, when that was found last.
-    known_growth: Vec<f32>,
-    /// Of the elements of each part that are there: the largest bound at rest (1/s²), and the least growth of ω² of all
+    /// The ratio of ω² of all, by each element, when that was found last.
+    known_ratio: Vec<f32>,
+    /// Of the elements of each part that are there: the largest bound at rest (1/s²), and the least ratio of ω² of all
     /// when that was found.
     parts: Vec<(f64, f64)>,
     /// How many elements were there when that was summed up.
@@ -65,7 +65,7 @@ fn part_groups(part: usize) -> Range<usize> {
 pub(super) struct StabilitySample {
     /// ω² of all at most (1/s²): by the elements alone, or by what was known of all.
     pub square: f64,
-    /// The largest bound of ω² of an element at rest, times its growth (1/s²).
+    /// The largest bound of ω² of an element at rest, times its ratio (1/s²).
     pub of_elements: f64,
     /// The largest bound of ω² of an element at rest (1/s²).
     pub at_rest: f64,
@@ -126,15 +126,15 @@ impl StiffnessTracker {
         blocks.sort();
         let is_damped = is_damped(world);
         let tracked = |&entity: &Entity| {
-            let growth = Growth::of(world.get::<BlockLaw<f64>>(entity)?);
+            let stiffness = StiffnessRatio::of(world.get::<BlockLaw<f64>>(entity)?);
             let block = world.get::<Block>(entity)?;
             let rest = world.get::<RestPosition>(block.body)?;
             let shortest_edge = shortest_edge(block, world.get::<Connectivity>(entity)?, rest);
             let (squares, parts) = (Vec::new(), Vec::new());
-            let known_growth = vec![1.0; block.count];
+            let known_ratio = vec![1.0; block.count];
             let mut tracked =
-                Self { entity, growth, squares, shortest_edge, known_growth, parts, counted: 0, is_damped };
-            tracked.weigh(world);
+                Self { entity, stiffness, squares, shortest_edge, known_ratio, parts, counted: 0, is_damped };
+            tracked.update_bounds(world);
             Some(tracked)
         };
         let all = blocks.iter().filter_map(tracked).collect();
@@ -144,11 +144,11 @@ impl StiffnessTracker {
     }
 
     /// Takes the bounds at rest anew, with the mass that was added by now.
-    pub fn weigh(&mut self, world: &World) {
+    pub fn update_bounds(&mut self, world: &World) {
         let squares = square_frequencies(world, self.entity).into_iter().enumerate();
-        let heavier = |row: usize| heavy_mass(world, self.entity, row).map_or(1.0, |(_, heavier)| heavier);
+        let mass_factor = |row: usize| scaled_mass(world, self.entity, row).map_or(1.0, |(_, mass_factor)| mass_factor);
         let of_row = |(row, (square, _)): (usize, (f64, f64))| match moves(world, self.entity, row) {
-            true => square / heavier(row),
+            true => square / mass_factor(row),
             false => 0.0,
         };
         self.squares = squares.map(of_row).collect();
@@ -166,23 +166,23 @@ impl StiffnessTracker {
             let rows = part * ROWS_A_PART..count.min((part + 1) * ROWS_A_PART);
             let rows = rows.filter(is_there).filter(|&row| self.squares[row] > 0.0);
             rows.fold((0.0_f64, f64::INFINITY), |(most, least), row| {
-                (most.max(self.squares[row]), least.min(f64::from(self.known_growth[row])))
+                (most.max(self.squares[row]), least.min(f64::from(self.known_ratio[row])))
             })
         };
         self.parts = (0..count.div_ceil(ROWS_A_PART)).map(of_part).collect();
         self.counted = (0..count).filter(is_there).count();
     }
 
-    /// The growth of ω² of each element when the frequency of all was found last.
-    pub fn known_growth(&self) -> &[f32] {
-        &self.known_growth
+    /// The ratio of ω² of each element when the frequency of all was found last.
+    pub fn known_ratio(&self) -> &[f32] {
+        &self.known_ratio
     }
 
     /// Takes it from a snapshot; false where it is none of these elements.
-    pub fn take_known_growth(&mut self, growth: Vec<f32>, world: &World) -> bool {
-        let fits = growth.len() == self.squares.len();
+    pub fn take_known_ratio(&mut self, ratio: Vec<f32>, world: &World) -> bool {
+        let fits = ratio.len() == self.squares.len();
         if fits {
-            self.known_growth = growth;
+            self.known_ratio = ratio;
             self.sum_up(world);
         }
         fits
@@ -199,14 +199,14 @@ impl StiffnessTracker {
         };
         let widest = cpu.map(count.div_ceil(ROWS_A_TASK), of_task).concat();
         let most = |of: fn(&Strain) -> f64| widest.iter().map(|(most, _)| of(most)).fold(1.0, f64::max);
-        self.growth.reach(most(|part| part.size), most(|part| part.squeeze));
+        self.stiffness.reach(most(|part| part.size), most(|part| part.squeeze));
         if widest.iter().map(|(_, alive)| alive).sum::<usize>() != self.counted {
             self.sum_up(world);
         }
         let parts = widest.iter().zip(&self.parts).enumerate().filter(|(_, ((_, alive), _))| *alive > 0);
         let (places, parts): (Vec<usize>, Vec<StabilitySample>) = parts
             .map(|(part, (&(widest, alive), &(at_rest, least_known)))| {
-                let [own, of_all] = self.growth_of(widest.size, widest.squeeze, widest.more);
+                let [own, of_all] = self.ratio_of(widest.size, widest.squeeze, widest.more);
                 let (of_elements, ratio) = ((at_rest * own).min(f64::MAX), (of_all / least_known).max(1.0));
                 (
                     part,
@@ -263,20 +263,20 @@ impl StiffnessTracker {
             part_groups(part),
             Some(&mut |strains: &[Strain]| {
                 for strain in strains.iter().filter(|strain| self.squares[strain.row] > 0.0) {
-                    let [own, of_all] = self.growth_of(strain.size, strain.squeeze, strain.more);
+                    let [own, of_all] = self.ratio_of(strain.size, strain.squeeze, strain.more);
                     of_elements = of_elements.max(self.squares[strain.row] * own);
-                    ratio = ratio.max(of_all / f64::from(self.known_growth[strain.row]));
+                    ratio = ratio.max(of_all / f64::from(self.known_ratio[strain.row]));
                 }
             }),
         );
         StabilitySample { of_elements, ratio, ..at_most }
     }
 
-    /// Remembers the present growth, now that the frequency of all is known.
+    /// Remembers the present ratio, now that the frequency of all is known.
     pub fn remember(&mut self, world: &World) {
         self.reach_all(world);
-        let growths = self.growths(world, Vec::new(), |found, row, [_, of_all]| found.push((row, of_all as f32)));
-        growths.into_iter().flatten().for_each(|(row, growth)| self.known_growth[row] = growth);
+        let ratios = self.ratios(world, Vec::new(), |found, row, [_, of_all]| found.push((row, of_all as f32)));
+        ratios.into_iter().flatten().for_each(|(row, ratio)| self.known_ratio[row] = ratio);
         self.sum_up(world);
     }
 
@@ -284,18 +284,18 @@ impl StiffnessTracker {
     /// become since the frequency of all was found.
     pub fn now(&mut self, world: &World) -> Vec<(usize, f64, f64)> {
         self.reach_all(world);
-        let found = self.growths(world, Vec::new(), |found, row, [own, of_all]| {
-            let ratio = (of_all / f64::from(self.known_growth[row])).max(1.0);
+        let found = self.ratios(world, Vec::new(), |found, row, [own, of_all]| {
+            let ratio = (of_all / f64::from(self.known_ratio[row])).max(1.0);
             found.push((row, self.squares[row] * own, ratio));
         });
         found.into_iter().flatten().collect()
     }
 
-    /// Growth of an element's own ω², and of that of all.
-    fn growth_of(&self, size: f64, squeeze: f64, more: f64) -> [f64; 2] {
+    /// Stiffness ratio of an element's own ω², and of that of all.
+    fn ratio_of(&self, size: f64, squeeze: f64, more: f64) -> [f64; 2] {
         // as much as f32 can keep
-        [self.growth.own(size), self.growth.of_all(size, squeeze)]
-            .map(|growth| growth_with_damping(growth + more, self.is_damped).min(f64::from(f32::MAX)))
+        [self.stiffness.own(size), self.stiffness.of_all(size, squeeze)]
+            .map(|ratio| ratio_with_damping(ratio + more, self.is_damped).min(f64::from(f32::MAX)))
     }
 
     /// Tries the law as far as an element is deformed now.
@@ -304,18 +304,18 @@ impl StiffnessTracker {
             (*size, *squeeze) = (size.max(strain.size), squeeze.max(strain.squeeze));
         });
         let most = |i: usize| widest.iter().fold(1.0, |most: f64, task| most.max(task[i]));
-        self.growth.reach(most(0), most(1));
+        self.stiffness.reach(most(0), most(1));
     }
 
-    /// Visits all elements that are there with row and both growths of ω².
-    fn growths<R: Clone + Send + Sync>(
+    /// Visits all elements that are there with row and both ratios of ω².
+    fn ratios<R: Clone + Send + Sync>(
         &self,
         world: &World,
         start: R,
         visit: impl Fn(&mut R, usize, [f64; 2]) + Sync + Send,
     ) -> Vec<R> {
         self.each_task(world, start, |found, strain| {
-            visit(found, strain.row, self.growth_of(strain.size, strain.squeeze, strain.more));
+            visit(found, strain.row, self.ratio_of(strain.size, strain.squeeze, strain.more));
         })
     }
 
@@ -358,11 +358,12 @@ impl StiffnessTracker {
     fn strains(&self, of: &Columns<'_>, groups: Range<usize>, visit: Option<Visit<'_>>) -> (Strain, usize) {
         let fibres = of.fibres.map(|fibres| &fibres.0);
         let families = |row: usize, c: [f64; 6]| -> f64 {
-            let families = self.growth.families.iter();
-            families.map(|(family, from)| self.growth.of_family(family, c, self.direction(row, from, fibres))).sum()
+            let families = self.stiffness.families.iter();
+            families.map(|(family, from)| self.stiffness.of_family(family, c, self.direction(row, from, fibres))).sum()
         };
-        let more = (!self.growth.families.is_empty()).then_some(&families as &(dyn Fn(usize, [f64; 6]) -> f64 + Sync));
-        let (block, connectivity, ends) = (of.block, of.connectivity, self.growth.ends);
+        let more =
+            (!self.stiffness.families.is_empty()).then_some(&families as &(dyn Fn(usize, [f64; 6]) -> f64 + Sync));
+        let (block, connectivity, ends) = (of.block, of.connectivity, self.stiffness.ends);
         let groups = groups.start..groups.end.min(block.count.div_ceil(LANES));
         macro_rules! run {
             ($T:ty) => {{
@@ -381,7 +382,7 @@ impl StiffnessTracker {
         match (from, fibres) {
             (FamilyDirection::Uniform(a), _) => *a,
             (FamilyDirection::Varying(place), Some(all)) => {
-                let numbers = 3 * self.growth.varying;
+                let numbers = 3 * self.stiffness.varying;
                 [0, 1, 2].map(|i| all.get(lane_place(row, numbers, 3 * place + i)))
             }
             (FamilyDirection::Varying(_), None) => [0.0; 3],

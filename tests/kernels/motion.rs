@@ -48,7 +48,7 @@ fn nodes_relax_the_same_way() {
             let damped = |world: &mut World| {
                 let mut clock = world.resource_mut::<Clock>();
                 let relaxation = clock.relaxation.as_mut().unwrap();
-                (relaxation.damping, relaxation.gain) = (0.3, 1.7);
+                (relaxation.damping, relaxation.force_scale) = (0.3, 1.7);
             };
             let Some(mut pair) = run("integrate", &effects, step, damped) else { return };
             compare_motion(&mut pair, &effects, 0.0);

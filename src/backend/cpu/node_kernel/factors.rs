@@ -8,7 +8,7 @@ use glam::DVec3;
 #[derive(Clone, Copy)]
 pub struct Factors<T> {
     /// Δt times the time between the middles of the last and of this step (see [`Clock::between_middles`]), times the
-    /// gain of a static analysis (s²).
+    /// force scale of a static analysis (s²).
     pub force: T,
     /// Half the time between the middles, in the first step Δt/2 (s).
     pub half_step: T,
@@ -26,9 +26,10 @@ impl<T: Scalar> Factors<T> {
     /// In the step that begins at the clock's time.
     pub fn of(clock: &Clock) -> Self {
         let (dt, between, first) = (clock.time_step, clock.between_middles(), clock.step == 0);
-        let (gain, damping) = clock.relaxation.map_or((1.0, 0.0), |relaxation| (relaxation.gain, relaxation.damping));
+        let (force_scale, damping) =
+            clock.relaxation.map_or((1.0, 0.0), |relaxation| (relaxation.force_scale, relaxation.damping));
         Self {
-            force: T::from_f64(gain * dt * between),
+            force: T::from_f64(force_scale * dt * between),
             half_step: T::from_f64(0.5 * if first { dt } else { between }),
             divide: T::from_f64(if first { 0.0 } else { 1.0 }),
             rate: T::from_f64(1.0 / dt),

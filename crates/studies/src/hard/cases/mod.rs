@@ -114,7 +114,7 @@ pub const CASES: &[Case] = &[
     case!("h31" "mixed_patch" "hexahedra and tetrahedra in one body",
         "patch test to 1e-6 (f64), 1e-4 (f32)", every, mixed::mixed_patch),
     case!("h32" "mass_scaling" "mass scaling",
-        "added mass told, above 5 % warned of; energy balanced", every, step::heavier),
+        "added mass told, above 5 % warned of; energy balanced", every, step::mass_scaling),
     case!("h33" "nothing_loaded" "nothing loaded for 1e5 steps (everyday: 1e4)",
         "no displacement above 1e-7 of the length", every, long_runs::nothing_loaded),
     case!("h34" "zero_weights" "effects of weight zero against absent ones",

@@ -101,7 +101,7 @@ pub fn shrinks(trial: &mut Trial<'_>) -> Result<(), Error> {
 }
 
 /// H32.
-pub fn heavier(trial: &mut Trial<'_>) -> Result<(), Error> {
+pub fn mass_scaling(trial: &mut Trial<'_>) -> Result<(), Error> {
     let h = 0.01;
     let heights = [h, 0.05 * h, h];
     let plain = column(trial, &heights, &["integration.bound=Elements".into()])?;
