@@ -18,7 +18,7 @@ mod text;
 
 pub use checks::Findings;
 pub use energy::read_formula;
-pub(crate) use form::ground_of_load;
+pub(crate) use form::callable_fragments_of_load;
 pub use load::{check_load, read_load};
 pub use rust::NamedLaw;
 

@@ -34,7 +34,7 @@ pub struct Calibration {
     steps: f64,
     seconds_a_step: f64,
     /// Time beside steps (s).
-    beside: f64,
+    overhead: f64,
     /// What bringing the bodies to rest before the first step takes (s), once.
     preload: f64,
 }
@@ -69,7 +69,7 @@ impl Engine<'_> {
         // bodies are brought to rest by a search: it takes a step a cell, too
         let preload = (PRELOADS + again - 1.0) * known.preload * growth * finer;
         let elements = (known.elements * growth) as u64;
-        Ok(Cost { seconds: again * run + known.beside * growth + preload, elements, steps: steps as u64 })
+        Ok(Cost { seconds: again * run + known.overhead * growth + preload, elements, steps: steps as u64 })
     }
 
     /// Keeps what a run has shown of its kind, for predictions of finer meshes: `all` is what it took, all in all (s).
@@ -78,8 +78,8 @@ impl Engine<'_> {
         let known = self.known.iter_mut().find(|(known, _)| *known == kind);
         let Some((_, known)) = known.filter(|(_, known)| configuration.mesh >= known.mesh) else { return };
         if configuration.step == 1 && solution.steps > 0 {
-            let beside = all - f64::from(solution.timed) * solution.seconds;
-            let preload = solution.preload.min(beside.max(0.0));
+            let overhead = all - f64::from(solution.timed) * solution.seconds;
+            let preload = solution.preload.min(overhead.max(0.0));
             let often = PRELOADS + f64::from(solution.timed) - 1.0;
             *known = Calibration {
                 mesh: configuration.mesh,
@@ -87,7 +87,7 @@ impl Engine<'_> {
                 step: solution.time_step,
                 steps: solution.steps as f64,
                 seconds_a_step: solution.seconds / solution.steps as f64,
-                beside: (beside - often * preload).max(0.0),
+                overhead: (overhead - often * preload).max(0.0),
                 preload,
             };
         }
@@ -150,8 +150,8 @@ impl Engine<'_> {
         let one = started.elapsed().as_secs_f64();
         // energies are sampled a few times as often as fields; setting up happens once more to find the step
         let samples = self.sampling.as_ref().map_or(FIELDS, |sampling| sampling.count).min(60);
-        let beside = 2.0 * setup + one * samples as f64;
-        Ok(Calibration { mesh, elements: summary.elements as f64, step, steps: 0.0, seconds_a_step, beside, preload })
+        let overhead = 2.0 * setup + one * samples as f64;
+        Ok(Calibration { mesh, elements: summary.elements as f64, step, steps: 0.0, seconds_a_step, overhead, preload })
     }
 
     /// How many steps a search for equilibrium takes on the scene's own mesh. Nobody knows before: it is gone through,
