@@ -50,7 +50,7 @@ struct Head {
     /// The states of custom systems, as RON.
     systems: BTreeMap<String, String>,
     /// How the simulation goes on from here: the simulation's own words, as RON.
-    pace: String,
+    resume_state: String,
 }
 
 impl PartialEq for Head {
@@ -131,13 +131,13 @@ impl Snapshot {
     }
 
     /// How the simulation goes on from here.
-    pub(crate) fn pace(&self) -> &str {
-        &self.head.pace
+    pub(crate) fn resume_state(&self) -> &str {
+        &self.head.resume_state
     }
 
     /// Sets it.
-    pub(crate) fn set_pace(&mut self, pace: String) {
-        self.head.pace = pace;
+    pub(crate) fn set_resume_state(&mut self, resume_state: String) {
+        self.head.resume_state = resume_state;
     }
 
     /// The time (s).
@@ -190,7 +190,7 @@ impl Snapshot {
             parts.insert("clock".into(), text(ron::to_string(&snapshot.head.clock)));
             parts.insert("guards".into(), text(ron::to_string(&snapshot.head.guards)));
             parts.insert("systems".into(), text(ron::to_string(&snapshot.head.systems)));
-            parts.insert("pace".into(), snapshot.head.pace.clone().into_bytes());
+            parts.insert("resume_state".into(), snapshot.head.resume_state.clone().into_bytes());
             parts.insert("identity".into(), text(ron::to_string(&snapshot.head.identity)));
             parts
         };
@@ -240,7 +240,7 @@ fn take(world: &mut World, keeping: &Keeping, clock: Clock) -> Result<Snapshot, 
         columns: entries,
         guards: world.get_resource::<GuardMemory>().cloned().unwrap_or_default(),
         systems,
-        pace: String::new(),
+        resume_state: String::new(),
     };
     Ok(Snapshot { head, data })
 }

@@ -40,7 +40,7 @@ fn step_adapts_where_tissue_is_squeezed_and_the_run_ends_in_time() {
 }
 
 /// The step, where it began, how it went: all that a run goes on with beside its columns.
-fn pace_of(simulation: &mut Simulation) -> String {
+fn resume_state_of(simulation: &mut Simulation) -> String {
     let history = *simulation.step_history().unwrap();
     let taken = (history.changes, history.smallest, history.largest, history.checks, history.eigenvalue_estimates);
     let clock = (simulation.step_count(), simulation.time(), simulation.time_step(), simulation.planned_steps());
@@ -55,15 +55,15 @@ fn what_goes_on_after_the_step_has_changed_gives_the_same_bits() {
         whole.advance_to(1.0).unwrap();
         let before = whole.step_history().unwrap().changes;
         let kept = Snapshot::from_bytes(&whole.snapshot().unwrap().to_bytes().unwrap()).unwrap();
-        let (then, place) = (pace_of(&mut whole), bits(&mut whole, "b"));
+        let (then, place) = (resume_state_of(&mut whole), bits(&mut whole, "b"));
         whole.finish().unwrap();
         let after = whole.step_history().unwrap().changes;
         assert!(before > 0 && after > before, "the step must change before and after: {before} {after}");
         let mut other = run.start(&text);
         other.restore(&kept).unwrap();
-        assert!(pace_of(&mut other) == then && bits(&mut other, "b") == place, "{}: another state", run.name);
+        assert!(resume_state_of(&mut other) == then && bits(&mut other, "b") == place, "{}: another state", run.name);
         other.finish().unwrap();
-        assert_eq!(pace_of(&mut other), pace_of(&mut whole), "{}: another pace", run.name);
+        assert_eq!(resume_state_of(&mut other), resume_state_of(&mut whole), "{}: another resume state", run.name);
         assert!(bits(&mut other, "b") == bits(&mut whole, "b"), "{}: another way on", run.name);
     }
 }
