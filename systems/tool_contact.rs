@@ -52,7 +52,7 @@ const SLIDES: f64 = 2.0;
 const TURNS: usize = 12;
 
 /// What a step needs.
-pub struct Step {
+pub struct ContactStep {
     factors: Factors<f64>,
     /// How far a node that is inside a tool comes out in this step (m).
     out: f64,
@@ -100,9 +100,9 @@ impl NodeSystem for ToolContacts {
         (&'static InternalForce, &'static ConstrainedAxes, &'static Displacement, &'static DisplacementIncrement),
         (&'static mut ExternalForce, &'static mut ToolTouch),
     );
-    type Prepared = Step;
+    type Prepared = ContactStep;
 
-    fn prepare(&self, before: &Before<'_>) -> Step {
+    fn prepare(&self, before: &Before<'_>) -> ContactStep {
         let values = before.signals.values();
         let tools = self.tools.iter().map(|contact| {
             let [pose, change] = [0, 3].map(|slot| Pose::of_slots(&values[contact.signal + slot..]));
@@ -111,7 +111,7 @@ impl NodeSystem for ToolContacts {
             let earlier = pose.less(&change);
             ToolInStep { pose, earlier, change, ball }
         });
-        Step {
+        ContactStep {
             factors: Factors::of(before.clock),
             out: self.out(before.clock),
             counts_work: before.clock.relaxation.is_none(),
@@ -119,7 +119,7 @@ impl NodeSystem for ToolContacts {
         }
     }
 
-    fn act<T: SimdScalar>(&self, step: &Step, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+    fn act<T: SimdScalar>(&self, step: &ContactStep, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
         let Some(touches) = nodes.touches.take() else { return };
         let own = places_within(&self.rows, nodes.first, nodes.rows());
         for (place, (&row, &mask)) in self.rows[own.clone()].iter().zip(&self.masks[own]).enumerate() {
@@ -142,7 +142,7 @@ impl ToolContacts {
     /// What tools do to one node.
     fn touch<T: SimdScalar>(
         &self,
-        step: &Step,
+        step: &ContactStep,
         row: usize,
         mask: u32,
         nodes: &mut NodeColumns<'_, T>,
@@ -213,7 +213,7 @@ impl ToolContacts {
 
     /// What a tool does to a node that is at a place (m, from the reference) and goes on by a step (m); `None` where it
     /// ends an edge or more from the tool.
-    fn predict(&self, step: &Step, tool: usize, place: DVec3, predicted: DVec3, stuck: bool) -> Option<Touch> {
+    fn predict(&self, step: &ContactStep, tool: usize, place: DVec3, predicted: DVec3, stuck: bool) -> Option<Touch> {
         let contact = &self.tools[tool];
         let ToolInStep { pose, earlier, change, .. } = &step.tools[tool];
         let end = place + predicted;
@@ -248,7 +248,7 @@ impl ToolContacts {
     /// curved, and distances that are no more than a bound of the true ones grow more slowly.
     fn push_apart(
         &self,
-        step: &Step,
+        step: &ContactStep,
         all: &mut [Option<Touch>],
         (place, predicted): (DVec3, DVec3),
         free: DVec3,

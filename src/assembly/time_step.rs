@@ -1,6 +1,6 @@
 //! The stable step, from the element bound, and the elements that set it.
 
-use super::columns::stiffness;
+use super::body_columns::stiffness;
 use crate::backend::cpu::Cpu;
 use crate::components::*;
 use crate::elements::with_element_of;

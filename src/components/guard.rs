@@ -26,9 +26,9 @@ pub struct GuardMemory {
     /// Of each probe that holds peaks, by name, the values of the largest size so far.
     pub probe_peaks: BTreeMap<String, Vec<f64>>,
     /// The smallest J of all looks.
-    pub least_volume_ratio: Option<Seen>,
+    pub least_volume_ratio: Option<Extreme>,
     /// The fastest node of all looks (m/s).
-    pub fastest_node: Option<Seen>,
+    pub fastest_node: Option<Extreme>,
     /// What has been warned of, each once.
     pub warnings: Vec<Notice>,
 }
@@ -36,7 +36,7 @@ pub struct GuardMemory {
 /// Something that was seen, and where and when.
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
-pub struct Seen {
+pub struct Extreme {
     /// The value.
     pub value: f64,
     /// The body.

@@ -41,7 +41,7 @@ pub use column_layout::{Increments, Rows};
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
 pub use contact::{ContactForce, MEETING_NUMBERS, SurfaceRows, SurfaceTouch};
 pub use grab::{Grabs, HeldNode};
-pub use guard::{GuardMemory, Notice, Seen};
+pub use guard::{Extreme, GuardMemory, Notice};
 pub use input::{Change, Input, InputState};
 pub use load::{FaceCorners, Gravity, NodalForce, Pressure, Traction};
 pub use material::{Damping, Density, ExponentialFibres, Prony, StiffnessDamping, memory_terms};

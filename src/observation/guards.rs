@@ -302,14 +302,14 @@ fn remember(memory: &mut GuardMemory, seen: &Sample, world: &World) {
         let Some(authoring) = world.get::<Authoring>(block.body) else { continue };
         let place = authoring.blocks.iter().position(|block| block == entity).unwrap_or(0);
         let id = authoring.element_id(place, sums.row as usize);
-        memory.least_volume_ratio = Some(Seen { value, body: label(world, block.body), id, time });
+        memory.least_volume_ratio = Some(Extreme { value, body: label(world, block.body), id, time });
     }
     if let Some((body, row, value)) = seen.fastest
         && memory.fastest_node.as_ref().is_none_or(|known| value > known.value)
         && let Some(authoring) = world.get::<Authoring>(body)
     {
         let id = authoring.node_id(row as usize);
-        memory.fastest_node = Some(Seen { value, body: label(world, body), id, time });
+        memory.fastest_node = Some(Extreme { value, body: label(world, body), id, time });
     }
 }
 

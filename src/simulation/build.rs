@@ -14,7 +14,7 @@ use super::schedule::Scheduled;
 use super::scheme::{fit_workgroups, sum_forces};
 use super::solver::Solver;
 use super::step_kernels::step_kernels;
-use super::{Entry, Facts, Job, Options, Simulation};
+use super::{Facts, Job, Options, ScheduledPass, Simulation};
 use crate::assembly::Assembly;
 use crate::backend::cpu::Cpu;
 use crate::backend::device::Device;
@@ -199,7 +199,7 @@ fn entries(
     plan: &Plan,
     kernels: Option<Vec<Vec<KernelId>>>,
     world: &mut World,
-) -> Vec<Entry> {
+) -> Vec<ScheduledPass> {
     let on_gpu = kernels.is_some();
     let mut kernels = kernels.into_iter().flatten();
     let mut entries = Vec::new();
@@ -226,7 +226,7 @@ fn entries(
         let names: Vec<&str> = plan.systems_of(pass).map(|system| system.name.as_str()).collect();
         let phase = plan.systems_of(pass).map(|system| system.phase).max().unwrap_or(plan.systems[first].phase);
         let name = names.join(" + ");
-        entries.push(Entry { name, phase, systems: pass.systems.clone(), job, time: Duration::ZERO, runs: 0 });
+        entries.push(ScheduledPass { name, phase, systems: pass.systems.clone(), job, time: Duration::ZERO, runs: 0 });
     }
     entries
 }

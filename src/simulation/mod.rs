@@ -90,7 +90,7 @@ pub struct Simulation {
     world: World,
     plan: plan::Plan,
     /// Its passes on the backend that it runs on.
-    entries: Vec<Entry>,
+    entries: Vec<ScheduledPass>,
     /// As it is now.
     scene: Scene,
     /// What it was made of.
@@ -128,7 +128,7 @@ pub struct Simulation {
 }
 
 /// A pass of the plan that runs.
-struct Entry {
+struct ScheduledPass {
     name: String,
     /// Of the last of its systems.
     phase: Phase,

@@ -67,7 +67,7 @@ impl Simulation {
 
     /// Notes the resume state in a snapshot of the world.
     pub(super) fn note_resume_state(&mut self, snapshot: &mut Snapshot) -> Result<(), SnapshotError> {
-        let interval = |entry: &super::Entry| match &entry.job {
+        let interval = |entry: &super::ScheduledPass| match &entry.job {
             Job::Host { interval, .. } => Some((entry.name.clone(), *interval)),
             Job::Kernels(_) => None,
         };

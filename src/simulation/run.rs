@@ -1,7 +1,7 @@
 //! Steps.
 
 use super::build::after_the_step;
-use super::{Entry, Job, Simulation};
+use super::{Job, ScheduledPass, Simulation};
 use crate::backend::cpu::Cpu;
 use crate::backend::device::{Device, bring_to_host, send_to_device};
 use crate::backend::kernel::KernelId;
@@ -223,7 +223,7 @@ impl Simulation {
                 until = until.min(interval.next_after(step));
             }
         }
-        let kernels: Vec<KernelId> = self.entries.iter().flat_map(Entry::kernels).copied().collect();
+        let kernels: Vec<KernelId> = self.entries.iter().flat_map(ScheduledPass::kernels).copied().collect();
         let count = (until - step).min(4096);
         debug_assert!(count > 0, "no step to take at {step}");
         self.run_kernels(&kernels, step, count)?;
@@ -296,7 +296,7 @@ impl Simulation {
     }
 }
 
-impl Entry {
+impl ScheduledPass {
     fn kernels(&self) -> &[KernelId] {
         match &self.job {
             Job::Kernels(kernels) => kernels,

@@ -239,7 +239,7 @@ impl Simulation {
     }
 }
 
-fn system_time(entry: &super::Entry, plan: &super::plan::Plan, on_gpu: bool) -> SystemTime {
+fn system_time(entry: &super::ScheduledPass, plan: &super::plan::Plan, on_gpu: bool) -> SystemTime {
     let because: Vec<&str> = entry.systems.iter().map(|&place| plan.systems[place].because.as_str()).collect();
     let (name, because) = (entry.name.clone(), because.join("; "));
     match &entry.job {

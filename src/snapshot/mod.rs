@@ -6,25 +6,25 @@
 //! work among them), the clock, and the state that custom systems [declare](crate::systems::System::with_state). What a
 //! scene says stays in the scene: a snapshot fits only simulations of the same [`Identity`].
 
-mod columns;
 mod error;
 mod format;
 mod identity;
 mod packed;
+mod state_columns;
 
-pub use columns::Place;
 pub use error::SnapshotError;
 pub use format::VERSION;
 pub use identity::{Identity, identity};
 pub use packed::PackedSnapshot;
+pub use state_columns::ColumnOwner;
 
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::Error;
 use crate::output::{OutputError, replace};
 use bevy_ecs::prelude::*;
-use columns::{state_columns, update_faces};
 use serde::{Deserialize, Serialize};
+use state_columns::{state_columns, update_faces};
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
@@ -63,7 +63,7 @@ impl PartialEq for Head {
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct ColumnEntry {
-    place: Place,
+    place: ColumnOwner,
     name: String,
     bytes: u64,
 }
@@ -276,7 +276,7 @@ fn check(
     snapshot: &Snapshot,
     world: &World,
     keeping: &Keeping,
-    columns: &[columns::StateColumn],
+    columns: &[state_columns::StateColumn],
 ) -> Result<(), SnapshotError> {
     let head = &snapshot.head;
     let foreign = |reason: String| Err(SnapshotError::Foreign(reason));

@@ -65,7 +65,7 @@ pub fn run_block<E: Element, T: SimdScalar>(
     law: &BlockLaw<T>,
     groups_a_patch: usize,
 ) -> Vec<usize> {
-    Block::<E, T> { cpu, columns, law, groups_a_patch, element: PhantomData }.run::<_, GENERIC>(&law.elastic)
+    BlockRun::<E, T> { cpu, columns, law, groups_a_patch, element: PhantomData }.run::<_, GENERIC>(&law.elastic)
 }
 
 /// The same in f32, where speed counts, with a kernel of its own for what is asked for most: the neo-Hookean law with
@@ -78,7 +78,7 @@ pub fn run_block_fast<E: Element>(
     groups_a_patch: usize,
 ) -> Vec<usize> {
     let effects = kernel_effects::<E>(cpu, law);
-    let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
+    let block = BlockRun::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
     // known when this is compiled: no code is made of what follows for the other kinds
     if !is_specialised::<E>() {
         return block.run::<_, GENERIC>(&law.elastic);
@@ -101,7 +101,7 @@ pub(super) fn run_block_of<E: Element, L: Elastic<f32>>(
     elastic: &L,
     groups_a_patch: usize,
 ) -> Vec<usize> {
-    let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
+    let block = BlockRun::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
     match is_specialised::<E>() && law.is_elastic() && cpu.has_vectors() {
         true => block.run::<_, 0>(elastic),
         false => block.run::<_, GENERIC>(elastic),
@@ -135,7 +135,7 @@ const VISCOSITY: u8 = 2;
 /// The kernel asks the block's law which effects it has.
 const GENERIC: u8 = 4;
 
-struct Block<'a, 'n, E, T: SimdScalar> {
+struct BlockRun<'a, 'n, E, T: SimdScalar> {
     cpu: &'a Cpu,
     columns: BlockColumns<'a, 'n, T>,
     law: &'a BlockLaw<T>,
@@ -143,7 +143,7 @@ struct Block<'a, 'n, E, T: SimdScalar> {
     element: PhantomData<E>,
 }
 
-impl<E: Element> Block<'_, '_, E, f32> {
+impl<E: Element> BlockRun<'_, '_, E, f32> {
     fn run_neo_hookean(self, elastic: &NeoHookean<f32>) -> Vec<usize> {
         match (self.law.fibres.is_some(), !self.law.prony.is_empty()) {
             (false, false) => self.run::<_, 0>(elastic),
@@ -154,7 +154,7 @@ impl<E: Element> Block<'_, '_, E, f32> {
     }
 }
 
-impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
+impl<E: Element, T: SimdScalar> BlockRun<'_, '_, E, T> {
     fn run<L: Elastic<T>, const EFFECTS: u8>(self, elastic: &L) -> Vec<usize> {
         let Self { cpu, columns, law, groups_a_patch, element } = self;
         let inverted = Mutex::new(Vec::new());
@@ -177,7 +177,7 @@ impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
         };
         let mut inside = inside.iter_mut();
         let tasks = tasks.into_iter().enumerate().map(move |(index, (force, patch_local))| {
-            let patch = Patch::<E, T, L, EFFECTS> {
+            let patch = PatchForces::<E, T, L, EFFECTS> {
                 index,
                 displacement: columns.displacement,
                 first_row: columns.first_row,
@@ -206,7 +206,7 @@ impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
         });
         cpu.for_each(tasks, |(patch, inside)| {
             let index = patch.index;
-            let run = |patch: Patch<'_, E, T, L, EFFECTS>, inside: Option<&mut NodeColumns<'_, T>>| {
+            let run = |patch: PatchForces<'_, E, T, L, EFFECTS>, inside: Option<&mut NodeColumns<'_, T>>| {
                 T::with_scratch(|scratch| E::run_patch(cpu, OfPatch { patch, inside, scratch }))
             };
             let is_inverted = match (inside, then) {
@@ -229,7 +229,7 @@ impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
     }
 }
 
-struct Patch<'a, E, T: SimdScalar, L, const EFFECTS: u8> {
+struct PatchForces<'a, E, T: SimdScalar, L, const EFFECTS: u8> {
     index: usize,
     displacement: &'a [T],
     first_row: usize,
@@ -255,7 +255,7 @@ struct Patch<'a, E, T: SimdScalar, L, const EFFECTS: u8> {
 
 /// A patch, the nodes inside it if they move with it, and where to compute it.
 struct OfPatch<'a, 'i, 'n, 's, E, T: SimdScalar, L, const EFFECTS: u8> {
-    patch: Patch<'a, E, T, L, EFFECTS>,
+    patch: PatchForces<'a, E, T, L, EFFECTS>,
     inside: Option<&'i mut NodeColumns<'n, T>>,
     scratch: &'s mut Scratch<T>,
 }
@@ -311,7 +311,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd
     }
 }
 
-impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_, E, T, L, EFFECTS> {
     /// One register full of elements, from lane `at` on. Returns −J V, positive for inverted elements.
     #[inline(always)]
     fn part_of_group<S: Simd>(

@@ -64,13 +64,13 @@ pub fn run_guard<E: Element, T: SimdScalar>(
     let task = |index: usize| {
         let first = index * groups_a_patch;
         let groups = first..groups.min(first + groups_a_patch);
-        cpu.dispatch(Patch::<E, T> { columns, law, groups, element: PhantomData })
+        cpu.dispatch(PatchSums::<E, T> { columns, law, groups, element: PhantomData })
     };
     let sums = cpu.map(groups.div_ceil(groups_a_patch), task);
     sums.into_iter().fold(BlockSums::default(), BlockSums::and)
 }
 
-struct Patch<'a, E, T: SimdScalar> {
+struct PatchSums<'a, E, T: SimdScalar> {
     columns: &'a GuardColumns<'a, T>,
     law: &'a BlockLaw<T>,
     groups: std::ops::Range<usize>,
@@ -80,7 +80,7 @@ struct Patch<'a, E, T: SimdScalar> {
 /// Energy, hourglass energy, smallest J and volume of a register full of elements.
 type Register<V> = [V; 4];
 
-impl<E: Element, T: SimdScalar> WithSimd for Patch<'_, E, T> {
+impl<E: Element, T: SimdScalar> WithSimd for PatchSums<'_, E, T> {
     type Output = BlockSums;
 
     #[inline(always)]
@@ -111,7 +111,7 @@ impl<E: Element, T: SimdScalar> WithSimd for Patch<'_, E, T> {
     }
 }
 
-impl<E: Element, T: SimdScalar> Patch<'_, E, T> {
+impl<E: Element, T: SimdScalar> PatchSums<'_, E, T> {
     #[inline(always)]
     fn part_of_group<S: Simd>(
         &self,

@@ -1,11 +1,11 @@
 //! Central differences for nodes of a body, a register full at a time.
 
-mod columns;
 mod factors;
+mod node_columns;
 mod one_by_one;
 
-pub use columns::{NodeColumns, Touches};
 pub use factors::{Factors, Foreseen};
+pub use node_columns::{NodeColumns, Touches};
 
 use super::Cpu;
 use crate::components::WORK_NUMBERS;

@@ -197,10 +197,10 @@ impl FreeSlots {
     }
 }
 
-type Step = Option<(Code, Vec<Id>)>;
+type TapeStep = Option<(Code, Vec<Id>)>;
 
 /// The instruction of each value, none for inputs and constants. A product that only a sum uses goes into it.
-fn fused(graph: &Graph, outputs: &[Id]) -> Vec<Step> {
+fn fused(graph: &Graph, outputs: &[Id]) -> Vec<TapeStep> {
     let mut uses = vec![0_usize; graph.nodes().len()];
     for output in outputs {
         uses[output.index()] += 1;
@@ -238,6 +238,6 @@ fn fused(graph: &Graph, outputs: &[Id]) -> Vec<Step> {
     graph.nodes().iter().map(step).collect()
 }
 
-fn operands(steps: &[Step], index: usize) -> impl Iterator<Item = Id> + '_ {
+fn operands(steps: &[TapeStep], index: usize) -> impl Iterator<Item = Id> + '_ {
     steps[index].iter().flat_map(|(_, arguments)| arguments.iter().copied())
 }

@@ -2,7 +2,7 @@
 
 use super::{Effect, Part, ScenePart};
 use crate::backend::cpu::{BlockLaw, Cpu, kernel_effects};
-use crate::backend::user_law::Findings;
+use crate::backend::user_law::LawCheck;
 use crate::components::*;
 use crate::elements::with_element;
 use crate::materials::{Elastic, ElasticLaw, ExponentialFibre, Fibres, UserLaw};
@@ -142,7 +142,7 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
 
 /// What was found of a law of the user's own when it was tried.
 fn trial(material: Entity, world: &World) -> String {
-    let Some(found) = world.get::<Findings>(material) else { return String::new() };
+    let Some(found) = world.get::<LawCheck>(material) else { return String::new() };
     let finite = match found.finite_up_to {
         None => format!("finite in all {} deformations tried", found.tried),
         Some(size) => format!("finite for ∇u below {size}"),

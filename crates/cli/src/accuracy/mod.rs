@@ -16,7 +16,7 @@ use sinew::systems::Registry;
 use sinew::{SceneFile, Simulation};
 use sinew_pictures::plot::png;
 use sinew_studies::accuracy::engine::has_gpu;
-use sinew_studies::accuracy::{Engine, Reference, Refusal, Settings, Study, Verdict, files, plot, study, tables};
+use sinew_studies::accuracy::{Engine, Reference, Refusal, Settings, Study, TargetVerdict, files, plot, study, tables};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -60,8 +60,8 @@ fn accuracy_folder(scene: &Path) -> PathBuf {
 fn ended(study: &Study, asked: bool) -> Outcome {
     match study.findings.verdict {
         _ if study.interrupted => Err(Failure::Interrupted),
-        Verdict::NotMet if asked => Err(Failure::TargetMissed),
-        Verdict::CannotTell if asked => Err(Failure::TargetUnclear),
+        TargetVerdict::NotMet if asked => Err(Failure::TargetMissed),
+        TargetVerdict::CannotTell if asked => Err(Failure::TargetUnclear),
         _ => Ok(()),
     }
 }

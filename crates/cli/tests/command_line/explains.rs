@@ -1,12 +1,12 @@
 //! `sinew explain`.
 
-use crate::sinew::{Ended, Place, SCENE};
+use crate::sinew::{Ended, SCENE, Workspace};
 
 const FIBRES: &str = "materials.tissue.fibres=(eta: 1000, direction: Around(axis: (0, 0, 1), center: (-1, -1, 0)))";
 
 #[test]
 fn only_what_the_scene_calls_for_has_columns() {
-    let place = Place::new();
+    let place = Workspace::new();
     let without = place.done(&["explain", "block.ron", "--backend", "cpu"]);
     let with = place.done(&["explain", "block.ron", "--backend", "cpu", "--set", FIBRES]);
     assert!(!without.contains("fibre_direction") && !without.contains("viscous_memory"), "{without}");
@@ -19,7 +19,7 @@ fn only_what_the_scene_calls_for_has_columns() {
 
 #[test]
 fn what_is_off_says_what_turns_it_on() {
-    let said = Place::new().done(&["explain", "block.ron", "--backend", "cpu"]);
+    let said = Workspace::new().done(&["explain", "block.ron", "--backend", "cpu"]);
     for words in [
         "off  turned on by `fibres` in the material tissue",
         "off  turned on by `prony` in the material tissue",
@@ -30,7 +30,7 @@ fn what_is_off_says_what_turns_it_on() {
         assert!(said.contains(words), "{words:?} is not in\n{said}");
     }
     let viscous = "materials.tissue.prony=(terms: [(alpha: 0.5, tau: 0.1)])";
-    let on = Place::new().done(&["explain", "block.ron", "--backend", "cpu", "--set", viscous]);
+    let on = Workspace::new().done(&["explain", "block.ron", "--backend", "cpu", "--set", viscous]);
     assert!(on.contains("on   1 Prony term, Exact integrator") && on.contains("viscous_memory"), "{on}");
 }
 
@@ -42,7 +42,7 @@ fn said_of(json: &serde_json::Value, name: &str) -> Vec<serde_json::Value> {
 
 #[test]
 fn json_holds_what_the_page_says() {
-    let place = Place::with_scene(SCENE);
+    let place = Workspace::with_scene(SCENE);
     let text = place.done(&["explain", "block.ron", "--backend", "cpu", "--json"]);
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!((&json["nodes"], &json["elements"]), (&64.into(), &27.into()));
@@ -78,7 +78,7 @@ fn json_holds_what_the_page_says() {
 
 /// Kernels are put together and buffers counted where no driver is.
 fn on_a_gpu(more: &[&str]) -> serde_json::Value {
-    let place = Place::new();
+    let place = Workspace::new();
     let mut command = place.command(&[&["explain", "block.ron", "--backend", "gpu", "--json"], more].concat());
     command.env("VK_DRIVER_FILES", "/nowhere").env("VK_ICD_FILENAMES", "/nowhere");
     let ended = Ended::of(command.output().unwrap());
@@ -158,7 +158,7 @@ fn which_bodies_take_many_steps_in_one_dispatch_is_told_with_the_reason() {
         let inside = (inside.0, inside.1.to_string());
         assert_eq!(told(more), (kernels, because.to_string(), inside), "{more:?}");
     }
-    let page = Place::new();
+    let page = Workspace::new();
     let mut command = page.command(&["explain", "block.ron", "--backend", "gpu"]);
     command.env("VK_DRIVER_FILES", "/nowhere").env("VK_ICD_FILENAMES", "/nowhere");
     let said = Ended::of(command.output().unwrap()).said;

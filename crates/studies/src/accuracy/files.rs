@@ -1,7 +1,7 @@
 //! Tables of an earlier run as a reference: `probe_NAME.csv`, `nodes.csv`, `nodes_BODY.csv`.
 
 use super::points::PointReference;
-use super::reference::{EXACTLY, Entry, Reference, Source};
+use super::reference::{EXACTLY, Reference, ReferenceQuantity, ReferenceSource};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -28,7 +28,7 @@ pub fn read(paths: &[PathBuf], duration: f64, samples: u64) -> Result<Reference,
     }
     files.sort();
     let mut reference = Reference {
-        source: Source::Files,
+        source: ReferenceSource::Files,
         told: format!("{}{EXACTLY}", shown(paths)),
         entries: BTreeMap::new(),
         field: None,
@@ -113,7 +113,7 @@ fn probe(
     file: &Path,
     duration: f64,
     samples: u64,
-) -> Result<BTreeMap<String, Entry>, String> {
+) -> Result<BTreeMap<String, ReferenceQuantity>, String> {
     let wrong = |what: String| Err(format!("{}: {what}", file.display()));
     if table.header.first().is_none_or(|column| !column.starts_with("time")) {
         return wrong("the first column must be `time (s)`".into());
@@ -143,7 +143,7 @@ fn probe(
         let quantity = format!("{name}.{}", title.split(" (").next().unwrap_or(title));
         let scale = Some(if last > 0.01 * largest { last } else { largest }).filter(|scale| *scale > 0.0);
         let values = vec![table.rows.last().map_or(0.0, |row| row[column])];
-        entries.insert(quantity.clone(), Entry { values, uncertainty: 0.0, scale, order: None });
+        entries.insert(quantity.clone(), ReferenceQuantity { values, uncertainty: 0.0, scale, order: None });
         if samples > 0 && times.len() as u64 >= samples / 4 && times[0] == 0.0 {
             let values: Vec<f64> =
                 (0..=samples).map(|number| at(duration * number as f64 / samples as f64, column)).collect();
@@ -151,7 +151,8 @@ fn probe(
             let bends = table.rows.windows(3).map(|r| (r[0][column] - 2.0 * r[1][column] + r[2][column]).abs() / 8.0);
             let uncertainty = if times.len() as u64 == samples + 1 { 0.0 } else { bends.fold(0.0, f64::max) };
             let scale = Some(largest).filter(|scale| *scale > 0.0);
-            entries.insert(format!("{quantity}.over_time"), Entry { values, uncertainty, scale, order: None });
+            entries
+                .insert(format!("{quantity}.over_time"), ReferenceQuantity { values, uncertainty, scale, order: None });
         }
     }
     Ok(entries)

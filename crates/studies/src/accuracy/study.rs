@@ -6,7 +6,7 @@ use super::findings::{Findings, findings};
 use super::outlook::more;
 use super::pareto::front;
 use super::plan::{Fate, Plan, Planned, REFERENCE_SHARE, Varied, plan};
-use super::reference::{Error, FIELD, Reference, Source};
+use super::reference::{Error, FIELD, Reference, ReferenceSource};
 use super::refinement::{self, made, refined};
 use super::solver::{Choices, Cost, Refusal, Solution, Solver};
 use super::work::{Clock, Work};
@@ -114,7 +114,7 @@ pub struct Study {
     /// What it took (s).
     pub took: f64,
     /// Where the reference comes from.
-    pub source: Source,
+    pub source: ReferenceSource,
     /// A sentence on it.
     pub reference: String,
     /// Its uncertainty in the quantity judged by, relative.
@@ -221,7 +221,7 @@ pub fn study(solver: &mut dyn Solver, settings: &Settings, observer: &mut dyn St
     Ok(Study {
         reference_uncertainty: known.map(|error| error.uncertainty),
         estimates: estimates(&rows, &solutions, &reference, &refined, &judged_by),
-        unseen: if reference.source == Source::SelfMade { choices.unseen } else { Vec::new() },
+        unseen: if reference.source == ReferenceSource::SelfMade { choices.unseen } else { Vec::new() },
         more,
         judged_by,
         target: settings.target,

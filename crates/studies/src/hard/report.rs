@@ -1,6 +1,6 @@
 //! What came out, as tables.
 
-use super::{Row, Verdict};
+use super::{CaseVerdict, Row};
 
 /// Figure of the tightest gate, or what a failure said.
 fn figure(row: &Row) -> String {
@@ -16,7 +16,7 @@ pub fn markdown(rows: &[Row]) -> String {
     let mut text =
         String::from("| case | elements | on | verdict | tightest gate | time (s) |\n|---|---|---|---|---|---|\n");
     for row in rows {
-        let verdict = if row.verdict == Verdict::Passed { "passed".into() } else { format!("**{}**", row.verdict) };
+        let verdict = if row.verdict == CaseVerdict::Passed { "passed".into() } else { format!("**{}**", row.verdict) };
         let (elements, machine, seconds) = (row.elements, row.machine, row.seconds);
         text += &format!(
             "| {} | {elements} | {machine} | {verdict} | {} | {seconds:.2} |\n",

@@ -1,6 +1,6 @@
 //! A hard case under one configuration: its scene, and the gates that what comes out has to pass.
 
-use super::{Case, Configuration};
+use super::{Case, CaseConfiguration};
 use sinew::Error;
 use sinew::Simulation;
 use sinew::output::OutputError;
@@ -29,7 +29,7 @@ pub struct Trial<'a> {
     /// The case.
     pub case: &'a Case,
     /// How it is run.
-    pub configuration: &'a Configuration,
+    pub configuration: &'a CaseConfiguration,
     /// Whether in full, or in a size for everyday.
     pub full: bool,
     /// What was measured so far.

@@ -6,7 +6,7 @@ use sinew::mesh::{ElementKind, Mesh};
 use sinew_studies::accuracy::solver::{BodyField, Channel, Field};
 use sinew_studies::accuracy::study::Outcome;
 use sinew_studies::accuracy::{
-    Choices, Configuration, Cost, Digits, Factor, Place, Plan, Refusal, Solution, Solver, StudyObserver,
+    Choices, Configuration, Cost, Digits, Factor, Plan, Processor, Refusal, Solution, Solver, StudyObserver,
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -60,7 +60,7 @@ pub fn base() -> Configuration {
         hourglass: 1.0,
         viscous: None,
         law: None,
-        place: Place::Cpu,
+        place: Processor::Cpu,
         without: None,
     }
 }

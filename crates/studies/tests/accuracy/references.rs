@@ -4,7 +4,7 @@
 mod mutate;
 
 use sinew_studies::accuracy::files::read;
-use sinew_studies::accuracy::reference::Entry;
+use sinew_studies::accuracy::reference::ReferenceQuantity;
 use std::fs;
 use std::path::PathBuf;
 
@@ -83,7 +83,7 @@ fn hostile_tables_are_read_or_refused() {
                     refused += 1;
                 }
                 Ok(found) => {
-                    let finite = |entry: &Entry| entry.values.iter().all(|value| value.is_finite());
+                    let finite = |entry: &ReferenceQuantity| entry.values.iter().all(|value| value.is_finite());
                     assert!(found.entries.values().all(finite), "seed {seed}: a reference that is no number");
                     read_whole += 1;
                 }

@@ -1,6 +1,6 @@
 //! What a patch has at hand: its nodes' displacements, and the sums of its forces.
 
-use super::{NodeColumns, Patch};
+use super::{NodeColumns, PatchForces};
 use crate::components::Patches;
 use crate::elements::{Element, MOST_NODES, PressureFrom};
 use crate::materials::Elastic;
@@ -53,7 +53,7 @@ pub(super) struct PatchLocal<'a> {
     pub(super) corners: &'a [[u16; LANES]],
 }
 
-impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_, E, T, L, EFFECTS> {
     /// Displacements of the patch's nodes, and θ where elements take their pressure from it, to hand; no forces yet.
     #[inline(always)]
     pub(super) fn bring(&self, inside: Option<&NodeColumns<'_, T>>, scratch: &mut Scratch<T>) {

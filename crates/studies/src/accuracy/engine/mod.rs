@@ -9,7 +9,7 @@ mod meshes;
 mod sample;
 mod variant;
 
-use super::configuration::{Configuration, Digits, Factor, Place};
+use super::configuration::{Configuration, Digits, Factor, Processor};
 use super::solver::{Choices, Cost, Refusal, Solution, Solver};
 use calibration::Calibration;
 use march::{Sampling, refusal};
@@ -82,7 +82,7 @@ impl<'a> Engine<'a> {
 
     /// The scene as it is written; `elements` are the kinds that its bodies can have.
     fn base(&self, elements: &[ElementKind]) -> Configuration {
-        let place = if self.options.backend == BackendChoice::Gpu { Place::Gpu } else { Place::Cpu };
+        let place = if self.options.backend == BackendChoice::Gpu { Processor::Gpu } else { Processor::Cpu };
         let scene = &self.file.scene;
         let mut kinds: Vec<ElementKind> = Vec::new();
         for body in scene.bodies.values() {
@@ -97,8 +97,8 @@ impl<'a> Engine<'a> {
     fn options(&self, configuration: &Configuration) -> Options {
         Options {
             backend: match configuration.place {
-                Place::Cpu => BackendChoice::Cpu,
-                Place::Gpu => BackendChoice::Gpu,
+                Processor::Cpu => BackendChoice::Cpu,
+                Processor::Gpu => BackendChoice::Gpu,
             },
             precision: if configuration.digits == Digits::Double { Precision::F64 } else { Precision::F32 },
             forgets_start: true,
@@ -182,7 +182,7 @@ impl Solver for Engine<'_> {
         let scene = &self.file.scene;
         let hexes = base.element.is_none_or(|kind| kind == ElementKind::Hex8);
         let viscous = scene.materials.values().any(|material| material.prony.is_some());
-        let places = if self.gpu { vec![Place::Cpu, Place::Gpu] } else { Vec::new() };
+        let places = if self.gpu { vec![Processor::Cpu, Processor::Gpu] } else { Vec::new() };
         let both = [ViscousIntegrator::Exact, ViscousIntegrator::BackwardEuler];
         Ok(Choices {
             elements,
@@ -204,7 +204,7 @@ impl Solver for Engine<'_> {
     }
 
     fn predict(&mut self, configuration: &Configuration) -> Result<Cost, Refusal> {
-        if configuration.place == Place::Gpu && configuration.digits == Digits::Double {
+        if configuration.place == Processor::Gpu && configuration.digits == Digits::Double {
             return Err(Refusal::Refused("the GPU computes in f32 only".into()));
         }
         self.cost(configuration)

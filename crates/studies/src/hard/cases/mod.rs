@@ -15,7 +15,7 @@ mod shocks;
 mod step;
 mod viscosity;
 
-use super::{Case, Configuration};
+use super::{Case, CaseConfiguration};
 
 /// A case: its number and name make the path of its scene.
 macro_rules! case {
@@ -33,17 +33,17 @@ macro_rules! case {
 }
 
 /// Every configuration.
-fn every(_: &Configuration) -> bool {
+fn every(_: &CaseConfiguration) -> bool {
     true
 }
 
 /// What concerns one-point hexahedra alone.
-fn one_point(configuration: &Configuration) -> bool {
+fn one_point(configuration: &CaseConfiguration) -> bool {
     configuration.elements == sinew::mesh::ElementKind::Hex8
 }
 
 /// What is decided before elements and machines matter.
-fn once(configuration: &Configuration) -> bool {
+fn once(configuration: &CaseConfiguration) -> bool {
     one_point(configuration) && configuration.is_f64()
 }
 
