@@ -3,7 +3,7 @@
 struct Step {
     force_factor: f32, // Δt times the time between the middles of two steps, times the force scale (s²)
     half_step: f32, // half the time between the middles, in the first step Δt/2 (s)
-    divide: f32, // 1, in the first step 0
+    after_first: f32, // 1, in the first step 0
     rate: f32, // 1/Δt (1/s)
     number: u32, // index of the step, from 0; stops at the largest number
     zero: u32, // always 0, which no compiler knows

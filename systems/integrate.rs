@@ -3,7 +3,7 @@
 use super::node_system::{Before, NodeSystem};
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::{Cpu, Factors, NodeColumns, move_nodes};
+use crate::backend::cpu::{Cpu, IntegrationCoefficients, NodeColumns, move_nodes};
 use crate::backend::kernel::Fragment;
 use crate::backend::node_stage::NodeStage;
 use crate::components::*;
@@ -50,7 +50,7 @@ impl NodeSystem for Body {
     }
 
     fn act<T: SimdScalar>(&self, clock: &Clock, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
-        if let Some(row) = move_nodes(cpu, nodes, &Factors::of(clock)) {
+        if let Some(row) = move_nodes(cpu, nodes, &IntegrationCoefficients::of(clock)) {
             nodes.non_finite.fetch_min(row, Ordering::Relaxed);
         }
     }

@@ -5,7 +5,7 @@ use super::element_forces::{BlockParts, Precise};
 use super::node_pass::{BodyColumns, BodyColumnsItem, InStep, NodePass, act, act_after_gather, move_rows};
 use super::node_system::{BoundSystems, OfRun};
 use super::registry::HostSystem;
-use crate::backend::cpu::{Cpu, Inside, NodeColumns, ROWS_A_TASK};
+use crate::backend::cpu::{Cpu, NodeColumns, PatchInterior, ROWS_A_TASK};
 use crate::components::*;
 use crate::error::Error;
 use bevy_ecs::prelude::*;
@@ -36,7 +36,7 @@ pub(crate) fn patch_pass(pass: NodePass, ahead: NodePass, world: &mut World) -> 
                     observed: step.is_observed(),
                     to_come: !ahead.is_empty(),
                     blocks: &authoring.blocks,
-                    first_shared: corners.first_shared,
+                    first_interface: corners.first_interface,
                     systems: pass.bind(callers, &step, &body),
                     ahead: ahead.bind(callers_ahead, &step, &body),
                 };
@@ -60,7 +60,7 @@ struct StepOfBody<'a> {
     observed: bool,
     to_come: bool,
     blocks: &'a [Entity],
-    first_shared: usize,
+    first_interface: usize,
     /// What is done to nodes; to those inside a patch as soon as that has summed their forces.
     systems: BoundSystems<'a>,
     /// What is done to those inside a patch afterwards, and to others later.
@@ -77,21 +77,21 @@ impl StepOfBody<'_> {
         let non_finite = AtomicU32::new(u32::MAX);
         let patches = |blocks: &Query<BlockParts>, entity: Entity| -> Vec<u32> {
             let parts = blocks.get(entity).ok();
-            parts.and_then(|block| block.patches).map_or(Vec::new(), |patches| patches.inside.clone())
+            parts.and_then(|block| block.patches).map_or(Vec::new(), |patches| patches.interior.clone())
         };
         let rows: Vec<Vec<u32>> = self.blocks.iter().map(|&entity| patches(blocks, entity)).collect();
-        let (mut inside, shared) = inside_patches(body.columns::<T>(&[], &non_finite), &rows);
+        let (mut interior, shared) = patch_interiors(body.columns::<T>(&[], &non_finite), &rows);
         let then = |nodes: &mut NodeColumns<'_, T>| {
             act_after_gather(&self.systems, self.cpu, nodes);
             act(&self.ahead, self.cpu, nodes);
         };
         let mut found = Vec::new();
-        for (&entity, nodes) in self.blocks.iter().zip(&mut inside) {
-            let inside = Inside { nodes, then: &then, observed: self.observed };
-            let displacement = (&*shared.u, self.first_shared);
+        for (&entity, nodes) in self.blocks.iter().zip(&mut interior) {
+            let interior = PatchInterior { nodes, then: &then, observed: self.observed };
+            let displacement = (&*shared.u, self.first_interface);
             let patches = blocks
                 .get_mut(entity)
-                .map_or(Vec::new(), |mut block| block.run(self.cpu, displacement, force.slice_mut(), Some(inside)));
+                .map_or(Vec::new(), |mut block| block.run(self.cpu, displacement, force.slice_mut(), Some(interior)));
             found.push((entity, patches));
         }
         for (entity, patches) in &found {
@@ -110,7 +110,7 @@ impl StepOfBody<'_> {
                 }
             }
         } else {
-            shared.take(self.first_shared);
+            shared.take(self.first_interface);
         }
         if !self.to_come {
             left.extend(shared.tasks(ROWS_A_TASK));
@@ -124,10 +124,10 @@ impl StepOfBody<'_> {
 }
 
 /// The nodes inside the patches of each block, and all others.
-fn inside_patches<'a, T>(
+fn patch_interiors<'a, T>(
     mut all: NodeColumns<'a, T>,
     blocks: &[Vec<u32>],
 ) -> (Vec<Vec<NodeColumns<'a, T>>>, NodeColumns<'a, T>) {
-    let inside = blocks.iter().map(|patches| patches.iter().map(|&rows| all.take(rows as usize)).collect()).collect();
-    (inside, all)
+    let interior = blocks.iter().map(|patches| patches.iter().map(|&rows| all.take(rows as usize)).collect()).collect();
+    (interior, all)
 }

@@ -7,7 +7,7 @@ use super::node_system::{Before, NodeSystem};
 use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::{Cpu, Factors, Foreseen, NodeColumns};
+use crate::backend::cpu::{Cpu, Foreseen, IntegrationCoefficients, NodeColumns};
 use crate::backend::kernel::{Fragment, Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
@@ -53,7 +53,7 @@ const TURNS: usize = 12;
 
 /// What a step needs.
 pub struct ContactStep {
-    factors: Factors<f64>,
+    coefficients: IntegrationCoefficients<f64>,
     /// How far a node that is inside a tool comes out in this step (m).
     out: f64,
     /// Whether work is counted: not on the way to rest.
@@ -112,7 +112,7 @@ impl NodeSystem for ToolContacts {
             ToolInStep { pose, earlier, change, ball }
         });
         ContactStep {
-            factors: Factors::of(before.clock),
+            coefficients: IntegrationCoefficients::of(before.clock),
             out: self.out(before.clock),
             counts_work: before.clock.relaxation.is_none(),
             tools: tools.collect(),
@@ -171,7 +171,7 @@ impl ToolContacts {
         let force = nodes.external.as_deref().map_or(DVec3::ZERO, vector) - vector(nodes.internal);
         let damping = nodes.damping.map_or(0.0, |all| all[row].to_f64());
         let Foreseen { before, step: predicted, free, to_force } =
-            step.factors.foresee(inertia, damping, nodes.axes[row], vector(nodes.step), force);
+            step.coefficients.foresee(inertia, damping, nodes.axes[row], vector(nodes.step), force);
         let mut all = [None; ToolContacts::MOST];
         let mut touched = 0;
         for tool in (0..self.tools.len()).filter(near) {
@@ -182,7 +182,7 @@ impl ToolContacts {
         }
         let all = &mut all[..touched];
         let d = predicted + self.push_apart(step, all, (place, predicted), free);
-        let work_factor = step.factors.work_factor;
+        let work_factor = step.coefficients.work_factor;
         let mut sum = DVec3::ZERO;
         for touch in all.iter().flatten().filter(|touch| touch.push > 0.0) {
             let change = touch.outwards + touch.tangential;

@@ -231,9 +231,9 @@ impl BlockBuilder<'_> {
         points
     }
 
-    /// Whether the type for [simple](Element::Simple) shapes describes all elements.
+    /// Whether the type for [specialised](Element::Specialisation) shapes describes all elements.
     fn is_simple(&self) -> bool {
-        with_element!(self.kind, E => self.elements.iter().all(|&e| <E as Element>::Simple::describes(&self.points(e)[..E::NODES])))
+        with_element!(self.kind, E => self.elements.iter().all(|&e| <E as Element>::Specialisation::describes(&self.points(e)[..E::NODES])))
     }
 
     /// Rest shapes for an element type.

@@ -14,7 +14,7 @@ pub struct Step {
     /// Half the time between the middles, in the first step Δt/2 (s).
     pub half_step: f32,
     /// 1, in the first step 0.
-    pub divide: f32,
+    pub after_first: f32,
     /// 1/Δt (1/s).
     pub rate: f32,
     /// Index of the step, from 0; stops at the largest number.
@@ -38,7 +38,7 @@ pub struct Step {
 uniform!(Step {
     force_factor,
     half_step,
-    divide,
+    after_first,
     rate,
     number,
     zero,
@@ -53,13 +53,13 @@ uniform!(Step {
 impl Step {
     /// The step that begins at the clock's time.
     pub fn of(clock: &Clock) -> Self {
-        let (dt, between, first) = (clock.time_step, clock.between_middles(), clock.step == 0);
+        let (dt, between, first) = (clock.time_step, clock.half_step_interval(), clock.step == 0);
         let (force_scale, damping) =
             clock.relaxation.map_or((1.0, 0.0), |relaxation| (relaxation.force_scale, relaxation.damping));
         Self {
             force_factor: (force_scale * dt * between) as f32,
             half_step: (0.5 * if first { dt } else { between }) as f32,
-            divide: if first { 0.0 } else { 1.0 },
+            after_first: if first { 0.0 } else { 1.0 },
             rate: (1.0 / dt) as f32,
             number: step_number(clock),
             zero: 0,

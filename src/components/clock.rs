@@ -49,7 +49,7 @@ impl Clock {
 
     /// Time from the middle of the last step to the middle of the present one (s), over which forces change velocities:
     /// Δt, in the first step half of it, and after a change of Δt the mean of both.
-    pub fn between_middles(&self) -> f64 {
+    pub fn half_step_interval(&self) -> f64 {
         match self.step {
             0 => 0.5 * self.time_step,
             step if step == self.since.0 => 0.5 * (self.before + self.time_step),
@@ -62,7 +62,7 @@ impl Clock {
     pub fn window_at(&self, step: u64) -> (f64, f64) {
         let there = Self { step, ..*self };
         let end = self.time_at(step) + 0.5 * self.time_step;
-        (end - there.between_middles(), end)
+        (end - there.half_step_interval(), end)
     }
 
     /// Takes steps of another length from now on (s).

@@ -76,7 +76,7 @@ pub trait Element: Copy + Send + Sync + 'static {
 
     /// The same element for simple shapes, of which fewer numbers need be known: what a block is made of if it
     /// [describes](Element::describes) all its elements. Itself, if there are none such.
-    type Simple: Element;
+    type Specialisation: Element;
     /// What all points need of the displacements.
     type Prepared<R: Real>: Copy;
     /// What stresses add up to before it is spread over the corners.

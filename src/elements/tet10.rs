@@ -118,7 +118,7 @@ impl Element for Tet10 {
     const ROUNDING: f64 = 7.7 / 4.3;
     const PRESSURE: PressureFrom = PressureFrom::MeanOverPoints;
 
-    type Simple = Self;
+    type Specialisation = Self;
     /// Coefficients of each component.
     type Prepared<R: Real> = [[R; MODES]; 3];
     /// Forces on the coefficients of each component.

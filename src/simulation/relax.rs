@@ -191,9 +191,9 @@ impl Relaxing {
             self.equilibrium.reached = true;
             return Ok(());
         }
-        // a body that gives way is on its way to another rest: forces grow before they fall
-        let gives_way = motion.work < -CLEAR_OF_ROUNDING * residual.rounding_square.sqrt() * motion.moved;
-        if share < 1.0 || gives_way || found.residual < 0.9 * self.best.1 {
+        // a body that collapses is on its way to another rest: forces grow before they fall
+        let collapses = motion.work < -CLEAR_OF_ROUNDING * residual.rounding_square.sqrt() * motion.moved;
+        if share < 1.0 || collapses || found.residual < 0.9 * self.best.1 {
             self.best = (clock.step, found.residual);
         }
         let patience = PATIENCE / relaxation.damping.max(1e-9);

@@ -56,7 +56,7 @@ pub struct Summary {
     pub solving_seconds: f64,
     /// Of it what observing and writing took: tables, fields, snapshots, `nodes.csv` (s).
     pub writing_seconds: f64,
-    /// Solving time over simulated time; below 1 is faster than life.
+    /// Solving time over simulated time; below 1 is faster than real time.
     pub real_time_factor: f64,
     /// Solving time a step (s).
     pub seconds_a_step: f64,

@@ -1,7 +1,7 @@
 //! What points face in a step, and the forces that keep them outside.
 
 use super::{Meeting, MeetingColumns, MeetingColumnsReadOnlyItem, SurfaceContacts};
-use crate::backend::cpu::{Cpu, Factors, Foreseen};
+use crate::backend::cpu::{Cpu, Foreseen, IntegrationCoefficients};
 use crate::components::*;
 use crate::contact::{Contact, Faced, Facing, Point};
 use bevy_ecs::prelude::*;
@@ -80,7 +80,11 @@ fn faced(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) -> Vec<(u32, Fac
 }
 
 /// Where a node would go, from what is known of its body.
-fn foresee(columns: &MeetingColumnsReadOnlyItem<'_, '_>, row: usize, factors: &Factors<f64>) -> Foreseen {
+fn foresee(
+    columns: &MeetingColumnsReadOnlyItem<'_, '_>,
+    row: usize,
+    coefficients: &IntegrationCoefficients<f64>,
+) -> Foreseen {
     let mass = columns.fictitious.map_or_else(|| columns.mass.get(row), |mass| mass.get(row));
     // inactive nodes stay where they are
     if mass <= 0.0 {
@@ -88,7 +92,7 @@ fn foresee(columns: &MeetingColumnsReadOnlyItem<'_, '_>, row: usize, factors: &F
     }
     let damping = columns.damping.map_or(0.0, |damping| damping.get(row));
     let force = columns.external.vector(row) - columns.internal.vector(row);
-    factors.foresee(mass, damping, columns.axes[row], columns.step.vector(row), force)
+    coefficients.foresee(mass, damping, columns.axes[row], columns.step.vector(row), force)
 }
 
 /// Finds the forces of a step and adds them to the loads.
@@ -100,13 +104,13 @@ pub(super) fn meet(
     bodies: &mut Query<MeetingColumns>,
 ) {
     let found = faced(contacts, reach, cpu);
-    let factors = Factors::<f64>::of(clock);
+    let coefficients = IntegrationCoefficients::<f64>::of(clock);
     let settling = contacts.settling(clock);
     begin(contacts, &found, settling, bodies);
-    let (met, foreseen) = gather(contacts, &found, (&factors, settling), bodies);
+    let (met, foreseen) = gather(contacts, &found, (&coefficients, settling), bodies);
     let mut set = std::mem::take(&mut contacts.surface.set);
     set.solve(contacts.sweeps);
-    let work_factor = clock.relaxation.is_none().then_some(factors.work_factor);
+    let work_factor = clock.relaxation.is_none().then_some(coefficients.work_factor);
     // forces on nodes, in the order of contacts
     let mut forces = vec![DVec3::ZERO; foreseen.len()];
     for (contact, met) in set.contacts.iter().zip(&met).filter(|(contact, _)| contact.pressing > 0.0) {
@@ -184,7 +188,7 @@ fn begin(contacts: &mut SurfaceContacts, found: &[(u32, Faced)], settling: f64, 
 fn gather(
     contacts: &mut SurfaceContacts,
     found: &[(u32, Faced)],
-    (factors, settling): (&Factors<f64>, f64),
+    (coefficients, settling): (&IntegrationCoefficients<f64>, f64),
     bodies: &mut Query<MeetingColumns>,
 ) -> (Vec<Met>, Vec<(u32, Foreseen)>) {
     let mut set = std::mem::take(&mut contacts.surface.set);
@@ -200,7 +204,7 @@ fn gather(
             if *slot == u32::MAX {
                 *slot = foreseen.len() as u32;
                 let (body, row) = surface.nodes[node as usize];
-                let of_node = foresee(&columns[body as usize], row as usize, factors);
+                let of_node = foresee(&columns[body as usize], row as usize, coefficients);
                 set.steps.push(of_node.step);
                 set.responses.push(of_node.free / of_node.to_force);
                 foreseen.push((node, of_node));

@@ -203,11 +203,11 @@ fn nodes_inside_patches_go_where_they_go_with_all_others() {
     for run in configurations().into_iter().filter(|run| run.options.backend == BackendChoice::Cpu) {
         let ends = [true, false].map(|fuse| {
             let mut simulation = run.start_in(&torn(fuse), Path::new("."));
-            let inside = |simulation: &mut Simulation| -> u32 {
+            let interior = |simulation: &mut Simulation| -> u32 {
                 let world = simulation.world_mut();
-                world.query::<&Patches>().iter(world).flat_map(|patches| patches.inside.clone()).sum()
+                world.query::<&Patches>().iter(world).flat_map(|patches| patches.interior.clone()).sum()
             };
-            assert!((300..900).contains(&inside(&mut simulation)), "{}: {}", run.name, inside(&mut simulation));
+            assert!((300..900).contains(&interior(&mut simulation)), "{}: {}", run.name, interior(&mut simulation));
             simulation.advance(60).unwrap_or_else(|error| panic!("{}: {error}", run.name));
             let world = simulation.world_mut();
             let gone: Vec<u32> = world.query::<&RemovalStep>().iter(world).flat_map(|steps| steps.0.clone()).collect();
@@ -276,11 +276,11 @@ fn kernels_of_patches_have_only_what_acts_on_nodes_inside_them() {
         );
     let told = &explained(&corner).dispatched[0];
     let because = "`pressure` looks at other nodes than its own, which must not have moved";
-    assert_eq!((told.inside, told.inside_because.as_str()), (0, because));
+    assert_eq!((told.interior, told.interior_because.as_str()), (0, because));
     let explained = explained(&torn(true));
     let found = explained.kernels.iter().filter(|kernel| ["patch_step", "node_pass"].contains(&kernel.entry));
     let found: Vec<(&str, u32)> = found.map(|kernel| (kernel.label.as_str(), kernel.threads)).collect();
-    let shared = explained.nodes as u32 - explained.dispatched[0].inside;
+    let shared = explained.nodes as u32 - explained.dispatched[0].interior;
     let expected = [
         ("element_forces + gather + gravity + nodal_force + boundary + integrate of a/m/Hex8", 4 * 128),
         ("element_forces + gather + gravity + boundary + integrate of a/n/Hex8", 128),
@@ -327,10 +327,11 @@ fn on_a_gpu(run: &Configuration, text: &str, steps: u64, fuse: bool) -> Run {
     send_to_device(world, |_, name| name == InternalWork::NAME).unwrap();
     // a place for each sixty-four nodes, and for each of the first two sixty-fours of invocations that a patch gives
     // nodes to
-    let inside: Vec<u32> = world.query::<&Patches>().iter(world).flat_map(|patches| patches.inside.clone()).collect();
-    let inside: Vec<usize> = inside.into_iter().filter(|_| fuse).map(|nodes| nodes as usize).collect();
-    let of_patches: usize = inside.iter().map(|&nodes| nodes.div_ceil(64).min(2)).sum();
-    let expected = of_patches + (nodes - inside.iter().sum::<usize>()).div_ceil(64);
+    let interior: Vec<u32> =
+        world.query::<&Patches>().iter(world).flat_map(|patches| patches.interior.clone()).collect();
+    let interior: Vec<usize> = interior.into_iter().filter(|_| fuse).map(|nodes| nodes as usize).collect();
+    let of_patches: usize = interior.iter().map(|&nodes| nodes.div_ceil(64).min(2)).sum();
+    let expected = of_patches + (nodes - interior.iter().sum::<usize>()).div_ceil(64);
     let dispatches = |simulation: &mut Simulation| simulation.world_mut().resource_mut::<Device>().gpu().dispatches();
     let before = dispatches(&mut simulation);
     for steps in [1, 5, steps - 6] {

@@ -84,7 +84,7 @@ fn line(row: &Row, paint: Paint) -> String {
     for gate in row.gates.iter().filter(|gate| !gate.passed) {
         text += &format!("\n      {}: {:.4e} ({})", gate.what, gate.figure, gate.allowed);
     }
-    for word in row.told.iter().map(String::as_str).chain(row.known.map(|known| known as &str)) {
+    for word in row.message.iter().map(String::as_str).chain(row.known.map(|known| known as &str)) {
         text += &format!("\n      {word}");
     }
     text + "\n"

@@ -13,12 +13,12 @@ fn check(id: &str) {
         let figure = row.tightest().map(|gate| format!("{}: {:.3e}, {}", gate.what, gate.figure, gate.allowed));
         println!(
             "{id} {} {}: {} in {:.2} s, {figure:?} {:?}",
-            row.elements, row.machine, row.verdict, row.seconds, row.told
+            row.elements, row.machine, row.verdict, row.seconds, row.message
         );
         if row.verdict != row.expected {
             let gates = row.gates.iter().filter(|gate| !gate.passed);
             let gates: Vec<String> = gates.map(|g| format!("{}: {:.4e} ({})", g.what, g.figure, g.allowed)).collect();
-            wrong.push(format!("{} on {}: {}, {gates:?} {:?}", row.elements, row.machine, row.verdict, row.told));
+            wrong.push(format!("{} on {}: {}, {gates:?} {:?}", row.elements, row.machine, row.verdict, row.message));
         }
     }
     assert!(wrong.is_empty(), "{id}, {}:\n{}", case.title, wrong.join("\n"));

@@ -23,7 +23,7 @@ use stress::{InRegisters, mean_volume_change, volume_ratio};
 pub struct BlockColumns<'a, 'n, T> {
     /// The body's displacements (m), from row [`first_row`](Self::first_row) on.
     pub displacement: &'a [T],
-    /// The first of these rows: 0, or with [`inside`](Self::inside) the first that is not inside a patch.
+    /// The first of these rows: 0, or with [`interior`](Self::interior) the first that is not inside a patch.
     pub first_row: usize,
     /// Nodes of each element.
     pub connectivity: &'a [u32],
@@ -42,11 +42,11 @@ pub struct BlockColumns<'a, 'n, T> {
     /// Whether elements with J < 0 exert nothing.
     pub inverted_go: bool,
     /// The nodes inside each patch, where they move as soon as its forces are known.
-    pub inside: Option<Inside<'a, 'n, T>>,
+    pub interior: Option<PatchInterior<'a, 'n, T>>,
 }
 
 /// The nodes inside patches, and what follows for them. Where a patch has an element with J < 0 they stay as they are.
-pub struct Inside<'a, 'n, T> {
+pub struct PatchInterior<'a, 'n, T> {
     /// Of each patch, perhaps none.
     pub nodes: &'a mut [NodeColumns<'n, T>],
     /// What is done to them as soon as their internal forces are known.
@@ -171,11 +171,11 @@ impl<E: Element, T: SimdScalar> BlockRun<'_, '_, E, T> {
         // without viscosity there is no memory to hand out
         let mut memories = columns.memory.chunks_mut((patch * memory_an_element).max(1));
         let tasks = parts(columns.force, columns.patches, patch * 3 * E::NODES, patch * E::NODES);
-        let (inside, then) = match columns.inside {
-            Some(Inside { nodes, then, observed }) => (nodes, Some((then, observed))),
+        let (interior, then) = match columns.interior {
+            Some(PatchInterior { nodes, then, observed }) => (nodes, Some((then, observed))),
             None => (&mut [][..], None),
         };
-        let mut inside = inside.iter_mut();
+        let mut interior = interior.iter_mut();
         let tasks = tasks.into_iter().enumerate().map(move |(index, (force, patch_local))| {
             let patch = PatchForces::<E, T, L, EFFECTS> {
                 index,
@@ -202,18 +202,18 @@ impl<E: Element, T: SimdScalar> BlockRun<'_, '_, E, T> {
                 law,
                 element,
             };
-            (patch, inside.next())
+            (patch, interior.next())
         });
-        cpu.for_each(tasks, |(patch, inside)| {
+        cpu.for_each(tasks, |(patch, interior)| {
             let index = patch.index;
-            let run = |patch: PatchForces<'_, E, T, L, EFFECTS>, inside: Option<&mut NodeColumns<'_, T>>| {
-                T::with_scratch(|scratch| E::run_patch(cpu, OfPatch { patch, inside, scratch }))
+            let run = |patch: PatchForces<'_, E, T, L, EFFECTS>, interior: Option<&mut NodeColumns<'_, T>>| {
+                T::with_scratch(|scratch| E::run_patch(cpu, OfPatch { patch, interior, scratch }))
             };
-            let is_inverted = match (inside, then) {
-                (Some(inside), Some((then, observed))) => inside.with_forces(observed, |inside| {
-                    let is_inverted = run(patch, Some(inside));
+            let is_inverted = match (interior, then) {
+                (Some(interior), Some((then, observed))) => interior.with_forces(observed, |interior| {
+                    let is_inverted = run(patch, Some(interior));
                     if !is_inverted {
-                        then(inside);
+                        then(interior);
                     }
                     is_inverted
                 }),
@@ -256,7 +256,7 @@ struct PatchForces<'a, E, T: SimdScalar, L, const EFFECTS: u8> {
 /// A patch, the nodes inside it if they move with it, and where to compute it.
 struct OfPatch<'a, 'i, 'n, 's, E, T: SimdScalar, L, const EFFECTS: u8> {
     patch: PatchForces<'a, E, T, L, EFFECTS>,
-    inside: Option<&'i mut NodeColumns<'n, T>>,
+    interior: Option<&'i mut NodeColumns<'n, T>>,
     scratch: &'s mut Scratch<T>,
 }
 
@@ -286,8 +286,8 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> bool {
-        let Self { mut patch, inside, scratch } = self;
-        patch.bring(inside.as_deref(), scratch);
+        let Self { mut patch, interior, scratch } = self;
+        patch.bring(interior.as_deref(), scratch);
         let mut law = patch.in_registers(simd);
         let mut worst = T::splat(simd, T::default());
         for group in 0..patch.connectivity.len() / E::NODES {
@@ -306,7 +306,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd
         let mut lanes = [T::default(); LANES];
         T::store(worst, &mut lanes);
         let is_inverted = lanes.iter().any(|&v| v > T::default());
-        patch.bring_back(inside.filter(|_| !is_inverted), scratch);
+        patch.bring_back(interior.filter(|_| !is_inverted), scratch);
         is_inverted
     }
 }

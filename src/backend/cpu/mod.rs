@@ -8,10 +8,10 @@ mod own_kernels;
 mod strain_kernel;
 mod volume_kernel;
 
-pub use element_kernel::{BlockColumns, Inside, kernel_effects, run_block, run_block_fast};
+pub use element_kernel::{BlockColumns, PatchInterior, kernel_effects, run_block, run_block_fast};
 pub use guard_kernel::{BlockSums, GuardColumns, run_guard};
 pub use law::BlockLaw;
-pub use node_kernel::{Factors, Foreseen, NodeColumns, Touches, move_nodes};
+pub use node_kernel::{Foreseen, IntegrationCoefficients, NodeColumns, Touches, move_nodes};
 pub use own_kernels::OwnKernels;
 pub use strain_kernel::{Strain, StrainColumns, Visit, strains};
 pub(crate) use strain_kernel::{sizes, with_identity};

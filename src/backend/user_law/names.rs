@@ -116,7 +116,7 @@ const GENERATED: [&str; 21] = [
     "call_all",
     "finish_all",
     "sum_all",
-    "LEAST_INSIDE",
+    "LEAST_INTERIOR",
     "isochoric_stress",
     "energy_density",
     "fibres_energy_at",

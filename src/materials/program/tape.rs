@@ -76,9 +76,9 @@ impl Program {
             let at = |k: usize| arguments.get(k).and_then(|id| places[id.index()]).unwrap_or(0) as u8;
             let (a, b, c) = (at(0), at(1), at(2));
             for (k, operand) in arguments.iter().enumerate() {
-                let dies = last[operand.index()] == Some(index) && !arguments[..k].contains(operand);
+                let is_last_use = last[operand.index()] == Some(index) && !arguments[..k].contains(operand);
                 let lasting = matches!(graph.node(*operand), Node::Constant(_));
-                if let Some(place) = places[operand.index()].filter(|_| dies && !lasting) {
+                if let Some(place) = places[operand.index()].filter(|_| is_last_use && !lasting) {
                     free.free.push(place);
                 }
             }

@@ -116,16 +116,16 @@ fn which_bodies_take_many_steps_in_one_dispatch_is_told_with_the_reason() {
         let entries: Vec<String> =
             json["kernels"].as_array().unwrap().iter().map(|kernel| kernel["entry"].as_str().unwrap().into()).collect();
         assert_eq!(body["many_steps"].as_bool().unwrap(), entries == ["many_steps"], "{entries:?}");
-        let inside = (body["inside"].as_u64().unwrap(), body["inside_because"].as_str().unwrap().to_string());
+        let interior = (body["interior"].as_u64().unwrap(), body["interior_because"].as_str().unwrap().to_string());
         let steps = entries.iter().filter(|entry| *entry == "patch_step").count();
-        assert_eq!(inside.0 > 0, steps > 0, "{entries:?}");
-        (entries.len(), body["because"].as_str().unwrap().to_string(), inside)
+        assert_eq!(interior.0 > 0, steps > 0, "{entries:?}");
+        (entries.len(), body["because"].as_str().unwrap().to_string(), interior)
     };
     let larger = "bodies.block.mesh=Box(size: (0.1, 0.1, 0.1), cells: (8, 8, 8), elements: Hex8)";
     let removal = "removal=[(body: \"block\", when: VolumeRatioAbove(2))]";
     let pressure = "loads=[Pressure(body: \"block\", on: All, pressure: 1)]";
     let (none, at_once) = ("no other patch has them", "all nodes move in the dispatch of all steps");
-    for (more, kernels, because, inside) in [
+    for (more, kernels, because, interior) in [
         (&[][..], 1, "one workgroup of 128 has room for it", (0, at_once)),
         (
             &["--set", "fuse=false"],
@@ -155,8 +155,8 @@ fn which_bodies_take_many_steps_in_one_dispatch_is_told_with_the_reason() {
         ),
         (&["--set", FIBRES], 1, "it would need 17 storage buffers, and 16 may be", (64, none)),
     ] {
-        let inside = (inside.0, inside.1.to_string());
-        assert_eq!(told(more), (kernels, because.to_string(), inside), "{more:?}");
+        let interior = (interior.0, interior.1.to_string());
+        assert_eq!(told(more), (kernels, because.to_string(), interior), "{more:?}");
     }
     let page = Workspace::new();
     let mut command = page.command(&["explain", "block.ron", "--backend", "gpu"]);

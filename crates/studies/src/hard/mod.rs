@@ -87,7 +87,7 @@ pub struct Row {
     /// All that was measured.
     pub gates: Vec<Gate>,
     /// What an honest failure said.
-    pub told: Option<String>,
+    pub message: Option<String>,
     /// Why this is how it has to end today, where it is not a pass.
     pub known: Option<&'static str>,
     /// Wall time (s).
@@ -108,7 +108,7 @@ pub fn run(case: &Case, configuration: &CaseConfiguration, full: bool) -> Row {
     let ended = (case.run)(&mut trial);
     let gates = trial.gates;
     let all_passed = gates.iter().all(|gate| gate.passed) && !gates.is_empty();
-    let (verdict, told) = match ended {
+    let (verdict, message) = match ended {
         Ok(()) if all_passed => (CaseVerdict::Passed, None),
         Ok(()) => (CaseVerdict::Failed, None),
         Err(error @ (Error::Unstable(_) | Error::NotConverged(_))) => {
@@ -121,5 +121,5 @@ pub fn run(case: &Case, configuration: &CaseConfiguration, full: bool) -> Row {
     let known = known.filter(|known| known.verdict == verdict).map(|known| known.why);
     let (elements, machine) = (configuration.elements_name(), configuration.machine());
     let seconds = started.elapsed().as_secs_f64();
-    Row { case: case.id, title: case.title, elements, machine, verdict, expected, gates, told, known, seconds }
+    Row { case: case.id, title: case.title, elements, machine, verdict, expected, gates, message, known, seconds }
 }

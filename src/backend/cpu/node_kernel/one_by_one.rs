@@ -1,6 +1,6 @@
 //! One node after the other: those at the end of a column, those without mass, those whose work is counted.
 
-use super::{Factors, NodeColumns};
+use super::{IntegrationCoefficients, NodeColumns};
 use crate::math::Scalar;
 
 /// A displacement and its step, summed with what rounding left out of both.
@@ -85,12 +85,13 @@ impl<T: Scalar> OneNode<T> {
 #[inline(always)]
 pub(super) fn move_node<T: Scalar>(
     node: &OneNode<T>,
-    factors: &Factors<T>,
+    coefficients: &IntegrationCoefficients<T>,
     sum: &mut Sum<'_, T>,
     mut work: Option<&mut [T]>,
 ) -> f64 {
     let (zero, one) = (T::default(), T::from_f64(1.0));
-    let Factors { force: force_factor, half_step, divide, rate, work_factor, relaxation } = *factors;
+    let IntegrationCoefficients { force: force_factor, half_step, after_first, rate, work_factor, relaxation } =
+        *coefficients;
     let (mass, axes) = (node.mass, node.axes);
     if mass <= zero {
         sum.step.fill(zero);
@@ -99,7 +100,7 @@ pub(super) fn move_node<T: Scalar>(
     let per_mass = one / mass;
     let coefficient = node.damping;
     let a = coefficient * half_step * per_mass + relaxation;
-    let shrink = if a > zero { one / (one + divide * a) } else { one };
+    let shrink = if a > zero { one / (one + after_first * a) } else { one };
     let mut internal_work = zero;
     for i in 0..3 {
         let internal = node.internal[i];
@@ -108,7 +109,7 @@ pub(super) fn move_node<T: Scalar>(
         let before = sum.step[i];
         if !constrained {
             let pushed = force_factor * ((external - internal) * per_mass);
-            sum.push(i, (pushed - (one + divide) * a * before) * shrink);
+            sum.push(i, (pushed - (one + after_first) * a * before) * shrink);
         }
         sum.go(i, constrained);
         let step = sum.step[i];

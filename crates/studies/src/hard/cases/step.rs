@@ -96,7 +96,7 @@ pub fn shrinks(trial: &mut Trial<'_>) -> Result<(), Error> {
     let mut reporting = trial.start(&["integration.when_unstable=Watch".into()])?;
     let ended = Monitor::run(&mut reporting).map(|_| ());
     let warned = reporting.step_history().is_some_and(|history| history.beyond_since.is_some());
-    trial.holds("who only watches is told, or the run stops", warned || matches!(ended, Err(Error::Unstable(_))));
+    trial.holds("a step that stays is reported, or the run stops", warned || matches!(ended, Err(Error::Unstable(_))));
     Ok(())
 }
 
