@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 #[derive(Resource, Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct GuardMemory {
-    /// Looks so far.
+    /// Checks so far.
     pub checks: u64,
     /// Energy that rounding may have made or lost so far (J).
     pub rounding: f64,
@@ -25,9 +25,9 @@ pub struct GuardMemory {
     pub hourglass: BTreeMap<String, f64>,
     /// Of each probe that holds peaks, by name, the values of the largest size so far.
     pub probe_peaks: BTreeMap<String, Vec<f64>>,
-    /// The smallest J of all looks.
+    /// The smallest J of all checks.
     pub least_volume_ratio: Option<Extreme>,
-    /// The fastest node of all looks (m/s).
+    /// The fastest node of all checks (m/s).
     pub fastest_node: Option<Extreme>,
     /// What has been warned of, each once.
     pub warnings: Vec<Notice>,

@@ -52,7 +52,7 @@ pub trait Element: Copy + Send + Sync + 'static {
     const NODES_OF_LEAST_MASS: f64 = 1.0 / Self::CELL.least_share();
     /// How many integration points.
     const POINTS: usize;
-    /// Points at which J is looked at, the integration points first: where edges can be curved an element can be folded
+    /// Points at which J is checked, the integration points first: where edges can be curved an element can be folded
     /// as a whole while none of these sees it. The others have no weight.
     const CHECKED_POINTS: usize = Self::POINTS;
     /// How many numbers describe the rest shape.

@@ -30,7 +30,7 @@ pub struct ElementState {
     pub displacements: [[f64; 3]; MOST_NODES],
     /// Rest volume (m³); 0 once removed.
     pub volume: f64,
-    /// The least J of the points that are [looked at](Element::CHECKED_POINTS).
+    /// The least J of the points that are [checked](Element::CHECKED_POINTS).
     pub least_volume_ratio: f64,
     simple: bool,
     points: [PointKinematics; MOST_POINTS],
@@ -83,7 +83,7 @@ impl ElementState {
         self.points().iter().map(|point| point.share * point.kinematics.true_j).sum()
     }
 
-    /// Whether it is turned inside out at one of the points that are looked at.
+    /// Whether it is turned inside out at one of the points that are checked.
     pub fn is_inverted(&self) -> bool {
         self.is_flatter_than(0.0)
     }

@@ -1,4 +1,4 @@
-//! Guards: what kernels found wrong in passing, and what a look at energies and elements shows, told in the author's
+//! Guards: what kernels found wrong in passing, and what a sample of energies and elements shows, told in the author's
 //! words.
 
 use super::rounding::Rounding;
@@ -74,7 +74,7 @@ fn turned_inside_out(authoring: &Authoring, block: Entity, row: usize) -> (Strin
     (format!("element {element} is turned inside out (J < 0)"), criterion)
 }
 
-/// The body, and the same, where a look shows it of elements that must not: kernels see it a step later.
+/// The body, and the same, where a sample shows it of elements that must not: kernels see it a step later.
 fn seen_inside_out(parts: &[(Entity, BlockSums)], world: &World) -> Option<(String, String, Criterion)> {
     parts.iter().find_map(|(entity, sums)| {
         let ends = world.get::<OnInversion>(*entity) == Some(&OnInversion(Inversion::Stop));
@@ -86,7 +86,7 @@ fn seen_inside_out(parts: &[(Entity, BlockSums)], world: &World) -> Option<(Stri
     })
 }
 
-/// What of a look is no finite number: in words, with the body or part that it is of.
+/// What of a sample is no finite number: in words, with the body or part that it is of.
 fn not_finite(seen: &Sample, world: &World) -> Option<(String, f64)> {
     let part = |(entity, sums): &(Entity, BlockSums)| {
         let label = label(world, *entity);
@@ -128,7 +128,7 @@ pub(super) fn find_in_result(
     }))
 }
 
-/// Looks at energies and elements. Warns of what passes a limit, each once, and ends the run where elements hold more
+/// Checks energies and elements. Warns of what passes a limit, each once, and ends the run where elements hold more
 /// energy than work was done on them: so a step beyond the stable one shows that does not run away, because large
 /// motion holds it.
 pub(super) fn check_balance(world: &mut World, good_until: f64, settings: &GuardSettings) -> Result<(), Error> {

@@ -60,7 +60,7 @@ pub struct Observer {
     pub on_gpu: bool,
     /// Whether they are so without a system that runs on the host.
     pub all_on_device: bool,
-    /// The last step that passed all guards in a look at energies and elements.
+    /// The last step that passed all guards in a check of energies and elements.
     pub checked_at: Option<u64>,
     /// The last states that passed all guards, the oldest first.
     pub window: VecDeque<Snapshot>,
@@ -208,7 +208,7 @@ impl Observer {
     }
 
     /// Whether a state is to be kept after the present step, because it has just passed all guards and may be the last.
-    /// Bringing it from a GPU takes time: there it is done in every sixteenth look.
+    /// Bringing it from a GPU takes time: there it is done in every sixteenth check.
     pub fn keeps_state(&self, step: u64) -> bool {
         let checks = step / self.guard_settings.limits.every.max(1);
         let wanted = self.guard_settings.limits.window > 0 && self.files.is_some() && self.checked_at == Some(step);
@@ -248,7 +248,7 @@ impl Observer {
         let (last, to_rest) = (clock.step == self.last_step, self.to_rest);
         match guards::find(world, self.good_until, &self.guard_settings)? {
             None => {}
-            // the steps since the last look at the residual will be taken back
+            // the steps since the last check of the residual will be taken back
             Some(_) if clock.relaxation.is_some() => return Ok(()),
             Some(found) => return Err(Error::Unstable(Box::new(found))),
         }

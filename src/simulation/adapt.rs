@@ -26,7 +26,7 @@ const SMALLER: f64 = 1.25;
 const LONGER: f64 = 2.0;
 /// Products by which the highest frequency is found anew: the first time, and from a shape that is known.
 const PRODUCTS: (usize, usize) = (20, 8);
-/// What a finding costs, in products: around them all elements are looked at several times, and steps of tetrahedra in
+/// What a finding costs, in products: around them all elements are checked several times, and steps of tetrahedra in
 /// f32 are quicker than [`PRODUCT`] says (30 to 60 steps for eight products, measured).
 const BESIDE: f64 = 2.0;
 /// ω² may be so many times what they show.

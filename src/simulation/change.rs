@@ -18,7 +18,7 @@ use crate::scene::schema::{Scene, WhenUnstable};
 use crate::scene::{SceneFile, other_than_parameters, validate};
 use bevy_ecs::prelude::*;
 
-/// What is looked at and changed on the host.
+/// What is read and changed on the host.
 const READ: [&str; 4] = [Displacement::NAME, DisplacementIncrement::NAME, RestShape::NAME, ViscousMemory::NAME];
 const WRITTEN: [&str; 2] = [RestShape::NAME, ViscousMemory::NAME];
 

@@ -18,19 +18,19 @@ use bevy_ecs::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
-/// Steps between two looks at all elements: where strains change slowly at least, and at most; and no more than have
+/// Steps between two checks of all elements: where strains change slowly at least, and at most; and no more than have
 /// been taken since the beginning or since loads and motions last became quicker, because what begins smoothly becomes
 /// faster.
 const CHECK_STEPS: (u64, u64) = (16, 256);
-/// Between two looks strains change by so much, at the present speed: close to the limit, and where the step is half of
-/// it or less. The stable step of what is squeezed shrinks twice as fast as it, and a twentieth is left when it counts
-/// as close.
+/// Between two checks strains change by so much, at the present speed: close to the limit, and where the step is half
+/// of it or less. The stable step of what is squeezed shrinks twice as fast as it, and a twentieth is left when it
+/// counts as close.
 const STRAIN: (f64, f64) = (0.01, 0.25);
-/// No more than that between two looks, however close they come: with .2 a cube crushed to a twentieth within .8 s
+/// No more than that between two checks, however close they come: with .2 a cube crushed to a twentieth within .8 s
 /// breaks down in some ways of 54, with .1 in none, nor where it is crushed within .4 s or .1 s.
 const MOST_STRAIN: f64 = 0.1;
 /// A change of strain in a step, relative to the mean of present lengths over the axes, from which on motion counts as
-/// violent: the room between what the elements alone allow and the true limit is then needed, for what a look cannot
+/// violent: the room between what the elements alone allow and the true limit is then needed, for what a check cannot
 /// foresee and for the balance of energy. (Without this rule H08 breaks down in 18 of 48 ways.)
 const VIOLENT: f64 = 0.02;
 
@@ -43,11 +43,11 @@ pub struct StepHistory {
     pub smallest: f64,
     /// The largest step taken (s).
     pub largest: f64,
-    /// How often all elements were looked at.
+    /// How often all elements were checked.
     pub checks: u64,
     /// How often the highest frequency was found during the run.
     pub eigenvalue_estimates: u64,
-    /// What looking took (s).
+    /// What checking took (s).
     pub seconds: f64,
     /// When the step was first seen to be beyond the stable one (s), where it stays all the same.
     pub beyond_since: Option<f64>,
@@ -85,19 +85,19 @@ pub(super) struct Follower {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Found {
-    /// The step before which is looked next.
+    /// The step before which is checked next.
     pub next: u64,
-    /// The step of the last look.
+    /// The step of the last check.
     pub checked_at: u64,
-    /// The step in which loads and motions became quicker last, of those that were looked at.
+    /// The step in which loads and motions became quicker last, of those that were checked.
     pub quickened: u64,
-    /// The step from which on they become quicker, where it is looked next for that.
+    /// The step from which on they become quicker, where it is checked next for that.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quickens_at: Option<u64>,
     /// What forces on nodes make of the step, where that has been counted anew since the start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub loads: Option<LoadRates>,
-    /// ω² of all bodies at most when it was looked last (1/s²); 0: not yet.
+    /// ω² of all bodies at most when it was checked last (1/s²); 0: not yet.
     #[serde(default)]
     pub latest: f64,
     /// The step in which an input last changed.
@@ -130,7 +130,7 @@ impl Found {
 pub(super) struct Followed {
     found: Found,
     history: StepHistory,
-    /// Of each block, as base64 of f32; none before the first look.
+    /// Of each block, as base64 of f32; none before the first check.
     ratios: Vec<String>,
     /// The shape of what is quickest, in the same way.
     shape: Option<String>,
@@ -230,31 +230,31 @@ impl Follower {
     }
 
     /// An input changes in a step, perhaps so that loads and motions become quicker than ever before. Whether it was
-    /// looked before that or is after makes no difference.
+    /// checked before that or is after makes no difference.
     pub fn note_change(&mut self, step: u64, quickens: bool) {
-        // where nothing would be done about it nobody looks
+        // where nothing would be done about it nobody checks
         if self.found.next == u64::MAX {
             return;
         }
         self.found.changed = Some(step);
         let within = if quickens { 1 } else { CHECK_STEPS.0 };
         self.found.next = self.found.next.min(step + within);
-        // what comes after that look is sought at it
+        // what comes after that check is sought at it
         self.found.quickens_at = self.found.quickens_at.filter(|at| *at < step + within);
         if quickens {
             self.found.quickened = step;
         }
     }
 
-    /// Looks before the next step.
+    /// Checks before the next step.
     pub fn check_soon(&mut self) {
-        // where nothing would be done about it nobody looks
+        // where nothing would be done about it nobody checks
         if self.found.next != u64::MAX {
             self.found.next = self.found.next.min(self.found.checked_at);
         }
     }
 
-    /// The step before which is looked next: sooner where strains change fast, where the step is close to the limit,
+    /// The step before which is checked next: sooner where strains change fast, where the step is close to the limit,
     /// and before loads and motions become quicker, `quicker` (s).
     fn next_check(&mut self, step: u64, seen: &StabilitySample, clock: &Clock, quicker: Option<f64>) -> u64 {
         // far below the limit more may happen unseen
@@ -317,7 +317,7 @@ impl Simulation {
         self.solver.follower().map(|follower| &follower.history)
     }
 
-    /// Looks at the stable step if it is time, and does what the scene wants done.
+    /// Checks the stable step if it is time, and does what the scene wants done.
     pub(super) fn follow(&mut self) -> Result<(), Error> {
         let step = self.step_count();
         let Solver::Explicit(follower) = &mut self.solver else { return Ok(()) };

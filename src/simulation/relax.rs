@@ -1,9 +1,9 @@
 //! Dynamic relaxation: pseudo-steps to equilibrium, their damping chosen anew from what the last ones did.
 //!
 //! Every [`CHECK_STEPS`] steps the residual is taken, the lowest frequency of the motion is estimated by the Rayleigh
-//! quotient ω² = Δuᵀ ΔF / Δuᵀ M Δu of what has changed since the last look, and all nodes are damped critically for it,
-//! c = 2ω (Underwood 1983). Forces count less where elements are squeezed, which raises the highest frequency. Steps
-//! that end in numbers that are not finite or in elements turned inside out are taken back.
+//! quotient ω² = Δuᵀ ΔF / Δuᵀ M Δu of what has changed since the last check, and all nodes are damped critically for
+//! it, c = 2ω (Underwood 1983). Forces count less where elements are squeezed, which raises the highest frequency.
+//! Steps that end in numbers that are not finite or in elements turned inside out are taken back.
 
 use super::Simulation;
 use super::residual::{Motion, Residual, State};
@@ -16,9 +16,9 @@ use crate::observation::Observer;
 use bevy_ecs::prelude::*;
 use serde::Serialize;
 
-/// Steps between two looks at the residual.
+/// Steps between two checks of the residual.
 const CHECK_STEPS: u64 = 40;
-/// Elements are looked at while loads grow, then in every so many looks.
+/// Elements are checked while loads grow, then in every so many checks.
 const CHECKS_BETWEEN_STRETCHES: u64 = 10;
 /// How often steps may be taken back.
 const MOST_SETBACKS: u32 = 10;
@@ -75,9 +75,9 @@ pub(super) struct Relaxing {
     checks: u64,
     /// The lowest frequency, as far as it is known (1/s).
     frequency: f64,
-    /// The look that first saw loads at rest.
+    /// The check that first saw loads at rest.
     settled_at: Option<u64>,
-    /// The look since which all is as quiet as it must be.
+    /// The check since which all is as quiet as it must be.
     quiet_since: Option<u64>,
 }
 
@@ -100,7 +100,7 @@ impl Relaxing {
         }
     }
 
-    /// The next step at whose end the residual is looked at.
+    /// The next step at whose end the residual is checked.
     pub fn next_check(&self) -> u64 {
         self.next_check
     }
@@ -125,7 +125,7 @@ impl Simulation {
         self.advance_towards_end(u64::MAX)
     }
 
-    /// Looks at the residual, and chooses how to go on.
+    /// Checks the residual, and chooses how to go on.
     pub(super) fn check_equilibrium(&mut self) -> Result<(), Error> {
         let Solver::Relaxation(relaxing) = &mut self.solver else { return Ok(()) };
         relaxing.check(&mut self.world)?;
@@ -185,7 +185,7 @@ impl Relaxing {
             && found.residual <= tolerance + ROUNDING * found.rounding
             && found.remaining_motion <= MOTION * tolerance;
         self.quiet_since = self.quiet_since.filter(|_| quiet).or(quiet.then_some(clock.step));
-        // where rounding hides soft motion, a look must not have met it at its turning point
+        // where rounding hides soft motion, a check must not have met it at its turning point
         let long = (clock.step - self.quiet_since.unwrap_or(clock.step)) as f64 >= TURN / relaxation.damping.max(1e-9);
         if quiet && (long || found.residual <= tolerance) {
             self.equilibrium.reached = true;
@@ -224,7 +224,7 @@ impl Relaxing {
         found.worst = residual.worst_in_words(world);
     }
 
-    /// Goes back to the last look, from where forces count half. While loads still grow, it goes back to the start,
+    /// Goes back to the last check, from where forces count half. While loads still grow, it goes back to the start,
     /// where they grow at a quarter of the pace: what has been pushed too suddenly may have taken a way that leads
     /// elsewhere.
     fn take_back(&mut self, world: &mut World, mut relaxation: Relaxation, step: u64) -> Result<(), Error> {

@@ -1,5 +1,5 @@
 //! Solvers: what takes steps, one level above the systems. A solver keeps what it has to remember beside the columns,
-//! says how many steps may be taken together before it looks at them, and does what has to be done about what it sees.
+//! says how many steps may be taken together before it checks them, and does what has to be done about what it sees.
 
 use super::Simulation;
 use super::follow::Follower;
@@ -8,7 +8,7 @@ use crate::error::Error;
 
 /// How the steps of a scene are taken.
 pub(super) enum Solver {
-    /// Central differences in time. What follows the stable step, where there is one; lent out while it looks.
+    /// Central differences in time. What follows the stable step, where there is one; lent out while it checks.
     Explicit(Option<Follower>),
     /// Pseudo-steps to equilibrium.
     Relaxation(Relaxing),
@@ -58,14 +58,14 @@ impl Solver {
 
 impl Simulation {
     /// What comes before a step, in an order that does not depend on how the program asks for steps: the state is kept,
-    /// inputs and what hands do are taken up, and then the stable step is looked at. A second time before the same step
+    /// inputs and what hands do are taken up, and then the stable step is checked. A second time before the same step
     /// it does nothing.
     fn begin_step(&mut self) -> Result<(), Error> {
         self.before_the_check()?;
         self.follow()
     }
 
-    /// All of it but the look.
+    /// All of it but the check.
     pub(super) fn before_the_check(&mut self) -> Result<(), Error> {
         self.wait_for_life();
         self.keep_history_if_due()?;

@@ -14,13 +14,13 @@ use crate::observation::shortest_edge;
 use bevy_ecs::prelude::*;
 use std::ops::Range;
 
-/// Elements looked at in one task: what is found of them stays in the core's cache.
+/// Elements checked in one task: what is found of them stays in the core's cache.
 const ROWS_A_TASK: usize = 512;
-/// Elements that are looked at together, before one by one: neighbours, which are deformed alike.
+/// Elements that are checked together, before one by one: neighbours, which are deformed alike.
 const ROWS_A_PART: usize = 64;
 const PARTS_A_TASK: usize = ROWS_A_TASK / ROWS_A_PART;
 const GROUPS_A_TASK: usize = ROWS_A_TASK / LANES;
-/// Parts whose elements are looked at one by one before it is asked which others still need it; then twice as many.
+/// Parts whose elements are checked one by one before it is asked which others still need it; then twice as many.
 const PARTS_AT_FIRST: usize = 4;
 /// What elements come to is known to this: their ω², and how much stiffer they have become.
 const NEARLY: f64 = 1.1;
@@ -60,7 +60,7 @@ fn part_groups(part: usize) -> Range<usize> {
     part * ROWS_A_PART / LANES..(part + 1) * ROWS_A_PART / LANES
 }
 
-/// What a look at all elements shows.
+/// What a check of all elements shows.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct StabilitySample {
     /// ω² of all at most (1/s²): by the elements alone, or by what was known of all.
@@ -188,7 +188,7 @@ impl StiffnessTracker {
         fits
     }
 
-    /// Looks at all elements: first at what those of a part come to were one of them the largest in everything, then at
+    /// Samples all elements: first what those of a part come to were one of them the largest in everything, then
     /// one after the other where that comes to most.
     pub fn sample(&mut self, world: &World) -> StabilitySample {
         let (cpu, count) = (world.resource::<Cpu>(), self.squares.len());
@@ -226,7 +226,7 @@ impl StiffnessTracker {
         parts.into_iter().fold(StabilitySample::NOTHING, StabilitySample::and)
     }
 
-    /// Looks at elements one by one in those of some parts, at `places`, that may come to most.
+    /// Samples elements one by one in those of some parts, at `places`, that may come to most.
     fn refined(&self, world: &World, places: &[usize], mut parts: Vec<StabilitySample>) -> Vec<StabilitySample> {
         let at_rest = parts.iter().fold(0.0_f64, |most, part| most.max(part.at_rest));
         let most = |part: &StabilitySample| (part.of_elements / at_rest).max(part.ratio);

@@ -52,7 +52,7 @@ pub struct Summary {
     pub setup_seconds: f64,
     /// Time from the first step to the last, solving and writing (s).
     pub run_seconds: f64,
-    /// Of it what steps took, guards and looks at the stable step included (s).
+    /// Of it what steps took, guards and stability checks included (s).
     pub solving_seconds: f64,
     /// Of it what observing and writing took: tables, fields, snapshots, `nodes.csv` (s).
     pub writing_seconds: f64,

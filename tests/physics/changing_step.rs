@@ -85,7 +85,7 @@ fn the_same_step_all_along_becomes_unstable_there() {
     }
 }
 
-/// Looking at the stable step is a part of the run as its systems are.
+/// Checking the stable step is a part of the run as its systems are.
 #[test]
 fn checks_count_as_time_of_the_run() {
     let mut simulation = configurations()[0].start(&squeezed("bound: Iterated", 0.3, "Hex8"));
@@ -210,7 +210,7 @@ fn what_goes_by_time_and_what_is_observed_keeps_its_times() {
 }
 
 /// Tetrahedra between walls, squeezed to .3: the stable step shrinks by a tenth while strains change by a twentieth,
-/// and what was found to be stable by a twentieth was not any more when it was looked at again.
+/// and what was found to be stable by a twentieth was not any more when it was checked again.
 #[test]
 fn a_step_close_to_the_limit_is_checked_before_it_is_beyond_it() {
     for run in configurations() {
@@ -232,8 +232,8 @@ fn a_step_close_to_the_limit_is_checked_before_it_is_beyond_it() {
     }
 }
 
-/// H07 in a hurry: what is pressed to a twentieth of its height within .4 s moves many steps' worth between two looks
-/// where it is thinnest. Looks that went by the mean of the stretches came too late in half of these runs, and steps
+/// H07 in a hurry: what is pressed to a twentieth of its height within .4 s moves many steps' worth between two checks
+/// where it is thinnest. Checks that went by the mean of the stretches came too late in half of these runs, and steps
 /// that grew at once by more than twofold made energy.
 #[test]
 #[ignore = "long"]

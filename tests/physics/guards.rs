@@ -1,4 +1,4 @@
-//! The guards: looks see what energies and fields say, limits end a run and warn, and nothing that is no number is
+//! The guards: samples see what energies and fields say, limits end a run and warn, and nothing that is no number is
 //! found late or written.
 
 use crate::configurations::{configurations, scene_of};
@@ -19,7 +19,7 @@ fn scene(elements: &str, effects: &str, further: &str) -> String {
     )
 }
 
-/// A look is the same as what is computed on the host in f64, one element after the other. f32: a part of 1e5 of the
+/// A sample is the same as what is computed on the host in f64, one element after the other. f32: a part of 1e5 of the
 /// energies by the rounding of strains of 1e-2.
 #[test]
 #[ignore = "long"]
@@ -235,8 +235,8 @@ fn a_jump_of_all_the_length_ends_the_run_and_asks_for_a_ramp() {
     }
 }
 
-/// The ends of a bar are pushed through their cells within one look, one after the other: the first is named, whichever
-/// has the lower number.
+/// The ends of a bar are pushed through their cells within one check, one after the other: the first is named,
+/// whichever has the lower number.
 #[test]
 fn the_first_element_that_turns_inside_out_is_named() {
     for run in configurations() {
@@ -294,7 +294,7 @@ fn last_states_before_a_breakdown_are_written_and_can_be_gone_on_from() {
         let resume = told.split_once("--resume ").map(|(_, rest)| rest).unwrap_or_default();
         assert!(resume.contains(&good.snapshot), "{broken}");
         let series = std::fs::read_to_string(folder.path().join(&good.series)).unwrap();
-        // on a GPU states are kept in every sixteenth look
+        // on a GPU states are kept in every sixteenth check
         let few = if run.options.backend == BackendChoice::Gpu { 1 } else { 2 };
         assert!(series.matches("<DataSet").count() >= few, "{}: {series}", run.name);
         let kept = Snapshot::read(&folder.path().join(&good.snapshot)).unwrap();

@@ -197,7 +197,7 @@ fn torn(fuse: bool) -> String {
     )
 }
 
-/// The nodes inside patches move with their patch, those of patches with inverted elements after a look at them.
+/// The nodes inside patches move with their patch, those of patches with inverted elements after a check of them.
 #[test]
 fn nodes_inside_patches_go_where_they_go_with_all_others() {
     for run in configurations().into_iter().filter(|run| run.options.backend == BackendChoice::Cpu) {

@@ -85,7 +85,7 @@ fn criteria_take_what_passes_them_and_nothing_else() {
         for (gradient, when, goes) in &cases {
             let rest = format!("constraints: [Prescribed(on: All, gradient: {gradient})], removal: [(when: {when})]");
             let mut simulation = bar(run, elements, &rest);
-            // they are looked at in every tenth step
+            // they are checked in every tenth step
             simulation.advance(20).unwrap();
             let left = alive(&mut simulation).contains(&1);
             assert_eq!(left, !goes, "{}, {elements}, {when}", run.name);

@@ -110,7 +110,7 @@ fn bared_faces_are_sucked_at_once() {
                 "removal: [(on: Box(min: (0, 0, 0.002), max: (0.02, 0.02, 0.004)), when: At(0.1))], probes:",
             );
         let mut simulation = run.start(&scene);
-        // a look follows removal at once where both are in a tenth step
+        // a check follows removal at once where both are in a tenth step
         simulation.advance_to(0.1).unwrap();
         simulation.advance(30).unwrap();
         assert_eq!(simulation.summary("").unwrap().removed_elements, 400, "{}", run.name);

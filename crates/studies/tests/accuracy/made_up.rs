@@ -154,7 +154,7 @@ impl Solver for MadeUp {
     }
 }
 
-/// Watches nothing.
+/// Observes nothing.
 pub struct Nobody;
 
 impl StudyObserver for Nobody {
