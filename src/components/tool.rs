@@ -75,6 +75,8 @@ pub struct ToolMotion {
     pub moves: Vec<(DVec3, DVec3)>,
     /// Their curves.
     pub curves: Vec<Curve>,
+    /// A point that its axis z goes through, wherever it is (m), as a shaft goes through a trocar.
+    pub pivot: Option<DVec3>,
     /// The hand that moves it: then `path` is that of the present batch of steps, and at first where the tool is.
     pub hand: Option<Hand>,
 }
@@ -102,7 +104,22 @@ impl ToolMotion {
             at += *displacement * factor;
             turn = DQuat::from_scaled_axis(*rotation * factor) * turn;
         }
+        if let Some(way) = self.pivot.and_then(|pivot| (pivot - at).try_normalize()) {
+            turn = DQuat::from_rotation_arc((turn * DVec3::Z).normalize(), way) * turn;
+        }
         Pose { rotation: DMat3::from_quat(turn), at }
+    }
+
+    /// How near its origin may come to a point (m), at least.
+    fn nearest(&self, point: DVec3) -> f64 {
+        let of_leg = |pair: &[Key]| {
+            let (from, way) = (pair[0].1, pair[1].1 - pair[0].1);
+            let share = ((point - from).dot(way) / way.length_squared()).clamp(0.0, 1.0);
+            point.distance(if share.is_finite() { from + way * share } else { from })
+        };
+        let places = self.path.iter().map(|key| key.1.distance(point));
+        let nearest = self.path.windows(2).map(of_leg).chain(places).fold(f64::INFINITY, f64::min);
+        (nearest - self.moves.iter().map(|(displacement, _)| displacement.length()).sum::<f64>()).max(0.0)
     }
 
     fn on_path(&self, time: f64) -> (DVec3, DQuat) {
@@ -131,7 +148,18 @@ impl ToolMotion {
         let moves = moves.map(|((displacement, rotation), curve)| {
             (displacement.length() + reach * rotation.length()) * curve.fastest()
         });
-        path + moves.sum::<f64>()
+        let fastest = path + moves.sum::<f64>();
+        let Some(pivot) = self.pivot else { return fastest };
+        // what turns it about the pivot goes across; all of its way might
+        let speed = self.fastest_origin();
+        fastest + if speed > 0.0 { reach * speed / self.nearest(pivot) } else { 0.0 }
+    }
+
+    /// How fast its origin may go (m/s), as far as the scene tells.
+    fn fastest_origin(&self) -> f64 {
+        let leg = |pair: &[Key]| pair[0].1.distance(pair[1].1) / (pair[1].0 - pair[0].0);
+        let moves = self.moves.iter().zip(&self.curves).map(|(part, curve)| part.0.length() * curve.fastest());
+        self.path.windows(2).map(leg).fold(0.0, f64::max) + moves.sum::<f64>()
     }
 
     /// The first time after one (s) at which it turns a corner of its path; where a hand will turn nobody knows.

@@ -69,6 +69,16 @@ fn what_is_wrong_with_a_tool_is_told_with_what_is_allowed() {
             TOUCH,
             "the tool `rod` goes up to 2.000e3 m/s",
         ),
+        (
+            "(shape: Capsule(length: 0.2, radius: 0.06), at: (0.05, 0.05, 0.17), pivot: (0.05, 0.05, 0.17))",
+            TOUCH,
+            "4: error: the tool's origin comes to its pivot: which way does its axis point there? | the axis z goes from the",
+        ),
+        (
+            "(shape: Sphere(radius: 0.06), at: (0.05, 0.05, 0.2), pivot: (0, 0, 1), port: (name: \"h\", speed: 0.1))",
+            TOUCH,
+            "4: error: a `pivot` beside a `port`: a hand turns the tool | leave one of both out; `path` and `moves` go with",
+        ),
         (ROD, "", "4: warning: nothing touches the tool `rod` | under `contacts`: Tool(tool: \"rod\")"),
         (ROD, "Tool(tool: \"rot\")", "there is no tool `rot` | did you mean `rod`?"),
         (ROD, "Tool(tool: \"rod\", friction: -0.1)", "5: error: `friction` must be 0 or above, found -0.1"),

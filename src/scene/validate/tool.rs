@@ -5,11 +5,14 @@ use super::names::body_named;
 use super::{Validator, scene, select, show};
 use crate::scene::limits::{MOST_BURST, MOST_SWEEPS, TOOLS_OF_A_BODY};
 use crate::scene::load::SceneFile;
-use crate::scene::schema::{Contact, Follow, Port, Removal, Scene, Shape, Tool, When};
+use crate::scene::schema::{Contact, Follow, Port, Removal, Scene, Shape, Tool, ToolPlace, When};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use glam::DVec3;
 use std::collections::BTreeMap;
+
+/// How near a tool's origin may come to its pivot (m).
+const NEAREST: f64 = 1e-9;
 
 pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
     let scene_ = &file.scene;
@@ -86,6 +89,24 @@ fn tool(validator: &mut Validator, path: &Path, tool: &Tool) {
             let jumps = pair[1].t == pair[0].t && far > 0.0;
             let note = format!("the tool would jump by {} m; give it time to go there", show(far));
             validator.out.error_at(path, message).notes(jumps.then_some(note));
+        }
+    }
+    if let Some(pivot) = tool.pivot {
+        if tool.port.is_some() {
+            validator
+                .out
+                .error_at(path.name("pivot"), "a `pivot` beside a `port`: a hand turns the tool")
+                .note("leave one of both out; `path` and `moves` go with a `pivot`");
+        }
+        let reaches = |place: &ToolPlace| place.at.distance(pivot) < NEAREST;
+        if tool.places().iter().any(reaches) {
+            validator
+                .out
+                .error_at(
+                    path.name("pivot"),
+                    "the tool's origin comes to its pivot: which way does its axis point there?",
+                )
+                .note("the axis z goes from the origin, the tip of what is long, through the pivot");
         }
     }
     for (number, part) in tool.moves.iter().enumerate() {
