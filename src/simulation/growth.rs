@@ -182,13 +182,15 @@ impl Table {
         }
     }
 
-    /// Up to which deformation the growth is at most that, less a billionth for the rounding of [`Self::at`]: 0 where
-    /// it is more from the beginning.
+    /// Up to which deformation the growth is at most that: 0 where it is more from the beginning.
     fn until(&self, growth: f64) -> f64 {
-        let growth = growth * (1.0 - 1e-9);
         let after = self.points.partition_point(|(_, g)| *g <= growth);
         match (after.checked_sub(1).map(|i| self.points[i]), self.points.get(after)) {
-            (Some((s0, g0)), Some(&(s1, g1))) => s0 + (s1 - s0) * (growth - g0) / (g1 - g0),
+            (Some((s0, g0)), Some(&(s1, g1))) => {
+                // a billionth less, so that rounding leads to no more; pieces may be as short as that
+                let size = s0 + (s1 - s0) * (growth - g0) / (g1 - g0) * (1.0 - 1e-9);
+                if self.at(size) <= growth { size } else { s0 }
+            }
             (Some((s, _)), None) => s,
             (None, _) => 0.0,
         }
