@@ -1,9 +1,10 @@
 //! Ties and glue: how well they hold, where they break, peeling, momentum, bits.
 
-use crate::configurations::{configurations, near, scene_of};
+use crate::bits::bits_do_not_depend;
+use crate::configurations::{configurations, near};
 use glam::DVec3;
-use sinew::components::{DisplacementIncrement, Precision};
-use sinew::{BackendChoice, Options, Simulation};
+use sinew::Simulation;
+use sinew::components::DisplacementIncrement;
 
 /// Two bars of 1 × 1 × 2 cm end to end, of which the upper one is drawn up by 4 mm in a second, slowly at first.
 fn bars(cells: [&str; 2], glue: &str) -> String {
@@ -191,35 +192,9 @@ fn glue_keeps_momentum_and_makes_no_energy() {
 fn bits_of_glue_do_not_depend_on_threads_or_pauses() {
     let text =
         bars(["(6, 6, 12)", "(8, 8, 16)"], ", normal: 60").replace("curve: Smooth(end: 1)", "curve: Ramp(end: 0.3)");
-    for precision in [Precision::F32, Precision::F64] {
-        let start = |threads: usize, text: &str| {
-            let scene = scene_of(text, std::path::Path::new("."));
-            let options = Options { backend: BackendChoice::Cpu, precision, threads, ..Options::default() };
-            Simulation::new(&scene, &options).unwrap()
-        };
-        let bits = |simulation: &mut Simulation| -> Vec<u64> {
-            let all = simulation.displacements("up").unwrap();
-            all.iter().flat_map(|u| u.to_array().map(f64::to_bits)).collect()
-        };
-        let mut one = start(1, &text);
-        one.advance_to(0.12).unwrap();
-        let (steps, wanted) = (one.step_count(), bits(&mut one));
-        let reading = one.attachment("glue").unwrap();
+    let some_is_off = |simulation: &mut Simulation| {
+        let reading = simulation.attachment("glue").unwrap();
         assert!(!reading.broken.is_empty(), "some is off: {reading:?}");
-        for (threads, text) in
-            [(2, text.clone()), (3, text.clone()), (1, text.replace("duration", "fuse: false, duration"))]
-        {
-            let mut other = start(threads, &text);
-            other.advance(steps).unwrap();
-            assert!(bits(&mut other) == wanted, "{threads} threads, {precision:?}");
-        }
-        let mut paused = start(1, &text);
-        paused.advance_to(0.05).unwrap();
-        let kept = paused.snapshot().unwrap();
-        paused.advance(7).unwrap();
-        paused.restore(&kept).unwrap();
-        let left = steps - paused.step_count();
-        paused.advance(left).unwrap();
-        assert!(bits(&mut paused) == wanted, "resumed, {precision:?}");
-    }
+    };
+    bits_do_not_depend(&text, &["up"], [0.05, 0.12], [|_| {}, some_is_off]);
 }

@@ -2,9 +2,9 @@
 
 use crate::configurations::{ELEMENTS, configurations, near};
 use glam::DVec3;
+use sinew::Simulation;
 use sinew::components::{ContactForce, DisplacementIncrement, MEETING_NUMBERS, SurfaceTouch};
 use sinew::mesh::{Locator, Mesh};
-use sinew::{Options, Simulation};
 
 const TISSUE: &str = "\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))";
 
@@ -223,15 +223,8 @@ fn bits_do_not_depend_on_threads_lists_or_pauses() {
         materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))},
         contacts: [Between(bodies: (\"a\", \"b\"), friction: 0.3)])";
     for precision in [sinew::components::Precision::F32, sinew::components::Precision::F64] {
-        let start = |threads: usize, text: &str| {
-            let scene = crate::configurations::scene_of(text, std::path::Path::new("."));
-            let backend = sinew::BackendChoice::Cpu;
-            Simulation::new(&scene, &Options { backend, precision, threads, ..Options::default() }).unwrap()
-        };
-        let bits = |simulation: &mut Simulation| -> Vec<u64> {
-            let all = ["a", "b"].map(|body| simulation.displacements(body).unwrap()).concat();
-            all.iter().flat_map(|u| u.to_array().map(f64::to_bits)).collect()
-        };
+        let start = |threads: usize, text: &str| crate::bits::start(text, precision, threads);
+        let bits = |simulation: &mut Simulation| crate::bits::bits(simulation, &["a", "b"]);
         let mut one = start(1, scene);
         one.advance(400).unwrap();
         assert!(force(&mut one, "b").length() > 0.0, "they touch");

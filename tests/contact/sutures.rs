@@ -1,9 +1,10 @@
 //! Threads between bodies: tension, tearing, knots, momentum, energy, bits.
 
-use crate::configurations::{configurations, near, scene_of};
+use crate::bits::{bits_do_not_depend, start};
+use crate::configurations::{configurations, near};
 use glam::DVec3;
+use sinew::Simulation;
 use sinew::components::{DisplacementIncrement, Precision};
-use sinew::{BackendChoice, Options, Simulation};
 
 /// Two cubes of 2 cm, 1 cm apart, and a stitch between the middles of the faces that look at each other.
 fn cubes(low: &str, rest: &str, stitch: &str) -> String {
@@ -117,10 +118,7 @@ fn knots_shorten_a_suture_to_what_they_leave() {
 fn a_stiff_suture_counts_for_the_step() {
     let step = |stiffness: &str| {
         let text = cubes("", "", &format!("stiffness: {stiffness}, length: 0.0099"));
-        let scene = scene_of(&text, std::path::Path::new("."));
-        let options =
-            Options { backend: BackendChoice::Cpu, precision: Precision::F64, threads: 1, ..Options::default() };
-        Simulation::new(&scene, &options).unwrap()
+        start(&text, Precision::F64, 1)
     };
     let (soft, mut stiff) = (step("1"), step("1e5"));
     assert!(stiff.time_step() < 0.2 * soft.time_step(), "{} and {} s", stiff.time_step(), soft.time_step());
@@ -167,36 +165,11 @@ fn bits_of_a_suture_do_not_depend_on_threads_or_pauses() {
         "stiffness: 40, strength: 0.12",
     );
     let text = cubes.replace("(3, 3, 3)", "(9, 9, 9)");
-    for precision in [Precision::F32, Precision::F64] {
-        let start = |threads: usize, text: &str| {
-            let scene = scene_of(text, std::path::Path::new("."));
-            let options = Options { backend: BackendChoice::Cpu, precision, threads, ..Options::default() };
-            Simulation::new(&scene, &options).unwrap()
-        };
-        let bits = |simulation: &mut Simulation| -> Vec<u64> {
-            let all = simulation.displacements("up").unwrap();
-            all.iter().flat_map(|u| u.to_array().map(f64::to_bits)).collect()
-        };
-        let mut one = start(1, &text);
-        one.advance_to(0.15).unwrap();
-        let (steps, wanted) = (one.step_count(), bits(&mut one));
-        assert!(one.attachment("stitch").unwrap().broke_at.is_some(), "it has torn: {:?}", one.attachment("stitch"));
-        for (threads, text) in
-            [(2, text.clone()), (3, text.clone()), (1, text.replace("duration", "fuse: false, duration"))]
-        {
-            let mut other = start(threads, &text);
-            other.advance(steps).unwrap();
-            assert!(bits(&mut other) == wanted, "{threads} threads, {precision:?}");
-        }
-        let mut paused = start(1, &text);
-        paused.advance_to(0.02).unwrap();
-        let kept = paused.snapshot().unwrap();
-        paused.advance(7).unwrap();
-        paused.restore(&kept).unwrap();
-        let left = steps - paused.step_count();
-        paused.advance(left).unwrap();
-        assert!(bits(&mut paused) == wanted, "resumed, {precision:?}");
-    }
+    let has_torn = |simulation: &mut Simulation| {
+        let reading = simulation.attachment("stitch").unwrap();
+        assert!(reading.broke_at.is_some(), "it has torn: {reading:?}");
+    };
+    bits_do_not_depend(&text, &["up"], [0.02, 0.15], [|_| {}, has_torn]);
 }
 
 /// Where the tissue that it is in goes, a thread comes out.
