@@ -1,24 +1,5 @@
-// Rigid tools keep nodes outside; twin of systems/tool_contact.rs. TOOLS and NUMBERS are generated; damped is in
-// damping_coefficient.wgsl, relaxation.wgsl or generated; tool_distance is in
-// tool_shape.wgsl, grid_distance in tool_of_grid.wgsl, or generated where no tool is a grid.
-struct ToolRow {
-    kind: u32,
-    size_0: f32,
-    size_1: f32,
-    size_2: f32,
-    size_3: f32,
-    size_4: f32,
-    size_5: f32,
-    rounding: f32,
-    signal: u32, // first of six slots: where it is, and how that differs from where it was
-    sticking: f32, // coefficients of friction
-    sliding: f32,
-    spacing: f32, // of a grid, whose first point is at the first three sizes (m)
-    nx: u32,
-    ny: u32,
-    nz: u32,
-    first: u32,
-}
+// Rigid tools keep nodes outside; twin of systems/tool_contact.rs. TOOLS and NUMBERS are generated; tools are in
+// tool_row.wgsl, foresee in foreseen.wgsl.
 struct Limits {
     edge: f32, // who is farther off cannot be there within a step (m)
     settling: f32, // how fast nodes inside a tool come out (m/s); in a static analysis a tenth of an edge a step
@@ -27,14 +8,9 @@ struct Limits {
 @group(0) @binding(0) var<uniform> tools: array<ToolRow, TOOLS>;
 @group(0) @binding(1) var<uniform> limits: Limits;
 @group(0) @binding(2) var<storage, read> touchable: array<vec4<u32>>; // bits of the place at rest (m), and a bit for each tool
-@group(0) @binding(3) var<storage, read> mass: array<f32>;
-@group(0) @binding(4) var<storage, read> constrained_axes: array<u32>;
-@group(0) @binding(5) var<storage, read> displacement: array<f32>;
-@group(0) @binding(6) var<storage, read> displacement_increment: array<f32>;
-@group(0) @binding(7) var<storage, read_write> tool_touch: array<f32>;
+@group(0) @binding(3) var<storage, read_write> tool_touch: array<f32>;
 
 const TOUCH_NUMBERS: u32 = 7u;
-const TOOL_GRID: u32 = 0xffffffffu;
 const STICKS: f32 = 1.0;
 const SLIDES: f32 = 2.0;
 const TURNS: u32 = 12u;
@@ -53,27 +29,12 @@ struct Touch {
     slides: bool, // whether friction does not hold it
 }
 
-// A point of the scene in the frame of a pose whose rows and places are in three slots.
-fn into_frame(rows: array<vec4<f32>, 3>, x: vec3<f32>) -> vec3<f32> {
-    let y = x - vec3<f32>(rows[0].w, rows[1].w, rows[2].w);
-    return y.x * rows[0].xyz + y.y * rows[1].xyz + y.z * rows[2].xyz;
-}
-
-fn distance_to(tool: u32, y: vec3<f32>) -> vec4<f32> {
-    let row = tools[tool];
-    if row.kind == TOOL_GRID {
-        return grid_distance(row, y);
-    }
-    return tool_distance(
-        ToolShape(row.kind, row.size_0, row.size_1, row.size_2, row.size_3, row.size_4, row.size_5, row.rounding), y);
-}
-
 fn predict(tool: u32, place: vec3<f32>, predicted: vec3<f32>, sticks: bool) -> Touch {
     let at = tools[tool].signal;
     let pose = array<vec4<f32>, 3>(step.signals[at], step.signals[at + 1u], step.signals[at + 2u]);
     let change = array<vec4<f32>, 3>(step.signals[at + 3u], step.signals[at + 4u], step.signals[at + 5u]);
     let of_tool = into_frame(pose, place + predicted);
-    let surface = distance_to(tool, of_tool);
+    let surface = distance_to(tools[tool], of_tool);
     var allowed = 0.0;
     if surface.w < 0.0 {
         let earlier = array<vec4<f32>, 3>(pose[0] - change[0], pose[1] - change[1], pose[2] - change[2]);
@@ -81,7 +42,7 @@ fn predict(tool: u32, place: vec3<f32>, predicted: vec3<f32>, sticks: bool) -> T
         if limits.books == 0u {
             out = 0.1 * limits.edge;
         }
-        allowed = min(distance_to(tool, into_frame(earlier, place)).w + out, 0.0);
+        allowed = min(distance_to(tools[tool], into_frame(earlier, place)).w + out, 0.0);
     }
     let at_tool = vec4<f32>(of_tool, 1.0);
     var touch: Touch;
@@ -104,7 +65,7 @@ fn look_again(tool: u32, end: vec3<f32>, before: Touch) -> Touch {
     let at = tools[tool].signal;
     let pose = array<vec4<f32>, 3>(step.signals[at], step.signals[at + 1u], step.signals[at + 2u]);
     let of_tool = into_frame(pose, end);
-    let surface = distance_to(tool, of_tool);
+    let surface = distance_to(tools[tool], of_tool);
     let at_tool = vec4<f32>(of_tool, 1.0);
     touch.normal = vec3<f32>(dot(pose[0].xyz, surface.xyz), dot(pose[1].xyz, surface.xyz), dot(pose[2].xyz, surface.xyz));
     touch.gap = surface.w - touch.target_gap;
@@ -119,23 +80,15 @@ fn along_surface(v: vec3<f32>, normal: vec3<f32>) -> vec3<f32> {
 
 fn tool_contact(i: u32, node: u32) {
     let first = NUMBERS * TOOLS * i;
-    let inertia = mass[node];
-    let at = 3u * node;
     let bits = touchable[i].w;
-    let u = vec3<f32>(displacement[at], displacement[at + 1u], displacement[at + 2u]);
-    let before = vec3<f32>(displacement_increment[at], displacement_increment[at + 1u], displacement_increment[at + 2u]);
-    let place = bitcast<vec3<f32>>(touchable[i].xyz) + u;
-    let held = (vec3<u32>(constrained_axes[node]) & vec3<u32>(1u, 2u, 4u)) != vec3<u32>(0u);
-    let free = select(vec3<f32>(1.0), vec3<f32>(0.0), held);
-    var predicted = vec3<f32>(0.0);
-    var to_force = 0.0;
-    if inertia > 0.0 {
-        let force = external_force_of(node) - internal_force_of(node);
-        let per_mass = 1.0 / inertia;
-        predicted = before + free * damped(node, before, (step.force_factor * per_mass) * force, per_mass);
-        // what a push of 1 comes to
-        to_force = inertia / (step.force_factor * damped(node, vec3<f32>(0.0), vec3<f32>(1.0), per_mass).x);
+    let place = bitcast<vec3<f32>>(touchable[i].xyz) + displacement_of(node);
+    let is_active = mass[node] > 0.0;
+    var of_node: Foreseen;
+    if is_active {
+        of_node = foresee(node);
     }
+    let predicted = of_node.predicted;
+    let free = of_node.free;
     var found: array<Touch, TOOLS>;
     var touched = 0u;
     for (var tool = 0u; tool < TOOLS; tool++) {
@@ -145,7 +98,7 @@ fn tool_contact(i: u32, node: u32) {
             tool_touch[at_tool + k] = 0.0;
         }
         found[tool].touches = false;
-        if inertia > 0.0 && ((bits >> tool) & 1u) == 1u {
+        if is_active && ((bits >> tool) & 1u) == 1u {
             found[tool] = predict(tool, place, predicted, stuck);
             if found[tool].touches {
                 touched++;
@@ -197,7 +150,7 @@ fn tool_contact(i: u32, node: u32) {
         if !found[tool].touches || found[tool].push <= 0.0 {
             continue;
         }
-        let force = to_force * (found[tool].outwards + found[tool].tangential);
+        let force = of_node.to_force * (found[tool].outwards + found[tool].tangential);
         load += force;
         let at_tool = first + NUMBERS * tool;
         tool_touch[at_tool] = force.x;
@@ -212,7 +165,7 @@ fn tool_contact(i: u32, node: u32) {
         }
         if limits.books != 0u {
             let work = step.booked * dot(force, found[tool].tool_step);
-            let on_node = step.booked * dot(force * free, 0.5 * (before + d));
+            let on_node = step.booked * dot(force * free, 0.5 * (of_node.before + d));
             tool_touch[at_tool + 4u] += length(along_surface(d - found[tool].tool_step, found[tool].normal));
             tool_touch[at_tool + 5u] += work;
             tool_touch[at_tool + 6u] += work - on_node;

@@ -1,18 +1,16 @@
 //! `grasp`: closed tools take nodes along. `shaders/grasp.wgsl` is its twin.
 
-use super::integrate::damping_fragment;
 use super::node_system::{Before, NodeSystem};
 use super::places_within;
 use super::registry::{Phase, System};
-use super::tool_contact::{ToolRow, row_of};
+use super::tool_contact::{ToolNodes, tool_stage};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, Factors, NodeColumns};
-use crate::backend::kernel::{Fragment, Uniform, uniform};
-use crate::backend::node_stage::{NodeStage, rows_of};
+use crate::backend::kernel::{Uniform, uniform};
+use crate::backend::node_stage::NodeStage;
 use crate::components::*;
 use crate::math::SimdScalar;
 use crate::shader;
-use crate::tools::Geometry;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -106,8 +104,7 @@ impl Grasps {
             values[3] = T::default();
             return;
         }
-        let inertia = nodes.inertia[row].to_f64();
-        if inertia <= 0.0 {
+        if nodes.inertia[row] <= T::default() {
             return;
         }
         let place = nodes.rest[row] - self.reference + nodes.displacement(row);
@@ -123,11 +120,7 @@ impl Grasps {
             return;
         }
         let of_tool = DVec3::from_array([6, 7, 8].map(|i: usize| values[i].to_f64()));
-        // as integrate will find it
-        let vector = |all: &[T]| DVec3::from_array([0, 1, 2].map(|i| all[3 * row + i].to_f64()));
-        let force = nodes.external.as_deref().map_or(DVec3::ZERO, vector) - vector(nodes.internal);
-        let damping = nodes.damping.map_or(0.0, |all| all[row].to_f64());
-        let foreseen = step.factors.foresee(inertia, damping, nodes.axes[row], vector(nodes.step), force);
+        let foreseen = nodes.foresee(&step.factors, row);
         let gap = foreseen.free * (pose.place(of_tool) - place - foreseen.step);
         let force = foreseen.to_force * gap;
         if force.length() > grasp.strength {
@@ -175,55 +168,27 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
 }
 
 fn stage(body: Entity, grasps: &Grasps, world: &mut World, buffers: &mut dyn Buffers) -> NodeStage {
-    let clock = *world.resource::<Clock>();
-    let damped = world.get::<DampingCoefficient>(body).is_some();
-    let relaxed = clock.relaxation.is_some();
-    let places = grasps.rows.iter().zip(&grasps.masks).map(|(&row, &mask)| {
-        let rest = world.get::<RestPosition>(body).map_or(DVec3::ZERO, |rest| rest.0[row as usize]);
-        let [x, y, z] = (rest - grasps.reference).as_vec3().to_array().map(f32::to_bits);
-        [x, y, z, mask]
-    });
-    let places: Vec<[u32; 4]> = places.collect();
-    let (mut grids, mut tools, mut grips) = (Vec::<f32>::new(), Vec::<u8>::new(), Vec::<u8>::new());
-    for grasp in &grasps.grasps {
-        tools.extend(row_of(&grasp.tool, grids.len() as u32).bytes());
-        if let Geometry::Grid(grid) = &grasp.tool.geometry {
-            grids.extend(grid.values());
-        }
-        // infinity is no number that a shader must know
-        let number = |number: f64| (number as f32).min(f32::MAX);
-        let grip = GripRow {
-            closed: grasp.closed as u32,
-            reach: number(grasp.reach.unwrap_or(f64::INFINITY)),
-            strength: number(grasp.strength),
-            books: u32::from(!relaxed),
-        };
-        grips.extend(grip.bytes());
-    }
-    let mass = if world.get::<FictitiousMass>(body).is_some() { FictitiousMass::NAME } else { Mass::NAME };
-    let mut stage = NodeStage::new("grasp", "grasp", body, rows_of(body, world), shader!("grasp"))
-        .own(shader!("tool_shape"))
-        .own(Fragment::new("generated: how many grasps", counts(grasps)))
-        .own(damping_fragment(damped, relaxed))
-        .bind_uniform::<ToolRow>("tools", buffers.uniform("tools that hold".into(), &tools))
-        .bind_uniform::<GripRow>("grips", buffers.uniform("grips".into(), &grips))
-        .bind("holdable", buffers.constants("nodes that tools may hold".into(), bytemuck::cast_slice(&places)))
-        .of_rows(grasps.rows.clone())
-        .column(Mass::NAME, buffers.column(body, mass));
-    for column in [ConstrainedAxes::NAME, Displacement::NAME, DisplacementIncrement::NAME, ToolHold::NAME] {
-        stage = stage.column(column, buffers.column(body, column));
-    }
-    for column in [InternalForce::NAME, ExternalForce::NAME] {
-        stage = stage.column(column, buffers.column(body, column));
-    }
-    if damped {
-        stage = stage.column(DampingCoefficient::NAME, buffers.column(body, DampingCoefficient::NAME));
-    }
-    stage = if grids.is_empty() {
-        stage.own(super::tool_contact::no_grid())
-    } else {
-        let values = buffers.constants("distances of tools that hold".into(), bytemuck::cast_slice(&grids));
-        stage.own(shader!("tool_grid")).own(shader!("tool_of_grid")).bind("tool_grid_values", values)
+    let of = ToolNodes {
+        system: "grasp",
+        twin: shader!("grasp"),
+        counts: counts(grasps),
+        tools: grasps.grasps.iter().map(|grasp| &grasp.tool).collect(),
+        reference: grasps.reference,
+        rows: &grasps.rows,
+        masks: &grasps.masks,
+        nodes: "holdable",
+        column: ToolHold::NAME,
     };
-    stage.with_step(world).loaded(true).that_asks_for_forces()
+    let stage = tool_stage(body, of, world, buffers);
+    let books = u32::from(world.resource::<Clock>().relaxation.is_none());
+    // infinity is no number that a shader must know
+    let number = |number: f64| (number as f32).min(f32::MAX);
+    let grip = |grasp: &Grasp| GripRow {
+        closed: grasp.closed as u32,
+        reach: number(grasp.reach.unwrap_or(f64::INFINITY)),
+        strength: number(grasp.strength),
+        books,
+    };
+    let grips: Vec<u8> = grasps.grasps.iter().flat_map(|grasp| grip(grasp).bytes()).collect();
+    stage.bind_uniform::<GripRow>("grips", buffers.uniform("grips".into(), &grips))
 }

@@ -1,22 +1,21 @@
 //! `tool_contact`: rigid tools keep nodes outside. `shaders/tool_contact.wgsl` is its twin.
 
 mod row;
+mod stage;
 
-use super::integrate::damping_fragment;
 use super::node_system::{Before, NodeSystem};
 use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, Factors, Foreseen, NodeColumns};
-use crate::backend::kernel::{Fragment, Uniform, uniform};
-use crate::backend::node_stage::{NodeStage, rows_of};
+use crate::backend::kernel::{Uniform, uniform};
+use crate::backend::node_stage::NodeStage;
 use crate::components::*;
 use crate::math::SimdScalar;
 use crate::shader;
-use crate::tools::Geometry;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
-pub(super) use row::{ToolRow, row_of};
+pub(super) use stage::{ToolNodes, stage as tool_stage};
 
 /// The explicit Lagrange correction of the predicted step: each node's next step d* is predicted as `integrate` will
 /// find it, and where it would end inside a tool, the force is found that makes it end on the surface. That force is a
@@ -166,12 +165,7 @@ impl ToolContacts {
         if inertia <= 0.0 || !(0..self.tools.len()).any(|tool| near(&tool)) {
             return;
         }
-        // as integrate will find it
-        let vector = |all: &[T]| DVec3::from_array([0, 1, 2].map(|i| all[3 * row + i].to_f64()));
-        let force = nodes.external.as_deref().map_or(DVec3::ZERO, vector) - vector(nodes.internal);
-        let damping = nodes.damping.map_or(0.0, |all| all[row].to_f64());
-        let Foreseen { before, step: predicted, free, to_force } =
-            step.factors.foresee(inertia, damping, nodes.axes[row], vector(nodes.step), force);
+        let Foreseen { before, step: predicted, free, to_force } = nodes.foresee(&step.factors, row);
         let mut all = [None; ToolContacts::MOST];
         let mut touched = 0;
         for tool in (0..self.tools.len()).filter(near) {
@@ -319,12 +313,6 @@ fn counts(contacts: &ToolContacts) -> String {
     format!("const TOOLS: u32 = {tools}u;\nconst NUMBERS: u32 = {numbers}u;\n")
 }
 
-/// What takes the place of distances to grids where there are none.
-pub(super) fn no_grid() -> Fragment {
-    let text = "fn grid_distance(row: ToolRow, y: vec3<f32>) -> vec4<f32> {\n    return vec4<f32>(0.0);\n}\n";
-    Fragment::new("generated: no tool is a grid", text)
-}
-
 /// One stage for each body that tools may touch.
 fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
     let all: Vec<(Entity, ToolContacts)> =
@@ -333,55 +321,19 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
 }
 
 fn stage(body: Entity, contacts: &ToolContacts, world: &mut World, buffers: &mut dyn Buffers) -> NodeStage {
-    let clock = *world.resource::<Clock>();
-    let fictitious = world.get::<FictitiousMass>(body).is_some();
-    let damped = world.get::<DampingCoefficient>(body).is_some();
-    let relaxed = clock.relaxation.is_some();
-    let limits = Limits { edge: contacts.edge as f32, settling: contacts.settling as f32, books: u32::from(!relaxed) };
-    // bits of floats: those of a mask would be a float so small that a device may take it for 0
-    let places: Vec<[u32; 4]> = contacts
-        .rows
-        .iter()
-        .zip(&contacts.masks)
-        .map(|(&row, &mask)| {
-            let rest = world.get::<RestPosition>(body).map_or(DVec3::ZERO, |rest| rest.0[row as usize]);
-            let [x, y, z] = (rest - contacts.reference).as_vec3().to_array().map(f32::to_bits);
-            [x, y, z, mask]
-        })
-        .collect();
-    let mut grids: Vec<f32> = Vec::new();
-    let mut tools: Vec<u8> = Vec::new();
-    for contact in &contacts.tools {
-        tools.extend(row_of(contact, grids.len() as u32).bytes());
-        if let Geometry::Grid(grid) = &contact.geometry {
-            grids.extend(grid.values());
-        }
-    }
-    let count = Fragment::new("generated: how many tools", counts(contacts));
-    let mass = if fictitious { FictitiousMass::NAME } else { Mass::NAME };
-    let mut stage = NodeStage::new("tool_contact", "tool_contact", body, rows_of(body, world), shader!("tool_contact"))
-        .own(shader!("tool_shape"))
-        .own(count)
-        .own(damping_fragment(damped, relaxed))
-        .bind_uniform::<ToolRow>("tools", buffers.uniform("tools".into(), &tools))
-        .bind_uniform::<Limits>("limits", buffers.uniform("tool contact".into(), &limits.bytes()))
-        .bind("touchable", buffers.constants("nodes that tools may touch".into(), bytemuck::cast_slice(&places)))
-        .of_rows(contacts.rows.clone())
-        .column(Mass::NAME, buffers.column(body, mass));
-    for column in [ConstrainedAxes::NAME, Displacement::NAME, DisplacementIncrement::NAME, ToolTouch::NAME] {
-        stage = stage.column(column, buffers.column(body, column));
-    }
-    for column in [InternalForce::NAME, ExternalForce::NAME] {
-        stage = stage.column(column, buffers.column(body, column));
-    }
-    if damped {
-        stage = stage.column(DampingCoefficient::NAME, buffers.column(body, DampingCoefficient::NAME));
-    }
-    stage = if grids.is_empty() {
-        stage.own(no_grid())
-    } else {
-        let values = buffers.constants("distances of tools".into(), bytemuck::cast_slice(&grids));
-        stage.own(shader!("tool_grid")).own(shader!("tool_of_grid")).bind("tool_grid_values", values)
+    let of = ToolNodes {
+        system: "tool_contact",
+        twin: shader!("tool_contact"),
+        counts: counts(contacts),
+        tools: contacts.tools.iter().collect(),
+        reference: contacts.reference,
+        rows: &contacts.rows,
+        masks: &contacts.masks,
+        nodes: "touchable",
+        column: ToolTouch::NAME,
     };
-    stage.with_step(world).loaded(true).that_asks_for_forces()
+    let stage = tool_stage(body, of, world, buffers);
+    let books = u32::from(world.resource::<Clock>().relaxation.is_none());
+    let limits = Limits { edge: contacts.edge as f32, settling: contacts.settling as f32, books };
+    stage.bind_uniform::<Limits>("limits", buffers.uniform("tool contact".into(), &limits.bytes()))
 }

@@ -7,7 +7,7 @@ use crate::tools::Geometry;
 /// A tool at a body, as kernels see it.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-pub(in crate::systems) struct ToolRow {
+pub(super) struct ToolRow {
     kind: u32,
     size_0: f32,
     size_1: f32,
@@ -48,7 +48,7 @@ uniform!(ToolRow {
 const GRID: u32 = u32::MAX;
 
 /// As it is in a uniform. `first`: where the values of its grid begin, if it has one.
-pub(in crate::systems) fn row_of(contact: &ToolContact, first: u32) -> ToolRow {
+pub(super) fn row_of(contact: &ToolContact, first: u32) -> ToolRow {
     let (kind, sizes, rounding, grid) = match &contact.geometry {
         Geometry::Analytic(solid) => {
             let [kind, sizes @ .., rounding] = solid.packed();

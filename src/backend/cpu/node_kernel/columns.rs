@@ -1,5 +1,6 @@
 //! What moves nodes, and how it is shared out among tasks.
 
+use super::factors::{Factors, Foreseen};
 use crate::components::{GROUP_ROWS, WORK_NUMBERS};
 use crate::math::{Scalar, SimdScalar};
 use glam::DVec3;
@@ -111,6 +112,14 @@ impl<T: Scalar> NodeColumns<'_, T> {
     /// Where one of these nodes is (m).
     pub fn place(&self, row: usize) -> DVec3 {
         self.rest[row] + self.displacement(row)
+    }
+
+    /// Where `integrate` will take one of these nodes, from what its loads are by now.
+    pub fn foresee(&self, factors: &Factors<f64>, row: usize) -> Foreseen {
+        let vector = |all: &[T]| DVec3::from_array([0, 1, 2].map(|i| all[3 * row + i].to_f64()));
+        let force = self.external.as_deref().map_or(DVec3::ZERO, vector) - vector(self.internal);
+        let damping = self.damping.map_or(0.0, |all| all[row].to_f64());
+        factors.foresee(self.inertia[row].to_f64(), damping, self.axes[row], vector(self.step), force)
     }
 
     /// Adds to the load on one of these nodes (N); nothing where the body has no loads.
