@@ -23,8 +23,8 @@ pub const CRITERION_STEPS: u64 = 10;
 
 /// At the end of a step, elements go whose time has come or that pass a limit. Their volume and hourglass stiffness
 /// become zero, so that they exert nothing; what their nodes weigh is summed anew, and nodes without elements are
-/// inactive; faces of removed elements bear no load. The energy and momentum they had are booked, and what of the energy
-/// constraints had given.
+/// inactive; faces of removed elements bear no load. The energy and momentum they had are booked, and what of the
+/// energy constraints had given.
 pub fn system() -> System {
     System::built_in(
         "element_removal",

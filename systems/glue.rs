@@ -9,10 +9,10 @@ use bevy_ecs::query::QueryData;
 use glam::DVec3;
 use std::collections::BTreeMap;
 
-/// Like `surface_contact`, with vectors and both signs: each node's next step is predicted, and the forces are found that
-/// let points end where they are on their faces (see [`TieSet::solve`]), and are added to the loads. There is no stiffness
-/// to choose, and the stable step stays as it is. A tie whose force is too large for it breaks in that step, and bears
-/// nothing any more.
+/// Like `surface_contact`, with vectors and both signs: each node's next step is predicted, and the forces are found
+/// that let points end where they are on their faces (see [`TieSet::solve`]), and are added to the loads. There is no
+/// stiffness to choose, and the stable step stays as it is. A tie whose force is too large for it breaks in that step,
+/// and bears nothing any more.
 pub fn system() -> System {
     System::built_in(
         "glue",

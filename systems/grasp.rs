@@ -14,11 +14,11 @@ use crate::shader;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
-/// A node that a closed tool holds stays at the place in the tool's frame where it was when the tool closed: motion that
-/// is prescribed by a frame. Like `tool_contact` it finds the force that takes the predicted step there, after all other
-/// forces, and adds it to the loads: `integrate`, the balance of energy and the residual of a static analysis need not
-/// know of it, and the stable step stays as it is. Nothing jumps when it closes; when it opens, the node keeps the
-/// velocity of its last step.
+/// A node that a closed tool holds stays at the place in the tool's frame where it was when the tool closed: motion
+/// that is prescribed by a frame. Like `tool_contact` it finds the force that takes the predicted step there, after all
+/// other forces, and adds it to the loads: `integrate`, the balance of energy and the residual of a static analysis
+/// need not know of it, and the stable step stays as it is. Nothing jumps when it closes; when it opens, the node keeps
+/// the velocity of its last step.
 pub fn system() -> System {
     System::built_in_nodes::<Grasps>(
         "grasp",

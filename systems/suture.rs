@@ -23,8 +23,8 @@ pub fn system() -> System {
     .on_nodes(stages)
 }
 
-/// Threads go slack and taut: at 0.9 of the step that is stable with them drawn each time may make energy (a thread of 1e5
-/// N/m between two cubes trebled it in 9000 steps), at 0.6 of it none was made. This is the square of their ratio.
+/// Threads go slack and taut: at 0.9 of the step that is stable with them drawn each time may make energy (a thread of
+/// 1e5 N/m between two cubes trebled it in 9000 steps), at 0.6 of it none was made. This is the square of their ratio.
 const SLACK: f64 = 2.25;
 
 impl NodeSystem for Sutured {

@@ -35,8 +35,8 @@ pub enum Signal {
         /// The point (m).
         reference: DVec3,
     },
-    /// A curve at the beginning of the step, and 1 where that is ½ or more, else 0: one slot. On the way to rest it is as
-    /// at the end.
+    /// A curve at the beginning of the step, and 1 where that is ½ or more, else 0: one slot. On the way to rest it is
+    /// as at the end.
     Factor {
         /// Course in time.
         curve: Curve,

@@ -6,9 +6,9 @@ use bevy_ecs::prelude::*;
 use glam::DVec3;
 
 columns! {
-    /// What each suture is to the body that its first point is in, [`SUTURE_NUMBERS`] a suture: 0 while it holds, 1 where
-    /// its tension was too large for it, 2 where the tissue that it was in has gone; when that was (s); its tension (N)
-    /// and its length (m) at the beginning of the last step; what it stored when it tore (J).
+    /// What each suture is to the body that its first point is in, [`SUTURE_NUMBERS`] a suture: 0 while it holds, 1
+    /// where its tension was too large for it, 2 where the tissue that it was in has gone; when that was (s); its
+    /// tension (N) and its length (m) at the beginning of the last step; what it stored when it tore (J).
     SutureState(Reals) = "suture_state", State, Other;
     /// Force of sutures on each of [`Sutured::rows`] in this step (N), a vector a node.
     SutureForce(Reals) = "suture_force", Scratch, Other;
@@ -74,7 +74,8 @@ pub struct Sutured {
     /// Stiffness of the springs at each of them (N/m): twice the sum of stiffness times weight. With these on the
     /// diagonal a matrix is never less than that of the springs, by Cauchy and Schwarz.
     pub stiffness: Vec<f64>,
-    /// Its mass at the start (kg): a node that weighs less by now makes its sutures softer, so that the stable step stays.
+    /// Its mass at the start (kg): a node that weighs less by now makes its sutures softer, so that the stable step
+    /// stays.
     pub masses: Vec<f64>,
     /// Forces on them in this step (N).
     pub forces: Vec<DVec3>,

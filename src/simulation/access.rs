@@ -183,7 +183,8 @@ impl Simulation {
         reading.ok_or_else(|| Error::Options(format!("nothing under `contacts` lets {body:?} touch a body")))
     }
 
-    /// What a suture, a tie or glue bears, by its name, or as a text by its place among the attachments, counted from 0.
+    /// What a suture, a tie or glue bears, by its name, or as a text by its place among the attachments, counted from
+    /// 0.
     ///
     /// # Errors
     /// No such attachment; what the GPU says.

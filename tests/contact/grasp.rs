@@ -94,8 +94,8 @@ fn a_cube_is_grasped_lifted_carried_and_let_go() {
         assert_eq!((reading.nodes, reading.force), (0, DVec3::ZERO), "{what}");
         assert!(last.x > 0.5 * 8e-3 * 0.1, "{what}: it goes on as the tool has drawn it: {last}");
         let energies = simulation.energies().unwrap();
-        // gravity has taken what the cube was lifted by, damping what 3 cm at 7.5 cm/s and 3.1 cm at 10 cm/s cost, and what
-        // is left is how it moves; to a tenth, as it swings on the way
+        // gravity has taken what the cube was lifted by, damping what 3 cm at 7.5 cm/s and 3.1 cm at 10 cm/s cost, and
+        // what is left is how it moves; to a tenth, as it swings on the way
         let damped = 20.0 * 8e-3 * (0.075 * 0.03 + 0.1 * 0.031);
         let (least, most) = (weight * 0.029, weight * 0.03 + 1.1 * damped + 0.5 * 8e-3 * 0.01);
         assert!(reading.work > least && reading.work < most, "{what}: {reading:?}");

@@ -65,8 +65,8 @@ fn tools_hold_the_same_nodes_with_the_same_forces() {
         let effects = Effects { damping, moved, loads: true, ..Effects::default() };
         for step in [0, 3] {
             let Some(mut pair) = run("grasp", &effects, step, |world| hold(world, felt)) else { return };
-            // the force is to_force times a way that is found in some thirty roundings of lengths up to the body's size,
-            // to which the forces of three grasps are added one after the other
+            // the force is to_force times a way that is found in some thirty roundings of lengths up to the body's
+            // size, to which the forces of three grasps are added one after the other
             let rounding = 300.0 * UNIT;
             let bound = |pair: &Pair, body: Entity, node: usize| {
                 let world = pair.before();

@@ -25,8 +25,8 @@ fn gone(simulation: &mut Simulation) -> f64 {
     simulation.probe("hole").unwrap()[0]
 }
 
-/// An island smaller than a crumb goes in the first look after it is cut off, books balance, and the tool has to catch up
-/// with its volume; a larger one stays, and so does one that is out of reach or may not be taken.
+/// An island smaller than a crumb goes in the first look after it is cut off, books balance, and the tool has to catch
+/// up with its volume; a larger one stays, and so does one that is out of reach or may not be taken.
 #[test]
 fn islands_below_a_crumb_go_at_once_and_count_as_taken_in() {
     for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
@@ -59,8 +59,8 @@ fn islands_below_a_crumb_go_at_once_and_count_as_taken_in() {
     }
 }
 
-/// A rate of 10 m³/s has taken in .3 m³ when the island goes, at .05 s, and then lacks .7 m³: the next cell, of 1 m³, goes
-/// at .22 s and not before.
+/// A rate of 10 m³/s has taken in .3 m³ when the island goes, at .05 s, and then lacks .7 m³: the next cell, of 1 m³,
+/// goes at .22 s and not before.
 #[test]
 fn a_tool_catches_up_with_the_crumbs_it_took() {
     for run in configurations() {
@@ -235,8 +235,8 @@ fn what_is_bared_beside_a_tool_gets_no_kick_and_is_touched_at_once() {
     }
 }
 
-/// A block stands on a pillar that was a broad block until what was around it went: between bodies that touch with their
-/// old faces nothing changes, and what is bared gives no kick.
+/// A block stands on a pillar that was a broad block until what was around it went: between bodies that touch with
+/// their old faces nothing changes, and what is bared gives no kick.
 #[test]
 fn what_is_bared_beside_another_body_gets_no_kick() {
     for run in configurations() {

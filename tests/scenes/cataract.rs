@@ -141,8 +141,8 @@ impl Watched {
         let e = summary.energies;
         let work = e.load_work.unwrap() + e.constraint_work.unwrap();
         let (spent, gone) = (e.kinetic + e.internal_work.unwrap() + e.damping_loss.unwrap(), e.removed);
-        // what the forces inside have taken is stored, lost to viscosity, or went with the elements; what moved with these
-        // is a part of what is removed
+        // what the forces inside have taken is stored, lost to viscosity, or went with the elements; what moved with
+        // these is a part of what is removed
         assert!(spent <= 1.02 * work && spent + gone >= 0.98 * work, "{spent} J of {work} J: {e:?}");
         let tip = &summary.tools[TIP];
         // what goes with the tip is half a step behind it; as long as it only sucks it does nothing

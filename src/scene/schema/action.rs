@@ -159,8 +159,8 @@ pub enum When {
         tool: String,
         /// How far from its mouth an element's centroid may be (m).
         reach: f64,
-        /// The volume that the tool takes in a second (m³/s), by rest volume, while there is something in its reach, the
-        /// nearest first.
+        /// The volume that the tool takes in a second (m³/s), by rest volume, while there is something in its reach,
+        /// the nearest first.
         #[serde(default)]
         rate: Option<f64>,
         /// In place of a rate: what elements in reach pass that go.
