@@ -192,7 +192,8 @@ impl Simulation {
         let mut all = self.attachments()?;
         all.remove(name).ok_or_else(|| {
             let names: Vec<&str> = all.keys().map(String::as_str).collect();
-            Error::Options(format!("there is no suture, tie or glue named {name:?}; there is {}", names.join(", ")))
+            let there = if names.is_empty() { "none in this scene".into() } else { names.join(", ") };
+            Error::Options(format!("there is no suture, tie or glue named {name:?}; there is {there}"))
         })
     }
 
