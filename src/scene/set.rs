@@ -140,6 +140,15 @@ struct Slot<'a> {
 impl<'a> Slot<'a> {
     fn find(way: &'a Path, root: &Node, text: &str) -> Result<Self, (String, Vec<String>)> {
         let Lost { node, reached } = match way.find(root) {
+            // put together of what parts have, and nowhere written as a whole
+            Ok(node) if node.span.is_empty() => {
+                let message =
+                    format!("only parts have such: there is no `{way}` in the scene to be changed as a whole");
+                return Err((
+                    message,
+                    vec![format!("what is in it can be changed, or what a part brings: `parts.NAME.content.{way}`")],
+                ));
+            }
             Ok(node) => return Ok(Self { span: node.span.clone(), new: Vec::new(), in_map: false }),
             Err(lost) => lost,
         };

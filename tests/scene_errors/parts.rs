@@ -256,6 +256,13 @@ fn mistakes_around_parts_are_shown_where_the_part_is_named() {
     assert!(told.contains("there is no `eye.lenz` in `bodies` | did you mean `eye.lens`?"), "{told}");
     let told = brief(WHOLE, files(), &["bodies.cube=(refine: 1)"]);
     assert!(told.contains("--set bodies.cube=(refine: 1): only parts have such"), "{told}");
+    let told = brief(WHOLE, files(), &["probes={}"]);
+    let expected = "--set probes={}: only parts have such: there is no `probes` in the scene to be changed as a whole | \
+                    what is in it can be changed, or what a part brings: `parts.NAME.content.probes`";
+    assert!(told.contains(expected), "{told}");
+    // as it says
+    let scene = read(WHOLE, files(), &["parts.tip.content.probes={}"]).unwrap();
+    assert_eq!(scene.scene.probes.keys().collect::<Vec<_>>(), ["eye.top"]);
 }
 
 #[test]
