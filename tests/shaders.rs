@@ -1,8 +1,10 @@
 //! Kernels compose, validate and fit what Rust knows of them, for every combination of effects; no GPU needed.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+mod kernel_support;
 mod kernel_units;
 mod kernel_worlds;
 use bevy_ecs::prelude::World;
+use kernel_support::SUPPORT;
 use kernel_worlds::{AROUND, Described, Effects, OF_NODES, all_kernels, shared_kernels};
 use sinew::backend::kernel::{BindingKind, Composer, Kernel, Layout, MostBuffers, Uniform};
 use sinew::backend::patch_lists::WEBGPU_WORKGROUP_MEMORY;
@@ -10,75 +12,6 @@ use sinew::components::{Scheme, Signals};
 use sinew::systems::Registry;
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
 use std::collections::BTreeSet;
-
-/// Fragments that belong to no system, element or material by name, and what calls for them.
-const SUPPORT: &[(&str, &str)] = &[
-    ("mean_pressure", "elements with one pressure and several points"),
-    ("corner", "corners of elements, in columns"),
-    ("corner_volume", "the same for averaged nodal pressure"),
-    ("patch_volume", "averaged nodal pressure, in patches"),
-    ("patches", "forces summed patch by patch"),
-    ("patch_pass", "the same, a workgroup a patch"),
-    ("patch_step", "the same, and nodes inside patches move"),
-    ("patch_gather", "forces on nodes inside a patch, within its kernel"),
-    ("pass_rows", "how many nodes a kernel has"),
-    ("many_steps", "steps of small bodies, in one dispatch"),
-    ("two_pass", "forces summed in two passes"),
-    ("alive", "loads on faces of elements that can go"),
-    ("block", "columns of element blocks"),
-    ("criterion", "removal by criterion"),
-    ("damping_coefficient", "damping, in integrate"),
-    ("displacement_compensation", "compensated sums, in integrate"),
-    ("due", "removal"),
-    ("note_inverted", "elements turned inside out stop the run, or recover"),
-    ("remove_inverted", "elements turned inside out go"),
-    ("removed_motion", "the motion of elements that go"),
-    ("eigen", "principal stretches, in laws"),
-    ("elementary", "exponential and logarithm, in laws"),
-    ("exponential_fibres", "an effect of a material"),
-    ("fibres", "an effect of a material"),
-    ("prony", "an effect of a material"),
-    ("invariants", "stresses of an energy's slopes, in laws"),
-    ("energy", "elastic energy, where elements can go"),
-    ("force_factor", "forces that differ from copy to copy"),
-    ("external_force", "sums of loads, between kernels"),
-    ("external_force_local", "sums of loads, within one"),
-    ("internal_force", "forces of elements, between kernels"),
-    ("internal_force_local", "forces of elements, within one"),
-    ("fibres_field", "fibres of differing directions"),
-    ("fibres_uniform", "fibres of one direction"),
-    ("compensation", "compensated sums, in boundary"),
-    ("node_damping", "damping, where elements can go"),
-    ("node_state", "nodes as loads of a scene's own see them"),
-    ("node_mass", "mass, where elements can go"),
-    ("relaxation", "a static analysis, in integrate"),
-    ("row", "the row of an invocation"),
-    ("step", "what is the same for a whole step"),
-    ("tensor", "small tensors"),
-    ("face_area", "faces that loads follow, in pressure and suction"),
-    ("suction_nodes", "a part of suction_mouth"),
-    ("suction_presence", "another"),
-    ("suction_pressure", "another"),
-    ("foreseen", "where integrate will take a node, in tool_contact and grasp"),
-    ("tool_grid", "distances to tools that are triangles"),
-    ("tool_of_grid", "the same, in tool_contact and grasp"),
-    ("tool_row", "a tool as both see it"),
-    ("tool_removal_choice", "the second part of tool_removal"),
-    ("tool_removal_due", "the third part of tool_removal"),
-    ("tool_shape", "distances to tools"),
-    ("inverse_cbrt", "a root from the bits of a number"),
-    ("previous_prescribed_increment", "the step that boundary writes over"),
-    ("internal_work", "work against internal forces, in integrate"),
-    ("watch_elements", "what the guards look at"),
-    ("watch_nodes", "what the guards look at"),
-    ("work", "energies, in integrate"),
-    ("kinematics", "strain measures"),
-    ("finite_strain", "laws for large strains"),
-    ("nodal_mean", "the second half of nodal_volume"),
-    ("point", "an element at an integration point"),
-    ("point_pressure", "pressure from the only point"),
-    ("volume_ratio", "laws whose measure of volume is J"),
-];
 
 fn kernels(effects: &Effects) -> Vec<(String, Kernel)> {
     all_kernels(effects.simulation(BackendChoice::Cpu).world_mut()).0
