@@ -15,6 +15,10 @@ pub struct GuardMemory {
     pub rounding: f64,
     /// What elements held at the start (J), where bodies start deformed.
     pub at_start: f64,
+    /// The first of the looks, without a sound one since, that found energy from nothing which the last half step may
+    /// explain: its step. What is there [`GuardMemory::DOUBT`] steps later is an imbalance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub in_doubt: Option<u64>,
     /// The largest energy so far (J): what imbalances are shares of.
     pub scale: f64,
     /// The largest imbalance so far, as a share of the scale then; positive where energy was made.
@@ -31,6 +35,18 @@ pub struct GuardMemory {
     pub fastest_node: Option<Seen>,
     /// What has been warned of, each once.
     pub warnings: Vec<Notice>,
+}
+
+impl GuardMemory {
+    /// Steps that an imbalance must last which the last half step may explain. What is moved on at the speed that it got
+    /// in one step has spent (2n − 1)² times the strain energy of half a step after n of them: of 16 that is a
+    /// thousandth.
+    pub const DOUBT: u64 = 16;
+
+    /// The step of the look that an imbalance in doubt is due for.
+    pub fn looks_again(&self) -> Option<u64> {
+        self.in_doubt.map(|step| step + Self::DOUBT)
+    }
 }
 
 /// Something that was seen, and where and when.

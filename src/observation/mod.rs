@@ -65,6 +65,8 @@ pub struct Observer {
     pub all_on_device: bool,
     /// The last step that passed all guards in a look at energies and elements.
     pub looked_at: Option<u64>,
+    /// The step at which the guards look again at what they are in doubt of.
+    pub looks_again: Option<u64>,
     /// The last states that passed all guards, the oldest first.
     pub window: VecDeque<Snapshot>,
     /// The last step of the run, which is always observed. That of a static analysis is known when it is there.
@@ -147,6 +149,7 @@ impl Observer {
         self.cadences().for_each(|cadence| cadence.go_on(clock.since, clock.time_step));
         self.probes.iter_mut().map(|probe| &mut probe.track).chain(&mut self.energy).for_each(Track::forget);
         self.last_step = last_step;
+        self.looks_again = world.get_resource::<GuardMemory>().and_then(GuardMemory::looks_again);
         // rows within the next step are as they would have been
         self.keep_what_precedes(world)
     }
@@ -188,6 +191,7 @@ impl Observer {
         let mut due = (step / flags + 1) * flags;
         if !self.to_rest {
             due = due.min((step / self.watch.limits.every + 1) * self.watch.limits.every);
+            due = self.looks_again.filter(|&again| again > step).map_or(due, |again| due.min(again));
         }
         if !self.to_rest {
             let files = self.snapshots.iter().chain([&self.fields]).map(|cadence| cadence.next_after(step));
@@ -260,10 +264,11 @@ impl Observer {
         if shown && let Some(found) = guards::find_in_result(world, self.good_until, &self.watch)? {
             return Err(Error::Unstable(Box::new(found)));
         }
-        let look = clock.step.is_multiple_of(self.watch.limits.every.max(1)) || last;
-        if look && clock.step > 0 && !to_rest {
-            guards::weigh(world, self.good_until, &self.watch)?;
-            self.looked_at = Some(clock.step);
+        let regular = clock.step.is_multiple_of(self.watch.limits.every.max(1));
+        if (regular || last || self.looks_again == Some(clock.step)) && clock.step > 0 && !to_rest {
+            let passed = guards::weigh(world, self.good_until, &self.watch, last)?;
+            self.looks_again = world.get_resource::<GuardMemory>().and_then(GuardMemory::looks_again);
+            self.looked_at = if passed { Some(clock.step) } else { self.looked_at };
         }
         let moment = match to_rest {
             false => Moment::Step(clock.step, last),

@@ -19,6 +19,7 @@ mod energy_digits;
 mod energy_laws;
 mod equilibrium;
 mod far_away;
+mod first_touch;
 mod frames;
 mod frequency_bound;
 mod grab;
