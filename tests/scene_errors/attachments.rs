@@ -1,5 +1,6 @@
 //! Attachments of what is not there, or that cannot hold.
 
+use crate::complaints::told_of;
 use sinew::systems::Registry;
 use sinew::{SceneFile, Simulation};
 
@@ -12,17 +13,7 @@ constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))], {more}
 tools: {{\"forceps\": (shape: Capsule(length: 0.2, radius: 0.01), at: (0.05, 0.05, 0.1))}},
 attachments: [{attachments}])"
     );
-    let found = match SceneFile::from_text("t.ron", &text, std::path::Path::new("."), &[]) {
-        Err(wrong) => wrong,
-        Ok(scene) => Simulation::check(&scene, &Registry::default()),
-    };
-    let each = found.lines().into_iter().zip(found.list()).map(|(line, complaint)| {
-        let line = line.strip_prefix("t.ron:").unwrap_or(&line).to_string();
-        let (row, message) = line.split_once(": ").unwrap_or(("", &line));
-        let row = row.split(':').next().unwrap_or("");
-        complaint.notes.iter().fold(format!("{row}: {message}"), |text, note| format!("{text} | {note}"))
-    });
-    each.collect::<Vec<_>>().join("\n")
+    told_of(&text, std::path::Path::new("."))
 }
 
 const GRASP: &str = "Grasp(tool: \"forceps\", closed: Step())";

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod attachments;
+mod complaints;
 mod constraints;
 mod deep_laws;
 mod energies;

@@ -1,7 +1,6 @@
 //! Surfaces that meet wrongly: whose they are, how, and where bodies stand at the start.
 
-use sinew::systems::Registry;
-use sinew::{SceneFile, Simulation};
+use crate::complaints::told_of;
 
 /// What is said of a contact between two cubes of 10 cm, the second moved by so much.
 fn told(contact: &str, moved: &str) -> String {
@@ -12,17 +11,7 @@ fn told(contact: &str, moved: &str) -> String {
 materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}},
 contacts: [{contact}])"
     );
-    let found = match SceneFile::from_text("t.ron", &text, std::path::Path::new("."), &[]) {
-        Err(wrong) => wrong,
-        Ok(scene) => Simulation::check(&scene, &Registry::default()),
-    };
-    let each = found.lines().into_iter().zip(found.list()).map(|(line, complaint)| {
-        let line = line.strip_prefix("t.ron:").unwrap_or(&line).to_string();
-        let (row, message) = line.split_once(": ").unwrap_or(("", &line));
-        let row = row.split(':').next().unwrap_or("");
-        complaint.notes.iter().fold(format!("{row}: {message}"), |text, note| format!("{text} | {note}"))
-    });
-    each.collect::<Vec<_>>().join("\n")
+    told_of(&text, std::path::Path::new("."))
 }
 
 const MEET: &str = "Between(bodies: (\"a\", \"b\"))";

@@ -1,7 +1,6 @@
 //! Tools that cannot be, go nowhere, go too fast, or stand in the way.
 
-use sinew::systems::Registry;
-use sinew::{SceneFile, Simulation};
+use crate::complaints::told_of;
 
 /// An open tetrahedron.
 const OPEN: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\n";
@@ -17,17 +16,7 @@ constraints: [Fixed(on: Plane(normal: (0, 0, 1), at: 0))], {more}
 tools: {{\"rod\": {tool}}},
 contacts: [{contact}])"
     );
-    let found = match SceneFile::from_text("t.ron", &text, folder.path(), &[]) {
-        Err(wrong) => wrong,
-        Ok(scene) => Simulation::check(&scene, &Registry::default()),
-    };
-    let each = found.lines().into_iter().zip(found.list()).map(|(line, complaint)| {
-        let line = line.strip_prefix("t.ron:").unwrap_or(&line).to_string();
-        let (row, message) = line.split_once(": ").unwrap_or(("", &line));
-        let row = row.split(':').next().unwrap_or("");
-        complaint.notes.iter().fold(format!("{row}: {message}"), |text, note| format!("{text} | {note}"))
-    });
-    each.collect::<Vec<_>>().join("\n")
+    told_of(&text, folder.path())
 }
 
 const ROD: &str = "(shape: Capsule(length: 0.2, radius: 0.06), at: (0.05, 0.05, 0.11))";
