@@ -2,7 +2,8 @@
 //!
 //! `cargo bench --bench step` prints ns an element and step beside criterion's own figures. `cargo bench --bench step
 //! -- 10` runs the small ones only, `-- guards` what the guards cost (with SINEW_BENCH_GPU set, on the GPU in f32), `--
-//! energies` laws from an energy beside the same laws written by hand.
+//! energies` laws from an energy beside the same laws written by hand, `-- bodies` many small bodies on one thread and
+//! on two.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use criterion::{Criterion, Throughput};
@@ -258,6 +259,42 @@ fn energies() {
     }
 }
 
+/// Bodies of one patch each, which threads have to share among them: blocks of steps on one thread and on two by turns.
+fn bodies() {
+    for (kind, cells, elements) in [("Tet4", 5, 750_u64), ("Hex8", 6, 216)] {
+        for count in [1_u32, 2, 5, 20] {
+            let bodies: String = (0..count)
+                .map(|number| {
+                    format!(
+                        "\"{number}\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: ({cells}, {cells}, {cells}), elements: \
+                         {kind}), material: \"tissue\", translate: ({}, 0, 0)), ",
+                        0.2 * f64::from(number)
+                    )
+                })
+                .collect();
+            let text = format!(
+                "(duration: 1000.0, bodies: {{ {bodies} }}, materials: {{ \"tissue\": (density: 1000, {NEO_HOOKEAN}) }},
+                  loads: [Gravity(acceleration: (0, 0, -2))])"
+            );
+            let mut pair = [1, 2].map(|threads| simulation(&scene(&text), Precision::F32, threads));
+            let mut best = [f64::INFINITY; 2];
+            for _ in 0..100 {
+                for (simulation, best) in pair.iter_mut().zip(&mut best) {
+                    let started = Instant::now();
+                    simulation.advance(BLOCK).expect("steps");
+                    *best = best.min(started.elapsed().as_secs_f64() / BLOCK as f64);
+                }
+            }
+            println!(
+                "bodies, {count} of {elements} {kind}: {:.1} us a step on one thread, {:.1} on two: {:.2} of it",
+                best[0] * 1e6,
+                best[1] * 1e6,
+                best[1] / best[0]
+            );
+        }
+    }
+}
+
 /// Runs in a process of its own, so that its peak memory is its own.
 fn million() {
     let started = Instant::now();
@@ -291,6 +328,9 @@ fn main() {
     }
     if std::env::args().any(|argument| argument == "energies") {
         return energies();
+    }
+    if std::env::args().any(|argument| argument == "bodies") {
+        return bodies();
     }
     if std::env::var_os("SINEW_BENCH_MILLION").is_some() {
         return million();

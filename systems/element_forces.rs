@@ -75,6 +75,16 @@ fn element_forces(
 }
 
 impl BlockPartsItem<'_, '_> {
+    /// The body, and where in its element forces those of the block begin.
+    pub(super) fn place(&self) -> (Entity, usize) {
+        (self.block.body, self.block.force_offset)
+    }
+
+    /// How many nodes are inside each patch.
+    pub(super) fn inside(&self) -> &[u32] {
+        self.patches.map_or(&[], |patches| &patches.inside)
+    }
+
     /// Runs the block's kernel: from displacements (m), from a row of the body on, to element forces (N). Returns the
     /// patches that have elements with J < 0.
     pub(super) fn run<'a, T: Precise>(
@@ -142,7 +152,11 @@ impl Precise for f64 {
         (law, _): (&BlockLaw<f64>, Option<&BlockLaw<f32>>),
         block: &Block,
     ) -> Vec<usize> {
-        run_block::<E, f64>(cpu, columns, law, patch_groups(block.kind))
+        let groups_a_patch = patch_groups(block.kind);
+        match law.own_kernels.as_ref().filter(|_| cpu.has_vectors()) {
+            Some(own) => own.run_double(cpu, columns, law, block, groups_a_patch),
+            None => run_block::<E, f64>(cpu, columns, law, groups_a_patch),
+        }
     }
 }
 
@@ -162,7 +176,7 @@ impl Precise for f32 {
                 &rounded
             }
         };
-        match &law.own_kernels {
+        match law.own_kernels.as_ref().filter(|_| cpu.has_vectors()) {
             Some(own) => own.run(cpu, columns, law, block, groups_a_patch),
             None => run_block_fast::<E>(cpu, columns, law, groups_a_patch),
         }

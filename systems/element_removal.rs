@@ -16,6 +16,7 @@ use crate::shader;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use std::borrow::Cow;
+use std::sync::{Mutex, PoisonError};
 
 /// Criteria are looked at in every tenth step: a wave passes a tenth of an element's height in a step, and to look
 /// costs as much as the forces.
@@ -164,7 +165,16 @@ fn element_removal(
 /// Rows for which something holds, ascending.
 fn rows_where(cpu: &Cpu, count: usize, holds: impl Fn(usize) -> bool + Sync + Send) -> Vec<usize> {
     let rows = |task: usize| (task * ROWS_A_TASK..count.min((task + 1) * ROWS_A_TASK)).filter(|&row| holds(row));
-    cpu.map(count.div_ceil(ROWS_A_TASK), |task| rows(task).collect::<Vec<usize>>()).concat()
+    let found = Mutex::new(Vec::new());
+    cpu.for_each(0..count.div_ceil(ROWS_A_TASK), |task| {
+        let own: Vec<usize> = rows(task).collect();
+        if !own.is_empty() {
+            found.lock().unwrap_or_else(PoisonError::into_inner).extend(own);
+        }
+    });
+    let mut found = found.into_inner().unwrap_or_else(PoisonError::into_inner);
+    found.sort_unstable();
+    found
 }
 
 pub(super) fn measure(measure: Measure, row: usize, view: &BlockView<'_>) -> f64 {

@@ -1,7 +1,7 @@
 //! Neighbouring systems of a step that work node by node, in one pass over the nodes: what one writes the next finds in
 //! the core's cache. On a GPU the same is one kernel (src/backend/node_stage.rs).
 
-use super::node_system::{Before, BoundSystems, NodeRows, OfRun};
+use super::node_system::{Before, BoundSystem, BoundSystems, Callers, NodeRows, OfRun};
 use super::registry::HostSystem;
 use crate::backend::cpu::{Cpu, NodeColumns, ROWS_A_TASK, Touches};
 use crate::backend::step::step_number;
@@ -9,14 +9,16 @@ use crate::components::*;
 use crate::error::Error;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
-use bevy_ecs::system::{DynParamBuilder, DynSystemParam, ParamBuilder, SystemParam, SystemParamBuilder};
+use bevy_ecs::system::{ParamBuilder, QueryParamBuilder, SystemParam, SystemParamBuilder};
+use bevy_ecs::world::FilteredEntityRef;
+use bumpalo::Bump;
 use std::sync::atomic::AtomicU32;
 
 /// What nodes have.
 #[derive(QueryData)]
 #[query_data(mutable)]
 pub(super) struct BodyColumns {
-    body: Entity,
+    pub(super) body: Entity,
     rest: &'static RestPosition,
     mass: &'static Mass,
     fictitious: Option<&'static FictitiousMass>,
@@ -127,41 +129,43 @@ impl NodePass {
         self.systems.iter().any(|system| system.sums_forces) && self.systems.iter().any(|system| system.moves_nodes)
     }
 
-    /// What it asks the world for.
-    pub(super) fn parameters(&self) -> Vec<DynParamBuilder<'static>> {
-        self.systems.iter().map(NodeRows::parameter).collect()
+    /// Has a query look at what calls for its systems, and for those of another pass.
+    pub(super) fn callers(&self, other: &Self, query: &mut QueryBuilder<FilteredEntityRef<'static, 'static>>) {
+        let all: Vec<&NodeRows> = self.systems.iter().chain(&other.systems).collect();
+        NodeRows::callers_of(&all, query);
     }
 
     /// Binds all that calls for its systems on a body to a step.
     pub(super) fn bind<'a>(
         &self,
-        callers: &'a mut [DynSystemParam<'_, '_>],
+        callers: &'a Callers<'_, '_>,
         step: &InStep<'_>,
         body: &BodyColumnsItem<'_, '_>,
+        arena: &'a Bump,
     ) -> BoundSystems<'a> {
         let before = Before { clock: &step.clock, signals: &step.signals, rest: body.rest, displacement: &body.u };
-        let mut all = Vec::new();
-        for (system, callers) in self.systems.iter().zip(callers) {
-            system.bind(callers, body.body, &before, &mut all);
+        let mut all = BoundSystems::new();
+        for system in &self.systems {
+            system.bind(callers, body.body, &before, arena, &mut all);
         }
         all
     }
 }
 
 /// Does what bound systems do to some rows, one after the other.
-pub(super) fn act<T: OfRun>(systems: &BoundSystems<'_>, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+pub(super) fn act<T: OfRun>(systems: &[BoundSystem<'_>], cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
     for system in systems {
-        T::act(system.as_ref(), cpu, nodes);
+        T::act(system.on_rows(), cpu, nodes);
     }
 }
 
 /// The same where the forces of elements are summed already.
-pub(super) fn act_after_gather<T: OfRun>(systems: &BoundSystems<'_>, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+pub(super) fn act_after_gather<T: OfRun>(systems: &[BoundSystem<'_>], cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
     if let Some(external) = nodes.external.as_deref_mut() {
         external.fill(T::default());
     }
-    for system in systems.iter().filter(|system| !system.sums_forces()) {
-        T::act(system.as_ref(), cpu, nodes);
+    for system in systems.iter().map(BoundSystem::on_rows).filter(|system| !system.sums_forces()) {
+        T::act(system, cpu, nodes);
     }
 }
 
@@ -175,28 +179,30 @@ pub(crate) fn shared_pass(pass: NodePass, world: &mut World) -> HostSystem {
     pass_over(pass, |corners| corners.map_or(0, |corners| corners.first_shared), world)
 }
 
-/// Node systems as one pass over the nodes from a row on.
+/// Node systems as one pass over the nodes from a row on. Bodies do not wait for each other.
 fn pass_over(pass: NodePass, first: fn(Option<&Corners>) -> usize, world: &mut World) -> HostSystem {
     type Bodies<'w, 's> = Query<'w, 's, (BodyColumns, Option<&'static ElementForce>, Option<&'static Corners>)>;
     let parameters = (
-        pass.parameters(),
+        QueryParamBuilder::new(|query| pass.callers(&NodePass::default(), query)),
         ParamBuilder::of::<InStep>(),
         ParamBuilder::query::<(BodyColumns, Option<&'static ElementForce>, Option<&'static Corners>)>(),
     );
-    let mut system = parameters.build_state(world).build_system(
-        move |mut callers: Vec<DynSystemParam>, step: InStep, mut bodies: Bodies| -> Result<(), Error> {
-            let observed = step.observes(&pass);
-            for (mut body, force, corners) in &mut bodies {
-                let systems = pass.bind(&mut callers, &step, &body);
-                let first = first(corners);
-                match body.u.precision() {
-                    Precision::F32 => move_from::<f32>(first, (&step, observed), &mut body, force, &systems),
-                    Precision::F64 => move_from::<f64>(first, (&step, observed), &mut body, force, &systems),
-                }
-            }
+    let state = parameters.build_state(world);
+    let mut system =
+        state.build_system(move |callers: Callers, step: InStep, mut bodies: Bodies| -> Result<(), Error> {
+            let (cpu, observed) = (&*step.cpu, step.observes(&pass));
+            cpu.for_each(bodies.iter_mut(), |(mut body, force, corners)| {
+                cpu.with_arena(|arena| {
+                    let systems = pass.bind(&callers, &step, &body, arena);
+                    let first = first(corners);
+                    match body.u.precision() {
+                        Precision::F32 => move_from::<f32>(first, (&step, observed), &mut body, force, &systems),
+                        Precision::F64 => move_from::<f64>(first, (&step, observed), &mut body, force, &systems),
+                    }
+                });
+            });
             Ok(())
-        },
-    );
+        });
     system.initialize(world);
     Box::new(system)
 }
@@ -206,7 +212,7 @@ fn move_from<T: OfRun>(
     (step, observed): (&InStep<'_>, bool),
     body: &mut BodyColumnsItem<'_, '_>,
     force: Option<&ElementForce>,
-    systems: &BoundSystems<'_>,
+    systems: &[BoundSystem<'_>],
 ) {
     let non_finite = AtomicU32::new(u32::MAX);
     let mut columns = body.columns::<T>(force.map_or(&[], |force| force.slice()), &non_finite);
@@ -218,13 +224,13 @@ fn move_from<T: OfRun>(
 }
 
 /// Takes nodes through systems, a task's rows at a time; without `observed` their forces go nowhere else.
-pub(super) fn move_rows<T: OfRun>(
+pub(super) fn move_rows<'a, T: OfRun>(
     cpu: &Cpu,
     observed: bool,
-    tasks: Vec<NodeColumns<'_, T>>,
-    systems: &[&BoundSystems<'_>],
+    tasks: impl Iterator<Item = NodeColumns<'a, T>>,
+    systems: &[&[BoundSystem<'_>]],
 ) {
-    cpu.for_each(tasks.into_iter(), |mut rows| {
+    cpu.for_each(tasks, |mut rows| {
         rows.with_forces(observed, |rows| systems.iter().for_each(|systems| act(systems, cpu, rows)));
     });
 }

@@ -7,9 +7,13 @@ use crate::components::*;
 use crate::math::SimdScalar;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
-use bevy_ecs::system::{DynParamBuilder, DynSystemParam, IntoSystem, ParamBuilder};
+use bevy_ecs::system::IntoSystem;
+use bevy_ecs::world::FilteredEntityRef;
+use bumpalo::Bump;
 use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
 use std::collections::BTreeMap;
+use std::mem::needs_drop;
 
 /// What a system does to the nodes of a body, row by row. Its component calls for it: each entity that has one and
 /// [`OfBody`] acts on that body, and a body that has one itself is acted on.
@@ -139,17 +143,41 @@ impl OfRun for f64 {
     }
 }
 
-/// What calls for a system, and the body that it acts on; where several systems do the same, for which of them.
-type Callers<'w, 's, S> = Query<'w, 's, (Entity, &'static S, Option<&'static OfBody>, Option<&'static OfSystem>)>;
+/// What calls for one system, and the body that it acts on; where several systems do the same, for which of them.
+type CallersOf<'w, 's, S> = Query<'w, 's, (Entity, &'static S, Option<&'static OfBody>, Option<&'static OfSystem>)>;
 
-/// Systems bound to a body, in their order.
-pub(super) type BoundSystems<'a> = Vec<Box<dyn OnRows + 'a>>;
+/// What calls for any system of a pass: one query for all, which several bodies can look through at a time.
+pub(super) type Callers<'w, 's> = Query<'w, 's, FilteredEntityRef<'static, 'static>>;
+
+/// A system bound to a body.
+pub(super) enum BoundSystem<'a> {
+    /// In memory that is there from step to step.
+    Lent(&'a (dyn OnRows + 'a)),
+    /// What it prepared has something of its own to give back.
+    Own(Box<dyn OnRows + 'a>),
+}
+
+impl BoundSystem<'_> {
+    pub(super) fn on_rows(&self) -> &dyn OnRows {
+        match self {
+            Self::Lent(system) => *system,
+            Self::Own(system) => system.as_ref(),
+        }
+    }
+}
+
+/// Systems bound to a body, in their order. More are rare, and ask for memory.
+pub(super) type BoundSystems<'a> = SmallVec<[BoundSystem<'a>; 32]>;
+
+/// Finds what calls for a system on a body and binds it to a step.
+type Bind = for<'a> fn(&'a Callers<'_, '_>, Option<OfSystem>, Entity, &Before<'_>, &'a Bump, &mut BoundSystems<'a>);
 
 /// A node system without its type: how a pass finds what calls for it, and what it touches.
 #[derive(Clone, Copy)]
 pub struct NodeRows {
-    parameter: fn() -> DynParamBuilder<'static>,
-    bind: for<'a> fn(&'a mut DynSystemParam<'_, '_>, Option<OfSystem>, Entity, &Before<'_>, &mut BoundSystems<'a>),
+    callers: fn(&mut QueryBuilder<FilteredEntityRef<'static, 'static>>),
+    with_callers: fn(&mut QueryBuilder),
+    bind: Bind,
     touches: fn() -> HostSystem,
     slopes: fn(Option<OfSystem>, f64, &mut World) -> ForceSlopes,
     /// Only what is for this one of several systems calls for it.
@@ -164,10 +192,15 @@ impl NodeRows {
     /// That of a system.
     pub fn of<S: NodeSystem>() -> Self {
         Self {
-            parameter: || DynParamBuilder::new::<Callers<S>>(ParamBuilder),
+            callers: |query| {
+                query.data::<(Option<&S>, Option<&OfBody>, Option<&OfSystem>)>();
+            },
+            with_callers: |query| {
+                query.with::<S>();
+            },
             bind: bind::<S>,
             touches: || {
-                let nothing = |_: Query<S::Columns>, _: Callers<S>, _: Res<Clock>, _: Res<Signals>| Ok(());
+                let nothing = |_: Query<S::Columns>, _: CallersOf<S>, _: Res<Clock>, _: Res<Signals>| Ok(());
                 Box::new(IntoSystem::into_system(nothing))
             },
             slopes: slopes::<S>,
@@ -182,20 +215,22 @@ impl NodeRows {
         Self { of: Some(OfSystem(number)), ..self }
     }
 
-    /// What a pass asks the world for, to find what calls for the system.
-    pub(super) fn parameter(&self) -> DynParamBuilder<'static> {
-        (self.parameter)()
+    /// Has a query look at what calls for the systems of a pass.
+    pub(super) fn callers_of(all: &[&Self], query: &mut QueryBuilder<FilteredEntityRef<'static, 'static>>) {
+        all.iter().for_each(|system| (system.callers)(query));
+        query.or(|query| all.iter().for_each(|system| (system.with_callers)(query)));
     }
 
     /// Binds what calls for the system on a body to a step.
     pub(super) fn bind<'a>(
         &self,
-        callers: &'a mut DynSystemParam<'_, '_>,
+        callers: &'a Callers<'_, '_>,
         body: Entity,
         before: &Before<'_>,
+        arena: &'a Bump,
         all: &mut BoundSystems<'a>,
     ) {
-        (self.bind)(callers, self.of, body, before, all);
+        (self.bind)(callers, self.of, body, before, arena, all);
     }
 
     /// How fast the forces that it adds grow, in a scene that lasts so long (s): see [`NodeSystem::slopes`].
@@ -210,17 +245,22 @@ impl NodeRows {
 }
 
 fn bind<'a, S: NodeSystem>(
-    callers: &'a mut DynSystemParam<'_, '_>,
+    callers: &'a Callers<'_, '_>,
     of_system: Option<OfSystem>,
     body: Entity,
     before: &Before<'_>,
+    arena: &'a Bump,
     all: &mut BoundSystems<'a>,
 ) {
-    let callers = callers.downcast_mut::<Callers<'a, 'a, S>>();
-    debug_assert!(callers.is_some(), "the parameter of another system");
-    for (entity, system, of, which) in callers.into_iter().flat_map(|callers| callers.iter_inner()) {
-        if of.map_or(entity, |of| of.0) == body && which.copied() == of_system {
-            all.push(Box::new(Bound { system, prepared: system.prepare(before) }));
+    for caller in callers.iter() {
+        let Some(system) = caller.get::<S>() else { continue };
+        let of = caller.get::<OfBody>().map_or(caller.id(), |of| of.0);
+        if of == body && caller.get::<OfSystem>().copied() == of_system {
+            let bound = Bound { system, prepared: system.prepare(before) };
+            all.push(match needs_drop::<S::Prepared>() {
+                true => BoundSystem::Own(Box::new(bound)),
+                false => BoundSystem::Lent(arena.alloc(bound)),
+            });
         }
     }
 }

@@ -1,50 +1,65 @@
 //! `element_forces` and the systems of nodes that follow it, in one pass over the patches: the nodes inside a patch
 //! move while they are in the core's cache, those that patches share when all patches are done.
 
-use super::element_forces::{BlockParts, Precise};
+use super::element_forces::{BlockParts, BlockPartsItem, Precise};
 use super::node_pass::{BodyColumns, BodyColumnsItem, InStep, NodePass, act, act_after_gather, move_rows};
-use super::node_system::{BoundSystems, OfRun};
+use super::node_system::{BoundSystem, Callers, OfRun};
 use super::registry::HostSystem;
 use crate::backend::cpu::{Cpu, Inside, NodeColumns, ROWS_A_TASK};
 use crate::components::*;
 use crate::error::Error;
 use bevy_ecs::prelude::*;
-use bevy_ecs::system::{DynSystemParam, ParamBuilder, SystemParamBuilder};
+use bevy_ecs::system::{ParamBuilder, QueryParamBuilder, SystemParamBuilder};
+use bumpalo::Bump;
 use std::sync::atomic::AtomicU32;
 
+type Bodies<'w, 's> = Query<'w, 's, (BodyColumns, &'static Corners, &'static mut ElementForce)>;
+
 /// `element_forces` and a pass over the nodes as one. Nodes inside patches go through the systems of another pass, too,
-/// which the others come to later.
+/// which the others come to later. Bodies do not wait for each other: threads take patches of any.
 pub(crate) fn patch_pass(pass: NodePass, ahead: NodePass, world: &mut World) -> HostSystem {
-    let count = pass.parameters().len();
     let parameters = (
-        [pass.parameters(), ahead.parameters()].into_iter().flatten().collect::<Vec<_>>(),
+        QueryParamBuilder::new(|query| pass.callers(&ahead, query)),
         ParamBuilder::of::<InStep>(),
         ParamBuilder::query::<BlockParts>(),
-        ParamBuilder::query::<(BodyColumns, &Authoring, &Corners, &mut ElementForce)>(),
+        ParamBuilder::query::<(BodyColumns, &'static Corners, &'static mut ElementForce)>(),
     );
-    let mut system = parameters.build_state(world).build_system(
-        move |mut callers: Vec<DynSystemParam>,
-              step: InStep,
-              mut blocks: Query<BlockParts>,
-              mut bodies: Query<(BodyColumns, &Authoring, &Corners, &mut ElementForce)>|
-              -> Result<(), Error> {
-            let (callers, callers_ahead) = callers.split_at_mut(count);
-            for (mut body, authoring, corners, mut force) in &mut bodies {
-                let of_body = StepOfBody {
-                    cpu: &step.cpu,
-                    clock: &step.clock,
-                    observed: step.is_observed(),
-                    to_come: !ahead.is_empty(),
-                    blocks: &authoring.blocks,
-                    first_shared: corners.first_shared,
-                    systems: pass.bind(callers, &step, &body),
-                    ahead: ahead.bind(callers_ahead, &step, &body),
-                };
-                match body.u.precision() {
-                    Precision::F32 => of_body.take::<f32>(&mut body, &mut force, &mut blocks),
-                    Precision::F64 => of_body.take::<f64>(&mut body, &mut force, &mut blocks),
-                }
-            }
+    let state = parameters.build_state(world);
+    let mut system = state.build_system(
+        move |callers: Callers, step: InStep, mut blocks: Query<BlockParts>, mut bodies: Bodies| -> Result<(), Error> {
+            let cpu = &*step.cpu;
+            cpu.with_arena(|arena| {
+                // in the order of their bodies, and in a body of their forces
+                let blocks = all(arena, blocks.iter().count(), blocks.iter_mut());
+                blocks.sort_unstable_by_key(BlockPartsItem::place);
+                let bodies = all(arena, bodies.iter().count(), bodies.iter_mut());
+                bodies.sort_unstable_by_key(|(body, ..)| body.body);
+                let mut blocks = blocks.chunk_by_mut(|one, other| one.place().0 == other.place().0).peekable();
+                let tasks = bodies.iter_mut().map(|of_body| {
+                    let body = of_body.0.body;
+                    while blocks.next_if(|blocks| blocks[0].place().0 < body).is_some() {}
+                    let own = blocks.next_if(|blocks| blocks[0].place().0 == body);
+                    (of_body, own.unwrap_or_default())
+                });
+                cpu.for_each(tasks, |((body, corners, force), blocks)| {
+                    cpu.with_arena(|arena| {
+                        let of_body = StepOfBody {
+                            cpu,
+                            arena,
+                            clock: &step.clock,
+                            observed: step.is_observed(),
+                            to_come: !ahead.is_empty(),
+                            first_shared: corners.first_shared,
+                            systems: &pass.bind(&callers, &step, body, arena),
+                            ahead: &ahead.bind(&callers, &step, body, arena),
+                        };
+                        match body.u.precision() {
+                            Precision::F32 => of_body.take::<f32>(body, force, blocks),
+                            Precision::F64 => of_body.take::<f64>(body, force, blocks),
+                        }
+                    });
+                });
+            });
             Ok(())
         },
     );
@@ -55,16 +70,16 @@ pub(crate) fn patch_pass(pass: NodePass, ahead: NodePass, world: &mut World) -> 
 /// A step of one body.
 struct StepOfBody<'a> {
     cpu: &'a Cpu,
+    arena: &'a Bump,
     clock: &'a Clock,
     /// Whether somebody may look at forces after the pass; and whether those on nodes outside patches are used later.
     observed: bool,
     to_come: bool,
-    blocks: &'a [Entity],
     first_shared: usize,
     /// What is done to nodes; to those inside a patch as soon as that has summed their forces.
-    systems: BoundSystems<'a>,
+    systems: &'a [BoundSystem<'a>],
     /// What is done to those inside a patch afterwards, and to others later.
-    ahead: BoundSystems<'a>,
+    ahead: &'a [BoundSystem<'a>],
 }
 
 impl StepOfBody<'_> {
@@ -72,62 +87,74 @@ impl StepOfBody<'_> {
         &self,
         body: &mut BodyColumnsItem<'_, '_>,
         force: &mut ElementForce,
-        blocks: &mut Query<BlockParts>,
+        blocks: &mut [BlockPartsItem<'_, '_>],
     ) {
+        let &Self { cpu, arena, clock, systems, ahead, .. } = self;
         let non_finite = AtomicU32::new(u32::MAX);
-        let patches = |blocks: &Query<BlockParts>, entity: Entity| -> Vec<u32> {
-            let parts = blocks.get(entity).ok();
-            parts.and_then(|block| block.patches).map_or(Vec::new(), |patches| patches.inside.clone())
-        };
-        let rows: Vec<Vec<u32>> = self.blocks.iter().map(|&entity| patches(blocks, entity)).collect();
-        let (mut inside, shared) = inside_patches(body.columns::<T>(&[], &non_finite), &rows);
+        let mut shared = body.columns::<T>(&[], &non_finite);
+        let inside = arena.alloc_slice_fill_with(blocks.len(), |block| {
+            let patches = blocks[block].inside();
+            arena.alloc_slice_fill_with(patches.len(), |patch| shared.take(patches[patch] as usize))
+        });
         let then = |nodes: &mut NodeColumns<'_, T>| {
-            act_after_gather(&self.systems, self.cpu, nodes);
-            act(&self.ahead, self.cpu, nodes);
+            act_after_gather(systems, cpu, nodes);
+            act(ahead, cpu, nodes);
         };
-        let mut found = Vec::new();
-        for (&entity, nodes) in self.blocks.iter().zip(&mut inside) {
+        // of the blocks up to the last that has some
+        let mut found: Vec<Vec<usize>> = Vec::new();
+        for (place, (block, nodes)) in blocks.iter_mut().zip(inside).enumerate() {
             let inside = Inside { nodes, then: &then, observed: self.observed };
             let displacement = (&*shared.u, self.first_shared);
-            let patches = blocks
-                .get_mut(entity)
-                .map_or(Vec::new(), |mut block| block.run(self.cpu, displacement, force.slice_mut(), Some(inside)));
-            found.push((entity, patches));
-        }
-        for (entity, patches) in &found {
-            if let Ok(mut block) = blocks.get_mut(*entity) {
-                block.note_inverted(patches, &body.u, self.clock);
+            let patches = block.run(cpu, displacement, force.slice_mut(), Some(inside));
+            if !patches.is_empty() {
+                found.resize(place, Vec::new());
+                found.push(patches);
             }
+        }
+        for (block, patches) in blocks.iter_mut().zip(&found) {
+            block.note_inverted(patches, &body.u, clock);
         }
         // nodes of patches in which elements were inverted are where they were
         let mut shared = body.columns::<T>(force.slice(), &non_finite);
         let mut left = Vec::new();
-        if found.iter().any(|(_, found)| !found.is_empty()) {
-            for (patches, (_, found)) in rows.iter().zip(&found) {
-                for (patch, &rows) in patches.iter().enumerate() {
-                    let nodes = shared.take(rows as usize);
-                    left.extend(found.binary_search(&patch).is_ok().then_some(nodes));
-                }
+        for (block, found) in blocks.iter().zip(&found) {
+            for (patch, &rows) in block.inside().iter().enumerate() {
+                let nodes = shared.take(rows as usize);
+                left.extend(found.binary_search(&patch).is_ok().then_some(nodes));
             }
-        } else {
-            shared.take(self.first_shared);
         }
+        shared.take(self.first_shared - shared.first);
         if !self.to_come {
-            left.extend(shared.tasks(ROWS_A_TASK));
-            move_rows(self.cpu, self.observed, left, &[&self.systems]);
+            move_rows(cpu, self.observed, left.into_iter().chain(shared.tasks(ROWS_A_TASK)), &[systems]);
         } else {
-            move_rows(self.cpu, self.observed, left, &[&self.systems, &self.ahead]);
-            move_rows(self.cpu, true, shared.tasks(ROWS_A_TASK), &[&self.systems]);
+            move_rows(cpu, self.observed, left.into_iter(), &[systems, ahead]);
+            move_rows(cpu, true, shared.tasks(ROWS_A_TASK), &[systems]);
         }
-        body.note_non_finite(non_finite, self.clock);
+        body.note_non_finite(non_finite, clock);
     }
 }
 
-/// The nodes inside the patches of each block, and all others.
-fn inside_patches<'a, T>(
-    mut all: NodeColumns<'a, T>,
-    blocks: &[Vec<u32>],
-) -> (Vec<Vec<NodeColumns<'a, T>>>, NodeColumns<'a, T>) {
-    let inside = blocks.iter().map(|patches| patches.iter().map(|&rows| all.take(rows as usize)).collect()).collect();
-    (inside, all)
+/// So many items, one after the other in memory.
+fn all<'a, I: Iterator>(arena: &'a Bump, count: usize, items: I) -> &'a mut [I::Item] {
+    arena.alloc_slice_fill_iter(Counted { items, left: count })
 }
+
+struct Counted<I> {
+    items: I,
+    left: usize,
+}
+
+impl<I: Iterator> Iterator for Counted<I> {
+    type Item = I::Item;
+
+    fn next(&mut self) -> Option<I::Item> {
+        self.left = self.left.saturating_sub(1);
+        self.items.next()
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        (self.left, Some(self.left))
+    }
+}
+
+impl<I: Iterator> ExactSizeIterator for Counted<I> {}

@@ -32,23 +32,25 @@ pub fn system() -> System {
 
 impl NodeSystem for Pressure {
     type Columns = (&'static RestPosition, &'static Displacement, &'static mut ExternalForce);
-    /// The pressure (Pa), and the areas of its faces at the beginning of the pass.
-    type Prepared = (f64, Reals);
+    /// The pressure (Pa).
+    type Prepared = f64;
 
-    fn prepare(&self, before: &Before<'_>) -> (f64, Reals) {
-        (before.signals.values()[self.signal][0], areas(&self.faces, before.rest, before.displacement))
+    fn prepare(&self, before: &Before<'_>) -> f64 {
+        find_areas(&self.faces, before.rest, before.displacement);
+        before.signals.values()[self.signal][0]
     }
 
-    fn act<T: SimdScalar>(&self, (pressure, areas): &(f64, Reals), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
-        push(&self.faces, *pressure, areas, nodes);
+    fn act<T: SimdScalar>(&self, pressure: &f64, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        push(&self.faces, *pressure, nodes);
     }
 }
 
 /// Adds −p times the areas that fall to some nodes (m²) to the loads on them.
-pub(super) fn push<T: SimdScalar>(faces: &FaceCorners, pressure: f64, areas: &Reals, nodes: &mut NodeColumns<'_, T>) {
+pub(super) fn push<T: SimdScalar>(faces: &FaceCorners, pressure: f64, nodes: &mut NodeColumns<'_, T>) {
     let first = nodes.first;
     let Some(external) = nodes.external.as_deref_mut() else { return };
-    let (areas, pressure) = (areas.slice::<T>(), T::from_f64(pressure));
+    let (areas, pressure) = (faces.deformed.read(), T::from_f64(pressure));
+    let areas = areas.slice::<T>();
     for i in places_within(&faces.rows, first, external.len() / 3) {
         let mut sum = [T::default(); 3];
         for &corner in &faces.corners[faces.starts[i] as usize..faces.starts[i + 1] as usize] {
@@ -65,16 +67,18 @@ pub(super) fn push<T: SimdScalar>(faces: &FaceCorners, pressure: f64, areas: &Re
 }
 
 /// Area vectors of each face's corners (m²), twelve numbers a face: of all faces before any node moves.
-pub(super) fn areas(faces: &FaceCorners, rest: &RestPosition, displacement: &Displacement) -> Reals {
-    match &displacement.0 {
-        Reals::F32(u) => Reals::F32(areas_of(faces, rest, u)),
-        Reals::F64(u) => Reals::F64(areas_of(faces, rest, u)),
-    }
+pub(super) fn find_areas(faces: &FaceCorners, rest: &RestPosition, displacement: &Displacement) {
+    faces.deformed.renew(displacement.precision(), |areas| match (&displacement.0, areas) {
+        (Reals::F32(u), Reals::F32(areas)) => find_areas_of(faces, rest, u, areas),
+        (Reals::F64(u), Reals::F64(areas)) => find_areas_of(faces, rest, u, areas),
+        _ => {}
+    });
 }
 
 // each face once: its corners share most of the work. Written out: `map` over arrays costs seven times as much here
-fn areas_of<T: Scalar>(faces: &FaceCorners, rest: &RestPosition, displacement: &[T]) -> Vec<T> {
-    let mut areas = Vec::with_capacity(12 * faces.faces.len());
+fn find_areas_of<T: Scalar>(faces: &FaceCorners, rest: &RestPosition, displacement: &[T], areas: &mut Vec<T>) {
+    areas.clear();
+    areas.reserve(12 * faces.faces.len());
     let at = |node: u32| {
         let (x, u) = (rest.0[node as usize], &displacement[3 * node as usize..3 * node as usize + 3]);
         [T::from_f64(x.x) + u[0], T::from_f64(x.y) + u[1], T::from_f64(x.z) + u[2]]
@@ -87,7 +91,6 @@ fn areas_of<T: Scalar>(faces: &FaceCorners, rest: &RestPosition, displacement: &
         }
         areas.extend_from_slice(of_face.as_flattened());
     }
-    areas
 }
 
 /// ∫ N_a n dA over a face: the area vector that falls to each corner. A triangle repeats its last node.

@@ -2,7 +2,7 @@
 //! and by what pressure, `suction_mouth` finds.
 
 use super::node_system::{Before, NodeSystem};
-use super::pressure::{areas, push};
+use super::pressure::{find_areas, push};
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
@@ -28,15 +28,16 @@ pub fn system() -> System {
 
 impl NodeSystem for Suction {
     type Columns = (&'static RestPosition, &'static Displacement, &'static mut ExternalForce);
-    /// The pressure (Pa), and the areas of its faces at the beginning of the pass.
-    type Prepared = (f64, Reals);
+    /// The pressure (Pa).
+    type Prepared = f64;
 
-    fn prepare(&self, before: &Before<'_>) -> (f64, Reals) {
-        (-self.now, areas(&self.active, before.rest, before.displacement))
+    fn prepare(&self, before: &Before<'_>) -> f64 {
+        find_areas(&self.active, before.rest, before.displacement);
+        -self.now
     }
 
-    fn act<T: SimdScalar>(&self, (pressure, areas): &(f64, Reals), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
-        push(&self.active, *pressure, areas, nodes);
+    fn act<T: SimdScalar>(&self, pressure: &f64, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+        push(&self.active, *pressure, nodes);
     }
 }
 

@@ -14,7 +14,7 @@ use crate::components::*;
 use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 pub(super) use stage::{ToolNodes, stage as tool_stage};
 
 /// The explicit Lagrange correction of the predicted step: each node's next step d* is predicted as `integrate` will
@@ -57,10 +57,12 @@ pub struct Step {
     out: f64,
     /// Whether work is counted: not on the way to rest.
     books: bool,
-    tools: Vec<ToolInStep>,
+    /// As many as there are, and then anything.
+    tools: [ToolInStep; ToolContacts::MOST],
 }
 
 /// A tool in a step.
+#[derive(Clone, Copy)]
 struct ToolInStep {
     /// Where it is at the end.
     pose: Pose,
@@ -103,18 +105,21 @@ impl NodeSystem for ToolContacts {
 
     fn prepare(&self, before: &Before<'_>) -> Step {
         let values = before.signals.values();
-        let tools = self.tools.iter().map(|contact| {
+        let nowhere = Pose { rotation: DMat3::ZERO, at: DVec3::ZERO };
+        let none = ToolInStep { pose: nowhere, earlier: nowhere, change: nowhere, ball: None };
+        let mut tools = [none; ToolContacts::MOST];
+        for (tool, contact) in tools.iter_mut().zip(&self.tools) {
             let [pose, change] = [0, 3].map(|slot| Pose::of_slots(&values[contact.signal + slot..]));
             let ball = contact.geometry.bounding_sphere();
             let ball = ball.map(|(center, radius)| (pose.place(center), radius + self.edge));
             let earlier = pose.less(&change);
-            ToolInStep { pose, earlier, change, ball }
-        });
+            *tool = ToolInStep { pose, earlier, change, ball };
+        }
         Step {
             factors: Factors::of(before.clock),
             out: self.out(before.clock),
             books: before.clock.relaxation.is_none(),
-            tools: tools.collect(),
+            tools,
         }
     }
 

@@ -1,6 +1,8 @@
 //! Loads, with the rows they act on.
 
+use super::{Precision, Reals};
 use bevy_ecs::prelude::*;
+use std::sync::{PoisonError, RwLock, RwLockReadGuard};
 
 /// Gravity on the body: the acceleration (m/s²) is a signal.
 #[derive(Component, Clone, Debug)]
@@ -58,4 +60,39 @@ pub struct FaceCorners {
     pub areas: Vec<[f64; 4]>,
     /// 1 while the face's element is there, else 0.
     pub alive: Vec<u32>,
+    /// Of the present step.
+    pub deformed: DeformedAreas,
+}
+
+/// Area vectors of faces' corners (m²), found anew in every step: in memory that is there from step to step.
+#[derive(Debug)]
+pub struct DeformedAreas(RwLock<Reals>);
+
+impl Default for DeformedAreas {
+    fn default() -> Self {
+        Self(RwLock::new(Reals::zeros(Precision::F32, 0)))
+    }
+}
+
+impl DeformedAreas {
+    /// Has a task fill them in, in a precision; it finds those of the last step.
+    pub fn renew(&self, precision: Precision, fill: impl FnOnce(&mut Reals)) {
+        let mut areas = self.0.write().unwrap_or_else(PoisonError::into_inner);
+        if areas.precision() != precision {
+            *areas = Reals::zeros(precision, 0);
+        }
+        fill(&mut areas);
+    }
+
+    /// Those of the step.
+    pub fn read(&self) -> RwLockReadGuard<'_, Reals> {
+        self.0.read().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// A copy finds its own.
+impl Clone for DeformedAreas {
+    fn clone(&self) -> Self {
+        Self::default()
+    }
 }

@@ -33,9 +33,10 @@ pub trait Law: Elastic<f64> + Elastic<f64, Of<f32>: Uniform> {
 /// An elastic law of one's own in Rust, written once over any kind of number: `impl<R: Real> Elastic<R> for Law<R>` and,
 /// for scenes to name it, this.
 ///
-/// The CPU runs it in f32 in kernels that are compiled for it, as for a built-in law. To run it on a GPU and in f64 it is
-/// recorded: run once over numbers that note what is done to them. So it needs no WGSL.
-pub trait RustLaw: Elastic<f64, Of<f32>: 'static> {
+/// The CPU runs it in kernels that are compiled for it, as for a built-in law. To run it on a GPU, on machines without
+/// vector registers and where single elements are looked at it is recorded: run once over numbers that note what is done
+/// to them. So it needs no WGSL.
+pub trait RustLaw: Elastic<f64, Of<f32>: 'static> + 'static {
     /// What stands under `parameters` in a scene: a struct of `f64`, each with its unit.
     type Parameters: DeserializeOwned;
 

@@ -69,7 +69,7 @@ pub fn run_block<E: Element, T: SimdScalar>(
 }
 
 /// The same in f32, where speed counts, with a kernel of its own for what is asked for most: the neo-Hookean law with
-/// each combination of fibres and viscosity, and three laws with neither; of kinds that are
+/// each combination of fibres and viscosity, and three laws and users' own with neither; of kinds that are
 /// [specialised](Element::SPECIALISED). What a material lacks is not even asked for.
 pub fn run_block_fast<E: Element>(
     cpu: &Cpu,
@@ -89,11 +89,12 @@ pub fn run_block_fast<E: Element>(
         ElasticLaw::StableNeoHookean(elastic) => block.run::<_, 0>(elastic),
         ElasticLaw::MooneyRivlin(elastic) => block.run::<_, 0>(elastic),
         ElasticLaw::Ogden(elastic) => block.run::<_, 0>(elastic),
+        ElasticLaw::UserLaw(elastic) => block.run::<_, 0>(elastic),
         asked => block.run::<_, GENERIC>(asked),
     }
 }
 
-/// The same with a law that is known when this is compiled: a user's own.
+/// The same with a law that is known when this is compiled, a user's own, on a machine with vector registers.
 pub(super) fn run_block_of<E: Element, L: Elastic<f32>>(
     cpu: &Cpu,
     columns: BlockColumns<'_, '_, f32>,
@@ -102,10 +103,22 @@ pub(super) fn run_block_of<E: Element, L: Elastic<f32>>(
     groups_a_patch: usize,
 ) -> Vec<usize> {
     let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
-    match is_specialised::<E>() && law.is_elastic() && cpu.has_vectors() {
+    match is_specialised::<E>() && law.is_elastic() {
         true => block.run::<_, 0>(elastic),
-        false => block.run::<_, GENERIC>(elastic),
+        false => block.run::<_, { GENERIC | VECTORS }>(elastic),
     }
+}
+
+/// The same in f64, with the kernel that asks for each effect.
+pub(super) fn run_block_of_double<E: Element, L: Elastic<f64>>(
+    cpu: &Cpu,
+    columns: BlockColumns<'_, '_, f64>,
+    law: &BlockLaw<f64>,
+    elastic: &L,
+    groups_a_patch: usize,
+) -> Vec<usize> {
+    let block = Block::<E, f64> { cpu, columns, law, groups_a_patch, element: PhantomData };
+    block.run::<_, { GENERIC | VECTORS }>(elastic)
 }
 
 /// Whether an element type has kernels of its own. In the library's unit tests none has: they take most of the time of
@@ -121,9 +134,10 @@ pub fn kernel_effects<E: Element>(cpu: &Cpu, law: &BlockLaw<f32>) -> Option<[boo
     let others = !law.exponential.is_empty() || !law.volumetric.is_empty() || law.reproject;
     let is_there = match law.elastic {
         ElasticLaw::NeoHookean(_) => true,
-        ElasticLaw::StableNeoHookean(_) | ElasticLaw::MooneyRivlin(_) | ElasticLaw::Ogden(_) => {
-            effects == [false, false]
-        }
+        ElasticLaw::StableNeoHookean(_)
+        | ElasticLaw::MooneyRivlin(_)
+        | ElasticLaw::Ogden(_)
+        | ElasticLaw::UserLaw(_) => effects == [false, false],
         _ => false,
     };
     (is_specialised::<E>() && cpu.has_vectors() && is_there && !others).then_some(effects)
@@ -134,6 +148,8 @@ const FIBRES: u8 = 1;
 const VISCOSITY: u8 = 2;
 /// The kernel asks the block's law which effects it has.
 const GENERIC: u8 = 4;
+/// There is no such kernel for machines without vector registers.
+const VECTORS: u8 = 8;
 
 struct Block<'a, 'n, E, T: SimdScalar> {
     cpu: &'a Cpu,
@@ -176,7 +192,7 @@ impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
             None => (&mut [][..], None),
         };
         let mut inside = inside.iter_mut();
-        let tasks = tasks.into_iter().enumerate().map(move |(index, (force, patch_local))| {
+        let tasks = tasks.enumerate().map(move |(index, (force, patch_local))| {
             let patch = Patch::<E, T, L, EFFECTS> {
                 index,
                 displacement: columns.displacement,
@@ -268,10 +284,15 @@ trait InOwnModule: Element {
         cpu: &Cpu,
         task: OfPatch<'_, '_, '_, '_, Self, T, L, EFFECTS>,
     ) -> bool {
-        if EFFECTS == GENERIC {
+        // constants, so that no code is made of the other ways
+        if const { EFFECTS == GENERIC } {
             return cpu.dispatch(task);
         }
-        let is_inverted = cpu.dispatch_vectors(task);
+        let is_inverted = if const { EFFECTS & GENERIC == 0 } {
+            cpu.dispatch_vectors(task)
+        } else {
+            cpu.dispatch_narrow_vectors(task)
+        };
         debug_assert!(is_inverted.is_some(), "a kernel for vector registers on a machine without");
         is_inverted.unwrap_or(true)
     }

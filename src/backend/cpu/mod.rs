@@ -1,5 +1,6 @@
 //! The CPU backend: every core, vector registers as wide as the machine has them.
 
+mod arenas;
 mod element_kernel;
 mod law;
 mod node_kernel;
@@ -17,7 +18,9 @@ pub(crate) use strain_kernel::{sizes, with_identity};
 pub use volume_kernel::run_volumes;
 pub use watch_kernel::{BlockSums, WatchedColumns, run_watch};
 
+use arenas::Arenas;
 use bevy_ecs::prelude::*;
+use bumpalo::Bump;
 use std::sync::{Arc, OnceLock};
 
 /// Rows of a node column that make one task. A constant: tasks must not depend on the number of threads.
@@ -46,6 +49,7 @@ pub struct Cpu {
     alone: OnceLock<Option<rayon::ThreadPool>>,
     threads: usize,
     arch: pulp::Arch,
+    arenas: Arenas,
 }
 
 impl Cpu {
@@ -67,7 +71,7 @@ impl Cpu {
             (Instructions::Avx2, pulp::Arch::V4(simd)) => pulp::Arch::V3(*simd),
             (_, widest) => widest,
         };
-        Self { pool, alone: OnceLock::new(), threads, arch }
+        Self { pool, alone: OnceLock::new(), threads, arch, arenas: Arenas::default() }
     }
 
     /// How many threads work.
@@ -147,6 +151,22 @@ impl Cpu {
         Some(self.arch.dispatch(task))
     }
 
+    /// The same with registers of 256 bits at most, as [`dispatch`](Self::dispatch) has them.
+    #[inline]
+    pub(crate) fn dispatch_narrow_vectors<O: pulp::WithSimd>(&self, task: O) -> Option<O::Output> {
+        #[cfg(target_arch = "x86_64")]
+        {
+            use pulp::Simd;
+            match self.arch {
+                pulp::Arch::V4(simd) => Some(Simd::vectorize(*simd, task)),
+                pulp::Arch::V3(simd) => Some(Simd::vectorize(simd, task)),
+                _ => None,
+            }
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        Some(self.arch.dispatch(task))
+    }
+
     /// Runs a task with the widest registers that the machine has.
     #[inline]
     pub fn dispatch_widest<O: pulp::WithSimd>(&self, task: O) -> O::Output {
@@ -165,19 +185,25 @@ impl Cpu {
     }
 
     /// Runs `task` on each item, on all threads. Items must be independent; their order of work does not matter then.
-    pub fn for_each<I: Send>(&self, items: impl Iterator<Item = I> + Send, task: impl Fn(I) + Sync + Send) {
-        match &self.pool {
-            None => items.for_each(task),
-            Some(pool) => {
-                let mut items: Vec<I> = items.collect();
-                if items.len() <= 1 {
-                    return items.drain(..).for_each(task);
-                }
-                pool.install(|| {
-                    use rayon::prelude::*;
-                    items.into_par_iter().for_each(&task);
-                });
+    /// They are kept where those of the last step were.
+    pub fn for_each<I: Send>(&self, mut items: impl Iterator<Item = I>, task: impl Fn(I) + Sync + Send) {
+        use rayon::prelude::*;
+        match (&self.pool, items.size_hint().1) {
+            (None, _) | (_, Some(0 | 1)) => items.for_each(task),
+            (Some(pool), Some(most)) => self.with_arena(|arena| {
+                let items = arena.alloc_slice_fill_with(most, |_| items.next());
+                let each = |item: &mut Option<I>| item.take().into_iter().for_each(&task);
+                pool.install(|| items.par_iter_mut().for_each(each));
+            }),
+            (Some(pool), None) => {
+                let items: Vec<I> = items.collect();
+                pool.install(|| items.into_par_iter().for_each(&task));
             }
         }
+    }
+
+    /// Lends a task memory that is there from step to step. What is put there is forgotten, not dropped.
+    pub(crate) fn with_arena<R>(&self, task: impl FnOnce(&Bump) -> R) -> R {
+        self.arenas.with(task)
     }
 }

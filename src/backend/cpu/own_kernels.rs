@@ -1,6 +1,6 @@
 //! Kernels for a law of the user's own in Rust, compiled in the user's crate.
 
-use super::element_kernel::run_block_of;
+use super::element_kernel::{run_block_of, run_block_of_double};
 use super::{BlockColumns, BlockLaw, Cpu};
 use crate::components::Block;
 use crate::elements::with_element_of;
@@ -9,15 +9,15 @@ use bevy_ecs::prelude::*;
 use std::fmt;
 use std::sync::Arc;
 
-/// The element kernels in f32 of one law, for all element types. The compiler makes them where
-/// [`of`](OwnKernels::of) is called.
+/// The element kernels of one law in f32 and in f64, for all element types, on machines with vector registers. The
+/// compiler makes them where [`of`](OwnKernels::of) is called.
 #[derive(Component, Clone)]
 pub struct OwnKernels(Arc<dyn Run>);
 
 impl OwnKernels {
-    /// Of a law.
-    pub fn of<L: Elastic<f32> + 'static>(law: L) -> Self {
-        Self(Arc::new(OfLaw(law)))
+    /// Of a law over both kinds of numbers.
+    pub fn of<L: Elastic<f32> + 'static, M: Elastic<f64> + 'static>(single: L, double: M) -> Self {
+        Self(Arc::new(OfLaw { single, double }))
     }
 
     /// As [`run_block`](super::run_block).
@@ -29,7 +29,19 @@ impl OwnKernels {
         block: &Block,
         groups_a_patch: usize,
     ) -> Vec<usize> {
-        self.0.run(cpu, columns, law, block, groups_a_patch)
+        self.0.single(cpu, columns, law, block, groups_a_patch)
+    }
+
+    /// The same in f64.
+    pub(crate) fn run_double(
+        &self,
+        cpu: &Cpu,
+        columns: BlockColumns<'_, '_, f64>,
+        law: &BlockLaw<f64>,
+        block: &Block,
+        groups_a_patch: usize,
+    ) -> Vec<usize> {
+        self.0.double(cpu, columns, law, block, groups_a_patch)
     }
 }
 
@@ -47,7 +59,7 @@ impl fmt::Debug for OwnKernels {
 }
 
 trait Run: Send + Sync {
-    fn run(
+    fn single(
         &self,
         cpu: &Cpu,
         columns: BlockColumns<'_, '_, f32>,
@@ -55,12 +67,24 @@ trait Run: Send + Sync {
         block: &Block,
         groups_a_patch: usize,
     ) -> Vec<usize>;
+
+    fn double(
+        &self,
+        cpu: &Cpu,
+        columns: BlockColumns<'_, '_, f64>,
+        law: &BlockLaw<f64>,
+        block: &Block,
+        groups_a_patch: usize,
+    ) -> Vec<usize>;
 }
 
-struct OfLaw<L>(L);
+struct OfLaw<L, M> {
+    single: L,
+    double: M,
+}
 
-impl<L: Elastic<f32>> Run for OfLaw<L> {
-    fn run(
+impl<L: Elastic<f32>, M: Elastic<f64>> Run for OfLaw<L, M> {
+    fn single(
         &self,
         cpu: &Cpu,
         columns: BlockColumns<'_, '_, f32>,
@@ -68,6 +92,17 @@ impl<L: Elastic<f32>> Run for OfLaw<L> {
         block: &Block,
         groups_a_patch: usize,
     ) -> Vec<usize> {
-        with_element_of!(block, E => run_block_of::<E, L>(cpu, columns, law, &self.0, groups_a_patch))
+        with_element_of!(block, E => run_block_of::<E, L>(cpu, columns, law, &self.single, groups_a_patch))
+    }
+
+    fn double(
+        &self,
+        cpu: &Cpu,
+        columns: BlockColumns<'_, '_, f64>,
+        law: &BlockLaw<f64>,
+        block: &Block,
+        groups_a_patch: usize,
+    ) -> Vec<usize> {
+        with_element_of!(block, E => run_block_of_double::<E, M>(cpu, columns, law, &self.double, groups_a_patch))
     }
 }

@@ -63,7 +63,7 @@ fn read<L: RustLaw>(name: &str, parameters: &BTreeMap<String, f64>) -> Result<Re
     let moduli = [findings.shear, findings.bulk];
     let recorded = UserLaw::new(LawPrograms { moduli, ..programs });
     alike(name, &law, &recorded, findings.finite_up_to)?;
-    let own_kernels = Some(OwnKernels::of(law.map(|number| number as f32)));
+    let own_kernels = Some(OwnKernels::of(law.map(|number| number as f32), law));
     Ok(Read { law: recorded, built_in: None, own_kernels, findings, warnings })
 }
 

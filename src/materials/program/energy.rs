@@ -14,6 +14,8 @@ pub const INVARIANTS: [&str; 6] = ["I1bar_minus_3", "I2bar_minus_3", "J_minus_1"
 const INDEPENDENT: u16 = 3;
 /// The number among these of J − 1.
 const VOLUME: u16 = 2;
+/// J − 1 down to which polynomials keep all digits; Ī₁ − 3 and Ī₂ − 3 are not below 0.
+const SQUEEZED: f64 = -0.5;
 
 /// An energy Ψ(Ī₁, Ī₂, J) = Ψ_iso(Ī₁, Ī₂) + U(J), differentiated, its parameters put in. The two parts are 0 at rest.
 #[derive(Clone, Debug)]
@@ -155,8 +157,8 @@ impl Derived {
 
     fn law(&self) -> Result<DerivedLaw, Untranslatable> {
         let [first, second] = self.slopes;
-        let of_isochoric = |ids: &[Id]| Program::new(&self.isochoric, 2, ids);
-        let of_volume = |id: Id| Program::new(&self.volumetric, 1, &[id]);
+        let of_isochoric = |ids: &[Id]| Program::of_energy(&self.isochoric, 2, ids, 0.0);
+        let of_volume = |id: Id| Program::of_energy(&self.volumetric, 1, &[id], SQUEEZED);
         let (slopes, pressure) = (of_isochoric(&self.slopes)?, of_volume(self.pressure)?);
         let volumetric_stiffness = of_volume(self.stiffness)?;
         let at_rest = slopes.run::<f64, 2, 2>([0.0; 2]);

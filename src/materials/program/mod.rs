@@ -14,6 +14,7 @@ mod expression;
 mod flow;
 mod functions;
 mod graph;
+mod polynomial;
 mod record;
 mod tape;
 mod tidy;

@@ -3,6 +3,7 @@
 
 use super::Untranslatable;
 use super::graph::{Binary, Graph, Id, Node, Unary};
+use super::polynomial::Polynomial;
 use crate::math::{Real, Task};
 
 /// Slots that a program may use: constants, inputs and what lives at the same time.
@@ -40,6 +41,8 @@ pub struct Program {
     instructions: Vec<Instruction>,
     outputs: Vec<u8>,
     slots: usize,
+    /// The outputs, where all of them are polynomials: these are what is computed then.
+    polynomials: Option<Vec<Polynomial>>,
 }
 
 impl Program {
@@ -92,7 +95,12 @@ impl Program {
                 .note("use results soon after they are computed, and fewer different constants"));
         }
         let outputs = outputs.iter().map(|id| places[id.index()].unwrap_or(0) as u8).collect();
-        Ok(Self { inputs, constants, instructions, outputs, slots: free.used })
+        Ok(Self { inputs, constants, instructions, outputs, slots: free.used, polynomials: None })
+    }
+
+    /// The same for inputs from `least` on, by Horner's rule where that keeps all digits; roundings differ.
+    pub(super) fn of_energy(graph: &Graph, inputs: usize, outputs: &[Id], least: f64) -> Result<Self, Untranslatable> {
+        Ok(Self { polynomials: graph.polynomials(outputs, least), ..Self::new(graph, inputs, outputs)? })
     }
 
     /// The result for some inputs: the numbers of all arguments in order, and as many as the function returns.
@@ -100,10 +108,28 @@ impl Program {
     pub fn run<R: Real, const INPUTS: usize, const OUTPUTS: usize>(&self, inputs: [R; INPUTS]) -> [R; OUTPUTS] {
         debug_assert!(INPUTS == self.inputs && OUTPUTS == self.outputs.len(), "not this program's numbers");
         let like = inputs[0];
-        // what is not touched need not be made
+        let mut outputs = [like; OUTPUTS];
+        match &self.polynomials {
+            Some(polynomials) => {
+                for (output, polynomial) in outputs.iter_mut().zip(polynomials) {
+                    *output = polynomial.at(&inputs, like);
+                }
+            }
+            None => self.walk(&inputs, &mut outputs),
+        }
+        outputs
+    }
+
+    /// Goes through all instructions.
+    #[inline(always)]
+    fn walk<R: Real>(&self, inputs: &[R], outputs: &mut [R]) {
+        let Some(&like) = inputs.first() else { return };
+        let program = self;
+        // all slots are written once before the first instruction: no more than needed
         match self.slots {
-            0..=32 => like.outlined(Walk::<R, INPUTS, OUTPUTS, 32> { program: self, inputs }),
-            _ => like.outlined(Walk::<R, INPUTS, OUTPUTS, SLOTS> { program: self, inputs }),
+            0..=16 => like.outlined(Walk::<R, 16> { program, inputs, outputs, like }),
+            0..=64 => like.outlined(Walk::<R, 64> { program, inputs, outputs, like }),
+            _ => like.outlined(Walk::<R, SLOTS> { program, inputs, outputs, like }),
         }
     }
 
@@ -135,36 +161,43 @@ impl Program {
         self.outputs.iter().any(|&slot| holds(slot))
     }
 
-    /// Instructions, constants, and slots in use at the same time.
+    /// Instructions, constants, and slots in use at the same time; of polynomials products, factors and no slots.
     pub fn size(&self) -> (usize, usize, usize) {
-        (self.instructions.len(), self.constants.len(), self.slots)
+        match &self.polynomials {
+            Some(all) => {
+                let products = all.iter().map(Polynomial::degree).sum();
+                (products, products + all.len(), 0)
+            }
+            None => (self.instructions.len(), self.constants.len(), self.slots),
+        }
     }
 }
 
 /// A run of a program. `COUNT` is a power of two that is at least the number of slots, so that no index needs to be
 /// checked.
-struct Walk<'a, R, const INPUTS: usize, const OUTPUTS: usize, const COUNT: usize> {
+struct Walk<'a, R, const COUNT: usize> {
     program: &'a Program,
-    inputs: [R; INPUTS],
+    inputs: &'a [R],
+    outputs: &'a mut [R],
+    /// Any number of the kind.
+    like: R,
 }
 
-impl<R: Real, const INPUTS: usize, const OUTPUTS: usize, const COUNT: usize> Task<R>
-    for Walk<'_, R, INPUTS, OUTPUTS, COUNT>
-{
-    type Output = [R; OUTPUTS];
+impl<R: Real, const COUNT: usize> Task<R> for Walk<'_, R, COUNT> {
+    type Output = ();
 
     #[inline(always)]
-    fn run(self) -> [R; OUTPUTS] {
+    fn run(self) {
         let at = |place: u8| usize::from(place) & (COUNT - 1);
-        let like = self.inputs[0];
+        let Self { program, inputs, outputs, like } = self;
         let mut slots = [like; COUNT];
-        for (number, input) in self.inputs.into_iter().enumerate() {
-            slots[number & (COUNT - 1)] = input;
+        for (slot, input) in slots.iter_mut().zip(inputs) {
+            *slot = *input;
         }
-        for (number, constant) in self.program.constants.iter().enumerate() {
-            slots[(INPUTS + number) & (COUNT - 1)] = like.constant(*constant);
+        for (slot, constant) in slots.iter_mut().skip(inputs.len()).zip(&program.constants) {
+            *slot = like.constant(*constant);
         }
-        for i in &self.program.instructions {
+        for i in &program.instructions {
             let (a, b, c) = (slots[at(i.a)], slots[at(i.b)], slots[at(i.c)]);
             slots[at(i.to)] = match i.code {
                 Code::Unary(function) => function.of(a),
@@ -175,11 +208,9 @@ impl<R: Real, const INPUTS: usize, const OUTPUTS: usize, const COUNT: usize> Tas
                 Code::Select => a.if_positive(b, c),
             };
         }
-        let mut outputs = [like; OUTPUTS];
-        for (output, place) in outputs.iter_mut().zip(&self.program.outputs) {
+        for (output, place) in outputs.iter_mut().zip(&program.outputs) {
             *output = slots[at(*place)];
         }
-        outputs
     }
 }
 

@@ -150,7 +150,10 @@ fn trial(material: Entity, world: &World) -> String {
     let (name, cost) = match world.get::<UserLaw<f64>>(material) {
         Some(law) => {
             let (instructions, _, slots) = law.parts().isochoric.size();
-            let cost = format!("; {instructions} instructions over {slots} registers on the CPU");
+            let cost = match slots {
+                0 => format!("; {instructions} products and sums on the CPU"),
+                _ => format!("; {instructions} instructions over {slots} registers on the CPU"),
+            };
             (law.parts().path.as_str(), cost)
         }
         // an energy that is that of a law built in
@@ -231,8 +234,10 @@ fn cpu_variant(entity: &EntityRef<'_>, block: &Block, world: &World) -> String {
     let law = ElasticLaw::of(world.entity(block.material)).map_or("no law", |law| law.name());
     let rounded = entity.get::<BlockLaw<f32>>();
     let cpu = world.resource::<Cpu>();
+    let has_own_kernels =
+        cpu.has_vectors() && entity.get::<BlockLaw<f64>>().is_some_and(|law| law.own_kernels.is_some());
     let variant = match rounded.and_then(|law| with_element!(block.kind, E => kernel_effects::<E>(cpu, law))) {
-        _ if rounded.is_some_and(|law| law.own_kernels.is_some()) => "compiled for it".into(),
+        _ if has_own_kernels => "compiled for it".into(),
         Some(effects) => {
             let [fibres, viscosity] = effects.map(|is| if is { "with" } else { "without" });
             format!("{fibres} fibres, {viscosity} viscosity")

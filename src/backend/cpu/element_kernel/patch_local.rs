@@ -19,19 +19,19 @@ pub(super) fn parts<'a, T>(
     patches: Option<&'a Patches>,
     forces_a_patch: usize,
     corners_a_patch: usize,
-) -> Vec<(&'a mut [T], Option<PatchLocal<'a>>)> {
-    let Some(patches) = patches else {
-        return force.chunks_mut(forces_a_patch).map(|force| (force, None)).collect();
-    };
-    let corners = patches.connectivity.as_chunks().0.chunks(corners_a_patch / LANES);
-    let nodes = patches.starts.windows(2).map(|ends| &patches.nodes[ends[0] as usize..ends[1] as usize]);
-    let mut parts = Vec::with_capacity(patches.count());
-    for (nodes, corners) in nodes.zip(corners) {
-        let (own, others) = force.split_at_mut(3 * nodes.len());
-        parts.push((own, Some(PatchLocal { nodes, corners })));
+) -> impl Iterator<Item = (&'a mut [T], Option<PatchLocal<'a>>)> {
+    let count = patches.map_or(force.len().div_ceil(forces_a_patch), Patches::count);
+    (0..count).map(move |index| {
+        let patch_local = patches.map(|patches| PatchLocal {
+            nodes: &patches.nodes[patches.starts[index] as usize..patches.starts[index + 1] as usize],
+            corners: part(&patches.connectivity, index, corners_a_patch).as_chunks().0,
+        });
+        let forces = patch_local.as_ref().map_or(forces_a_patch, |patch_local| 3 * patch_local.nodes.len());
+        let all = std::mem::take(&mut force);
+        let (own, others) = all.split_at_mut(forces.min(all.len()));
         force = others;
-    }
-    parts
+        (own, patch_local)
+    })
 }
 
 /// A patch's part of a column, where each patch but the last has as much.

@@ -43,7 +43,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
         gradient: &Mat3<T::Vector<S>>,
         shared: T::Vector<S>,
     ) -> (Mat3<T::Vector<S>>, T::Vector<S>) {
-        if EFFECTS == GENERIC {
+        if const { EFFECTS & GENERIC != 0 } {
             return self.generic_stress(simd, law, group, at, point, gradient, shared);
         }
         let pressure = (E::PRESSURE != PressureFrom::Point).then_some(shared);

@@ -167,13 +167,8 @@ impl<'a, T> NodeColumns<'a, T> {
     }
 
     /// Tasks of so many rows.
-    pub fn tasks(mut self, rows: usize) -> Vec<Self> {
-        let mut tasks = Vec::with_capacity(self.rows().div_ceil(rows));
-        while self.rows() > rows {
-            tasks.push(self.take(rows));
-        }
-        tasks.push(self);
-        tasks
+    pub fn tasks(self, rows: usize) -> Tasks<'a, T> {
+        Tasks { rest: Some(self), rows }
     }
 
     /// Sums of work of the rows before one.
@@ -185,6 +180,29 @@ impl<'a, T> NodeColumns<'a, T> {
     pub(super) fn sum_of(&mut self, row: usize) -> Option<&mut [f32]> {
         let place = self.places_until(row).min((self.internal_work.len() / 2).checked_sub(1)?);
         Some(&mut self.internal_work[2 * place..2 * place + 2])
+    }
+}
+
+/// Rows of a body in tasks: see [`NodeColumns::tasks`].
+pub struct Tasks<'a, T> {
+    /// None after the last.
+    rest: Option<NodeColumns<'a, T>>,
+    rows: usize,
+}
+
+impl<'a, T> Iterator for Tasks<'a, T> {
+    type Item = NodeColumns<'a, T>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        match &mut self.rest {
+            Some(rest) if rest.rows() > self.rows => Some(rest.take(self.rows)),
+            last => last.take(),
+        }
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let left = self.rest.as_ref().map_or(0, |rest| rest.rows().div_ceil(self.rows).max(1));
+        (left, Some(left))
     }
 }
 
