@@ -69,6 +69,7 @@ pub(crate) use node_pass::{NodePass, node_pass, shared_pass};
 pub use node_system::{Before, ForceSlopes, NodeRows, NodeSystem, NodesAtRest};
 pub use observe::{add_watch_columns, watch_kernels};
 pub(crate) use patch_pass::patch_pass;
+pub(crate) use registry::BeforeSteps;
 pub use registry::{Because, DescribeKernels, HostSystem, OnDevice, OnHost, Outcome, Phase, Registry, System};
 pub use surface_contact::{Meeting, SurfaceContacts};
 

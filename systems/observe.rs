@@ -25,6 +25,8 @@ pub fn system() -> System {
         device: OnDevice::None,
         observes: true,
         every: 1,
+        device_when: |_| true,
+        before_steps: None,
         shared_only: |_| false,
         custom: false,
         parameters: None,

@@ -70,6 +70,9 @@ impl OnHost {
     }
 }
 
+/// Does what must be done before steps are submitted; gives how many there may be at most, one or more.
+pub(crate) type BeforeSteps = fn(&mut World) -> Result<u64, Error>;
+
 /// Describes the kernels of a system for a world, bound to buffers.
 pub type DescribeKernels = fn(&mut World, &mut dyn Buffers) -> Vec<Kernel>;
 
@@ -121,6 +124,10 @@ pub struct System {
     pub(crate) observes: bool,
     /// Steps between two runs (host systems only).
     pub every: u64,
+    /// Whether, in a world, a GPU has it.
+    pub(crate) device_when: fn(&World) -> bool,
+    /// What must be done on the host before steps are submitted to a GPU, and how many there may be at most.
+    pub(crate) before_steps: Option<BeforeSteps>,
     /// Whether, in a world, it concerns only nodes that are inside no patch.
     pub(crate) shared_only: fn(&World) -> bool,
     /// Whether it is not one of the engine's own.
@@ -186,6 +193,8 @@ impl System {
             device: OnDevice::None,
             observes: false,
             every: 1,
+            device_when: |_| true,
+            before_steps: None,
             shared_only: |_| false,
             custom: true,
             parameters: None,

@@ -1,12 +1,18 @@
 //! `surface_contact`: bodies keep each other, and themselves, outside.
 
+mod columns;
+mod device;
+mod faced;
+mod kernels;
 mod meet;
+mod motion;
 mod survey;
 
 use super::registry::{Phase, System};
-use crate::backend::cpu::Cpu;
+use crate::backend::cpu::{Cpu, Foreseen};
 use crate::components::*;
-use crate::contact::{ContactSet, Lists, Point, Surfaces, Tree};
+use crate::contact::{ContactSet, Lists, Near, Point, Surfaces, Tree};
+use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
 use glam::DVec3;
@@ -29,7 +35,13 @@ pub fn system() -> System {
         },
         surface_contact,
     );
-    System { shared_only: surfaces_stay, ..system }
+    System {
+        shared_only: surfaces_stay,
+        // where elements go, surfaces are found anew: on the host
+        device_when: surfaces_stay,
+        before_steps: Some(device::before_steps),
+        ..system.on_device(kernels::kernels)
+    }
 }
 
 /// Whether no surface of theirs changes, so that no patch moves its nodes by itself.
@@ -86,21 +98,52 @@ struct Surface {
     /// One a body.
     trees: Vec<Tree>,
     lists: Lists,
-    /// Where the nodes are (m, from the reference).
+    /// What is near, as long as the lists hold.
+    near: Near,
+    /// Where the nodes are that are near something (m, from the reference).
     places: Vec<DVec3>,
-    /// How far the two fastest points can have come towards each other since the lists were made (m).
-    travelled: f64,
-    /// Of each point in the lists, how far that may be before it has to be looked at again (m).
+    /// Which way the triangles look that are.
+    normals: Vec<DVec3>,
+    fresh: Vec<DVec3>,
+    /// Where nodes were when the lists were made.
+    since: motion::Since,
+    /// Of each point in the lists, how far that may be before it has to be looked at again (m), and the least of all.
     wake: Vec<f64>,
+    first_wake: f64,
     /// Nodes that bore a force in the last step.
     pressed: Vec<u32>,
     /// Points that touched or faced something.
     touching: Vec<u32>,
-    /// How far the fastest node went in the last step (m).
-    largest: f64,
+    /// Bodies with their numbers, in the order of entities.
+    numbers: Vec<(Entity, usize)>,
     /// Place of a node in the set, or none.
     slots: Vec<u32>,
+    // what a step finds, kept so that the next one need not ask for memory
+    found: Vec<faced::Found>,
+    met: Vec<meet::Met>,
+    foreseen: Vec<(u32, Foreseen)>,
+    forces: Vec<DVec3>,
     set: ContactSet,
+    /// How far the fastest node went in a step, when lists for a GPU were made (m).
+    largest: f64,
+    figures: Figures,
+}
+
+/// What the search has come to so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Figures {
+    /// Steps.
+    pub steps: u64,
+    /// Steps in which nothing was near.
+    pub asleep: u64,
+    /// How often lists were made.
+    pub builds: u64,
+    /// Points that were looked at, of all steps.
+    pub looked_at: u64,
+    /// Contacts, of all steps.
+    pub contacts: u64,
+    /// Steps on a GPU that found their lists too old, and went through all triangles.
+    pub unlisted: u64,
 }
 
 /// What is known of a body.
@@ -152,21 +195,63 @@ impl SurfaceContacts {
     pub fn size(&self) -> [usize; 2] {
         [self.surface.points.len(), self.surface.triangles.triangles.len()]
     }
+
+    /// What the search has come to so far.
+    pub fn figures(&self) -> Figures {
+        self.surface.figures
+    }
+
+    /// Whether nothing can be near anything, when nodes have moved so.
+    fn sleeps(&self, moved: motion::Moved) -> bool {
+        let farthest = self.farthest(motion::reach(self, moved.step)) + moved.nearer;
+        farthest <= self.surface.lists.radius && farthest < self.surface.first_wake
+    }
 }
 
 fn surface_contact(
     (clock, cpu): (Res<Clock>, Res<Cpu>),
     mut contacts: ResMut<SurfaceContacts>,
-    mut bodies: Query<MeetingColumns>,
+    mut bodies: Query<(Entity, MeetingColumns)>,
     authorings: Query<&Authoring>,
     blocks: Query<Ref<Alive>>,
 ) {
     let contacts = &mut *contacts;
     survey::follow(contacts, &mut bodies, &authorings, &blocks);
-    let largest = survey::look(contacts, &bodies);
-    contacts.surface.largest = largest;
-    contacts.surface.travelled += 2.0 * largest;
-    let reach = 4.0 * largest + survey::MARGIN * contacts.edge;
-    survey::search(contacts, reach, &cpu);
-    meet::meet(contacts, reach, &clock, &cpu, &mut bodies);
+    let precision = bodies.iter().next().map(|(_, columns)| columns.u.precision());
+    match precision {
+        Some(Precision::F32) => step::<f32>(contacts, (&clock, &cpu), &mut bodies),
+        Some(Precision::F64) => step::<f64>(contacts, (&clock, &cpu), &mut bodies),
+        None => {}
+    }
+}
+
+fn step<T: Scalar>(
+    contacts: &mut SurfaceContacts,
+    (clock, cpu): (&Clock, &Cpu),
+    bodies: &mut Query<(Entity, MeetingColumns)>,
+) {
+    contacts.surface.figures.steps += 1;
+    let moved = motion::moved::<T>(contacts, bodies, cpu);
+    let idle = contacts.surface.pressed.is_empty() && contacts.surface.touching.is_empty();
+    if idle && moved.is_some_and(|moved| contacts.sleeps(moved)) {
+        contacts.surface.figures.asleep += 1;
+        return;
+    }
+    let mut bodies = columns::slices::<T>(contacts, bodies);
+    if bodies.len() != contacts.bodies.len() {
+        return crate::error::missing("a column of a body");
+    }
+    let largest = motion::largest_step(contacts, &bodies);
+    let reach = motion::reach(contacts, largest);
+    let nearer = motion::search(contacts, &bodies, (reach, moved), cpu);
+    if !faced::wake(contacts, reach, nearer) {
+        contacts.surface.figures.asleep += 1;
+        meet::release(&mut contacts.surface, &mut bodies);
+        return meet::forget(contacts, &mut bodies);
+    }
+    motion::look(contacts, &bodies, cpu);
+    faced::face(contacts, reach, nearer, cpu);
+    meet::meet(contacts, largest, (clock, cpu), &mut bodies);
+    contacts.surface.figures.looked_at += contacts.surface.found.len() as u64;
+    contacts.surface.figures.contacts += contacts.surface.set.contacts.len() as u64;
 }

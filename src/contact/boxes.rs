@@ -65,13 +65,21 @@ impl Tree {
         }
     }
 
+    /// How far its box is from that of another (m).
+    pub fn distance(&self, other: &Self) -> f64 {
+        match (self.boxes.get(1), other.boxes.get(1)) {
+            (Some(a), Some(b)) => (a.low - b.high).max(b.low - a.high).max(DVec3::ZERO).length(),
+            _ => f64::INFINITY,
+        }
+    }
+
     /// Sees the triangles of all leaves whose boxes are no farther from a place than `radius` (m).
     pub fn near(&self, at: DVec3, radius: f64, mut see: impl FnMut(u32)) {
         let leaves = self.boxes.len() / 2;
         let is_near = |place: usize| {
-            let Box3 { low, high } = self.boxes[place];
+            let Box3 { low, high } = &self.boxes[place];
             // an empty box is nowhere; `clamp` would have it the wrong way round
-            (low - at).max(at - high).max(DVec3::ZERO).length_squared() <= radius * radius
+            (*low - at).max(at - *high).max(DVec3::ZERO).length_squared() <= radius * radius
         };
         // twice the depth of a tree of 2³² triangles
         let mut waiting = [0_usize; 64];

@@ -1,6 +1,6 @@
 //! The face that a point faces.
 
-use super::surfaces::{Point, Surfaces};
+use super::surfaces::{Placed, Point, Surfaces};
 use crate::math::OnTriangle;
 use glam::DVec3;
 
@@ -36,41 +36,113 @@ pub struct Faced {
     pub first: Option<Facing>,
     /// Another one.
     pub second: Option<Facing>,
-    /// How far the nearest of all triangles is that were looked at (m).
-    pub nearest: f64,
+    /// So much nearer than when the list was made (m) something must come before there is anything to see.
+    pub wakes: f64,
+}
+
+/// Triangles that may be near a point, and how far they were when that was found.
+#[derive(Clone, Copy, Debug)]
+pub struct Listed<'a> {
+    /// Their numbers, ascending.
+    pub triangles: &'a [u32],
+    /// How far each was (m).
+    pub distances: &'a [f64],
+    /// How much nearer anything can have come since (m).
+    pub nearer: f64,
+    /// Who is farther than this (m) is in nobody's way.
+    pub farthest: f64,
+}
+
+impl Listed<'_> {
+    /// Whether a triangle cannot have come near enough.
+    fn is_far(&self, place: usize) -> bool {
+        self.distances[place] > self.farthest + self.nearer
+    }
+}
+
+/// So many triangles' nearest places are kept while it is found what a point faces; points near more are rare.
+const KEPT: usize = 16;
+
+/// Where triangles are nearest to a point, the first of those that may be near found beforehand.
+struct Candidates<'a> {
+    at: DVec3,
+    listed: Listed<'a>,
+    kept: [(OnTriangle, f64); KEPT],
+}
+
+impl<'a> Candidates<'a> {
+    fn new(at: DVec3, listed: Listed<'a>) -> Self {
+        let nowhere = (OnTriangle { at: DVec3::ZERO, weights: [0.0; 3], part: 0 }, f64::INFINITY);
+        Self { at, listed, kept: [nowhere; KEPT] }
+    }
+
+    fn find(&mut self, surfaces: &Surfaces, places: &[DVec3]) {
+        for (place, (&triangle, kept)) in self.listed.triangles.iter().zip(&mut self.kept).enumerate() {
+            if !self.listed.is_far(place) {
+                *kept = nearest(surfaces, places, self.at, triangle);
+            }
+        }
+    }
+
+    /// The nearest place of the triangle at a place in the list, and how far that is (m).
+    fn nearest(&self, surfaces: &Surfaces, places: &[DVec3], place: usize) -> (OnTriangle, f64) {
+        match self.kept.get(place) {
+            Some(&kept) => kept,
+            None => nearest(surfaces, places, self.at, self.listed.triangles[place]),
+        }
+    }
+
+    /// How far a triangle is (m), whether it is in the list or not; infinitely far where it cannot be near enough.
+    fn distance(&self, surfaces: &Surfaces, places: &[DVec3], triangle: u32) -> f64 {
+        match self.listed.triangles.iter().take(KEPT).position(|&other| other == triangle) {
+            Some(place) => self.kept[place].1,
+            None => nearest(surfaces, places, self.at, triangle).1,
+        }
+    }
+}
+
+#[inline]
+fn nearest(surfaces: &Surfaces, places: &[DVec3], at: DVec3, triangle: u32) -> (OnTriangle, f64) {
+    let found = OnTriangle::nearest(at, surfaces.corners(places, triangle));
+    (found, at.distance(found.at))
 }
 
 impl Surfaces {
-    /// What a point faces among triangles, ascending, that are no farther than `reach` (m). `edge` is the length of an
-    /// edge (m).
+    /// What a point faces among triangles that are no farther than `reach` (m). `edge` is the length of an edge (m).
     pub fn faced(
         &self,
-        places: &[DVec3],
+        now: Placed<'_>,
         point: &Point,
-        triangles: &[u32],
+        listed: Listed<'_>,
         reach: impl Fn(u32) -> f64,
         edge: f64,
     ) -> Faced {
-        let at = point.place(places);
-        let mut faced = Faced { nearest: f64::INFINITY, ..Faced::default() };
+        let at = point.place(now.places);
+        let mut candidates = Candidates::new(at, listed);
+        candidates.find(self, now.places);
+        let mut faced = Faced { wakes: f64::INFINITY, ..Faced::default() };
         let mut own_normal = None;
         let mut least = [f64::INFINITY; 2];
-        for &triangle in triangles {
-            let found = OnTriangle::nearest(at, self.corners(places, triangle));
-            let distance = at.distance(found.at);
-            faced.nearest = faced.nearest.min(distance);
+        for (place, &triangle) in listed.triangles.iter().enumerate() {
+            if listed.is_far(place) {
+                faced.wakes = faced.wakes.min(listed.distances[place]);
+                continue;
+            }
+            let (found, distance) = candidates.nearest(self, now.places, place);
+            // both have moved since the list was made
+            faced.wakes = faced.wakes.min(distance - listed.nearer);
             let reach = reach(triangle);
             if distance > reach && distance > self.depths[triangle as usize] {
                 continue;
             }
-            let Some(facing) = self.outside(places, at, triangle, found, edge) else { continue };
+            let Some(facing) = self.outside(now, &candidates, triangle, (found, distance), edge) else { continue };
             let inside = -self.depths[triangle as usize];
             if !(facing.gap >= inside && facing.gap <= reach) {
                 continue;
             }
             let own = *own_normal.get_or_insert_with(|| match point.triangle {
-                Some(triangle) => self.normal(places, triangle),
-                None => self.normal_of_node(places, point.nodes[0]),
+                Some(triangle) => now.normals[triangle as usize],
+                None => self.normal_of_node(now, point.nodes[0]),
             });
             let turned = facing.normal.dot(own);
             if turned >= TURNED_AWAY {
@@ -95,30 +167,34 @@ impl Surfaces {
         faced
     }
 
-    /// How far a place is outside of a triangle, whose nearest place is known; `None` where another triangle must be
+    /// How far a point is outside of a triangle, whose nearest place is known; `None` where another triangle must be
     /// nearer, and of triangles without area.
-    fn outside(&self, places: &[DVec3], at: DVec3, triangle: u32, found: OnTriangle, edge: f64) -> Option<Facing> {
-        let normal = self.normal(places, triangle);
+    fn outside(
+        &self,
+        now: Placed<'_>,
+        candidates: &Candidates<'_>,
+        triangle: u32,
+        (found, distance): (OnTriangle, f64),
+        edge: f64,
+    ) -> Option<Facing> {
+        let normal = now.normals[triangle as usize];
         if normal == DVec3::ZERO || !found.at.is_finite() {
             return None;
         }
-        let off = at - found.at;
+        let off = candidates.at - found.at;
         let facing =
             |normal: DVec3, gap: f64| Some(Facing { triangle, weights: found.weights, at: found.at, normal, gap });
-        let distance = off.length();
         if found.part == 0 || distance <= 1e-3 * edge {
             return facing(normal, off.dot(normal));
         }
         // the surface around a place that is nearest is nowhere nearer: not the flat surroundings of a point's own, nor a
         // side that leads round a corner
-        let closer = |other: u32| {
-            let corners = self.corners(places, other);
-            other != triangle && OnTriangle::nearest(at, corners).at.distance(at) < (1.0 - 1e-6) * distance
-        };
+        let closer =
+            |other: u32| other != triangle && candidates.distance(self, now.places, other) < (1.0 - 1e-6) * distance;
         if self.around_part(triangle, found.part).any(closer) {
             return None;
         }
-        match off.dot(self.normal_of_part(places, triangle, found.part)) {
+        match off.dot(self.normal_of_part(now, triangle, found.part)) {
             out if out >= 0.0 => facing(off / distance, distance),
             _ => facing(-off / distance, -distance),
         }
@@ -136,6 +212,21 @@ mod tests {
 
     use super::*;
 
+    /// What a point faces, with the normals of all triangles found for it.
+    fn faced(
+        surfaces: &Surfaces,
+        places: &[DVec3],
+        point: &Point,
+        triangles: &[u32],
+        reach: impl Fn(u32) -> f64,
+    ) -> Faced {
+        let all = 0..surfaces.triangles.len() as u32;
+        let normals: Vec<DVec3> = all.map(|triangle| surfaces.normal(places, triangle)).collect();
+        let distances = vec![0.0; triangles.len()];
+        let listed = Listed { triangles, distances: &distances, nearer: 0.0, farthest: 1.0 };
+        surfaces.faced(Placed { places, normals: &normals }, point, listed, reach, 1.0)
+    }
+
     /// A flat square of two triangles, normal up, and a point above it.
     fn square(height: f64) -> (Surfaces, Vec<DVec3>) {
         let places = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0), (0.5, 0.5, height)];
@@ -147,7 +238,7 @@ mod tests {
     fn a_place_on_the_side_of_two_faces_is_as_far_from_both() {
         for height in [0.1, 1e-5, 0.0, -1e-5, -0.1] {
             let (surfaces, places) = square(height);
-            let faced = surfaces.faced(&places, &Point::node(1, 4), &[0, 1], |_| 0.2, 1.0);
+            let faced = faced(&surfaces, &places, &Point::node(1, 4), &[0, 1], |_| 0.2);
             let first = faced.first.expect("it faces them");
             assert!((first.gap - height).abs() < 1e-15 && (first.normal - DVec3::Z).length() < 1e-12, "{first:?}");
             assert_eq!((first.triangle, faced.second), (0, None));
@@ -164,7 +255,7 @@ mod tests {
         let surfaces = Surfaces::new(7, triangles, vec![0; 4], vec![0.5; 4]);
         for place in [(1.3, 0.5, 0.0), (1.3, 0.5, 0.1), (1.1, 0.0, -0.2), (1.4, 1.0, 1e-9), (1.4, 1.0, -1e-9)] {
             places[6] = place.into();
-            let faced = |triangles: &[u32]| surfaces.faced(&places, &Point::node(1, 6), triangles, |_| 1.0, 1.0).first;
+            let faced = |triangles: &[u32]| faced(&surfaces, &places, &Point::node(1, 6), triangles, |_| 1.0).first;
             assert_eq!(faced(&[0, 1]), None, "{place:?}");
             assert!((faced(&[0, 1, 2, 3]).expect("it faces one").gap - place.2).abs() < 1e-15);
         }
@@ -174,7 +265,7 @@ mod tests {
     fn farther_than_the_reach_or_deeper_than_the_inside_is_nothing() {
         for (height, there) in [(0.21, false), (0.19, true), (-0.49, true), (-0.51, false)] {
             let (surfaces, places) = square(height);
-            let faced = surfaces.faced(&places, &Point::node(1, 4), &[0, 1], |_| 0.2, 1.0);
+            let faced = faced(&surfaces, &places, &Point::node(1, 4), &[0, 1], |_| 0.2);
             assert_eq!(faced.first.is_some(), there, "{height}");
         }
     }
@@ -184,7 +275,7 @@ mod tests {
         let places: Vec<DVec3> =
             [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (2.0, 0.0, 0.0), (1.0, 0.0, 0.1)].map(DVec3::from).to_vec();
         let surfaces = Surfaces::new(4, vec![[0, 1, 2], [0, 0, 0]], vec![0; 2], vec![0.5; 2]);
-        let faced = surfaces.faced(&places, &Point::node(1, 3), &[0, 1], |_| 1.0, 1.0);
+        let faced = faced(&surfaces, &places, &Point::node(1, 3), &[0, 1], |_| 1.0);
         assert_eq!(faced.first, None);
     }
 }

@@ -1,6 +1,13 @@
 //! The law of contact between bodies: the impulses that keep predicted steps from ending inside one another.
 
+use crate::backend::cpu::Cpu;
 use glam::DVec3;
+
+/// Contacts and nodes that a task works on.
+const CONTACTS_A_TASK: usize = 256;
+
+/// So many contacts are worth the threads; fewer are added up one after the other.
+const WORTH_SHARING: usize = 1024;
 
 /// Nodes of a contact: at most three of the point's and three of the face's.
 const MOST: usize = 6;
@@ -80,6 +87,48 @@ impl Contact {
     fn along(&self, vector: DVec3) -> DVec3 {
         vector - self.normal * vector.dot(self.normal)
     }
+
+    /// Corrects the normal force, and gives by how much (N).
+    fn press(&mut self, steps: &[DVec3]) -> DVec3 {
+        let gap = self.gap + self.normal.dot(self.relative(steps));
+        let pressing = if self.yields > 0.0 { (self.pressing - gap / self.yields).max(0.0) } else { 0.0 };
+        let change = self.normal * (pressing - self.pressing);
+        self.pressing = pressing;
+        change
+    }
+
+    /// Corrects the tangential force, and gives by how much (N).
+    fn rub(&mut self, steps: &[DVec3]) -> DVec3 {
+        if self.friction <= 0.0 || self.yields_along <= 0.0 {
+            return DVec3::ZERO;
+        }
+        let slip = self.along(self.slip + self.relative(steps));
+        let wanted = self.along(self.rubbing) - slip / self.yields_along;
+        let (bound, size) = (self.friction * self.pressing, wanted.length());
+        self.slides = size > bound;
+        let rubbing = if self.slides { wanted * (bound / size) } else { wanted };
+        let change = rubbing - self.rubbing;
+        self.rubbing = rubbing;
+        change
+    }
+
+    /// Notes how far it has slipped elastically, now that forces are known.
+    fn note_slip(&mut self, steps: &[DVec3]) {
+        let slip = self.along(self.slip + self.relative(steps));
+        let (bound, size) = (self.friction * self.pressing * self.yields_along, slip.length());
+        self.slip = if size > bound { slip * (bound / size) } else { slip };
+    }
+
+    /// Finds how far it yields to forces, from the shares of nodes.
+    fn find_yields(&mut self, shares: &[f64], responses: &[DVec3]) {
+        let (mut along_normal, mut largest) = (0.0, 0.0);
+        for (node, weight) in self.parts() {
+            let (share, response) = (weight.abs() * shares[node], responses[node]);
+            along_normal += share * self.normal.dot(response * self.normal);
+            largest += share * response.max_element();
+        }
+        (self.yields, self.yields_along) = (along_normal, largest);
+    }
 }
 
 /// Contacts that act in the same step, and the nodes they act on.
@@ -95,6 +144,10 @@ pub struct ContactSet {
     shares: Vec<f64>,
     /// What a sweep changes of each contact's force (N).
     changes: Vec<DVec3>,
+    /// Where each node's contacts begin in the next list; empty where contacts are too few for threads.
+    starts: Vec<u32>,
+    /// Contacts of each node, ascending, with its weights.
+    of_nodes: Vec<(u32, f64)>,
 }
 
 impl ContactSet {
@@ -114,45 +167,49 @@ impl ContactSet {
     ///
     /// Friction is the return mapping of an elastic slip that each contact keeps: it sticks without creep, and slides
     /// with exactly the largest force.
-    pub fn solve(&mut self, sweeps: usize) {
-        self.split();
+    pub fn solve(&mut self, sweeps: usize, cpu: &Cpu) {
+        self.list_nodes(cpu);
+        self.split(cpu);
+        self.changes.clear();
+        self.changes.resize(self.contacts.len(), DVec3::ZERO);
         for _ in 0..sweeps.max(1) {
-            self.changes.clear();
-            for contact in &mut self.contacts {
-                let gap = contact.gap + contact.normal.dot(contact.relative(&self.steps));
-                let pressing = match contact.yields > 0.0 {
-                    true => (contact.pressing - gap / contact.yields).max(0.0),
-                    false => 0.0,
-                };
-                self.changes.push(contact.normal * (pressing - contact.pressing));
-                contact.pressing = pressing;
+            self.change(Contact::press, cpu);
+            if self.contacts.iter().any(|contact| contact.friction > 0.0) {
+                self.change(Contact::rub, cpu);
             }
-            self.apply();
-            self.changes.clear();
-            for contact in &mut self.contacts {
-                let mut change = DVec3::ZERO;
-                if contact.friction > 0.0 && contact.yields_along > 0.0 {
-                    let slip = contact.along(contact.slip + contact.relative(&self.steps));
-                    let wanted = contact.along(contact.rubbing) - slip / contact.yields_along;
-                    let (bound, size) = (contact.friction * contact.pressing, wanted.length());
-                    contact.slides = size > bound;
-                    let rubbing = if contact.slides { wanted * (bound / size) } else { wanted };
-                    change = rubbing - contact.rubbing;
-                    contact.rubbing = rubbing;
-                }
-                self.changes.push(change);
+        }
+        let steps = &self.steps;
+        cpu.for_each(self.contacts.chunks_mut(CONTACTS_A_TASK), |contacts| {
+            contacts.iter_mut().for_each(|contact| contact.note_slip(steps));
+        });
+    }
+
+    /// Lists contacts by node where there are so many that threads add up what they do: in the order in which one
+    /// thread would, so that the bits are the same.
+    fn list_nodes(&mut self, cpu: &Cpu) {
+        let Self { contacts, steps, starts, of_nodes, .. } = self;
+        starts.clear();
+        if cpu.threads() == 1 || contacts.len() < WORTH_SHARING {
+            return;
+        }
+        starts.resize(steps.len() + 1, 0);
+        contacts.iter().for_each(|contact| contact.parts().for_each(|(node, _)| starts[node + 1] += 1));
+        (0..steps.len()).for_each(|node| starts[node + 1] += starts[node]);
+        of_nodes.clear();
+        of_nodes.resize(starts[steps.len()] as usize, (0, 0.0));
+        // the start of each node runs to its end, which is the next one's start
+        for (number, contact) in (0..).zip(&*contacts) {
+            for (node, weight) in contact.parts() {
+                of_nodes[starts[node] as usize] = (number, weight);
+                starts[node] += 1;
             }
-            self.apply();
         }
-        for contact in &mut self.contacts {
-            let slip = contact.along(contact.slip + contact.relative(&self.steps));
-            let (bound, size) = (contact.friction * contact.pressing * contact.yields_along, slip.length());
-            contact.slip = if size > bound { slip * (bound / size) } else { slip };
-        }
+        starts.rotate_right(1);
+        starts[0] = 0;
     }
 
     /// Splits the mass of each node among its contacts.
-    fn split(&mut self) {
+    fn split(&mut self, cpu: &Cpu) {
         self.shares.clear();
         self.shares.resize(self.steps.len(), 0.0);
         for contact in &self.contacts {
@@ -160,25 +217,37 @@ impl ContactSet {
                 self.shares[node] += weight.abs();
             }
         }
-        for contact in &mut self.contacts {
-            let (mut along_normal, mut largest) = (0.0, 0.0);
-            for (node, weight) in contact.parts() {
-                let (share, response) = (weight.abs() * self.shares[node], self.responses[node]);
-                along_normal += share * contact.normal.dot(response * contact.normal);
-                largest += share * response.max_element();
-            }
-            (contact.yields, contact.yields_along) = (along_normal, largest);
-        }
+        let (shares, responses) = (&self.shares, &self.responses);
+        cpu.for_each(self.contacts.chunks_mut(CONTACTS_A_TASK), |contacts| {
+            contacts.iter_mut().for_each(|contact| contact.find_yields(shares, responses));
+        });
     }
 
-    fn apply(&mut self) {
-        for (contact, change) in self.contacts.iter().zip(&self.changes) {
-            if *change != DVec3::ZERO {
-                for (node, weight) in contact.parts() {
-                    self.steps[node] += self.responses[node] * (*change * weight);
+    /// Corrects forces, and the steps of nodes by that.
+    fn change(&mut self, correct: impl Fn(&mut Contact, &[DVec3]) -> DVec3 + Sync + Send, cpu: &Cpu) {
+        let Self { contacts, steps, responses, changes, starts, of_nodes, .. } = self;
+        let now = &*steps;
+        let tasks = contacts.chunks_mut(CONTACTS_A_TASK).zip(changes.chunks_mut(CONTACTS_A_TASK));
+        cpu.for_each(tasks, |(contacts, changes)| {
+            contacts.iter_mut().zip(changes).for_each(|(contact, change)| *change = correct(contact, now));
+        });
+        let (responses, changes) = (&*responses, &*changes);
+        if starts.is_empty() {
+            for (contact, change) in contacts.iter().zip(changes).filter(|(_, change)| **change != DVec3::ZERO) {
+                contact.parts().for_each(|(node, weight)| steps[node] += responses[node] * (*change * weight));
+            }
+            return;
+        }
+        cpu.for_each(steps.chunks_mut(CONTACTS_A_TASK).enumerate(), |(task, steps)| {
+            for (node, step) in (task * CONTACTS_A_TASK..).zip(steps) {
+                for &(contact, weight) in &of_nodes[starts[node] as usize..starts[node + 1] as usize] {
+                    let change = changes[contact as usize];
+                    if change != DVec3::ZERO {
+                        *step += responses[node] * (change * weight);
+                    }
                 }
             }
-        }
+        });
     }
 }
 

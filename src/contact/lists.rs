@@ -5,6 +5,7 @@ use super::surfaces::{Point, Surfaces};
 use crate::backend::cpu::Cpu;
 use crate::math::OnTriangle;
 use glam::DVec3;
+use std::ops::Range;
 
 /// Points that a task looks for.
 const POINTS_A_TASK: usize = 256;
@@ -16,13 +17,13 @@ pub struct Lists {
     /// Points that have any, ascending.
     pub points: Vec<u32>,
     /// Where each one's triangles begin, and where the last one's end.
-    starts: Vec<u32>,
+    pub starts: Vec<u32>,
     /// Ascending for each point.
-    triangles: Vec<u32>,
-    /// Where the nodes were.
-    places: Vec<DVec3>,
-    /// How far a triangle may be from a point that is in no list (m).
-    radius: f64,
+    pub triangles: Vec<u32>,
+    /// How far each is from the point (m).
+    pub distances: Vec<f64>,
+    /// All triangles that were so near to a point are in its list (m); more than was asked for where there are none.
+    pub radius: f64,
 }
 
 /// Who may meet whom.
@@ -40,54 +41,62 @@ pub struct Finder<'a> {
 impl Lists {
     /// The triangles that may be near the point of a place in [`points`](Self::points).
     pub fn triangles(&self, place: usize) -> &[u32] {
-        &self.triangles[self.starts[place] as usize..self.starts[place + 1] as usize]
+        &self.triangles[self.range(place)]
     }
 
-    /// Whether they hold all triangles within `reach` (m) of points, now that nodes are at these places.
-    pub fn hold(&self, places: &[DVec3], reach: f64) -> bool {
-        if self.places.len() != places.len() || places.is_empty() {
-            return false;
-        }
-        // what flies together stays near or far
-        let moved = |(now, then): (&DVec3, &DVec3)| *now - *then;
-        let mean = places.iter().zip(&self.places).map(moved).sum::<DVec3>() / places.len() as f64;
-        let farthest = |most: f64, pair| f64::max(most, (moved(pair) - mean).length_squared());
-        let most = places.iter().zip(&self.places).fold(0.0, farthest).sqrt();
-        reach + 2.0 * most <= self.radius
+    /// How far each of these was (m).
+    pub fn distances(&self, place: usize) -> &[f64] {
+        &self.distances[self.range(place)]
+    }
+
+    fn range(&self, place: usize) -> Range<usize> {
+        self.starts[place] as usize..self.starts[place + 1] as usize
     }
 
     /// Finds all triangles within a radius (m) of points, in a tree a body.
     pub fn find(finder: &Finder<'_>, trees: &[Tree], places: &[DVec3], radius: f64, cpu: &Cpu) -> Self {
         let task = |task: usize| {
-            let (mut found, mut near) = (Vec::new(), Vec::new());
+            let (mut counts, mut found): (Vec<(u32, u32)>, Vec<(u32, f64)>) = (Vec::new(), Vec::new());
             let points = task * POINTS_A_TASK..finder.points.len().min((task + 1) * POINTS_A_TASK);
             for number in points {
-                near.clear();
                 let point = &finder.points[number];
-                let at = point.place(places);
+                let (at, before) = (point.place(places), found.len());
                 let met = trees.iter().zip(0..).filter(|(_, body)| (finder.reach)(point.body, *body).is_some());
                 for (tree, _) in met {
                     tree.near(at, radius, |triangle| {
+                        let corners = finder.surfaces.corners(places, triangle);
+                        let [a, b, c] = corners;
+                        // how far its box is, to save the rest for most
+                        let off = (a.min(b).min(c) - at).max(at - a.max(b).max(c)).max(DVec3::ZERO);
+                        if off.length_squared() > radius * radius {
+                            return;
+                        }
                         if finder.may_meet(number as u32, triangle) {
-                            let corners = finder.surfaces.corners(places, triangle);
-                            if OnTriangle::nearest(at, corners).at.distance_squared(at) <= radius * radius {
-                                near.push(triangle);
+                            let distance = OnTriangle::nearest(at, corners).at.distance(at);
+                            if distance <= radius {
+                                found.push((triangle, distance));
                             }
                         }
                     });
                 }
-                if !near.is_empty() {
-                    near.sort_unstable();
-                    found.push((number as u32, near.clone()));
+                if found.len() > before {
+                    found[before..].sort_unstable_by_key(|(triangle, _)| *triangle);
+                    counts.push((number as u32, (found.len() - before) as u32));
                 }
             }
-            found
+            (counts, found)
         };
-        let mut lists = Lists { places: places.to_vec(), radius, starts: vec![0], ..Lists::default() };
-        for (point, triangles) in cpu.map(finder.points.len().div_ceil(POINTS_A_TASK), task).into_iter().flatten() {
-            lists.points.push(point);
-            lists.triangles.extend(triangles);
-            lists.starts.push(lists.triangles.len() as u32);
+        let mut lists = Lists { radius, starts: vec![0], ..Lists::default() };
+        for (counts, found) in cpu.map(finder.points.len().div_ceil(POINTS_A_TASK), task) {
+            for (point, count) in counts {
+                lists.points.push(point);
+                lists.starts.push(lists.starts[lists.starts.len() - 1] + count);
+            }
+            lists.triangles.extend(found.iter().map(|(triangle, _)| *triangle));
+            lists.distances.extend(found.into_iter().map(|(_, distance)| distance));
+        }
+        if lists.points.is_empty() {
+            lists.radius = finder.apart_by(trees).max(radius);
         }
         lists
     }
@@ -99,6 +108,14 @@ impl Finder<'_> {
         let point = &self.points[number as usize];
         (self.surfaces.bodies[triangle as usize] != point.body || !self.is_of_point(point, triangle))
             && (self.apart.is_empty() || self.apart.binary_search(&(number, triangle)).is_err())
+    }
+
+    /// How far the boxes of bodies that may meet are apart (m); 0 where one may meet itself.
+    fn apart_by(&self, trees: &[Tree]) -> f64 {
+        let bodies = || (0..).zip(trees);
+        let pairs = bodies().flat_map(|(a, of_a)| bodies().map(move |(b, of_b)| (a, of_a, b, of_b)));
+        let meeting = pairs.filter(|&(a, _, b, _)| (self.reach)(a, b).is_some());
+        meeting.map(|(a, of_a, b, of_b)| if a == b { 0.0 } else { of_a.distance(of_b) }).fold(f64::INFINITY, f64::min)
     }
 
     fn is_of_point(&self, point: &Point, triangle: u32) -> bool {

@@ -9,8 +9,8 @@ mod surfaces;
 mod ties;
 
 pub use boxes::Tree;
-pub use facing::{Faced, Facing};
+pub use facing::{Faced, Facing, Listed};
 pub use law::{Contact, ContactSet};
 pub use lists::{Finder, Lists};
-pub use surfaces::{Point, Surfaces};
+pub use surfaces::{Near, Placed, Point, Surfaces};
 pub use ties::{Tie, TieSet};

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 use std::collections::HashMap;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// No triangle.
 pub(super) const NONE: u32 = u32::MAX;
@@ -20,6 +21,25 @@ pub struct Surfaces {
     /// The triangles around each node, in compressed rows.
     starts: Vec<u32>,
     around: Vec<u32>,
+}
+
+/// Where surfaces are: places of nodes (m), and unit normals of triangles. Only of those are they needed that are near
+/// what is asked for ([`Surfaces::neighbourhood`]).
+#[derive(Clone, Copy, Debug)]
+pub struct Placed<'a> {
+    /// Of each node (m).
+    pub places: &'a [DVec3],
+    /// Of each triangle; zero of one without area.
+    pub normals: &'a [DVec3],
+}
+
+/// Parts of surfaces that are near something.
+#[derive(Clone, Debug, Default)]
+pub struct Near {
+    /// Nodes.
+    pub nodes: Vec<u32>,
+    /// Triangles.
+    pub triangles: Vec<u32>,
 }
 
 /// A point of a surface that may meet others: a node, or a place on a triangle.
@@ -87,8 +107,10 @@ impl Surfaces {
     }
 
     /// Where its corners are (m).
+    #[inline]
     pub fn corners(&self, places: &[DVec3], triangle: u32) -> [DVec3; 3] {
-        self.triangles[triangle as usize].map(|node| places[node as usize])
+        let [a, b, c] = self.triangles[triangle as usize];
+        [places[a as usize], places[b as usize], places[c as usize]]
     }
 
     /// The unit normal of a triangle; zero of one without area.
@@ -99,15 +121,15 @@ impl Surfaces {
 
     /// The normal of a part of a triangle, as [`OnTriangle::part`](crate::math::OnTriangle) counts them: of a side the
     /// sum of those of both its triangles, of a corner the sum weighted with angles (Bærentzen and Aanæs 2005).
-    pub(super) fn normal_of_part(&self, places: &[DVec3], triangle: u32, part: usize) -> DVec3 {
+    pub(super) fn normal_of_part(&self, now: Placed<'_>, triangle: u32, part: usize) -> DVec3 {
         match part {
-            0 => self.normal(places, triangle),
+            0 => now.normals[triangle as usize],
             1..=3 => {
                 let other = self.beside[triangle as usize][part - 1];
-                let of_other = if other == NONE { DVec3::ZERO } else { self.normal(places, other) };
-                (self.normal(places, triangle) + of_other).normalize_or_zero()
+                let of_other = if other == NONE { DVec3::ZERO } else { now.normals[other as usize] };
+                (now.normals[triangle as usize] + of_other).normalize_or_zero()
             }
-            corner => self.normal_of_node(places, self.triangles[triangle as usize][(corner - 4).min(2)]),
+            corner => self.normal_of_node(now, self.triangles[triangle as usize][(corner - 4).min(2)]),
         }
     }
 
@@ -115,22 +137,79 @@ impl Surfaces {
     pub(super) fn around_part(&self, triangle: u32, part: usize) -> impl Iterator<Item = u32> + '_ {
         let side = self.beside[triangle as usize][(part + 2) % 3];
         let beside = (matches!(part, 1..=3) && side != NONE).then_some(side);
-        let node = self.triangles[triangle as usize][part.saturating_sub(4).min(2)] as usize;
-        let around = if part > 3 { self.starts[node] as usize..self.starts[node + 1] as usize } else { 0..0 };
-        beside.into_iter().chain(self.around[around].iter().copied())
+        let node = self.triangles[triangle as usize][part.saturating_sub(4).min(2)];
+        let around = if part > 3 { self.around(node) } else { &[] };
+        beside.into_iter().chain(around.iter().copied())
     }
 
-    /// The normal of a node, weighted with angles.
-    pub fn normal_of_node(&self, places: &[DVec3], node: u32) -> DVec3 {
-        let at = places[node as usize];
-        let around = &self.around[self.starts[node as usize] as usize..self.starts[node as usize + 1] as usize];
+    /// The triangles across the sides of one; `u32::MAX` where there is not exactly one.
+    pub fn beside(&self, triangle: u32) -> [u32; 3] {
+        self.beside[triangle as usize]
+    }
+
+    /// The triangles around a node, ascending.
+    pub fn around(&self, node: u32) -> &[u32] {
+        &self.around[self.starts[node as usize] as usize..self.starts[node as usize + 1] as usize]
+    }
+
+    /// The normal of a node, weighted with angles, to 1e-4: what is asked of it is to which side things are.
+    pub fn normal_of_node(&self, now: Placed<'_>, node: u32) -> DVec3 {
+        let at = now.places[node as usize];
         let of_triangle = |&triangle: &u32| {
             let corners = self.triangles[triangle as usize];
             let place = corners.iter().position(|&corner| corner == node).unwrap_or(0);
-            let [b, c] = [1, 2].map(|next| places[corners[(place + next) % 3] as usize] - at);
-            let across = b.cross(c);
-            across.normalize_or_zero() * across.length().atan2(b.dot(c))
+            let [b, c] = [1, 2].map(|next| now.places[corners[(place + next) % 3] as usize] - at);
+            now.normals[triangle as usize] * angle(b.cross(c).length(), b.dot(c))
         };
-        around.iter().map(of_triangle).sum::<DVec3>().normalize_or_zero()
+        self.around(node).iter().map(of_triangle).sum::<DVec3>().normalize_or_zero()
+    }
+
+    /// The triangles that may be asked for when it is found what points face among some triangles, and their corners;
+    /// both ascending.
+    pub fn neighbourhood(&self, points: impl Iterator<Item = Point>, among: &[u32]) -> Near {
+        let mut of_nodes = vec![false; self.nodes()];
+        let mut mark = |node: u32| of_nodes[node as usize] = true;
+        points.for_each(|point| point.parts().for_each(|(node, _)| mark(node)));
+        among.iter().for_each(|&triangle| self.triangles[triangle as usize].into_iter().for_each(&mut mark));
+        let is_near = |corners: &[u32; 3]| corners.iter().any(|&node| of_nodes[node as usize]);
+        let numbered = (0..).zip(&self.triangles);
+        let triangles: Vec<u32> = numbered.filter(|(_, corners)| is_near(corners)).map(|(number, _)| number).collect();
+        let mut nodes: Vec<u32> = triangles.iter().flat_map(|&number| self.triangles[number as usize]).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        Near { nodes, triangles }
+    }
+}
+
+/// The angle whose sine and cosine are in the same ratio as these; 0 where both are 0. To 1e-5: Abramowitz and Stegun
+/// 4.4.49 in an eighth of the circle.
+fn angle(sine: f64, cosine: f64) -> f64 {
+    let (low, high) = if sine < cosine.abs() { (sine, cosine.abs()) } else { (cosine.abs(), sine) };
+    let x = if high > 0.0 { low / high } else { 0.0 };
+    let square = x * x;
+    let terms = 0.180_141_0 + square * (-0.085_133_0 + square * 0.020_835_1);
+    let of_eighth = x * (0.999_866_0 + square * (-0.330_299_5 + square * terms));
+    let of_quarter = if sine < cosine.abs() { of_eighth } else { FRAC_PI_2 - of_eighth };
+    match (high > 0.0, cosine < 0.0) {
+        (false, _) => 0.0,
+        (true, false) => of_quarter,
+        (true, true) => PI - of_quarter,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_are_those_of_sines_and_cosines() {
+        for step in 0..=1000 {
+            let exact = PI * f64::from(step) / 1000.0;
+            for scale in [1e-9, 1.0, 1e9] {
+                let found = angle(scale * exact.sin(), scale * exact.cos());
+                assert!((found - exact).abs() < 1.2e-5, "{exact}: {found}");
+            }
+        }
+        assert_eq!(angle(0.0, 0.0), 0.0);
     }
 }

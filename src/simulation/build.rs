@@ -113,11 +113,11 @@ impl Simulation {
         (observer.watch.foreign, observer.on_gpu) = (foreign, on_gpu);
         // what shares passes leaves no step to the host
         let alone = |entry: &Scheduled<'_>| match on_gpu {
-            true => !entry.system.device.is_some(),
+            true => !entry.on_device,
             false => entry.system.host.nodes().is_none(),
         };
         let custom = schedule.iter().any(|entry| entry.system.custom && alone(entry));
-        let is_of_host = |entry: &Scheduled<'_>| !entry.system.device.is_some() && !entry.system.observes;
+        let is_of_host = |entry: &Scheduled<'_>| !entry.on_device && !entry.system.observes;
         observer.all_on_device = on_gpu && !schedule.iter().any(is_of_host);
         let facts = Facts {
             on_gpu,
@@ -226,7 +226,12 @@ fn entries(
         let names: Vec<&str> = plan.systems_of(pass).map(|system| system.name.as_str()).collect();
         let phase = plan.systems_of(pass).map(|system| system.phase).max().unwrap_or(plan.systems[first].phase);
         let name = names.join(" + ");
-        entries.push(Entry { name, phase, systems: pass.systems.clone(), job, time: Duration::ZERO, runs: 0 });
+        let before_steps = match &job {
+            Job::Kernels(_) => pass.systems.iter().find_map(|&place| schedule[place].system.before_steps),
+            Job::Host { .. } => None,
+        };
+        let systems = pass.systems.clone();
+        entries.push(Entry { name, phase, systems, job, before_steps, time: Duration::ZERO, runs: 0 });
     }
     entries
 }

@@ -135,6 +135,8 @@ struct Entry {
     /// Places of its systems in the plan.
     systems: Vec<usize>,
     job: Job,
+    /// What it needs before steps are submitted to a GPU.
+    before_steps: Option<crate::systems::BeforeSteps>,
     time: Duration,
     runs: u64,
 }

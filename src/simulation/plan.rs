@@ -77,7 +77,7 @@ impl Plan {
                 phase: system.phase,
                 because: because.clone(),
                 observes: system.observes,
-                on_device: system.device.is_some(),
+                on_device: scheduled.on_device,
                 every: *every,
                 reads: names(touched.read_columns(world)),
                 writes: names(touched.written_columns(world)),
@@ -240,8 +240,8 @@ impl Grouping<'_> {
     fn is_of_elements(&self, group: &[usize]) -> bool {
         matches!(group, [place] if match self.on_gpu {
             true => {
-                let system = self.schedule[*place].system;
-                system.phase == Phase::ElementForces && system.device.is_some()
+                let scheduled = &self.schedule[*place];
+                scheduled.system.phase == Phase::ElementForces && scheduled.on_device
             }
             false => matches!(self.schedule[*place].system.host, OnHost::Elements(_)),
         })

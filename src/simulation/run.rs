@@ -214,7 +214,9 @@ impl Simulation {
                 .iter()
                 .any(|entry| matches!(entry.job, Job::Host { interval, observes: false, .. } if interval.is_due(step)))
         };
-        if custom_due(step) {
+        let custom_is_due = custom_due(step);
+        let most = self.before_steps()?;
+        if custom_is_due {
             return self.device_step_around_hosts(step);
         }
         let mut until = target.min(self.world.resource::<Observer>().next_due(step));
@@ -224,11 +226,22 @@ impl Simulation {
             }
         }
         let kernels: Vec<KernelId> = self.entries.iter().flat_map(Entry::kernels).copied().collect();
-        let count = (until - step).min(4096);
+        let count = (until - step).min(4096).min(most);
         debug_assert!(count > 0, "no step to take at {step}");
         self.run_kernels(&kernels, step, count)?;
         self.world.resource_mut::<Clock>().step = step + count;
         self.observe_if_due(step + count)
+    }
+
+    /// Does what systems on the device need before steps are submitted; how many there may be at most.
+    fn before_steps(&mut self) -> Result<u64, Error> {
+        let mut most = u64::MAX;
+        for entry in &self.entries {
+            if let Some(before_steps) = entry.before_steps {
+                most = most.min(before_steps(&mut self.world)?.max(1));
+            }
+        }
+        Ok(most)
     }
 
     fn observe_if_due(&mut self, step: u64) -> Result<(), Error> {

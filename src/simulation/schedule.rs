@@ -15,6 +15,15 @@ pub struct Scheduled<'a> {
     pub every: u64,
     /// Time between two runs (s), where the scene says so.
     pub interval: Option<f64>,
+    /// Whether a GPU has it.
+    pub on_device: bool,
+}
+
+impl<'a> Scheduled<'a> {
+    fn new(system: &'a System, because: String, world: &World) -> Self {
+        let on_device = system.device.is_some() && (system.device_when)(world);
+        Self { system, because, every: system.every, interval: None, on_device }
+    }
 }
 
 /// Looks for mistakes in a scene's schedule that show without its world: names and their order.
@@ -55,14 +64,15 @@ pub fn resolve<'a>(
         return known
             .systems()
             .filter_map(|system| {
-                Some(Scheduled { system, because: (system.because)(world)?, every: system.every, interval: None })
+                let because = (system.because)(world)?;
+                Some(Scheduled::new(system, because, world))
             })
             .collect();
     };
     let mut schedule: Vec<Scheduled<'a>> = Vec::new();
     for system in names.iter().filter_map(|name| known.get(name)) {
         let because = (system.because)(world).unwrap_or_else(|| "the scene's schedule names it".into());
-        schedule.push(Scheduled { system, because, every: system.every, interval: None });
+        schedule.push(Scheduled::new(system, because, world));
     }
     for system in known.systems() {
         if let Some(because) = (system.because)(world)

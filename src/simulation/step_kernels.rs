@@ -25,6 +25,7 @@ pub(super) fn step_kernels(
         for &place in &pass.systems {
             match &systems[place].device {
                 OnDevice::None => {}
+                _ if !plan.systems[place].on_device => {}
                 OnDevice::Kernels(describe) => of_pass.extend(describe(world, buffers)),
                 OnDevice::Stages(describe) => to_nodes.extend(describe(world, buffers)),
             }

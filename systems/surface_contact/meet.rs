@@ -1,10 +1,12 @@
-//! What points face in a step, and the forces that keep them outside.
+//! The forces that keep points outside of what they face.
 
-use super::{Meeting, MeetingColumns, MeetingColumnsReadOnlyItem, SurfaceContacts};
-use crate::backend::cpu::{Cpu, Factors, Foreseen};
+use super::columns::{BodySlices, set_vector, vector, vector_at};
+use super::faced::Found;
+use super::{Meeting, Surface, SurfaceContacts};
+use crate::backend::cpu::{Cpu, Factors};
 use crate::components::*;
-use crate::contact::{Contact, Faced, Facing, Point};
-use bevy_ecs::prelude::*;
+use crate::contact::{Contact, ContactSet, Facing, Point};
+use crate::math::Scalar;
 use glam::DVec3;
 
 /// What a point did in the last step, in [`SurfaceTouch`].
@@ -16,11 +18,9 @@ const SLIDES: f64 = 3.0;
 /// How far a point that is inside comes out in a step at most, in edges.
 const OUT: f64 = 0.1;
 
-/// Points that a task looks at.
-const POINTS_A_TASK: usize = 256;
-
 /// A contact of the set.
-struct Met {
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Met {
     point: u32,
     /// Whether it is the first face of the point: only there slip is kept.
     first: bool,
@@ -44,218 +44,204 @@ impl SurfaceContacts {
             None => 0.01 * self.settling * clock.time_step,
         }
     }
-}
 
-/// What points face now: those in the lists that may be near something.
-fn faced(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) -> Vec<(u32, Faced)> {
-    let farthest = contacts.farthest(reach);
-    let surface = &contacts.surface;
-    let count = surface.lists.points.len();
-    let task = |task: usize| {
-        let mut found = Vec::new();
-        for place in task * POINTS_A_TASK..count.min((task + 1) * POINTS_A_TASK) {
-            if surface.travelled + farthest < surface.wake[place] {
-                continue;
-            }
-            let point = &surface.points[surface.lists.points[place] as usize];
-            let reach_of = |triangle: u32| {
-                let body = surface.triangles.bodies[triangle as usize];
-                reach + contacts.meeting(point.body, body).map_or(0.0, |meeting| meeting.thickness)
-            };
-            let triangles = surface.lists.triangles(place);
-            found.push((
-                place as u32,
-                surface.triangles.faced(&surface.places, point, triangles, reach_of, contacts.edge),
-            ));
-        }
-        found
-    };
-    let found = cpu.map(count.div_ceil(POINTS_A_TASK), task).concat();
-    let surface = &mut contacts.surface;
-    for (place, faced) in &found {
-        // nobody can be there before the nearest has come so far
-        surface.wake[*place as usize] = surface.travelled + faced.nearest;
+    /// Body and row of a point that is a node.
+    fn row_of(&self, point: u32) -> (usize, usize) {
+        let (body, row) = self.surface.nodes[self.surface.points[point as usize].nodes[0] as usize];
+        (body as usize, row as usize)
     }
-    found
 }
 
-/// Where a node would go, from what is known of its body.
-fn foresee(columns: &MeetingColumnsReadOnlyItem<'_, '_>, row: usize, factors: &Factors<f64>) -> Foreseen {
-    let mass = columns.fictitious.map_or_else(|| columns.mass.get(row), |mass| mass.get(row));
-    let damping = columns.damping.map_or(0.0, |damping| damping.get(row));
-    let force = columns.external.vector(row) - columns.internal.vector(row);
-    factors.foresee(mass, damping, columns.axes[row], columns.step.vector(row), force)
+/// Clears the forces of the last step.
+pub(super) fn release<T: Scalar>(surface: &mut Surface, bodies: &mut [BodySlices<'_, T>]) {
+    for node in surface.pressed.drain(..) {
+        let (body, row) = surface.nodes[node as usize];
+        set_vector(bodies[body as usize].force, 3 * row as usize, DVec3::ZERO);
+    }
+}
+
+/// Forgets what points touched or faced in the last step.
+pub(super) fn forget<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &mut [BodySlices<'_, T>]) {
+    for place in 0..contacts.surface.touching.len() {
+        let (body, row) = contacts.row_of(contacts.surface.touching[place]);
+        let touch = &mut bodies[body].touch[MEETING_NUMBERS * row..MEETING_NUMBERS * (row + 1)];
+        set_vector(touch, 0, DVec3::ZERO);
+        touch[4] = T::from_f64(FREE);
+        touch[5] = T::default();
+    }
+    contacts.surface.touching.clear();
 }
 
 /// Finds the forces of a step and adds them to the loads.
-pub(super) fn meet(
+pub(super) fn meet<T: Scalar>(
     contacts: &mut SurfaceContacts,
-    reach: f64,
-    clock: &Clock,
-    cpu: &Cpu,
-    bodies: &mut Query<MeetingColumns>,
+    largest: f64,
+    (clock, cpu): (&Clock, &Cpu),
+    bodies: &mut [BodySlices<'_, T>],
 ) {
-    let found = faced(contacts, reach, cpu);
     let factors = Factors::<f64>::of(clock);
     let settling = contacts.settling(clock);
-    begin(contacts, &found, settling, bodies);
-    let (met, foreseen) = gather(contacts, &found, (&factors, settling), bodies);
+    let found = std::mem::take(&mut contacts.surface.found);
     let mut set = std::mem::take(&mut contacts.surface.set);
-    set.solve(contacts.sweeps);
+    release(&mut contacts.surface, bodies);
+    begin(contacts, &found, (largest, settling), bodies);
+    gather(contacts, &mut set, &found, (&factors, settling), bodies);
+    forget(contacts, bodies);
+    note_facing(contacts, &found, bodies);
+    set.solve(contacts.sweeps, cpu);
     let books = clock.relaxation.is_none().then_some(factors.booked);
-    // forces on nodes, in the order of contacts
-    let mut forces = vec![DVec3::ZERO; foreseen.len()];
-    for (contact, met) in set.contacts.iter().zip(&met).filter(|(contact, _)| contact.pressing > 0.0) {
-        let force = contact.force();
-        contact.parts().for_each(|(slot, weight)| forces[slot] += force * weight);
-        let (body, row) = contacts.surface.nodes[contacts.surface.points[met.point as usize].nodes[0] as usize];
-        let Ok(mut columns) = bodies.get_mut(contacts.bodies[body as usize]) else { continue };
-        let at = MEETING_NUMBERS * row as usize;
-        let touch = &mut columns.touch;
-        if met.first {
-            touch.set_vector_at(at, contact.slip);
-            touch.set(at + 4, if contact.slides { SLIDES } else { STICKS });
-            touch.set(at + 5, met.gap + contact.normal.dot(contact.relative(&set.steps)));
-        }
-        if let Some(booked) = books {
-            let after = contact.relative(&set.steps);
-            let before: DVec3 = contact.parts().map(|(slot, weight)| foreseen[slot].1.before * weight).sum();
-            let along = (after - contact.normal * after.dot(contact.normal)).length();
-            let slid = touch.get(at + 6) + if contact.slides { along } else { 0.0 };
-            let lost = touch.get(at + 7) - booked * force.dot(0.5 * (before + after));
-            touch.set(at + 6, slid);
-            touch.set(at + 7, lost);
-        }
-    }
-    for (&(node, _), &force) in foreseen.iter().zip(&forces) {
-        contacts.surface.slots[node as usize] = u32::MAX;
-        if force == DVec3::ZERO {
-            continue;
-        }
-        let (body, row) = contacts.surface.nodes[node as usize];
-        let Ok(mut columns) = bodies.get_mut(contacts.bodies[body as usize]) else { continue };
-        let row = row as usize;
-        let load = columns.external.vector(row) + force;
-        columns.external.set_vector(row, load);
-        columns.force.set_vector(row, force);
-        contacts.surface.pressed.push(node);
-    }
-    contacts.surface.set = set;
+    note_touches(contacts, &set, books, bodies);
+    push(contacts, bodies);
+    (contacts.surface.set, contacts.surface.found) = (set, found);
 }
 
-/// Clears what the last step left, and finds how deep points may be inside: as deep as they are found there and no motion
-/// has brought them, by and by less. A point that was not seen before (at the start, laid bare, at a corner that comes
-/// round) is not thrown out in a step.
-fn begin(contacts: &mut SurfaceContacts, found: &[(u32, Faced)], settling: f64, bodies: &mut Query<MeetingColumns>) {
-    for node in std::mem::take(&mut contacts.surface.pressed) {
-        let (body, row) = contacts.surface.nodes[node as usize];
-        if let Ok(mut columns) = bodies.get_mut(contacts.bodies[body as usize]) {
-            columns.force.set_vector(row as usize, DVec3::ZERO);
-        }
-    }
-    let surface = &contacts.surface;
-    for (place, faced) in found {
-        let point = &surface.points[surface.lists.points[*place as usize] as usize];
-        let (body, row) = surface.nodes[point.nodes[0] as usize];
-        let Ok(mut columns) = bodies.get_mut(contacts.bodies[body as usize]) else { continue };
-        let at = MEETING_NUMBERS * row as usize;
-        let before = columns.touch.get(at + 3);
+/// Finds how deep points may be inside: as deep as they are found there and no motion has brought them, by and by less. A
+/// point that was not seen before (at the start, laid bare, at a corner that comes round) is not thrown out in a step.
+fn begin<T: Scalar>(
+    contacts: &SurfaceContacts,
+    found: &[Found],
+    (largest, settling): (f64, f64),
+    bodies: &mut [BodySlices<'_, T>],
+) {
+    for Found { place, faced } in found {
+        let number = contacts.surface.lists.points[*place as usize];
+        let (body, row) = contacts.row_of(number);
+        let columns = &mut bodies[body];
+        let before = columns.touch(row, 3);
         let allowed = faced.first.map_or(0.0, |facing| {
-            let gap = contacts.gap(point, &facing);
-            let expected = match columns.touch.get(at + 4) {
+            let gap = contacts.gap(&contacts.surface.points[number as usize], &facing);
+            let expected = match columns.touch(row, 4) {
                 FREE => 0.0,
                 // as deep as any motion may have brought it
-                FACES => columns.touch.get(at + 5) - 2.0 * contacts.surface.largest,
-                _ => columns.touch.get(at + 5),
+                FACES => columns.touch(row, 5) - 2.0 * largest,
+                _ => columns.touch(row, 5),
             };
             (before + (gap - expected).min(0.0) + settling).min(0.0).max(gap.min(0.0))
         });
         if allowed != before {
-            columns.touch.set(at + 3, allowed);
+            columns.touch[MEETING_NUMBERS * row + 3] = T::from_f64(allowed);
         }
     }
 }
 
 /// The contacts of a step, and where the nodes would go that they act on.
-fn gather(
+fn gather<T: Scalar>(
     contacts: &mut SurfaceContacts,
-    found: &[(u32, Faced)],
+    set: &mut ContactSet,
+    found: &[Found],
     (factors, settling): (&Factors<f64>, f64),
-    bodies: &mut Query<MeetingColumns>,
-) -> (Vec<Met>, Vec<(u32, Foreseen)>) {
-    let mut set = std::mem::take(&mut contacts.surface.set);
+    bodies: &[BodySlices<'_, T>],
+) {
     set.clear();
-    let touched = std::mem::take(&mut contacts.surface.touching);
-    let (mut met, mut foreseen): (Vec<Met>, Vec<(u32, Foreseen)>) = (Vec::new(), Vec::new());
-    let mut slots = std::mem::take(&mut contacts.surface.slots);
-    {
-        let columns: Vec<_> = contacts.bodies.iter().filter_map(|&body| bodies.get(body).ok()).collect();
-        let surface = &contacts.surface;
-        let mut slot_of = |node: u32, set: &mut crate::contact::ContactSet| {
-            let slot = &mut slots[node as usize];
-            if *slot == u32::MAX {
-                *slot = foreseen.len() as u32;
-                let (body, row) = surface.nodes[node as usize];
-                let of_node = foresee(&columns[body as usize], row as usize, factors);
-                set.steps.push(of_node.step);
-                set.responses.push(of_node.free / of_node.to_force);
-                foreseen.push((node, of_node));
-            }
-            *slot
-        };
-        for (place, faced) in found {
-            let number = surface.lists.points[*place as usize];
-            let point = &surface.points[number as usize];
-            let (body, row) = surface.nodes[point.nodes[0] as usize];
-            let of_point = &columns[body as usize];
-            let at = MEETING_NUMBERS * row as usize;
-            let both = [(faced.first, true), (faced.second, false)];
-            for (facing, first) in both.into_iter().filter_map(|(facing, first)| facing.map(|facing| (facing, first))) {
-                let body = surface.triangles.bodies[facing.triangle as usize];
-                let Some(Meeting { friction, .. }) = contacts.meeting(point.body, body) else { continue };
-                let stuck = of_point.touch.get(at + 4) == STICKS;
-                let slip = if first { of_point.touch.vector_at(at) } else { DVec3::ZERO };
-                let outside = contacts.gap(point, &facing);
-                let gap = match first {
-                    true => (outside - of_point.touch.get(at + 3)).max(-OUT * contacts.edge),
-                    // nothing is known of how it got there
-                    false => outside.max(-settling),
-                };
-                let Facing { triangle, weights, normal, .. } = facing;
-                let nodes = surface.triangles.triangles[triangle as usize];
-                let friction = if stuck { friction[0] } else { friction[1] };
-                let mut contact = Contact::new((normal, gap), (friction, slip));
-                point.parts().for_each(|(node, weight)| contact.add(slot_of(node, &mut set), weight));
-                nodes.into_iter().zip(weights).for_each(|(node, weight)| contact.add(slot_of(node, &mut set), -weight));
-                if gap + normal.dot(contact.relative(&set.steps)) < 0.0 {
-                    set.contacts.push(contact);
-                    met.push(Met { point: number, first, gap: outside });
-                }
+    let Surface { slots, met, foreseen, .. } = &mut contacts.surface;
+    let (mut slots, mut met, mut foreseen) = (std::mem::take(slots), std::mem::take(met), std::mem::take(foreseen));
+    met.clear();
+    foreseen.clear();
+    let surface = &contacts.surface;
+    let mut slot_of = |node: u32, set: &mut ContactSet| {
+        let slot = &mut slots[node as usize];
+        if *slot == u32::MAX {
+            *slot = foreseen.len() as u32;
+            let (body, row) = surface.nodes[node as usize];
+            let of_node = bodies[body as usize].foresee(row as usize, factors);
+            set.steps.push(of_node.step);
+            set.responses.push(of_node.free / of_node.to_force);
+            foreseen.push((node, of_node));
+        }
+        *slot
+    };
+    for Found { place, faced } in found {
+        let number = surface.lists.points[*place as usize];
+        let point = &surface.points[number as usize];
+        let (body, row) = contacts.row_of(number);
+        let of_point = &bodies[body];
+        let both = [(faced.first, true), (faced.second, false)];
+        for (facing, first) in both.into_iter().filter_map(|(facing, first)| facing.map(|facing| (facing, first))) {
+            let body = surface.triangles.bodies[facing.triangle as usize];
+            let Some(Meeting { friction, .. }) = contacts.meeting(point.body, body) else { continue };
+            let stuck = of_point.touch(row, 4) == STICKS;
+            let slip = if first { vector_at(of_point.touch, MEETING_NUMBERS * row) } else { DVec3::ZERO };
+            let outside = contacts.gap(point, &facing);
+            let gap = match first {
+                true => (outside - of_point.touch(row, 3)).max(-OUT * contacts.edge),
+                // nothing is known of how it got there
+                false => outside.max(-settling),
+            };
+            let Facing { triangle, weights, normal, .. } = facing;
+            let nodes = surface.triangles.triangles[triangle as usize];
+            let friction = if stuck { friction[0] } else { friction[1] };
+            let mut contact = Contact::new((normal, gap), (friction, slip));
+            point.parts().for_each(|(node, weight)| contact.add(slot_of(node, set), weight));
+            nodes.into_iter().zip(weights).for_each(|(node, weight)| contact.add(slot_of(node, set), -weight));
+            if gap + normal.dot(contact.relative(&set.steps)) < 0.0 {
+                set.contacts.push(contact);
+                met.push(Met { point: number, first, gap: outside });
             }
         }
     }
-    // who touched or faced something before may do so no more
-    for point in touched {
-        let (body, row) = contacts.surface.nodes[contacts.surface.points[point as usize].nodes[0] as usize];
-        if let Ok(mut columns) = bodies.get_mut(contacts.bodies[body as usize]) {
-            let at = MEETING_NUMBERS * row as usize;
-            columns.touch.set_vector_at(at, DVec3::ZERO);
-            columns.touch.set(at + 4, FREE);
-            columns.touch.set(at + 5, 0.0);
-        }
-    }
-    for (place, faced) in found {
+    foreseen.iter().for_each(|(node, _)| slots[*node as usize] = u32::MAX);
+    let surface = &mut contacts.surface;
+    (surface.slots, surface.met, surface.foreseen) = (slots, met, foreseen);
+}
+
+/// Notes what points face, and how far they are outside of it.
+fn note_facing<T: Scalar>(contacts: &mut SurfaceContacts, found: &[Found], bodies: &mut [BodySlices<'_, T>]) {
+    for Found { place, faced } in found {
         let Some(first) = faced.first else { continue };
         let number = contacts.surface.lists.points[*place as usize];
-        let point = contacts.surface.points[number as usize];
-        let gap = contacts.gap(&point, &first);
-        let (body, row) = contacts.surface.nodes[point.nodes[0] as usize];
-        if let Ok(mut columns) = bodies.get_mut(contacts.bodies[body as usize]) {
-            columns.touch.set(MEETING_NUMBERS * row as usize + 4, FACES);
-            columns.touch.set(MEETING_NUMBERS * row as usize + 5, gap);
-        }
+        let gap = contacts.gap(&contacts.surface.points[number as usize], &first);
+        let (body, row) = contacts.row_of(number);
+        let touch = &mut bodies[body].touch[MEETING_NUMBERS * row..MEETING_NUMBERS * (row + 1)];
+        touch[4] = T::from_f64(FACES);
+        touch[5] = T::from_f64(gap);
         contacts.surface.touching.push(number);
     }
-    (contacts.surface.set, contacts.surface.slots) = (set, slots);
-    (met, foreseen)
+}
+
+/// Notes what contacts came to, and finds the forces on nodes, in the order of contacts.
+fn note_touches<T: Scalar>(
+    contacts: &mut SurfaceContacts,
+    set: &ContactSet,
+    books: Option<f64>,
+    bodies: &mut [BodySlices<'_, T>],
+) {
+    let mut forces = std::mem::take(&mut contacts.surface.forces);
+    forces.clear();
+    forces.resize(set.steps.len(), DVec3::ZERO);
+    let surface = &contacts.surface;
+    for (contact, met) in set.contacts.iter().zip(&surface.met).filter(|(contact, _)| contact.pressing > 0.0) {
+        let force = contact.force();
+        contact.parts().for_each(|(slot, weight)| forces[slot] += force * weight);
+        let (body, row) = contacts.row_of(met.point);
+        let touch = &mut bodies[body].touch[MEETING_NUMBERS * row..MEETING_NUMBERS * (row + 1)];
+        let after = contact.relative(&set.steps);
+        if met.first {
+            set_vector(touch, 0, contact.slip);
+            touch[4] = T::from_f64(if contact.slides { SLIDES } else { STICKS });
+            touch[5] = T::from_f64(met.gap + contact.normal.dot(after));
+        }
+        if let Some(booked) = books {
+            let before: DVec3 = contact.parts().map(|(slot, weight)| surface.foreseen[slot].1.before * weight).sum();
+            let along = (after - contact.normal * after.dot(contact.normal)).length();
+            let slid = touch[6].to_f64() + if contact.slides { along } else { 0.0 };
+            let lost = touch[7].to_f64() - booked * force.dot(0.5 * (before + after));
+            touch[6] = T::from_f64(slid);
+            touch[7] = T::from_f64(lost);
+        }
+    }
+    contacts.surface.forces = forces;
+}
+
+/// Adds the forces to the loads.
+fn push<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &mut [BodySlices<'_, T>]) {
+    let Surface { nodes, foreseen, forces, pressed, .. } = &mut contacts.surface;
+    let pushed = foreseen.iter().zip(&*forces).filter(|(_, force)| **force != DVec3::ZERO);
+    for (&(node, _), &force) in pushed {
+        let (body, row) = nodes[node as usize];
+        let (columns, row) = (&mut bodies[body as usize], row as usize);
+        let load = vector(columns.external, row) + force;
+        set_vector(columns.external, 3 * row, load);
+        set_vector(columns.force, 3 * row, force);
+        pressed.push(node);
+    }
 }

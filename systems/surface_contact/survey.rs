@@ -1,5 +1,6 @@
 //! What the surfaces of the bodies are, where they are, and what may be near what.
 
+use super::motion::Since;
 use super::{MeetingColumns, Surface, SurfaceContacts};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
@@ -20,7 +21,7 @@ pub(super) const MARGIN: f64 = 1e-2;
 /// Finds the surfaces anew where elements are gone, and in the first step.
 pub(super) fn follow(
     contacts: &mut SurfaceContacts,
-    bodies: &mut Query<MeetingColumns>,
+    bodies: &mut Query<(Entity, MeetingColumns)>,
     authorings: &Query<&Authoring>,
     blocks: &Query<Ref<Alive>>,
 ) {
@@ -29,7 +30,8 @@ pub(super) fn follow(
         let left = |&block: &Entity| blocks.get(block).map_or(0, |alive| alive.iter().filter(|&&is| is == 1).count());
         let elements = Some(all.flat_map(|authoring| &authoring.blocks).map(left).sum());
         if contacts.surface.elements != elements {
-            contacts.surface = Surface { elements, ..Surface::default() };
+            let figures = contacts.surface.figures;
+            contacts.surface = Surface { elements, figures, ..Surface::default() };
             survey(contacts, bodies, authorings, blocks);
         }
     }
@@ -37,19 +39,21 @@ pub(super) fn follow(
 }
 
 /// Notes what bore forces or touched in the last step, where others have written that.
-fn remember(contacts: &mut SurfaceContacts, bodies: &mut Query<MeetingColumns>) {
+fn remember(contacts: &mut SurfaceContacts, bodies: &mut Query<(Entity, MeetingColumns)>) {
     let changed = |&body: &Entity| {
-        bodies.get_mut(body).is_ok_and(|columns| columns.force.is_changed() || columns.touch.is_changed())
+        bodies.get_mut(body).is_ok_and(|(_, columns)| columns.force.is_changed() || columns.touch.is_changed())
     };
     if !contacts.bodies.iter().any(changed) {
         return;
     }
-    let Surface { nodes, pressed, touching, .. } = &mut contacts.surface;
+    let Surface { nodes, pressed, touching, since, .. } = &mut contacts.surface;
+    // they may be anywhere
+    *since = Since::of(nodes);
     pressed.clear();
     touching.clear();
     let columns: Vec<_> = contacts.bodies.iter().filter_map(|&body| bodies.get(body).ok()).collect();
     for (node, &(body, row)) in (0..).zip(&*nodes) {
-        let (columns, row) = (&columns[body as usize], row as usize);
+        let ((_, columns), row) = (&columns[body as usize], row as usize);
         if columns.force.vector(row) != DVec3::ZERO {
             pressed.push(node);
         }
@@ -62,14 +66,14 @@ fn remember(contacts: &mut SurfaceContacts, bodies: &mut Query<MeetingColumns>) 
 /// Finds the surfaces.
 fn survey(
     contacts: &mut SurfaceContacts,
-    bodies: &mut Query<MeetingColumns>,
+    bodies: &mut Query<(Entity, MeetingColumns)>,
     authorings: &Query<&Authoring>,
     blocks: &Query<Ref<Alive>>,
 ) {
     let mut surface = std::mem::take(&mut contacts.surface);
     let (mut triangles, mut owners, mut depths) = (Vec::new(), Vec::new(), Vec::new());
     for (number, &body) in (0..).zip(&contacts.bodies) {
-        let (Ok(authoring), Ok(columns)) = (authorings.get(body), bodies.get(body)) else { continue };
+        let (Ok(authoring), Ok((_, columns))) = (authorings.get(body), bodies.get(body)) else { continue };
         let is_alive = |block: u32, row: u32| {
             blocks.get(authoring.blocks[block as usize]).map_or(true, |alive| alive[row as usize] == 1)
         };
@@ -95,11 +99,16 @@ fn survey(
     let depths = depths.into_iter().map(|depth| f64::min(depth, DEEPEST * contacts.edge)).collect();
     surface.triangles = Surfaces::new(surface.nodes.len(), triangles, owners, depths);
     surface.slots = vec![u32::MAX; surface.nodes.len()];
+    surface.places = vec![DVec3::ZERO; surface.nodes.len()];
+    surface.normals = vec![DVec3::ZERO; surface.triangles.triangles.len()];
+    surface.since = Since::of(&surface.nodes);
+    surface.numbers = contacts.bodies.iter().copied().zip(0..).collect();
+    surface.numbers.sort_unstable();
     let columns: Vec<_> = contacts.bodies.iter().filter_map(|&body| bodies.get(body).ok()).collect();
     let rest: Vec<DVec3> = surface
         .nodes
         .iter()
-        .map(|&(body, row)| columns[body as usize].rest.0[row as usize] - contacts.reference)
+        .map(|&(body, row)| columns[body as usize].1.rest.0[row as usize] - contacts.reference)
         .collect();
     let bodies = &surface.triangles.bodies;
     let of_body = |body: u32| {
@@ -149,39 +158,4 @@ fn near_at_rest(contacts: &mut SurfaceContacts, rest: &[DVec3]) {
         apart.extend(lists.triangles(place).iter().map(|&triangle| (point, triangle)));
     }
     contacts.surface.apart = apart;
-}
-
-/// Sees where the nodes are, and how far the fastest went in the last step (m).
-pub(super) fn look(contacts: &mut SurfaceContacts, bodies: &Query<MeetingColumns>) -> f64 {
-    let Surface { nodes, places, .. } = &mut contacts.surface;
-    places.clear();
-    let mut largest = 0.0_f64;
-    for of_body in nodes.chunk_by(|a, b| a.0 == b.0) {
-        let Ok(columns) = bodies.get(contacts.bodies[of_body[0].0 as usize]) else { continue };
-        for &(_, row) in of_body {
-            let row = row as usize;
-            places.push(columns.rest.0[row] - contacts.reference + columns.u.vector(row));
-            largest = largest.max(columns.step.vector(row).length_squared());
-        }
-    }
-    largest.sqrt()
-}
-
-/// Makes the lists anew where they may not hold all that is within `reach` (m) and thickness.
-pub(super) fn search(contacts: &mut SurfaceContacts, reach: f64, cpu: &Cpu) {
-    let farthest = contacts.farthest(reach);
-    if contacts.surface.lists.hold(&contacts.surface.places, farthest) {
-        return;
-    }
-    let mut trees = std::mem::take(&mut contacts.surface.trees);
-    let meets = |point: u32, face: u32| contacts.meeting(point, face).map(|of| of.thickness + reach);
-    let Surface { triangles, points, places, apart, .. } = &contacts.surface;
-    trees.iter_mut().for_each(|tree| tree.refit(|number| triangles.corners(places, number)));
-    let finder = Finder { surfaces: triangles, points, reach: &meets, apart };
-    // reach is four steps of the fastest and a little: of what is fast lists serve some steps, too
-    let skin = contacts.skin * (contacts.edge + 40.0 * reach).min(4.0 * contacts.edge);
-    let lists = Lists::find(&finder, &trees, places, farthest + skin, cpu);
-    let surface = &mut contacts.surface;
-    surface.wake = vec![0.0; lists.points.len()];
-    (surface.trees, surface.lists, surface.travelled) = (trees, lists, 0.0);
 }

@@ -116,3 +116,29 @@ pub fn of_tools() -> Vec<String> {
     let fragments = explained.kernels.iter().flat_map(|kernel| &kernel.fragments);
     fragments.filter_map(|f| f.path.strip_prefix("shaders/").map(str::to_owned)).collect()
 }
+
+/// Parts of `surface_contact`.
+pub const SURFACES: [&str; 12] = [
+    "surface_contact_apply",
+    "surface_contact_foresee",
+    "surface_contact_friction",
+    "surface_contact_impulse",
+    "surface_contact_place",
+    "surface_contact_push",
+    "surface_contact_touch",
+    "surface_contacts_of",
+    "surface_facing",
+    "surface_lists",
+    "surface_motion",
+    "surface_motion_turns",
+];
+
+/// Files of the kernels of bodies that meet.
+pub fn of_surfaces() -> Vec<String> {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/stacked_blocks.ron");
+    let scene = sinew::SceneFile::load(path, &[]).unwrap();
+    let mut simulation = sinew::Simulation::new(&scene, &sinew::Options::default()).unwrap();
+    let explained = simulation.explain_on_gpu(&sinew::systems::Registry::default()).unwrap();
+    let fragments = explained.kernels.iter().flat_map(|kernel| &kernel.fragments);
+    fragments.filter_map(|f| f.path.strip_prefix("shaders/").map(str::to_owned)).collect()
+}

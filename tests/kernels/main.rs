@@ -19,5 +19,6 @@ mod patches;
 mod removal;
 mod shapes;
 mod suction;
+mod surfaces;
 mod tool_removal;
 mod tools;

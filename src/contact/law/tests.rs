@@ -3,6 +3,10 @@
 use super::*;
 use fastrand::Rng;
 
+fn one() -> Cpu {
+    Cpu::new(1, 0, Default::default())
+}
+
 fn vector(random: &mut Rng) -> DVec3 {
     DVec3::from_array([0; 3].map(|_| 2.0 * random.f64() - 1.0))
 }
@@ -53,7 +57,7 @@ fn momentum_stays_and_energy_is_below_its_bound() {
         let (mut set, masses) = random_set(&mut random, friction, least);
         let sweeps = 1 + round % 5 / 2;
         let before = set.clone();
-        set.solve(sweeps);
+        set.solve(sweeps, &one());
         let momentum = |steps: &[DVec3]| masses.iter().zip(steps).map(|(mass, step)| *step * *mass).sum::<DVec3>();
         let scale: f64 = masses.iter().zip(&before.steps).map(|(mass, step)| mass * step.length()).sum();
         let change = (momentum(&set.steps) - momentum(&before.steps)).length();
@@ -95,7 +99,7 @@ fn shares_of_mass_majorise_the_coupling_of_contacts() {
     let mut largest = 0.0_f64;
     for _ in 0..300 {
         let (mut set, _) = random_set(&mut random, 0.0, 0.0);
-        set.split();
+        set.split(&one());
         let count = set.contacts.len();
         let mut forces: Vec<f64> = (0..count).map(|_| random.f64()).collect();
         let mut growth = 0.0;
@@ -124,6 +128,32 @@ fn shares_of_mass_majorise_the_coupling_of_contacts() {
     assert!(largest > 0.9, "the bound is no better than {largest}");
 }
 
+/// Sets large enough to be shared out come to the same bits.
+#[test]
+fn threads_find_the_same_forces() {
+    let mut random = Rng::with_seed(5);
+    let count = 900;
+    let mut set = ContactSet {
+        steps: (0..count).map(|_| vector(&mut random)).collect(),
+        responses: (0..count).map(|_| DVec3::splat(0.1 + random.f64())).collect(),
+        ..ContactSet::default()
+    };
+    for _ in 0..3 * WORTH_SHARING {
+        let normal = vector(&mut random).normalize();
+        let mut contact = Contact::new((normal, 0.2 * random.f64() - 0.1), (0.3, DVec3::ZERO));
+        let first = random.u32(0..count as u32 - 4);
+        contact.add(first, 1.0);
+        (1..4).for_each(|next| contact.add(first + next, -1.0 / 3.0));
+        set.contacts.push(contact);
+    }
+    let mut shared = set.clone();
+    set.solve(2, &one());
+    shared.solve(2, &Cpu::new(3, 0, Default::default()));
+    assert_eq!(set.steps, shared.steps);
+    assert!(set.contacts.iter().zip(&shared.contacts).all(|(a, b)| a.force() == b.force() && a.slip == b.slip));
+    assert!(!shared.starts.is_empty() && set.starts.is_empty());
+}
+
 #[test]
 fn one_contact_ends_on_the_surface_and_friction_holds_it() {
     let mut set = ContactSet {
@@ -135,13 +165,13 @@ fn one_contact_ends_on_the_surface_and_friction_holds_it() {
     contact.add(0, 1.0);
     contact.add(1, -1.0);
     set.contacts.push(contact);
-    set.solve(1);
+    set.solve(1, &one());
     assert_eq!(set.steps[0], DVec3::new(0.0, 0.0, -0.25));
     assert_eq!((set.contacts[0].pressing, set.contacts[0].slides), (1.5, false));
     // with too little friction it slides on, held by μ N
     set.steps[0] = DVec3::new(0.3, 0.0, -1.0);
     let contact = &mut set.contacts[0];
     (contact.friction, contact.pressing, contact.rubbing, contact.slip) = (0.2, 0.0, DVec3::ZERO, DVec3::ZERO);
-    set.solve(1);
+    set.solve(1, &one());
     assert!((set.steps[0].x - 0.15).abs() < 1e-15 && set.contacts[0].slides, "{:?}", set.steps);
 }

@@ -1,0 +1,30 @@
+// Adds the forces of contacts between surfaces to the loads of a body, a thread a node, in a fixed order.
+@group(0) @binding(0) var<storage, read> surface_rows: array<u32>;
+@group(0) @binding(0) var<storage, read_write> external_force: array<f32>;
+@group(0) @binding(0) var<storage, read_write> contact_force: array<f32>;
+
+// Of the sum over contacts of a node: the force on it (N).
+fn collect(contact: u32, weight: f32) -> vec3<f32> {
+    let pressing = number(contact, PRESSING);
+    if !(pressing > 0.0) {
+        return vec3<f32>(0.0);
+    }
+    return weight * (pressing * vector(contact, NORMAL) + vector(contact, RUBBING));
+}
+
+@compute @workgroup_size(64)
+fn surface_contact_push(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
+    let i = row(id, groups);
+    if i >= surface.count {
+        return;
+    }
+    let node = surface.first + i;
+    let force = collect_all(node);
+    let at = 3u * surface_rows[4u * node];
+    contact_force[at] = force.x;
+    contact_force[at + 1u] = force.y;
+    contact_force[at + 2u] = force.z;
+    external_force[at] += force.x;
+    external_force[at + 1u] += force.y;
+    external_force[at + 2u] += force.z;
+}

@@ -1,0 +1,165 @@
+// Which triangle a point faces; twin of src/contact/facing.rs. Places are counted from the point.
+const TURNED_AWAY: f32 = 0.2;
+const ALIKE: f32 = 0.05;
+const CORNER: f32 = 0.866;
+const FAR: f32 = 3e38;
+
+struct OnTriangle {
+    at: vec3<f32>, // from the point (m)
+    weights: vec3<f32>,
+    part: u32, // 0 inside, 1 to 3 sides, 4 to 6 corners
+}
+
+struct Facing {
+    triangle: u32,
+    weights: vec3<f32>,
+    at: vec3<f32>,
+    normal: vec3<f32>,
+    gap: f32,
+    way: f32, // how much it is in the point's way: the less, the more
+    there: bool,
+}
+
+fn place_of(node: u32) -> vec3<f32> {
+    let at = NODE_NUMBERS * node;
+    return vec3<f32>(surface_nodes[at], surface_nodes[at + 1u], surface_nodes[at + 2u]);
+}
+
+fn corners_of(triangle: u32, point: vec3<f32>) -> array<vec3<f32>, 3> {
+    let at = 8u * triangle;
+    return array<vec3<f32>, 3>(
+        place_of(surface_faces[at]) - point,
+        place_of(surface_faces[at + 1u]) - point,
+        place_of(surface_faces[at + 2u]) - point);
+}
+
+fn normal_of(corners: array<vec3<f32>, 3>) -> vec3<f32> {
+    let across = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    let size = length(across);
+    return select(vec3<f32>(0.0), across / max(size, 1e-37), size > 1e-30);
+}
+
+// The place of a triangle that is nearest to the point, by the seven regions about it.
+fn nearest(corners: array<vec3<f32>, 3>) -> OnTriangle {
+    let a = corners[0];
+    let b = corners[1];
+    let c = corners[2];
+    let ab = b - a;
+    let ac = c - a;
+    let d1 = -dot(ab, a);
+    let d2 = -dot(ac, a);
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return OnTriangle(a, vec3<f32>(1.0, 0.0, 0.0), 4u);
+    }
+    let d3 = -dot(ab, b);
+    let d4 = -dot(ac, b);
+    if d3 >= 0.0 && d4 <= d3 {
+        return OnTriangle(b, vec3<f32>(0.0, 1.0, 0.0), 5u);
+    }
+    let d5 = -dot(ab, c);
+    let d6 = -dot(ac, c);
+    if d6 >= 0.0 && d5 <= d6 {
+        return OnTriangle(c, vec3<f32>(0.0, 0.0, 1.0), 6u);
+    }
+    let off_ab = d1 * d4 - d3 * d2;
+    if off_ab <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        let t = d1 / (d1 - d3);
+        return OnTriangle(a + ab * t, vec3<f32>(1.0 - t, t, 0.0), 1u);
+    }
+    let off_ca = d5 * d2 - d1 * d6;
+    if off_ca <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        let t = d2 / (d2 - d6);
+        return OnTriangle(a + ac * t, vec3<f32>(1.0 - t, 0.0, t), 3u);
+    }
+    let off_bc = d3 * d6 - d5 * d4;
+    if off_bc <= 0.0 && d4 >= d3 && d5 >= d6 {
+        let t = (d4 - d3) / ((d4 - d3) + (d5 - d6));
+        return OnTriangle(b + (c - b) * t, vec3<f32>(0.0, 1.0 - t, t), 2u);
+    }
+    let all = off_ab + off_bc + off_ca;
+    let v = off_ca / all;
+    let w = off_ab / all;
+    return OnTriangle(a + ab * v + ac * w, vec3<f32>(1.0 - v - w, v, w), 0u);
+}
+
+fn normal_of_node(node: u32) -> vec3<f32> {
+    let at = place_of(node);
+    let starts = surface.around + node;
+    let all = surface.around + surface.nodes + 1u;
+    var sum = vec3<f32>(0.0);
+    for (var place = surface_faces[starts]; place < surface_faces[starts + 1u]; place++) {
+        let triangle = surface_faces[all + place];
+        let corners = corners_of(triangle, at);
+        var own = 0u;
+        for (var corner = 1u; corner < 3u; corner++) {
+            if surface_faces[8u * triangle + corner] == node {
+                own = corner;
+            }
+        }
+        let b = corners[(own + 1u) % 3u];
+        let c = corners[(own + 2u) % 3u];
+        sum += normal_of(corners) * atan2(length(cross(b, c)), dot(b, c));
+    }
+    let size = length(sum);
+    return select(vec3<f32>(0.0), sum / max(size, 1e-37), size > 1e-30);
+}
+
+// Whether another triangle is nearer to the point than so far (m).
+fn is_closer(other: u32, triangle: u32, point: vec3<f32>, distance: f32) -> bool {
+    if other == triangle || other == NONE {
+        return false;
+    }
+    return length(nearest(corners_of(other, point)).at) < (1.0 - 1e-6) * distance - surface.rounding;
+}
+
+// How far a point is outside of a triangle.
+fn outside(triangle: u32, point: vec3<f32>, corners: array<vec3<f32>, 3>, found: OnTriangle) -> Facing {
+    var facing: Facing;
+    facing.there = false;
+    let normal = normal_of(corners);
+    let distance = length(found.at);
+    // no number is no distance
+    if all(normal == vec3<f32>(0.0)) || !(distance < FAR) {
+        return facing;
+    }
+    facing.triangle = triangle;
+    facing.weights = found.weights;
+    facing.at = found.at;
+    facing.normal = normal;
+    facing.gap = -dot(found.at, normal);
+    facing.there = true;
+    if found.part == 0u || distance <= 1e-3 * surface.edge {
+        return facing;
+    }
+    var around = normal;
+    if found.part < 4u {
+        let other = surface_faces[8u * triangle + 2u + found.part];
+        if is_closer(other, triangle, point, distance) {
+            facing.there = false;
+            return facing;
+        }
+        if other != NONE {
+            around += normal_of(corners_of(other, point));
+        }
+    } else {
+        let node = surface_faces[8u * triangle + found.part - 4u];
+        let starts = surface.around + node;
+        let all_around = surface.around + surface.nodes + 1u;
+        for (var place = surface_faces[starts]; place < surface_faces[starts + 1u]; place++) {
+            if is_closer(surface_faces[all_around + place], triangle, point, distance) {
+                facing.there = false;
+                return facing;
+            }
+        }
+        around = normal_of_node(node);
+    }
+    let outwards = dot(-found.at, around) >= 0.0;
+    facing.normal = select(found.at, -found.at, outwards) / distance;
+    facing.gap = select(-distance, distance, outwards);
+    return facing;
+}
+
+// Whether two faces are walls of a corner that the point is in: the second rises before the first.
+fn is_corner(one: Facing, other: Facing) -> bool {
+    return dot(one.normal, other.normal) < CORNER && dot(one.normal, other.at - one.at) > 0.0;
+}

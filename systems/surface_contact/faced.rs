@@ -1,0 +1,60 @@
+//! What points face now.
+
+use super::SurfaceContacts;
+use crate::backend::cpu::Cpu;
+use crate::contact::{Faced, Listed, Placed};
+
+/// Points that a task looks at.
+const POINTS_A_TASK: usize = 128;
+
+/// What a point faces.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Found {
+    /// Its place in the lists.
+    pub place: u32,
+    pub faced: Faced,
+}
+
+/// Who is awake: points in the lists that may be near something, as far as `nearer` (m) nodes have moved since. Whether
+/// there are any.
+pub(super) fn wake(contacts: &mut SurfaceContacts, reach: f64, nearer: f64) -> bool {
+    let farthest = contacts.farthest(reach);
+    let surface = &mut contacts.surface;
+    surface.found.clear();
+    surface.first_wake = f64::INFINITY;
+    for (place, &wake) in (0..).zip(&surface.wake) {
+        if nearer + farthest < wake {
+            surface.first_wake = surface.first_wake.min(wake);
+        } else {
+            surface.found.push(Found { place, ..Found::default() });
+        }
+    }
+    !surface.found.is_empty()
+}
+
+/// Finds what those face that are awake.
+pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, nearer: f64, cpu: &Cpu) {
+    let farthest = contacts.farthest(reach);
+    let mut found = std::mem::take(&mut contacts.surface.found);
+    let surface = &contacts.surface;
+    let now = Placed { places: &surface.places, normals: &surface.normals };
+    cpu.for_each(found.chunks_mut(POINTS_A_TASK), |found| {
+        for Found { place, faced } in found {
+            let point = &surface.points[surface.lists.points[*place as usize] as usize];
+            let reach_of = |triangle: u32| {
+                let body = surface.triangles.bodies[triangle as usize];
+                reach + contacts.meeting(point.body, body).map_or(0.0, |meeting| meeting.thickness)
+            };
+            let place = *place as usize;
+            let (triangles, distances) = (surface.lists.triangles(place), surface.lists.distances(place));
+            let listed = Listed { triangles, distances, nearer, farthest };
+            *faced = surface.triangles.faced(now, point, listed, reach_of, contacts.edge);
+        }
+    });
+    let surface = &mut contacts.surface;
+    for Found { place, faced } in &found {
+        surface.wake[*place as usize] = faced.wakes;
+        surface.first_wake = surface.first_wake.min(faced.wakes);
+    }
+    surface.found = found;
+}
