@@ -4,7 +4,7 @@
 use super::field::{FieldReference, same_mesh};
 use super::points::PointReference;
 use super::quantities::{Reading, distance, mean_square, readings};
-use super::richardson::{Limit, extrapolate, extrapolate_two};
+use super::richardson::{Limit, doubt_of_contact, extrapolate, extrapolate_two};
 use super::solver::{Field, Solution};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -149,6 +149,28 @@ impl Reference {
             _ => None,
         });
         Some(Self { source: Source::SelfMade, told, entries, field, points: None })
+    }
+
+    /// The same, of three meshes on which surfaces touch: at least as uncertain as that makes it
+    /// ([`doubt_of_contact`]).
+    pub fn of_contact(mut self, sizes: &[f64], solutions: &[&Solution]) -> Self {
+        let (&[a, b, c], &[_, middle, fine]) = (sizes, solutions) else { return self };
+        let (one, other) = (readings(middle), readings(fine));
+        for (name, entry) in &mut self.entries {
+            let (Some(one), Some(other), Some(order)) = (one.get(name), other.get(name), entry.order) else { continue };
+            let doubt = doubt_of_contact([a, b, c], order) * distance(&one.values, &other.values);
+            entry.uncertainty = entry.uncertainty.max(doubt);
+        }
+        let near = fine.field.clone().zip(middle.field.as_ref());
+        let near = near.and_then(|(fine, middle)| FieldReference::given(fine, 0.0).error_of(middle));
+        if let (Some(field), Some(near)) = (&mut self.field, near)
+            && let Some(order) = field.order
+        {
+            let doubt = doubt_of_contact([a, b, c], order);
+            field.uncertainty.iter_mut().zip(near.all()).for_each(|(own, near)| *own = own.max(doubt * near));
+        }
+        self.told += "; where surfaces touch bounds are those of order 1";
+        self
     }
 
     /// The same, more uncertain by `times` the distance of two solutions on one mesh.

@@ -115,6 +115,9 @@ pub fn made(refined: &Refined, choices: &Choices, rows: &[Row], solutions: &[Opt
     let told =
         format!("made here: meshes {} of {element}, {digits}, extrapolated to cells of no size", meshes.join(", "));
     let mut reference = Reference::of_meshes(&sizes, &list, told)?;
+    if choices.touches {
+        reference = reference.of_contact(&sizes, &list);
+    }
     let solution = |is: &dyn Fn(&Row) -> bool| {
         rows.iter().zip(solutions).find(|(row, _)| is(row)).and_then(|(_, solution)| solution.as_ref())
     };

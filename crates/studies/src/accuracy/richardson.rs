@@ -80,6 +80,14 @@ pub fn gain_of_two([middle, fine]: [f64; 2]) -> f64 {
     gain([middle, middle, fine], ASSUMED)
 }
 
+/// How many times the last difference the limit of three results is uncertain where surfaces touch, whatever order
+/// shows: which nodes touch changes with the mesh, and a force with them from one mesh to the next, as much as the
+/// radius of contact is known, to a cell. The limit is between the finest result and its extrapolation by order 1.
+pub fn doubt_of_contact([_, middle, fine]: [f64; 3], order: f64) -> f64 {
+    let by = |order: f64| gain([middle, middle, fine], order);
+    by(order).max((by(ASSUMED) - by(order)).abs())
+}
+
 /// How many times the last difference the extrapolation goes beyond the finest result.
 fn gain([_, middle, fine]: [f64; 3], order: f64) -> f64 {
     fine.powf(order) / (middle.powf(order) - fine.powf(order))

@@ -45,6 +45,8 @@ pub struct Choices {
     /// Those of them that have a single layer of cells where the scene's own mesh has more: what they say does not
     /// follow the power of the cell size that the others follow.
     pub single_layers: Vec<Factor>,
+    /// Whether tools or surfaces touch: which nodes do changes with the mesh, and so may the order.
+    pub touches: bool,
     /// What the step can be divided by; empty where there is no step to choose.
     pub steps: Vec<u32>,
     /// Number types.

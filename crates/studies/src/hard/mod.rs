@@ -24,7 +24,7 @@ use std::time::Instant;
 
 /// One of the hard cases.
 pub struct Case {
-    /// H01 to H35.
+    /// H01 to H70; those of contact from H36 on, some of which are missing yet.
     pub id: &'static str,
     /// What it is, as a file name has it: `squeezed_cube`.
     pub name: &'static str,

@@ -119,6 +119,12 @@ impl<'a> Trial<'a> {
         self.gate(what, figure, format!("{expected:.6e} within {share:.1e} of it"), used);
     }
 
+    /// The figure must be between two numbers.
+    pub fn within(&mut self, what: impl Into<String>, figure: f64, low: f64, high: f64) {
+        let used = (figure - 0.5 * (low + high)).abs() / (0.5 * (high - low));
+        self.gate(what, figure, format!("from {low:.6e} to {high:.6e}"), used);
+    }
+
     /// A figure that is told, whatever it is.
     pub fn report(&mut self, what: impl Into<String>, figure: f64) {
         self.gate(what, figure, "told".into(), 0.0);

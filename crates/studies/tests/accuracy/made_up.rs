@@ -95,6 +95,7 @@ impl Solver for MadeUp {
             elements: vec![ElementKind::Tet4, ElementKind::Hex8],
             meshes: [(1, 2), (1, 1), (2, 1), (4, 1)].map(|(up, down)| Factor::new(up, down)).to_vec(),
             single_layers: vec![],
+            touches: false,
             steps: vec![2, 4],
             step_is_fixed: false,
             digits: vec![Digits::Plain, Digits::Compensated, Digits::Double],

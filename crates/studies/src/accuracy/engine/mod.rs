@@ -188,6 +188,7 @@ impl Solver for Engine<'_> {
             elements,
             meshes: self.sound_meshes()?,
             single_layers: self.single_layers(),
+            touches: !scene.contacts.is_empty(),
             step_is_fixed: scene.integration.step.is_some(),
             steps: if scene.is_static() { Vec::new() } else { vec![2, 4] },
             digits: vec![Digits::Plain, Digits::Compensated, Digits::Double],

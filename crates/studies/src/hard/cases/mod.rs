@@ -3,6 +3,7 @@
 mod bending;
 mod cells;
 mod compression;
+mod contact;
 mod fibres;
 mod impact;
 mod input;
@@ -16,6 +17,7 @@ mod step;
 mod viscosity;
 
 use super::{Case, Configuration};
+use contact::{free, friction, indentation, patch, rest, shapes, start, taking, waves};
 
 /// A case: its number and name make the path of its scene.
 macro_rules! case {
@@ -40,6 +42,11 @@ fn every(_: &Configuration) -> bool {
 /// What concerns one-point hexahedra alone.
 fn one_point(configuration: &Configuration) -> bool {
     configuration.elements == sinew::mesh::ElementKind::Hex8
+}
+
+/// Hexahedra: tetrahedra lock or bend too stiffly for what is asked of the force.
+fn hexahedra(configuration: &Configuration) -> bool {
+    !configuration.is_tets()
 }
 
 /// What is decided before elements and machines matter.
@@ -121,4 +128,45 @@ pub const CASES: &[Case] = &[
         "the same bits (in full: the step time within 3 %)", every, fibres::zero_weights),
     case!("h35" "buckling" "slender column buckling",
         "deflection of a finer mesh within 3 %", every, bending::buckling),
+    case!("h36" "indented_block" "ball pressed into a block (Hertz)",
+        "force within 6 % of the linear one with four faces on the radius of contact, 15 % with two", hexahedra, indentation::block),
+    case!("h37" "indented_layer" "ball pressed into a layer as thick as its radius",
+        "force within 8 % of the linear one", hexahedra, indentation::layer),
+    case!("h38" "pressed_ball" "elastic ball between two plates",
+        "force within 8 % of the linear one", hexahedra, indentation::ball),
+    case!("h39" "two_bars" "bar that meets an equal one end on",
+        "2L/c within -1 and +2 %, ρcAv/2 within 1.5 %, velocities exchanged within 2 %", every, waves::two_bars),
+    case!("h40" "bar_on_plane" "bar that meets a plane end on",
+        "2L/c within -1 and +3 %, ρcAv within 1.5 %, rebound within 3 %", every, waves::bar_on_plane),
+    case!("h41" "slope" "block on a slope, below and beyond the angle of friction",
+        "sticks to 1e-8 m; slides as a rigid block within 1 % and its lean", every, friction::slope),
+    case!("h42" "slide_to_rest" "block that slides to rest", "v²/(2μg) within 3 %", every, friction::slide_to_rest),
+    case!("h43" "direction_of_friction" "block drawn in any direction", "against the slip within .5°", every, friction::direction),
+    case!("h44" "drop" "cube dropped on a table",
+        "arrives within two steps, loses half to all of its half layer, impulse is momentum", every, waves::drop),
+    case!("h45" "rest" "cube at rest on a table", "weight within 1e-4, 1e-7 m/s, no node inside", every, rest::rests),
+    case!("h46" "stack" "cube on a cube on a table", "m g and 2 m g within 1e-3, creeps by less than 1e-7 m", every, rest::stack),
+    case!("h47" "contact_patch" "pressure across cells that do not match", "stress within 6 %", every, patch::contact_patch),
+    case!("h48" "punch" "plate pressed on a block", "uniform stress to 1e-6 (f64)", every, rest::punch),
+    case!("h49" "ironing" "ball drawn over ten faces", "nodes held by μ within 1 %, ripple at most 20 %", one_point, friction::ironing),
+    case!("h50" "oblique" "oblique collision of two free cubes",
+        "momentum to 1e-10 (f64), its moment to 1e-6, no energy made", every, free::oblique),
+    case!("h54" "tunnelling" "needle of up to five radii a step against one layer",
+        "stopped, warned of or refused: never through in silence", every, start::tunnelling),
+    case!("h55" "overlap" "overlaps of .05, .3, .6 of an edge; a body inside another",
+        "small ones settle with no more energy than a wave brings, deep ones are refused", every, start::overlap),
+    case!("h56" "bad_surface" "tool mesh with a face without area, a sliver, a face twice, a hole, an edge of three faces",
+        "presses as a whole one, or is refused by name", every, start::bad_surface),
+    case!("h57" "sharp_edges" "edge across an edge, corner on an edge",
+        "weight within 1e-3, a tenth of an edge deep at most", every, shapes::edges),
+    case!("h58" "wound_columns" "two columns wound round each other", "none is in the other; volume within 3 %", every, shapes::wound),
+    case!("h59" "pile" "pile of 12 cubes (in full 1000)", "weight within 1 %, energy falls, the same bits", every, shapes::pile),
+    case!("h63" "suction" "plate that hangs on a tube that sucks",
+        "Δp π r² within 3 %; comes off beyond that", every, taking::suction),
+    case!("h64" "removal_by_tool" "tool that takes a volume a second from three meshes",
+        "the integral of its rate to one element; edges even", every, taking::removal),
+    case!("h68" "three_forces" "force on a tool by three ways", "equal to 5e-3 in motion, 1e-3 at rest", every, rest::three_forces),
+    case!("h69" "contact_far_away" "contact 1e4 m from the origin", "forces within 1e-3", every, rest::far_away),
+    case!("h70" "bouncing" "ball that bounces in a box for 20 000 steps (in full a million)",
+        "energy and what was lost within 1e-3 (f64), 1e-2 (f32)", every, free::bouncing),
 ];
