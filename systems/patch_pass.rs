@@ -135,7 +135,7 @@ impl StepOfBody<'_> {
 }
 
 /// So many items, one after the other in memory.
-fn all<'a, I: Iterator>(arena: &'a Bump, count: usize, items: I) -> &'a mut [I::Item] {
+fn all<I: Iterator>(arena: &Bump, count: usize, items: I) -> &mut [I::Item] {
     arena.alloc_slice_fill_iter(Counted { items, left: count })
 }
 

@@ -56,7 +56,8 @@ impl Lists {
     /// Finds all triangles within a radius (m) of points, in a tree a body.
     pub fn find(finder: &Finder<'_>, trees: &[Tree], places: &[DVec3], radius: f64, cpu: &Cpu) -> Self {
         let task = |task: usize| {
-            let (mut counts, mut found): (Vec<(u32, u32)>, Vec<(u32, f64)>) = (Vec::new(), Vec::new());
+            let mut counts: Vec<(u32, u32)> = Vec::new();
+            let mut found: Vec<(u32, f64)> = Vec::new();
             let points = task * POINTS_A_TASK..finder.points.len().min((task + 1) * POINTS_A_TASK);
             for number in points {
                 let point = &finder.points[number];

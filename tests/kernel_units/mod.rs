@@ -136,9 +136,9 @@ pub const SURFACES: [&str; 12] = [
 /// Files of the kernels of bodies that meet.
 pub fn of_surfaces() -> Vec<String> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/scenes/stacked_blocks.ron");
-    let scene = sinew::SceneFile::load(path, &[]).unwrap();
-    let mut simulation = sinew::Simulation::new(&scene, &sinew::Options::default()).unwrap();
-    let explained = simulation.explain_on_gpu(&sinew::systems::Registry::default()).unwrap();
+    let scene = SceneFile::load(path, &[]).unwrap();
+    let mut simulation = Simulation::new(&scene, &Options::default()).unwrap();
+    let explained = simulation.explain_on_gpu(&Registry::default()).unwrap();
     let fragments = explained.kernels.iter().flat_map(|kernel| &kernel.fragments);
     fragments.filter_map(|f| f.path.strip_prefix("shaders/").map(str::to_owned)).collect()
 }

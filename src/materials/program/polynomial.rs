@@ -130,6 +130,8 @@ impl Graph {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
+
     use super::*;
 
     /// (x + 1)(x + 2)/2 − 1, with the graph it is of.

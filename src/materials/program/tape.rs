@@ -128,7 +128,7 @@ impl Program {
         // all slots are written once before the first instruction: no more than needed
         match self.slots {
             0..=16 => like.outlined(Walk::<R, 16> { program, inputs, outputs, like }),
-            0..=64 => like.outlined(Walk::<R, 64> { program, inputs, outputs, like }),
+            17..=64 => like.outlined(Walk::<R, 64> { program, inputs, outputs, like }),
             _ => like.outlined(Walk::<R, SLOTS> { program, inputs, outputs, like }),
         }
     }
