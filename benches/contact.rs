@@ -72,7 +72,7 @@ fn shares(elements: &str, cells: u32, threads: usize) {
     let contacts = all[3].world().resource::<SurfaceContacts>();
     let (after, [points, faces]) = (contacts.figures(), contacts.size());
     let steps = (after.steps - before.steps) as f64;
-    let near = (after.looked_at - before.looked_at) as f64 / steps;
+    let near = (after.examined - before.examined) as f64 / steps;
     println!(
         "{elements} 3 x {cells}^3, {threads} thread(s): {:.1} us a step; nothing near {:+.1} %; {:.0} % of {points} points near \
          {:+.1} % ({:.0} ns a point near; {:.0} contacts; {faces} faces; {:.0} steps between lists)",

@@ -122,8 +122,8 @@ impl<'a> Group<'a> {
 /// Steps that are timed at once.
 const BLOCK: u64 = 8;
 
-/// What the guards of every run cost: blocks of steps with and without booked work by turns, the best of each, so that
-/// other work on the machine does not count; and a look, of which there is one in 256 steps.
+/// What the guards of every run cost: blocks of steps with and without counted work by turns, the best of each, so that
+/// other work on the machine does not count; and a sample, of which there is one in 256 steps.
 fn guards() {
     let gpu = std::env::var_os("SINEW_BENCH_GPU").is_some();
     let configurations = [("f32", Precision::F32, gpu), ("f64", Precision::F64, false)];
@@ -151,23 +151,23 @@ fn guards() {
                     *best = best.min(started.elapsed().as_secs_f64() / BLOCK as f64);
                 }
             }
-            let mut look = f64::INFINITY;
+            let mut sample = f64::INFINITY;
             for _ in 0..20 {
                 let started = Instant::now();
-                sinew::observation::look(all[1].world_mut()).expect("a look");
-                look = look.min(started.elapsed().as_secs_f64());
+                sinew::observation::sample(all[1].world_mut()).expect("a sample");
+                sample = sample.min(started.elapsed().as_secs_f64());
             }
-            best[4] = best[1] + look / 256.0;
+            best[4] = best[1] + sample / 256.0;
             let share = |i: usize| 100.0 * (best[i] / best[0] - 1.0);
             println!(
-                "guards, {kind} {cells}^3 {word}{}: {:.1} us a step without, booking {:+.1} %, all of them {:+.1} %; booking \
-                 with prescribed nodes {:+.1} %; a look is {:.1} steps",
+                "guards, {kind} {cells}^3 {word}{}: {:.1} us a step without, work {:+.1} %, all of them {:+.1} %; work \
+                 with prescribed nodes {:+.1} %; a sample is {:.1} steps",
                 if gpu { " GPU" } else { "" },
                 best[0] * 1e6,
                 share(1),
                 share(4),
                 100.0 * (best[3] / best[2] - 1.0),
-                look / best[0]
+                sample / best[0]
             );
         }
     }

@@ -4,7 +4,7 @@
 @group(0) @binding(1) var<storage, read> rest_shape: array<f32>;
 @group(0) @binding(2) var<storage, read> alive: array<u32>;
 @group(0) @binding(3) var<storage, read_write> removal_step: array<u32>;
-@group(0) @binding(4) var<storage, read> criteria: array<u32>; // bit i: criterion i watches the element
+@group(0) @binding(4) var<storage, read> criteria: array<u32>; // bit i: criterion i concerns the element
 
 // Tangent, cosine and sine of the rotation that makes the entry between two axes of a symmetric matrix zero.
 fn rotation(app: f32, aqq: f32, apq: f32) -> vec3<f32> {

@@ -7,5 +7,5 @@ fn coefficient_of(node: u32) -> f32 {
 
 fn damped(node: u32, before: vec3<f32>, pushed: vec3<f32>, per_mass: f32) -> vec3<f32> {
     let a = coefficient_of(node) * step.half_step * per_mass;
-    return (pushed - (1.0 + step.divide) * a * before) / (1.0 + step.divide * a);
+    return (pushed - (1.0 + step.after_first) * a * before) / (1.0 + step.after_first * a);
 }

@@ -16,7 +16,7 @@ fn forces_of(element: u32) -> array<vec3<f32>, NODES> {
         let stress = elastic_first_stress(at.gradient, k, isochoric_stress(element, point, k), pressure);
         forces = add_stress(forces, point, at, stress);
     }
-    for (var point = POINTS; point < LOOKED_AT; point++) {
+    for (var point = POINTS; point < CHECKED_POINTS; point++) {
         inverted = inverted || (e.volume > 0.0 && 1.0 + volume_change_of(at_point(e, point).gradient) < LEAST_J);
     }
     if inverted && is_removed_inverted(element) {

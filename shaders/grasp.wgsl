@@ -4,7 +4,7 @@ struct GripRow {
     closed: u32, // the slot that says whether it is
     reach: f32, // how far a node may be when it closes (m)
     strength: f32, // the force above which a node slips out (N)
-    books: u32, // whether work is counted
+    counts_work: u32, // whether work is counted
 }
 @group(0) @binding(0) var<uniform> tools: array<ToolRow, GRASPS>;
 @group(0) @binding(1) var<uniform> grips: array<GripRow, GRASPS>;
@@ -79,10 +79,10 @@ fn hold(i: u32, node: u32, number: u32) {
         tool_hold[own + 10u] += force.y;
         tool_hold[own + 11u] += force.z;
     }
-    if grips[number].books != 0u {
-        let work = step.booked * dot(force, from_frame(at + 3u, of_tool));
+    if grips[number].counts_work != 0u {
+        let work = step.work_factor * dot(force, from_frame(at + 3u, of_tool));
         tool_hold[own + 4u] += work;
-        tool_hold[own + 5u] += work - step.booked * dot(force, 0.5 * (of_node.before + of_node.predicted + gap));
+        tool_hold[own + 5u] += work - step.work_factor * dot(force, 0.5 * (of_node.before + of_node.predicted + gap));
     }
     add_load(node, force);
 }

@@ -1,5 +1,6 @@
 // Central differences in velocity form; twin of systems/integrate.rs. What a body has no column for is a line generated in
-// place of a fragment: damped, coefficient_of, book_work, add_internal_work, add_up_internal_work, add_to_step, add_step, forget_step.
+// place of a fragment: damped, coefficient_of, accumulate_work, add_internal_work, add_up_internal_work, add_to_step,
+// add_step, forget_step.
 @group(0) @binding(1) var<storage, read> mass: array<f32>; // fictitious in a static analysis
 @group(0) @binding(3) var<storage, read> constrained_axes: array<u32>;
 @group(0) @binding(4) var<storage, read_write> displacement: array<f32>;
@@ -34,7 +35,7 @@ fn push(node: u32) -> vec3<f32> {
         let change = damped(node, before, step.force_factor * ((outer - inner) * per_mass), per_mass);
         let constrained = constrained_at(node);
         after = select(add_to_step(node, before, change), before, constrained);
-        book_work(node, before, after, constrained, inner, outer);
+        accumulate_work(node, before, after, constrained, inner, outer);
         add_internal_work(node, before, after, constrained, inner);
     } else {
         forget_step(node);

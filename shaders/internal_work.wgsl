@@ -8,7 +8,7 @@ var<workgroup> internal_work_parts: array<f32, INVOCATIONS>;
 // time between the middles of both.
 fn add_internal_work(node: u32, before: vec3<f32>, after: vec3<f32>, constrained: vec3<bool>, inner: vec3<f32>) {
     let last = select(before, step_before(node), constrained);
-    internal_work += 0.5 * step.booked * dot(inner, last + after);
+    internal_work += 0.5 * step.work_factor * dot(inner, last + after);
 }
 
 // The same number, in a way that no compiler can look through.

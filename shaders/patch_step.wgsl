@@ -1,5 +1,6 @@
 // The kernel of a block's patches where the nodes inside a patch move as soon as its forces are known: the stages of the pass over the
-// nodes, which does the rest. sum_patch is in patches.wgsl; LEAST_INSIDE, INVOCATIONS and force_of_patch are generated.
+// nodes, which does the rest. sum_patch is in patches.wgsl; LEAST_INTERIOR, INVOCATIONS and force_of_patch are
+// generated.
 //
 // No workgroup sees what another moves: a node is inside a patch if no other patch of the body has it, a patch reads the
 // displacements of its own nodes only, and no stage reads those of other nodes than its own. Within a workgroup all displacements
@@ -17,16 +18,16 @@ fn patch_step(
 ) {
     let number = patch_row(id, workgroups);
     if number < patches.count {
-        let inside = patch_lists[patches.inside + number];
-        sum_patch(number, local, inside);
+        let interior = patch_lists[patches.interior + number];
+        sum_patch(number, local, interior);
         // they follow one another
         let first = patch_lists[patches.nodes + patch_lists[number]];
-        for (var i = local; i < inside; i += INVOCATIONS) {
+        for (var i = local; i < interior; i += INVOCATIONS) {
             force_of_patch = vec3<f32>(patch_force[3u * i], patch_force[3u * i + 1u], patch_force[3u * i + 2u]);
             call_all(first + i);
         }
         // once for all of them: each sixty-four invocations that had any have a place of the patch's own
         let part = local / 64u;
-        finish_all(local, select(pass_rows.count, first + LEAST_INSIDE * part, 64u * part < inside));
+        finish_all(local, select(pass_rows.count, first + LEAST_INTERIOR * part, 64u * part < interior));
     }
 }

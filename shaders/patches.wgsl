@@ -6,7 +6,7 @@ struct PatchLists {
     rounds: u32, // where in patch_lists the numbers of rounds begin, a byte a corner of each batch
     corners: u32, // where corners begin: as connectivity, but two in a word
     nodes: u32, // where the nodes of patches begin; before all these, where each patch's are among them
-    inside: u32, // where it begins how many of each patch's nodes, its first ones, no other patch has
+    interior: u32, // where it begins how many of each patch's nodes, its first ones, no other patch has
 }
 @group(0) @binding(0) var<uniform> patches: PatchLists;
 @group(0) @binding(1) var<storage, read> patch_lists: array<u32>;

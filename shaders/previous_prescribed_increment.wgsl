@@ -1,4 +1,4 @@
-// Keeps the last step along prescribed axes, which boundary is about to write over, for the work that integrate books.
+// Keeps the last step along prescribed axes, which boundary is about to write over, for the work that integrate counts.
 // PREVIOUS_PRESCRIBED_AT is generated.
 @group(0) @binding(0) var<storage, read_write> node_diagnostics: array<atomic<u32>>;
 

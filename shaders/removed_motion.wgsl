@@ -1,6 +1,6 @@
-// Books the kinetic energy and the momentum of elements that are about to be taken away, and the part of the energy
+// Counts the kinetic energy and the momentum of elements that are about to be taken away, and the part of the energy
 // that constraints gave them: in a kernel of its own, so that neither this one nor element_removal has more than eight
-// buffers. MASS_SHARES are generated from the block's element type; MOMENTA_AT is where momenta begin among the books.
+// buffers. MASS_SHARES are generated from the block's element type; MOMENTA_AT is where momenta begin among the counts.
 struct Removal {
     density: f32, // kg/m³
 }

@@ -1,5 +1,5 @@
 // Marks the faces that a tool sucks; twin of systems/suction_mouth.rs. suction_presence.wgsl comes before it,
-// suction_nodes.wgsl and suction_pressure.wgsl after it; looks is generated.
+// suction_nodes.wgsl and suction_pressure.wgsl after it; criterion_due is generated.
 struct SuctionMouth {
     faces: u32, // of the body
     nodes: u32, // of these faces
@@ -64,7 +64,7 @@ fn sucked_share(face: u32) -> f32 {
 @compute @workgroup_size(64)
 fn suction_mouth(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let face = row(id, groups);
-    if face >= mouth.faces || !looks() {
+    if face >= mouth.faces || !criterion_due() {
         return;
     }
     suction_marks[mouth.first + face] = bitcast<u32>(sucked_share(face));

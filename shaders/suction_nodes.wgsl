@@ -1,4 +1,4 @@
-// Marks the nodes of the faces that suction_mouth.wgsl has marked. looks is generated.
+// Marks the nodes of the faces that suction_mouth.wgsl has marked. criterion_due is generated.
 struct SuctionMouth {
     faces: u32,
     nodes: u32,
@@ -19,7 +19,7 @@ struct SuctionMouth {
 @compute @workgroup_size(64)
 fn suction_nodes(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let i = row(id, groups);
-    if i >= mouth.nodes || !looks() {
+    if i >= mouth.nodes || !criterion_due() {
         return;
     }
     var mark = 0u;

@@ -1,4 +1,4 @@
-// Which faces of a block's elements are there: the first part of suction_mouth.wgsl. looks is generated.
+// Which faces of a block's elements are there: the first part of suction_mouth.wgsl. criterion_due is generated.
 struct Presence {
     count: u32, // elements of the block
 }
@@ -10,7 +10,7 @@ struct Presence {
 @compute @workgroup_size(64)
 fn suction_presence(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let element = row(id, groups);
-    if element >= presence.count || !looks() {
+    if element >= presence.count || !criterion_due() {
         return;
     }
     for (var at = faces_of_elements[element]; at < faces_of_elements[element + 1u]; at++) {

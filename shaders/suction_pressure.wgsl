@@ -1,5 +1,5 @@
 // The share of the mouth that the faces close which suction_mouth.wgsl has marked, and the pressure that follows it. One
-// workgroup; looks is generated.
+// workgroup; criterion_due is generated.
 struct SuctionMouth {
     faces: u32,
     nodes: u32,
@@ -30,7 +30,7 @@ fn place_of(node: u32) -> vec3<f32> {
 
 @compute @workgroup_size(256)
 fn suction_pressure_of(@builtin(local_invocation_index) lane: u32) {
-    if looks() {
+    if criterion_due() {
         let axis = vec3<f32>(
             step.signals[mouth.pose].z, step.signals[mouth.pose + 1u].z, step.signals[mouth.pose + 2u].z);
         var sum = 0.0;

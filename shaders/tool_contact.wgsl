@@ -3,7 +3,7 @@
 struct Limits {
     edge: f32, // who is farther off cannot be there within a step (m)
     settling: f32, // how fast nodes inside a tool come out (m/s); in a static analysis a tenth of an edge a step
-    books: u32, // whether work is counted
+    counts_work: u32, // whether work is counted
 }
 @group(0) @binding(0) var<uniform> tools: array<ToolRow, TOOLS>;
 @group(0) @binding(1) var<uniform> limits: Limits;
@@ -39,7 +39,7 @@ fn predict(tool: u32, place: vec3<f32>, predicted: vec3<f32>, sticks: bool) -> T
     if surface.w < 0.0 {
         let earlier = array<vec4<f32>, 3>(pose[0] - change[0], pose[1] - change[1], pose[2] - change[2]);
         var out = limits.settling * step.time_step;
-        if limits.books == 0u {
+        if limits.counts_work == 0u {
             out = 0.1 * limits.edge;
         }
         allowed = min(distance_to(tools[tool], into_frame(earlier, place)).w + out, 0.0);
@@ -60,7 +60,7 @@ fn predict(tool: u32, place: vec3<f32>, predicted: vec3<f32>, sticks: bool) -> T
 }
 
 // Where the node ends by now.
-fn look_again(tool: u32, end: vec3<f32>, before: Touch) -> Touch {
+fn evaluate_again(tool: u32, end: vec3<f32>, before: Touch) -> Touch {
     var touch = before;
     let at = tools[tool].signal;
     let pose = array<vec4<f32>, 3>(step.signals[at], step.signals[at + 1u], step.signals[at + 2u]);
@@ -116,7 +116,7 @@ fn tool_contact(i: u32, node: u32) {
                 continue;
             }
             if turn > 0u {
-                found[tool] = look_again(tool, place + predicted + sum, found[tool]);
+                found[tool] = evaluate_again(tool, place + predicted + sum, found[tool]);
             }
             let normal = found[tool].normal;
             let along = dot(normal, free * normal);
@@ -163,9 +163,9 @@ fn tool_contact(i: u32, node: u32) {
             tool_touch[at_tool + 8u] += force.y;
             tool_touch[at_tool + 9u] += force.z;
         }
-        if limits.books != 0u {
-            let work = step.booked * dot(force, found[tool].tool_step);
-            let on_node = step.booked * dot(force * free, 0.5 * (of_node.before + d));
+        if limits.counts_work != 0u {
+            let work = step.work_factor * dot(force, found[tool].tool_step);
+            let on_node = step.work_factor * dot(force * free, 0.5 * (of_node.before + d));
             tool_touch[at_tool + 4u] += length(along_surface(d - found[tool].tool_step, found[tool].normal));
             tool_touch[at_tool + 5u] += work;
             tool_touch[at_tool + 6u] += work - on_node;

@@ -1,6 +1,6 @@
-// Lists the elements in a tool's reach; twin of systems/tool_removal.rs. looks and step_that_comes are generated,
-// tool_distance is in tool_shape.wgsl. In which order they are listed does not matter: tool_removal_choice.wgsl chooses by
-// key and number.
+// Lists the elements in a tool's reach; twin of systems/tool_removal.rs. criterion_due and step_that_comes are
+// generated, tool_distance is in tool_shape.wgsl. In which order they are listed does not matter:
+// tool_removal_choice.wgsl chooses by key and number.
 struct Reach {
     kind: u32, // of a disc or a shape, then its sizes (m)
     size_0: f32,
@@ -42,7 +42,7 @@ fn ascending(number: f32) -> u32 {
 @compute @workgroup_size(64)
 fn tool_removal(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let element = row(id, groups);
-    if element >= block.count || !looks() || numbers[element] == 0xffffffffu || alive[element] == 0u
+    if element >= block.count || !criterion_due() || numbers[element] == 0xffffffffu || alive[element] == 0u
         || removal_step[element] <= step_that_comes() {
         return;
     }

@@ -1,5 +1,5 @@
-// What a tool takes in, and which elements go for it: the second part of tool_removal.wgsl. One workgroup; looks is
-// generated.
+// What a tool takes in, and which elements go for it: the second part of tool_removal.wgsl. One workgroup;
+// criterion_due is generated.
 struct Choice {
     rate: u32, // slot of the volume a second (m³/s)
     intake: u32, // where the tool's numbers begin in tool_intake
@@ -23,7 +23,7 @@ fn tool_removal_choice(@builtin(local_invocation_index) lane: u32) {
     if lane == 0u && tool_intake[choice.intake + 1u] != 0.0 {
         tool_intake[choice.intake] += step.signals[choice.rate].x * step.time_step;
     }
-    if !looks() {
+    if !criterion_due() {
         return;
     }
     let found = tool_reach[0];

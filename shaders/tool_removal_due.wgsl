@@ -1,4 +1,4 @@
-// Elements that tool_removal_choice.wgsl has chosen are due. looks and step_that_comes are generated.
+// Elements that tool_removal_choice.wgsl has chosen are due. criterion_due and step_that_comes are generated.
 struct Chosen {
     count: u32, // elements of the block
     chosen: u32, // where the chosen are told in tool_reach: how many, then their numbers
@@ -11,7 +11,7 @@ struct Chosen {
 @compute @workgroup_size(64)
 fn tool_removal_due(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgroups) groups: vec3<u32>) {
     let element = row(id, groups);
-    if element >= due.count || !looks() || numbers[element] == 0xffffffffu {
+    if element >= due.count || !criterion_due() || numbers[element] == 0xffffffffu {
         return;
     }
     for (var i = 1u; i <= tool_reach[due.chosen]; i++) {

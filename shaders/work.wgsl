@@ -1,8 +1,8 @@
-// Work booked for energies, for integrate: by loads, against damping, by constraints, by internal forces (J), then the last
-// step along constrained axes (m), which boundary has written over.
+// Work counted for energies, for integrate: by loads, against damping, by constraints, by internal forces (J), then the
+// last step along constrained axes (m), which boundary has written over.
 @group(0) @binding(0) var<storage, read_write> work: array<f32>;
 
-fn book_work(
+fn accumulate_work(
     node: u32,
     before: vec3<f32>,
     after: vec3<f32>,
@@ -14,7 +14,7 @@ fn book_work(
     let kept = vec3<f32>(work[first + 4u], work[first + 5u], work[first + 6u]);
     // in the middle of each step the balance is exact: from middle to middle, in the first step half of it
     let mean = 0.5 * (select(before, kept, constrained) + after);
-    let along = step.booked * mean;
+    let along = step.work_factor * mean;
     let compensation = coefficient_of(node) * step.rate * mean * along;
     let held = select(vec3<f32>(0.0), (inner - outer) * along + compensation, constrained);
     work[first] += dot(outer, along);

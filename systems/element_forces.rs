@@ -5,7 +5,7 @@
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::block_kernel::{BlockKernels, CornersAt};
-use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, Inside, run_block, run_block_fast};
+use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, PatchInterior, run_block, run_block_fast};
 use crate::backend::kernel::{Fragment, Kernel};
 use crate::backend::patch_lists::pack;
 use crate::backend::step::{step_number, with_step};
@@ -81,8 +81,8 @@ impl BlockPartsItem<'_, '_> {
     }
 
     /// How many nodes are inside each patch.
-    pub(super) fn inside(&self) -> &[u32] {
-        self.patches.map_or(&[], |patches| &patches.inside)
+    pub(super) fn interior(&self) -> &[u32] {
+        self.patches.map_or(&[], |patches| &patches.interior)
     }
 
     /// Runs the block's kernel: from displacements (m), from a row of the body on, to element forces (N). Returns the
@@ -92,7 +92,7 @@ impl BlockPartsItem<'_, '_> {
         cpu: &Cpu,
         (displacement, first_row): (&'a [T], usize),
         force: &'a mut [T],
-        inside: Option<Inside<'a, '_, T>>,
+        interior: Option<PatchInterior<'a, '_, T>>,
     ) -> Vec<usize> {
         let block = self.block;
         let columns = BlockColumns {
@@ -106,7 +106,7 @@ impl BlockPartsItem<'_, '_> {
             force: &mut force[block.force_offset..block.force_offset + block.force_length],
             patches: self.patches,
             inverted_go: self.policy.is_some_and(|policy| policy.0 == Inversion::Remove),
-            inside,
+            interior,
         };
         with_element_of!(block, E => T::run::<E>(cpu, columns, (self.law, self.rounded), block))
     }

@@ -24,7 +24,7 @@ pub const CRITERION_STEPS: u64 = 10;
 
 /// At the end of a step, elements go whose time has come or that pass a limit. Their volume and hourglass stiffness
 /// become zero, so that they exert nothing; what their nodes weigh is summed anew, and nodes without elements are
-/// inactive; faces of removed elements bear no load. The energy and momentum they had are booked, and what of the
+/// inactive; faces of removed elements bear no load. The energy and momentum they had are counted, and what of the
 /// energy constraints had given.
 pub fn system() -> System {
     System::built_in(
@@ -77,7 +77,7 @@ fn element_removal(
     mut pressures: Query<(&mut Pressure, &OfBody), Without<Traction>>,
     mut tractions: Query<(&mut Traction, &OfBody), Without<Pressure>>,
 ) {
-    let look = clock.step.is_multiple_of(CRITERION_STEPS);
+    let is_due = clock.step.is_multiple_of(CRITERION_STEPS);
     let mut touched: Vec<Entity> = Vec::new();
     for (
         entity,
@@ -109,7 +109,7 @@ fn element_removal(
             memory: memory.map(|m| &m.0),
             nodal_volume_change: means.map(|means| Cow::Borrowed(&means.0)),
         };
-        let of_block: Vec<&RemovalCriterion> = criteria.iter().filter(|c| look && c.block == entity).collect();
+        let of_block: Vec<&RemovalCriterion> = criteria.iter().filter(|c| is_due && c.block == entity).collect();
         let due = |row: usize| alive[row] == 1 && u64::from(by_time[row]) <= clock.step && by_time[row] != u32::MAX;
         let passes = |row: usize, c: &RemovalCriterion| {
             (c.rows.is_empty() || c.rows.binary_search(&(row as u32)).is_ok())
@@ -146,7 +146,7 @@ fn element_removal(
             missing("a column of a body");
             continue;
         };
-        weigh(authoring, (&blocks, &others), &densities, &mut mass, damping.as_deref_mut());
+        recompute_masses(authoring, (&blocks, &others), &densities, &mut mass, damping.as_deref_mut());
         // elements of blocks that lose none are always there
         let alive = |(block, row): (u32, u32)| {
             let block = authoring.blocks.get(block as usize).and_then(|&block| blocks.get(block).ok());
@@ -204,7 +204,7 @@ fn motion(state: &ElementState, density: f64, (step, axes): (&Reals, &[u32]), ti
 }
 
 /// Sums the mass and damping of a body's nodes from the elements that are left.
-fn weigh(
+fn recompute_masses(
     authoring: &Authoring,
     (blocks, others): (&Query<BlockQuery>, &Query<StayingBlock, Without<Alive>>),
     materials: &Query<(&Density, Option<&Damping>)>,
@@ -261,7 +261,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let blocks = BlockKernels::of_world(world, buffers);
     let criteria: Vec<RemovalCriterion> = world.query::<&RemovalCriterion>().iter(world).cloned().collect();
     let mut kernels = Vec::new();
-    let mut weighed = Vec::new();
+    let mut recomputed = Vec::new();
     for block in blocks.iter().filter(|block| world.get::<Alive>(block.entity).is_some()) {
         let of_block: Vec<&RemovalCriterion> = criteria.iter().filter(|c| c.block == block.entity).collect();
         // a bit for each criterion
@@ -270,11 +270,11 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
         }
         kernels.push(with_step(motion_kernel(block, world, buffers), world));
         kernels.push(with_step(removal_kernel(block, buffers), world));
-        if !weighed.contains(&block.block.body) {
-            weighed.push(block.block.body);
+        if !recomputed.contains(&block.block.body) {
+            recomputed.push(block.block.body);
         }
     }
-    for body in weighed {
+    for body in recomputed {
         for (place, block) in blocks.iter().filter(|block| block.block.body == body).enumerate() {
             kernels.extend(mass_kernel(block, place == 0, world, buffers));
         }
@@ -285,7 +285,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
 fn criterion_kernel(block: &BlockKernels, criteria: &[&RemovalCriterion], buffers: &mut dyn Buffers) -> Kernel {
     let mut text = format!(
         "const LIMITS: u32 = {}u;\nconst CRITERION_STEPS: u32 = {CRITERION_STEPS}u;\n\
-         fn passes_a_limit(element: u32, watching: u32, e: Element) -> bool {{\n    return false",
+         fn passes_a_limit(element: u32, of_element: u32, e: Element) -> bool {{\n    return false",
         criteria.len()
     );
     for (bit, criterion) in criteria.iter().enumerate() {
@@ -295,7 +295,7 @@ fn criterion_kernel(block: &BlockKernels, criteria: &[&RemovalCriterion], buffer
             Measure::NegativeVolumeRatio => "-volume_ratio_of(e)",
             Measure::EnergyDensity => "energy_density(element, e)",
         };
-        text += &format!("\n        || (((watching >> {bit}u) & 1u) == 1u && {measure} > limits[{bit}].x)");
+        text += &format!("\n        || (((of_element >> {bit}u) & 1u) == 1u && {measure} > limits[{bit}].x)");
     }
     text += ";\n}\n";
     let limits: Vec<[f32; 4]> = criteria.iter().map(|criterion| [criterion.limit as f32, 0.0, 0.0, 0.0]).collect();

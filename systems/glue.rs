@@ -1,7 +1,7 @@
 //! `glue`: points of bodies stay where they are tied to faces, until that breaks.
 
 use super::registry::{Phase, System};
-use crate::backend::cpu::{Factors, Foreseen};
+use crate::backend::cpu::{Foreseen, IntegrationCoefficients};
 use crate::components::*;
 use crate::contact::{Tie, TieSet};
 use bevy_ecs::prelude::*;
@@ -57,7 +57,7 @@ struct Nodes {
 }
 
 fn glue(clock: Res<Clock>, glue: Res<Glue>, mut bodies: Query<TiedColumns>, blocks: Query<&Alive>) {
-    let factors = Factors::<f64>::of(&clock);
+    let coefficients = IntegrationCoefficients::<f64>::of(&clock);
     let (mut nodes, mut set) = (Nodes::default(), TieSet::default());
     // those that hold, each with the normal of its face
     let mut holding: Vec<(&TiedPoint, DVec3)> = Vec::new();
@@ -88,10 +88,10 @@ fn glue(clock: Res<Clock>, glue: Res<Glue>, mut bodies: Query<TiedColumns>, bloc
         }
         let mut parts = Vec::with_capacity(tie.nodes.len() + 3);
         for &(row, weight) in &tie.nodes {
-            parts.push((nodes.place((tie.bodies[0], row), &of, &factors), weight));
+            parts.push((nodes.place((tie.bodies[0], row), &of, &coefficients), weight));
         }
         for (row, weight) in tie.corners.into_iter().zip(tie.weights).filter(|(_, weight)| *weight != 0.0) {
-            parts.push((nodes.place((tie.bodies[1], row), &onto, &factors), -weight));
+            parts.push((nodes.place((tie.bodies[1], row), &onto, &coefficients), -weight));
         }
         set.ties.push(Tie::new(parts, point - belongs));
         holding.push((tie, out));
@@ -99,22 +99,22 @@ fn glue(clock: Res<Clock>, glue: Res<Glue>, mut bodies: Query<TiedColumns>, bloc
     set.steps = nodes.foreseen.iter().map(|foreseen| foreseen.step).collect();
     set.responses = nodes.foreseen.iter().map(|foreseen| foreseen.free / foreseen.to_force).collect();
     set.solve(glue.sweeps);
-    let books = clock.relaxation.is_none().then_some(factors.booked);
+    let counts_work = clock.relaxation.is_none().then_some(coefficients.work_factor);
     let mut forces = vec![DVec3::ZERO; nodes.rows.len()];
     for (solved, (tie, out)) in set.ties.iter().zip(&holding) {
         let Some(mut state) = state_of(tie, &glue, &mut bodies) else { continue };
         let at = TIE_NUMBERS * tie.place;
         // in a static analysis nothing breaks: pseudo-steps are no way that bodies take
-        if books.is_some() && tie.strength.is_exceeded(solved.force, *out) {
+        if counts_work.is_some() && tie.strength.is_exceeded(solved.force, *out) {
             breaks(&mut state, at, BROKE, &clock);
             continue;
         }
         solved.parts.iter().for_each(|&(node, weight)| forces[node as usize] += solved.force * weight);
         state.set_vector_at(at + 2, solved.force);
-        if let Some(booked) = books {
+        if let Some(work_factor) = counts_work {
             let before: DVec3 =
                 solved.parts.iter().map(|&(node, weight)| nodes.foreseen[node as usize].before * weight).sum();
-            let taken = -booked * solved.force.dot(0.5 * (before + solved.relative(&set.steps)));
+            let taken = -work_factor * solved.force.dot(0.5 * (before + solved.relative(&set.steps)));
             let sum = state.get(at + 5) + taken;
             state.set(at + 5, sum);
         }
@@ -144,20 +144,29 @@ fn breaks(state: &mut TieState, at: usize, how: f64, clock: &Clock) {
 
 impl Nodes {
     /// The place of a node in the set.
-    fn place(&mut self, node: (usize, u32), columns: &TiedColumnsReadOnlyItem<'_, '_>, factors: &Factors<f64>) -> u32 {
+    fn place(
+        &mut self,
+        node: (usize, u32),
+        columns: &TiedColumnsReadOnlyItem<'_, '_>,
+        coefficients: &IntegrationCoefficients<f64>,
+    ) -> u32 {
         let next = self.rows.len() as u32;
         *self.places.entry(node).or_insert_with(|| {
             self.rows.push(node);
-            self.foreseen.push(foresee(columns, node.1 as usize, factors));
+            self.foreseen.push(foresee(columns, node.1 as usize, coefficients));
             next
         })
     }
 }
 
 /// Where a node would go, from what is known of its body.
-fn foresee(columns: &TiedColumnsReadOnlyItem<'_, '_>, row: usize, factors: &Factors<f64>) -> Foreseen {
+fn foresee(
+    columns: &TiedColumnsReadOnlyItem<'_, '_>,
+    row: usize,
+    coefficients: &IntegrationCoefficients<f64>,
+) -> Foreseen {
     let mass = columns.fictitious.map_or_else(|| columns.mass.get(row), |mass| mass.get(row));
     let damping = columns.damping.map_or(0.0, |damping| damping.get(row));
     let force = columns.external.vector(row) - columns.internal.vector(row);
-    factors.foresee(mass, damping, columns.axes[row], columns.step.vector(row), force)
+    coefficients.foresee(mass, damping, columns.axes[row], columns.step.vector(row), force)
 }

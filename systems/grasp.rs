@@ -5,7 +5,7 @@ use super::places_within;
 use super::registry::{Phase, System};
 use super::tool_contact::{ToolNodes, tool_stage};
 use crate::backend::Buffers;
-use crate::backend::cpu::{Cpu, Factors, NodeColumns};
+use crate::backend::cpu::{Cpu, IntegrationCoefficients, NodeColumns};
 use crate::backend::kernel::{Uniform, uniform};
 use crate::backend::node_stage::NodeStage;
 use crate::components::*;
@@ -35,10 +35,10 @@ const HELD: f64 = 1.0;
 const WITHOUT: f64 = 2.0;
 
 /// What a step needs.
-pub struct Step {
-    factors: Factors<f64>,
+pub struct GraspStep {
+    coefficients: IntegrationCoefficients<f64>,
     /// Whether work is counted: not on the way to rest.
-    books: bool,
+    counts_work: bool,
     tools: Vec<ToolInStep>,
 }
 
@@ -57,18 +57,22 @@ impl NodeSystem for Grasps {
         (&'static InternalForce, &'static ConstrainedAxes, &'static Displacement, &'static DisplacementIncrement),
         (&'static mut ExternalForce, &'static mut ToolHold),
     );
-    type Prepared = Step;
+    type Prepared = GraspStep;
 
-    fn prepare(&self, before: &Before<'_>) -> Step {
+    fn prepare(&self, before: &Before<'_>) -> GraspStep {
         let values = before.signals.values();
         let tools = self.grasps.iter().map(|grasp| {
             let [pose, change] = [0, 3].map(|slot| Pose::of_slots(&values[grasp.tool.signal + slot..]));
             ToolInStep { closed: values[grasp.closed][1] > 0.0, pose, change }
         });
-        Step { factors: Factors::of(before.clock), books: before.clock.relaxation.is_none(), tools: tools.collect() }
+        GraspStep {
+            coefficients: IntegrationCoefficients::of(before.clock),
+            counts_work: before.clock.relaxation.is_none(),
+            tools: tools.collect(),
+        }
     }
 
-    fn act<T: SimdScalar>(&self, step: &Step, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+    fn act<T: SimdScalar>(&self, step: &GraspStep, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
         let Some(holds) = nodes.holds.take() else { return };
         let own = places_within(&self.rows, nodes.first, nodes.rows());
         let count = self.numbers_a_grasp();
@@ -88,7 +92,7 @@ impl Grasps {
     /// What one tool does to one node.
     fn hold<T: SimdScalar>(
         &self,
-        step: &Step,
+        step: &GraspStep,
         number: usize,
         row: usize,
         nodes: &mut NodeColumns<'_, T>,
@@ -120,7 +124,7 @@ impl Grasps {
             return;
         }
         let of_tool = DVec3::from_array([6, 7, 8].map(|i: usize| values[i].to_f64()));
-        let foreseen = nodes.foresee(&step.factors, row);
+        let foreseen = nodes.foresee(&step.coefficients, row);
         let gap = foreseen.free * (pose.place(of_tool) - place - foreseen.step);
         let force = foreseen.to_force * gap;
         if force.length() > grasp.strength {
@@ -133,9 +137,9 @@ impl Grasps {
         for (i, felt) in values[HOLD_NUMBERS..].iter_mut().enumerate() {
             *felt += T::from_f64(force[i]);
         }
-        if step.books {
-            let work = step.factors.booked * force.dot(change.place(of_tool));
-            let on_node = step.factors.booked * force.dot(0.5 * (foreseen.before + foreseen.step + gap));
+        if step.counts_work {
+            let work = step.coefficients.work_factor * force.dot(change.place(of_tool));
+            let on_node = step.coefficients.work_factor * force.dot(0.5 * (foreseen.before + foreseen.step + gap));
             values[4] += T::from_f64(work);
             values[5] += T::from_f64(work - on_node);
         }
@@ -150,9 +154,9 @@ struct GripRow {
     closed: u32,
     reach: f32,
     strength: f32,
-    books: u32,
+    counts_work: u32,
 }
-uniform!(GripRow { closed, reach, strength, books });
+uniform!(GripRow { closed, reach, strength, counts_work });
 
 /// How many grasps there are, and how many numbers of each.
 fn counts(grasps: &Grasps) -> String {
@@ -180,14 +184,14 @@ fn stage(body: Entity, grasps: &Grasps, world: &mut World, buffers: &mut dyn Buf
         column: ToolHold::NAME,
     };
     let stage = tool_stage(body, of, world, buffers);
-    let books = u32::from(world.resource::<Clock>().relaxation.is_none());
+    let counts_work = u32::from(world.resource::<Clock>().relaxation.is_none());
     // infinity is no number that a shader must know
     let number = |number: f64| (number as f32).min(f32::MAX);
     let grip = |grasp: &Grasp| GripRow {
         closed: grasp.closed as u32,
         reach: number(grasp.reach.unwrap_or(f64::INFINITY)),
         strength: number(grasp.strength),
-        books,
+        counts_work,
     };
     let grips: Vec<u8> = grasps.grasps.iter().flat_map(|grasp| grip(grasp).bytes()).collect();
     stage.bind_uniform::<GripRow>("grips", buffers.uniform("grips".into(), &grips))

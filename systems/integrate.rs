@@ -3,7 +3,7 @@
 use super::node_system::{Before, NodeSystem};
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::{Cpu, Factors, NodeColumns, move_nodes};
+use crate::backend::cpu::{Cpu, IntegrationCoefficients, NodeColumns, move_nodes};
 use crate::backend::kernel::Fragment;
 use crate::backend::node_stage::NodeStage;
 use crate::components::*;
@@ -22,7 +22,7 @@ use std::sync::atomic::Ordering;
 /// take the step that `boundary` wrote; nodes without mass are inactive.
 ///
 /// In a static analysis the same recursion relaxes: the mass is [`FictitiousMass`], a is one number for all nodes, and
-/// forces are multiplied with a gain ([`Relaxation`]).
+/// forces are multiplied with a force scale ([`Relaxation`]).
 pub fn system() -> System {
     System::built_in_nodes::<Body>(
         "integrate",
@@ -50,7 +50,7 @@ impl NodeSystem for Body {
     }
 
     fn act<T: SimdScalar>(&self, clock: &Clock, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {
-        if let Some(row) = move_nodes(cpu, nodes, &Factors::of(clock)) {
+        if let Some(row) = move_nodes(cpu, nodes, &IntegrationCoefficients::of(clock)) {
             nodes.non_finite.fetch_min(row, Ordering::Relaxed);
         }
     }
@@ -138,7 +138,7 @@ fn with_optional(
             without += "fn coefficient_of(node: u32) -> f32 {\n    return 0.0;\n}\n";
         }
     } else {
-        without += "fn book_work(node: u32, before: vec3<f32>, after: vec3<f32>, constrained: vec3<bool>, \
+        without += "fn accumulate_work(node: u32, before: vec3<f32>, after: vec3<f32>, constrained: vec3<bool>, \
                     inner: vec3<f32>, outer: vec3<f32>) {}\n";
     }
     if let Some(at) = guarded {

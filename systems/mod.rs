@@ -67,7 +67,7 @@ pub(crate) use grab::{bytes_of as grab_bytes, uniform_of as grab_uniform};
 pub(crate) use nodal_volume::means_of;
 pub(crate) use node_pass::{NodePass, node_pass, shared_pass};
 pub use node_system::{Before, ForceSlopes, NodeRows, NodeSystem, NodesAtRest};
-pub use observe::{add_watch_columns, watch_kernels};
+pub use observe::{add_guard_columns, guard_kernels};
 pub(crate) use patch_pass::patch_pass;
 pub(crate) use registry::BeforeSteps;
 pub use registry::{Because, DescribeKernels, HostSystem, OnDevice, OnHost, Outcome, Phase, Registry, System};

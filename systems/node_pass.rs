@@ -176,7 +176,7 @@ pub(crate) fn node_pass(pass: NodePass, world: &mut World) -> HostSystem {
 
 /// The same over those nodes that are inside no patch.
 pub(crate) fn shared_pass(pass: NodePass, world: &mut World) -> HostSystem {
-    pass_over(pass, |corners| corners.map_or(0, |corners| corners.first_shared), world)
+    pass_over(pass, |corners| corners.map_or(0, |corners| corners.first_interface), world)
 }
 
 /// Node systems as one pass over the nodes from a row on. Bodies do not wait for each other.

@@ -1,6 +1,6 @@
 //! `observe`: probes, energies, fields and guards, in the steps in which something is due. See
-//! [`Observer`](crate::observation::Observer). On a GPU the guards have kernels, `shaders/watch_nodes.wgsl` and
-//! `shaders/watch_elements.wgsl`, that run when they are due only.
+//! [`Observer`](crate::observation::Observer). On a GPU the guards have kernels, `shaders/guard_nodes.wgsl` and
+//! `shaders/guard_elements.wgsl`, that run when they are due only.
 
 use super::registry::{OnDevice, OnHost, Phase, System};
 use crate::backend::Buffers;
@@ -44,16 +44,16 @@ fn observe(world: &mut World) -> Result<(), Error> {
 
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
-struct WatchedNodes {
+struct GuardNodes {
     count: u32,
 }
-uniform!(WatchedNodes { count });
+uniform!(GuardNodes { count });
 
 /// Rows that share a sum of the guards: a workgroup's.
 const ROWS_A_SUM: usize = 64;
 
 /// Gives bodies and blocks the columns that the guards' kernels write.
-pub fn add_watch_columns(world: &mut World) {
+pub fn add_guard_columns(world: &mut World) {
     let bodies: Vec<(Entity, usize)> =
         world.query::<(Entity, &Mass)>().iter(world).map(|(e, m)| (e, m.len())).collect();
     for (body, count) in bodies {
@@ -68,16 +68,16 @@ pub fn add_watch_columns(world: &mut World) {
 }
 
 /// What the guards look at, summed on the device: nodes, then elements in the middle of the last step.
-pub fn watch_kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+pub fn guard_kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let bodies: Vec<(Entity, usize)> =
         world.query::<(Entity, &Mass)>().iter(world).map(|(e, m)| (e, m.len())).collect();
     let mut kernels = Vec::new();
     for (body, count) in bodies {
-        let nodes = WatchedNodes { count: count as u32 };
-        let kernel = Kernel::new("watch_nodes", "watch_nodes")
-            .fragment(shader!("watch_nodes"))
+        let nodes = GuardNodes { count: count as u32 };
+        let kernel = Kernel::new("guard_nodes", "guard_nodes")
+            .fragment(shader!("guard_nodes"))
             .fragment(shader!("row"))
-            .bind_uniform::<WatchedNodes>("nodes", buffers.uniform("watch_nodes".into(), &nodes.bytes()))
+            .bind_uniform::<GuardNodes>("nodes", buffers.uniform("guard_nodes".into(), &nodes.bytes()))
             .threads(nodes.count);
         let columns =
             [Mass::NAME, Displacement::NAME, DisplacementIncrement::NAME, MiddleDisplacement::NAME, NodeSums::NAME];
@@ -87,8 +87,8 @@ pub fn watch_kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel
     kernels.extend(means.into_iter().map(|kernel| in_the_middle(kernel, world, buffers)));
     for block in BlockKernels::of_world(world, buffers) {
         let kernel = block
-            .kernel("watch_elements")
-            .fragment(shader!("watch_elements"))
+            .kernel("guard_elements")
+            .fragment(shader!("guard_elements"))
             .bind(RestShape::NAME, buffers.column(block.entity, RestShape::NAME))
             .bind(ElementSums::NAME, buffers.column(block.entity, ElementSums::NAME));
         let kernel = block.with_energy(kernel, buffers);

@@ -9,7 +9,7 @@ use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::kernel::{Fragment, Uniform, uniform};
 use crate::backend::node_stage::{NodeStage, rows_of};
-use crate::backend::user_law::ground_of_load;
+use crate::backend::user_law::callable_fragments_of_load;
 use crate::components::*;
 use crate::materials::program::Program;
 use crate::math::{LANES, Real, SimdScalar};
@@ -85,7 +85,7 @@ impl NodeSystem for OwnLoad {
             for number in 0..TIMES {
                 let time = nodes.duration * number as f64 / (TIMES - 1) as f64;
                 let node = NodeAtRest { rest_position: rest[row], mass: nodes.mass.get(row), curve, time };
-                let [stiffness, damping] = self.text.growth(&node, length).map(|slope| slope / node.mass);
+                let [stiffness, damping] = self.text.slopes(&node, length).map(|slope| slope / node.mass);
                 // what is no number is the guards' business
                 largest = largest.larger(ForceSlopes { stiffness, damping });
             }
@@ -222,7 +222,7 @@ fn stages(number: usize, world: &mut World, buffers: &mut dyn Buffers) -> Vec<No
         }
         let arguments = if rows.is_some() { "i: u32, node: u32" } else { "node: u32" };
         let call = format!("fn own_load({arguments}) {{\n    own_load_on(node);\n}}\n");
-        let mut own = ground_of_load();
+        let mut own = callable_fragments_of_load();
         own.push(Fragment::new(text.path.clone(), text.text.clone()));
         stage = stage
             .own(shader!("node_state"))

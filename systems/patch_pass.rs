@@ -5,7 +5,7 @@ use super::element_forces::{BlockParts, BlockPartsItem, Precise};
 use super::node_pass::{BodyColumns, BodyColumnsItem, InStep, NodePass, act, act_after_gather, move_rows};
 use super::node_system::{BoundSystem, Callers, OfRun};
 use super::registry::HostSystem;
-use crate::backend::cpu::{Cpu, Inside, NodeColumns, ROWS_A_TASK};
+use crate::backend::cpu::{Cpu, NodeColumns, PatchInterior, ROWS_A_TASK};
 use crate::components::*;
 use crate::error::Error;
 use bevy_ecs::prelude::*;
@@ -49,7 +49,7 @@ pub(crate) fn patch_pass(pass: NodePass, ahead: NodePass, world: &mut World) -> 
                             clock: &step.clock,
                             observed: step.is_observed(),
                             to_come: !ahead.is_empty(),
-                            first_shared: corners.first_shared,
+                            first_interface: corners.first_interface,
                             systems: &pass.bind(&callers, &step, body, arena),
                             ahead: &ahead.bind(&callers, &step, body, arena),
                         };
@@ -75,7 +75,7 @@ struct StepOfBody<'a> {
     /// Whether somebody may look at forces after the pass; and whether those on nodes outside patches are used later.
     observed: bool,
     to_come: bool,
-    first_shared: usize,
+    first_interface: usize,
     /// What is done to nodes; to those inside a patch as soon as that has summed their forces.
     systems: &'a [BoundSystem<'a>],
     /// What is done to those inside a patch afterwards, and to others later.
@@ -92,8 +92,8 @@ impl StepOfBody<'_> {
         let &Self { cpu, arena, clock, systems, ahead, .. } = self;
         let non_finite = AtomicU32::new(u32::MAX);
         let mut shared = body.columns::<T>(&[], &non_finite);
-        let inside = arena.alloc_slice_fill_with(blocks.len(), |block| {
-            let patches = blocks[block].inside();
+        let interior = arena.alloc_slice_fill_with(blocks.len(), |block| {
+            let patches = blocks[block].interior();
             arena.alloc_slice_fill_with(patches.len(), |patch| shared.take(patches[patch] as usize))
         });
         let then = |nodes: &mut NodeColumns<'_, T>| {
@@ -102,10 +102,10 @@ impl StepOfBody<'_> {
         };
         // of the blocks up to the last that has some
         let mut found: Vec<Vec<usize>> = Vec::new();
-        for (place, (block, nodes)) in blocks.iter_mut().zip(inside).enumerate() {
-            let inside = Inside { nodes, then: &then, observed: self.observed };
-            let displacement = (&*shared.u, self.first_shared);
-            let patches = block.run(cpu, displacement, force.slice_mut(), Some(inside));
+        for (place, (block, nodes)) in blocks.iter_mut().zip(interior).enumerate() {
+            let interior = PatchInterior { nodes, then: &then, observed: self.observed };
+            let displacement = (&*shared.u, self.first_interface);
+            let patches = block.run(cpu, displacement, force.slice_mut(), Some(interior));
             if !patches.is_empty() {
                 found.resize(place, Vec::new());
                 found.push(patches);
@@ -118,12 +118,12 @@ impl StepOfBody<'_> {
         let mut shared = body.columns::<T>(force.slice(), &non_finite);
         let mut left = Vec::new();
         for (block, found) in blocks.iter().zip(&found) {
-            for (patch, &rows) in block.inside().iter().enumerate() {
+            for (patch, &rows) in block.interior().iter().enumerate() {
                 let nodes = shared.take(rows as usize);
                 left.extend(found.binary_search(&patch).is_ok().then_some(nodes));
             }
         }
-        shared.take(self.first_shared - shared.first);
+        shared.take(self.first_interface - shared.first);
         if !self.to_come {
             move_rows(cpu, self.observed, left.into_iter().chain(shared.tasks(ROWS_A_TASK)), &[systems]);
         } else {

@@ -46,8 +46,8 @@ fn suction_mouth(
             continue;
         };
         let at = SUCTION_NUMBERS * suction.number;
-        let looks = clock.step.is_multiple_of(CRITERION_STEPS);
-        if looks {
+        let is_due = clock.step.is_multiple_of(CRITERION_STEPS);
+        if is_due {
             let of_block = |&block: &Entity| blocks.get(block).ok().flatten().map(|alive| alive.0.as_slice());
             let alive: Vec<Option<&[u32]>> = authoring.blocks.iter().map(of_block).collect();
             let is_there = |face: usize| {
@@ -64,7 +64,7 @@ fn suction_mouth(
         let wanted = signals.values()[suction.pressure][0] * share * share;
         let now = pressures.get(at);
         pressures.set(at, now + follows * (wanted - now));
-        if looks {
+        if is_due {
             suction.renew(&marks, &pressures);
         } else {
             suction.now = pressures.get(at);
@@ -211,7 +211,7 @@ fn presence(block: &BlockKernels, place: u32, faces: &BodyFaces, buffers: &mut d
     Kernel::new("suction_presence", "suction_presence")
         .fragment(shader!("suction_presence"))
         .fragment(shader!("row"))
-        .fragment(looks())
+        .fragment(criterion_due())
         .threads(count as u32)
         .bind_uniform::<Presence>("presence", presence)
         .bind("faces_of_elements", buffers.constants("faces of elements".into(), bytemuck::cast_slice(&lists)))
@@ -232,7 +232,7 @@ impl OfTool {
         Kernel::new(entry, entry)
             .fragment(shader)
             .fragment(shader!("row"))
-            .fragment(looks())
+            .fragment(criterion_due())
             .bind_uniform::<SuctionMouth>("mouth", self.mouth)
             .bind(SuctionMarks::NAME, buffers.column(self.body, SuctionMarks::NAME))
     }
@@ -272,8 +272,8 @@ impl OfTool {
     }
 }
 
-/// Whether a step begins with a look.
-fn looks() -> Fragment {
-    let text = format!("fn looks() -> bool {{\n    return step.number % {CRITERION_STEPS}u == 0u;\n}}\n");
-    Fragment::new("generated: when mouths look", text)
+/// Whether the criterion is due where a step begins.
+fn criterion_due() -> Fragment {
+    let text = format!("fn criterion_due() -> bool {{\n    return step.number % {CRITERION_STEPS}u == 0u;\n}}\n");
+    Fragment::new("generated: when the criterion is due", text)
 }

@@ -1,6 +1,6 @@
 //! `surface_contact`: bodies keep each other, and themselves, outside.
 
-mod columns;
+mod body_slices;
 mod device;
 mod faced;
 mod kernels;
@@ -139,7 +139,7 @@ pub struct Figures {
     /// How often lists were made.
     pub builds: u64,
     /// Points that were looked at, of all steps.
-    pub looked_at: u64,
+    pub examined: u64,
     /// Contacts, of all steps.
     pub contacts: u64,
     /// Steps on a GPU that found their lists too old, and went through all triangles.
@@ -237,7 +237,7 @@ fn step<T: Scalar>(
         contacts.surface.figures.asleep += 1;
         return;
     }
-    let mut bodies = columns::slices::<T>(contacts, bodies);
+    let mut bodies = body_slices::slices::<T>(contacts, bodies);
     if bodies.len() != contacts.bodies.len() {
         return crate::error::missing("a column of a body");
     }
@@ -249,9 +249,9 @@ fn step<T: Scalar>(
         meet::release(&mut contacts.surface, &mut bodies);
         return meet::forget(contacts, &mut bodies);
     }
-    motion::look(contacts, &bodies, cpu);
+    motion::update_places(contacts, &bodies, cpu);
     faced::face(contacts, reach, nearer, cpu);
     meet::meet(contacts, largest, (clock, cpu), &mut bodies);
-    contacts.surface.figures.looked_at += contacts.surface.found.len() as u64;
+    contacts.surface.figures.examined += contacts.surface.found.len() as u64;
     contacts.surface.figures.contacts += contacts.surface.set.contacts.len() as u64;
 }

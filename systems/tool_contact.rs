@@ -7,7 +7,7 @@ use super::node_system::{Before, NodeSystem};
 use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
-use crate::backend::cpu::{Cpu, Factors, Foreseen, NodeColumns};
+use crate::backend::cpu::{Cpu, Foreseen, IntegrationCoefficients, NodeColumns};
 use crate::backend::kernel::{Uniform, uniform};
 use crate::backend::node_stage::NodeStage;
 use crate::components::*;
@@ -51,12 +51,12 @@ const SLIDES: f64 = 2.0;
 const TURNS: usize = 12;
 
 /// What a step needs.
-pub struct Step {
-    factors: Factors<f64>,
+pub struct ContactStep {
+    coefficients: IntegrationCoefficients<f64>,
     /// How far a node that is inside a tool comes out in this step (m).
     out: f64,
     /// Whether work is counted: not on the way to rest.
-    books: bool,
+    counts_work: bool,
     /// As many as there are, and then anything.
     tools: [ToolInStep; ToolContacts::MOST],
 }
@@ -101,9 +101,9 @@ impl NodeSystem for ToolContacts {
         (&'static InternalForce, &'static ConstrainedAxes, &'static Displacement, &'static DisplacementIncrement),
         (&'static mut ExternalForce, &'static mut ToolTouch),
     );
-    type Prepared = Step;
+    type Prepared = ContactStep;
 
-    fn prepare(&self, before: &Before<'_>) -> Step {
+    fn prepare(&self, before: &Before<'_>) -> ContactStep {
         let values = before.signals.values();
         let nowhere = Pose { rotation: DMat3::ZERO, at: DVec3::ZERO };
         let none = ToolInStep { pose: nowhere, earlier: nowhere, change: nowhere, ball: None };
@@ -115,15 +115,15 @@ impl NodeSystem for ToolContacts {
             let earlier = pose.less(&change);
             *tool = ToolInStep { pose, earlier, change, ball };
         }
-        Step {
-            factors: Factors::of(before.clock),
+        ContactStep {
+            coefficients: IntegrationCoefficients::of(before.clock),
             out: self.out(before.clock),
-            books: before.clock.relaxation.is_none(),
+            counts_work: before.clock.relaxation.is_none(),
             tools,
         }
     }
 
-    fn act<T: SimdScalar>(&self, step: &Step, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
+    fn act<T: SimdScalar>(&self, step: &ContactStep, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
         let Some(touches) = nodes.touches.take() else { return };
         let own = places_within(&self.rows, nodes.first, nodes.rows());
         for (place, (&row, &mask)) in self.rows[own.clone()].iter().zip(&self.masks[own]).enumerate() {
@@ -146,7 +146,7 @@ impl ToolContacts {
     /// What tools do to one node.
     fn touch<T: SimdScalar>(
         &self,
-        step: &Step,
+        step: &ContactStep,
         row: usize,
         mask: u32,
         nodes: &mut NodeColumns<'_, T>,
@@ -170,7 +170,7 @@ impl ToolContacts {
         if inertia <= 0.0 || !(0..self.tools.len()).any(|tool| near(&tool)) {
             return;
         }
-        let Foreseen { before, step: predicted, free, to_force } = nodes.foresee(&step.factors, row);
+        let Foreseen { before, step: predicted, free, to_force } = nodes.foresee(&step.coefficients, row);
         let mut all = [None; ToolContacts::MOST];
         let mut touched = 0;
         for tool in (0..self.tools.len()).filter(near) {
@@ -181,7 +181,7 @@ impl ToolContacts {
         }
         let all = &mut all[..touched];
         let d = predicted + self.push_apart(step, all, (place, predicted), free);
-        let booked = step.factors.booked;
+        let work_factor = step.coefficients.work_factor;
         let mut sum = DVec3::ZERO;
         for touch in all.iter().flatten().filter(|touch| touch.push > 0.0) {
             let change = touch.outwards + touch.tangential;
@@ -197,9 +197,9 @@ impl ToolContacts {
                 *felt += T::from_f64(force[i]);
             }
             of_tool[3] = T::from_f64(if touch.slides { SLIDES } else { STICKS });
-            if step.books {
-                let work = booked * force.dot(touch.tool_step);
-                let on_node = booked * (force * free).dot(0.5 * (before + d));
+            if step.counts_work {
+                let work = work_factor * force.dot(touch.tool_step);
+                let on_node = work_factor * (force * free).dot(0.5 * (before + d));
                 of_tool[4] += T::from_f64(slip);
                 of_tool[5] += T::from_f64(work);
                 of_tool[6] += T::from_f64(work - on_node);
@@ -212,7 +212,7 @@ impl ToolContacts {
 
     /// What a tool does to a node that is at a place (m, from the reference) and goes on by a step (m); `None` where it
     /// ends an edge or more from the tool.
-    fn predict(&self, step: &Step, tool: usize, place: DVec3, predicted: DVec3, stuck: bool) -> Option<Touch> {
+    fn predict(&self, step: &ContactStep, tool: usize, place: DVec3, predicted: DVec3, stuck: bool) -> Option<Touch> {
         let contact = &self.tools[tool];
         let ToolInStep { pose, earlier, change, .. } = &step.tools[tool];
         let end = place + predicted;
@@ -247,7 +247,7 @@ impl ToolContacts {
     /// curved, and distances that are no more than a bound of the true ones grow more slowly.
     fn push_apart(
         &self,
-        step: &Step,
+        step: &ContactStep,
         all: &mut [Option<Touch>],
         (place, predicted): (DVec3, DVec3),
         free: DVec3,
@@ -308,9 +308,9 @@ fn along_surface(vector: DVec3, normal: DVec3) -> DVec3 {
 struct Limits {
     edge: f32,
     settling: f32,
-    books: u32,
+    counts_work: u32,
 }
-uniform!(Limits { edge, settling, books });
+uniform!(Limits { edge, settling, counts_work });
 
 /// How many tools there are, and how many numbers of each.
 fn counts(contacts: &ToolContacts) -> String {
@@ -338,7 +338,7 @@ fn stage(body: Entity, contacts: &ToolContacts, world: &mut World, buffers: &mut
         column: ToolTouch::NAME,
     };
     let stage = tool_stage(body, of, world, buffers);
-    let books = u32::from(world.resource::<Clock>().relaxation.is_none());
-    let limits = Limits { edge: contacts.edge as f32, settling: contacts.settling as f32, books };
+    let counts_work = u32::from(world.resource::<Clock>().relaxation.is_none());
+    let limits = Limits { edge: contacts.edge as f32, settling: contacts.settling as f32, counts_work };
     stage.bind_uniform::<Limits>("limits", buffers.uniform("tool contact".into(), &limits.bytes()))
 }

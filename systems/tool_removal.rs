@@ -203,7 +203,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
                     .of_columns("tool_removal")
                     .fragment(shader!("tool_removal"))
                     .fragment(shader!("tool_shape"))
-                    .fragment(looks())
+                    .fragment(criterion_due())
                     .bind_uniform::<Reach>("reach", buffers.uniform("tool_removal".into(), &Reach::of(removal).bytes()))
                     .bind(Displacement::NAME, buffers.column(body, Displacement::NAME))
                     .bind(RestShape::NAME, column(RestShape::NAME, buffers))
@@ -218,7 +218,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
                 let mark = Kernel::new("tool_removal_due", "tool_removal_due")
                     .fragment(shader!("tool_removal_due"))
                     .fragment(shader!("row"))
-                    .fragment(looks())
+                    .fragment(criterion_due())
                     .threads(count)
                     .bind_uniform::<Chosen>("due", due_of)
                     .bind(RemovalStep::NAME, due)
@@ -228,7 +228,7 @@ fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
             }
             let choose = Kernel::new("tool_removal_choice", "tool_removal_choice")
                 .fragment(shader!("tool_removal_choice"))
-                .fragment(looks())
+                .fragment(criterion_due())
                 .bind_uniform::<Choice>("choice", choice((removal, number), chosen, buffers))
                 .bind(ToolIntake::NAME, buffers.column(body, ToolIntake::NAME))
                 .bind(ToolReach::NAME, buffers.column(body, ToolReach::NAME))
@@ -246,11 +246,11 @@ fn choice((removal, number): (&ToolRemoval, usize), chosen: u32, buffers: &mut d
     buffers.uniform("choice of tool_removal".into(), &choice.bytes())
 }
 
-/// Whether a step ends with a look.
-fn looks() -> Fragment {
+/// Whether the criterion is due where a step ends.
+fn criterion_due() -> Fragment {
     let text = format!(
         "fn step_that_comes() -> u32 {{\n    return max(step.number, step.number + 1u);\n}}\n\
-         fn looks() -> bool {{\n    return step_that_comes() % {CRITERION_STEPS}u == 0u;\n}}\n"
+         fn criterion_due() -> bool {{\n    return step_that_comes() % {CRITERION_STEPS}u == 0u;\n}}\n"
     );
-    Fragment::new("generated: when tools look", text)
+    Fragment::new("generated: when the criterion is due", text)
 }

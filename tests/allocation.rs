@@ -80,7 +80,7 @@ fn alive(simulation: &mut Simulation) -> u64 {
 }
 
 fn looks_at_the_step(simulation: &Simulation) -> u64 {
-    simulation.step_history().map_or(0, |history| history.looks)
+    simulation.step_history().map_or(0, |history| history.checks)
 }
 
 /// Calls for memory in steps after which nobody looks, and how many these are.
@@ -91,12 +91,12 @@ fn count(scene: &SceneFile, precision: Precision, threads: usize) -> (Vec<(u64, 
     let (mut found, mut counted) = (Vec::new(), 0);
     for _ in 0..COUNTED_STEPS {
         let step = simulation.step_count();
-        let looks = simulation.world().resource::<Observer>().next_due(step) == step + 1;
+        let observes = simulation.world().resource::<Observer>().next_due(step) == step + 1;
         let before = (alive(&mut simulation), looks_at_the_step(&simulation));
         let region = Region::new(COUNTED);
         simulation.step().unwrap();
         let change = region.change();
-        if looks || (alive(&mut simulation), looks_at_the_step(&simulation)) != before {
+        if observes || (alive(&mut simulation), looks_at_the_step(&simulation)) != before {
             continue;
         }
         counted += 1;

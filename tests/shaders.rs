@@ -39,11 +39,11 @@ fn all(effects: &Effects) -> Vec<(String, Kernel)> {
     }
     if effects.scheme == Scheme::Patches {
         let mut described = Described { most: LARGER, ..Described::default() };
-        let (inner, others, _) = kernel_worlds::inner_nodes(&without, world, &mut described);
+        let (inner, others, _) = kernel_worlds::interior_nodes(&without, world, &mut described);
         assert!(inner.len() >= 2, "{effects:?}");
         all.extend(inner.into_iter().chain(others).map(|kernel| (LARGER_DEVICE.to_owned(), kernel)));
     }
-    all.extend(kernel_worlds::watch_kernels(world));
+    all.extend(kernel_worlds::guard_kernels(world));
     // one of each kind is enough
     let mut seen: Vec<Vec<String>> = Vec::new();
     all.retain(|(_, kernel)| {
@@ -92,10 +92,10 @@ fn patches_move_the_nodes_inside_them_where_they_may() {
     let told = |effects: &Effects, systems: &[&str], most: MostBuffers| -> (Vec<String>, [usize; 2], String) {
         let mut simulation = effects.simulation(BackendChoice::Cpu);
         let mut described = Described { most, ..Described::default() };
-        let (inner, others, told) = kernel_worlds::inner_nodes(systems, simulation.world_mut(), &mut described);
-        assert!(told.iter().all(|body| (body.inside == 0) == inner.is_empty()), "{told:?}");
+        let (inner, others, told) = kernel_worlds::interior_nodes(systems, simulation.world_mut(), &mut described);
+        assert!(told.iter().all(|body| (body.interior == 0) == inner.is_empty()), "{told:?}");
         let labels = inner.iter().map(|kernel| kernel.label.split(" of ").next().unwrap().to_owned());
-        (labels.collect(), [inner.len(), others.len()], told[0].inside_because.clone())
+        (labels.collect(), [inner.len(), others.len()], told[0].interior_because.clone())
     };
     let plain = Effects::default();
     let (labels, counts, because) = told(&plain, &OF_NODES, LARGER);
@@ -316,7 +316,7 @@ fn all_fragments_of_the_folder_are_in_use() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("shaders");
     let mut used: BTreeSet<String> = BTreeSet::new();
     // the guards' own
-    used.extend(["watch_elements.wgsl".to_owned(), "watch_nodes.wgsl".to_owned()]);
+    used.extend(["guard_elements.wgsl".to_owned(), "guard_nodes.wgsl".to_owned()]);
     let scene = SceneFile::load(concat!(env!("CARGO_MANIFEST_DIR"), "/examples/own_system.ron"), &[]).unwrap();
     let mut simulation = Simulation::new(&scene, &Options::default()).unwrap();
     let explained = simulation.explain_on_gpu(&Registry::default()).unwrap();

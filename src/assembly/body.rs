@@ -1,6 +1,6 @@
 //! Bodies: node columns and element blocks from a mesh.
 
-use super::columns::block_corners;
+use super::body_columns::block_corners;
 use super::fibres::Members;
 use super::locality::{element_order, node_rows};
 use super::material::called_for;
@@ -114,7 +114,7 @@ pub(super) fn spawn(
         cells: mesh.cells.clone(),
         blocks: blocks.clone(),
     };
-    super::columns::insert_node_columns(assembly, name, mesh, &node_rows, &authoring, world, body);
+    super::body_columns::insert_node_columns(assembly, name, mesh, &node_rows, &authoring, world, body);
     world.entity_mut(body).insert(authoring);
     if !apart.is_empty() {
         let mut rows: Vec<u32> = apart.iter().map(|&node| node_rows[node as usize]).collect();
@@ -231,9 +231,9 @@ impl BlockBuilder<'_> {
         points
     }
 
-    /// Whether the type for [simple](Element::Simple) shapes describes all elements.
+    /// Whether the type for [specialised](Element::Specialisation) shapes describes all elements.
     fn is_simple(&self) -> bool {
-        with_element!(self.kind, E => self.elements.iter().all(|&e| <E as Element>::Simple::describes(&self.points(e)[..E::NODES])))
+        with_element!(self.kind, E => self.elements.iter().all(|&e| <E as Element>::Specialisation::describes(&self.points(e)[..E::NODES])))
     }
 
     /// Rest shapes for an element type.

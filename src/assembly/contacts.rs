@@ -1,6 +1,6 @@
 //! Contacts with tools: selections become rows, and what stands in each other's way at the start is told.
 
-use super::columns::stiffness;
+use super::body_columns::stiffness;
 use super::{Assembly, BodyParts};
 use crate::components::*;
 use crate::scene::SceneFile;

@@ -3,9 +3,10 @@
 
 mod anchors;
 mod body;
-mod columns;
+mod body_columns;
 mod constraints;
 mod contacts;
+mod element_removal;
 mod fibres;
 mod glue;
 mod grasps;
@@ -18,7 +19,6 @@ mod own_systems;
 mod own_texts;
 mod patches;
 mod relaxation;
-mod removal;
 mod renew;
 mod select;
 mod skins;
@@ -31,13 +31,13 @@ mod tool_removal;
 mod user_laws;
 
 pub use body::BodyParts;
-pub use columns::insert_laws;
+pub use body_columns::insert_laws;
 pub use contacts::motion;
+pub use element_removal::step_of;
 pub use meshes::{PlacedMesh, mesh_of};
 pub use observation::steps_of;
 pub use patches::insert_forces;
 pub use relaxation::load_steps;
-pub use removal::step_of;
 pub use renew::renew_materials;
 pub use select::Selection;
 pub use time_step::{
@@ -115,10 +115,10 @@ pub fn assemble<'a>(
 
 /// What depends on the time step: removal by time, probes, the laws' history.
 pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
-    removal::spawn(assembly, world, diagnostics);
+    element_removal::spawn(assembly, world, diagnostics);
     observation::spawn(assembly, world, diagnostics);
     insert_laws(assembly.precision, world);
-    columns::start(assembly, world);
+    body_columns::start(assembly, world);
     start::deform(assembly, world, diagnostics);
     contacts::check(assembly, world, diagnostics);
     surface_contacts::check(assembly, world, diagnostics);
@@ -127,7 +127,7 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     let scene = &assembly.scene.scene;
     if scene.when_unstable() == schema::WhenUnstable::Remove && !scene.is_static() {
         let blocks = assembly.bodies.values().flat_map(|body| &body.blocks);
-        blocks.for_each(|&block| removal::insert_columns(assembly.precision, block, world));
+        blocks.for_each(|&block| element_removal::insert_columns(assembly.precision, block, world));
     }
     suction::spawn(assembly, world, diagnostics);
     if scene.is_static() {

@@ -98,7 +98,7 @@ fn corners(nodes: usize, places: &[(u32, u32)], stride: usize) -> Corners {
         corners[next[node as usize] as usize] = place;
         next[node as usize] += 1;
     }
-    Corners { starts, corners, stride, first_shared: 0 }
+    Corners { starts, corners, stride, first_interface: 0 }
 }
 
 /// Counts the nodes of each patch that nobody else has and that follow those of the patches before; but those that are
@@ -106,15 +106,15 @@ fn corners(nodes: usize, places: &[(u32, u32)], stride: usize) -> Corners {
 fn find_inside(patches: &mut Patches, corners: &mut Corners, apart: &[u32]) {
     let is_apart = |row: usize| apart.binary_search(&(row as u32)).is_ok();
     let alone = |row: usize| corners.starts[row + 1] - corners.starts[row] == 1 && !is_apart(row);
-    let mut next = corners.first_shared;
+    let mut next = corners.first_interface;
     for ends in patches.starts.windows(2) {
         let nodes = patches.nodes[ends[0] as usize..ends[1] as usize].iter().zip(next..);
-        let inside = nodes.take_while(|&(&node, wanted)| node as usize == wanted && alone(wanted)).count();
-        let inside = if inside < GROUP_ROWS { 0 } else { inside };
-        patches.inside.push(inside as u32);
-        next += inside;
+        let interior = nodes.take_while(|&(&node, wanted)| node as usize == wanted && alone(wanted)).count();
+        let interior = if interior < GROUP_ROWS { 0 } else { interior };
+        patches.interior.push(interior as u32);
+        next += interior;
     }
-    corners.first_shared = next;
+    corners.first_interface = next;
 }
 
 #[cfg(test)]

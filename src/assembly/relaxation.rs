@@ -1,7 +1,7 @@
 //! What a static analysis needs to know of meshes: fictitious masses, and how many steps a push takes from end to end.
 
 use super::Assembly;
-use super::columns::stiffness;
+use super::body_columns::stiffness;
 use super::time_step::square_frequency;
 use crate::components::*;
 use crate::elements::{mass_shares, node_count};

@@ -1,6 +1,6 @@
 //! Tools that suck: names become mouths, and bodies tell their faces.
 
-use super::columns::stiffness;
+use super::body_columns::stiffness;
 use super::contacts::{motion, reference};
 use super::loads::corners_of;
 use super::{Assembly, BodyParts};

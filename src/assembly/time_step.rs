@@ -1,6 +1,6 @@
 //! The stable step, from the element bound, and the elements that set it.
 
-use super::columns::stiffness;
+use super::body_columns::stiffness;
 use crate::backend::cpu::Cpu;
 use crate::components::*;
 use crate::elements::with_element_of;
@@ -108,7 +108,7 @@ pub fn square_frequencies(world: &World, entity: Entity) -> Vec<(f64, f64)> {
     undamped.map(|(square, volume)| (damped(square, beta), volume)).collect()
 }
 
-/// What [`undamped_square_frequencies`] found of each block when the step was chosen, until the run looks at elements
+/// What [`undamped_square_frequencies`] found of each block when the step was chosen, until the run checks elements
 /// for the first time.
 #[derive(Resource, Default)]
 pub struct SquaresAtRest(BTreeMap<Entity, Vec<(f64, f64)>>);

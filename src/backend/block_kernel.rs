@@ -330,11 +330,11 @@ each_element_kind! { $ element_shaders }
 
 fn constants<E: Element>() -> String {
     format!(
-        "const LANES: u32 = {LANES}u;\nconst NODES: u32 = {}u;\nconst POINTS: u32 = {}u;\nconst LOOKED_AT: u32 = {}u;\nconst ROWS: u32 = {}u;\n\
+        "const LANES: u32 = {LANES}u;\nconst NODES: u32 = {}u;\nconst POINTS: u32 = {}u;\nconst CHECKED_POINTS: u32 = {}u;\nconst ROWS: u32 = {}u;\n\
          const VOLUME_ROW: u32 = {}u;\nconst J_FLOOR: f32 = {J_FLOOR:e};\n",
         E::NODES,
         E::POINTS,
-        E::LOOKED_AT,
+        E::CHECKED_POINTS,
         E::ROWS,
         E::VOLUME_ROW,
     )

@@ -51,7 +51,7 @@ impl FaceLoad {
                 stage.own(shader!("alive")).bind(Alive::NAME, alive)
             }
             None => stage.own(Fragment::new(
-                "generated: no element ever goes",
+                "generated: no element is ever removed",
                 "fn bears(element: u32) -> bool {\n    return true;\n}\n",
             )),
         }

@@ -18,7 +18,7 @@ use std::borrow::Cow;
 
 pub(crate) use crate::uniform::uniform;
 pub use crate::uniform::{Layout, Uniform};
-pub use compose::{Composed, Composer, Entry, compose};
+pub use compose::{Composed, Composer, EntryPoint, compose};
 pub use diagnose::{KernelError, NameMismatch};
 pub use reflect::{Binding, BindingKind, Member};
 pub use unit::{Link, Unit, UnitId};

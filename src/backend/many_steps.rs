@@ -28,14 +28,14 @@ pub struct Dispatched {
     /// Why, or why not.
     pub because: String,
     /// How many nodes move in the kernel that sums the forces of the patch they are inside, the only one that has them.
-    pub inside: u32,
+    pub interior: u32,
     /// Why so many.
-    pub inside_because: String,
+    pub interior_because: String,
 }
 
 impl Dispatched {
     fn new(body: String, many_steps: bool, because: String) -> Self {
-        Self { body, many_steps, because, inside: 0, inside_because: String::new() }
+        Self { body, many_steps, because, interior: 0, interior_because: String::new() }
     }
 }
 

@@ -35,9 +35,9 @@ pub struct PatchLists {
     /// Nodes.
     pub nodes: u32,
     /// How many of each patch's are inside.
-    pub inside: u32,
+    pub interior: u32,
 }
-uniform!(PatchLists { count, rounds, corners, nodes, inside });
+uniform!(PatchLists { count, rounds, corners, nodes, interior });
 
 /// The patches of a block in one buffer: where each patch's nodes begin; for each batch and corner how many rounds
 /// there are, a byte each; each corner's place and round, two a word; the nodes; how many of them are inside. About 8
@@ -150,15 +150,15 @@ pub fn pack(block: &Block, patches: &Patches) -> Result<PackedPatches, String> {
     }
     let nodes_at = words.len();
     words.extend(&patches.nodes);
-    let inside_at = words.len();
-    words.extend(&patches.inside);
+    let interior_at = words.len();
+    words.extend(&patches.interior);
     let place = |at: usize| at as u32;
     let lists = PatchLists {
         count: place(count),
         rounds: place(rounds_at),
         corners: place(corners_at),
         nodes: place(nodes_at),
-        inside: place(inside_at),
+        interior: place(interior_at),
     };
     Ok(PackedPatches { lists, words, room: room(nodes) })
 }

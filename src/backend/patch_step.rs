@@ -15,7 +15,7 @@ use std::ops::Range;
 /// The kernels of blocks whose patches move the nodes inside them: takes what they put together out of `elements`, all
 /// kernels of the element forces, and leaves the other nodes to `stages`, the one pass over the nodes that follows.
 /// `dispatched`, all bodies, hears of it.
-pub fn take_inner_nodes(
+pub fn take_interior_nodes(
     elements: &mut Vec<Kernel>,
     stages: &mut Vec<NodeStage>,
     dispatched: &mut [Dispatched],
@@ -25,22 +25,22 @@ pub fn take_inner_nodes(
     let mut kernels = Vec::new();
     for ((body, _), told) in bodies(world).into_iter().zip(dispatched) {
         if told.many_steps {
-            told.inside_because = "all nodes move in the dispatch of all steps".into();
+            told.interior_because = "all nodes move in the dispatch of all steps".into();
             continue;
         }
         match of_body(body, elements, stages, world, buffers) {
-            Ok((taken, first_shared)) => {
-                told.inside = first_shared;
-                told.inside_because = "no other patch has them".into();
+            Ok((taken, first_interface)) => {
+                told.interior = first_interface;
+                told.interior_because = "no other patch has them".into();
                 elements.retain(|kernel| !taken.iter().any(|taken| taken.block == kernel.block));
                 let others = |stage: NodeStage| match stage.body() == body {
-                    true => stage.within(first_shared..node_stage::rows_of(body, world)),
+                    true => stage.within(first_interface..node_stage::rows_of(body, world)),
                     false => Some(stage),
                 };
                 *stages = std::mem::take(stages).into_iter().filter_map(others).collect();
                 kernels.extend(taken);
             }
-            Err(reason) => told.inside_because = reason,
+            Err(reason) => told.interior_because = reason,
         }
     }
     kernels
@@ -63,8 +63,8 @@ fn of_body(
     if blocks.iter().any(|kernel| !kernel.fragments.contains(&shader!("patches"))) {
         return Err("its forces are not summed by patches".into());
     }
-    let first_shared = world.get::<Corners>(body).map_or(0, |corners| corners.first_shared) as u32;
-    if first_shared == 0 {
+    let first_interface = world.get::<Corners>(body).map_or(0, |corners| corners.first_interface) as u32;
+    if first_interface == 0 {
         return Err(format!("no patch has {GROUP_ROWS} nodes that no other has"));
     }
     // of all nodes: those that stay may look at those that move
@@ -72,9 +72,9 @@ fn of_body(
     let most = buffers.most_buffers();
     let mut steps = Vec::new();
     for kernel in blocks {
-        let Some(inside) = rows_inside(kernel, world)? else { continue };
-        let forces = NodeStage::of_patch(kernel.clone(), body, world).within(inside.clone());
-        let nodes = of_nodes.iter().filter_map(|stage| stage.within(inside.clone())).map(NodeStage::in_patch);
+        let Some(interior) = interior_rows(kernel, world)? else { continue };
+        let forces = NodeStage::of_patch(kernel.clone(), body, world).within(interior.clone());
+        let nodes = of_nodes.iter().filter_map(|stage| stage.within(interior.clone())).map(NodeStage::in_patch);
         let step: Vec<NodeStage> = forces.into_iter().chain(nodes).collect();
         let pass = node_stage::together(&step.iter().collect::<Vec<_>>(), Frame::patch_step(), most, buffers)?;
         steps.push((kernel, step, pass));
@@ -86,15 +86,15 @@ fn of_body(
         let label = label.map_or_else(|| together.label.clone(), |block| format!("{} of {}", together.label, block.0));
         Kernel { label, block: kernel.block, ..together }
     };
-    Ok((steps.into_iter().map(&mut put_together).collect(), first_shared))
+    Ok((steps.into_iter().map(&mut put_together).collect(), first_interface))
 }
 
 /// The rows inside the patches of a kernel's block, if there are any; or why a workgroup has no room for what is done
 /// with them.
-fn rows_inside(kernel: &Kernel, world: &World) -> Result<Option<Range<u32>>, String> {
+fn interior_rows(kernel: &Kernel, world: &World) -> Result<Option<Range<u32>>, String> {
     let patches = kernel.block.and_then(|block| world.get::<Patches>(block));
     let (Some((_, block)), Some(patches)) = (block_of(kernel, world), patches) else { return Ok(None) };
-    let Some(first) = patches.inside.iter().position(|&inside| inside > 0) else { return Ok(None) };
+    let Some(first) = patches.interior.iter().position(|&interior| interior > 0) else { return Ok(None) };
     // a number an invocation for what the guards count
     let memory = workgroup_memory(block.kind, patches) + 4 * BATCH_GROUPS * LANES;
     if memory > WEBGPU_WORKGROUP_MEMORY {
@@ -103,5 +103,5 @@ fn rows_inside(kernel: &Kernel, world: &World) -> Result<Option<Range<u32>>, Str
         ));
     }
     let first = patches.nodes[patches.starts[first] as usize];
-    Ok(Some(first..first + patches.inside.iter().sum::<u32>()))
+    Ok(Some(first..first + patches.interior.iter().sum::<u32>()))
 }

@@ -9,12 +9,12 @@ use bevy_ecs::prelude::*;
 #[repr(C)]
 pub struct Step {
     /// Δt times the time between the middles of the last and of this step, which is Δt but in the first step and after
-    /// a change of Δt; times the gain of a static analysis (s²).
+    /// a change of Δt; times the force scale of a static analysis (s²).
     pub force_factor: f32,
     /// Half the time between the middles, in the first step Δt/2 (s).
     pub half_step: f32,
     /// 1, in the first step 0.
-    pub divide: f32,
+    pub after_first: f32,
     /// 1/Δt (1/s).
     pub rate: f32,
     /// Index of the step, from 0; stops at the largest number.
@@ -23,8 +23,8 @@ pub struct Step {
     pub zero: u32,
     /// a = cΔt/2 of a static analysis, else 0.
     pub relaxation: f32,
-    /// Share of a step's work that is booked: the time between the middles over Δt.
-    pub booked: f32,
+    /// Share of a step's work that is counted: the time between the middles over Δt.
+    pub work_factor: f32,
     /// 1 in steps after which somebody may look at forces, else 0: kernels need not leave them in memory.
     pub observed: u32,
     /// Unused: slots for signals begin at a multiple of 16 bytes.
@@ -38,12 +38,12 @@ pub struct Step {
 uniform!(Step {
     force_factor,
     half_step,
-    divide,
+    after_first,
     rate,
     number,
     zero,
     relaxation,
-    booked,
+    work_factor,
     observed,
     reserved,
     time,
@@ -53,17 +53,18 @@ uniform!(Step {
 impl Step {
     /// The step that begins at the clock's time.
     pub fn of(clock: &Clock) -> Self {
-        let (dt, between, first) = (clock.time_step, clock.between_middles(), clock.step == 0);
-        let (gain, damping) = clock.relaxation.map_or((1.0, 0.0), |relaxation| (relaxation.gain, relaxation.damping));
+        let (dt, between, first) = (clock.time_step, clock.half_step_interval(), clock.step == 0);
+        let (force_scale, damping) =
+            clock.relaxation.map_or((1.0, 0.0), |relaxation| (relaxation.force_scale, relaxation.damping));
         Self {
-            force_factor: (gain * dt * between) as f32,
+            force_factor: (force_scale * dt * between) as f32,
             half_step: (0.5 * if first { dt } else { between }) as f32,
-            divide: if first { 0.0 } else { 1.0 },
+            after_first: if first { 0.0 } else { 1.0 },
             rate: (1.0 / dt) as f32,
             number: step_number(clock),
             zero: 0,
             relaxation: damping as f32,
-            booked: (between / dt) as f32,
+            work_factor: (between / dt) as f32,
             observed: 1,
             reserved: 0,
             time: clock.time() as f32,

@@ -23,7 +23,7 @@ pub struct Block {
     pub force_offset: usize,
     /// How many numbers it has there.
     pub force_length: usize,
-    /// Whether the element type is that for [simple](crate::elements::Element::Simple) shapes.
+    /// Whether the element type is that for [specialised](crate::elements::Element::Specialisation) shapes.
     pub simple: bool,
     /// Of each family of fibres its direction: first that of `fibres`, then those of `exponential_fibres`.
     pub fibre_directions: Vec<FamilyDirection<f64>>,

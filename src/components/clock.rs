@@ -49,7 +49,7 @@ impl Clock {
 
     /// Time from the middle of the last step to the middle of the present one (s), over which forces change velocities:
     /// Δt, in the first step half of it, and after a change of Δt the mean of both.
-    pub fn between_middles(&self) -> f64 {
+    pub fn half_step_interval(&self) -> f64 {
         match self.step {
             0 => 0.5 * self.time_step,
             step if step == self.since.0 => 0.5 * (self.before + self.time_step),
@@ -62,7 +62,7 @@ impl Clock {
     pub fn window_at(&self, step: u64) -> (f64, f64) {
         let there = Self { step, ..*self };
         let end = self.time_at(step) + 0.5 * self.time_step;
-        (end - there.between_middles(), end)
+        (end - there.half_step_interval(), end)
     }
 
     /// Takes steps of another length from now on (s).
@@ -94,20 +94,20 @@ impl Clock {
 pub struct Relaxation {
     /// The time whose loads and motions are wanted (s).
     pub end: f64,
-    /// A step, and how far loads had grown in it: from there they grow by `growth` a step.
+    /// A step, and how far loads had grown in it: from there they grow by `ramp_rate` a step.
     pub since: (u64, f64),
-    /// Growth of the progress of loads in a step.
-    pub growth: f64,
+    /// By how much the progress of loads grows in a step.
+    pub ramp_rate: f64,
     /// a = cΔt/2 of the damping c, the same for all nodes.
     pub damping: f64,
     /// What forces are multiplied with, over the fictitious mass: how much the bound of the stable step is outdone.
-    pub gain: f64,
+    pub force_scale: f64,
 }
 
 impl Relaxation {
     /// How far loads and motions have grown at the end of so many steps, from 0 to 1.
     pub fn progress(&self, steps: u64) -> f64 {
-        (self.since.1 + self.growth * steps.saturating_sub(self.since.0) as f64).min(1.0)
+        (self.since.1 + self.ramp_rate * steps.saturating_sub(self.since.0) as f64).min(1.0)
     }
 
     /// What loads and motions are multiplied with then: the progress by the 3-4-5 polynomial, so that nothing begins or

@@ -9,13 +9,13 @@ use std::collections::BTreeMap;
 #[derive(Resource, Clone, Debug, Default, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
 pub struct GuardMemory {
-    /// Looks so far.
-    pub looks: u64,
+    /// Checks so far.
+    pub checks: u64,
     /// Energy that rounding may have made or lost so far (J).
     pub rounding: f64,
     /// What elements held at the start (J), where bodies start deformed.
     pub at_start: f64,
-    /// The first of the looks, without a sound one since, that found energy from nothing which the last half step may
+    /// The first of the checks, without a sound one since, that found energy from nothing which the last half step may
     /// explain: its step. What is there [`GuardMemory::DOUBT`] steps later is an imbalance.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub in_doubt: Option<u64>,
@@ -29,10 +29,10 @@ pub struct GuardMemory {
     pub hourglass: BTreeMap<String, f64>,
     /// Of each probe that holds peaks, by name, the values of the largest size so far.
     pub probe_peaks: BTreeMap<String, Vec<f64>>,
-    /// The smallest J of all looks.
-    pub least_volume_ratio: Option<Seen>,
-    /// The fastest node of all looks (m/s).
-    pub fastest_node: Option<Seen>,
+    /// The smallest J of all checks.
+    pub least_volume_ratio: Option<Extreme>,
+    /// The fastest node of all checks (m/s).
+    pub fastest_node: Option<Extreme>,
     /// What has been warned of, each once.
     pub warnings: Vec<Notice>,
 }
@@ -43,8 +43,8 @@ impl GuardMemory {
     /// thousandth.
     pub const DOUBT: u64 = 16;
 
-    /// The step of the look that an imbalance in doubt is due for.
-    pub fn looks_again(&self) -> Option<u64> {
+    /// The step of the check that an imbalance in doubt is due for.
+    pub fn checks_again(&self) -> Option<u64> {
         self.in_doubt.map(|step| step + Self::DOUBT)
     }
 }
@@ -52,7 +52,7 @@ impl GuardMemory {
 /// Something that was seen, and where and when.
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq)]
 #[serde(deny_unknown_fields)]
-pub struct Seen {
+pub struct Extreme {
     /// The value.
     pub value: f64,
     /// The body.

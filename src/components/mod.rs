@@ -46,7 +46,7 @@ pub use contact::{ContactForce, MEETING_NUMBERS, SurfaceRows, SurfaceTouch};
 pub use glue::{Glue, Strength, TIE_NUMBERS, TieState, TiedPoint, frame_of};
 pub use grab::{Grabs, HeldNode};
 pub use grasp::{Grasp, Grasps, HOLD_NUMBERS, ToolHold};
-pub use guard::{GuardMemory, Notice, Seen};
+pub use guard::{Extreme, GuardMemory, Notice};
 pub use input::{Change, Input, InputState};
 pub use load::{FaceCorners, Gravity, NodalForce, Pressure, Traction};
 pub use material::{Damping, Density, ExponentialFibres, Prony, StiffnessDamping, memory_terms};

@@ -87,8 +87,8 @@ pub struct Corners {
     pub corners: Vec<u32>,
     /// From component to component.
     pub stride: usize,
-    /// The first row that is not [inside](super::Patches::inside) a patch.
-    pub first_shared: usize,
+    /// The first row that is not [inside](super::Patches::interior) a patch.
+    pub first_interface: usize,
 }
 
 /// How the author numbers and orders what the engine has renumbered.

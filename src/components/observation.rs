@@ -185,12 +185,12 @@ pub struct Energies {
     pub hourglass: f64,
     /// Kinetic and elastic energy of removed elements, at the time of their removal.
     pub removed: f64,
-    /// Done by loads since the start, when booked.
+    /// Done by loads since the start, when counted.
     pub load_work: Option<f64>,
-    /// Lost to damping since the start, when booked.
+    /// Lost to damping since the start, when counted.
     pub damping_loss: Option<f64>,
-    /// Done by constraints since the start, when booked.
+    /// Done by constraints since the start, when counted.
     pub constraint_work: Option<f64>,
-    /// Done against internal forces since the start, when booked: strain, hourglass and what viscosity took.
+    /// Done against internal forces since the start, when counted: strain, hourglass and what viscosity took.
     pub internal_work: Option<f64>,
 }

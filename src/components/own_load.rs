@@ -36,7 +36,7 @@ impl LoadText {
 
     /// How fast the force on a node at rest grows as the node is displaced (N/m), by at most the `length` (m), and as
     /// it moves (N s/m), by at most a length a second: Frobenius norms of both derivatives.
-    pub fn growth(&self, node: &NodeAtRest, length: f64) -> [f64; 2] {
+    pub fn slopes(&self, node: &NodeAtRest, length: f64) -> [f64; 2] {
         let at_rest = node.numbers();
         [3, 6].map(|first| {
             let mut squares = 0.0;

@@ -26,7 +26,7 @@ pub struct Patches {
     /// How many of each patch's nodes, its first ones, are in no other patch and stand one after the other, from patch
     /// to patch of all blocks of the body: those that can move as soon as the patch's forces are known. None or at
     /// least [`GROUP_ROWS`](super::GROUP_ROWS).
-    pub inside: Vec<u32>,
+    pub interior: Vec<u32>,
     /// Elements' corners as places among their patch's nodes; laid out as [`Connectivity`](super::Connectivity).
     pub connectivity: Vec<u16>,
 }

@@ -17,7 +17,7 @@ pub struct Surfaces {
     /// How deep behind each triangle (m) is still its inside.
     pub depths: Vec<f64>,
     /// The triangle across each side, from each corner to the next; [`NONE`] where there is not exactly one.
-    beside: Vec<[u32; 3]>,
+    adjacent: Vec<[u32; 3]>,
     /// The triangles around each node, in compressed rows.
     starts: Vec<u32>,
     around: Vec<u32>,
@@ -87,7 +87,7 @@ impl Surfaces {
             }
         }
         let across = |from: u32, to: u32| sides.get(&[to, from]).copied().unwrap_or(NONE);
-        let beside = triangles.iter().map(|&[a, b, c]| [across(a, b), across(b, c), across(c, a)]).collect();
+        let adjacent = triangles.iter().map(|&[a, b, c]| [across(a, b), across(b, c), across(c, a)]).collect();
         let mut starts = vec![0_u32; nodes + 1];
         triangles.iter().flatten().for_each(|&node| starts[node as usize + 1] += 1);
         (0..nodes).for_each(|node| starts[node + 1] += starts[node]);
@@ -98,7 +98,7 @@ impl Surfaces {
                 next[node as usize] += 1;
             }
         }
-        Self { triangles, bodies, depths, beside, starts, around }
+        Self { triangles, bodies, depths, adjacent, starts, around }
     }
 
     /// How many nodes.
@@ -125,7 +125,7 @@ impl Surfaces {
         match part {
             0 => now.normals[triangle as usize],
             1..=3 => {
-                let other = self.beside[triangle as usize][part - 1];
+                let other = self.adjacent[triangle as usize][part - 1];
                 let of_other = if other == NONE { DVec3::ZERO } else { now.normals[other as usize] };
                 (now.normals[triangle as usize] + of_other).normalize_or_zero()
             }
@@ -135,16 +135,16 @@ impl Surfaces {
 
     /// The triangles that share a part of one.
     pub(super) fn around_part(&self, triangle: u32, part: usize) -> impl Iterator<Item = u32> + '_ {
-        let side = self.beside[triangle as usize][(part + 2) % 3];
-        let beside = (matches!(part, 1..=3) && side != NONE).then_some(side);
+        let side = self.adjacent[triangle as usize][(part + 2) % 3];
+        let adjacent = (matches!(part, 1..=3) && side != NONE).then_some(side);
         let node = self.triangles[triangle as usize][part.saturating_sub(4).min(2)];
         let around = if part > 3 { self.around(node) } else { &[] };
-        beside.into_iter().chain(around.iter().copied())
+        adjacent.into_iter().chain(around.iter().copied())
     }
 
     /// The triangles across the sides of one; `u32::MAX` where there is not exactly one.
     pub fn beside(&self, triangle: u32) -> [u32; 3] {
-        self.beside[triangle as usize]
+        self.adjacent[triangle as usize]
     }
 
     /// The triangles around a node, ascending.

@@ -165,7 +165,7 @@ impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
         shape
     }
 
-    type Simple = Parallelepiped;
+    type Specialisation = Parallelepiped;
 
     fn describes(points: &[DVec3]) -> bool {
         // as far as its corners' coordinates, rounded as they are, can tell

@@ -51,7 +51,7 @@ impl Element for Hex8MeanDilatation {
     const PRESSURE: PressureFrom = PressureFrom::MeanOverPoints;
     const SPECIALISED: bool = true;
 
-    type Simple = Self;
+    type Specialisation = Self;
     /// Mode coefficients of each component.
     type Prepared<R: Real> = [[R; 7]; 3];
     /// Forces on the mode coefficients of each component.

@@ -22,12 +22,12 @@ crate::mesh::each_element_kind! { $ make_with_element }
 pub(crate) use with_element;
 
 /// The same for a block, or whatever has a `kind` and is `simple` as one: where it is, with the type for
-/// [simple](Element::Simple) shapes.
+/// [specialised](Element::Specialisation) shapes.
 macro_rules! with_element_of {
     ($block:expr, $element:ident => $body:expr) => {
         if $block.simple {
             $crate::elements::with_element!($block.kind, General => {
-                type $element = <General as $crate::elements::Element>::Simple;
+                type $element = <General as $crate::elements::Element>::Specialisation;
                 $body
             })
         } else {

@@ -52,9 +52,9 @@ pub trait Element: Copy + Send + Sync + 'static {
     const NODES_OF_LEAST_MASS: f64 = 1.0 / Self::CELL.least_share();
     /// How many integration points.
     const POINTS: usize;
-    /// Points at which J is looked at, the integration points first: where edges can be curved an element can be folded
+    /// Points at which J is checked, the integration points first: where edges can be curved an element can be folded
     /// as a whole while none of these sees it. The others have no weight.
-    const LOOKED_AT: usize = Self::POINTS;
+    const CHECKED_POINTS: usize = Self::POINTS;
     /// How many numbers describe the rest shape.
     const ROWS: usize;
     /// Which of them is the volume.
@@ -76,7 +76,7 @@ pub trait Element: Copy + Send + Sync + 'static {
 
     /// The same element for simple shapes, of which fewer numbers need be known: what a block is made of if it
     /// [describes](Element::describes) all its elements. Itself, if there are none such.
-    type Simple: Element;
+    type Specialisation: Element;
     /// What all points need of the displacements.
     type Prepared<R: Real>: Copy;
     /// What stresses add up to before it is spread over the corners.

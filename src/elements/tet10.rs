@@ -110,7 +110,7 @@ impl Element for Tet10 {
     const POINTS: usize = 4;
     /// The middle, too, which has the mean gradient: a face can be pulled through the opposite corner while J stays above
     /// 0 at all four.
-    const LOOKED_AT: usize = 5;
+    const CHECKED_POINTS: usize = 5;
     const ROWS: usize = 30;
     const VOLUME_ROW: usize = 27;
     const FORCE_ROW: Option<usize> = Some(THERE_ROW);
@@ -118,7 +118,7 @@ impl Element for Tet10 {
     const ROUNDING: f64 = 7.7 / 4.3;
     const PRESSURE: PressureFrom = PressureFrom::MeanOverPoints;
 
-    type Simple = Self;
+    type Specialisation = Self;
     /// Coefficients of each component.
     type Prepared<R: Real> = [[R; MODES]; 3];
     /// Forces on the coefficients of each component.

@@ -34,7 +34,7 @@ impl Element for Tet4 {
         shape
     }
 
-    type Simple = Self;
+    type Specialisation = Self;
     type Prepared<R: Real> = [[R; 3]; 3];
     type Forces<R: Real> = Mat3<R>;
 

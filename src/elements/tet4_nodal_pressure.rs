@@ -26,7 +26,7 @@ impl Element for Tet4NodalPressure {
     const ELEMENTS_A_PATCH: usize = 1024;
     const SPECIALISED: bool = true;
 
-    type Simple = Self;
+    type Specialisation = Self;
     type Prepared<R: Real> = <Tet4 as Element>::Prepared<R>;
     type Forces<R: Real> = <Tet4 as Element>::Forces<R>;
 

@@ -64,7 +64,7 @@ impl Element for Wedge6 {
     const PRESSURE: PressureFrom = PressureFrom::MeanOverPoints;
     const ELEMENTS_A_PATCH: usize = 448;
 
-    type Simple = Self;
+    type Specialisation = Self;
     /// Coefficients of each component.
     type Prepared<R: Real> = [[R; MODES]; 3];
     /// Forces on the coefficients of each component.

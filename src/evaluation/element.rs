@@ -30,7 +30,7 @@ pub struct ElementState {
     pub displacements: [[f64; 3]; MOST_NODES],
     /// Rest volume (m³); 0 once removed.
     pub volume: f64,
-    /// The least J of the points that are [looked at](Element::LOOKED_AT).
+    /// The least J of the points that are [checked](Element::CHECKED_POINTS).
     pub least_volume_ratio: f64,
     simple: bool,
     points: [PointKinematics; MOST_POINTS],
@@ -65,7 +65,7 @@ impl ElementState {
             };
             let mut points = [at(&states[0]); MOST_POINTS];
             points.iter_mut().zip(&states).skip(1).for_each(|(point, state)| *point = at(state));
-            let beside = (E::POINTS..E::LOOKED_AT).map(|point| E::at_point(&u, point, number).gradient);
+            let beside = (E::POINTS..E::CHECKED_POINTS).map(|point| E::at_point(&u, point, number).gradient);
             let ratios = points[..E::POINTS].iter().map(|point| point.kinematics.true_j);
             let ratios = ratios.chain(beside.map(|gradient| 1.0 + gradient.volume_change()));
             let least_volume_ratio = ratios.fold(f64::INFINITY, f64::min);
@@ -83,7 +83,7 @@ impl ElementState {
         self.points().iter().map(|point| point.share * point.kinematics.true_j).sum()
     }
 
-    /// Whether it is turned inside out at one of the points that are looked at.
+    /// Whether it is turned inside out at one of the points that are checked.
     pub fn is_inverted(&self) -> bool {
         self.is_flatter_than(0.0)
     }

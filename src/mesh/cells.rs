@@ -10,11 +10,11 @@ use std::ops::Range;
 #[derive(Clone, Debug, Default)]
 pub struct Cells {
     /// Ascending by kind, each kind once.
-    blocks: Vec<Block>,
+    blocks: Vec<CellBlock>,
 }
 
 #[derive(Clone, Debug)]
-struct Block {
+struct CellBlock {
     kind: CellKind,
     /// Nodes of each.
     each: usize,
@@ -23,7 +23,7 @@ struct Block {
     nodes: Vec<u32>,
 }
 
-impl Block {
+impl CellBlock {
     fn nodes(&self, row: usize) -> &[u32] {
         &self.nodes[row * self.each..][..self.each]
     }
@@ -104,11 +104,11 @@ impl Cells {
         block.nodes.try_reserve_exact(cells.saturating_mul(block.each))
     }
 
-    fn block(&mut self, kind: CellKind) -> &mut Block {
+    fn block(&mut self, kind: CellKind) -> &mut CellBlock {
         let place = match self.blocks.binary_search_by_key(&kind, |block| block.kind) {
             Ok(place) => place,
             Err(place) => {
-                self.blocks.insert(place, Block { kind, each: kind.node_count(), count: 0, nodes: Vec::new() });
+                self.blocks.insert(place, CellBlock { kind, each: kind.node_count(), count: 0, nodes: Vec::new() });
                 place
             }
         };
@@ -176,7 +176,7 @@ impl Cells {
     /// The same, to be changed. Panics on a row that is not there.
     pub fn nodes_mut(&mut self, row: usize) -> &mut [u32] {
         let (place, first) = self.place(row);
-        let Block { each, nodes, .. } = &mut self.blocks[place];
+        let CellBlock { each, nodes, .. } = &mut self.blocks[place];
         &mut nodes[(row - first) * *each..][..*each]
     }
 
@@ -232,7 +232,7 @@ fn fits(kind: CellKind, nodes: usize) -> Result<(), MeshError> {
 /// Cells in their order: kinds and nodes.
 #[derive(Clone, Debug)]
 pub struct Iter<'a> {
-    blocks: std::slice::Iter<'a, Block>,
+    blocks: std::slice::Iter<'a, CellBlock>,
     kind: CellKind,
     nodes: std::slice::ChunksExact<'a, u32>,
     left: usize,

@@ -21,7 +21,7 @@ pub enum MeshError {
         /// The file.
         file: PathBuf,
         /// Where in the file.
-        at: Place,
+        at: FilePosition,
         /// What is wrong.
         what: String,
         /// What is allowed, or what to do.
@@ -59,7 +59,7 @@ pub enum MeshError {
 
 /// A place in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum FilePosition {
     /// The file as a whole.
     File,
     /// A line, counted from 1.
@@ -68,12 +68,12 @@ pub enum Place {
     Byte(usize),
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for FilePosition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Place::File => Ok(()),
-            Place::Line(line) => write!(f, ":{line}"),
-            Place::Byte(byte) => write!(f, ": byte {byte}"),
+            FilePosition::File => Ok(()),
+            FilePosition::Line(line) => write!(f, ":{line}"),
+            FilePosition::Byte(byte) => write!(f, ": byte {byte}"),
         }
     }
 }

@@ -35,7 +35,7 @@ mod vtk;
 pub mod vtu;
 
 pub use cells::Cells;
-pub use error::{MeshError, Place};
+pub use error::{FilePosition, MeshError};
 pub use generators::ElementKind;
 pub(crate) use generators::each_element_kind;
 pub use locate::{Location, Locator};

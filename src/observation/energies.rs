@@ -22,16 +22,16 @@ const HEADER: [&str; 9] = [
     "internal work (J)",
 ];
 
-/// The columns of `energy.csv`; a static analysis books no work.
+/// The columns of `energy.csv`; a static analysis counts no work.
 pub fn energy_header(at_rest: bool) -> &'static [&'static str] {
     if at_rest { &HEADER[..5] } else { &HEADER }
 }
 
 /// What stands in them after the time.
 pub(super) fn values(e: &Energies) -> Vec<f64> {
-    let booked = [e.load_work, e.damping_loss, e.constraint_work, e.internal_work];
+    let works = [e.load_work, e.damping_loss, e.constraint_work, e.internal_work];
     let held = [e.kinetic, e.strain, e.hourglass, e.removed];
-    held.into_iter().chain(booked.into_iter().flatten()).collect()
+    held.into_iter().chain(works.into_iter().flatten()).collect()
 }
 
 /// Total mass of all bodies (kg), inactive nodes and removed elements left out.

@@ -1,8 +1,8 @@
-//! Guards: what kernels found wrong in passing, and what a look at energies and elements shows, told in the author's
+//! Guards: what kernels found wrong in passing, and what a sample of energies and elements shows, told in the author's
 //! words.
 
-use super::look::{Look, look, look_at_result};
 use super::rounding::Rounding;
+use super::sample::{Sample, sample, sample_result};
 use crate::backend::cpu::BlockSums;
 use crate::backend::device::bring_to_host;
 use crate::components::*;
@@ -18,13 +18,13 @@ const INVERTED: &str = "a load or motion too large or too sudden for the mesh (u
 const OVERFLOW: &str = "a motion, load or modulus beyond what numbers can express, or a time step that is too large (lower \
                         integration.safety)";
 /// Parts that hold less than this share of all energy are not asked for their hourglass energy.
-const WORTH_LOOKING: f64 = 1e-3;
+const WORTH_CHECKING: f64 = 1e-3;
 /// Shares of hourglass energy are told up to this one: elastic energy may be next to none.
 const MOST_SHARE: f64 = 1e6;
 
 /// How a scene wants to be guarded.
 #[derive(Clone, Debug, Default)]
-pub struct Watch {
+pub struct GuardSettings {
     /// Its limits.
     pub limits: Guards,
     /// Whether it insists on a step beyond the stable one.
@@ -37,7 +37,7 @@ pub struct Watch {
 }
 
 /// What broke down, if something did: the first displacement that is not finite, or element that is turned inside out.
-pub(super) fn find(world: &mut World, good_until: f64, watch: &Watch) -> Result<Option<Instability>, Error> {
+pub(super) fn find(world: &mut World, good_until: f64, settings: &GuardSettings) -> Result<Option<Instability>, Error> {
     bring_to_host(world, |_, name| name == FirstInverted::NAME || name == FirstNonFinite::NAME)?;
     let mut found: Option<(Entity, String, &str, Criterion)> = None;
     for (body, authoring, node) in world.query::<(Entity, &Authoring, &FirstNonFinite)>().iter(world) {
@@ -63,7 +63,7 @@ pub(super) fn find(world: &mut World, good_until: f64, watch: &Watch) -> Result<
     }
     let Some((body, what, cause, criterion)) = found else { return Ok(None) };
     let body = label(world, body);
-    Ok(Some(instability(world, watch, body, what, cause, criterion, good_until)))
+    Ok(Some(instability(world, settings, body, what, cause, criterion, good_until)))
 }
 
 /// That an element is turned inside out.
@@ -74,7 +74,7 @@ fn turned_inside_out(authoring: &Authoring, block: Entity, row: usize) -> (Strin
     (format!("element {element} is turned inside out (J < 0)"), criterion)
 }
 
-/// The body, and the same, where a look shows it of elements that must not: kernels see it a step later.
+/// The body, and the same, where a sample shows it of elements that must not: kernels see it a step later.
 fn seen_inside_out(parts: &[(Entity, BlockSums)], world: &World) -> Option<(String, String, Criterion)> {
     parts.iter().find_map(|(entity, sums)| {
         let ends = world.get::<OnInversion>(*entity) == Some(&OnInversion(Inversion::Stop));
@@ -86,8 +86,8 @@ fn seen_inside_out(parts: &[(Entity, BlockSums)], world: &World) -> Option<(Stri
     })
 }
 
-/// What of a look is no finite number: in words, with the body or part that it is of.
-fn not_finite(seen: &Look, world: &World) -> Option<(String, f64)> {
+/// What of a sample is no finite number: in words, with the body or part that it is of.
+fn not_finite(seen: &Sample, world: &World) -> Option<(String, f64)> {
     let part = |(entity, sums): &(Entity, BlockSums)| {
         let label = label(world, *entity);
         let named = [("elastic energy", sums.strain), ("hourglass energy", sums.hourglass)];
@@ -112,51 +112,63 @@ fn larger(a: f64, b: f64) -> f64 {
 
 /// What is wrong with the present state itself. Kernels notice what is turned inside out when they next take its
 /// forces: of a state that is handed out as a result, and of the last one, that would be too late.
-pub(super) fn find_in_result(world: &mut World, good_until: f64, watch: &Watch) -> Result<Option<Instability>, Error> {
-    let parts = look_at_result(world)?;
+pub(super) fn find_in_result(
+    world: &mut World,
+    good_until: f64,
+    settings: &GuardSettings,
+) -> Result<Option<Instability>, Error> {
+    let parts = sample_result(world)?;
     if let Some((body, what, criterion)) = seen_inside_out(&parts, world) {
-        return Ok(Some(instability(world, watch, body, what, INVERTED, criterion, good_until)));
+        return Ok(Some(instability(world, settings, body, what, INVERTED, criterion, good_until)));
     }
     let added_up = super::energies::not_finite(world)?;
     Ok(added_up.map(|(what, value)| {
         let (body, what) = (bodies(world), format!("{what} is {value}"));
-        instability(world, watch, body, what, OVERFLOW, Criterion::of("result"), good_until)
+        instability(world, settings, body, what, OVERFLOW, Criterion::of("result"), good_until)
     }))
 }
 
-/// Looks at energies and elements; `last` is whether nobody looks again. Warns of what passes a limit, each once, and
-/// ends the run where elements hold more energy than was spent on them: so a step beyond the stable one shows that does
-/// not run away, because large motion holds it. Gives whether the state passed: what is in doubt is looked at again.
-pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch, last: bool) -> Result<bool, Error> {
-    let seen = look(world)?;
+/// Checks energies and elements; `last` is whether nobody looks again. Warns of what passes a limit, each once, and
+/// ends the run where elements hold more energy than work was done on them: so a step beyond the stable one shows that
+/// does not run away, because large motion holds it. Gives whether the state passed: what is in doubt is checked
+/// again.
+pub(super) fn check_balance(
+    world: &mut World,
+    good_until: f64,
+    settings: &GuardSettings,
+    last: bool,
+) -> Result<bool, Error> {
+    let seen = sample(world)?;
     if let Some((what, value)) = not_finite(&seen, world) {
         let inside_out = seen_inside_out(&seen.parts, world);
         let (body, what, cause, criterion) = match inside_out {
             Some((body, what, criterion)) => (body, what, INVERTED, criterion),
             None => (bodies(world), format!("{what} is {value}"), OVERFLOW, Criterion::of("result")),
         };
-        let broken = instability(world, watch, body, what, cause, criterion, good_until);
+        let broken = instability(world, settings, body, what, cause, criterion, good_until);
         return Err(Error::Unstable(Box::new(broken)));
     }
     let rounding = world.get_resource::<Rounding>().map_or(0.0, |rounding| rounding.of_energy(&seen.reach));
     let clock = *world.resource::<Clock>();
     let Some(mut memory) = world.remove_resource::<GuardMemory>() else { return Ok(true) };
-    memory.looks += 1;
+    memory.checks += 1;
     memory.rounding = memory.rounding.max(rounding);
     remember(&mut memory, &seen, world);
-    let (made, held) = balance(&mut memory, &seen, watch, last, world);
-    hourglass(&mut memory, &seen, watch, world);
+    let (made, held) = balance(&mut memory, &seen, settings, last, world);
+    hourglass(&mut memory, &seen, settings, world);
     let (scale, rounding, passed) = (memory.scale, memory.rounding, memory.in_doubt.is_none());
     world.insert_resource(memory);
-    let stop = watch.limits.energy.stop;
-    if made <= stop * scale + rounding || watch.foreign {
+    let stop = settings.limits.energy.stop;
+    if made <= stop * scale + rounding || settings.foreign {
         return Ok(passed);
     }
     if let Some((body, what, criterion)) = seen_inside_out(&seen.parts, world) {
-        return Err(Error::Unstable(Box::new(instability(world, watch, body, what, INVERTED, criterion, good_until))));
+        return Err(Error::Unstable(Box::new(instability(
+            world, settings, body, what, INVERTED, criterion, good_until,
+        ))));
     }
     let what = format!(
-        "elements hold {held:.3e} J, but only {:.3e} J were spent on them: {:.1} % of the largest energy so far came from \
+        "elements hold {held:.3e} J, but work on them was only {:.3e} J: {:.1} % of the largest energy so far came from \
          nothing, {:.1} % are allowed (guards.energy.stop)",
         seen.internal_work,
         100.0 * made / scale,
@@ -167,7 +179,7 @@ pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch, last: boo
     let criterion = Criterion { value: Some(made / scale), limit: Some(stop), ..Criterion::of("energy") };
     debug_assert!(clock.relaxation.is_none());
     let body = bodies(world);
-    let broken = instability(world, watch, body, what, cause, criterion, good_until);
+    let broken = instability(world, settings, body, what, cause, criterion, good_until);
     Err(Error::Unstable(Box::new(broken)))
 }
 
@@ -175,19 +187,19 @@ pub(super) fn weigh(world: &mut World, good_until: f64, watch: &Watch, last: boo
 /// only what remains in the long term is known to be held; the rest may have been lost, so nothing is said of energy
 /// that went.
 ///
-/// Energies are those of the middle of the last step, and its second half is not booked yet: of a mode of frequency ω
+/// Energies are those of the middle of the last step, and its second half is not counted yet: of a mode of frequency ω
 /// that is (ωΔt/2)² of its kinetic energy, never more than that where the step is stable. Where something begins to move
 /// at once (a tool touches it, a weight is let go) this is all there is, and says nothing. So what is no more than the
 /// kinetic energy counts once it has lasted [`GuardMemory::DOUBT`] steps, or at the end.
-fn balance(memory: &mut GuardMemory, seen: &Look, watch: &Watch, last: bool, world: &World) -> (f64, f64) {
+fn balance(memory: &mut GuardMemory, seen: &Sample, settings: &GuardSettings, last: bool, world: &World) -> (f64, f64) {
     let Held { lasting: held, all, viscous } = held_by(seen, world);
     memory.scale = memory.scale.max(all).max(seen.internal_work.abs());
-    if watch.limits.off.contains(&Guard::Energy) {
+    if settings.limits.off.contains(&Guard::Energy) {
         return (0.0, held);
     }
     let made = held - seen.internal_work - memory.at_start;
-    let made = if viscous || watch.removal { made.max(0.0) } else { made };
-    let limit = watch.limits.energy.warn;
+    let made = if viscous || settings.removal { made.max(0.0) } else { made };
+    let limit = settings.limits.energy.warn;
     // what rounding alone may have made of it is no imbalance
     let share = made.signum() * (made.abs() - memory.rounding).max(0.0) / memory.scale;
     let step = world.resource::<Clock>().step;
@@ -223,7 +235,7 @@ struct Held {
     viscous: bool,
 }
 
-fn held_by(seen: &Look, world: &World) -> Held {
+fn held_by(seen: &Sample, world: &World) -> Held {
     let mut held = Held { lasting: 0.0, all: seen.kinetic, viscous: false };
     for (entity, sums) in &seen.parts {
         let prony = world.get::<Block>(*entity).and_then(|block| world.get::<Prony>(block.material));
@@ -245,7 +257,7 @@ fn held_by(seen: &Look, world: &World) -> Held {
 /// # Errors
 /// What the GPU says.
 pub fn held_for_long(world: &mut World) -> Result<f64, Error> {
-    let seen = look(world)?;
+    let seen = sample(world)?;
     Ok(held_by(&seen, world).lasting)
 }
 
@@ -254,7 +266,7 @@ pub fn held_for_long(world: &mut World) -> Result<f64, Error> {
 /// # Errors
 /// What the GPU says.
 pub fn begin(world: &mut World) -> Result<(), Error> {
-    let seen = look(world)?;
+    let seen = sample(world)?;
     let held = held_by(&seen, world);
     let rounding = Rounding::of(world);
     let mut memory = world.get_resource_or_init::<GuardMemory>();
@@ -264,19 +276,19 @@ pub fn begin(world: &mut World) -> Result<(), Error> {
     Ok(())
 }
 
-fn hourglass(memory: &mut GuardMemory, seen: &Look, watch: &Watch, world: &World) {
-    let limit = watch.limits.hourglass;
+fn hourglass(memory: &mut GuardMemory, seen: &Sample, settings: &GuardSettings, world: &World) {
+    let limit = settings.limits.hourglass;
     for (entity, sums) in &seen.parts {
         let Some(part) = world.get::<Label>(*entity).map(|label| label.0.clone()) else { continue };
         let peak = memory.peaks.entry(part.clone()).or_default();
         *peak = peak.max(sums.strain);
-        if sums.hourglass <= 0.0 || sums.hourglass + *peak < WORTH_LOOKING * memory.scale {
+        if sums.hourglass <= 0.0 || sums.hourglass + *peak < WORTH_CHECKING * memory.scale {
             continue;
         }
         let share = (sums.hourglass / peak.max(f64::MIN_POSITIVE)).min(MOST_SHARE);
         let worst = memory.hourglass.entry(part.clone()).or_default();
         *worst = worst.max(share);
-        if share > limit && !watch.limits.off.contains(&Guard::Hourglass) {
+        if share > limit && !settings.limits.off.contains(&Guard::Hourglass) {
             let message = format!(
                 "hourglass control of {part} holds {:.0} % of the part's elastic energy ({:.0} % are a warning, \
                  guards.hourglass): motion that elements with one point do not feel; use Hex8MeanDilatation, a finer mesh, \
@@ -299,7 +311,7 @@ fn warn(memory: &mut GuardMemory, world: &World, criterion: &str, part: &str, va
 }
 
 /// Notes the smallest J and the fastest node.
-fn remember(memory: &mut GuardMemory, seen: &Look, world: &World) {
+fn remember(memory: &mut GuardMemory, seen: &Sample, world: &World) {
     let time = world.resource::<Clock>().time();
     for (entity, sums) in &seen.parts {
         let (value, known) = (sums.least_volume_ratio, &memory.least_volume_ratio);
@@ -308,14 +320,14 @@ fn remember(memory: &mut GuardMemory, seen: &Look, world: &World) {
         let Some(authoring) = world.get::<Authoring>(block.body) else { continue };
         let place = authoring.blocks.iter().position(|block| block == entity).unwrap_or(0);
         let id = authoring.element_id(place, sums.row as usize);
-        memory.least_volume_ratio = Some(Seen { value, body: label(world, block.body), id, time });
+        memory.least_volume_ratio = Some(Extreme { value, body: label(world, block.body), id, time });
     }
     if let Some((body, row, value)) = seen.fastest
         && memory.fastest_node.as_ref().is_none_or(|known| value > known.value)
         && let Some(authoring) = world.get::<Authoring>(body)
     {
         let id = authoring.node_id(row as usize);
-        memory.fastest_node = Some(Seen { value, body: label(world, body), id, time });
+        memory.fastest_node = Some(Extreme { value, body: label(world, body), id, time });
     }
 }
 
@@ -334,7 +346,7 @@ fn label(world: &World, entity: Entity) -> String {
 /// The report of a breakdown at the present step.
 pub(super) fn instability(
     world: &World,
-    watch: &Watch,
+    settings: &GuardSettings,
     body: String,
     what: String,
     cause: &str,
@@ -344,7 +356,7 @@ pub(super) fn instability(
     let clock = world.resource::<Clock>();
     let (time, step) = (clock.time(), clock.step);
     let jumped = world.get_resource::<Signals>().is_some_and(|signals| signals.have_jumped(time));
-    let cause = if watch.beyond { STEP_TOO_LARGE.into() } else { cause.to_string() };
+    let cause = if settings.beyond { STEP_TOO_LARGE.into() } else { cause.to_string() };
     let cause = if jumped { format!("{JUMP}; {cause}") } else { cause };
     Instability { time, step, body, what, cause, good_until, criterion, last_good: None }
 }

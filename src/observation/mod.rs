@@ -8,10 +8,10 @@ mod fields;
 mod frame;
 mod grasps;
 mod guards;
-mod look;
 mod overlaps;
 mod probes;
 mod rounding;
+mod sample;
 mod skins;
 mod tables;
 mod tools;
@@ -22,10 +22,10 @@ pub use contacts::{ContactReading, read_contact};
 pub use energies::{energies, energy_header, mass, removed_momentum};
 pub use fields::{BodyFields, body_fields, internal_forces};
 pub use frame::{WrittenFields, write as write_fields, write_whole};
-pub use guards::{Watch, begin as begin_to_guard, held_for_long};
-pub use look::{Look, WatchKernels, look};
+pub use guards::{GuardSettings, begin as begin_to_guard, held_for_long};
 pub use probes::{header, observe_probe, volume_left};
 pub use rounding::{Rounding, shortest_edge};
+pub use sample::{GuardKernels, Sample, sample};
 pub use skins::{SkinState, skin_of};
 pub use tools::{Felt, ToolReading, feel, read_tool};
 pub use track::Track;
@@ -57,16 +57,16 @@ pub struct Observer {
     pub energy: Option<Track>,
     /// How often snapshots are written; `None`: never.
     pub snapshots: Option<Cadence>,
-    /// How the guards look.
-    pub watch: Watch,
+    /// How the run is guarded.
+    pub guard_settings: GuardSettings,
     /// Whether steps are taken on a GPU.
     pub on_gpu: bool,
     /// Whether they are so without a system that runs on the host.
     pub all_on_device: bool,
-    /// The last step that passed all guards in a look at energies and elements.
-    pub looked_at: Option<u64>,
+    /// The last step that passed all guards in a check of energies and elements.
+    pub checked_at: Option<u64>,
     /// The step at which the guards look again at what they are in doubt of.
-    pub looks_again: Option<u64>,
+    pub checks_again: Option<u64>,
     /// The last states that passed all guards, the oldest first.
     pub window: VecDeque<Snapshot>,
     /// The last step of the run, which is always observed. That of a static analysis is known when it is there.
@@ -76,7 +76,7 @@ pub struct Observer {
     pub to_rest: bool,
     on_the_way: f64,
     files: Option<Files>,
-    probes: Vec<Watched>,
+    probes: Vec<ProbeTrack>,
     /// What each probe saw last: time (s) and values.
     pub latest: BTreeMap<String, (f64, Vec<f64>)>,
     /// Time up to which all was well (s).
@@ -86,7 +86,7 @@ pub struct Observer {
 }
 
 /// A probe that is observed.
-struct Watched {
+struct ProbeTrack {
     entity: Entity,
     name: String,
     track: Track,
@@ -108,11 +108,11 @@ pub const CONVERGENCE: [&str; 5] = ["step", "load share", "residual", "remaining
 
 impl Observer {
     /// Observes the probes of a world.
-    pub fn watch_probes(&mut self, world: &mut World) {
-        let mut probes: Vec<Watched> = world
+    pub fn track_probes(&mut self, world: &mut World) {
+        let mut probes: Vec<ProbeTrack> = world
             .query::<(Entity, &Label, &Probe)>()
             .iter(world)
-            .map(|(entity, label, probe)| Watched { entity, name: label.0.clone(), track: Track::new(probe.every) })
+            .map(|(entity, label, probe)| ProbeTrack { entity, name: label.0.clone(), track: Track::new(probe.every) })
             .collect();
         probes.sort_by(|a, b| a.name.cmp(&b.name));
         self.probes = probes;
@@ -149,7 +149,7 @@ impl Observer {
         self.cadences().for_each(|cadence| cadence.go_on(clock.since, clock.time_step));
         self.probes.iter_mut().map(|probe| &mut probe.track).chain(&mut self.energy).for_each(Track::forget);
         self.last_step = last_step;
-        self.looks_again = world.get_resource::<GuardMemory>().and_then(GuardMemory::looks_again);
+        self.checks_again = world.get_resource::<GuardMemory>().and_then(GuardMemory::checks_again);
         // rows within the next step are as they would have been
         self.keep_what_precedes(world)
     }
@@ -165,7 +165,7 @@ impl Observer {
             Some(_) => Some(Table::create(&folder.claim("energy.csv")?, energy_header(self.to_rest))?),
         };
         let mut probes = BTreeMap::new();
-        for Watched { entity, name, .. } in &self.probes {
+        for ProbeTrack { entity, name, .. } in &self.probes {
             let Some(probe) = world.get::<Probe>(*entity) else { continue };
             let path = folder.claim(&format!("probe_{name}.csv"))?;
             probes.insert(name.clone(), Table::create(&path, &header(&probe.what))?);
@@ -190,12 +190,12 @@ impl Observer {
         let flags = if self.all_on_device { DEVICE_GUARD_STEPS } else { HOST_GUARD_STEPS };
         let mut due = (step / flags + 1) * flags;
         if !self.to_rest {
-            due = due.min((step / self.watch.limits.every + 1) * self.watch.limits.every);
-            due = self.looks_again.filter(|&again| again > step).map_or(due, |again| due.min(again));
+            due = due.min((step / self.guard_settings.limits.every + 1) * self.guard_settings.limits.every);
+            due = self.checks_again.filter(|&again| again > step).map_or(due, |again| due.min(again));
         }
         if !self.to_rest {
             let files = self.snapshots.iter().chain([&self.fields]).map(|cadence| cadence.next_after(step));
-            due = self.tracks().map(|track| track.next_look(step)).chain(files).fold(due, u64::min);
+            due = self.tracks().map(|track| track.next_sample(step)).chain(files).fold(due, u64::min);
         }
         if step < self.last_step { due.min(self.last_step) } else { due }
     }
@@ -211,21 +211,21 @@ impl Observer {
     /// # Errors
     /// What the GPU says.
     pub fn trouble(&self, world: &mut World) -> Result<Option<Instability>, Error> {
-        guards::find(world, self.good_until, &self.watch)
+        guards::find(world, self.good_until, &self.guard_settings)
     }
 
     /// Whether a state is to be kept after the present step, because it has just passed all guards and may be the last.
-    /// Bringing it from a GPU takes time: there it is done in every sixteenth look.
+    /// Bringing it from a GPU takes time: there it is done in every sixteenth check.
     pub fn keeps_state(&self, step: u64) -> bool {
-        let looks = step / self.watch.limits.every.max(1);
-        let wanted = self.watch.limits.window > 0 && self.files.is_some() && self.looked_at == Some(step);
-        wanted && !self.to_rest && (!self.on_gpu || looks.is_multiple_of(16))
+        let checks = step / self.guard_settings.limits.every.max(1);
+        let wanted = self.guard_settings.limits.window > 0 && self.files.is_some() && self.checked_at == Some(step);
+        wanted && !self.to_rest && (!self.on_gpu || checks.is_multiple_of(16))
     }
 
     /// Keeps a state, and lets go of the oldest.
     pub fn keep_state(&mut self, state: Snapshot) {
         self.window.push_back(state);
-        while self.window.len() as u64 > self.watch.limits.window {
+        while self.window.len() as u64 > self.guard_settings.limits.window {
             self.window.pop_front();
         }
     }
@@ -253,22 +253,22 @@ impl Observer {
     pub fn observe(&mut self, world: &mut World) -> Result<(), Error> {
         let clock = *world.resource::<Clock>();
         let (last, to_rest) = (clock.step == self.last_step, self.to_rest);
-        match guards::find(world, self.good_until, &self.watch)? {
+        match guards::find(world, self.good_until, &self.guard_settings)? {
             None => {}
-            // the steps since the last look at the residual will be taken back
+            // the steps since the last check of the residual will be taken back
             Some(_) if clock.relaxation.is_some() => return Ok(()),
             Some(found) => return Err(Error::Unstable(Box::new(found))),
         }
         let due = |cadence: Cadence| !to_rest && cadence.is_due(clock.step);
         let shown = last || self.files.is_some() && (due(self.fields) || self.snapshots.is_some_and(due));
-        if shown && let Some(found) = guards::find_in_result(world, self.good_until, &self.watch)? {
+        if shown && let Some(found) = guards::find_in_result(world, self.good_until, &self.guard_settings)? {
             return Err(Error::Unstable(Box::new(found)));
         }
-        let regular = clock.step.is_multiple_of(self.watch.limits.every.max(1));
-        if (regular || last || self.looks_again == Some(clock.step)) && clock.step > 0 && !to_rest {
-            let passed = guards::weigh(world, self.good_until, &self.watch, last)?;
-            self.looks_again = world.get_resource::<GuardMemory>().and_then(GuardMemory::looks_again);
-            self.looked_at = if passed { Some(clock.step) } else { self.looked_at };
+        let regular = clock.step.is_multiple_of(self.guard_settings.limits.every.max(1));
+        if (regular || last || self.checks_again == Some(clock.step)) && clock.step > 0 && !to_rest {
+            let passed = guards::check_balance(world, self.good_until, &self.guard_settings, last)?;
+            self.checks_again = world.get_resource::<GuardMemory>().and_then(GuardMemory::checks_again);
+            self.checked_at = if passed { Some(clock.step) } else { self.checked_at };
         }
         let moment = match to_rest {
             false => Moment::Step(clock.step, last),
@@ -308,7 +308,8 @@ impl Observer {
     pub fn refused(&self, world: &World, body: &str, found: String, criterion: Criterion) -> Error {
         let cause = "numbers beyond what can be expressed: loads, moduli or motions too large, or a system of one's own that \
                      writes what is no number";
-        let broken = guards::instability(world, &self.watch, body.into(), found, cause, criterion, self.good_until);
+        let broken =
+            guards::instability(world, &self.guard_settings, body.into(), found, cause, criterion, self.good_until);
         Error::Unstable(Box::new(broken))
     }
 }

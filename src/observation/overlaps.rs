@@ -42,7 +42,7 @@ struct Placed<'a> {
 ///
 /// # Errors
 /// What the GPU says.
-pub(super) fn look(world: &mut World) -> Result<(), Error> {
+pub(super) fn check(world: &mut World) -> Result<(), Error> {
     let bodies: Vec<Entity> = world.query_filtered::<Entity, With<Authoring>>().iter(world).collect();
     let told = |memory: &GuardMemory| memory.warnings.iter().filter(|notice| notice.criterion == OVERLAP).count();
     if bodies.len() < 2 || world.get_resource::<GuardMemory>().is_some_and(|memory| told(memory) >= MOST_PAIRS) {

@@ -52,7 +52,7 @@ pub fn skin_of(world: &mut World, body: Entity) -> Result<Option<SkinState>, Err
     let alive: Vec<bool> = authoring.element_rows.iter().map(alive).collect();
     let ids = authoring.element_ids.clone();
     let Some(mut skin) = world.get_mut::<Skin>(body) else { return Ok(None) };
-    skin.look(alive);
+    skin.update_alive(alive);
     let (rest, points, triangles) = (skin.places(&rest), skin.places(&nodes), skin.triangles());
     let carriers = skin.embedding().carriers();
     let element = |carrier: &Carrier| ids.of(carrier.element) as i64;

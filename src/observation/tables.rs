@@ -60,7 +60,7 @@ impl Observer {
             files.skins.iter_mut().try_for_each(|(body, series)| skins::write(world, *body, series))?;
         }
         if moment.is_due(&self.fields) && (self.files.is_some() || clock.step == 0) {
-            overlaps::look(world)?;
+            overlaps::check(world)?;
         }
         self.good_until = clock.time();
         Ok(())

@@ -26,7 +26,7 @@ impl Track {
 
     /// The next step, after `step`, at whose end it has to be observed: that of a time that is asked for, or the one
     /// before.
-    pub fn next_look(&self, step: u64) -> u64 {
+    pub fn next_sample(&self, step: u64) -> u64 {
         let due = self.every.next_after(step);
         if due > step + 1 && self.every.overshoot(due) > 0.0 { due - 1 } else { due }
     }
@@ -118,26 +118,26 @@ mod tests {
 
     /// Runs over steps, the last of which is the end, and gives all rows; values are 3 t and the step.
     fn table(track: &mut Track, steps: u64, time_step: f64) -> (Vec<Row>, Vec<u64>) {
-        let (mut rows, mut looks, mut step) = (Vec::new(), Vec::new(), 0);
+        let (mut rows, mut samples, mut step) = (Vec::new(), Vec::new(), 0);
         loop {
             let time = step as f64 * time_step;
             let row = (time, vec![3.0 * time, step as f64]);
-            looks.push(step);
+            samples.push(step);
             rows.extend(track.rows(step, step == steps, &row));
             if track.precedes(step) {
                 track.keep(step, row);
             }
             if step == steps {
-                return (rows, looks);
+                return (rows, samples);
             }
-            step = track.next_look(step).min(steps);
+            step = track.next_sample(step).min(steps);
         }
     }
 
     #[test]
     fn rows_are_at_the_times_that_are_asked_for() {
         // 2.3 steps to an interval, and an end that is none
-        let (rows, looks) = table(&mut Track::new(Cadence::new(0.23, 0.1)), 10, 0.1);
+        let (rows, samples) = table(&mut Track::new(Cadence::new(0.23, 0.1)), 10, 0.1);
         let times: Vec<f64> = rows.iter().map(|row| row.0).collect();
         assert_eq!(times, [0.0, 0.23, 0.46, 0.69, 0.92, 1.0]);
         assert_eq!(rows.len() as u64, Cadence::new(0.23, 0.1).rows(10));
@@ -148,14 +148,14 @@ mod tests {
             );
         }
         // both ends of the steps in between, and no others
-        assert_eq!(looks, [0, 2, 3, 4, 5, 6, 7, 9, 10]);
+        assert_eq!(samples, [0, 2, 3, 4, 5, 6, 7, 9, 10]);
     }
 
     #[test]
-    fn whole_numbers_of_steps_are_looked_at_once() {
-        let (rows, looks) = table(&mut Track::new(Cadence::new(0.3, 0.1)), 9, 0.1);
+    fn whole_numbers_of_steps_are_observed_once() {
+        let (rows, samples) = table(&mut Track::new(Cadence::new(0.3, 0.1)), 9, 0.1);
         assert_eq!(rows.iter().map(|row| row.0).collect::<Vec<_>>(), [0.0, 0.3, 0.6, 0.9]);
-        assert_eq!(looks, [0, 3, 6, 9]);
+        assert_eq!(samples, [0, 3, 6, 9]);
         assert_eq!(Cadence::new(0.3, 0.1).rows(9), 4);
     }
 

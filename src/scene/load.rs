@@ -1,8 +1,8 @@
 //! From a scene file to a [`Scene`].
 
-use super::beside::{Beside, FileSource};
 use super::check::check;
 use super::diagnostic::{Diagnostic, Diagnostics};
+use super::file_access::{FileAccess, FileSource};
 use super::limits::{self, Allowed};
 use super::partial::wrong_values;
 use super::parts::{self, Problem, Together};
@@ -163,10 +163,10 @@ impl SceneFile {
             return Err(Diagnostics::of(format!("--set is given {found} times; at most {most} are allowed")));
         }
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let beside = Beside { folder, files: &files, outside: allowed.outside };
+        let access = FileAccess { folder, files: &files, outside: allowed.outside };
         let own = Path::new(name).strip_prefix(folder).unwrap_or(Path::new(name)).display().to_string();
         let Together { source, view, mut mistakes, is_whole } =
-            parts::read(Source::new(name, text, sets), sets, beside, &own);
+            parts::read(Source::new(name, text, sets), sets, access, &own);
         let written = view.written();
         mistakes.extend(written.faults.iter().cloned().map(Diagnostic::from));
         let (partial, wrong_words) = check::<Scene>(&written.root, source.text());

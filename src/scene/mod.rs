@@ -1,11 +1,11 @@
 //! Scene files: their words, how they are read, and what is said when they are wrong.
 
 mod adjust;
-mod beside;
 #[doc(hidden)]
 pub mod check;
 pub mod diagnostic;
 mod excerpt;
+mod file_access;
 #[doc(hidden)]
 pub mod limits;
 #[doc(hidden)]
@@ -27,8 +27,8 @@ pub mod validate;
 pub mod words;
 
 pub(crate) use adjust::other_than_parameters;
-pub use beside::{FileKind, FileSource, Outside};
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, TextFile};
+pub use file_access::{FileKind, FileSource, Outside};
 pub use limits::Allowed;
 pub use load::SceneFile;
 pub use suggest::{choice, list, nearest};

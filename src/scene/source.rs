@@ -34,7 +34,7 @@ pub struct Origin {
 
 /// Bytes of one of the texts.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Place {
+pub struct TextSpan {
     /// The number of the text in [`Source::texts`]: 0 for the file, n for the n-th `--set`.
     pub text: usize,
     /// The bytes in it.
@@ -116,15 +116,15 @@ impl Source {
     }
 
     /// Where a stretch of the text came from; cut off where it leaves the text it begins in.
-    pub fn place(&self, span: &Span) -> Place {
+    pub fn place(&self, span: &Span) -> TextSpan {
         let mut start = 0;
-        let mut found = Place { text: 0, span: 0..0 };
+        let mut found = TextSpan { text: 0, span: 0..0 };
         for (i, piece) in self.pieces.iter().enumerate() {
             let end = start + piece.length;
             if span.start < end || i + 1 == self.pieces.len() {
                 let first = piece.from.forward(span.start.min(end) - start);
                 let last = self.locate_end(span, first.text).unwrap_or(piece.from.forward(piece.length).at);
-                found = Place { text: first.text, span: first.at..last.max(first.at) };
+                found = TextSpan { text: first.text, span: first.at..last.max(first.at) };
                 break;
             }
             start = end;
@@ -173,13 +173,13 @@ mod tests {
         let mut source = Source::new("a.ron", "(a: 1, b: 2)", &["a=777".into()]);
         source.replace(4..5, &[("777", Origin::of(1, 2))]);
         assert_eq!(source.text(), "(a: 777, b: 2)");
-        assert_eq!(source.place(&(4..7)), Place { text: 1, span: 2..5 });
-        assert_eq!(source.place(&(12..13)), Place { text: 0, span: 10..11 });
+        assert_eq!(source.place(&(4..7)), TextSpan { text: 1, span: 2..5 });
+        assert_eq!(source.place(&(12..13)), TextSpan { text: 0, span: 10..11 });
         // a span that holds a replaced value reaches around it
-        assert_eq!(source.place(&(0..14)), Place { text: 0, span: 0..12 });
+        assert_eq!(source.place(&(0..14)), TextSpan { text: 0, span: 0..12 });
         source.replace(5..6, &[("", Origin::of(1, 0))]);
         assert_eq!(source.text(), "(a: 77, b: 2)");
-        assert_eq!(source.place(&(5..6)), Place { text: 1, span: 4..5 });
+        assert_eq!(source.place(&(5..6)), TextSpan { text: 1, span: 4..5 });
     }
 
     #[test]
@@ -191,8 +191,8 @@ mod tests {
         let stretches: Vec<_> = stretches.iter().map(|(text, from)| (text.as_str(), *from)).collect();
         source.replace(4..5, &stretches);
         assert_eq!(source.text(), "(a: c: 4))");
-        assert_eq!(source.place(&(4..5)), Place { text: 2, span: 1..2 });
-        assert_eq!(source.place(&(7..8)), Place { text: 1, span: 2..3 });
-        assert_eq!(source.place(&(9..10)), Place { text: 0, span: 5..6 });
+        assert_eq!(source.place(&(4..5)), TextSpan { text: 2, span: 1..2 });
+        assert_eq!(source.place(&(7..8)), TextSpan { text: 1, span: 2..3 });
+        assert_eq!(source.place(&(9..10)), TextSpan { text: 0, span: 5..6 });
     }
 }

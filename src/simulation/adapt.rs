@@ -12,8 +12,8 @@ use super::damped_step::square_with_damping;
 use super::follow::Follower;
 use super::frequency::{PRODUCT, bodies, largest_near};
 use super::nodal;
+use super::stiffness::StabilitySample;
 use super::tangent::Tangent;
-use super::watch::Seen;
 use crate::backend::device::bring_to_host;
 use crate::components::*;
 use crate::error::{Criterion, Error, Instability};
@@ -26,7 +26,7 @@ const SMALLER: f64 = 1.25;
 const LONGER: f64 = 2.0;
 /// Products by which the highest frequency is found anew: the first time, and from a shape that is known.
 const PRODUCTS: (usize, usize) = (20, 8);
-/// What a finding costs, in products: around them all elements are looked at several times, and steps of tetrahedra in
+/// What a finding costs, in products: around them all elements are checked several times, and steps of tetrahedra in
 /// f32 are quicker than [`PRODUCT`] says (30 to 60 steps for eight products, measured).
 const BESIDE: f64 = 2.0;
 /// ω² may be so many times what they show.
@@ -41,11 +41,11 @@ const LEAST: f64 = 1e-4;
 impl Simulation {
     /// Makes the step smaller where it must be, and larger where that is worth while; whether it is to grow further
     /// soon.
-    pub(super) fn adapt(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<bool, Error> {
+    pub(super) fn adapt(&mut self, follower: &mut Follower, seen: &mut StabilitySample) -> Result<bool, Error> {
         let clock = *self.world.resource::<Clock>();
         let found = &mut follower.found;
-        found.lost += found.losing * clock.step.saturating_sub(found.looked) as f64;
-        let gives_up = |follower: &Follower, seen: &Seen| {
+        found.lost += found.losing * clock.step.saturating_sub(found.checked_at) as f64;
+        let gives_up = |follower: &Follower, seen: &StabilitySample| {
             follower.wanted(follower.step_of(seen.square), seen) < LEAST * follower.first
         };
         let finds = follower.is_finding_worth(seen, &clock) || gives_up(follower, seen);
@@ -84,29 +84,29 @@ impl Simulation {
     }
 
     /// Finds the highest frequency from what was known of it; whether there is one.
-    pub(super) fn estimate(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<bool, Error> {
+    pub(super) fn estimate(&mut self, follower: &mut Follower, seen: &mut StabilitySample) -> Result<bool, Error> {
         bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
         let world = &mut self.world;
         let bodies = bodies(world);
-        let weights = nodal::weights_now(world, &mut follower.watched, &bodies);
+        let weights = nodal::weights_now(world, &mut follower.trackers, &bodies);
         let products = follower.products();
         let Some((shown, shape)) = largest_near(world, follower.shape.as_deref(), &weights, products) else {
             return Ok(false);
         };
-        for block in &mut follower.watched {
+        for block in &mut follower.trackers {
             block.remember(world);
         }
         // bounds hold as well
         seen.square = seen.square.min(square_with_damping(SHOWN * shown, world));
         follower.shape = Some(shape);
         follower.found.take(seen);
-        follower.history.sharp_looks += 1;
+        follower.history.eigenvalue_estimates += 1;
         Ok(true)
     }
 
     /// The stable step has gone to nothing.
     fn too_small(&self, follower: &mut Follower, wanted: f64) -> Error {
-        let worst = follower.watched.iter_mut().flat_map(|block| {
+        let worst = follower.trackers.iter_mut().flat_map(|block| {
             let elements = block.now(&self.world).into_iter();
             elements.map(|(row, square, _)| (square, block.entity, row))
         });
@@ -144,7 +144,7 @@ impl Simulation {
 impl Follower {
     /// The step that could be taken were the highest frequency found anew, as far as that can be guessed: were nothing
     /// stiffer than when it was found, and less so what has become less stiff (s).
-    fn hoped_for(&self, seen: &Seen, clock: &Clock) -> f64 {
+    fn hoped_for(&self, seen: &StabilitySample, clock: &Clock) -> f64 {
         let relief = self.found.seen.map_or(1.0, |before| (seen.of_elements / before.of_elements).min(1.0));
         let stable = self.wanted(self.step_of(self.found.known * relief), seen);
         stable.min(self.seen_to_come(stable, seen, clock))
@@ -156,7 +156,7 @@ impl Follower {
     }
 
     /// Whether the highest frequency is to be found now.
-    fn is_finding_worth(&self, seen: &Seen, clock: &Clock) -> bool {
+    fn is_finding_worth(&self, seen: &StabilitySample, clock: &Clock) -> bool {
         let cost = BESIDE * PRODUCT * self.products() as f64;
         let (now, then) = (self.wanted(self.step_of(seen.square), seen), self.hoped_for(seen, clock));
         let left = (self.duration - clock.time()) / now;
@@ -165,7 +165,7 @@ impl Follower {
 
     /// The step with which strains that change quickly are seen to come (s), where `stable` would be; none smaller
     /// where the step is the author's.
-    fn seen_to_come(&self, stable: f64, seen: &Seen, clock: &Clock) -> f64 {
+    fn seen_to_come(&self, stable: f64, seen: &StabilitySample, clock: &Clock) -> f64 {
         match self.found.own {
             Some(_) => f64::INFINITY,
             None => (clock.time_step * FASTEST / seen.speed).max(stable / SLOWEST),

@@ -59,7 +59,7 @@ pub(super) fn at_the_start(
     }
     mass_scaling::insert_columns(precision, world);
     additions.make(world);
-    mass_scaling::weigh(world);
+    mass_scaling::scale_masses(world);
     Some(wanted)
 }
 

@@ -61,7 +61,7 @@ impl<'w> BlockForces<'w> {
             force: &mut element_force[block.force_offset..block.force_offset + block.force_length],
             patches: self.patches,
             inverted_go: false,
-            inside: None,
+            interior: None,
         };
         with_element_of!(block, E => run_block::<E, f64>(cpu, columns, &self.law, patch_groups(block.kind)));
     }

@@ -14,7 +14,7 @@ use super::schedule::Scheduled;
 use super::scheme::{fit_workgroups, sum_forces};
 use super::solver::Solver;
 use super::step_kernels::step_kernels;
-use super::{Entry, Facts, Job, Options, Simulation};
+use super::{Facts, Job, Options, ScheduledPass, Simulation};
 use crate::assembly::Assembly;
 use crate::backend::cpu::Cpu;
 use crate::backend::device::Device;
@@ -22,7 +22,7 @@ use crate::backend::gpu::Gpu;
 use crate::backend::kernel::KernelId;
 use crate::components::*;
 use crate::error::Error;
-use crate::observation::{Observer, Track, Watch, WatchKernels, WrittenFields};
+use crate::observation::{GuardKernels, GuardSettings, Observer, Track, WrittenFields};
 use crate::scene::SceneFile;
 use crate::scene::schema::Analysis;
 use crate::snapshot::{Keeping, identity};
@@ -87,7 +87,7 @@ impl Simulation {
                 Err(Error::Gpu(reason)) if options.backend == BackendChoice::Auto => {
                     why = format!("the GPU cannot take this scene: {reason}");
                     world.remove_resource::<Device>();
-                    world.remove_resource::<WatchKernels>();
+                    world.remove_resource::<GuardKernels>();
                     sum_forces(options.scheme, &mut world);
                     None
                 }
@@ -110,7 +110,7 @@ impl Simulation {
             crate::observation::begin_to_guard(&mut world)?;
         }
         let mut observer = world.resource_mut::<Observer>();
-        (observer.watch.foreign, observer.on_gpu) = (foreign, on_gpu);
+        (observer.guard_settings.foreign, observer.on_gpu) = (foreign, on_gpu);
         // what shares passes leaves no step to the host
         let alone = |entry: &Scheduled<'_>| match on_gpu {
             true => !entry.on_device,
@@ -177,9 +177,9 @@ fn kernels_on(
 ) -> Result<Vec<Vec<KernelId>>, Error> {
     world.insert_resource(Device::new(gpu, all_columns()));
     if world.resource::<Clock>().relaxation.is_none() {
-        crate::systems::add_watch_columns(world);
-        let watch = Device::prepare(world, crate::systems::watch_kernels)?;
-        world.insert_resource(WatchKernels(watch));
+        crate::systems::add_guard_columns(world);
+        let kernels_of_guards = Device::prepare(world, crate::systems::guard_kernels)?;
+        world.insert_resource(GuardKernels(kernels_of_guards));
     }
     let systems: Vec<&System> = schedule.iter().map(|scheduled| scheduled.system).collect();
     let mut counts = Vec::new();
@@ -199,7 +199,7 @@ fn entries(
     plan: &Plan,
     kernels: Option<Vec<Vec<KernelId>>>,
     world: &mut World,
-) -> Vec<Entry> {
+) -> Vec<ScheduledPass> {
     let on_gpu = kernels.is_some();
     let mut kernels = kernels.into_iter().flatten();
     let mut entries = Vec::new();
@@ -231,7 +231,7 @@ fn entries(
             Job::Host { .. } => None,
         };
         let systems = pass.systems.clone();
-        entries.push(Entry { name, phase, systems, job, before_steps, time: Duration::ZERO, runs: 0 });
+        entries.push(ScheduledPass { name, phase, systems, job, before_steps, time: Duration::ZERO, runs: 0 });
     }
     entries
 }
@@ -256,8 +256,8 @@ fn relaxing(scene: &SceneFile, precision: Precision, world: &mut World) -> Optio
     let highest = largest_eigenvalue(world, OF_RELAXATION).map_or(1.0, |found| found.at_least * half * half);
     let highest = if highest > 0.0 && highest < 1.0 { highest } else { 1.0 };
     let load_steps = world.resource_mut::<Clock>().relaxation.as_mut().map_or(0, |relaxation| {
-        relaxation.gain = scene.scene.integration.safety.powi(2) / highest;
-        (1.0 / relaxation.growth).round() as u64
+        relaxation.force_scale = scene.scene.integration.safety.powi(2) / highest;
+        (1.0 / relaxation.ramp_rate).round() as u64
     });
     // what rounding leaves of the residual in f32 is some 1e-6
     let reachable = if precision == Precision::F64 { 1e-6 } else { 1e-5 };
@@ -273,7 +273,7 @@ fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> 
     observer.fields = every(scene.scene.fields_every());
     observer.energy = scene.scene.output.energies_every.map(|time| Track::new(every(time)));
     observer.snapshots = scene.scene.output.snapshots_every.filter(|_| !scene.scene.is_static()).map(every);
-    observer.watch = Watch {
+    observer.guard_settings = GuardSettings {
         limits: scene.scene.guards.clone(),
         beyond: scene.scene.integration.beyond_stable_step && clock.relaxation.is_none(),
         foreign: false,
@@ -281,7 +281,7 @@ fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> 
     };
     observer.to_rest = clock.relaxation.is_some();
     observer.last_step = if clock.relaxation.is_some() { u64::MAX } else { steps };
-    observer.watch_probes(world);
+    observer.track_probes(world);
     observer
 }
 

@@ -6,7 +6,7 @@
 use super::Simulation;
 use super::solver::Solver;
 use super::step_change::add_to_memory_by;
-use super::watch::{Seen, Watched};
+use super::stiffness::{StabilitySample, StiffnessTracker};
 use crate::assembly::renew_materials;
 use crate::backend::block_kernel::law_uniforms;
 use crate::backend::cpu::BlockLaw;
@@ -18,7 +18,7 @@ use crate::scene::schema::{Scene, WhenUnstable};
 use crate::scene::{SceneFile, other_than_parameters, validate};
 use bevy_ecs::prelude::*;
 
-/// What is looked at and changed on the host.
+/// What is read and changed on the host.
 const READ: [&str; 4] = [Displacement::NAME, DisplacementIncrement::NAME, RestShape::NAME, ViscousMemory::NAME];
 const WRITTEN: [&str; 2] = [RestShape::NAME, ViscousMemory::NAME];
 
@@ -118,7 +118,7 @@ impl Simulation {
         let more = held_for_long(&mut self.world)? - before;
         self.world.resource_mut::<GuardMemory>().at_start += more;
         if let Some(follower) = self.solver.follower_mut() {
-            follower.look_soon();
+            follower.check_soon();
         }
         Ok(())
     }
@@ -148,8 +148,11 @@ impl Simulation {
         let Solver::Explicit(follower) = &mut self.solver else { return Ok(()) };
         let Some(mut follower) = follower.take() else { return Ok(()) };
         let (found, shape) = (follower.found.clone(), follower.shape.take());
-        let watched = std::mem::replace(&mut follower.watched, Watched::all(&mut self.world));
-        let mut seen = follower.watched.iter_mut().fold(Seen::NOTHING, |seen, block| seen.and(block.look(&self.world)));
+        let trackers = std::mem::replace(&mut follower.trackers, StiffnessTracker::all(&mut self.world));
+        let mut seen = follower
+            .trackers
+            .iter_mut()
+            .fold(StabilitySample::NOTHING, |seen, block| seen.and(block.sample(&self.world)));
         seen.square = seen.of_elements;
         let known = match follower.policy {
             WhenUnstable::Adapt | WhenUnstable::Watch => self.estimate(&mut follower, &mut seen),
@@ -171,7 +174,7 @@ impl Simulation {
             })
         });
         if let (Err(_), Some(follower)) = (&fits, self.solver.follower_mut()) {
-            (follower.found, follower.shape, follower.watched) = (found, shape, watched);
+            (follower.found, follower.shape, follower.trackers) = (found, shape, trackers);
         }
         fits
     }

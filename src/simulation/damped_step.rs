@@ -33,8 +33,8 @@ pub(super) fn with_damping(found: Largest, world: &mut World) -> Largest {
 
 /// By how much ω² with damping may have grown when that without it has grown so many times: it grows faster, by no more
 /// than the square.
-pub(super) fn growth_with_damping(growth: f64, is_damped: bool) -> f64 {
-    if is_damped { growth.max(growth * growth) } else { growth }
+pub(super) fn ratio_with_damping(ratio: f64, is_damped: bool) -> f64 {
+    if is_damped { ratio.max(ratio * ratio) } else { ratio }
 }
 
 /// Whether any block is damped so.

@@ -7,7 +7,7 @@ use super::mass_scaling;
 use super::rounding::warn_of_rounding;
 use super::solver::Solver;
 use super::stable_step::Stability;
-use super::watch::{Seen, Watched};
+use super::stiffness::{StabilitySample, StiffnessTracker};
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::Error;
@@ -18,19 +18,19 @@ use bevy_ecs::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
-/// Steps between two looks at all elements: where strains change slowly at least, and at most; and no more than have
+/// Steps between two checks of all elements: where strains change slowly at least, and at most; and no more than have
 /// been taken since the beginning or since loads and motions last became quicker, because what begins smoothly becomes
 /// faster.
-const LOOKS: (u64, u64) = (16, 256);
-/// Between two looks strains change by so much, at the present speed: close to the limit, and where the step is half of
-/// it or less. The stable step of what is squeezed shrinks twice as fast as it, and a twentieth is left when it counts
-/// as close.
+const CHECK_STEPS: (u64, u64) = (16, 256);
+/// Between two checks strains change by so much, at the present speed: close to the limit, and where the step is half
+/// of it or less. The stable step of what is squeezed shrinks twice as fast as it, and a twentieth is left when it
+/// counts as close.
 const STRAIN: (f64, f64) = (0.01, 0.25);
-/// No more than that between two looks, however close they come: with .2 a cube crushed to a twentieth within .8 s
+/// No more than that between two checks, however close they come: with .2 a cube crushed to a twentieth within .8 s
 /// breaks down in some ways of 54, with .1 in none, nor where it is crushed within .4 s or .1 s.
 const MOST_STRAIN: f64 = 0.1;
 /// A change of strain in a step, relative to the mean of present lengths over the axes, from which on motion counts as
-/// violent: the room between what the elements alone allow and the true limit is then needed, for what a look cannot
+/// violent: the room between what the elements alone allow and the true limit is then needed, for what a check cannot
 /// foresee and for the balance of energy. (Without this rule H08 breaks down in 18 of 48 ways.)
 const VIOLENT: f64 = 0.02;
 
@@ -43,11 +43,11 @@ pub struct StepHistory {
     pub smallest: f64,
     /// The largest step taken (s).
     pub largest: f64,
-    /// How often all elements were looked at.
-    pub looks: u64,
+    /// How often all elements were checked.
+    pub checks: u64,
     /// How often the highest frequency was found during the run.
-    pub sharp_looks: u64,
-    /// What looking took (s).
+    pub eigenvalue_estimates: u64,
+    /// What checking took (s).
     pub seconds: f64,
     /// When the step was first seen to be beyond the stable one (s), where it stays all the same.
     pub beyond_since: Option<f64>,
@@ -74,7 +74,7 @@ pub(super) struct Follower {
     loads_at_start: LoadRates,
     pub duration: f64,
     pub first: f64,
-    pub watched: Vec<Watched>,
+    pub trackers: Vec<StiffnessTracker>,
     pub found: Found,
     /// The shape of what is quickest, when it was found last: see [`largest_near`](super::frequency::largest_near).
     pub shape: Option<Vec<f32>>,
@@ -85,19 +85,19 @@ pub(super) struct Follower {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Found {
-    /// The step before which is looked next.
+    /// The step before which is checked next.
     pub next: u64,
-    /// The step of the last look.
-    pub looked: u64,
-    /// The step in which loads and motions became quicker last, of those that were looked at.
+    /// The step of the last check.
+    pub checked_at: u64,
+    /// The step in which loads and motions became quicker last, of those that were checked.
     pub quickened: u64,
-    /// The step from which on they become quicker, where it is looked next for that.
+    /// The step from which on they become quicker, where it is checked next for that.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub quickens_at: Option<u64>,
     /// What forces on nodes make of the step, where that has been counted anew since the start.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub loads: Option<LoadRates>,
-    /// ω² of all bodies at most when it was looked last (1/s²); 0: not yet.
+    /// ω² of all bodies at most when it was checked last (1/s²); 0: not yet.
     #[serde(default)]
     pub latest: f64,
     /// The step in which an input last changed.
@@ -107,7 +107,7 @@ pub(super) struct Found {
     pub own: Option<f64>,
     /// The highest ω² when it was found last (1/s²), and what was seen then.
     pub known: f64,
-    pub seen: Option<Seen>,
+    pub seen: Option<StabilitySample>,
     /// The share of each step that is lost because the highest ω² is not found anew, as far as that can be guessed; and
     /// steps that have been lost so since it was found.
     pub losing: f64,
@@ -118,7 +118,7 @@ pub(super) struct Found {
 
 impl Found {
     /// Takes what was seen as known.
-    pub fn take(&mut self, seen: &Seen) {
+    pub fn take(&mut self, seen: &StabilitySample) {
         (self.known, self.seen) = (seen.square, Some(*seen));
         (self.lost, self.losing) = (0.0, 0.0);
     }
@@ -130,8 +130,8 @@ impl Found {
 pub(super) struct Followed {
     found: Found,
     history: StepHistory,
-    /// Of each block, as base64 of f32; none before the first look.
-    growths: Vec<String>,
+    /// Of each block, as base64 of f32; none before the first check.
+    ratios: Vec<String>,
     /// The shape of what is quickest, in the same way.
     shape: Option<String>,
 }
@@ -141,7 +141,7 @@ impl Follower {
     pub fn new(scene: &Scene, stability: &Stability, initial_mass: f64, world: &mut World) -> Option<Self> {
         let (limit, integration) = (stability.limit?, &scene.integration);
         let step = world.resource::<Clock>().time_step;
-        let added = if scene.scales_mass() { mass_scaling::weigh(world).mass } else { 0.0 };
+        let added = if scene.scales_mass() { mass_scaling::scale_masses(world).mass } else { 0.0 };
         let policy = scene.when_unstable();
         Some(Self {
             policy,
@@ -151,10 +151,10 @@ impl Follower {
             loads_at_start: stability.loads,
             duration: scene.duration,
             first: step,
-            watched: Vec::new(),
+            trackers: Vec::new(),
             found: Found {
                 next: 0,
-                looked: 0,
+                checked_at: 0,
                 quickened: 0,
                 quickens_at: None,
                 loads: None,
@@ -196,7 +196,7 @@ impl Follower {
     }
 
     /// The largest step that may be taken when so much is stable (s).
-    pub fn wanted(&self, limit: f64, seen: &Seen) -> f64 {
+    pub fn wanted(&self, limit: f64, seen: &StabilitySample) -> f64 {
         let by_elements = self.by_elements || self.found.violent;
         let elements = if by_elements { self.safety * self.step_of(seen.at_rest) } else { f64::INFINITY };
         (self.safety * limit).min(elements).min(self.found.own.unwrap_or(f64::INFINITY))
@@ -206,18 +206,18 @@ impl Follower {
 impl Follower {
     /// What has been found so far.
     pub fn followed(&self) -> Followed {
-        let growths = self.watched.iter().map(|block| text_of(block.known_growth())).collect();
+        let ratios = self.trackers.iter().map(|block| text_of(block.known_ratio())).collect();
         // time on a clock on the wall is no part of the state
         let history = StepHistory { seconds: 0.0, ..self.history };
-        Followed { found: self.found.clone(), history, growths, shape: self.shape.as_deref().map(text_of) }
+        Followed { found: self.found.clone(), history, ratios, shape: self.shape.as_deref().map(text_of) }
     }
 
     /// Goes on from what had been found, which [fits](Followed::fits).
     pub fn take_up(&mut self, followed: Followed, world: &mut World) {
-        self.watched = if followed.growths.is_empty() { Vec::new() } else { Watched::all(world) };
-        for (block, growth) in self.watched.iter_mut().zip(&followed.growths) {
-            let taken = numbers_of(growth).is_some_and(|growth| block.take_known_growth(growth, world));
-            debug_assert!(taken, "the growth of other elements");
+        self.trackers = if followed.ratios.is_empty() { Vec::new() } else { StiffnessTracker::all(world) };
+        for (block, ratio) in self.trackers.iter_mut().zip(&followed.ratios) {
+            let taken = numbers_of(ratio).is_some_and(|ratio| block.take_known_ratio(ratio, world));
+            debug_assert!(taken, "the ratios of other elements");
         }
         self.shape = followed.shape.as_deref().and_then(numbers_of);
         (self.found, self.history) = (followed.found, followed.history);
@@ -225,48 +225,48 @@ impl Follower {
 
     /// Elements have gone since the highest frequency was found: their mass has gone with them, and what was found
     /// holds no more.
-    pub fn has_lost(&self, seen: &Seen) -> bool {
+    pub fn has_lost(&self, seen: &StabilitySample) -> bool {
         self.found.seen.is_some_and(|before| seen.alive < before.alive)
     }
 
     /// An input changes in a step, perhaps so that loads and motions become quicker than ever before. Whether it was
-    /// looked before that or is after makes no difference.
+    /// checked before that or is after makes no difference.
     pub fn note_change(&mut self, step: u64, quickens: bool) {
-        // where nothing would be done about it nobody looks
+        // where nothing would be done about it nobody checks
         if self.found.next == u64::MAX {
             return;
         }
         self.found.changed = Some(step);
-        let within = if quickens { 1 } else { LOOKS.0 };
+        let within = if quickens { 1 } else { CHECK_STEPS.0 };
         self.found.next = self.found.next.min(step + within);
-        // what comes after that look is sought at it
+        // what comes after that check is sought at it
         self.found.quickens_at = self.found.quickens_at.filter(|at| *at < step + within);
         if quickens {
             self.found.quickened = step;
         }
     }
 
-    /// Looks before the next step.
-    pub fn look_soon(&mut self) {
-        // where nothing would be done about it nobody looks
+    /// Checks before the next step.
+    pub fn check_soon(&mut self) {
+        // where nothing would be done about it nobody checks
         if self.found.next != u64::MAX {
-            self.found.next = self.found.next.min(self.found.looked);
+            self.found.next = self.found.next.min(self.found.checked_at);
         }
     }
 
-    /// The step before which is looked next: sooner where strains change fast, where the step is close to the limit,
+    /// The step before which is checked next: sooner where strains change fast, where the step is close to the limit,
     /// and before loads and motions become quicker, `quicker` (s).
-    fn next_look(&mut self, step: u64, seen: &Seen, clock: &Clock, quicker: Option<f64>) -> u64 {
+    fn next_check(&mut self, step: u64, seen: &StabilitySample, clock: &Clock, quicker: Option<f64>) -> u64 {
         // far below the limit more may happen unseen
         let room = self.most() * self.step_of(seen.square) / clock.time_step - 1.0;
         let strain = (STRAIN.1 * room).clamp(STRAIN.0, STRAIN.1);
         // what is no number, or inside out, has no speed
         let speed = if seen.speed.is_finite() { seen.speed } else { MOST_STRAIN };
-        let least = ((MOST_STRAIN / speed) as u64).clamp(1, LOOKS.0);
+        let least = ((MOST_STRAIN / speed) as u64).clamp(1, CHECK_STEPS.0);
         let calm =
-            ((strain / speed) as u64).clamp(least, LOOKS.1).min(step.saturating_sub(self.found.quickened).max(1));
+            ((strain / speed) as u64).clamp(least, CHECK_STEPS.1).min(step.saturating_sub(self.found.quickened).max(1));
         // what begins to change may be anything
-        let calm = if self.found.changed == Some(step) { calm.min(LOOKS.0) } else { calm };
+        let calm = if self.found.changed == Some(step) { calm.min(CHECK_STEPS.0) } else { calm };
         let until = |time: f64| ((time - clock.time()) / clock.time_step).ceil();
         let sooner = quicker.map(until).filter(|steps| *steps < calm as f64);
         self.found.quickens_at = sooner.map(|steps| step + steps as u64);
@@ -280,10 +280,10 @@ impl Followed {
         let mut blocks: Vec<(Entity, usize)> =
             world.query::<(Entity, &Block)>().iter(world).map(|(entity, block)| (entity, block.count)).collect();
         blocks.sort();
-        let growths: Option<Vec<usize>> =
-            self.growths.iter().map(|text| numbers_of(text).map(|numbers| numbers.len())).collect();
+        let ratios: Option<Vec<usize>> =
+            self.ratios.iter().map(|text| numbers_of(text).map(|numbers| numbers.len())).collect();
         let counts = || blocks.iter().map(|block| block.1);
-        let fits = growths.is_some_and(|growths| growths.is_empty() || growths.into_iter().eq(counts()));
+        let fits = ratios.is_some_and(|ratios| ratios.is_empty() || ratios.into_iter().eq(counts()));
         let shape = self.shape.as_ref().is_none_or(|text| numbers_of(text).is_some());
         let loads = self.found.loads.is_none_or(|loads| loads.are_sound());
         let numbers = [self.found.known, self.found.lost, self.found.losing, self.found.latest];
@@ -317,34 +317,34 @@ impl Simulation {
         self.solver.follower().map(|follower| &follower.history)
     }
 
-    /// Looks at the stable step if it is time, and does what the scene wants done.
+    /// Checks the stable step if it is time, and does what the scene wants done.
     pub(super) fn follow(&mut self) -> Result<(), Error> {
         let step = self.step_count();
         let Solver::Explicit(follower) = &mut self.solver else { return Ok(()) };
         let Some(mut follower) = follower.take_if(|follower| follower.found.next <= step) else { return Ok(()) };
         let started = Instant::now();
-        let looked = self.look_with(&mut follower);
+        let checked = self.check_with(&mut follower);
         follower.history.seconds += started.elapsed().as_secs_f64();
         self.solver = Solver::Explicit(Some(follower));
-        looked.map_err(|error| self.note(error))
+        checked.map_err(|error| self.note(error))
     }
 
-    fn look_with(&mut self, follower: &mut Follower) -> Result<(), Error> {
+    fn check_with(&mut self, follower: &mut Follower) -> Result<(), Error> {
         let moving = [Displacement::NAME, DisplacementIncrement::NAME, RestShape::NAME];
         bring_to_host(&mut self.world, |_, name| moving.contains(&name))?;
-        if follower.watched.is_empty() {
-            follower.watched = Watched::all(&mut self.world);
+        if follower.trackers.is_empty() {
+            follower.trackers = StiffnessTracker::all(&mut self.world);
         }
         let step = self.step_count();
-        let mut seen = Seen::NOTHING;
-        for block in &mut follower.watched {
-            seen = seen.and(block.look(&self.world));
+        let mut seen = StabilitySample::NOTHING;
+        for block in &mut follower.trackers {
+            seen = seen.and(block.sample(&self.world));
         }
-        follower.history.looks += 1;
+        follower.history.checks += 1;
         if let Some(at) = follower.found.quickens_at.take_if(|at| *at <= step) {
             follower.found.quickened = at;
         }
-        warn_of_rounding(&follower.watched, &mut self.world);
+        warn_of_rounding(&follower.trackers, &mut self.world);
         let lost = follower.has_lost(&seen);
         // what was found of more elements says nothing
         seen.square = if lost { seen.of_elements } else { seen.of_elements.min(follower.found.known * seen.ratio) };
@@ -352,7 +352,7 @@ impl Simulation {
         if lost && matches!(follower.policy, WhenUnstable::ScaleMass { .. }) {
             // what was added to removed elements goes with them
             bring_to_host(&mut self.world, |_, name| [Mass::NAME, FictitiousMass::NAME].contains(&name))?;
-            mass_scaling::weigh(&mut self.world);
+            mass_scaling::scale_masses(&mut self.world);
             send_to_device(&mut self.world, |_, name| name == FictitiousMass::NAME)?;
         }
         // what is no number is the guards' business
@@ -371,10 +371,10 @@ impl Simulation {
         follower.found.next = known.unwrap_or_else(|| {
             let clock = *self.world.resource::<Clock>();
             let quicker = self.world.resource::<Signals>().quickens_after(clock.time());
-            let next = follower.next_look(step, &seen, &clock, quicker);
-            if grows { next.min(step + LOOKS.0) } else { next }
+            let next = follower.next_check(step, &seen, &clock, quicker);
+            if grows { next.min(step + CHECK_STEPS.0) } else { next }
         });
-        follower.found.looked = step;
+        follower.found.checked_at = step;
         Ok(())
     }
 }

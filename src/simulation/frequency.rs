@@ -119,8 +119,8 @@ pub(super) fn largest_near(
         vector.iter_mut().for_each(|x| *x *= if length > 0.0 { to / length } else { 0.0 });
         vector
     };
-    let weighed = noise(&roots).iter().zip(weights).map(|(noise, weight)| noise * weight).collect();
-    let mut start = scaled(weighed, if shape.is_some() { NOISE } else { 1.0 });
+    let weighted = noise(&roots).iter().zip(weights).map(|(noise, weight)| noise * weight).collect();
+    let mut start = scaled(weighted, if shape.is_some() { NOISE } else { 1.0 });
     if let Some(shape) = shape.filter(|shape| shape.len() == roots.len()) {
         // axes that are held by now have no part
         let known = shape.iter().zip(&roots).map(|(&x, &root)| if root > 0.0 { f64::from(x) } else { 0.0 }).collect();
@@ -150,14 +150,14 @@ fn eigenvector(found: &Ritz) -> Vec<f64> {
         // (T − shift) x, all of whose pivots are negative: Thomas' algorithm
         let mut pivots = vec![0.0; count];
         for i in 0..count {
-            let off = if i > 0 { found.beside[i - 1] } else { 0.0 };
+            let off = if i > 0 { found.off_diagonal[i - 1] } else { 0.0 };
             pivots[i] = found.diagonal[i] - shift - if i > 0 { off * off / pivots[i - 1] } else { 0.0 };
             if i > 0 {
                 x[i] -= off / pivots[i - 1] * x[i - 1];
             }
         }
         for i in (0..count).rev() {
-            let next = if i + 1 < count { found.beside[i] * x[i + 1] } else { 0.0 };
+            let next = if i + 1 < count { found.off_diagonal[i] * x[i + 1] } else { 0.0 };
             x[i] = (x[i] - next) / pivots[i];
         }
         let length = dot(&x, &x).sqrt();
@@ -175,7 +175,7 @@ struct Ritz {
     exhausted: bool,
     /// The tridiagonal matrix.
     diagonal: Vec<f64>,
-    beside: Vec<f64>,
+    off_diagonal: Vec<f64>,
 }
 
 /// The largest Ritz value after `products` products, or as soon as more are not worth it; `None` when it is no positive
@@ -193,7 +193,7 @@ fn lanczos(
     let mut own = Vec::new();
     let kept: &mut Vec<Vec<f64>> = all.unwrap_or(&mut own);
     let (mut previous, mut vector, mut image) = (vec![0.0; size], start, vec![0.0; size]);
-    let (mut diagonal, mut beside): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
+    let (mut diagonal, mut off_diagonal): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
     let (mut exhausted, mut scale) = (false, 0.0_f64);
     for _ in 0..products {
         let length = dot(&vector, &vector).sqrt();
@@ -205,7 +205,7 @@ fn lanczos(
             break;
         }
         if !diagonal.is_empty() {
-            beside.push(length);
+            off_diagonal.push(length);
         }
         vector.iter_mut().for_each(|x| *x /= length);
         times(&vector, &mut image);
@@ -213,7 +213,7 @@ fn lanczos(
         let back = if diagonal.is_empty() { 0.0 } else { length };
         diagonal.push(along);
         if diagonal.len() % BETWEEN_STOPS == 0
-            && !worth_more(largest_of_tridiagonal(&diagonal, &beside), diagonal.len())
+            && !worth_more(largest_of_tridiagonal(&diagonal, &off_diagonal), diagonal.len())
         {
             break;
         }
@@ -234,9 +234,9 @@ fn lanczos(
             }
         }
     }
-    let largest = largest_of_tridiagonal(&diagonal, &beside);
+    let largest = largest_of_tridiagonal(&diagonal, &off_diagonal);
     let products = diagonal.len();
-    (largest.is_finite() && largest > 0.0).then_some(Ritz { largest, products, exhausted, diagonal, beside })
+    (largest.is_finite() && largest > 0.0).then_some(Ritz { largest, products, exhausted, diagonal, off_diagonal })
 }
 
 /// Bodies in a fixed order.
@@ -285,28 +285,28 @@ pub(super) fn noise(roots: &[f64]) -> Vec<f64> {
 /// Eight sums side by side: one alone waits for each addition.
 pub(super) fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (a, left) = a.as_chunks::<8>();
-    let (b, beside) = b.as_chunks::<8>();
+    let (b, others) = b.as_chunks::<8>();
     let mut sums = [0.0; 8];
     for (a, b) in a.iter().zip(b) {
         for i in 0..8 {
             sums[i] += a[i] * b[i];
         }
     }
-    let rest: f64 = left.iter().zip(beside).map(|(a, b)| a * b).sum();
+    let rest: f64 = left.iter().zip(others).map(|(a, b)| a * b).sum();
     sums.iter().sum::<f64>() + rest
 }
 
 /// By bisection: as many eigenvalues are above x as the pivots of T − x that are positive.
-fn largest_of_tridiagonal(diagonal: &[f64], beside: &[f64]) -> f64 {
+fn largest_of_tridiagonal(diagonal: &[f64], off_diagonal: &[f64]) -> f64 {
     let above = |x: f64| {
         let mut pivot = f64::INFINITY;
         diagonal.iter().enumerate().any(|(i, d)| {
-            let off = if i > 0 { beside[i - 1] } else { 0.0 };
+            let off = if i > 0 { off_diagonal[i - 1] } else { 0.0 };
             pivot = d - x - off * off / pivot;
             pivot > 0.0
         })
     };
-    let side = |i: usize| beside.get(i).copied().unwrap_or(0.0).abs();
+    let side = |i: usize| off_diagonal.get(i).copied().unwrap_or(0.0).abs();
     let bound = |(i, d): (usize, &f64)| d + side(i) + if i > 0 { side(i - 1) } else { 0.0 };
     let (mut low, mut high) = (0.0, diagonal.iter().enumerate().map(bound).fold(0.0, f64::max));
     for _ in 0..60 {

@@ -173,7 +173,7 @@ impl Simulation {
         self.next_grab += 1;
         self.note_grab(id);
         if let Some(follower) = self.solver.follower_mut() {
-            follower.look_soon();
+            follower.check_soon();
         }
         Ok(id)
     }

@@ -257,7 +257,7 @@ impl Simulation {
         if larger && !self.scene.systems.is_empty() {
             self.count_loads()?;
             if let Some(follower) = self.solver.follower_mut() {
-                follower.look_soon();
+                follower.check_soon();
             }
         }
         Ok(())

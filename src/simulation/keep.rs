@@ -20,7 +20,7 @@ impl Simulation {
     pub fn snapshot(&mut self) -> Result<Snapshot, Error> {
         self.settle()?;
         let mut snapshot = Snapshot::take(&mut self.world)?;
-        self.note_pace(&mut snapshot)?;
+        self.note_resume_state(&mut snapshot)?;
         Ok(snapshot)
     }
 
@@ -33,19 +33,19 @@ impl Simulation {
     /// taken back; what the GPU says.
     pub fn restore(&mut self, snapshot: &Snapshot) -> Result<(), Error> {
         self.keep_start();
-        let pace = self.checked_pace(snapshot)?;
+        let state = self.checked_resume_state(snapshot)?;
         self.world.increment_change_tick();
         let before = self.step_count();
         snapshot.put(&mut self.world)?;
         (self.settling, self.preload) = (None, None);
-        let ours = self.take_up_pace(pace, before)?;
+        let ours = self.take_up_resume_state(state, before)?;
         self.forget_later(snapshot.time(), ours);
         let clock = *self.world.resource::<Clock>();
         self.began = (clock.step, clock.time());
         (self.elapsed, self.metronome) = (Duration::ZERO, Default::default());
         self.failure = None;
         let mut observer = self.world.resource_mut::<Observer>();
-        (observer.good_until, observer.looked_at) = (clock.time(), None);
+        (observer.good_until, observer.checked_at) = (clock.time(), None);
         observer.window.clear();
         observer.writing = Duration::ZERO;
         Ok(())

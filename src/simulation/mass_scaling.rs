@@ -93,7 +93,7 @@ impl Additions {
     /// For elements of a block: rows, and what they are stable up to as they are, with what was added before.
     pub fn and(&mut self, world: &World, block: Entity, bounds: &[(usize, f64)], step: f64) {
         let needed = |&(row, bound): &(usize, f64)| {
-            let (mass, _) = heavy_mass(world, block, row)?;
+            let (mass, _) = scaled_mass(world, block, row)?;
             Some((block, row, Light { mass, bound }.added(step)))
         };
         self.elements.extend(bounds.iter().filter_map(needed));
@@ -112,7 +112,7 @@ impl Additions {
         most.and_then(|&(block, row, _)| author_of(world, block, row)).unwrap_or_default()
     }
 
-    /// Adds it. What nodes weigh must be summed anew: [`weigh`].
+    /// Adds it. What nodes weigh must be summed anew: [`scale_masses`].
     pub fn make(&self, world: &mut World) {
         for &(block, row, added) in &self.elements {
             if let Some(mut column) = world.get_mut::<AddedMass>(block) {
@@ -123,7 +123,7 @@ impl Additions {
 }
 
 /// Sums anew what resists acceleration at all nodes: their mass, and what was added to the elements that are there.
-pub(super) fn weigh(world: &mut World) -> Added {
+pub(super) fn scale_masses(world: &mut World) -> Added {
     let rate = world.resource::<Clock>().rate();
     let bodies: Vec<(Entity, Vec<Entity>)> = world
         .query_filtered::<(Entity, &Authoring), With<FictitiousMass>>()
@@ -179,7 +179,7 @@ fn mass_of(world: &World, entity: Entity, row: usize) -> f64 {
 
 /// The mass that an element's nodes move with for it (kg), and how many times its real one that is; `None` of one that
 /// is not there.
-pub(super) fn heavy_mass(world: &World, entity: Entity, row: usize) -> Option<(f64, f64)> {
+pub(super) fn scaled_mass(world: &World, entity: Entity, row: usize) -> Option<(f64, f64)> {
     let real = mass_of(world, entity, row);
     let added = world.get::<AddedMass>(entity).map_or(0.0, |added| added.0[row]);
     (real > 0.0).then(|| (real + added, (real + added) / real))

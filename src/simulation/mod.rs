@@ -14,7 +14,6 @@ pub mod explain;
 mod follow;
 mod frequency;
 mod grab;
-mod growth;
 mod history;
 mod inputs;
 mod interval;
@@ -29,7 +28,6 @@ mod nodal;
 mod node_set;
 mod options;
 mod outputs;
-mod pace;
 mod parameters;
 mod pick;
 mod plan;
@@ -42,6 +40,7 @@ mod real_time;
 mod recording;
 mod relax;
 mod residual;
+mod resume_state;
 mod rounding;
 mod run;
 mod schedule;
@@ -51,12 +50,13 @@ mod solver;
 mod stable_step;
 mod step_change;
 mod step_kernels;
+mod stiffness;
+mod stiffness_ratio;
 mod stretch;
 mod summary;
 mod surface;
 mod tangent;
 mod unload;
-mod watch;
 
 pub use budget::{Advanced, Ended};
 pub use column_view::ColumnView;
@@ -90,7 +90,7 @@ pub struct Simulation {
     world: World,
     plan: plan::Plan,
     /// Its passes on the backend that it runs on.
-    entries: Vec<Entry>,
+    entries: Vec<ScheduledPass>,
     /// As it is now.
     scene: Scene,
     /// What it was made of.
@@ -128,7 +128,7 @@ pub struct Simulation {
 }
 
 /// A pass of the plan that runs.
-struct Entry {
+struct ScheduledPass {
     name: String,
     /// Of the last of its systems.
     phase: Phase,

@@ -12,8 +12,8 @@
 //! count.
 
 use super::damped_step::square_with_damping;
-use super::mass_scaling::heavy_mass;
-use super::watch::Watched;
+use super::mass_scaling::scaled_mass;
+use super::stiffness::StiffnessTracker;
 use crate::assembly::undamped_square_frequencies;
 use crate::components::*;
 use crate::elements::mass_shares;
@@ -67,11 +67,11 @@ impl NodalMeans {
 
 /// For each axis of the bodies' nodes, one body after the other, the square of the mean of ω² of the elements there as
 /// they are now, over the largest: where the highest frequency may be.
-pub(super) fn weights_now(world: &mut World, watched: &mut [Watched], bodies: &[Entity]) -> Vec<f64> {
+pub(super) fn weights_now(world: &mut World, trackers: &mut [StiffnessTracker], bodies: &[Entity]) -> Vec<f64> {
     let mut means = NodalMeans::new();
-    for block in watched {
+    for block in trackers {
         let entity = block.entity;
-        let of_row = |(row, square, _): (usize, f64, f64)| Some((row, heavy_mass(world, entity, row)?.0, square));
+        let of_row = |(row, square, _): (usize, f64, f64)| Some((row, scaled_mass(world, entity, row)?.0, square));
         let elements: Vec<_> = block.now(world).into_iter().filter_map(of_row).collect();
         means.add(world, entity, elements.into_iter());
     }
@@ -88,8 +88,8 @@ pub(super) fn bound_at_rest(world: &mut World) -> f64 {
     let mut means = NodalMeans::new();
     for block in blocks {
         let of_row = |(row, (square, volume)): (usize, (f64, f64))| {
-            let (mass, heavier) = heavy_mass(world, block, row)?;
-            (volume > 0.0).then_some((row, mass, square / heavier))
+            let (mass, mass_factor) = scaled_mass(world, block, row)?;
+            (volume > 0.0).then_some((row, mass, square / mass_factor))
         };
         means.add(world, block, undamped_square_frequencies(world, block).into_iter().enumerate().filter_map(of_row));
     }

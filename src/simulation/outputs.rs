@@ -13,7 +13,7 @@ const FILES: &str = "VTU files";
 pub(super) fn check(scene: &SceneFile, clock: &Clock, steps: u64, diagnostics: &mut Diagnostics) {
     let scene = &scene.scene;
     // a static analysis observes while loads grow
-    let steps = clock.relaxation.map_or(steps, |relaxation| (1.0 / relaxation.growth).round() as u64);
+    let steps = clock.relaxation.map_or(steps, |relaxation| (1.0 / relaxation.ramp_rate).round() as u64);
     let mut at_most = |most: u64, what: &str, every: f64, path: Path| {
         let cadence = Cadence::new(every, clock.time_step);
         let found = if what == FILES { cadence.count(steps) } else { cadence.rows(steps) };

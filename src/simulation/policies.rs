@@ -5,8 +5,8 @@ use super::Simulation;
 use super::follow::{Follower, square_of, step_of};
 use super::mass_scaling::{self, Additions};
 use super::stable_step::{ACCURACY, limit_now};
+use super::stiffness::StabilitySample;
 use super::tangent::Tangent;
-use super::watch::Seen;
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::Error;
@@ -22,22 +22,22 @@ const ROUNDS: usize = 4;
 impl Simulation {
     /// Does what the scene wants done where the step stays. The step before which is to be looked next, where that is
     /// known.
-    pub(super) fn hold(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<Option<u64>, Error> {
+    pub(super) fn hold(&mut self, follower: &mut Follower, seen: &mut StabilitySample) -> Result<Option<u64>, Error> {
         let (step, time_step) = (self.step_count(), self.world.resource::<Clock>().time_step);
         // mass is not added and elements are not removed on the word of the cheap bound, nor for what a load or a hand
         // does
-        let watches = follower.policy == WhenUnstable::Watch;
+        let only_reports = follower.policy == WhenUnstable::Watch;
         let presses = |follower: &Follower, square: f64| {
-            time_step > follower.most() * if watches { follower.step_of(square) } else { step_of(square) }
+            time_step > follower.most() * if only_reports { follower.step_of(square) } else { step_of(square) }
         };
         let pressing = presses(follower, seen.square);
-        let affordable = follower.history.sharp_looks < FINDINGS.0 + step / FINDINGS.1;
-        let found = match watches {
+        let affordable = follower.history.eigenvalue_estimates < FINDINGS.0 + step / FINDINGS.1;
+        let found = match only_reports {
             true => pressing && affordable && self.estimate(follower, seen)?,
             false => pressing && self.find(follower, seen)?,
         };
         follower.found.seen.get_or_insert(*seen);
-        if !watches && time_step > follower.step_of(seen.square) && !presses(follower, seen.square) {
+        if !only_reports && time_step > follower.step_of(seen.square) && !presses(follower, seen.square) {
             // with what acts on nodes: told, as where one only watches, and the guards see to the rest
             follower.history.beyond_since.get_or_insert(self.time());
         }
@@ -49,27 +49,27 @@ impl Simulation {
                 Ok(Some(u64::MAX))
             }
             _ if !found || !presses(follower, seen.square) => Ok(None),
-            WhenUnstable::ScaleMass { most } => self.make_heavier(follower, time_step, most).map(|()| None),
+            WhenUnstable::ScaleMass { most } => self.scale_mass(follower, time_step, most).map(|()| None),
             WhenUnstable::Remove => self.remove_quickest(follower).map(Some),
             WhenUnstable::Watch | WhenUnstable::Adapt => Ok(None),
         }
     }
 
     /// Finds the highest frequency; whether there is one.
-    pub(super) fn find(&mut self, follower: &mut Follower, seen: &mut Seen) -> Result<bool, Error> {
+    pub(super) fn find(&mut self, follower: &mut Follower, seen: &mut StabilitySample) -> Result<bool, Error> {
         bring_to_host(&mut self.world, |_, name| Tangent::COLUMNS.contains(&name))?;
         let Some(limit) = limit_now(&mut self.world, ACCURACY) else { return Ok(false) };
-        for block in &mut follower.watched {
+        for block in &mut follower.trackers {
             block.remember(&self.world);
         }
         seen.square = square_of(limit);
         follower.found.take(seen);
-        follower.history.sharp_looks += 1;
+        follower.history.eigenvalue_estimates += 1;
         Ok(true)
     }
 
     /// Adds mass to elements that do not allow the step any more, as long as the highest frequency does not.
-    fn make_heavier(&mut self, follower: &mut Follower, time_step: f64, most: f64) -> Result<(), Error> {
+    fn scale_mass(&mut self, follower: &mut Follower, time_step: f64, most: f64) -> Result<(), Error> {
         let columns = [Mass::NAME, FictitiousMass::NAME];
         bring_to_host(&mut self.world, |_, name| columns.contains(&name))?;
         let wanted = time_step / follower.safety;
@@ -77,7 +77,7 @@ impl Simulation {
             // what is known of all is worth more than the bound of an element, until it leads nowhere
             let known = if round < ROUNDS { follower.found.known } else { f64::INFINITY };
             let mut additions = Additions::default();
-            for block in &mut follower.watched {
+            for block in &mut follower.trackers {
                 let squares = block.now(&self.world).into_iter();
                 let bounds: Vec<(usize, f64)> =
                     squares.map(|(row, square, ratio)| (row, step_of(square.min(known * ratio)))).collect();
@@ -85,9 +85,9 @@ impl Simulation {
             }
             self.may_add(&additions, follower, most)?;
             additions.make(&mut self.world);
-            let added = mass_scaling::weigh(&mut self.world);
-            for block in &mut follower.watched {
-                block.weigh(&self.world);
+            let added = mass_scaling::scale_masses(&mut self.world);
+            for block in &mut follower.trackers {
+                block.update_bounds(&self.world);
             }
             let history = &mut follower.history;
             history.added_mass = added.mass;
@@ -110,7 +110,7 @@ impl Simulation {
         let step = self.step_count();
         bring_to_host(&mut self.world, |_, name| [Alive::NAME, RemovalStep::NAME].contains(&name))?;
         let mut all = Vec::new();
-        for block in &mut follower.watched {
+        for block in &mut follower.trackers {
             all.push((block.entity, block.now(&self.world)));
         }
         let quickest = all.iter().flat_map(|(_, rows)| rows).fold(0.0_f64, |most, (_, square, _)| most.max(*square));

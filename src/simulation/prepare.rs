@@ -99,10 +99,15 @@ fn clock(
     if let Analysis::Static { max_steps, load_steps, at, .. } = scene.scene.analysis {
         let bound = stable_step::found_bound(world, diagnostics)?;
         let load_steps = load_steps.unwrap_or_else(|| crate::assembly::load_steps(world));
-        let growth = 1.0 / load_steps as f64;
-        let relaxation =
-            Relaxation { end: at.unwrap_or(scene.scene.duration), since: (0, 0.0), growth, damping: 0.0, gain: 1.0 };
-        let clock = Clock { relaxation: Some(relaxation), ..Clock::with_step(scene.scene.duration * growth) };
+        let ramp_rate = 1.0 / load_steps as f64;
+        let relaxation = Relaxation {
+            end: at.unwrap_or(scene.scene.duration),
+            since: (0, 0.0),
+            ramp_rate,
+            damping: 0.0,
+            force_scale: 1.0,
+        };
+        let clock = Clock { relaxation: Some(relaxation), ..Clock::with_step(scene.scene.duration * ramp_rate) };
         return Some((clock, Stability::of_rest(bound), max_steps));
     }
     let (stability, time_step, steps) = stable_step::choose(scene, known, loads, world, diagnostics)?;

@@ -6,7 +6,7 @@ use crate::components::Clock;
 use serde::Serialize;
 use std::time::{Duration, Instant};
 
-/// Simulated time between two looks at the clock on the wall (s); and who is later than that goes on from there.
+/// Simulated time between two checks of the clock on the wall (s); and who is later than that goes on from there.
 const TICK: f64 = 1e-3;
 
 /// How a run kept up with life.
@@ -25,7 +25,7 @@ pub struct RealTime {
 pub(super) struct Metronome {
     /// A moment of life, and the simulated time (s) that belongs to it.
     from: Option<(Instant, f64)>,
-    /// The step before which it is looked at again.
+    /// The step before which it is checked again.
     next: u64,
     kept: RealTime,
 }
@@ -79,7 +79,7 @@ impl Simulation {
         self.metronome.next = soon;
     }
 
-    /// The step before which the pace is looked at again.
+    /// The step before which the pace is checked again.
     pub(super) fn next_tick(&self) -> u64 {
         if self.scene.real_time { self.metronome.next.max(self.step_count() + 1) } else { u64::MAX }
     }

@@ -1,9 +1,9 @@
 //! Dynamic relaxation: pseudo-steps to equilibrium, their damping chosen anew from what the last ones did.
 //!
-//! Every [`LOOK`] steps the residual is taken, the lowest frequency of the motion is estimated by the Rayleigh quotient
-//! ω² = Δuᵀ ΔF / Δuᵀ M Δu of what has changed since the last look, and all nodes are damped critically for it, c = 2ω
-//! (Underwood 1983). Forces count less where elements are squeezed, which raises the highest frequency. Steps that end
-//! in numbers that are not finite or in elements turned inside out are taken back.
+//! Every [`CHECK_STEPS`] steps the residual is taken, the lowest frequency of the motion is estimated by the Rayleigh
+//! quotient ω² = Δuᵀ ΔF / Δuᵀ M Δu of what has changed since the last check, and all nodes are damped critically for
+//! it, c = 2ω (Underwood 1983). Forces count less where elements are squeezed, which raises the highest frequency.
+//! Steps that end in numbers that are not finite or in elements turned inside out are taken back.
 
 use super::Simulation;
 use super::residual::{Motion, Residual, State};
@@ -16,10 +16,10 @@ use crate::observation::Observer;
 use bevy_ecs::prelude::*;
 use serde::Serialize;
 
-/// Steps between two looks at the residual.
-const LOOK: u64 = 40;
-/// Elements are looked at while loads grow, then in every so many looks.
-const LOOKS_BETWEEN_STRETCHES: u64 = 10;
+/// Steps between two checks of the residual.
+const CHECK_STEPS: u64 = 40;
+/// Elements are checked while loads grow, then in every so many checks.
+const CHECKS_BETWEEN_STRETCHES: u64 = 10;
 /// How often steps may be taken back.
 const MOST_SETBACKS: u32 = 10;
 /// Damping a at most: beyond 1 a step would turn round.
@@ -63,21 +63,21 @@ pub struct Equilibrium {
 pub(super) struct Relaxing {
     pub equilibrium: Equilibrium,
     most_steps: u64,
-    next_look: u64,
+    next_check: u64,
     before: State,
     /// Step and residual when the residual was last seen to fall by a tenth.
     best: (u64, f64),
     largest_scale: f64,
     largest_displaced: f64,
-    /// The gain before anything is squeezed, and the share of it that squeezed elements leave.
-    gain: f64,
+    /// The force scale before anything is squeezed, and the share of it that squeezed elements leave.
+    force_scale: f64,
     squeezed: f64,
-    looks: u64,
+    checks: u64,
     /// The lowest frequency, as far as it is known (1/s).
     frequency: f64,
-    /// The look that first saw loads at rest.
+    /// The check that first saw loads at rest.
     settled_at: Option<u64>,
-    /// The look since which all is as quiet as it must be.
+    /// The check since which all is as quiet as it must be.
     quiet_since: Option<u64>,
 }
 
@@ -86,23 +86,23 @@ impl Relaxing {
         Self {
             equilibrium: Equilibrium { residual: f64::INFINITY, tolerance, load_steps, ..Equilibrium::default() },
             most_steps,
-            next_look: LOOK.min(most_steps),
+            next_check: CHECK_STEPS.min(most_steps),
             before: State::of(world),
             best: (0, f64::INFINITY),
             largest_scale: 0.0,
             largest_displaced: 0.0,
-            gain: world.resource::<Clock>().relaxation.map_or(1.0, |relaxation| relaxation.gain),
+            force_scale: world.resource::<Clock>().relaxation.map_or(1.0, |relaxation| relaxation.force_scale),
             squeezed: 1.0,
-            looks: 0,
+            checks: 0,
             frequency: 0.0,
             settled_at: None,
             quiet_since: None,
         }
     }
 
-    /// The next step at whose end the residual is looked at.
-    pub fn next_look(&self) -> u64 {
-        self.next_look
+    /// The next step at whose end the residual is checked.
+    pub fn next_check(&self) -> u64 {
+        self.next_check
     }
 }
 
@@ -125,10 +125,10 @@ impl Simulation {
         self.advance_towards_end(u64::MAX)
     }
 
-    /// Looks at the residual, and chooses how to go on.
-    pub(super) fn look(&mut self) -> Result<(), Error> {
+    /// Checks the residual, and chooses how to go on.
+    pub(super) fn check_equilibrium(&mut self) -> Result<(), Error> {
         let Solver::Relaxation(relaxing) = &mut self.solver else { return Ok(()) };
-        relaxing.look(&mut self.world)?;
+        relaxing.check(&mut self.world)?;
         if relaxing.equilibrium.reached {
             self.world.resource_mut::<Observer>().last_step = self.step_count();
             self.observe_in_time()?;
@@ -138,7 +138,7 @@ impl Simulation {
 }
 
 impl Relaxing {
-    fn look(&mut self, world: &mut World) -> Result<(), Error> {
+    fn check(&mut self, world: &mut World) -> Result<(), Error> {
         let clock = *world.resource::<Clock>();
         let Some(mut relaxation) = clock.relaxation else { return Ok(()) };
         bring_to_host(world, |_, name| State::COLUMNS.contains(&name))?;
@@ -153,21 +153,21 @@ impl Relaxing {
             return self.take_back(world, relaxation, clock.step);
         }
         let share = relaxation.share(clock.step);
-        if share < 1.0 || self.looks.is_multiple_of(LOOKS_BETWEEN_STRETCHES) {
+        if share < 1.0 || self.checks.is_multiple_of(CHECKS_BETWEEN_STRETCHES) {
             self.squeezed = least_stretch(world).powi(2);
         }
-        self.looks += 1;
-        relaxation.gain = self.gain * self.squeezed;
+        self.checks += 1;
+        relaxation.force_scale = self.force_scale * self.squeezed;
         let motion = now.motion_since(&self.before, world);
         // forces of a motion are to loads about as the motion is to displacements; they must stand out from rounding
         let noise = residual.digit.max((residual.rounding_square / residual.scale_square).sqrt());
         let tiny = CLEAR_OF_ROUNDING * noise * motion.displaced;
         if let Some(frequency) = motion.frequency.filter(|_| motion.moved > tiny) {
             // the quotient is never below the lowest frequency: with loads at rest the least is the best
-            let settled = self.settled_at.is_some_and(|step| clock.step > step + 2 * LOOK);
+            let settled = self.settled_at.is_some_and(|step| clock.step > step + 2 * CHECK_STEPS);
             self.frequency = if settled { frequency.min(self.frequency) } else { frequency };
         }
-        relaxation.damping = (relaxation.gain.sqrt() * self.frequency * clock.time_step).min(MOST_DAMPING);
+        relaxation.damping = (relaxation.force_scale.sqrt() * self.frequency * clock.time_step).min(MOST_DAMPING);
         if share >= 1.0 {
             self.settled_at.get_or_insert(clock.step);
         }
@@ -185,23 +185,23 @@ impl Relaxing {
             && found.residual <= tolerance + ROUNDING * found.rounding
             && found.remaining_motion <= MOTION * tolerance;
         self.quiet_since = self.quiet_since.filter(|_| quiet).or(quiet.then_some(clock.step));
-        // where rounding hides soft motion, a look must not have met it at its turning point
+        // where rounding hides soft motion, a check must not have met it at its turning point
         let long = (clock.step - self.quiet_since.unwrap_or(clock.step)) as f64 >= TURN / relaxation.damping.max(1e-9);
         if quiet && (long || found.residual <= tolerance) {
             self.equilibrium.reached = true;
             return Ok(());
         }
-        // a body that gives way is on its way to another rest: forces grow before they fall
-        let gives_way = motion.work < -CLEAR_OF_ROUNDING * residual.rounding_square.sqrt() * motion.moved;
-        if share < 1.0 || gives_way || found.residual < 0.9 * self.best.1 {
+        // a body that collapses is on its way to another rest: forces grow before they fall
+        let collapses = motion.work < -CLEAR_OF_ROUNDING * residual.rounding_square.sqrt() * motion.moved;
+        if share < 1.0 || collapses || found.residual < 0.9 * self.best.1 {
             self.best = (clock.step, found.residual);
         }
         let patience = PATIENCE / relaxation.damping.max(1e-9);
-        let stalled = (clock.step - self.best.0) as f64 > patience.max(50.0 * LOOK as f64);
+        let stalled = (clock.step - self.best.0) as f64 > patience.max(50.0 * CHECK_STEPS as f64);
         if stalled || clock.step >= self.most_steps {
             return Err(self.given_up(clock.step));
         }
-        self.next_look = (clock.step + LOOK).min(self.most_steps);
+        self.next_check = (clock.step + CHECK_STEPS).min(self.most_steps);
         Ok(())
     }
 
@@ -224,24 +224,24 @@ impl Relaxing {
         found.worst = residual.worst_in_words(world);
     }
 
-    /// Goes back to the last look, from where forces count half. While loads still grow, it goes back to the start,
+    /// Goes back to the last check, from where forces count half. While loads still grow, it goes back to the start,
     /// where they grow at a quarter of the pace: what has been pushed too suddenly may have taken a way that leads
     /// elsewhere.
     fn take_back(&mut self, world: &mut World, mut relaxation: Relaxation, step: u64) -> Result<(), Error> {
         if self.settled_at.is_none() {
             self.before.forget();
-            relaxation.growth *= 0.25;
+            relaxation.ramp_rate *= 0.25;
             relaxation.since = (step, 0.0);
             self.squeezed = 1.0;
         }
-        self.gain *= 0.5;
-        relaxation.gain = self.gain * self.squeezed;
+        self.force_scale *= 0.5;
+        relaxation.force_scale = self.force_scale * self.squeezed;
         self.before.restore(world);
         self.before.step = step;
         send_to_device(world, |_, name| State::COLUMNS.contains(&name))?;
         world.resource_mut::<Clock>().relaxation = Some(relaxation);
         self.equilibrium.setbacks += 1;
-        self.next_look = (step + LOOK).min(self.most_steps);
+        self.next_check = (step + CHECK_STEPS).min(self.most_steps);
         Ok(())
     }
 

@@ -1,4 +1,4 @@
-//! What a static analysis sees of all bodies when it looks: displacements, forces, and what has changed.
+//! What a static analysis sees of all bodies when it checks: displacements, forces, and what has changed.
 
 use crate::components::*;
 use crate::elements::rounding;

@@ -1,6 +1,6 @@
 //! Far from where a body began, displacements in f32 have too few digits left for strains.
 
-use super::watch::Watched;
+use super::stiffness::StiffnessTracker;
 use crate::components::*;
 use bevy_ecs::prelude::*;
 
@@ -11,8 +11,8 @@ const HALF_DIGIT: f64 = 1.0 / (1 << 24) as f64;
 
 /// Warns of each body, once, where displacements u in f32 are so large that rounding makes strains of u·2⁻²⁴/h, h being
 /// the shortest edge. Displacements on the host must be up to date.
-pub(super) fn warn_of_rounding(watched: &[Watched], world: &mut World) {
-    for block in watched {
+pub(super) fn warn_of_rounding(trackers: &[StiffnessTracker], world: &mut World) {
+    for block in trackers {
         let Some((body, largest)) = largest_rounded(block, world) else { continue };
         let noise = largest * HALF_DIGIT / block.shortest_edge;
         if noise > MOST_NOISE {
@@ -22,7 +22,7 @@ pub(super) fn warn_of_rounding(watched: &[Watched], world: &mut World) {
 }
 
 /// The body, and the largest component of its displacements (m); `None` in f64.
-fn largest_rounded(block: &Watched, world: &World) -> Option<(Entity, f64)> {
+fn largest_rounded(block: &StiffnessTracker, world: &World) -> Option<(Entity, f64)> {
     let body = world.get::<Block>(block.entity)?.body;
     match &world.get::<Displacement>(body)?.0 {
         Reals::F32(u) => Some((body, f64::from(u.iter().fold(0.0_f32, |largest, u| largest.max(u.abs()))))),

@@ -1,7 +1,7 @@
 //! Steps.
 
 use super::build::after_the_step;
-use super::{Entry, Job, Simulation};
+use super::{Job, ScheduledPass, Simulation};
 use crate::backend::cpu::Cpu;
 use crate::backend::device::{Device, bring_to_host, send_to_device};
 use crate::backend::kernel::KernelId;
@@ -48,7 +48,7 @@ impl Simulation {
             self.begin_step_in_time()?;
             let clock = *self.world.resource::<Clock>();
             let whole = ((time - clock.since.1) / clock.time_step + WHOLE).floor().max(0.0) as u64;
-            let next = clock.since.0.saturating_add(whole).min(end).min(self.solver.next_look());
+            let next = clock.since.0.saturating_add(whole).min(end).min(self.solver.next_check());
             if next <= clock.step {
                 return Ok(());
             }
@@ -64,7 +64,7 @@ impl Simulation {
         }
         self.begin_step_in_time()?;
         let step = self.step_count();
-        let next = step.saturating_add(self.steps_until(time).max(1)).min(self.solver.next_look());
+        let next = step.saturating_add(self.steps_until(time).max(1)).min(self.solver.next_check());
         Ok(next.saturating_sub(step))
     }
 
@@ -85,7 +85,7 @@ impl Simulation {
         let target = self.step_count().saturating_add(count);
         while !self.is_finished() && self.step_count() < target {
             self.begin_step_in_time()?;
-            let end = self.planned_steps().min(target).min(self.solver.next_look());
+            let end = self.planned_steps().min(target).min(self.solver.next_check());
             let left = end.saturating_sub(self.step_count());
             if left == 0 {
                 break;
@@ -123,10 +123,10 @@ impl Simulation {
     fn begin_step_in_time(&mut self) -> Result<(), Error> {
         self.keep_start();
         let started = Instant::now();
-        self.before_the_look()?;
+        self.before_the_check()?;
         // threads are not called together for nothing
-        let looks = self.solver.next_look() <= self.step_count();
-        let followed = if looks { self.on_threads(Self::follow) } else { Ok(()) };
+        let is_due = self.solver.next_check() <= self.step_count();
+        let followed = if is_due { self.on_threads(Self::follow) } else { Ok(()) };
         self.elapsed += started.elapsed();
         followed
     }
@@ -225,7 +225,7 @@ impl Simulation {
                 until = until.min(interval.next_after(step));
             }
         }
-        let kernels: Vec<KernelId> = self.entries.iter().flat_map(Entry::kernels).copied().collect();
+        let kernels: Vec<KernelId> = self.entries.iter().flat_map(ScheduledPass::kernels).copied().collect();
         let count = (until - step).min(4096).min(most);
         debug_assert!(count > 0, "no step to take at {step}");
         self.run_kernels(&kernels, step, count)?;
@@ -309,7 +309,7 @@ impl Simulation {
     }
 }
 
-impl Entry {
+impl ScheduledPass {
     fn kernels(&self) -> &[KernelId] {
         match &self.job {
             Job::Kernels(kernels) => kernels,

@@ -1,5 +1,5 @@
 //! Solvers: what takes steps, one level above the systems. A solver keeps what it has to remember beside the columns,
-//! says how many steps may be taken together before it looks at them, and does what has to be done about what it sees.
+//! says how many steps may be taken together before it checks them, and does what has to be done about what it sees.
 
 use super::Simulation;
 use super::follow::Follower;
@@ -8,7 +8,7 @@ use crate::error::Error;
 
 /// How the steps of a scene are taken.
 pub(super) enum Solver {
-    /// Central differences in time. What follows the stable step, where there is one; lent out while it looks.
+    /// Central differences in time. What follows the stable step, where there is one; lent out while it checks.
     Explicit(Option<Follower>),
     /// Pseudo-steps to equilibrium.
     Relaxation(Relaxing),
@@ -40,7 +40,7 @@ impl Solver {
     }
 
     /// The step before which Δt may become another; a search for equilibrium has one Δt.
-    pub fn next_look(&self) -> u64 {
+    pub fn next_check(&self) -> u64 {
         match self {
             Self::Explicit(follower) => follower.as_ref().map_or(u64::MAX, |follower| follower.found.next),
             Self::Relaxation(_) => u64::MAX,
@@ -58,15 +58,15 @@ impl Solver {
 
 impl Simulation {
     /// What comes before a step, in an order that does not depend on how the program asks for steps: the state is kept,
-    /// inputs and what hands do are taken up, and then the stable step is looked at. A second time before the same step
+    /// inputs and what hands do are taken up, and then the stable step is checked. A second time before the same step
     /// it does nothing.
     fn begin_step(&mut self) -> Result<(), Error> {
-        self.before_the_look()?;
+        self.before_the_check()?;
         self.follow()
     }
 
-    /// All of it but the look.
-    pub(super) fn before_the_look(&mut self) -> Result<(), Error> {
+    /// All of it but the check.
+    pub(super) fn before_the_check(&mut self) -> Result<(), Error> {
         self.wait_for_life();
         self.keep_history_if_due()?;
         self.take_up_inputs()?;
@@ -79,21 +79,21 @@ impl Simulation {
             self.begin_step()?;
             match &self.solver {
                 Solver::Explicit(_) => {
-                    let look = self.solver.next_look().min(self.next_change());
-                    let next = look.min(self.next_kept().max(self.step_count() + 1));
+                    let check = self.solver.next_check().min(self.next_change());
+                    let next = check.min(self.next_kept().max(self.step_count() + 1));
                     let next = next.min(self.ports.next_end()).min(self.next_tick());
                     self.some_steps(target.min(next))?;
                     self.end_batches()?;
                 }
                 Solver::Relaxation(relaxing) if relaxing.equilibrium.reached => return Ok(()),
                 Solver::Relaxation(relaxing) => {
-                    let next = relaxing.next_look();
+                    let next = relaxing.next_check();
                     // who asks again after it was given up is told again
                     if self.step_count() < next {
                         self.some_steps(target.min(next))?;
                     }
                     if self.step_count() >= next {
-                        self.look()?;
+                        self.check_equilibrium()?;
                     }
                 }
             }

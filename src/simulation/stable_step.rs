@@ -125,14 +125,14 @@ pub(super) fn choose(
     let bound = found_bound(world, diagnostics)?;
     let integration = &scene.scene.integration;
     // what the elements are stable up to, once they are made heavier where the scene wants that
-    let heavier = match scene.scene.when_unstable() {
+    let scaled = match scene.scene.when_unstable() {
         WhenUnstable::ScaleMass { most } => added_mass::at_the_start(scene, &bound, most, world, diagnostics)?,
         _ => bound.time_step,
     };
     // rounding of means must not take what the elements alone allow
     let by_nodes = step_of(bound_at_rest(world));
     // where nothing moves by itself, anything is stable: the elements' step is as good as any
-    let certain = if by_nodes.is_finite() { by_nodes.max(heavier) } else { heavier };
+    let certain = if by_nodes.is_finite() { by_nodes.max(scaled) } else { scaled };
     let stays = reason_to_stay(&scene.scene);
     if integration.bound == StepBound::Iterated
         && scene.scene.when_unstable() == WhenUnstable::Adapt
@@ -147,11 +147,11 @@ pub(super) fn choose(
     // the bounds are certain as well: at rest the best of all
     let limit = step_of(found.at_most).max(certain);
     let (found_from, stable_step) = match integration.bound {
-        StepBound::Elements => ("elements", heavier),
-        StepBound::Auto if stays.is_some() => ("elements", heavier),
+        StepBound::Elements => ("elements", scaled),
+        StepBound::Auto if stays.is_some() => ("elements", scaled),
         _ if limit > certain => ("iterated", limit),
-        _ if certain > heavier => ("nodes", certain),
-        _ => ("elements", heavier),
+        _ if certain > scaled => ("nodes", certain),
+        _ => ("elements", scaled),
     };
     let found_from = if integration.step.is_some() { "scene" } else { found_from };
     let mut because = because(&scene.scene, certain, stable_step, &found, stays);

@@ -5,7 +5,7 @@ use crate::backend::Buffers;
 use crate::backend::kernel::Kernel;
 use crate::backend::many_steps::{Dispatched, MOST_ELEMENTS, step_by_step, take_small_bodies};
 use crate::backend::node_stage::{NodeStage, node_kernels};
-use crate::backend::patch_step::take_inner_nodes;
+use crate::backend::patch_step::take_interior_nodes;
 use crate::systems::{OnDevice, System};
 use bevy_ecs::prelude::*;
 
@@ -45,10 +45,10 @@ pub(super) fn step_kernels(
     match plan.elements_then_nodes() {
         Ok([elements, nodes]) => {
             let (elements, stages) = (&mut kernels[elements], &mut stages[nodes]);
-            let inner = take_inner_nodes(elements, stages, &mut dispatched, world, buffers);
+            let inner = take_interior_nodes(elements, stages, &mut dispatched, world, buffers);
             kernels[nodes].extend(inner);
         }
-        Err(reason) => dispatched.iter_mut().for_each(|body| reason.clone_into(&mut body.inside_because)),
+        Err(reason) => dispatched.iter_mut().for_each(|body| reason.clone_into(&mut body.interior_because)),
     }
     for ((kernels, stages), pass) in kernels.iter_mut().zip(stages).zip(passes) {
         kernels.extend(node_kernels(stages, pass.systems.len() > 1, buffers));

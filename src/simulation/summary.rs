@@ -52,11 +52,11 @@ pub struct Summary {
     pub setup_seconds: f64,
     /// Time from the first step to the last, solving and writing (s).
     pub run_seconds: f64,
-    /// Of it what steps took, guards and looks at the stable step included (s).
+    /// Of it what steps took, guards and stability checks included (s).
     pub solving_seconds: f64,
     /// Of it what observing and writing took: tables, fields, snapshots, `nodes.csv` (s).
     pub writing_seconds: f64,
-    /// Solving time over simulated time; below 1 is faster than life.
+    /// Solving time over simulated time; below 1 is faster than real time.
     pub real_time_factor: f64,
     /// Solving time a step (s).
     pub seconds_a_step: f64,
@@ -245,7 +245,7 @@ impl Simulation {
     }
 }
 
-fn system_time(entry: &super::Entry, plan: &super::plan::Plan, on_gpu: bool) -> SystemTime {
+fn system_time(entry: &super::ScheduledPass, plan: &super::plan::Plan, on_gpu: bool) -> SystemTime {
     let because: Vec<&str> = entry.systems.iter().map(|&place| plan.systems[place].because.as_str()).collect();
     let (name, because) = (entry.name.clone(), because.join("; "));
     match &entry.job {

@@ -85,7 +85,7 @@ pub fn unload(
     let mut search = Search::of(file, options, how)?;
     let mut iterations: Vec<UnloadingStep> = Vec::new();
     while iterations.len() < how.most {
-        let Some(step) = search.look(&iterations)? else { continue };
+        let Some(step) = search.evaluate(&iterations)? else { continue };
         tell(&step);
         iterations.push(step);
         if step.largest <= search.allowed {
@@ -144,7 +144,7 @@ impl<'a> Search<'a> {
 
     /// Finds how far the equilibrium of the present rest shape is from the loaded one; `None` where there is none and
     /// the shape has been moved half of the way back.
-    fn look(&mut self, iterations: &[UnloadingStep]) -> Result<Option<UnloadingStep>, Error> {
+    fn evaluate(&mut self, iterations: &[UnloadingStep]) -> Result<Option<UnloadingStep>, Error> {
         let (placed, steps) = match self.equilibrium() {
             Ok(found) => found,
             Err(error @ (Error::Scene(_) | Error::NotConverged(_) | Error::Unstable(_))) => {

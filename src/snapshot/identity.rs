@@ -69,7 +69,7 @@ pub fn identity(scene: &Scene, world: &mut World) -> Identity {
     add("time step (from `duration` and `integration`)", world.resource::<Clock>().time_step.to_bits());
     let (mut meshes, mut laws) = (XxHash64::default(), XxHash64::default());
     let columns = all_columns();
-    for (_, place) in super::columns::places(world) {
+    for (_, place) in super::state_columns::places(world) {
         // fields of elements too: fibres of another file pull otherwise
         for column in columns.iter().filter(|column| matches!(column.role, Role::Structure | Role::Given)) {
             if let Some(bytes) = (column.bytes)(world, place) {

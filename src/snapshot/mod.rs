@@ -2,29 +2,29 @@
 //! from it in another process. What goes on from a snapshot gives the same bits as what was never interrupted, on the
 //! same backend.
 //!
-//! A snapshot holds the columns that steps carry on (compensation, viscous memory, removed elements and booked work
-//! among them), the clock, and the state that custom systems [declare](crate::systems::System::with_state). What a
+//! A snapshot holds the columns that steps carry on (compensation, viscous memory, removed elements and accumulated
+//! work among them), the clock, and the state that custom systems [declare](crate::systems::System::with_state). What a
 //! scene says stays in the scene: a snapshot fits only simulations of the same [`Identity`].
 
-mod columns;
 mod error;
 mod format;
 mod identity;
 mod packed;
+mod state_columns;
 
-pub use columns::Place;
 pub use error::SnapshotError;
 pub use format::VERSION;
 pub use identity::{Identity, identity};
 pub use packed::PackedSnapshot;
+pub use state_columns::ColumnOwner;
 
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::Error;
 use crate::output::{OutputError, replace};
 use bevy_ecs::prelude::*;
-use columns::{state_columns, update_faces};
 use serde::{Deserialize, Serialize};
+use state_columns::{state_columns, update_faces};
 use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
@@ -50,7 +50,7 @@ struct Head {
     /// The states of custom systems, as RON.
     systems: BTreeMap<String, String>,
     /// How the simulation goes on from here: the simulation's own words, as RON.
-    pace: String,
+    resume_state: String,
 }
 
 impl PartialEq for Head {
@@ -63,7 +63,7 @@ impl PartialEq for Head {
 #[derive(Clone, Debug, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 struct ColumnEntry {
-    place: Place,
+    place: ColumnOwner,
     name: String,
     bytes: u64,
 }
@@ -131,13 +131,13 @@ impl Snapshot {
     }
 
     /// How the simulation goes on from here.
-    pub(crate) fn pace(&self) -> &str {
-        &self.head.pace
+    pub(crate) fn resume_state(&self) -> &str {
+        &self.head.resume_state
     }
 
     /// Sets it.
-    pub(crate) fn set_pace(&mut self, pace: String) {
-        self.head.pace = pace;
+    pub(crate) fn set_resume_state(&mut self, resume_state: String) {
+        self.head.resume_state = resume_state;
     }
 
     /// The time (s).
@@ -190,7 +190,7 @@ impl Snapshot {
             parts.insert("clock".into(), text(ron::to_string(&snapshot.head.clock)));
             parts.insert("guards".into(), text(ron::to_string(&snapshot.head.guards)));
             parts.insert("systems".into(), text(ron::to_string(&snapshot.head.systems)));
-            parts.insert("pace".into(), snapshot.head.pace.clone().into_bytes());
+            parts.insert("resume_state".into(), snapshot.head.resume_state.clone().into_bytes());
             parts.insert("identity".into(), text(ron::to_string(&snapshot.head.identity)));
             parts
         };
@@ -240,7 +240,7 @@ fn take(world: &mut World, keeping: &Keeping, clock: Clock) -> Result<Snapshot, 
         columns: entries,
         guards: world.get_resource::<GuardMemory>().cloned().unwrap_or_default(),
         systems,
-        pace: String::new(),
+        resume_state: String::new(),
     };
     Ok(Snapshot { head, data })
 }
@@ -276,7 +276,7 @@ fn check(
     snapshot: &Snapshot,
     world: &World,
     keeping: &Keeping,
-    columns: &[columns::StateColumn],
+    columns: &[state_columns::StateColumn],
 ) -> Result<(), SnapshotError> {
     let head = &snapshot.head;
     let foreign = |reason: String| Err(SnapshotError::Foreign(reason));

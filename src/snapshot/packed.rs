@@ -22,7 +22,7 @@ impl Snapshot {
 
     /// Bytes that its columns take in memory, and about those of the rest.
     pub fn size(&self) -> usize {
-        self.data.len() + self.head.pace.len() + self.head.columns.len() * size_of::<super::ColumnEntry>()
+        self.data.len() + self.head.resume_state.len() + self.head.columns.len() * size_of::<super::ColumnEntry>()
     }
 }
 

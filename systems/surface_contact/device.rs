@@ -5,7 +5,7 @@
 //! in which it is so, and go through all triangles: slow, and right. So no step ever misses a contact, and what is found
 //! does not depend on when lists are made.
 
-use super::columns::slices;
+use super::body_slices::slices;
 use super::{MeetingColumns, Surface, SurfaceContacts, motion, survey};
 use crate::backend::cpu::Cpu;
 use crate::backend::device::{Device, bring_to_host};

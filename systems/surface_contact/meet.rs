@@ -1,9 +1,9 @@
 //! The forces that keep points outside of what they face.
 
-use super::columns::{BodySlices, set_vector, vector, vector_at};
+use super::body_slices::{BodySlices, set_vector, vector, vector_at};
 use super::faced::Found;
 use super::{Meeting, Surface, SurfaceContacts};
-use crate::backend::cpu::{Cpu, Factors};
+use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
 use crate::contact::{Contact, ContactSet, Facing, Point};
 use crate::math::Scalar;
@@ -79,18 +79,18 @@ pub(super) fn meet<T: Scalar>(
     (clock, cpu): (&Clock, &Cpu),
     bodies: &mut [BodySlices<'_, T>],
 ) {
-    let factors = Factors::<f64>::of(clock);
+    let coefficients = IntegrationCoefficients::<f64>::of(clock);
     let settling = contacts.settling(clock);
     let found = std::mem::take(&mut contacts.surface.found);
     let mut set = std::mem::take(&mut contacts.surface.set);
     release(&mut contacts.surface, bodies);
     begin(contacts, &found, (largest, settling), bodies);
-    gather(contacts, &mut set, &found, (&factors, settling), bodies);
+    gather(contacts, &mut set, &found, (&coefficients, settling), bodies);
     forget(contacts, bodies);
     note_facing(contacts, &found, bodies);
     set.solve(contacts.sweeps, cpu);
-    let books = clock.relaxation.is_none().then_some(factors.booked);
-    note_touches(contacts, &set, books, bodies);
+    let work_factor = clock.relaxation.is_none().then_some(coefficients.work_factor);
+    note_touches(contacts, &set, work_factor, bodies);
     push(contacts, bodies);
     (contacts.surface.set, contacts.surface.found) = (set, found);
 }
@@ -129,7 +129,7 @@ fn gather<T: Scalar>(
     contacts: &mut SurfaceContacts,
     set: &mut ContactSet,
     found: &[Found],
-    (factors, settling): (&Factors<f64>, f64),
+    (coefficients, settling): (&IntegrationCoefficients<f64>, f64),
     bodies: &[BodySlices<'_, T>],
 ) {
     set.clear();
@@ -143,7 +143,7 @@ fn gather<T: Scalar>(
         if *slot == u32::MAX {
             *slot = foreseen.len() as u32;
             let (body, row) = surface.nodes[node as usize];
-            let of_node = bodies[body as usize].foresee(row as usize, factors);
+            let of_node = bodies[body as usize].foresee(row as usize, coefficients);
             set.steps.push(of_node.step);
             set.responses.push(of_node.free / of_node.to_force);
             foreseen.push((node, of_node));
@@ -202,7 +202,7 @@ fn note_facing<T: Scalar>(contacts: &mut SurfaceContacts, found: &[Found], bodie
 fn note_touches<T: Scalar>(
     contacts: &mut SurfaceContacts,
     set: &ContactSet,
-    books: Option<f64>,
+    work_factor: Option<f64>,
     bodies: &mut [BodySlices<'_, T>],
 ) {
     let mut forces = std::mem::take(&mut contacts.surface.forces);
@@ -220,11 +220,11 @@ fn note_touches<T: Scalar>(
             touch[4] = T::from_f64(if contact.slides { SLIDES } else { STICKS });
             touch[5] = T::from_f64(met.gap + contact.normal.dot(after));
         }
-        if let Some(booked) = books {
+        if let Some(work_factor) = work_factor {
             let before: DVec3 = contact.parts().map(|(slot, weight)| surface.foreseen[slot].1.before * weight).sum();
             let along = (after - contact.normal * after.dot(contact.normal)).length();
             let slid = touch[6].to_f64() + if contact.slides { along } else { 0.0 };
-            let lost = touch[7].to_f64() - booked * force.dot(0.5 * (before + after));
+            let lost = touch[7].to_f64() - work_factor * force.dot(0.5 * (before + after));
             touch[6] = T::from_f64(slid);
             touch[7] = T::from_f64(lost);
         }

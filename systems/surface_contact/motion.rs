@@ -1,7 +1,7 @@
 //! How far surfaces have moved, and what that allows to leave as it is: points that are far sleep, lists that hold all
 //! that is near serve on.
 
-use super::columns::{BodySlices, vector};
+use super::body_slices::{BodySlices, vector};
 use super::survey::MARGIN;
 use super::{MeetingColumns, Surface, SurfaceContacts};
 use crate::backend::cpu::Cpu;
@@ -209,7 +209,7 @@ pub(super) fn search<T: Scalar>(
 }
 
 /// Sees where the nodes are that are near something, and which way triangles look.
-pub(super) fn look<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], cpu: &Cpu) {
+pub(super) fn update_places<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], cpu: &Cpu) {
     let near = std::mem::take(&mut contacts.surface.near);
     place(contacts, bodies, Some(&near.nodes));
     let Surface { triangles, places, normals, fresh, .. } = &mut contacts.surface;

@@ -13,7 +13,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-STEPS, LOOKS = 100_000, 50
+STEPS, SAMPLES = 100_000, 50
 SCENE = """(
     duration: DURATION,
     bodies: {"b": (mesh: Box(size: (0.1, 0.02, 0.02), cells: (5, 1, 1), elements: ELEMENT), material: "m")},
@@ -29,7 +29,7 @@ NODES = [(x, y, z) for x in (0.02, 0.04, 0.06, 0.08, 0.1) for y in (0, 0.02) for
 
 def scene(folder, element, step, compensated):
     probes = ", ".join(
-        f'"n{i}": (what: Displacement, on: Sphere(center: ({x}, {y}, {z}), radius: 1e-6), every: {STEPS // LOOKS * step!r})'
+        f'"n{i}": (what: Displacement, on: Sphere(center: ({x}, {y}, {z}), radius: 1e-6), every: {STEPS // SAMPLES * step!r})'
         for i, (x, y, z) in enumerate(NODES))
     text = SCENE.replace("DURATION", repr(STEPS * step)).replace("ELEMENT", element).replace("PROBES", probes)
     text = text.replace("STEP", repr(step)).replace("COMPENSATED", str(compensated).lower())
@@ -39,7 +39,7 @@ def scene(folder, element, step, compensated):
 
 
 def course(sinew, element, step, options, compensated=True):
-    """All displacements (m) at all looks."""
+    """All displacements (m) at all samples."""
     with tempfile.TemporaryDirectory() as folder:
         command = [sinew, "run", str(scene(folder, element, step, compensated)), "--threads", "1", *options, "--out", f"{folder}/out"]
         told = subprocess.run(command, capture_output=True, text=True)
@@ -49,7 +49,7 @@ def course(sinew, element, step, options, compensated=True):
         for i in range(len(NODES)):
             with open(f"{folder}/out/probe_n{i}.csv") as file:
                 tables.append([[float(value) for value in row[1:4]] for row in list(csv.reader(file))[1:]])
-        return [[tables[node][look] for node in range(len(NODES))] for look in range(len(tables[0]))]
+        return [[tables[node][sample] for node in range(len(NODES))] for sample in range(len(tables[0]))]
 
 
 def length(u, v=(0, 0, 0)):
@@ -57,8 +57,8 @@ def length(u, v=(0, 0, 0)):
 
 
 def difference(exact, other):
-    """The largest difference of a node at any look over the largest displacement."""
-    assert len(exact) == len(other) >= LOOKS, (len(exact), len(other))
+    """The largest difference of a node at any sample over the largest displacement."""
+    assert len(exact) == len(other) >= SAMPLES, (len(exact), len(other))
     pairs = [(u, v) for a, b in zip(exact, other) for u, v in zip(a, b)]
     return max(length(u, v) for u, v in pairs) / max(length(u) for u, _ in pairs)
 

@@ -89,8 +89,8 @@ impl Dice {
         if wild.u8(..5) < 2 { 1.0 } else { size(wild, 1.0, most) }
     }
 
-    /// When a course in time begins at once and so late that only the last look can see it, as a share of the whole; if
-    /// it does.
+    /// When a course in time begins at once and so late that only the last check can see it, as a share of the whole;
+    /// if it does.
     pub fn late(&mut self) -> Option<f64> {
         let temper = self.temper;
         let tens = match temper {

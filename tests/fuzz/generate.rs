@@ -1,5 +1,5 @@
 //! Whole scenes made up from a seed: small, sound, with every feature that a scene can have. Every other one is
-//! violent: loads and motions far beyond what holds it, steps that are too large, guards that hardly look.
+//! violent: loads and motions far beyond what holds it, steps that are too large, guards that hardly check.
 
 use crate::dice::{Dice, Temper, number, one_of, size, vector};
 use fastrand::Rng;
@@ -181,7 +181,7 @@ fn place(size: f64, r: &mut Rng) -> String {
 fn curve(duration: f64, r: &mut Dice) -> String {
     let mut time = || duration * number(r, 0.0, 1.0);
     let (a, b) = (time(), time());
-    // all at once, and so late that only the last look can see it
+    // all at once, and so late that only the last check can see it
     if let Some(share) = r.late() {
         return format!(", curve: Step(start: {:?})", share * duration);
     }
@@ -296,7 +296,7 @@ fn violent_steps(mild: String, stable: Option<f64>, temper: Temper, wild: &mut R
     }
 }
 
-/// How a violent scene is guarded: often so seldom that only the look at the end sees anything.
+/// How a violent scene is guarded: often so seldom that only the check at the end sees anything.
 fn violent_guards(every: u64, may_be_off: bool, temper: Temper, wild: &mut Rng) -> String {
     let every = if wild.bool() { 1000 } else { every };
     match wild.u8(..if temper == Temper::Late { 2 } else { 4 }) {

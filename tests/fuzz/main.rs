@@ -53,7 +53,7 @@ fn place() -> PathBuf {
 }
 
 /// Ends the process when an input takes for ever.
-fn watch() {
+fn catch_panics() {
     std::thread::spawn(|| {
         let mut before = u64::MAX;
         loop {
@@ -117,7 +117,7 @@ fn hostile_files_are_read_or_refused() {
             *last = format!("panics at {place}: {said}");
         }
     }));
-    watch();
+    catch_panics();
     let all = number("SINEW_FUZZ", EVERYDAY);
     let only = std::env::var("SINEW_FUZZ_ONLY").unwrap_or_default();
     let mut found = BTreeMap::new();

@@ -171,7 +171,7 @@ fn steps(simulation: &mut Simulation) -> Result<(), Error> {
     } else {
         simulation.advance(3)?;
     }
-    // the guards look when something is observed
+    // the guards check when something is observed
     simulation.observe()?;
     let names: Vec<String> = simulation.scene().bodies.keys().cloned().collect();
     for name in names {

@@ -141,7 +141,7 @@ fn run_into_a_folder(scene: &SceneFile, options: &Options, whole: &Run) -> Resul
 
 /// What changes when the step, masses or elements follow what is stable.
 fn what_is_known(simulation: &Simulation) -> Option<(u64, u64, u64, f64)> {
-    simulation.step_history().map(|seen| (seen.changes, seen.sharp_looks, seen.removed, seen.added_mass))
+    simulation.step_history().map(|seen| (seen.changes, seen.eigenvalue_estimates, seen.removed, seen.added_mass))
 }
 
 /// How a run ended, and whether what it calls a result is one.

@@ -6,7 +6,7 @@ use sinew::backend::Buffers;
 use sinew::backend::kernel::{BufferId, Composed, Composer, Kernel, KernelError, MostBuffers};
 use sinew::backend::many_steps::{Dispatched, step_by_step, take_small_bodies};
 use sinew::backend::node_stage::{NodeStage, node_kernels};
-use sinew::backend::patch_step::take_inner_nodes;
+use sinew::backend::patch_step::take_interior_nodes;
 use sinew::components::*;
 use sinew::systems::{OnDevice, Registry};
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
@@ -347,7 +347,7 @@ pub fn small_bodies(of_nodes: &[&str], world: &mut World, buffers: &mut dyn Buff
 }
 
 /// Kernels of patches that move the nodes inside them, those of the other nodes, and what is told of each body.
-pub fn inner_nodes(
+pub fn interior_nodes(
     of_nodes: &[&str],
     world: &mut World,
     buffers: &mut dyn Buffers,
@@ -356,7 +356,7 @@ pub fn inner_nodes(
     let mut elements = forces.kernels(world, buffers);
     let mut stages = stages_of(of_nodes, world, buffers);
     let mut told = step_by_step("patches are to move their nodes", world);
-    let inner = take_inner_nodes(&mut elements, &mut stages, &mut told, world, buffers);
+    let inner = take_interior_nodes(&mut elements, &mut stages, &mut told, world, buffers);
     (inner, node_kernels(stages, true, buffers), told)
 }
 
@@ -373,8 +373,8 @@ fn stages_of(systems: &[&str], world: &mut World, buffers: &mut dyn Buffers) -> 
 }
 
 /// The kernels of the guards, which run beside the step.
-pub fn watch_kernels(world: &mut World) -> Vec<(String, Kernel)> {
-    sinew::systems::add_watch_columns(world);
-    let kernels = sinew::systems::watch_kernels(world, &mut Described::default());
+pub fn guard_kernels(world: &mut World) -> Vec<(String, Kernel)> {
+    sinew::systems::add_guard_columns(world);
+    let kernels = sinew::systems::guard_kernels(world, &mut Described::default());
     kernels.into_iter().map(|kernel| ("observe".to_string(), kernel)).collect()
 }

@@ -72,7 +72,7 @@ fn tools_hold_the_same_nodes_with_the_same_forces() {
                 let world = pair.before();
                 let clock = world.resource::<Clock>();
                 let mass = world.get::<Mass>(body).unwrap().get(node);
-                let factor = clock.time_step * clock.between_middles();
+                let factor = clock.time_step * clock.half_step_interval();
                 let force = pair.host().get::<ExternalForce>(body).unwrap().vector(node).length();
                 (mass / factor) * size_of(world, body).1 + force
             };

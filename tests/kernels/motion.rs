@@ -48,7 +48,7 @@ fn nodes_relax_the_same_way() {
             let damped = |world: &mut World| {
                 let mut clock = world.resource_mut::<Clock>();
                 let relaxation = clock.relaxation.as_mut().unwrap();
-                (relaxation.damping, relaxation.gain) = (0.3, 1.7);
+                (relaxation.damping, relaxation.force_scale) = (0.3, 1.7);
             };
             let Some(mut pair) = run("integrate", &effects, step, damped) else { return };
             compare_motion(&mut pair, &effects, 0.0);
@@ -151,7 +151,7 @@ fn compare_noticed(pair: &mut Pair) {
             // forces under 0.01 N along both steps, each with its own twelve roundings, and sums of 64
             let allowed = 40.0 * UNIT * 0.01 * steps;
             assert!((a - b).abs() <= allowed, "{group} of {body}: host {a:e}, GPU {b:e}, allowed {allowed:e}");
-            assert!(a != 0.0, "nothing is booked");
+            assert!(a != 0.0, "nothing is counted");
         }
     }
 }

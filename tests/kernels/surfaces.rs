@@ -75,7 +75,7 @@ fn surfaces_push_the_same_nodes_with_the_same_forces() {
             let masses = pair.before().get::<Mass>(body).unwrap();
             for row in 0..masses.len() {
                 let [(host, state), (device, state_there)] = [of(&pair.host, row), of(&pair.device, row)];
-                let to_force = masses.get(row) / (clock.time_step * clock.between_middles());
+                let to_force = masses.get(row) / (clock.time_step * clock.half_step_interval());
                 let bound = 8.0 * 0.04 * UNIT * to_force + 100.0 * UNIT * host.length();
                 touched += usize::from(host.length() > 0.0);
                 if (host - device).length() > bound || state != state_there {

@@ -92,7 +92,7 @@ fn tools_push_the_same_nodes_with_the_same_forces() {
                 let world = pair.before();
                 let clock = world.resource::<Clock>();
                 let mass = world.get::<Mass>(body).unwrap().get(node);
-                let factor = clock.time_step * clock.between_middles();
+                let factor = clock.time_step * clock.half_step_interval();
                 let size = world.get::<ToolContacts>(body).unwrap().edge * 5.0;
                 (mass / factor) * size + pair.host().get::<ExternalForce>(body).unwrap().vector(node).length()
             };

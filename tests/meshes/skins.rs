@@ -146,15 +146,15 @@ fn points_whose_element_has_gone_go_with_the_nearest_that_lives() {
             assert!(carrier.place(&nodes).distance(x) < 1e-15, "{kind:?}");
         }
         let mut skin = Skin::new(mesh.clone(), surface(&points));
-        skin.look(first);
-        skin.look(then.clone());
+        skin.update_alive(first);
+        skin.update_alive(then.clone());
         assert_eq!(skin.embedding(), &now, "{kind:?}: the way there does not matter");
         let shown = skin.triangles();
         let gone = |point: &u32| !then[whole.carriers()[*point as usize].as_ref().unwrap().element];
         for triangle in surface(&points).triangles {
             assert_eq!(shown.contains(&triangle), !triangle.iter().all(gone), "{kind:?}");
         }
-        skin.look(vec![false; mesh.element_count()]);
+        skin.update_alive(vec![false; mesh.element_count()]);
         assert!(skin.triangles().is_empty());
         assert!(skin.places(&mesh.points).iter().all(|place| place.is_finite()));
     }

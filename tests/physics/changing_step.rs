@@ -34,15 +34,15 @@ fn step_adapts_where_tissue_is_squeezed_and_the_run_ends_in_time() {
         assert!(simulation.time_step() <= 0.96 * limit, "{} of {limit}", simulation.time_step());
         let summary = simulation.summary("finished").unwrap();
         let seen = &summary.probes["top"];
-        near("the last look", seen.0, 2.0, 2.0, 1e-12);
+        near("the last check", seen.0, 2.0, 2.0, 1e-12);
         near("the squeezed height", seen.1[2], -0.028, 0.028, run.bound(1e-12, 1e-5));
     }
 }
 
 /// The step, where it began, how it went: all that a run goes on with beside its columns.
-fn pace_of(simulation: &mut Simulation) -> String {
+fn resume_state_of(simulation: &mut Simulation) -> String {
     let history = *simulation.step_history().unwrap();
-    let taken = (history.changes, history.smallest, history.largest, history.looks, history.sharp_looks);
+    let taken = (history.changes, history.smallest, history.largest, history.checks, history.eigenvalue_estimates);
     let clock = (simulation.step_count(), simulation.time(), simulation.time_step(), simulation.planned_steps());
     format!("{clock:?} {taken:?} {:?}", simulation.energies().unwrap())
 }
@@ -55,15 +55,15 @@ fn what_goes_on_after_the_step_has_changed_gives_the_same_bits() {
         whole.advance_to(1.0).unwrap();
         let before = whole.step_history().unwrap().changes;
         let kept = Snapshot::from_bytes(&whole.snapshot().unwrap().to_bytes().unwrap()).unwrap();
-        let (then, place) = (pace_of(&mut whole), bits(&mut whole, "b"));
+        let (then, place) = (resume_state_of(&mut whole), bits(&mut whole, "b"));
         whole.finish().unwrap();
         let after = whole.step_history().unwrap().changes;
         assert!(before > 0 && after > before, "the step must change before and after: {before} {after}");
         let mut other = run.start(&text);
         other.restore(&kept).unwrap();
-        assert!(pace_of(&mut other) == then && bits(&mut other, "b") == place, "{}: another state", run.name);
+        assert!(resume_state_of(&mut other) == then && bits(&mut other, "b") == place, "{}: another state", run.name);
         other.finish().unwrap();
-        assert_eq!(pace_of(&mut other), pace_of(&mut whole), "{}: another pace", run.name);
+        assert_eq!(resume_state_of(&mut other), resume_state_of(&mut whole), "{}: another resume state", run.name);
         assert!(bits(&mut other, "b") == bits(&mut whole, "b"), "{}: another way on", run.name);
     }
 }
@@ -85,15 +85,15 @@ fn the_same_step_all_along_becomes_unstable_there() {
     }
 }
 
-/// Looking at the stable step is a part of the run as its systems are.
+/// Checking the stable step is a part of the run as its systems are.
 #[test]
-fn looks_count_as_time_of_the_run() {
+fn checks_count_as_time_of_the_run() {
     let mut simulation = configurations()[0].start(&squeezed("bound: Iterated", 0.3, "Hex8"));
     simulation.advance_towards_end(u64::MAX).unwrap();
     let summary = simulation.summary("finished").unwrap();
-    let (looks, systems) = (summary.step_history.unwrap().seconds, summary.systems.iter().filter_map(|s| s.seconds));
-    let parts = looks + systems.sum::<f64>();
-    assert!(looks > 0.0 && summary.run_seconds >= parts, "{} s of {parts} s", summary.run_seconds);
+    let (checks, systems) = (summary.step_history.unwrap().seconds, summary.systems.iter().filter_map(|s| s.seconds));
+    let parts = checks + systems.sum::<f64>();
+    assert!(checks > 0.0 && summary.run_seconds >= parts, "{} s of {parts} s", summary.run_seconds);
 }
 
 /// Free vibration of a block whose step is changed by hand every few steps.
@@ -113,7 +113,7 @@ fn vibrating(steps: &[f64]) -> (Simulation, Energies) {
 }
 
 #[test]
-fn energy_and_momentum_are_booked_across_changes_of_the_step() {
+fn energy_and_momentum_are_counted_across_changes_of_the_step() {
     let steps = [1e-3, 4e-4, 9e-4, 2e-4, 1e-3, 5e-4, 7e-4, 3e-4];
     let (mut simulation, energies) = vibrating(&steps);
     let start = 0.5 * simulation.masses("b").unwrap().iter().sum::<f64>() * 1e-3;
@@ -122,7 +122,7 @@ fn energy_and_momentum_are_booked_across_changes_of_the_step() {
     let (_, before) = vibrating(&[1e-3]);
     let first = before.kinetic + before.strain + before.hourglass - before.load_work.unwrap();
     println!("{kept:e} J of {first:e} J, scale {scale:e} J, {start:e}");
-    // each change books the work of the forces to second order in the step
+    // each change counts the work of the forces to second order in the step
     near("energy", kept, first, scale, 2e-3);
     let time: f64 = steps.iter().map(|step| 50.0 * step).sum();
     near("time", simulation.time(), time, time, 1e-14);
@@ -210,9 +210,9 @@ fn what_goes_by_time_and_what_is_observed_keeps_its_times() {
 }
 
 /// Tetrahedra between walls, squeezed to .3: the stable step shrinks by a tenth while strains change by a twentieth,
-/// and what was found to be stable by a twentieth was not any more when it was looked at again.
+/// and what was found to be stable by a twentieth was not any more when it was checked again.
 #[test]
-fn a_step_close_to_the_limit_is_looked_at_before_it_is_beyond_it() {
+fn a_step_close_to_the_limit_is_checked_before_it_is_beyond_it() {
     for run in configurations() {
         for elements in ["Tet4", "Tet4NodalPressure"] {
             let text = squeezed("when_unstable: Adapt", 0.28, elements)
@@ -221,8 +221,8 @@ fn a_step_close_to_the_limit_is_looked_at_before_it_is_beyond_it() {
             let mut simulation = run.start(&text);
             let first = simulation.time_step();
             let mut least = f64::INFINITY;
-            for look in 1..=40 {
-                simulation.advance_to(0.04 * f64::from(look)).unwrap();
+            for check in 1..=40 {
+                simulation.advance_to(0.04 * f64::from(check)).unwrap();
                 // 3 % is how far the limit may be underestimated
                 least = least.min(simulation.stable_limit().unwrap().unwrap() / 0.97 / simulation.time_step());
             }
@@ -232,8 +232,8 @@ fn a_step_close_to_the_limit_is_looked_at_before_it_is_beyond_it() {
     }
 }
 
-/// H07 in a hurry: what is pressed to a twentieth of its height within .4 s moves many steps' worth between two looks
-/// where it is thinnest. Looks that went by the mean of the stretches came too late in half of these runs, and steps
+/// H07 in a hurry: what is pressed to a twentieth of its height within .4 s moves many steps' worth between two checks
+/// where it is thinnest. Checks that went by the mean of the stretches came too late in half of these runs, and steps
 /// that grew at once by more than twofold made energy.
 #[test]
 #[ignore = "long"]

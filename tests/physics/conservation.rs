@@ -2,7 +2,7 @@
 //!
 //! Central differences keep Σ m v and Σ m x × v (x at the end, v in the middle of a step) exactly when elements exert
 //! no net force and no net moment: what is left is rounding, 1e-10 in f64 and 1e-4 in f32 (gate G4). The balance of
-//! energy (gate G2) uses booked work: |KE + IE + HG + losses − W − E₀| below 1 % in f64, 2 % in f32 of the largest
+//! energy (gate G2) uses accumulated work: |KE + IE + HG + losses − W − E₀| below 1 % in f64, 2 % in f32 of the largest
 //! term.
 
 use crate::columns::{masses, positions, velocities};
@@ -61,7 +61,7 @@ fn free_body_keeps_its_momentum_and_angular_momentum() {
     }
 }
 
-/// Relative imbalance of energy by booked work; elastic energy as the laws have it, or with viscosity as booked.
+/// Relative imbalance of energy by accumulated work; elastic energy as the laws have it, or with viscosity as counted.
 fn imbalance(simulation: &mut Simulation, start: f64, viscous: bool) -> f64 {
     let e = simulation.energies().unwrap();
     println!("{e:?}");

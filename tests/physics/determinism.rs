@@ -116,23 +116,23 @@ fn all_vector_registers_give_the_same_motion() {
     }
 }
 
-/// Nodes whose work is booked are moved one after the other, others a register full at a time.
+/// Nodes whose work is counted are moved one after the other, others a register full at a time.
 #[test]
 fn booking_work_changes_no_bit() {
     let (folder, mesh) = (tempfile::tempdir().unwrap(), mesh(6));
     mesh.write(&folder.path().join("mesh.vtk"));
     for precision in [Precision::F64, Precision::F32] {
-        let [booked, plain] = [true, false].map(|booked| {
+        let [counted, plain] = [true, false].map(|counted| {
             let text = scene(Effects::Laws);
-            let text = if booked { text } else { text.replace("output: (energies_every: 0.1)", "output: ()") };
+            let text = if counted { text } else { text.replace("output: (energies_every: 0.1)", "output: ()") };
             let options = Options { backend: BackendChoice::Cpu, precision, ..Options::default() };
             let mut simulation = Configuration { name: "CPU", options }.start_in(&text, folder.path());
             simulation.advance(60).unwrap();
             let known = simulation.energies().unwrap().internal_work.is_some();
-            assert_eq!(known, booked, "work must be booked in one of them only");
+            assert_eq!(known, counted, "work must be counted in one of them only");
             bits(&mut simulation, "b")
         });
-        assert!(booked == plain, "{precision:?}");
+        assert!(counted == plain, "{precision:?}");
     }
 }
 

@@ -68,7 +68,7 @@ fn pulse_between_steps_is_not_lost() {
 }
 
 /// A plate is pushed down through the whole block: what is flattened goes, the step follows, and the energy that goes
-/// with it is booked.
+/// with it is counted.
 #[test]
 fn flattened_elements_are_removed_and_the_run_goes_on() {
     for configuration in configurations() {

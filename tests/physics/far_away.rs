@@ -77,7 +77,7 @@ fn a_body_that_flies_far_in_f32_is_warned_of() {
             assert_eq!(warned.len(), wanted, "{}, {velocity} m/s: {warned:?}", run.name);
             for notice in warned {
                 assert!(notice.part == "b" && notice.message.contains("--precision f64"), "{notice:?}");
-                // u·2⁻²⁴/h passes 1e-4 at 8.4 m in cells of 5 mm; looks are up to 256 steps apart
+                // u·2⁻²⁴/h passes 1e-4 at 8.4 m in cells of 5 mm; checks are up to 256 steps apart
                 assert!(notice.value > 1e-4 && notice.time < 0.06, "{notice:?}");
             }
         }

@@ -1,5 +1,5 @@
 //! What begins to move at once is no imbalance of energy, however early the guards look: the strain of half a step is
-//! there then, and its work is not booked yet. What lasts is one.
+//! there then, and its work is not counted yet. What lasts is one.
 
 use crate::configurations::{ELEMENTS, configurations};
 use sinew::bevy_ecs::prelude::*;
@@ -26,7 +26,7 @@ fn what_a_tool_first_touches_is_no_imbalance_however_early_the_guards_look() {
             simulation.finish().unwrap_or_else(|error| panic!("{}, {elements}, {tool}: {error}", run.name));
             let guards = simulation.guards();
             let warned = guards.warnings.iter().any(|notice| notice.criterion == "energy");
-            assert!(guards.looks > 20 && !warned, "{}, {elements}, {tool}: {guards:?}", run.name);
+            assert!(guards.checks > 20 && !warned, "{}, {elements}, {tool}: {guards:?}", run.name);
             assert!(guards.in_doubt.is_none() && guards.imbalance.abs() < 0.01, "{}, {elements}: {guards:?}", run.name);
         }
     }

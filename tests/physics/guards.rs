@@ -1,10 +1,10 @@
-//! The guards: looks see what energies and fields say, limits end a run and warn, and nothing that is no number is
+//! The guards: samples see what energies and fields say, limits end a run and warn, and nothing that is no number is
 //! found late or written.
 
 use crate::configurations::{configurations, scene_of};
 use sinew::bevy_ecs::prelude::*;
 use sinew::components::*;
-use sinew::observation::{HOST_GUARD_STEPS, look};
+use sinew::observation::{HOST_GUARD_STEPS, sample};
 use sinew::output::Folder;
 use sinew::systems::{Phase, Registry, System};
 use sinew::{BackendChoice, Error, Instability, Simulation, Snapshot};
@@ -19,11 +19,11 @@ fn scene(elements: &str, effects: &str, further: &str) -> String {
     )
 }
 
-/// A look is the same as what is computed on the host in f64, one element after the other. f32: a part of 1e5 of the
+/// A sample is the same as what is computed on the host in f64, one element after the other. f32: a part of 1e5 of the
 /// energies by the rounding of strains of 1e-2.
 #[test]
 #[ignore = "long"]
-fn looks_see_the_energies_and_the_most_squeezed_element() {
+fn samples_see_the_energies_and_the_most_squeezed_element() {
     let fibres = "fibres: (eta: 2000, direction: Around(center: (0.05, -0.1, 0), axis: (0, 0, 1))),
         exponential_fibres: [(k1: 500, k2: 0.5, direction: Along(1, 1, 0))],";
     for (run, elements) in
@@ -36,7 +36,7 @@ fn looks_see_the_energies_and_the_most_squeezed_element() {
             simulation.advance(60).unwrap();
             let energies = simulation.energies().unwrap();
             let fields = simulation.fields("b").unwrap();
-            let seen = look(simulation.world_mut()).unwrap();
+            let seen = sample(simulation.world_mut()).unwrap();
             let name = format!("{}, {elements}", run.name);
             let sum =
                 |of: fn(&sinew::backend::cpu::BlockSums) -> f64| seen.parts.iter().map(|(_, s)| of(s)).sum::<f64>();
@@ -60,9 +60,9 @@ fn looks_see_the_energies_and_the_most_squeezed_element() {
     }
 }
 
-/// The work that is always booked is the work that is booked in full where energies are asked for.
+/// The work that is always counted is the work that is counted in full where energies are asked for.
 #[test]
-fn work_against_internal_forces_is_booked_without_being_asked_for() {
+fn work_against_internal_forces_is_counted_without_being_asked_for() {
     let moved =
         "Prescribed(on: Set(\"z1\"), displacement: (0.01, 0, 0.01), rotation: (0, 0, 20), curve: Smooth(end: 0.2)), ";
     for (run, moved) in configurations().iter().flat_map(|run| ["", moved].map(|moved| (run, moved))) {
@@ -72,22 +72,22 @@ fn work_against_internal_forces_is_booked_without_being_asked_for() {
             );
             let mut simulation = run.start(&scene("Hex8", "damping: 3,", &further));
             simulation.advance(300).unwrap();
-            let spent = look(simulation.world_mut()).unwrap().internal_work;
-            (spent, simulation.energies().unwrap())
+            let done = sample(simulation.world_mut()).unwrap().internal_work;
+            (done, simulation.energies().unwrap())
         };
-        let ((spent, plain), (asked, full)) = (of(""), of("output: (energies_every: 1),"));
+        let ((done, plain), (asked, full)) = (of(""), of("output: (energies_every: 1),"));
         assert!(plain.internal_work.is_none() && full.internal_work == Some(asked));
-        let error = (spent / asked - 1.0).abs();
-        println!("{}: {spent:e} J, {asked:e} J: {error:e}", run.name);
+        let error = (done / asked - 1.0).abs();
+        println!("{}: {done:e} J, {asked:e} J: {error:e}", run.name);
         // kept in f32, the steps of prescribed nodes have 1e-7 of their digits
         let bound = run.bound(if moved.is_empty() { 1e-9 } else { 1e-6 }, 1e-5);
-        assert!(error < bound, "{}: {spent:e} instead of {asked:e}", run.name);
+        assert!(error < bound, "{}: {done:e} instead of {asked:e}", run.name);
         assert!((full.strain + full.hourglass - asked).abs() < 0.02 * asked, "{full:?}");
     }
 }
 
 #[test]
-fn a_sound_run_is_looked_at_and_warned_of_nothing() {
+fn a_sound_run_is_checked_and_warned_of_nothing() {
     for (run, elements) in configurations().iter().flat_map(|run| ["Tet4", "Hex8"].map(|elements| (run, elements))) {
         let further = "loads: [Gravity(acceleration: (0, 0, -9.81), curve: Smooth(end: 0.05))],
             constraints: [Fixed(on: Set(\"z0\"))], guards: (every: 50),";
@@ -95,7 +95,7 @@ fn a_sound_run_is_looked_at_and_warned_of_nothing() {
         simulation.advance(400).unwrap();
         let guards = simulation.guards();
         println!("{}, {elements}: {guards:?}", run.name);
-        assert_eq!(guards.looks, 8);
+        assert_eq!(guards.checks, 8);
         assert!(guards.imbalance.abs() < 0.01 && guards.imbalance != 0.0, "{guards:?}");
         assert!(guards.warnings.is_empty(), "{guards:?}");
         let least = guards.least_volume_ratio.unwrap();
@@ -110,7 +110,7 @@ fn broken(result: Result<(), Error>) -> Box<Instability> {
     }
 }
 
-/// Elements that hold more than was ever spent on them, because the book was forged.
+/// Elements that hold more than work was ever done on them, because the sum was forged.
 #[test]
 fn energy_from_nothing_is_warned_of_and_ends_the_run_at_the_limits_of_the_scene() {
     let lenient = "guards: (every: 8, energy: (stop: 1e3)),";
@@ -139,7 +139,7 @@ fn energy_from_nothing_is_warned_of_and_ends_the_run_at_the_limits_of_the_scene(
     }
 }
 
-/// The snapshot with the booked work taken out of it.
+/// The snapshot with the accumulated work taken out of it.
 fn forged(simulation: &mut Simulation, good: Snapshot) -> Snapshot {
     simulation.restore(&good).unwrap();
     let world = simulation.world_mut();
@@ -235,8 +235,8 @@ fn a_jump_of_all_the_length_ends_the_run_and_asks_for_a_ramp() {
     }
 }
 
-/// The ends of a bar are pushed through their cells within one look, one after the other: the first is named, whichever
-/// has the lower number.
+/// The ends of a bar are pushed through their cells within one check, one after the other: the first is named,
+/// whichever has the lower number.
 #[test]
 fn the_first_element_that_turns_inside_out_is_named() {
     for run in configurations() {
@@ -294,7 +294,7 @@ fn last_states_before_a_breakdown_are_written_and_can_be_gone_on_from() {
         let resume = told.split_once("--resume ").map(|(_, rest)| rest).unwrap_or_default();
         assert!(resume.contains(&good.snapshot), "{broken}");
         let series = std::fs::read_to_string(folder.path().join(&good.series)).unwrap();
-        // on a GPU states are kept in every sixteenth look
+        // on a GPU states are kept in every sixteenth check
         let few = if run.options.backend == BackendChoice::Gpu { 1 } else { 2 };
         assert!(series.matches("<DataSet").count() >= few, "{}: {series}", run.name);
         let kept = Snapshot::read(&folder.path().join(&good.snapshot)).unwrap();

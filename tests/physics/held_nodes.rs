@@ -109,7 +109,7 @@ fn policies_that_change_bodies_do_so_for_no_grip() {
             simulation.move_grab(hand, DVec3::new(0.05, 0.05, 0.101)).unwrap();
             simulation.advance(600).unwrap();
             let history = *simulation.step_history().unwrap();
-            assert!(history.looks > 3 && history.beyond_since.is_none(), "{policy}, {}: {history:?}", run.name);
+            assert!(history.checks > 3 && history.beyond_since.is_none(), "{policy}, {}: {history:?}", run.name);
             assert_eq!((history.removed, history.added_mass), (0, 0.0), "{policy}, {}", run.name);
         }
     }

@@ -103,7 +103,7 @@ fn going_back_forgets_what_came_later() {
         assert_eq!(simulation.history().len(), 2);
         simulation.reset().unwrap();
         assert!(simulation.history().is_empty());
-        // and the start is that before the first look, whoever took the first step
+        // and the start is that before the first check, whoever took the first step
         let start = simulation.snapshot().unwrap();
         assert_eq!(start.differences(&first), Vec::<String>::new(), "{}", run.name);
     }

@@ -142,7 +142,7 @@ fn a_recording_replayed_gives_the_same_bits() {
     }
 }
 
-/// Looks at the stable step come at the same steps however steps are asked for, beside a load that quickens later.
+/// Stability checks come at the same steps however steps are asked for, beside a load that quickens later.
 #[test]
 fn a_recording_of_steps_towards_times_is_replayed_by_their_number() {
     for run in configurations() {

@@ -93,12 +93,12 @@ fn small_bodies(run: &Configuration, effect: &str, output: &str, fuse: bool) -> 
     let after = counts(&mut simulation);
     let ends = ["a", "b"].map(|body| simulation.displacements(body).unwrap()).concat();
     bring_to_host(simulation.world_mut(), |_, _| true).unwrap();
-    let spent = ["a", "b"].map(|body| {
+    let done = ["a", "b"].map(|body| {
         let body = simulation.body(body).unwrap();
         let body = simulation.world().entity(body);
         body.get::<InternalWork>().map_or(0.0, InternalWork::total)
     });
-    ([0, 1, 2].map(|i| after[i] - before[i]), ends, spent)
+    ([0, 1, 2].map(|i| after[i] - before[i]), ends, done)
 }
 
 /// The same operations in the same order, but compilers may contract them otherwise: see above.
@@ -106,22 +106,22 @@ fn small_bodies(run: &Configuration, effect: &str, output: &str, fuse: bool) -> 
 #[ignore = "long"]
 fn small_bodies_take_many_steps_in_one_dispatch() {
     let Some(run) = configurations().into_iter().find(|run| run.options.backend == BackendChoice::Gpu) else { return };
-    // where energies are observed, integrate books them node by node, and invocations need not meet for that
+    // where energies are observed, integrate counts them node by node, and invocations need not meet for that
     for (effect, output) in [("prony: (terms: [(alpha: 0.4, tau: 0.05)])", ""), ("", "output: (energies_every: 5),")] {
-        let ([steps, dispatches, submissions], together, spent) = small_bodies(&run, effect, output, true);
+        let ([steps, dispatches, submissions], together, done) = small_bodies(&run, effect, output, true);
         assert_eq!((steps, dispatches), (300, 2 * submissions));
         assert!(submissions < 100, "{submissions}");
-        let ([steps, dispatches, _], apart, spent_apart) = small_bodies(&run, effect, output, false);
+        let ([steps, dispatches, _], apart, done_apart) = small_bodies(&run, effect, output, false);
         // element forces, gather, boundary or two loads, integrate
         assert_eq!(dispatches, (4 + 5) * steps);
         let largest = apart.iter().map(|u| u.length()).fold(0.0, f64::max);
         let off = together.iter().zip(&apart).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
         assert!(off <= 1e-5 * largest && largest > 0.1, "{off:e} of {largest:e}");
         // forces along steps: off as displacements are
-        for (spent, apart) in spent.into_iter().zip(spent_apart) {
+        for (done, apart) in done.into_iter().zip(done_apart) {
             assert!(
-                (spent - apart).abs() <= 1e-5 * apart.abs() && (apart > 1e-3) == output.is_empty(),
-                "{spent} J instead of {apart} J"
+                (done - apart).abs() <= 1e-5 * apart.abs() && (apart > 1e-3) == output.is_empty(),
+                "{done} J instead of {apart} J"
             );
         }
     }
@@ -197,17 +197,17 @@ fn torn(fuse: bool) -> String {
     )
 }
 
-/// The nodes inside patches move with their patch, those of patches with inverted elements after a look at them.
+/// The nodes inside patches move with their patch, those of patches with inverted elements after a check of them.
 #[test]
 fn nodes_inside_patches_go_where_they_go_with_all_others() {
     for run in configurations().into_iter().filter(|run| run.options.backend == BackendChoice::Cpu) {
         let ends = [true, false].map(|fuse| {
             let mut simulation = run.start_in(&torn(fuse), Path::new("."));
-            let inside = |simulation: &mut Simulation| -> u32 {
+            let interior = |simulation: &mut Simulation| -> u32 {
                 let world = simulation.world_mut();
-                world.query::<&Patches>().iter(world).flat_map(|patches| patches.inside.clone()).sum()
+                world.query::<&Patches>().iter(world).flat_map(|patches| patches.interior.clone()).sum()
             };
-            assert!((300..900).contains(&inside(&mut simulation)), "{}: {}", run.name, inside(&mut simulation));
+            assert!((300..900).contains(&interior(&mut simulation)), "{}: {}", run.name, interior(&mut simulation));
             simulation.advance(60).unwrap_or_else(|error| panic!("{}: {error}", run.name));
             let world = simulation.world_mut();
             let gone: Vec<u32> = world.query::<&RemovalStep>().iter(world).flat_map(|steps| steps.0.clone()).collect();
@@ -276,11 +276,11 @@ fn kernels_of_patches_have_only_what_acts_on_nodes_inside_them() {
         );
     let told = &explained(&corner).dispatched[0];
     let because = "`pressure` looks at other nodes than its own, which must not have moved";
-    assert_eq!((told.inside, told.inside_because.as_str()), (0, because));
+    assert_eq!((told.interior, told.interior_because.as_str()), (0, because));
     let explained = explained(&torn(true));
     let found = explained.kernels.iter().filter(|kernel| ["patch_step", "node_pass"].contains(&kernel.entry));
     let found: Vec<(&str, u32)> = found.map(|kernel| (kernel.label.as_str(), kernel.threads)).collect();
-    let shared = explained.nodes as u32 - explained.dispatched[0].inside;
+    let shared = explained.nodes as u32 - explained.dispatched[0].interior;
     let expected = [
         ("element_forces + gather + gravity + nodal_force + boundary + integrate of a/m/Hex8", 4 * 128),
         ("element_forces + gather + gravity + boundary + integrate of a/n/Hex8", 128),
@@ -309,8 +309,8 @@ struct Run {
     /// Each step.
     dispatches: u64,
     /// Work against internal forces (J) as the guards have it.
-    spent: f64,
-    /// In how many places that is booked, and in how many it should be.
+    done: f64,
+    /// In how many places that is counted, and in how many it should be.
     places: [usize; 2],
 }
 
@@ -327,10 +327,11 @@ fn on_a_gpu(run: &Configuration, text: &str, steps: u64, fuse: bool) -> Run {
     send_to_device(world, |_, name| name == InternalWork::NAME).unwrap();
     // a place for each sixty-four nodes, and for each of the first two sixty-fours of invocations that a patch gives
     // nodes to
-    let inside: Vec<u32> = world.query::<&Patches>().iter(world).flat_map(|patches| patches.inside.clone()).collect();
-    let inside: Vec<usize> = inside.into_iter().filter(|_| fuse).map(|nodes| nodes as usize).collect();
-    let of_patches: usize = inside.iter().map(|&nodes| nodes.div_ceil(64).min(2)).sum();
-    let expected = of_patches + (nodes - inside.iter().sum::<usize>()).div_ceil(64);
+    let interior: Vec<u32> =
+        world.query::<&Patches>().iter(world).flat_map(|patches| patches.interior.clone()).collect();
+    let interior: Vec<usize> = interior.into_iter().filter(|_| fuse).map(|nodes| nodes as usize).collect();
+    let of_patches: usize = interior.iter().map(|&nodes| nodes.div_ceil(64).min(2)).sum();
+    let expected = of_patches + (nodes - interior.iter().sum::<usize>()).div_ceil(64);
     let dispatches = |simulation: &mut Simulation| simulation.world_mut().resource_mut::<Device>().gpu().dispatches();
     let before = dispatches(&mut simulation);
     for steps in [1, 5, steps - 6] {
@@ -340,11 +341,11 @@ fn on_a_gpu(run: &Configuration, text: &str, steps: u64, fuse: bool) -> Run {
     let ends = simulation.displacements("a").unwrap();
     bring_to_host(simulation.world_mut(), |_, _| true).unwrap();
     let work = simulation.world().get::<InternalWork>(body);
-    let spent = work.map_or(0.0, InternalWork::total);
+    let done = work.map_or(0.0, InternalWork::total);
     let touched = |sum: &&[f32]| sum[0].to_bits() != (-0.0_f32).to_bits();
     let touched = work.map_or(0, |work| work.chunks(2).filter(touched).count());
     let expected = if work.is_none() { 0 } else { expected };
-    Run { ends, dispatches, spent, places: [touched, expected] }
+    Run { ends, dispatches, done, places: [touched, expected] }
 }
 
 /// The same operations in the same order, but compilers may contract them otherwise: see above. What is counted is a
@@ -360,7 +361,7 @@ fn on_a_gpu_nodes_inside_patches_go_where_they_go_with_all_others() {
     for (dispatches, texts) in [
         ([2, 7], plain("(12, 12, 12), elements: Tet4", "", "")),
         ([2, 7], plain("(9, 8, 9), elements: Hex8", viscous, "")),
-        // means of the volume around nodes come first, in two kernels; energies are booked node by node
+        // means of the volume around nodes come first, in two kernels; energies are counted node by node
         ([4, 9], plain("(9, 9, 9), elements: Tet4NodalPressure", "", "output: (energies_every: 5),")),
         // two blocks, in which inverted elements go: six kernels more
         ([9, 13], [true, false].map(torn)),
@@ -370,11 +371,11 @@ fn on_a_gpu_nodes_inside_patches_go_where_they_go_with_all_others() {
         let largest = apart.ends.iter().map(|u| u.length()).fold(0.0, f64::max);
         let off = together.ends.iter().zip(&apart.ends).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
         assert!(off <= 1e-5 * largest && largest > 0.02, "{off:e} of {largest:e}");
-        let (spent, spent_apart) = (together.spent, apart.spent);
-        assert!((spent - spent_apart).abs() <= 1e-5 * spent_apart.abs(), "{spent} J instead of {spent_apart} J");
+        let (done, done_apart) = (together.done, apart.done);
+        assert!((done - done_apart).abs() <= 1e-5 * done_apart.abs(), "{done} J instead of {done_apart} J");
         assert_eq!([together.dispatches, apart.dispatches], dispatches);
-        for Run { places: [booked, expected], .. } in [&together, &apart] {
-            assert_eq!(booked, expected);
+        for Run { places: [counted, expected], .. } in [&together, &apart] {
+            assert_eq!(counted, expected);
         }
         assert!(on_a_gpu(&run, &texts[0], 60, true) == together, "not the same bits");
     }

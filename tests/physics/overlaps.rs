@@ -75,7 +75,7 @@ fn a_body_that_passes_through_another_is_warned_of_when_it_gets_there() {
     for run in &configurations() {
         let told = warned(&run.options, "Hex8", &cells, moves);
         assert_eq!(told.len(), 1, "{}: {told:?}", run.name);
-        // looked at every .02 s: at .02 s it is .01 m in
+        // checked every .02 s: at .02 s it is .01 m in
         assert!((0.02 - 1e-9..0.03).contains(&told[0].time) && told[0].part == "b0 and b1", "{told:?}");
     }
 }

@@ -12,9 +12,9 @@ use sinew::BackendChoice;
 use sinew::components::Precision;
 
 const STEPS: u64 = 100_000;
-const LOOKS: u64 = 50;
+const SAMPLES: u64 = 50;
 
-/// All displacements at each of the looks.
+/// All displacements at each of the samples.
 fn course(run: &Configuration, step: f64, compensated: bool) -> Vec<Vec<DVec3>> {
     // critical damping of the slowest swing lets it come to rest within the steps
     let mut simulation = run.start(&format!(
@@ -25,14 +25,14 @@ fn course(run: &Configuration, step: f64, compensated: bool) -> Vec<Vec<DVec3>> 
         step * STEPS as f64
     ));
     let mut course = Vec::new();
-    for _ in 0..LOOKS {
-        simulation.advance(STEPS / LOOKS).unwrap();
+    for _ in 0..SAMPLES {
+        simulation.advance(STEPS / SAMPLES).unwrap();
         course.push(simulation.displacements("b").unwrap());
     }
     course
 }
 
-/// The largest difference at any look, in shares of the largest displacement.
+/// The largest difference at any sample, in shares of the largest displacement.
 fn difference(reference: &[Vec<DVec3>], course: &[Vec<DVec3>]) -> f64 {
     let pairs = || reference.iter().flatten().zip(course.iter().flatten());
     let largest = pairs().fold(0.0_f64, |largest, (u, _)| largest.max(u.length()));

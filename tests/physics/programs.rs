@@ -1,7 +1,7 @@
 //! What is translated from WGSL computes what the same formula written in Rust does, in every kind of number.
 
 use crate::random::Random;
-use sinew::materials::program::{Program, Source};
+use sinew::materials::program::{Program, ProgramSource};
 use std::collections::BTreeMap;
 
 const TEXT: &str = "
@@ -148,7 +148,7 @@ fn reference(name: &str, x: f64, y: f64) -> f64 {
 
 fn program(name: &str) -> Program {
     let uniforms = BTreeMap::from([("elastic".to_string(), vec![2.5, 0.75])]);
-    let source = Source::read(TEXT).unwrap_or_else(|wrong| panic!("{wrong:?}"));
+    let source = ProgramSource::read(TEXT).unwrap_or_else(|wrong| panic!("{wrong:?}"));
     source
         .translate(name, &uniforms)
         .unwrap_or_else(|wrong| panic!("{name}: {wrong:?} {:?}", wrong.at.clone().map(|at| &TEXT[at])))
@@ -188,7 +188,7 @@ fn translated_functions_give_what_rust_gives() {
 fn what_has_no_value_has_none() {
     let text = "fn a(x: f32) -> f32 { return log(x); } fn b(x: f32) -> f32 { return pow(x, 0.3); } fn c(x: f32) -> f32 { return pow(x, 1.0 / 3.0); }
 fn d(x: f32) -> f32 { return sqrt(x); } fn e(x: f32) -> f32 { return select(sqrt(x), 7.0, x < 0.0); }";
-    let source = Source::read(text).unwrap_or_else(|wrong| panic!("{wrong:?}"));
+    let source = ProgramSource::read(text).unwrap_or_else(|wrong| panic!("{wrong:?}"));
     let value = |name: &str, x: f64| {
         let program = source.translate(name, &BTreeMap::new()).unwrap_or_else(|wrong| panic!("{wrong:?}"));
         program.run::<f64, 1, 1>([x])[0]
@@ -203,7 +203,7 @@ fn d(x: f32) -> f32 { return sqrt(x); } fn e(x: f32) -> f32 { return select(sqrt
 #[test]
 fn programs_are_short_and_constants_exact() {
     let text = "fn f(x: f32) -> f32 { let third = 1.0 / 3.0; let unused = exp(x) * 2.0; let y = x * third; return y + (x * third); }";
-    let source = Source::read(text).unwrap_or_else(|wrong| panic!("{wrong:?}"));
+    let source = ProgramSource::read(text).unwrap_or_else(|wrong| panic!("{wrong:?}"));
     let program = source.translate("f", &BTreeMap::new()).unwrap_or_else(|wrong| panic!("{wrong:?}"));
     assert_eq!(program.run::<f64, 1, 1>([3.0])[0], 2.0);
     // one product, one sum
@@ -244,7 +244,7 @@ fn functions_of_constants_have_their_values() {
     ];
     for (call, expected) in cases {
         let text = format!("const gain: f32 = 0.125; fn f(x: f32) -> f32 {{ let value = {call}; return x * value; }}");
-        let source = Source::read(&text).unwrap_or_else(|wrong| panic!("{call}: {wrong:?}"));
+        let source = ProgramSource::read(&text).unwrap_or_else(|wrong| panic!("{call}: {wrong:?}"));
         let program = source.translate("f", &BTreeMap::new()).unwrap_or_else(|wrong| panic!("{call}: {wrong:?}"));
         let found = program.run::<f64, 1, 1>([1.0])[0];
         // logarithms and powers of them are right to a few roundings

@@ -1,7 +1,7 @@
-//! Removal: when elements go, what is left, what is booked (H17, H18).
+//! Removal: when elements go, what is left, what is counted (H17, H18).
 //!
 //! Mass: what is gone is ρ V of the elements gone, to 1e-6. Energy: KE + IE + HG + removed − W below 1e-4 of W: work is
-//! booked to (ωΔt)²/12 with Δt = 1e-3 s and ω < 30/s. An island falls with g: Σ m v grows by Σ m g Δt a step, to
+//! counted to (ωΔt)²/12 with Δt = 1e-3 s and ω < 30/s. An island falls with g: Σ m v grows by Σ m g Δt a step, to
 //! rounding (1e-10, 1e-4 in f32).
 
 use crate::columns::{external_forces, masses, velocities};
@@ -85,7 +85,7 @@ fn criteria_take_what_passes_them_and_nothing_else() {
         for (gradient, when, goes) in &cases {
             let rest = format!("constraints: [Prescribed(on: All, gradient: {gradient})], removal: [(when: {when})]");
             let mut simulation = bar(run, elements, &rest);
-            // they are looked at in every tenth step
+            // they are checked in every tenth step
             simulation.advance(20).unwrap();
             let left = alive(&mut simulation).contains(&1);
             assert_eq!(left, !goes, "{}, {elements}, {when}", run.name);
@@ -217,7 +217,7 @@ fn elements_of_another_material_stay_as_they_are() {
 /// that share of the work at least.
 ///
 /// Around the hole nodal means are taken anew, of fewer elements: the energy of those that stay jumps by what their
-/// volumes differed by, and nobody books that. No smaller step changes it.
+/// volumes differed by, and nobody counts that. No smaller step changes it.
 fn balances(rest: &str, steps: u64, removed: f64, allowed: [f64; 2]) {
     for (run, elements) in configurations().iter().flat_map(|run| ELEMENTS.map(|elements| (run, elements))) {
         let mut simulation = bar(run, elements, rest);
@@ -235,14 +235,14 @@ fn balances(rest: &str, steps: u64, removed: f64, allowed: [f64; 2]) {
 }
 
 #[test]
-fn energy_that_goes_with_elements_is_booked() {
+fn energy_that_goes_with_elements_is_counted() {
     // clamped at both ends: what is left swings on and does not fall
     let rest = "constraints: [Fixed(on: Plane(normal: (1, 0, 0), at: 0)), Fixed(on: Plane(normal: (1, 0, 0), at: 6))],
         loads: [Gravity(acceleration: (3, 0, -2))], removal: [(on: Box(min: (2, 0, 0), max: (4, 1, 0.7)), when: At(0.8))]";
     balances(rest, 1200, 0.05, [1e-4, 5e-3]);
 }
 
-/// Mass that goes from nodes that are moved takes with it what constraints gave it; that they gave it stays booked.
+/// Mass that goes from nodes that are moved takes with it what constraints gave it; that they gave it stays counted.
 #[test]
 fn work_on_mass_that_is_gone_stays_booked() {
     // in the middle of the motion its end goes, or most of it: 500 kg at 1.4 m/s, where the bar holds 30 J

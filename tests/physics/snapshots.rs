@@ -11,7 +11,7 @@ use sinew::{BackendChoice, Error, Options, Simulation, Snapshot};
 use std::path::Path;
 
 /// All that has a state: compensated sums, viscous memory of stress and pressure, damping, removal by time and
-/// criterion, booked work, prescribed motion; pressure that asks which faces are left.
+/// criterion, accumulated work, prescribed motion; pressure that asks which faces are left.
 fn scene(elements: &str, further: &str) -> String {
     format!(
         "(duration: 100, bodies: {{\"b\": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3), elements: {elements}),

@@ -170,12 +170,12 @@ fn energy_that_is_gone_has_been_spent() {
         for part in 1..=8 {
             simulation.advance_to(0.25 * f64::from(part)).unwrap();
             let now = simulation.energies().unwrap();
-            let spent = now.internal_work.unwrap();
+            let done = now.internal_work.unwrap();
             // what the elements gave became motion
             near(
                 &format!("{}: t = {}", run.name, 0.25 * f64::from(part)),
                 now.kinetic,
-                -spent,
+                -done,
                 start,
                 run.bound(1e-3, 1e-3),
             );

@@ -46,7 +46,7 @@ fn all(simulation: &Simulation, body: Entity) -> Vec<Strain> {
         let mut visit = |some: &[Strain]| found.extend_from_slice(some);
         let (cpu, visit) = (world.resource::<Cpu>(), Some(&mut visit as &mut dyn FnMut(&[Strain])));
         let (widest, count) = match block.simple {
-            true => strains::<E::Simple, T>(cpu, &columns, groups, Some(&stretch), visit, None),
+            true => strains::<E::Specialisation, T>(cpu, &columns, groups, Some(&stretch), visit, None),
             false => strains::<E, T>(cpu, &columns, groups, Some(&stretch), visit, None),
         };
         assert_eq!(count, found.len());

@@ -2,7 +2,7 @@
 
 use crate::configurations::{ELEMENTS, configurations, near};
 use crate::random::Random;
-use sinew::backend::user_law::{Findings, read};
+use sinew::backend::user_law::{LawCheck, read};
 use sinew::glam::DMat3;
 use sinew::materials::{ArrudaBoyce, Elastic, Kinematics, MooneyRivlin, NeoHookean, Ogden, UserLaw};
 use sinew::math::Mat3;
@@ -11,7 +11,7 @@ use std::path::Path;
 
 const NEO_HOOKEAN: &str = include_str!("../../shaders/neo_hookean.wgsl");
 
-fn law(text: &str, parameters: &[(&str, f64)]) -> (UserLaw<f64>, Findings) {
+fn law(text: &str, parameters: &[(&str, f64)]) -> (UserLaw<f64>, LawCheck) {
     let parameters: BTreeMap<String, f64> = parameters.iter().map(|(name, x)| (name.to_string(), *x)).collect();
     let read = read("law.wgsl", text, &parameters).unwrap_or_else(|wrong| panic!("{wrong:?}"));
     assert_eq!(read.warnings, []);

@@ -11,11 +11,11 @@ const MESH: &str = "mesh: Box(size: (0.1, 0.1, 0.1), cells: (4, 4, 4), elements:
 const REFUSED: &str = "lies outside the scene's folder";
 
 /// A folder with a scene's folder in it, and a mesh in both.
-struct Place {
+struct Workspace {
     root: tempfile::TempDir,
 }
 
-impl Place {
+impl Workspace {
     fn new() -> Self {
         let root = tempfile::tempdir().unwrap();
         let tet = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n4\n1 0 0 0\n2 1 0 0\n3 0 1 0\n4 0 0 0.1\n$EndNodes\n\
@@ -45,7 +45,7 @@ impl Place {
 
 #[test]
 fn meshes_lie_in_the_folder_of_the_scene_or_below() {
-    let place = Place::new();
+    let place = Workspace::new();
     let inner = place.folder().join("inner.msh");
     for path in ["inner.msh", "./inner.msh", "meshes/inner.msh", "meshes/../inner.msh", inner.to_str().unwrap()] {
         assert_eq!(place.mesh(path, Allowed::default()), "", "{path}");
@@ -64,7 +64,7 @@ fn meshes_lie_in_the_folder_of_the_scene_or_below() {
 #[cfg(unix)]
 #[test]
 fn links_lead_where_they_lead() {
-    let place = Place::new();
+    let place = Workspace::new();
     std::os::unix::fs::symlink(place.root.path().join("outer.msh"), place.folder().join("link.msh")).unwrap();
     std::os::unix::fs::symlink(place.root.path(), place.folder().join("up")).unwrap();
     for path in ["link.msh", "up/outer.msh"] {
@@ -76,7 +76,7 @@ fn links_lead_where_they_lead() {
 
 #[test]
 fn laws_and_references_are_files_too() {
-    let place = Place::new();
+    let place = Workspace::new();
     let law = "law: (file: \"../law.wgsl\")";
     let old = "neo_hookean: Young(young: 3e3, poisson: 0.45)";
     assert!(place.told(old, law, Allowed::default()).contains(REFUSED));
@@ -91,7 +91,7 @@ fn laws_and_references_are_files_too() {
 /// Mistakes in the words of a scene do not make an allowed file a mistake.
 #[test]
 fn what_is_allowed_counts_beside_other_mistakes_too() {
-    let place = Place::new();
+    let place = Workspace::new();
     let text = with(MESH, "mesh: File(path: \"../outer.msh\")").replace("duration", "duraton");
     let told =
         |allowed| SceneFile::from_text_allowing("a.ron", &text, &place.folder(), &[], allowed).unwrap_err().to_string();
@@ -102,7 +102,7 @@ fn what_is_allowed_counts_beside_other_mistakes_too() {
 /// A name that passes is one that an output folder takes.
 #[test]
 fn names_of_bodies_and_probes_stay_in_the_output_folder() {
-    let place = Place::new();
+    let place = Workspace::new();
     let out = place.root.path().join("out");
     let mut folder = sinew::output::Folder::create(&out).unwrap();
     for name in

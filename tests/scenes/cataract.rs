@@ -22,7 +22,7 @@ const RATE: f64 = 8e-8;
 const TIP: &str = "phaco.tip";
 
 /// A run that is looked at in every tenth step.
-struct Watched {
+struct Monitor {
     simulation: Simulation,
     /// Volume (m³) and mass (kg) of each element.
     elements: Vec<(f64, f64)>,
@@ -41,7 +41,7 @@ fn intake(world: &mut World) -> (f64, bool) {
     (intake.get(0), intake.get(1) != 0.0)
 }
 
-impl Watched {
+impl Monitor {
     fn start(sets: &[&str], options: &Options) -> Self {
         let mut simulation = Simulation::new(&scene("cataract", sets), options).unwrap();
         let mesh = Mesh::read(format!("{}/scenes/meshes/lens_814.msh", env!("CARGO_MANIFEST_DIR")), false).unwrap();
@@ -85,12 +85,12 @@ impl Watched {
         assert!(tip.force.length() < 0.05, "at {time} s: {tip:?}");
         self.forces.push((time, tip.force));
         if volume > gone {
-            self.books(bound);
+            self.check_energies(bound);
         }
     }
 
     /// After a removal: volume and mass by element, and edges of the surface.
-    fn books(&mut self, bound: f64) {
+    fn check_energies(&mut self, bound: f64) {
         let alive = self.simulation.fields("lens").unwrap().alive;
         let gone = self.elements.iter().zip(&alive).filter(|(_, alive)| **alive == 0).map(|(element, _)| element);
         let (volume, mass) = gone.clone().fold((0.0, 0.0), |sum, element| (sum.0 + element.0, sum.1 + element.1));
@@ -178,13 +178,13 @@ fn start_of_rate(simulation: &Simulation) -> f64 {
 }
 
 fn gates(sets: &[&str]) {
-    let mut watched = Watched::start(sets, &reference());
-    let end = watched.simulation.scene().duration;
-    while watched.simulation.time() + 20.0 * watched.simulation.time_step() < end {
-        watched.go_on(1e-9);
+    let mut monitor = Monitor::start(sets, &reference());
+    let end = monitor.simulation.scene().duration;
+    while monitor.simulation.time() + 20.0 * monitor.simulation.time_step() < end {
+        monitor.go_on(1e-9);
     }
-    watched.at_the_end();
-    watched.no_crumb_in_reach();
+    monitor.at_the_end();
+    monitor.no_crumb_in_reach();
 }
 
 #[test]

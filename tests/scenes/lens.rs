@@ -40,8 +40,8 @@ fn energies_of_the_lens_balance_to_two_percent() {
     let e = run("lens_tets", &SHORT).energies().unwrap();
     let (work, loss) = (e.load_work.unwrap() + e.constraint_work.unwrap(), e.damping_loss.unwrap());
     // what the forces inside have taken is stored, lost to viscosity, or went with the elements
-    let spent = e.kinetic + e.internal_work.unwrap() + loss;
-    assert!(near(spent, work, 0.02), "{spent} J of {work} J: {e:?}");
+    let done = e.kinetic + e.internal_work.unwrap() + loss;
+    assert!(near(done, work, 0.02), "{done} J of {work} J: {e:?}");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What goes on from a snapshot is what was never interrupted: every scene that ships, every hard case and every scene
 //! of `tests/endings`, on CPU f64, CPU f32 and the GPU. Whole snapshots are compared, byte by byte: columns, clock,
-//! guards, pace.
+//! guards, resume state.
 
 use sinew::backend::gpu::gpu_or_reason;
 use sinew::components::Precision;

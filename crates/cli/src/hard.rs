@@ -6,7 +6,7 @@ use super::terminal::{self, Paint};
 use super::{Outcome, interrupt};
 use sinew::backend::gpu::{Choice, Gpu};
 use sinew::output::{Folder, OutputError, replace, summary};
-use sinew_studies::hard::{CASES, Case, Configuration, Row, Verdict, csv, markdown, run};
+use sinew_studies::hard::{CASES, Case, CaseConfiguration, CaseVerdict, Row, csv, markdown, run};
 use std::io::Write;
 use std::path::Path;
 
@@ -19,8 +19,10 @@ pub fn command(arguments: &HardArguments) -> Outcome {
         return Err(Failure::Options("there is no GPU, nor a software one: use --backend cpu".into()));
     }
     let paint = Paint::of_stdout();
-    let configurations: Vec<Configuration> =
-        Configuration::all(gpu).into_iter().filter(|c| arguments.backend != BackendName::Gpu || c.is_gpu()).collect();
+    let configurations: Vec<CaseConfiguration> = CaseConfiguration::all(gpu)
+        .into_iter()
+        .filter(|c| arguments.backend != BackendName::Gpu || c.is_gpu())
+        .collect();
     let (mut rows, mut unexpected) = (Vec::new(), 0);
     interrupt::listen();
     for case in cases {
@@ -71,18 +73,18 @@ fn chosen(names: &[String]) -> Result<Vec<&'static Case>, Failure> {
 
 fn line(row: &Row, paint: Paint) -> String {
     let verdict = match row.verdict {
-        Verdict::Passed => row.verdict.to_string(),
+        CaseVerdict::Passed => row.verdict.to_string(),
         _ => paint.red(&row.verdict.to_string()),
     };
     let mut text = format!("  {:18} {}  {verdict} in {:.2} s", row.elements, row.machine, row.seconds);
-    if row.verdict == Verdict::Passed {
+    if row.verdict == CaseVerdict::Passed {
         let tightest = row.tightest().map(|gate| format!(": {} {:.3e} ({})", gate.what, gate.figure, gate.allowed));
         text += &tightest.unwrap_or_default();
     }
     for gate in row.gates.iter().filter(|gate| !gate.passed) {
         text += &format!("\n      {}: {:.4e} ({})", gate.what, gate.figure, gate.allowed);
     }
-    for word in row.told.iter().map(String::as_str).chain(row.known.map(|known| known as &str)) {
+    for word in row.message.iter().map(String::as_str).chain(row.known.map(|known| known as &str)) {
         text += &format!("\n      {word}");
     }
     text + "\n"
@@ -90,8 +92,9 @@ fn line(row: &Row, paint: Paint) -> String {
 
 /// "40 passed, 2 failed honestly, 1 failed; all as expected".
 fn counted(rows: &[Row], unexpected: usize) -> String {
-    let count = |verdict: Verdict| rows.iter().filter(|row| row.verdict == verdict).count();
-    let (passed, honest, failed) = (count(Verdict::Passed), count(Verdict::FailedHonestly), count(Verdict::Failed));
+    let count = |verdict: CaseVerdict| rows.iter().filter(|row| row.verdict == verdict).count();
+    let (passed, honest, failed) =
+        (count(CaseVerdict::Passed), count(CaseVerdict::FailedHonestly), count(CaseVerdict::Failed));
     let expected = if unexpected == 0 { "all as expected".into() } else { format!("{unexpected} not as expected") };
     format!("{passed} passed, {honest} failed honestly, {failed} failed; {expected}")
 }

@@ -14,7 +14,7 @@ use sinew::mesh::topology::singular;
 use sinew::mesh::{Cells, Mesh, MeshReport};
 use sinew::output::{Array, Folder, Frame, Series, Values};
 use sinew::scene::schema::{Colours, Picture};
-use sinew_pictures::render::{Options, draw};
+use sinew_pictures::render::{RenderOptions, draw};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -180,6 +180,6 @@ fn picture(meshes: &[(String, Mesh)], path: &Path) -> Result<std::path::PathBuf,
     Series::create(&folder)?.write(&frame)?;
     let how = Picture { range: Some((0.0, 1.0)), colours: Colours::Elements, ..Picture::default() };
     let (field, captions) = (Some("quality".into()), vec!["at rest".into()]);
-    let options = Options { field, captions, ..Options::new(how, out) };
+    let options = RenderOptions { field, captions, ..RenderOptions::new(how, out) };
     Ok(draw(path, &options)?.out)
 }

@@ -12,7 +12,7 @@ use sinew::mesh::Cells;
 use sinew::output::{Array, Folder, Frame, Series, Values, summary};
 use sinew::scene::schema::Picture;
 use sinew::{BackendChoice, Mode, Options, Simulation};
-use sinew_pictures::render::{Options as Drawing, draw};
+use sinew_pictures::render::{RenderOptions, draw};
 use std::fs;
 use std::path::Path;
 
@@ -138,12 +138,12 @@ fn draw_modes(simulation: &mut Simulation, modes: &[Mode], path: &Path) -> Resul
         })?;
     }
     let frequencies: Vec<f64> = modes.iter().map(|mode| mode.frequency).collect();
-    let options = Drawing { animate: true, ..Drawing::new(simulation.scene().picture.clone(), out) };
+    let options = RenderOptions { animate: true, ..RenderOptions::new(simulation.scene().picture.clone(), out) };
     Ok(draw(path, &drawing(&frequencies, options))?.out)
 }
 
 /// How modes of some frequencies (Hz) are drawn, when they would be drawn so if they were a run.
-fn drawing(frequencies: &[f64], options: Drawing) -> Drawing {
+fn drawing(frequencies: &[f64], options: RenderOptions) -> RenderOptions {
     let caption = |(number, frequency): (usize, &f64)| match *frequency {
         0.0 => format!("mode {}, rigid", number + 1),
         frequency => format!("mode {}, {} Hz", number + 1, digits(frequency)),
@@ -153,11 +153,11 @@ fn drawing(frequencies: &[f64], options: Drawing) -> Drawing {
     // a shape that swings is whole
     let picture = Picture { range, ghost: true, cut: None, opacity: Vec::new(), ..options.picture };
     let captions = frequencies.iter().enumerate().map(caption).collect();
-    Drawing { picture, field: Some(field), captions, swing: PICTURES_A_MODE, ..options }
+    RenderOptions { picture, field: Some(field), captions, swing: PICTURES_A_MODE, ..options }
 }
 
 /// How a folder is drawn: what it keeps of modes, if those are what it holds, says it.
-pub fn as_modes(folder: &Path, options: Drawing) -> Result<Drawing, Failure> {
+pub fn as_modes(folder: &Path, options: RenderOptions) -> Result<RenderOptions, Failure> {
     let path = folder.join(MODES);
     if !path.exists() {
         return Ok(options);

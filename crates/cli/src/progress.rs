@@ -22,7 +22,7 @@ impl Progress {
     /// Begins; `duration` is the simulated time (s), `steps` how many there are, if it is known (not to rest).
     pub fn begin(steps: u64, duration: f64, to_rest: bool) -> Self {
         let steps = if to_rest { 100 } else { steps };
-        let bar = terminal::is_watched().then(|| bar(steps, "{bar:30} {percent:>3} %  {msg}"));
+        let bar = terminal::is_interactive().then(|| bar(steps, "{bar:30} {percent:>3} %  {msg}"));
         Self { bar, started: Instant::now(), told: Instant::now(), duration, first_residual: 0.0 }
     }
 
@@ -78,7 +78,7 @@ impl Progress {
 
 /// Shows that something goes on whose end cannot be told, while `work` is done.
 pub fn during<T>(what: &str, work: impl FnOnce() -> T) -> T {
-    if !terminal::is_watched() {
+    if !terminal::is_interactive() {
         return work();
     }
     let spinner = ProgressBar::new_spinner().with_message(what.to_string());

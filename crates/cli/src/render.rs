@@ -10,7 +10,7 @@ use sinew::output::Lock;
 use sinew::scene::schema::{MeshSource, Picture, Scene};
 use sinew::scene::validate_picture;
 use sinew::{Options as RunOptions, SceneFile};
-use sinew_pictures::render::{Options, Tools, draw_with_progress};
+use sinew_pictures::render::{RenderOptions, Tools, draw_with_progress};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -29,7 +29,7 @@ pub fn command(arguments: &RenderArguments) -> Outcome {
     for (animate, file) in files {
         let out = file.unwrap_or_else(|| folder.join(PICTURES[usize::from(animate)]));
         let (field, at, tools) = (arguments.field.clone(), arguments.at, tools.clone());
-        let options = Options { field, at, animate, tools, ..Options::new(picture.clone(), out) };
+        let options = RenderOptions { field, at, animate, tools, ..RenderOptions::new(picture.clone(), out) };
         draw(&folder, &as_modes(&folder, options)?)?;
     }
     ended
@@ -58,9 +58,9 @@ fn tools_of(scene: &SceneFile, folder: &Path) -> Tools {
 
 /// What is to be drawn: the folder, how its scene wants that, the scene if there is one, and how the run ended where
 /// one was needed.
-type Source = (PathBuf, Picture, Option<SceneFile>, Outcome);
+type RenderInput = (PathBuf, Picture, Option<SceneFile>, Outcome);
 
-fn source(arguments: &RenderArguments) -> Result<Source, Failure> {
+fn source(arguments: &RenderArguments) -> Result<RenderInput, Failure> {
     let what = &arguments.what;
     if what.is_dir() {
         let (picture, scene) = picture_of(what, &arguments.set)?;
@@ -142,8 +142,8 @@ fn why_run(scene: &SceneFile, folder: &Path) -> Option<String> {
     newer.map(|mesh| format!("{} has changed since {} was written", mesh.display(), folder.display()))
 }
 
-fn draw(folder: &Path, options: &Options) -> Outcome {
-    let bar = terminal::is_watched().then(|| progress::bar(0, "{bar:30} {percent:>3} %  {msg}"));
+fn draw(folder: &Path, options: &RenderOptions) -> Outcome {
+    let bar = terminal::is_interactive().then(|| progress::bar(0, "{bar:30} {percent:>3} %  {msg}"));
     if let Some(bar) = &bar {
         bar.set_message(format!("drawing {}", options.out.display()));
     }

@@ -119,10 +119,10 @@ fn speeds(summary: &Summary, page: &mut Page) {
 const FOLLOWED: &str = "between steps: the stable step";
 
 fn systems(summary: &Summary, page: &mut Page) {
-    let followed = summary.step_history.as_ref().filter(|history| history.looks > 0).map(|history| {
-        let sharp = counted(history.sharp_looks, "time");
+    let followed = summary.step_history.as_ref().filter(|history| history.checks > 0).map(|history| {
+        let estimates = counted(history.eigenvalue_estimates, "time");
         let because =
-            format!("{} at elements; the highest frequency was found {sharp}", counted(history.looks, "look"));
+            format!("{} of elements; the highest frequency was found {estimates}", counted(history.checks, "check"));
         (FOLLOWED, Some(history.seconds), because)
     });
     let systems = summary.systems.iter().map(|system| (&*system.name, system.seconds, system.because.clone()));
@@ -156,21 +156,21 @@ fn energies(summary: &Summary, page: &mut Page) {
         list.iter().map(|(name, value)| format!("{name} {}", quantity(*value, "J"))).collect::<Vec<_>>().join(", ")
     };
     page.row("energies", line(&held));
-    let booked = [
+    let works = [
         ("of loads", energies.load_work),
         ("of constraints", energies.constraint_work),
         ("against internal forces", energies.internal_work),
         ("lost to damping", energies.damping_loss),
     ];
-    let booked: Vec<(&str, f64)> = booked.iter().filter_map(|(name, value)| Some((*name, (*value)?))).collect();
-    if !booked.is_empty() {
-        page.row("work", line(&booked));
+    let works: Vec<(&str, f64)> = works.iter().filter_map(|(name, value)| Some((*name, (*value)?))).collect();
+    if !works.is_empty() {
+        page.row("work", line(&works));
     }
 }
 
 fn guards(summary: &Summary, page: &mut Page) {
     let seen = &summary.guards;
-    if seen.looks > 0 {
+    if seen.checks > 0 {
         page.row("guards", balance(seen));
     }
     page.rows("warnings", seen.warnings.iter().map(|w| format!("from t = {} s: {}", digits(w.time), w.message)));

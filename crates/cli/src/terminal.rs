@@ -65,7 +65,7 @@ pub fn detail(text: &str) {
 }
 
 /// Whether somebody looks at stderr and wants to see how it goes.
-pub fn is_watched() -> bool {
+pub fn is_interactive() -> bool {
     speaks(Voice::Usual) && std::io::stderr().is_terminal()
 }
 

@@ -68,9 +68,9 @@ pub fn duration(time: Duration) -> String {
 pub fn speed(factor: f64) -> String {
     match factor {
         f if !f.is_finite() || f <= 0.0 => "speed unknown".into(),
-        f if f < 0.995 => format!("{} times faster than life", digits(1.0 / f)),
-        f if f < 1.005 => "as fast as life".into(),
-        f => format!("{} times slower than life", digits(f)),
+        f if f < 0.995 => format!("{} times faster than real time", digits(1.0 / f)),
+        f if f < 1.005 => "as fast as real time".into(),
+        f => format!("{} times slower than real time", digits(f)),
     }
 }
 
@@ -95,8 +95,8 @@ mod tests {
 
     #[test]
     fn speed_is_told_against_life() {
-        assert_eq!(speed(0.25), "4 times faster than life");
-        assert_eq!(speed(1.0), "as fast as life");
-        assert_eq!(speed(12.5), "12.5 times slower than life");
+        assert_eq!(speed(0.25), "4 times faster than real time");
+        assert_eq!(speed(1.0), "as fast as real time");
+        assert_eq!(speed(12.5), "12.5 times slower than real time");
     }
 }

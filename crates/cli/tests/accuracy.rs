@@ -16,11 +16,11 @@ const SCENE: &str = r#"(
     probes: { "top": (what: Displacement, on: Set("z1")) },
 )"#;
 
-struct Place(tempfile::TempDir);
+struct Workspace(tempfile::TempDir);
 
-impl Place {
+impl Workspace {
     fn new() -> Self {
-        let place = Place(tempfile::tempdir().unwrap());
+        let place = Workspace(tempfile::tempdir().unwrap());
         fs::write(place.path("block.ron"), SCENE).unwrap();
         place
     }
@@ -49,7 +49,7 @@ impl Place {
 
 #[test]
 fn a_study_tells_its_plan_ranks_and_writes_everything() {
-    let place = Place::new();
+    let place = Workspace::new();
     let (status, said, aside) = place.study(&["--budget", "2min", "--finest", "2", "--effects"]);
     assert_eq!(status, 0, "{said}{aside}");
     for words in ["plan: ", "of at most 120 s", "as written", "for the reference"] {
@@ -88,7 +88,7 @@ fn a_study_tells_its_plan_ranks_and_writes_everything() {
 
 #[test]
 fn the_status_says_whether_the_target_is_met() {
-    let place = Place::new();
+    let place = Workspace::new();
     let exactly = |value: &str| format!("accuracy=(reference: Values({{\"top.uz\": {value}}}))");
     let study = |value: &str, target: &[&str]| {
         place.study(&[&["--budget", "60", "--finest", "1", "--set", &exactly(value)], target].concat())
@@ -106,7 +106,7 @@ fn the_status_says_whether_the_target_is_met() {
 #[test]
 #[ignore = "long"]
 fn a_softer_material_is_found_out_by_a_run_of_the_harder_one() {
-    let place = Place::new();
+    let place = Workspace::new();
     let rest = ["--set", "analysis=Static()"];
     let finer = ["--set", "bodies.block.mesh.cells=(8, 8, 8)", "--precision", "f64", rest[0], rest[1]];
     // on coarser meshes the error of the mesh hides part of the law's
@@ -139,7 +139,7 @@ fn a_softer_material_is_found_out_by_a_run_of_the_harder_one() {
 
 #[test]
 fn mistakes_end_with_2_before_anything_runs() {
-    let place = Place::new();
+    let place = Workspace::new();
     for (more, words) in [
         (&["--set", "duration=-1"][..], "`duration` must be above 0"),
         (&["--target", "none"], "such as 1% or 0.01"),
@@ -162,7 +162,7 @@ fn mistakes_end_with_2_before_anything_runs() {
 /// Steps become smaller where the rod stretches: what is seen is still seen at the scene's times, the last at its end.
 #[test]
 fn what_is_seen_is_of_the_scenes_times_where_steps_change() {
-    let place = Place::new();
+    let place = Workspace::new();
     let scene = SCENE
         .replace("duration: 0.05", "duration: 0.3")
         .replace("size: (0.1, 0.1, 0.1), cells: (2, 2, 2)", "size: (0.1, 0.02, 0.02), cells: (8, 2, 2)")

@@ -3,22 +3,22 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use sinew::backend::gpu::gpu_or_reason;
-use sinew_studies::hard::{CASES, Configuration, run};
+use sinew_studies::hard::{CASES, CaseConfiguration, run};
 
 fn check(id: &str) {
     let case = CASES.iter().find(|case| case.id == id).unwrap_or_else(|| panic!("there is no case {id}"));
     let mut wrong = Vec::new();
-    for configuration in Configuration::all(gpu_or_reason().is_some()).iter().filter(|c| (case.on)(c)) {
+    for configuration in CaseConfiguration::all(gpu_or_reason().is_some()).iter().filter(|c| (case.on)(c)) {
         let row = run(case, configuration, false);
         let figure = row.tightest().map(|gate| format!("{}: {:.3e}, {}", gate.what, gate.figure, gate.allowed));
         println!(
             "{id} {} {}: {} in {:.2} s, {figure:?} {:?}",
-            row.elements, row.machine, row.verdict, row.seconds, row.told
+            row.elements, row.machine, row.verdict, row.seconds, row.message
         );
         if row.verdict != row.expected {
             let gates = row.gates.iter().filter(|gate| !gate.passed);
             let gates: Vec<String> = gates.map(|g| format!("{}: {:.4e} ({})", g.what, g.figure, g.allowed)).collect();
-            wrong.push(format!("{} on {}: {}, {gates:?} {:?}", row.elements, row.machine, row.verdict, row.told));
+            wrong.push(format!("{} on {}: {}, {gates:?} {:?}", row.elements, row.machine, row.verdict, row.message));
         }
     }
     assert!(wrong.is_empty(), "{id}, {}:\n{}", case.title, wrong.join("\n"));

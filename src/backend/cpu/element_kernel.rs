@@ -23,7 +23,7 @@ use stress::{InRegisters, mean_volume_change, volume_ratio};
 pub struct BlockColumns<'a, 'n, T> {
     /// The body's displacements (m), from row [`first_row`](Self::first_row) on.
     pub displacement: &'a [T],
-    /// The first of these rows: 0, or with [`inside`](Self::inside) the first that is not inside a patch.
+    /// The first of these rows: 0, or with [`interior`](Self::interior) the first that is not inside a patch.
     pub first_row: usize,
     /// Nodes of each element.
     pub connectivity: &'a [u32],
@@ -42,11 +42,11 @@ pub struct BlockColumns<'a, 'n, T> {
     /// Whether elements with J < 0 exert nothing.
     pub inverted_go: bool,
     /// The nodes inside each patch, where they move as soon as its forces are known.
-    pub inside: Option<Inside<'a, 'n, T>>,
+    pub interior: Option<PatchInterior<'a, 'n, T>>,
 }
 
 /// The nodes inside patches, and what follows for them. Where a patch has an element with J < 0 they stay as they are.
-pub struct Inside<'a, 'n, T> {
+pub struct PatchInterior<'a, 'n, T> {
     /// Of each patch, perhaps none.
     pub nodes: &'a mut [NodeColumns<'n, T>],
     /// What is done to them as soon as their internal forces are known.
@@ -65,7 +65,7 @@ pub fn run_block<E: Element, T: SimdScalar>(
     law: &BlockLaw<T>,
     groups_a_patch: usize,
 ) -> Vec<usize> {
-    Block::<E, T> { cpu, columns, law, groups_a_patch, element: PhantomData }.run::<_, GENERIC>(&law.elastic)
+    BlockRun::<E, T> { cpu, columns, law, groups_a_patch, element: PhantomData }.run::<_, GENERIC>(&law.elastic)
 }
 
 /// The same in f32, where speed counts, with a kernel of its own for what is asked for most: the neo-Hookean law with
@@ -78,7 +78,7 @@ pub fn run_block_fast<E: Element>(
     groups_a_patch: usize,
 ) -> Vec<usize> {
     let effects = kernel_effects::<E>(cpu, law);
-    let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
+    let block = BlockRun::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
     // known when this is compiled: no code is made of what follows for the other kinds
     if !is_specialised::<E>() {
         return block.run::<_, GENERIC>(&law.elastic);
@@ -102,7 +102,7 @@ pub(super) fn run_block_of<E: Element, L: Elastic<f32>>(
     elastic: &L,
     groups_a_patch: usize,
 ) -> Vec<usize> {
-    let block = Block::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
+    let block = BlockRun::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
     match is_specialised::<E>() && law.is_elastic() {
         true => block.run::<_, 0>(elastic),
         false => block.run::<_, { GENERIC | VECTORS }>(elastic),
@@ -117,7 +117,7 @@ pub(super) fn run_block_of_double<E: Element, L: Elastic<f64>>(
     elastic: &L,
     groups_a_patch: usize,
 ) -> Vec<usize> {
-    let block = Block::<E, f64> { cpu, columns, law, groups_a_patch, element: PhantomData };
+    let block = BlockRun::<E, f64> { cpu, columns, law, groups_a_patch, element: PhantomData };
     block.run::<_, { GENERIC | VECTORS }>(elastic)
 }
 
@@ -151,7 +151,7 @@ const GENERIC: u8 = 4;
 /// There is no such kernel for machines without vector registers.
 const VECTORS: u8 = 8;
 
-struct Block<'a, 'n, E, T: SimdScalar> {
+struct BlockRun<'a, 'n, E, T: SimdScalar> {
     cpu: &'a Cpu,
     columns: BlockColumns<'a, 'n, T>,
     law: &'a BlockLaw<T>,
@@ -159,7 +159,7 @@ struct Block<'a, 'n, E, T: SimdScalar> {
     element: PhantomData<E>,
 }
 
-impl<E: Element> Block<'_, '_, E, f32> {
+impl<E: Element> BlockRun<'_, '_, E, f32> {
     fn run_neo_hookean(self, elastic: &NeoHookean<f32>) -> Vec<usize> {
         match (self.law.fibres.is_some(), !self.law.prony.is_empty()) {
             (false, false) => self.run::<_, 0>(elastic),
@@ -170,7 +170,7 @@ impl<E: Element> Block<'_, '_, E, f32> {
     }
 }
 
-impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
+impl<E: Element, T: SimdScalar> BlockRun<'_, '_, E, T> {
     fn run<L: Elastic<T>, const EFFECTS: u8>(self, elastic: &L) -> Vec<usize> {
         let Self { cpu, columns, law, groups_a_patch, element } = self;
         let inverted = Mutex::new(Vec::new());
@@ -187,13 +187,13 @@ impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
         // without viscosity there is no memory to hand out
         let mut memories = columns.memory.chunks_mut((patch * memory_an_element).max(1));
         let tasks = parts(columns.force, columns.patches, patch * 3 * E::NODES, patch * E::NODES);
-        let (inside, then) = match columns.inside {
-            Some(Inside { nodes, then, observed }) => (nodes, Some((then, observed))),
+        let (interior, then) = match columns.interior {
+            Some(PatchInterior { nodes, then, observed }) => (nodes, Some((then, observed))),
             None => (&mut [][..], None),
         };
-        let mut inside = inside.iter_mut();
+        let mut interior = interior.iter_mut();
         let tasks = tasks.enumerate().map(move |(index, (force, patch_local))| {
-            let patch = Patch::<E, T, L, EFFECTS> {
+            let patch = PatchForces::<E, T, L, EFFECTS> {
                 index,
                 displacement: columns.displacement,
                 first_row: columns.first_row,
@@ -218,18 +218,18 @@ impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
                 law,
                 element,
             };
-            (patch, inside.next())
+            (patch, interior.next())
         });
-        cpu.for_each(tasks, |(patch, inside)| {
+        cpu.for_each(tasks, |(patch, interior)| {
             let index = patch.index;
-            let run = |patch: Patch<'_, E, T, L, EFFECTS>, inside: Option<&mut NodeColumns<'_, T>>| {
-                T::with_scratch(|scratch| E::run_patch(cpu, OfPatch { patch, inside, scratch }))
+            let run = |patch: PatchForces<'_, E, T, L, EFFECTS>, interior: Option<&mut NodeColumns<'_, T>>| {
+                T::with_scratch(|scratch| E::run_patch(cpu, OfPatch { patch, interior, scratch }))
             };
-            let is_inverted = match (inside, then) {
-                (Some(inside), Some((then, observed))) => inside.with_forces(observed, |inside| {
-                    let is_inverted = run(patch, Some(inside));
+            let is_inverted = match (interior, then) {
+                (Some(interior), Some((then, observed))) => interior.with_forces(observed, |interior| {
+                    let is_inverted = run(patch, Some(interior));
                     if !is_inverted {
-                        then(inside);
+                        then(interior);
                     }
                     is_inverted
                 }),
@@ -245,7 +245,7 @@ impl<E: Element, T: SimdScalar> Block<'_, '_, E, T> {
     }
 }
 
-struct Patch<'a, E, T: SimdScalar, L, const EFFECTS: u8> {
+struct PatchForces<'a, E, T: SimdScalar, L, const EFFECTS: u8> {
     index: usize,
     displacement: &'a [T],
     first_row: usize,
@@ -271,8 +271,8 @@ struct Patch<'a, E, T: SimdScalar, L, const EFFECTS: u8> {
 
 /// A patch, the nodes inside it if they move with it, and where to compute it.
 struct OfPatch<'a, 'i, 'n, 's, E, T: SimdScalar, L, const EFFECTS: u8> {
-    patch: Patch<'a, E, T, L, EFFECTS>,
-    inside: Option<&'i mut NodeColumns<'n, T>>,
+    patch: PatchForces<'a, E, T, L, EFFECTS>,
+    interior: Option<&'i mut NodeColumns<'n, T>>,
     scratch: &'s mut Scratch<T>,
 }
 
@@ -307,8 +307,8 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> bool {
-        let Self { mut patch, inside, scratch } = self;
-        patch.bring(inside.as_deref(), scratch);
+        let Self { mut patch, interior, scratch } = self;
+        patch.bring(interior.as_deref(), scratch);
         let mut law = patch.in_registers(simd);
         let mut worst = T::splat(simd, T::default());
         for group in 0..patch.connectivity.len() / E::NODES {
@@ -327,12 +327,12 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd
         let mut lanes = [T::default(); LANES];
         T::store(worst, &mut lanes);
         let is_inverted = lanes.iter().any(|&v| v > T::default());
-        patch.bring_back(inside.filter(|_| !is_inverted), scratch);
+        patch.bring_back(interior.filter(|_| !is_inverted), scratch);
         is_inverted
     }
 }
 
-impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_, E, T, L, EFFECTS> {
     /// One register full of elements, from lane `at` on. Returns −J V, positive for inverted elements.
     #[inline(always)]
     fn part_of_group<S: Simd>(
@@ -369,7 +369,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
             E::add_stress(&mut forces, point, &state, &stress);
             worst = worst.max(least - j);
         }
-        for point in E::POINTS..E::LOOKED_AT {
+        for point in E::POINTS..E::CHECKED_POINTS {
             let j = volume_ratio::<E, T, S>(simd, &u, rest_shape, point, at);
             worst = worst.max(least - j);
         }

@@ -2,21 +2,21 @@
 
 mod arenas;
 mod element_kernel;
+mod guard_kernel;
 mod law;
 mod node_kernel;
 mod own_kernels;
 mod strain_kernel;
 mod volume_kernel;
-mod watch_kernel;
 
-pub use element_kernel::{BlockColumns, Inside, kernel_effects, run_block, run_block_fast};
+pub use element_kernel::{BlockColumns, PatchInterior, kernel_effects, run_block, run_block_fast};
+pub use guard_kernel::{BlockSums, GuardColumns, run_guard};
 pub use law::BlockLaw;
-pub use node_kernel::{Factors, Foreseen, NodeColumns, Touches, move_nodes};
+pub use node_kernel::{Foreseen, IntegrationCoefficients, NodeColumns, Touches, move_nodes};
 pub use own_kernels::OwnKernels;
 pub use strain_kernel::{Kept, Strain, StrainColumns, Visit, strains};
 pub(crate) use strain_kernel::{sizes, with_identity};
 pub use volume_kernel::run_volumes;
-pub use watch_kernel::{BlockSums, WatchedColumns, run_watch};
 
 use arenas::Arenas;
 use bevy_ecs::prelude::*;

@@ -1,11 +1,11 @@
 //! Central differences for nodes of a body, a register full at a time.
 
-mod columns;
-mod factors;
+mod integration_coefficients;
+mod node_columns;
 mod one_by_one;
 
-pub use columns::{NodeColumns, Touches};
-pub use factors::{Factors, Foreseen};
+pub use integration_coefficients::{Foreseen, IntegrationCoefficients};
+pub use node_columns::{NodeColumns, Touches};
 
 use super::Cpu;
 use crate::components::WORK_NUMBERS;
@@ -14,13 +14,17 @@ use one_by_one::{OneNode, Sum, add_to_sum, move_node};
 use pulp::{Simd, WithSimd};
 
 /// Moves nodes. Returns the lowest row whose displacement is no longer finite.
-pub fn move_nodes<T: SimdScalar>(cpu: &Cpu, columns: &mut NodeColumns<'_, T>, factors: &Factors<T>) -> Option<u32> {
-    cpu.dispatch_widest(Task { columns, factors }).map(|row| row as u32)
+pub fn move_nodes<T: SimdScalar>(
+    cpu: &Cpu,
+    columns: &mut NodeColumns<'_, T>,
+    coefficients: &IntegrationCoefficients<T>,
+) -> Option<u32> {
+    cpu.dispatch_widest(Task { columns, coefficients }).map(|row| row as u32)
 }
 
 struct Task<'a, 'c, T> {
     columns: &'a mut NodeColumns<'c, T>,
-    factors: &'a Factors<T>,
+    coefficients: &'a IntegrationCoefficients<T>,
 }
 
 impl<T: SimdScalar> WithSimd for Task<'_, '_, T> {
@@ -65,18 +69,18 @@ impl<T: SimdScalar> Task<'_, '_, T> {
             let compensation = compensation.map(|[of_u, of_step]| [&mut of_u[at.clone()], &mut of_step[at.clone()]]);
             let mut sum = Sum { u: &mut columns.u[at.clone()], step: &mut columns.step[at], compensation };
             let work = columns.work.as_mut().map(|w| &mut w[WORK_NUMBERS * row..WORK_NUMBERS * (row + 1)]);
-            internal_work += move_node(&node, self.factors, &mut sum, work);
+            internal_work += move_node(&node, self.coefficients, &mut sum, work);
             // what is not finite in one component is not finite in the sum
             finite &= (sum.u[0] + sum.u[1] + sum.u[2]).to_f64().is_finite();
         }
         (internal_work, finite)
     }
 
-    /// At most [`CHUNK`] nodes with mass whose work is not booked: the same operations in the same order as one by one,
-    /// for registers full of components.
+    /// At most [`CHUNK`] nodes with mass whose work is not counted: the same operations in the same order as one by
+    /// one, for registers full of components.
     #[inline(always)]
     fn chunk<S: Simd>(&mut self, simd: S, from: usize, to: usize) -> (f64, bool) {
-        let factors = self.factors;
+        let coefficients = self.coefficients;
         let columns = &mut *self.columns;
         let numbers = 3 * from..3 * to;
         let mut chunk = Chunk {
@@ -88,7 +92,7 @@ impl<T: SimdScalar> Task<'_, '_, T> {
                 .compensation
                 .as_mut()
                 .map(|compensation| compensation.each_mut().map(|all| &mut all[numbers.clone()])),
-            force: T::splat(simd, factors.force),
+            force: T::splat(simd, coefficients.force),
             non_finite: T::splat(simd, T::default()),
             internal_work: T::splat(simd, T::default()),
         };
@@ -99,7 +103,7 @@ impl<T: SimdScalar> Task<'_, '_, T> {
                 mass: &columns.inertia[nodes.clone()],
                 damping: columns.damping.map(|all| &all[nodes.clone()]),
                 axes: &columns.axes[nodes.clone()],
-                factors,
+                coefficients,
             };
             let [a, b, c] = constants.of_components(simd);
             let at = 3 * (node - from);
@@ -130,7 +134,7 @@ impl<T: SimdScalar> Task<'_, '_, T> {
                 internal_work += columns.internal[at].to_f64() * (last + columns.step[at].to_f64());
             }
         }
-        (0.5 * factors.booked.to_f64() * internal_work, finite)
+        (0.5 * coefficients.work_factor.to_f64() * internal_work, finite)
     }
 }
 
@@ -139,13 +143,13 @@ struct Constants<'a, T> {
     mass: &'a [T],
     damping: Option<&'a [T]>,
     axes: &'a [u32],
-    factors: &'a Factors<T>,
+    coefficients: &'a IntegrationCoefficients<T>,
 }
 
 /// What a register full of components needs.
 struct OfComponents<V> {
     per_mass: V,
-    /// (1 + divide) a, and what the step shrinks with.
+    /// (1 + after_first) a, and what the step shrinks with.
     damping: Option<[V; 2]>,
     /// 1, or 0 along constrained axes.
     free: Option<V>,
@@ -154,7 +158,7 @@ struct OfComponents<V> {
 impl<T: SimdScalar> Constants<'_, T> {
     #[inline(always)]
     fn of_components<S: Simd>(&self, simd: S) -> [OfComponents<T::Vector<S>>; 3] {
-        let Factors { half_step, divide, relaxation, .. } = *self.factors;
+        let IntegrationCoefficients { half_step, after_first, relaxation, .. } = *self.coefficients;
         let splat = |number: T| T::splat(simd, number);
         let (zero, one) = (T::default(), T::from_f64(1.0));
         let mass = T::load_part(simd, self.mass);
@@ -164,8 +168,8 @@ impl<T: SimdScalar> Constants<'_, T> {
         let damping = (self.damping.is_some() || relaxation > zero).then(|| {
             let coefficient = self.damping.map_or(splat(zero), |all| T::load_part(simd, all));
             let a = coefficient * splat(half_step) * per_mass + splat(relaxation);
-            let shrink = a.if_positive(splat(one) / (splat(one) + splat(divide) * a), splat(one));
-            let ([ax, ay, az], [sx, sy, sz]) = (T::broadcast3(splat(one + divide) * a), T::broadcast3(shrink));
+            let shrink = a.if_positive(splat(one) / (splat(one) + splat(after_first) * a), splat(one));
+            let ([ax, ay, az], [sx, sy, sz]) = (T::broadcast3(splat(one + after_first) * a), T::broadcast3(shrink));
             [[ax, sx], [ay, sy], [az, sz]]
         });
         let [dx, dy, dz] = match damping {

@@ -19,7 +19,7 @@ pub fn run_volumes<E: Element, T: SimdScalar>(
     volumes: &mut [T],
 ) {
     let patch = groups_a_patch * LANES;
-    let tasks = volumes.chunks_mut(2 * patch).enumerate().map(|(index, volumes)| Patch::<E, T> {
+    let tasks = volumes.chunks_mut(2 * patch).enumerate().map(|(index, volumes)| PatchVolumes::<E, T> {
         displacement,
         connectivity: &connectivity[index * patch * E::NODES..],
         rest_shape: &rest_shape[index * patch * E::ROWS..],
@@ -30,7 +30,7 @@ pub fn run_volumes<E: Element, T: SimdScalar>(
     cpu.for_each(tasks, |patch| cpu.dispatch(patch));
 }
 
-struct Patch<'a, E, T: SimdScalar> {
+struct PatchVolumes<'a, E, T: SimdScalar> {
     displacement: &'a [T],
     connectivity: &'a [u32],
     rest_shape: &'a [T],
@@ -39,7 +39,7 @@ struct Patch<'a, E, T: SimdScalar> {
     element: PhantomData<E>,
 }
 
-impl<E: Element, T: SimdScalar> WithSimd for Patch<'_, E, T> {
+impl<E: Element, T: SimdScalar> WithSimd for PatchVolumes<'_, E, T> {
     type Output = ();
 
     #[inline(always)]

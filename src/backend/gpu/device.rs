@@ -8,10 +8,10 @@ use wgpu::{Adapter, Device, DeviceDescriptor, Features, Limits, PollError, PollT
 use super::adapter::choose;
 use super::buffers::Slot;
 use super::inbox::{Event, Inbox};
-use super::pace::Pace;
 use super::pipelines::{Pipelines, Prepared};
 use super::quirks::safe_uniforms;
 use super::run::StepRecords;
+use super::submission_throttle::SubmissionThrottle;
 use super::timing::Timing;
 use super::{AdapterReport, Choice, GpuError, GpuLimits, NoGpu, SmallerLimits};
 use crate::backend::kernel::MostBuffers;
@@ -29,7 +29,7 @@ pub struct Gpu {
     pub(super) pipelines: Pipelines,
     pub(super) kernels: Vec<Prepared>,
     pub(super) records: StepRecords,
-    pub(super) pace: Pace,
+    pub(super) throttle: SubmissionThrottle,
     pub(super) timing: Option<Timing>,
     pub(super) times: HashMap<String, super::KernelTime>,
     /// Uniform buffers of a kernel, where the driver spoils memory with more.
@@ -56,7 +56,7 @@ impl Gpu {
             pipelines: Pipelines::default(),
             kernels: Vec::new(),
             records,
-            pace: Pace::default(),
+            throttle: SubmissionThrottle::default(),
             timing: None,
             times: HashMap::new(),
             device,
@@ -110,9 +110,9 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::Lost`], [`GpuError::TimedOut`], and whatever went wrong since the last call.
     pub fn wait(&mut self) -> Result<(), GpuError> {
-        while let Some(index) = self.pace.oldest() {
+        while let Some(index) = self.throttle.oldest() {
             self.wait_for(Some(index))?;
-            self.pace.retire();
+            self.throttle.retire();
         }
         self.wait_for(None)
     }

@@ -32,13 +32,13 @@ mod device;
 #[cfg(feature = "gpu")]
 mod inbox;
 #[cfg(feature = "gpu")]
-mod pace;
-#[cfg(feature = "gpu")]
 mod pipelines;
 #[cfg(feature = "gpu")]
 mod quirks;
 #[cfg(feature = "gpu")]
 mod run;
+#[cfg(feature = "gpu")]
+mod submission_throttle;
 #[cfg(feature = "gpu")]
 mod timing;
 

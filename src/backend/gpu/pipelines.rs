@@ -15,7 +15,7 @@ use super::quirks::read_from_storage;
 use super::run::PACKED_HEADER;
 use super::{BufferKind, Gpu, GpuError};
 use crate::backend::kernel::{
-    Binding, BindingKind, Composed, Composer, Entry, Kernel, KernelError, KernelId, NameMismatch,
+    Binding, BindingKind, Composed, Composer, EntryPoint, Kernel, KernelError, KernelId, NameMismatch,
     STEP_RECORDS_VARIABLE, STEP_VARIABLE,
 };
 
@@ -140,7 +140,7 @@ impl Gpu {
         kernel: &Kernel,
         key: String,
         module: &Module,
-        entry: &Entry,
+        entry: &EntryPoint,
     ) -> Result<(ComputePipeline, BindGroupLayout), GpuError> {
         let key = (key, kernel.entry);
         if let Some(known) = self.pipelines.pipelines.get(&key) {
@@ -176,7 +176,7 @@ impl Gpu {
         &self,
         kernel: &Kernel,
         composed: &Composed,
-        entry: &Entry,
+        entry: &EntryPoint,
         layout: &BindGroupLayout,
     ) -> Result<BindGroup, GpuError> {
         let mut entries = Vec::new();
@@ -251,7 +251,13 @@ fn layout_entry(binding: &Binding, moved: bool) -> BindGroupLayoutEntry {
 
 /// A buffer that a kernel writes must not be seen under a second name: WebGPU forbids it, and the order of reads and
 /// writes would be left to chance.
-fn no_alias(gpu: &Gpu, kernel: &Kernel, composed: &Composed, entry: &Entry, binding: &Binding) -> Result<(), GpuError> {
+fn no_alias(
+    gpu: &Gpu,
+    kernel: &Kernel,
+    composed: &Composed,
+    entry: &EntryPoint,
+    binding: &Binding,
+) -> Result<(), GpuError> {
     let buffer = |b: &Binding| kernel.bindings.iter().find(|(name, _)| *name == b.name).map(|(_, id)| *id);
     let Some(id) = buffer(binding).filter(|_| binding.kind == BindingKind::ReadWrite) else { return Ok(()) };
     let mut others = entry.uses.iter().map(|i| &composed.bindings[*i]).filter(|b| b.name != binding.name);
@@ -268,7 +274,7 @@ fn no_alias(gpu: &Gpu, kernel: &Kernel, composed: &Composed, entry: &Entry, bind
 const OWN_VARIABLES: [&str; 2] = [STEP_VARIABLE, STEP_RECORDS_VARIABLE];
 
 /// Every variable in use has a buffer and every buffer a variable, once.
-fn match_names(kernel: &Kernel, composed: &Composed, entry: &Entry) -> Result<(), KernelError> {
+fn match_names(kernel: &Kernel, composed: &Composed, entry: &EntryPoint) -> Result<(), KernelError> {
     let used: Vec<_> = entry.uses.iter().map(|i| composed.bindings[*i].name.clone()).collect();
     let given: Vec<_> = kernel.bindings.iter().map(|(name, _)| name.clone().into_owned()).collect();
     let without_buffer: Vec<_> =

@@ -8,8 +8,8 @@ use wgpu::{
     ComputePassDescriptor, Device,
 };
 
-use super::pace::MOST_STEPS;
 use super::pipelines::Prepared;
+use super::submission_throttle::MOST_STEPS;
 use super::{Gpu, GpuError};
 use crate::backend::kernel::KernelId;
 
@@ -84,7 +84,7 @@ impl Gpu {
         let key: Arc<[KernelId]> = Arc::from(kernels);
         let mut done = 0;
         while done < count {
-            let steps = self.pace.batch(kernels).min(most).min(count - done);
+            let steps = self.throttle.batch(kernels).min(most).min(count - done);
             let records = &step_records[done as usize * record_size..][..steps as usize * record_size];
             if self.any(kernels, |kernel| kernel.record.is_some()) {
                 self.write_records(records, record_size, stride);
@@ -108,12 +108,12 @@ impl Gpu {
 
     /// Submissions of steps so far: how far many steps share one.
     pub fn submissions(&self) -> u64 {
-        self.pace.submissions
+        self.throttle.submissions
     }
 
     /// Dispatches of kernels so far.
     pub fn dispatches(&self) -> u64 {
-        self.pace.dispatches
+        self.throttle.dispatches
     }
 
     fn any(&self, kernels: &[KernelId], is_so: impl Fn(&Prepared) -> bool) -> bool {
@@ -196,15 +196,15 @@ impl Gpu {
         let mut dispatches = 0;
         batch.each(|_, _| dispatches += 1);
         let index = self.queue.submit([encoder.finish()]);
-        self.pace.dispatches += dispatches;
+        self.throttle.dispatches += dispatches;
         self.check("running kernels")?;
-        self.pace.submitted(index, key.clone(), steps);
+        self.throttle.submitted(index, key.clone(), steps);
         if !timed.is_empty() {
             return self.collect_times(&timed);
         }
-        while let Some(due) = self.pace.due() {
+        while let Some(due) = self.throttle.due() {
             self.wait_for(Some(due))?;
-            self.pace.retire();
+            self.throttle.retire();
         }
         Ok(())
     }

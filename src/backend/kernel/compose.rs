@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 /// A compute entry point.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Entry {
+pub struct EntryPoint {
     /// Name of the function.
     pub name: String,
     /// Invocations of a workgroup in x, y and z.
@@ -30,7 +30,7 @@ pub struct Composed {
     /// Every buffer variable declared, used or not.
     pub bindings: Vec<Binding>,
     /// Every compute entry point.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<EntryPoint>,
     module: Module,
     structs: Vec<Struct>,
 }
@@ -135,7 +135,7 @@ fn checked(mut module: Module, sources: &Sources) -> Result<Composed, KernelErro
             .global_variables
             .iter()
             .filter(|(handle, variable)| variable.space == AddressSpace::WorkGroup && !used[*handle].is_empty());
-        entries.push(Entry {
+        entries.push(EntryPoint {
             name: point.name.clone(),
             workgroup_size: point.workgroup_size,
             workgroup_memory: shared.map(|(_, variable)| layouts[variable.ty].size).sum(),
@@ -200,12 +200,12 @@ impl Composed {
     }
 
     /// An entry point by name.
-    pub fn entry(&self, name: &str) -> Option<&Entry> {
+    pub fn entry(&self, name: &str) -> Option<&EntryPoint> {
         self.entries.iter().find(|e| e.name == name)
     }
 
     /// Storage buffers that an entry point uses; WebGPU promises [`super::MostBuffers`].
-    pub fn storage_buffers(&self, entry: &Entry) -> usize {
+    pub fn storage_buffers(&self, entry: &EntryPoint) -> usize {
         entry.uses.iter().filter(|i| self.bindings[**i].kind != BindingKind::Uniform).count()
     }
 

@@ -58,7 +58,7 @@ impl Frame {
     /// nodes.
     pub fn patch_step() -> Self {
         let force = "var<private> force_of_patch: vec3<f32>;\n";
-        let least = format!("const LEAST_INSIDE: u32 = {GROUP_ROWS}u;\n");
+        let least = format!("const LEAST_INTERIOR: u32 = {GROUP_ROWS}u;\n");
         Self {
             entry: "patch_step",
             invocations: BATCH_GROUPS * LANES,

@@ -4,7 +4,7 @@ use super::frames::Frame;
 use super::{Forces, NodePass, NodeStage, Rows};
 use crate::backend::Buffers;
 use crate::backend::kernel::{
-    BindingKind, BufferId, Composed, Entry, Fragment, Kernel, Layout, Link, STEP_RECORDS_VARIABLE, STEP_VARIABLE,
+    BindingKind, BufferId, Composed, EntryPoint, Fragment, Kernel, Layout, Link, STEP_RECORDS_VARIABLE, STEP_VARIABLE,
     Uniform, Unit, UnitId,
 };
 use crate::components::{Column, ExternalForce, InternalForce};
@@ -173,7 +173,7 @@ impl Pass {
 const PASS_ROWS: &str = "pass_rows";
 
 /// Names of the buffers that an entry point writes.
-pub fn written<'a>(composed: &'a Composed, entry: &Entry) -> BTreeSet<&'a str> {
+pub fn written<'a>(composed: &'a Composed, entry: &EntryPoint) -> BTreeSet<&'a str> {
     let used = entry.uses.iter().map(|i| &composed.bindings[*i]);
     used.filter(|binding| binding.kind == BindingKind::ReadWrite).map(|binding| binding.name.as_str()).collect()
 }

@@ -12,7 +12,7 @@ use bevy_ecs::component::Component;
 
 /// What was found of a law when it was tried.
 #[derive(Component, Clone, Copy, Debug, PartialEq)]
-pub struct Findings {
+pub struct LawCheck {
     /// Shear modulus at small strains (Pa).
     pub shear: f64,
     /// Bulk modulus at small strains (Pa).
@@ -98,7 +98,7 @@ fn place(text: &str, name: &str) -> About {
 }
 
 /// Tries a law.
-pub(super) fn check(law: &LawPrograms, told: &Told) -> Result<(Findings, Vec<Complaint>), Vec<Complaint>> {
+pub(super) fn check(law: &LawPrograms, told: &Told) -> Result<(LawCheck, Vec<Complaint>), Vec<Complaint>> {
     let trial = Trial { law, told };
     let deformations = deformations::all();
     let finite_up_to = trial.finite(&deformations)?;
@@ -119,7 +119,7 @@ pub(super) fn check(law: &LawPrograms, told: &Told) -> Result<(Findings, Vec<Com
     }
     let [single_precision_error, single_precision_energy_error] = trial.single_precision_errors();
     let tried = deformations.len();
-    let findings = Findings {
+    let findings = LawCheck {
         shear,
         bulk,
         derivative_error,
@@ -303,7 +303,7 @@ impl Trial<'_> {
         [worst, of_energies]
     }
 
-    fn warnings(&self, deformations: &[&Deformation], findings: &Findings) -> Vec<Complaint> {
+    fn warnings(&self, deformations: &[&Deformation], findings: &LawCheck) -> Vec<Complaint> {
         let mut warnings = Vec::new();
         let mut warn = |complaint: Complaint| warnings.push(Complaint { warning: true, ..complaint });
         let note = format!("differences of large numbers, such as Ī₁ − 3, lose them: {}", self.told.exact);

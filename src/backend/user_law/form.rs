@@ -1,6 +1,6 @@
 //! What a text of the user's own must be: a law, or a load.
 
-use super::names::{law_owners, owners_among, to_call};
+use super::names::{callable_fragments, law_owners, owners_among};
 use crate::backend::kernel::Fragment;
 use crate::materials::J_FLOOR;
 use crate::shader;
@@ -55,7 +55,7 @@ fn function((name, argument, result, called): (&str, &'static str, &'static str,
 impl Form {
     /// Of an elastic law.
     pub(super) fn law() -> Self {
-        let mut ours = to_call();
+        let mut ours = callable_fragments();
         ours.push(Fragment::new("generated: constants", format!("const J_FLOOR: f32 = {J_FLOOR:e};\n")));
         Self {
             word: "law",
@@ -83,7 +83,7 @@ impl Form {
 
     /// Of a load by the name of its function: the force on a node.
     pub(super) fn load(name: &str) -> Self {
-        let ours = ground_of_load();
+        let ours = callable_fragments_of_load();
         Self {
             word: "system",
             functions: vec![function((name, "Node", "vec3<f32>", "node"))],
@@ -98,6 +98,6 @@ impl Form {
 }
 
 /// The fragments of ours that a load's text may call.
-pub(crate) fn ground_of_load() -> Vec<Fragment> {
+pub(crate) fn callable_fragments_of_load() -> Vec<Fragment> {
     vec![shader!("node_state"), shader!("elementary")]
 }

@@ -16,9 +16,9 @@ mod reading;
 mod rust;
 mod text;
 
-pub use checks::Findings;
+pub use checks::LawCheck;
 pub use energy::read_formula;
-pub(crate) use form::ground_of_load;
+pub(crate) use form::callable_fragments_of_load;
 pub use load::{check_load, read_load};
 pub use rust::NamedLaw;
 
@@ -77,7 +77,7 @@ pub struct Read {
     /// Kernels of its own, of a law in Rust.
     pub own_kernels: Option<OwnKernels>,
     /// What was found.
-    pub findings: Findings,
+    pub findings: LawCheck,
     /// Warnings.
     pub warnings: Vec<Complaint>,
 }

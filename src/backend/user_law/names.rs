@@ -59,7 +59,7 @@ pub(super) fn member(text: &str, of: &Declared, member: &str) -> Range<usize> {
 }
 
 /// The fragments that a law may call, and with which it is compiled.
-pub(super) fn to_call() -> Vec<Fragment> {
+pub(super) fn callable_fragments() -> Vec<Fragment> {
     vec![
         shader!("tensor"),
         shader!("inverse_cbrt"),
@@ -71,7 +71,7 @@ pub(super) fn to_call() -> Vec<Fragment> {
 }
 
 /// The other fragments that can be in one kernel with a law.
-pub(super) fn beside() -> Vec<Fragment> {
+pub(super) fn sibling_fragments() -> Vec<Fragment> {
     let kinds = ElementKind::ALL.into_iter().map(element_shader);
     let others = vec![
         shader!("alive"),
@@ -104,7 +104,7 @@ pub(super) fn beside() -> Vec<Fragment> {
         shader!("step"),
         shader!("tet4_nodal_pressure"),
         shader!("volume_ratio"),
-        shader!("watch_elements"),
+        shader!("guard_elements"),
     ];
     kinds.chain(others).collect()
 }
@@ -116,7 +116,7 @@ const GENERATED: [&str; 21] = [
     "call_all",
     "finish_all",
     "sum_all",
-    "LEAST_INSIDE",
+    "LEAST_INTERIOR",
     "isochoric_stress",
     "energy_density",
     "fibres_energy_at",
@@ -128,7 +128,7 @@ const GENERATED: [&str; 21] = [
     "LANES",
     "NODES",
     "POINTS",
-    "LOOKED_AT",
+    "CHECKED_POINTS",
     "ROWS",
     "VOLUME_ROW",
     "J_FLOOR",
@@ -136,7 +136,7 @@ const GENERATED: [&str; 21] = [
 
 /// The names that are ours where there is a law, each with the file that has it.
 pub(super) fn law_owners() -> HashMap<String, String> {
-    let mut owners = owners_among(&[to_call(), beside()].concat());
+    let mut owners = owners_among(&[callable_fragments(), sibling_fragments()].concat());
     owners.extend(GENERATED.map(|name| (name.to_owned(), "a generated part of the kernel".to_owned())));
     owners
 }
@@ -170,7 +170,7 @@ mod tests {
     /// A shader that is in none of the lists could break a kernel with a law in it, far from the law's file.
     #[test]
     fn every_shader_that_can_meet_a_law_is_in_the_list() {
-        let known: Vec<String> = to_call().into_iter().chain(beside()).map(|f| f.path).collect();
+        let known: Vec<String> = callable_fragments().into_iter().chain(sibling_fragments()).map(|f| f.path).collect();
         let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/shaders");
         for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
             let name = format!("shaders/{}", entry.file_name().to_string_lossy());

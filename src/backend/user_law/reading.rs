@@ -3,12 +3,12 @@
 use super::form::Form;
 use super::interface::{self, Parameters};
 use super::{About, Complaint, limits, text};
-use crate::materials::program::{DerivedLaw, Program, Source, Untranslatable};
+use crate::materials::program::{DerivedLaw, Program, ProgramSource, Untranslatable};
 use std::collections::BTreeMap;
 
 /// A text of a form, ready to be translated function by function.
 pub(super) struct Reading {
-    source: Source,
+    source: ProgramSource,
     /// Bytes of our own text before that of the user.
     ours: usize,
     /// The parameters' values, by the name of the variable that holds them.
@@ -29,7 +29,7 @@ impl Reading {
         let Parameters { values, bytes } = interface::check(form, path, text, given)?;
         let whole = text::in_double_precision(form, text);
         let ours = whole.len() - text.len();
-        let source = Source::read(&whole).map_err(|error| complaints(error, ours))?;
+        let source = ProgramSource::read(&whole).map_err(|error| complaints(error, ours))?;
         let values = BTreeMap::from([(form.parameters.to_owned(), values)]);
         Ok(Self { source, ours, values, uniform: bytes })
     }

@@ -4,7 +4,7 @@ use super::graph::{Binary, Graph, Id};
 use super::tape::Program;
 use super::translate::{self, MOST_VALUES, Translator};
 use super::value::Value;
-use super::{Source, Untranslatable};
+use super::{ProgramSource, Untranslatable};
 use naga::Span;
 use std::collections::BTreeMap;
 
@@ -60,7 +60,7 @@ struct Derived {
     volumetric_energy: Id,
 }
 
-impl Source {
+impl ProgramSource {
     /// Differentiates the function `name`, an energy of `Invariants`; `uniforms` as for
     /// [`translate`](Self::translate).
     ///

@@ -1,7 +1,7 @@
 //! From the expressions of a WGSL function to values.
 
 use super::translate::{Frame, Result, Translator};
-use super::value::{Place, Test, Value, Variable};
+use super::value::{Pointer, Test, Value, Variable};
 use super::{NOT_ALLOWED, Untranslatable};
 use naga::{Expression, Handle, Literal, ScalarKind, Span, Type, TypeInner};
 
@@ -56,13 +56,13 @@ impl<'m> Translator<'m> {
             }
             Expression::FunctionArgument(number) => frame.arguments[*number as usize].clone(),
             Expression::GlobalVariable(variable) => {
-                Value::Place(Place { variable: Variable::Global(variable.index()), path: Vec::new() })
+                Value::Pointer(Pointer { variable: Variable::Global(variable.index()), path: Vec::new() })
             }
             Expression::LocalVariable(variable) => {
-                Value::Place(Place { variable: Variable::Local(variable.index()), path: Vec::new() })
+                Value::Pointer(Pointer { variable: Variable::Local(variable.index()), path: Vec::new() })
             }
             Expression::Load { pointer } => match self.value(frame, *pointer)? {
-                Value::Place(place) => self.load(frame, &place, at)?,
+                Value::Pointer(place) => self.load(frame, &place, at)?,
                 _ => return not_allowed(),
             },
             Expression::Unary { op, expr } => {
@@ -147,14 +147,14 @@ impl<'m> Translator<'m> {
 
     fn part(&self, base: Value, index: usize, at: Span) -> Result<Value> {
         let part = match base {
-            Value::Place(place) => return Ok(Value::Place(place.part(index))),
+            Value::Pointer(place) => return Ok(Value::Pointer(place.part(index))),
             Value::Parts(mut parts) if index < parts.len() => Some(parts.swap_remove(index)),
             _ => None,
         };
         part.ok_or_else(|| Untranslatable::new(at, format!("there is no part {index} here: indices count from 0")))
     }
 
-    fn load(&self, frame: &Frame<'m>, place: &Place, at: Span) -> Result<Value> {
+    fn load(&self, frame: &Frame<'m>, place: &Pointer, at: Span) -> Result<Value> {
         let variable = match place.variable {
             Variable::Local(number) => frame.state.locals.get(number),
             Variable::Global(number) => self.globals.get(number).and_then(Option::as_ref),

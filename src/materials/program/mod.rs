@@ -67,12 +67,12 @@ const FUNCTIONS: &str = "allowed: abs, all, any, clamp, cos, cross, determinant,
      tanh, transpose";
 
 /// The text of the WGSL functions of a law or a load, read in double precision.
-pub struct Source {
+pub struct ProgramSource {
     module: Module,
     twin: Twin,
 }
 
-impl Source {
+impl ProgramSource {
     /// Reads a text that is known to be valid WGSL.
     ///
     /// # Errors

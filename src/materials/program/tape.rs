@@ -79,9 +79,9 @@ impl Program {
             let at = |k: usize| arguments.get(k).and_then(|id| places[id.index()]).unwrap_or(0) as u8;
             let (a, b, c) = (at(0), at(1), at(2));
             for (k, operand) in arguments.iter().enumerate() {
-                let dies = last[operand.index()] == Some(index) && !arguments[..k].contains(operand);
+                let is_last_use = last[operand.index()] == Some(index) && !arguments[..k].contains(operand);
                 let lasting = matches!(graph.node(*operand), Node::Constant(_));
-                if let Some(place) = places[operand.index()].filter(|_| dies && !lasting) {
+                if let Some(place) = places[operand.index()].filter(|_| is_last_use && !lasting) {
                     free.free.push(place);
                 }
             }
@@ -228,10 +228,10 @@ impl FreeSlots {
     }
 }
 
-type Step = Option<(Code, Vec<Id>)>;
+type TapeStep = Option<(Code, Vec<Id>)>;
 
 /// The instruction of each value, none for inputs and constants. A product that only a sum uses goes into it.
-fn fused(graph: &Graph, outputs: &[Id]) -> Vec<Step> {
+fn fused(graph: &Graph, outputs: &[Id]) -> Vec<TapeStep> {
     let mut uses = vec![0_usize; graph.nodes().len()];
     for output in outputs {
         uses[output.index()] += 1;
@@ -269,6 +269,6 @@ fn fused(graph: &Graph, outputs: &[Id]) -> Vec<Step> {
     graph.nodes().iter().map(step).collect()
 }
 
-fn operands(steps: &[Step], index: usize) -> impl Iterator<Item = Id> + '_ {
+fn operands(steps: &[TapeStep], index: usize) -> impl Iterator<Item = Id> + '_ {
     steps[index].iter().flat_map(|(_, arguments)| arguments.iter().copied())
 }

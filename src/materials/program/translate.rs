@@ -3,7 +3,7 @@
 
 use super::flow::State;
 use super::graph::{Graph, Unary};
-use super::value::{Place, Test, Value, Variable};
+use super::value::{Pointer, Test, Value, Variable};
 use super::{KNOWN_BY_NAME, NOT_ALLOWED, Untranslatable};
 use naga::{Arena, Block, Expression, Function, Handle, Module, Span, Statement, SwitchValue};
 
@@ -49,7 +49,7 @@ impl<'m> Translator<'m> {
         if let Some(known) = self.known_by_name(function, &arguments) {
             return Ok(known);
         }
-        if arguments.iter().any(|argument| matches!(argument, Value::Place(_))) {
+        if arguments.iter().any(|argument| matches!(argument, Value::Pointer(_))) {
             return Err(Untranslatable::new(at, "a pointer cannot be handed to a function")
                 .note("let the function return its result, as a struct when there are several"));
         }
@@ -186,7 +186,7 @@ impl<'m> Translator<'m> {
             Statement::Store { pointer, value } => {
                 let value = self.value(frame, *value)?;
                 match self.value(frame, *pointer)? {
-                    Value::Place(place) => self.store(frame, &place, value, at)?,
+                    Value::Pointer(place) => self.store(frame, &place, value, at)?,
                     _ => return Err(Untranslatable::new(at, "this cannot be assigned to")),
                 }
             }
@@ -210,7 +210,7 @@ impl<'m> Translator<'m> {
         }
     }
 
-    fn store(&mut self, frame: &mut Frame<'m>, place: &Place, value: Value, at: Span) -> Result<()> {
+    fn store(&mut self, frame: &mut Frame<'m>, place: &Pointer, value: Value, at: Span) -> Result<()> {
         let Variable::Local(number) = place.variable else {
             return Err(Untranslatable::new(at, "only variables of the function itself can be assigned to"));
         };

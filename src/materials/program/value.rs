@@ -22,14 +22,14 @@ pub(super) enum Value {
     /// Vectors, matrices (their columns), structs and arrays.
     Parts(Vec<Value>),
     /// A variable or a part of it.
-    Place(Place),
+    Pointer(Pointer),
     /// A whole number that differs from element to element: it must not be looked at.
     Varying,
 }
 
 /// A variable, and the way to a part of it.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Place {
+pub(super) struct Pointer {
     pub(super) variable: Variable,
     pub(super) path: Vec<usize>,
 }
@@ -41,7 +41,7 @@ pub(super) enum Variable {
     Global(usize),
 }
 
-impl Place {
+impl Pointer {
     pub(super) fn part(&self, index: usize) -> Self {
         let mut part = self.clone();
         part.path.push(index);
@@ -81,7 +81,7 @@ impl Value {
     pub(super) fn numbers(&self) -> usize {
         match self {
             Value::Parts(parts) => 1 + parts.iter().map(Value::numbers).sum::<usize>(),
-            Value::Place(place) => 1 + place.path.len(),
+            Value::Pointer(place) => 1 + place.path.len(),
             _ => 1,
         }
     }

@@ -1,6 +1,6 @@
 //! A place in a file's bytes that moves on as words and binary numbers are read, and knows where it is.
 
-use crate::mesh::Place;
+use crate::mesh::FilePosition;
 use crate::mesh::read::Fault;
 use std::str::FromStr;
 
@@ -37,10 +37,10 @@ impl<'a> Cursor<'a> {
         Fault { at: self.place(), what: what.into(), allowed: allowed.into() }
     }
 
-    fn place(&self) -> Place {
+    fn place(&self) -> FilePosition {
         match self.form {
-            Form::Text => Place::Line(1 + self.bytes[..self.last].iter().filter(|&&byte| byte == b'\n').count()),
-            _ => Place::Byte(self.last),
+            Form::Text => FilePosition::Line(1 + self.bytes[..self.last].iter().filter(|&&byte| byte == b'\n').count()),
+            _ => FilePosition::Byte(self.last),
         }
     }
 

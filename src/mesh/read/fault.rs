@@ -1,12 +1,12 @@
 //! What is wrong with a file, before its name is added.
 
-use crate::mesh::{MeshError, Place};
+use crate::mesh::{FilePosition, MeshError};
 use std::path::Path;
 
 /// A fault found while a file is read, before its name is added.
 #[derive(Debug)]
 pub struct Fault {
-    pub at: Place,
+    pub at: FilePosition,
     pub what: String,
     pub allowed: String,
 }
@@ -14,7 +14,7 @@ pub struct Fault {
 impl Fault {
     /// A fault of the file as a whole.
     pub fn whole(what: impl Into<String>, allowed: impl Into<String>) -> Self {
-        Fault { at: Place::File, what: what.into(), allowed: allowed.into() }
+        Fault { at: FilePosition::File, what: what.into(), allowed: allowed.into() }
     }
 
     /// The error that names the file.

@@ -10,7 +10,7 @@ const SLIVER: f64 = 0.01;
 
 /// What elements measure, and the text for each kind of finding.
 #[derive(Default)]
-struct Findings {
+struct ElementDefects {
     out_of_range: Vec<(usize, String)>,
     repeated: Vec<(usize, String)>,
     flat: Vec<(usize, String)>,
@@ -20,7 +20,7 @@ struct Findings {
 
 impl Mesh {
     pub(super) fn check_elements(&self, found: &mut Soundness) {
-        let mut all = Findings::default();
+        let mut all = ElementDefects::default();
         for row in 0..self.element_count() {
             if self.check_rows(row, &mut all) {
                 self.check_shape(row, &mut all);
@@ -57,7 +57,7 @@ impl Mesh {
     }
 
     /// Whether an element's points are there, different and finite, so that its shape can be measured.
-    fn check_rows(&self, row: usize, all: &mut Findings) -> bool {
+    fn check_rows(&self, row: usize, all: &mut ElementDefects) -> bool {
         let nodes = self.element(row);
         if let Some(node) = nodes.iter().find(|&&node| node as usize >= self.points.len()) {
             all.out_of_range.push((row, format!("row {node}")));
@@ -71,7 +71,7 @@ impl Mesh {
         nodes.iter().all(|&node| self.points[node as usize].is_finite())
     }
 
-    fn check_shape(&self, row: usize, all: &mut Findings) {
+    fn check_shape(&self, row: usize, all: &mut ElementDefects) {
         let kind = self.cells.kind(row);
         let Some(solid) = kind.topology().solid else { return };
         let corners = &self.places(row)[..];

@@ -4,7 +4,7 @@ use super::appended::{Split, split};
 use super::decode::{Compression, Packing, base64};
 use super::scalar::Scalar;
 use super::{DataArray, VtuFile};
-use crate::mesh::Place;
+use crate::mesh::FilePosition;
 use crate::mesh::read::Fault;
 use glam::DVec3;
 use roxmltree::Node;
@@ -31,7 +31,7 @@ struct Reader<'a> {
 pub fn parse(bytes: &[u8]) -> Result<VtuFile, Fault> {
     let appended = split(bytes)?;
     let document = roxmltree::Document::parse(&appended.xml).map_err(|error| Fault {
-        at: Place::Line(error.pos().row as usize),
+        at: FilePosition::Line(error.pos().row as usize),
         what: format!("the XML is damaged ({error})"),
         allowed: "the file may have been cut short".into(),
     })?;
@@ -60,7 +60,7 @@ pub fn parse(bytes: &[u8]) -> Result<VtuFile, Fault> {
 
 fn fault(node: Node, what: String, allowed: &str) -> Fault {
     let row = node.document().text_pos_at(node.range().start).row;
-    Fault { at: Place::Line(row as usize), what, allowed: allowed.into() }
+    Fault { at: FilePosition::Line(row as usize), what, allowed: allowed.into() }
 }
 
 fn packing(root: Node) -> Result<Packing, Fault> {

@@ -3,7 +3,7 @@
 use super::Stop;
 use super::stand_in::StandIn;
 use super::value::Value;
-use crate::scene::syntax::{Entry, Field, Kind, Node};
+use crate::scene::syntax::{Field, Kind, MapEntry, Node};
 use serde::de::value::StrDeserializer;
 use serde::de::{DeserializeSeed, Deserializer, EnumAccess, MapAccess, SeqAccess, VariantAccess, Visitor};
 use std::collections::BTreeSet;
@@ -41,13 +41,13 @@ impl<'de> SeqAccess<'de> for Items<'_> {
 /// The entries of a map, of a name that stands twice the first only.
 pub(super) struct Entries<'a> {
     parent: Value<'a>,
-    entries: &'a [Entry],
+    entries: &'a [MapEntry],
     seen: BTreeSet<&'a str>,
     value: Option<Value<'a>>,
 }
 
 impl<'a> Entries<'a> {
-    pub(super) fn new(parent: Value<'a>, entries: &'a [Entry]) -> Self {
+    pub(super) fn new(parent: Value<'a>, entries: &'a [MapEntry]) -> Self {
         Self { parent, entries, seen: BTreeSet::new(), value: None }
     }
 }

@@ -1,6 +1,6 @@
 //! The tree of a scene's text with what parts hold beside what the scene itself holds.
 
-use crate::scene::syntax::{Entry, Field, Kind, Node, Word};
+use crate::scene::syntax::{Field, Kind, MapEntry, Node, Word};
 
 /// Fields of a part that are names with what belongs to them.
 const MAPS: [&str; 4] = ["bodies", "materials", "tools", "probes"];
@@ -37,7 +37,7 @@ pub fn merged(root: &Node) -> Option<Node> {
     Some(Node { kind: Kind::Fields(fields), ..root.clone() })
 }
 
-fn name_and_value(entry: &Entry) -> Option<(&str, &Node)> {
+fn name_and_value(entry: &MapEntry) -> Option<(&str, &Node)> {
     if let Kind::Text(name) = &entry.key.kind { Some((name, &entry.value)) } else { None }
 }
 

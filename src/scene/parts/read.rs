@@ -1,7 +1,7 @@
 //! Reads the files of parts into the text of a scene.
 
-use crate::scene::beside::{Beside, FileKind, Outside, shortest};
 use crate::scene::diagnostic::{Diagnostic, TextFile};
+use crate::scene::file_access::{FileAccess, FileKind, Outside, shortest};
 use crate::scene::limits::{PART_DEPTH, PARTS, TEXT_BYTES};
 use crate::scene::set::{self, View};
 use crate::scene::source::{Origin, Source, Stretches};
@@ -22,10 +22,10 @@ pub struct Together {
 
 /// Puts the values of `--set` and the files of parts into a text. `name` is that of the scene's own file, by its path
 /// from the folder that files are beside.
-pub fn read(mut source: Source, sets: &[String], beside: Beside<'_>, name: &str) -> Together {
+pub fn read(mut source: Source, sets: &[String], access: FileAccess<'_>, name: &str) -> Together {
     let texts = source.texts.clone();
     let mut reader = Reader {
-        beside,
+        access,
         texts,
         chain: vec![shortest(name)],
         depth: 0,
@@ -60,7 +60,7 @@ fn is_of_parts(set: &str) -> bool {
 }
 
 struct Reader<'a> {
-    beside: Beside<'a>,
+    access: FileAccess<'a>,
     texts: Vec<Arc<TextFile>>,
     /// The files that are being read, outermost first.
     chain: Vec<String>,
@@ -194,7 +194,7 @@ impl Reader<'_> {
             self.tell(at, format!("`{full}` is a part of itself")).note(circle);
             return None;
         }
-        let text = match self.beside.bytes(&full, (TEXT_BYTES - self.bytes) as u64) {
+        let text = match self.access.bytes(&full, (TEXT_BYTES - self.bytes) as u64) {
             Ok(bytes) => String::from_utf8(bytes.into_owned()),
             Err(error) => {
                 self.unreadable(&full, at, &error);
@@ -207,7 +207,7 @@ impl Reader<'_> {
         };
         self.bytes += text.len();
         let text = text.strip_prefix('\u{feff}').map(str::to_string).unwrap_or(text);
-        let shown = self.beside.file(&full).map_or(full.clone(), |path| path.display().to_string());
+        let shown = self.access.file(&full).map_or(full.clone(), |path| path.display().to_string());
         let known = self.texts.iter().position(|file| file.name == shown && file.text == text);
         let number = known.unwrap_or_else(|| {
             self.texts.push(Arc::new(TextFile { name: shown, text: text.clone() }));
@@ -224,7 +224,7 @@ impl Reader<'_> {
 
     fn unreadable(&mut self, full: &str, at: (usize, Span), error: &std::io::Error) {
         use std::io::ErrorKind;
-        match self.beside.look_up(full) {
+        match self.access.look_up(full) {
             Err(_) => drop(self.tell(at, format!("`{full}` lies outside the scene's folder")).note(Outside::HOW)),
             Ok((FileKind::Nothing, there)) => {
                 let wanted = full.rsplit('/').next().unwrap_or(full);

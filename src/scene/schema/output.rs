@@ -13,7 +13,7 @@ pub struct Output {
     pub fields: Option<Vec<OutputField>>,
     /// Write elements that have been removed, too, with an array `alive` that tells them from the others.
     pub removed_elements: bool,
-    /// Time between rows of `energy.csv` (s). Naming it also books the work of all forces in every step.
+    /// Time between rows of `energy.csv` (s). Naming it also counts the work of all forces in every step.
     pub energies_every: Option<f64>,
     /// Time between snapshots (s), from which `sinew run --resume` goes on; none when left out.
     pub snapshots_every: Option<f64>,

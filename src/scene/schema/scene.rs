@@ -230,7 +230,7 @@ pub struct Guards {
     pub energy: EnergyGuard,
     /// Energy in hourglass control of a part that is warned of, as a share of the part's largest elastic energy so far.
     pub hourglass: f64,
-    /// Guards that do not look.
+    /// Guards that do not check.
     pub off: Vec<Guard>,
     /// States that are kept in memory, and written when the run breaks down.
     pub window: u64,

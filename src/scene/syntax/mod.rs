@@ -54,7 +54,7 @@ pub enum Kind {
     /// `[a, b]`.
     List(Vec<Node>),
     /// `{"a": 1}`.
-    Map(Vec<Entry>),
+    Map(Vec<MapEntry>),
     /// `(a, b)`, also `()`.
     Tuple(Vec<Node>),
     /// `(a: 1, b: 2)`.
@@ -65,7 +65,7 @@ pub enum Kind {
 
 /// One entry of a map.
 #[derive(Clone, Debug)]
-pub struct Entry {
+pub struct MapEntry {
     /// The key.
     pub key: Node,
     /// The value.

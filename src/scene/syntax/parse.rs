@@ -1,7 +1,7 @@
 //! From a text to its tree, going on after what can be gone on from.
 
 use super::scan::{Endless, Scan, starts_word};
-use super::{DEEPEST, Entry, Fault, Field, Kind, Node, Span, Tree, Word};
+use super::{DEEPEST, Fault, Field, Kind, MapEntry, Node, Span, Tree, Word};
 use crate::scene::limits::{FAULTS, VALUES};
 
 /// Reads a text. Never fails: what is wrong is in [`Tree::faults`], and the tree holds the rest.
@@ -207,7 +207,7 @@ impl Parser<'_> {
         while self.more('}')? {
             let key = self.value()?;
             let value = self.after_colon(&key.span, "name")?;
-            entries.push(Entry { key, value });
+            entries.push(MapEntry { key, value });
             self.comma('}')?;
         }
         Ok(Kind::Map(entries))

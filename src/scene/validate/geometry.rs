@@ -3,7 +3,7 @@
 use super::{Validator, scene, select};
 use crate::mesh::CellKind;
 use crate::mesh::generators::cells_around;
-use crate::scene::beside::{FileKind, FileSource, Outside};
+use crate::scene::file_access::{FileKind, FileSource, Outside};
 use crate::scene::limits::{MOST_COPIES, MOST_REFINEMENT};
 use crate::scene::load::SceneFile;
 use crate::scene::schema::{AccuracyReference, MeshSource, Start};

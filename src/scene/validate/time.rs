@@ -49,7 +49,7 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
 fn guards(scene_: &Scene, validator: &mut Validator) {
     let (guards, path) = (&scene_.guards, scene("guards"));
     if guards.every == 0 {
-        validator.must(&path.name("every"), "at least 1", 0).note("it is the number of steps between two looks");
+        validator.must(&path.name("every"), "at least 1", 0).note("it is the number of steps between two checks");
     }
     let Guards { energy: EnergyGuard { warn, stop }, hourglass, .. } = *guards;
     validator.above_zero(&path.name("energy").name("warn"), warn, "");

@@ -2,7 +2,7 @@
 
 use super::{Effect, Part, ScenePart};
 use crate::backend::cpu::{BlockLaw, Cpu, kernel_effects};
-use crate::backend::user_law::Findings;
+use crate::backend::user_law::LawCheck;
 use crate::components::*;
 use crate::elements::with_element;
 use crate::materials::{Elastic, ElasticLaw, ExponentialFibre, Fibres, UserLaw};
@@ -142,7 +142,7 @@ fn block_effects(entity: &EntityRef<'_>, block: &Block, material: &str, body: &s
 
 /// What was found of a law of the user's own when it was tried.
 fn trial(material: Entity, world: &World) -> String {
-    let Some(found) = world.get::<Findings>(material) else { return String::new() };
+    let Some(found) = world.get::<LawCheck>(material) else { return String::new() };
     let finite = match found.finite_up_to {
         None => format!("finite in all {} deformations tried", found.tried),
         Some(size) => format!("finite for ∇u below {size}"),
@@ -190,7 +190,7 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, can_be_held: bool,
         Precision::F32 => "`compensated: true` under `integration`",
         Precision::F64 => "`compensated: true` under `integration`, in f32 only",
     };
-    let booking = scene
+    let accumulated = scene
         .output
         .energies_every
         .map_or_else(|| "energies are asked for".into(), |every| format!("a row in every {every} s"));
@@ -222,8 +222,8 @@ fn body_effects(entity: &EntityRef<'_>, precision: Precision, can_be_held: bool,
             turned_on_by: compensated.into(),
         },
         Effect {
-            name: "booking of work",
-            on: entity.contains::<Work>().then_some(booking),
+            name: "accumulated work",
+            on: entity.contains::<Work>().then_some(accumulated),
             turned_on_by: "`energies_every` under `output`".into(),
         },
     ]

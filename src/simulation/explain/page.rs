@@ -41,7 +41,7 @@ impl Display for Explanation {
             writeln!(f, "\nNodes that move with the patch that they are inside")?;
         }
         for body in &self.dispatched {
-            writeln!(f, "  {:<16}  {}  {}", body.body, body.inside, body.inside_because)?;
+            writeln!(f, "  {:<16}  {}  {}", body.body, body.interior, body.interior_because)?;
         }
         self.kernels.iter().try_for_each(|kernel| write_kernel(kernel, f))?;
         if self.on_gpu {

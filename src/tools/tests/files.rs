@@ -2,7 +2,7 @@
 
 use super::super::{DistanceGrid, Shape, Solid, Triangles};
 use super::{assert_closed, volume};
-use crate::mesh::{MeshError, Place};
+use crate::mesh::{FilePosition, MeshError};
 use glam::DVec3;
 
 fn tube() -> Triangles {
@@ -112,26 +112,26 @@ fn bad_files_are_refused_with_their_place() {
     let binary = as_binary(&tube(), b"");
     let mut not_finite = binary.clone();
     not_finite[84 + 50 + 12..84 + 50 + 16].copy_from_slice(&f32::NAN.to_le_bytes());
-    let cases: [(&str, Vec<u8>, Place, &str); 19] = [
-        ("a.stl", with(4, "vertex 1 2 x"), Place::Line(4), "`x` where a coordinate should be"),
-        ("a.stl", with(4, "vertex 1 2 inf"), Place::Line(4), "a coordinate is inf"),
-        ("a.stl", with(4, "vertex 1 2"), Place::Line(5), "`vertex` where a coordinate should be"),
-        ("a.stl", with(7, ""), Place::Line(8), "`endfacet` where endloop should be"),
-        ("a.stl", with(9, "face"), Place::Line(9), "`face` where facet or endsolid should be"),
-        ("a.stl", lines[..8].join("\n").into_bytes(), Place::Line(8), "the file ends without `endsolid`"),
-        ("a.stl", lines[..5].join("\n").into_bytes(), Place::Line(5), "the file ends where"),
-        ("a.stl", b"solid\nendsolid\n".to_vec(), Place::File, "the file has no triangles"),
-        ("a.stl", binary[..1000].to_vec(), Place::File, "and has 1000"),
-        ("a.stl", not_finite, Place::Byte(146), "a coordinate is NaN"),
-        ("a.stl", Vec::new(), Place::File, "the file is empty"),
-        ("a.obj", b"v 0 0 0\nv 1 0\n".to_vec(), Place::Line(2), "`v 1 0` is no point"),
-        ("a.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 3\n".to_vec(), Place::Line(3), "`3` is no corner"),
-        ("a.obj", b"v 0 0 0\nf 1 0 1\n".to_vec(), Place::Line(2), "numbers of the 1 points above"),
-        ("a.obj", b"v 0 0 0\nv 1 0 0\n\nf 1 2\n".to_vec(), Place::Line(4), "`f 1 2` is no polygon"),
-        ("a.obj", b"v 0 0 0\nf 1 -2 1\n".to_vec(), Place::Line(2), "`-2` is no corner"),
-        ("a.vtk", b"# vtk DataFile Version 3.0\n".to_vec(), Place::File, "holds a volume mesh"),
-        ("a.off", b"OFF\n".to_vec(), Place::File, "the format of .off files is not known"),
-        ("a.ply", b"ply\n".to_vec(), Place::File, "the head of the file has no end"),
+    let cases: [(&str, Vec<u8>, FilePosition, &str); 19] = [
+        ("a.stl", with(4, "vertex 1 2 x"), FilePosition::Line(4), "`x` where a coordinate should be"),
+        ("a.stl", with(4, "vertex 1 2 inf"), FilePosition::Line(4), "a coordinate is inf"),
+        ("a.stl", with(4, "vertex 1 2"), FilePosition::Line(5), "`vertex` where a coordinate should be"),
+        ("a.stl", with(7, ""), FilePosition::Line(8), "`endfacet` where endloop should be"),
+        ("a.stl", with(9, "face"), FilePosition::Line(9), "`face` where facet or endsolid should be"),
+        ("a.stl", lines[..8].join("\n").into_bytes(), FilePosition::Line(8), "the file ends without `endsolid`"),
+        ("a.stl", lines[..5].join("\n").into_bytes(), FilePosition::Line(5), "the file ends where"),
+        ("a.stl", b"solid\nendsolid\n".to_vec(), FilePosition::File, "the file has no triangles"),
+        ("a.stl", binary[..1000].to_vec(), FilePosition::File, "and has 1000"),
+        ("a.stl", not_finite, FilePosition::Byte(146), "a coordinate is NaN"),
+        ("a.stl", Vec::new(), FilePosition::File, "the file is empty"),
+        ("a.obj", b"v 0 0 0\nv 1 0\n".to_vec(), FilePosition::Line(2), "`v 1 0` is no point"),
+        ("a.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 3\n".to_vec(), FilePosition::Line(3), "`3` is no corner"),
+        ("a.obj", b"v 0 0 0\nf 1 0 1\n".to_vec(), FilePosition::Line(2), "numbers of the 1 points above"),
+        ("a.obj", b"v 0 0 0\nv 1 0 0\n\nf 1 2\n".to_vec(), FilePosition::Line(4), "`f 1 2` is no polygon"),
+        ("a.obj", b"v 0 0 0\nf 1 -2 1\n".to_vec(), FilePosition::Line(2), "`-2` is no corner"),
+        ("a.vtk", b"# vtk DataFile Version 3.0\n".to_vec(), FilePosition::File, "holds a volume mesh"),
+        ("a.off", b"OFF\n".to_vec(), FilePosition::File, "the format of .off files is not known"),
+        ("a.ply", b"ply\n".to_vec(), FilePosition::File, "the head of the file has no end"),
     ];
     for (name, bytes, place, message) in cases {
         let error = Triangles::from_bytes(name, &bytes).unwrap_err();

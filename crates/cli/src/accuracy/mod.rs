@@ -1,13 +1,14 @@
 //! `sinew accuracy`: what accuracy costs in time.
 
 mod page;
-mod watch;
+mod reporter;
 
 use super::arguments::{AccuracyArguments, BackendName, default_folder};
 use super::failure::Failure;
 use super::run::SCENE;
 use super::terminal::{self, Paint};
 use super::{Outcome, interrupt, progress};
+use reporter::Reporter;
 use sinew::backend::gpu::Choice;
 use sinew::output::{Folder, OutputError, replace, summary};
 use sinew::scene::schema::AccuracyReference;
@@ -15,11 +16,10 @@ use sinew::systems::Registry;
 use sinew::{SceneFile, Simulation};
 use sinew_pictures::plot::png;
 use sinew_studies::accuracy::engine::has_gpu;
-use sinew_studies::accuracy::{Engine, Reference, Refusal, Settings, Study, Verdict, files, plot, study, tables};
+use sinew_studies::accuracy::{Engine, Reference, Refusal, Settings, Study, TargetVerdict, files, plot, study, tables};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
-use watch::Teller;
 
 /// The error that is good enough when nobody says which.
 const TARGET: f64 = 0.01;
@@ -41,7 +41,7 @@ pub fn command(arguments: &AccuracyArguments) -> Outcome {
         .up_to(arguments.finest.unwrap_or(f64::INFINITY));
     interrupt::listen();
     let made = settings(arguments, &file, started, &mut engine)
-        .and_then(|settings| study(&mut engine, &settings, &mut Teller::default()).map_err(failure));
+        .and_then(|settings| study(&mut engine, &settings, &mut Reporter::default()).map_err(failure));
     interrupt::rest();
     let study = made?;
     let title = if file.scene.title.is_empty() { "a scene" } else { &file.scene.title };
@@ -60,8 +60,8 @@ fn accuracy_folder(scene: &Path) -> PathBuf {
 fn ended(study: &Study, asked: bool) -> Outcome {
     match study.findings.verdict {
         _ if study.interrupted => Err(Failure::Interrupted),
-        Verdict::NotMet if asked => Err(Failure::TargetMissed),
-        Verdict::CannotTell if asked => Err(Failure::TargetUnclear),
+        TargetVerdict::NotMet if asked => Err(Failure::TargetMissed),
+        TargetVerdict::CannotTell if asked => Err(Failure::TargetUnclear),
         _ => Ok(()),
     }
 }
@@ -95,8 +95,8 @@ fn settings(
         }
     }
     if !paths.is_empty() {
-        let looks = engine.looks().map_err(failure)?;
-        reference = Some(files::read(&paths, file.scene.duration, looks).map_err(Failure::Options)?);
+        let samples = engine.sample_count().map_err(failure)?;
+        reference = Some(files::read(&paths, file.scene.duration, samples).map_err(Failure::Options)?);
     }
     // what is named on the command line is not what the scene speaks of
     if arguments.reference.is_empty() {

@@ -3,7 +3,7 @@
 use super::super::terminal::Paint;
 use super::super::wording::{digits, quantity};
 use sinew_studies::accuracy::advice::percent;
-use sinew_studies::accuracy::{Study, Verdict, tables};
+use sinew_studies::accuracy::{Study, TargetVerdict, tables};
 use std::path::Path;
 
 /// Longer reasons are cut here: the table stays a table, and the files have them whole.
@@ -58,9 +58,9 @@ pub fn text(study: &Study, title: &str, folder: &Path, paint: Paint) -> String {
         "{:10} {}\n",
         "target",
         match study.findings.verdict {
-            Verdict::Met => format!("the scene as written meets {target}"),
-            Verdict::NotMet => format!("the scene as written does not meet {target}"),
-            Verdict::CannotTell => format!("whether the scene as written meets {target} cannot be told"),
+            TargetVerdict::Met => format!("the scene as written meets {target}"),
+            TargetVerdict::NotMet => format!("the scene as written does not meet {target}"),
+            TargetVerdict::CannotTell => format!("whether the scene as written meets {target} cannot be told"),
         }
     );
     for note in &study.notes {

@@ -1,12 +1,12 @@
 //! `sinew bench`, and the figures drawn from what it measured. Times are not asserted: machines are busy.
 
-use crate::sinew::Place;
+use crate::sinew::Workspace;
 use sinew::mesh::ElementKind;
 use sinew_studies::bench::{Case, Effects, Load, Record, Row, cpu_to_gpu, split_to_fused, svg};
 
 #[test]
 fn a_benchmark_leaves_a_row_a_case_with_the_columns_that_are_told() {
-    let place = Place::new();
+    let place = Workspace::new();
     let asked = ["bench", "--cells", "3", "--elements", "tet4,hex8", "--effects", "none", "--seconds", "0.01"];
     place.done(&[&asked[..], &["--threads", "1", "--schemes", "patches", "--out", "out/bench"]].concat());
     let table = place.read("out/bench/bench.csv");
@@ -30,7 +30,7 @@ fn a_benchmark_leaves_a_row_a_case_with_the_columns_that_are_told() {
 
 #[test]
 fn records_of_before_there_was_a_choice_can_be_compared_with() {
-    let place = Place::new();
+    let place = Workspace::new();
     let asked = ["bench", "--cells", "2", "--elements", "tet4", "--effects", "none", "--seconds", "0.01"];
     let asked = [&asked[..], &["--threads", "1", "--schemes", "patches"]].concat();
     place.done(&[&asked[..], &["--out", "out/bench"]].concat());

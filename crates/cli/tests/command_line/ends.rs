@@ -1,13 +1,13 @@
 //! How the command ends: one status for each kind of failure, and words that say where and what.
 
-use crate::sinew::{Ended, Place, SCENE};
+use crate::sinew::{Ended, SCENE, Workspace};
 use std::fs;
 use std::process::Stdio;
 
 #[test]
 fn a_wrong_scene_ends_with_2_all_its_mistakes_and_no_output() {
     let scene = SCENE.replace("density", "densty").replace("duration: 0.2", "duration: -1");
-    let place = Place::with_scene(&scene);
+    let place = Workspace::with_scene(&scene);
     for command in ["run", "check", "explain", "render"] {
         let ended = place.sinew(&[command, "block.ron"]);
         ended.wants(
@@ -20,13 +20,13 @@ fn a_wrong_scene_ends_with_2_all_its_mistakes_and_no_output() {
 
 #[test]
 fn a_scene_that_is_not_there_ends_with_2() {
-    Place::new().sinew(&["run", "blocks.ron"]).wants(2, &["cannot read the scene blocks.ron"]);
+    Workspace::new().sinew(&["run", "blocks.ron"]).wants(2, &["cannot read the scene blocks.ron"]);
 }
 
 #[test]
 fn a_broken_mesh_ends_with_2_and_names_the_file() {
     let scene = SCENE.replace("Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3), elements: Hex8)", "File(path: \"m.msh\")");
-    let place = Place::with_scene(&scene);
+    let place = Workspace::with_scene(&scene);
     place.sinew(&["run", "block.ron"]).wants(2, &["m.msh"]);
     fs::write(place.path("m.msh"), "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0").unwrap();
     for command in ["run", "check"] {
@@ -38,7 +38,7 @@ fn a_broken_mesh_ends_with_2_and_names_the_file() {
 fn files_outside_the_folder_of_a_scene_are_read_where_that_is_allowed() {
     let scene =
         SCENE.replace("Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3), elements: Hex8)", "File(path: \"../m.msh\")");
-    let place = Place::new();
+    let place = Workspace::new();
     fs::create_dir(place.path("inner")).unwrap();
     fs::write(place.path("inner/block.ron"), scene).unwrap();
     fs::write(place.path("m.msh"), "no mesh").unwrap();
@@ -52,7 +52,7 @@ fn files_outside_the_folder_of_a_scene_are_read_where_that_is_allowed() {
 
 #[test]
 fn wrong_options_end_with_2() {
-    let place = Place::new();
+    let place = Workspace::new();
     place.sinew(&["run"]).wants(2, &["SCENE"]);
     place.sinew(&["run", "block.ron", "--backend", "tpu"]).wants(2, &["tpu", "auto, cpu, gpu"]);
     place.sinew(&["run", "block.ron", "--threads", "-1"]).wants(2, &["--threads"]);
@@ -63,7 +63,7 @@ fn wrong_options_end_with_2() {
 
 #[test]
 fn a_run_that_breaks_down_ends_with_1_and_keeps_what_it_wrote() {
-    let place = Place::new();
+    let place = Workspace::new();
     let sudden = "loads[0]=Gravity(acceleration: (0, 0, -9000), curve: Step(start: 0.1))";
     let ended = place.sinew(&["run", "block.ron", "--backend", "cpu", "--set", sudden, "--set", "guards.every=8"]);
     ended.wants(1, &["broke down", "element", "of body block", "Likely causes"].map(|w| w.trim_start_matches("of ")));
@@ -108,7 +108,7 @@ fn a_run_that_breaks_down_ends_with_1_and_keeps_what_it_wrote() {
 /// forces overflow.
 #[test]
 fn a_result_that_is_no_number_ends_with_1_and_a_summary() {
-    let place = Place::with_scene(
+    let place = Workspace::with_scene(
         r#"(duration: 0.006,
 bodies: {"b": (mesh: Ellipsoid(radii: (0.00134, 0.00107, 0.00134), across: 2), material: "m", velocity: (0.2, 0.27, 0))},
 materials: {"m": (density: 2500, arruda_boyce: (shear: 2350, locking_stretch: 6, bulk: 4e4), inversion: Remove)},
@@ -128,7 +128,7 @@ guards: (off: [Energy]), output: (fields: [Displacement]))"#,
 /// In single precision: in double it can be told.
 #[test]
 fn energy_of_removed_elements_beyond_what_numbers_express_ends_with_1() {
-    let place = Place::with_scene(
+    let place = Workspace::with_scene(
         r#"(duration: 0.02, bodies: {"b": (mesh: Box(size: (1, 1, 1), cells: (2, 1, 1)), material: "m", velocity: (1e20, 0, 0))},
 materials: {"m": (density: 1000, neo_hookean: Young(young: 3000, poisson: 0.45))},
 removal: [(on: Box(min: (0, 0, 0), max: (0.6, 1, 1)), when: At(0.01))],
@@ -142,7 +142,7 @@ guards: (off: [Energy]), output: (fields: [Displacement]))"#,
 
 #[test]
 fn a_search_for_rest_that_finds_none_ends_with_1_and_says_how_far_it_came() {
-    let place = Place::new();
+    let place = Workspace::new();
     let analysis = "analysis=Static(max_steps: 120)";
     let ended = place.sinew(&["run", "block.ron", "--backend", "cpu", "--set", analysis]);
     ended.wants(1, &["no equilibrium after 120 steps", "the residual is", "at node", "max_steps"]);
@@ -155,7 +155,7 @@ fn a_search_for_rest_that_finds_none_ends_with_1_and_says_how_far_it_came() {
 
 #[test]
 fn an_output_folder_that_cannot_be_written_ends_with_3() {
-    let place = Place::new();
+    let place = Workspace::new();
     fs::write(place.path("file"), "").unwrap();
     place.sinew(&["run", "block.ron", "--out", "file"]).wants(3, &["file is a file"]);
     fs::create_dir(place.path("photos")).unwrap();
@@ -168,7 +168,7 @@ fn an_output_folder_that_cannot_be_written_ends_with_3() {
 #[cfg(unix)]
 #[test]
 fn files_that_cannot_grow_end_the_run_with_3_and_stay_readable() {
-    let place = Place::new();
+    let place = Workspace::new();
     let limited = "trap '' XFSZ; ulimit -f 16; exec \"$0\" run block.ron --backend cpu --set probes.top.every=1e-5 \
                    --set integration.step=1e-4";
     let mut command = std::process::Command::new("bash");
@@ -183,7 +183,7 @@ fn files_that_cannot_grow_end_the_run_with_3_and_stay_readable() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_full_disk_ends_the_run_with_3_and_leaves_whole_files() {
-    let place = Place::new();
+    let place = Workspace::new();
     fs::create_dir(place.path("disk")).unwrap();
     let disk = place.path("disk").display().to_string();
     let mounted = std::process::Command::new("mount").args(["-t", "tmpfs", "-o", "size=96k", "tmpfs", &disk]).output();
@@ -202,7 +202,7 @@ fn a_full_disk_ends_the_run_with_3_and_leaves_whole_files() {
 #[cfg(target_os = "linux")]
 #[test]
 fn a_result_that_cannot_be_said_ends_with_3_and_a_closed_pipe_does_not() {
-    let place = Place::new();
+    let place = Workspace::new();
     let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
     let said = place.command(&["check", "block.ron"]).stdout(full).stderr(Stdio::piped()).output().unwrap();
     Ended::of(said).wants(3, &["cannot write to the standard output"]);
@@ -215,7 +215,7 @@ fn a_result_that_cannot_be_said_ends_with_3_and_a_closed_pipe_does_not() {
 #[cfg(target_os = "linux")]
 #[test]
 fn without_a_gpu_the_run_ends_with_4_and_says_what_to_do() {
-    let place = Place::new();
+    let place = Workspace::new();
     let mut command = place.command(&["run", "block.ron", "--backend", "gpu"]);
     command.env("VK_DRIVER_FILES", "/nowhere").env("VK_ICD_FILENAMES", "/nowhere");
     Ended::of(command.output().unwrap()).wants(4, &["no GPU", "mesa-vulkan-drivers"]);

@@ -1,12 +1,12 @@
 //! `sinew explain`.
 
-use crate::sinew::{Ended, Place, SCENE};
+use crate::sinew::{Ended, SCENE, Workspace};
 
 const FIBRES: &str = "materials.tissue.fibres=(eta: 1000, direction: Around(axis: (0, 0, 1), center: (-1, -1, 0)))";
 
 #[test]
 fn only_what_the_scene_calls_for_has_columns() {
-    let place = Place::new();
+    let place = Workspace::new();
     let without = place.done(&["explain", "block.ron", "--backend", "cpu"]);
     let with = place.done(&["explain", "block.ron", "--backend", "cpu", "--set", FIBRES]);
     assert!(!without.contains("fibre_direction") && !without.contains("viscous_memory"), "{without}");
@@ -19,7 +19,7 @@ fn only_what_the_scene_calls_for_has_columns() {
 
 #[test]
 fn what_is_off_says_what_turns_it_on() {
-    let said = Place::new().done(&["explain", "block.ron", "--backend", "cpu"]);
+    let said = Workspace::new().done(&["explain", "block.ron", "--backend", "cpu"]);
     for words in [
         "off  turned on by `fibres` in the material tissue",
         "off  turned on by `prony` in the material tissue",
@@ -30,7 +30,7 @@ fn what_is_off_says_what_turns_it_on() {
         assert!(said.contains(words), "{words:?} is not in\n{said}");
     }
     let viscous = "materials.tissue.prony=(terms: [(alpha: 0.5, tau: 0.1)])";
-    let on = Place::new().done(&["explain", "block.ron", "--backend", "cpu", "--set", viscous]);
+    let on = Workspace::new().done(&["explain", "block.ron", "--backend", "cpu", "--set", viscous]);
     assert!(on.contains("on   1 Prony term, Exact integrator") && on.contains("viscous_memory"), "{on}");
 }
 
@@ -42,7 +42,7 @@ fn said_of(json: &serde_json::Value, name: &str) -> Vec<serde_json::Value> {
 
 #[test]
 fn json_holds_what_the_page_says() {
-    let place = Place::with_scene(SCENE);
+    let place = Workspace::with_scene(SCENE);
     let text = place.done(&["explain", "block.ron", "--backend", "cpu", "--json"]);
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!((&json["nodes"], &json["elements"]), (&64.into(), &27.into()));
@@ -84,7 +84,7 @@ fn json_holds_what_the_page_says() {
 
 /// Kernels are put together and buffers counted where no driver is.
 fn on_a_gpu(more: &[&str]) -> serde_json::Value {
-    let place = Place::new();
+    let place = Workspace::new();
     let mut command = place.command(&[&["explain", "block.ron", "--backend", "gpu", "--json"], more].concat());
     command.env("VK_DRIVER_FILES", "/nowhere").env("VK_ICD_FILENAMES", "/nowhere");
     let ended = Ended::of(command.output().unwrap());
@@ -122,16 +122,16 @@ fn which_bodies_take_many_steps_in_one_dispatch_is_told_with_the_reason() {
         let entries: Vec<String> =
             json["kernels"].as_array().unwrap().iter().map(|kernel| kernel["entry"].as_str().unwrap().into()).collect();
         assert_eq!(body["many_steps"].as_bool().unwrap(), entries == ["many_steps"], "{entries:?}");
-        let inside = (body["inside"].as_u64().unwrap(), body["inside_because"].as_str().unwrap().to_string());
+        let interior = (body["interior"].as_u64().unwrap(), body["interior_because"].as_str().unwrap().to_string());
         let steps = entries.iter().filter(|entry| *entry == "patch_step").count();
-        assert_eq!(inside.0 > 0, steps > 0, "{entries:?}");
-        (entries.len(), body["because"].as_str().unwrap().to_string(), inside)
+        assert_eq!(interior.0 > 0, steps > 0, "{entries:?}");
+        (entries.len(), body["because"].as_str().unwrap().to_string(), interior)
     };
     let larger = "bodies.block.mesh=Box(size: (0.1, 0.1, 0.1), cells: (8, 8, 8), elements: Hex8)";
     let removal = "removal=[(body: \"block\", when: VolumeRatioAbove(2))]";
     let pressure = "loads=[Pressure(body: \"block\", on: All, pressure: 1)]";
     let (none, at_once) = ("no other patch has them", "all nodes move in the dispatch of all steps");
-    for (more, kernels, because, inside) in [
+    for (more, kernels, because, interior) in [
         (&[][..], 1, "one workgroup of 128 has room for it", (0, at_once)),
         (
             &["--set", "fuse=false"],
@@ -161,10 +161,10 @@ fn which_bodies_take_many_steps_in_one_dispatch_is_told_with_the_reason() {
         ),
         (&["--set", FIBRES], 1, "it would need 17 storage buffers, and 16 may be", (64, none)),
     ] {
-        let inside = (inside.0, inside.1.to_string());
-        assert_eq!(told(more), (kernels, because.to_string(), inside), "{more:?}");
+        let interior = (interior.0, interior.1.to_string());
+        assert_eq!(told(more), (kernels, because.to_string(), interior), "{more:?}");
     }
-    let page = Place::new();
+    let page = Workspace::new();
     let mut command = page.command(&["explain", "block.ron", "--backend", "gpu"]);
     command.env("VK_DRIVER_FILES", "/nowhere").env("VK_ICD_FILENAMES", "/nowhere");
     let said = Ended::of(command.output().unwrap()).said;

@@ -1,13 +1,13 @@
 //! Ctrl-C.
 #![cfg(unix)]
 
-use crate::sinew::{Ended, Place};
+use crate::sinew::{Ended, Workspace};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 #[test]
 fn an_interrupted_run_ends_with_130_and_leaves_whole_outputs() {
-    let place = Place::new();
+    let place = Workspace::new();
     let long = ["--set", "duration=10000", "--set", "output.fields_every=0.5", "--set", "probes.top.every=0.01"];
     let mut command = place.command(&[&["run", "block.ron", "--backend", "cpu"], &long[..]].concat());
     let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();

@@ -1,6 +1,6 @@
 //! One run at a time writes into a folder.
 
-use crate::sinew::{Ended, Place};
+use crate::sinew::{Ended, Workspace};
 use std::process::{Child, Stdio};
 use std::time::{Duration, Instant};
 
@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 struct Running(Child);
 
 impl Running {
-    fn begin(place: &Place) -> Self {
+    fn begin(place: &Workspace) -> Self {
         let long = ["--set", "duration=10000", "--set", "output.fields_every=0.5"];
         let mut command = place.command(&[&["run", "block.ron", "--backend", "cpu"], &long[..]].concat());
         let child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
@@ -28,13 +28,13 @@ impl Drop for Running {
     }
 }
 
-fn second(place: &Place) -> Ended {
+fn second(place: &Workspace) -> Ended {
     place.sinew(&["run", "block.ron", "--backend", "cpu"])
 }
 
 #[test]
 fn a_folder_that_is_being_written_is_refused_with_3_and_who_has_it() {
-    let place = Place::new();
+    let place = Workspace::new();
     let running = Running::begin(&place);
     let scene = place.read("out/block/scene.ron");
     let pid = format!("process {}", running.0.id());
@@ -55,7 +55,7 @@ fn a_folder_that_is_being_written_is_refused_with_3_and_who_has_it() {
 
 #[test]
 fn of_many_runs_begun_at_once_one_writes_and_the_others_say_so() {
-    let place = Place::new();
+    let place = Workspace::new();
     let long = ["--set", "duration=2"];
     let arguments = [&["run", "block.ron", "--backend", "cpu", "--threads", "1"], &long[..]].concat();
     let begin = || place.command(&arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();

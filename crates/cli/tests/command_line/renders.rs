@@ -1,8 +1,8 @@
 //! `sinew render`.
 
-use crate::sinew::{Place, SCENE};
+use crate::sinew::{SCENE, Workspace};
 use sinew::scene::schema::Picture;
-use sinew_pictures::render::{Options, draw};
+use sinew_pictures::render::{RenderOptions, draw};
 use std::fs;
 use std::io::BufReader;
 use std::path::Path;
@@ -10,7 +10,7 @@ use std::path::Path;
 #[test]
 #[ignore = "long"]
 fn a_scene_is_run_only_when_its_output_is_missing_or_older() {
-    let place = Place::new();
+    let place = Workspace::new();
     let first = place.sinew(&["render", "block.ron"]);
     first.wants(0, &["running block.ron first: out/block has no output of it"]);
     assert!(first.said.contains("von_mises"), "the scene says what to draw: {}", first.said);
@@ -32,7 +32,7 @@ fn a_scene_is_run_only_when_its_output_is_missing_or_older() {
 
 #[test]
 fn values_are_put_into_the_picture_of_a_run_and_into_any_of_a_scene() {
-    let place = Place::new();
+    let place = Workspace::new();
     place.done(&["run", "block.ron", "--backend", "cpu"]);
     let picture = |arguments: &[&str]| {
         place.done(&[&["render", "out/block", "--no-animation"], arguments].concat());
@@ -78,7 +78,7 @@ fn values_are_put_into_the_picture_of_a_run_and_into_any_of_a_scene() {
 
 #[test]
 fn an_output_folder_is_drawn_as_its_scene_wants_or_as_told() {
-    let place = Place::new();
+    let place = Workspace::new();
     place.done(&["run", "block.ron", "--backend", "cpu", "--out", "elsewhere"]);
     let said = place.done(&["render", "elsewhere", "--no-animation"]);
     assert!(said.contains("elsewhere/picture.png") && said.contains("von_mises"), "{said}");
@@ -92,7 +92,7 @@ fn an_output_folder_is_drawn_as_its_scene_wants_or_as_told() {
 
 #[test]
 fn what_cannot_be_drawn_is_told() {
-    let place = Place::new();
+    let place = Workspace::new();
     fs::create_dir(place.path("empty")).unwrap();
     place.sinew(&["render", "empty"]).wants(2, &["no output folder of sinew"]);
     place.done(&["run", "block.ron", "--backend", "cpu"]);
@@ -107,7 +107,7 @@ fn what_cannot_be_drawn_is_told() {
 #[test]
 #[ignore = "long"]
 fn modes_swing_with_their_number_and_frequency_and_relative_amplitudes() {
-    let place = Place::new();
+    let place = Workspace::new();
     place.done(&["modes", "block.ron", "--count", "2"]);
     let mut decoder = gif::DecodeOptions::new();
     decoder.set_color_output(gif::ColorOutput::Indexed);
@@ -127,7 +127,7 @@ fn modes_swing_with_their_number_and_frequency_and_relative_amplitudes() {
     let how = Picture { range: Some((0.0, 1.0)), ghost: true, ..Picture::default() };
     for (captions, same) in [(vec![String::new(), caption.into()], true), (vec![], false)] {
         let field = Some("relative_amplitude".into());
-        let options = Options { field, captions, swing: 16, ..Options::new(how.clone(), out.clone()) };
+        let options = RenderOptions { field, captions, swing: 16, ..RenderOptions::new(how.clone(), out.clone()) };
         draw(&place.path("out/block-modes"), &options).unwrap();
         assert_eq!(fs::read(&out).unwrap() == drawn, same, "with the time: {}", !same);
     }
@@ -155,7 +155,7 @@ fn what_was_bared_before_a_run_was_taken_up_has_its_tint_too() {
     let text = SCENE.replace("output: (", removal).replace("size: (320, 240)", "size: (320, 240), range: (0, 1e9)");
     // hardly moves, so that cameras are nearly the same whatever frames they have to show
     let text = text.replace("-9.81", "-0.1");
-    let place = Place::with_scene(&text);
+    let place = Workspace::with_scene(&text);
     let draw = |folder: &str| {
         place.done(&["render", folder, "--no-animation"]);
         tinted(&place.path(&format!("{folder}/picture.png")))

@@ -1,10 +1,10 @@
 //! `sinew run`.
 
-use crate::sinew::Place;
+use crate::sinew::Workspace;
 
 #[test]
 fn a_run_leaves_all_its_outputs_and_they_can_be_read() {
-    let place = Place::new();
+    let place = Workspace::new();
     let said = place.done(&["run", "block.ron", "--backend", "cpu"]);
     for words in ["Small block", "CPU (1 thread", "64 nodes, 27 elements", "sinew render out/block", "element_forces"] {
         assert!(said.contains(words), "{words:?} is not in\n{said}");
@@ -42,7 +42,7 @@ fn reals(value: &serde_json::Value, place: &str, found: &mut std::collections::B
 
 #[test]
 fn a_summary_can_be_read_without_the_manual() {
-    let place = Place::new();
+    let place = Workspace::new();
     for set in ["duration=0.2", "analysis=Static()"] {
         place.done(&["run", "block.ron", "--backend", "cpu", "--set", set]);
         let summary = place.json("out/block/summary.json");
@@ -83,7 +83,7 @@ fn a_summary_can_be_read_without_the_manual() {
 #[test]
 #[ignore = "long"]
 fn writing_more_is_no_slower_solving() {
-    let place = Place::new();
+    let place = Workspace::new();
     let run = |every: &str| {
         let how = ["run", "block.ron", "--backend", "cpu", "--threads", "1"];
         let set = ["--set", "duration=1", "--set", every, "--set", "output.snapshots_every=0.005"];
@@ -100,7 +100,7 @@ fn writing_more_is_no_slower_solving() {
 
 #[test]
 fn a_scene_at_rest_shows_its_residual_and_how_it_came_down() {
-    let place = Place::new();
+    let place = Workspace::new();
     let set = ["--set", "analysis=Static()", "--set", "probes.top.every=0.2", "--precision", "f64"];
     let said = place.done(&[&["run", "block.ron", "--backend", "cpu"], &set[..]].concat());
     for words in ["rest", "residual", "of loads and reactions", "sought 1e-6", "pseudo-steps", "loads grew over"] {
@@ -129,7 +129,7 @@ fn a_scene_at_rest_shows_its_residual_and_how_it_came_down() {
 
 #[test]
 fn values_of_set_reach_the_run_and_the_copy_of_the_scene() {
-    let place = Place::new();
+    let place = Workspace::new();
     let set = ["--set", "bodies.block.mesh.cells=(2, 2, 2)", "--set", "duration=0.1"];
     place.done(&[&["run", "block.ron", "--backend", "cpu", "--out", "here/and/there"], &set[..]].concat());
     let summary = place.json("here/and/there/summary.json");
@@ -140,7 +140,7 @@ fn values_of_set_reach_the_run_and_the_copy_of_the_scene() {
 
 #[test]
 fn any_number_of_threads_gives_the_same_nodes() {
-    let place = Place::new();
+    let place = Workspace::new();
     let run = |threads: &str| {
         let large = ["--set", "bodies.block.mesh.cells=(14, 14, 14)", "--set", "duration=0.02"];
         let how = ["run", "block.ron", "--backend", "cpu", "--threads", threads];
@@ -154,7 +154,7 @@ fn any_number_of_threads_gives_the_same_nodes() {
 
 #[test]
 fn precision_is_chosen_and_said() {
-    let place = Place::new();
+    let place = Workspace::new();
     place.done(&["run", "block.ron", "--precision", "f64", "--out", "f64"]);
     place.done(&["run", "block.ron", "--precision", "f32", "--backend", "cpu", "--out", "f32"]);
     assert_eq!(place.json("f64/summary.json")["precision"], "f64");
@@ -166,7 +166,7 @@ fn precision_is_chosen_and_said() {
 
 #[test]
 fn a_second_run_replaces_the_first_and_its_pictures() {
-    let place = Place::new();
+    let place = Workspace::new();
     place.done(&["run", "block.ron", "--backend", "cpu"]);
     place.done(&["render", "out/block", "--no-animation"]);
     let mut before = place.frames("out/block").len();
@@ -179,7 +179,7 @@ fn a_second_run_replaces_the_first_and_its_pictures() {
 
 #[test]
 fn check_names_what_sets_the_step_and_what_it_costs() {
-    let place = Place::new();
+    let place = Workspace::new();
     let said = place.done(&["check", "block.ron"]);
     for words in ["true limit:", "the step is ", "elements that set it:", "costs 1 times the steps"] {
         assert!(said.contains(words), "no {words:?} in\n{said}");
@@ -210,7 +210,7 @@ fn check_names_what_sets_the_step_and_what_it_costs() {
 
 #[test]
 fn check_says_between_what_the_true_limit_is_where_few_products_were_worth_their_time() {
-    let place = Place::new();
+    let place = Workspace::new();
     let stability = |integration: &str, duration: &str| {
         let [integration, duration] = [format!("integration=({integration})"), format!("duration={duration}")];
         let arguments = ["check", "block.ron", "--set", integration.as_str(), "--set", duration.as_str()];
@@ -230,7 +230,7 @@ fn check_says_between_what_the_true_limit_is_where_few_products_were_worth_their
 
 #[test]
 fn check_tells_what_a_run_will_leave() {
-    let place = Place::new();
+    let place = Workspace::new();
     let said = place.done(&["check", "block.ron"]);
     assert!(said.starts_with("sound: 64 nodes, 27 elements in 1 block;"), "{said}");
     place.done(&["run", "block.ron", "--backend", "cpu"]);
@@ -245,7 +245,7 @@ fn check_tells_what_a_run_will_leave() {
 
 #[test]
 fn a_resumed_run_ends_in_the_same_numbers() {
-    let place = Place::new();
+    let place = Workspace::new();
     let set = ["--set", "output.snapshots_every=0.05"];
     for precision in ["f32", "f64"] {
         let run = ["run", "block.ron", "--backend", "cpu", "--precision", precision];
@@ -289,7 +289,7 @@ fn a_resumed_run_ends_in_the_same_numbers() {
 /// There is no program that would set them: the run says what they stay at.
 #[test]
 fn inputs_stay_as_they_are_and_the_run_says_so() {
-    let place = Place::new();
+    let place = Workspace::new();
     let set = "loads[0].curve=Input(name: \"tilt\", initial: 0.5)";
     let ended = place.sinew(&["run", "block.ron", "--backend", "cpu", "--set", set]);
     assert_eq!(ended.status, Some(0), "{}", ended.complained);

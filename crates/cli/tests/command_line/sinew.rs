@@ -18,7 +18,7 @@ pub const SCENE: &str = r#"(
 )"#;
 
 /// A folder with a scene in it, in which the command runs.
-pub struct Place {
+pub struct Workspace {
     pub folder: tempfile::TempDir,
 }
 
@@ -29,7 +29,7 @@ pub struct Ended {
     pub complained: String,
 }
 
-impl Place {
+impl Workspace {
     /// With `block.ron` in it.
     pub fn with_scene(text: &str) -> Self {
         let folder = tempfile::tempdir().unwrap();

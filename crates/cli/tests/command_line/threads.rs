@@ -1,7 +1,7 @@
 //! `--threads 1` means one: no pool of threads is made in set-up, steps, guards or output.
 #![cfg(target_os = "linux")]
 
-use crate::sinew::Place;
+use crate::sinew::Workspace;
 use std::process::Stdio;
 use std::time::Duration;
 
@@ -10,7 +10,7 @@ const POOL: usize = 23;
 
 #[test]
 fn one_thread_is_one_in_setup_and_output_too() {
-    let place = Place::new();
+    let place = Workspace::new();
     let long = ["--set", "duration=3", "--set", "output.fields_every=0.02", "--threads", "1", "--backend", "cpu"];
     let mut command = place.command(&[&["run", "block.ron"], &long[..]].concat());
     let command = command.env("RAYON_NUM_THREADS", POOL.to_string()).stdout(Stdio::null()).stderr(Stdio::null());

@@ -1,6 +1,6 @@
 //! `sinew unload`.
 
-use crate::sinew::{Place, SCENE};
+use crate::sinew::{SCENE, Workspace};
 use std::fs;
 
 /// The rows of a table of nodes: number, place at rest, displacement.
@@ -17,7 +17,7 @@ fn nodes(path: &std::path::Path) -> Vec<[f64; 7]> {
 fn unloaded_scene_runs_from_where_the_mesh_is_and_stays_there() {
     // what swings comes to rest: only what was not at equilibrium would move
     let place =
-        Place::with_scene(&SCENE.replace("Fixed(on: Set(\"z0\"))", "Fixed(on: Plane(normal: (0, 0, 1), at: 0))"));
+        Workspace::with_scene(&SCENE.replace("Fixed(on: Set(\"z0\"))", "Fixed(on: Plane(normal: (0, 0, 1), at: 0))"));
     let told = place.done(&["unload", "block.ron", "--tolerance", "1e-5"]);
     assert!(told.contains("unloaded    after ") && told.contains("unloaded.msh, scene.ron"), "{told}");
     let folder = place.folder.path().join("out/block-unloaded");
@@ -45,7 +45,7 @@ fn unloaded_scene_runs_from_where_the_mesh_is_and_stays_there() {
 
 #[test]
 fn what_is_not_found_is_told_with_status_1_and_nothing_is_written() {
-    let place = Place::new();
+    let place = Workspace::new();
     let ended = place.sinew(&["unload", "block.ron", "--tolerance", "1e-7", "--most", "2"]);
     assert_eq!(ended.status, Some(1), "{}", ended.complained);
     assert!(ended.complained.contains("no unloaded shape was found: after 2 iterations"), "{}", ended.complained);

@@ -1,6 +1,6 @@
 //! The words beside the scene: how much is said, where scenes come from, completions, manual pages, tips.
 
-use crate::sinew::{Ended, Place, SCENE};
+use crate::sinew::{Ended, SCENE, Workspace};
 use std::io::Write;
 use std::process::Stdio;
 
@@ -8,7 +8,7 @@ const SHORT: [&str; 4] = ["--backend", "cpu", "--set", "duration=0.05"];
 
 #[test]
 fn quiet_says_nothing_but_warnings_and_errors() {
-    let place = Place::new();
+    let place = Workspace::new();
     let ended = place.sinew(&[&["-q", "run", "block.ron"], &SHORT[..]].concat());
     assert_eq!((ended.status, &*ended.said, &*ended.complained), (Some(0), "", ""));
     assert!(place.path("out/block/summary.json").exists());
@@ -21,7 +21,7 @@ fn quiet_says_nothing_but_warnings_and_errors() {
 
 #[test]
 fn verbose_says_what_is_done_beside_the_report() {
-    let place = Place::new();
+    let place = Workspace::new();
     let ended = place.sinew(&[&["run", "-v", "block.ron"], &SHORT[..]].concat());
     ended.wants(
         0,
@@ -35,7 +35,7 @@ fn verbose_says_what_is_done_beside_the_report() {
 
 #[test]
 fn the_summary_is_all_that_stands_on_the_standard_output() {
-    let place = Place::new();
+    let place = Workspace::new();
     let said = place.done(&[&["run", "--json", "block.ron", "-o", "there"], &SHORT[..]].concat());
     let told: serde_json::Value = serde_json::from_str(&said).unwrap();
     assert_eq!(told, place.json("there/summary.json"));
@@ -54,7 +54,7 @@ fn the_summary_is_all_that_stands_on_the_standard_output() {
 
 #[test]
 fn scenes_come_from_the_standard_input() {
-    let place = Place::new();
+    let place = Workspace::new();
     let from = |text: &str, arguments: &[&str]| {
         let mut command = place.command(arguments);
         let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
@@ -74,7 +74,7 @@ fn scenes_come_from_the_standard_input() {
 
 #[test]
 fn shells_and_man_know_all_words() {
-    let place = Place::new();
+    let place = Workspace::new();
     for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
         let said = place.done(&["completions", shell]);
         for word in ["accuracy", "resume", "precision", "quiet"] {
@@ -92,7 +92,7 @@ fn shells_and_man_know_all_words() {
 
 #[test]
 fn tips_can_be_followed() {
-    let place = Place::new();
+    let place = Workspace::new();
     std::fs::rename(place.path("block.ron"), place.path("my block.ron")).unwrap();
     let unknown = place.sinew(&["run", "my block.ron", "--cells", "3"]);
     unknown.wants(2, &["unexpected argument '--cells'"]);

@@ -5,7 +5,7 @@ use super::colour::Scale;
 use super::frame::FrameFile;
 use super::legend::top;
 use super::picture::{Picture, paint, stage};
-use super::range::Seen;
+use super::range::SeenValues;
 use super::series::Series;
 use super::state::Reader;
 use super::tools::Tools;
@@ -18,7 +18,7 @@ use std::path::{Path, PathBuf};
 
 /// What to draw, and how.
 #[derive(Clone, Debug)]
-pub struct Options {
+pub struct RenderOptions {
     /// How: as a scene says it.
     pub picture: schema::Picture,
     /// Another field than the picture's: an array of the frames, or a component of one (`displacement.z`, `stress.xy`).
@@ -37,11 +37,11 @@ pub struct Options {
     pub swing: usize,
 }
 
-impl Options {
+impl RenderOptions {
     /// A picture of the last frame, as a scene says it.
-    pub fn new(picture: schema::Picture, out: PathBuf) -> Options {
+    pub fn new(picture: schema::Picture, out: PathBuf) -> RenderOptions {
         let (captions, tools) = (Vec::new(), Tools::default());
-        Options { picture, field: None, at: None, animate: false, out, captions, tools, swing: 0 }
+        RenderOptions { picture, field: None, at: None, animate: false, out, captions, tools, swing: 0 }
     }
 }
 
@@ -64,7 +64,7 @@ pub struct Drawn {
 ///
 /// # Errors
 /// Options that make no sense, files that are missing, damaged or cannot be written.
-pub fn draw(folder: &Path, options: &Options) -> Result<Drawn, RenderError> {
+pub fn draw(folder: &Path, options: &RenderOptions) -> Result<Drawn, RenderError> {
     draw_with_progress(folder, options, &mut |_, _| ())
 }
 
@@ -74,7 +74,7 @@ pub fn draw(folder: &Path, options: &Options) -> Result<Drawn, RenderError> {
 /// As [`draw`].
 pub fn draw_with_progress(
     folder: &Path,
-    options: &Options,
+    options: &RenderOptions,
     progress: &mut dyn FnMut(usize, usize),
 ) -> Result<Drawn, RenderError> {
     check(options)?;
@@ -88,14 +88,14 @@ pub fn draw_with_progress(
     let total = series.frames.len() + pictures;
     let size = (how.size.0 as usize, how.size.1 as usize);
     let (left_top, right_bottom) = stage(size);
-    let (mut seen, mut fit) = (Seen::default(), Fit::new(&View::from(how), left_top, right_bottom));
+    let (mut seen, mut fit) = (SeenValues::default(), Fit::new(&View::from(how), left_top, right_bottom));
     let mut keys_of_all = Vec::new();
     for (row, (_, path)) in series.frames.iter().enumerate() {
         let mut state = reader.read(path)?;
-        state.look(&reader, &mut seen, &mut fit);
+        state.measure(&reader, &mut seen, &mut fit);
         if options.swing > 0 {
             state.scale(-1.0);
-            state.look(&reader, &mut seen, &mut fit);
+            state.measure(&reader, &mut seen, &mut fit);
         }
         if row <= last {
             keys_of_all = [keys_of_all, state.keys(&reader)].into_iter().max_by_key(Vec::len).unwrap_or_default();
@@ -108,7 +108,7 @@ pub fn draw_with_progress(
     let drawn = how.tools && options.swing == 0 && !fit.extent().is_nothing();
     let tools = if drawn { &options.tools } else { &no_tools };
     let times: Vec<f64> = series.frames.iter().map(|frame| frame.0).collect();
-    let spanned = tools.look(&times, &mut fit);
+    let spanned = tools.measure(&times, &mut fit);
     let placed = |row: usize| tools.placed(row, times[row], &spanned);
     let camera = fit.camera().ok_or_else(nothing)?;
     let mut shown = if options.animate { 0..=last } else { last..=last };
@@ -160,7 +160,7 @@ pub fn draw_with_progress(
 }
 
 /// What a scene is checked for as well, with its place; here for those who draw from a program.
-fn check(options: &Options) -> Result<(), RenderError> {
+fn check(options: &RenderOptions) -> Result<(), RenderError> {
     let picture = &options.picture;
     let direction = |name: &str, of: DVec3| match of.try_normalize() {
         Some(_) => Ok(()),

@@ -1,13 +1,13 @@
 //! Which numbers give the colour: a field's name, found among the arrays of a frame.
 
 use super::RenderError;
-use super::frame::{FrameFile, Place};
+use super::frame::{FieldAssociation, FrameFile};
 
 /// A field that can be drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Field {
     /// What its rows belong to.
-    pub place: Place,
+    pub place: FieldAssociation,
     /// What it is, in words.
     pub quantity: String,
     /// Its SI unit; empty for a plain number.
@@ -59,7 +59,8 @@ impl Field {
         let (array, component) = name.split_once('.').map_or((name, None), |(array, part)| (array, Some(part)));
         let known = KNOWN.iter().find(|known| array == known.0 || (array == known.1 && !array.is_empty()));
         let array = known.map_or(array, |known| known.0);
-        let found = frame.entry(Place::Points, array).or_else(|| frame.entry(Place::Cells, array));
+        let found =
+            frame.entry(FieldAssociation::Points, array).or_else(|| frame.entry(FieldAssociation::Cells, array));
         let unknown =
             || RenderError::UnknownField { field: name.to_string(), path: frame.path.clone(), known: names(frame) };
         let entry = found.ok_or_else(unknown)?;
@@ -111,7 +112,7 @@ fn component_names(components: usize) -> &'static [&'static str] {
 /// All names that could be asked for.
 fn names(frame: &FrameFile) -> Vec<String> {
     let mut names = Vec::new();
-    for entry in frame.entries.iter().filter(|entry| entry.place != Place::Mesh) {
+    for entry in frame.entries.iter().filter(|entry| entry.place != FieldAssociation::Mesh) {
         if matches!(entry.components, 1 | 3) {
             names.push(entry.name.clone());
         }

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 /// What the rows of an array belong to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
+pub enum FieldAssociation {
     /// One row a point.
     Points,
     /// One row a cell.
@@ -22,11 +22,11 @@ pub enum Place {
 
 /// An array in the file.
 #[derive(Clone, Debug)]
-pub struct Entry {
+pub struct ArrayHeader {
     /// Its name.
     pub name: String,
     /// What its rows belong to.
-    pub place: Place,
+    pub place: FieldAssociation,
     /// Values a row.
     pub components: usize,
     kind: String,
@@ -42,7 +42,7 @@ pub struct FrameFile {
     /// How many cells there are.
     pub cells: usize,
     /// The arrays.
-    pub entries: Vec<Entry>,
+    pub entries: Vec<ArrayHeader>,
     bytes: Vec<u8>,
     /// Where the appended data begins.
     data: usize,
@@ -51,7 +51,7 @@ pub struct FrameFile {
 /// Ends the head and begins the data.
 const DATA: &[u8] = b"<AppendedData encoding=\"raw\">";
 
-impl Entry {
+impl ArrayHeader {
     /// Whether its values are real numbers, not names or numbers of things.
     pub fn is_real(&self) -> bool {
         self.kind.starts_with("Float")
@@ -86,26 +86,26 @@ impl FrameFile {
         let (points, cells) = (count("NumberOfPoints")?, count("NumberOfCells")?);
         let entry = |node: roxmltree::Node<'_, '_>| {
             let place = match node.parent_element()?.tag_name().name() {
-                "PointData" => Place::Points,
-                "CellData" => Place::Cells,
-                _ => Place::Mesh,
+                "PointData" => FieldAssociation::Points,
+                "CellData" => FieldAssociation::Cells,
+                _ => FieldAssociation::Mesh,
             };
             let (name, kind) = (node.attribute("Name")?.to_string(), node.attribute("type")?.to_string());
             let components = number(node, "NumberOfComponents").unwrap_or(1);
-            Some(Entry { name, place, components, kind, offset: number(node, "offset")? })
+            Some(ArrayHeader { name, place, components, kind, offset: number(node, "offset")? })
         };
         let entries = piece.descendants().filter(|node| node.has_tag_name("DataArray")).filter_map(entry).collect();
         Ok(FrameFile { path: path.to_path_buf(), points, cells, entries, bytes, data })
     }
 
     /// The entry of an array, if there is one.
-    pub fn entry(&self, place: Place, name: &str) -> Option<&Entry> {
+    pub fn entry(&self, place: FieldAssociation, name: &str) -> Option<&ArrayHeader> {
         self.entries.iter().find(|entry| entry.place == place && entry.name == name)
     }
 
     /// The values of an array, as many as rows times components.
-    pub fn floats(&self, entry: &Entry) -> Result<Vec<f32>, RenderError> {
-        let rows = if entry.place == Place::Cells { self.cells } else { self.points };
+    pub fn floats(&self, entry: &ArrayHeader) -> Result<Vec<f32>, RenderError> {
+        let rows = if entry.place == FieldAssociation::Cells { self.cells } else { self.points };
         let count = rows.saturating_mul(entry.components);
         Ok(match entry.kind.as_str() {
             "Float32" => self.unpack(entry, count)?.into_iter().map(f32::from_ne_bytes).collect(),
@@ -118,7 +118,7 @@ impl FrameFile {
     }
 
     /// The values of an array of vectors.
-    pub fn vectors(&self, entry: &Entry) -> Result<Vec<Vec3>, RenderError> {
+    pub fn vectors(&self, entry: &ArrayHeader) -> Result<Vec<Vec3>, RenderError> {
         if entry.components != 3 {
             return Err(self.damaged(entry, &format!("has {} components a row, not 3", entry.components)));
         }
@@ -129,7 +129,7 @@ impl FrameFile {
     pub fn cells(&self) -> Result<Cells, RenderError> {
         let mesh = |name: &str| {
             let missing = || RenderError::damaged(&self.path, format!("the array {name} is missing"));
-            self.entry(Place::Mesh, name).ok_or_else(missing)
+            self.entry(FieldAssociation::Mesh, name).ok_or_else(missing)
         };
         let kinds: Vec<[u8; 1]> = self.unpack(mesh("types")?, self.cells)?;
         let run = |run: &[[u8; 1]]| {
@@ -168,7 +168,7 @@ impl FrameFile {
     /// Triangles, in a file of nothing else: rows of points.
     pub fn triangles(&self) -> Result<Vec<[u32; 3]>, RenderError> {
         let missing = || RenderError::damaged(&self.path, "the array connectivity is missing");
-        let entry = self.entry(Place::Mesh, "connectivity").ok_or_else(missing)?;
+        let entry = self.entry(FieldAssociation::Mesh, "connectivity").ok_or_else(missing)?;
         let corners: Vec<u32> = match entry.kind.as_str() {
             "Int32" => {
                 self.unpack(entry, 3 * self.cells)?.into_iter().map(|bytes| i32::from_ne_bytes(bytes) as u32).collect()
@@ -184,7 +184,7 @@ impl FrameFile {
     }
 
     /// Unpacks an array of `count` values of `N` bytes.
-    fn unpack<const N: usize>(&self, entry: &Entry, count: usize) -> Result<Vec<[u8; N]>, RenderError> {
+    fn unpack<const N: usize>(&self, entry: &ArrayHeader, count: usize) -> Result<Vec<[u8; N]>, RenderError> {
         let short = || self.damaged(entry, "ends too early");
         let start = self.data.checked_add(entry.offset).ok_or_else(short)?;
         let word = |row: usize| {
@@ -217,7 +217,7 @@ impl FrameFile {
         Ok(bytes.as_chunks::<N>().0.to_vec())
     }
 
-    fn damaged(&self, entry: &Entry, what: &str) -> RenderError {
+    fn damaged(&self, entry: &ArrayHeader, what: &str) -> RenderError {
         RenderError::damaged(&self.path, format!("the array {} {what}", entry.name))
     }
 }

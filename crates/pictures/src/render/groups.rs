@@ -1,7 +1,7 @@
 //! Cells that are seen through to the same degree.
 
 use super::RenderError;
-use super::frame::{FrameFile, Place};
+use super::frame::{FieldAssociation, FrameFile};
 use super::raster::Finish;
 use sinew::scene::schema::Opacity;
 use std::path::Path;
@@ -37,7 +37,7 @@ impl Groups {
             return Ok(Vec::new());
         }
         let numbers = |name: &str| -> Result<Vec<u32>, RenderError> {
-            let entry = frame.entry(Place::Cells, name).filter(|entry| entry.components == 1);
+            let entry = frame.entry(FieldAssociation::Cells, name).filter(|entry| entry.components == 1);
             let values = entry.map(|entry| frame.floats(entry)).transpose()?;
             Ok(values.unwrap_or_default().into_iter().map(|number| number as u32).collect())
         };

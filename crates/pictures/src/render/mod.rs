@@ -44,7 +44,7 @@ mod triangles;
 
 pub use camera::{Camera, Fit, View};
 pub use colour::{Map, Scale};
-pub use draw::{Drawn, Options, draw, draw_with_progress};
+pub use draw::{Drawn, RenderOptions, draw, draw_with_progress};
 pub use error::RenderError;
 pub use image::Image;
 pub use legend::Key;

@@ -2,7 +2,7 @@
 //! rest.
 
 use super::RenderError;
-use super::frame::{FrameFile, Place};
+use super::frame::{FieldAssociation, FrameFile};
 use glam::Vec3;
 use sinew::mesh::topology::{Face, MOST_NODES};
 use sinew::mesh::{CellKind, Cells};
@@ -36,7 +36,7 @@ impl Averages {
         values: &[f32],
         there: impl Fn(usize) -> bool,
     ) -> Result<Averages, RenderError> {
-        let material = match frame.entry(Place::Cells, "material").filter(|entry| entry.components == 1) {
+        let material = match frame.entry(FieldAssociation::Cells, "material").filter(|entry| entry.components == 1) {
             Some(entry) => frame.floats(entry)?.into_iter().map(|number| number as u32).collect(),
             None => vec![0; values.len()],
         };

@@ -8,7 +8,7 @@ use super::legend::{self, Key};
 use super::light::{self, Light};
 use super::occlusion::{Caster, Ground, Sky};
 use super::plane::Plane;
-use super::raster::{Finish, Look, Strip};
+use super::raster::{Finish, Shading, Strip};
 use super::triangles::{self, FINE, thickness};
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -90,7 +90,7 @@ pub fn paint(picture: &Picture<'_>, camera: &Camera, (width, height): (usize, us
     let triangles = triangles::of(picture, camera, height);
     let ramp = picture.scale.ramp();
     let lights = Light::new();
-    let look = Look { ramp: &ramp, light: &lights, edge: 0.35 * FINE as f32 * thickness(height) };
+    let shading = Shading { ramp: &ramp, light: &lights, edge: 0.35 * FINE as f32 * thickness(height) };
     let shade = Shade::new(picture, camera, &lights);
     let sheets = triangles.iter().any(|triangle| triangle.finish.is_clear());
     let rows = ROWS[usize::from(sheets)];
@@ -104,7 +104,7 @@ pub fn paint(picture: &Picture<'_>, camera: &Camera, (width, height): (usize, us
         let margin = FINE.min(top);
         let mut strip = Strip::new(width * FINE, top - margin, (rows + 2) * FINE, sheets);
         if number * rows < end {
-            triangles.iter().for_each(|triangle| strip.draw(triangle, &look));
+            triangles.iter().for_each(|triangle| strip.draw(triangle, &shading));
         }
         for (row, pixels) in pixels.chunks_mut(width).enumerate() {
             let line = number * rows + row;
@@ -175,7 +175,7 @@ const MIDDLE_FIRST: [(usize, usize); FINE * FINE] =
 fn mean(strip: &Strip, (column, row): (usize, usize), pixel: Vec2, behind: Vec3, step: f32, shade: &Shade<'_>) -> Vec3 {
     let sample = |(x, y): (usize, usize)| (row + y) * strip.width + column * FINE + x;
     let solid = MIDDLE_FIRST.map(sample).into_iter().find(|at| strip.nearness[*at] > 0.0);
-    // shadows are soft: one look for the whole pixel will do
+    // shadows are soft: one sample for the whole pixel will do
     let shadow = solid.map_or(1.0, |at| shade.on_surface(pixel, strip.nearness[at], strip.normal[at]));
     let full = MIDDLE_FIRST.iter().all(|place| strip.nearness[sample(*place)] > 0.0);
     let ground = if full { behind } else { behind * shade.on_ground(pixel) };

@@ -4,11 +4,11 @@ use super::colour::Scale;
 
 /// The values that are seen in a series, gathered frame by frame.
 #[derive(Default)]
-pub struct Seen {
+pub struct SeenValues {
     values: Vec<f32>,
 }
 
-impl Seen {
+impl SeenValues {
     /// Adds a value that is drawn.
     pub fn value(&mut self, value: f32) {
         if value.is_finite() {
@@ -55,7 +55,7 @@ mod tests {
     use super::*;
 
     fn scale(values: impl IntoIterator<Item = f32>, centre: Option<f32>, sizes: bool) -> Scale {
-        let mut seen = Seen::default();
+        let mut seen = SeenValues::default();
         values.into_iter().for_each(|value| seen.value(value));
         seen.scale(centre, sizes)
     }

@@ -42,7 +42,7 @@ pub struct Triangle {
 }
 
 /// What the triangles of one picture share.
-pub struct Look<'a> {
+pub struct Shading<'a> {
     /// Colours of values.
     pub ramp: &'a Ramp,
     /// The light.
@@ -114,7 +114,7 @@ impl Strip {
     }
 
     /// Draws a triangle as far as it lies in the strip and is nearer than what is there.
-    pub fn draw(&mut self, triangle: &Triangle, look: &Look<'_>) {
+    pub fn draw(&mut self, triangle: &Triangle, shading: &Shading<'_>) {
         let [a, b, c] = triangle.places.map(Vec3::truncate);
         let rows = self.nearness.len() / self.width;
         let (low, high) = (a.min(b).min(c), a.max(b).max(c));
@@ -152,8 +152,8 @@ impl Strip {
                 if cut && share_there.dot(Vec3::from_array(triangle.beyond)) > 0.0 {
                     continue;
                 }
-                let ink = ink(triangle, look.edge, share, heights);
-                let (light, normal, cover) = sample(triangle, look, share_there, ink);
+                let ink = ink(triangle, shading.edge, share, heights);
+                let (light, normal, cover) = sample(triangle, shading, share_there, ink);
                 match cover {
                     Some(cover) => self.put(place, Sheet { nearness, cover, light }),
                     None => {
@@ -192,29 +192,29 @@ fn ink(triangle: &Triangle, edge: f32, share: Vec3, heights: [f32; 3]) -> f32 {
 }
 
 /// The light of one sample, its normal, and of a sheet what it hides; `share` is of the corners on the surface.
-fn sample(triangle: &Triangle, look: &Look<'_>, share: Vec3, ink: f32) -> (Vec3, Vec3, Option<f32>) {
+fn sample(triangle: &Triangle, shading: &Shading<'_>, share: Vec3, ink: f32) -> (Vec3, Vec3, Option<f32>) {
     let [l, m, n] = triangle.normals;
     let normal = (l * share.x + m * share.y + n * share.z).normalize_or(Vec3::Z);
-    let value = || look.ramp.light(share.dot(Vec3::from_array(triangle.values)));
+    let value = || shading.ramp.light(share.dot(Vec3::from_array(triangle.values)));
     // light has a longer way through what it meets askew
     let askew = |opacity: f32| 1.0 - (1.0 - opacity).powf(1.0 / normal.z.abs().clamp(0.2, 1.0));
-    let lit = |colour: Vec3| look.light.on(normal, colour) * (1.0 - ink);
+    let lit = |colour: Vec3| shading.light.on(normal, colour) * (1.0 - ink);
     match triangle.finish {
         Finish::Plain => (lit(value()), normal, None),
-        Finish::Bared => (lit(look.light.bared(value())), normal, None),
+        Finish::Bared => (lit(shading.light.bared(value())), normal, None),
         Finish::Sheet(opacity) => {
             let cover = askew(opacity);
             (lit(value()), normal, Some(cover + (1.0 - cover) * ink * 0.6 * opacity.sqrt()))
         }
-        Finish::Steel => (look.light.steel(normal), normal, None),
-        Finish::Table => (lit(look.light.table()), normal, None),
+        Finish::Steel => (shading.light.steel(normal), normal, None),
+        Finish::Table => (lit(shading.light.table()), normal, None),
         Finish::Pane => {
             let cover = askew(0.12);
-            (lit(look.light.table()), normal, Some(cover + (1.0 - cover) * 0.6 * ink))
+            (lit(shading.light.table()), normal, Some(cover + (1.0 - cover) * 0.6 * ink))
         }
         Finish::Ghost => {
             let cover = askew(0.07);
-            (lit(look.light.ghost()), normal, Some(cover + (1.0 - cover) * ink))
+            (lit(shading.light.ghost()), normal, Some(cover + (1.0 - cover) * ink))
         }
     }
 }

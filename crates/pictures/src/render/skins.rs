@@ -1,7 +1,7 @@
 //! Skins of bodies: fine surfaces that are drawn in place of the bodies' own faces.
 
 use super::RenderError;
-use super::frame::{FrameFile, Place};
+use super::frame::{FieldAssociation, FrameFile};
 use glam::Vec3;
 use sinew::mesh::topology::MOST_NODES;
 use std::collections::HashMap;
@@ -53,7 +53,7 @@ impl Skins {
 
 /// Rows of the cells by the numbers of body and element.
 fn rows(frame: &FrameFile) -> Result<HashMap<(u32, i64), usize>, RenderError> {
-    let numbers = |name: &str| match frame.entry(Place::Cells, name) {
+    let numbers = |name: &str| match frame.entry(FieldAssociation::Cells, name) {
         Some(entry) => frame.floats(entry),
         None => Ok(vec![0.0; frame.cells]),
     };
@@ -64,15 +64,15 @@ fn rows(frame: &FrameFile) -> Result<HashMap<(u32, i64), usize>, RenderError> {
 impl Skin {
     fn read(path: &Path, cells: &HashMap<(u32, i64), usize>) -> Result<Skin, RenderError> {
         let file = FrameFile::open(path)?;
-        let array = |place: Place, name: &str| {
+        let array = |place: FieldAssociation, name: &str| {
             let missing = || RenderError::damaged(path, format!("the array {name} is missing"));
             file.entry(place, name).ok_or_else(missing)
         };
-        let rest = file.vectors(array(Place::Mesh, "Points")?)?;
-        let displacement = file.vectors(array(Place::Points, "displacement")?)?;
-        let body = file.floats(array(Place::Points, "body")?)?.first().map_or(0, |body| *body as u32);
-        let elements = file.floats(array(Place::Points, "element")?)?;
-        let weights = file.floats(array(Place::Points, "weights")?)?;
+        let rest = file.vectors(array(FieldAssociation::Mesh, "Points")?)?;
+        let displacement = file.vectors(array(FieldAssociation::Points, "displacement")?)?;
+        let body = file.floats(array(FieldAssociation::Points, "body")?)?.first().map_or(0, |body| *body as u32);
+        let elements = file.floats(array(FieldAssociation::Points, "element")?)?;
+        let weights = file.floats(array(FieldAssociation::Points, "weights")?)?;
         if weights.len() != MOST_NODES * rest.len() {
             return Err(RenderError::damaged(path, format!("the array weights has not {MOST_NODES} values a row")));
         }

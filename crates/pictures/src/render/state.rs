@@ -2,15 +2,15 @@
 
 use super::RenderError;
 use super::camera::Fit;
-use super::draw::Options;
+use super::draw::RenderOptions;
 use super::field::Field;
-use super::frame::{FrameFile, Place};
+use super::frame::{FieldAssociation, FrameFile};
 use super::groups::Groups;
 use super::legend::Key;
 use super::nodal::Averages;
 use super::picture::{Colouring, Layer, Lines};
 use super::plane::Plane;
-use super::range::Seen;
+use super::range::SeenValues;
 use super::raster::Finish;
 use super::section::Section;
 use super::skins::{self, Skins};
@@ -78,7 +78,7 @@ impl Mesh {
 
 impl Reader {
     /// Prepares for a series that begins with a frame; `folder`: of the series.
-    pub fn new(folder: &Path, first: &FrameFile, options: &Options) -> Result<Reader, RenderError> {
+    pub fn new(folder: &Path, first: &FrameFile, options: &RenderOptions) -> Result<Reader, RenderError> {
         let picture = &options.picture;
         let field = Field::find(first, options.field.as_deref().unwrap_or(picture.field.array()))?;
         let mesh = Mesh::read(first)?;
@@ -120,11 +120,11 @@ impl Reader {
             // elements have gone, or it is another mesh
             self.mesh = Mesh::read(&frame)?;
         }
-        let alive = frame.entry(Place::Cells, "alive").filter(|entry| entry.components == 1);
+        let alive = frame.entry(FieldAssociation::Cells, "alive").filter(|entry| entry.components == 1);
         let alive = alive.map(|entry| frame.floats(entry)).transpose()?;
         let rest = points(&frame)?;
         let mut vertices = rest.clone();
-        if let Some(entry) = frame.entry(Place::Points, "displacement") {
+        if let Some(entry) = frame.entry(FieldAssociation::Points, "displacement") {
             frame.vectors(entry)?.iter().zip(&mut vertices).for_each(|(by, point)| *point += *by);
         }
         let of_cells = self.groups.of_cells(&frame)?;
@@ -134,24 +134,24 @@ impl Reader {
         };
         let mut outer = self.mesh.faces.surface(group, Some(&self.skin));
         let skins = self.skins.of_frame(&frame)?;
-        let bodies = frame.entry(Place::Cells, "body").filter(|_| !skins.is_empty());
+        let bodies = frame.entry(FieldAssociation::Cells, "body").filter(|_| !skins.is_empty());
         let bodies = bodies.map(|entry| frame.floats(entry)).transpose()?.unwrap_or_default();
         let of_body = |cell: u32| bodies.get(cell as usize).map_or(0, |body| *body as u32);
         // where elements went the body's own faces close the hole
         outer.retain(|face| face.bared || !skins.iter().any(|skin| skin.body == of_body(face.cell)));
         let values = self.field.values(&frame)?;
         let source = match self.field.place {
-            Place::Cells if self.smooth => {
+            FieldAssociation::Cells if self.smooth => {
                 let there = |cell: usize| group(cell as u32).is_some();
-                Source::Smooth(Averages::new(&frame, &rest, &self.mesh.cells, &values, there)?)
+                FieldValues::Smooth(Averages::new(&frame, &rest, &self.mesh.cells, &values, there)?)
             }
-            Place::Cells => Source::Cells(values),
-            _ => Source::Points(values),
+            FieldAssociation::Cells => FieldValues::Cells(values),
+            _ => FieldValues::Points(values),
         };
         let sections = self.sections(&vertices, &source, group);
         let parts = self.parts(&outer, &source);
         let skins = self.with_values(skins, &source, group);
-        let values = if let Source::Points(values) = source { Some(values) } else { None };
+        let values = if let FieldValues::Points(values) = source { Some(values) } else { None };
         Ok(State { rest, vertices, parts, values, sections, skins })
     }
 
@@ -159,7 +159,7 @@ impl Reader {
     fn with_values(
         &self,
         skins: Vec<skins::Skin>,
-        source: &Source,
+        source: &FieldValues,
         group: impl Fn(u32) -> Option<u8>,
     ) -> Vec<(Finish, skins::Skin, Vec<f32>)> {
         let nodes: Vec<&[u32]> =
@@ -176,7 +176,7 @@ impl Reader {
     }
 
     /// Faces by finish.
-    fn parts(&self, outer: &[Outer], source: &Source) -> Vec<Part> {
+    fn parts(&self, outer: &[Outer], source: &FieldValues) -> Vec<Part> {
         let mut parts: Vec<Part> = Vec::new();
         for face in outer {
             let Some(finish) = self.groups.finish(face.group, face.bared) else { continue };
@@ -185,7 +185,7 @@ impl Reader {
                 parts.len() - 1
             });
             parts[place].faces.push(face.points);
-            if !matches!(source, Source::Points(_)) {
+            if !matches!(source, FieldValues::Points(_)) {
                 let values = face.points.map(|point| source.value(face.cell as usize, point));
                 parts[place].values.push(values);
             }
@@ -197,7 +197,7 @@ impl Reader {
     fn sections(
         &self,
         vertices: &[Vec3],
-        source: &Source,
+        source: &FieldValues,
         group: impl Fn(u32) -> Option<u8>,
     ) -> Vec<(Finish, Section)> {
         let mut sections: Vec<(Finish, Section)> = Vec::new();
@@ -279,23 +279,23 @@ fn whole(folder: &Path, first: &Mesh) -> Result<Option<Mesh>, RenderError> {
 /// The places of points at rest (m).
 fn points(frame: &FrameFile) -> Result<Vec<Vec3>, RenderError> {
     let missing = || RenderError::damaged(&frame.path, "the array Points is missing");
-    frame.vectors(frame.entry(Place::Mesh, "Points").ok_or_else(missing)?)
+    frame.vectors(frame.entry(FieldAssociation::Mesh, "Points").ok_or_else(missing)?)
 }
 
 /// Where values come from.
-enum Source {
+enum FieldValues {
     Points(Vec<f32>),
     Cells(Vec<f32>),
     Smooth(Averages),
 }
 
-impl Source {
+impl FieldValues {
     /// At a corner of a cell.
     fn value(&self, cell: usize, corner: u32) -> f32 {
         match self {
-            Source::Points(values) => values[corner as usize],
-            Source::Cells(values) => values[cell],
-            Source::Smooth(averages) => averages.at(cell, corner),
+            FieldValues::Points(values) => values[corner as usize],
+            FieldValues::Cells(values) => values[cell],
+            FieldValues::Smooth(averages) => averages.at(cell, corner),
         }
     }
 }
@@ -328,7 +328,7 @@ impl State {
     }
 
     /// Adds what this frame shows.
-    pub fn look(&self, reader: &Reader, seen: &mut Seen, fit: &mut Fit) {
+    pub fn measure(&self, reader: &Reader, seen: &mut SeenValues, fit: &mut Fit) {
         for part in &self.parts {
             for (row, face) in part.faces.iter().enumerate() {
                 face.iter().for_each(|point| fit.see(self.vertices[*point as usize]));

@@ -98,17 +98,17 @@ impl Tools {
 
     /// Makes room for them in all frames of a series, whose times (s) are given in their order: near the bodies, which
     /// have been seen. What planes are to span.
-    pub(super) fn look(&self, times: &[f64], fit: &mut Fit) -> Extent {
+    pub(super) fn measure(&self, times: &[f64], fit: &mut Fit) -> Extent {
         let bodies = fit.extent();
-        let mut look = |extent: &Extent, planes: bool| {
+        let mut measure = |extent: &Extent, planes: bool| {
             for (row, time) in times.iter().enumerate() {
                 let placed = self.placed(row, *time, extent).into_iter();
-                placed.filter(|tool| tool.plane.is_some() == planes).for_each(|tool| tool.look(extent, fit));
+                placed.filter(|tool| tool.plane.is_some() == planes).for_each(|tool| tool.measure(extent, fit));
             }
             fit.extent()
         };
-        let all = look(&bodies, false);
-        look(&all, true);
+        let all = measure(&bodies, false);
+        measure(&all, true);
         all
     }
 
@@ -167,7 +167,7 @@ impl Tool {
 
 impl Placed<'_> {
     /// Adds what of it is near an extent.
-    fn look(&self, extent: &Extent, fit: &mut Fit) {
+    fn measure(&self, extent: &Extent, fit: &mut Fit) {
         let room = extent.grown(ROOM[usize::from(self.plane.is_some())]);
         // a wall may reach below what bodies stand on
         let may_be_ground = self.plane.is_none_or(|normal| normal.dot(fit.ground().0) > UPWARDS);

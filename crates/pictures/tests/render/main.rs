@@ -10,7 +10,7 @@ use sinew::mesh::{CellKind, Cells};
 use sinew::output::{Array, Folder, Frame, Series, Values};
 use sinew::scene::schema;
 use sinew_pictures::render::{
-    Colouring, Finish, Fit, Layer, Lines, Options, Picture, RenderError, Scale, View, draw, paint,
+    Colouring, Finish, Fit, Layer, Lines, Picture, RenderError, RenderOptions, Scale, View, draw, paint,
 };
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -110,8 +110,8 @@ fn example(name: &str, frames: usize) -> PathBuf {
     folder
 }
 
-fn options(out: PathBuf) -> Options {
-    Options { field: Some("von_mises".into()), ..Options::new(schema::Picture::default(), out) }
+fn options(out: PathBuf) -> RenderOptions {
+    RenderOptions { field: Some("von_mises".into()), ..RenderOptions::new(schema::Picture::default(), out) }
 }
 
 /// Width and rows of RGB bytes.
@@ -154,7 +154,7 @@ fn other_fields_sizes_and_directions_can_be_drawn() {
         let out = folder.join(format!("{field}.png"));
         let picture = schema::Picture { size, from, edges, ..schema::Picture::default() };
         let field = Some(field.to_string());
-        draw(&folder, &Options { picture, field, ..options(out.clone()) }).unwrap();
+        draw(&folder, &RenderOptions { picture, field, ..options(out.clone()) }).unwrap();
         assert_eq!(read_png(&out).0, size.0 as usize);
     }
 }
@@ -164,7 +164,7 @@ fn other_fields_sizes_and_directions_can_be_drawn() {
 fn an_animation_has_all_frames_and_loops() {
     let folder = example("animation", 21);
     let picture = schema::Picture { size: (480, 360), ..schema::Picture::default() };
-    let small = Options { animate: true, picture, ..options(folder.join("all.gif")) };
+    let small = RenderOptions { animate: true, picture, ..options(folder.join("all.gif")) };
     assert_eq!(draw(&folder, &small).unwrap().frames, 21);
     let first = fs::read(&small.out).unwrap();
     draw(&folder, &small).unwrap();
@@ -184,7 +184,7 @@ fn an_animation_has_all_frames_and_loops() {
         frames
     };
     assert_eq!(count(&small.out), 21);
-    let half = Options { at: Some(0.0101), out: folder.join("half.gif"), ..small };
+    let half = RenderOptions { at: Some(0.0101), out: folder.join("half.gif"), ..small };
     assert_eq!(draw(&folder, &half).unwrap().time, 0.01);
     assert_eq!(count(&half.out), 11);
 }
@@ -303,7 +303,7 @@ fn pictures_do_not_depend_on_the_number_of_threads() {
 fn colours_mean_the_same_in_all_frames() {
     let folder = example("same", 3);
     let at = |time: f64| {
-        let options = Options { at: Some(time), ..options(folder.join(format!("{time}.png"))) };
+        let options = RenderOptions { at: Some(time), ..options(folder.join(format!("{time}.png"))) };
         let drawn = draw(&folder, &options).unwrap();
         (drawn.time, drawn.range)
     };
@@ -326,14 +326,15 @@ fn a_run_that_broke_can_still_be_drawn() {
         let (points, cells) = (&bar.points, &bar.cells);
         series.write(&Frame { time, points, cells, point_arrays, cell_arrays: vec![] }).unwrap();
         let out = folder.join(format!("{time}.png"));
-        let drawn = draw(&folder, &Options { field: Some("displacement".into()), ..options(out) }).unwrap();
+        let drawn = draw(&folder, &RenderOptions { field: Some("displacement".into()), ..options(out) }).unwrap();
         assert!(drawn.range.1 < 1.0, "{:?}", drawn.range);
     }
     let bodies = fs::read_to_string(folder.join("fields.pvd")).unwrap();
     let only_broken: String =
         bodies.lines().filter(|line| !line.contains("00.vtu") && !line.contains("01.vtu")).collect();
     fs::write(folder.join("fields.pvd"), only_broken).unwrap();
-    let refused = draw(&folder, &Options { field: Some("displacement".into()), ..options(folder.join("no.png")) });
+    let refused =
+        draw(&folder, &RenderOptions { field: Some("displacement".into()), ..options(folder.join("no.png")) });
     assert!(matches!(refused, Err(RenderError::Nothing { .. })), "{refused:?}");
 }
 
@@ -342,8 +343,8 @@ fn a_run_that_broke_can_still_be_drawn() {
 fn what_cannot_be_drawn_is_said() {
     let folder = example("wrong", 2);
     let good = options(folder.join("none.png"));
-    let text = |options: &Options| draw(&folder, options).unwrap_err().to_string();
-    let said = text(&Options { field: Some("strain".into()), ..good.clone() });
+    let text = |options: &RenderOptions| draw(&folder, options).unwrap_err().to_string();
+    let said = text(&RenderOptions { field: Some("strain".into()), ..good.clone() });
     assert!(
         said.starts_with("no field \"strain\" in ") && said.contains("; there are: displacement, displacement.x,"),
         "{said}"
@@ -351,9 +352,9 @@ fn what_cannot_be_drawn_is_said() {
     assert!(
         said.ends_with("von_mises, pressure, stress.xx, stress.yy, stress.zz, stress.xy, stress.yz, stress.xz, alive")
     );
-    assert!(text(&Options { field: Some("stress".into()), ..good.clone() }).starts_with("no field \"stress\""));
+    assert!(text(&RenderOptions { field: Some("stress".into()), ..good.clone() }).starts_with("no field \"stress\""));
     let how = schema::Picture::default;
-    let told = |picture: schema::Picture| text(&Options { picture, ..good.clone() });
+    let told = |picture: schema::Picture| text(&RenderOptions { picture, ..good.clone() });
     assert!(
         told(schema::Picture { from: DVec3::ZERO, ..how() }).contains("`from` is [0, 0, 0], which is no direction")
     );
@@ -376,7 +377,8 @@ fn what_cannot_be_drawn_is_said() {
     for cut in [0, 10, 900, 2000, whole.len() / 2, whole.len() - 60] {
         fs::write(&frame, &whole[..cut]).unwrap();
         assert!(
-            draw(&folder, &Options { picture: schema::Picture { size: (320, 240), ..how() }, ..good.clone() }).is_err()
+            draw(&folder, &RenderOptions { picture: schema::Picture { size: (320, 240), ..how() }, ..good.clone() })
+                .is_err()
                 || cut > whole.len() - 100,
             "{cut}"
         );
@@ -385,7 +387,8 @@ fn what_cannot_be_drawn_is_said() {
         let mut damaged = whole.clone();
         damaged[at] ^= 0x5a;
         fs::write(&frame, &damaged).unwrap();
-        let _ = draw(&folder, &Options { picture: schema::Picture { size: (320, 240), ..how() }, ..good.clone() });
+        let _ =
+            draw(&folder, &RenderOptions { picture: schema::Picture { size: (320, 240), ..how() }, ..good.clone() });
     }
-    assert!(draw(&folder, &Options { out: folder.join("no/such/folder.png"), ..good }).is_err());
+    assert!(draw(&folder, &RenderOptions { out: folder.join("no/such/folder.png"), ..good }).is_err());
 }

@@ -19,7 +19,7 @@ fn scene(tools: &str, analysis: &str, folder: &Path) -> SceneFile {
 }
 
 /// A cube of 5 m with a corner in the origin, seen from -y with tools around it.
-fn looked_at(folder: &Path, tools: &Tools, picture: Picture) -> Seen {
+fn rendered(folder: &Path, tools: &Tools, picture: Picture) -> Seen {
     let picture = Picture { from: DVec3::NEG_Y, ..picture };
     seen_with(folder, picture, None, tools.clone())
 }
@@ -59,7 +59,7 @@ const BALL: &str = r#""ball": (shape: Sphere(radius: 1), at: (2.5, 2.5, 6))"#;
 #[test]
 fn a_ball_is_seen_on_the_body_that_it_touches() {
     let folder = BOX.write("tool_ball");
-    let seen = looked_at(&folder, &tools(BALL), plain());
+    let seen = rendered(&folder, &tools(BALL), plain());
     let [left, right, top, bottom] = frame(&seen.places(is_body));
     let [ball_left, ball_right, ball_top, ball_bottom] = frame(&steel(&seen));
     let middle = |low: usize, high: usize| (low + high) as f64 / 2.0;
@@ -68,7 +68,7 @@ fn a_ball_is_seen_on_the_body_that_it_touches() {
     let share = (ball_right - ball_left) as f64 / (right - left) as f64;
     assert!(share > 0.3 && share < 0.41, "{share}");
     assert!(ball_top + 20 < top && ball_bottom + 10 > top && ball_bottom < bottom, "{ball_top} {ball_bottom} {top}");
-    let without = looked_at(&folder, &tools(BALL), Picture { tools: false, ..plain() });
+    let without = rendered(&folder, &tools(BALL), Picture { tools: false, ..plain() });
     assert_eq!(steel(&without), []);
 }
 
@@ -77,9 +77,9 @@ fn what_is_without_tools_is_drawn_as_ever() {
     let folder = BOX.write("tool_none");
     for picture in [plain(), Picture { shadow: true, edges: true, zoom: 1.3, ..Picture::default() }] {
         let picture = Picture { size: plain().size, ..picture };
-        let before = looked_at(&folder, &Tools::default(), picture.clone());
-        assert!(before.bytes == looked_at(&folder, &tools(""), picture.clone()).bytes);
-        assert!(before.bytes == looked_at(&folder, &tools(BALL), Picture { tools: false, ..picture }).bytes);
+        let before = rendered(&folder, &Tools::default(), picture.clone());
+        assert!(before.bytes == rendered(&folder, &tools(""), picture.clone()).bytes);
+        assert!(before.bytes == rendered(&folder, &tools(BALL), Picture { tools: false, ..picture }).bytes);
     }
 }
 
@@ -110,7 +110,7 @@ fn tools_are_where_they_are_at_the_time_of_a_frame() {
 #[test]
 fn a_plane_hides_no_body_from_either_side() {
     let folder = BOX.write("tool_plane");
-    let count = |text: &str| looked_at(&folder, &tools(text), plain()).count(is_body);
+    let count = |text: &str| rendered(&folder, &tools(text), plain()).count(is_body);
     let front = Picture { from: DVec3::NEG_Y, ..plain() };
     for plane in ["at: (0, 0, 0)", "at: (90, 0, 0)", "at: (0, -0.5, 0), rotation: (-90, 0, 0)"] {
         assert!(count(&format!(r#""plane": (shape: Plane(), {plane})"#)) > 20_000, "{plane}");
@@ -126,7 +126,7 @@ fn a_plane_hides_no_body_from_either_side() {
 fn long_instruments_do_not_make_bodies_small() {
     let folder = BOX.write("tool_long");
     let width = |text: &str| {
-        let [left, right, ..] = frame(&looked_at(&folder, &tools(text), plain()).places(is_body));
+        let [left, right, ..] = frame(&rendered(&folder, &tools(text), plain()).places(is_body));
         right - left
     };
     let (alone, upright) =
@@ -134,7 +134,7 @@ fn long_instruments_do_not_make_bodies_small() {
     assert!(upright * 10 > alone * 6, "{upright} of {alone}");
     // one that comes from behind the eye is seen as far as it is before it
     let rod = r#""rod": (shape: Cylinder(length: 500, radius: 0.5), at: (2.5, -0.1, 6), rotation: (80, 0, 0))"#;
-    let seen = looked_at(&folder, &tools(rod), plain());
+    let seen = rendered(&folder, &tools(rod), plain());
     assert!(steel(&seen).len() > 2000, "{}", steel(&seen).len());
 }
 
@@ -151,7 +151,7 @@ fn tools_of_triangles_are_drawn_from_the_copy_or_the_file_and_else_left_out() {
     let (left, missing) = Tools::of_scene(&scene, &folder);
     let [note] = &missing[..] else { panic!("{missing:?}") };
     assert!(note.starts_with("the tool `hook` is not drawn: pyramid.OBJ: "), "{note}");
-    let count = |tools: &Tools| steel(&looked_at(&folder, tools, plain())).len();
+    let count = |tools: &Tools| steel(&rendered(&folder, tools, plain())).len();
     let ball = count(&left);
     assert!(ball > 1000);
     for path in [&copy, &file] {

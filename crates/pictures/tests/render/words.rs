@@ -5,7 +5,7 @@ use glam::{DVec3, Vec2, Vec3};
 use sinew::mesh::{CellKind, Cells};
 use sinew::output::{Array, Folder, Frame, Series, Values};
 use sinew::scene::schema::{Colours, Cut, Opacity, Picture};
-use sinew_pictures::render::{Camera, Fit, Options, Tools, View, draw, stage};
+use sinew_pictures::render::{Camera, Fit, RenderOptions, Tools, View, draw, stage};
 use std::path::{Path, PathBuf};
 
 const SIZE: (usize, usize) = (480, 360);
@@ -101,7 +101,7 @@ fn seen_at(folder: &Path, picture: Picture, at: Option<f64>) -> Seen {
 
 pub fn seen_with(folder: &Path, picture: Picture, at: Option<f64>, tools: Tools) -> Seen {
     let out = folder.join(format!("{}.png", std::thread::current().name().unwrap_or("x").replace("::", "_")));
-    let options = Options { field: Some("von_mises".into()), at, tools, ..Options::new(picture, out) };
+    let options = RenderOptions { field: Some("von_mises".into()), at, tools, ..RenderOptions::new(picture, out) };
     draw(folder, &options).unwrap();
     Seen { bytes: read_png(&options.out).1 }
 }
@@ -227,7 +227,8 @@ fn a_fixed_range_says_which_value_has_which_colour() {
     let (high, low) = (colour(Some((0.0, 1.0))), colour(Some((1.0, 9.0))));
     assert!(high[0] > 180 && high[1] > 180 && high[2] < 90, "{high:?}");
     assert!(low[1] < 80 && low[2] > 80, "{low:?}");
-    let options = Options { field: Some("von_mises".into()), ..Options::new(plain(), folder.join("range.png")) };
+    let options =
+        RenderOptions { field: Some("von_mises".into()), ..RenderOptions::new(plain(), folder.join("range.png")) };
     assert_eq!(draw(&folder, &options).unwrap().range, (0.0, 2.0));
 }
 
@@ -337,19 +338,19 @@ fn a_body_casts_a_soft_shadow_on_the_ground_unless_told_not_to() {
 fn captions_stand_below_their_frames_and_shapes_swing_through_their_rest() {
     let folder = Run { displacement: Vec3::new(0.0, 0.0, 4.0), ..BOX }.write("swing");
     let out = |name: &str| folder.join(name);
-    let how = |name: &str, caption: Option<&str>| Options {
+    let how = |name: &str, caption: Option<&str>| RenderOptions {
         field: Some("von_mises".into()),
         captions: caption.map(String::from).into_iter().collect(),
-        ..Options::new(plain(), out(name))
+        ..RenderOptions::new(plain(), out(name))
     };
-    let bytes = |options: &Options| {
+    let bytes = |options: &RenderOptions| {
         draw(&folder, options).unwrap();
         std::fs::read(&options.out).unwrap()
     };
     let named = bytes(&how("named.png", Some("mode 3, 0.28 Hz")));
     assert!(named != bytes(&how("time.png", None)) && named != bytes(&how("other.png", Some("mode 3, 0.29 Hz"))));
     assert_eq!(named, bytes(&how("again.png", Some("mode 3, 0.28 Hz"))));
-    let swing = Options { swing: 4, animate: true, ..how("swing.gif", None) };
+    let swing = RenderOptions { swing: 4, animate: true, ..how("swing.gif", None) };
     assert_eq!(draw(&folder, &swing).unwrap().frames, 4);
     let mut decoder = gif::DecodeOptions::new();
     decoder.set_color_output(gif::ColorOutput::RGBA);

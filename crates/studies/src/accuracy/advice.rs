@@ -2,16 +2,16 @@
 
 use super::findings::Split;
 use super::plan::Varied;
-use super::reference::{Error, Source};
+use super::reference::{Error, ReferenceSource};
 use super::study::Row;
 
 /// A part of the error counts beside another when it is more than this share of it.
 const COUNTS: f64 = 0.33;
 
 /// Sentences, the most important first.
-pub fn advice(rows: &[Row], split: &Split, source: Source, judged_by: &str, target: f64) -> Vec<String> {
+pub fn advice(rows: &[Row], split: &Split, source: ReferenceSource, judged_by: &str, target: f64) -> Vec<String> {
     let mut sentences = Vec::new();
-    if source == Source::None {
+    if source == ReferenceSource::None {
         sentences
             .push("Without a reference nothing can be said about errors; the times are measured all the same.".into());
         return sentences;

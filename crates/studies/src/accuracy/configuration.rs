@@ -103,18 +103,18 @@ impl fmt::Display for Digits {
 
 /// Where a configuration runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub enum Place {
+pub enum Processor {
     /// On the CPU.
     Cpu,
     /// On a GPU.
     Gpu,
 }
 
-impl fmt::Display for Place {
+impl fmt::Display for Processor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Place::Cpu => "CPU",
-            Place::Gpu => "GPU",
+            Processor::Cpu => "CPU",
+            Processor::Gpu => "GPU",
         })
     }
 }
@@ -137,7 +137,7 @@ pub struct Configuration {
     /// Another elastic law of the same small-strain moduli, by its word; `None`: the scene's.
     pub law: Option<String>,
     /// Where it runs.
-    pub place: Place,
+    pub place: Processor,
     /// An effect of the scene that is switched off, in words.
     pub without: Option<String>,
 }

@@ -1,7 +1,7 @@
 //! Tables of an earlier run as a reference: `probe_NAME.csv`, `nodes.csv`, `nodes_BODY.csv`.
 
 use super::points::PointReference;
-use super::reference::{EXACTLY, Entry, Reference, Source};
+use super::reference::{EXACTLY, Reference, ReferenceQuantity, ReferenceSource};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -9,12 +9,12 @@ use std::path::{Path, PathBuf};
 /// No result is larger, and squares of numbers must stay numbers.
 const LARGEST: f64 = 1e100;
 
-/// Reads tables, or all tables of output folders, as a reference for looks at `looks` times from 0 to `duration` (s);
-/// with 0 looks only the end counts, whenever that was.
+/// Reads tables, or all tables of output folders, as a reference for samples at `samples` times from 0 to `duration`
+/// (s); with 0 samples only the end counts, whenever that was.
 ///
 /// # Errors
 /// What cannot be read, with its file and what is wanted instead.
-pub fn read(paths: &[PathBuf], duration: f64, looks: u64) -> Result<Reference, String> {
+pub fn read(paths: &[PathBuf], duration: f64, samples: u64) -> Result<Reference, String> {
     let mut files = Vec::new();
     for path in paths {
         if path.is_dir() {
@@ -28,7 +28,7 @@ pub fn read(paths: &[PathBuf], duration: f64, looks: u64) -> Result<Reference, S
     }
     files.sort();
     let mut reference = Reference {
-        source: Source::Files,
+        source: ReferenceSource::Files,
         told: format!("{}{EXACTLY}", shown(paths)),
         entries: BTreeMap::new(),
         field: None,
@@ -38,7 +38,7 @@ pub fn read(paths: &[PathBuf], duration: f64, looks: u64) -> Result<Reference, S
         match kind(file) {
             Some(Kind::Probe(name)) => {
                 let table = Table::read(file)?;
-                reference.entries.extend(probe(&name, &table, file, duration, looks)?);
+                reference.entries.extend(probe(&name, &table, file, duration, samples)?);
             }
             Some(Kind::Nodes(body)) => {
                 let points = nodes(&Table::read(file)?, file)?;
@@ -107,7 +107,13 @@ impl Table {
 }
 
 /// Quantities of a probe's table. Its last row must be at the end of the scene.
-fn probe(name: &str, table: &Table, file: &Path, duration: f64, looks: u64) -> Result<BTreeMap<String, Entry>, String> {
+fn probe(
+    name: &str,
+    table: &Table,
+    file: &Path,
+    duration: f64,
+    samples: u64,
+) -> Result<BTreeMap<String, ReferenceQuantity>, String> {
     let wrong = |what: String| Err(format!("{}: {what}", file.display()));
     if table.header.first().is_none_or(|column| !column.starts_with("time")) {
         return wrong("the first column must be `time (s)`".into());
@@ -117,7 +123,7 @@ fn probe(name: &str, table: &Table, file: &Path, duration: f64, looks: u64) -> R
         return wrong("times must grow from row to row".into());
     }
     let end = times[times.len() - 1];
-    if looks > 0 && (end - duration).abs() > 1e-6 * duration {
+    if samples > 0 && (end - duration).abs() > 1e-6 * duration {
         return wrong(format!("it ends at {end} s and the scene at {duration} s; a reference must cover the scene"));
     }
     let at = |time: f64, column: usize| {
@@ -137,14 +143,16 @@ fn probe(name: &str, table: &Table, file: &Path, duration: f64, looks: u64) -> R
         let quantity = format!("{name}.{}", title.split(" (").next().unwrap_or(title));
         let scale = Some(if last > 0.01 * largest { last } else { largest }).filter(|scale| *scale > 0.0);
         let values = vec![table.rows.last().map_or(0.0, |row| row[column])];
-        entries.insert(quantity.clone(), Entry { values, uncertainty: 0.0, scale, order: None });
-        if looks > 0 && times.len() as u64 >= looks / 4 && times[0] == 0.0 {
-            let values: Vec<f64> = (0..=looks).map(|look| at(duration * look as f64 / looks as f64, column)).collect();
+        entries.insert(quantity.clone(), ReferenceQuantity { values, uncertainty: 0.0, scale, order: None });
+        if samples > 0 && times.len() as u64 >= samples / 4 && times[0] == 0.0 {
+            let values: Vec<f64> =
+                (0..=samples).map(|number| at(duration * number as f64 / samples as f64, column)).collect();
             // straight lines between rows: off by an eighth of the second difference
             let bends = table.rows.windows(3).map(|r| (r[0][column] - 2.0 * r[1][column] + r[2][column]).abs() / 8.0);
-            let uncertainty = if times.len() as u64 == looks + 1 { 0.0 } else { bends.fold(0.0, f64::max) };
+            let uncertainty = if times.len() as u64 == samples + 1 { 0.0 } else { bends.fold(0.0, f64::max) };
             let scale = Some(largest).filter(|scale| *scale > 0.0);
-            entries.insert(format!("{quantity}.over_time"), Entry { values, uncertainty, scale, order: None });
+            entries
+                .insert(format!("{quantity}.over_time"), ReferenceQuantity { values, uncertainty, scale, order: None });
         }
     }
     Ok(entries)

@@ -6,7 +6,7 @@ use super::field::same_mesh;
 use super::pareto::observed_order;
 use super::plan::Varied;
 use super::quantities::{distance, readings};
-use super::reference::{CLEARLY, Error, FIELD, Reference, Source};
+use super::reference::{CLEARLY, Error, FIELD, Reference, ReferenceSource};
 use super::richardson::extrapolate;
 use super::solver::Solution;
 use super::study::Row;
@@ -24,7 +24,7 @@ pub struct Findings {
     /// Sentences, the most important first.
     pub advice: Vec<String>,
     /// Whether the scene as it is written meets the target.
-    pub verdict: Verdict,
+    pub verdict: TargetVerdict,
 }
 
 /// How fast errors fall.
@@ -72,7 +72,7 @@ pub struct EffectFinding {
 
 /// Whether the scene as it is written meets the target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub enum Verdict {
+pub enum TargetVerdict {
     /// Its error and the reference's uncertainty together are below the target.
     Met,
     /// Its error is above the target even if the reference's uncertainty is taken off.
@@ -92,9 +92,9 @@ pub fn findings(
     let facts = Facts { rows, solutions, reference, judged_by };
     let (orders, split, effects) = (facts.orders(), facts.split(), facts.effects());
     let verdict = match facts.written().and_then(|row| rows[row].errors.get(judged_by)) {
-        Some(error) if error.error + error.uncertainty <= target => Verdict::Met,
-        Some(error) if error.error - error.uncertainty > target => Verdict::NotMet,
-        _ => Verdict::CannotTell,
+        Some(error) if error.error + error.uncertainty <= target => TargetVerdict::Met,
+        Some(error) if error.error - error.uncertainty > target => TargetVerdict::NotMet,
+        _ => TargetVerdict::CannotTell,
     };
     let advice = advice(rows, &split, reference.source, judged_by, target);
     Findings { orders, split, effects, advice, verdict }
@@ -198,7 +198,7 @@ impl Facts<'_> {
         let alone = alone.or(Some(&self.rows[written])).and_then(|row| row.errors.get(self.judged_by));
         let space_is_a_bound = alone.is_some_and(|error| !error.is_clear());
         let (mut space, mut model) = (alone.map(Error::vouched), None);
-        if !matches!(self.reference.source, Source::SelfMade | Source::None) {
+        if !matches!(self.reference.source, ReferenceSource::SelfMade | ReferenceSource::None) {
             model = self.model(written).filter(|left| {
                 // what step and rounding make stays on every mesh too
                 *left > CLEARLY * (time.unwrap_or(0.0) + round_off.unwrap_or(0.0))

@@ -33,11 +33,11 @@ pub mod study;
 pub mod tables;
 mod work;
 
-pub use configuration::{Configuration, Digits, Factor, Place};
+pub use configuration::{Configuration, Digits, Factor, Processor};
 pub use engine::Engine;
 pub use estimate::Estimate;
-pub use findings::{Findings, Verdict};
+pub use findings::{Findings, TargetVerdict};
 pub use plan::{Fate, Plan, Varied};
 pub use reference::Reference;
 pub use solver::{Choices, Cost, Refusal, Solution, Solver};
-pub use study::{Outcome, Row, Settings, Study, Watch, study};
+pub use study::{Outcome, Row, Settings, Study, StudyObserver, study};

@@ -2,7 +2,7 @@
 
 use super::configuration::Factor;
 use super::plan::Plan;
-use super::reference::Source;
+use super::reference::ReferenceSource;
 use super::refinement;
 use super::solver::Choices;
 use super::study::{Outcome, Row};
@@ -10,7 +10,13 @@ use super::work::Work;
 
 /// The scene itself or the next finer mesh of a reference, whichever is cheaper, if it was left out: what it would
 /// cost.
-pub fn more(work: &mut Work<'_>, choices: &Choices, plan: &Plan, rows: &[Row], source: Source) -> Option<String> {
+pub fn more(
+    work: &mut Work<'_>,
+    choices: &Choices,
+    plan: &Plan,
+    rows: &[Row],
+    source: ReferenceSource,
+) -> Option<String> {
     let left_out = |place: &usize| matches!(rows[*place].outcome, Outcome::LeftOut(_));
     let mut all: Vec<(f64, usize)> = Vec::new();
     for place in (0..rows.len()).filter(left_out) {
@@ -21,7 +27,7 @@ pub fn more(work: &mut Work<'_>, choices: &Choices, plan: &Plan, rows: &[Row], s
         place == 0 || (row.mesh >= Factor::ONE && *row == refinement::way(choices, row.mesh))
     };
     let next = all.iter().filter(finer).min_by(|a, b| a.0.total_cmp(&b.0));
-    let (seconds, place) = next.filter(|_| matches!(source, Source::SelfMade | Source::None))?;
+    let (seconds, place) = next.filter(|_| matches!(source, ReferenceSource::SelfMade | ReferenceSource::None))?;
     let budget = rounded_up(plan.budget + 1.15 * seconds);
     Some(format!("--budget {budget} would add `{}`, which takes about {}", rows[*place].label, time(*seconds)))
 }

@@ -1,6 +1,6 @@
 //! What a study will run: everything is predicted first, and what does not fit into the budget is left out by name.
 
-use super::configuration::{Configuration, Digits, Place};
+use super::configuration::{Configuration, Digits, Processor};
 use super::refinement;
 use super::solver::{Choices, Cost, Refusal, Solver};
 use serde::Serialize;
@@ -216,7 +216,7 @@ fn variations(choices: &Choices) -> Vec<(Varied, Configuration)> {
     }
     for &digits in &choices.digits {
         // GPUs compute in f32 only
-        let place = if digits == Digits::Double { Place::Cpu } else { base.place };
+        let place = if digits == Digits::Double { Processor::Cpu } else { base.place };
         add(Varied::Digits, &|c| (c.digits, c.place) = (digits, place));
     }
     choices.hourglass.iter().for_each(|scale| add(Varied::Hourglass, &|c| c.hourglass = *scale));
@@ -225,7 +225,7 @@ fn variations(choices: &Choices) -> Vec<(Varied, Configuration)> {
     choices.places.iter().for_each(|place| add(Varied::Place, &|c| c.place = *place));
     if choices.digits.contains(&Digits::Double) {
         add(Varied::SpaceAlone, &|c| {
-            (c.digits, c.step, c.place) = (Digits::Double, finest_step(choices), Place::Cpu);
+            (c.digits, c.step, c.place) = (Digits::Double, finest_step(choices), Processor::Cpu);
         });
     }
     choices.effects.iter().for_each(|effect| add(Varied::Effect, &|c| c.without = Some(effect.clone())));

@@ -20,7 +20,7 @@ pub const CLEARLY: f64 = 3.0;
 
 /// Where a reference comes from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub enum Source {
+pub enum ReferenceSource {
     /// The author's numbers.
     Values,
     /// Files of an earlier run.
@@ -35,11 +35,11 @@ pub enum Source {
 #[derive(Clone, Debug)]
 pub struct Reference {
     /// Where it comes from.
-    pub source: Source,
+    pub source: ReferenceSource,
     /// A sentence on it.
     pub told: String,
     /// Quantities by name.
-    pub entries: BTreeMap<String, Entry>,
+    pub entries: BTreeMap<String, ReferenceQuantity>,
     /// The displacement field on meshes.
     pub field: Option<FieldReference>,
     /// The displacements of single points.
@@ -48,7 +48,7 @@ pub struct Reference {
 
 /// The reference of a quantity.
 #[derive(Clone, Debug)]
-pub struct Entry {
+pub struct ReferenceQuantity {
     /// Its values.
     pub values: Vec<f64>,
     /// How far they may be off, root mean square (in its unit).
@@ -98,18 +98,18 @@ impl Reference {
     /// None: nothing has an error.
     pub fn none(why: &str) -> Self {
         let (entries, told) = (BTreeMap::new(), format!("none: {why}"));
-        Self { source: Source::None, told, entries, field: None, points: None }
+        Self { source: ReferenceSource::None, told, entries, field: None, points: None }
     }
 
     /// From an author's numbers, by quantity.
     pub fn of_values(values: &BTreeMap<String, f64>) -> Self {
         let entry = |(name, value): (&String, &f64)| {
-            let entry = Entry { values: vec![*value], uncertainty: 0.0, scale: None, order: None };
+            let entry = ReferenceQuantity { values: vec![*value], uncertainty: 0.0, scale: None, order: None };
             (name.clone(), entry)
         };
         let entries = values.iter().map(entry).collect();
         let told = format!("values that the scene names{EXACTLY}");
-        Self { source: Source::Values, told, entries, field: None, points: None }
+        Self { source: ReferenceSource::Values, told, entries, field: None, points: None }
     }
 
     /// The same, if quantities may themselves be off by so much (in their units).
@@ -140,7 +140,10 @@ impl Reference {
             }
             let limit = limit(sizes, &values)?;
             let (scale, order) = (Some(reading.scale), limit.order);
-            entries.insert(name.clone(), Entry { values: limit.values, uncertainty: limit.uncertainty, scale, order });
+            entries.insert(
+                name.clone(),
+                ReferenceQuantity { values: limit.values, uncertainty: limit.uncertainty, scale, order },
+            );
         }
         let fields: Option<Vec<Field>> = solutions.iter().map(|solution| solution.field.clone()).collect();
         let field = fields.and_then(|fields| match (sizes, fields.len()) {
@@ -148,7 +151,7 @@ impl Reference {
             (&[a, b], 2) => FieldReference::of_two([a, b], <[Field; 2]>::try_from(fields).ok()?, true),
             _ => None,
         });
-        Some(Self { source: Source::SelfMade, told, entries, field, points: None })
+        Some(Self { source: ReferenceSource::SelfMade, told, entries, field, points: None })
     }
 
     /// The same, of three meshes on which surfaces touch: at least as uncertain as that makes it

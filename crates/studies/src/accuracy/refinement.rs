@@ -1,6 +1,6 @@
 //! A reference from finer and finer meshes: each of twice the cells of the one before, as fine as time allows.
 
-use super::configuration::{Configuration, Digits, Factor, Place};
+use super::configuration::{Configuration, Digits, Factor, Processor};
 use super::estimate::Refined;
 use super::plan::{Fate, Planned, Varied};
 use super::reference::Reference;
@@ -20,7 +20,7 @@ pub fn way(choices: &Choices, mesh: Factor) -> Configuration {
     let element = pressure.filter(|_| base.element == Some(ElementKind::Tet4)).or(base.element);
     let mut configuration = Configuration { element, mesh, ..base.clone() };
     if choices.steps.is_empty() {
-        (configuration.digits, configuration.place) = (Digits::Double, Place::Cpu);
+        (configuration.digits, configuration.place) = (Digits::Double, Processor::Cpu);
     }
     configuration
 }

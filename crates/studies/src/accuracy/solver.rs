@@ -1,6 +1,6 @@
 //! What a study needs of whatever solves the scene: an offer of variations, a prediction of time, a solution.
 
-use super::configuration::{Configuration, Digits, Factor, Place};
+use super::configuration::{Configuration, Digits, Factor, Processor};
 use glam::DVec3;
 use sinew::mesh::{ElementKind, Mesh};
 use sinew::scene::schema::ViscousIntegrator;
@@ -60,7 +60,7 @@ pub struct Choices {
     /// Other elastic laws of the same small-strain moduli, by their words.
     pub laws: Vec<String>,
     /// Where it can run.
-    pub places: Vec<Place>,
+    pub places: Vec<Processor>,
     /// Names of the channels that its solutions have, such as `tip.uz`.
     pub quantities: Vec<String>,
     /// Effects that can be switched off, in words.

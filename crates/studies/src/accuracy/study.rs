@@ -6,7 +6,7 @@ use super::findings::{Findings, findings};
 use super::outlook::more;
 use super::pareto::front;
 use super::plan::{Fate, Plan, Planned, REFERENCE_SHARE, Varied, plan};
-use super::reference::{Error, FIELD, Reference, Source};
+use super::reference::{Error, FIELD, Reference, ReferenceSource};
 use super::refinement::{self, made, refined};
 use super::solver::{Choices, Cost, Refusal, Solution, Solver};
 use super::work::{Clock, Work};
@@ -32,7 +32,7 @@ pub struct Settings {
 }
 
 /// What happens while a study runs.
-pub trait Watch {
+pub trait StudyObserver {
     /// Costs are being predicted.
     fn predicts(&mut self) {}
     /// Everything has been predicted.
@@ -114,7 +114,7 @@ pub struct Study {
     /// What it took (s).
     pub took: f64,
     /// Where the reference comes from.
-    pub source: Source,
+    pub source: ReferenceSource,
     /// A sentence on it.
     pub reference: String,
     /// Its uncertainty in the quantity judged by, relative.
@@ -161,17 +161,17 @@ impl Row {
 ///
 /// # Errors
 /// That the scene as it is written cannot be solved, or that a quantity is asked for that it does not have.
-pub fn study(solver: &mut dyn Solver, settings: &Settings, watch: &mut dyn Watch) -> Result<Study, Refusal> {
+pub fn study(solver: &mut dyn Solver, settings: &Settings, observer: &mut dyn StudyObserver) -> Result<Study, Refusal> {
     let clock = Clock { started: settings.started, budget: settings.budget };
     // a budget too small for anything still has a plan that says so
     solver.until(clock.end().max(Instant::now() + PLANNING));
-    watch.predicts();
+    observer.predicts();
     let choices = solver.choices()?;
     check_names(&choices, settings)?;
     let plan = plan(solver, &choices, (clock.budget, clock.started), settings.reference.is_none())?;
-    watch.planned(&plan);
+    observer.planned(&plan);
     let running = plan.rows.iter().filter(|row| matches!(row.fate, Fate::Run(_))).count();
-    let mut work = Work::new(solver, watch, clock, running);
+    let mut work = Work::new(solver, observer, clock, running);
     let needed = |place: usize| place == 0 || plan.reference.contains(&place);
 
     let mut done: Vec<Option<(Row, Option<Solution>)>> = plan.rows.iter().map(|_| None).collect();
@@ -221,7 +221,7 @@ pub fn study(solver: &mut dyn Solver, settings: &Settings, watch: &mut dyn Watch
     Ok(Study {
         reference_uncertainty: known.map(|error| error.uncertainty),
         estimates: estimates(&rows, &solutions, &reference, &refined, &judged_by),
-        unseen: if reference.source == Source::SelfMade { choices.unseen } else { Vec::new() },
+        unseen: if reference.source == ReferenceSource::SelfMade { choices.unseen } else { Vec::new() },
         more,
         judged_by,
         target: settings.target,

@@ -2,7 +2,7 @@
 
 use super::advice::{percent, seconds, told};
 use super::plan::Varied;
-use super::reference::Source;
+use super::reference::ReferenceSource;
 use super::study::{Outcome, Row, Study};
 use std::collections::BTreeSet;
 
@@ -84,11 +84,11 @@ pub fn split(study: &Study) -> Vec<(&'static str, String)> {
 }
 
 /// Why a part of the error has no number.
-fn unknown(part: &str, source: Source, at_rest: bool) -> String {
+fn unknown(part: &str, source: ReferenceSource, at_rest: bool) -> String {
     match (part, source) {
         ("time", _) if at_rest => "none: what is sought is at rest",
-        ("model", Source::SelfMade) => "not seen: the reference shares it",
-        ("model", Source::Values | Source::Files) => "none that can be told",
+        ("model", ReferenceSource::SelfMade) => "not seen: the reference shares it",
+        ("model", ReferenceSource::Values | ReferenceSource::Files) => "none that can be told",
         ("hourglass", _) => "not varied",
         _ => "not known",
     }

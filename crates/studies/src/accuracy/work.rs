@@ -2,7 +2,7 @@
 
 use super::plan::{Fate, Planned};
 use super::solver::{Cost, Refusal, Solution, Solver};
-use super::study::{Measured, Outcome, Row, Watch};
+use super::study::{Measured, Outcome, Row, StudyObserver};
 use std::time::{Duration, Instant};
 
 /// How many times what was predicted a run may take before it is cut off.
@@ -36,7 +36,7 @@ impl Clock {
 /// The runs of a study.
 pub struct Work<'a> {
     solver: &'a mut dyn Solver,
-    watch: &'a mut dyn Watch,
+    observer: &'a mut dyn StudyObserver,
     clock: Clock,
     done: usize,
     all: usize,
@@ -45,8 +45,8 @@ pub struct Work<'a> {
 
 impl<'a> Work<'a> {
     /// Nothing done yet of `all` runs.
-    pub fn new(solver: &'a mut dyn Solver, watch: &'a mut dyn Watch, clock: Clock, all: usize) -> Self {
-        Self { solver, watch, clock, done: 0, all, interrupted: false }
+    pub fn new(solver: &'a mut dyn Solver, observer: &'a mut dyn StudyObserver, clock: Clock, all: usize) -> Self {
+        Self { solver, observer, clock, done: 0, all, interrupted: false }
     }
 
     /// Whether somebody has ended the study.
@@ -74,7 +74,7 @@ impl<'a> Work<'a> {
             return (Row::of(planned, Outcome::LeftOut(why)), None);
         }
         self.done += 1;
-        self.watch.begins(&planned.label, cost.seconds, self.done, self.all.max(self.done));
+        self.observer.begins(&planned.label, cost.seconds, self.done, self.all.max(self.done));
         let patience = Instant::now() + Duration::from_secs_f64((PATIENCE * cost.seconds).clamp(SOON, 3e9));
         self.solver.until(if needed { self.clock.end() } else { self.clock.end().min(patience) });
         let (outcome, solution) = match self.solver.solve(&planned.configuration) {
@@ -90,7 +90,7 @@ impl<'a> Work<'a> {
                 (Outcome::LeftOut("interrupted".into()), None)
             }
         };
-        self.watch.ended(&planned.label, &outcome);
+        self.observer.ended(&planned.label, &outcome);
         (Row::of(planned, outcome), solution)
     }
 

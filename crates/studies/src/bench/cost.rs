@@ -60,7 +60,7 @@ impl ElementTask for RowsAndFlops {
     type Output = (usize, f64);
 
     fn run<E: Element>(self) -> (usize, f64) {
-        (<E::Simple as Element>::ROWS, flops::<E::Simple>(self.0))
+        (<E::Specialisation as Element>::ROWS, flops::<E::Specialisation>(self.0))
     }
 }
 

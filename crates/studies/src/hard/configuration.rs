@@ -6,14 +6,14 @@ use sinew::{BackendChoice, Options};
 
 /// Elements, backend and number type.
 #[derive(Clone, Debug)]
-pub struct Configuration {
+pub struct CaseConfiguration {
     /// Elements of every mesh of the case.
     pub elements: ElementKind,
     /// Where, and in which number type.
     pub options: Options,
 }
 
-impl Configuration {
+impl CaseConfiguration {
     /// The word of the elements in scenes.
     pub fn elements_name(&self) -> &'static str {
         self.elements.name()

@@ -1,7 +1,7 @@
 //! What today's physics does not reach, and why. A row that is better than told here is as much a finding as one that
 //! is worse: the tests ask for exactly these.
 
-use super::{Configuration, Verdict};
+use super::{CaseConfiguration, CaseVerdict};
 use sinew::mesh::ElementKind;
 
 /// A case that does not pass in some configurations.
@@ -9,9 +9,9 @@ pub struct Shortfall {
     /// The case.
     pub case: &'static str,
     /// Where, and whether in full.
-    pub on: fn(&Configuration, bool) -> bool,
+    pub on: fn(&CaseConfiguration, bool) -> bool,
     /// How it ends.
-    pub verdict: Verdict,
+    pub verdict: CaseVerdict,
     /// Why.
     pub why: &'static str,
 }
@@ -21,49 +21,49 @@ pub const SHORTFALLS: &[Shortfall] = &[
     Shortfall {
         case: "h02",
         on: |c, _| c.elements == ElementKind::Hex8,
-        verdict: Verdict::Failed,
+        verdict: CaseVerdict::Failed,
         why: "the hourglass stiffness is that of bending, and a load on one node bends: .6 of the strain energy on every mesh and at every Poisson's ratio; it is warned of, and Hex8MeanDilatation has no such energy",
     },
     Shortfall {
         // everyday, finer meshes are tried in one configuration alone
         case: "h01",
         on: |c, full| c.elements == ElementKind::Tet4NodalPressure && (full || c.is_quickest()),
-        verdict: Verdict::Failed,
+        verdict: CaseVerdict::Failed,
         why: "averaged pressure takes the volumetric locking away, but bent tetrahedra stay stiff: 6³ and 9³ cells differ by 7 to 14 %",
     },
     Shortfall {
         case: "h35",
         on: |c, full| c.elements == ElementKind::Tet4NodalPressure && (full || c.is_quickest()),
-        verdict: Verdict::Failed,
+        verdict: CaseVerdict::Failed,
         why: "bent tetrahedra stay stiff: with three and with four of them across deflections differ by 12 %",
     },
     Shortfall {
         case: "h40",
         on: |c, _| c.elements == ElementKind::Tet4NodalPressure,
-        verdict: Verdict::Failed,
+        verdict: CaseVerdict::Failed,
         why: "averaging pressures around nodes disperses waves of few layers: the bar comes back 3.5 % slower with 40 of them, 2.1 % with 80, where 3 and 2 are allowed",
     },
     Shortfall {
         case: "h41",
         on: |c, _| c.elements == ElementKind::Hex8MeanDilatation,
-        verdict: Verdict::Failed,
+        verdict: CaseVerdict::Failed,
         why: "an elastic block that slides under constant friction rings (Adams 1995), and what hops is held less: at .5 it goes 2 % farther than a rigid one and its lean, where 1 % is allowed",
     },
     Shortfall {
         case: "h45",
         on: |c, _| c.is_gpu() && c.is_tets(),
-        verdict: Verdict::Failed,
+        verdict: CaseVerdict::Failed,
         why: "a GPU's kernels know places in f32, and nodes of tetrahedra at rest go at 2.5e-6 to 3e-6 m/s where 1.8e-6 is what their last bit makes",
     },
     Shortfall {
         case: "h47",
         on: |c, _| !c.is_tets(),
-        verdict: Verdict::Failed,
+        verdict: CaseVerdict::Failed,
         why: "nodes are what touches, and a quadrilateral counts as two triangles: stresses at the joint are off by 8 to 18 %, of tetrahedra by 2 to 5 %; points in faces would do better",
     },
 ];
 
 /// What is known of a case in a configuration, in full or in the size for everyday.
-pub fn known(case: &str, configuration: &Configuration, full: bool) -> Option<&'static Shortfall> {
+pub fn known(case: &str, configuration: &CaseConfiguration, full: bool) -> Option<&'static Shortfall> {
     SHORTFALLS.iter().find(|known| known.case == case && (known.on)(configuration, full))
 }

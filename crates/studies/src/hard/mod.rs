@@ -7,16 +7,16 @@
 mod cases;
 mod configuration;
 mod known;
+mod monitor;
 mod report;
 mod trial;
-mod watch;
 
 pub use cases::CASES;
-pub use configuration::Configuration;
+pub use configuration::CaseConfiguration;
 pub use known::{SHORTFALLS, Shortfall, known};
+pub use monitor::Monitor;
 pub use report::{csv, markdown};
 pub use trial::{Gate, Trial};
-pub use watch::Watched;
 
 use serde::Serialize;
 use sinew::Error;
@@ -35,7 +35,7 @@ pub struct Case {
     /// The text of its scene.
     pub scene: &'static str,
     /// Whether a configuration is one of its own, or would only repeat another.
-    pub on: fn(&Configuration) -> bool,
+    pub on: fn(&CaseConfiguration) -> bool,
     /// Runs it and measures.
     pub run: fn(&mut Trial<'_>) -> Result<(), Error>,
 }
@@ -50,7 +50,7 @@ impl Case {
 /// How a case ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Verdict {
+pub enum CaseVerdict {
     /// All gates passed.
     Passed,
     /// It could not be simulated to the end and said so: where, when, why (G5).
@@ -59,12 +59,12 @@ pub enum Verdict {
     Failed,
 }
 
-impl std::fmt::Display for Verdict {
+impl std::fmt::Display for CaseVerdict {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Verdict::Passed => "passed",
-            Verdict::FailedHonestly => "failed honestly",
-            Verdict::Failed => "FAILED",
+            CaseVerdict::Passed => "passed",
+            CaseVerdict::FailedHonestly => "failed honestly",
+            CaseVerdict::Failed => "FAILED",
         })
     }
 }
@@ -81,13 +81,13 @@ pub struct Row {
     /// Backend and number type.
     pub machine: &'static str,
     /// How it ended.
-    pub verdict: Verdict,
+    pub verdict: CaseVerdict,
     /// How it should: with a pass, or as is known and explained.
-    pub expected: Verdict,
+    pub expected: CaseVerdict,
     /// All that was measured.
     pub gates: Vec<Gate>,
     /// What an honest failure said.
-    pub told: Option<String>,
+    pub message: Option<String>,
     /// Why this is how it has to end today, where it is not a pass.
     pub known: Option<&'static str>,
     /// Wall time (s).
@@ -102,24 +102,24 @@ impl Row {
 }
 
 /// Runs a case in a configuration.
-pub fn run(case: &Case, configuration: &Configuration, full: bool) -> Row {
+pub fn run(case: &Case, configuration: &CaseConfiguration, full: bool) -> Row {
     let started = Instant::now();
     let mut trial = Trial { case, configuration, full, gates: Vec::new() };
     let ended = (case.run)(&mut trial);
     let gates = trial.gates;
     let all_passed = gates.iter().all(|gate| gate.passed) && !gates.is_empty();
-    let (verdict, told) = match ended {
-        Ok(()) if all_passed => (Verdict::Passed, None),
-        Ok(()) => (Verdict::Failed, None),
+    let (verdict, message) = match ended {
+        Ok(()) if all_passed => (CaseVerdict::Passed, None),
+        Ok(()) => (CaseVerdict::Failed, None),
         Err(error @ (Error::Unstable(_) | Error::NotConverged(_))) => {
-            (Verdict::FailedHonestly, Some(error.to_string()))
+            (CaseVerdict::FailedHonestly, Some(error.to_string()))
         }
-        Err(error) => (Verdict::Failed, Some(error.to_string())),
+        Err(error) => (CaseVerdict::Failed, Some(error.to_string())),
     };
     let known = known(case.id, configuration, full);
-    let expected = known.map_or(Verdict::Passed, |known| known.verdict);
+    let expected = known.map_or(CaseVerdict::Passed, |known| known.verdict);
     let known = known.filter(|known| known.verdict == verdict).map(|known| known.why);
     let (elements, machine) = (configuration.elements_name(), configuration.machine());
     let seconds = started.elapsed().as_secs_f64();
-    Row { case: case.id, title: case.title, elements, machine, verdict, expected, gates, told, known, seconds }
+    Row { case: case.id, title: case.title, elements, machine, verdict, expected, gates, message, known, seconds }
 }

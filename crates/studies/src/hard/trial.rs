@@ -1,6 +1,6 @@
 //! A hard case under one configuration: its scene, and the gates that what comes out has to pass.
 
-use super::{Case, Configuration};
+use super::{Case, CaseConfiguration};
 use sinew::Error;
 use sinew::Simulation;
 use sinew::output::OutputError;
@@ -29,7 +29,7 @@ pub struct Trial<'a> {
     /// The case.
     pub case: &'a Case,
     /// How it is run.
-    pub configuration: &'a Configuration,
+    pub configuration: &'a CaseConfiguration,
     /// Whether in full, or in a size for everyday.
     pub full: bool,
     /// What was measured so far.
@@ -127,7 +127,7 @@ impl<'a> Trial<'a> {
 
     /// A figure that is told, whatever it is.
     pub fn report(&mut self, what: impl Into<String>, figure: f64) {
-        self.gate(what, figure, "told".into(), 0.0);
+        self.gate(what, figure, "reported".into(), 0.0);
     }
 
     /// Something that is so or not.
@@ -137,26 +137,26 @@ impl<'a> Trial<'a> {
 
     /// The scene must be refused, in words that contain all of these.
     pub fn refused(&mut self, what: &str, made: Result<Simulation, Error>, words: &[&str]) {
-        let told = match made {
+        let message = match made {
             Ok(_) => String::new(),
             Err(error) => error.to_string(),
         };
-        let missing: Vec<&str> = words.iter().copied().filter(|word| !told.contains(word)).collect();
-        let so = !told.is_empty() && missing.is_empty();
+        let missing: Vec<&str> = words.iter().copied().filter(|word| !message.contains(word)).collect();
+        let so = !message.is_empty() && missing.is_empty();
         let what =
-            if so { format!("{what} is refused") } else { format!("{what} is refused with {missing:?}: {told:?}") };
+            if so { format!("{what} is refused") } else { format!("{what} is refused with {missing:?}: {message:?}") };
         self.holds(what, so);
     }
 
     /// The run must end in an honest failure that names these words.
     pub fn stops(&mut self, what: &str, ended: Result<(), Error>, words: &[&str]) {
-        let (honest, told) = match &ended {
+        let (honest, message) = match &ended {
             Err(error @ (Error::Unstable(_) | Error::NotConverged(_))) => (true, error.to_string()),
             Err(error) => (false, error.to_string()),
             Ok(()) => (false, "it went on to the end".into()),
         };
-        let so = honest && words.iter().all(|word| told.contains(word));
-        self.holds(if so { format!("{what} stops honestly") } else { format!("{what} stops honestly: {told}") }, so);
+        let so = honest && words.iter().all(|word| message.contains(word));
+        self.holds(if so { format!("{what} stops honestly") } else { format!("{what} stops honestly: {message}") }, so);
     }
 
     fn gate(&mut self, what: impl Into<String>, figure: f64, allowed: String, used: f64) {

@@ -6,7 +6,7 @@ use sinew::mesh::{ElementKind, Mesh};
 use sinew_studies::accuracy::solver::{BodyField, Channel, Field};
 use sinew_studies::accuracy::study::Outcome;
 use sinew_studies::accuracy::{
-    Choices, Configuration, Cost, Digits, Factor, Place, Plan, Refusal, Solution, Solver, Watch,
+    Choices, Configuration, Cost, Digits, Factor, Plan, Processor, Refusal, Solution, Solver, StudyObserver,
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -60,7 +60,7 @@ pub fn base() -> Configuration {
         hourglass: 1.0,
         viscous: None,
         law: None,
-        place: Place::Cpu,
+        place: Processor::Cpu,
         without: None,
     }
 }
@@ -155,10 +155,10 @@ impl Solver for MadeUp {
     }
 }
 
-/// Watches nothing.
+/// Observes nothing.
 pub struct Nobody;
 
-impl Watch for Nobody {
+impl StudyObserver for Nobody {
     fn planned(&mut self, _: &Plan) {}
     fn begins(&mut self, _: &str, _: f64, _: usize, _: usize) {}
     fn ended(&mut self, _: &str, _: &Outcome) {}

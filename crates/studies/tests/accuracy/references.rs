@@ -4,7 +4,7 @@
 mod mutate;
 
 use sinew_studies::accuracy::files::read;
-use sinew_studies::accuracy::reference::Entry;
+use sinew_studies::accuracy::reference::ReferenceQuantity;
 use std::fs;
 use std::path::PathBuf;
 
@@ -74,16 +74,16 @@ fn hostile_tables_are_read_or_refused() {
     for seed in 0..asked {
         let bytes = mutate::mutant(&mut fastrand::Rng::with_seed(seed as u64), &corpus);
         let (_keep, path) = folder(&[]);
-        for (name, looks) in [("probe_tip.csv", 0), ("probe_tip.csv", 10), ("nodes.csv", 0)] {
+        for (name, samples) in [("probe_tip.csv", 0), ("probe_tip.csv", 10), ("nodes.csv", 0)] {
             let file = path.join(name);
             fs::write(&file, &bytes).unwrap();
-            match read(&[file], 1.0, looks) {
+            match read(&[file], 1.0, samples) {
                 Err(error) => {
                     assert!(error.len() > 10, "seed {seed}: refused without a word");
                     refused += 1;
                 }
                 Ok(found) => {
-                    let finite = |entry: &Entry| entry.values.iter().all(|value| value.is_finite());
+                    let finite = |entry: &ReferenceQuantity| entry.values.iter().all(|value| value.is_finite());
                     assert!(found.entries.values().all(finite), "seed {seed}: a reference that is no number");
                     read_whole += 1;
                 }

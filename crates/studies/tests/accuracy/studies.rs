@@ -2,7 +2,7 @@
 
 use crate::made_up::{MadeUp, Nobody};
 use sinew_studies::accuracy::study::Outcome;
-use sinew_studies::accuracy::{Reference, Refusal, Row, Settings, Study, Varied, Verdict, study, tables};
+use sinew_studies::accuracy::{Reference, Refusal, Row, Settings, Study, TargetVerdict, Varied, study, tables};
 use std::collections::BTreeMap;
 use std::time::Instant;
 
@@ -117,7 +117,7 @@ fn values_that_may_be_off_themselves_bound_errors_instead_of_ranking_them() {
     assert!(!error.is_clear() && (error.vouched() - 0.12).abs() < 1e-12, "{error:?}");
     assert_eq!(
         (study.findings.verdict, study.reference.as_str()),
-        (Verdict::CannotTell, "values that the scene names")
+        (TargetVerdict::CannotTell, "values that the scene names")
     );
 }
 
@@ -127,7 +127,7 @@ fn the_verdict_is_on_the_scene_as_it_is_written() {
         let asked = Settings { reference: exactly(-2e-3), target, ..settings() };
         run(&mut MadeUp::default(), &asked).findings.verdict
     };
-    assert_eq!((verdict(0.05), verdict(0.03)), (Verdict::Met, Verdict::NotMet));
+    assert_eq!((verdict(0.05), verdict(0.03)), (TargetVerdict::Met, TargetVerdict::NotMet));
 }
 
 #[test]
@@ -135,7 +135,7 @@ fn where_the_reference_may_err_as_much_nothing_is_ranked() {
     // results that follow no power of the cell size
     let mut solver = MadeUp { order: 0.1, ..MadeUp::default() };
     let study = run(&mut solver, &settings());
-    assert_eq!(study.findings.verdict, Verdict::CannotTell);
+    assert_eq!(study.findings.verdict, TargetVerdict::CannotTell);
     let said = study.findings.advice.join(" ");
     assert!(said.contains("The reference is too coarse"), "{said}");
     let shown = tables::cells(&study);
@@ -165,7 +165,7 @@ fn a_reference_that_does_not_fit_says_which_budget_would_do() {
     let more = study.more.clone().unwrap();
     assert!(more.starts_with("--budget ") && more.contains("would add `as written`"), "{more}");
     assert!(study.estimates.is_empty(), "{:?}", study.estimates);
-    assert_eq!(study.findings.verdict, Verdict::CannotTell);
+    assert_eq!(study.findings.verdict, TargetVerdict::CannotTell);
     assert!(study.findings.advice[0].contains("Without a reference"), "{:?}", study.findings.advice);
     assert!(study.rows.iter().any(|row| row.measured().is_some()), "times are measured all the same");
 }

@@ -1,13 +1,13 @@
 //! What a material has on top of its elastic law: fibres and viscosity.
 
-use super::Patch;
+use super::PatchForces;
 use crate::components::FamilyDirection;
 use crate::elements::Element;
 use crate::materials::{Elastic, ExponentialFibre, Kinematics, PronyTerm};
 use crate::math::{LANES, Real, SimdScalar, Sym3};
 use pulp::{Simd, WithSimd};
 
-impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_, E, T, L, EFFECTS> {
     /// Unit vectors of the fibres.
     #[inline(always)]
     pub(super) fn along<S: Simd>(&self, simd: S, group: usize, at: usize) -> [T::Vector<S>; 3] {

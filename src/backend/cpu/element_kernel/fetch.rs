@@ -1,7 +1,7 @@
 //! What a kernel needs next, asked of memory before it is needed: of columns that are read in pieces of some kilobytes
 //! the core finds out too late what comes next.
 
-use super::Patch;
+use super::PatchForces;
 use crate::elements::Element;
 use crate::materials::Elastic;
 use crate::math::{LANES, SimdScalar};
@@ -17,7 +17,7 @@ pub(super) const AHEAD: usize = 3;
 /// Bytes that come at once.
 const LINE: usize = 64;
 
-impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_, E, T, L, EFFECTS> {
     /// Asks for what a group of elements reads one after the other. It may be one of the next patch's, or none.
     #[inline(always)]
     pub(super) fn fetch(&self, group: usize) {

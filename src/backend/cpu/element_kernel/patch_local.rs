@@ -1,6 +1,6 @@
 //! What a patch has at hand: its nodes' displacements, and the sums of its forces.
 
-use super::{NodeColumns, Patch};
+use super::{NodeColumns, PatchForces};
 use crate::components::Patches;
 use crate::elements::{Element, MOST_NODES, PressureFrom};
 use crate::materials::Elastic;
@@ -53,17 +53,17 @@ pub(super) struct PatchLocal<'a> {
     pub(super) corners: &'a [[u16; LANES]],
 }
 
-impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_, E, T, L, EFFECTS> {
     /// Displacements of the patch's nodes, and θ where elements take their pressure from it, to hand; no forces yet.
     #[inline(always)]
-    pub(super) fn bring(&self, inside: Option<&NodeColumns<'_, T>>, scratch: &mut Scratch<T>) {
+    pub(super) fn bring(&self, interior: Option<&NodeColumns<'_, T>>, scratch: &mut Scratch<T>) {
         let Some(patch_local) = &self.patch_local else { return };
         let theta = |node: u32| match E::PRESSURE {
             PressureFrom::Nodes => self.nodal_volume_change[node as usize],
             _ => T::default(),
         };
-        let (own, others) = patch_local.nodes.split_at(inside.map_or(0, |columns| columns.rows()));
-        if let Some(columns) = inside {
+        let (own, others) = patch_local.nodes.split_at(interior.map_or(0, |columns| columns.rows()));
+        if let Some(columns) = interior {
             for ((row, &node), u) in scratch.read.iter_mut().zip(own).zip(columns.u.chunks_exact(3)) {
                 *row = [u[0], u[1], u[2], theta(node)];
             }
@@ -78,9 +78,9 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T
 
     /// The sums of forces from at hand: to the nodes inside that move now, all others to where patches are gathered.
     #[inline(always)]
-    pub(super) fn bring_back(&mut self, inside: Option<&mut NodeColumns<'_, T>>, scratch: &Scratch<T>) {
+    pub(super) fn bring_back(&mut self, interior: Option<&mut NodeColumns<'_, T>>, scratch: &Scratch<T>) {
         let mut rows = 0;
-        if let Some(columns) = inside {
+        if let Some(columns) = interior {
             rows = columns.rows();
             for (force, sum) in columns.internal.chunks_exact_mut(3).zip(&*scratch.sums) {
                 force.copy_from_slice(&sum[..3]);

@@ -1,6 +1,6 @@
 //! Stress at a point of a register full of elements: the law's, with what the material has on top.
 
-use super::{FIBRES, GENERIC, Patch, VISCOSITY};
+use super::{FIBRES, GENERIC, PatchForces, VISCOSITY};
 use crate::elements::{Element, PressureFrom};
 use crate::materials::{Elastic, Fibres, Kinematics};
 use crate::math::{LANES, Mat3, Real, SimdScalar, Sym3};
@@ -15,7 +15,7 @@ pub(super) struct InRegisters<L, T: SimdScalar, S: Simd> {
     pub(super) along_squared: [[T; LANES]; 6],
 }
 
-impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> Patch<'_, E, T, L, EFFECTS> {
+impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_, E, T, L, EFFECTS> {
     #[inline(always)]
     pub(super) fn in_registers<S: Simd>(&self, simd: S) -> InRegisters<L::Of<T::Vector<S>>, T, S> {
         let none = Fibres { eta: T::default(), tension_only: T::default() };

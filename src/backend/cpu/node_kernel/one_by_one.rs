@@ -1,6 +1,6 @@
-//! One node after the other: those at the end of a column, those without mass, those whose work is booked.
+//! One node after the other: those at the end of a column, those without mass, those whose work is counted.
 
-use super::{Factors, NodeColumns};
+use super::{IntegrationCoefficients, NodeColumns};
 use crate::math::Scalar;
 
 /// A displacement and its step, summed with what rounding left out of both.
@@ -85,12 +85,13 @@ impl<T: Scalar> OneNode<T> {
 #[inline(always)]
 pub(super) fn move_node<T: Scalar>(
     node: &OneNode<T>,
-    factors: &Factors<T>,
+    coefficients: &IntegrationCoefficients<T>,
     sum: &mut Sum<'_, T>,
     mut work: Option<&mut [T]>,
 ) -> f64 {
     let (zero, one) = (T::default(), T::from_f64(1.0));
-    let Factors { force: force_factor, half_step, divide, rate, booked, relaxation } = *factors;
+    let IntegrationCoefficients { force: force_factor, half_step, after_first, rate, work_factor, relaxation } =
+        *coefficients;
     let (mass, axes) = (node.mass, node.axes);
     if mass <= zero {
         sum.step.fill(zero);
@@ -99,7 +100,7 @@ pub(super) fn move_node<T: Scalar>(
     let per_mass = one / mass;
     let coefficient = node.damping;
     let a = coefficient * half_step * per_mass + relaxation;
-    let shrink = if a > zero { one / (one + divide * a) } else { one };
+    let shrink = if a > zero { one / (one + after_first * a) } else { one };
     let mut internal_work = zero;
     for i in 0..3 {
         let internal = node.internal[i];
@@ -108,7 +109,7 @@ pub(super) fn move_node<T: Scalar>(
         let before = sum.step[i];
         if !constrained {
             let pushed = force_factor * ((external - internal) * per_mass);
-            sum.push(i, (pushed - (one + divide) * a * before) * shrink);
+            sum.push(i, (pushed - (one + after_first) * a * before) * shrink);
         }
         sum.go(i, constrained);
         let step = sum.step[i];
@@ -122,7 +123,7 @@ pub(super) fn move_node<T: Scalar>(
             // along half of it: so the balance of the scheme is exact in the middle of each step
             let before = if constrained { std::mem::replace(&mut work[4 + i], step) } else { before };
             let mean = T::from_f64(0.5) * (before + step);
-            let along = booked * mean;
+            let along = work_factor * mean;
             let compensation = coefficient * rate * mean * along;
             work[0] += external * along;
             work[1] += compensation;
@@ -132,5 +133,5 @@ pub(super) fn move_node<T: Scalar>(
             }
         }
     }
-    0.5 * (booked * internal_work).to_f64()
+    0.5 * (work_factor * internal_work).to_f64()
 }

@@ -1,7 +1,7 @@
 //! What a configuration will cost, from a few steps of its kind, and from what its kind has cost so far.
 
 use super::Engine;
-use super::march::{self, FIELDS, Looks, refusal};
+use super::march::{self, FIELDS, Sampling, refusal};
 use super::variant::{reactions, variant};
 use crate::accuracy::configuration::{Configuration, Digits, Factor};
 use crate::accuracy::solver::{Cost, Refusal, Solution};
@@ -17,8 +17,8 @@ const SEARCH_SHARE: f64 = 0.05;
 /// Elements of the scene that are enough to predict with.
 const ENOUGH: f64 = 3000.0;
 
-/// Steps of a search for equilibrium that are timed at once: it looks at itself that often.
-const BETWEEN_LOOKS: u64 = 40;
+/// Steps of a search for equilibrium that are timed at once: it checks itself that often.
+const STEPS_BETWEEN_CHECKS: u64 = 40;
 
 /// How many times as many steps a search takes that was given up before anything could be seen of its end.
 const UNKNOWN: f64 = 20.0;
@@ -34,7 +34,7 @@ pub struct Calibration {
     steps: f64,
     seconds_a_step: f64,
     /// Time beside steps (s).
-    beside: f64,
+    overhead: f64,
     /// What bringing the bodies to rest before the first step takes (s), once.
     preload: f64,
 }
@@ -60,14 +60,16 @@ impl Engine<'_> {
         let steps = match self.file.scene.is_static() {
             // waves must cross the body so many times, and take a step a cell
             true => known.steps * finer,
-            false => (duration / self.looks.as_ref().map_or(most, |looks| looks.fitting(duration, most))).round(),
+            false => {
+                (duration / self.sampling.as_ref().map_or(most, |sampling| sampling.fitting(duration, most))).round()
+            }
         };
         let run = steps * known.seconds_a_step * growth;
         let again = if run < 0.1 { 3.0 } else { 1.0 };
         // bodies are brought to rest by a search: it takes a step a cell, too
         let preload = (PRELOADS + again - 1.0) * known.preload * growth * finer;
         let elements = (known.elements * growth) as u64;
-        Ok(Cost { seconds: again * run + known.beside * growth + preload, elements, steps: steps as u64 })
+        Ok(Cost { seconds: again * run + known.overhead * growth + preload, elements, steps: steps as u64 })
     }
 
     /// Keeps what a run has shown of its kind, for predictions of finer meshes: `all` is what it took, all in all (s).
@@ -76,8 +78,8 @@ impl Engine<'_> {
         let known = self.known.iter_mut().find(|(known, _)| *known == kind);
         let Some((_, known)) = known.filter(|(_, known)| configuration.mesh >= known.mesh) else { return };
         if configuration.step == 1 && solution.steps > 0 {
-            let beside = all - f64::from(solution.timed) * solution.seconds;
-            let preload = solution.preload.min(beside.max(0.0));
+            let overhead = all - f64::from(solution.timed) * solution.seconds;
+            let preload = solution.preload.min(overhead.max(0.0));
             let often = PRELOADS + f64::from(solution.timed) - 1.0;
             *known = Calibration {
                 mesh: configuration.mesh,
@@ -85,7 +87,7 @@ impl Engine<'_> {
                 step: solution.time_step,
                 steps: solution.steps as f64,
                 seconds_a_step: solution.seconds / solution.steps as f64,
-                beside: (beside - often * preload).max(0.0),
+                overhead: (overhead - often * preload).max(0.0),
                 preload,
             };
         }
@@ -130,11 +132,11 @@ impl Engine<'_> {
         let found = self.file.scene.integration.safety * summary.stable_step;
         let step = wanted.map_or(found, |step| step.min(found));
         let steps = simulation.planned_steps();
-        if self.looks.is_none() {
+        if self.sampling.is_none() {
             let steps = (self.file.scene.duration / step * kind.mesh.value() / mesh.value()) as u64;
-            self.looks = Some(Looks::new(self.file, &reactions(&self.file.scene), steps));
+            self.sampling = Some(Sampling::new(self.file, &reactions(&self.file.scene), steps));
         }
-        let each = if scene.scene.is_static() { BETWEEN_LOOKS } else { 1 };
+        let each = if scene.scene.is_static() { STEPS_BETWEEN_CHECKS } else { 1 };
         let (mut taken, mut count) = (0.0, each);
         while taken < CALIBRATION && simulation.step_count() < steps && !simulation.is_finished() {
             self.check_time()?;
@@ -145,11 +147,11 @@ impl Engine<'_> {
         let seconds_a_step = taken / simulation.step_count().max(1) as f64;
         let started = Instant::now();
         simulation.energies().map_err(refusal)?;
-        let look = started.elapsed().as_secs_f64();
-        // energies are looked at a few times as often as fields; setting up happens once more to find the step
-        let looks = self.looks.as_ref().map_or(FIELDS, |looks| looks.count).min(60);
-        let beside = 2.0 * setup + look * looks as f64;
-        Ok(Calibration { mesh, elements: summary.elements as f64, step, steps: 0.0, seconds_a_step, beside, preload })
+        let one = started.elapsed().as_secs_f64();
+        // energies are sampled a few times as often as fields; setting up happens once more to find the step
+        let samples = self.sampling.as_ref().map_or(FIELDS, |sampling| sampling.count).min(60);
+        let overhead = 2.0 * setup + one * samples as f64;
+        Ok(Calibration { mesh, elements: summary.elements as f64, step, steps: 0.0, seconds_a_step, overhead, preload })
     }
 
     /// How many steps a search for equilibrium takes on the scene's own mesh. Nobody knows before: it is gone through,
@@ -174,7 +176,7 @@ impl Engine<'_> {
         while taken < share && simulation.step_count() < most && !simulation.is_finished() {
             self.check_time()?;
             // (one that breaks down is told of when it is its turn to run)
-            let Ok(seconds) = march::timed(&mut simulation, BETWEEN_LOOKS) else { break };
+            let Ok(seconds) = march::timed(&mut simulation, STEPS_BETWEEN_CHECKS) else { break };
             taken += seconds;
             first = first.or_else(|| simulation.equilibrium().map(|found| found.residual).filter(|r| r.is_finite()));
         }

@@ -1,4 +1,4 @@
-//! Runs a scene and looks at it at times that all configurations share.
+//! Runs a scene and samples it at times that all configurations share.
 
 use super::sample::{Sample, Sampler, takes};
 use crate::accuracy::solver::{BodyField, Channel, Field, Refusal, Solution};
@@ -10,30 +10,30 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Times at which fields are kept; numbers and energies are looked at more often.
+/// Times at which fields are kept; numbers and energies are sampled more often.
 pub const FIELDS: u64 = 10;
-/// Looks at energies for each look at fields: they cost as much as some steps.
+/// Samples of energies for each sample of fields: they cost as much as some steps.
 pub const ENERGIES_A_FIELD: u64 = 4;
 /// Runs shorter than this are timed again (s).
 const SHORT: f64 = 0.1;
-/// Between two looks at the clock at most so long (s), by what steps have taken so far.
+/// Between two checks of the clock at most so long (s), by what steps have taken so far.
 const BREATH: f64 = 0.25;
-/// Steps before the clock is looked at for the first time, and at least between two looks.
+/// Steps before the clock is checked for the first time, and at least between two checks.
 const FIRST: u64 = 40;
 /// How often.
 const AGAIN: u32 = 3;
 
-/// What is looked at in a scene.
+/// What is sampled in a scene.
 #[derive(Clone, Debug)]
-pub struct Looks {
-    /// Looks at probes over the duration: ten, or a multiple of forty.
+pub struct Sampling {
+    /// Samples of probes over the duration: ten, or a multiple of forty.
     pub count: u64,
     /// Probes: name, what, and the components that mean something.
     pub probes: Vec<(String, Quantity, Vec<usize>)>,
 }
 
-impl Looks {
-    /// For a scene that has been prepared; `steps` is how many the coarsest step takes: looks must not make it much
+impl Sampling {
+    /// For a scene that has been prepared; `steps` is how many the coarsest step takes: samples must not make it much
     /// finer.
     pub fn new(scene: &SceneFile, reactions: &[(String, sinew::scene::schema::Probe, Vec<Axis>)], steps: u64) -> Self {
         let grain = FIELDS * ENERGIES_A_FIELD;
@@ -59,7 +59,7 @@ impl Looks {
         probes.chain(["energy.kinetic".into(), "energy.strain".into()]).collect()
     }
 
-    /// A step (s) of which a whole number lies between two looks, at most `step` (s).
+    /// A step (s) of which a whole number lies between two samples, at most `step` (s).
     pub fn fitting(&self, duration: f64, step: f64) -> f64 {
         let between = (duration / self.count as f64 / step - 1e-9).ceil().max(1.0);
         duration / (self.count as f64 * between)
@@ -91,12 +91,12 @@ pub fn refusal(error: Error) -> Refusal {
 pub fn solve(
     scene: &SceneFile,
     options: &Options,
-    looks: &Looks,
+    sampling: &Sampling,
     check_time: &dyn Fn() -> Result<(), Refusal>,
 ) -> Result<Solution, Refusal> {
     let mut simulation = Simulation::new(scene, options).map_err(refusal)?;
-    let sampler = Sampler::new(looks, scene.scene.duration);
-    let mut run = Run { looks, channels: BTreeMap::new(), field: Field::default(), sampler };
+    let sampler = Sampler::new(sampling, scene.scene.duration);
+    let mut run = Run { sampling, channels: BTreeMap::new(), field: Field::default(), sampler };
     run.through(&mut simulation, scene, check_time)?;
     let mut solution = run.solution(&mut simulation, scene)?;
     drop(simulation);
@@ -132,7 +132,7 @@ fn time_of(
 
 /// What is gathered on the way.
 struct Run<'a> {
-    looks: &'a Looks,
+    sampling: &'a Sampling,
     channels: BTreeMap<String, Channel>,
     field: Field,
     sampler: Sampler<'a>,
@@ -169,9 +169,9 @@ impl Run<'_> {
                 let most = in_a_breath(simulation, so_far);
                 time_of(simulation, |simulation| simulation.advance_short_of(time, most))
             };
-            for look in 0..=self.looks.count {
-                let mut sample = self.sampler.at(simulation, look, &mut advance)?;
-                let [energies, fields] = takes(self.looks, look);
+            for number in 0..=self.sampling.count {
+                let mut sample = self.sampler.at(simulation, number, &mut advance)?;
+                let [energies, fields] = takes(self.sampling, number);
                 sample.energies = sample.energies.filter(|_| energies);
                 sample.displacements = sample.displacements.filter(|_| fields);
                 self.take(sample);
@@ -186,7 +186,7 @@ impl Run<'_> {
     /// Takes what was seen.
     fn take(&mut self, sample: Sample) {
         let time = sample.time;
-        for ((name, what, components), values) in self.looks.probes.iter().zip(&sample.probes) {
+        for ((name, what, components), values) in self.sampling.probes.iter().zip(&sample.probes) {
             self.keep(name, what, components, time, values);
         }
         for (name, value) in ["energy.kinetic", "energy.strain"].into_iter().zip(sample.energies.into_iter().flatten())
@@ -234,7 +234,7 @@ impl Run<'_> {
     }
 }
 
-/// Steps between two looks at the clock, where those so far took so long (s).
+/// Steps between two checks of the clock, where those so far took so long (s).
 fn in_a_breath(simulation: &Simulation, so_far: f64) -> u64 {
     let each = so_far / simulation.step_count().max(1) as f64;
     let steps = if each > 0.0 { (BREATH / each) as u64 } else { FIRST };

@@ -4,7 +4,7 @@ use super::Engine;
 use super::curvature;
 use super::variant::{Finer, cells, divides, finer, variant};
 use crate::accuracy::advice::percent;
-use crate::accuracy::configuration::{Configuration, Factor, Place};
+use crate::accuracy::configuration::{Configuration, Factor, Processor};
 use crate::accuracy::solver::Refusal;
 use sinew::Simulation;
 use sinew::assembly::mesh_of;
@@ -28,7 +28,7 @@ impl Engine<'_> {
         let mut meshes = Vec::new();
         for mesh in MESHES.into_iter().filter(|factor| factor.value() <= self.finest && fits(factor)) {
             self.check_time()?;
-            let kind = Configuration { mesh, place: Place::Cpu, ..own.clone() };
+            let kind = Configuration { mesh, place: Processor::Cpu, ..own.clone() };
             let sound = || Simulation::new(&variant(self.file, &kind, None), &self.options(&kind)).is_ok();
             if mesh >= Factor::ONE || sound() {
                 meshes.push(mesh);

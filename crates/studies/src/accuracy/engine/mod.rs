@@ -9,10 +9,10 @@ mod meshes;
 mod sample;
 mod variant;
 
-use super::configuration::{Configuration, Digits, Factor, Place};
+use super::configuration::{Configuration, Digits, Factor, Processor};
 use super::solver::{Choices, Cost, Refusal, Solution, Solver};
 use calibration::Calibration;
-use march::{Looks, refusal};
+use march::{Sampling, refusal};
 use sinew::assembly::mesh_of;
 use sinew::backend::gpu::Choice;
 use sinew::components::Precision;
@@ -33,7 +33,7 @@ pub struct Engine<'a> {
     effects: bool,
     finest: f64,
     interrupted: fn() -> bool,
-    looks: Option<Looks>,
+    sampling: Option<Sampling>,
     known: Vec<(Configuration, Calibration)>,
     /// Meshes that the scene can have, once they are known.
     meshes: Option<Vec<Factor>>,
@@ -54,7 +54,7 @@ impl<'a> Engine<'a> {
             effects,
             finest: f64::INFINITY,
             interrupted,
-            looks: None,
+            sampling: None,
             known: Vec::new(),
             meshes: None,
             end: None,
@@ -67,22 +67,22 @@ impl<'a> Engine<'a> {
         Self { finest, ..self }
     }
 
-    /// Looks at numbers over time that all configurations share: as many intervals, from the start to the end; 0 of a
+    /// Samples of numbers over time that all configurations share: as many intervals, from the start to the end; 0 of a
     /// search for equilibrium.
     ///
     /// # Errors
     /// That the scene as it is written cannot be run.
-    pub fn looks(&mut self) -> Result<u64, Refusal> {
+    pub fn sample_count(&mut self) -> Result<u64, Refusal> {
         let kinds = self.elements()?;
         let base = self.base(&kinds);
         self.kinds = Some(kinds);
         self.calibrate(&base)?;
-        Ok(self.looks.as_ref().filter(|_| !self.file.scene.is_static()).map_or(0, |looks| looks.count))
+        Ok(self.sampling.as_ref().filter(|_| !self.file.scene.is_static()).map_or(0, |sampling| sampling.count))
     }
 
     /// The scene as it is written; `elements` are the kinds that its bodies can have.
     fn base(&self, elements: &[ElementKind]) -> Configuration {
-        let place = if self.options.backend == BackendChoice::Gpu { Place::Gpu } else { Place::Cpu };
+        let place = if self.options.backend == BackendChoice::Gpu { Processor::Gpu } else { Processor::Cpu };
         let scene = &self.file.scene;
         let mut kinds: Vec<ElementKind> = Vec::new();
         for body in scene.bodies.values() {
@@ -97,8 +97,8 @@ impl<'a> Engine<'a> {
     fn options(&self, configuration: &Configuration) -> Options {
         Options {
             backend: match configuration.place {
-                Place::Cpu => BackendChoice::Cpu,
-                Place::Gpu => BackendChoice::Gpu,
+                Processor::Cpu => BackendChoice::Cpu,
+                Processor::Gpu => BackendChoice::Gpu,
             },
             precision: if configuration.digits == Digits::Double { Precision::F64 } else { Precision::F32 },
             forgets_start: true,
@@ -176,13 +176,13 @@ impl Engine<'_> {
 
 impl Solver for Engine<'_> {
     fn choices(&mut self) -> Result<Choices, Refusal> {
-        self.looks()?;
+        self.sample_count()?;
         let elements = self.kinds.clone().unwrap_or_default();
         let base = self.base(&elements);
         let scene = &self.file.scene;
         let hexes = base.element.is_none_or(|kind| kind == ElementKind::Hex8);
         let viscous = scene.materials.values().any(|material| material.prony.is_some());
-        let places = if self.gpu { vec![Place::Cpu, Place::Gpu] } else { Vec::new() };
+        let places = if self.gpu { vec![Processor::Cpu, Processor::Gpu] } else { Vec::new() };
         let both = [ViscousIntegrator::Exact, ViscousIntegrator::BackwardEuler];
         Ok(Choices {
             elements,
@@ -196,7 +196,7 @@ impl Solver for Engine<'_> {
             viscous: if viscous { both.to_vec() } else { Vec::new() },
             laws: ladder::laws(scene),
             places,
-            quantities: self.looks.as_ref().map(Looks::names).unwrap_or_default(),
+            quantities: self.sampling.as_ref().map(Sampling::names).unwrap_or_default(),
             effects: if self.effects { effects::effects(scene) } else { Vec::new() },
             unseen: self.unseen()?,
             notes: self.notes(),
@@ -205,7 +205,7 @@ impl Solver for Engine<'_> {
     }
 
     fn predict(&mut self, configuration: &Configuration) -> Result<Cost, Refusal> {
-        if configuration.place == Place::Gpu && configuration.digits == Digits::Double {
+        if configuration.place == Processor::Gpu && configuration.digits == Digits::Double {
             return Err(Refusal::Refused("the GPU computes in f32 only".into()));
         }
         self.cost(configuration)
@@ -214,18 +214,18 @@ impl Solver for Engine<'_> {
     fn solve(&mut self, configuration: &Configuration) -> Result<Solution, Refusal> {
         let started = Instant::now();
         let options = self.options(configuration);
-        let looks = match &self.looks {
-            Some(looks) => looks.clone(),
+        let sampling = match &self.sampling {
+            Some(sampling) => sampling.clone(),
             None => return Err(Refusal::Refused("nothing has been predicted yet".into())),
         };
         let step = if self.file.scene.is_static() {
             None
         } else {
             let largest = self.step(configuration, &options)?;
-            Some(looks.fitting(self.file.scene.duration, largest / f64::from(configuration.step)))
+            Some(sampling.fitting(self.file.scene.duration, largest / f64::from(configuration.step)))
         };
         let scene = variant(self.file, configuration, step);
-        let solution = march::solve(&scene, &options, &looks, &|| self.check_time())?;
+        let solution = march::solve(&scene, &options, &sampling, &|| self.check_time())?;
         self.learn(configuration, &solution, started.elapsed().as_secs_f64());
         Ok(solution)
     }

@@ -1,6 +1,6 @@
 //! What is seen of a run at a time that all configurations share, wherever its own steps end.
 
-use super::march::{ENERGIES_A_FIELD, FIELDS, Looks, refusal, timed};
+use super::march::{ENERGIES_A_FIELD, FIELDS, Sampling, refusal, timed};
 use crate::accuracy::solver::Refusal;
 use glam::DVec3;
 use sinew::Simulation;
@@ -15,11 +15,11 @@ const MET: f64 = 1e-6;
 pub(super) struct Sample {
     /// When (s).
     pub time: f64,
-    /// What each probe of the looks sees, in their order.
+    /// What each probe of the samples sees, in their order.
     pub probes: Vec<Vec<f64>>,
-    /// Kinetic and strain energy (J); none where no look asks for them.
+    /// Kinetic and strain energy (J); none where no sample asks for them.
     pub energies: Option<[f64; 2]>,
-    /// Displacements of each body's nodes (m), by the names of bodies; none where no look asks for them.
+    /// Displacements of each body's nodes (m), by the names of bodies; none where no sample asks for them.
     pub displacements: Option<Vec<Vec<DVec3>>>,
 }
 
@@ -41,44 +41,45 @@ impl Sample {
     }
 }
 
-/// Whether the `look`th look takes energies, and whether it takes fields.
-pub(super) fn takes(looks: &Looks, look: u64) -> [bool; 2] {
+/// Whether the sample of a number takes energies, and whether it takes fields.
+pub(super) fn takes(sampling: &Sampling, number: u64) -> [bool; 2] {
     [
-        look.is_multiple_of((looks.count / (FIELDS * ENERGIES_A_FIELD)).max(1)),
-        look > 0 && look.is_multiple_of(looks.count / FIELDS),
+        number.is_multiple_of((sampling.count / (FIELDS * ENERGIES_A_FIELD)).max(1)),
+        number > 0 && number.is_multiple_of(sampling.count / FIELDS),
     ]
 }
 
-/// Goes through a run, seeing it at the times of looks.
+/// Goes through a run, seeing it at the times of samples.
 pub(super) struct Sampler<'a> {
-    looks: &'a Looks,
+    sampling: &'a Sampling,
     /// The end (s).
     duration: f64,
-    /// What was seen at the end of the last two steps that were looked at, the later last.
+    /// What was seen at the end of the last two steps that were sampled, the later last.
     seen: VecDeque<(u64, Sample)>,
     /// Wall time of steps (s).
     pub seconds: f64,
 }
 
 impl<'a> Sampler<'a> {
-    pub fn new(looks: &'a Looks, duration: f64) -> Self {
-        Self { looks, duration, seen: VecDeque::new(), seconds: 0.0 }
+    pub fn new(sampling: &'a Sampling, duration: f64) -> Self {
+        Self { sampling, duration, seen: VecDeque::new(), seconds: 0.0 }
     }
 
-    /// When the `look`th look is (s).
-    pub fn time(&self, look: u64) -> f64 {
-        self.duration * look as f64 / self.looks.count as f64
+    /// When the sample of a number is (s).
+    pub fn time(&self, number: u64) -> f64 {
+        self.duration * number as f64 / self.sampling.count as f64
     }
 
-    /// Steps to the `look`th look and sees what is there; `advance` takes steps, none beyond a time (s), and says how
-    /// long they took (s). Looks come in order. Steps may change on the way: a time within a step is interpolated.
+    /// Steps to the sample of a number and sees what is there; `advance` takes steps, none beyond a time (s), and says
+    /// how long they took (s). Samples come in order. Steps may change on the way: a time within a step is
+    /// interpolated.
     pub fn at(
         &mut self,
         simulation: &mut Simulation,
-        look: u64,
+        number: u64,
         advance: &mut dyn FnMut(&mut Simulation, f64, f64) -> Result<f64, Refusal>,
     ) -> Result<Sample, Refusal> {
-        let time = self.time(look);
+        let time = self.time(number);
         loop {
             let met = MET * simulation.time_step();
             if let Some((_, one)) = self.seen.iter().find(|(_, one)| (one.time - time).abs() <= met) {
@@ -91,7 +92,7 @@ impl<'a> Sampler<'a> {
                 return Ok(before.towards(after, time));
             }
             if self.seen.back().is_some_and(|(_, last)| last.time > time) {
-                return Err(Refusal::Refused(format!("the look at {time} s was stepped over")));
+                return Err(Refusal::Refused(format!("the sample at {time} s was stepped over")));
             }
             let left = (time - simulation.time()) / simulation.time_step();
             let is_seen = self.seen.back().is_some_and(|(step, _)| *step == simulation.step_count());
@@ -101,8 +102,8 @@ impl<'a> Sampler<'a> {
                 self.seconds += timed(simulation, 1)?;
             } else {
                 let step = (1.0 + MET) * simulation.time_step();
-                let near = |look: &u64| (self.time(*look) - simulation.time()).abs() <= step;
-                let wanted = (0..=self.looks.count).filter(near).map(|look| takes(self.looks, look));
+                let near = |number: &u64| (self.time(*number) - simulation.time()).abs() <= step;
+                let wanted = (0..=self.sampling.count).filter(near).map(|number| takes(self.sampling, number));
                 self.see(simulation, wanted.fold([false; 2], |[a, b], [c, d]| [a || c, b || d]))?;
             }
         }
@@ -112,7 +113,7 @@ impl<'a> Sampler<'a> {
     pub fn see(&mut self, simulation: &mut Simulation, [energies, fields]: [bool; 2]) -> Result<(), Refusal> {
         let (step, time) = (simulation.step_count(), simulation.time());
         let mut sample = Sample { time, ..Sample::default() };
-        for (name, what, _) in &self.looks.probes {
+        for (name, what, _) in &self.sampling.probes {
             let later = *what == Quantity::Reaction;
             sample.probes.push(if later { Vec::new() } else { simulation.probe(name).map_err(refusal)? });
         }
@@ -126,11 +127,11 @@ impl<'a> Sampler<'a> {
             sample.displacements = Some(all.collect::<Result<_, _>>().map_err(refusal)?);
         }
         // reactions are made of the forces at the beginning of the step before: those of now are known one step later
-        if self.looks.probes.iter().any(|(_, what, _)| *what == Quantity::Reaction) {
+        if self.sampling.probes.iter().any(|(_, what, _)| *what == Quantity::Reaction) {
             // (in equilibrium nothing moves any more, and no step is taken)
             let seconds = timed(simulation, 1)?;
             self.seconds += if time < self.duration - MET * simulation.time_step() { seconds } else { 0.0 };
-            for ((name, what, _), values) in self.looks.probes.iter().zip(&mut sample.probes) {
+            for ((name, what, _), values) in self.sampling.probes.iter().zip(&mut sample.probes) {
                 if *what == Quantity::Reaction {
                     *values = simulation.probe(name).map_err(refusal)?;
                 }

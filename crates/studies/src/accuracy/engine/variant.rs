@@ -2,7 +2,7 @@
 
 use super::effects::switch_off;
 use super::ladder::climb;
-use crate::accuracy::configuration::{Configuration, Digits, Factor, Place};
+use crate::accuracy::configuration::{Configuration, Digits, Factor, Processor};
 use sinew::mesh::{CellKind, ElementKind};
 use sinew::scene::SceneFile;
 use sinew::scene::schema::{Analysis, Axis, Constraint, InitialState, MeshSource, Probe, Quantity, Scene, Select};
@@ -167,7 +167,7 @@ pub fn reactions(scene: &Scene) -> Vec<(String, Probe, Vec<Axis>)> {
 }
 
 /// The scene as it is written, as a configuration; `element` is the kind of all its elements, if they are of one.
-pub fn written(scene: &Scene, element: Option<ElementKind>, double: bool, place: Place) -> Configuration {
+pub fn written(scene: &Scene, element: Option<ElementKind>, double: bool, place: Processor) -> Configuration {
     let digits = match (double, scene.integration.compensated) {
         (true, _) => Digits::Double,
         (false, true) => Digits::Compensated,

@@ -61,6 +61,6 @@ pub fn legend(svg: &mut Svg, points: &[Point<'_>], real: bool) {
     if real {
         let dashes = |svg: &mut Svg| svg.line((x - 14.0, y - 4.5), (x + 14.0, y - 4.5), "#b0453a", 1.6, "7 4");
         dashes(svg);
-        svg.text((x + 22.0, y), "faster than life: left of it", 13.5, INK, "start");
+        svg.text((x + 22.0, y), "faster than real time: left of it", 13.5, INK, "start");
     }
 }

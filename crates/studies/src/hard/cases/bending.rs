@@ -1,16 +1,16 @@
 //! Bars, plates and columns that bend, twist and give way.
 
 use super::super::Trial;
-use super::super::watch::Watched;
+use super::super::monitor::Monitor;
 use sinew::Error;
 
 /// H02.
 pub fn corner_load(trial: &mut Trial<'_>) -> Result<(), Error> {
     let mut simulation = trial.start(&[])?;
     simulation.finish()?;
-    let mut watched = Watched::begin(&mut simulation)?;
-    watched.look(&mut simulation)?;
-    trial.most("hourglass energy over strain energy", watched.hourglass, 0.1);
+    let mut monitor = Monitor::begin(&mut simulation)?;
+    monitor.sample(&mut simulation)?;
+    trial.most("hourglass energy over strain energy", monitor.hourglass, 0.1);
 
     let unsafe_scene = trial.start(&["bodies.body.hourglass=0".into()])?;
     let told = unsafe_scene.warnings().render(false);
@@ -46,9 +46,9 @@ pub fn twist(trial: &mut Trial<'_>) -> Result<(), Error> {
         };
         sets.push(format!("bodies.body.mesh.cells={cells}"));
         let mut simulation = trial.start(&sets)?;
-        let watched = trial.run(&mut simulation, 0.0)?;
-        trial.least(format!("least volume at {angle}°"), watched.volume[0], 0.97);
-        trial.most(format!("largest volume at {angle}°"), watched.volume[1], 1.03);
+        let monitor = trial.run(&mut simulation, 0.0)?;
+        trial.least(format!("least volume at {angle}°"), monitor.volume[0], 0.97);
+        trial.most(format!("largest volume at {angle}°"), monitor.volume[1], 1.03);
         let left = simulation.displacements("body")?.iter().fold(0.0_f64, |largest, u| largest.max(u.length()));
         trial.most(format!("what stays of {angle}°, in lengths"), left / 0.16, 1e-3);
     }

@@ -85,7 +85,7 @@ pub fn crushed_cube(trial: &mut Trial<'_>) -> Result<(), Error> {
     let mut gives_way = trial.start(&soft)?;
     match come_back(&mut gives_way) {
         Ok(back) => trial.most("what stays of the displacement of what gave way", back, 1e-3),
-        Err(error) => trial.stops("what gives way", Err(error), &["element"]),
+        Err(error) => trial.stops("what collapses", Err(error), &["element"]),
     }
     Ok(())
 }

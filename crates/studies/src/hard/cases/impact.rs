@@ -68,9 +68,9 @@ pub fn impact(trial: &mut Trial<'_>) -> Result<(), Error> {
             let alone = 2.0 / (stiffness / lightest).sqrt();
             trial.most(format!("step over that of the penalty alone, {name}"), simulation.time_step() / alone, 1.0);
             let (mut deepest, mut most) = (0.0_f64, 0.0_f64);
-            for looks_left in (1..=30).rev() {
+            for samples_left in (1..=30).rev() {
                 let left = simulation.planned_steps().saturating_sub(simulation.step_count());
-                let ended = simulation.advance_towards_end(left.div_ceil(looks_left));
+                let ended = simulation.advance_towards_end(left.div_ceil(samples_left));
                 if ended.is_err() {
                     trial.stops(&name, ended, &["element"]);
                     break;

@@ -30,7 +30,7 @@ pub fn long_run(trial: &mut Trial<'_>) -> Result<(), Error> {
         (_, true) => 30_000,
         _ => 100_000,
     };
-    // a look at a GPU costs a download
+    // a sample of a GPU costs a download
     let every = if trial.configuration.is_gpu() { 6 } else { 1 };
     let mut simulation = trial.start(&[])?;
     let first = ringing(&mut simulation, every)?;
@@ -44,30 +44,30 @@ pub fn long_run(trial: &mut Trial<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// Steps that are looked at.
+/// Steps that are sampled.
 const WINDOW: u64 = 1500;
 
 /// Frequency (Hz) from the zero crossings of the top's displacement, and the mean energy (J), over the next steps,
-/// looked at every so many.
+/// sampled every so many.
 fn ringing(simulation: &mut Simulation, every: u64) -> Result<(f64, f64), Error> {
     let mut crossings = Vec::new();
-    let (mut before, mut energy, mut looks) = (0.0, 0.0, 0);
-    for look in 0..WINDOW / every {
-        let step = every * look;
+    let (mut before, mut energy, mut samples) = (0.0, 0.0, 0);
+    for sample in 0..WINDOW / every {
+        let step = every * sample;
         simulation.advance(every)?;
         let u: f64 = simulation.displacements("body")?.iter().map(|u| u.z).sum();
         if before < 0.0 && u >= 0.0 {
             crossings.push(step as f64 - every as f64 * u / (u - before));
         }
         before = u;
-        if look.is_multiple_of(if every > 1 { 8 } else { 16 }) {
+        if sample.is_multiple_of(if every > 1 { 8 } else { 16 }) {
             let e = simulation.energies()?;
-            (energy, looks) = (energy + e.kinetic + e.strain + e.hourglass, looks + 1);
+            (energy, samples) = (energy + e.kinetic + e.strain + e.hourglass, samples + 1);
         }
     }
     let periods = crossings.len().saturating_sub(1) as f64;
     let time = (crossings.last().unwrap_or(&0.0) - crossings.first().unwrap_or(&0.0)) * simulation.time_step();
-    Ok((periods / time, energy / f64::from(looks)))
+    Ok((periods / time, energy / f64::from(samples)))
 }
 
 /// H22.

@@ -16,7 +16,7 @@ mod shocks;
 mod step;
 mod viscosity;
 
-use super::{Case, Configuration};
+use super::{Case, CaseConfiguration};
 use contact::{free, friction, indentation, patch, rest, shapes, start, taking, waves};
 
 /// A case: its number and name make the path of its scene.
@@ -35,22 +35,22 @@ macro_rules! case {
 }
 
 /// Every configuration.
-fn every(_: &Configuration) -> bool {
+fn every(_: &CaseConfiguration) -> bool {
     true
 }
 
 /// What concerns one-point hexahedra alone.
-fn one_point(configuration: &Configuration) -> bool {
+fn one_point(configuration: &CaseConfiguration) -> bool {
     configuration.elements == sinew::mesh::ElementKind::Hex8
 }
 
 /// Hexahedra: tetrahedra lock or bend too stiffly for what is asked of the force.
-fn hexahedra(configuration: &Configuration) -> bool {
+fn hexahedra(configuration: &CaseConfiguration) -> bool {
     !configuration.is_tets()
 }
 
 /// What is decided before elements and machines matter.
-fn once(configuration: &Configuration) -> bool {
+fn once(configuration: &CaseConfiguration) -> bool {
     one_point(configuration) && configuration.is_f64()
 }
 
@@ -105,11 +105,11 @@ pub const CASES: &[Case] = &[
     case!("h23" "far_away" "mesh 1e4 m from the origin",
         "the same result within 1e-5", every, long_runs::far_away),
     case!("h24" "jump" "prescribed jump of 10 %, of 100 %",
-        "10 %: work booked; 100 %: an honest stop that says \"use a ramp\"", every, shocks::jump),
+        "10 %: work counted; 100 %: an honest stop that says \"use a ramp\"", every, shocks::jump),
     case!("h25" "thin_slab" "slab one element thick",
         "sag of three layers within 15 %; the share of hourglass energy tells", one_point, bending::thin_slab),
     case!("h26" "impact" "impact at 10 and 50 m/s, penalty ×1, ×10, ×100",
-        "energy at most 1 % above that at the start; the step accounts for the penalty; depth told", every, impact::impact),
+        "energy at most 1 % above that at the start; the step accounts for the penalty; depth reported", every, impact::impact),
     case!("h27" "not_a_number" "NaN in a mesh, a material, a custom system's write",
         "refused by name, or found within a few steps with the first node", every, input::not_a_number),
     case!("h28" "bad_numbers" "numbers that cannot be",
@@ -121,7 +121,7 @@ pub const CASES: &[Case] = &[
     case!("h31" "mixed_patch" "hexahedra and tetrahedra in one body",
         "patch test to 1e-6 (f64), 1e-4 (f32)", every, mixed::mixed_patch),
     case!("h32" "mass_scaling" "mass scaling",
-        "added mass told, above 5 % warned of; energy balanced", every, step::heavier),
+        "added mass reported, above 5 % warned of; energy balanced", every, step::mass_scaling),
     case!("h33" "nothing_loaded" "nothing loaded for 1e5 steps (everyday: 1e4)",
         "no displacement above 1e-7 of the length", every, long_runs::nothing_loaded),
     case!("h34" "zero_weights" "effects of weight zero against absent ones",

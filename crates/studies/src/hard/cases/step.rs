@@ -1,7 +1,7 @@
 //! The stable step: what sets it, what is beyond it, and what is done when it shrinks.
 
 use super::super::Trial;
-use super::super::watch::Watched;
+use super::super::monitor::Monitor;
 use super::cells::vtk;
 use sinew::Error;
 use sinew::Simulation;
@@ -93,15 +93,15 @@ pub fn shrinks(trial: &mut Trial<'_>) -> Result<(), Error> {
     trial.run(&mut adapts, 0.0)?;
     let smallest = adapts.step_history().map_or(first, |history| history.smallest);
     trial.most("smallest step over the first", smallest / first, 0.8);
-    let mut watches = trial.start(&["integration.when_unstable=Watch".into()])?;
-    let ended = Watched::run(&mut watches).map(|_| ());
-    let warned = watches.step_history().is_some_and(|history| history.beyond_since.is_some());
-    trial.holds("who only watches is told, or the run stops", warned || matches!(ended, Err(Error::Unstable(_))));
+    let mut reporting = trial.start(&["integration.when_unstable=Watch".into()])?;
+    let ended = Monitor::run(&mut reporting).map(|_| ());
+    let warned = reporting.step_history().is_some_and(|history| history.beyond_since.is_some());
+    trial.holds("a step that stays is reported, or the run stops", warned || matches!(ended, Err(Error::Unstable(_))));
     Ok(())
 }
 
 /// H32.
-pub fn heavier(trial: &mut Trial<'_>) -> Result<(), Error> {
+pub fn mass_scaling(trial: &mut Trial<'_>) -> Result<(), Error> {
     let h = 0.01;
     let heights = [h, 0.05 * h, h];
     let plain = column(trial, &heights, &["integration.bound=Elements".into()])?;

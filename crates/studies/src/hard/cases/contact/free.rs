@@ -49,7 +49,7 @@ fn all_of_it(simulation: &mut Simulation, weight: f64) -> Result<[f64; 2], Error
 
 /// H70.
 pub fn bouncing(trial: &mut Trial<'_>) -> Result<(), Error> {
-    let (looks, steps) = match (trial.full, trial.configuration.is_gpu()) {
+    let (samples, steps) = match (trial.full, trial.configuration.is_gpu()) {
         (true, _) => (100, 1_000_000),
         (_, true) => (10, 2_000),
         _ => (40, 20_000),
@@ -59,8 +59,8 @@ pub fn bouncing(trial: &mut Trial<'_>) -> Result<(), Error> {
     simulation.advance(1)?;
     let start = all_of_it(&mut simulation, weight)?;
     let (mut worst, mut touched) = ([0.0_f64; 2], 0);
-    for _ in 0..looks {
-        simulation.advance(steps / looks)?;
+    for _ in 0..samples {
+        simulation.advance(steps / samples)?;
         let now = all_of_it(&mut simulation, weight)?;
         worst = [0, 1].map(|i| worst[i].max((now[i] / start[i] - 1.0).abs()));
     }

@@ -77,8 +77,8 @@ pub fn wound(trial: &mut Trial<'_>) -> Result<(), Error> {
     let sets = trial.elements_of(&["other"]);
     let mut simulation = trial.start(&sets)?;
     let (mut volume, mut touching) = ([1.0_f64; 2], 0);
-    for look in 1..=10 {
-        simulation.advance_to(0.1 * f64::from(look))?;
+    for sample in 1..=10 {
+        simulation.advance_to(0.1 * f64::from(sample))?;
         for body in ["body", "other"] {
             let ratios = simulation.fields(body)?.volume_ratio;
             let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
@@ -130,8 +130,8 @@ pub fn pile(trial: &mut Trial<'_>) -> Result<(), Error> {
     let mut all = f64::INFINITY;
     let mut gained = 0.0_f64;
     let mut scale = 0.0_f64;
-    for look in 1..=20 {
-        simulation.advance_to(end * f64::from(look) / 20.0)?;
+    for sample in 1..=20 {
+        simulation.advance_to(end * f64::from(sample) / 20.0)?;
         let energies = simulation.energies()?;
         let mut now = energies.kinetic + energies.strain + energies.hourglass;
         scale = scale.max(now);
@@ -140,7 +140,7 @@ pub fn pile(trial: &mut Trial<'_>) -> Result<(), Error> {
         }
         (gained, all) = (gained.max(now - all), now);
     }
-    trial.most("energy gained between two looks, over the largest", gained / scale, 0.01);
+    trial.most("energy gained between two samples, over the largest", gained / scale, 0.01);
     if end > 0.5 {
         let felt = -simulation.tool("table")?.force.z;
         trial.near("weight on the table (N)", felt, weight, 0.01);

@@ -40,7 +40,7 @@ pub fn suction(trial: &mut Trial<'_>) -> Result<(), Error> {
                 -share * holds / weight
             );
             let mut sets = sets("[Fixed(on: All, axes: [X, Y])]", &loads);
-            // waves of a few steps a period are booked to a few percent
+            // waves of a few steps a period are counted to a few percent
             sets.push("integration=(safety: 0.3)".into());
             let mut hangs = trial.start(&sets)?;
             hangs.finish()?;
@@ -74,8 +74,8 @@ pub fn removal(trial: &mut Trial<'_>) -> Result<(), Error> {
         let element = (0.02 / f64::from(cells)).powi(3) / of_a_cell;
         let (mut over, mut under, mut odd) = (f64::NEG_INFINITY, f64::NEG_INFINITY, 0);
         let mut volume = 0.0;
-        for look in 1..=10 {
-            simulation.advance_to(0.02 * f64::from(look))?;
+        for sample in 1..=10 {
+            simulation.advance_to(0.02 * f64::from(sample))?;
             volume = simulation.probe("hole")?[0];
             let (taken, late) = (rate * simulation.time(), rate * 20.0 * simulation.time_step());
             over = over.max((volume - taken) / element);

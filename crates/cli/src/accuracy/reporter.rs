@@ -4,19 +4,19 @@ use super::super::terminal;
 use super::super::wording::quantity;
 use indicatif::ProgressBar;
 use sinew_studies::accuracy::study::Outcome;
-use sinew_studies::accuracy::{Fate, Plan, Watch};
+use sinew_studies::accuracy::{Fate, Plan, StudyObserver};
 use std::time::Duration;
 
 /// Tells on stderr.
 #[derive(Default)]
-pub struct Teller {
+pub struct Reporter {
     bar: Option<ProgressBar>,
     begun: String,
 }
 
-impl Teller {
+impl Reporter {
     fn spin(&mut self, what: String) {
-        if terminal::is_watched() {
+        if terminal::is_interactive() {
             let bar = ProgressBar::new_spinner().with_message(what);
             bar.enable_steady_tick(Duration::from_millis(120));
             self.bar = Some(bar);
@@ -30,7 +30,7 @@ impl Teller {
     }
 }
 
-impl Watch for Teller {
+impl StudyObserver for Reporter {
     fn predicts(&mut self) {
         self.spin("predicting what each way to solve the scene takes".into());
     }

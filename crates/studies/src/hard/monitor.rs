@@ -5,52 +5,52 @@ use sinew::Error;
 use sinew::Simulation;
 use sinew::components::Energies;
 
-/// Looks at a run.
-const LOOKS: u64 = 40;
+/// Samples of a run.
+const SAMPLES: u64 = 40;
 
 /// What was seen along a run of the body `body`.
 #[derive(Clone, Debug)]
-pub struct Watched {
+pub struct Monitor {
     /// The largest imbalance of energy, as G2 has it.
     pub imbalance: f64,
-    /// The least J of all elements and looks.
+    /// The least J of all elements and samples.
     pub least_j: f64,
     /// The least and the largest mean J of all elements: ΣV/V₀ in meshes of equal elements.
     pub volume: [f64; 2],
     /// The largest displacement (m).
     pub largest: f64,
-    /// Hourglass energy over strain energy, at the look where both together were largest.
+    /// Hourglass energy over strain energy, at the sample where both together were largest.
     pub hourglass: f64,
     most_held: f64,
     held: f64,
     moved: f64,
 }
 
-impl Watched {
-    /// Takes the rest of a run's steps, looking at it on the way.
+impl Monitor {
+    /// Takes the rest of a run's steps, sampling it on the way.
     ///
     /// # Errors
     /// As [`Simulation::advance`].
     pub fn run(simulation: &mut Simulation) -> Result<Self, Error> {
-        let mut watched = Self::begin(simulation)?;
-        for looks_left in (1..=LOOKS).rev() {
+        let mut monitor = Self::begin(simulation)?;
+        for samples_left in (1..=SAMPLES).rev() {
             // how many steps are left changes with their length
             let left = simulation.planned_steps().saturating_sub(simulation.step_count());
-            simulation.advance_towards_end(left.div_ceil(looks_left))?;
-            watched.look(simulation)?;
+            simulation.advance_towards_end(left.div_ceil(samples_left))?;
+            monitor.sample(simulation)?;
         }
         simulation.finish()?;
-        watched.look(simulation)?;
-        Ok(watched)
+        monitor.sample(simulation)?;
+        Ok(monitor)
     }
 
-    /// Begins to watch at the present state.
+    /// Begins at the present state.
     ///
     /// # Errors
     /// What the GPU says.
     pub fn begin(simulation: &mut Simulation) -> Result<Self, Error> {
         let energies = simulation.energies()?;
-        let held = held(&energies) - spent(&energies);
+        let held = held(&energies) - work_done(&energies);
         Ok(Self {
             imbalance: 0.0,
             least_j: f64::INFINITY,
@@ -63,15 +63,16 @@ impl Watched {
         })
     }
 
-    /// Looks at the present state.
+    /// Samples the present state.
     ///
     /// # Errors
     /// What the GPU says.
-    pub fn look(&mut self, simulation: &mut Simulation) -> Result<(), Error> {
+    pub fn sample(&mut self, simulation: &mut Simulation) -> Result<(), Error> {
         let e = simulation.energies()?;
-        let scale = [e.kinetic + e.strain + e.hourglass, spent(&e).abs(), self.moved].into_iter().fold(0.0, f64::max);
+        let scale =
+            [e.kinetic + e.strain + e.hourglass, work_done(&e).abs(), self.moved].into_iter().fold(0.0, f64::max);
         if scale > 0.0 {
-            self.imbalance = self.imbalance.max((held(&e) - spent(&e) - self.held).abs() / scale);
+            self.imbalance = self.imbalance.max((held(&e) - work_done(&e) - self.held).abs() / scale);
         }
         if e.strain + e.hourglass > self.most_held {
             self.most_held = e.strain + e.hourglass;
@@ -93,7 +94,7 @@ fn held(e: &Energies) -> f64 {
 }
 
 /// What was put in.
-fn spent(e: &Energies) -> f64 {
+fn work_done(e: &Energies) -> f64 {
     e.load_work.unwrap_or(0.0) + e.constraint_work.unwrap_or(0.0)
 }
 
@@ -102,10 +103,10 @@ impl Trial<'_> {
     ///
     /// # Errors
     /// As [`Simulation::advance`].
-    pub fn run(&mut self, simulation: &mut Simulation, least_j: f64) -> Result<Watched, Error> {
-        let watched = Watched::run(simulation)?;
-        self.most("imbalance of energy", watched.imbalance, self.bound(0.01, 0.02));
-        self.least("least J", watched.least_j, least_j);
-        Ok(watched)
+    pub fn run(&mut self, simulation: &mut Simulation, least_j: f64) -> Result<Monitor, Error> {
+        let monitor = Monitor::run(simulation)?;
+        self.most("imbalance of energy", monitor.imbalance, self.bound(0.01, 0.02));
+        self.least("least J", monitor.least_j, least_j);
+        Ok(monitor)
     }
 }

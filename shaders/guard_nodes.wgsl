@@ -1,9 +1,10 @@
 // What a body's nodes come to, sixty-four at a time: ½ m d² (kg m²), the longest step, the square of the largest displacement
-// (m²); and displacements in the middle of the last step, where velocities are, for watch_elements.wgsl. Twin of the sums in src/observation/look.rs.
-struct WatchedNodes {
+// (m²); and displacements in the middle of the last step, where velocities are, for guard_elements.wgsl. Twin of the
+// sums in src/observation/sample.rs.
+struct GuardNodes {
     count: u32,
 }
-@group(0) @binding(0) var<uniform> nodes: WatchedNodes;
+@group(0) @binding(0) var<uniform> nodes: GuardNodes;
 @group(0) @binding(1) var<storage, read> mass: array<f32>;
 @group(0) @binding(2) var<storage, read> displacement: array<f32>;
 @group(0) @binding(3) var<storage, read> displacement_increment: array<f32>;
@@ -16,7 +17,7 @@ var<workgroup> fastest: array<u32, 64>;
 var<workgroup> reaches: array<f32, 64>;
 
 @compute @workgroup_size(64)
-fn watch_nodes(
+fn guard_nodes(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) local: u32,

@@ -1,5 +1,5 @@
 // What a block's elements come to, sixty-four at a time: energies (J), the smallest J and its element; twin of
-// src/backend/cpu/watch_kernel.rs. `displacement` is in the middle of the last step, as watch_nodes.wgsl has left it.
+// src/backend/cpu/guard_kernel.rs. `displacement` is in the middle of the last step, as guard_nodes.wgsl has left it.
 @group(0) @binding(0) var<storage, read> rest_shape: array<f32>;
 @group(0) @binding(1) var<storage, read_write> element_sums: array<u32>; // four words a workgroup
 
@@ -8,7 +8,7 @@ var<workgroup> ratios: array<f32, 64>;
 var<workgroup> elements: array<u32, 64>;
 
 @compute @workgroup_size(64)
-fn watch_elements(
+fn guard_elements(
     @builtin(global_invocation_id) id: vec3<u32>,
     @builtin(num_workgroups) groups: vec3<u32>,
     @builtin(local_invocation_index) local: u32,
@@ -24,7 +24,7 @@ fn watch_elements(
             for (var point = 0u; point < POINTS; point++) {
                 least = min(least, elastic_kinematics(at_point(e, point).gradient).true_j);
             }
-            for (var point = POINTS; point < LOOKED_AT; point++) {
+            for (var point = POINTS; point < CHECKED_POINTS; point++) {
                 least = min(least, 1.0 + volume_change_of(at_point(e, point).gradient));
             }
             energies[local] = vec2<f32>(energy_density(element, e) * e.volume, hourglass_energy(element, e));

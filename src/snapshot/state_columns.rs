@@ -6,7 +6,7 @@ use bevy_ecs::prelude::*;
 /// Where a column belongs: a body by its name, or one of its blocks by its place in the body's list.
 #[derive(Clone, Debug, serde::Deserialize, serde::Serialize, PartialEq, Eq, PartialOrd, Ord)]
 #[serde(deny_unknown_fields)]
-pub struct Place {
+pub struct ColumnOwner {
     /// The body's name.
     pub body: String,
     /// The block's place in the body's list; none: the body itself.
@@ -14,7 +14,7 @@ pub struct Place {
 }
 
 /// All bodies by name, each with its blocks.
-pub fn places(world: &mut World) -> Vec<(Place, Entity)> {
+pub fn places(world: &mut World) -> Vec<(ColumnOwner, Entity)> {
     let mut bodies: Vec<(Label, Entity, Vec<Entity>)> = world
         .query::<(&Label, Entity, &Authoring)>()
         .iter(world)
@@ -22,7 +22,7 @@ pub fn places(world: &mut World) -> Vec<(Place, Entity)> {
         .collect();
     bodies.sort();
     let of_body = |(label, entity, blocks): (Label, Entity, Vec<Entity>)| {
-        let place = move |block| Place { body: label.0.clone(), block };
+        let place = move |block| ColumnOwner { body: label.0.clone(), block };
         let itself = (place(None), entity);
         std::iter::once(itself).chain(blocks.into_iter().enumerate().map(move |(i, e)| (place(Some(i as u32)), e)))
     };
@@ -32,7 +32,7 @@ pub fn places(world: &mut World) -> Vec<(Place, Entity)> {
 /// A column that belongs to the state.
 pub struct StateColumn {
     /// Where it belongs.
-    pub place: Place,
+    pub place: ColumnOwner,
     /// The entity there.
     pub entity: Entity,
     /// Access to it.

@@ -1,7 +1,7 @@
-//! What the guards look at: energies of parts, the smallest J, the fastest node. On the CPU by vector kernels, on the
+//! What the guards sample: energies of parts, the smallest J, the fastest node. On the CPU by vector kernels, on the
 //! GPU by kernels whose sums of sixty-four rows each are brought to the host.
 
-use crate::backend::cpu::{BlockLaw, BlockSums, Cpu, WatchedColumns, run_watch};
+use crate::backend::cpu::{BlockLaw, BlockSums, Cpu, GuardColumns, run_guard};
 use crate::backend::device::{Device, bring_to_host};
 use crate::backend::kernel::KernelId;
 use crate::components::*;
@@ -11,13 +11,13 @@ use crate::evaluation::BlockView;
 use crate::math::SimdScalar;
 use bevy_ecs::prelude::*;
 
-/// The kernels that look, on a GPU. A resource.
+/// The kernels of the guards, on a GPU. A resource.
 #[derive(Resource, Default)]
-pub struct WatchKernels(pub Vec<KernelId>);
+pub struct GuardKernels(pub Vec<KernelId>);
 
-/// A look at all bodies, in the middle of the last step.
+/// A sample of all bodies, in the middle of the last step.
 #[derive(Clone, Debug, Default)]
-pub struct Look {
+pub struct Sample {
     /// ½ m v² (J).
     pub kinetic: f64,
     /// Work against internal forces since the start (J).
@@ -30,23 +30,23 @@ pub struct Look {
     pub parts: Vec<(Entity, BlockSums)>,
 }
 
-/// Looks at all bodies.
+/// Samples all bodies.
 ///
 /// # Errors
 /// What the GPU says.
-pub fn look(world: &mut World) -> Result<Look, Error> {
-    let kernels = world.get_resource::<WatchKernels>().map(|kernels| kernels.0.clone()).unwrap_or_default();
-    let mut look = Look { internal_work: internal_work(world)?, ..Look::default() };
+pub fn sample(world: &mut World) -> Result<Sample, Error> {
+    let kernels = world.get_resource::<GuardKernels>().map(|kernels| kernels.0.clone()).unwrap_or_default();
+    let mut sample = Sample { internal_work: internal_work(world)?, ..Sample::default() };
     if kernels.is_empty() {
-        look_at_nodes(&mut look, world);
-        look_at_elements(&mut look, world);
-        return Ok(look);
+        sample_nodes(&mut sample, world);
+        sample_elements(&mut sample, world);
+        return Ok(sample);
     }
     if let Some(mut device) = world.get_resource_mut::<Device>() {
         device.run(&kernels, &[], 0, 1)?;
     }
     bring_to_host(world, |_, name| name == NodeSums::NAME || name == ElementSums::NAME)?;
-    add_up_nodes(&mut look, world);
+    add_up_nodes(&mut sample, world);
     for (entity, _, sums) in world.query::<(Entity, &Block, &ElementSums)>().iter(world) {
         let of_group = |words: &[u32]| {
             let number = |i: usize| f64::from(f32::from_bits(words[i]));
@@ -57,12 +57,12 @@ pub fn look(world: &mut World) -> Result<Look, Error> {
                 row: words[3],
             }
         };
-        look.parts.push((entity, sums.chunks_exact(4).map(of_group).fold(BlockSums::default(), BlockSums::and)));
+        sample.parts.push((entity, sums.chunks_exact(4).map(of_group).fold(BlockSums::default(), BlockSums::and)));
     }
-    Ok(look)
+    Ok(sample)
 }
 
-/// Work against internal forces (J) of all bodies, as it is booked.
+/// Work against internal forces (J) of all bodies, as it is counted.
 fn internal_work(world: &mut World) -> Result<f64, Error> {
     bring_to_host(world, |_, name| name == InternalWork::NAME || name == Work::NAME)?;
     let mut sum = 0.0;
@@ -75,7 +75,7 @@ fn internal_work(world: &mut World) -> Result<f64, Error> {
     Ok(sum)
 }
 
-impl Look {
+impl Sample {
     fn add_nodes(&mut self, body: Entity, motion: f64, square: f64, row: u32, rate: f64, reach: f64) {
         match self.reach.last_mut().filter(|(of, _)| *of == body) {
             // max forgets what is no number
@@ -91,17 +91,17 @@ impl Look {
     }
 }
 
-fn add_up_nodes(look: &mut Look, world: &mut World) {
+fn add_up_nodes(sample: &mut Sample, world: &mut World) {
     let rate = world.resource::<Clock>().rate();
     for (body, sums) in world.query::<(Entity, &NodeSums)>().iter(world) {
         for words in sums.chunks_exact(4) {
             let number = |i: usize| f64::from(f32::from_bits(words[i]));
-            look.add_nodes(body, number(0), number(1), words[2], rate, number(3).sqrt());
+            sample.add_nodes(body, number(0), number(1), words[2], rate, number(3).sqrt());
         }
     }
 }
 
-fn look_at_nodes(look: &mut Look, world: &mut World) {
+fn sample_nodes(sample: &mut Sample, world: &mut World) {
     let rate = world.resource::<Clock>().rate();
     for (body, mass, step, u) in world.query::<(Entity, &Mass, &DisplacementIncrement, &Displacement)>().iter(world) {
         let (mut motion, mut fastest, mut reach) = (0.0, (-1.0, u32::MAX), 0.0_f64);
@@ -113,11 +113,11 @@ fn look_at_nodes(look: &mut Look, world: &mut World) {
                 fastest = (square, row as u32);
             }
         }
-        look.add_nodes(body, motion, fastest.0, fastest.1, rate, reach.sqrt());
+        sample.add_nodes(body, motion, fastest.0, fastest.1, rate, reach.sqrt());
     }
 }
 
-fn look_at_elements(look: &mut Look, world: &mut World) {
+fn sample_elements(sample: &mut Sample, world: &mut World) {
     let blocks: Vec<(Entity, Entity)> =
         world.query::<(Entity, &Block)>().iter(world).map(|(entity, block)| (entity, block.body)).collect();
     let mut middle: Option<(Entity, Displacement)> = None;
@@ -133,8 +133,8 @@ fn look_at_elements(look: &mut Look, world: &mut World) {
             Reals::F32(_) => sums_of::<f32>(world, entity, displacement),
             Reals::F64(_) => sums_of::<f64>(world, entity, displacement),
         };
-        debug_assert!(sums.is_some(), "a broken invariant: a block that cannot be looked at");
-        look.parts.extend(sums.map(|sums| (entity, sums)));
+        debug_assert!(sums.is_some(), "a broken invariant: a block that cannot be sampled");
+        sample.parts.extend(sums.map(|sums| (entity, sums)));
     }
 }
 
@@ -142,7 +142,7 @@ fn look_at_elements(look: &mut Look, world: &mut World) {
 ///
 /// # Errors
 /// What the GPU says.
-pub fn look_at_result(world: &mut World) -> Result<Vec<(Entity, BlockSums)>, Error> {
+pub fn sample_result(world: &mut World) -> Result<Vec<(Entity, BlockSums)>, Error> {
     bring_to_host(world, |_, name| name == Displacement::NAME || name == RestShape::NAME)?;
     let blocks: Vec<(Entity, Entity)> =
         world.query::<(Entity, &Block)>().iter(world).map(|(entity, block)| (entity, block.body)).collect();
@@ -177,7 +177,7 @@ fn sums_of<T: SimdScalar>(world: &World, entity: Entity, displacement: &Displace
             (0..means.len()).map(|node| T::from_f64(means.get(node))).collect()
         }
     };
-    let columns = WatchedColumns::<T> {
+    let columns = GuardColumns::<T> {
         displacement: displacement.slice(),
         connectivity: world.get::<Connectivity>(entity)?,
         rest_shape: world.get::<RestShape>(entity)?.slice(),
@@ -185,5 +185,5 @@ fn sums_of<T: SimdScalar>(world: &World, entity: Entity, displacement: &Displace
         nodal_volume_change: &means,
     };
     let law = world.get::<BlockLaw<f64>>(entity)?.rounded::<T>();
-    Some(with_element_of!(block, E => run_watch::<E, T>(cpu, &columns, &law, patch_groups(block.kind))))
+    Some(with_element_of!(block, E => run_guard::<E, T>(cpu, &columns, &law, patch_groups(block.kind))))
 }

@@ -46,7 +46,7 @@ pub enum FileKind {
 
 /// Where files are that a scene names, and which of them it may read.
 #[derive(Clone, Copy)]
-pub(super) struct Beside<'a> {
+pub(super) struct FileAccess<'a> {
     pub(super) folder: &'a Path,
     pub(super) files: &'a FileSource,
     /// Whether files may lie outside the folder.
@@ -54,8 +54,8 @@ pub(super) struct Beside<'a> {
 }
 
 impl SceneFile {
-    fn beside(&self) -> Beside<'_> {
-        Beside { folder: &self.folder, files: &self.files, outside: self.allowed.outside }
+    fn file_access(&self) -> FileAccess<'_> {
+        FileAccess { folder: &self.folder, files: &self.files, outside: self.allowed.outside }
     }
 
     /// Where a file is that the scene names, its path relative to the scene's folder. Links are followed: what counts
@@ -64,7 +64,7 @@ impl SceneFile {
     /// # Errors
     /// The file lies outside the folder, and that is not [allowed](super::limits::Allowed::outside).
     pub fn file(&self, name: &str) -> Result<PathBuf, Outside> {
-        self.beside().file(name)
+        self.file_access().file(name)
     }
 
     /// What a file holds that the scene names, if that is no more than `most` bytes.
@@ -72,7 +72,7 @@ impl SceneFile {
     /// # Errors
     /// The file lies outside the scene's folder, is not there, is no plain file, is longer, or cannot be read.
     pub fn bytes(&self, name: &str, most: u64) -> io::Result<Cow<'_, [u8]>> {
-        self.beside().bytes(name, most)
+        self.file_access().bytes(name, most)
     }
 
     /// What a name stands for, and the names of the files that are where it should be.
@@ -80,11 +80,11 @@ impl SceneFile {
     /// # Errors
     /// As [`Self::file`].
     pub fn look_up(&self, name: &str) -> Result<(FileKind, Vec<String>), Outside> {
-        self.beside().look_up(name)
+        self.file_access().look_up(name)
     }
 }
 
-impl<'a> Beside<'a> {
+impl<'a> FileAccess<'a> {
     pub(super) fn file(&self, name: &str) -> Result<PathBuf, Outside> {
         if let FileSource::Memory(_) = self.files {
             return Ok(name.into());

@@ -1,5 +1,5 @@
-//! What a simulation remembers of its pace, beside the clock: for snapshots, so that what goes on from one takes the
-//! same steps.
+//! What a simulation remembers of its adaptive step and its programs, beside the clock: for snapshots, so that what
+//! goes on from one takes the same steps.
 
 use super::follow::Followed;
 use super::grab::AllGrabs;
@@ -15,10 +15,10 @@ use bevy_ecs::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The pace at the end of a step.
+/// What a run goes on with after a step.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct Pace {
+pub(super) struct ResumeState {
     /// When systems on the host run next, by name.
     intervals: BTreeMap<String, RunInterval>,
     /// What is known of the stable step.
@@ -48,11 +48,11 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 }
 
 fn senseless(reason: impl std::fmt::Display) -> SnapshotError {
-    SnapshotError::Senseless(format!("its pace cannot be taken up: {reason}"))
+    SnapshotError::Senseless(format!("its resume state cannot be taken up: {reason}"))
 }
 
-fn pace_of(snapshot: &Snapshot) -> Result<Pace, SnapshotError> {
-    ron::from_str(snapshot.pace()).map_err(senseless)
+fn resume_state_of(snapshot: &Snapshot) -> Result<ResumeState, SnapshotError> {
+    ron::from_str(snapshot.resume_state()).map_err(senseless)
 }
 
 impl Simulation {
@@ -62,16 +62,16 @@ impl Simulation {
     /// # Errors
     /// A snapshot that is senseless.
     pub fn can_grab_in(snapshot: &Snapshot) -> Result<bool, Error> {
-        Ok(pace_of(snapshot)?.can_grab)
+        Ok(resume_state_of(snapshot)?.can_grab)
     }
 
-    /// Notes the pace in a snapshot of the world.
-    pub(super) fn note_pace(&mut self, snapshot: &mut Snapshot) -> Result<(), SnapshotError> {
-        let interval = |entry: &super::Entry| match &entry.job {
+    /// Notes the resume state in a snapshot of the world.
+    pub(super) fn note_resume_state(&mut self, snapshot: &mut Snapshot) -> Result<(), SnapshotError> {
+        let interval = |entry: &super::ScheduledPass| match &entry.job {
             Job::Host { interval, .. } => Some((entry.name.clone(), *interval)),
             Job::Kernels(_) => None,
         };
-        let pace = Pace {
+        let state = ResumeState {
             intervals: self.entries.iter().filter_map(interval).collect(),
             found: self.solver.follower().map(|follower| follower.followed()),
             inputs: self.input_states(),
@@ -81,42 +81,42 @@ impl Simulation {
             scene: self.changed_text(),
             changes: self.lineage.before(self.step_count()).unwrap_or_default(),
         };
-        let text = ron::to_string(&pace).map_err(|error| SnapshotError::Senseless(error.to_string()))?;
-        snapshot.set_pace(text);
+        let text = ron::to_string(&state).map_err(|error| SnapshotError::Senseless(error.to_string()))?;
+        snapshot.set_resume_state(text);
         Ok(())
     }
 
-    /// The pace of a snapshot, if all of it fits; nothing has changed then.
-    pub(super) fn checked_pace(&mut self, snapshot: &Snapshot) -> Result<Pace, Error> {
-        let pace = pace_of(snapshot)?;
-        self.check_grabs(&pace.grabs)?;
-        self.check_changed(pace.scene.as_deref())?;
+    /// The resume state of a snapshot, if all of it fits; nothing has changed then.
+    pub(super) fn checked_resume_state(&mut self, snapshot: &Snapshot) -> Result<ResumeState, Error> {
+        let state = resume_state_of(snapshot)?;
+        self.check_grabs(&state.grabs)?;
+        self.check_changed(state.scene.as_deref())?;
         snapshot.fits(&mut self.world)?;
-        if let Some((name, _)) = pace.intervals.iter().find(|(_, interval)| !interval.is_sound()) {
+        if let Some((name, _)) = state.intervals.iter().find(|(_, interval)| !interval.is_sound()) {
             return Err(senseless(format!("the system `{name}` can never run")).into());
         }
-        self.check_input_states(&pace.inputs).map_err(senseless)?;
-        self.check_port_states(&pace.ports).map_err(senseless)?;
-        let found = pace.found.as_ref().filter(|_| self.solver.follower().is_some());
+        self.check_input_states(&state.inputs).map_err(senseless)?;
+        self.check_port_states(&state.ports).map_err(senseless)?;
+        let found = state.found.as_ref().filter(|_| self.solver.follower().is_some());
         match found.is_none_or(|found| found.fits(&mut self.world)) {
-            true => Ok(pace),
+            true => Ok(state),
             false => Err(senseless("it is that of other elements").into()),
         }
     }
 
-    /// Goes on at the pace of a snapshot that has been put into the world, where the run was at the step `before`;
-    /// whether it has been where it goes on from.
-    pub(super) fn take_up_pace(&mut self, pace: Pace, before: u64) -> Result<bool, Error> {
-        let ours = self.lineage.go_on_from(self.step_count(), pace.changes, before);
-        self.take_up_input_states(pace.inputs, ours);
-        self.take_up_port_states(pace.ports);
-        self.take_up_grabs(pace.grabs)?;
-        self.take_up_changed(pace.scene)?;
+    /// Goes on with the resume state of a snapshot that has been put into the world, where the run was at the step
+    /// `before`; whether it has been where it goes on from.
+    pub(super) fn take_up_resume_state(&mut self, state: ResumeState, before: u64) -> Result<bool, Error> {
+        let ours = self.lineage.go_on_from(self.step_count(), state.changes, before);
+        self.take_up_input_states(state.inputs, ours);
+        self.take_up_port_states(state.ports);
+        self.take_up_grabs(state.grabs)?;
+        self.take_up_changed(state.scene)?;
         self.surfaces.clear();
         let clock = *self.world.resource::<Clock>();
         relax_as(&mut self.world, &clock)?;
         for entry in &mut self.entries {
-            if let (Job::Host { interval, .. }, Some(kept)) = (&mut entry.job, pace.intervals.get(&entry.name)) {
+            if let (Job::Host { interval, .. }, Some(kept)) = (&mut entry.job, state.intervals.get(&entry.name)) {
                 *interval = *kept;
             }
         }
@@ -124,7 +124,7 @@ impl Simulation {
         let last_step = clock.step_nearest(self.scene.duration);
         self.facts.steps = last_step;
         self.world.resource_scope(|world, mut observer: Mut<Observer>| observer.go_on(world, last_step))?;
-        if let (Some(follower), Some(found)) = (self.solver.follower_mut(), pace.found) {
+        if let (Some(follower), Some(found)) = (self.solver.follower_mut(), state.found) {
             follower.take_up(found, &mut self.world);
         }
         Ok(ours)

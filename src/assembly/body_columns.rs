@@ -46,7 +46,7 @@ pub(super) fn insert_node_columns(
     if scene.loads.iter().any(super::loads::has_weight) || !scene.systems.is_empty() || scene.has_tools_that_push() {
         entity.insert(ExternalForce(vectors()));
     }
-    // pseudo-steps to rest do no work worth booking
+    // pseudo-steps to rest do no work worth counting
     let moved = scene.constraints.iter().any(|constraint| matches!(constraint, Constraint::Prescribed { .. }));
     if !scene.is_static() && scene.output.energies_every.is_some() {
         entity.insert(Work(Reals::zeros(precision, WORK_NUMBERS * count)));

@@ -1,5 +1,5 @@
 //! What a block's elements come to: energies, and the one that is squeezed most; a register full at a time. Looked at
-//! every so many steps by the guards; `shaders/watch_elements.wgsl` is its twin.
+//! every so many steps by the guards; `shaders/guard_elements.wgsl` is its twin.
 
 use super::element_kernel::{corner_registers, group_vectors};
 use super::{BlockLaw, Cpu};
@@ -40,7 +40,7 @@ impl BlockSums {
 }
 
 /// The columns that the sums are taken from; layouts as in [`components`](crate::components).
-pub struct WatchedColumns<'a, T> {
+pub struct GuardColumns<'a, T> {
     /// The body's displacements (m).
     pub displacement: &'a [T],
     /// Nodes of each element.
@@ -54,9 +54,9 @@ pub struct WatchedColumns<'a, T> {
 }
 
 /// Sums over a block; the same bits for any number of threads.
-pub fn run_watch<E: Element, T: SimdScalar>(
+pub fn run_guard<E: Element, T: SimdScalar>(
     cpu: &Cpu,
-    columns: &WatchedColumns<'_, T>,
+    columns: &GuardColumns<'_, T>,
     law: &BlockLaw<T>,
     groups_a_patch: usize,
 ) -> BlockSums {
@@ -64,14 +64,14 @@ pub fn run_watch<E: Element, T: SimdScalar>(
     let task = |index: usize| {
         let first = index * groups_a_patch;
         let groups = first..groups.min(first + groups_a_patch);
-        cpu.dispatch(Patch::<E, T> { columns, law, groups, element: PhantomData })
+        cpu.dispatch(PatchSums::<E, T> { columns, law, groups, element: PhantomData })
     };
     let sums = cpu.map(groups.div_ceil(groups_a_patch), task);
     sums.into_iter().fold(BlockSums::default(), BlockSums::and)
 }
 
-struct Patch<'a, E, T: SimdScalar> {
-    columns: &'a WatchedColumns<'a, T>,
+struct PatchSums<'a, E, T: SimdScalar> {
+    columns: &'a GuardColumns<'a, T>,
     law: &'a BlockLaw<T>,
     groups: std::ops::Range<usize>,
     element: PhantomData<E>,
@@ -80,7 +80,7 @@ struct Patch<'a, E, T: SimdScalar> {
 /// Energy, hourglass energy, smallest J and volume of a register full of elements.
 type Register<V> = [V; 4];
 
-impl<E: Element, T: SimdScalar> WithSimd for Patch<'_, E, T> {
+impl<E: Element, T: SimdScalar> WithSimd for PatchSums<'_, E, T> {
     type Output = BlockSums;
 
     #[inline(always)]
@@ -111,7 +111,7 @@ impl<E: Element, T: SimdScalar> WithSimd for Patch<'_, E, T> {
     }
 }
 
-impl<E: Element, T: SimdScalar> Patch<'_, E, T> {
+impl<E: Element, T: SimdScalar> PatchSums<'_, E, T> {
     #[inline(always)]
     fn part_of_group<S: Simd>(
         &self,
@@ -143,7 +143,7 @@ impl<E: Element, T: SimdScalar> Patch<'_, E, T> {
                 hourglass = E::hourglass_energy(&u, &state.gradient, number);
             }
         }
-        for point in E::POINTS..E::LOOKED_AT {
+        for point in E::POINTS..E::CHECKED_POINTS {
             let change = E::at_point(&u, point, number).gradient.volume_change();
             least = least.min(change + change.constant(1.0));
         }

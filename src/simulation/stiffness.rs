@@ -2,9 +2,9 @@
 
 mod strain;
 
-use super::damped_step::{growth_with_damping, is_damped};
-use super::growth::Growth;
-use super::mass_scaling::heavy_mass;
+use super::damped_step::{is_damped, ratio_with_damping};
+use super::mass_scaling::scaled_mass;
+use super::stiffness_ratio::StiffnessRatio;
 use crate::assembly::{SquaresAtRest, square_frequencies};
 use crate::backend::cpu::{BlockLaw, Cpu, Strain};
 use crate::components::*;
@@ -16,35 +16,35 @@ use crate::observation::shortest_edge;
 use bevy_ecs::prelude::*;
 use std::ops::Range;
 
-/// Elements looked at in one task: what is found of them stays in the core's cache.
+/// Elements checked in one task: what is found of them stays in the core's cache.
 const ROWS_A_TASK: usize = 512;
-/// Elements that are looked at together, before one by one: neighbours, which are deformed alike.
+/// Elements that are checked together, before one by one: neighbours, which are deformed alike.
 const ROWS_A_PART: usize = 64;
 const PARTS_A_TASK: usize = ROWS_A_TASK / ROWS_A_PART;
 const GROUPS_A_TASK: usize = ROWS_A_TASK / LANES;
-/// Parts whose elements are looked at one by one before it is asked which others still need it; then twice as many.
+/// Parts whose elements are checked one by one before it is asked which others still need it; then twice as many.
 const PARTS_AT_FIRST: usize = 4;
 /// What elements come to is known to this: their ω², and how much stiffer they have become.
 const NEARLY: f64 = 1.1;
 
 /// The elements of a block, and what is known of their frequencies.
-pub(super) struct Watched {
+pub(super) struct StiffnessTracker {
     pub entity: Entity,
-    growth: Growth,
+    stiffness: StiffnessRatio,
     /// Of each element the bound of ω² at rest (1/s²); 0 where all its nodes are held: it does not move by itself.
     pub squares: Vec<f64>,
     /// The shortest distance between two nodes of an element at rest (m).
     pub shortest_edge: f64,
-    /// The growth of ω² of all, by each element, when that was found last.
-    known_growth: Vec<f32>,
-    /// Of the elements of each part that are there: the largest bound at rest (1/s²), and the least growth of ω² of all
+    /// The ratio of ω² of all, by each element, when that was found last.
+    known_ratio: Vec<f32>,
+    /// Of the elements of each part that are there: the largest bound at rest (1/s²), and the least ratio of ω² of all
     /// when that was found.
     parts: Vec<(f64, f64)>,
     /// How many elements were there when that was summed up.
     counted: usize,
     /// Whether anything is damped in proportion to its stiffness.
     pub is_damped: bool,
-    /// What the last look showed, task by task.
+    /// What the last check showed, task by task.
     deformed: Vec<Deformed>,
 }
 
@@ -76,12 +76,12 @@ fn part_groups(part: usize) -> Range<usize> {
     part * ROWS_A_PART / LANES..(part + 1) * ROWS_A_PART / LANES
 }
 
-/// What a look at all elements shows.
+/// What a check of all elements shows.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
-pub(super) struct Seen {
+pub(super) struct StabilitySample {
     /// ω² of all at most (1/s²): by the elements alone, or by what was known of all.
     pub square: f64,
-    /// The largest bound of ω² of an element at rest, times its growth (1/s²).
+    /// The largest bound of ω² of an element at rest, times its ratio (1/s²).
     pub of_elements: f64,
     /// The largest bound of ω² of an element at rest (1/s²).
     pub at_rest: f64,
@@ -95,7 +95,7 @@ pub(super) struct Seen {
     pub alive: usize,
 }
 
-impl Seen {
+impl StabilitySample {
     pub const NOTHING: Self = Self {
         square: f64::INFINITY,
         of_elements: 0.0,
@@ -135,45 +135,45 @@ fn moves(world: &World, entity: Entity, row: usize) -> bool {
     held.is_none_or(|held| (0..corners).any(|corner| held[node(corner)] & 7 != 7))
 }
 
-impl Watched {
+impl StiffnessTracker {
     /// All elements of a world.
     pub fn all(world: &mut World) -> Vec<Self> {
         let mut blocks: Vec<Entity> = world.query_filtered::<Entity, With<Block>>().iter(world).collect();
         blocks.sort();
         let is_damped = is_damped(world);
-        let watched = |&entity: &Entity| {
-            let growth = Growth::of(world.get::<BlockLaw<f64>>(entity)?);
+        let tracked = |&entity: &Entity| {
+            let stiffness = StiffnessRatio::of(world.get::<BlockLaw<f64>>(entity)?);
             let block = world.get::<Block>(entity)?;
             let rest = world.get::<RestPosition>(block.body)?;
             let shortest_edge = shortest_edge(block, world.get::<Connectivity>(entity)?, rest);
             let (squares, parts) = (Vec::new(), Vec::new());
-            let known_growth = vec![1.0; block.count];
-            let mut watched = Self {
+            let known_ratio = vec![1.0; block.count];
+            let mut tracked = Self {
                 entity,
-                growth,
+                stiffness,
                 squares,
                 shortest_edge,
-                known_growth,
+                known_ratio,
                 parts,
                 counted: 0,
                 is_damped,
                 deformed: vec![],
             };
-            watched.weigh(world);
-            Some(watched)
+            tracked.update_bounds(world);
+            Some(tracked)
         };
-        let all = blocks.iter().filter_map(watched).collect();
+        let all = blocks.iter().filter_map(tracked).collect();
         // from here on bodies may change
         world.remove_resource::<SquaresAtRest>();
         all
     }
 
     /// Takes the bounds at rest anew, with the mass that was added by now.
-    pub fn weigh(&mut self, world: &World) {
+    pub fn update_bounds(&mut self, world: &World) {
         let squares = square_frequencies(world, self.entity).into_iter().enumerate();
-        let heavier = |row: usize| heavy_mass(world, self.entity, row).map_or(1.0, |(_, heavier)| heavier);
+        let mass_factor = |row: usize| scaled_mass(world, self.entity, row).map_or(1.0, |(_, mass_factor)| mass_factor);
         let of_row = |(row, (square, _)): (usize, (f64, f64))| match moves(world, self.entity, row) {
-            true => square / heavier(row),
+            true => square / mass_factor(row),
             false => 0.0,
         };
         self.squares = squares.map(of_row).collect();
@@ -191,31 +191,31 @@ impl Watched {
             let rows = part * ROWS_A_PART..count.min((part + 1) * ROWS_A_PART);
             let rows = rows.filter(is_there).filter(|&row| self.squares[row] > 0.0);
             rows.fold((0.0_f64, f64::INFINITY), |(most, least), row| {
-                (most.max(self.squares[row]), least.min(f64::from(self.known_growth[row])))
+                (most.max(self.squares[row]), least.min(f64::from(self.known_ratio[row])))
             })
         };
         self.parts = (0..count.div_ceil(ROWS_A_PART)).map(of_part).collect();
         self.counted = (0..count).filter(is_there).count();
     }
 
-    /// The growth of ω² of each element when the frequency of all was found last.
-    pub fn known_growth(&self) -> &[f32] {
-        &self.known_growth
+    /// The ratio of ω² of each element when the frequency of all was found last.
+    pub fn known_ratio(&self) -> &[f32] {
+        &self.known_ratio
     }
 
     /// Takes it from a snapshot; false where it is none of these elements.
-    pub fn take_known_growth(&mut self, growth: Vec<f32>, world: &World) -> bool {
-        let fits = growth.len() == self.squares.len();
+    pub fn take_known_ratio(&mut self, ratio: Vec<f32>, world: &World) -> bool {
+        let fits = ratio.len() == self.squares.len();
         if fits {
-            self.known_growth = growth;
+            self.known_ratio = ratio;
             self.sum_up(world);
         }
         fits
     }
 
-    /// Looks at all elements: first at what those of a part come to were one of them the largest in everything, then at
+    /// Samples all elements: first what those of a part come to were one of them the largest in everything, then
     /// one after the other where that comes to most.
-    pub fn look(&mut self, world: &World) -> Seen {
+    pub fn sample(&mut self, world: &World) -> StabilitySample {
         let (cpu, count) = (world.resource::<Cpu>(), self.squares.len());
         let of_task = |task: usize| -> Deformed {
             let parts = task * PARTS_A_TASK..count.div_ceil(ROWS_A_PART).min((task + 1) * PARTS_A_TASK);
@@ -232,19 +232,19 @@ impl Watched {
         let most = |of: fn(&Strain) -> f64| widest().map(|(most, _)| of(most)).fold(1.0, f64::max);
         let (size, squeeze) = (most(|part| part.size), most(|part| part.squeeze));
         let alive = widest().map(|(_, alive)| alive).sum::<usize>();
-        self.growth.reach(size, squeeze);
+        self.stiffness.reach(size, squeeze);
         if alive != self.counted {
             self.sum_up(world);
         }
         let widest = self.deformed.iter().flat_map(|task| &task.parts);
         let parts = widest.zip(&self.parts).enumerate().filter(|(_, ((_, alive), _))| *alive > 0);
-        let (places, parts): (Vec<usize>, Vec<Seen>) = parts
+        let (places, parts): (Vec<usize>, Vec<StabilitySample>) = parts
             .map(|(part, (&(widest, alive), &(at_rest, least_known)))| {
-                let [own, of_all] = self.growth_of(widest.size, widest.squeeze, widest.more);
+                let [own, of_all] = self.ratio_of(widest.size, widest.squeeze, widest.more);
                 let (of_elements, ratio) = ((at_rest * own).min(f64::MAX), (of_all / least_known).max(1.0));
                 (
                     part,
-                    Seen {
+                    StabilitySample {
                         square: f64::INFINITY,
                         of_elements,
                         at_rest,
@@ -257,15 +257,15 @@ impl Watched {
             })
             .unzip();
         let parts = self.refined(world, &places, parts);
-        parts.into_iter().fold(Seen::NOTHING, Seen::and)
+        parts.into_iter().fold(StabilitySample::NOTHING, StabilitySample::and)
     }
 
-    /// Looks at elements one by one in those of some parts, at `places`, that may come to most.
-    fn refined(&self, world: &World, places: &[usize], mut parts: Vec<Seen>) -> Vec<Seen> {
+    /// Samples elements one by one in those of some parts, at `places`, that may come to most.
+    fn refined(&self, world: &World, places: &[usize], mut parts: Vec<StabilitySample>) -> Vec<StabilitySample> {
         let at_rest = parts.iter().fold(0.0_f64, |most, part| most.max(part.at_rest));
-        let most = |part: &Seen| (part.of_elements / at_rest).max(part.ratio);
+        let most = |part: &StabilitySample| (part.of_elements / at_rest).max(part.ratio);
         // what is known to come to so much at least
-        let mut known = Seen { of_elements: at_rest, ..Seen::NOTHING };
+        let mut known = StabilitySample { of_elements: at_rest, ..StabilitySample::NOTHING };
         let mut left: Vec<usize> = (0..parts.len()).collect();
         let mut at_once = PARTS_AT_FIRST;
         loop {
@@ -290,14 +290,14 @@ impl Watched {
 
     /// What the elements of a part come to that may all together come to `at_most`, or what others are `known` to come
     /// to, where that is more.
-    fn one_by_one(&self, (part, at_most): (usize, Seen), known: &Seen) -> Seen {
+    fn one_by_one(&self, (part, at_most): (usize, StabilitySample), known: &StabilitySample) -> StabilitySample {
         let (mut of_elements, mut ratio) = (known.of_elements, known.ratio);
         let Some(of) = self.deformed.get(part / PARTS_A_TASK) else { return at_most };
         let (at_rest, least_known) = self.parts[part];
         // no element that is deformed less comes to more than what is known
-        let until = |of_elements: f64, ratio: f64| match self.is_damped || !self.growth.families.is_empty() {
+        let until = |of_elements: f64, ratio: f64| match self.is_damped || !self.stiffness.families.is_empty() {
             true => [0.0; 2],
-            false => self.growth.until(of_elements / at_rest, ratio * least_known),
+            false => self.stiffness.until(of_elements / at_rest, ratio * least_known),
         };
         let [mut size, mut squeeze] = until(of_elements, ratio);
         let first = part / PARTS_A_TASK * ROWS_A_TASK;
@@ -305,22 +305,22 @@ impl Watched {
             let place = row - first;
             let may_be_more = of.size[place] > size || of.squeeze[place] > squeeze;
             if of.size[place] > 0.0 && self.squares[row] > 0.0 && may_be_more {
-                let [own, of_all] = self.growth_of(of.size[place], of.squeeze[place], of.more[place]);
-                let (own, of_all) = (self.squares[row] * own, of_all / f64::from(self.known_growth[row]));
+                let [own, of_all] = self.ratio_of(of.size[place], of.squeeze[place], of.more[place]);
+                let (own, of_all) = (self.squares[row] * own, of_all / f64::from(self.known_ratio[row]));
                 if own > of_elements || of_all > ratio {
                     (of_elements, ratio) = (of_elements.max(own), ratio.max(of_all));
                     [size, squeeze] = until(of_elements, ratio);
                 }
             }
         }
-        Seen { of_elements, ratio, ..at_most }
+        StabilitySample { of_elements, ratio, ..at_most }
     }
 
-    /// Remembers the present growth, now that the frequency of all is known.
+    /// Remembers the present ratio, now that the frequency of all is known.
     pub fn remember(&mut self, world: &World) {
         self.reach_all(world);
-        let growths = self.growths(world, Vec::new(), |found, row, [_, of_all]| found.push((row, of_all as f32)));
-        growths.into_iter().flatten().for_each(|(row, growth)| self.known_growth[row] = growth);
+        let ratios = self.ratios(world, Vec::new(), |found, row, [_, of_all]| found.push((row, of_all as f32)));
+        ratios.into_iter().flatten().for_each(|(row, ratio)| self.known_ratio[row] = ratio);
         self.sum_up(world);
     }
 
@@ -328,18 +328,18 @@ impl Watched {
     /// become since the frequency of all was found.
     pub fn now(&mut self, world: &World) -> Vec<(usize, f64, f64)> {
         self.reach_all(world);
-        let found = self.growths(world, Vec::new(), |found, row, [own, of_all]| {
-            let ratio = (of_all / f64::from(self.known_growth[row])).max(1.0);
+        let found = self.ratios(world, Vec::new(), |found, row, [own, of_all]| {
+            let ratio = (of_all / f64::from(self.known_ratio[row])).max(1.0);
             found.push((row, self.squares[row] * own, ratio));
         });
         found.into_iter().flatten().collect()
     }
 
-    /// Growth of an element's own ω², and of that of all.
-    fn growth_of(&self, size: f64, squeeze: f64, more: f64) -> [f64; 2] {
+    /// Stiffness ratio of an element's own ω², and of that of all.
+    fn ratio_of(&self, size: f64, squeeze: f64, more: f64) -> [f64; 2] {
         // as much as f32 can keep
-        [self.growth.own(size), self.growth.of_all(size, squeeze)]
-            .map(|growth| growth_with_damping(growth + more, self.is_damped).min(f64::from(f32::MAX)))
+        [self.stiffness.own(size), self.stiffness.of_all(size, squeeze)]
+            .map(|ratio| ratio_with_damping(ratio + more, self.is_damped).min(f64::from(f32::MAX)))
     }
 
     /// Tries the law as far as an element is deformed now.
@@ -348,18 +348,18 @@ impl Watched {
             (*size, *squeeze) = (size.max(strain.size), squeeze.max(strain.squeeze));
         });
         let most = |i: usize| widest.iter().fold(1.0, |most: f64, task| most.max(task[i]));
-        self.growth.reach(most(0), most(1));
+        self.stiffness.reach(most(0), most(1));
     }
 
-    /// Visits all elements that are there with row and both growths of ω².
-    fn growths<R: Clone + Send + Sync>(
+    /// Visits all elements that are there with row and both ratios of ω².
+    fn ratios<R: Clone + Send + Sync>(
         &self,
         world: &World,
         start: R,
         visit: impl Fn(&mut R, usize, [f64; 2]) + Sync + Send,
     ) -> Vec<R> {
         self.each_task(world, start, |found, strain| {
-            visit(found, strain.row, self.growth_of(strain.size, strain.squeeze, strain.more));
+            visit(found, strain.row, self.ratio_of(strain.size, strain.squeeze, strain.more));
         })
     }
 

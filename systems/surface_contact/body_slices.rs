@@ -1,7 +1,7 @@
 //! What a step needs of the bodies, as plain slices: fetched once a step.
 
 use super::{MeetingColumns, SurfaceContacts};
-use crate::backend::cpu::{Factors, Foreseen};
+use crate::backend::cpu::{Foreseen, IntegrationCoefficients};
 use crate::components::*;
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
@@ -72,7 +72,7 @@ pub(super) fn slices<'a, T: Scalar>(
 
 impl<T: Scalar> BodySlices<'_, T> {
     /// Where a node would go.
-    pub fn foresee(&self, row: usize, factors: &Factors<f64>) -> Foreseen {
+    pub fn foresee(&self, row: usize, coefficients: &IntegrationCoefficients<f64>) -> Foreseen {
         let mass = self.mass[row].to_f64();
         // inactive nodes stay where they are
         if mass <= 0.0 {
@@ -80,7 +80,7 @@ impl<T: Scalar> BodySlices<'_, T> {
         }
         let damping = self.damping.map_or(0.0, |damping| damping[row].to_f64());
         let force = vector(self.external, row) - vector(self.internal, row);
-        factors.foresee(mass, damping, self.axes[row], vector(self.step, row), force)
+        coefficients.foresee(mass, damping, self.axes[row], vector(self.step, row), force)
     }
 
     /// A number of a node's [`SurfaceTouch`].

@@ -1,6 +1,6 @@
 //! How far the elements of a block are deformed: the kernel of strains on its columns.
 
-use super::{Columns, Deformed, ROWS_A_PART, Watched};
+use super::{Columns, Deformed, ROWS_A_PART, StiffnessTracker};
 use crate::backend::cpu::{Cpu, Kept, Strain, StrainColumns, Visit, strains};
 use crate::components::*;
 use crate::elements::with_element_of;
@@ -8,7 +8,7 @@ use crate::math::{LANES, lane_place};
 use bevy_ecs::prelude::*;
 use std::ops::Range;
 
-impl Watched {
+impl StiffnessTracker {
     /// What strains are taken from; `None` where the world has the block no longer.
     pub(super) fn columns<'w>(&self, world: &'w World) -> Option<Columns<'w>> {
         let block = world.get::<Block>(self.entity)?;
@@ -34,11 +34,12 @@ impl Watched {
     ) -> (Strain, usize) {
         let fibres = of.fibres.map(|fibres| &fibres.0);
         let families = |row: usize, c: [f64; 6]| -> f64 {
-            let families = self.growth.families.iter();
-            families.map(|(family, from)| self.growth.of_family(family, c, self.direction(row, from, fibres))).sum()
+            let families = self.stiffness.families.iter();
+            families.map(|(family, from)| self.stiffness.of_family(family, c, self.direction(row, from, fibres))).sum()
         };
-        let more = (!self.growth.families.is_empty()).then_some(&families as &(dyn Fn(usize, [f64; 6]) -> f64 + Sync));
-        let (block, connectivity, ends) = (of.block, of.connectivity, self.growth.ends);
+        let more =
+            (!self.stiffness.families.is_empty()).then_some(&families as &(dyn Fn(usize, [f64; 6]) -> f64 + Sync));
+        let (block, connectivity, ends) = (of.block, of.connectivity, self.stiffness.ends);
         let groups = groups.start..groups.end.min(block.count.div_ceil(LANES));
         macro_rules! run {
             ($T:ty) => {{
@@ -70,7 +71,7 @@ impl Watched {
         match (from, fibres) {
             (FamilyDirection::Uniform(a), _) => *a,
             (FamilyDirection::Varying(place), Some(all)) => {
-                let numbers = 3 * self.growth.varying;
+                let numbers = 3 * self.stiffness.varying;
                 [0, 1, 2].map(|i| all.get(lane_place(row, numbers, 3 * place + i)))
             }
             (FamilyDirection::Varying(_), None) => [0.0; 3],

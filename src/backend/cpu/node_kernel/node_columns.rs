@@ -1,6 +1,6 @@
 //! What moves nodes, and how it is shared out among tasks.
 
-use super::factors::{Factors, Foreseen};
+use super::integration_coefficients::{Foreseen, IntegrationCoefficients};
 use crate::components::{GROUP_ROWS, WORK_NUMBERS};
 use crate::math::{Scalar, SimdScalar};
 use glam::DVec3;
@@ -34,7 +34,7 @@ pub struct NodeColumns<'a, T> {
     pub step: &'a mut [T],
     /// What rounding left out of displacements, and of steps.
     pub compensation: Option<[&'a mut [T]; 2]>,
-    /// Work booked.
+    /// Work counted.
     pub work: Option<&'a mut [T]>,
     /// Work against internal forces: a sum and its remainder for each row that is a multiple of [`GROUP_ROWS`], and one
     /// at the end of all; none where the whole work is accumulated.
@@ -115,11 +115,11 @@ impl<T: Scalar> NodeColumns<'_, T> {
     }
 
     /// Where `integrate` will take one of these nodes, from what its loads are by now.
-    pub fn foresee(&self, factors: &Factors<f64>, row: usize) -> Foreseen {
+    pub fn foresee(&self, coefficients: &IntegrationCoefficients<f64>, row: usize) -> Foreseen {
         let vector = |all: &[T]| DVec3::from_array([0, 1, 2].map(|i| all[3 * row + i].to_f64()));
         let force = self.external.as_deref().map_or(DVec3::ZERO, vector) - vector(self.internal);
         let damping = self.damping.map_or(0.0, |all| all[row].to_f64());
-        factors.foresee(self.inertia[row].to_f64(), damping, self.axes[row], vector(self.step), force)
+        coefficients.foresee(self.inertia[row].to_f64(), damping, self.axes[row], vector(self.step), force)
     }
 
     /// Adds to the load on one of these nodes (N); nothing where the body has no loads.

@@ -18,7 +18,7 @@ const IN_FLIGHT: usize = 2;
 
 /// Measured speed of lists of kernels, and the submissions not yet waited for.
 #[derive(Default)]
-pub(super) struct Pace {
+pub(super) struct SubmissionThrottle {
     seconds_per_step: HashMap<Arc<[KernelId]>, f64>,
     flights: VecDeque<Flight>,
     last_end: Option<Instant>,
@@ -35,7 +35,7 @@ struct Flight {
     submitted: Instant,
 }
 
-impl Pace {
+impl SubmissionThrottle {
     /// Steps for the next submission: one until there is a measurement.
     pub(super) fn batch(&self, kernels: &[KernelId]) -> u32 {
         let fits = |seconds: &f64| (TARGET / seconds.max(1e-9)) as u32;
@@ -77,25 +77,25 @@ impl Pace {
 mod tests {
     use super::*;
 
-    fn pace_with(seconds: f64) -> Pace {
-        let mut pace = Pace::default();
-        pace.seconds_per_step.insert(Arc::from([KernelId(3)]), seconds);
-        pace
+    fn throttle_with(seconds: f64) -> SubmissionThrottle {
+        let mut throttle = SubmissionThrottle::default();
+        throttle.seconds_per_step.insert(Arc::from([KernelId(3)]), seconds);
+        throttle
     }
 
     #[test]
     fn a_submission_stays_under_a_tenth_of_a_second() {
-        assert_eq!(pace_with(0.01).batch(&[KernelId(3)]), 10);
+        assert_eq!(throttle_with(0.01).batch(&[KernelId(3)]), 10);
     }
 
     #[test]
     fn a_submission_has_one_step_at_least_and_256_at_most() {
-        assert_eq!(pace_with(7.0).batch(&[KernelId(3)]), 1);
-        assert_eq!(pace_with(0.0).batch(&[KernelId(3)]), 256);
+        assert_eq!(throttle_with(7.0).batch(&[KernelId(3)]), 1);
+        assert_eq!(throttle_with(0.0).batch(&[KernelId(3)]), 256);
     }
 
     #[test]
     fn kernels_never_measured_start_with_one_step() {
-        assert_eq!(pace_with(0.0).batch(&[KernelId(4)]), 1);
+        assert_eq!(throttle_with(0.0).batch(&[KernelId(4)]), 1);
     }
 }

@@ -24,15 +24,15 @@ const STRETCH_RATIO: f64 = 1.106;
 /// How many of them: up to a thousand.
 const STRETCHES: usize = 69;
 /// Beyond all that was tried ω² is taken to grow with the square of the size, up to this.
-const MOST_GROWTH: f64 = 1e30;
+const LARGEST_RATIO: f64 = 1e30;
 /// Components of ∇u are changed by so much for a difference.
 const CHANGE: f64 = 1e-6;
 /// Multiplications by which the largest eigenvalue of a tangent is found, to a per mille where it stands out.
 const MULTIPLICATIONS: usize = 40;
 
-/// Growth of ω² of a law, by how far it is deformed.
+/// Stiffness ratio of ω² of a law, by how far it is deformed.
 #[derive(Clone, Debug)]
-pub(super) struct Growth {
+pub(super) struct StiffnessRatio {
     /// The law without its exponential fibres.
     law: BlockLaw<f64>,
     /// What [`tangents`] gives at rest (Pa).
@@ -51,7 +51,7 @@ pub(super) struct Growth {
     pub varying: usize,
 }
 
-impl Growth {
+impl StiffnessRatio {
     /// Of a law.
     pub fn of(law: &BlockLaw<f64>) -> Self {
         let rest = tangents(law, &[1.0; 3]);
@@ -75,7 +75,7 @@ impl Growth {
     }
 
     /// Tries the law at all stretches up to a size and a squeeze (see [`Strain`](crate::backend::cpu::Strain)): before
-    /// [`Growth::own`] or [`Growth::of_all`] is asked for that.
+    /// [`StiffnessRatio::own`] or [`StiffnessRatio::of_all`] is asked for that.
     pub fn reach(&mut self, size: f64, squeeze: f64) {
         let before = self.tried;
         let mut s = STRETCH_RATIO.powi(self.tried as i32);
@@ -103,7 +103,7 @@ impl Growth {
         }
     }
 
-    /// Size of a sample, and the growth of an element alone and of plane waves.
+    /// Size of a sample, and the ratio of an element alone and of plane waves.
     fn tried_at(&self, stretches: [f64; 3]) -> [f64; 3] {
         let found = tangents(&self.law, &stretches);
         let ratio = |i: usize| if self.rest[i] > 0.0 { found[i] / self.rest[i] } else { 1.0 };
@@ -115,7 +115,8 @@ impl Growth {
         [first.max(inverse), own, ratio(3)]
     }
 
-    /// Growth of an element's own ω² at most without exponential fibres, for a size within [`Growth::reach`].
+    /// Stiffness ratio of an element's own ω² at most without exponential fibres, for a size within
+    /// [`StiffnessRatio::reach`].
     pub fn own(&self, size: f64) -> f64 {
         self.own.at(size)
     }
@@ -131,7 +132,7 @@ impl Growth {
         [self.own.until(own.min(of_all)), self.waves.until(of_all)]
     }
 
-    /// What a family of exponential fibres adds to the growth, for a C and its direction: k₁ e^x (4 (1 + 2x) M + 2Ē)
+    /// What a family of exponential fibres adds to the ratio, for a C and its direction: k₁ e^x (4 (1 + 2x) M + 2Ē)
     /// with x = k₂Ē² and M = κ_d tr C + (1 − 3κ_d) I₄, which bounds its part of ∂P/∂F, over the isochoric part at rest.
     pub fn of_family(&self, family: &ExponentialFibre<f64>, c: [f64; 6], [x, y, z]: [f64; 3]) -> f64 {
         let along = c[0] * x * x + c[1] * y * y + c[2] * z * z + 2.0 * (c[3] * x * y + c[4] * y * z + c[5] * x * z);
@@ -140,15 +141,15 @@ impl Growth {
         let strain = (measure - 1.0).max(0.0);
         let exponent = (family.k2 * strain * strain).min(40.0);
         let tangent = family.k1 * exponent.exp() * (4.0 * (1.0 + 2.0 * exponent) * measure + 2.0 * strain);
-        // at rest it is part of what growth is measured by
+        // at rest it is part of what the ratio is measured by
         ((tangent - 4.0 * family.k1) / self.rest[0]).max(0.0)
     }
 }
 
-/// Growth by how far something is deformed, as straight pieces that never fall.
+/// Stiffness ratio by how far something is deformed, as straight pieces that never fall.
 #[derive(Clone, Debug)]
 struct Table {
-    /// Deformation and growth, both ascending.
+    /// Deformation and ratio, both ascending.
     points: Vec<(f64, f64)>,
     /// The first of them in each [`bucket`] of deformations, or else behind it.
     first: Vec<usize>,
@@ -162,9 +163,9 @@ impl Table {
     fn sort(&mut self) {
         self.points.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut largest = 1.0_f64;
-        for (_, growth) in &mut self.points {
-            largest = largest.max(*growth);
-            *growth = largest;
+        for (_, ratio) in &mut self.points {
+            largest = largest.max(*ratio);
+            *ratio = largest;
         }
         let beyond = self.points.last().map_or(0, |(size, _)| bucket(*size) + 1);
         self.first = (0..=beyond).map(|b| self.points.partition_point(|(size, _)| bucket(*size) < b)).collect();
@@ -178,18 +179,18 @@ impl Table {
         match (after.checked_sub(1).map(|i| self.points[i]), self.points.get(after)) {
             (Some((s0, g0)), Some(&(s1, g1))) => g0 + (g1 - g0) * (size - s0) / (s1 - s0),
             (None, _) => 1.0,
-            (Some((s, g)), None) => (g * (size / s) * (size / s)).min(MOST_GROWTH),
+            (Some((s, g)), None) => (g * (size / s) * (size / s)).min(LARGEST_RATIO),
         }
     }
 
-    /// Up to which deformation the growth is at most that: 0 where it is more from the beginning.
-    fn until(&self, growth: f64) -> f64 {
-        let after = self.points.partition_point(|(_, g)| *g <= growth);
+    /// Up to which deformation the ratio is at most that: 0 where it is more from the beginning.
+    fn until(&self, ratio: f64) -> f64 {
+        let after = self.points.partition_point(|(_, g)| *g <= ratio);
         match (after.checked_sub(1).map(|i| self.points[i]), self.points.get(after)) {
             (Some((s0, g0)), Some(&(s1, g1))) => {
                 // a billionth less, so that rounding leads to no more; pieces may be as short as that
-                let size = s0 + (s1 - s0) * (growth - g0) / (g1 - g0) * (1.0 - 1e-9);
-                if self.at(size) <= growth { size } else { s0 }
+                let size = s0 + (s1 - s0) * (ratio - g0) / (g1 - g0) * (1.0 - 1e-9);
+                if self.at(size) <= ratio { size } else { s0 }
             }
             (Some((s, _)), None) => s,
             (None, _) => 0.0,
@@ -320,29 +321,29 @@ mod tests {
 
     #[test]
     fn a_linear_law_never_stiffens_and_a_neo_hookean_one_with_the_size_of_the_deformation() {
-        let mut linear = Growth::of(&law(ElasticLaw::Linear(Linear { shear: 1e3, bulk: 1e4 })));
+        let mut linear = StiffnessRatio::of(&law(ElasticLaw::Linear(Linear { shear: 1e3, bulk: 1e4 })));
         linear.reach(4.0, 9.0);
         assert!((linear.of_all(4.0, 9.0) - 1.0).abs() < 1e-6);
-        let mut soft = Growth::of(&law(ElasticLaw::NeoHookean(NeoHookean { shear: 1e3, bulk: 1e5 })));
+        let mut soft = StiffnessRatio::of(&law(ElasticLaw::NeoHookean(NeoHookean { shear: 1e3, bulk: 1e5 })));
         soft.reach(10.0, 10.0);
         // at constant volume the volumetric part is κ tr C⁻¹, 3κ at rest: the size itself; isochoric parts and changes
         // of volume add to it
         for size in [1.5_f64, 3.0, 6.0] {
-            let growth = soft.own(size);
-            println!("{size}: {growth}");
-            assert!(growth > 0.9 * size && growth < 4.0 * size, "{size}: {growth}");
+            let ratio = soft.own(size);
+            println!("{size}: {ratio}");
+            assert!(ratio > 0.9 * size && ratio < 4.0 * size, "{size}: {ratio}");
         }
         // beyond what was tried it goes on, and stays a number
-        assert!(soft.own(1e3) > soft.own(10.0) && soft.own(f64::INFINITY) == MOST_GROWTH);
+        assert!(soft.own(1e3) > soft.own(10.0) && soft.own(f64::INFINITY) == LARGEST_RATIO);
         assert_eq!((soft.own(1.0), soft.own(0.999)), (1.0, 1.0));
         // waves through what is squeezed to half its height are twice as quick
         assert!((4.0..4.5).contains(&soft.of_all(1.0, 4.0)), "{}", soft.of_all(1.0, 4.0));
         for k in 0..2000 {
-            let growth = 1.0 + 5e-3 * f64::from(k);
-            let [size, squeeze] = soft.until(growth, 1.5 * growth);
-            assert!(soft.own(size) <= growth && soft.of_all(size, squeeze) <= 1.5 * growth, "{growth}");
+            let ratio = 1.0 + 5e-3 * f64::from(k);
+            let [size, squeeze] = soft.until(ratio, 1.5 * ratio);
+            assert!(soft.own(size) <= ratio && soft.of_all(size, squeeze) <= 1.5 * ratio, "{ratio}");
             // as far as it reaches it is also the largest
-            assert!(size >= 10.0 || soft.own((1.0 + 1e-6) * size) > growth * (1.0 - 1e-8), "{growth}");
+            assert!(size >= 10.0 || soft.own((1.0 + 1e-6) * size) > ratio * (1.0 - 1e-8), "{ratio}");
             let size = 1.0 + 4e-3 * f64::from(k);
             let after = soft.own.points.partition_point(|(s, _)| *s < size);
             let (s0, g0) = soft.own.points[after.max(1) - 1];
@@ -357,10 +358,10 @@ mod tests {
         let mut fibrous = law(ElasticLaw::NeoHookean(NeoHookean { shear: 1e3, bulk: 1e5 }));
         let family = ExponentialFibre { k1: 1e3, k2: 10.0, dispersion: 0.0, tension_only: 1.0 };
         fibrous.exponential.push((family, FamilyDirection::Uniform([1.0, 0.0, 0.0])));
-        let growth = Growth::of(&fibrous);
+        let ratio = StiffnessRatio::of(&fibrous);
         let c = [2.25, 1.0 / 1.5, 1.0 / 1.5, 0.0, 0.0, 0.0];
-        assert!(growth.of_family(&family, c, [1.0, 0.0, 0.0]) > 1e4);
-        assert_eq!(growth.of_family(&family, c, [0.0, 1.0, 0.0]), 0.0);
-        assert_eq!(growth.of_family(&family, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0]), 0.0);
+        assert!(ratio.of_family(&family, c, [1.0, 0.0, 0.0]) > 1e4);
+        assert_eq!(ratio.of_family(&family, c, [0.0, 1.0, 0.0]), 0.0);
+        assert_eq!(ratio.of_family(&family, [1.0, 1.0, 1.0, 0.0, 0.0, 0.0], [1.0, 0.0, 0.0]), 0.0);
     }
 }
