@@ -180,6 +180,7 @@ pub fn motion(tool: &Tool) -> ToolMotion {
         path: tool.places().iter().map(place).collect(),
         moves: tool.moves.iter().map(|part| (part.displacement, radians(part.rotation))).collect(),
         curves: tool.moves.iter().map(|part| part.curve.clone()).collect(),
+        pivot: tool.pivot,
         hand: tool.port.as_ref().map(|port| Hand {
             port: port.name.clone(),
             speed: port.speed,

@@ -5,6 +5,7 @@ mod absent;
 mod closed;
 mod form;
 mod grid;
+mod pivot;
 #[cfg(feature = "files")]
 mod ply;
 #[cfg(feature = "files")]
@@ -19,6 +20,7 @@ mod triangles;
 
 pub use form::Form;
 pub use grid::DistanceGrid;
+pub use pivot::closest_approach;
 pub use shape::Shape;
 pub use solid::{Problem, Solid};
 pub use triangles::{EdgeFault, SurfaceError, Triangles};

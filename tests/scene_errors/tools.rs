@@ -58,6 +58,27 @@ fn what_is_wrong_with_a_tool_is_told_with_what_is_allowed() {
             TOUCH,
             "the tool `rod` goes up to 2.000e3 m/s",
         ),
+        (
+            "(shape: Capsule(length: 0.2, radius: 0.06), at: (0.05, 0.05, 0.17), pivot: (0.05, 0.05, 0.17))",
+            TOUCH,
+            "4: error: the tool's origin may come to its pivot: which way would its axis point there? | the axis z goes from the",
+        ),
+        (
+            "(shape: Capsule(length: 0.2, radius: 0.06), pivot: (0.05, 0.05, 0.3), path: [(t: 0, at: (0.05, 0.05, 0.2)), \
+             (t: 0.1, at: (0.05, 0.05, 0.4))])",
+            TOUCH,
+            "4: error: the tool's origin may come to its pivot: which way would its axis point there?",
+        ),
+        (
+            "(shape: Capsule(length: 0.2, radius: 0.06), at: (0.05, 0.05, 0.5), pivot: (0.05, 0.05, 0.3))",
+            TOUCH,
+            "4: error: the tool would be turned by 180 degrees for its axis to go through this | 120 degrees are allowed",
+        ),
+        (
+            "(shape: Sphere(radius: 0.06), at: (0.05, 0.05, 0.2), pivot: (0, 0, 1), port: (name: \"h\", speed: 0.1))",
+            TOUCH,
+            "4: error: a `pivot` beside a `port`: a hand turns the tool | leave one of both out; `path` and `moves` go with",
+        ),
         (ROD, "", "4: warning: nothing touches the tool `rod` | under `contacts`: Tool(tool: \"rod\")"),
         (ROD, "Tool(tool: \"rot\")", "there is no tool `rot` | did you mean `rod`?"),
         (ROD, "Tool(tool: \"rod\", friction: -0.1)", "5: error: `friction` must be 0 or above, found -0.1"),

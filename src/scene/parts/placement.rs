@@ -197,7 +197,7 @@ impl Placement {
 
     pub fn tool(&self, tool: &mut Tool) {
         // a hand counts from where its tool is
-        let Tool { shape, mesh, rounding, at, rotation, path, moves, port: _ } = tool;
+        let Tool { shape, mesh, rounding, at, rotation, path, moves, pivot, port: _ } = tool;
         if let Some(shape) = shape.as_mut().filter(|_| self.scale != 1.0) {
             *shape = shape.scaled(self.scale);
         }
@@ -214,6 +214,7 @@ impl Placement {
             self.point(&mut place.at);
             self.pose(&mut place.rotation);
         }
+        pivot.iter_mut().for_each(|pivot| self.point(pivot));
         for part in moves {
             self.way(&mut part.displacement);
             self.direction(&mut part.rotation);

@@ -30,6 +30,10 @@ pub struct Tool {
     /// What is added to that, each by a curve of its own.
     #[serde(default)]
     pub moves: Vec<ToolMove>,
+    /// A point (m) that its axis z goes through wherever it is, as a shaft goes through a trocar: it turns about that
+    /// point. Not with a `port`.
+    #[serde(default)]
+    pub pivot: Option<DVec3>,
     /// The device of a hand that moves it from where it is at first. Not with a `path` or `moves`.
     #[serde(default)]
     pub port: Option<Port>,
