@@ -20,6 +20,7 @@ fn the_pressure_under_a_block_is_its_weight_over_its_area() {
     let (pressure, area) = (1000.0 * 9.81 * 0.02, 4e-4);
     for run in configurations() {
         for points in ["Nodes", "Faces"] {
+            let sweeps = if points == "Faces" { 4 } else { 1 };
             let mut block = String::new();
             for (name, at) in [("high", 0.02), ("low", 0.0)] {
                 block += &format!(
@@ -41,7 +42,7 @@ fn the_pressure_under_a_block_is_its_weight_over_its_area() {
                 materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 2e4, poisson: 0.3), damping: 40)}},
                 constraints: [Fixed(body: \"low\", on: Set(\"z0\"), axes: [Z]), {wall}],
                 loads: [Gravity(body: \"high\", acceleration: (0, 0, -9.81), curve: Smooth(end: 0.2))],
-                contacts: [Between(bodies: (\"high\", \"low\"), points: {points})], probes: {{{probe}}},
+                contacts: [Between(bodies: (\"high\", \"low\"), points: {points}, sweeps: {sweeps})], probes: {{{probe}}},
                 output: (fields_every: 0.5, fields: [Displacement, Velocity, VonMises, ContactPressure, ContactArea, ContactGap, ContactSlip, ContactForce, ContactTraction]))"
             );
             let (mut simulation, frame) = last_frame(&run, &scene, 2);
