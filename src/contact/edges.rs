@@ -71,8 +71,7 @@ impl Surfaces {
         let (along, beside) = (p_end - p, q_end - q);
         let (aa, ab, bb) = (along.dot(along), along.dot(beside), beside.dot(beside));
         let size = aa * bb - ab * ab;
-        // no number is no angle
-        if !(size > PARALLEL * aa * bb) {
+        if size.is_nan() || size <= PARALLEL * aa * bb {
             return None;
         }
         let (a_off, b_off) = (along.dot(p - q), beside.dot(p - q));
@@ -118,6 +117,8 @@ pub fn distance([p, p_end]: [DVec3; 2], [q, q_end]: [DVec3; 2]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::expect_used)]
+
     use super::*;
 
     /// Two roofs of two triangles each, the second turned over and by an angle (degrees), its ridge so high above the
@@ -127,7 +128,6 @@ mod tests {
         let turned = glam::DQuat::from_rotation_z(angle.to_radians());
         let over = roof.map(|at| turned * DVec3::new(at.x, -at.y, -at.z) + height * DVec3::Z);
         let triangles = vec![[0, 2, 1], [0, 1, 3], [4, 6, 5], [4, 5, 7]];
-        let triangles: Vec<[u32; 3]> = triangles.into_iter().map(|[a, b, c]| [a, b, c]).collect();
         (Surfaces::new(8, triangles, vec![0, 0, 1, 1], vec![0.5; 4]), [roof, over].concat())
     }
 
@@ -145,7 +145,7 @@ mod tests {
     #[test]
     fn ridges_that_cross_are_as_far_apart_as_they_are() {
         for (height, angle) in [(0.1, 90.0), (0.1, 35.0), (-0.1, 90.0), (0.0, 90.0)] {
-            let found = crossing(height, angle).unwrap_or_else(|| panic!("{height} m, {angle}°"));
+            let found = crossing(height, angle).expect("they cross");
             assert!((found.gap - height).abs() < 1e-15 && (found.normal - DVec3::Z).length() < 1e-12, "{found:?}");
             assert!(found.weights.iter().flatten().all(|weight| (weight - 0.5).abs() < 1e-12), "{found:?}");
         }
