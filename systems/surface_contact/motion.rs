@@ -190,10 +190,10 @@ pub(super) fn search<T: Scalar>(
     }
     place(contacts, bodies, None);
     let mut trees = std::mem::take(&mut contacts.surface.trees);
-    let meets = |point: u32, face: u32| contacts.meeting(point, face).map(|of| of.thickness + reach);
+    let meets = |point: u32, face: u32, of_face: bool| contacts.meets(point, face, of_face);
     let Surface { triangles, points, places, apart, .. } = &contacts.surface;
     trees.iter_mut().for_each(|tree| tree.refit(|number| triangles.corners(places, number)));
-    let finder = Finder { surfaces: triangles, points, reach: &meets, apart };
+    let finder = Finder { surfaces: triangles, points, meets: &meets, apart };
     // reach is four steps of the fastest and a little: of what is fast lists serve some steps, too
     let skin = contacts.skin * (contacts.edge + 40.0 * reach).min(4.0 * contacts.edge);
     let lists = Lists::find(&finder, &trees, places, farthest + skin, cpu);
