@@ -1,6 +1,7 @@
 //! `surface_contact`: bodies keep each other, and themselves, outside.
 
 mod body_slices;
+mod crossings;
 mod device;
 mod faced;
 mod kernels;
@@ -38,7 +39,7 @@ pub fn system() -> System {
     System {
         shared_only: surfaces_stay,
         // where elements go, surfaces are found anew: on the host
-        // and points of faces there, too
+        // and points of faces and edges there, too
         device_when: |world| surfaces_stay(world) && nodes_meet_alone(world),
         before_steps: Some(device::before_steps),
         ..system.on_device(kernels::kernels)
@@ -54,7 +55,7 @@ fn surfaces_stay(world: &World) -> bool {
 /// Whether the points that meet others are all nodes.
 fn nodes_meet_alone(world: &World) -> bool {
     let contacts = world.get_resource::<SurfaceContacts>();
-    contacts.is_some_and(|contacts| !contacts.meetings.iter().flatten().any(|meeting| meeting.faces))
+    contacts.is_some_and(|contacts| !contacts.meetings.iter().flatten().any(|meeting| meeting.faces || meeting.edges))
 }
 
 /// How far points may go before it is looked anew what is near what, in edges; four times that of fast ones.
@@ -69,6 +70,8 @@ pub struct Meeting {
     pub thickness: f64,
     /// Whether the points are those of faces, and not nodes.
     pub faces: bool,
+    /// Whether edges that cross meet, too.
+    pub edges: bool,
 }
 
 /// Which bodies may meet, and what is known of their surfaces. Nothing in it is carried on from step to step but what
@@ -112,6 +115,7 @@ struct Surface {
     /// One a body.
     trees: Vec<Tree>,
     lists: Lists,
+    crossings: crossings::Crossings,
     /// What is near, as long as the lists hold.
     near: Near,
     /// Where the nodes are that are near something (m, from the reference).
@@ -230,7 +234,8 @@ impl SurfaceContacts {
     /// Whether nothing can be near anything, when nodes have moved so.
     fn sleeps(&self, moved: motion::Moved) -> bool {
         let farthest = self.farthest(motion::reach(self, moved.step)) + moved.nearer;
-        farthest <= self.surface.lists.radius && farthest < self.surface.first_wake
+        let edges_are_far = self.surface.crossings.near.is_empty();
+        farthest <= self.surface.lists.radius && farthest < self.surface.first_wake && edges_are_far
     }
 }
 
@@ -270,13 +275,14 @@ fn step<T: Scalar>(
     let largest = motion::largest_step(contacts, &bodies);
     let reach = motion::reach(contacts, largest);
     let nearer = motion::search(contacts, &bodies, (reach, moved), cpu);
-    if !faced::wake(contacts, reach, nearer) {
+    if !faced::wake(contacts, reach, nearer) && contacts.surface.crossings.near.is_empty() {
         contacts.surface.figures.asleep += 1;
         meet::release(&mut contacts.surface, &mut bodies);
         return meet::forget(contacts, &mut bodies);
     }
     motion::update_places(contacts, &bodies, cpu);
     faced::face(contacts, reach, nearer, cpu);
+    crossings::find(contacts, reach);
     meet::meet(contacts, largest, (clock, cpu), &mut bodies);
     contacts.surface.figures.examined += contacts.surface.found.len() as u64;
     contacts.surface.figures.contacts += contacts.surface.set.contacts.len() as u64;

@@ -31,15 +31,16 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World) {
     let mut contacts = SurfaceContacts::new(meeting.iter().map(|(_, body)| body.entity).collect());
     let place = |name: &String| meeting.iter().position(|(other, _)| *other == name);
     for (contact, pair) in pairs {
-        let (Contact::Between { thickness, sweeps, points, .. } | Contact::Itself { thickness, sweeps, points, .. }) =
-            contact
+        let (Contact::Between { thickness, sweeps, points, edges, .. }
+        | Contact::Itself { thickness, sweeps, points, edges, .. }) = contact
         else {
             continue;
         };
         contacts.sweeps = contacts.sweeps.max(*sweeps as usize);
         if let [Some(a), Some(b)] = pair.map(place) {
             let faces = *points == Points::Faces;
-            contacts.meet([a, b], Meeting { friction: contact.friction(), thickness: *thickness, faces });
+            contacts
+                .meet([a, b], Meeting { friction: contact.friction(), thickness: *thickness, faces, edges: *edges });
         }
     }
     let corners: Vec<DVec3> =

@@ -120,8 +120,11 @@ fn gaps_and_slips(body: Entity, surface: &[FacetNow], world: &mut World) -> Resu
             near[node][0] += weight;
             near[node][1] += weight * touch.get(first + 5);
         }
-        all[node][0] += weight;
-        all[node][1] += weight * touch.get(first + 6);
+        // points on other sides of an edge, that never touched anything, say nothing of how far it slid
+        if touch.get(first + 4) > 0.0 || touch.get(first + 6) > 0.0 {
+            all[node][0] += weight;
+            all[node][1] += weight * touch.get(first + 6);
+        }
     };
     if let Some(touch) = entity.get::<FaceTouch>() {
         let points = surface.iter().flat_map(|of| face_points(of.facet).iter().map(move |weights| (of, weights)));
@@ -131,11 +134,7 @@ fn gaps_and_slips(body: Entity, surface: &[FacetNow], world: &mut World) -> Resu
     }
     if let Some(touch) = entity.get::<SurfaceTouch>() {
         for (node, &row) in authoring.node_rows.iter().enumerate() {
-            let first = MEETING_NUMBERS * row as usize;
-            // nodes that never faced anything beside points that did say nothing
-            if touch.get(first + 4) > 0.0 || touch.get(first + 6) > 0.0 || entity.get::<FaceTouch>().is_none() {
-                add(node, 1.0, touch, first);
-            }
+            add(node, 1.0, touch, MEETING_NUMBERS * row as usize);
         }
     }
     let mut slid = vec![0.0; count];

@@ -196,6 +196,21 @@ fn gather<T: Scalar>(
             }
         }
     }
+    for (pair, crossing) in &surface.crossings.found {
+        let [one, other] = pair.map(|edge| surface.crossings.edges[edge as usize]);
+        let Some(Meeting { friction, thickness, .. }) = contacts.crossing(one.body, other.body) else { continue };
+        let outside = crossing.gap - thickness;
+        // nothing is known of how it got there, nor of how it slipped
+        let mut contact = Contact::new((crossing.normal, outside.max(-settling)), (friction[1], DVec3::ZERO));
+        let [of_one, of_other] = crossing.weights;
+        one.nodes.into_iter().zip(of_one).for_each(|(node, weight)| contact.add(slot_of(node, set), weight));
+        other.nodes.into_iter().zip(of_other).for_each(|(node, weight)| contact.add(slot_of(node, set), -weight));
+        if contact.gap + contact.normal.dot(contact.relative(&set.steps)) < 0.0 {
+            set.contacts.push(contact);
+            // nodes are the first of the points
+            met.push(Met { point: one.nodes[0], first: false, gap: outside });
+        }
+    }
     foreseen.iter().for_each(|(node, _)| slots[*node as usize] = u32::MAX);
     let surface = &mut contacts.surface;
     (surface.slots, surface.met, surface.foreseen) = (slots, met, foreseen);

@@ -3,10 +3,10 @@
 
 use super::body_slices::{BodySlices, vector};
 use super::survey::MARGIN;
-use super::{MeetingColumns, Surface, SurfaceContacts};
+use super::{MeetingColumns, Surface, SurfaceContacts, crossings};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
-use crate::contact::{Finder, Lists};
+use crate::contact::{Finder, Lists, Point};
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -198,11 +198,15 @@ pub(super) fn search<T: Scalar>(
     let skin = contacts.skin * (contacts.edge + 40.0 * reach).min(4.0 * contacts.edge);
     let lists = Lists::find(&finder, &trees, places, farthest + skin, cpu);
     let listed = lists.points.iter().map(|&point| points[point as usize]);
-    let near = triangles.neighbourhood(listed, &lists.triangles);
+    let listed: Vec<Point> = listed.collect();
+    (contacts.surface.trees, contacts.surface.lists) = (trees, lists);
+    crossings::list(contacts, farthest + skin);
     let surface = &mut contacts.surface;
+    let among: Vec<u32> = surface.lists.triangles.iter().copied().chain(surface.crossings.triangles()).collect();
+    let near = surface.triangles.neighbourhood(listed.into_iter(), &among);
     surface.wake.clear();
-    surface.wake.resize(lists.points.len(), 0.0);
-    (surface.trees, surface.lists, surface.near) = (trees, lists, near);
+    surface.wake.resize(surface.lists.points.len(), 0.0);
+    surface.near = near;
     surface.since.begin(bodies);
     surface.figures.builds += 1;
     0.0

@@ -1,6 +1,7 @@
 //! What the surfaces of the bodies are, where they are, and what may be near what.
 
 use super::body_slices::Kept;
+use super::crossings::Crossings;
 use super::motion::Since;
 use super::{MeetingColumns, Surface, SurfaceContacts};
 use crate::backend::cpu::Cpu;
@@ -11,7 +12,7 @@ use bevy_ecs::prelude::*;
 use glam::DVec3;
 
 /// Points and faces that are nearer than this at rest, in reaches, are never in each other's way.
-const NEAR_AT_REST: f64 = 1.5;
+pub(super) const NEAR_AT_REST: f64 = 1.5;
 
 /// How deep behind a face is still its inside at most, in edges; of thin elements half of what is behind it.
 const DEEPEST: f64 = 0.5;
@@ -141,6 +142,9 @@ fn survey(
     surface.trees = (0..contacts.bodies.len() as u32).map(of_body).collect();
     contacts.surface = surface;
     near_at_rest(contacts, &rest);
+    if contacts.meetings.iter().flatten().any(|meeting| meeting.edges) {
+        contacts.surface.crossings = Crossings::of(&contacts.surface.triangles, rest);
+    }
 }
 
 /// Where the numbers of a point are, of a node by its row.

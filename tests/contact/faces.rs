@@ -1,6 +1,6 @@
 //! Points of faces: how even pressures are across meshes that do not match, friction, and what else must hold of them.
 
-use crate::configurations::{Configuration, configurations, near};
+use crate::configurations::{Configuration, ELEMENTS, configurations, near};
 
 /// Two blocks between walls whose cells do not match, pressed together (C12): by how much stresses are off the pressure,
 /// and the sum of what one feels (N).
@@ -27,22 +27,43 @@ fn patch(run: &Configuration, elements: &str, cells: (u32, u32), contact: &str) 
     (worst, simulation.contact("high").unwrap().force.z)
 }
 
-/// The contact patch test on meshes that do not match (C12). Nodes of both surfaces leave stresses off by 2 to 3 % of
-/// tetrahedra and 8 to 15 % of hexahedra after four sweeps; points of faces by BOUNDS.
+/// Stresses with points of faces are off the pressure by less than a bound, and by less than a share of what nodes leave.
+fn is_even(run: &Configuration, elements: &str, cells: (u32, u32)) {
+    let what = format!("{}, {elements}, {cells:?}", run.name);
+    let mut off = [0.0; 2];
+    for (off, points) in off.iter_mut().zip(["Nodes", "Faces"]) {
+        let (worst, force) = patch(run, elements, cells, &format!(", sweeps: 4, points: {points}"));
+        near(&what, force, 100.0 * 4e-4, 0.04, 2e-3);
+        *off = worst;
+    }
+    let [of_nodes, of_faces] = off;
+    println!("{what}: stresses off by {of_faces:.4} with points of faces, {of_nodes:.4} with nodes");
+    assert!(of_faces < 0.018 && of_faces < 0.75 * of_nodes, "{what}: {of_faces} and {of_nodes}");
+}
+
+/// The contact patch test on meshes that do not match (C12). After four sweeps nodes of both surfaces leave stresses off by
+/// 2 to 3 % with tetrahedra and 8 to 15 % with hexahedra; points of faces are to come within 1.5 %, and a fifth of that.
 #[test]
 fn points_of_faces_pass_the_patch_test_more_exactly_than_nodes() {
+    for run in configurations().iter().filter(|run| !run.name.starts_with("GPU")) {
+        for elements in ["Tet4", "Hex8"] {
+            is_even(run, elements, (4, 6));
+        }
+    }
+}
+
+#[test]
+#[ignore = "long"]
+fn points_of_faces_pass_the_patch_test_on_other_meshes_and_beside_a_gpu() {
     for run in configurations() {
         // on a GPU the columns come and go in every step
-        let on_gpu = run.name.starts_with("GPU");
-        for (elements, bound) in if on_gpu { vec![("Tet4", 0.02)] } else { vec![("Tet4", 0.02), ("Hex8", 0.03)] } {
-            for cells in if on_gpu { vec![(4, 6)] } else { vec![(4, 6), (7, 5)] } {
-                let (of_nodes, _) = patch(&run, elements, cells, ", sweeps: 4");
-                let (of_faces, force) = patch(&run, elements, cells, ", sweeps: 4, points: Faces");
-                let what = format!("{}, {elements}, {cells:?}", run.name);
-                println!("{what}: stresses off by {of_faces:.4} with points of faces, {of_nodes:.4} with nodes");
-                assert!(of_faces < bound && of_faces < 0.7 * of_nodes, "{what}: {of_faces} and {of_nodes}");
-                near(&what, force, 100.0 * 4e-4, 0.04, 2e-3);
+        let elements = if run.name.starts_with("GPU") { &ELEMENTS[..1] } else { &ELEMENTS[..] };
+        for elements in elements {
+            for points in ["Nodes", "Faces"] {
+                let (worst, _) = patch(&run, elements, (7, 5), &format!(", points: {points}"));
+                println!("{}, {elements}: off by {worst:.4} with {points} in one sweep", run.name);
             }
+            is_even(&run, elements, (7, 5));
         }
     }
 }

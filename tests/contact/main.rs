@@ -7,6 +7,7 @@ mod bits;
 #[path = "../physics/configurations.rs"]
 mod configurations;
 mod contact_fields;
+mod edges;
 mod faces;
 #[allow(dead_code)]
 #[path = "../physics/frames.rs"]

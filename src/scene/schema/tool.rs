@@ -201,6 +201,9 @@ pub enum Contact {
         /// Which points of each surface stay outside the other.
         #[serde(default)]
         points: Points,
+        /// That edges which cross stay outside of each other, too.
+        #[serde(default)]
+        edges: bool,
     },
     /// The surface of a body and itself: folds and copies stay outside of each other.
     Itself {
@@ -222,6 +225,9 @@ pub enum Contact {
         /// Which points of the surface stay outside.
         #[serde(default)]
         points: Points,
+        /// That edges which cross stay outside of each other, too.
+        #[serde(default)]
+        edges: bool,
     },
 }
 
