@@ -250,7 +250,7 @@ fn what_is_wrong_with_what_a_tool_takes_and_sucks_is_told() {
 
 #[test]
 fn what_is_wrong_with_a_free_tool_is_told_with_what_is_allowed() {
-    let ball = |rest: &str| format!("(shape: Sphere(radius: 0.03), at: (0.05, 0.05, 0.14), {rest})");
+    let ball = |rest: &str| format!("(shape: Sphere(radius: 0.06), at: (0.05, 0.05, 0.17), {rest})");
     let either = "a free tool has either a `mass` (kg) or a `density` (kg/m³)";
     let cases = [
         ("free: ()", format!("4: error: how heavy is it? | {either}")),
@@ -275,7 +275,7 @@ fn what_is_wrong_with_a_free_tool_is_told_with_what_is_allowed() {
     }
     let plane = told("(shape: Plane(), at: (0, 0, -1), free: (mass: 1))", TOUCH, "");
     assert!(plane.contains("4: error: a plane has no end: it cannot move freely | take a `Box`"), "{plane}");
-    let inside = told("(shape: Sphere(radius: 0.03), at: (0.05, 0.05, 0.1), free: (mass: 1))", TOUCH, "");
+    let inside = told("(shape: Sphere(radius: 0.06), at: (0.05, 0.05, 0.13), free: (mass: 1))", TOUCH, "");
     assert!(inside.contains("inside the tool `rod` at the start, the deepest by 3.000e-2 m"), "{inside}");
     for more in ["analysis: Static(),", "start: Equilibrium(),"] {
         let found = told(&ball("free: (mass: 1)"), TOUCH, more);

@@ -8,7 +8,8 @@ use sinew::systems::Registry;
 use sinew::{BackendChoice, Options, Simulation};
 
 /// The scenes, and what makes each of them short and coarse.
-pub const SCENES: [(&str, &[&str]); 16] = [
+pub const SCENES: [(&str, &[&str]); 17] = [
+    ("ball_on_tissue", &["bodies.tissue.mesh.cells=(12, 8, 3)", "duration=0.15"]),
     ("cataract", &crate::cataract::SHORT),
     ("cube_under_gravity", &["bodies.cube.mesh.cells=(5, 5, 5)", "duration=0.3"]),
     ("folded_strip", &["bodies.strip.mesh.cells=(24, 3, 2)", "duration=0.5"]),

@@ -72,6 +72,24 @@ fn the_instrument_goes_through_its_trocar_and_strokes_tissue() {
     assert_eq!(simulation.tool("instrument").unwrap().nodes, 0);
 }
 
+#[test]
+fn the_ball_comes_to_rest_on_tissue_and_weighs_on_it() {
+    let mut simulation =
+        Simulation::new(&scene("ball_on_tissue", &["bodies.tissue.mesh.cells=(18, 12, 4)"]), &reference()).unwrap();
+    simulation.advance_to(0.03).unwrap();
+    let falling = simulation.tool("ball").unwrap();
+    assert_eq!(falling.nodes, 0, "6 mm take 35 ms");
+    simulation.finish().unwrap();
+    let reading = simulation.tool("ball").unwrap();
+    let free = reading.free.unwrap();
+    let weight = free.mass * 9.81;
+    assert!(near(reading.force.z, weight, 0.02), "{reading:?}");
+    assert!(free.velocity.length() < 5e-3 && reading.penetration < 1e-9 && reading.loss > 0.0, "{reading:?}");
+    // on its way it has gone on, and has sunk in, but not through
+    assert!(free.center.x > -0.008 && free.center.x < 0.02 && free.center.y.abs() < 1e-6, "{free:?}");
+    assert!(free.center.z > 0.004 && free.center.z < 0.0078, "{free:?}");
+}
+
 /// Half of the slide, and the end: the needle is as deep all the time, and feels it but for a ripple from node to node.
 #[test]
 #[ignore = "long"]
