@@ -72,7 +72,7 @@ impl Surfaces {
         let (aa, ab, bb) = (along.dot(along), along.dot(beside), beside.dot(beside));
         let size = aa * bb - ab * ab;
         // no number is no angle
-        if !(size > PARALLEL * aa * bb) {
+        if size.is_nan() || size <= PARALLEL * aa * bb {
             return None;
         }
         let (a_off, b_off) = (along.dot(p - q), beside.dot(p - q));

@@ -98,6 +98,8 @@ impl Geometry {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::unwrap_used)]
+
     use super::*;
     use crate::tools::Solid;
     use std::f64::consts::PI;
