@@ -6,8 +6,8 @@ use glam::DVec3;
 /// Edges are parallel where the sine of the angle between them is below the root of this: then nodes see each other.
 const PARALLEL: f64 = 1e-6;
 
-/// An edge is a ridge towards what it crosses where both its faces fall off from the normal by more than this (3°); what is
-/// flatter the points of surfaces see.
+/// An edge is a ridge towards what it crosses where both its faces fall off from the normal by more than this (3°);
+/// what is flatter the points of surfaces see.
 const FALLS: f64 = 0.05;
 
 /// An edge between two triangles.
@@ -35,8 +35,8 @@ pub struct Crossing {
 }
 
 impl Surfaces {
-    /// The edges that have two triangles, and of each triangle the numbers of those that are its sides; `u32::MAX` where
-    /// one has not two.
+    /// The edges that have two triangles, and of each triangle the numbers of those that are its sides; `u32::MAX`
+    /// where one has not two.
     pub fn edges(&self) -> (Vec<Edge>, Vec<[u32; 3]>) {
         let mut edges = Vec::new();
         let mut sides = vec![[NONE; 3]; self.triangles.len()];
@@ -63,8 +63,8 @@ impl Surfaces {
         (edges, sides)
     }
 
-    /// How two edges cross; `None` where they are nearest at an end or parallel, where one of them is no ridge towards the
-    /// other, or where they are farther apart than `reach` or deeper in each other than insides go (m).
+    /// How two edges cross; `None` where they are nearest at an end or parallel, where one of them is no ridge towards
+    /// the other, or where they are farther apart than `reach` or deeper in each other than insides go (m).
     pub fn crossing(&self, now: Placed<'_>, one: &Edge, other: &Edge, reach: f64) -> Option<Crossing> {
         let ends = |edge: &Edge| edge.nodes.map(|node| now.places[node as usize]);
         let ([p, p_end], [q, q_end]) = (ends(one), ends(other));

@@ -9,8 +9,8 @@ const OF_TRIANGLE: [[f64; 4]; 3] = [
     [1.0 / 6.0, 1.0 / 6.0, 2.0 / 3.0, 0.0],
 ];
 
-/// Bilinear weights of the corners of a quadrilateral at the points of Gauss, 2 × 2: of the nearest corner ¼ (1 + 1/√3)²,
-/// of the one across ¼ (1 − 1/√3)².
+/// Bilinear weights of the corners of a quadrilateral at the points of Gauss, 2 × 2: of the nearest corner ¼ (1 +
+/// 1/√3)², of the one across ¼ (1 − 1/√3)².
 const NEAREST: f64 = 0.622_008_467_928_146_2;
 const BESIDE: f64 = 1.0 / 6.0;
 const ACROSS: f64 = 0.044_658_198_738_520_45;
@@ -21,8 +21,8 @@ const OF_QUADRILATERAL: [[f64; 4]; 4] = [
     [BESIDE, ACROSS, BESIDE, NEAREST],
 ];
 
-/// What the corners of a facet have of each of its points, the point nearest to the first corner first; a triangle repeats
-/// its last corner.
+/// What the corners of a facet have of each of its points, the point nearest to the first corner first; a triangle
+/// repeats its last corner.
 pub fn face_points([_, _, third, last]: [u32; 4]) -> &'static [[f64; 4]] {
     if third == last { &OF_TRIANGLE } else { &OF_QUADRILATERAL }
 }
@@ -30,7 +30,8 @@ pub fn face_points([_, _, third, last]: [u32; 4]) -> &'static [[f64; 4]] {
 /// Steps of Newton from the middle of a quadrilateral; of a parallelogram the first is exact.
 const STEPS: usize = 4;
 
-/// What the corners of a quadrilateral have of a place on it, by bilinear weights; of a place beside it those of its rim.
+/// What the corners of a quadrilateral have of a place on it, by bilinear weights; of a place beside it those of its
+/// rim.
 pub fn bilinear(at: DVec3, [a, b, c, d]: [DVec3; 4]) -> [f64; 4] {
     let (mut x, mut y) = (0.5, 0.5);
     for _ in 0..STEPS {

@@ -32,8 +32,8 @@ pub struct Finder<'a> {
     pub surfaces: &'a Surfaces,
     /// The points that may meet them.
     pub points: &'a [Point],
-    /// Whether triangles of a body may be in the way of points of another: of nodes, and, if the third is true, of points
-    /// of faces.
+    /// Whether triangles of a body may be in the way of points of another: of nodes, and, if the third is true, of
+    /// points of faces.
     pub meets: &'a (dyn Fn(u32, u32, bool) -> bool + Sync),
     /// Pairs of a point and a triangle that are never in each other's way, ascending.
     pub apart: &'a [(u32, u32)],

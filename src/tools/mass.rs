@@ -50,8 +50,8 @@ impl Sums {
 }
 
 impl Geometry {
-    /// Volume (m³), centre (m) and, for a density of one, moments of inertia about it (m⁵): of balls and of boxes that are
-    /// not rounded in closed form, of others to some 1e-5. `None` of a plane, which has no end.
+    /// Volume (m³), centre (m) and, for a density of one, moments of inertia about it (m⁵): of balls and of boxes that
+    /// are not rounded in closed form, of others to some 1e-5. `None` of a plane, which has no end.
     pub fn volume_moments(&self) -> Option<(f64, DVec3, DMat3)> {
         if let Self::Analytic(solid) = self {
             match *solid.shape() {
@@ -87,8 +87,8 @@ impl Geometry {
         Some((volume, middle, about(second - outer * volume)))
     }
 
-    /// What resists its motion if it is filled evenly: a mass (kg), or a density (kg/m³) where there is none. `None` of a
-    /// plane.
+    /// What resists its motion if it is filled evenly: a mass (kg), or a density (kg/m³) where there is none. `None` of
+    /// a plane.
     pub fn filled(&self, mass: Option<f64>, density: f64) -> Option<Inertia> {
         let (volume, center, moments) = self.volume_moments()?;
         let mass = mass.unwrap_or(density * volume);

@@ -1,8 +1,8 @@
 //! The kernels of contact between surfaces. In a step, for each body: where its surface is
 //! (`shaders/surface_contact_place.wgsl`), where it would go (`surface_contact_foresee`), what it faces
 //! (`surface_contact`). Then in each sweep for all: normal forces (`surface_contact_impulse`), what they do to nodes
-//! (`surface_contact_apply`), and the same with `surface_contact_friction` where there is any. At last, for each body: its
-//! loads (`surface_contact_push`), and what is kept of contacts (`surface_contact_touch`).
+//! (`surface_contact_apply`), and the same with `surface_contact_friction` where there is any. At last, for each body:
+//! its loads (`surface_contact_push`), and what is kept of contacts (`surface_contact_touch`).
 
 use super::SurfaceContacts;
 use super::device::{MOTION_WORDS, SurfaceContact, find};

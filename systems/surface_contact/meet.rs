@@ -18,8 +18,8 @@ const SLIDES: f64 = 3.0;
 /// How far a point that is inside comes out in a step at most, in edges.
 const OUT: f64 = 0.1;
 
-/// Points of faces share their nodes' masses while they are no farther from touching than this, in edges: who shares stays
-/// the same from step to step then, and pressures come to rest.
+/// Points of faces share their nodes' masses while they are no farther from touching than this, in edges: who shares
+/// stays the same from step to step then, and pressures come to rest.
 const SHARES: f64 = 1e-3;
 
 /// A contact of the set.
@@ -56,8 +56,8 @@ impl SurfaceContacts {
 }
 
 impl Surface {
-    /// The corners of what a point faces and their weights: of a node those of the triangle, of a point of a face those of
-    /// the whole facet.
+    /// The corners of what a point faces and their weights: of a node those of the triangle, of a point of a face those
+    /// of the whole facet.
     fn corners_of(&self, point: &Point, facing: &Facing) -> ([u32; 4], [f64; 4]) {
         let facet = self.facets[facing.triangle as usize];
         if point.triangle.is_some() && facet[2] != facet[3] {
@@ -111,8 +111,9 @@ pub(super) fn meet<T: Scalar>(
     (contacts.surface.set, contacts.surface.found) = (set, found);
 }
 
-/// Finds how deep points may be inside: as deep as they are found there and no motion has brought them, by and by less. A
-/// point that was not seen before (at the start, laid bare, at a corner that comes round) is not thrown out in a step.
+/// Finds how deep points may be inside: as deep as they are found there and no motion has brought them, by and by less.
+/// A point that was not seen before (at the start, laid bare, at a corner that comes round) is not thrown out in a
+/// step.
 fn begin<T: Scalar>(
     contacts: &SurfaceContacts,
     found: &[Found],

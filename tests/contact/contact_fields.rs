@@ -49,7 +49,8 @@ fn the_pressure_under_a_block_is_its_weight_over_its_area() {
             let rest = simulation.rest_positions("high").unwrap();
             // what is left of the motion, e^(−20 · .8 s), and of f32
             let bound = run.bound(1e-5, 1e-3);
-            // what points of faces leave to the next step goes from node to node: twice what one sweep was seen to leave
+            // what points of faces leave to the next step goes from node to node: twice what one sweep was seen to
+            // leave
             let at_node = if points == "Faces" { 0.03 } else { bound };
             let (mut footprint, mut touching) = (0.0, 0);
             for (node, place) in rest.iter().enumerate() {
@@ -80,8 +81,8 @@ fn the_pressure_under_a_block_is_its_weight_over_its_area() {
     }
 }
 
-/// A block whose top is moved by 2 cm along another slides by as much below, less what it leans: μ p/G of its height, half a
-/// per cent of the way. What holds it is μ times what presses it, by the law exactly where all of it slides.
+/// A block whose top is moved by 2 cm along another slides by as much below, less what it leans: μ p/G of its height,
+/// half a per cent of the way. What holds it is μ times what presses it, by the law exactly where all of it slides.
 #[test]
 fn a_block_that_is_drawn_slides_as_far_as_it_is_drawn() {
     for run in configurations() {

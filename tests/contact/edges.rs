@@ -5,8 +5,8 @@ use glam::DVec3;
 use sinew::Simulation;
 use sinew::components::DisplacementIncrement;
 
-/// Where the middles of the two ridges are that cross, one above the other, both between two nodes: how far they are apart
-/// (m).
+/// Where the middles of the two ridges are that cross, one above the other, both between two nodes: how far they are
+/// apart (m).
 fn between_ridges(simulation: &mut Simulation, ridges: &[(&str, Vec<usize>); 2]) -> f64 {
     let [low, high] = ridges.each_ref().map(|(body, nodes)| {
         let (rest, u) = (simulation.rest_positions(body).unwrap(), simulation.displacements(body).unwrap());

@@ -2,8 +2,8 @@
 
 use crate::configurations::{Configuration, ELEMENTS, configurations, near};
 
-/// Two blocks between walls whose cells do not match, pressed together (C12): by how much stresses are off the pressure,
-/// and the sum of what one feels (N).
+/// Two blocks between walls whose cells do not match, pressed together (C12): by how much stresses are off the
+/// pressure, and the sum of what one feels (N).
 fn patch(run: &Configuration, elements: &str, cells: (u32, u32), contact: &str) -> (f64, f64) {
     let (below, above) = cells;
     let mut simulation = run.start(&format!(
@@ -27,7 +27,8 @@ fn patch(run: &Configuration, elements: &str, cells: (u32, u32), contact: &str) 
     (worst, simulation.contact("high").unwrap().force.z)
 }
 
-/// Stresses with points of faces are off the pressure by less than a bound, and by less than a share of what nodes leave.
+/// Stresses with points of faces are off the pressure by less than a bound, and by less than a share of what nodes
+/// leave.
 fn is_even(run: &Configuration, elements: &str, cells: (u32, u32)) {
     let what = format!("{}, {elements}, {cells:?}", run.name);
     let mut off = [0.0; 2];
@@ -41,8 +42,9 @@ fn is_even(run: &Configuration, elements: &str, cells: (u32, u32)) {
     assert!(of_faces < 0.018 && of_faces < 0.75 * of_nodes, "{what}: {of_faces} and {of_nodes}");
 }
 
-/// The contact patch test on meshes that do not match (C12). After four sweeps nodes of both surfaces leave stresses off by
-/// 2 to 3 % with tetrahedra and 8 to 15 % with hexahedra; points of faces are to come within 1.5 %, and a fifth of that.
+/// The contact patch test on meshes that do not match (C12). After four sweeps nodes of both surfaces leave stresses
+/// off by 2 to 3 % with tetrahedra and 8 to 15 % with hexahedra; points of faces are to come within 1.5 %, and a fifth
+/// of that.
 #[test]
 fn points_of_faces_pass_the_patch_test_more_exactly_than_nodes() {
     for run in configurations().iter().filter(|run| !run.name.starts_with("GPU")) {

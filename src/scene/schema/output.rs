@@ -40,8 +40,8 @@ pub enum OutputField {
     ContactTraction,
     /// The part of that force into the surface, over the area that it presses on (Pa).
     ContactPressure,
-    /// The area that what touches a node presses on (m²): its share of the exposed faces around it that are turned to it;
-    /// 0 where nothing touches it.
+    /// The area that what touches a node presses on (m²): its share of the exposed faces around it that are turned to
+    /// it; 0 where nothing touches it.
     ContactArea,
     /// How far each node is outside of the face of another body, or of its own, that it faces (m); negative inside. The
     /// length of an edge of the surfaces where none is near.

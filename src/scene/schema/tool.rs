@@ -237,8 +237,8 @@ pub enum Points {
     /// Its nodes.
     #[default]
     Nodes,
-    /// Points of its faces, three of a triangle and four of a quadrilateral: pressures are more even where meshes do not
-    /// match.
+    /// Points of its faces, three of a triangle and four of a quadrilateral: pressures are more even where meshes do
+    /// not match.
     Faces,
 }
 
