@@ -118,6 +118,8 @@ pub fn distance([p, p_end]: [DVec3; 2], [q, q_end]: [DVec3; 2]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::panic)]
+
     use super::*;
 
     /// Two roofs of two triangles each, the second turned over and by an angle (degrees), its ridge so high above the
@@ -127,7 +129,7 @@ mod tests {
         let turned = glam::DQuat::from_rotation_z(angle.to_radians());
         let over = roof.map(|at| turned * DVec3::new(at.x, -at.y, -at.z) + height * DVec3::Z);
         let triangles = vec![[0, 2, 1], [0, 1, 3], [4, 6, 5], [4, 5, 7]];
-        let triangles: Vec<[u32; 3]> = triangles.into_iter().map(|[a, b, c]| [a, b, c]).collect();
+        let triangles: Vec<[u32; 3]> = triangles.into_iter().collect();
         (Surfaces::new(8, triangles, vec![0, 0, 1, 1], vec![0.5; 4]), [roof, over].concat())
     }
 
