@@ -128,8 +128,7 @@ mod tests {
         let roof = [(-1.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, -1.0, -1.0), (0.0, 1.0, -1.0)].map(DVec3::from);
         let turned = glam::DQuat::from_rotation_z(angle.to_radians());
         let over = roof.map(|at| turned * DVec3::new(at.x, -at.y, -at.z) + height * DVec3::Z);
-        let triangles = vec![[0, 2, 1], [0, 1, 3], [4, 6, 5], [4, 5, 7]];
-        let triangles: Vec<[u32; 3]> = triangles.into_iter().collect();
+        let triangles = vec![[0_u32, 2, 1], [0, 1, 3], [4, 6, 5], [4, 5, 7]];
         (Surfaces::new(8, triangles, vec![0, 0, 1, 1], vec![0.5; 4]), [roof, over].concat())
     }
 
