@@ -5,7 +5,6 @@ use crate::components::*;
 use crate::contact::face_points;
 use crate::error::Error;
 use crate::scene::schema::{OutputField, Quantity};
-use crate::systems::SurfaceContacts;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -46,6 +45,8 @@ struct FacetNow {
     share: DVec3,
     /// The facet with all four corners; a triangle repeats the last one.
     facet: [u32; 4],
+    /// Length of its first edge (m).
+    edge: f64,
 }
 
 /// The exposed surface of a body as it is.
@@ -70,7 +71,7 @@ fn surface_now(body: Entity, world: &mut World) -> Result<Vec<FacetNow>, Error> 
         let corners = if facet[2] == facet[3] { 3 } else { 4 };
         let area = 0.5 * ((b - a).cross(c - a) + (c - a).cross(d - a));
         let nodes = facet[..corners].iter().map(|&node| node as usize).collect();
-        FacetNow { nodes, share: area / corners as f64, facet }
+        FacetNow { nodes, share: area / corners as f64, facet, edge: a.distance(b) }
     };
     Ok(authoring.surface(alive).iter().flat_map(|face| face.facets()).map(now).collect())
 }
@@ -109,7 +110,7 @@ fn into_surface(force: DVec3, along: DVec3) -> f64 {
 fn gaps_and_slips(body: Entity, surface: &[FacetNow], world: &mut World) -> Result<Vec<[f64; 2]>, Error> {
     let wanted = [SurfaceTouch::NAME, FaceTouch::NAME, ToolTouch::NAME];
     bring_to_host(world, |entity, name| entity == body && wanted.contains(&name))?;
-    let nowhere = world.get_resource::<SurfaceContacts>().map_or(0.0, |contacts| contacts.edge);
+    let nowhere = surface.iter().map(|facet| facet.edge).sum::<f64>() / surface.len().max(1) as f64;
     let entity = world.entity(body);
     let Some(authoring) = entity.get::<Authoring>() else { return Ok(Vec::new()) };
     let count = authoring.node_rows.len();

@@ -44,7 +44,7 @@ pub enum OutputField {
     /// it; 0 where nothing touches it.
     ContactArea,
     /// How far each node is outside of the face of another body, or of its own, that it faces (m); negative inside. The
-    /// length of an edge of the surfaces where none is near.
+    /// mean length of an edge of its surface where none is near.
     ContactGap,
     /// The length that each node has slid along bodies and tools since the start (m).
     ContactSlip,
