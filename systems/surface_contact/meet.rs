@@ -56,8 +56,8 @@ impl SurfaceContacts {
 }
 
 impl Surface {
-    /// The corners of what a point faces and their weights: of a node those of the triangle, of a point of a face those of
-    /// the whole facet.
+    /// The corners of what a point faces and their weights: of a node those of the triangle, of a point of a face those
+    /// of the whole facet.
     pub(super) fn corners_of(&self, point: &Point, facing: &Facing) -> ([u32; 4], [f64; 4]) {
         let facet = self.facets[facing.triangle as usize];
         if point.triangle.is_some() && facet[2] != facet[3] {
@@ -69,8 +69,8 @@ impl Surface {
 }
 
 impl Surface {
-    /// How far a point is outside of the place on a facet that bears it (m): of a warped quadrilateral, that is not quite
-    /// its triangles, the gap that the step foresees is the one that is found after it, or forces would do work.
+    /// How far a point is outside of the place on a facet that bears it (m): of a warped quadrilateral, that is not
+    /// quite its triangles, the gap that the step foresees is the one that is found after it, or forces would do work.
     pub(super) fn gap_of_facet(&self, point: &Point, facing: &Facing) -> f64 {
         let (nodes, weights) = self.corners_of(point, facing);
         let at: DVec3 = nodes.iter().zip(weights).map(|(&node, weight)| self.places[node as usize] * weight).sum();
