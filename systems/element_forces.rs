@@ -154,7 +154,7 @@ impl Precise for f64 {
     ) -> Vec<usize> {
         let groups_a_patch = patch_groups(block.kind);
         match law.own_kernels.as_ref().filter(|_| cpu.has_vectors()) {
-            Some(own) => own.run_double(cpu, columns, law, block, groups_a_patch),
+            Some(own) => own.kernels().double(cpu, columns, law, block, groups_a_patch),
             None => run_block::<E, f64>(cpu, columns, law, groups_a_patch),
         }
     }
@@ -177,7 +177,7 @@ impl Precise for f32 {
             }
         };
         match law.own_kernels.as_ref().filter(|_| cpu.has_vectors()) {
-            Some(own) => own.run(cpu, columns, law, block, groups_a_patch),
+            Some(own) => own.kernels().single(cpu, columns, law, block, groups_a_patch),
             None => run_block_fast::<E>(cpu, columns, law, groups_a_patch),
         }
     }

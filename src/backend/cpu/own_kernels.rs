@@ -20,28 +20,9 @@ impl OwnKernels {
         Self(Arc::new(OfLaw { single, double }))
     }
 
-    /// As [`run_block`](super::run_block).
-    pub(crate) fn run(
-        &self,
-        cpu: &Cpu,
-        columns: BlockColumns<'_, '_, f32>,
-        law: &BlockLaw<f32>,
-        block: &Block,
-        groups_a_patch: usize,
-    ) -> Vec<usize> {
-        self.0.single(cpu, columns, law, block, groups_a_patch)
-    }
-
-    /// The same in f64.
-    pub(crate) fn run_double(
-        &self,
-        cpu: &Cpu,
-        columns: BlockColumns<'_, '_, f64>,
-        law: &BlockLaw<f64>,
-        block: &Block,
-        groups_a_patch: usize,
-    ) -> Vec<usize> {
-        self.0.double(cpu, columns, law, block, groups_a_patch)
+    /// The kernels, to run.
+    pub(crate) fn kernels(&self) -> &dyn Run {
+        &*self.0
     }
 }
 
@@ -58,7 +39,9 @@ impl fmt::Debug for OwnKernels {
     }
 }
 
-trait Run: Send + Sync {
+/// As [`run_block`](super::run_block), with one law.
+pub(crate) trait Run: Send + Sync {
+    /// In f32.
     fn single(
         &self,
         cpu: &Cpu,
@@ -68,6 +51,7 @@ trait Run: Send + Sync {
         groups_a_patch: usize,
     ) -> Vec<usize>;
 
+    /// In f64.
     fn double(
         &self,
         cpu: &Cpu,
