@@ -6,12 +6,6 @@
 @group(0) @binding(0) var<storage, read_write> surface_contacts: array<u32>;
 @group(0) @binding(0) var<storage, read_write> surface_touch: array<f32>;
 
-const TOUCH_NUMBERS: u32 = 8u;
-const FREE: f32 = 0.0;
-const FACES: f32 = 1.0;
-const STICKS: f32 = 2.0;
-const OUT: f32 = 0.1; // how far who is inside comes out in a step at most, in edges
-
 fn meeting(point: u32, triangle: u32) -> u32 {
     return surface.meetings + 4u * (point * surface.bodies + surface_faces[8u * triangle + 6u]);
 }

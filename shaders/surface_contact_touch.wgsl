@@ -3,10 +3,6 @@
 @group(0) @binding(0) var<storage, read> surface_rows: array<u32>;
 @group(0) @binding(0) var<storage, read_write> surface_touch: array<f32>;
 
-const TOUCH_NUMBERS: u32 = 8u;
-const STICKS: f32 = 2.0;
-const SLIDES: f32 = 3.0;
-
 fn collect(contact: u32, weight: f32) -> vec3<f32> {
     return vec3<f32>(0.0);
 }

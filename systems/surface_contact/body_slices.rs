@@ -74,10 +74,6 @@ impl<T: Scalar> BodySlices<'_, T> {
     /// Where a node would go.
     pub fn foresee(&self, row: usize, coefficients: &IntegrationCoefficients<f64>) -> Foreseen {
         let mass = self.mass[row].to_f64();
-        // inactive nodes stay where they are
-        if mass <= 0.0 {
-            return Foreseen { before: DVec3::ZERO, step: DVec3::ZERO, free: DVec3::ZERO, to_force: f64::INFINITY };
-        }
         let damping = self.damping.map_or(0.0, |damping| damping[row].to_f64());
         let force = vector(self.external, row) - vector(self.internal, row);
         coefficients.foresee(mass, damping, self.axes[row], vector(self.step, row), force)

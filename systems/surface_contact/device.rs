@@ -1,9 +1,9 @@
 //! Contact between surfaces on a GPU: what its kernels know of the surfaces, and lists of what may be near what.
 //!
 //! The host makes the lists, with a skin, and looks before each submission how far nodes have moved (a reduction on the
-//! device): a submission is no longer than they should hold. Should they not, kernels see that for themselves, in the step
-//! in which it is so, and go through all triangles: slow, and right. So no step ever misses a contact, and what is found
-//! does not depend on when lists are made.
+//! device): a submission is no longer than they should hold. Should they not, kernels see that for themselves, in the
+//! step in which it is so, and go through all triangles: slow, and right. So no step ever misses a contact, and what is
+//! found does not depend on when lists are made.
 
 use super::body_slices::slices;
 use super::{MeetingColumns, Surface, SurfaceContacts, motion, survey};
@@ -258,8 +258,8 @@ impl SurfaceContacts {
         }
     }
 
-    /// How many steps the lists should hold for, where nodes have come nearer (m) since they were made, and go so far in a
-    /// step (m).
+    /// How many steps the lists should hold for, where nodes have come nearer (m) since they were made, and go so far
+    /// in a step (m).
     fn steps_ahead(&self, nearer: f64, largest: f64) -> f64 {
         // half as fast again by the end of it
         let a_step = 3.0 * largest;

@@ -1,11 +1,12 @@
 //! The kernels of contact between surfaces. In a step, for each body: where its surface is
 //! (`shaders/surface_contact_place.wgsl`), where it would go (`surface_contact_foresee`), what it faces
 //! (`surface_contact`). Then in each sweep for all: normal forces (`surface_contact_impulse`), what they do to nodes
-//! (`surface_contact_apply`), and the same with `surface_contact_friction` where there is any. At last, for each body: its
-//! loads (`surface_contact_push`), and what is kept of contacts (`surface_contact_touch`).
+//! (`surface_contact_apply`), and the same with `surface_contact_friction` where there is any. At last, for each body:
+//! its loads (`surface_contact_push`), and what is kept of contacts (`surface_contact_touch`).
 
 use super::SurfaceContacts;
 use super::device::{MOTION_WORDS, SurfaceContact, find};
+use super::meet::{FACES, FREE, OUT, SLIDES, STICKS};
 use crate::backend::Buffers;
 use crate::backend::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};
 use crate::backend::step::with_step;
@@ -62,6 +63,14 @@ impl Shared {
     }
 }
 
+/// Constants of what is kept of a point, the same here and there.
+fn touch_constants() -> Fragment {
+    let states = [("FREE", FREE), ("FACES", FACES), ("STICKS", STICKS), ("SLIDES", SLIDES), ("OUT", OUT)];
+    let states = states.map(|(name, number)| format!("const {name}: f32 = {number:?};\n")).concat();
+    let text = format!("const TOUCH_NUMBERS: u32 = {MEETING_NUMBERS}u;\n{states}");
+    Fragment::new("generated: what is kept of a point", text)
+}
+
 /// See the module.
 pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     find(world);
@@ -100,6 +109,7 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
         all.push(
             shared
                 .with_nodes(kernel)
+                .fragment(touch_constants())
                 .fragment(shader!("surface_facing"))
                 .fragment(shader!("surface_motion_turns"))
                 .bind("surface_rows", shared.rows)
@@ -132,6 +142,7 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
         all.push(
             shared
                 .with_nodes(touch)
+                .fragment(touch_constants())
                 .bind("surface_rows", shared.rows)
                 .bind(SurfaceTouch::NAME, buffers.column(*body, SurfaceTouch::NAME))
                 .threads(of.count),

@@ -11,12 +11,12 @@ use glam::DVec3;
 
 /// What a point did in the last step, in [`SurfaceTouch`].
 pub(super) const FREE: f64 = 0.0;
-const FACES: f64 = 1.0;
-const STICKS: f64 = 2.0;
-const SLIDES: f64 = 3.0;
+pub(super) const FACES: f64 = 1.0;
+pub(super) const STICKS: f64 = 2.0;
+pub(super) const SLIDES: f64 = 3.0;
 
 /// How far a point that is inside comes out in a step at most, in edges.
-const OUT: f64 = 0.1;
+pub(super) const OUT: f64 = 0.1;
 
 /// A contact of the set.
 #[derive(Clone, Copy, Debug)]
@@ -95,8 +95,9 @@ pub(super) fn meet<T: Scalar>(
     (contacts.surface.set, contacts.surface.found) = (set, found);
 }
 
-/// Finds how deep points may be inside: as deep as they are found there and no motion has brought them, by and by less. A
-/// point that was not seen before (at the start, laid bare, at a corner that comes round) is not thrown out in a step.
+/// Finds how deep points may be inside: as deep as they are found there and no motion has brought them, by and by less.
+/// A point that was not seen before (at the start, laid bare, at a corner that comes round) is not thrown out in a
+/// step.
 fn begin<T: Scalar>(
     contacts: &SurfaceContacts,
     found: &[Found],
