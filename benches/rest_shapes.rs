@@ -1,6 +1,6 @@
-//! What a tetrahedron costs with its rest shape from memory (40 bytes), and with the same computed from the places at rest
-//! of a patch's nodes (12 bytes a node): `cargo bench --bench rest_shapes`. The element kernel alone, without what follows
-//! at nodes, by turns, the best of each.
+//! What a tetrahedron costs with its rest shape from memory (40 bytes), and with the same computed from the places at
+//! rest of a patch's nodes (12 bytes a node): `cargo bench --bench rest_shapes`. The element kernel alone, without what
+//! follows at nodes, by turns, the best of each.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use glam::DVec3;

@@ -56,7 +56,8 @@ macro_rules! copy_of {
 copy_of!(OwnNeoHookean: NeoHookean { shear, bulk });
 copy_of!(OwnMooneyRivlin: MooneyRivlin { c10, c01, bulk });
 
-/// Ψ = μ/(2b) (e^(b(Ī₁ − 3)) − 1) + κ/2 (J − 1)² (Demiray 1972), as it is written by hand: no polynomial, and not built in.
+/// Ψ = μ/(2b) (e^(b(Ī₁ − 3)) − 1) + κ/2 (J − 1)² (Demiray 1972), as it is written by hand: no polynomial, and not built
+/// in.
 #[derive(Clone, Copy)]
 struct Demiray<R> {
     mu: R,

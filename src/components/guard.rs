@@ -38,8 +38,8 @@ pub struct GuardMemory {
 }
 
 impl GuardMemory {
-    /// Steps that an imbalance must last which the last half step may explain. What is moved on at the speed that it got
-    /// in one step has spent (2n − 1)² times the strain energy of half a step after n of them: of 16 that is a
+    /// Steps that an imbalance must last which the last half step may explain. What is moved on at the speed that it
+    /// got in one step has spent (2n − 1)² times the strain energy of half a step after n of them: of 16 that is a
     /// thousandth.
     pub const DOUBT: u64 = 16;
 

@@ -34,8 +34,8 @@ pub trait Law: Elastic<f64> + Elastic<f64, Of<f32>: Uniform> {
 /// for scenes to name it, this.
 ///
 /// The CPU runs it in kernels that are compiled for it, as for a built-in law. To run it on a GPU, on machines without
-/// vector registers and where single elements are looked at it is recorded: run once over numbers that note what is done
-/// to them. So it needs no WGSL.
+/// vector registers and where single elements are looked at it is recorded: run once over numbers that note what is
+/// done to them. So it needs no WGSL.
 pub trait RustLaw: Elastic<f64, Of<f32>: 'static> + 'static {
     /// What stands under `parameters` in a scene: a struct of `f64`, each with its unit.
     type Parameters: DeserializeOwned;

@@ -188,9 +188,9 @@ pub(super) fn check_balance(
 /// that went.
 ///
 /// Energies are those of the middle of the last step, and its second half is not counted yet: of a mode of frequency ω
-/// that is (ωΔt/2)² of its kinetic energy, never more than that where the step is stable. Where something begins to move
-/// at once (a tool touches it, a weight is let go) this is all there is, and says nothing. So what is no more than the
-/// kinetic energy counts once it has lasted [`GuardMemory::DOUBT`] steps, or at the end.
+/// that is (ωΔt/2)² of its kinetic energy, never more than that where the step is stable. Where something begins to
+/// move at once (a tool touches it, a weight is let go) this is all there is, and says nothing. So what is no more than
+/// the kinetic energy counts once it has lasted [`GuardMemory::DOUBT`] steps, or at the end.
 fn balance(memory: &mut GuardMemory, seen: &Sample, settings: &GuardSettings, last: bool, world: &World) -> (f64, f64) {
     let Held { lasting: held, all, viscous } = held_by(seen, world);
     memory.scale = memory.scale.max(all).max(seen.internal_work.abs());

@@ -6,7 +6,8 @@ use sinew::components::*;
 use sinew::systems::{Registry, SurfaceContacts};
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
 
-/// Two turned blocks of 2 cm whose faces overlap by a little, with steps and forces at random, some of whose nodes stuck.
+/// Two turned blocks of 2 cm whose faces overlap by a little, with steps and forces at random, some of whose nodes
+/// stuck.
 fn world(friction: f64, sweeps: u32) -> Simulation {
     let text = format!(
         "(duration: 1, bodies: {{
@@ -56,10 +57,10 @@ fn run(friction: f64, sweeps: u32) -> Option<Pair> {
     Some(Pair { before, host, device })
 }
 
-/// A place is rounded some eight times on its way to a gap (a sum at rest, displacements, the nearest of a triangle, and
-/// a difference), each to half a unit of 4 cm, and a force is a gap times what a metre comes to; sums and quotients of
-/// forces themselves take some hundred roundings. Where a point just touches on one side and just does not on the other,
-/// the shares of its nodes differ, and so do forces around it: of a random field that may be one in fifty.
+/// A place is rounded some eight times on its way to a gap (a sum at rest, displacements, the nearest of a triangle,
+/// and a difference), each to half a unit of 4 cm, and a force is a gap times what a metre comes to; sums and quotients
+/// of forces themselves take some hundred roundings. Where a point just touches on one side and just does not on the
+/// other, the shares of its nodes differ, and so do forces around it: of a random field that may be one in fifty.
 #[test]
 fn surfaces_push_the_same_nodes_with_the_same_forces() {
     for (friction, sweeps) in [(0.0, 1), (0.4, 1), (0.4, 3)] {

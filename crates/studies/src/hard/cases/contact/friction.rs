@@ -121,14 +121,14 @@ pub fn ironing(trial: &mut Trial<'_>) -> Result<(), Error> {
     }
     trial.most("ripple of the normal force", (most - least) / (0.5 * (most + least)), 0.2);
     trial.near("tangential over normal force of nodes that slide", of_nodes.x / of_nodes.y, friction, 0.01);
-    // what friction draws along leans against the ball: by 3 % pressed in by a tenth of the radius and 1 % by a twentieth,
-    // more for ν .45 and less for .3
+    // what friction draws along leans against the ball: by 3 % pressed in by a tenth of the radius and 1 % by a
+    // twentieth, more for ν .45 and less for .3
     trial.near("force along the way over the force down", sums.x / sums.y, friction, 0.05);
     Ok(())
 }
 
-/// Sums of the tangential and normal forces (N) of the nodes that slide along a ball in a place (m). What the ball feels
-/// has been asked for: its columns are there.
+/// Sums of the tangential and normal forces (N) of the nodes that slide along a ball in a place (m). What the ball
+/// feels has been asked for: its columns are there.
 fn sliding(simulation: &mut Simulation, center: DVec3) -> Result<DVec2, Error> {
     let body = simulation.body("body")?;
     let world = simulation.world();

@@ -26,7 +26,8 @@ pub fn rests(trial: &mut Trial<'_>) -> Result<(), Error> {
         let fastest = steps(&mut simulation, "body")?.iter().fold(0.0, |most: f64, step| most.max(step.length()));
         let what = |what: &str| format!("{what}, a cube of {side} m and {young} Pa");
         trial.near(what("weight on the table (N)"), -reading.force.z, weight, 1e-4);
-        // a GPU's kernels know places from the middle of the body in f32, to 1.2e-7 of the side: in a step that is a speed
+        // a GPU's kernels know places from the middle of the body in f32, to 1.2e-7 of the side: in a step that is a
+        // speed
         trial.most(what("fastest node (m/s)"), fastest / step, trial.bound(1e-7, 1.2e-7 * side / step));
         // in f32 displacements, some percent of the side, are known to their last bit
         trial.most(what("inside the table (m)"), reading.penetration, trial.bound(1e-15, 1e-7 * side));

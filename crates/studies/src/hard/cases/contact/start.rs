@@ -56,7 +56,8 @@ pub fn overlap(trial: &mut Trial<'_>) -> Result<(), Error> {
                 false => format!("bodies.other.translate=(0, 0, {})", side - depth),
             });
             let mut simulation = trial.start(&sets)?;
-            // pushed out by half an edge in the time of a wave through the body: a wave of stress ρ c v goes up meanwhile
+            // pushed out by half an edge in the time of a wave through the body: a wave of stress ρ c v goes up
+            // meanwhile
             let pushed = 0.5 * edge * c / (side * 3.0_f64.sqrt());
             let bound = 1000.0 * c * pushed * side * side * depth;
             let mut most = 0.0_f64;
