@@ -16,6 +16,7 @@
 //! grab             Displacement                 -> ExternalForce                          per held node
 //! surface_contact  forces, Displacement         -> ExternalForce, ContactForce, SurfaceTouch   per point that may touch
 //! glue             forces, Displacement         -> ExternalForce, TieState                per tie
+//! free_tool        forces, Displacement, motion -> ExternalForce, motion                  per free tool
 //! tool_contact     forces, Displacement, motion -> ExternalForce, ToolTouch               per node that may touch
 //! grasp            forces, Displacement, motion -> ExternalForce, ToolHold                per node that may be held
 //! integrate        forces, Mass                 -> DisplacementIncrement, Displacement         per node
@@ -33,6 +34,7 @@
 mod boundary;
 mod element_forces;
 mod element_removal;
+mod free_tool;
 mod gather;
 mod glue;
 mod grab;
@@ -109,6 +111,7 @@ pub fn standard() -> Vec<System> {
         grab::system(),
         surface_contact::system(),
         glue::system(),
+        free_tool::system(),
         tool_contact::system(),
         grasp::system(),
         integrate::system(),

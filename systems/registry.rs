@@ -301,13 +301,13 @@ impl System {
     }
 
     /// A built-in system.
-    pub(crate) fn built_in<M>(
+    pub(crate) fn built_in<M, O: Outcome>(
         name: &str,
         phase: Phase,
         does: &str,
         called_for_by: &'static str,
         because: fn(&mut World) -> Option<String>,
-        system: impl IntoSystem<(), (), M> + Clone + Send + Sync + 'static,
+        system: impl IntoSystem<(), O, M> + Clone + Send + Sync + 'static,
     ) -> Self {
         Self { called_for_by, because: Arc::new(because), custom: false, ..Self::custom(name, phase, does, system) }
     }

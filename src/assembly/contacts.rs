@@ -16,7 +16,7 @@ use std::sync::Arc;
 const DEEPEST: f64 = 0.5;
 
 /// How far a tool may go in a step, in edges: beyond, it may be through a surface before anybody sees it.
-const FARTHEST: f64 = 0.5;
+pub(super) const FARTHEST: f64 = 0.5;
 
 /// Half of what a tool measures across, in edges, below which it may slip between nodes.
 const THINNEST: f64 = 2.0;
@@ -43,20 +43,14 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             }
             // what is wrong with it has been said
             let (Some(found), Some(geometry)) = (scene.tools.get(tool), geometries.get(tool)) else { continue };
+            // those are the affair of `free_tool`
+            if found.free.is_some() {
+                continue;
+            }
             let path = format!("contacts[{number}].on");
             let Some(rows) = rows(assembly, name, body, on, &path, diagnostics) else { continue };
-            if let Some(size) = geometry.smallest_radius().filter(|radius| !thin && *radius < THINNEST * edge) {
-                let message = format!(
-                    "the tool `{tool}` may slip between nodes: it is hardly thicker than the faces that it meets"
-                );
-                diagnostics
-                    .warn_at(format!("tools.\"{tool}\"").as_str(), message)
-                    .note(format!("its radius is {size:.3e} m, and faces of `{name}` have edges of {edge:.3e} m"))
-                    .note(format!(
-                        "give `{name}` edges of {:.1e} m or less where it is touched (more cells, `refine`), or take a thicker \
-                         tool; `thin: true` in the contact says that this is meant",
-                        size / THINNEST
-                    ));
+            if !thin {
+                may_slip(tool, name, (geometry, edge), diagnostics);
             }
             let bit = 1 << tools.len();
             rows.into_iter().for_each(|row| *marks.entry(row).or_default() |= bit);
@@ -76,6 +70,21 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let touch = Reals::zeros(assembly.precision, contacts.numbers() * contacts.rows.len());
         world.entity_mut(body.entity).insert((contacts, ToolTouch(touch)));
     }
+}
+
+/// Warns of a tool that is hardly thicker than the faces that it meets, whose edges are so long (m).
+pub(super) fn may_slip(tool: &str, body: &str, (geometry, edge): (&Geometry, f64), diagnostics: &mut Diagnostics) {
+    let Some(size) = geometry.smallest_radius().filter(|radius| *radius < THINNEST * edge) else { return };
+    let message =
+        format!("the tool `{tool}` may slip between nodes: it is hardly thicker than the faces that it meets");
+    diagnostics
+        .warn_at(format!("tools.\"{tool}\"").as_str(), message)
+        .note(format!("its radius is {size:.3e} m, and faces of `{body}` have edges of {edge:.3e} m"))
+        .note(format!(
+            "give `{body}` edges of {:.1e} m or less where it is touched (more cells, `refine`), or take a thicker tool; \
+             `thin: true` in the contact says that this is meant",
+            size / THINNEST
+        ));
 }
 
 /// What the tools are made of, by name.
@@ -113,7 +122,7 @@ fn grid(scene: &SceneFile, mesh: &ToolMesh) -> Result<DistanceGrid, String> {
 }
 
 /// The nodes that a tool may touch: of bodies that lose elements those inside, too, which may come to the surface.
-fn rows(
+pub(super) fn rows(
     assembly: &Assembly<'_>,
     name: &str,
     body: &BodyParts,
@@ -180,6 +189,7 @@ pub fn motion(tool: &Tool) -> ToolMotion {
         path: tool.places().iter().map(place).collect(),
         moves: tool.moves.iter().map(|part| (part.displacement, radians(part.rotation))).collect(),
         curves: tool.moves.iter().map(|part| part.curve.clone()).collect(),
+        pivot: tool.pivot,
         hand: tool.port.as_ref().map(|port| Hand {
             port: port.name.clone(),
             speed: port.speed,
@@ -197,7 +207,14 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &World, diagnostics: &mut Di
             let Some(tool) = assembly.scene.scene.tools.get(&contact.tool) else { continue };
             let motion = motion(tool);
             let path = format!("tools.\"{}\"", contact.tool);
-            inside(name, body, (contacts, bit), &motion, world, &path, diagnostics);
+            // a static analysis lets every motion grow from nothing
+            let grows = clock.relaxation.is_some();
+            let pose = motion.pose(0.0, |number| if grows { 0.0 } else { motion.curves[number].value(0.0) });
+            let touched = contacts.rows.iter().zip(&contacts.masks).filter(|(_, mask)| **mask >> bit & 1 == 1);
+            let rows: Vec<u32> = touched.map(|(&row, _)| row).collect();
+            let standing =
+                Standing { tool: &contact.tool, geometry: &contact.geometry, pose, rows: &rows, edge: contacts.edge };
+            inside(name, body, &standing, world, diagnostics);
             if clock.relaxation.is_some() {
                 continue;
             }
@@ -237,30 +254,35 @@ pub(super) fn jumps(name: &str, tool: &Tool, nodes: &str, diagnostics: &mut Diag
     }
 }
 
+/// A tool at the start, and the nodes that it may touch of a body whose edges are so long (m).
+pub(super) struct Standing<'a> {
+    pub tool: &'a str,
+    pub geometry: &'a Geometry,
+    pub pose: Pose,
+    pub rows: &'a [u32],
+    pub edge: f64,
+}
+
 /// Nodes that are inside a tool at the start: deep ones are an error.
-fn inside(
+pub(super) fn inside(
     name: &str,
     body: &BodyParts,
-    (contacts, bit): (&ToolContacts, usize),
-    motion: &ToolMotion,
+    standing: &Standing<'_>,
     world: &World,
-    path: &str,
     diagnostics: &mut Diagnostics,
 ) {
     let (Some(rest), Some(u)) = (world.get::<RestPosition>(body.entity), world.get::<Displacement>(body.entity)) else {
         return;
     };
-    let contact = &contacts.tools[bit];
-    // a static analysis lets every motion grow from nothing
-    let grows = world.resource::<Clock>().relaxation.is_some();
-    let pose = motion.pose(0.0, |number| if grows { 0.0 } else { motion.curves[number].value(0.0) });
-    let touched = contacts.rows.iter().zip(&contacts.masks).filter(|(_, mask)| **mask >> bit & 1 == 1);
-    let mut found: Vec<(f64, u32)> = touched
-        .map(|(&row, _)| {
+    let Standing { tool, geometry, pose, rows, edge } = standing;
+    let path = format!("tools.\"{tool}\"");
+    let mut found: Vec<(f64, u32)> = rows
+        .iter()
+        .map(|&row| {
             let place = rest.0[row as usize] + u.vector(row as usize);
-            (contact.geometry.distance(pose.inverse(place)).0, row)
+            (geometry.distance(pose.inverse(place)).0, row)
         })
-        .filter(|(distance, _)| *distance < -1e-3 * contacts.edge)
+        .filter(|(distance, _)| *distance < -1e-3 * edge)
         .collect();
     found.sort_by(|a, b| a.0.total_cmp(&b.0));
     let Some(&(deepest, _)) = found.first() else { return };
@@ -274,16 +296,19 @@ fn inside(
         "{} of `{name}` {} inside the tool `{}` at the start, the deepest by {:.3e} m",
         if found.len() == 1 { "a node".to_string() } else { format!("{} nodes", found.len()) },
         if found.len() == 1 { "is" } else { "are" },
-        contact.tool,
+        tool,
         -deepest,
     );
     let nodes = format!("nodes: {}", nodes.join(", "));
-    if -deepest > DEEPEST * contacts.edge {
+    if -deepest > DEEPEST * edge {
         diagnostics
-            .error_at(path, message)
+            .error_at(path.as_str(), message)
             .note(nodes)
-            .note(format!("up to half an edge of a face, {:.3e} m, is pushed out", DEEPEST * contacts.edge));
+            .note(format!("up to half an edge of a face, {:.3e} m, is pushed out", DEEPEST * edge));
     } else {
-        diagnostics.warn_at(path, message).note(nodes).note("they are pushed out while a wave goes through the body");
+        diagnostics
+            .warn_at(path.as_str(), message)
+            .note(nodes)
+            .note("they are pushed out while a wave goes through the body");
     }
 }

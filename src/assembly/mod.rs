@@ -8,6 +8,7 @@ mod constraints;
 mod contacts;
 mod element_removal;
 mod fibres;
+mod free_tools;
 mod glue;
 mod grasps;
 mod loads;
@@ -105,6 +106,7 @@ pub fn assemble<'a>(
     constraints::spawn(&assembly, world, diagnostics);
     loads::spawn(&assembly, world, diagnostics);
     contacts::spawn(&assembly, world, diagnostics);
+    free_tools::spawn(&assembly, world, diagnostics);
     surface_contacts::spawn(&assembly, world);
     grasps::spawn(&assembly, world, diagnostics);
     sutures::spawn(&assembly, world, diagnostics);
@@ -121,6 +123,7 @@ pub fn assemble_in_time(assembly: &Assembly<'_>, world: &mut World, diagnostics:
     body_columns::start(assembly, world);
     start::deform(assembly, world, diagnostics);
     contacts::check(assembly, world, diagnostics);
+    free_tools::check(assembly, world, diagnostics);
     surface_contacts::check(assembly, world, diagnostics);
     grasps::check(assembly, world, diagnostics);
     sutures::measure(world, diagnostics);

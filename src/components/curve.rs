@@ -78,6 +78,21 @@ impl Curve {
         }
     }
 
+    /// Between which factors it stays; an input between 0 and 1, and what it begins with.
+    pub fn range(&self) -> [f64; 2] {
+        match self {
+            Curve::Step { .. } | Curve::Ramp { .. } | Curve::Smooth { .. } => [0.0, 1.0],
+            Curve::Table(points) => {
+                let factors = || points.iter().map(|point| point.1);
+                match points.is_empty() {
+                    true => [0.0, 0.0],
+                    false => [factors().fold(f64::INFINITY, f64::min), factors().fold(f64::NEG_INFINITY, f64::max)],
+                }
+            }
+            Curve::Input { initial, .. } => [initial.min(0.0), initial.max(1.0)],
+        }
+    }
+
     /// The first time after one (s) at which the curve begins to move, or to move more than twice as fast as ever
     /// before.
     pub fn quickens_after(&self, time: f64) -> Option<f64> {

@@ -15,6 +15,7 @@ mod column_layout;
 mod constraint;
 mod contact;
 mod curve;
+mod free_tool;
 mod glue;
 mod grab;
 mod grasp;
@@ -43,6 +44,7 @@ pub use column::{Column, ColumnAccess, Precision, Reals, Role, all_columns, colu
 pub use column_layout::{Increments, Rows};
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
 pub use contact::{ContactForce, MEETING_NUMBERS, SurfaceRows, SurfaceTouch};
+pub use free_tool::{FreeMotion, FreeMotions, FreeTool, FreeTools, FreeTouch, MetBody};
 pub use glue::{Glue, Strength, TIE_NUMBERS, TieState, TiedPoint, frame_of};
 pub use grab::{Grabs, HeldNode};
 pub use grasp::{Grasp, Grasps, HOLD_NUMBERS, ToolHold};

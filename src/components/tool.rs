@@ -4,7 +4,7 @@ use super::Reals;
 use super::column::columns;
 use super::signal::Use;
 use crate::scene::schema::Curve;
-use crate::tools::Geometry;
+use crate::tools::{Geometry, closest_approach};
 use bevy_ecs::prelude::*;
 use glam::{DMat3, DQuat, DVec3};
 
@@ -75,6 +75,8 @@ pub struct ToolMotion {
     pub moves: Vec<(DVec3, DVec3)>,
     /// Their curves.
     pub curves: Vec<Curve>,
+    /// A point that its axis z goes through, wherever it is (m), as a shaft goes through a trocar.
+    pub pivot: Option<DVec3>,
     /// The hand that moves it: then `path` is that of the present batch of steps, and at first where the tool is.
     pub hand: Option<Hand>,
 }
@@ -102,7 +104,17 @@ impl ToolMotion {
             at += *displacement * factor;
             turn = DQuat::from_scaled_axis(*rotation * factor) * turn;
         }
+        if let Some(way) = self.pivot.and_then(|pivot| (pivot - at).try_normalize()) {
+            turn = DQuat::from_rotation_arc((turn * DVec3::Z).normalize(), way) * turn;
+        }
         Pose { rotation: DMat3::from_quat(turn), at }
+    }
+
+    /// How near its origin may come to a point (m), at least, as far as the scene tells.
+    fn nearest(&self, point: DVec3) -> f64 {
+        let places: Vec<DVec3> = self.path.iter().map(|key| key.1).collect();
+        let ranges = self.moves.iter().zip(&self.curves).map(|(part, curve)| (part.0, curve.range()));
+        closest_approach(&places, &ranges.collect::<Vec<_>>(), point)
     }
 
     fn on_path(&self, time: f64) -> (DVec3, DQuat) {
@@ -131,7 +143,18 @@ impl ToolMotion {
         let moves = moves.map(|((displacement, rotation), curve)| {
             (displacement.length() + reach * rotation.length()) * curve.fastest()
         });
-        path + moves.sum::<f64>()
+        let fastest = path + moves.sum::<f64>();
+        let Some(pivot) = self.pivot else { return fastest };
+        // all of its way might go across the shaft; turned by up to 120°, it turns about itself too, up to as fast again
+        let speed = self.fastest_origin();
+        fastest + if speed > 0.0 { 2.0 * reach * speed / self.nearest(pivot) } else { 0.0 }
+    }
+
+    /// How fast its origin may go (m/s), as far as the scene tells.
+    fn fastest_origin(&self) -> f64 {
+        let leg = |pair: &[Key]| pair[0].1.distance(pair[1].1) / (pair[1].0 - pair[0].0);
+        let moves = self.moves.iter().zip(&self.curves).map(|(part, curve)| part.0.length() * curve.fastest());
+        self.path.windows(2).map(leg).fold(0.0, f64::max) + moves.sum::<f64>()
     }
 
     /// The first time after one (s) at which it turns a corner of its path; where a hand will turn nobody knows.

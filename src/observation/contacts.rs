@@ -60,6 +60,7 @@ pub(super) fn contact_forces(body: Entity, world: &mut World) -> Result<Vec<DVec
         }
     }
     super::grasps::forces(entity, &mut forces);
+    super::free_tools::add_forces(world, body, &mut forces);
     Ok(authoring.node_rows.iter().map(|&row| forces[row as usize]).collect())
 }
 

@@ -102,6 +102,7 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
             *sum.internal_work.get_or_insert(0.0) += internal;
         }
     }
+    super::free_tools::add_energies(world, &mut sum);
     let blocks: Vec<Entity> = world.query_filtered::<Entity, With<Block>>().iter(world).collect();
     for entity in blocks {
         let (strain, hourglass) = block_energies(world, entity);

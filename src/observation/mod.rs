@@ -6,6 +6,7 @@ mod element_fields;
 mod energies;
 mod fields;
 mod frame;
+mod free_tools;
 mod grasps;
 mod guards;
 mod overlaps;
@@ -27,7 +28,7 @@ pub use probes::{header, observe_probe, volume_left};
 pub use rounding::{Rounding, shortest_edge};
 pub use sample::{GuardKernels, Sample, sample};
 pub use skins::{SkinState, skin_of};
-pub use tools::{Felt, ToolReading, feel, read_tool};
+pub use tools::{Felt, FreeReading, ToolReading, feel, read_tool};
 pub use track::Track;
 
 use self::track::Moment;

@@ -26,6 +26,10 @@ pub fn header(what: &Quantity) -> Vec<&'static str> {
         Quantity::ToolForce { .. } => &["Fx (N)", "Fy (N)", "Fz (N)"],
         Quantity::ToolTorque { .. } => &["Tx (N m)", "Ty (N m)", "Tz (N m)"],
         Quantity::ToolPlace { .. } => &["x (m)", "y (m)", "z (m)"],
+        Quantity::ToolPose { .. } => &["x (m)", "y (m)", "z (m)", "rx (degrees)", "ry (degrees)", "rz (degrees)"],
+        Quantity::ToolVelocity { .. } => {
+            &["vx (m/s)", "vy (m/s)", "vz (m/s)", "wx (rad/s)", "wy (rad/s)", "wz (rad/s)"]
+        }
     };
     std::iter::once("time (s)").chain(columns.iter().copied()).collect()
 }
@@ -41,6 +45,10 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
         return Ok(Vec::new());
     };
     if let Some(tool) = probe.what.tool() {
+        if matches!(probe.what, Quantity::ToolPose { .. } | Quantity::ToolVelocity { .. }) {
+            let of_velocity = matches!(probe.what, Quantity::ToolVelocity { .. });
+            return Ok(super::tools::way_of(world, tool, of_velocity).map(<[f64; 3]>::from).concat());
+        }
         let reading = super::tools::read_tool(world, tool)?;
         return Ok(match probe.what {
             Quantity::ToolForce { .. } => reading.force,

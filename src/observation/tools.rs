@@ -4,7 +4,7 @@ use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::Error;
 use bevy_ecs::prelude::*;
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 
 /// What a tool feels of all bodies that it touches, in the step that has just been taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
@@ -25,6 +25,30 @@ pub struct ToolReading {
     pub work: f64,
     /// What of this work impact, friction and catching nodes have taken (J).
     pub loss: f64,
+    /// Of one that moves freely, how.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub free: Option<FreeReading>,
+}
+
+/// How a free tool moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
+pub struct FreeReading {
+    /// Its mass (kg).
+    pub mass: f64,
+    /// Where its centre of mass is (m).
+    pub center: DVec3,
+    /// Velocity of that in the middle of the last step (m/s), as of nodes.
+    pub velocity: DVec3,
+    /// How fast it turns (rad/s).
+    pub spin: DVec3,
+    /// Angular momentum about its centre of mass (kg m²/s).
+    pub angular_momentum: DVec3,
+    /// Kinetic energy in the middle of the last step (J).
+    pub kinetic: f64,
+    /// Potential energy in the field of gravity there, 0 at the start: minus the work that gravity has done (J).
+    pub potential: f64,
+    /// What damping has taken since the start (J).
+    pub damping_loss: f64,
 }
 
 /// What a tool feels. Forces are those of the beginning of the step that led here, and act there.
@@ -42,6 +66,9 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
         SuctionPressure::NAME,
     ];
     bring_to_host(world, |_, name| wanted.contains(&name))?;
+    if let Some(reading) = super::free_tools::read(world, tool) {
+        return Ok(reading);
+    }
     let clock = *world.resource::<Clock>();
     let now = match &clock.relaxation {
         Some(relaxation) => world.resource::<Signals>().poses_at_share(relaxation.end, relaxation.share(clock.step)),
@@ -105,6 +132,61 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
     }
     super::grasps::read(world, tool, &now, &mut reading);
     Ok(reading)
+}
+
+/// Where a tool's origin is (m) and how it is turned (axis times angle, degrees), or the velocity of its origin (m/s) and
+/// how fast it turns (rad/s) in the middle of the last step.
+pub(super) fn way_of(world: &mut World, tool: &str, of_velocity: bool) -> [DVec3; 2] {
+    let clock = *world.resource::<Clock>();
+    let degrees = |turn: DQuat| turn.to_scaled_axis() * (180.0 / std::f64::consts::PI);
+    if of_velocity && let Some((velocity, spin)) = super::free_tools::velocity_of(world, tool) {
+        return [velocity, spin];
+    }
+    if !of_velocity && let Some((at, turn)) = super::free_tools::pose_of(world, tool) {
+        return [at, degrees(turn)];
+    }
+    let Some((slot, reference)) = slot_of(world, tool) else { return [DVec3::ZERO; 2] };
+    let signals = world.resource::<Signals>();
+    let (time, before, rate) = match &clock.relaxation {
+        Some(relaxation) => (relaxation.end, relaxation.end, 0.0),
+        None => (clock.time(), clock.time() - clock.time_step, clock.rate()),
+    };
+    let pose_at = |time: f64| {
+        let all = match &clock.relaxation {
+            Some(relaxation) => signals.poses_at_share(time, relaxation.share(clock.step)),
+            None => signals.poses_at(time),
+        };
+        all.into_iter().find(|(of, _)| *of == slot).map(|(_, pose)| pose)
+    };
+    let Some(now) = pose_at(time) else { return [DVec3::ZERO; 2] };
+    let turn = DQuat::from_mat3(&now.rotation);
+    if !of_velocity {
+        return [now.at + reference, degrees(turn)];
+    }
+    let Some(earlier) = pose_at(before) else { return [DVec3::ZERO; 2] };
+    let turned = turn * DQuat::from_mat3(&earlier.rotation).conjugate();
+    [(now.at - earlier.at) * rate, turned.to_scaled_axis() * rate]
+}
+
+/// The slot of a pose of a guided tool, wherever it is used, and the point from which that is counted (m).
+fn slot_of(world: &mut World, tool: &str) -> Option<(usize, DVec3)> {
+    let mut found = Vec::new();
+    for contacts in world.query::<&ToolContacts>().iter(world) {
+        let of_tool = contacts.tools.iter().filter(|contact| contact.tool == tool);
+        found.extend(of_tool.map(|contact| (contact.signal, contacts.reference)));
+    }
+    for removals in world.query::<&ToolRemovals>().iter(world) {
+        let of_tool = removals.all.iter().filter(|removal| removal.tool == tool);
+        found.extend(of_tool.map(|removal| (removal.pose, removals.reference)));
+    }
+    for suction in world.query::<&Suction>().iter(world).filter(|suction| suction.tool == tool) {
+        found.push((suction.pose, suction.reference));
+    }
+    for grasps in world.query::<&Grasps>().iter(world) {
+        let of_tool = grasps.grasps.iter().filter(|grasp| grasp.tool.tool == tool);
+        found.extend(of_tool.map(|grasp| (grasp.tool.signal, grasps.reference)));
+    }
+    found.into_iter().min_by_key(|(slot, _)| *slot)
 }
 
 /// The force on a tool of what it sucks at a body (N), and its moment about a place (N m): faces as they were at the

@@ -313,7 +313,7 @@ fn keeping(
         identity: identity(&scene.scene, world),
         precision,
         written: each_once(custom().flat_map(|(_, planned)| &planned.writes).copied()),
-        systems: custom().filter_map(|(entry, _)| Some((entry.system.name.clone(), entry.system.state?))).collect(),
+        systems: schedule.iter().filter_map(|entry| Some((entry.system.name.clone(), entry.system.state?))).collect(),
     }
 }
 

@@ -102,7 +102,8 @@ fn unheld(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnost
     for (name, body) in &assembly.bodies {
         let touched = assembly.scene.scene.attachments.iter().any(|attachment| attachment.holds(name))
             || world.get::<ToolContacts>(body.entity).is_some()
-            || world.get::<ContactForce>(body.entity).is_some();
+            || world.get::<ContactForce>(body.entity).is_some()
+            || world.get_resource::<FreeTools>().is_some_and(|free| free.meet(body.entity));
         if loaded.contains(&body.entity) && !touched && !held.contains(&body.entity) && !moves(name) {
             let path = Path::default().name("bodies").name(name);
             let message = format!("nothing holds {name}, and loads act on it: it flies off as a whole");

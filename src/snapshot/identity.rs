@@ -48,16 +48,19 @@ pub fn identity(scene: &Scene, world: &mut World) -> Identity {
             tools.write_u64(of_text(&scene.attachments));
         }
         // the scene only names the file
-        let mut of_tool = |tool: &ToolContact| {
-            if let Geometry::Grid(grid) = &tool.geometry {
+        let mut of_tool = |geometry: &Geometry| {
+            if let Geometry::Grid(grid) = geometry {
                 tools.write(bytemuck::cast_slice(grid.values()));
             }
         };
         for contacts in world.query::<&ToolContacts>().iter(world) {
-            contacts.tools.iter().for_each(&mut of_tool);
+            contacts.tools.iter().for_each(|contact| of_tool(&contact.geometry));
+        }
+        if let Some(free) = world.get_resource::<FreeTools>() {
+            free.all.iter().for_each(|tool| of_tool(&tool.geometry));
         }
         for grasps in world.query::<&Grasps>().iter(world) {
-            grasps.grasps.iter().for_each(|grasp| of_tool(&grasp.tool));
+            grasps.grasps.iter().for_each(|grasp| of_tool(&grasp.tool.geometry));
         }
         add("tools and contacts", tools.finish());
     }

@@ -5,10 +5,13 @@ mod absent;
 mod closed;
 mod form;
 mod grid;
+mod mass;
+mod pivot;
 #[cfg(feature = "files")]
 mod ply;
 #[cfg(feature = "files")]
 mod read;
+mod rigid;
 mod shape;
 mod solid;
 mod surface;
@@ -19,6 +22,8 @@ mod triangles;
 
 pub use form::Form;
 pub use grid::DistanceGrid;
+pub use pivot::closest_approach;
+pub use rigid::{Inertia, RigidMotion};
 pub use shape::Shape;
 pub use solid::{Problem, Solid};
 pub use triangles::{EdgeFault, SurfaceError, Triangles};

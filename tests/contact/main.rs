@@ -6,6 +6,7 @@
 mod bits;
 #[path = "../physics/configurations.rs"]
 mod configurations;
+mod free_tools;
 mod glue;
 mod grasp;
 mod surfaces;

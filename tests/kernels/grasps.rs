@@ -29,6 +29,7 @@ fn hold(world: &mut World, felt: bool) {
                 path: vec![(0.0, middle, turn), (1.0, middle + DVec3::new(1e-2, 2e-2, -1e-2), further)],
                 moves: Vec::new(),
                 curves: Vec::new(),
+                pivot: None,
                 hand: None,
             };
             let mut signals = world.resource_mut::<Signals>();

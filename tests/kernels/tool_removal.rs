@@ -18,7 +18,13 @@ fn tools(world: &mut World, volume: f64) {
         let all = mouths.into_iter().enumerate().map(|(number, mouth)| {
             let turn = DQuat::from_scaled_axis(DVec3::new(0.1, 0.2 * number as f64, 0.3));
             let at = DVec3::new(0.011, 0.012 - 0.02 * number as f64, 0.013);
-            let motion = ToolMotion { path: vec![(0.0, at, turn)], moves: Vec::new(), curves: Vec::new(), hand: None };
+            let motion = ToolMotion {
+                path: vec![(0.0, at, turn)],
+                moves: Vec::new(),
+                curves: Vec::new(),
+                pivot: None,
+                hand: None,
+            };
             let mut numbers: Vec<Vec<u32>> =
                 blocks.iter().map(|&block| vec![u32::MAX; world.get::<Block>(block).unwrap().count]).collect();
             for (element, &(block, row)) in rows.iter().enumerate().filter(|(element, _)| element % 7 != 3) {

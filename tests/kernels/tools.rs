@@ -40,6 +40,7 @@ fn touch(world: &mut World, (of_grid, several): (bool, bool)) {
                 ],
                 moves: Vec::new(),
                 curves: Vec::new(),
+                pivot: None,
                 hand: None,
             };
             let signal = world.resource_mut::<Signals>().add(Signal::Pose { motion, reference: middle });

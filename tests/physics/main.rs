@@ -45,6 +45,7 @@ mod overlaps;
 mod own_systems;
 mod parts;
 mod pick;
+mod pivots;
 mod points;
 mod ports;
 mod ports_devices;

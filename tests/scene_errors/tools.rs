@@ -58,6 +58,27 @@ fn what_is_wrong_with_a_tool_is_told_with_what_is_allowed() {
             TOUCH,
             "the tool `rod` goes up to 2.000e3 m/s",
         ),
+        (
+            "(shape: Capsule(length: 0.2, radius: 0.06), at: (0.05, 0.05, 0.17), pivot: (0.05, 0.05, 0.17))",
+            TOUCH,
+            "4: error: the tool's origin may come to its pivot: which way would its axis point there? | the axis z goes from the",
+        ),
+        (
+            "(shape: Capsule(length: 0.2, radius: 0.06), pivot: (0.05, 0.05, 0.3), path: [(t: 0, at: (0.05, 0.05, 0.2)), \
+             (t: 0.1, at: (0.05, 0.05, 0.4))])",
+            TOUCH,
+            "4: error: the tool's origin may come to its pivot: which way would its axis point there?",
+        ),
+        (
+            "(shape: Capsule(length: 0.2, radius: 0.06), at: (0.05, 0.05, 0.5), pivot: (0.05, 0.05, 0.3))",
+            TOUCH,
+            "4: error: the tool would be turned by 180 degrees for its axis to go through this | 120 degrees are allowed",
+        ),
+        (
+            "(shape: Sphere(radius: 0.06), at: (0.05, 0.05, 0.2), pivot: (0, 0, 1), port: (name: \"h\", speed: 0.1))",
+            TOUCH,
+            "4: error: a `pivot` beside a `port`: a hand turns the tool | leave one of both out; `path` and `moves` go with",
+        ),
         (ROD, "", "4: warning: nothing touches the tool `rod` | under `contacts`: Tool(tool: \"rod\")"),
         (ROD, "Tool(tool: \"rot\")", "there is no tool `rot` | did you mean `rod`?"),
         (ROD, "Tool(tool: \"rod\", friction: -0.1)", "5: error: `friction` must be 0 or above, found -0.1"),
@@ -225,4 +246,45 @@ fn what_is_wrong_with_what_a_tool_takes_and_sucks_is_told() {
         println!("{found}");
         assert!(found.contains(expected), "{more}:\n{found}\nexpected\n{expected}");
     }
+}
+
+#[test]
+fn what_is_wrong_with_a_free_tool_is_told_with_what_is_allowed() {
+    let ball = |rest: &str| format!("(shape: Sphere(radius: 0.06), at: (0.05, 0.05, 0.17), {rest})");
+    let either = "a free tool has either a `mass` (kg) or a `density` (kg/m³)";
+    let cases = [
+        ("free: ()", format!("4: error: how heavy is it? | {either}")),
+        ("free: (mass: 1, density: 1000)", format!("4: error: a `density` beside a `mass` | {either}")),
+        ("free: (mass: 0)", "4: error: `mass` must be above 0, found 0 kg".into()),
+        ("free: (density: -1)", "4: error: `density` must be above 0, found -1 kg/m³".into()),
+        ("free: (mass: 1, damping: -1)", "4: error: `damping` must be 0 or above, found -1 1/s".into()),
+        ("free: (mass: 1, inertia: (1, 1, 0))", "4: error: `inertia` must be above 0 kg m² along each axis".into()),
+        ("free: (mass: 1, inertia: (1, 1, 3))", "4: error: no body has such moments of inertia".into()),
+        (
+            "free: (mass: 1), moves: [(displacement: (0, 0, 1), curve: Smooth(end: 1))]",
+            "4: error: `free` beside `moves`: what moves freely is not guided | leave one of both out".into(),
+        ),
+        ("free: (mass: 1), pivot: (0, 0, 1)", "4: error: `free` beside `pivot`".into()),
+        ("free: (mass: 1), port: (name: \"h\", speed: 0.1)", "4: error: `free` beside `port`".into()),
+        ("free: (mass: 1, velocity: (0, 0, -1e4))", "the tool `rod` goes".into()),
+    ];
+    assert_eq!(told(&ball("free: (mass: 1)"), TOUCH, ""), "");
+    for (rest, expected) in cases {
+        let found = told(&ball(rest), TOUCH, "");
+        assert!(found.contains(&expected), "{rest}: {found}");
+    }
+    let plane = told("(shape: Plane(), at: (0, 0, -1), free: (mass: 1))", TOUCH, "");
+    assert!(plane.contains("4: error: a plane has no end: it cannot move freely | take a `Box`"), "{plane}");
+    let inside = told("(shape: Sphere(radius: 0.06), at: (0.05, 0.05, 0.13), free: (mass: 1))", TOUCH, "");
+    assert!(inside.contains("inside the tool `rod` at the start, the deepest by 3.000e-2 m"), "{inside}");
+    for more in ["analysis: Static(),", "start: Equilibrium(),"] {
+        let found = told(&ball("free: (mass: 1)"), TOUCH, more);
+        assert!(found.contains("has no free tools: what rests on tissue depends on the way there"), "{found}");
+    }
+    let grasp = "attachments: [Grasp(tool: \"rod\", closed: Step())], ";
+    let found = told(&ball("free: (mass: 1)"), TOUCH, grasp);
+    assert!(found.contains("4: error: `rod` is `free`, and grasps | a free tool touches, and does no more"), "{found}");
+    let suction = "suction: [(tool: \"rod\", pressure: 10, bore: 0.01, reach: 0.01)], ";
+    let found = told(&ball("free: (mass: 1)"), TOUCH, suction);
+    assert!(found.contains("4: error: `rod` is `free`, and sucks"), "{found}");
 }

@@ -297,7 +297,11 @@ impl Naming<'_> {
         for (name, probe) in &mut content.probes {
             let path = self.path.name("probes").name(name);
             match &mut probe.what {
-                Quantity::ToolForce { tool } | Quantity::ToolTorque { tool } | Quantity::ToolPlace { tool } => {
+                Quantity::ToolForce { tool }
+                | Quantity::ToolTorque { tool }
+                | Quantity::ToolPlace { tool }
+                | Quantity::ToolPose { tool }
+                | Quantity::ToolVelocity { tool } => {
                     self.name(tool);
                     probe.body.iter_mut().for_each(|body| self.name(body));
                 }

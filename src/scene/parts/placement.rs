@@ -2,8 +2,8 @@
 
 use crate::mesh::{angles_about_axes, rotation_about_axes};
 use crate::scene::schema::{
-    Attachment, Axis, Body, Constraint, Contact, Direction, Load, Material, Part, Probe, Quantity, Removal, Select,
-    Start, Suction, Tool, When,
+    Attachment, Axis, Body, Constraint, Contact, Direction, Free, Load, Material, Part, Probe, Quantity, Removal,
+    Select, Start, Suction, Tool, When,
 };
 use glam::{DMat3, DQuat, DVec3};
 
@@ -197,7 +197,7 @@ impl Placement {
 
     pub fn tool(&self, tool: &mut Tool) {
         // a hand counts from where its tool is
-        let Tool { shape, mesh, rounding, at, rotation, path, moves, port: _ } = tool;
+        let Tool { shape, mesh, rounding, at, rotation, path, moves, pivot, port: _, free } = tool;
         if let Some(shape) = shape.as_mut().filter(|_| self.scale != 1.0) {
             *shape = shape.scaled(self.scale);
         }
@@ -213,6 +213,13 @@ impl Placement {
         for place in path {
             self.point(&mut place.at);
             self.pose(&mut place.rotation);
+        }
+        pivot.iter_mut().for_each(|pivot| self.point(pivot));
+        if let Some(Free { mass, density: _, inertia, velocity, spin, damping: _ }) = free {
+            mass.iter_mut().for_each(|mass| *mass *= self.scale.powi(3));
+            inertia.iter_mut().for_each(|inertia| *inertia *= self.scale.powi(5));
+            self.way(velocity);
+            self.direction(spin);
         }
         for part in moves {
             self.way(&mut part.displacement);
@@ -287,7 +294,9 @@ impl Placement {
             | Quantity::SutureLength { .. }
             | Quantity::ToolForce { .. }
             | Quantity::ToolTorque { .. }
-            | Quantity::ToolPlace { .. } => {}
+            | Quantity::ToolPlace { .. }
+            | Quantity::ToolPose { .. }
+            | Quantity::ToolVelocity { .. } => {}
         }
     }
 }

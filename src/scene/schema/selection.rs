@@ -162,6 +162,16 @@ pub enum Quantity {
         /// The tool.
         tool: String,
     },
+    /// Where the tool's origin is (m), and how it is turned: axis times angle (degrees).
+    ToolPose {
+        /// The tool.
+        tool: String,
+    },
+    /// Velocity of the tool's origin (m/s) and how fast it turns (rad/s), in the middle of the last step.
+    ToolVelocity {
+        /// The tool.
+        tool: String,
+    },
 }
 
 impl Quantity {
@@ -191,7 +201,11 @@ impl Quantity {
     /// The tool that it is of, if it is of one.
     pub fn tool(&self) -> Option<&String> {
         match self {
-            Self::ToolForce { tool } | Self::ToolTorque { tool } | Self::ToolPlace { tool } => Some(tool),
+            Self::ToolForce { tool }
+            | Self::ToolTorque { tool }
+            | Self::ToolPlace { tool }
+            | Self::ToolPose { tool }
+            | Self::ToolVelocity { tool } => Some(tool),
             _ => None,
         }
     }

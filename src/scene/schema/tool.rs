@@ -30,9 +30,42 @@ pub struct Tool {
     /// What is added to that, each by a curve of its own.
     #[serde(default)]
     pub moves: Vec<ToolMove>,
+    /// A point (m) that its axis z goes through wherever it is, as a shaft goes through a trocar: it turns about that
+    /// point. Not with a `port`.
+    #[serde(default)]
+    pub pivot: Option<DVec3>,
     /// The device of a hand that moves it from where it is at first. Not with a `path` or `moves`.
     #[serde(default)]
     pub port: Option<Port>,
+    /// That it moves freely as a rigid body, pushed by what it touches and drawn by gravity, from where `at` and
+    /// `rotation` put it. Not with a `path`, `moves`, `pivot` or `port`.
+    #[serde(default)]
+    pub free: Option<Free>,
+}
+
+/// How a tool moves that nobody guides.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub struct Free {
+    /// Its mass (kg); left out where it has a `density`.
+    #[serde(default)]
+    pub mass: Option<f64>,
+    /// The density (kg/m³) of what fills it; left out where it has a `mass`.
+    #[serde(default)]
+    pub density: Option<f64>,
+    /// Moments of inertia (kg m²) about its centre of mass, along its own axes; those of an evenly filled shape when
+    /// left out.
+    #[serde(default)]
+    pub inertia: Option<DVec3>,
+    /// Velocity of its centre of mass at the start (m/s).
+    #[serde(default)]
+    pub velocity: DVec3,
+    /// How it turns at the start: axis times speed (degrees a second).
+    #[serde(default)]
+    pub spin: DVec3,
+    /// Damping of its motion (1/s), as that of a material.
+    #[serde(default)]
+    pub damping: f64,
 }
 
 /// The port of a device that a hand holds, and how the tool follows it.

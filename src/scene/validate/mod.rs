@@ -4,6 +4,7 @@ mod action;
 mod analysis;
 mod attachment;
 mod elastic_law;
+mod free;
 mod geometry;
 mod limits;
 mod material;
@@ -37,6 +38,7 @@ pub fn validate(file: &SceneFile, diagnostics: &mut Diagnostics) -> bool {
     action::validate(&file.scene, &mut validator);
     own_system::validate(&file.scene, &mut validator);
     tool::validate(file, &mut validator);
+    free::validate(&file.scene, &mut validator);
     attachment::validate(&file.scene, &mut validator);
     time::validate(&file.scene, &mut validator);
     analysis::validate(&file.scene, &mut validator);

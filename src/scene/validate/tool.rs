@@ -8,8 +8,15 @@ use crate::scene::load::SceneFile;
 use crate::scene::schema::{Contact, Follow, Port, Removal, Scene, Shape, Threshold, Tool, When};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
-use glam::DVec3;
+use crate::tools::closest_approach;
+use glam::{DQuat, DVec3};
 use std::collections::BTreeMap;
+
+/// How near a tool's origin may come to its pivot (m).
+const NEAREST: f64 = 1e-9;
+
+/// By how much a tool may be turned for its axis to go through its pivot (degrees).
+const MOST_TURNED: f64 = 120.0;
 
 pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
     let scene_ = &file.scene;
@@ -89,12 +96,49 @@ fn tool(validator: &mut Validator, path: &Path, tool: &Tool) {
             validator.out.error_at(path, message).notes(jumps.then_some(note));
         }
     }
+    if let Some(pivot_) = tool.pivot {
+        pivot(validator, &path.name("pivot"), tool, pivot_);
+    }
     for (number, part) in tool.moves.iter().enumerate() {
         if (part.displacement, part.rotation) == (DVec3::ZERO, DVec3::ZERO) {
             validator
                 .out
                 .warn_at(path.name("moves").index(number), "this moves nothing")
                 .note("give `displacement` or `rotation`");
+        }
+    }
+}
+
+/// Whether a shaft can go through a point all the time.
+fn pivot(validator: &mut Validator, path: &Path, tool: &Tool, point: DVec3) {
+    if tool.port.is_some() {
+        validator
+            .out
+            .error_at(path, "a `pivot` beside a `port`: a hand turns the tool")
+            .note("leave one of both out; `path` and `moves` go with a `pivot`");
+    }
+    let places: Vec<DVec3> = tool.places().iter().map(|place| place.at).collect();
+    let moves: Vec<(DVec3, [f64; 2])> = tool.moves.iter().map(|part| (part.displacement, part.curve.range())).collect();
+    if closest_approach(&places, &moves, point) < NEAREST {
+        validator
+            .out
+            .error_at(path, "the tool's origin may come to its pivot: which way would its axis point there?")
+            .note("the axis z goes from the origin, the tip of what is long, through the pivot");
+        return;
+    }
+    for place in tool.places() {
+        let axis = DQuat::from_scaled_axis(place.rotation * (std::f64::consts::PI / 180.0)) * DVec3::Z;
+        let angle = axis.angle_between(point - place.at).to_degrees();
+        if angle > MOST_TURNED {
+            validator
+                .out
+                .error_at(
+                    path,
+                    format!("the tool would be turned by {angle:.0} degrees for its axis to go through this"),
+                )
+                .note(format!("{MOST_TURNED} degrees are allowed: there are two ways to turn it half round"))
+                .note("let `rotation` point its axis z, from the tip along the shaft, about that way");
+            return;
         }
     }
 }

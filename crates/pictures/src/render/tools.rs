@@ -4,11 +4,11 @@ use super::camera::{Camera, Fit};
 use super::clip::Extent;
 use super::picture::{Colouring, Layer, Lines};
 use super::raster::Finish;
-use glam::{DVec3, Vec3};
+use glam::{DQuat, DVec3, Vec3};
 use sinew::SceneFile;
 use sinew::assembly::motion;
-use sinew::components::{Pose, ToolMotion};
-use sinew::scene::schema::{Analysis, Curve, Shape, ToolMesh};
+use sinew::components::{Key, Pose, ToolMotion};
+use sinew::scene::schema::{Analysis, Curve, Quantity, Shape, ToolMesh};
 use sinew::tools::{Solid, Triangles};
 use std::path::Path;
 
@@ -78,9 +78,13 @@ impl Tools {
                 (None, Some(mesh)) => triangles(scene, &folder.join(copy_of(name, mesh)), mesh),
                 (None, None) => Err("it has neither a shape nor a mesh".into()),
             };
-            match surface {
-                Ok((points, triangles)) => tools.tools.push(Tool {
-                    motion: motion(tool),
+            let way = match tool.free {
+                Some(_) => seen_way(scene, name, folder).map(|path| ToolMotion { path, ..motion(tool) }),
+                None => Ok(motion(tool)),
+            };
+            match surface.and_then(|surface| Ok((surface, way?))) {
+                Ok(((points, triangles), motion)) => tools.tools.push(Tool {
+                    motion,
                     points,
                     faces: triangles.into_iter().map(|[a, b, c]| [a, b, c, c]).collect(),
                     plane: tool.shape == Some(Shape::Plane {}),
@@ -129,6 +133,25 @@ impl Tools {
         };
         motion.pose(time, |number| share * motion.curves[number].value(at))
     }
+}
+
+/// Where a free tool was at which time, from the table of a probe of its pose in the output folder.
+fn seen_way(scene: &SceneFile, tool: &str, folder: &Path) -> Result<Vec<Key>, String> {
+    let of_tool = |what: &Quantity| matches!(what, Quantity::ToolPose { tool: of } if of == tool);
+    let Some((probe, _)) = scene.scene.probes.iter().find(|(_, probe)| of_tool(&probe.what)) else {
+        return Err(format!("it moves freely, and no probe `ToolPose(tool: {tool:?})` tells where it is"));
+    };
+    let name = format!("probe_{probe}.csv");
+    let text = std::fs::read_to_string(folder.join(&name)).map_err(|error| format!("{name}: {error}"))?;
+    let key = |line: &str| -> Option<Key> {
+        let numbers: Vec<f64> = line.split(',').map(|word| word.trim().parse().ok()).collect::<Option<_>>()?;
+        let [time, x, y, z, rx, ry, rz] = numbers[..] else { return None };
+        let turn = DVec3::new(rx, ry, rz) * (std::f64::consts::PI / 180.0);
+        Some((time, DVec3::new(x, y, z), DQuat::from_scaled_axis(turn)))
+    };
+    let lines = text.lines().skip(1).filter(|line| !line.is_empty());
+    let path: Option<Vec<Key>> = lines.map(key).collect();
+    path.filter(|path| !path.is_empty()).ok_or_else(|| format!("{name} does not tell where it is"))
 }
 
 /// The triangles of a tool, from the copy in the output folder or from the scene's file.

@@ -1,0 +1,109 @@
+//! Tools that move freely: how they move, what they feel, and what their energies add.
+
+use super::tools::{FreeReading, ToolReading};
+use crate::components::*;
+use bevy_ecs::prelude::*;
+use glam::{DQuat, DVec3};
+
+/// A free tool of a name, with how it moves and the point from which it is counted.
+fn found<'a>(world: &'a World, name: &str) -> Option<(&'a FreeTool, &'a FreeMotion, DVec3)> {
+    let tools = world.get_resource::<FreeTools>()?;
+    let place = tools.place(name)?;
+    let state = world.get_resource::<FreeMotions>()?.all.get(place)?;
+    Some((&tools.all[place], state, tools.reference))
+}
+
+/// What a free tool of a name feels; nothing of one that is guided. Displacements are at hand.
+pub(super) fn read(world: &World, name: &str) -> Option<ToolReading> {
+    let (tool, state, reference) = found(world, name)?;
+    let pose = tool.pose(&state.motion);
+    let (force, moment) = state.felt();
+    // where it was when forces acted
+    let dt = world.resource::<Clock>().time_step;
+    let earlier = tool.pose(&state.motion.after(-dt, &tool.inertia));
+    let center = earlier.place(tool.inertia.center);
+    let free = FreeReading {
+        mass: tool.inertia.mass,
+        center: state.motion.place + reference,
+        velocity: state.motion.velocity,
+        spin: state.motion.spin(&tool.inertia),
+        angular_momentum: state.motion.momentum,
+        kinetic: state.motion.kinetic(&tool.inertia),
+        potential: -state.gravity_work,
+        damping_loss: state.damping_loss,
+    };
+    Some(ToolReading {
+        force,
+        torque: moment + (center - earlier.at).cross(force),
+        place: pose.at + reference,
+        nodes: state.touches.len(),
+        penetration: penetration(world, tool, &pose, reference),
+        suction: DVec3::ZERO,
+        work: -state.contact_work,
+        loss: state.contact_loss,
+        free: Some(free),
+    })
+}
+
+/// How deep the deepest node is inside a tool (m).
+fn penetration(world: &World, tool: &FreeTool, pose: &Pose, reference: DVec3) -> f64 {
+    let Some((center, radius)) = tool.geometry.bounding_sphere() else { return 0.0 };
+    let center = pose.place(center);
+    let mut deepest = 0.0_f64;
+    for met in &tool.meets {
+        let columns =
+            (world.get::<RestPosition>(met.body), world.get::<Displacement>(met.body), world.get::<Mass>(met.body));
+        let (Some(rest), Some(u), Some(mass)) = columns else { continue };
+        for row in met.rows.iter().map(|&row| row as usize).filter(|&row| mass.get(row) > 0.0) {
+            let place = rest.0[row] - reference + u.vector(row);
+            if place.distance_squared(center) <= radius * radius {
+                deepest = deepest.max(-tool.geometry.distance(pose.inverse(place)).0);
+            }
+        }
+    }
+    deepest
+}
+
+/// Where a tool's origin is (m), and how it is turned.
+pub(super) fn pose_of(world: &World, name: &str) -> Option<(DVec3, DQuat)> {
+    let (tool, state, reference) = found(world, name)?;
+    Some((tool.pose(&state.motion).at + reference, state.motion.turn))
+}
+
+/// Velocity of a tool's origin (m/s) and how fast it turns (rad/s), in the middle of the last step.
+pub(super) fn velocity_of(world: &World, name: &str) -> Option<(DVec3, DVec3)> {
+    let (tool, state, _) = found(world, name)?;
+    let spin = state.motion.spin(&tool.inertia);
+    let arm = tool.pose(&state.motion).at - state.motion.place;
+    Some((state.motion.velocity + spin.cross(arm), spin))
+}
+
+/// What free tools do to the nodes of a body (N), added to its rows.
+pub(super) fn add_forces(world: &World, body: Entity, forces: &mut [DVec3]) {
+    let (Some(tools), Some(motions)) = (world.get_resource::<FreeTools>(), world.get_resource::<FreeMotions>()) else {
+        return;
+    };
+    for (tool, state) in tools.all.iter().zip(&motions.all) {
+        for touch in &state.touches {
+            if tool.meets[touch.node.0 as usize].body == body {
+                forces[touch.node.1 as usize] += touch.force;
+            }
+        }
+    }
+}
+
+/// Adds to the energies of bodies those of free tools: work done on them counts with that of loads, where it is counted.
+pub(super) fn add_energies(world: &World, sum: &mut Energies) {
+    let (Some(tools), Some(motions)) = (world.get_resource::<FreeTools>(), world.get_resource::<FreeMotions>()) else {
+        return;
+    };
+    for (tool, state) in tools.all.iter().zip(&motions.all) {
+        sum.kinetic += state.motion.kinetic(&tool.inertia);
+        if let Some(work) = &mut sum.load_work {
+            *work += state.gravity_work + state.contact_work;
+        }
+        if let Some(loss) = &mut sum.damping_loss {
+            *loss += state.damping_loss;
+        }
+    }
+}

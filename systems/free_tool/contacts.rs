@@ -1,0 +1,171 @@
+//! Nodes against a rigid body that gives way: all forces of a step.
+
+use super::{Response, ToolStep};
+use crate::backend::cpu::Foreseen;
+use crate::components::{FreeTool, FreeTouch, Pose};
+use glam::{DMat3, DVec3};
+
+/// How often all contacts of a tool take turns.
+const SWEEPS: usize = 200;
+
+/// Changes of a sweep, in edges, that are none.
+const SETTLED: f64 = 1e-9;
+
+/// A node that may touch a tool.
+pub(super) struct Near {
+    /// The place of its body in [`FreeTool::meets`], and its row.
+    pub node: (u32, u32),
+    /// Where it is (m).
+    pub place: DVec3,
+    /// Where it would go.
+    pub foreseen: Foreseen,
+    /// Where it is, from the tool's centre of mass (m).
+    pub arm: DVec3,
+    /// The coefficient of friction that holds it.
+    pub friction: f64,
+    /// Length of an edge of its surface (m).
+    pub edge: f64,
+    /// How far it comes out in this step, if it is inside (m).
+    pub out: f64,
+}
+
+/// How a tool moves in the middle of the step, and what touches it.
+pub(super) struct Solved {
+    pub velocity: DVec3,
+    pub momentum: DVec3,
+    /// Each with what was foreseen of its node.
+    pub touches: Vec<(FreeTouch, Foreseen)>,
+}
+
+/// A contact: forces on the node (N).
+struct Contact {
+    near: Near,
+    /// Where it may be: the distance from the surface (m), 0 but for nodes that are inside already.
+    target: f64,
+    outwards: DVec3,
+    push: f64,
+    tangential: DVec3,
+    slides: bool,
+}
+
+impl Contact {
+    fn force(&self) -> DVec3 {
+        self.outwards + self.tangential
+    }
+
+    /// How far the node goes (m).
+    fn step(&self) -> DVec3 {
+        self.near.foreseen.step + self.near.foreseen.free * self.force() / self.near.foreseen.to_force
+    }
+
+    /// How much farther apart node and tool end by a force between them (m/N), symmetric.
+    fn compliance(&self, response: &Response) -> DMat3 {
+        let Near { foreseen, arm, .. } = &self.near;
+        let cross = DMat3::from_cols(
+            DVec3::new(0.0, arm.z, -arm.y),
+            DVec3::new(-arm.z, 0.0, arm.x),
+            DVec3::new(arm.y, -arm.x, 0.0),
+        );
+        let own = DMat3::from_diagonal(
+            foreseen.free / foreseen.to_force + DVec3::splat(response.linear * response.time_step),
+        );
+        own + cross * response.angular * cross.transpose() * response.time_step
+    }
+}
+
+/// Finds the forces between a tool that would move so and nodes near it. Contacts take turns (projected Gauss and
+/// Seidel): each finds its own force from where its node and the tool end by now, with the compliance of both, so that a
+/// sweep never adds energy; forces never pull, and friction is at most μ times the push. Turns are taken in the order of
+/// nodes, until nothing changes: the same bits on any number of threads. How far the tool turns is linear within a
+/// sweep, and looked at anew in the next.
+pub(super) fn solve(step: &ToolStep<'_>, near: Vec<Near>) -> Solved {
+    let ToolStep { tool, response, .. } = step;
+    let (dt, inertia) = (response.time_step, &tool.inertia);
+    let begin = tool.pose(&step.before);
+    let mut motion = step.free;
+    let mut contacts: Vec<Contact> = near.into_iter().map(Contact::new).collect();
+    for sweep in 0..SWEEPS {
+        let pose = tool.pose(&motion.after(dt, inertia));
+        let change = pose.less(&begin);
+        if sweep == 0 {
+            contacts.retain_mut(|contact| contact.begins(tool, &begin, &pose));
+        }
+        // how the tool has gone on since this pose (m, rad)
+        let (mut way, mut turn) = (DVec3::ZERO, DVec3::ZERO);
+        let mut most = 0.0_f64;
+        for contact in &mut contacts {
+            let arm = contact.near.arm;
+            let further = way + turn.cross(arm);
+            let y = pose.inverse(contact.near.place + contact.step() - further);
+            let (distance, normal) = tool.geometry.distance(y);
+            let normal = pose.rotation * normal;
+            let compliance = contact.compliance(response);
+            let before = contact.force();
+            let along = normal.dot(compliance * normal);
+            let push = (contact.push - (distance - contact.target) / along).max(0.0);
+            (contact.outwards, contact.push) = (normal * push, push);
+            if contact.near.friction > 0.0 {
+                // with what the push has just moved
+                let gone = contact.step() - further - self_step(&contact.near, contact.force() - before, response);
+                contact.rub(gone - change.place(y), normal, &compliance);
+            }
+            let force = contact.force() - before;
+            way -= force * (response.linear * dt);
+            turn -= response.angular * arm.cross(force) * dt;
+            motion.velocity -= force * response.linear;
+            motion.momentum -= arm.cross(force) * response.window;
+            most = most.max((compliance * force).length() / contact.near.edge);
+        }
+        if most <= SETTLED {
+            break;
+        }
+    }
+    let touches = contacts.into_iter().filter(|contact| contact.push > 0.0).map(|contact| {
+        let (force, sticks) = (contact.force(), !contact.slides);
+        let Near { node, foreseen, arm, .. } = contact.near;
+        (FreeTouch { node, force, arm, sticks }, foreseen)
+    });
+    Solved { velocity: motion.velocity, momentum: motion.momentum, touches: touches.collect() }
+}
+
+/// How far the tool goes where a node is by a force on the node (m).
+fn self_step(near: &Near, force: DVec3, response: &Response) -> DVec3 {
+    let turn = response.angular * near.arm.cross(force);
+    -(force * response.linear + turn.cross(near.arm)) * response.time_step
+}
+
+impl Contact {
+    fn new(near: Near) -> Self {
+        let zero = DVec3::ZERO;
+        Self { near, target: 0.0, outwards: zero, push: 0.0, tangential: zero, slides: true }
+    }
+
+    /// Whether it may come to touch: its node ends less than an edge from the tool. Who is inside already comes out by
+    /// and by.
+    fn begins(&mut self, tool: &FreeTool, begin: &Pose, end: &Pose) -> bool {
+        let distance = tool.geometry.distance(end.inverse(self.near.place + self.near.foreseen.step)).0;
+        if distance < 0.0 {
+            let now = tool.geometry.distance(begin.inverse(self.near.place)).0;
+            self.target = (now + self.near.out).min(0.0);
+        }
+        distance <= self.near.edge
+    }
+
+    /// Holds a node that slips by so much along the surface (m), as far as friction goes.
+    fn rub(&mut self, slip: DVec3, normal: DVec3, compliance: &DMat3) {
+        let along = |vector: DVec3| vector - normal * vector.dot(normal);
+        let (first, second) = normal.any_orthonormal_pair();
+        let (a, b) = (compliance * first, compliance * second);
+        let (xx, xy, yy) = (first.dot(a), first.dot(b), second.dot(b));
+        // no direction along the surface gives way by more
+        let most = 0.5 * (xx + yy) + (0.25 * (xx - yy) * (xx - yy) + xy * xy).sqrt();
+        if most <= 0.0 {
+            return;
+        }
+        let wanted = along(self.tangential) - along(slip) / most;
+        let bound = self.near.friction * self.push;
+        let size = wanted.length();
+        self.slides = size > bound;
+        self.tangential = if self.slides { wanted * (bound / size) } else { wanted };
+    }
+}
