@@ -146,6 +146,8 @@ impl<const SLOPES: usize> Element for Hexahedron<SLOPES> {
     const FORCE_ROW: Option<usize> = Some(Self::STIFFNESS_ROW);
     const PRESSURE: PressureFrom = PressureFrom::Point;
     const SPECIALISED: bool = true;
+    // of a parallelepiped's sums over its corners ξ x is four edges long
+    const SPANNED_BY: Option<([usize; 4], f64)> = if SLOPES == 3 { Some(([0, 1, 3, 4], 0.25)) } else { None };
 
     fn rest_shape(points: &[DVec3], young: f64) -> [f64; MOST_ROWS] {
         let (volume, b) = mean_gradients(points);

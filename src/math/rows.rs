@@ -17,6 +17,8 @@ pub struct Scratch<T: SimdScalar> {
     pub read: Box<Rows<T>>,
     /// Added to: forces. The fourth number of a row has no meaning.
     pub sums: Box<Rows<T>>,
+    /// Read: places at rest, where rest shapes are found from them.
+    pub places: Box<Rows<T>>,
 }
 
 impl<T: SimdScalar> Default for Scratch<T> {
@@ -25,7 +27,7 @@ impl<T: SimdScalar> Default for Scratch<T> {
             Ok(rows) => rows,
             Err(_) => unreachable!("the length is that of the array"),
         };
-        Self { read: rows(), sums: rows() }
+        Self { read: rows(), sums: rows(), places: rows() }
     }
 }
 

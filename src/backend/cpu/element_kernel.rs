@@ -3,6 +3,7 @@
 mod corners;
 mod effects;
 mod fetch;
+mod in_own_module;
 mod patch_local;
 mod stress;
 
@@ -12,7 +13,9 @@ use crate::elements::{Element, MOST_NODES, PressureFrom};
 use crate::materials::{Elastic, ElasticLaw, FLATTEST, NeoHookean};
 use crate::math::{LANES, Real, Scratch, SimdScalar};
 pub(super) use corners::{corner_registers, group_vectors};
-use fetch::{AHEAD, NEAR};
+use fetch::AHEAD;
+pub use fetch::IN_CACHE;
+use in_own_module::InOwnModule;
 use patch_local::{PatchLocal, part, parts};
 use pulp::{Simd, WithSimd};
 use std::marker::PhantomData;
@@ -150,6 +153,10 @@ const VISCOSITY: u8 = 2;
 const GENERIC: u8 = 4;
 /// There is no such kernel for machines without vector registers.
 const VECTORS: u8 = 8;
+/// Rest shapes are found from places at rest ([`SPANNED_BY`](Element::SPANNED_BY)).
+const FROM_PLACES: u8 = 16;
+/// How many rows of a rest shape these give, the first ones.
+const GRADIENTS: usize = 9;
 
 struct BlockRun<'a, 'n, E, T: SimdScalar> {
     cpu: &'a Cpu,
@@ -160,8 +167,14 @@ struct BlockRun<'a, 'n, E, T: SimdScalar> {
 }
 
 impl<E: Element> BlockRun<'_, '_, E, f32> {
+    /// Whether it is known where the nodes of all patches are at rest.
+    fn knows_places(&self) -> bool {
+        E::SPANNED_BY.is_some() && self.columns.patches.is_some_and(|patches| !patches.places.is_empty())
+    }
+
     fn run_neo_hookean(self, elastic: &NeoHookean<f32>) -> Vec<usize> {
         match (self.law.fibres.is_some(), !self.law.prony.is_empty()) {
+            (false, false) if self.knows_places() => self.run::<_, FROM_PLACES>(elastic),
             (false, false) => self.run::<_, 0>(elastic),
             (true, false) => self.run::<_, FIBRES>(elastic),
             (false, true) => self.run::<_, VISCOSITY>(elastic),
@@ -175,7 +188,7 @@ impl<E: Element, T: SimdScalar> BlockRun<'_, '_, E, T> {
         let Self { cpu, columns, law, groups_a_patch, element } = self;
         let inverted = Mutex::new(Vec::new());
         let patch = groups_a_patch * LANES;
-        let far = size_of_val(columns.rest_shape) > NEAR;
+        let far = size_of_val(columns.rest_shape) > IN_CACHE;
         let memory_an_element = law.memory_numbers(E::POINTS);
         let varying = law.varying_families();
         let direction = law.fibres.as_ref().map(|(_, direction)| direction);
@@ -276,29 +289,6 @@ struct OfPatch<'a, 'i, 'n, 's, E, T: SimdScalar, L, const EFFECTS: u8> {
     scratch: &'s mut Scratch<T>,
 }
 
-/// Where kernels are compiled: the compiler keeps a method of a trait with the type it is for, and takes what is in
-/// different modules to different cores. Else all of them were in one piece, most of the time that compiling takes.
-trait InOwnModule: Element {
-    #[inline(never)]
-    fn run_patch<T: SimdScalar, L: Elastic<T>, const EFFECTS: u8>(
-        cpu: &Cpu,
-        task: OfPatch<'_, '_, '_, '_, Self, T, L, EFFECTS>,
-    ) -> bool {
-        // constants, so that no code is made of the other ways
-        if const { EFFECTS == GENERIC } {
-            return cpu.dispatch(task);
-        }
-        let is_inverted = if const { EFFECTS & GENERIC == 0 } {
-            cpu.dispatch_vectors(task)
-        } else {
-            cpu.dispatch_narrow_vectors(task)
-        };
-        debug_assert!(is_inverted.is_some(), "a kernel for vector registers on a machine without");
-        is_inverted.unwrap_or(true)
-    }
-}
-impl<E: Element> InOwnModule for E {}
-
 impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> WithSimd
     for OfPatch<'_, '_, '_, '_, E, T, L, EFFECTS>
 {
@@ -348,6 +338,16 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
         let (displacements, theta) = self.at_corners(simd, elastic, group, at, scratch);
         let u = E::prepare(&displacements);
         let rest_shape = &self.rest_shape[group * E::ROWS..][..E::ROWS];
+        let gradients = self.gradients_from_places(simd, group, at, scratch);
+        macro_rules! number {
+            ($row:expr) => {
+                match &gradients {
+                    Some(gradients) if $row < GRADIENTS => gradients[$row],
+                    // the volume tells what is no element: what fills up the last group, and what has been removed
+                    _ => T::load(simd, &rest_shape[$row][at..]),
+                }
+            };
+        }
         let shared = match E::PRESSURE {
             PressureFrom::Point => zero,
             PressureFrom::MeanOverPoints => {
@@ -363,7 +363,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
                 &u,
                 point,
                 #[inline(always)]
-                |row: usize| T::load(simd, &rest_shape[row][at..]),
+                |row: usize| number!(row),
             );
             let (stress, j) = self.stress(simd, law, group, at, point, &state.gradient, shared);
             E::add_stress(&mut forces, point, &state, &stress);
@@ -373,14 +373,14 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
             let j = volume_ratio::<E, T, S>(simd, &u, rest_shape, point, at);
             worst = worst.max(least - j);
         }
-        let worst = worst * T::load(simd, &rest_shape[E::VOLUME_ROW][at..]);
+        let worst = worst * number!(E::VOLUME_ROW);
         let mut out = [[zero; 3]; MOST_NODES];
         E::store_forces(
             &u,
             &forces,
             #[inline(always)]
             |row: usize| {
-                let number = T::load(simd, &rest_shape[row][at..]);
+                let number = number!(row);
                 // forces are proportional to these
                 let scales = row == E::FORCE_ROW.unwrap_or(E::VOLUME_ROW) || row == E::VOLUME_ROW;
                 if scales && self.inverted_go { worst.if_positive(zero, number) } else { number }

@@ -9,7 +9,7 @@ mod own_kernels;
 mod strain_kernel;
 mod volume_kernel;
 
-pub use element_kernel::{BlockColumns, PatchInterior, kernel_effects, run_block, run_block_fast};
+pub use element_kernel::{BlockColumns, IN_CACHE, PatchInterior, kernel_effects, run_block, run_block_fast};
 pub use guard_kernel::{BlockSums, GuardColumns, run_guard};
 pub use law::BlockLaw;
 pub use node_kernel::{Foreseen, IntegrationCoefficients, NodeColumns, Touches, move_nodes};
