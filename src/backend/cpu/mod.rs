@@ -21,7 +21,7 @@ pub use volume_kernel::run_volumes;
 use arenas::Arenas;
 use bevy_ecs::prelude::*;
 use bumpalo::Bump;
-use std::sync::{Arc, OnceLock};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 /// Rows of a node column that make one task. A constant: tasks must not depend on the number of threads.
 pub const ROWS_A_TASK: usize = 2048;
@@ -41,12 +41,25 @@ pub enum Instructions {
     Portable,
 }
 
+/// The pool of so many threads: simulations of a process that ask for as many share it, as long as one of them is there.
+fn pool_of(threads: usize) -> Option<Arc<rayon::ThreadPool>> {
+    static POOLS: Mutex<Vec<Weak<rayon::ThreadPool>>> = Mutex::new(Vec::new());
+    let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+    pools.retain(|pool| pool.strong_count() > 0);
+    let known = pools.iter().filter_map(Weak::upgrade).find(|pool| pool.current_num_threads() == threads);
+    known.or_else(|| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok().map(Arc::new)?;
+        pools.push(Arc::downgrade(&pool));
+        Some(pool)
+    })
+}
+
 /// Threads and instruction set of a run.
 #[derive(Resource)]
 pub struct Cpu {
     pool: Option<Arc<rayon::ThreadPool>>,
     /// A pool of one thread, made when something would otherwise spread over the machine.
-    alone: OnceLock<Option<rayon::ThreadPool>>,
+    alone: OnceLock<Option<Arc<rayon::ThreadPool>>>,
     threads: usize,
     arch: pulp::Arch,
     arenas: Arenas,
@@ -60,10 +73,7 @@ impl Cpu {
             0 => std::thread::available_parallelism().map_or(1, |n| n.get()),
             n => n,
         };
-        let pool = match threads {
-            1 => None,
-            n => rayon::ThreadPoolBuilder::new().num_threads(n).build().ok().map(Arc::new),
-        };
+        let pool = if threads == 1 { None } else { pool_of(threads) };
         let threads = if pool.is_some() { threads } else { 1 };
         let arch = match (instructions, pulp::Arch::new()) {
             (Instructions::Portable, _) => pulp::Arch::Scalar,
@@ -98,7 +108,7 @@ impl Cpu {
 
     /// Runs a task so that what it shares among threads stays on those of this run: on one, where one is asked for.
     pub fn confine<R: Send>(&self, task: impl FnOnce() -> R + Send) -> R {
-        let alone = || self.alone.get_or_init(|| rayon::ThreadPoolBuilder::new().num_threads(1).build().ok()).as_ref();
+        let alone = || self.alone.get_or_init(|| pool_of(1)).as_deref();
         match self.pool.as_deref().or_else(alone) {
             Some(pool) => pool.install(task),
             None => task(),
@@ -205,5 +215,19 @@ impl Cpu {
     /// Lends a task memory that is there from step to step. What is put there is forgotten, not dropped.
     pub(crate) fn with_arena<R>(&self, task: impl FnOnce(&Bump) -> R) -> R {
         self.arenas.with(task)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    #[test]
+    fn simulations_with_as_many_threads_share_them() {
+        let [one, other, more] = [3, 3, 5].map(|threads| Cpu::new(threads, 0, Instructions::Widest).pool().unwrap());
+        assert!(Arc::ptr_eq(&one, &other) && !Arc::ptr_eq(&one, &more));
+        assert_eq!([one, more].map(|pool| pool.current_num_threads()), [3, 5]);
     }
 }
