@@ -1,6 +1,7 @@
 //! `surface_contact`: bodies keep each other, and themselves, outside.
 
 mod body_slices;
+mod crossings;
 mod device;
 mod faced;
 mod kernels;
@@ -38,7 +39,8 @@ pub fn system() -> System {
     System {
         shared_only: surfaces_stay,
         // where elements go, surfaces are found anew: on the host
-        device_when: surfaces_stay,
+        // and points of faces and edges there, too
+        device_when: |world| surfaces_stay(world) && nodes_meet_alone(world),
         before_steps: Some(device::before_steps),
         ..system.on_device(kernels::kernels)
     }
@@ -48,6 +50,12 @@ pub fn system() -> System {
 fn surfaces_stay(world: &World) -> bool {
     let contacts = world.get_resource::<SurfaceContacts>();
     contacts.is_some_and(|contacts| contacts.bodies.iter().all(|&body| world.get::<SurfaceRows>(body).is_some()))
+}
+
+/// Whether the points that meet others are all nodes.
+fn nodes_meet_alone(world: &World) -> bool {
+    let contacts = world.get_resource::<SurfaceContacts>();
+    contacts.is_some_and(|contacts| !contacts.meetings.iter().flatten().any(|meeting| meeting.faces || meeting.edges))
 }
 
 /// How far points may go before it is looked anew what is near what, in edges; four times that of fast ones.
@@ -60,6 +68,10 @@ pub struct Meeting {
     pub friction: [f64; 2],
     /// How far they stay apart (m).
     pub thickness: f64,
+    /// Whether the points are those of faces, and not nodes.
+    pub faces: bool,
+    /// Whether edges that cross meet, too.
+    pub edges: bool,
 }
 
 /// Which bodies may meet, and what is known of their surfaces. Nothing in it is carried on from step to step but what
@@ -88,9 +100,14 @@ pub struct SurfaceContacts {
 #[derive(Clone, Debug, Default)]
 struct Surface {
     triangles: Surfaces,
+    /// The nodes of the facet that each triangle is of; a triangle repeats its last one.
+    facets: Vec<[u32; 4]>,
     /// Body and row of each node.
     nodes: Vec<(u32, u32)>,
+    /// Nodes, in their order, then points of faces.
     points: Vec<Point>,
+    /// Where each point's numbers are.
+    kept: Vec<body_slices::Kept>,
     /// Points and triangles that are near each other at rest: never in each other's way.
     apart: Vec<(u32, u32)>,
     /// Elements that are there; `None` before anything is known.
@@ -98,6 +115,7 @@ struct Surface {
     /// One a body.
     trees: Vec<Tree>,
     lists: Lists,
+    crossings: crossings::Crossings,
     /// What is near, as long as the lists hold.
     near: Near,
     /// Where the nodes are that are near something (m, from the reference).
@@ -161,6 +179,7 @@ struct MeetingColumns {
     step: &'static DisplacementIncrement,
     force: &'static mut ContactForce,
     touch: &'static mut SurfaceTouch,
+    face_touch: Option<&'static mut FaceTouch>,
 }
 
 impl SurfaceContacts {
@@ -179,6 +198,17 @@ impl SurfaceContacts {
     /// How points of a body meet faces of another.
     fn meeting(&self, point: u32, face: u32) -> Option<Meeting> {
         self.meetings[point as usize * self.bodies.len() + face as usize]
+    }
+
+    /// Whether points of a body may meet faces of another: its nodes, or points of its faces.
+    fn meets(&self, point: u32, face: u32, of_face: bool) -> bool {
+        self.meeting(point, face).is_some_and(|meeting| meeting.faces == of_face)
+    }
+
+    /// Whether points of a body's faces may meet anybody.
+    pub(crate) fn has_face_points(&self, body: usize) -> bool {
+        let count = self.bodies.len();
+        self.meetings[body * count..(body + 1) * count].iter().flatten().any(|meeting| meeting.faces)
     }
 
     /// The largest thickness (m).
@@ -204,7 +234,8 @@ impl SurfaceContacts {
     /// Whether nothing can be near anything, when nodes have moved so.
     fn sleeps(&self, moved: motion::Moved) -> bool {
         let farthest = self.farthest(motion::reach(self, moved.step)) + moved.nearer;
-        farthest <= self.surface.lists.radius && farthest < self.surface.first_wake
+        let edges_are_far = self.surface.crossings.near.is_empty();
+        farthest <= self.surface.lists.radius && farthest < self.surface.first_wake && edges_are_far
     }
 }
 
@@ -244,13 +275,14 @@ fn step<T: Scalar>(
     let largest = motion::largest_step(contacts, &bodies);
     let reach = motion::reach(contacts, largest);
     let nearer = motion::search(contacts, &bodies, (reach, moved), cpu);
-    if !faced::wake(contacts, reach, nearer) {
+    if !faced::wake(contacts, reach, nearer) && contacts.surface.crossings.near.is_empty() {
         contacts.surface.figures.asleep += 1;
         meet::release(&mut contacts.surface, &mut bodies);
         return meet::forget(contacts, &mut bodies);
     }
     motion::update_places(contacts, &bodies, cpu);
     faced::face(contacts, reach, nearer, cpu);
+    crossings::find(contacts, reach);
     meet::meet(contacts, largest, (clock, cpu), &mut bodies);
     contacts.surface.figures.examined += contacts.surface.found.len() as u64;
     contacts.surface.figures.contacts += contacts.surface.set.contacts.len() as u64;

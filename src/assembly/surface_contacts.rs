@@ -3,11 +3,11 @@
 use super::contacts::{bounds, edge, reference, settling};
 use super::{Assembly, BodyParts, PlacedMesh};
 use crate::components::*;
-use crate::contact::{Surfaces, Tree};
+use crate::contact::{Surfaces, Tree, face_points};
 use crate::mesh::{Locator, Mesh, SurfaceFace};
 use crate::scene::SceneFile;
 use crate::scene::diagnostic::Diagnostics;
-use crate::scene::schema::Contact;
+use crate::scene::schema::{Contact, Points};
 use crate::systems::{Meeting, SurfaceContacts};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -31,12 +31,16 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World) {
     let mut contacts = SurfaceContacts::new(meeting.iter().map(|(_, body)| body.entity).collect());
     let place = |name: &String| meeting.iter().position(|(other, _)| *other == name);
     for (contact, pair) in pairs {
-        let (Contact::Between { thickness, sweeps, .. } | Contact::Itself { thickness, sweeps, .. }) = contact else {
+        let (Contact::Between { thickness, sweeps, points, edges, .. }
+        | Contact::Itself { thickness, sweeps, points, edges, .. }) = contact
+        else {
             continue;
         };
         contacts.sweeps = contacts.sweeps.max(*sweeps as usize);
         if let [Some(a), Some(b)] = pair.map(place) {
-            contacts.meet([a, b], Meeting { friction: contact.friction(), thickness: *thickness });
+            let faces = *points == Points::Faces;
+            contacts
+                .meet([a, b], Meeting { friction: contact.friction(), thickness: *thickness, faces, edges: *edges });
         }
     }
     let corners: Vec<DVec3> =
@@ -45,10 +49,16 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World) {
     contacts.edge = meeting.iter().map(|(_, body)| edge(body)).fold(f64::INFINITY, f64::min);
     let speeds = meeting.iter().map(|(_, body)| settling(body, contacts.edge, world));
     contacts.settling = speeds.fold(0.0, f64::max);
-    for (_, body) in &meeting {
-        let count = body.node_rows.len();
-        let zeros = |numbers| Reals::zeros(assembly.precision, numbers * count);
-        world.entity_mut(body.entity).insert((ContactForce(zeros(3)), SurfaceTouch(zeros(MEETING_NUMBERS))));
+    for (number, (_, body)) in meeting.iter().enumerate() {
+        let zeros = |rows: usize, numbers: usize| Reals::zeros(assembly.precision, numbers * rows);
+        let nodes = body.node_rows.len();
+        let columns = (ContactForce(zeros(nodes, 3)), SurfaceTouch(zeros(nodes, MEETING_NUMBERS)));
+        world.entity_mut(body.entity).insert(columns);
+        if contacts.has_face_points(number) {
+            let surface = body.placed.surface();
+            let points = surface.iter().flat_map(SurfaceFace::facets).map(|facet| face_points(facet).len()).sum();
+            world.entity_mut(body.entity).insert(FaceTouch(zeros(points, MEETING_NUMBERS)));
+        }
     }
     world.insert_resource(contacts);
 }

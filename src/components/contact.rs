@@ -14,9 +14,12 @@ columns! {
     /// it touched after the step (m); since the start the length it has slid (m), and what impact and friction have taken
     /// (J). Exists with [`ContactForce`].
     SurfaceTouch(Reals) = "surface_touch", State, Nodes(MEETING_NUMBERS);
+    /// The same of each point of faces: those of a facet after another, as the body's surface has them, and as
+    /// [`face_points`](crate::contact::face_points) orders them. Exists where points of the body's faces meet others.
+    FaceTouch(Reals) = "face_touch", State, Other;
 }
 
-/// Numbers a node in [`SurfaceTouch`].
+/// Numbers a node in [`SurfaceTouch`], and a point in [`FaceTouch`].
 pub const MEETING_NUMBERS: usize = 8;
 
 /// Rows of the nodes of a body's surface that may meet others, ascending: no patch moves them as one of its own, so that

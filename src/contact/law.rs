@@ -9,8 +9,8 @@ const CONTACTS_A_TASK: usize = 256;
 /// So many contacts are worth the threads; fewer are added up one after the other.
 const WORTH_SHARING: usize = 1024;
 
-/// Nodes of a contact: at most three of the point's and three of the face's.
-const MOST: usize = 6;
+/// Nodes of a contact: at most four of the point's and four of the face's.
+const MOST: usize = 8;
 
 /// A point and what it faces.
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +60,7 @@ impl Contact {
         }
     }
 
-    /// Adds a node with its signed weight: positive of the point's, negative of the face's; six at most.
+    /// Adds a node with its signed weight: positive of the point's, negative of the face's; eight at most.
     pub fn add(&mut self, node: u32, weight: f64) {
         if weight != 0.0 && self.count < MOST {
             (self.nodes[self.count], self.weights[self.count]) = (node, weight);

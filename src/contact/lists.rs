@@ -32,8 +32,9 @@ pub struct Finder<'a> {
     pub surfaces: &'a Surfaces,
     /// The points that may meet them.
     pub points: &'a [Point],
-    /// How far triangles of a body are in the way of points of another (m); `None` where they never are.
-    pub reach: &'a (dyn Fn(u32, u32) -> Option<f64> + Sync),
+    /// Whether triangles of a body may be in the way of points of another: of nodes, and, if the third is true, of
+    /// points of faces.
+    pub meets: &'a (dyn Fn(u32, u32, bool) -> bool + Sync),
     /// Pairs of a point and a triangle that are never in each other's way, ascending.
     pub apart: &'a [(u32, u32)],
 }
@@ -62,7 +63,8 @@ impl Lists {
             for number in points {
                 let point = &finder.points[number];
                 let (at, before) = (point.place(places), found.len());
-                let met = trees.iter().zip(0..).filter(|(_, body)| (finder.reach)(point.body, *body).is_some());
+                let of_face = point.triangle.is_some();
+                let met = trees.iter().zip(0..).filter(|(_, body)| (finder.meets)(point.body, *body, of_face));
                 for (tree, _) in met {
                     tree.near(at, radius, |triangle| {
                         let corners = finder.surfaces.corners(places, triangle);
@@ -115,7 +117,7 @@ impl Finder<'_> {
     fn apart_by(&self, trees: &[Tree]) -> f64 {
         let bodies = || (0..).zip(trees);
         let pairs = bodies().flat_map(|(a, of_a)| bodies().map(move |(b, of_b)| (a, of_a, b, of_b)));
-        let meeting = pairs.filter(|&(a, _, b, _)| (self.reach)(a, b).is_some());
+        let meeting = pairs.filter(|&(a, _, b, _)| (self.meets)(a, b, false) || (self.meets)(a, b, true));
         meeting.map(|(a, of_a, b, of_b)| if a == b { 0.0 } else { of_a.distance(of_b) }).fold(f64::INFINITY, f64::min)
     }
 

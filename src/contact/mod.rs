@@ -2,6 +2,8 @@
 //! in f64, of places that are counted from a point near the bodies.
 
 mod boxes;
+mod edges;
+mod face_points;
 mod facing;
 mod law;
 mod lists;
@@ -9,6 +11,8 @@ mod surfaces;
 mod ties;
 
 pub use boxes::Tree;
+pub use edges::{Crossing, Edge, distance};
+pub use face_points::{bilinear, face_points};
 pub use facing::{Faced, Facing, Listed};
 pub use law::{Contact, ContactSet};
 pub use lists::{Finder, Lists};

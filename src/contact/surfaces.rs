@@ -48,22 +48,22 @@ pub struct Point {
     /// The number of its body.
     pub body: u32,
     /// The nodes it is between, the first so many of them.
-    pub nodes: [u32; 3],
+    pub nodes: [u32; 4],
     /// What each has of it.
-    pub weights: [f64; 3],
-    /// Its triangle; `None` of a node.
+    pub weights: [f64; 4],
+    /// The triangle that it is on; `None` of a node.
     pub triangle: Option<u32>,
 }
 
 impl Point {
     /// A node of a body.
     pub fn node(body: u32, node: u32) -> Self {
-        Self { body, nodes: [node; 3], weights: [1.0, 0.0, 0.0], triangle: None }
+        Self { body, nodes: [node; 4], weights: [1.0, 0.0, 0.0, 0.0], triangle: None }
     }
 
     /// Its nodes with their weights.
     pub fn parts(&self) -> impl Iterator<Item = (u32, f64)> + '_ {
-        let count = if self.triangle.is_some() { 3 } else { 1 };
+        let count = if self.triangle.is_some() { 4 } else { 1 };
         self.nodes.into_iter().zip(self.weights).take(count)
     }
 

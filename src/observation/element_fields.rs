@@ -144,7 +144,11 @@ impl ElementFields {
                 | OutputField::InternalForce
                 | OutputField::ExternalForce
                 | OutputField::ContactForce
-                | OutputField::ContactTraction => {}
+                | OutputField::ContactTraction
+                | OutputField::ContactPressure
+                | OutputField::ContactArea
+                | OutputField::ContactGap
+                | OutputField::ContactSlip => {}
             }
         }
     }

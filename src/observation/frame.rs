@@ -1,6 +1,6 @@
 //! One frame of a series: the mesh, who is who in it, and the fields that the scene asks for.
 
-use super::contacts::{contact_forces, contact_tractions};
+use super::contact_fields::contact_field;
 use super::element_fields::{BodyElements, ElementFields, ElementRows};
 use super::fields::internal_forces;
 use crate::backend::cpu::Cpu;
@@ -56,8 +56,7 @@ pub fn write(world: &mut World, series: &mut Series) -> Result<Option<String>, E
     let mut parts = Parts { vectors: vec![Vec::new(); of_nodes.len()], ..Parts::default() };
     for (number, body) in bodies.iter().enumerate() {
         for (field, values) in of_nodes.iter().zip(&mut parts.vectors) {
-            let vectors = node_vectors(*field, *body, world)?;
-            values.extend(vectors.into_iter().flat_map(|vector| vector.as_vec3().to_array()));
+            values.extend(node_numbers(*field, *body, world)?.into_iter().map(|number| number as f32));
         }
         let (Some(authoring), Some(rest)) = (world.get::<Authoring>(*body), world.get::<RestPosition>(*body)) else {
             continue;
@@ -132,7 +131,10 @@ fn put_together(
     // cells of one kind of all bodies come before those of the next
     let cells = parts.rows.into_values().fold(ElementRows::default(), ElementRows::and);
     let columns = elements.columns(&cells);
-    let points = of_nodes.iter().zip(&parts.vectors).map(|(field, values)| (field.array().to_string(), 3, values));
+    let points = of_nodes
+        .iter()
+        .zip(&parts.vectors)
+        .map(|(field, values)| (field.array().to_string(), field.components(), values));
     let cell_fields = columns.iter().map(|column| (column.name.clone(), column.components, &column.values));
     let real: Vec<(String, usize, &Vec<f32>)> = points.chain(cell_fields).collect();
     if let Some((name, ..)) = real.iter().find(|(.., values)| values.iter().any(|value| !value.is_finite())) {
@@ -158,12 +160,19 @@ fn put_together(
     Ok(None)
 }
 
-/// A field of a body's nodes in the author's order.
+/// A field of a body's nodes in the author's order, its numbers one after the other.
+fn node_numbers(field: OutputField, body: Entity, world: &mut World) -> Result<Vec<f64>, Error> {
+    if field.is_of_contact() {
+        return contact_field(field, body, world);
+    }
+    let vectors = node_vectors(field, body, world)?;
+    Ok(vectors.into_iter().flat_map(|vector| vector.to_array()).collect())
+}
+
+/// A field of vectors of a body's nodes in the author's order.
 fn node_vectors(field: OutputField, body: Entity, world: &mut World) -> Result<Vec<DVec3>, Error> {
     let columns: &[&str] = match field {
         OutputField::InternalForce => return internal_forces(world, body),
-        OutputField::ContactForce => return contact_forces(body, world),
-        OutputField::ContactTraction => return contact_tractions(body, world),
         OutputField::Displacement => &[Displacement::NAME],
         OutputField::Velocity => &[DisplacementIncrement::NAME],
         OutputField::ExternalForce => &[ExternalForce::NAME],

@@ -1,6 +1,7 @@
 //! Looking at a run: probes, energies, fields and guards, when they are due. Reads only.
 
 mod attachments;
+mod contact_fields;
 mod contacts;
 mod element_fields;
 mod energies;

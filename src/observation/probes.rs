@@ -21,6 +21,11 @@ pub fn header(what: &Quantity) -> Vec<&'static str> {
         Quantity::Stress => &["xx (Pa)", "yy (Pa)", "zz (Pa)", "xy (Pa)", "yz (Pa)", "xz (Pa)"],
         Quantity::VolumeRatio => &["J"],
         Quantity::RemovedVolume => &["volume (m³)"],
+        Quantity::ContactForce => &["Fx (N)", "Fy (N)", "Fz (N)"],
+        Quantity::ContactPressure => &["pressure (Pa)"],
+        Quantity::ContactArea => &["area (m²)"],
+        Quantity::ContactGap => &["gap (m)"],
+        Quantity::ContactSlip => &["slip (m)"],
         Quantity::AttachmentForce { .. } => &["Fx (N)", "Fy (N)", "Fz (N)"],
         Quantity::SutureLength { .. } => &["length (m)"],
         Quantity::ToolForce { .. } => &["Fx (N)", "Fy (N)", "Fz (N)"],
@@ -65,6 +70,9 @@ pub fn observe_probe(world: &mut World, probe: Entity) -> Result<Vec<f64>, Error
         return Ok(if of_length { vec![reading.length] } else { reading.force.to_array().to_vec() });
     }
     let Some(body) = body else { return Ok(Vec::new()) };
+    if probe.what.is_of_contact() {
+        return super::contact_fields::of_probe(world, body, &probe);
+    }
     let columns: &[&str] = match probe.what {
         Quantity::Displacement | Quantity::Position => &[Displacement::NAME],
         Quantity::Velocity => &[DisplacementIncrement::NAME],

@@ -20,6 +20,16 @@ pub(super) struct BodySlices<'a, T> {
     pub step: &'a [T],
     pub force: &'a mut [T],
     pub touch: &'a mut [T],
+    /// Of points of faces; empty where there are none.
+    pub face_touch: &'a mut [T],
+}
+
+/// Where the numbers of a point are: of a body, in [`SurfaceTouch`] or [`FaceTouch`], from one on.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Kept {
+    pub body: usize,
+    pub of_face: bool,
+    pub first: usize,
 }
 
 /// The vector of a row.
@@ -62,6 +72,7 @@ pub(super) fn slices<'a, T: Scalar>(
             step: columns.step.slice(),
             force: columns.force.into_inner().slice_mut(),
             touch: columns.touch.into_inner().slice_mut(),
+            face_touch: columns.face_touch.map_or(&mut [], |touch| touch.into_inner().slice_mut()),
         };
         all.push((number_of(entity), of_body));
     }
@@ -79,8 +90,15 @@ impl<T: Scalar> BodySlices<'_, T> {
         coefficients.foresee(mass, damping, self.axes[row], vector(self.step, row), force)
     }
 
-    /// A number of a node's [`SurfaceTouch`].
-    pub fn touch(&self, row: usize, number: usize) -> f64 {
-        self.touch[MEETING_NUMBERS * row + number].to_f64()
+    /// The numbers of a point.
+    pub fn kept(&self, at: Kept) -> &[T] {
+        let all = if at.of_face { &*self.face_touch } else { &*self.touch };
+        &all[at.first..at.first + MEETING_NUMBERS]
+    }
+
+    /// The same, to write.
+    pub fn kept_mut(&mut self, at: Kept) -> &mut [T] {
+        let all = if at.of_face { &mut *self.face_touch } else { &mut *self.touch };
+        &mut all[at.first..at.first + MEETING_NUMBERS]
     }
 }

@@ -49,6 +49,10 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, nearer: f64, cpu:
             let (triangles, distances) = (surface.lists.triangles(place), surface.lists.distances(place));
             let listed = Listed { triangles, distances, nearer, farthest };
             *faced = surface.triangles.faced(now, point, listed, reach_of, contacts.edge);
+            if point.triangle.is_some() {
+                let both = [&mut faced.first, &mut faced.second];
+                both.into_iter().flatten().for_each(|facing| facing.gap = surface.gap_of_facet(point, facing));
+            }
         }
     });
     let surface = &mut contacts.surface;

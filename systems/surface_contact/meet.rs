@@ -1,11 +1,11 @@
 //! The forces that keep points outside of what they face.
 
-use super::body_slices::{BodySlices, set_vector, vector, vector_at};
+use super::body_slices::{BodySlices, Kept, set_vector, vector, vector_at};
 use super::faced::Found;
 use super::{Meeting, Surface, SurfaceContacts};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
-use crate::contact::{Contact, ContactSet, Facing, Point};
+use crate::contact::{Contact, ContactSet, Facing, Point, bilinear};
 use crate::math::Scalar;
 use glam::DVec3;
 
@@ -17,6 +17,10 @@ pub(super) const SLIDES: f64 = 3.0;
 
 /// How far a point that is inside comes out in a step at most, in edges.
 pub(super) const OUT: f64 = 0.1;
+
+/// Points of faces share their nodes' masses while they are no farther from touching than this, in edges: who shares
+/// stays the same from step to step then, and pressures come to rest.
+const SHARES: f64 = 1e-3;
 
 /// A contact of the set.
 #[derive(Clone, Copy, Debug)]
@@ -45,10 +49,32 @@ impl SurfaceContacts {
         }
     }
 
-    /// Body and row of a point that is a node.
-    fn row_of(&self, point: u32) -> (usize, usize) {
-        let (body, row) = self.surface.nodes[self.surface.points[point as usize].nodes[0] as usize];
-        (body as usize, row as usize)
+    /// Where a point's numbers are.
+    fn kept(&self, point: u32) -> Kept {
+        self.surface.kept[point as usize]
+    }
+}
+
+impl Surface {
+    /// The corners of what a point faces and their weights: of a node those of the triangle, of a point of a face those
+    /// of the whole facet.
+    pub(super) fn corners_of(&self, point: &Point, facing: &Facing) -> ([u32; 4], [f64; 4]) {
+        let facet = self.facets[facing.triangle as usize];
+        if point.triangle.is_some() && facet[2] != facet[3] {
+            return (facet, bilinear(facing.at, facet.map(|node| self.places[node as usize])));
+        }
+        let ([a, b, c], [u, v, w]) = (self.triangles.triangles[facing.triangle as usize], facing.weights);
+        ([a, b, c, c], [u, v, w, 0.0])
+    }
+}
+
+impl Surface {
+    /// How far a point is outside of the place on a facet that bears it (m): of a warped quadrilateral, that is not
+    /// quite its triangles, the gap that the step foresees is the one that is found after it, or forces would do work.
+    pub(super) fn gap_of_facet(&self, point: &Point, facing: &Facing) -> f64 {
+        let (nodes, weights) = self.corners_of(point, facing);
+        let at: DVec3 = nodes.iter().zip(weights).map(|(&node, weight)| self.places[node as usize] * weight).sum();
+        facing.normal.dot(point.place(&self.places) - at)
     }
 }
 
@@ -63,8 +89,8 @@ pub(super) fn release<T: Scalar>(surface: &mut Surface, bodies: &mut [BodySlices
 /// Forgets what points touched or faced in the last step.
 pub(super) fn forget<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &mut [BodySlices<'_, T>]) {
     for place in 0..contacts.surface.touching.len() {
-        let (body, row) = contacts.row_of(contacts.surface.touching[place]);
-        let touch = &mut bodies[body].touch[MEETING_NUMBERS * row..MEETING_NUMBERS * (row + 1)];
+        let kept = contacts.kept(contacts.surface.touching[place]);
+        let touch = bodies[kept.body].kept_mut(kept);
         set_vector(touch, 0, DVec3::ZERO);
         touch[4] = T::from_f64(FREE);
         touch[5] = T::default();
@@ -106,21 +132,21 @@ fn begin<T: Scalar>(
 ) {
     for Found { place, faced } in found {
         let number = contacts.surface.lists.points[*place as usize];
-        let (body, row) = contacts.row_of(number);
-        let columns = &mut bodies[body];
-        let before = columns.touch(row, 3);
+        let kept = contacts.kept(number);
+        let touch = bodies[kept.body].kept_mut(kept);
+        let before = touch[3].to_f64();
         let allowed = faced.first.map_or(0.0, |facing| {
             let gap = contacts.gap(&contacts.surface.points[number as usize], &facing);
-            let expected = match columns.touch(row, 4) {
+            let expected = match touch[4].to_f64() {
                 FREE => 0.0,
                 // as deep as any motion may have brought it
-                FACES => columns.touch(row, 5) - 2.0 * largest,
-                _ => columns.touch(row, 5),
+                FACES => touch[5].to_f64() - 2.0 * largest,
+                _ => touch[5].to_f64(),
             };
             (before + (gap - expected).min(0.0) + settling).min(0.0).max(gap.min(0.0))
         });
         if allowed != before {
-            columns.touch[MEETING_NUMBERS * row + 3] = T::from_f64(allowed);
+            touch[3] = T::from_f64(allowed);
         }
     }
 }
@@ -154,30 +180,46 @@ fn gather<T: Scalar>(
     for Found { place, faced } in found {
         let number = surface.lists.points[*place as usize];
         let point = &surface.points[number as usize];
-        let (body, row) = contacts.row_of(number);
-        let of_point = &bodies[body];
+        let kept = contacts.kept(number);
+        let touch = bodies[kept.body].kept(kept);
         let both = [(faced.first, true), (faced.second, false)];
         for (facing, first) in both.into_iter().filter_map(|(facing, first)| facing.map(|facing| (facing, first))) {
             let body = surface.triangles.bodies[facing.triangle as usize];
             let Some(Meeting { friction, .. }) = contacts.meeting(point.body, body) else { continue };
-            let stuck = of_point.touch(row, 4) == STICKS;
-            let slip = if first { vector_at(of_point.touch, MEETING_NUMBERS * row) } else { DVec3::ZERO };
+            let stuck = touch[4].to_f64() == STICKS;
+            let slip = if first { vector_at(touch, 0) } else { DVec3::ZERO };
             let outside = contacts.gap(point, &facing);
             let gap = match first {
-                true => (outside - of_point.touch(row, 3)).max(-OUT * contacts.edge),
+                true => (outside - touch[3].to_f64()).max(-OUT * contacts.edge),
                 // nothing is known of how it got there
                 false => outside.max(-settling),
             };
-            let Facing { triangle, weights, normal, .. } = facing;
-            let nodes = surface.triangles.triangles[triangle as usize];
+            let normal = facing.normal;
             let friction = if stuck { friction[0] } else { friction[1] };
             let mut contact = Contact::new((normal, gap), (friction, slip));
             point.parts().for_each(|(node, weight)| contact.add(slot_of(node, set), weight));
+            let (nodes, weights) = surface.corners_of(point, &facing);
             nodes.into_iter().zip(weights).for_each(|(node, weight)| contact.add(slot_of(node, set), -weight));
-            if gap + normal.dot(contact.relative(&set.steps)) < 0.0 {
+            let within = if point.triangle.is_some() { SHARES * contacts.edge } else { 0.0 };
+            if gap + normal.dot(contact.relative(&set.steps)) < within {
                 set.contacts.push(contact);
                 met.push(Met { point: number, first, gap: outside });
             }
+        }
+    }
+    for (pair, crossing) in &surface.crossings.found {
+        let [one, other] = pair.map(|edge| surface.crossings.edges[edge as usize]);
+        let Some(Meeting { friction, thickness, .. }) = contacts.crossing(one.body, other.body) else { continue };
+        let outside = crossing.gap - thickness;
+        // nothing is known of how it got there, nor of how it slipped
+        let mut contact = Contact::new((crossing.normal, outside.max(-settling)), (friction[1], DVec3::ZERO));
+        let [of_one, of_other] = crossing.weights;
+        one.nodes.into_iter().zip(of_one).for_each(|(node, weight)| contact.add(slot_of(node, set), weight));
+        other.nodes.into_iter().zip(of_other).for_each(|(node, weight)| contact.add(slot_of(node, set), -weight));
+        if contact.gap + contact.normal.dot(contact.relative(&set.steps)) < 0.0 {
+            set.contacts.push(contact);
+            // nodes are the first of the points
+            met.push(Met { point: one.nodes[0], first: false, gap: outside });
         }
     }
     foreseen.iter().for_each(|(node, _)| slots[*node as usize] = u32::MAX);
@@ -191,8 +233,8 @@ fn note_facing<T: Scalar>(contacts: &mut SurfaceContacts, found: &[Found], bodie
         let Some(first) = faced.first else { continue };
         let number = contacts.surface.lists.points[*place as usize];
         let gap = contacts.gap(&contacts.surface.points[number as usize], &first);
-        let (body, row) = contacts.row_of(number);
-        let touch = &mut bodies[body].touch[MEETING_NUMBERS * row..MEETING_NUMBERS * (row + 1)];
+        let kept = contacts.kept(number);
+        let touch = bodies[kept.body].kept_mut(kept);
         touch[4] = T::from_f64(FACES);
         touch[5] = T::from_f64(gap);
         contacts.surface.touching.push(number);
@@ -213,8 +255,8 @@ fn note_touches<T: Scalar>(
     for (contact, met) in set.contacts.iter().zip(&surface.met).filter(|(contact, _)| contact.pressing > 0.0) {
         let force = contact.force();
         contact.parts().for_each(|(slot, weight)| forces[slot] += force * weight);
-        let (body, row) = contacts.row_of(met.point);
-        let touch = &mut bodies[body].touch[MEETING_NUMBERS * row..MEETING_NUMBERS * (row + 1)];
+        let kept = contacts.kept(met.point);
+        let touch = bodies[kept.body].kept_mut(kept);
         let after = contact.relative(&set.steps);
         if met.first {
             set_vector(touch, 0, contact.slip);

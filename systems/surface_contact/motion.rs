@@ -3,10 +3,10 @@
 
 use super::body_slices::{BodySlices, vector};
 use super::survey::MARGIN;
-use super::{MeetingColumns, Surface, SurfaceContacts};
+use super::{MeetingColumns, Surface, SurfaceContacts, crossings};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
-use crate::contact::{Finder, Lists};
+use crate::contact::{Finder, Lists, Point};
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -190,19 +190,23 @@ pub(super) fn search<T: Scalar>(
     }
     place(contacts, bodies, None);
     let mut trees = std::mem::take(&mut contacts.surface.trees);
-    let meets = |point: u32, face: u32| contacts.meeting(point, face).map(|of| of.thickness + reach);
+    let meets = |point: u32, face: u32, of_face: bool| contacts.meets(point, face, of_face);
     let Surface { triangles, points, places, apart, .. } = &contacts.surface;
     trees.iter_mut().for_each(|tree| tree.refit(|number| triangles.corners(places, number)));
-    let finder = Finder { surfaces: triangles, points, reach: &meets, apart };
+    let finder = Finder { surfaces: triangles, points, meets: &meets, apart };
     // reach is four steps of the fastest and a little: of what is fast lists serve some steps, too
     let skin = contacts.skin * (contacts.edge + 40.0 * reach).min(4.0 * contacts.edge);
     let lists = Lists::find(&finder, &trees, places, farthest + skin, cpu);
     let listed = lists.points.iter().map(|&point| points[point as usize]);
-    let near = triangles.neighbourhood(listed, &lists.triangles);
+    let listed: Vec<Point> = listed.collect();
+    (contacts.surface.trees, contacts.surface.lists) = (trees, lists);
+    crossings::list(contacts, farthest + skin);
     let surface = &mut contacts.surface;
+    let among: Vec<u32> = surface.lists.triangles.iter().copied().chain(surface.crossings.triangles()).collect();
+    let near = surface.triangles.neighbourhood(listed.into_iter(), &among);
     surface.wake.clear();
-    surface.wake.resize(lists.points.len(), 0.0);
-    (surface.trees, surface.lists, surface.near) = (trees, lists, near);
+    surface.wake.resize(surface.lists.points.len(), 0.0);
+    surface.near = near;
     surface.since.begin(bodies);
     surface.figures.builds += 1;
     0.0

@@ -1,16 +1,18 @@
 //! What the surfaces of the bodies are, where they are, and what may be near what.
 
+use super::body_slices::Kept;
+use super::crossings::Crossings;
 use super::motion::Since;
 use super::{MeetingColumns, Surface, SurfaceContacts};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
-use crate::contact::{Finder, Lists, Point, Surfaces, Tree};
+use crate::contact::{Finder, Lists, Point, Surfaces, Tree, face_points};
 use crate::mesh::SurfaceFace;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
 /// Points and faces that are nearer than this at rest, in reaches, are never in each other's way.
-const NEAR_AT_REST: f64 = 1.5;
+pub(super) const NEAR_AT_REST: f64 = 1.5;
 
 /// How deep behind a face is still its inside at most, in edges; of thin elements half of what is behind it.
 const DEEPEST: f64 = 0.5;
@@ -46,21 +48,25 @@ fn remember(contacts: &mut SurfaceContacts, bodies: &mut Query<(Entity, MeetingC
     if !contacts.bodies.iter().any(changed) {
         return;
     }
-    let Surface { nodes, pressed, touching, since, .. } = &mut contacts.surface;
+    let Surface { nodes, kept, pressed, touching, since, .. } = &mut contacts.surface;
     // they may be anywhere
     *since = Since::of(nodes);
     pressed.clear();
     touching.clear();
     let columns: Vec<_> = contacts.bodies.iter().filter_map(|&body| bodies.get(body).ok()).collect();
     for (node, &(body, row)) in (0..).zip(&*nodes) {
-        let ((_, columns), row) = (&columns[body as usize], row as usize);
-        if columns.force.vector(row) != DVec3::ZERO {
+        if columns[body as usize].1.force.vector(row as usize) != DVec3::ZERO {
             pressed.push(node);
         }
-        if columns.touch.get(MEETING_NUMBERS * row + 4) > super::meet::FREE {
-            touching.push(node);
-        }
     }
+    let touches = |point: &u32| {
+        let Kept { body, of_face, first } = kept[*point as usize];
+        let columns = &columns[body].1;
+        let of_faces = columns.face_touch.map(|touch| &touch.0);
+        let numbers = if of_face { of_faces } else { Some(&columns.touch.0) };
+        numbers.is_some_and(|numbers| numbers.get(first + 4) > super::meet::FREE)
+    };
+    touching.extend((0..kept.len() as u32).filter(touches));
 }
 
 /// Finds the surfaces.
@@ -71,7 +77,8 @@ fn survey(
     blocks: &Query<Ref<Alive>>,
 ) {
     let mut surface = std::mem::take(&mut contacts.surface);
-    let (mut triangles, mut owners, mut depths) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut triangles, mut owners, mut depths) = (Vec::<[u32; 3]>::new(), Vec::new(), Vec::new());
+    let (mut of_faces, mut facets) = (Vec::<Point>::new(), Vec::new());
     for (number, &body) in (0..).zip(&contacts.bodies) {
         let (Ok(authoring), Ok((_, columns))) = (authorings.get(body), bodies.get(body)) else { continue };
         let is_alive = |block: u32, row: u32| {
@@ -84,18 +91,35 @@ fn survey(
         rows.dedup();
         let first = surface.nodes.len() as u32;
         let number_of = |row: u32| first + rows.binary_search(&row).unwrap_or(0) as u32;
-        for face in &faces {
-            for corners in face.facets().flat_map(|facet| split(facet, row)) {
+        // as many as there is room for: all, where the surface is that of the start
+        let mut room = columns.face_touch.map_or(0, |touch| touch.len() / MEETING_NUMBERS);
+        for (face, facet) in faces.iter().flat_map(|face| face.facets().map(move |facet| (face, facet))) {
+            let first = triangles.len();
+            for corners in split(facet, row) {
                 depths.push(0.5 * extent(corners, authoring.cells.nodes(face.element as usize), row, &columns.rest.0));
                 triangles.push(corners.map(number_of));
                 owners.push(number);
+                facets.push(facet.map(|node| number_of(row(node))));
             }
+            let nodes = facet.map(|node| number_of(row(node)));
+            for (corner, weights) in face_points(facet).iter().enumerate().take(room) {
+                let is_on_first = triangles[first].contains(&nodes[corner]);
+                let triangle = Some(if is_on_first { first } else { first + 1 } as u32);
+                of_faces.push(Point { body: number, nodes, weights: *weights, triangle });
+            }
+            room = room.saturating_sub(face_points(facet).len());
         }
         for &row in &rows {
             surface.points.push(Point::node(number, surface.nodes.len() as u32));
             surface.nodes.push((number, row));
         }
     }
+    surface.kept = surface.nodes.iter().map(|&(body, row)| kept(body, false, row)).collect();
+    for points in of_faces.chunk_by(|a, b| a.body == b.body) {
+        surface.kept.extend((0..).zip(points).map(|(place, point)| kept(point.body, true, place)));
+    }
+    surface.points.extend(of_faces);
+    surface.facets = facets;
     let depths = depths.into_iter().map(|depth| f64::min(depth, DEEPEST * contacts.edge)).collect();
     surface.triangles = Surfaces::new(surface.nodes.len(), triangles, owners, depths);
     surface.slots = vec![u32::MAX; surface.nodes.len()];
@@ -118,6 +142,14 @@ fn survey(
     surface.trees = (0..contacts.bodies.len() as u32).map(of_body).collect();
     contacts.surface = surface;
     near_at_rest(contacts, &rest);
+    if contacts.meetings.iter().flatten().any(|meeting| meeting.edges) {
+        contacts.surface.crossings = Crossings::of(&contacts.surface.triangles, rest);
+    }
+}
+
+/// Where the numbers of a point are, of a node by its row.
+fn kept(body: u32, of_face: bool, place: u32) -> Kept {
+    Kept { body: body as usize, of_face, first: MEETING_NUMBERS * place as usize }
 }
 
 /// Triangles of a facet; a quadrilateral is cut between the lower of its corners' rows, so that the same is cut alike
@@ -147,10 +179,10 @@ fn near_at_rest(contacts: &mut SurfaceContacts, rest: &[DVec3]) {
         return;
     }
     let near = |body: u32| itself(body).map(|of| NEAR_AT_REST * (of.thickness + MARGIN * contacts.edge));
-    let reach = |point: u32, face: u32| if point == face { near(face) } else { None };
+    let meets = |point: u32, face: u32, of_face: bool| point == face && contacts.meets(point, face, of_face);
     let radius = (0..count).filter_map(near).fold(0.0, f64::max);
     let surface = &contacts.surface;
-    let finder = Finder { surfaces: &surface.triangles, points: &surface.points, reach: &reach, apart: &[] };
+    let finder = Finder { surfaces: &surface.triangles, points: &surface.points, meets: &meets, apart: &[] };
     let cpu = Cpu::new(1, 0, Default::default());
     let lists = Lists::find(&finder, &surface.trees, rest, radius, &cpu);
     let mut apart = Vec::new();

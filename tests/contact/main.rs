@@ -6,6 +6,12 @@
 mod bits;
 #[path = "../physics/configurations.rs"]
 mod configurations;
+mod contact_fields;
+mod edges;
+mod faces;
+#[allow(dead_code)]
+#[path = "../physics/frames.rs"]
+mod frames;
 mod free_tools;
 mod glue;
 mod grasp;

@@ -216,7 +216,7 @@ fn words_that_do_not_fit_are_told_with_those_that_do() {
         (
             r#""tip": (what: Displacement, on: Surface(normal: (0, 0, 1)))"#,
             r#""tip": (what: Displacment, on: All)"#,
-            r"20:23: error: `what` cannot be `Displacment` | unknown word | did you mean `Displacement`? | allowed: Displacement, Position, Velocity, Reaction, Force, Moment, Torque, Stress, VolumeRatio, RemovedVolume, AttachmentForce, SutureLength, ToolForce, ToolTorque, ToolPlace, ToolPose, ToolVelocity",
+            r"20:23: error: `what` cannot be `Displacment` | unknown word | did you mean `Displacement`? | allowed: Displacement, Position, Velocity, Reaction, Force, Moment, Torque, Stress, VolumeRatio, RemovedVolume, ContactForce, ContactPressure, ContactArea, ContactGap, ContactSlip, AttachmentForce, SutureLength, ToolForce, ToolTorque, ToolPlace, ToolPose, ToolVelocity",
         ),
         (
             r#""tip": (what: Displacement, on: Surface(normal: (0, 0, 1)))"#,

@@ -290,6 +290,11 @@ impl Placement {
             | Quantity::Stress
             | Quantity::VolumeRatio
             | Quantity::RemovedVolume
+            | Quantity::ContactForce
+            | Quantity::ContactPressure
+            | Quantity::ContactArea
+            | Quantity::ContactGap
+            | Quantity::ContactSlip
             | Quantity::AttachmentForce { .. }
             | Quantity::SutureLength { .. }
             | Quantity::ToolForce { .. }

@@ -38,6 +38,16 @@ pub enum OutputField {
     ContactForce,
     /// The same over the area of the surface around each node (Pa).
     ContactTraction,
+    /// The part of that force into the surface, over the area that it presses on (Pa).
+    ContactPressure,
+    /// The area that what touches a node presses on (m²): its share of the exposed faces around it that are turned to
+    /// it; 0 where nothing touches it.
+    ContactArea,
+    /// How far each node is outside of the face of another body, or of its own, that it faces (m); negative inside. The
+    /// mean length of an edge of its surface where none is near.
+    ContactGap,
+    /// The length that each node has slid along bodies and tools since the start (m).
+    ContactSlip,
     /// Volume ratio J.
     VolumeRatio,
     /// Cauchy stress (Pa): xx, yy, zz, xy, yz, xz.
@@ -76,8 +86,24 @@ impl OutputField {
         use OutputField::*;
         matches!(
             self,
-            Displacement | Velocity | Reaction | InternalForce | ExternalForce | ContactForce | ContactTraction
+            Displacement
+                | Velocity
+                | Reaction
+                | InternalForce
+                | ExternalForce
+                | ContactForce
+                | ContactTraction
+                | ContactPressure
+                | ContactArea
+                | ContactGap
+                | ContactSlip
         )
+    }
+
+    /// Whether it is of what touches nodes.
+    pub fn is_of_contact(self) -> bool {
+        use OutputField::*;
+        matches!(self, ContactForce | ContactTraction | ContactPressure | ContactArea | ContactGap | ContactSlip)
     }
 
     /// The array's name in VTU files, by which `sinew render` finds it; of a second family of fibres with `_2`.
@@ -90,6 +116,10 @@ impl OutputField {
             OutputField::ExternalForce => "external_force",
             OutputField::ContactForce => "contact_force",
             OutputField::ContactTraction => "contact_traction",
+            OutputField::ContactPressure => "contact_pressure",
+            OutputField::ContactArea => "contact_area",
+            OutputField::ContactGap => "contact_gap",
+            OutputField::ContactSlip => "contact_slip",
             OutputField::VolumeRatio => "J",
             OutputField::CauchyStress => "stress",
             OutputField::VonMises => "von_mises",
@@ -107,10 +137,11 @@ impl OutputField {
     pub fn unit(self) -> &'static str {
         use OutputField::*;
         match self {
-            Displacement => "m",
+            Displacement | ContactGap | ContactSlip => "m",
+            ContactArea => "m²",
             Velocity => "m/s",
             Reaction | InternalForce | ExternalForce | ContactForce => "N",
-            ContactTraction | CauchyStress | VonMises | Pressure | PrincipalStresses => "Pa",
+            ContactTraction | ContactPressure | CauchyStress | VonMises | Pressure | PrincipalStresses => "Pa",
             EnergyDensity => "J/m³",
             VolumeRatio | PrincipalStretches | GreenStrain | FibreStretch | HourglassShare => "1",
         }
@@ -123,6 +154,7 @@ impl OutputField {
         match self {
             CauchyStress | GreenStrain => 6,
             PrincipalStresses | PrincipalStretches => 3,
+            ContactPressure | ContactArea | ContactGap | ContactSlip => 1,
             field if field.is_of_nodes() => 3,
             _ => 1,
         }

@@ -137,6 +137,16 @@ pub enum Quantity {
     VolumeRatio,
     /// Volume at rest of the elements that have been removed (m³).
     RemovedVolume,
+    /// The sum of what tools, other bodies and the body itself do to the nodes where they touch them (N).
+    ContactForce,
+    /// The force into the surface at the nodes, over the area that is touched (Pa).
+    ContactPressure,
+    /// The area at the nodes that is touched (m²).
+    ContactArea,
+    /// The least gap of the nodes (m).
+    ContactGap,
+    /// The mean of the lengths that the nodes have slid since the start (m).
+    ContactSlip,
     /// The force of a suture, a tie or glue on the body of its first point (N).
     AttachmentForce {
         /// Its name.
@@ -178,6 +188,12 @@ impl Quantity {
     /// Whether it is made of the forces that hold nodes.
     pub fn is_of_reactions(&self) -> bool {
         matches!(self, Self::Reaction | Self::Force { .. } | Self::Moment { .. } | Self::Torque { .. })
+    }
+
+    /// Whether it is of what nodes touch.
+    pub fn is_of_contact(&self) -> bool {
+        use Quantity::*;
+        matches!(self, ContactForce | ContactPressure | ContactArea | ContactGap | ContactSlip)
     }
 
     /// Whether it is of elements, not of nodes.

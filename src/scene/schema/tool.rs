@@ -198,6 +198,12 @@ pub enum Contact {
         /// How often forces are corrected in a step.
         #[serde(default = "one_sweep")]
         sweeps: u32,
+        /// Which points of each surface stay outside the other.
+        #[serde(default)]
+        points: Points,
+        /// That edges which cross stay outside of each other, too.
+        #[serde(default)]
+        edges: bool,
     },
     /// The surface of a body and itself: folds and copies stay outside of each other.
     Itself {
@@ -216,7 +222,24 @@ pub enum Contact {
         /// How often forces are corrected in a step.
         #[serde(default = "one_sweep")]
         sweeps: u32,
+        /// Which points of the surface stay outside.
+        #[serde(default)]
+        points: Points,
+        /// That edges which cross stay outside of each other, too.
+        #[serde(default)]
+        edges: bool,
     },
+}
+
+/// Which points of a surface stay outside of others.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
+pub enum Points {
+    /// Its nodes.
+    #[default]
+    Nodes,
+    /// Points of its faces, three of a triangle and four of a quadrilateral: pressures are more even where meshes do
+    /// not match.
+    Faces,
 }
 
 fn one_sweep() -> u32 {

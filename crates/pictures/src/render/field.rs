@@ -28,7 +28,7 @@ enum Pick {
 }
 
 /// What is known of arrays: name in the file, other name, what it is, its length in words, unit, middle.
-const KNOWN: [(&str, &str, &str, &str, Option<f32>); 18] = [
+const KNOWN: [(&str, &str, &str, &str, Option<f32>); 22] = [
     ("displacement", "", "displacement", "m", None),
     ("velocity", "speed", "speed", "m/s", None),
     ("von_mises", "", "von Mises stress", "Pa", None),
@@ -41,6 +41,10 @@ const KNOWN: [(&str, &str, &str, &str, Option<f32>); 18] = [
     ("external_force", "", "external force", "N", None),
     ("contact_force", "", "contact force", "N", None),
     ("contact_traction", "", "contact traction", "Pa", None),
+    ("contact_pressure", "", "contact pressure", "Pa", None),
+    ("contact_area", "", "contact area", "m²", None),
+    ("contact_gap", "", "contact gap", "m", Some(0.0)),
+    ("contact_slip", "", "contact slip", "m", None),
     ("green_strain", "", "Green-Lagrange strain", "", Some(0.0)),
     ("energy_density", "", "energy density", "J/m³", None),
     ("fibre_stretch", "", "stretch of fibres", "", Some(1.0)),

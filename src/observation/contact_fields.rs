@@ -1,0 +1,209 @@
+//! What nodes feel of what touches them, as fields and for probes: force, traction, pressure, area, gap, slip.
+
+use crate::backend::device::bring_to_host;
+use crate::components::*;
+use crate::contact::face_points;
+use crate::error::Error;
+use crate::scene::schema::{OutputField, Quantity};
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+/// A face counts for the area that a force presses on where the cosine of the angle between the force and its inwards
+/// normal is above this (60°): of the faces around an edge those that are turned to what touches.
+const PRESSED: f64 = 0.5;
+
+/// What touches each node of a body (N), in the author's order: other bodies, itself, tools.
+///
+/// # Errors
+/// What the GPU says.
+pub(super) fn contact_forces(body: Entity, world: &mut World) -> Result<Vec<DVec3>, Error> {
+    bring_to_host(world, |_, name| [ContactForce::NAME, ToolTouch::NAME, ToolHold::NAME].contains(&name))?;
+    let entity = world.entity(body);
+    let Some(authoring) = entity.get::<Authoring>() else { return Ok(Vec::new()) };
+    let count = authoring.node_rows.len();
+    let mut forces = match entity.get::<ContactForce>() {
+        Some(forces) => forces.vectors().collect(),
+        None => vec![DVec3::ZERO; count],
+    };
+    if let (Some(contacts), Some(touch)) = (entity.get::<ToolContacts>(), entity.get::<ToolTouch>()) {
+        for (place, &row) in contacts.rows.iter().enumerate() {
+            let first = contacts.numbers() * place;
+            let of_tool = |tool: usize| touch.vector_at(first + contacts.numbers_a_tool() * tool);
+            forces[row as usize] += (0..contacts.tools.len()).map(of_tool).sum::<DVec3>();
+        }
+    }
+    super::grasps::forces(entity, &mut forces);
+    super::free_tools::add_forces(world, body, &mut forces);
+    Ok(authoring.node_rows.iter().map(|&row| forces[row as usize]).collect())
+}
+
+/// A flat polygon of a surface as it is.
+struct FacetNow {
+    /// The author's nodes of its corners, as many as it has.
+    nodes: Vec<usize>,
+    /// What each has of its area, along its outwards normal (m²): a third of a triangle, a quarter of a quadrilateral.
+    share: DVec3,
+    /// The facet with all four corners; a triangle repeats the last one.
+    facet: [u32; 4],
+    /// Length of its first edge (m).
+    edge: f64,
+}
+
+/// The exposed surface of a body as it is.
+fn surface_now(body: Entity, world: &mut World) -> Result<Vec<FacetNow>, Error> {
+    bring_to_host(world, |_, name| name == Displacement::NAME || name == Alive::NAME)?;
+    let entity = world.entity(body);
+    let (Some(authoring), Some(rest), Some(u)) =
+        (entity.get::<Authoring>(), entity.get::<RestPosition>(), entity.get::<Displacement>())
+    else {
+        return Ok(Vec::new());
+    };
+    let alive = |block: u32, row: u32| {
+        let alive = world.get::<Alive>(authoring.blocks[block as usize]);
+        alive.is_none_or(|alive| alive[row as usize] == 1)
+    };
+    let place = |node: u32| {
+        let row = authoring.node_rows[node as usize] as usize;
+        rest.0[row] + u.vector(row)
+    };
+    let now = |facet: [u32; 4]| {
+        let [a, b, c, d] = facet.map(place);
+        let corners = if facet[2] == facet[3] { 3 } else { 4 };
+        let area = 0.5 * ((b - a).cross(c - a) + (c - a).cross(d - a));
+        let nodes = facet[..corners].iter().map(|&node| node as usize).collect();
+        FacetNow { nodes, share: area / corners as f64, facet, edge: a.distance(b) }
+    };
+    Ok(authoring.surface(alive).iter().flat_map(|face| face.facets()).map(now).collect())
+}
+
+/// The same over the area of the surface around each node as it is (Pa): a third of its triangles, a quarter of its
+/// quadrilaterals.
+fn tractions(forces: Vec<DVec3>, surface: &[FacetNow]) -> Vec<DVec3> {
+    let mut areas = vec![0.0; forces.len()];
+    for facet in surface {
+        facet.nodes.iter().for_each(|&node| areas[node] += facet.share.length());
+    }
+    let over = |(force, area): (DVec3, f64)| if area > 0.0 { force / area } else { DVec3::ZERO };
+    forces.into_iter().zip(areas).map(over).collect()
+}
+
+/// Of each node, from the forces on nodes, the area that its force presses on (m²), along the mean normal of that.
+fn pressed(forces: &[DVec3], surface: &[FacetNow]) -> Vec<(f64, DVec3)> {
+    let mut areas = vec![(0.0, DVec3::ZERO); forces.len()];
+    for (facet, &node) in surface.iter().flat_map(|facet| facet.nodes.iter().map(move |node| (facet, node))) {
+        let (force, size) = (forces[node], facet.share.length());
+        if -force.dot(facet.share) > PRESSED * force.length() * size {
+            areas[node].0 += size;
+            areas[node].1 += facet.share;
+        }
+    }
+    areas
+}
+
+/// The part of a force into the surface that it presses on (N).
+fn into_surface(force: DVec3, along: DVec3) -> f64 {
+    -force.dot(along.normalize_or_zero())
+}
+
+/// Gap (m) and length slid (m) of each node, in the author's order: of points of faces what those around a node have in
+/// the mean, by its weights.
+fn gaps_and_slips(body: Entity, surface: &[FacetNow], world: &mut World) -> Result<Vec<[f64; 2]>, Error> {
+    let wanted = [SurfaceTouch::NAME, FaceTouch::NAME, ToolTouch::NAME];
+    bring_to_host(world, |entity, name| entity == body && wanted.contains(&name))?;
+    let nowhere = surface.iter().map(|facet| facet.edge).sum::<f64>() / surface.len().max(1) as f64;
+    let entity = world.entity(body);
+    let Some(authoring) = entity.get::<Authoring>() else { return Ok(Vec::new()) };
+    let count = authoring.node_rows.len();
+    // sums of weights, and with these of gaps where something is faced and of lengths
+    let (mut near, mut all) = (vec![[0.0; 2]; count], vec![[0.0; 2]; count]);
+    let mut add = |node: usize, weight: f64, touch: &Reals, first: usize| {
+        if touch.get(first + 4) > 0.0 {
+            near[node][0] += weight;
+            near[node][1] += weight * touch.get(first + 5);
+        }
+        // points on other sides of an edge, that never touched anything, say nothing of how far it slid
+        if touch.get(first + 4) > 0.0 || touch.get(first + 6) > 0.0 {
+            all[node][0] += weight;
+            all[node][1] += weight * touch.get(first + 6);
+        }
+    };
+    if let Some(touch) = entity.get::<FaceTouch>() {
+        let points = surface.iter().flat_map(|of| face_points(of.facet).iter().map(move |weights| (of, weights)));
+        for (first, (facet, weights)) in (0..touch.len()).step_by(MEETING_NUMBERS).zip(points) {
+            facet.nodes.iter().zip(weights).for_each(|(&node, &weight)| add(node, weight, touch, first));
+        }
+    }
+    if let Some(touch) = entity.get::<SurfaceTouch>() {
+        for (node, &row) in authoring.node_rows.iter().enumerate() {
+            add(node, 1.0, touch, MEETING_NUMBERS * row as usize);
+        }
+    }
+    let mut slid = vec![0.0; count];
+    if let (Some(contacts), Some(touch)) = (entity.get::<ToolContacts>(), entity.get::<ToolTouch>()) {
+        for (place, &row) in contacts.rows.iter().enumerate() {
+            let first = contacts.numbers() * place;
+            let of_tool = |tool: usize| touch.get(first + contacts.numbers_a_tool() * tool + 4);
+            slid[row as usize] = (0..contacts.tools.len()).map(of_tool).sum();
+        }
+    }
+    let mean = |[weight, sum]: [f64; 2], other: f64| if weight > 0.0 { sum / weight } else { other };
+    let of_node = |(node, &row): (usize, &u32)| [mean(near[node], nowhere), mean(all[node], 0.0) + slid[row as usize]];
+    Ok(authoring.node_rows.iter().enumerate().map(of_node).collect())
+}
+
+/// A field of contact of a body's nodes in the author's order, its numbers one after the other.
+///
+/// # Errors
+/// What the GPU says.
+pub(super) fn contact_field(field: OutputField, body: Entity, world: &mut World) -> Result<Vec<f64>, Error> {
+    let forces = contact_forces(body, world)?;
+    let flat = |vectors: Vec<DVec3>| vectors.into_iter().flat_map(|vector| vector.to_array()).collect();
+    if field == OutputField::ContactForce {
+        return Ok(flat(forces));
+    }
+    let surface = surface_now(body, world)?;
+    Ok(match field {
+        OutputField::ContactTraction => flat(tractions(forces, &surface)),
+        OutputField::ContactArea => pressed(&forces, &surface).into_iter().map(|(area, _)| area).collect(),
+        OutputField::ContactPressure => {
+            let pressure = |(force, (area, along)): (DVec3, (f64, DVec3))| {
+                if area > 0.0 { into_surface(force, along) / area } else { 0.0 }
+            };
+            let pressed = pressed(&forces, &surface);
+            forces.into_iter().zip(pressed).map(pressure).collect()
+        }
+        OutputField::ContactGap => gaps_and_slips(body, &surface, world)?.into_iter().map(|[gap, _]| gap).collect(),
+        _ => gaps_and_slips(body, &surface, world)?.into_iter().map(|[_, slip]| slip).collect(),
+    })
+}
+
+/// What a probe sees of what touches its nodes.
+///
+/// # Errors
+/// What the GPU says.
+pub(super) fn of_probe(world: &mut World, body: Entity, probe: &Probe) -> Result<Vec<f64>, Error> {
+    let Some(authoring) = world.get::<Authoring>(body) else { return Ok(Vec::new()) };
+    let mut nodes = vec![false; authoring.node_rows.len()];
+    probe.nodes.iter().for_each(|&row| nodes[row as usize] = true);
+    let is_one: Vec<bool> = authoring.node_rows.iter().map(|&row| nodes[row as usize]).collect();
+    let forces = contact_forces(body, world)?;
+    let surface = surface_now(body, world)?;
+    let of_nodes = |node: &usize| is_one[*node];
+    let all = || (0..is_one.len()).filter(of_nodes);
+    if probe.what == Quantity::ContactForce {
+        return Ok(all().map(|node| forces[node]).sum::<DVec3>().to_array().to_vec());
+    }
+    if matches!(probe.what, Quantity::ContactPressure | Quantity::ContactArea) {
+        let pressed = pressed(&forces, &surface);
+        let area: f64 = all().map(|node| pressed[node].0).sum();
+        let force: f64 = all().map(|node| into_surface(forces[node], pressed[node].1)).sum();
+        let pressure = if area > 0.0 { force / area } else { 0.0 };
+        return Ok(vec![if probe.what == Quantity::ContactArea { area } else { pressure }]);
+    }
+    let found = gaps_and_slips(body, &surface, world)?;
+    let count = all().count().max(1) as f64;
+    Ok(vec![match probe.what {
+        Quantity::ContactGap => all().map(|node| found[node][0]).fold(f64::INFINITY, f64::min),
+        _ => all().map(|node| found[node][1]).sum::<f64>() / count,
+    }])
+}
