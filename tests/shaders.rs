@@ -299,14 +299,15 @@ fn every_shader_is_named_after_a_system_an_element_or_a_material_or_listed() {
     };
     let mut known: BTreeSet<String> = SUPPORT.iter().map(|(stem, _)| (*stem).to_owned()).collect();
     for folder in ["systems", "src/elements"] {
-        let others = ["mod", "kinds", "registry", "node_system", "node_stages"];
+        let others = ["mod", "kinds", "registry", "node_system", "node_stages", "node_slices"];
         known.extend(stems(folder).into_iter().filter(|stem| !others.contains(&stem.as_str())));
     }
     // some run on the host only
     known.retain(|stem| Registry::default().get(stem).is_none_or(|system| system.device.is_some()));
     // that of one's own is a file of its author
     let laws = sinew::scene::schema::ELASTIC_LAWS.iter().filter(|word| **word != "law");
-    known.extend(laws.copied().chain(kernel_units::SURFACES).map(str::to_owned));
+    let parts = kernel_units::SURFACES.into_iter().chain(kernel_units::ATTACHMENTS);
+    known.extend(laws.copied().chain(parts).map(str::to_owned));
     assert_eq!(stems("shaders"), known);
 }
 
@@ -322,7 +323,7 @@ fn all_fragments_of_the_folder_are_in_use() {
     let explained = simulation.explain_on_gpu(&Registry::default()).unwrap();
     let fragments = explained.kernels.iter().flat_map(|kernel| &kernel.fragments);
     used.extend(fragments.filter_map(|f| f.path.strip_prefix("shaders/").map(str::to_owned)));
-    used.extend(kernel_units::of_tools().into_iter().chain(kernel_units::of_surfaces()));
+    used.extend([kernel_units::of_tools(), kernel_units::of_surfaces(), kernel_units::of_attachments()].concat());
     for effects in Effects::combinations() {
         for (_, kernel) in all(&effects) {
             let all = kernel.all_fragments();
