@@ -30,12 +30,24 @@ pub fn system() -> System {
         glue,
     );
     // ties whose tissue may go are looked after on the host
-    System { device_when: nothing_goes, ..system.on_device(kernels::kernels) }
+    System { device_when: nothing_goes, shared_only: on_surfaces, ..system.on_device(kernels::kernels) }
 }
 
 /// Whether no tissue of what is tied can go.
 fn nothing_goes(world: &World) -> bool {
-    world.get_resource::<Glue>().is_some_and(|glue| elements_stay(glue.bodies.iter().copied(), world))
+    let bodies = |glue: &Glue| -> Vec<Entity> {
+        glue.ties.iter().flat_map(|tie| tie.bodies).map(|body| glue.bodies[body]).collect()
+    };
+    world.get_resource::<Glue>().is_some_and(|glue| elements_stay(bodies(glue), world))
+}
+
+/// Whether all nodes of what is tied are those of surfaces that no patch moves by itself.
+fn on_surfaces(world: &World) -> bool {
+    let is_apart = |glue: &Glue, (body, row): (usize, u32)| {
+        let rows = world.get::<SurfaceRows>(glue.bodies[body]);
+        rows.is_some_and(|rows| rows.0.binary_search(&row).is_ok())
+    };
+    world.get_resource::<Glue>().is_some_and(|glue| work::nodes_of(glue).into_iter().all(|node| is_apart(glue, node)))
 }
 
 /// What a tie is, in [`TieState`].

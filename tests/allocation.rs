@@ -87,7 +87,7 @@ const ATTACHED: &str = r#"(duration: 10, materials: {"m": (density: 1000, neo_ho
         Glue(bodies: ("up", "low"), normal: 1e5),
         Tie(from: (body: "side", at: (0.102, 0.05, 0.05)), to: (body: "low", at: (0.1, 0.05, 0.05))),
         Suture(from: (body: "side", at: (0.12, 0.05, 0.09)), to: (body: "up", at: (0.09, 0.05, 0.12)), stiffness: 5, strength: 100),
-        Grasp(tool: "forceps", body: "side", on: Plane(normal: (0, 0, 1), at: 0.1)),
+        Grasp(tool: "forceps", body: "side", on: Plane(normal: (0, 0, 1), at: 0.1), closed: Step()),
     ],
     integration: (when_unstable: Watch))"#;
 

@@ -14,7 +14,7 @@ const EYE: &str = "bodies: {
     tools: {\"forceps\": (shape: Box(size: (0.004, 0.004, 0.004)), at: (0.005, 0.005, 0.027),
         moves: [(displacement: (1e-3, 0, 1.5e-3), rotation: (0, 0, 20), curve: Smooth(end: 0.05))])},
     constraints: [Fixed(body: \"rim\", on: Set(\"z0\"))],
-    attachments: [Glue(name: \"zonule\", bodies: (\"lens\", \"rim\"), normal: 60, shear: 90),
+    attachments: [Glue(name: \"zonule\", bodies: (\"lens\", \"rim\"), normal: 600, shear: 900),
         Tie(from: (body: \"cap\", at: (0.0046, 0.0058, 0.0203)), to: (body: \"lens\", at: (0.0046, 0.0058, 0.02)), strength: 1),
         Suture(name: \"stitch\", from: (body: \"cap\", at: (0.008, 0.005, 0.021)), to: (body: \"lens\", at: (0.008, 0.004, 0.019)),
             stiffness: 5, tighten: 1e-3, curve: Smooth(end: 0.03)),
