@@ -3,7 +3,7 @@
 //! are split (`glue_share`), and in each sweep the forces (`glue_correct`) and what they do to nodes (`glue_apply`). At
 //! last, for each body: what becomes of its ties (`glue_note`), and its loads (`glue_push`).
 
-use super::work::{nodes_of, parts_of};
+use super::work::{TieNodes, nodes_of, parts_of};
 use super::{BROKE, HOLDS};
 use crate::backend::Buffers;
 use crate::backend::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};
@@ -39,8 +39,8 @@ struct Tied<'a> {
     glue: &'a Glue,
     nodes: Vec<(usize, u32)>,
     ties: Vec<&'a TiedPoint>,
-    /// Of each its nodes with signed weights, and the corners of its face.
-    parts: Vec<(Vec<(u32, f64)>, [u32; 3])>,
+    /// Of each.
+    parts: Vec<TieNodes>,
 }
 
 impl<'a> Tied<'a> {
@@ -62,7 +62,7 @@ impl<'a> Tied<'a> {
     fn words(&self, world: &World) -> (Vec<u32>, [usize; 2]) {
         let (mut words, mut parts) = (Vec::new(), Vec::new());
         let mut of_nodes: Vec<Vec<[u32; 2]>> = vec![Vec::new(); self.nodes.len()];
-        for (number, (tie, (of_tie, corners))) in self.ties.iter().zip(&self.parts).enumerate() {
+        for (number, (tie, TieNodes { parts: of_tie, corners })) in self.ties.iter().zip(&self.parts).enumerate() {
             words.extend([parts.len() / 2, parts.len() / 2 + of_tie.len()].map(|part| part as u32));
             words.extend(corners);
             let at = |node: u32| self.rest(self.nodes[node as usize], world);
@@ -131,9 +131,13 @@ impl Shared {
             .fragment(text)
             .fragment(shader!("glue_ties"))
             .fragment(shader!("row"))
-            .bind_uniform::<GlueTies>("glue_of", of)
-            .bind("glue_ties", self.ties);
+            .bind_uniform::<GlueTies>("glue_of", of);
         with_step(kernel, world)
+    }
+
+    /// One that asks which ties there are and what a step has found of them.
+    fn of_ties(&self, entry: &'static str, text: Fragment, of: BufferId, world: &World) -> Kernel {
+        self.kernel(entry, text, of, world).bind("glue_ties", self.ties).bind("glue_found", self.found)
     }
 
     fn with_nodes(&self, kernel: Kernel) -> Kernel {
@@ -198,16 +202,13 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
         all.push(foreseen.foresee("glue_foresee", body, world, buffers));
     }
     let of_ties = |entry, text: Fragment, body, of: GlueTies, uniform, buffers: &mut dyn Buffers| {
-        let kernel = shared.with_nodes(shared.kernel(entry, text, uniform, world)).bind("glue_found", shared.found);
+        let kernel = shared.with_nodes(shared.of_ties(entry, text, uniform, world));
         Shared::with_state(kernel, body, buffers).threads(of.tie_count)
     };
     for &(body, of, uniform) in of_bodies.iter().filter(|(_, of, _)| of.tie_count > 0) {
         all.push(of_ties("glue", shader!("glue"), body, of, uniform, buffers));
     }
-    let of_all = |entry, text, threads: usize| {
-        let kernel = shared.kernel(entry, text, of_whole, world).bind("glue_found", shared.found);
-        kernel.threads(threads as u32)
-    };
+    let of_all = |entry, text, threads: usize| shared.of_ties(entry, text, of_whole, world).threads(threads as u32);
     all.push(of_all("glue_share", shader!("glue_share"), nodes).bind("glue_shares", shared.shares));
     for _ in 0..glue.sweeps.max(1) {
         let correct = shared.with_nodes(of_all("glue_correct", shader!("glue_correct"), ties));
@@ -218,7 +219,7 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
         all.push(of_ties("glue_note", shader!("glue_note"), body, of, uniform, buffers));
     }
     for &(body, of, uniform) in &of_bodies {
-        let push = shared.kernel("glue_push", shader!("glue_push"), uniform, world).bind("glue_found", shared.found);
+        let push = shared.of_ties("glue_push", shader!("glue_push"), uniform, world);
         let push = push.bind(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME));
         all.push(push.bind("glue_rows", rows).threads(of.node_count));
     }

@@ -22,14 +22,22 @@ pub(super) fn nodes_of(glue: &Glue) -> Vec<(usize, u32)> {
     nodes
 }
 
-/// Places among `nodes` of the nodes of a tie with their signed weights, and of the corners of its face.
-pub(super) fn parts_of(tie: &TiedPoint, nodes: &[(usize, u32)]) -> (Vec<(u32, f64)>, [u32; 3]) {
+/// The nodes of a tie, by their places among those of all.
+pub(super) struct TieNodes {
+    /// With signed weights: first those of the point, then those of the face.
+    pub parts: Vec<(u32, f64)>,
+    /// The corners of the face.
+    pub corners: [u32; 3],
+}
+
+/// The places among `nodes` of those of a tie.
+pub(super) fn parts_of(tie: &TiedPoint, nodes: &[(usize, u32)]) -> TieNodes {
     let place = |body: usize, row: u32| nodes.partition_point(|&node| node < (body, row)) as u32;
     let [of, onto] = tie.bodies;
     let corners = tie.corners.map(|row| place(onto, row));
     let points = tie.nodes.iter().map(|&(row, weight)| (place(of, row), weight));
     let of_face = corners.into_iter().zip(tie.weights).filter(|(_, weight)| *weight != 0.0);
-    (points.chain(of_face.map(|(corner, weight)| (corner, -weight))).collect(), corners)
+    TieNodes { parts: points.chain(of_face.map(|(corner, weight)| (corner, -weight))).collect(), corners }
 }
 
 /// What a step finds, kept so that the next one need not ask for memory: nothing in it is carried on from step to step
@@ -55,8 +63,11 @@ pub(super) struct Work {
 impl Work {
     pub fn of(glue: &Glue) -> Self {
         let nodes = nodes_of(glue);
-        let (parts, corners): (Vec<_>, Vec<_>) = glue.ties.iter().map(|tie| parts_of(tie, &nodes)).unzip();
-        let ties = parts.into_iter().map(|parts| Tie::new(parts, DVec3::ZERO)).collect();
+        let of_tie = |tie| {
+            let TieNodes { parts, corners } = parts_of(tie, &nodes);
+            (Tie::new(parts, DVec3::ZERO), corners)
+        };
+        let (ties, corners): (Vec<Tie>, Vec<[u32; 3]>) = glue.ties.iter().map(of_tie).unzip();
         let vectors = || vec![DVec3::ZERO; nodes.len()];
         Self {
             set: TieSet::new(ties, vectors(), vectors()),
