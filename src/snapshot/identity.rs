@@ -128,18 +128,10 @@ fn sets_in_use(world: &mut World) -> u64 {
     world.query::<&OwnLoad>().iter(world).for_each(|l| {
         note("system", l.signal, &[bytes(l.rows.as_deref().unwrap_or_default())]);
     });
-    let weighed = |nodes: &[(u32, f64)]| -> Vec<u8> {
-        nodes.iter().flat_map(|(row, weight)| [bytes(&[*row]), bytes(&[*weight])].concat()).collect()
-    };
-    if let Some(sutures) = world.get_resource::<Sutures>() {
-        for suture in &sutures.all {
-            let [first, second] = suture.ends.each_ref().map(|end| weighed(&end.nodes));
-            note("suture", suture.number, &[&first, &second]);
-        }
-    }
     if let Some(glue) = world.get_resource::<Glue>() {
         for tie in &glue.ties {
-            let nodes = weighed(&tie.nodes);
+            let nodes: Vec<u8> =
+                tie.nodes.iter().flat_map(|(row, weight)| [bytes(&[*row]), bytes(&[*weight])].concat()).collect();
             note("tie", tie.number, &[&nodes, bytes(&tie.corners), bytes(&tie.weights), bytes(&tie.gap.to_array())]);
         }
     }

@@ -172,17 +172,6 @@ fn bits_of_a_suture_do_not_depend_on_threads_or_pauses() {
     bits_do_not_depend(&text, &["up"], [0.02, 0.15], [|_| {}, has_torn]);
 }
 
-/// A state is not gone on from where threads end elsewhere.
-#[test]
-fn a_snapshot_does_not_fit_other_ends_of_a_thread() {
-    let text = cubes("", "", "stiffness: 40");
-    let kept = start(&text, Precision::F64, 1).snapshot().unwrap();
-    start(&text, Precision::F64, 1).restore(&kept).unwrap();
-    let moved = text.replace("at: (0.01, 0.01, 0.03)", "at: (0.01, 0.012, 0.03)");
-    let said = start(&moved, Precision::F64, 1).restore(&kept).unwrap_err().to_string();
-    assert!(said.contains("sets"), "{said}");
-}
-
 /// Where the tissue that it is in goes, a thread comes out.
 #[test]
 fn a_suture_comes_out_with_its_tissue() {
