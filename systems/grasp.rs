@@ -12,7 +12,7 @@ use crate::components::*;
 use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 /// A node that a closed tool holds stays at the place in the tool's frame where it was when the tool closed: motion
 /// that is prescribed by a frame. Like `tool_contact` it finds the force that takes the predicted step there, after all
@@ -39,10 +39,12 @@ pub struct GraspStep {
     coefficients: IntegrationCoefficients<f64>,
     /// Whether work is counted: not on the way to rest.
     counts_work: bool,
-    tools: Vec<ToolInStep>,
+    /// One for each grasp, and others behind.
+    tools: [ToolInStep; Grasps::MOST],
 }
 
 /// A tool in a step.
+#[derive(Clone, Copy)]
 struct ToolInStep {
     closed: bool,
     /// Where it is at the end.
@@ -61,14 +63,16 @@ impl NodeSystem for Grasps {
 
     fn prepare(&self, before: &Before<'_>) -> GraspStep {
         let values = before.signals.values();
-        let tools = self.grasps.iter().map(|grasp| {
+        let nowhere = Pose { rotation: DMat3::ZERO, at: DVec3::ZERO };
+        let mut tools = [ToolInStep { closed: false, pose: nowhere, change: nowhere }; Grasps::MOST];
+        for (tool, grasp) in tools.iter_mut().zip(&self.grasps) {
             let [pose, change] = [0, 3].map(|slot| Pose::of_slots(&values[grasp.tool.signal + slot..]));
-            ToolInStep { closed: values[grasp.closed][1] > 0.0, pose, change }
-        });
+            *tool = ToolInStep { closed: values[grasp.closed][1] > 0.0, pose, change };
+        }
         GraspStep {
             coefficients: IntegrationCoefficients::of(before.clock),
             counts_work: before.clock.relaxation.is_none(),
-            tools: tools.collect(),
+            tools,
         }
     }
 

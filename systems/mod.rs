@@ -45,6 +45,7 @@ mod island_removal;
 mod nodal_force;
 mod nodal_volume;
 mod node_pass;
+mod node_slices;
 mod node_stages;
 mod node_system;
 mod observe;

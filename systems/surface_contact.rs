@@ -9,6 +9,7 @@ mod meet;
 mod motion;
 mod survey;
 
+use super::node_slices::BodyColumns;
 use super::registry::{Phase, System};
 use crate::backend::cpu::{Cpu, Foreseen};
 use crate::components::*;
@@ -17,6 +18,7 @@ use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
 use glam::DVec3;
+pub(super) use kernels::ForeseenNodes;
 
 /// The explicit Lagrange correction of the predicted step, of points of surfaces against faces of others (see
 /// [`ContactSet::solve`]). Like `tool_contact` it finds the forces that keep the next step from ending inside and adds
@@ -168,15 +170,7 @@ pub struct Figures {
 #[derive(QueryData)]
 #[query_data(mutable)]
 struct MeetingColumns {
-    rest: &'static RestPosition,
-    mass: &'static Mass,
-    fictitious: Option<&'static FictitiousMass>,
-    damping: Option<&'static DampingCoefficient>,
-    axes: &'static ConstrainedAxes,
-    internal: &'static InternalForce,
-    external: &'static mut ExternalForce,
-    u: &'static Displacement,
-    step: &'static DisplacementIncrement,
+    nodes: BodyColumns,
     force: &'static mut ContactForce,
     touch: &'static mut SurfaceTouch,
     face_touch: Option<&'static mut FaceTouch>,
@@ -248,7 +242,7 @@ fn surface_contact(
 ) {
     let contacts = &mut *contacts;
     survey::follow(contacts, &mut bodies, &authorings, &blocks);
-    let precision = bodies.iter().next().map(|(_, columns)| columns.u.precision());
+    let precision = bodies.iter().next().map(|(_, columns)| columns.nodes.u.precision());
     match precision {
         Some(Precision::F32) => step::<f32>(contacts, (&clock, &cpu), &mut bodies),
         Some(Precision::F64) => step::<f64>(contacts, (&clock, &cpu), &mut bodies),

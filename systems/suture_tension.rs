@@ -1,5 +1,8 @@
 //! `suture_tension`: how hard sutures pull, and which of them tear.
 
+mod kernels;
+
+use super::node_slices::elements_stay;
 use super::registry::{Phase, System};
 use crate::components::*;
 use bevy_ecs::prelude::*;
@@ -11,7 +14,7 @@ use glam::DVec3;
 /// strength it tears, and where the tissue of one of its points goes it comes out; then it is gone. The system `suture`
 /// adds its force to the loads of both bodies.
 pub fn system() -> System {
-    System::built_in(
+    let system = System::built_in(
         "suture_tension",
         Phase::Boundary,
         "finds how hard sutures pull, and which tear",
@@ -21,7 +24,15 @@ pub fn system() -> System {
             Some(if count == 1 { "1 suture".to_string() } else { format!("{count} sutures") })
         },
         suture_tension,
-    )
+    );
+    // threads whose tissue may go are looked after on the host
+    System { device_when: nothing_goes, ..system.on_device(kernels::kernels) }
+}
+
+/// Whether no tissue of what is sutured can go.
+fn nothing_goes(world: &World) -> bool {
+    let Some(sutures) = world.get_resource::<Sutures>() else { return false };
+    elements_stay(sutures.all.iter().flat_map(|suture| &suture.ends).map(|end| end.body), world)
 }
 
 /// What a suture is, in [`SutureState`].

@@ -74,6 +74,23 @@ const BODIES: &str = r#"(duration: 10, materials: {"m": (density: 1000, neo_hook
     },
     loads: [Gravity(acceleration: (0, 0, -2))], integration: (when_unstable: Watch))"#;
 
+/// Bodies that are glued, tied, sutured and grasped.
+const ATTACHED: &str = r#"(duration: 10, materials: {"m": (density: 1000, neo_hookean: Young(young: 3000, poisson: 0.45))},
+    bodies: {
+        "low": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (6, 6, 6)), material: "m"),
+        "up": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (9, 9, 9), elements: Tet4), material: "m", translate: (0, 0, 0.1)),
+        "side": (mesh: Box(size: (0.1, 0.1, 0.1), cells: (3, 3, 3)), material: "m", translate: (0.102, 0, 0)),
+    },
+    constraints: [Fixed(body: "low", on: Plane(normal: (0, 0, 1), at: 0))], loads: [Gravity(acceleration: (0, 0, -2))],
+    tools: {"forceps": (shape: Sphere(radius: 0.01), at: (0.15, 0.05, 0.1))},
+    attachments: [
+        Glue(bodies: ("up", "low"), normal: 1e5),
+        Tie(from: (body: "side", at: (0.102, 0.05, 0.05)), to: (body: "low", at: (0.1, 0.05, 0.05))),
+        Suture(from: (body: "side", at: (0.12, 0.05, 0.09)), to: (body: "up", at: (0.09, 0.05, 0.12)), stiffness: 5, strength: 100),
+        Grasp(tool: "forceps", body: "side", on: Plane(normal: (0, 0, 1), at: 0.1), closed: Step()),
+    ],
+    integration: (when_unstable: Watch))"#;
+
 fn alive(simulation: &mut Simulation) -> u64 {
     let world = simulation.world_mut();
     world.query::<&Alive>().iter(world).map(|alive| alive.iter().map(|&there| u64::from(there)).sum::<u64>()).sum()
@@ -117,8 +134,10 @@ fn a_step_asks_for_no_memory() {
         let scene = SceneFile::load(root.join("scenes").join(format!("{name}.ron")), &sets);
         scenes.push((what, scene.unwrap_or_else(|wrong| panic!("{}", wrong.render(false)))));
     }
-    let bodies = SceneFile::from_text("bodies.ron", BODIES, root, &[]);
-    scenes.push(("five bodies", bodies.unwrap_or_else(|wrong| panic!("{}", wrong.render(false)))));
+    for (what, text) in [("five bodies", BODIES), ("attachments", ATTACHED)] {
+        let bodies = SceneFile::from_text("bodies.ron", text, root, &[]);
+        scenes.push((what, bodies.unwrap_or_else(|wrong| panic!("{}", wrong.render(false)))));
+    }
     let mut wrong = Vec::new();
     for (what, scene) in &scenes {
         for (precision, threads) in [(Precision::F32, 1), (Precision::F64, 1), (Precision::F32, 2), (Precision::F64, 2)]

@@ -157,14 +157,19 @@ fn every_variable_in_use_has_a_buffer_and_every_buffer_is_in_use() {
     let mut composer = Composer::default();
     for effects in Effects::combinations() {
         for (_, kernel) in all(&effects) {
-            let composed = composer.compose(&kernel).unwrap();
-            let entry = composed.entry(kernel.entry).unwrap();
-            let names = entry.uses.iter().map(|i| composed.bindings[*i].name.as_str());
-            let used: BTreeSet<_> = names.filter(|name| !["step", "step_records"].contains(name)).collect();
-            let given: BTreeSet<_> = kernel.bindings.iter().map(|(name, _)| name.as_ref()).collect();
-            assert_eq!(used, given, "{} of {effects:?}", kernel.label);
+            uses_its_buffers(&kernel, &mut composer);
         }
     }
+}
+
+/// Every variable in use has a buffer, and every buffer is in use.
+fn uses_its_buffers(kernel: &Kernel, composer: &mut Composer) {
+    let composed = composer.compose(kernel).unwrap();
+    let entry = composed.entry(kernel.entry).unwrap();
+    let names = entry.uses.iter().map(|i| composed.bindings[*i].name.as_str());
+    let used: BTreeSet<_> = names.filter(|name| !["step", "step_records"].contains(name)).collect();
+    let given: BTreeSet<_> = kernel.bindings.iter().map(|(name, _)| name.as_ref()).collect();
+    assert_eq!(used, given, "{}", kernel.label);
 }
 
 #[test]
@@ -172,21 +177,40 @@ fn structs_have_the_same_members_at_the_same_places_in_rust_and_wgsl() {
     let mut composer = Composer::default();
     for effects in Effects::combinations() {
         for (_, kernel) in kernels(&effects) {
-            let composed = composer.compose(&kernel).unwrap();
-            for binding in composed.bindings.iter().filter(|b| b.kind == BindingKind::Uniform && b.name != "step") {
-                let layout = kernel.layouts.iter().find(|(name, _)| *name == binding.name).map(|(_, layout)| layout);
-                let Some(layout) = layout else {
-                    assert_eq!(binding.name, "limits", "{}: Rust says nothing of `{}`", kernel.label, binding.name);
-                    continue;
-                };
-                assert!(binding.type_name.contains(layout.name), "{} is not {}", binding.type_name, layout.name);
-                let wgsl = composed.struct_layout(layout.name).unwrap();
-                let wgsl: Vec<_> = wgsl.into_iter().map(|m| (m.name, m.offset, m.size)).collect();
-                assert_eq!(wgsl, members(layout), "{}", layout.name);
-                assert_eq!(composed.struct_size(layout.name).unwrap() as usize, layout.size, "{}", layout.name);
-            }
+            has_the_structs_of_rust(&kernel, &mut composer);
         }
     }
+}
+
+/// Structs of a kernel's uniforms are the same in Rust and WGSL.
+fn has_the_structs_of_rust(kernel: &Kernel, composer: &mut Composer) {
+    let composed = composer.compose(kernel).unwrap();
+    for binding in composed.bindings.iter().filter(|b| b.kind == BindingKind::Uniform && b.name != "step") {
+        let layout = kernel.layouts.iter().find(|(name, _)| *name == binding.name).map(|(_, layout)| layout);
+        let Some(layout) = layout else {
+            assert_eq!(binding.name, "limits", "{}: Rust says nothing of `{}`", kernel.label, binding.name);
+            continue;
+        };
+        assert!(binding.type_name.contains(layout.name), "{} is not {}", binding.type_name, layout.name);
+        let wgsl = composed.struct_layout(layout.name).unwrap();
+        let wgsl: Vec<_> = wgsl.into_iter().map(|m| (m.name, m.offset, m.size)).collect();
+        assert_eq!(wgsl, members(layout), "{}", layout.name);
+        assert_eq!(composed.struct_size(layout.name).unwrap() as usize, layout.size, "{}", layout.name);
+    }
+}
+
+#[test]
+fn kernels_of_attachments_have_the_buffers_and_the_structs_that_they_name() {
+    let mut composer = Composer::default();
+    let (all, _) = all_kernels(kernel_units::attached("").world_mut());
+    let of_attachments = all.iter().filter(|(system, _)| ["glue", "suture_tension"].contains(&system.as_str()));
+    let mut found = BTreeSet::new();
+    for (_, kernel) in of_attachments {
+        uses_its_buffers(kernel, &mut composer);
+        has_the_structs_of_rust(kernel, &mut composer);
+        found.insert(kernel.entry);
+    }
+    assert_eq!(found.len(), 11, "{found:?}");
 }
 
 #[test]
@@ -299,14 +323,15 @@ fn every_shader_is_named_after_a_system_an_element_or_a_material_or_listed() {
     };
     let mut known: BTreeSet<String> = SUPPORT.iter().map(|(stem, _)| (*stem).to_owned()).collect();
     for folder in ["systems", "src/elements"] {
-        let others = ["mod", "kinds", "registry", "node_system", "node_stages"];
+        let others = ["mod", "kinds", "registry", "node_system", "node_stages", "node_slices"];
         known.extend(stems(folder).into_iter().filter(|stem| !others.contains(&stem.as_str())));
     }
     // some run on the host only
     known.retain(|stem| Registry::default().get(stem).is_none_or(|system| system.device.is_some()));
     // that of one's own is a file of its author
     let laws = sinew::scene::schema::ELASTIC_LAWS.iter().filter(|word| **word != "law");
-    known.extend(laws.copied().chain(kernel_units::SURFACES).map(str::to_owned));
+    let parts = kernel_units::SURFACES.into_iter().chain(kernel_units::ATTACHMENTS);
+    known.extend(laws.copied().chain(parts).map(str::to_owned));
     assert_eq!(stems("shaders"), known);
 }
 
@@ -322,7 +347,7 @@ fn all_fragments_of_the_folder_are_in_use() {
     let explained = simulation.explain_on_gpu(&Registry::default()).unwrap();
     let fragments = explained.kernels.iter().flat_map(|kernel| &kernel.fragments);
     used.extend(fragments.filter_map(|f| f.path.strip_prefix("shaders/").map(str::to_owned)));
-    used.extend(kernel_units::of_tools().into_iter().chain(kernel_units::of_surfaces()));
+    used.extend([kernel_units::of_tools(), kernel_units::of_surfaces(), kernel_units::of_attachments()].concat());
     for effects in Effects::combinations() {
         for (_, kernel) in all(&effects) {
             let all = kernel.all_fragments();

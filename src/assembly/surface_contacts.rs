@@ -7,7 +7,7 @@ use crate::contact::{Surfaces, Tree, face_points};
 use crate::mesh::{Locator, Mesh, SurfaceFace};
 use crate::scene::SceneFile;
 use crate::scene::diagnostic::Diagnostics;
-use crate::scene::schema::{Contact, Points};
+use crate::scene::schema::{Attachment, Contact, Points};
 use crate::systems::{Meeting, SurfaceContacts};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -63,8 +63,8 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World) {
     world.insert_resource(contacts);
 }
 
-/// The author's nodes of a body's surface that no patch moves by itself, ascending: where it may meet others, and the
-/// surface stays the same.
+/// The author's nodes of a body's surface that no patch moves by itself, ascending: where it may meet others or is tied
+/// to one, and the surface stays the same.
 pub(super) fn apart(scene: &SceneFile, name: &str, placed: &PlacedMesh) -> Vec<u32> {
     let scene = &scene.scene;
     let meets = |contact: &Contact| match contact {
@@ -72,7 +72,12 @@ pub(super) fn apart(scene: &SceneFile, name: &str, placed: &PlacedMesh) -> Vec<u
         Contact::Between { bodies: (a, b), .. } => a == name || b == name,
         Contact::Itself { body, .. } => body.as_ref().is_none_or(|body| body == name),
     };
-    if !scene.contacts.iter().any(meets) || scene.may_lose_elements(name) {
+    let ties = |attachment: &Attachment| match attachment {
+        Attachment::Glue { .. } | Attachment::Tie { .. } => attachment.holds(name),
+        Attachment::Grasp { .. } | Attachment::Suture { .. } => false,
+    };
+    let is_apart = scene.contacts.iter().any(meets) || scene.attachments.iter().any(ties);
+    if !is_apart || scene.may_lose_elements(name) {
         return Vec::new();
     }
     let mut nodes: Vec<u32> = placed.surface().iter().flat_map(SurfaceFace::all_nodes).collect();

@@ -22,7 +22,7 @@ columns! {
 /// Numbers a node in [`SurfaceTouch`], and a point in [`FaceTouch`].
 pub const MEETING_NUMBERS: usize = 8;
 
-/// Rows of the nodes of a body's surface that may meet others, ascending: no patch moves them as one of its own, so that
-/// all forces on them are known before they move. On bodies whose surface stays the same.
+/// Rows of the nodes of a body's surface that may meet others or be tied to one, ascending: no patch moves them as one of
+/// its own, so that all forces on them are known before they move. On bodies whose surface stays the same.
 #[derive(Component, Clone, Debug)]
 pub struct SurfaceRows(pub Vec<u32>);

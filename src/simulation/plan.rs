@@ -178,8 +178,8 @@ impl Grouping<'_> {
         together
     }
 
-    /// On the CPU what concerns only nodes that are inside no patch (contact between surfaces) does not keep those inside
-    /// from moving with their patch.
+    /// On the CPU what concerns only nodes that are inside no patch (contact between surfaces, glue) does not keep those
+    /// inside from moving with their patch.
     fn ahead(&self, passes: Vec<Pass>, world: &World) -> Vec<Pass> {
         let mut passes: VecDeque<Pass> = passes.into();
         let mut all = Vec::new();
@@ -190,21 +190,23 @@ impl Grouping<'_> {
                 let of = &self.schedule[pass.systems[0]];
                 pass.over == Over::Itself && of.every == 1 && of.interval.is_none() && (of.system.shared_only)(world)
             };
+            let between = passes.iter().skip(1).take_while(|pass| is_between(pass)).count();
             let fits = self.is_of_elements(&elements.systems)
-                && passes.len() > 2
+                && between > 0
                 && sums(&passes[0])
-                && is_between(&passes[1])
-                && self.moves_nodes(&passes[2].systems);
+                && passes.get(between + 1).is_some_and(|pass| self.moves_nodes(&pass.systems));
             if !fits {
                 all.push(elements);
                 continue;
             }
-            let three = [passes.pop_front(), passes.pop_front(), passes.pop_front()];
-            if let [Some(sums), Some(between), Some(mut moves)] = three {
-                elements.systems.extend(sums.systems);
+            elements.systems.extend(passes.pop_front().into_iter().flat_map(|sums| sums.systems));
+            let between: Vec<Pass> = passes.drain(..between).collect();
+            if let Some(mut moves) = passes.pop_front() {
                 elements.ahead.clone_from(&moves.systems);
                 (elements.over, moves.over) = (Over::Elements, Over::Shared);
-                all.extend([elements, between, moves]);
+                all.push(elements);
+                all.extend(between);
+                all.push(moves);
             }
         }
         all

@@ -1,27 +1,33 @@
 //! What a step needs of the bodies, as plain slices: fetched once a step.
 
 use super::{MeetingColumns, SurfaceContacts};
-use crate::backend::cpu::{Foreseen, IntegrationCoefficients};
 use crate::components::*;
 use crate::math::Scalar;
+use crate::systems::node_slices::NodeSlices;
+pub(super) use crate::systems::node_slices::{set_vector, vector, vector_at};
 use bevy_ecs::prelude::*;
-use glam::DVec3;
+use std::ops::{Deref, DerefMut};
 
-/// Columns of a body in the run's precision, a row a node.
+/// Columns of a body in the run's precision, a row a node, and what is kept of its surface.
 pub(super) struct BodySlices<'a, T> {
-    pub rest: &'a [DVec3],
-    /// Mass that is slow to move (kg).
-    pub mass: &'a [T],
-    pub damping: Option<&'a [T]>,
-    pub axes: &'a [u32],
-    pub internal: &'a [T],
-    pub external: &'a mut [T],
-    pub u: &'a [T],
-    pub step: &'a [T],
+    nodes: NodeSlices<'a, T>,
     pub force: &'a mut [T],
     pub touch: &'a mut [T],
     /// Of points of faces; empty where there are none.
     pub face_touch: &'a mut [T],
+}
+
+impl<'a, T> Deref for BodySlices<'a, T> {
+    type Target = NodeSlices<'a, T>;
+    fn deref(&self) -> &NodeSlices<'a, T> {
+        &self.nodes
+    }
+}
+
+impl<'a, T> DerefMut for BodySlices<'a, T> {
+    fn deref_mut(&mut self) -> &mut NodeSlices<'a, T> {
+        &mut self.nodes
+    }
 }
 
 /// Where the numbers of a point are: of a body, in [`SurfaceTouch`] or [`FaceTouch`], from one on.
@@ -30,23 +36,6 @@ pub(super) struct Kept {
     pub body: usize,
     pub of_face: bool,
     pub first: usize,
-}
-
-/// The vector of a row.
-pub(super) fn vector<T: Scalar>(all: &[T], row: usize) -> DVec3 {
-    vector_at(all, 3 * row)
-}
-
-/// The vector that begins with a number.
-pub(super) fn vector_at<T: Scalar>(all: &[T], at: usize) -> DVec3 {
-    DVec3::new(all[at].to_f64(), all[at + 1].to_f64(), all[at + 2].to_f64())
-}
-
-/// Writes a vector from a number on, rounded.
-pub(super) fn set_vector<T: Scalar>(all: &mut [T], at: usize, value: DVec3) {
-    for (place, number) in all[at..at + 3].iter_mut().zip(value.to_array()) {
-        *place = T::from_f64(number);
-    }
 }
 
 /// Of all bodies, in the order of [`SurfaceContacts::bodies`].
@@ -60,16 +49,8 @@ pub(super) fn slices<'a, T: Scalar>(
     };
     let mut all: Vec<(usize, BodySlices<'a, T>)> = Vec::with_capacity(contacts.bodies.len());
     for (entity, columns) in bodies {
-        let mass = columns.fictitious.map_or(&columns.mass.0, |mass| &mass.0);
         let of_body = BodySlices {
-            rest: &columns.rest.0,
-            mass: mass.slice(),
-            damping: columns.damping.map(|damping| damping.slice()),
-            axes: &columns.axes.0,
-            internal: columns.internal.slice(),
-            external: columns.external.into_inner().slice_mut(),
-            u: columns.u.slice(),
-            step: columns.step.slice(),
+            nodes: NodeSlices::of(columns.nodes),
             force: columns.force.into_inner().slice_mut(),
             touch: columns.touch.into_inner().slice_mut(),
             face_touch: columns.face_touch.map_or(&mut [], |touch| touch.into_inner().slice_mut()),
@@ -82,14 +63,6 @@ pub(super) fn slices<'a, T: Scalar>(
 }
 
 impl<T: Scalar> BodySlices<'_, T> {
-    /// Where a node would go.
-    pub fn foresee(&self, row: usize, coefficients: &IntegrationCoefficients<f64>) -> Foreseen {
-        let mass = self.mass[row].to_f64();
-        let damping = self.damping.map_or(0.0, |damping| damping[row].to_f64());
-        let force = vector(self.external, row) - vector(self.internal, row);
-        coefficients.foresee(mass, damping, self.axes[row], vector(self.step, row), force)
-    }
-
     /// The numbers of a point.
     pub fn kept(&self, at: Kept) -> &[T] {
         let all = if at.of_face { &*self.face_touch } else { &*self.touch };

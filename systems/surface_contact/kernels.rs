@@ -162,24 +162,58 @@ fn before(
 ) -> [Kernel; 2] {
     let of_body = SurfaceBody { first: of.first, count: of.count, displacements: whole.displacements };
     let of_body = buffers.uniform("surface of a body".into(), &of_body.bytes());
-    let kernel = |entry: &'static str, text: Fragment| {
-        let kernel = Kernel::new(entry, entry).fragment(text).fragment(shader!("row"));
-        let kernel = kernel.bind_uniform::<SurfaceBody>("body", of_body).threads(of.count);
-        with_step(kernel, world).bind("surface_rows", shared.rows).bind("surface_nodes", shared.nodes)
-    };
-    let place = kernel("surface_contact_place", shader!("surface_contact_place"))
+    let place = Kernel::new("surface_contact_place", "surface_contact_place")
+        .fragment(shader!("surface_contact_place"))
+        .fragment(shader!("row"))
+        .bind_uniform::<SurfaceBody>("body", of_body)
+        .threads(of.count);
+    let place = with_step(place, world)
+        .bind("surface_rows", shared.rows)
+        .bind("surface_nodes", shared.nodes)
         .bind("surface_lists", shared.lists)
         .bind("surface_motion", shared.motion)
         .bind(Displacement::NAME, buffers.column(body, Displacement::NAME))
         .bind(DisplacementIncrement::NAME, buffers.column(body, DisplacementIncrement::NAME));
-    let damped = world.get::<DampingCoefficient>(body).is_some();
-    let relaxed = world.resource::<Clock>().relaxation.is_some();
-    let mass = if world.get::<FictitiousMass>(body).is_some() { FictitiousMass::NAME } else { Mass::NAME };
-    let foresee = kernel("surface_contact_foresee", shader!("surface_contact_foresee"))
-        .fragment(damping_fragment(damped, relaxed))
-        .bind(Mass::NAME, buffers.column(body, mass));
-    let columns = [ConstrainedAxes::NAME, InternalForce::NAME, ExternalForce::NAME];
-    let columns = columns.into_iter().chain(damped.then_some(DampingCoefficient::NAME));
-    let foresee = columns.fold(foresee, |kernel, name| kernel.bind(name, buffers.column(body, name)));
-    [place, foresee]
+    let nodes = ForeseenNodes { rows: shared.rows, nodes: shared.nodes, of_body, count: of.count };
+    [place, nodes.foresee("surface_contact_foresee", body, world, buffers)]
+}
+
+/// Nodes of a body whose next steps are wanted.
+pub(in crate::systems) struct ForeseenNodes {
+    /// Four words a node: its row, and three of whoever asks.
+    rows: BufferId,
+    /// Twelve numbers a node: three of whoever asks, the next step, the last step, which must be there already, and the
+    /// response to forces.
+    nodes: BufferId,
+    /// A [`SurfaceBody`].
+    of_body: BufferId,
+    count: u32,
+}
+
+impl ForeseenNodes {
+    /// Of a body's so many nodes, from the first on.
+    pub fn new([rows, nodes]: [BufferId; 2], [first, count]: [u32; 2], buffers: &mut dyn Buffers) -> Self {
+        let of_body = SurfaceBody { first, count, displacements: 0 };
+        Self { rows, nodes, of_body: buffers.uniform("nodes of a body".into(), &of_body.bytes()), count }
+    }
+
+    /// The kernel that finds next steps and responses.
+    pub fn foresee(&self, label: &str, body: Entity, world: &World, buffers: &mut dyn Buffers) -> Kernel {
+        let damped = world.get::<DampingCoefficient>(body).is_some();
+        let relaxed = world.resource::<Clock>().relaxation.is_some();
+        let mass = if world.get::<FictitiousMass>(body).is_some() { FictitiousMass::NAME } else { Mass::NAME };
+        let foresee = Kernel::new(label, "surface_contact_foresee")
+            .fragment(shader!("surface_contact_foresee"))
+            .fragment(shader!("row"))
+            .fragment(damping_fragment(damped, relaxed))
+            .bind_uniform::<SurfaceBody>("body", self.of_body)
+            .bind("surface_rows", self.rows)
+            .bind("surface_nodes", self.nodes)
+            .bind(Mass::NAME, buffers.column(body, mass))
+            .threads(self.count);
+        let columns = [ConstrainedAxes::NAME, InternalForce::NAME, ExternalForce::NAME];
+        let columns = columns.into_iter().chain(damped.then_some(DampingCoefficient::NAME));
+        let foresee = columns.fold(foresee, |kernel, name| kernel.bind(name, buffers.column(body, name)));
+        with_step(foresee, world)
+    }
 }

@@ -134,7 +134,8 @@ pub(super) fn moved<T: Scalar>(
         let (_, columns) = bodies.get(contacts.bodies[*body as usize]).ok()?;
         let range = 3 * rows.start as usize..3 * rows.end as usize;
         let (of_run, others) = then.split_at(range.len());
-        cpu.dispatch(See(&mut seen, &columns.u.slice::<T>()[range.clone()], of_run, &columns.step.slice::<T>()[range]));
+        let [u, steps] = [&columns.nodes.u.0, &columns.nodes.step.0].map(|reals| &reals.slice::<T>()[range.clone()]);
+        cpu.dispatch(See(&mut seen, u, of_run, steps));
         then = others;
     }
     let along = |axis: usize, of: &[T; SIDE_BY_SIDE], better: fn(f64, f64) -> f64| {

@@ -96,7 +96,9 @@ fn survey(
         for (face, facet) in faces.iter().flat_map(|face| face.facets().map(move |facet| (face, facet))) {
             let first = triangles.len();
             for corners in split(facet, row) {
-                depths.push(0.5 * extent(corners, authoring.cells.nodes(face.element as usize), row, &columns.rest.0));
+                depths.push(
+                    0.5 * extent(corners, authoring.cells.nodes(face.element as usize), row, &columns.nodes.rest.0),
+                );
                 triangles.push(corners.map(number_of));
                 owners.push(number);
                 facets.push(facet.map(|node| number_of(row(node))));
@@ -132,7 +134,7 @@ fn survey(
     let rest: Vec<DVec3> = surface
         .nodes
         .iter()
-        .map(|&(body, row)| columns[body as usize].1.rest.0[row as usize] - contacts.reference)
+        .map(|&(body, row)| columns[body as usize].1.nodes.rest.0[row as usize] - contacts.reference)
         .collect();
     let bodies = &surface.triangles.bodies;
     let of_body = |body: u32| {

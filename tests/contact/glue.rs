@@ -1,10 +1,11 @@
 //! Ties and glue: how well they hold, where they break, peeling, momentum, bits.
 
-use crate::bits::bits_do_not_depend;
+use crate::bits::{bits_do_not_depend, start};
 use crate::configurations::{configurations, near};
 use glam::DVec3;
 use sinew::Simulation;
-use sinew::components::DisplacementIncrement;
+use sinew::components::{DisplacementIncrement, Precision};
+use sinew::systems::Registry;
 
 /// Two bars of 1 × 1 × 2 cm end to end, of which the upper one is drawn up by 4 mm in a second, slowly at first.
 fn bars(cells: [&str; 2], glue: &str) -> String {
@@ -184,6 +185,22 @@ fn glue_keeps_momentum_and_makes_no_energy() {
             simulation.advance(20).unwrap();
         }
         assert_eq!(simulation.attachment("0").unwrap().broken, Vec::<u64>::new());
+    }
+}
+
+/// Ties of surfaces concern no node that is inside a patch: those move with their patch. A point inside a body does.
+#[test]
+fn glue_does_not_keep_nodes_from_moving_with_their_patch() {
+    let inside = "Tie(from: (body: \"low\", at: (0.005, 0.005, 0.019)), to: (body: \"up\", at: (0.005, 0.005, 0.02)))";
+    let gone = "removal: [(body: \"up\", on: Box(min: (0, 0, 0.036), max: (0.01, 0.01, 0.04)), when: At(0.5))],";
+    let glued = bars(["(3, 3, 6)"; 2], "");
+    let tied = glued.replace("attachments: [", &format!("attachments: [{inside}, "));
+    let removed = glued.replace("attachments: [", &format!("{gone} attachments: ["));
+    let touched = glued.replace("attachments: [", "contacts: [Between(bodies: (\"low\", \"up\"))], attachments: [");
+    for (text, moves) in [(&glued, true), (&touched, true), (&tied, false), (&removed, false)] {
+        let explained = start(text, Precision::F64, 1).explain(&Registry::default()).unwrap();
+        let forces = explained.systems.iter().find(|system| system.name == "element_forces").unwrap();
+        assert_eq!(forces.shares_with.iter().any(|name| name == "gather"), moves, "{:?}: {text}", forces.shares_with);
     }
 }
 

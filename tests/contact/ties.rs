@@ -22,7 +22,7 @@ fn random_set(random: &mut Rng) -> TieSet {
         Tie::new(std::iter::once((all[0], 1.0)).chain(others).collect(), DVec3::ZERO)
     });
     let ties = ties.collect();
-    TieSet { ties, steps, responses }
+    TieSet::new(ties, steps, responses)
 }
 
 fn momentum(set: &TieSet) -> DVec3 {
@@ -55,7 +55,7 @@ fn a_single_tie_is_exact_in_one_sweep() {
     let steps = vec![DVec3::new(1.0, 2.0, 3.0), DVec3::new(-1.0, 0.5, 0.0)];
     let responses = vec![DVec3::splat(0.5), DVec3::splat(0.25)];
     let off = DVec3::new(0.1, 0.0, -0.2);
-    let mut set = TieSet { ties: vec![Tie::new(vec![(0, 1.0), (1, -1.0)], off)], steps, responses };
+    let mut set = TieSet::new(vec![Tie::new(vec![(0, 1.0), (1, -1.0)], off)], steps, responses);
     set.solve(1);
     assert!((set.ties[0].relative(&set.steps) + off).length() < 1e-15, "{set:?}");
 }

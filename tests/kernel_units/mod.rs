@@ -142,3 +142,55 @@ pub fn of_surfaces() -> Vec<String> {
     let fragments = explained.kernels.iter().flat_map(|kernel| &kernel.fragments);
     fragments.filter_map(|f| f.path.strip_prefix("shaders/").map(str::to_owned)).collect()
 }
+
+/// Parts of `glue` and `suture_tension`.
+pub const ATTACHMENTS: [&str; 9] = [
+    "glue_apply",
+    "glue_correct",
+    "glue_note",
+    "glue_place",
+    "glue_push",
+    "glue_share",
+    "glue_ties",
+    "suture_tension_place",
+    "suture_tension_pull",
+];
+
+/// Two blocks that are glued, tied and sutured.
+pub fn attached(more: &str) -> Simulation {
+    let text = format!(
+        "(duration: 1, bodies: {{
+            \"low\": (mesh: Box(size: (1, 1, 1), cells: (2, 2, 2)), material: \"m\"),
+            \"up\": (mesh: Box(size: (1, 1, 1), cells: (3, 3, 3)), material: \"m\", translate: (0, 0, 1))}},
+        materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))}}, {more}
+        attachments: [Glue(bodies: (\"low\", \"up\")),
+            Suture(from: (body: \"low\", at: (0.5, 0.5, 0.5)), to: (body: \"up\", at: (0.5, 0.5, 1.5)), stiffness: 1)])"
+    );
+    let scene = SceneFile::from_text("attached", &text, std::path::Path::new("."), &[]).unwrap();
+    Simulation::new(&scene, &Options::default()).unwrap()
+}
+
+/// Files of the kernels of bodies that are attached to each other.
+pub fn of_attachments() -> Vec<String> {
+    let explained = attached("").explain_on_gpu(&Registry::default()).unwrap();
+    let fragments = explained.kernels.iter().flat_map(|kernel| &kernel.fragments);
+    fragments.filter_map(|f| f.path.strip_prefix("shaders/").map(str::to_owned)).collect()
+}
+
+/// Where nothing can be taken from them, no column of theirs comes to the host in a step.
+#[test]
+fn attachments_run_on_a_gpu_where_no_element_can_go() {
+    let removal = "removal: [(body: \"up\", on: Sphere(center: (0, 0, 2), radius: 0.3), when: At(0.5))],";
+    for (more, on) in [("", "device"), (removal, "host")] {
+        let explained = attached(more).explain_on_gpu(&Registry::default()).unwrap();
+        for name in ["glue", "suture_tension", "suture"] {
+            let system = explained.systems.iter().find(|system| system.name == name).unwrap();
+            let expected = if name == "suture" { "device" } else { on };
+            assert_eq!((system.on, system.travels.is_some()), (expected, expected == "host"), "{name}, {more}");
+        }
+        let entries: Vec<&str> = explained.kernels.iter().map(|kernel| kernel.entry).collect();
+        let mut wanted =
+            ATTACHMENTS.iter().copied().filter(|name| *name != "glue_ties").chain(["glue", "suture_tension"]);
+        assert!(wanted.all(|name| entries.contains(&name) == (on == "device")), "{entries:?}");
+    }
+}

@@ -7,6 +7,7 @@
 //! bit.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod attachments;
 mod elements;
 mod grasps;
 #[path = "../kernel_worlds/mod.rs"]

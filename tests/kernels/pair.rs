@@ -60,6 +60,20 @@ pub fn run_all(systems: &[&str], effects: &Effects, step: u64, change: impl Fn(&
     Some(Pair { before, host, device })
 }
 
+/// One system both ways, each time on a world that is made anew.
+pub fn run_in(system: &str, world: impl Fn() -> sinew::Simulation) -> Option<Pair> {
+    let gpu = gpu_or_reason()?;
+    let [before, mut host, mut device] = [(); 3].map(|()| world());
+    let registry = Registry::default();
+    let system = registry.get(system).unwrap();
+    let on_host = host.world_mut();
+    let mut body = system.host.alone(on_host);
+    body.initialize(on_host);
+    body.run((), on_host).unwrap().unwrap();
+    run_kernels(gpu, device.world_mut(), |world, buffers| system.device.kernels(world, buffers), 1);
+    Some(Pair { before, host, device })
+}
+
 pub fn run_kernels(
     gpu: Gpu,
     world: &mut World,

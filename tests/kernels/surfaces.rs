@@ -1,6 +1,6 @@
 //! `surface_contact`: the same points touch the same faces, and by the same forces.
 
-use super::pair::{Pair, UNIT, entities, run_kernels};
+use super::pair::{UNIT, entities, run_in, run_kernels};
 use sinew::backend::gpu::gpu_or_reason;
 use sinew::components::*;
 use sinew::systems::{Registry, SurfaceContacts};
@@ -44,19 +44,6 @@ fn world(friction: f64, sweeps: u32) -> Simulation {
     simulation
 }
 
-fn run(friction: f64, sweeps: u32) -> Option<Pair> {
-    let gpu = gpu_or_reason()?;
-    let [before, mut host, mut device] = [(); 3].map(|()| world(friction, sweeps));
-    let registry = Registry::default();
-    let system = registry.get("surface_contact").unwrap();
-    let on_host = host.world_mut();
-    let mut body = system.host.alone(on_host);
-    body.initialize(on_host);
-    body.run((), on_host).unwrap().unwrap();
-    run_kernels(gpu, device.world_mut(), |world, buffers| system.device.kernels(world, buffers), 1);
-    Some(Pair { before, host, device })
-}
-
 /// A place is rounded some eight times on its way to a gap (a sum at rest, displacements, the nearest of a triangle,
 /// and a difference), each to half a unit of 4 cm, and a force is a gap times what a metre comes to; sums and quotients
 /// of forces themselves take some hundred roundings. Where a point just touches on one side and just does not on the
@@ -64,7 +51,7 @@ fn run(friction: f64, sweeps: u32) -> Option<Pair> {
 #[test]
 fn surfaces_push_the_same_nodes_with_the_same_forces() {
     for (friction, sweeps) in [(0.0, 1), (0.4, 1), (0.4, 3)] {
-        let Some(mut pair) = run(friction, sweeps) else { return };
+        let Some(mut pair) = run_in("surface_contact", || world(friction, sweeps)) else { return };
         let (mut touched, mut different) = (0, Vec::new());
         for body in entities::<ContactForce>(pair.host.world_mut()) {
             let of = |simulation: &Simulation, row: usize| {

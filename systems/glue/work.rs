@@ -1,0 +1,144 @@
+//! The nodes that ties act on, and what a step finds of them.
+
+use super::{TiedColumns, TiedColumnsItem};
+use crate::backend::cpu::IntegrationCoefficients;
+use crate::components::*;
+use crate::contact::{Tie, TieSet};
+use crate::math::Scalar;
+use crate::systems::node_slices::{NodeSlices, vector};
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+
+/// The nodes that ties act on, each once, by bodies and rows: places in [`Glue::bodies`], and rows there.
+pub(super) fn nodes_of(glue: &Glue) -> Vec<(usize, u32)> {
+    let of_tie = |tie: &TiedPoint| {
+        let [of, onto] = tie.bodies;
+        let points: Vec<(usize, u32)> = tie.nodes.iter().map(|&(row, _)| (of, row)).collect();
+        points.into_iter().chain(tie.corners.map(|row| (onto, row)))
+    };
+    let mut nodes: Vec<(usize, u32)> = glue.ties.iter().flat_map(of_tie).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
+}
+
+/// The nodes of a tie, by their places among those of all.
+pub(super) struct TieNodes {
+    /// With signed weights: first those of the point, then those of the face.
+    pub parts: Vec<(u32, f64)>,
+    /// The corners of the face.
+    pub corners: [u32; 3],
+}
+
+/// The places among `nodes` of those of a tie.
+pub(super) fn parts_of(tie: &TiedPoint, nodes: &[(usize, u32)]) -> TieNodes {
+    let place = |body: usize, row: u32| nodes.partition_point(|&node| node < (body, row)) as u32;
+    let [of, onto] = tie.bodies;
+    let corners = tie.corners.map(|row| place(onto, row));
+    let points = tie.nodes.iter().map(|&(row, weight)| (place(of, row), weight));
+    let of_face = corners.into_iter().zip(tie.weights).filter(|(_, weight)| *weight != 0.0);
+    TieNodes { parts: points.chain(of_face.map(|(corner, weight)| (corner, -weight))).collect(), corners }
+}
+
+/// What a step finds, kept so that the next one need not ask for memory: nothing in it is carried on from step to step
+/// but what follows from [`Glue`].
+#[derive(Default)]
+pub(super) struct Work {
+    nodes: Vec<(usize, u32)>,
+    /// The corners of the face of each tie.
+    corners: Vec<[u32; 3]>,
+    /// One tie for each, and the nodes' next steps.
+    pub set: TieSet,
+    /// Unit normals of the ties' faces.
+    pub outs: Vec<DVec3>,
+    /// Where nodes are (m, from the reference), and what they weigh (kg).
+    places: Vec<DVec3>,
+    masses: Vec<f64>,
+    /// Their last steps (m).
+    pub before: Vec<DVec3>,
+    /// What ties do to them (N).
+    pub forces: Vec<DVec3>,
+}
+
+impl Work {
+    pub fn of(glue: &Glue) -> Self {
+        let nodes = nodes_of(glue);
+        let of_tie = |tie| {
+            let TieNodes { parts, corners } = parts_of(tie, &nodes);
+            (Tie::new(parts, DVec3::ZERO), corners)
+        };
+        let (ties, corners): (Vec<Tie>, Vec<[u32; 3]>) = glue.ties.iter().map(of_tie).unzip();
+        let vectors = || vec![DVec3::ZERO; nodes.len()];
+        Self {
+            set: TieSet::new(ties, vectors(), vectors()),
+            outs: vec![DVec3::ZERO; corners.len()],
+            places: vectors(),
+            masses: vec![0.0; nodes.len()],
+            before: vectors(),
+            forces: vectors(),
+            corners,
+            nodes,
+        }
+    }
+
+    /// Sees where nodes are and where they would go; `false` where a body lacks something.
+    pub fn place<T: Scalar>(
+        &mut self,
+        glue: &Glue,
+        coefficients: &IntegrationCoefficients<f64>,
+        bodies: &mut Query<TiedColumns>,
+    ) -> bool {
+        let mut at = 0;
+        for of_body in self.nodes.chunk_by(|one, other| one.0 == other.0) {
+            let Ok(TiedColumnsItem { nodes, .. }) = bodies.get_mut(glue.bodies[of_body[0].0]) else { return false };
+            let masses = nodes.mass.slice::<T>();
+            let columns = NodeSlices::<T>::of(nodes);
+            for row in of_body.iter().map(|&(_, row)| row as usize) {
+                self.places[at] = columns.rest[row] - glue.reference + vector(columns.u, row);
+                self.masses[at] = masses[row].to_f64();
+                let foreseen = columns.foresee(row, coefficients);
+                self.before[at] = foreseen.before;
+                self.set.steps[at] = foreseen.step;
+                self.set.responses[at] = foreseen.free / foreseen.to_force;
+                at += 1;
+            }
+        }
+        true
+    }
+
+    /// Whether there is tissue at the point of a tie.
+    pub fn has_mass(&self, number: usize, tie: &TiedPoint) -> bool {
+        let of_point = &self.set.ties[number].parts[..tie.nodes.len()];
+        of_point.iter().all(|&(node, _)| self.masses[node as usize] > 0.0)
+    }
+
+    /// Sees how far a tie that holds is off.
+    pub fn begin(&mut self, number: usize, tie: &TiedPoint) {
+        let solved = &mut self.set.ties[number];
+        let corners = self.corners[number].map(|node| self.places[node as usize]);
+        let of_point = &solved.parts[..tie.nodes.len()];
+        let point: DVec3 = of_point.iter().map(|&(node, weight)| self.places[node as usize] * weight).sum();
+        let mut belongs: DVec3 = corners.iter().zip(tie.weights).map(|(corner, weight)| *corner * weight).sum();
+        self.outs[number] = DVec3::ZERO;
+        if let Some([along, across, out]) = frame_of(corners) {
+            belongs += along * tie.gap.x + across * tie.gap.y + out * tie.gap.z;
+            self.outs[number] = out;
+        }
+        (solved.holds, solved.off, solved.force) = (true, point - belongs, DVec3::ZERO);
+    }
+
+    /// Adds the forces to the loads of nodes that are tied.
+    pub fn push(&self, glue: &Glue, bodies: &mut Query<TiedColumns>) {
+        let mut at = 0;
+        for of_body in self.nodes.chunk_by(|one, other| one.0 == other.0) {
+            let Ok(mut columns) = bodies.get_mut(glue.bodies[of_body[0].0]) else { continue };
+            for &(_, row) in of_body {
+                if self.set.is_tied(at) {
+                    let load = columns.nodes.external.vector(row as usize) + self.forces[at];
+                    columns.nodes.external.set_vector(row as usize, load);
+                }
+                at += 1;
+            }
+        }
+    }
+}

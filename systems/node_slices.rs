@@ -1,0 +1,87 @@
+//! What a step needs of the nodes of a body, as plain slices: for systems that go over what ties nodes of several bodies
+//! together.
+
+use crate::backend::cpu::{Foreseen, IntegrationCoefficients};
+use crate::components::*;
+use crate::math::Scalar;
+use bevy_ecs::prelude::*;
+use bevy_ecs::query::QueryData;
+use glam::DVec3;
+
+/// What is known of the nodes of a body.
+#[derive(QueryData)]
+#[query_data(mutable)]
+pub(super) struct BodyColumns {
+    pub rest: &'static RestPosition,
+    pub mass: &'static Mass,
+    pub fictitious: Option<&'static FictitiousMass>,
+    pub damping: Option<&'static DampingCoefficient>,
+    pub axes: &'static ConstrainedAxes,
+    pub internal: &'static InternalForce,
+    pub external: &'static mut ExternalForce,
+    pub u: &'static Displacement,
+    pub step: &'static DisplacementIncrement,
+}
+
+/// Columns of a body in the run's precision, a row a node.
+pub(super) struct NodeSlices<'a, T> {
+    pub rest: &'a [DVec3],
+    /// Mass that is slow to move (kg).
+    pub mass: &'a [T],
+    pub damping: Option<&'a [T]>,
+    pub axes: &'a [u32],
+    pub internal: &'a [T],
+    pub external: &'a mut [T],
+    pub u: &'a [T],
+    pub step: &'a [T],
+}
+
+impl<'a, T: Scalar> NodeSlices<'a, T> {
+    /// Of columns in that precision.
+    pub fn of(columns: BodyColumnsItem<'a, '_>) -> Self {
+        let mass = columns.fictitious.map_or(&columns.mass.0, |mass| &mass.0);
+        Self {
+            rest: &columns.rest.0,
+            mass: mass.slice(),
+            damping: columns.damping.map(|damping| damping.slice()),
+            axes: &columns.axes.0,
+            internal: columns.internal.slice(),
+            external: columns.external.into_inner().slice_mut(),
+            u: columns.u.slice(),
+            step: columns.step.slice(),
+        }
+    }
+
+    /// Where a node would go.
+    pub fn foresee(&self, row: usize, coefficients: &IntegrationCoefficients<f64>) -> Foreseen {
+        let mass = self.mass[row].to_f64();
+        let damping = self.damping.map_or(0.0, |damping| damping[row].to_f64());
+        let force = vector(self.external, row) - vector(self.internal, row);
+        coefficients.foresee(mass, damping, self.axes[row], vector(self.step, row), force)
+    }
+}
+
+/// The vector of a row.
+pub(super) fn vector<T: Scalar>(all: &[T], row: usize) -> DVec3 {
+    vector_at(all, 3 * row)
+}
+
+/// The vector that begins with a number.
+pub(super) fn vector_at<T: Scalar>(all: &[T], at: usize) -> DVec3 {
+    DVec3::new(all[at].to_f64(), all[at + 1].to_f64(), all[at + 2].to_f64())
+}
+
+/// Writes a vector from a number on, rounded.
+pub(super) fn set_vector<T: Scalar>(all: &mut [T], at: usize, value: DVec3) {
+    for (place, number) in all[at..at + 3].iter_mut().zip(value.to_array()) {
+        *place = T::from_f64(number);
+    }
+}
+
+/// Whether no element of some bodies can go.
+pub(super) fn elements_stay(bodies: impl IntoIterator<Item = Entity>, world: &World) -> bool {
+    // columns that nobody has are not known
+    let Some(mut blocks) = world.try_query_filtered::<&Block, With<Alive>>() else { return true };
+    let going: Vec<Entity> = blocks.iter(world).map(|block| block.body).collect();
+    !bodies.into_iter().any(|body| going.contains(&body))
+}
