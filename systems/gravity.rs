@@ -1,6 +1,6 @@
 //! `gravity`: mass times acceleration on every node. `shaders/gravity.wgsl` is its twin.
 
-use super::node_system::{Before, NodeSystem};
+use super::node_system::{Before, ForceSlopes, NodeSystem, NodesAtRest};
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
@@ -30,6 +30,11 @@ impl NodeSystem for Gravity {
 
     fn prepare(&self, before: &Before<'_>) -> [f64; 4] {
         before.signals.values()[self.signal]
+    }
+
+    /// None: it depends on the mass alone.
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        ForceSlopes::NONE
     }
 
     fn act<T: SimdScalar>(&self, acceleration: &[f64; 4], cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {

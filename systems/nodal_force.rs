@@ -1,6 +1,6 @@
 //! `nodal_force`: forces on chosen nodes. `shaders/nodal_force.wgsl` is its twin.
 
-use super::node_system::{Before, NodeSystem};
+use super::node_system::{Before, ForceSlopes, NodeSystem, NodesAtRest};
 use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
@@ -30,6 +30,11 @@ impl NodeSystem for NodalForce {
 
     fn prepare(&self, before: &Before<'_>) -> [f64; 4] {
         before.signals.values()[self.signal]
+    }
+
+    /// None: it is the same wherever the node goes.
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        ForceSlopes::NONE
     }
 
     fn act<T: SimdScalar>(&self, force: &[f64; 4], _: &Cpu, nodes: &mut NodeColumns<'_, T>) {

@@ -34,11 +34,26 @@ pub trait NodeSystem: Component {
     /// Finds out what this step needs, before any node of the body moves.
     fn prepare(&self, before: &Before<'_>) -> Self::Prepared;
 
-    /// How fast the forces that it adds grow with displacements and velocities, for the stable step, where they do: the
-    /// largest of all nodes, 0 or above.
-    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
-        ForceSlopes::default()
-    }
+    /// How fast the forces that it adds grow with displacements and velocities, for the stable step: the largest of all
+    /// nodes, 0 or above. A stiff force of which the step does not know makes a run unstable, so there is no default:
+    /// what adds no forces, or such as depend on neither, says [`ForceSlopes::NONE`].
+    ///
+    /// ```compile_fail,E0046
+    /// use sinew::prelude::*;
+    /// use sinew::systems::{Before, Cpu, NodeColumns, NodeSystem, SimdScalar};
+    ///
+    /// #[derive(Component)]
+    /// struct Silent;
+    ///
+    /// impl NodeSystem for Silent {
+    ///     type Columns = &'static mut ExternalForce;
+    ///     type Prepared = ();
+    ///     fn prepare(&self, _: &Before<'_>) {}
+    ///     fn act<T: SimdScalar>(&self, _: &(), _: &Cpu, _: &mut NodeColumns<'_, T>) {}
+    ///     // error: missing `slopes`
+    /// }
+    /// ```
+    fn slopes(&self, nodes: &NodesAtRest<'_>) -> ForceSlopes;
 
     /// Does it to some rows of the body, which no other task has.
     fn act<T: SimdScalar>(&self, prepared: &Self::Prepared, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>);
@@ -90,6 +105,9 @@ pub struct ForceSlopes {
 }
 
 impl ForceSlopes {
+    /// Of forces that are the same wherever nodes are and however they move.
+    pub const NONE: Self = Self { stiffness: 0.0, damping: 0.0 };
+
     /// The larger of both, each by itself.
     pub fn larger(self, other: Self) -> Self {
         Self { stiffness: self.stiffness.max(other.stiffness), damping: self.damping.max(other.damping) }

@@ -1,7 +1,7 @@
 //! `suction`: faces in the mouth of a tool are sucked into it. `shaders/suction.wgsl` is its twin; which faces those are
 //! and by what pressure, `suction_mouth` finds.
 
-use super::node_system::{Before, NodeSystem};
+use super::node_system::{Before, ForceSlopes, NodeSystem, NodesAtRest};
 use super::pressure::{find_areas, push};
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
@@ -34,6 +34,11 @@ impl NodeSystem for Suction {
     fn prepare(&self, before: &Before<'_>) -> f64 {
         find_areas(&self.active, before.rest, before.displacement);
         -self.now
+    }
+
+    /// None is counted: as of [`Pressure`], of which the limit there holds for what is sucked, too.
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        ForceSlopes::NONE
     }
 
     fn act<T: SimdScalar>(&self, pressure: &f64, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {

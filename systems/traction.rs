@@ -1,6 +1,6 @@
 //! `traction`: dead loads on the surface. `shaders/traction.wgsl` is its twin.
 
-use super::node_system::{Before, NodeSystem};
+use super::node_system::{Before, ForceSlopes, NodeSystem, NodesAtRest};
 use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
@@ -32,6 +32,11 @@ impl NodeSystem for Traction {
 
     fn prepare(&self, before: &Before<'_>) -> [f64; 4] {
         before.signals.values()[self.signal]
+    }
+
+    /// None: it does not follow the surface.
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        ForceSlopes::NONE
     }
 
     fn act<T: SimdScalar>(&self, traction: &[f64; 4], _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
