@@ -1,6 +1,7 @@
 //! `gather`: sums element forces at the nodes. `shaders/gather.wgsl` is its twin.
 
-use super::node_system::{Before, ForceSlopes, NodeSystem, NodesAtRest};
+use super::node_system::NodeSystem;
+use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns, ROWS_A_TASK};

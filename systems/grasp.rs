@@ -1,6 +1,7 @@
 //! `grasp`: closed tools take nodes along. `shaders/grasp.wgsl` is its twin.
 
-use super::node_system::{Before, ForceSlopes, NodeSystem, NodesAtRest};
+use super::node_system::NodeSystem;
+use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
 use super::registry::{Phase, System};
 use super::tool_contact::{ToolNodes, tool_stage};

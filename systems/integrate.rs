@@ -1,6 +1,7 @@
 //! `integrate`: moves the nodes. `shaders/integrate.wgsl` is its twin.
 
-use super::node_system::{Before, ForceSlopes, NodeSystem, NodesAtRest};
+use super::node_system::NodeSystem;
+use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::registry::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, IntegrationCoefficients, NodeColumns, move_nodes};

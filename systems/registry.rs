@@ -255,7 +255,9 @@ impl System {
     /// The text sees its own node's rows only. It finds each of its [columns](NodeSystem::Columns) under its name, as
     /// `array<f32>` (or `array<u32>`), three numbers a vector, and `rest_position` likewise; what the scene gave in a
     /// uniform `parameters`; `step.time` and `step.time_step` (s). In place of columns of forces there are functions:
-    /// `internal_force_of(node)`, `external_force_of(node)` and `add_load(node, force)`.
+    /// `internal_force_of(node)`, `external_force_of(node)` and `add_load(node, force)`. Where it keeps
+    /// [numbers](NodeSystem::OWN_NUMBERS), there are `own(node, i)` and `set_own(node, i, value)`; where it
+    /// [chooses](NodeSystem::choose) nodes, it is called for these.
     pub fn with_shader<S: NodeSystem + serde::Serialize>(mut self, path: &'static str, text: &'static str) -> Self {
         let name = self.name.clone();
         self.device = OnDevice::Stages(Arc::new(move |world, buffers| {

@@ -1,7 +1,8 @@
 //! `suction`: faces in the mouth of a tool are sucked into it. `shaders/suction.wgsl` is its twin; which faces those are
 //! and by what pressure, `suction_mouth` finds.
 
-use super::node_system::{Before, ForceSlopes, NodeSystem, NodesAtRest};
+use super::node_system::NodeSystem;
+use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::pressure::{find_areas, push};
 use super::registry::{Phase, System};
 use crate::backend::Buffers;

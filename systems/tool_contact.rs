@@ -3,7 +3,8 @@
 mod row;
 mod stage;
 
-use super::node_system::{Before, ForceSlopes, NodeSystem, NodesAtRest};
+use super::node_system::NodeSystem;
+use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;

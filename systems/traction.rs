@@ -1,6 +1,7 @@
 //! `traction`: dead loads on the surface. `shaders/traction.wgsl` is its twin.
 
-use super::node_system::{Before, ForceSlopes, NodeSystem, NodesAtRest};
+use super::node_system::NodeSystem;
+use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
 use super::registry::{Phase, System};
 use crate::backend::Buffers;

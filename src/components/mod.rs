@@ -53,11 +53,12 @@ pub use input::{Change, Input, InputState};
 pub use load::{FaceCorners, Gravity, NodalForce, Pressure, Traction};
 pub use material::{Damping, Density, ExponentialFibres, Prony, StiffnessDamping, memory_terms};
 pub use nodes::{
-    Authoring, ConstrainedAxes, Corners, DampingCoefficient, Displacement, DisplacementCompensation,
+    Authoring, ChosenBy, ConstrainedAxes, Corners, DampingCoefficient, Displacement, DisplacementCompensation,
     DisplacementIncrement, ElementForce, ExternalForce, FictitiousMass, FirstNonFinite, GROUP_ROWS, InternalForce,
-    InternalWork, Mass, MiddleDisplacement, NodeSums, PreviousPrescribedIncrement, RestPosition, WORK_NUMBERS, Work,
+    InternalWork, Mass, MiddleDisplacement, NodeSums, OwnNumbers, PreviousPrescribedIncrement, RestPosition,
+    WORK_NUMBERS, Work,
 };
-pub use observation::{Cadence, Energies, Observed, Probe};
+pub use observation::{Cadence, Energies, HeldEnergies, HeldEnergy, Observed, Probe};
 pub use own_load::{LoadText, NodeAtRest, OfSystem, OwnLoad};
 pub use patches::{Patches, Scheme};
 pub use signal::{Signal, Signals};

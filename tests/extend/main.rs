@@ -2,8 +2,10 @@
 //! file and its WGSL file, or by one of them. They run on both backends.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod bond;
 mod gent;
 mod laws;
+mod memory;
 mod plane;
 mod wind;
 
