@@ -1,6 +1,6 @@
 //! `glue`: points of bodies stay where they are tied to faces, until that breaks.
 
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::backend::cpu::{Foreseen, IntegrationCoefficients};
 use crate::components::*;
 use crate::contact::{Tie, TieSet};

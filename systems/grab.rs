@@ -2,7 +2,7 @@
 
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, MiddleOfStep, NodesAtRest};
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::kernel::{Fragment, Uniform, uniform};

@@ -2,7 +2,7 @@
 
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::kernel::{Uniform, uniform};
@@ -13,6 +13,12 @@ use crate::shader;
 use bevy_ecs::prelude::*;
 use pulp::{Simd, WithSimd};
 
+/// Gravity on the body: the acceleration (m/s²) is a signal.
+#[derive(Component, Clone, Debug)]
+pub struct Gravity {
+    signal: usize,
+}
+
 /// Adds m g to the external forces.
 pub fn system() -> System {
     System::built_in_nodes::<Gravity>(
@@ -22,6 +28,7 @@ pub fn system() -> System {
         "`Gravity(...)` under `loads`",
         |world| super::registry::count::<Gravity>(world, "gravity load", "gravity loads"),
     )
+    .for_load("Gravity", |_, signal| Some(Gravity { signal }))
     .on_nodes(stages)
 }
 

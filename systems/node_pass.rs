@@ -3,7 +3,7 @@
 
 use super::node_system::{BoundSystem, BoundSystems, Callers, NodeRows, OfRun};
 use super::node_views::Before;
-use super::registry::HostSystem;
+use super::system::HostSystem;
 use crate::backend::cpu::{Cpu, NodeColumns, OwnRows, ROWS_A_TASK, Touches};
 use crate::backend::step::step_number;
 use crate::components::*;

@@ -3,7 +3,7 @@
 
 use super::node_shares::{ShareOf, WantedShare, share_of, wanted_shares};
 use super::node_views::{Before, ForceSlopes, MiddleOfStep, NodesAtRest};
-use super::registry::HostSystem;
+use super::system::HostSystem;
 use crate::backend::cpu::{Cpu, NodeColumns, NodeShare};
 use crate::components::*;
 use crate::math::SimdScalar;

@@ -9,7 +9,7 @@ mod meet;
 mod motion;
 mod survey;
 
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::backend::cpu::{Cpu, Foreseen};
 use crate::components::*;
 use crate::contact::{ContactSet, Lists, Near, Point, Surfaces, Tree};

@@ -1,6 +1,6 @@
 //! `suture_tension`: how hard sutures pull, and which of them tear.
 
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::components::*;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;

@@ -6,7 +6,7 @@ mod stage;
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, Foreseen, IntegrationCoefficients, NodeColumns};
 use crate::backend::kernel::{Uniform, uniform};

@@ -199,6 +199,7 @@ fn every_system_is_a_file_of_its_name_and_a_line_of_the_step() {
                 "own_load",
                 "patch_pass",
                 "registry",
+                "system",
             ]
             .contains(&stem.as_str())
                 && !stem.contains('/')

@@ -5,7 +5,7 @@
 //! | body | node columns ([`nodes`]), [`Corners`], [`ElementForce`], [`Authoring`] |
 //! | element block: one element type, one material, one body | [`Block`], [`Connectivity`], [`Patches`], [`RestShape`] and, where called for, [`FibreDirection`], [`ViscousMemory`], [`NodalVolumeChange`], [`Alive`], [`RemovalStep`] |
 //! | material | [`Density`], an [elastic law](crate::materials::ElasticLaw), [`Fibres`](crate::materials::Fibres), [`ExponentialFibres`], [`Prony`], [`Damping`], [`StiffnessDamping`]: an effect exists when its component does |
-//! | constraint, load, removal | [`Fixed`], [`Prescribed`], [`Gravity`], [`NodalForce`], [`Pressure`], [`Traction`], [`OwnLoad`], [`RemovalCriterion`] with the rows they act on |
+//! | constraint, load, removal | [`Fixed`], [`Prescribed`], [`SceneLoad`], [`OwnLoad`], [`RemovalCriterion`] with the rows they act on |
 //! | probe | [`Probe`] |
 
 mod block;
@@ -50,7 +50,7 @@ pub use grab::{Grabs, HeldNode};
 pub use grasp::{Grasp, Grasps, HOLD_NUMBERS, ToolHold};
 pub use guard::{Extreme, GuardMemory, Notice};
 pub use input::{Change, Input, InputState};
-pub use load::{FaceCorners, Gravity, NodalForce, Pressure, Traction};
+pub use load::{FaceCorners, FaceMarks, LoadedNodes, LoadedRows, SceneLoad};
 pub use material::{Damping, Density, ExponentialFibres, Prony, StiffnessDamping, memory_terms};
 pub use nodes::{
     Authoring, ChosenBy, ConstrainedAxes, Corners, DampingCoefficient, Displacement, DisplacementCompensation,
