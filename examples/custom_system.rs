@@ -8,7 +8,9 @@ use sinew::NoGpu;
 use sinew::bevy_ecs::prelude::*;
 use sinew::components::{Displacement, ExternalForce, Mass, RestPosition};
 use sinew::glam::DVec3;
-use sinew::systems::{Before, Cpu, NodeColumns, NodeSystem, Phase, Registry, SimdScalar, System};
+use sinew::systems::{
+    Before, Cpu, ForceSlopes, NodeColumns, NodeSystem, NodesAtRest, Phase, Registry, SimdScalar, System,
+};
 use sinew::{BackendChoice, Folder, Options, SceneFile, Simulation};
 use std::path::Path;
 
@@ -35,6 +37,11 @@ impl NodeSystem for Magnet {
         let place = self.center + self.radius * DVec3::new(angle.cos(), angle.sin(), 0.0);
         // it comes up slowly: a sudden pull would ring
         (place, self.acceleration * (time / 0.2).min(1.0))
+    }
+
+    /// The norm of ∂/∂x of exp(−r²/R²) x/r, at half its reach and beyond: nothing of the gel comes nearer.
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        ForceSlopes { stiffness: 2.34 * self.acceleration / self.reach, damping: 0.0 }
     }
 
     fn act<T: SimdScalar>(&self, &(place, strength): &(DVec3, f64), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {

@@ -1,8 +1,9 @@
 //! `boundary`: where constrained nodes go in this step. `shaders/boundary.wgsl` is its twin.
 
-use super::node_system::{Before, NodeSystem};
+use super::node_system::NodeSystem;
+use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::kernel::{Fragment, Uniform, uniform};
@@ -45,6 +46,11 @@ impl NodeSystem for Prescribed {
 
     fn prepare(&self, before: &Before<'_>) -> [[f64; 4]; 3] {
         [0, 1, 2].map(|axis| before.signals.values()[self.signal + axis])
+    }
+
+    /// None: it sets displacements, and adds no forces.
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        ForceSlopes::NONE
     }
 
     fn act<T: SimdScalar>(&self, motion: &[[f64; 4]; 3], _: &Cpu, nodes: &mut NodeColumns<'_, T>) {

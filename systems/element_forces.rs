@@ -2,7 +2,7 @@
 //! `shaders/element_forces.wgsl`, the element's file, one file an effect of the material, and `patches.wgsl` or
 //! `two_pass.wgsl`.
 
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::block_kernel::{BlockKernels, CornersAt};
 use crate::backend::cpu::{BlockColumns, BlockLaw, Cpu, PatchInterior, run_block, run_block_fast};

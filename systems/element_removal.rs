@@ -1,6 +1,6 @@
 //! `element_removal`: takes elements away. `shaders/element_removal.wgsl` and `shaders/node_mass.wgsl` are its twins.
 
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::block_kernel::BlockKernels;
 use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK};
@@ -74,8 +74,7 @@ fn element_removal(
     mut blocks: Query<BlockQuery>,
     others: Query<StayingBlock, Without<Alive>>,
     mut bodies: Query<BodyQuery>,
-    mut pressures: Query<(&mut Pressure, &OfBody), Without<Traction>>,
-    mut tractions: Query<(&mut Traction, &OfBody), Without<Pressure>>,
+    loads: Query<(&SceneLoad, &OfBody)>,
 ) {
     let is_due = clock.step.is_multiple_of(CRITERION_STEPS);
     let mut touched: Vec<Entity> = Vec::new();
@@ -152,12 +151,10 @@ fn element_removal(
             let block = authoring.blocks.get(block as usize).and_then(|&block| blocks.get(block).ok());
             block.map_or(1, |block| block.8[row as usize])
         };
-        let of_body = |of: &OfBody| of.0 == body;
-        for (mut load, _) in pressures.iter_mut().filter(|(_, of)| of_body(of)) {
-            update_faces(&mut load.faces, alive);
-        }
-        for (mut load, _) in tractions.iter_mut().filter(|(_, of)| of_body(of)) {
-            update_faces(&mut load.faces, alive);
+        for (load, _) in loads.iter().filter(|(_, of)| of.0 == body) {
+            if let Some(faces) = load.on.faces() {
+                faces.mark(|element| Some(alive(element)));
+            }
         }
     }
 }
@@ -229,12 +226,6 @@ fn recompute_masses(
     (0..count).for_each(|node| mass.set(node, masses[node]));
     if let Some(damping) = damping {
         (0..count).for_each(|node| damping.set(node, coefficients[node]));
-    }
-}
-
-fn update_faces(faces: &mut FaceCorners, alive: impl Fn((u32, u32)) -> u32) {
-    for (mark, &element) in faces.alive.iter_mut().zip(&faces.elements) {
-        *mark = alive(element);
     }
 }
 

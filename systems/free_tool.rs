@@ -2,7 +2,7 @@
 
 mod contacts;
 
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::backend::cpu::{Foreseen, IntegrationCoefficients};
 use crate::components::*;
 use crate::error::{Criterion, Error, Instability};

@@ -1,7 +1,8 @@
 //! `gather`: sums element forces at the nodes. `shaders/gather.wgsl` is its twin.
 
-use super::node_system::{Before, NodeSystem};
-use super::registry::{Phase, System};
+use super::node_system::NodeSystem;
+use super::node_views::{Before, ForceSlopes, NodesAtRest};
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns, ROWS_A_TASK};
 use crate::backend::kernel::Fragment;
@@ -26,6 +27,11 @@ impl NodeSystem for Corners {
     const SUMS_FORCES: bool = true;
 
     fn prepare(&self, _: &Before<'_>) {}
+
+    /// None: the forces of elements are counted element by element.
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        ForceSlopes::NONE
+    }
 
     fn act<T: SimdScalar>(&self, (): &(), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
         sum_at(self, nodes.element_force, nodes.first, nodes.internal);

@@ -4,7 +4,7 @@ mod kernels;
 mod work;
 
 use super::node_slices::{BodyColumns, elements_stay};
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::backend::cpu::IntegrationCoefficients;
 use crate::components::*;
 use crate::math::Scalar;

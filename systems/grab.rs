@@ -1,7 +1,8 @@
 //! `grab`: springs and dampers from nodes that a hand holds to where they should be. `shaders/grab.wgsl` is its twin.
 
-use super::node_system::{Before, ForceSlopes, NodeSystem, NodesAtRest};
-use super::registry::{Phase, System};
+use super::node_system::NodeSystem;
+use super::node_views::{Before, ForceSlopes, MiddleOfStep, NodesAtRest};
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::kernel::{Fragment, Uniform, uniform};
@@ -43,6 +44,15 @@ impl NodeSystem for Grabs {
                 nodes.add_load(row, held.force(nodes.displacement(row), step * rate, mass.to_f64()));
             }
         }
+    }
+
+    fn energy(&self, nodes: &MiddleOfStep<'_>) -> Option<f64> {
+        let of_node = |held: &HeldNode| {
+            let row = held.row as usize;
+            let mass = nodes.mass.get(row);
+            if mass > 0.0 { held.energy(nodes.displacement(row), mass) } else { 0.0 }
+        };
+        (!self.held.is_empty()).then(|| self.held.iter().map(of_node).sum())
     }
 
     /// Whatever the nodes' masses are by now: see [`HeldNode`].

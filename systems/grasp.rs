@@ -1,8 +1,9 @@
 //! `grasp`: closed tools take nodes along. `shaders/grasp.wgsl` is its twin.
 
-use super::node_system::{Before, NodeSystem};
+use super::node_system::NodeSystem;
+use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use super::tool_contact::{ToolNodes, tool_stage};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, IntegrationCoefficients, NodeColumns};
@@ -74,6 +75,11 @@ impl NodeSystem for Grasps {
             counts_work: before.clock.relaxation.is_none(),
             tools,
         }
+    }
+
+    /// None: as contact with tools, it corrects the step to come.
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        ForceSlopes::NONE
     }
 
     fn act<T: SimdScalar>(&self, step: &GraspStep, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {

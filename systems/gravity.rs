@@ -1,7 +1,8 @@
 //! `gravity`: mass times acceleration on every node. `shaders/gravity.wgsl` is its twin.
 
-use super::node_system::{Before, NodeSystem};
-use super::registry::{Phase, System};
+use super::node_system::NodeSystem;
+use super::node_views::{Before, ForceSlopes, NodesAtRest};
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::kernel::{Uniform, uniform};
@@ -12,6 +13,12 @@ use crate::shader;
 use bevy_ecs::prelude::*;
 use pulp::{Simd, WithSimd};
 
+/// Gravity on the body: the acceleration (m/s²) is a signal.
+#[derive(Component, Clone, Debug)]
+pub struct Gravity {
+    signal: usize,
+}
+
 /// Adds m g to the external forces.
 pub fn system() -> System {
     System::built_in_nodes::<Gravity>(
@@ -21,6 +28,7 @@ pub fn system() -> System {
         "`Gravity(...)` under `loads`",
         |world| super::registry::count::<Gravity>(world, "gravity load", "gravity loads"),
     )
+    .for_load("Gravity", |_, signal| Some(Gravity { signal }))
     .on_nodes(stages)
 }
 
@@ -30,6 +38,11 @@ impl NodeSystem for Gravity {
 
     fn prepare(&self, before: &Before<'_>) -> [f64; 4] {
         before.signals.values()[self.signal]
+    }
+
+    /// None: it depends on the mass alone.
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        ForceSlopes::NONE
     }
 
     fn act<T: SimdScalar>(&self, acceleration: &[f64; 4], cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {

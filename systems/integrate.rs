@@ -1,7 +1,8 @@
 //! `integrate`: moves the nodes. `shaders/integrate.wgsl` is its twin.
 
-use super::node_system::{Before, NodeSystem};
-use super::registry::{Phase, System};
+use super::node_system::NodeSystem;
+use super::node_views::{Before, ForceSlopes, NodesAtRest};
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, IntegrationCoefficients, NodeColumns, move_nodes};
 use crate::backend::kernel::Fragment;
@@ -47,6 +48,11 @@ impl NodeSystem for Body {
 
     fn prepare(&self, before: &Before<'_>) -> Clock {
         *before.clock
+    }
+
+    /// None: it adds no forces.
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        ForceSlopes::NONE
     }
 
     fn act<T: SimdScalar>(&self, clock: &Clock, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>) {

@@ -1,7 +1,7 @@
 //! `island_removal`: crumbs that tools have cut off go at once.
 
 use super::element_removal::CRITERION_STEPS;
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::components::*;
 use crate::elements::node_count;
 use crate::error::missing;

@@ -1,8 +1,9 @@
 //! `nodal_force`: forces on chosen nodes. `shaders/nodal_force.wgsl` is its twin.
 
-use super::node_system::{Before, NodeSystem};
+use super::node_system::NodeSystem;
+use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::kernel::{Fragment, Uniform, uniform};
@@ -11,6 +12,15 @@ use crate::components::*;
 use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
+use std::sync::Arc;
+
+/// A force (N), a signal, on each of some nodes.
+#[derive(Component, Clone, Debug)]
+pub struct NodalForce {
+    /// The nodes.
+    pub on: Arc<LoadedNodes>,
+    signal: usize,
+}
 
 /// Adds a force to each of the load's nodes that has mass: a inactive node bears nothing.
 pub fn system() -> System {
@@ -21,6 +31,7 @@ pub fn system() -> System {
         "`NodalForce(...)` under `loads`",
         |world| super::registry::count::<NodalForce>(world, "nodal force", "nodal forces"),
     )
+    .for_load("NodalForce", |on, signal| Some(NodalForce { on: on.nodes()?.clone(), signal }))
     .on_nodes(stages)
 }
 
@@ -32,12 +43,18 @@ impl NodeSystem for NodalForce {
         before.signals.values()[self.signal]
     }
 
+    /// None: it is the same wherever the node goes.
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        ForceSlopes::NONE
+    }
+
     fn act<T: SimdScalar>(&self, force: &[f64; 4], _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
         let Some(external) = nodes.external.as_deref_mut() else { return };
-        for place in places_within(&self.rows, nodes.first, nodes.mass.len()) {
-            let row = self.rows[place] as usize - nodes.first;
+        let LoadedNodes { rows, factors } = &*self.on;
+        for place in places_within(rows, nodes.first, nodes.mass.len()) {
+            let row = rows[place] as usize - nodes.first;
             if nodes.mass[row] > T::default() {
-                let factor = T::from_f64(self.factors.get(place).copied().unwrap_or(1.0));
+                let factor = T::from_f64(factors.get(place).copied().unwrap_or(1.0));
                 for i in 0..3 {
                     external[3 * row + i] += factor * T::from_f64(force[i]);
                 }
@@ -64,12 +81,12 @@ fn stages(world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
             .bind_uniform::<NodalLoad>("load", buffers.uniform("nodal_force".into(), &load.bytes()))
             .column(Mass::NAME, buffers.column(body, Mass::NAME))
             .column(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME))
-            .of_rows(force.rows);
-        let stage = if force.factors.is_empty() {
+            .of_rows(force.on.rows.clone());
+        let stage = if force.on.factors.is_empty() {
             let text = "fn factor_of(i: u32) -> f32 {\n    return 1.0;\n}\n";
             stage.own(Fragment::new("generated: the same force on all nodes", text))
         } else {
-            let factors: Vec<f32> = force.factors.iter().map(|&factor| factor as f32).collect();
+            let factors: Vec<f32> = force.on.factors.iter().map(|&factor| factor as f32).collect();
             let factors = buffers.constants("factors of nodal_force".into(), bytemuck::cast_slice(&factors));
             stage.own(shader!("force_factor")).bind("factors", factors)
         };

@@ -1,7 +1,7 @@
 //! `nodal_volume`: how much the volume around each node has changed. `shaders/nodal_volume.wgsl` and
 //! `shaders/nodal_mean.wgsl` are its twins.
 
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::block_kernel::BlockKernels;
 use crate::backend::cpu::{BlockLaw, Cpu, ROWS_A_TASK, run_volumes};

@@ -1,9 +1,10 @@
 //! Neighbouring systems of a step that work node by node, in one pass over the nodes: what one writes the next finds in
 //! the core's cache. On a GPU the same is one kernel (src/backend/node_stage.rs).
 
-use super::node_system::{Before, BoundSystem, BoundSystems, Callers, NodeRows, OfRun};
-use super::registry::HostSystem;
-use crate::backend::cpu::{Cpu, NodeColumns, ROWS_A_TASK, Touches};
+use super::node_system::{BoundSystem, BoundSystems, Callers, NodeRows, OfRun};
+use super::node_views::Before;
+use super::system::HostSystem;
+use crate::backend::cpu::{Cpu, NodeColumns, OwnRows, ROWS_A_TASK, Touches};
 use crate::backend::step::step_number;
 use crate::components::*;
 use crate::error::Error;
@@ -37,6 +38,8 @@ pub(super) struct BodyColumns {
     touch: Option<&'static mut ToolTouch>,
     grasps: Option<&'static Grasps>,
     hold: Option<&'static mut ToolHold>,
+    own: Option<&'static mut OwnNumbers>,
+    chosen: Option<&'static ChosenBy>,
 }
 
 impl BodyColumnsItem<'_, '_> {
@@ -74,6 +77,11 @@ impl BodyColumnsItem<'_, '_> {
                 values: hold.slice_mut(),
                 numbers: grasps.numbers(),
             }),
+            own: OwnRows::of(
+                self.own.as_mut().map_or(&mut [], |own| own.slice_mut()),
+                self.chosen.map_or(&[], |chosen| chosen),
+                nodes,
+            ),
         }
     }
 
@@ -143,7 +151,15 @@ impl NodePass {
         body: &BodyColumnsItem<'_, '_>,
         arena: &'a Bump,
     ) -> BoundSystems<'a> {
-        let before = Before { clock: &step.clock, signals: &step.signals, rest: body.rest, displacement: &body.u };
+        let before = Before {
+            clock: &step.clock,
+            signals: &step.signals,
+            rest: body.rest,
+            displacement: &body.u,
+            mass: body.mass,
+            chosen: body.chosen.map_or(&[], |chosen| chosen),
+            bit: 0,
+        };
         let mut all = BoundSystems::new();
         for system in &self.systems {
             system.bind(callers, body.body, &before, arena, &mut all);

@@ -1,8 +1,10 @@
 //! What a node system of one's own is on a GPU: a stage of the kernels of nodes, put together from what the system
 //! touches and what the scene gave as its parameters.
 
+use super::node_shares::ShareOf;
 use super::node_system::{NodeRows, NodeSystem};
 use crate::backend::Buffers;
+use crate::backend::cpu::NodeShare;
 use crate::backend::kernel::Fragment;
 use crate::backend::node_stage::{NodeStage, rows_of};
 use crate::components::*;
@@ -22,17 +24,28 @@ pub(super) fn derived_stages<S: NodeSystem + serde::Serialize>(
     let rest = world.component_id::<RestPosition>().is_some_and(|rest| touched.reads(rest));
     let written: Vec<&str> = touched.written_columns(world).iter().map(|column| column.name).collect();
     // a column that shares its buffer has no name of its own there
-    let alone = |column: &ColumnAccess| column.buffer == column.name;
+    let alone = |column: &ColumnAccess| column.buffer == column.name && column.name != OwnNumbers::NAME;
     let columns: Vec<ColumnAccess> = touched.read_columns(world).into_iter().filter(alone).collect();
-    let callers: Vec<(Entity, Value)> = world
-        .query::<(Entity, &S, Option<&OfBody>)>()
+    let callers: Vec<(Entity, Value, NodeShare)> = world
+        .query::<(Entity, &S, Option<&OfBody>, Option<&ShareOf<S>>)>()
         .iter(world)
-        .map(|(entity, system, of)| (of.map_or(entity, |of| of.0), serde_json::to_value(system).unwrap_or(Value::Null)))
+        .map(|(entity, system, of, share)| {
+            let parameters = serde_json::to_value(system).unwrap_or(Value::Null);
+            (of.map_or(entity, |of| of.0), parameters, share.map(|share| share.share).unwrap_or_default())
+        })
         .collect();
     let mut stages = Vec::new();
-    for (body, parameters) in callers {
+    for (body, parameters, share) in callers {
         let (mut declared, bytes) = uniform_of(&parameters);
-        let mut stage = NodeStage::new(name.to_string(), name.to_string(), body, rows_of(body, world), shader.clone());
+        let rows = rows_of(body, world);
+        let (call, chosen) = if_chosen(name, share);
+        let mut stage = NodeStage::new(name.to_string(), call, body, rows, shader.clone());
+        if let Some(chosen) = chosen {
+            stage = stage.own(chosen).column(ChosenBy::NAME, buffers.column(body, ChosenBy::NAME));
+        }
+        if let Some(own) = own_numbers(share, rows, body, world) {
+            stage = stage.own(own).column(OwnNumbers::NAME, buffers.column(body, OwnNumbers::NAME));
+        }
         let mut loaded = false;
         for ColumnAccess { name, word, .. } in columns.iter().filter(|column| (column.bytes)(world, body).is_some()) {
             stage = stage.column(name, buffers.column(body, name));
@@ -61,6 +74,32 @@ pub(super) fn derived_stages<S: NodeSystem + serde::Serialize>(
         });
     }
     stages
+}
+
+/// The function that kernels call: the system's own, or one that asks first whether it has chosen a node.
+fn if_chosen(name: &str, share: NodeShare) -> (String, Option<Fragment>) {
+    if share.bit == 0 {
+        return (name.to_string(), None);
+    }
+    let (call, chosen, bit) = (format!("{name}_if_chosen"), ChosenBy::NAME, share.bit);
+    let text = format!(
+        "@group(0) @binding(0) var<storage, read> {chosen}: array<u32>;\nfn {call}(node: u32) {{\n    \
+         if ({chosen}[node] & {bit}u) != 0u {{ {name}(node); }}\n}}\n"
+    );
+    (call, Some(Fragment::new(format!("generated: nodes that {name} has chosen"), text)))
+}
+
+/// Declares what gives a system the numbers that it keeps, where it has some.
+fn own_numbers(share: NodeShare, rows: u32, body: Entity, world: &World) -> Option<Fragment> {
+    let NodeShare { first, numbers, .. } = share;
+    let all = world.get::<OwnNumbers>(body).filter(|_| numbers > 0)?.len() / (rows as usize).max(1);
+    let own = OwnNumbers::NAME;
+    let text = format!(
+        "@group(0) @binding(0) var<storage, read_write> {own}: array<f32>;\n\
+         fn own(node: u32, i: u32) -> f32 {{\n    return {own}[{all}u * node + {first}u + i];\n}}\n\
+         fn set_own(node: u32, i: u32, value: f32) {{\n    {own}[{all}u * node + {first}u + i] = value;\n}}\n"
+    );
+    Some(Fragment::new("generated: numbers of a system's own", text))
 }
 
 /// Declares a uniform `parameters` that holds what the scene gave, and gives its bytes: numbers, truth values, and

@@ -1,8 +1,10 @@
 //! What a node system is: what a system does to nodes, row by row, in passes that it shares with its neighbours in the
 //! step.
 
-use super::registry::HostSystem;
-use crate::backend::cpu::{Cpu, NodeColumns};
+use super::node_shares::{ShareOf, WantedShare, share_of, wanted_shares};
+use super::node_views::{Before, ForceSlopes, MiddleOfStep, NodesAtRest};
+use super::system::HostSystem;
+use crate::backend::cpu::{Cpu, NodeColumns, NodeShare};
 use crate::components::*;
 use crate::math::SimdScalar;
 use bevy_ecs::prelude::*;
@@ -10,7 +12,6 @@ use bevy_ecs::query::QueryData;
 use bevy_ecs::system::IntoSystem;
 use bevy_ecs::world::FilteredEntityRef;
 use bumpalo::Bump;
-use serde::{Deserialize, Serialize};
 use smallvec::SmallVec;
 use std::collections::BTreeMap;
 use std::mem::needs_drop;
@@ -30,75 +31,50 @@ pub trait NodeSystem: Component {
     const SUMS_FORCES: bool = false;
     /// Whether it uses these sums up, by moving the nodes.
     const MOVES_NODES: bool = false;
+    /// Numbers that it keeps of each node for itself: 0 at the start, there from step to step, in snapshots and on a
+    /// GPU. See [`NodeColumns::own`]; in WGSL `own(node, i)` and `set_own(node, i, value)`.
+    const OWN_NUMBERS: usize = 0;
+
+    /// Rows of the body's nodes that it is for, in any order, when the simulation is made; `None`: all of them, for
+    /// good. A program may have it act on others while it runs
+    /// ([`choose_nodes`](crate::Simulation::choose_nodes)). [`NodeColumns::chosen`] goes through them; in WGSL the
+    /// system's function is called for no others.
+    fn choose(&self, _: &NodesAtRest<'_>) -> Option<Vec<u32>> {
+        None
+    }
 
     /// Finds out what this step needs, before any node of the body moves.
     fn prepare(&self, before: &Before<'_>) -> Self::Prepared;
 
-    /// How fast the forces that it adds grow with displacements and velocities, for the stable step, where they do: the
-    /// largest of all nodes, 0 or above.
-    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
-        ForceSlopes::default()
+    /// How fast the forces that it adds grow with displacements and velocities, for the stable step: the largest of all
+    /// nodes, 0 or above. A stiff force of which the step does not know makes a run unstable, so there is no default:
+    /// what adds no forces, or such as depend on neither, says [`ForceSlopes::NONE`].
+    ///
+    /// ```compile_fail,E0046
+    /// use sinew::prelude::*;
+    /// use sinew::systems::{Before, Cpu, NodeColumns, NodeSystem, SimdScalar};
+    ///
+    /// #[derive(Component)]
+    /// struct Silent;
+    ///
+    /// impl NodeSystem for Silent {
+    ///     type Columns = &'static mut ExternalForce;
+    ///     type Prepared = ();
+    ///     fn prepare(&self, _: &Before<'_>) {}
+    ///     fn act<T: SimdScalar>(&self, _: &(), _: &Cpu, _: &mut NodeColumns<'_, T>) {}
+    ///     // error: missing `slopes`
+    /// }
+    /// ```
+    fn slopes(&self, nodes: &NodesAtRest<'_>) -> ForceSlopes;
+
+    /// The energy (J) that it holds and gives back, as a spring does, of the nodes' places in the middle of a step. It is
+    /// told with the others ([`Energies::held`]); the work of all loads is counted in any case.
+    fn energy(&self, _: &MiddleOfStep<'_>) -> Option<f64> {
+        None
     }
 
     /// Does it to some rows of the body, which no other task has.
     fn act<T: SimdScalar>(&self, prepared: &Self::Prepared, cpu: &Cpu, nodes: &mut NodeColumns<'_, T>);
-}
-
-/// A body before a pass begins, and the step that it is in.
-#[derive(Clone, Copy, Debug)]
-pub struct Before<'a> {
-    /// The clock, at the beginning of the step.
-    pub clock: &'a Clock,
-    /// Values of loads and motions in this step.
-    pub signals: &'a Signals,
-    /// Where nodes are at rest (m).
-    pub rest: &'a RestPosition,
-    /// Displacements at the beginning of the step (m).
-    pub displacement: &'a Displacement,
-}
-
-/// The nodes of a body, for what forces on them do to the stable step.
-#[derive(Clone, Copy, Debug)]
-pub struct NodesAtRest<'a> {
-    /// Where they are at rest (m).
-    pub rest: &'a RestPosition,
-    /// Their masses (kg); 0: inactive.
-    pub mass: &'a Mass,
-    /// Which axes are held, as bits.
-    pub axes: Option<&'a ConstrainedAxes>,
-    /// Inputs that programs set, where the scene has any.
-    pub signals: Option<&'a Signals>,
-    /// What the scene lasts (s).
-    pub duration: f64,
-}
-
-impl NodesAtRest<'_> {
-    /// Whether the node of a row can be pushed anywhere.
-    pub fn moves(&self, row: usize) -> bool {
-        self.mass.get(row) > 0.0 && self.axes.is_none_or(|axes| axes[row] & 7 != 7)
-    }
-}
-
-/// Norms of −∂f/∂u and −∂f/∂v of forces on nodes, over the nodes' masses.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ForceSlopes {
-    /// κ (1/s²).
-    pub stiffness: f64,
-    /// γ (1/s).
-    pub damping: f64,
-}
-
-impl ForceSlopes {
-    /// The larger of both, each by itself.
-    pub fn larger(self, other: Self) -> Self {
-        Self { stiffness: self.stiffness.max(other.stiffness), damping: self.damping.max(other.damping) }
-    }
-
-    /// Those of forces that act together.
-    pub fn and(self, other: Self) -> Self {
-        Self { stiffness: self.stiffness + other.stiffness, damping: self.damping + other.damping }
-    }
 }
 
 /// A node system bound to a step.
@@ -111,13 +87,16 @@ pub(super) trait OnRows: Sync {
 struct Bound<'a, S: NodeSystem> {
     system: &'a S,
     prepared: S::Prepared,
+    share: NodeShare,
 }
 
 impl<S: NodeSystem> OnRows for Bound<'_, S> {
     fn single(&self, cpu: &Cpu, nodes: &mut NodeColumns<'_, f32>) {
+        nodes.turn_to(self.share);
         self.system.act(&self.prepared, cpu, nodes);
     }
     fn double(&self, cpu: &Cpu, nodes: &mut NodeColumns<'_, f64>) {
+        nodes.turn_to(self.share);
         self.system.act(&self.prepared, cpu, nodes);
     }
     fn sums_forces(&self) -> bool {
@@ -180,6 +159,10 @@ pub struct NodeRows {
     bind: Bind,
     touches: fn() -> HostSystem,
     slopes: fn(Option<OfSystem>, f64, &mut World) -> ForceSlopes,
+    energy: fn(Option<OfSystem>, &mut World) -> Option<f64>,
+    wanted_shares: fn(Option<OfSystem>, f64, &mut World) -> Vec<WantedShare>,
+    give_share: fn(&mut World, Entity, NodeShare),
+    share_of: fn(&mut World, Entity) -> Option<NodeShare>,
     /// Only what is for this one of several systems calls for it.
     of: Option<OfSystem>,
     /// See [`NodeSystem::SUMS_FORCES`].
@@ -193,17 +176,28 @@ impl NodeRows {
     pub fn of<S: NodeSystem>() -> Self {
         Self {
             callers: |query| {
-                query.data::<(Option<&S>, Option<&OfBody>, Option<&OfSystem>)>();
+                query.data::<(Option<&S>, Option<&OfBody>, Option<&OfSystem>, Option<&ShareOf<S>>)>();
             },
             with_callers: |query| {
                 query.with::<S>();
             },
             bind: bind::<S>,
             touches: || {
+                type Own<'w, 's> = Query<'w, 's, &'static mut OwnNumbers>;
                 let nothing = |_: Query<S::Columns>, _: CallersOf<S>, _: Res<Clock>, _: Res<Signals>| Ok(());
-                Box::new(IntoSystem::into_system(nothing))
+                let with_own = |_: Query<S::Columns>, _: Own, _: CallersOf<S>, _: Res<Clock>, _: Res<Signals>| Ok(());
+                match S::OWN_NUMBERS {
+                    0 => Box::new(IntoSystem::into_system(nothing)),
+                    _ => Box::new(IntoSystem::into_system(with_own)),
+                }
             },
             slopes: slopes::<S>,
+            energy: energy::<S>,
+            wanted_shares: wanted_shares::<S>,
+            give_share: |world, caller, share| {
+                world.entity_mut(caller).insert(ShareOf::<S>::new(share));
+            },
+            share_of: share_of::<S>,
             of: None,
             sums_forces: S::SUMS_FORCES,
             moves_nodes: S::MOVES_NODES,
@@ -238,6 +232,26 @@ impl NodeRows {
         (self.slopes)(self.of, duration, world)
     }
 
+    /// The energy (J) that it holds, where it says so: see [`NodeSystem::energy`].
+    pub(crate) fn energy(&self, world: &mut World) -> Option<f64> {
+        (self.energy)(self.of, world)
+    }
+
+    /// What it would have of bodies for itself, in a scene that lasts so long (s).
+    pub(super) fn wanted_shares(&self, duration: f64, world: &mut World) -> Vec<WantedShare> {
+        (self.wanted_shares)(self.of, duration, world)
+    }
+
+    /// Gives it, to what calls for the system.
+    pub(super) fn give_share(&self, world: &mut World, caller: Entity, share: NodeShare) {
+        (self.give_share)(world, caller, share);
+    }
+
+    /// What it has of a body for itself, if it has something.
+    pub(crate) fn share_of(&self, body: Entity, world: &mut World) -> Option<NodeShare> {
+        (self.share_of)(world, body)
+    }
+
     /// A system that does nothing and touches what this one does: for the order in which systems may run.
     pub(crate) fn touches(&self) -> HostSystem {
         (self.touches)()
@@ -256,7 +270,9 @@ fn bind<'a, S: NodeSystem>(
         let Some(system) = caller.get::<S>() else { continue };
         let of = caller.get::<OfBody>().map_or(caller.id(), |of| of.0);
         if of == body && caller.get::<OfSystem>().copied() == of_system {
-            let bound = Bound { system, prepared: system.prepare(before) };
+            let share = caller.get::<ShareOf<S>>().map(|share| share.share).unwrap_or_default();
+            let prepared = system.prepare(&Before { bit: share.bit, ..*before });
+            let bound = Bound { system, prepared, share };
             all.push(match needs_drop::<S::Prepared>() {
                 true => BoundSystem::Own(Box::new(bound)),
                 false => BoundSystem::Lent(arena.alloc(bound)),
@@ -271,13 +287,26 @@ fn slopes<S: NodeSystem>(of_system: Option<OfSystem>, duration: f64, world: &mut
     let mut callers = world.query::<(Entity, &S, Option<&OfBody>, Option<&OfSystem>)>();
     for (entity, system, of, _) in callers.iter(world).filter(|caller| caller.3.copied() == of_system) {
         let body = of.map_or(entity, |of| of.0);
-        if let (Some(rest), Some(mass)) = (world.get::<RestPosition>(body), world.get::<Mass>(body)) {
-            let (axes, signals) = (world.get::<ConstrainedAxes>(body), world.get_resource::<Signals>());
-            let nodes = NodesAtRest { rest, mass, axes, signals, duration };
+        if let Some(nodes) = NodesAtRest::of(world, body, duration) {
             let sum = bodies.entry(body).or_default();
             // a negative norm would take from the others; what is no number is the guards' business
             *sum = sum.and(system.slopes(&nodes).larger(ForceSlopes::default()));
         }
     }
     bodies.into_values().fold(ForceSlopes::default(), ForceSlopes::larger)
+}
+
+/// Of all that calls for a system, on all bodies together.
+fn energy<S: NodeSystem>(of_system: Option<OfSystem>, world: &mut World) -> Option<f64> {
+    let mut callers = world.query::<(Entity, &S, Option<&OfBody>, Option<&OfSystem>, Option<&ShareOf<S>>)>();
+    let mut sum: Option<f64> = None;
+    for (entity, system, of, _, share) in callers.iter(world).filter(|caller| caller.3.copied() == of_system) {
+        let body = of.map_or(entity, |of| of.0);
+        let share = share.map(|share| share.share).unwrap_or_default();
+        let Some(middle) = MiddleOfStep::of(world, body, share) else { continue };
+        if let Some(energy) = system.energy(&middle) {
+            *sum.get_or_insert(0.0) += energy;
+        }
+    }
+    sum
 }

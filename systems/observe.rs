@@ -2,7 +2,7 @@
 //! [`Observer`](crate::observation::Observer). On a GPU the guards have kernels, `shaders/guard_nodes.wgsl` and
 //! `shaders/guard_elements.wgsl`, that run when they are due only.
 
-use super::registry::{OnDevice, OnHost, Phase, System};
+use super::system::{OnDevice, OnHost, Phase, System};
 use crate::backend::Buffers;
 use crate::backend::block_kernel::BlockKernels;
 use crate::backend::kernel::{Kernel, Uniform, uniform};
@@ -31,6 +31,7 @@ pub fn system() -> System {
         custom: false,
         parameters: None,
         state: None,
+        load: None,
     }
 }
 

@@ -2,9 +2,10 @@
 //! that its function gives to every node. On the CPU a program translated from the text runs over registers of nodes;
 //! on a GPU `shaders/own_load.wgsl` calls the text itself.
 
-use super::node_system::{Before, ForceSlopes, NodeRows, NodeSystem, NodesAtRest};
+use super::node_system::{NodeRows, NodeSystem};
+use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::kernel::{Fragment, Uniform, uniform};

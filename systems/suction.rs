@@ -1,9 +1,10 @@
 //! `suction`: faces in the mouth of a tool are sucked into it. `shaders/suction.wgsl` is its twin; which faces those are
 //! and by what pressure, `suction_mouth` finds.
 
-use super::node_system::{Before, NodeSystem};
+use super::node_system::NodeSystem;
+use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::pressure::{find_areas, push};
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::kernel::{Uniform, uniform};
@@ -14,7 +15,7 @@ use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
 
-/// Adds +Δp ∫ N_a n dA over the deformed faces in the mouth: a [`Pressure`] with its sign reversed, which the tool feels.
+/// Adds +Δp ∫ N_a n dA over the deformed faces in the mouth: a [`Pressure`](super::Pressure) with its sign reversed, which the tool feels.
 pub fn system() -> System {
     System::built_in_nodes::<Suction>(
         "suction",
@@ -34,6 +35,11 @@ impl NodeSystem for Suction {
     fn prepare(&self, before: &Before<'_>) -> f64 {
         find_areas(&self.active, before.rest, before.displacement);
         -self.now
+    }
+
+    /// None is counted: as of [`Pressure`](super::Pressure), of which the limit there holds for what is sucked, too.
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        ForceSlopes::NONE
     }
 
     fn act<T: SimdScalar>(&self, pressure: &f64, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {

@@ -2,8 +2,8 @@
 //! `shaders/suction_presence.wgsl`, `shaders/suction_nodes.wgsl` and `shaders/suction_pressure.wgsl`.
 
 use super::element_removal::CRITERION_STEPS;
-use super::registry::{Phase, System};
 use super::suction::parts_of;
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::block_kernel::BlockKernels;
 use crate::backend::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};

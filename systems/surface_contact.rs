@@ -10,7 +10,7 @@ mod motion;
 mod survey;
 
 use super::node_slices::BodyColumns;
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::backend::cpu::{Cpu, Foreseen};
 use crate::components::*;
 use crate::contact::{ContactSet, Lists, Near, Point, Surfaces, Tree};

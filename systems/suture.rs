@@ -1,8 +1,9 @@
 //! `suture`: forces of threads on nodes. `shaders/suture.wgsl` is its twin.
 
-use super::node_system::{Before, ForceSlopes, NodeSystem, NodesAtRest};
+use super::node_system::NodeSystem;
+use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::node_stage::{NodeStage, rows_of};

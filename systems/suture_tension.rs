@@ -3,7 +3,7 @@
 mod kernels;
 
 use super::node_slices::elements_stay;
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::components::*;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;

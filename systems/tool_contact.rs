@@ -3,9 +3,10 @@
 mod row;
 mod stage;
 
-use super::node_system::{Before, NodeSystem};
+use super::node_system::NodeSystem;
+use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, Foreseen, IntegrationCoefficients, NodeColumns};
 use crate::backend::kernel::{Uniform, uniform};
@@ -121,6 +122,11 @@ impl NodeSystem for ToolContacts {
             counts_work: before.clock.relaxation.is_none(),
             tools,
         }
+    }
+
+    /// None: it corrects the step to come and no more, so that the stable step stays (docs/contact.md).
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        ForceSlopes::NONE
     }
 
     fn act<T: SimdScalar>(&self, step: &ContactStep, _: &Cpu, nodes: &mut NodeColumns<'_, T>) {

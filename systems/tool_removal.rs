@@ -2,7 +2,7 @@
 //! `shaders/tool_removal_choice.wgsl` and `shaders/tool_removal_due.wgsl`.
 
 use super::element_removal::CRITERION_STEPS;
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::block_kernel::BlockKernels;
 use crate::backend::cpu::{Cpu, ROWS_A_TASK};

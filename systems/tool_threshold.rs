@@ -1,7 +1,7 @@
 //! `tool_threshold`: chooses the elements that tools take because of how they are deformed.
 
 use super::element_removal::{CRITERION_STEPS, measure};
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use super::tool_removal::in_reach;
 use crate::backend::cpu::{BlockLaw, Cpu};
 use crate::components::*;

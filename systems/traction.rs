@@ -1,8 +1,9 @@
 //! `traction`: dead loads on the surface. `shaders/traction.wgsl` is its twin.
 
-use super::node_system::{Before, NodeSystem};
+use super::node_system::NodeSystem;
+use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
-use super::registry::{Phase, System};
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, NodeColumns};
 use crate::backend::face_kernel::{FaceLoad, face_loads};
@@ -12,6 +13,15 @@ use crate::components::*;
 use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
+use std::sync::Arc;
+
+/// A force per rest area (Pa), a signal, on faces of the surface.
+#[derive(Component, Clone, Debug)]
+pub struct Traction {
+    /// The faces, by the nodes they load.
+    pub faces: Arc<FaceCorners>,
+    signal: usize,
+}
 
 /// Adds the force per rest area, in a direction that does not follow the surface. A face of a removed element bears
 /// none.
@@ -23,6 +33,7 @@ pub fn system() -> System {
         "`Traction(...)` under `loads`",
         |world| super::registry::count::<Traction>(world, "traction", "tractions"),
     )
+    .for_load("Traction", |on, signal| Some(Traction { faces: on.faces()?.clone(), signal }))
     .on_nodes(stages)
 }
 
@@ -34,15 +45,20 @@ impl NodeSystem for Traction {
         before.signals.values()[self.signal]
     }
 
+    /// None: it does not follow the surface.
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        ForceSlopes::NONE
+    }
+
     fn act<T: SimdScalar>(&self, traction: &[f64; 4], _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
         let (faces, first) = (&self.faces, nodes.first);
         let Some(external) = nodes.external.as_deref_mut() else { return };
-        let traction = [0, 1, 2].map(|i| T::from_f64(traction[i]));
+        let (traction, alive) = ([0, 1, 2].map(|i| T::from_f64(traction[i])), faces.alive.read());
         for i in places_within(&faces.rows, first, external.len() / 3) {
             let mut area = T::default();
             for &corner in &faces.corners[faces.starts[i] as usize..faces.starts[i + 1] as usize] {
                 let (face, corner) = (corner as usize / 4, corner as usize % 4);
-                if faces.alive[face] == 1 {
+                if alive[face] == 1 {
                     area += T::from_f64(faces.areas[face][corner]);
                 }
             }

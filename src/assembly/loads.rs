@@ -4,62 +4,64 @@ use super::{Assembly, BodyParts};
 use crate::components::*;
 use crate::mesh::{CellKind, SurfaceFace};
 use crate::scene::diagnostic::Diagnostics;
-use crate::scene::schema::{Load, Select, Share};
+use crate::scene::schema::{Load, LoadParts, On, Share};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// Spawns all loads. Those of no weight are looked at like the others, and pruned: they cost nothing.
 pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
+    let systems = crate::systems::standard();
     for (number, load) in assembly.scene.scene.loads.iter().enumerate() {
         let path = format!("loads[{number}].on");
-        match load {
-            Load::Gravity { body, .. } => {
-                if !has_weight(load) {
-                    continue;
-                }
-                let signal = world.resource_mut::<Signals>().add_load(number, load, 1.0);
-                let named = body.as_ref().and_then(|name| assembly.bodies.get(name));
-                let bodies: Vec<&BodyParts> = named.map_or(assembly.bodies.values().collect(), |body| vec![body]);
-                for body in bodies {
-                    world.spawn((Gravity { signal }, OfBody(body.entity)));
-                }
-            }
-            Load::NodalForce { body, on, share, per_copy, .. } => {
-                let Some(body) = assembly.body(body) else { continue };
-                let Some(picked) = assembly.pick(body, on, &path, diagnostics) else { continue };
-                match picked.nodes(&body.placed) {
-                    Ok(_) if !has_weight(load) => {}
-                    Ok(marks) => {
-                        let rows = body.rows_of(&marks);
-                        let factors = per_copy.map_or(Vec::new(), |ends| body.copy_factors(&rows, ends));
-                        let touched: BTreeSet<usize> = body.copies_of(&rows).into_iter().collect();
-                        let each = rows.len() as f64 / touched.len().max(1) as f64;
-                        let parts = if *share == Share::Total { each } else { 1.0 };
-                        let signal = world.resource_mut::<Signals>().add_load(number, load, parts);
-                        world.spawn((NodalForce { rows, factors, signal }, OfBody(body.entity)));
-                    }
-                    Err(problem) => {
-                        diagnostics.error_at(path.as_str(), problem.message).notes(problem.notes);
-                    }
-                }
-            }
-            Load::Pressure { body, on, .. } => {
-                let Some((body, faces)) = loaded_faces(assembly, body, on, &path, diagnostics) else { continue };
-                if !has_weight(load) {
-                    continue;
-                }
-                let signal = world.resource_mut::<Signals>().add_load(number, load, 1.0);
-                world.spawn((Pressure { faces, signal }, OfBody(body)));
-            }
-            Load::Traction { body, on, .. } => {
-                let Some((body, faces)) = loaded_faces(assembly, body, on, &path, diagnostics) else { continue };
-                if !has_weight(load) {
-                    continue;
-                }
-                let signal = world.resource_mut::<Signals>().add_load(number, load, 1.0);
-                world.spawn((Traction { faces, signal }, OfBody(body)));
-            }
+        let LoadParts { word, name, body, on, .. } = load.parts();
+        let Some((bodies, on, share)) = acted_on(assembly, body, on, &path, diagnostics) else { continue };
+        let system = systems.iter().filter_map(|system| system.load.as_ref()).find(|load| load.word == word);
+        let (true, Some(system)) = (has_weight(load), system) else { continue };
+        let signal = world.resource_mut::<Signals>().add_load(number, load, share);
+        for body in bodies {
+            let mut entity = world.spawn(OfBody(body));
+            (system.put_on)(&on, signal, &mut entity);
+            entity.insert(SceneLoad { name, signal, on: on.clone() });
+        }
+    }
+}
+
+/// The bodies that a load acts on, what of them, and among how many nodes it is shared.
+fn acted_on(
+    assembly: &Assembly<'_>,
+    name: Option<&String>,
+    on: On<'_>,
+    path: &str,
+    diagnostics: &mut Diagnostics,
+) -> Option<(Vec<Entity>, LoadedRows, f64)> {
+    let Some(select) = on.select() else {
+        let named = name.and_then(|name| assembly.bodies.get(name));
+        let bodies = named.map_or(assembly.bodies.values().collect(), |body| vec![body]);
+        return Some((bodies.into_iter().map(|body| body.entity).collect(), LoadedRows::All, 1.0));
+    };
+    let body = assembly.body(&name.cloned())?;
+    let picked = assembly.pick(body, select, path, diagnostics)?;
+    let found = match on {
+        On::Nodes(_, share, per_copy) => picked.nodes(&body.placed).map(|marks| {
+            let rows = body.rows_of(&marks);
+            let factors = per_copy.map_or(Vec::new(), |ends| body.copy_factors(&rows, ends));
+            let touched: BTreeSet<usize> = body.copies_of(&rows).into_iter().collect();
+            let each = rows.len() as f64 / touched.len().max(1) as f64;
+            let parts = if share == Share::Total { each } else { 1.0 };
+            (LoadedRows::Nodes(Arc::new(LoadedNodes { rows, factors })), parts)
+        }),
+        On::Bodies | On::Faces(_) => {
+            let faces = picked.faces(&body.placed);
+            faces.map(|places| (LoadedRows::Faces(Arc::new(face_corners(body, &places))), 1.0))
+        }
+    };
+    match found {
+        Ok((rows, share)) => Some((vec![body.entity], rows, share)),
+        Err(problem) => {
+            diagnostics.error_at(path, problem.message).notes(problem.notes);
+            None
         }
     }
 }
@@ -67,24 +69,6 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
 /// Whether a load ever pushes.
 pub(super) fn has_weight(load: &Load) -> bool {
     load.amplitude() != DVec3::ZERO
-}
-
-fn loaded_faces(
-    assembly: &Assembly<'_>,
-    body: &Option<String>,
-    on: &Select,
-    path: &str,
-    diagnostics: &mut Diagnostics,
-) -> Option<(Entity, FaceCorners)> {
-    let body = assembly.body(body)?;
-    let picked = assembly.pick(body, on, path, diagnostics)?;
-    match picked.faces(&body.placed) {
-        Ok(places) => Some((body.entity, face_corners(body, &places))),
-        Err(problem) => {
-            diagnostics.error_at(path, problem.message).notes(problem.notes);
-            None
-        }
-    }
 }
 
 /// Chosen faces of the surface, by the nodes they load.
@@ -115,7 +99,6 @@ pub(super) fn corners_of<'a>(
         corners.weights.push(weight);
         corners.elements.push(body.element_rows[face.element as usize]);
         corners.areas.push(corner_areas(&points, count == 3).map(|area| weight * area));
-        corners.alive.push(1);
     }
     by_node.sort_unstable();
     for (node, corner) in by_node {
@@ -126,6 +109,7 @@ pub(super) fn corners_of<'a>(
         corners.corners.push(corner);
     }
     corners.starts.push(corners.corners.len() as u32);
+    corners.alive.change(|marks| marks.resize(corners.faces.len(), 1));
     (corners, of_part)
 }
 

@@ -65,6 +65,12 @@ impl Clock {
         (end - there.half_step_interval(), end)
     }
 
+    /// What of the last displacement increment leads back to the middle of that step, where velocities are: before the
+    /// first step the column holds the initial velocity, and at rest there is no middle.
+    pub fn back_to_middle(&self) -> f64 {
+        if self.step > 0 && self.relaxation.is_none() { 0.5 } else { 0.0 }
+    }
+
     /// Takes steps of another length from now on (s).
     pub fn change_step(&mut self, time_step: f64) {
         // two changes before a step is taken are one

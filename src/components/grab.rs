@@ -37,6 +37,16 @@ impl Grabs {
 }
 
 impl HeldNode {
+    /// The energy (J) of its spring at a displacement (m) of a node with so much mass (kg): ½ k x², and from where it
+    /// pulls with the largest force on as much more as that does.
+    pub fn energy(&self, displacement: DVec3, mass: f64) -> f64 {
+        let stiffness = self.stiffness.min(self.stiffness_over_mass * mass);
+        let far = (self.goal - displacement).length();
+        let bent = if stiffness > 0.0 { far.min(self.most / stiffness) } else { far };
+        let beyond = far - bent;
+        0.5 * stiffness * bent * bent + if beyond > 0.0 { self.most * beyond } else { 0.0 }
+    }
+
     /// The force (N) at a displacement (m) and a velocity (m/s) of a node with so much mass (kg).
     pub fn force(&self, displacement: DVec3, velocity: DVec3, mass: f64) -> DVec3 {
         let stiffness = self.stiffness.min(self.stiffness_over_mass * mass);

@@ -1,43 +1,73 @@
-//! Loads, with the rows they act on.
+//! What loads act on. What calls for the system of each kind is in its own file in `systems`.
 
 use super::{Precision, Reals};
 use bevy_ecs::prelude::*;
-use std::sync::{PoisonError, RwLock, RwLockReadGuard};
+use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 
-/// Gravity on the body: the acceleration (m/s²) is a signal.
+/// A load of the scene on a body: beside what calls for its system, for all that asks for loads of any kind.
 #[derive(Component, Clone, Debug)]
-pub struct Gravity {
+pub struct SceneLoad {
+    /// What it is called in words.
+    pub name: &'static str,
     /// Slot in [`Signals`](super::Signals).
     pub signal: usize,
+    /// What it acts on, together with the system.
+    pub on: LoadedRows,
 }
 
-/// A force (N), a signal, on each of some nodes.
-#[derive(Component, Clone, Debug)]
-pub struct NodalForce {
+/// What a load acts on.
+#[derive(Clone, Debug)]
+pub enum LoadedRows {
+    /// All of the body.
+    All,
+    /// Some nodes.
+    Nodes(Arc<LoadedNodes>),
+    /// Faces of the surface.
+    Faces(Arc<FaceCorners>),
+}
+
+impl LoadedRows {
+    /// The nodes, if it acts on some.
+    pub fn nodes(&self) -> Option<&Arc<LoadedNodes>> {
+        if let Self::Nodes(nodes) = self { Some(nodes) } else { None }
+    }
+
+    /// The faces, if it acts on some.
+    pub fn faces(&self) -> Option<&Arc<FaceCorners>> {
+        if let Self::Faces(faces) = self { Some(faces) } else { None }
+    }
+}
+
+/// Nodes that a load acts on.
+#[derive(Clone, Debug, Default)]
+pub struct LoadedNodes {
     /// Rows of the body's node columns, ascending.
     pub rows: Vec<u32>,
-    /// What the force is multiplied with at each row; empty: 1 at all.
+    /// What the load is multiplied with at each row; empty: 1 at all.
     pub factors: Vec<f64>,
-    /// Slot in [`Signals`](super::Signals).
-    pub signal: usize,
 }
 
-/// A pressure (Pa), a signal, that follows faces of the surface and pushes inwards.
-#[derive(Component, Clone, Debug)]
-pub struct Pressure {
-    /// The faces, by the nodes they load.
-    pub faces: FaceCorners,
-    /// Slot in [`Signals`](super::Signals).
-    pub signal: usize,
+/// Which of a load's faces are there: 1 while the element behind a face is, else 0.
+#[derive(Debug, Default)]
+pub struct FaceMarks(RwLock<Vec<u32>>);
+
+impl FaceMarks {
+    /// As they are.
+    pub fn read(&self) -> RwLockReadGuard<'_, Vec<u32>> {
+        self.0.read().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Has a task change them.
+    pub fn change(&self, task: impl FnOnce(&mut Vec<u32>)) {
+        task(&mut self.0.write().unwrap_or_else(PoisonError::into_inner));
+    }
 }
 
-/// A force per rest area (Pa), a signal, on faces of the surface.
-#[derive(Component, Clone, Debug)]
-pub struct Traction {
-    /// The faces, by the nodes they load.
-    pub faces: FaceCorners,
-    /// Slot in [`Signals`](super::Signals).
-    pub signal: usize,
+/// A copy goes its own way.
+impl Clone for FaceMarks {
+    fn clone(&self) -> Self {
+        Self(RwLock::new(self.read().clone()))
+    }
 }
 
 /// Faces of the surface by the nodes that they load, so that each node sums its own faces in a fixed order.
@@ -58,10 +88,22 @@ pub struct FaceCorners {
     pub elements: Vec<(u32, u32)>,
     /// Rest area of each face that falls to each of its corners (m²), times its weight.
     pub areas: Vec<[f64; 4]>,
-    /// 1 while the face's element is there, else 0.
-    pub alive: Vec<u32>,
+    /// Which of them are there.
+    pub alive: FaceMarks,
     /// Of the present step.
     pub deformed: DeformedAreas,
+}
+
+impl FaceCorners {
+    /// Marks which faces are there, by the elements behind them: the place of a block in the body's list, and a row
+    /// there. `None` leaves a face as it is.
+    pub fn mark(&self, alive: impl Fn((u32, u32)) -> Option<u32>) {
+        self.alive.change(|marks| {
+            for (mark, &element) in marks.iter_mut().zip(&self.elements) {
+                *mark = alive(element).unwrap_or(*mark);
+            }
+        });
+    }
 }
 
 /// Area vectors of faces' corners (m²), found anew in every step: in memory that is there from step to step.

@@ -5,7 +5,7 @@
 //! | body | node columns ([`nodes`]), [`Corners`], [`ElementForce`], [`Authoring`] |
 //! | element block: one element type, one material, one body | [`Block`], [`Connectivity`], [`Patches`], [`RestShape`] and, where called for, [`FibreDirection`], [`ViscousMemory`], [`NodalVolumeChange`], [`Alive`], [`RemovalStep`] |
 //! | material | [`Density`], an [elastic law](crate::materials::ElasticLaw), [`Fibres`](crate::materials::Fibres), [`ExponentialFibres`], [`Prony`], [`Damping`], [`StiffnessDamping`]: an effect exists when its component does |
-//! | constraint, load, removal | [`Fixed`], [`Prescribed`], [`Gravity`], [`NodalForce`], [`Pressure`], [`Traction`], [`OwnLoad`], [`RemovalCriterion`] with the rows they act on |
+//! | constraint, load, removal | [`Fixed`], [`Prescribed`], [`SceneLoad`], [`OwnLoad`], [`RemovalCriterion`] with the rows they act on |
 //! | probe | [`Probe`] |
 
 mod block;
@@ -50,14 +50,15 @@ pub use grab::{Grabs, HeldNode};
 pub use grasp::{Grasp, Grasps, HOLD_NUMBERS, ToolHold};
 pub use guard::{Extreme, GuardMemory, Notice};
 pub use input::{Change, Input, InputState};
-pub use load::{FaceCorners, Gravity, NodalForce, Pressure, Traction};
+pub use load::{FaceCorners, FaceMarks, LoadedNodes, LoadedRows, SceneLoad};
 pub use material::{Damping, Density, ExponentialFibres, Prony, StiffnessDamping, memory_terms};
 pub use nodes::{
-    Authoring, ConstrainedAxes, Corners, DampingCoefficient, Displacement, DisplacementCompensation,
+    Authoring, ChosenBy, ConstrainedAxes, Corners, DampingCoefficient, Displacement, DisplacementCompensation,
     DisplacementIncrement, ElementForce, ExternalForce, FictitiousMass, FirstNonFinite, GROUP_ROWS, InternalForce,
-    InternalWork, Mass, MiddleDisplacement, NodeSums, PreviousPrescribedIncrement, RestPosition, WORK_NUMBERS, Work,
+    InternalWork, Mass, MiddleDisplacement, NodeSums, OwnNumbers, PreviousPrescribedIncrement, RestPosition,
+    WORK_NUMBERS, Work,
 };
-pub use observation::{Cadence, Energies, Observed, Probe};
+pub use observation::{Cadence, Energies, HeldEnergies, HeldEnergy, Observed, Probe};
 pub use own_load::{LoadText, NodeAtRest, OfSystem, OwnLoad};
 pub use patches::{Patches, Scheme};
 pub use signal::{Signal, Signals};

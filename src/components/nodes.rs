@@ -48,6 +48,11 @@ columns! {
     /// [`DisplacementIncrement`], in f32 whatever the run's precision: a vector a node. Exists with [`InternalWork`] where
     /// nodes are prescribed.
     PreviousPrescribedIncrement(Vec<f32>) = "previous_prescribed_increment", State, Nodes(3), increments: All, in "node_diagnostics";
+    /// Bits: which of those node systems that choose their nodes have chosen a node. Exists when there are some.
+    ChosenBy(Vec<u32>) = "chosen_by", State, Nodes(1);
+    /// Numbers that node systems keep for themselves from step to step: those of a node side by side, of one system
+    /// after the other. Exists when a system has some.
+    OwnNumbers(Reals) = "own_numbers", State, Other;
     /// Displacement in the middle of the last step (m), a vector a node: for the guards on a GPU.
     MiddleDisplacement(Reals) = "middle_displacement", Scratch, Nodes(3);
     /// What each 64 nodes come to, four words each: bits of ½ m d² (kg m²) and of the longest step's square (m²), its

@@ -2,6 +2,7 @@
 
 use crate::scene::schema::Quantity;
 use bevy_ecs::prelude::*;
+use std::sync::Arc;
 
 /// One thing to observe, on rows of a body.
 #[derive(Component, Clone, Debug)]
@@ -173,6 +174,13 @@ mod tests {
     }
 }
 
+/// What tells of each node system what energy it holds (J), where it says so.
+#[derive(Resource, Clone, Default)]
+pub struct HeldEnergies(pub Vec<HeldEnergy>);
+
+/// What tells it of one.
+pub type HeldEnergy = Arc<dyn Fn(&mut World) -> Option<f64> + Send + Sync>;
+
 /// Energies of all bodies (J).
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Energies {
@@ -183,6 +191,9 @@ pub struct Energies {
     pub strain: f64,
     /// In hourglass control, likewise.
     pub hourglass: f64,
+    /// Of the work of loads, what node systems hold and give back (springs of a hand), likewise; none where none says
+    /// so.
+    pub held: Option<f64>,
     /// Kinetic and elastic energy of removed elements, at the time of their removal.
     pub removed: f64,
     /// Done by loads since the start, when counted.

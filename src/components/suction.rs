@@ -71,7 +71,6 @@ impl BodyFaces {
             some.faces.push(all.faces[part]);
             some.weights.push(all.weights[part] * share(marks[face as usize]));
             some.elements.push(self.elements[face as usize]);
-            some.alive.push(1);
         }
         for (i, &row) in all.rows.iter().enumerate().filter(|(i, _)| marks[self.len() + i] == 1) {
             let corners = &all.corners[all.starts[i] as usize..all.starts[i + 1] as usize];
@@ -80,6 +79,7 @@ impl BodyFaces {
             some.rows.push(row);
             some.starts.push(some.corners.len() as u32);
         }
+        some.alive.change(|marks| marks.resize(some.faces.len(), 1));
         some
     }
 }

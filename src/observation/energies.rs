@@ -68,6 +68,7 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
         Mass::NAME,
         FictitiousMass::NAME,
         Work::NAME,
+        OwnNumbers::NAME,
         RestShape::NAME,
         RemovedEnergy::NAME,
         RemovedWork::NAME,
@@ -100,6 +101,11 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
             *sum.damping_loss.get_or_insert(0.0) += damped;
             *sum.constraint_work.get_or_insert(0.0) += of_constraints + moved;
             *sum.internal_work.get_or_insert(0.0) += internal;
+        }
+    }
+    for held in world.get_resource::<HeldEnergies>().cloned().unwrap_or_default().0 {
+        if let Some(energy) = held(world) {
+            *sum.held.get_or_insert(0.0) += energy;
         }
     }
     super::free_tools::add_energies(world, &mut sum);
@@ -145,9 +151,7 @@ pub(super) fn not_finite(world: &mut World) -> Result<Option<(&'static str, f64)
 /// Displacements in the middle of the last step, where velocities are: only there do the energies add up.
 fn middle_of_step(world: &World, body: Entity) -> Option<Reals> {
     let (u, step) = (world.get::<Displacement>(body)?, world.get::<DisplacementIncrement>(body)?);
-    // before the first step the column of steps holds the initial velocity; at rest there is no middle
-    let clock = world.resource::<Clock>();
-    let back = if clock.step > 0 && clock.relaxation.is_none() { 0.5 } else { 0.0 };
+    let back = world.resource::<Clock>().back_to_middle();
     let middle = |i: usize| u.get(i) - back * step.get(i);
     Some(Reals::from_f64(Precision::F64, (0..u.len()).map(middle)))
 }

@@ -26,9 +26,12 @@ use crate::observation::{GuardKernels, GuardSettings, Observer, Track, WrittenFi
 use crate::scene::SceneFile;
 use crate::scene::schema::Analysis;
 use crate::snapshot::{Keeping, identity};
-use crate::systems::{HostSystem, NodePass, OnHost, Phase, Registry, System, node_pass, patch_pass, shared_pass};
+use crate::systems::{
+    HostSystem, NodePass, NodeRows, OnHost, Phase, Registry, System, give_shares, node_pass, patch_pass, shared_pass,
+};
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemAccess;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 impl Simulation {
@@ -71,6 +74,12 @@ impl Simulation {
             hosts.push(Some(system));
         }
         add_called_for_columns(&schedule, &access, &assembly, &mut world);
+        let node_systems: Vec<(String, NodeRows)> =
+            schedule.iter().filter_map(|entry| Some((entry.system.name.clone(), entry.system.host.nodes()?))).collect();
+        let named = node_systems.iter().map(|(name, rows)| (name.as_str(), *rows));
+        give_shares(named, scene.scene.duration, options.precision, &mut world)?;
+        let held = |&(_, rows): &(String, NodeRows)| -> HeldEnergy { Arc::new(move |world| rows.energy(world)) };
+        world.insert_resource(HeldEnergies(node_systems.iter().map(held).collect()));
         let plan = Plan::of(&schedule, &access, scene.scene.fuse, &world);
         let relaxing = relaxing(scene, options.precision, &mut world);
 
@@ -132,7 +141,7 @@ impl Simulation {
             initial_mass: crate::observation::mass(&mut world)?,
             setup: started.elapsed(),
             forgets_start: options.forgets_start,
-            node_systems: schedule.iter().filter_map(|entry| entry.system.host.nodes()).collect(),
+            node_systems,
             warnings: diagnostics,
         };
         let settling = super::preload::settling(scene, options)?;

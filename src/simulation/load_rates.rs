@@ -69,7 +69,7 @@ impl Simulation {
     /// The slopes of all forces on nodes as they are now.
     pub(super) fn loads_now(&mut self) -> Result<LoadRates, Error> {
         bring_to_host(&mut self.world, |_, name| name == Mass::NAME)?;
-        let systems = self.facts.node_systems.iter().copied();
+        let systems = self.facts.node_systems.iter().map(|(_, rows)| *rows);
         Ok(LoadRates::of_rows(systems, self.scene.duration, &mut self.world))
     }
 

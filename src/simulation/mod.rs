@@ -7,6 +7,7 @@ mod block_forces;
 mod budget;
 mod build;
 mod change;
+mod choose;
 mod column_view;
 mod costly;
 mod damped_step;
@@ -167,7 +168,8 @@ struct Facts {
     initial_mass: f64,
     setup: Duration,
     forgets_start: bool,
-    /// Systems of the step that act on nodes: what their forces do to the stable step is counted anew when it changes.
-    node_systems: Vec<crate::systems::NodeRows>,
+    /// Systems of the step that act on nodes, by name: what their forces do to the stable step is counted anew when it
+    /// changes.
+    node_systems: Vec<(String, crate::systems::NodeRows)>,
     warnings: Diagnostics,
 }

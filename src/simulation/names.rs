@@ -133,6 +133,7 @@ pub const UNITS: &[(&str, &str)] = &[
     ("energies.kinetic", "J"),
     ("energies.strain", "J"),
     ("energies.hourglass", "J"),
+    ("energies.held", "J"),
     ("energies.removed", "J"),
     ("energies.load_work", "J"),
     ("energies.damping_loss", "J"),

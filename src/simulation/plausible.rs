@@ -93,7 +93,7 @@ fn unheld(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnost
     }
     let held: Vec<Entity> =
         world.query_filtered::<&OfBody, Or<(With<Fixed>, With<Prescribed>)>>().iter(world).map(|of| of.0).collect();
-    type Loads = Or<(With<Gravity>, With<NodalForce>, With<Pressure>, With<Traction>, With<OwnLoad>)>;
+    type Loads = Or<(With<SceneLoad>, With<OwnLoad>)>;
     let loaded: Vec<Entity> = world.query_filtered::<&OfBody, Loads>().iter(world).map(|of| of.0).collect();
     let moves = |name: &str| {
         let body = &assembly.scene.scene.bodies[name];

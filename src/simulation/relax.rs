@@ -7,7 +7,6 @@
 
 use super::Simulation;
 use super::residual::{Motion, Residual, State};
-use super::solver::Solver;
 use super::stretch::least_stretch;
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
@@ -124,21 +123,11 @@ impl Simulation {
     pub fn finish(&mut self) -> Result<(), Error> {
         self.advance_towards_end(u64::MAX)
     }
-
-    /// Checks the residual, and chooses how to go on.
-    pub(super) fn check_equilibrium(&mut self) -> Result<(), Error> {
-        let Solver::Relaxation(relaxing) = &mut self.solver else { return Ok(()) };
-        relaxing.check(&mut self.world)?;
-        if relaxing.equilibrium.reached {
-            self.world.resource_mut::<Observer>().last_step = self.step_count();
-            self.observe_in_time()?;
-        }
-        Ok(())
-    }
 }
 
 impl Relaxing {
-    fn check(&mut self, world: &mut World) -> Result<(), Error> {
+    /// Checks the residual, and chooses how to go on.
+    pub fn check(&mut self, world: &mut World) -> Result<(), Error> {
         let clock = *world.resource::<Clock>();
         let Some(mut relaxation) = clock.relaxation else { return Ok(()) };
         bring_to_host(world, |_, name| State::COLUMNS.contains(&name))?;

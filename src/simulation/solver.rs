@@ -1,10 +1,14 @@
 //! Solvers: what takes steps, one level above the systems. A solver keeps what it has to remember beside the columns,
 //! says how many steps may be taken together before it checks them, and does what has to be done about what it sees.
+//! What a simulation does with its solver is the same for all: see [`Simulation::steps_to`].
 
 use super::Simulation;
 use super::follow::Follower;
 use super::relax::Relaxing;
+use crate::components::Clock;
 use crate::error::Error;
+use crate::observation::Observer;
+use bevy_ecs::prelude::*;
 
 /// How the steps of a scene are taken.
 pub(super) enum Solver {
@@ -47,6 +51,28 @@ impl Solver {
         }
     }
 
+    /// The step up to which steps may be taken together from `step` on, where others have something to do before that
+    /// of `others`; that of `step` where there is only to check, `None` where nothing is left to do.
+    fn until(&self, step: u64, others: impl FnOnce() -> u64) -> Option<u64> {
+        match self {
+            Self::Explicit(_) => Some(self.next_check().min(others())),
+            Self::Relaxation(relaxing) if relaxing.equilibrium.reached => None,
+            // who asks again after it was given up is told again
+            Self::Relaxation(relaxing) => Some(relaxing.next_check().max(step)),
+        }
+    }
+
+    /// Looks at what steps have come to, where it is time; whether that was the last.
+    fn check(&mut self, world: &mut World) -> Result<bool, Error> {
+        match self {
+            Self::Relaxation(relaxing) if world.resource::<Clock>().step >= relaxing.next_check() => {
+                relaxing.check(world)?;
+                Ok(relaxing.equilibrium.reached)
+            }
+            Self::Explicit(_) | Self::Relaxation(_) => Ok(false),
+        }
+    }
+
     /// Whether no step is left after so many of those planned.
     pub fn is_done(&self, step: u64, planned: u64) -> bool {
         match self {
@@ -73,31 +99,28 @@ impl Simulation {
         self.begin_batches()
     }
 
-    /// Takes steps up to `target`, or to equilibrium.
+    /// Takes steps up to `target`, or as far as the solver goes.
     pub(super) fn steps_to(&mut self, target: u64) -> Result<(), Error> {
         while self.step_count() < target {
             self.begin_step()?;
-            match &self.solver {
-                Solver::Explicit(_) => {
-                    let check = self.solver.next_check().min(self.next_change());
-                    let next = check.min(self.next_kept().max(self.step_count() + 1));
-                    let next = next.min(self.ports.next_end()).min(self.next_tick());
-                    self.some_steps(target.min(next))?;
-                    self.end_batches()?;
-                }
-                Solver::Relaxation(relaxing) if relaxing.equilibrium.reached => return Ok(()),
-                Solver::Relaxation(relaxing) => {
-                    let next = relaxing.next_check();
-                    // who asks again after it was given up is told again
-                    if self.step_count() < next {
-                        self.some_steps(target.min(next))?;
-                    }
-                    if self.step_count() >= next {
-                        self.check_equilibrium()?;
-                    }
-                }
+            let step = self.step_count();
+            let Some(until) = self.solver.until(step, || self.next_of_others()) else { return Ok(()) };
+            if step < until {
+                self.some_steps(target.min(until))?;
+                self.end_batches()?;
+            }
+            if self.solver.check(&mut self.world)? {
+                self.world.resource_mut::<Observer>().last_step = self.step_count();
+                self.observe_in_time()?;
             }
         }
         Ok(())
+    }
+
+    /// The next step before which somebody beside the solver has something to do: who sets inputs, who keeps states, a
+    /// hand at a port, the clock on the wall.
+    fn next_of_others(&self) -> u64 {
+        let kept = self.next_kept().max(self.step_count() + 1);
+        self.next_change().min(kept).min(self.ports.next_end()).min(self.next_tick())
     }
 }

@@ -120,11 +120,11 @@ fn sets_in_use(world: &mut World) -> u64 {
     world.query::<&Prescribed>().iter(world).for_each(|c| {
         note("prescribed", c.signal, &[&c.axes.to_le_bytes(), bytes(&c.rows), bytes(&c.arms)]);
     });
-    world.query::<&NodalForce>().iter(world).for_each(|l| {
-        note("nodal force", l.signal, &[bytes(&l.rows), bytes(&l.factors)]);
+    world.query::<&SceneLoad>().iter(world).for_each(|load| match &load.on {
+        LoadedRows::All => {}
+        LoadedRows::Nodes(nodes) => note(load.name, load.signal, &[bytes(&nodes.rows), bytes(&nodes.factors)]),
+        LoadedRows::Faces(faces) => note(load.name, load.signal, &[bytes(&faces.faces)]),
     });
-    world.query::<&Pressure>().iter(world).for_each(|l| note("pressure", l.signal, &[bytes(&l.faces.faces)]));
-    world.query::<&Traction>().iter(world).for_each(|l| note("traction", l.signal, &[bytes(&l.faces.faces)]));
     world.query::<&OwnLoad>().iter(world).for_each(|l| {
         note("system", l.signal, &[bytes(l.rows.as_deref().unwrap_or_default())]);
     });

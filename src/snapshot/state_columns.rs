@@ -64,10 +64,6 @@ pub fn state_columns(world: &mut World, further: &[&'static str]) -> Vec<StateCo
 /// Faces of removed elements bear no load: the marks of faces follow from the elements'. What tools suck is in columns,
 /// too.
 pub fn update_faces(world: &mut World) {
-    let mut loads: Vec<(Entity, Entity)> = Vec::new();
-    for (load, body) in world.query_filtered::<(Entity, &OfBody), Or<(With<Pressure>, With<Traction>)>>().iter(world) {
-        loads.push((load, body.0));
-    }
     let suctions: Vec<(Entity, Entity)> =
         world.query::<(Entity, &OfBody, &Suction)>().iter(world).map(|(entity, body, _)| (entity, body.0)).collect();
     for (suction, body) in suctions {
@@ -76,22 +72,12 @@ pub fn update_faces(world: &mut World) {
             suction.renew(&marks, &pressure);
         }
     }
-    for (load, body) in loads {
-        let Some(blocks) = world.get::<Authoring>(body).map(|authoring| authoring.blocks.clone()) else { continue };
-        let alive: Vec<Option<Vec<u32>>> =
-            blocks.iter().map(|&block| world.get::<Alive>(block).map(|alive| alive.0.clone())).collect();
-        let update = |faces: &mut FaceCorners| {
-            for (mark, &(block, row)) in faces.alive.iter_mut().zip(&faces.elements) {
-                if let Some(Some(alive)) = alive.get(block as usize) {
-                    *mark = alive[row as usize];
-                }
-            }
-        };
-        if let Some(mut pressure) = world.get_mut::<Pressure>(load) {
-            update(&mut pressure.faces);
-        }
-        if let Some(mut traction) = world.get_mut::<Traction>(load) {
-            update(&mut traction.faces);
-        }
+    let mut loads = world.query::<(&SceneLoad, &OfBody)>();
+    for (load, body) in loads.iter(world) {
+        let (Some(faces), Some(authoring)) = (load.on.faces(), world.get::<Authoring>(body.0)) else { continue };
+        faces.mark(|(block, row)| {
+            let alive = world.get::<Alive>(*authoring.blocks.get(block as usize)?)?;
+            Some(alive[row as usize])
+        });
     }
 }

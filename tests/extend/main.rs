@@ -2,8 +2,10 @@
 //! file and its WGSL file, or by one of them. They run on both backends.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod bond;
 mod gent;
 mod laws;
+mod memory;
 mod plane;
 mod wind;
 
@@ -127,4 +129,32 @@ fn an_element_is_named_in_its_files_and_in_the_list() {
     let twin = "shaders/wedge6.wgsl";
     let expected = |file: &String| file == twin || own.contains(&file.as_str());
     assert!(named.iter().all(expected), "where `wedge6` is named: {named:?}");
+}
+
+/// A load is a Rust file and a WGSL file, with its lines in the step's list; its fields in scenes are a variant of `Load`.
+/// What copies parts of scenes, checks, spawns, prunes and snapshots loads, and what takes elements away from behind them,
+/// knows none by its name.
+#[test]
+fn a_load_is_named_in_its_files_in_the_list_and_where_scenes_are_read() {
+    for (kind, system) in [("Traction", "traction"), ("NodalForce", "nodal_force")] {
+        let own = format!("systems/{system}.rs");
+        let expected = ["src/scene/schema/load.rs", "systems/mod.rs", &own];
+        assert_eq!(files_with(kind, &["src", "systems", "shaders"]), expected, "where `{kind}` is named");
+        assert!(Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("shaders/{system}.wgsl")).exists());
+    }
+    let named = files_with("nodal_force", &["src", "systems", "shaders"]);
+    // what multiplies a load at some nodes says in its head whom it is for
+    let expected =
+        ["shaders/force_factor.wgsl", "shaders/nodal_force.wgsl", "systems/mod.rs", "systems/nodal_force.rs"];
+    assert_eq!(named, expected, "where `nodal_force` is named");
+}
+
+/// A law is a Rust file with its `mod` line, a WGSL file and a line in the list of laws.
+#[test]
+fn a_law_is_named_in_its_files_and_in_the_list() {
+    let own = ["src/materials/arruda_boyce.rs", "src/materials/elastic.rs"];
+    let of_type = files_with("ArrudaBoyce", &["src", "systems"]);
+    assert_eq!(of_type, own, "where `ArrudaBoyce` is named");
+    let expected = ["shaders/arruda_boyce.wgsl", own[0], own[1], "src/materials/mod.rs"];
+    assert_eq!(files_with("arruda_boyce", &["src", "systems", "shaders"]), expected, "where `arruda_boyce` is named");
 }

@@ -1,7 +1,7 @@
 //! A load: wind that blows above a height.
 
 use sinew::prelude::*;
-use sinew::systems::{Before, Cpu, NodeColumns, NodeSystem, SimdScalar};
+use sinew::systems::{Before, Cpu, ForceSlopes, NodeColumns, NodeSystem, NodesAtRest, SimdScalar};
 
 /// What the scene says under `parameters`.
 #[derive(Component, Clone, serde::Deserialize, serde::Serialize)]
@@ -24,6 +24,11 @@ impl NodeSystem for Wind {
     type Prepared = ();
 
     fn prepare(&self, _: &Before<'_>) {}
+
+    /// Where it blows harder with height.
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        ForceSlopes { stiffness: self.acceleration.length() / (2.0 * self.height), damping: 0.0 }
+    }
 
     fn act<T: SimdScalar>(&self, _: &(), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
         for row in 0..nodes.rows() {

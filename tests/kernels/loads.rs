@@ -5,6 +5,7 @@ use super::pair::{UNIT, entities, run};
 use bevy_ecs::prelude::*;
 use sinew::components::*;
 use sinew::glam::DVec3;
+use sinew::systems::NodalForce;
 
 #[test]
 fn nodes_gather_the_same_bits() {
@@ -36,7 +37,7 @@ fn loads_add_the_same_forces() {
 /// A loaded node without mass, and every third element of each block gone, also in what loads know of their faces.
 fn remove_some(world: &mut World) {
     for load in entities::<NodalForce>(world) {
-        let (row, body) = (world.get::<NodalForce>(load).unwrap().rows[1], world.get::<OfBody>(load).unwrap().0);
+        let (row, body) = (world.get::<NodalForce>(load).unwrap().on.rows[1], world.get::<OfBody>(load).unwrap().0);
         world.get_mut::<Mass>(body).unwrap().set(row as usize, 0.0);
     }
     for block in entities::<Alive>(world) {
@@ -47,15 +48,10 @@ fn remove_some(world: &mut World) {
         let block = world.get::<Authoring>(body).unwrap().blocks[place as usize];
         world.get::<Alive>(block).map_or(1, |alive| alive[row as usize])
     };
-    for load in entities::<OfBody>(world) {
+    for load in entities::<SceneLoad>(world) {
         let body = world.get::<OfBody>(load).unwrap().0;
-        if let Some(faces) = world.get::<Pressure>(load).map(|p| p.faces.elements.clone()) {
-            let alive = faces.iter().map(|&e| removed(world, body, e)).collect();
-            world.get_mut::<Pressure>(load).unwrap().faces.alive = alive;
-        }
-        if let Some(faces) = world.get::<Traction>(load).map(|t| t.faces.elements.clone()) {
-            let alive = faces.iter().map(|&e| removed(world, body, e)).collect();
-            world.get_mut::<Traction>(load).unwrap().faces.alive = alive;
+        if let Some(faces) = world.get::<SceneLoad>(load).unwrap().on.faces() {
+            faces.mark(|element| Some(removed(world, body, element)));
         }
     }
 }

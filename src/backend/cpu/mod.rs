@@ -12,7 +12,7 @@ mod volume_kernel;
 pub use element_kernel::{BlockColumns, IN_CACHE, PatchInterior, kernel_effects, run_block, run_block_fast};
 pub use guard_kernel::{BlockSums, GuardColumns, run_guard};
 pub use law::BlockLaw;
-pub use node_kernel::{Foreseen, IntegrationCoefficients, NodeColumns, Touches, move_nodes};
+pub use node_kernel::{Foreseen, IntegrationCoefficients, NodeColumns, NodeShare, OwnRows, Touches, move_nodes};
 pub use own_kernels::OwnKernels;
 pub use strain_kernel::{Kept, Strain, StrainColumns, Visit, strains};
 pub(crate) use strain_kernel::{sizes, with_identity};

@@ -3,9 +3,11 @@
 mod integration_coefficients;
 mod node_columns;
 mod one_by_one;
+mod own_rows;
 
 pub use integration_coefficients::{Foreseen, IntegrationCoefficients};
 pub use node_columns::{NodeColumns, Touches};
+pub use own_rows::{NodeShare, OwnRows};
 
 use super::Cpu;
 use crate::components::WORK_NUMBERS;

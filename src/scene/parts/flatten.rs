@@ -1,7 +1,9 @@
 //! A scene without parts: what they hold, placed, under the names that it has in the scene.
 
 use super::placement::Placement;
-use crate::scene::schema::{Attachment, Constraint, Contact, Curve, Load, Part, PartScene, Quantity, Scene, When};
+use crate::scene::schema::{
+    Attachment, Constraint, Contact, Curve, LoadPartsMut, Part, PartScene, Quantity, Scene, When,
+};
 use crate::scene::suggest::list;
 use crate::scene::syntax::Path;
 use std::collections::BTreeMap;
@@ -221,19 +223,16 @@ impl Naming<'_> {
         }
         for (number, load) in content.loads.iter_mut().enumerate() {
             let path = self.path.name("loads").index(number);
-            match load {
-                Load::Gravity { .. } => {
-                    let note = "it acts on all that the scene holds, and does not turn with a part; with `body: \"part.name\"` \
-                                on one body only";
-                    self.tell(path, "gravity belongs into the whole scene, not into a part".to_string(), note);
-                }
-                Load::NodalForce { body, curve, .. }
-                | Load::Pressure { body, curve, .. }
-                | Load::Traction { body, curve, .. } => {
-                    self.body(&path, body);
-                    self.curve(curve);
-                }
-            }
+            let LoadPartsMut { on, curve, .. } = load.parts_mut();
+            let Some((body, _)) = on else {
+                let note = "it acts on all that the scene holds, and does not turn with a part; with `body: \"part.name\"` \
+                            on one body only";
+                let message = format!("{} belongs into the whole scene, not into a part", load.parts().name);
+                self.tell(path, message, note);
+                continue;
+            };
+            self.body(&path, body);
+            self.curve(curve);
         }
         for tool in content.tools.values_mut() {
             tool.moves.iter_mut().for_each(|part| self.curve(&mut part.curve));

@@ -2,8 +2,8 @@
 
 use crate::mesh::{angles_about_axes, rotation_about_axes};
 use crate::scene::schema::{
-    Attachment, Axis, Body, Constraint, Contact, Direction, Free, Load, Material, Part, Probe, Quantity, Removal,
-    Select, Start, Suction, Tool, When,
+    Amplitude, Attachment, Axis, Body, Constraint, Contact, Direction, Free, Load, LoadPartsMut, Material, Part, Probe,
+    Quantity, Removal, Select, Start, Suction, Tool, When,
 };
 use glam::{DMat3, DQuat, DVec3};
 
@@ -185,13 +185,12 @@ impl Placement {
     }
 
     pub fn load(&self, load: &mut Load) {
-        match load {
-            Load::Gravity { acceleration: vector, .. } => self.direction(vector),
-            Load::NodalForce { on, force: vector, .. } | Load::Traction { on, traction: vector, .. } => {
-                self.select(on);
-                self.direction(vector);
-            }
-            Load::Pressure { on, .. } => self.select(on),
+        let LoadPartsMut { on, amplitude, .. } = load.parts_mut();
+        if let Some((_, on)) = on {
+            self.select(on);
+        }
+        if let Amplitude::Vector(vector) = amplitude {
+            self.direction(vector);
         }
     }
 

@@ -67,15 +67,17 @@ pub enum Load {
     },
 }
 
-/// What all loads have, whatever their kind.
+/// What the rest of the program knows of a load, whatever its kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadParts<'a> {
+    /// Its word in scenes, by which its system is found.
+    pub word: &'static str,
     /// What it is called in words.
     pub name: &'static str,
     /// The body; none: the only one, or all if it acts on all.
     pub body: Option<&'a String>,
-    /// What it acts on; none: the whole body, or all bodies where it names none.
-    pub on: Option<&'a Select>,
+    /// What it acts on.
+    pub on: On<'a>,
     /// The field with what the course multiplies, and its unit.
     pub field: (&'static str, &'static str),
     /// What the course multiplies, in that unit; of a number the first of three.
@@ -84,33 +86,105 @@ pub struct LoadParts<'a> {
     pub curve: &'a Curve,
 }
 
+/// What a load acts on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum On<'a> {
+    /// The whole body, or all bodies where it names none.
+    Bodies,
+    /// Nodes; how it is shared among them, and its factors on the first and the last of the body's copies.
+    Nodes(&'a Select, Share, Option<(f64, f64)>),
+    /// Faces of the surface.
+    Faces(&'a Select),
+}
+
+impl<'a> On<'a> {
+    /// The selection, where it is not all.
+    pub fn select(self) -> Option<&'a Select> {
+        match self {
+            Self::Bodies => None,
+            Self::Nodes(on, ..) | Self::Faces(on) => Some(on),
+        }
+    }
+}
+
+/// What of a load may be written anew: the body that it names and what it acts on, none if it acts on all bodies alike;
+/// what its course multiplies; its course.
+pub struct LoadPartsMut<'a> {
+    /// Of one body.
+    pub on: Option<(&'a mut Option<String>, &'a mut Select)>,
+    /// What its course multiplies.
+    pub amplitude: Amplitude<'a>,
+    /// Its course in time.
+    pub curve: &'a mut Curve,
+}
+
+/// What the course of a load multiplies.
+pub enum Amplitude<'a> {
+    /// A vector in space.
+    Vector(&'a mut DVec3),
+    /// A number.
+    Number(&'a mut f64),
+}
+
 impl Load {
     /// What it has in common with other kinds.
     pub fn parts(&self) -> LoadParts<'_> {
-        let parts = |name, body, on, field, amplitude, curve| LoadParts { name, body, on, field, amplitude, curve };
         match self {
-            Load::Gravity { body, acceleration, curve } => {
-                parts("gravity", body.as_ref(), None, ("acceleration", "m/s²"), *acceleration, curve)
-            }
-            Load::NodalForce { body, on, force, curve, .. } => {
-                parts("nodal force", body.as_ref(), Some(on), ("force", "N"), *force, curve)
-            }
-            Load::Pressure { body, on, pressure, curve } => {
-                parts("pressure", body.as_ref(), Some(on), ("pressure", "Pa"), DVec3::X * *pressure, curve)
-            }
-            Load::Traction { body, on, traction, curve } => {
-                parts("traction", body.as_ref(), Some(on), ("traction", "Pa"), *traction, curve)
-            }
+            Load::Gravity { body, acceleration, curve } => LoadParts {
+                word: "Gravity",
+                name: "gravity",
+                body: body.as_ref(),
+                on: On::Bodies,
+                field: ("acceleration", "m/s²"),
+                amplitude: *acceleration,
+                curve,
+            },
+            Load::NodalForce { body, on, force, share, per_copy, curve } => LoadParts {
+                word: "NodalForce",
+                name: "nodal force",
+                body: body.as_ref(),
+                on: On::Nodes(on, *share, *per_copy),
+                field: ("force", "N"),
+                amplitude: *force,
+                curve,
+            },
+            Load::Pressure { body, on, pressure, curve } => LoadParts {
+                word: "Pressure",
+                name: "pressure",
+                body: body.as_ref(),
+                on: On::Faces(on),
+                field: ("pressure", "Pa"),
+                amplitude: DVec3::X * *pressure,
+                curve,
+            },
+            Load::Traction { body, on, traction, curve } => LoadParts {
+                word: "Traction",
+                name: "traction",
+                body: body.as_ref(),
+                on: On::Faces(on),
+                field: ("traction", "Pa"),
+                amplitude: *traction,
+                curve,
+            },
         }
+    }
+
+    /// What of it may be written anew.
+    pub fn parts_mut(&mut self) -> LoadPartsMut<'_> {
+        let (on, amplitude, curve) = match self {
+            Load::Gravity { acceleration, curve, .. } => (None, Amplitude::Vector(acceleration), curve),
+            Load::NodalForce { body, on, force, curve, .. } => (Some((body, on)), Amplitude::Vector(force), curve),
+            Load::Pressure { body, on, pressure, curve } => (Some((body, on)), Amplitude::Number(pressure), curve),
+            Load::Traction { body, on, traction, curve } => (Some((body, on)), Amplitude::Vector(traction), curve),
+        };
+        LoadPartsMut { on, amplitude, curve }
     }
 
     /// Sets what the course multiplies.
     pub fn set_amplitude(&mut self, amplitude: DVec3) {
-        match self {
-            Load::Gravity { acceleration: vector, .. }
-            | Load::NodalForce { force: vector, .. }
-            | Load::Traction { traction: vector, .. } => *vector = amplitude,
-            Load::Pressure { pressure, .. } => *pressure = amplitude.x,
+        match self.parts_mut().amplitude {
+            Amplitude::Vector(vector) => *vector = amplitude,
+            Amplitude::Number(number) => *number = amplitude.x,
         }
     }
 

@@ -21,7 +21,7 @@ pub use accuracy::{Accuracy, AccuracyReference};
 pub use action::{Axis, Constraint, Curve, Removal, Threshold, When};
 pub use attachment::{Attachment, Point};
 pub use body::{Body, MeshSource, Region, SkinFile, Start};
-pub use load::{Load, LoadParts, Share};
+pub use load::{Amplitude, Load, LoadParts, LoadPartsMut, On, Share};
 pub use material::{
     Direction, ELASTIC_LAWS, ExponentialFibres, Fibres, Inversion, Material, OwnLaw, Prony, PronyTerm,
     ViscousIntegrator, comparable_laws, laws_for_large_strains,

@@ -246,7 +246,7 @@ impl Scene {
         let constraints = self.constraints.iter().map(|constraint| match constraint {
             Constraint::Fixed { on, .. } | Constraint::Prescribed { on, .. } => on,
         });
-        let loads = self.loads.iter().filter_map(|load| load.parts().on);
+        let loads = self.loads.iter().filter_map(|load| load.parts().on.select());
         let removal = self.removal.iter().map(|removal| &removal.on);
         let systems = self.systems.values().map(|system| &system.on);
         let probes = self.probes.values().filter_map(|probe| probe.on.as_ref());

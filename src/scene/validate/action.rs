@@ -1,7 +1,7 @@
 //! Constraints, loads, removal and probes: what they select and what they do.
 
 use super::{Validator, scene, select, show};
-use crate::scene::schema::{Axis, Constraint, Load, Quantity, Scene, When};
+use crate::scene::schema::{Axis, Constraint, LoadParts, On, Quantity, Scene, When};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use glam::DVec3;
@@ -23,9 +23,10 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
     }
     for (i, load) in scene_.loads.iter().enumerate() {
         let path = scene("loads").index(i);
-        if let Load::NodalForce { body, per_copy: Some(_), .. } = load {
+        let LoadParts { body, on, .. } = load.parts();
+        if let On::Nodes(_, _, Some(_)) = on {
             let bodies = &scene_.bodies;
-            let named = body.as_ref().map_or(bodies.values().next(), |name| bodies.get(name));
+            let named = body.map_or(bodies.values().next(), |name| bodies.get(name));
             if named.is_some_and(|body| body.copies < 2) {
                 validator
                     .out
@@ -33,7 +34,7 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
                     .note("give the body `copies`, or leave `per_copy` out");
             }
         }
-        if let Some(on) = load.parts().on {
+        if let Some(on) = on.select() {
             select::validate(validator, &path.name("on"), on);
         }
     }

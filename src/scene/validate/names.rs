@@ -67,7 +67,7 @@ fn bodies(scene_: &Scene, validator: &mut Validator) {
     for (i, load) in scene_.loads.iter().enumerate() {
         let LoadParts { body, on, .. } = load.parts();
         // what acts on whole bodies is for all of them, where it names none
-        if on.is_some() || body.is_some() {
+        if on.select().is_some() || body.is_some() {
             body_named(scene_, validator, &scene("loads").index(i), body);
         }
     }

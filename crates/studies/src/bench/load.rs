@@ -6,7 +6,7 @@ use sinew::backend::cpu::{Cpu, NodeColumns};
 use sinew::components::{ExternalForce, Mass};
 use sinew::glam::DVec3;
 use sinew::math::SimdScalar;
-use sinew::systems::{Before, NodeSystem, Phase, Registry, System};
+use sinew::systems::{Before, ForceSlopes, NodeSystem, NodesAtRest, Phase, Registry, System};
 
 /// What pulls at the cube.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
@@ -81,6 +81,10 @@ impl NodeSystem for Weight {
     type Prepared = ();
 
     fn prepare(&self, _: &Before<'_>) {}
+
+    fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
+        ForceSlopes::NONE
+    }
 
     fn act<T: SimdScalar>(&self, (): &(), _: &Cpu, nodes: &mut NodeColumns<'_, T>) {
         for row in 0..nodes.rows() {

@@ -1,6 +1,7 @@
 //! What moves nodes, and how it is shared out among tasks.
 
 use super::integration_coefficients::{Foreseen, IntegrationCoefficients};
+use super::own_rows::OwnRows;
 use crate::components::{GROUP_ROWS, WORK_NUMBERS};
 use crate::math::{Scalar, SimdScalar};
 use glam::DVec3;
@@ -45,6 +46,8 @@ pub struct NodeColumns<'a, T> {
     pub touches: Option<Touches<'a, T>>,
     /// What tools do to those that they may hold; none where none may.
     pub holds: Option<Touches<'a, T>>,
+    /// What systems have for themselves.
+    pub own: OwnRows<'a, T>,
 }
 
 /// What tools do to some nodes.
@@ -98,6 +101,7 @@ impl<T: SimdScalar> NodeColumns<'_, T> {
                 previous_prescribed: &mut *self.previous_prescribed,
                 touches: self.touches.as_mut().map(Touches::again),
                 holds: self.holds.as_mut().map(Touches::again),
+                own: self.own.again(),
             })
         })
     }
@@ -161,6 +165,7 @@ impl<'a, T> NodeColumns<'a, T> {
             previous_prescribed: first_mut(&mut self.previous_prescribed, 3 * rows),
             touches: self.touches.as_mut().map(|all| all.take(until)),
             holds: self.holds.as_mut().map(|all| all.take(until)),
+            own: self.own.take(rows),
         };
         self.first += rows;
         taken
@@ -207,13 +212,13 @@ impl<'a, T> Iterator for Tasks<'a, T> {
 }
 
 /// Takes the first so many away, if there are any.
-fn first<'a, X>(all: &mut &'a [X], count: usize) -> &'a [X] {
+pub(super) fn first<'a, X>(all: &mut &'a [X], count: usize) -> &'a [X] {
     let (taken, others) = all.split_at(count.min(all.len()));
     *all = others;
     taken
 }
 
-fn first_mut<'a, X>(all: &mut &'a mut [X], count: usize) -> &'a mut [X] {
+pub(super) fn first_mut<'a, X>(all: &mut &'a mut [X], count: usize) -> &'a mut [X] {
     let count = count.min(all.len());
     let (taken, others) = std::mem::take(all).split_at_mut(count);
     *all = others;
@@ -254,6 +259,7 @@ mod tests {
                 previous_prescribed: &mut [],
                 touches: None,
                 holds: None,
+                own: OwnRows::default(),
             };
             let mut places = 0;
             for cut in cuts {

@@ -1,0 +1,368 @@
+//! What a system is.
+
+use super::node_pass::{NodePass, node_pass};
+use super::node_stages::derived_stages;
+use super::node_system::{NodeRows, NodeSystem};
+use crate::backend::Buffers;
+use crate::backend::kernel::Fragment;
+use crate::backend::kernel::Kernel;
+use crate::backend::node_stage::{DescribeStages, NodeStage, node_kernels};
+use crate::components::{Body, LoadedRows, OfBody};
+use crate::error::{Error, missing};
+use crate::snapshot::StateAccess;
+use bevy_ecs::prelude::*;
+use bevy_ecs::system::IntoSystem;
+use std::sync::Arc;
+
+/// Where in the step a system has its place. A schedule may leave phases out but not turn them round.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Phase {
+    /// Says where constrained nodes go in this step.
+    Boundary,
+    /// Takes means around nodes that element forces need.
+    NodalMeans,
+    /// Fills in the forces of elements.
+    ElementForces,
+    /// Sums them at the nodes, and clears the loads of the last step.
+    Gather,
+    /// Adds to the external forces.
+    Loads,
+    /// Adds forces that depend on where the others would move nodes.
+    Contact,
+    /// Moves the nodes; after it the clock shows the end of the step.
+    Integrate,
+    /// Takes elements away.
+    Removal,
+    /// Reads.
+    Observe,
+}
+
+/// A system on the host: what the CPU backend runs, and what custom systems are on both backends.
+pub type HostSystem = Box<dyn bevy_ecs::system::System<In = (), Out = Result<(), Error>>>;
+
+/// What a system is on the host.
+pub enum OnHost {
+    /// A system by itself.
+    System(Box<dyn Fn() -> HostSystem + Send + Sync>),
+    /// Something to each node, in passes that it may share with its neighbours in the step.
+    Nodes(NodeRows),
+    /// A system by itself that finds the forces of elements patch by patch: nodes inside a patch may move with it.
+    Elements(Box<dyn Fn() -> HostSystem + Send + Sync>),
+}
+
+impl OnHost {
+    /// The system, by itself in a pass if it is one of nodes.
+    pub fn alone(&self, world: &mut World) -> HostSystem {
+        match self {
+            OnHost::System(make) | OnHost::Elements(make) => make(),
+            OnHost::Nodes(rows) => node_pass(NodePass::new(vec![*rows]), world),
+        }
+    }
+
+    /// What it does to each node, if that is what it does.
+    pub fn nodes(&self) -> Option<NodeRows> {
+        match self {
+            OnHost::Nodes(rows) => Some(*rows),
+            OnHost::System(_) | OnHost::Elements(_) => None,
+        }
+    }
+}
+
+/// Does what must be done before steps are submitted; gives how many there may be at most, one or more.
+pub(crate) type BeforeSteps = fn(&mut World) -> Result<u64, Error>;
+
+/// Describes the kernels of a system for a world, bound to buffers.
+pub type DescribeKernels = fn(&mut World, &mut dyn Buffers) -> Vec<Kernel>;
+
+/// What a system does on a GPU.
+#[derive(Clone)]
+pub enum OnDevice {
+    /// Nothing: it runs on the host.
+    None,
+    /// Kernels of its own.
+    Kernels(DescribeKernels),
+    /// Something to each node, in kernels that it may share with its neighbours in the step.
+    Stages(DescribeStages),
+}
+
+impl OnDevice {
+    /// Whether there is anything.
+    pub fn is_some(&self) -> bool {
+        !matches!(self, OnDevice::None)
+    }
+
+    /// The kernels of one system by itself.
+    pub fn kernels(&self, world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+        match self {
+            OnDevice::None => Vec::new(),
+            OnDevice::Kernels(kernels) => kernels(world, buffers),
+            OnDevice::Stages(stages) => node_kernels(stages(world, buffers), false, buffers),
+        }
+    }
+}
+
+/// One system of the step.
+pub struct System {
+    /// Its name in scenes, reports and (with `.rs` and `.wgsl`) its files.
+    pub name: String,
+    /// Its place in the step.
+    pub phase: Phase,
+    /// What it does, in a few words.
+    pub does: String,
+    /// What in a scene calls for it.
+    pub called_for_by: &'static str,
+    /// Why the world needs it; `None` when it does not. A schedule that a scene writes out must hold all that are
+    /// needed.
+    pub because: Because,
+    /// What runs on the host.
+    pub host: OnHost,
+    /// Describes the kernels that do the same on a GPU.
+    pub device: OnDevice,
+    /// Whether it fetches what it reads from the device by itself, and says when it next has to run.
+    pub(crate) observes: bool,
+    /// Steps between two runs (host systems only).
+    pub every: u64,
+    /// Whether, in a world, a GPU has it.
+    pub(crate) device_when: fn(&World) -> bool,
+    /// What must be done on the host before steps are submitted to a GPU, and how many there may be at most.
+    pub(crate) before_steps: Option<BeforeSteps>,
+    /// Whether, in a world, it concerns only nodes that are inside no patch.
+    pub(crate) shared_only: fn(&World) -> bool,
+    /// Whether it is not one of the engine's own.
+    pub(crate) custom: bool,
+    /// Reads its parameters and inserts them as a resource.
+    pub(crate) parameters: Option<ReadParameters>,
+    /// How its state gets into snapshots and back.
+    pub(crate) state: Option<StateAccess>,
+    /// The load of scenes that it is for.
+    pub(crate) load: Option<LoadOfScenes>,
+}
+
+/// A word of loads in scenes, and what puts on an entity, with what the load acts on and its signal, what calls for the
+/// system.
+#[derive(Clone)]
+pub(crate) struct LoadOfScenes {
+    pub word: &'static str,
+    pub put_on: PutLoad,
+}
+
+type PutLoad = Arc<dyn Fn(&LoadedRows, usize, &mut EntityWorldMut<'_>) + Send + Sync>;
+
+/// Why a world needs a system; `None` when it does not.
+pub type Because = Arc<dyn Fn(&mut World) -> Option<String> + Send + Sync>;
+
+/// Turns what a scene gives as a system's parameters into a resource; else says why it cannot.
+type ReadParameters = fn(ron::Value, &mut World) -> Result<(), String>;
+
+/// What a system of one's own may return.
+pub trait Outcome: 'static {
+    /// How it ended.
+    ///
+    /// # Errors
+    /// What ends the run.
+    fn outcome(self) -> Result<(), Error>;
+}
+
+impl Outcome for () {
+    fn outcome(self) -> Result<(), Error> {
+        Ok(())
+    }
+}
+
+impl Outcome for Result<(), Error> {
+    fn outcome(self) -> Result<(), Error> {
+        self
+    }
+}
+
+impl System {
+    /// A system of one's own, run on the host on both backends, once a step. `system` is any bevy system function: its
+    /// queries say which columns it reads (they are brought to the host before it runs) and which it writes (they go
+    /// back to the device after). It runs only when a scene's schedule names it.
+    ///
+    /// It returns nothing or a `Result<(), Error>`, whose error ends the run. `system` is called through a function
+    /// without captures, so that each simulation gets its own copy.
+    pub fn custom<M, O: Outcome>(
+        name: impl Into<String>,
+        phase: Phase,
+        does: impl Into<String>,
+        system: impl IntoSystem<(), O, M> + Clone + Send + Sync + 'static,
+    ) -> Self {
+        let host = move || -> HostSystem { Box::new(IntoSystem::into_system(system.clone().map(O::outcome))) };
+        Self::new(name, phase, does, OnHost::System(Box::new(host)))
+    }
+
+    fn new(name: impl Into<String>, phase: Phase, does: impl Into<String>, host: OnHost) -> Self {
+        Self {
+            name: name.into(),
+            phase,
+            does: does.into(),
+            called_for_by: "its name in the scene's `schedule`",
+            because: Arc::new(|_| None),
+            host,
+            device: OnDevice::None,
+            observes: false,
+            every: 1,
+            device_when: |_| true,
+            before_steps: None,
+            shared_only: |_| false,
+            custom: true,
+            parameters: None,
+            state: None,
+            load: None,
+        }
+    }
+
+    /// A custom system that takes parameters from the scene: what stands under its name in `parameters` is read as a
+    /// `P`, which the system finds as `Res<P>`. What does not fit is an error when the scene is loaded.
+    ///
+    /// Numbers, texts, truth values, lists and structs can be read; a field that may be left out needs
+    /// `#[serde(default)]`. The name `every` is taken: it is the time between two runs (s).
+    pub fn with_parameters<P: Resource + serde::de::DeserializeOwned>(mut self) -> Self {
+        self.parameters = Some(|value, world| {
+            let parameters: P = value.into_rust().map_err(|error| error.to_string())?;
+            world.insert_resource(parameters);
+            Ok(())
+        });
+        self
+    }
+
+    /// A custom system whose resource `S` belongs to the state of a simulation: snapshots hold it, and what goes on
+    /// from one has it back. `S` is anything that RON can hold, infinite numbers too; it is put into the world by the
+    /// system's parameters or by [`Simulation::world_mut`](crate::Simulation::world_mut). A system's `Local`s are not
+    /// kept.
+    pub fn with_state<S: Resource + serde::Serialize + serde::de::DeserializeOwned>(mut self) -> Self {
+        self.state = Some(StateAccess {
+            keep: |world| {
+                let state = world.get_resource::<S>().ok_or("it is not in the world")?;
+                ron::to_string(state).map_err(|error| error.to_string())
+            },
+            take_back: |kept, world| {
+                let state: S = ron::from_str(kept).map_err(|error| error.to_string())?;
+                world.insert_resource(state);
+                Ok(())
+            },
+        });
+        self
+    }
+
+    /// Runs a custom system in every `steps`-th step only: on the GPU the columns travel that much less often. `every`
+    /// in the scene's parameters goes before it. Loads last for one step: a system that adds forces in every tenth step
+    /// pushes in every tenth step.
+    pub fn every(mut self, steps: u64) -> Self {
+        self.every = steps.max(1);
+        self
+    }
+
+    /// A system of one's own that works node by node, each entity with an `S` on its body: see [`NodeSystem`]. It
+    /// shares passes with its neighbours in the step. It runs only when a scene's schedule names it.
+    pub fn of_nodes<S: NodeSystem>(name: impl Into<String>, phase: Phase, does: impl Into<String>) -> Self {
+        Self::new(name, phase, does, OnHost::Nodes(NodeRows::of::<S>()))
+    }
+
+    /// With its twin on a GPU, a WGSL text that holds `fn NAME(node: u32)` of the system's name, and `path` under which
+    /// errors name it. Without it the system runs on the host.
+    ///
+    /// The text sees its own node's rows only. It finds each of its [columns](NodeSystem::Columns) under its name, as
+    /// `array<f32>` (or `array<u32>`), three numbers a vector, and `rest_position` likewise; what the scene gave in a
+    /// uniform `parameters`; `step.time` and `step.time_step` (s). In place of columns of forces there are functions:
+    /// `internal_force_of(node)`, `external_force_of(node)` and `add_load(node, force)`. Where it keeps
+    /// [numbers](NodeSystem::OWN_NUMBERS), there are `own(node, i)` and `set_own(node, i, value)`; where it
+    /// [chooses](NodeSystem::choose) nodes, it is called for these.
+    pub fn with_shader<S: NodeSystem + serde::Serialize>(mut self, path: &'static str, text: &'static str) -> Self {
+        let name = self.name.clone();
+        self.device = OnDevice::Stages(Arc::new(move |world, buffers| {
+            derived_stages::<S>(&name, &Fragment::new(path, text), world, buffers)
+        }));
+        self
+    }
+
+    /// A system of nodes that takes parameters from the scene: what stands under its name in `parameters` is read as an
+    /// `S` for each body. What does not fit is an error when the scene is loaded.
+    pub fn on_each_body<S: NodeSystem + Clone + serde::de::DeserializeOwned>(mut self) -> Self {
+        self.parameters = Some(|value, world| {
+            let system: S = value.into_rust().map_err(|error| error.to_string())?;
+            let bodies: Vec<Entity> = world.query_filtered::<Entity, With<Body>>().iter(world).collect();
+            world.spawn_batch(bodies.into_iter().map(|body| (system.clone(), OfBody(body))).collect::<Vec<_>>());
+            Ok(())
+        });
+        self
+    }
+
+    /// A built-in system of nodes.
+    pub(crate) fn built_in_nodes<S: NodeSystem>(
+        name: &str,
+        phase: Phase,
+        does: &str,
+        called_for_by: &'static str,
+        because: fn(&mut World) -> Option<String>,
+    ) -> Self {
+        Self { called_for_by, because: Arc::new(because), custom: false, ..Self::of_nodes::<S>(name, phase, does) }
+    }
+
+    /// A system of nodes that a scene has of its own, and what it is.
+    pub(crate) fn of_scene(
+        name: &str,
+        phase: Phase,
+        rows: NodeRows,
+        does: &str,
+        called_for_by: &'static str,
+        what: String,
+    ) -> Self {
+        let because: Because = Arc::new(move |_| Some(what.clone()));
+        Self { called_for_by, because, custom: false, ..Self::new(name, phase, does, OnHost::Nodes(rows)) }
+    }
+
+    /// A built-in system.
+    pub(crate) fn built_in<M, O: Outcome>(
+        name: &str,
+        phase: Phase,
+        does: &str,
+        called_for_by: &'static str,
+        because: fn(&mut World) -> Option<String>,
+        system: impl IntoSystem<(), O, M> + Clone + Send + Sync + 'static,
+    ) -> Self {
+        Self { called_for_by, because: Arc::new(because), custom: false, ..Self::custom(name, phase, does, system) }
+    }
+
+    /// That finds the forces of elements, patch by patch.
+    pub(crate) fn of_elements(self) -> Self {
+        let host = match self.host {
+            OnHost::System(make) => OnHost::Elements(make),
+            host => host,
+        };
+        Self { host, ..self }
+    }
+
+    /// With its kernels.
+    pub(crate) fn on_device(mut self, kernels: DescribeKernels) -> Self {
+        self.device = OnDevice::Kernels(kernels);
+        self
+    }
+
+    /// It is for loads of a word in scenes, which become what calls for it; `None` where they act on something else.
+    pub(crate) fn for_load<S: NodeSystem>(
+        mut self,
+        word: &'static str,
+        load: fn(&LoadedRows, usize) -> Option<S>,
+    ) -> Self
+    where
+        S: Bundle,
+    {
+        let put_on: PutLoad = Arc::new(move |on, signal, entity| match load(on, signal) {
+            Some(load) => drop(entity.insert(load)),
+            None => missing("what a load acts on"),
+        });
+        self.load = Some(LoadOfScenes { word, put_on });
+        self
+    }
+
+    /// With what it does to nodes, in kernels that neighbours may share.
+    pub(crate) fn on_nodes(
+        mut self,
+        stages: impl Fn(&mut World, &mut dyn Buffers) -> Vec<NodeStage> + Send + Sync + 'static,
+    ) -> Self {
+        self.device = OnDevice::Stages(Arc::new(stages));
+        self
+    }
+}
