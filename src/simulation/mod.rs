@@ -8,6 +8,7 @@ mod budget;
 mod build;
 mod change;
 mod column_view;
+mod contact_springs;
 mod costly;
 mod damped_step;
 pub mod explain;
