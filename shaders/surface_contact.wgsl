@@ -7,7 +7,7 @@
 @group(0) @binding(0) var<storage, read_write> surface_touch: array<f32>;
 
 fn meeting(point: u32, triangle: u32) -> u32 {
-    return surface.meetings + 4u * (point * surface.bodies + surface_faces[8u * triangle + 6u]);
+    return surface.meetings + MEETING_WORDS * (point * surface.bodies + surface_faces[8u * triangle + 6u]);
 }
 
 fn thickness_of(point: u32, triangle: u32) -> f32 {
@@ -108,8 +108,14 @@ fn write_numbers(at: u32, v: vec3<f32>) {
     surface_contacts[at + 2u] = bits.z;
 }
 
-// Notes a contact where the point would end inside.
-fn note(contact: u32, node: u32, facing: Facing, gap: f32, outside_by: f32, friction: f32, slip: vec3<f32>) {
+fn last_step_of(node: u32) -> vec3<f32> {
+    let at = NODE_NUMBERS * node + 6u;
+    return vec3<f32>(surface_nodes[at], surface_nodes[at + 1u], surface_nodes[at + 2u]);
+}
+
+// Notes a contact where the point would end inside; where a spring keeps it out, where it is.
+fn note(contact: u32, node: u32, of_body: u32, facing: Facing, kinematic_gap: f32, outside_by: f32, allowed: f32,
+    friction: f32, slip: vec3<f32>) {
     let at = CONTACT_WORDS * contact;
     surface_contacts[at + ACTIVE] = 0u;
     if !facing.there {
@@ -118,7 +124,22 @@ fn note(contact: u32, node: u32, facing: Facing, gap: f32, outside_by: f32, fric
     let corners = 8u * facing.triangle;
     let relative = step_of(node) - facing.weights.x * step_of(surface_faces[corners])
         - facing.weights.y * step_of(surface_faces[corners + 1u]) - facing.weights.z * step_of(surface_faces[corners + 2u]);
-    if !(gap + dot(facing.normal, relative) < 0.0) {
+    let meets = meeting(of_body, facing.triangle);
+    let share = bitcast<f32>(surface_faces[meets + 4u]);
+    var gap = kinematic_gap;
+    var acts = BY_STEP;
+    if share > 0.0 {
+        let came = last_step_of(node) - facing.weights.x * last_step_of(surface_faces[corners])
+            - facing.weights.y * last_step_of(surface_faces[corners + 1u])
+            - facing.weights.z * last_step_of(surface_faces[corners + 2u]);
+        let damping = bitcast<f32>(surface_faces[meets + 5u]);
+        let inside = outside_by - allowed;
+        if !(inside < 0.0) {
+            return;
+        }
+        gap = min(share * inside + 2.0 * damping * sqrt(share) * dot(facing.normal, came), 0.0);
+        acts = BY_SPRING;
+    } else if !(gap + dot(facing.normal, relative) < 0.0) {
         return;
     }
     surface_contacts[at + TRIANGLE] = facing.triangle;
@@ -131,7 +152,7 @@ fn note(contact: u32, node: u32, facing: Facing, gap: f32, outside_by: f32, fric
     write_numbers(at + RUBBING, vec3<f32>(0.0));
     surface_contacts[at + SLIDING] = 0u;
     surface_contacts[at + OUTSIDE] = bitcast<u32>(outside_by);
-    surface_contacts[at + ACTIVE] = 1u;
+    surface_contacts[at + ACTIVE] = acts;
 }
 
 @compute @workgroup_size(64)
@@ -190,8 +211,9 @@ fn surface_contact(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_wo
         second_gap = both.second.gap - thickness_of(of_body, both.second.triangle);
     }
     let gap = max(outside_by - allowed, -OUT * surface.edge);
-    note(2u * node, node, both.first, gap, outside_by, friction.x, slip);
-    note(2u * node + 1u, node, both.second, max(second_gap, -settling), second_gap, friction.y, vec3<f32>(0.0));
+    note(2u * node, node, of_body, both.first, gap, outside_by, allowed, friction.x, slip);
+    note(2u * node + 1u, node, of_body, both.second, max(second_gap, -settling), second_gap, 0.0, friction.y,
+        vec3<f32>(0.0));
     for (var k = 0u; k < 3u; k++) {
         surface_touch[at + k] = 0.0;
     }

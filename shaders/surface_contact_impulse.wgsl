@@ -40,9 +40,11 @@ fn surface_contact_impulse(@builtin(global_invocation_id) id: vec3<u32>, @builti
         relative += weight * at_node(node, 3u);
     }
     let before = number(contact, PRESSING);
+    let springs = surface_contacts[CONTACT_WORDS * contact + ACTIVE] == BY_SPRING;
     var pressing = 0.0;
     if yields > 0.0 {
-        pressing = max(before - (number(contact, GAP) + dot(normal, relative)) / yields, 0.0);
+        let gap = number(contact, GAP) + select(dot(normal, relative), 0.0, springs);
+        pressing = max(select(before, 0.0, springs) - gap / yields, 0.0);
     }
     set_number(contact, YIELDS, yields);
     set_number(contact, YIELDS_ALONG, along);

@@ -24,7 +24,7 @@ fn set_vector(contact: u32, word: u32, value: vec3<f32>) {
 }
 
 fn is_active(contact: u32) -> bool {
-    return surface_contacts[CONTACT_WORDS * contact + ACTIVE] == 1u;
+    return surface_contacts[CONTACT_WORDS * contact + ACTIVE] != 0u;
 }
 
 // The weight of a node as a corner of a contact's triangle.

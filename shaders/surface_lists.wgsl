@@ -42,6 +42,9 @@ const YIELDS_ALONG: u32 = 18u;
 const CHANGE: u32 = 19u;
 const OUTSIDE: u32 = 22u;
 const ACTIVE: u32 = 23u;
+const BY_STEP: u32 = 1u; // what a contact acts by: the step that is predicted, or a spring
+const BY_SPRING: u32 = 2u;
+const MEETING_WORDS: u32 = 6u; // of two bodies: whether they meet, friction that sticks and slides, thickness, share and damping of a spring
 const NONE: u32 = 0xffffffffu;
 
 fn largest_step() -> f32 {

@@ -29,7 +29,17 @@ struct Touch {
     slides: bool, // whether friction does not hold it
 }
 
-fn predict(tool: u32, place: vec3<f32>, predicted: vec3<f32>, sticks: bool) -> Touch {
+// The gap (m) that the kinematic law would have to close for the force of a tool's spring, outside by so much (m), going
+// outwards by so much in a step (m).
+fn spring_gap(tool: u32, outside: f32, outwards: f32) -> f32 {
+    if outside >= 0.0 {
+        return 0.0;
+    }
+    let share = tools[tool].share;
+    return min(share * outside + 2.0 * tools[tool].damping * sqrt(share) * outwards, 0.0);
+}
+
+fn predict(tool: u32, place: vec3<f32>, before: vec3<f32>, predicted: vec3<f32>, sticks: bool) -> Touch {
     let at = tools[tool].signal;
     let pose = array<vec4<f32>, 3>(step.signals[at], step.signals[at + 1u], step.signals[at + 2u]);
     let change = array<vec4<f32>, 3>(step.signals[at + 3u], step.signals[at + 4u], step.signals[at + 5u]);
@@ -56,6 +66,16 @@ fn predict(tool: u32, place: vec3<f32>, predicted: vec3<f32>, sticks: bool) -> T
     touch.push = 0.0;
     touch.slides = true;
     touch.touches = surface.w <= limits.edge;
+    if touch.touches && tools[tool].share > 0.0 {
+        let earlier = array<vec4<f32>, 3>(pose[0] - change[0], pose[1] - change[1], pose[2] - change[2]);
+        let here = into_frame(earlier, place);
+        let now = distance_to(tools[tool], here);
+        let at_here = vec4<f32>(here, 1.0);
+        touch.normal = vec3<f32>(dot(earlier[0].xyz, now.xyz), dot(earlier[1].xyz, now.xyz), dot(earlier[2].xyz, now.xyz));
+        touch.tool_step = vec3<f32>(dot(change[0], at_here), dot(change[1], at_here), dot(change[2], at_here));
+        touch.gap = spring_gap(tool, now.w, dot(touch.normal, before - touch.tool_step));
+        touch.touches = touch.gap < 0.0;
+    }
     return touch;
 }
 
@@ -99,7 +119,7 @@ fn tool_contact(i: u32, node: u32) {
         }
         found[tool].touches = false;
         if is_active && ((bits >> tool) & 1u) == 1u {
-            found[tool] = predict(tool, place, predicted, stuck);
+            found[tool] = predict(tool, place, of_node.before, predicted, stuck);
             if found[tool].touches {
                 touched++;
             }
@@ -115,12 +135,13 @@ fn tool_contact(i: u32, node: u32) {
             if !found[tool].touches {
                 continue;
             }
-            if turn > 0u {
+            let waits = turn > 0u && tools[tool].share > 0.0;
+            if turn > 0u && !waits {
                 found[tool] = evaluate_again(tool, place + predicted + sum, found[tool]);
             }
             let normal = found[tool].normal;
             let along = dot(normal, free * normal);
-            if along > 1e-9 {
+            if along > 1e-9 && !waits {
                 let push = max(found[tool].push - found[tool].gap / along, 0.0);
                 let outwards = normal * (push - found[tool].push);
                 sum += free * outwards;

@@ -17,6 +17,10 @@ struct ToolRow {
     ny: u32,
     nz: u32,
     first: u32,
+    share: f32, // of a spring in place of the kinematic law; 0: there is none
+    damping: f32,
+    room_0: u32,
+    room_1: u32,
 }
 
 const TOOL_GRID: u32 = 0xffffffffu;

@@ -74,6 +74,8 @@ pub struct Meeting {
     pub faces: bool,
     /// Whether edges that cross meet, too.
     pub edges: bool,
+    /// The spring that keeps them out, in place of the kinematic law.
+    pub spring: Option<ContactSpring>,
 }
 
 /// Which bodies may meet, and what is known of their surfaces. Nothing in it is carried on from step to step but what

@@ -76,7 +76,7 @@ struct ToolInStep {
 }
 
 /// A tool at a node.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct Touch {
     tool: usize,
     /// Outward normal where the node ends, and how far from where it may be it ends there (m).
@@ -94,6 +94,8 @@ struct Touch {
     tangential: DVec3,
     /// Whether friction does not hold it.
     slides: bool,
+    /// Whether a spring pushes: by where the node is, and not by where it would end.
+    springs: bool,
 }
 
 impl NodeSystem for ToolContacts {
@@ -180,7 +182,7 @@ impl ToolContacts {
         let mut all = [None; ToolContacts::MOST];
         let mut touched = 0;
         for tool in (0..self.tools.len()).filter(near) {
-            if let Some(touch) = self.predict(step, tool, place, predicted, stuck[tool]) {
+            if let Some(touch) = self.predict(step, tool, (place, before, predicted), stuck[tool]) {
                 all[touched] = Some(touch);
                 touched += 1;
             }
@@ -216,9 +218,15 @@ impl ToolContacts {
         }
     }
 
-    /// What a tool does to a node that is at a place (m, from the reference) and goes on by a step (m); `None` where it
-    /// ends an edge or more from the tool.
-    fn predict(&self, step: &ContactStep, tool: usize, place: DVec3, predicted: DVec3, stuck: bool) -> Option<Touch> {
+    /// What a tool does to a node that is at a place (m, from the reference), came there by a step (m) and goes on by
+    /// another; `None` where it ends an edge or more from the tool.
+    fn predict(
+        &self,
+        step: &ContactStep,
+        tool: usize,
+        (place, before, predicted): (DVec3, DVec3, DVec3),
+        stuck: bool,
+    ) -> Option<Touch> {
         let contact = &self.tools[tool];
         let ToolInStep { pose, earlier, change, .. } = &step.tools[tool];
         let end = place + predicted;
@@ -227,24 +235,32 @@ impl ToolContacts {
         if distance > self.edge {
             return None;
         }
+        let [sticking, sliding] = contact.friction;
+        let friction = if stuck { sticking } else { sliding };
+        if let Some(spring) = contact.spring {
+            let here = earlier.inverse(place);
+            let (distance, normal) = contact.geometry.distance(here);
+            let (normal, tool_step) = (earlier.rotation * normal, change.place(here));
+            let gap = spring.gap(distance, normal.dot(before - tool_step));
+            let still = Touch { tool, normal, gap, target: 0.0, tool_step, friction, ..Touch::default() };
+            return (gap < 0.0).then_some(Touch { slides: true, springs: true, ..still });
+        }
         let mut target = 0.0;
         if distance < 0.0 {
             // who is inside already comes out by and by
             let now = contact.geometry.distance(earlier.inverse(place)).0;
             target = (now + step.out).min(0.0);
         }
-        let [sticking, sliding] = contact.friction;
+        let (normal, tool_step) = (pose.rotation * normal, change.place(of_tool));
         Some(Touch {
             tool,
-            normal: pose.rotation * normal,
+            normal,
             gap: distance - target,
             target,
-            tool_step: change.place(of_tool),
-            friction: if stuck { sticking } else { sliding },
-            outwards: DVec3::ZERO,
-            push: 0.0,
-            tangential: DVec3::ZERO,
+            tool_step,
+            friction,
             slides: true,
+            ..Touch::default()
         })
     }
 
@@ -262,7 +278,7 @@ impl ToolContacts {
         for turn in 0..TURNS {
             let mut most = 0.0_f64;
             for touch in all.iter_mut().flatten() {
-                if turn > 0 {
+                if turn > 0 && !touch.springs {
                     let tool = &step.tools[touch.tool];
                     let of_tool = tool.pose.inverse(place + predicted + sum);
                     let (distance, normal) = self.tools[touch.tool].geometry.distance(of_tool);
@@ -272,7 +288,7 @@ impl ToolContacts {
                 }
                 let along = touch.normal.dot(free * touch.normal);
                 // held along the normal: nobody can push it there
-                if along > 1e-9 {
+                if along > 1e-9 && !(turn > 0 && touch.springs) {
                     let push = (touch.push - touch.gap / along).max(0.0);
                     let outwards = touch.normal * (push - touch.push);
                     sum += free * outwards;

@@ -5,7 +5,7 @@ use super::{Assembly, BodyParts};
 use crate::components::*;
 use crate::scene::SceneFile;
 use crate::scene::diagnostic::Diagnostics;
-use crate::scene::schema::{Contact, Curve, Select, Tool, ToolMesh, ToolPlace};
+use crate::scene::schema::{Contact, ContactLaw, Curve, Select, Tool, ToolMesh, ToolPlace};
 use crate::tools::{DistanceGrid, Geometry, Solid, Triangles};
 use bevy_ecs::prelude::*;
 use glam::{DQuat, DVec3};
@@ -56,8 +56,8 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             rows.into_iter().for_each(|row| *marks.entry(row).or_default() |= bit);
             let signal = Signal::Pose { motion: motion(found), reference };
             let signal = world.resource_mut::<Signals>().add(signal);
-            let friction = contact.friction();
-            tools.push(ToolContact { tool: tool.clone(), geometry: geometry.clone(), signal, friction });
+            let (friction, spring) = (contact.friction(), spring_of(contact.law()));
+            tools.push(ToolContact { tool: tool.clone(), geometry: geometry.clone(), signal, friction, spring });
         }
         if tools.is_empty() {
             continue;
@@ -69,6 +69,14 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
         let contacts = ToolContacts { tools, reference, rows, masks, edge, settling, felt };
         let touch = Reals::zeros(assembly.precision, contacts.numbers() * contacts.rows.len());
         world.entity_mut(body.entity).insert((contacts, ToolTouch(touch)));
+    }
+}
+
+/// The spring of a law of contact, if it is one.
+pub(super) fn spring_of(law: ContactLaw) -> Option<ContactSpring> {
+    match law {
+        ContactLaw::Kinematic => None,
+        ContactLaw::Penalty { share, damping } => Some(ContactSpring { share, damping }),
     }
 }
 

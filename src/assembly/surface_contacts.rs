@@ -1,6 +1,6 @@
 //! Surfaces that meet: which, and whether they are in each other at the start.
 
-use super::contacts::{bounds, edge, reference, settling};
+use super::contacts::{bounds, edge, reference, settling, spring_of};
 use super::{Assembly, BodyParts, PlacedMesh};
 use crate::components::*;
 use crate::contact::{Surfaces, Tree, face_points};
@@ -39,8 +39,8 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World) {
         contacts.sweeps = contacts.sweeps.max(*sweeps as usize);
         if let [Some(a), Some(b)] = pair.map(place) {
             let faces = *points == Points::Faces;
-            contacts
-                .meet([a, b], Meeting { friction: contact.friction(), thickness: *thickness, faces, edges: *edges });
+            let (friction, spring) = (contact.friction(), spring_of(contact.law()));
+            contacts.meet([a, b], Meeting { friction, thickness: *thickness, faces, edges: *edges, spring });
         }
     }
     let corners: Vec<DVec3> =

@@ -19,6 +19,29 @@ columns! {
     FaceTouch(Reals) = "face_touch", State, Other;
 }
 
+/// A spring in place of the kinematic law of contact (`Penalty`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactSpring {
+    /// Its stiffness times the square of the step over the mass that it acts on.
+    pub share: f64,
+    /// Its damping ratio.
+    pub damping: f64,
+}
+
+impl ContactSpring {
+    /// The gap (m) that the kinematic law would have to close for the force that the spring has, where a point is so far
+    /// outside (m; negative inside) and goes outwards by so much in a step (m), by that of the last step. 0 where there
+    /// is no force: springs do not pull.
+    pub fn gap(&self, outside: f64, outwards: f64) -> f64 {
+        // what is no number is told by guards, not lost
+        if outside >= 0.0 {
+            return 0.0;
+        }
+        let gap = self.share * outside + 2.0 * self.damping * self.share.sqrt() * outwards;
+        if gap >= 0.0 { 0.0 } else { gap }
+    }
+}
+
 /// Numbers a node in [`SurfaceTouch`], and a point in [`FaceTouch`].
 pub const MEETING_NUMBERS: usize = 8;
 

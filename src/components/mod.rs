@@ -43,7 +43,7 @@ pub use clock::{Clock, Relaxation};
 pub use column::{Column, ColumnAccess, Precision, Reals, Role, all_columns, columns_in, place_in_buffer};
 pub use column_layout::{Increments, Rows};
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
-pub use contact::{ContactForce, FaceTouch, MEETING_NUMBERS, SurfaceRows, SurfaceTouch};
+pub use contact::{ContactForce, ContactSpring, FaceTouch, MEETING_NUMBERS, SurfaceRows, SurfaceTouch};
 pub use free_tool::{FreeMotion, FreeMotions, FreeTool, FreeTools, FreeTouch, MetBody};
 pub use glue::{Glue, Strength, TIE_NUMBERS, TieState, TiedPoint, frame_of};
 pub use grab::{Grabs, HeldNode};

@@ -1,8 +1,8 @@
 //! Rigid tools: where they are, and what they touch.
 
-use super::Reals;
 use super::column::columns;
 use super::signal::Use;
+use super::{ContactSpring, Reals};
 use crate::scene::schema::Curve;
 use crate::tools::{Geometry, closest_approach};
 use bevy_ecs::prelude::*;
@@ -176,6 +176,8 @@ pub struct ToolContact {
     pub signal: usize,
     /// Coefficients of friction: while it sticks, and while it slides.
     pub friction: [f64; 2],
+    /// The spring that keeps nodes out, in place of the kinematic law.
+    pub spring: Option<ContactSpring>,
 }
 
 /// What may touch a body's nodes. On the body.

@@ -35,6 +35,8 @@ pub struct Contact {
     pub rubbing: DVec3,
     /// Whether friction does not hold it.
     pub slides: bool,
+    /// Whether a spring presses: by the gap alone, whatever the step that is predicted.
+    pub springs: bool,
     /// How far it yields to a force (m/N), with the shares of its nodes.
     yields: f64,
     /// The same along the surface, and not less.
@@ -55,6 +57,7 @@ impl Contact {
             pressing: 0.0,
             rubbing: DVec3::ZERO,
             slides: false,
+            springs: false,
             yields: 0.0,
             yields_along: 0.0,
         }
@@ -90,8 +93,11 @@ impl Contact {
 
     /// Corrects the normal force, and gives by how much (N).
     fn press(&mut self, steps: &[DVec3]) -> DVec3 {
-        let gap = self.gap + self.normal.dot(self.relative(steps));
-        let pressing = if self.yields > 0.0 { (self.pressing - gap / self.yields).max(0.0) } else { 0.0 };
+        let (gap, before) = match self.springs {
+            true => (self.gap, 0.0),
+            false => (self.gap + self.normal.dot(self.relative(steps)), self.pressing),
+        };
+        let pressing = if self.yields > 0.0 { (before - gap / self.yields).max(0.0) } else { 0.0 };
         let change = self.normal * (pressing - self.pressing);
         self.pressing = pressing;
         change
@@ -138,6 +144,8 @@ pub struct ContactSet {
     pub contacts: Vec<Contact>,
     /// The nodes' next steps (m): as they would be, and after [`solve`](Self::solve) as they will be.
     pub steps: Vec<DVec3>,
+    /// What they were in the step before (m).
+    pub earlier: Vec<DVec3>,
     /// How far a node goes for a force along each axis (m/N); 0 where it is held.
     pub responses: Vec<DVec3>,
     /// Into how many shares each node's mass is split.
@@ -155,6 +163,7 @@ impl ContactSet {
     pub fn clear(&mut self) {
         self.contacts.clear();
         self.steps.clear();
+        self.earlier.clear();
         self.responses.clear();
     }
 

@@ -9,6 +9,7 @@ mod build;
 mod change;
 mod choose;
 mod column_view;
+mod contact_springs;
 mod costly;
 mod damped_step;
 pub mod explain;

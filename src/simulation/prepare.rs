@@ -6,7 +6,7 @@ use super::load_rates::LoadRates;
 use super::parameters::hand_out;
 use super::schedule::{Scheduled, check_names, resolve};
 use super::stable_step::{self, Stability};
-use super::{outputs, plausible};
+use super::{contact_springs, outputs, plausible};
 use crate::assembly::{Assembly, assemble, assemble_in_time, insert_laws};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
@@ -70,6 +70,7 @@ fn prepare_with<'a>(
     outputs::check(scene, &clock, steps, diagnostics);
     outputs::check_curves(scene, &clock, diagnostics);
     plausible::check(&assembly, world, diagnostics);
+    contact_springs::check(&scene.scene, &stability, diagnostics);
     world.insert_resource(clock);
     world.insert_resource(Observed(true));
     assemble_in_time(&assembly, world, diagnostics);

@@ -82,6 +82,9 @@ pub(super) struct OnDevice {
     ahead: u64,
 }
 
+/// Words of `surface_faces` about two bodies that may meet.
+pub(super) const MEETING_WORDS: usize = 6;
+
 /// Words of `surface_motion`.
 pub(super) const MOTION_WORDS: usize = 8;
 
@@ -147,7 +150,7 @@ impl SurfaceContacts {
             body: 0,
             around: around as u32,
             meetings: meetings as u32,
-            apart: (meetings + 4 * bodies * bodies) as u32,
+            apart: (meetings + MEETING_WORDS * bodies * bodies) as u32,
             list: layout.list as u32,
             inverse: layout.inverse as u32,
             displacements: layout.displacements as u32,
@@ -183,7 +186,10 @@ impl SurfaceContacts {
         };
         rows(&mut words, &|node| of.around(node).to_vec());
         for meeting in &self.meetings {
-            let numbers = meeting.map_or([0.0; 3], |of| [of.friction[0], of.friction[1], of.thickness]);
+            let numbers = meeting.map_or([0.0; MEETING_WORDS - 1], |of| {
+                let spring = of.spring.unwrap_or(ContactSpring { share: 0.0, damping: 0.0 });
+                [of.friction[0], of.friction[1], of.thickness, spring.share, spring.damping]
+            });
             words.push(u32::from(meeting.is_some()));
             words.extend(numbers.map(|number| (number as f32).to_bits()));
         }

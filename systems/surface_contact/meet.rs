@@ -173,6 +173,7 @@ fn gather<T: Scalar>(
             let of_node = bodies[body as usize].foresee(row as usize, coefficients);
             set.steps.push(of_node.step);
             set.responses.push(of_node.free / of_node.to_force);
+            set.earlier.push(of_node.before);
             foreseen.push((node, of_node));
         }
         *slot
@@ -185,7 +186,7 @@ fn gather<T: Scalar>(
         let both = [(faced.first, true), (faced.second, false)];
         for (facing, first) in both.into_iter().filter_map(|(facing, first)| facing.map(|facing| (facing, first))) {
             let body = surface.triangles.bodies[facing.triangle as usize];
-            let Some(Meeting { friction, .. }) = contacts.meeting(point.body, body) else { continue };
+            let Some(Meeting { friction, spring, .. }) = contacts.meeting(point.body, body) else { continue };
             let stuck = touch[4].to_f64() == STICKS;
             let slip = if first { vector_at(touch, 0) } else { DVec3::ZERO };
             let outside = contacts.gap(point, &facing);
@@ -201,7 +202,8 @@ fn gather<T: Scalar>(
             let (nodes, weights) = surface.corners_of(point, &facing);
             nodes.into_iter().zip(weights).for_each(|(node, weight)| contact.add(slot_of(node, set), -weight));
             let within = if point.triangle.is_some() { SHARES * contacts.edge } else { 0.0 };
-            if gap + normal.dot(contact.relative(&set.steps)) < within {
+            let allowed = if first { touch[3].to_f64() } else { 0.0 };
+            if ends(&mut contact, (spring, outside - allowed), set) < within {
                 set.contacts.push(contact);
                 met.push(Met { point: number, first, gap: outside });
             }
@@ -209,14 +211,16 @@ fn gather<T: Scalar>(
     }
     for (pair, crossing) in &surface.crossings.found {
         let [one, other] = pair.map(|edge| surface.crossings.edges[edge as usize]);
-        let Some(Meeting { friction, thickness, .. }) = contacts.crossing(one.body, other.body) else { continue };
+        let Some(Meeting { friction, thickness, spring, .. }) = contacts.crossing(one.body, other.body) else {
+            continue;
+        };
         let outside = crossing.gap - thickness;
         // nothing is known of how it got there, nor of how it slipped
         let mut contact = Contact::new((crossing.normal, outside.max(-settling)), (friction[1], DVec3::ZERO));
         let [of_one, of_other] = crossing.weights;
         one.nodes.into_iter().zip(of_one).for_each(|(node, weight)| contact.add(slot_of(node, set), weight));
         other.nodes.into_iter().zip(of_other).for_each(|(node, weight)| contact.add(slot_of(node, set), -weight));
-        if contact.gap + contact.normal.dot(contact.relative(&set.steps)) < 0.0 {
+        if ends(&mut contact, (spring, outside), set) < 0.0 {
             set.contacts.push(contact);
             // nodes are the first of the points
             met.push(Met { point: one.nodes[0], first: false, gap: outside });
@@ -225,6 +229,17 @@ fn gather<T: Scalar>(
     foreseen.iter().for_each(|(node, _)| slots[*node as usize] = u32::MAX);
     let surface = &mut contacts.surface;
     (surface.slots, surface.met, surface.foreseen) = (slots, met, foreseen);
+}
+
+/// How far outside (m) a point would end that is to be kept there; with a spring how far it is, which is all that that
+/// asks for: so far outside, or more than it may be inside.
+fn ends(contact: &mut Contact, (spring, outside): (Option<ContactSpring>, f64), set: &ContactSet) -> f64 {
+    let Some(spring) = spring else {
+        return contact.gap + contact.normal.dot(contact.relative(&set.steps));
+    };
+    contact.springs = true;
+    contact.gap = spring.gap(outside, contact.normal.dot(contact.relative(&set.earlier)));
+    outside
 }
 
 /// Notes what points face, and how far they are outside of it.
@@ -264,7 +279,7 @@ fn note_touches<T: Scalar>(
             touch[5] = T::from_f64(met.gap + contact.normal.dot(after));
         }
         if let Some(work_factor) = work_factor {
-            let before: DVec3 = contact.parts().map(|(slot, weight)| surface.foreseen[slot].1.before * weight).sum();
+            let before = contact.relative(&set.earlier);
             let along = (after - contact.normal * after.dot(contact.normal)).length();
             let slid = touch[6].to_f64() + if contact.slides { along } else { 0.0 };
             let lost = touch[7].to_f64() - work_factor * force.dot(0.5 * (before + after));

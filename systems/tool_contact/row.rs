@@ -24,6 +24,10 @@ pub(super) struct ToolRow {
     ny: u32,
     nz: u32,
     first: u32,
+    share: f32,
+    damping: f32,
+    room_0: u32,
+    room_1: u32,
 }
 uniform!(ToolRow {
     kind,
@@ -41,7 +45,11 @@ uniform!(ToolRow {
     nx,
     ny,
     nz,
-    first
+    first,
+    share,
+    damping,
+    room_0,
+    room_1
 });
 
 /// The kind of what is known by a grid of distances.
@@ -64,6 +72,7 @@ pub(super) fn row_of(contact: &ToolContact, first: u32) -> ToolRow {
     let [nx, ny, nz, first] = [nx, ny, nz, first].map(f32::to_bits);
     let [sticking, sliding] = contact.friction.map(|number| number as f32);
     let signal = contact.signal as u32;
+    let [share, damping] = contact.spring.map_or([0.0; 2], |of| [of.share as f32, of.damping as f32]);
     ToolRow {
         kind,
         size_0,
@@ -81,5 +90,10 @@ pub(super) fn row_of(contact: &ToolContact, first: u32) -> ToolRow {
         ny,
         nz,
         first,
+        share,
+        damping,
+        // rows are whole vectors
+        room_0: 0,
+        room_1: 0,
     }
 }

@@ -16,7 +16,7 @@ fn grid() -> Geometry {
 
 /// Tools that touch about half of a body's nodes; each body meets all of them, each node one or two, or one that is a
 /// grid.
-fn touch(world: &mut World, (of_grid, several): (bool, bool)) {
+fn touch(world: &mut World, (of_grid, several, springs): (bool, bool, bool)) {
     for body in entities::<Displacement>(world) {
         let rest = world.get::<RestPosition>(body).unwrap().0.clone();
         let (low, high) =
@@ -44,7 +44,8 @@ fn touch(world: &mut World, (of_grid, several): (bool, bool)) {
                 hand: None,
             };
             let signal = world.resource_mut::<Signals>().add(Signal::Pose { motion, reference: middle });
-            ToolContact { tool: number.to_string(), geometry, signal, friction: [0.4, 0.3] }
+            let spring = springs.then_some(ContactSpring { share: 0.2, damping: 0.3 });
+            ToolContact { tool: number.to_string(), geometry, signal, friction: [0.4, 0.3], spring }
         });
         let tools: Vec<ToolContact> = tools.collect();
         let rows: Vec<u32> = (0..rest.len() as u32).filter(|row| row % 7 != 3).collect();
@@ -71,11 +72,12 @@ fn touch(world: &mut World, (of_grid, several): (bool, bool)) {
 
 #[test]
 fn tools_push_the_same_nodes_with_the_same_forces() {
-    for bits in 0..16 {
-        let (of_grid, several) = (bits & 4 == 4, bits & 8 == 8);
+    for bits in 0..32 {
+        let (of_grid, several, springs) = (bits & 4 == 4, bits & 8 == 8, bits & 16 == 16);
         let effects = Effects { damping: bits & 1 == 1, moved: bits & 2 == 2, loads: true, ..Effects::default() };
         for step in [0, 3] {
-            let Some(mut pair) = run("tool_contact", &effects, step, |world| touch(world, (of_grid, several))) else {
+            let Some(mut pair) = run("tool_contact", &effects, step, |world| touch(world, (of_grid, several, springs)))
+            else {
                 return;
             };
             // directions that a grid gives are those of differences of distances; what several tools hand on to each other

@@ -56,6 +56,27 @@ fn points_of_faces_are_refused_where_elements_may_go() {
 }
 
 #[test]
+fn springs_are_as_stiff_as_the_step_allows() {
+    let law = |law: &str| format!("Between(bodies: (\"a\", \"b\"), law: {law})");
+    let apart = "(0, 0, 0.11)";
+    assert_eq!(told(&law("Penalty(share: 0.7)"), apart), "");
+    let found = told(&law("Penalty(share: 0.8)"), apart);
+    let wanted = "5: error: springs with a share of 0.8000 in all act on `a`: at 0.900 of the stable step 0.7600 are stable | give a smaller `share`";
+    assert!(found.starts_with(wanted), "{found}");
+    // damping that follows a step late leaves (√1.25 − .5)² of it
+    let found = told(&law("Penalty(share: 0.5, damping: 0.5)"), apart);
+    assert!(found.contains("0.2903 are stable"), "{found}");
+    for (text, wanted) in [
+        ("Penalty(share: 0)", "5: error: `share` must be above 0, found 0"),
+        ("Penalty(share: 0.1, damping: -1)", "5: error: `damping` must be 0 or above, found -1"),
+        ("Penalty(share: 0.1), sweeps: 2", "5: error: a spring has one force, and not one of 2 sweeps"),
+    ] {
+        let found = told(&law(text), apart);
+        assert!(found.starts_with(wanted), "{found}");
+    }
+}
+
+#[test]
 fn bodies_in_each_other_at_the_start_are_told_with_their_nodes() {
     let little = told(MEET, "(0, 0, 0.098)");
     // those on the rim are on walls of the other

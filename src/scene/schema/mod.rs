@@ -32,7 +32,7 @@ pub use picture::{Colours, Cut, Field, Opacity, Picture};
 pub use scene::{Analysis, EnergyGuard, Guard, Guards, InitialState, Integration, Scene, StepBound, WhenUnstable};
 pub use selection::{Probe, Quantity, Select};
 pub use system::OwnSystem;
-pub use tool::{Contact, Follow, Free, Points, Port, Suction, Tool, ToolMesh, ToolMove, ToolPlace};
+pub use tool::{Contact, ContactLaw, Follow, Free, Points, Port, Suction, Tool, ToolMesh, ToolMove, ToolPlace};
 
 /// The texts of these files and those of laws: what a field means is told in the words it is documented with.
 pub fn texts() -> impl Iterator<Item = &'static str> {

@@ -181,6 +181,9 @@ pub enum Contact {
         /// That the tool is thinner than the faces that it meets, and may slip between nodes: then it is not warned of.
         #[serde(default)]
         thin: bool,
+        /// What keeps nodes out.
+        #[serde(default)]
+        law: ContactLaw,
     },
     /// The surfaces of two bodies: each stays outside the other.
     Between {
@@ -204,6 +207,9 @@ pub enum Contact {
         /// That edges which cross stay outside of each other, too.
         #[serde(default)]
         edges: bool,
+        /// What keeps points out.
+        #[serde(default)]
+        law: ContactLaw,
     },
     /// The surface of a body and itself: folds and copies stay outside of each other.
     Itself {
@@ -228,6 +234,27 @@ pub enum Contact {
         /// That edges which cross stay outside of each other, too.
         #[serde(default)]
         edges: bool,
+        /// What keeps points out.
+        #[serde(default)]
+        law: ContactLaw,
+    },
+}
+
+/// What keeps points out of what they touch.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+pub enum ContactLaw {
+    /// The correction of the predicted step: they end on the surface, and what they touch it with is gone.
+    #[default]
+    Kinematic,
+    /// A spring where they are inside: they sink in, and come back.
+    Penalty {
+        /// The stiffness as a share of mass over the square of the step; at most 4 (1 − s²) at the share s of the stable
+        /// step, .76 at .9.
+        share: f64,
+        /// The damping ratio of the spring.
+        #[serde(default)]
+        damping: f64,
     },
 }
 
@@ -253,6 +280,12 @@ impl Contact {
         | Contact::Between { friction, static_friction, .. }
         | Contact::Itself { friction, static_friction, .. }) = self;
         [static_friction.unwrap_or(*friction), *friction]
+    }
+
+    /// What keeps points out.
+    pub fn law(&self) -> ContactLaw {
+        let (Contact::Tool { law, .. } | Contact::Between { law, .. } | Contact::Itself { law, .. }) = self;
+        *law
     }
 }
 

@@ -5,7 +5,7 @@ use super::names::body_named;
 use super::{Validator, scene, select, show};
 use crate::scene::limits::{MOST_BURST, MOST_SWEEPS, TOOLS_OF_A_BODY};
 use crate::scene::load::SceneFile;
-use crate::scene::schema::{Contact, Follow, Points, Port, Removal, Scene, Shape, Threshold, Tool, When};
+use crate::scene::schema::{Contact, ContactLaw, Follow, Points, Port, Removal, Scene, Shape, Threshold, Tool, When};
 use crate::scene::suggest::choice;
 use crate::scene::syntax::Path;
 use crate::tools::closest_approach;
@@ -182,6 +182,7 @@ fn contacts(scene_: &Scene, validator: &mut Validator) {
     for (number, contact) in scene_.contacts.iter().enumerate() {
         let path = scene("contacts").index(number);
         friction(scene_, validator, &path, contact);
+        law(scene_, validator, &path.name("law"), contact);
         let Contact::Tool { tool, body, on, .. } = contact else {
             surfaces(scene_, validator, &path, contact);
             continue;
@@ -312,6 +313,33 @@ fn friction(scene_: &Scene, validator: &mut Validator, path: &Path, contact: &Co
             .out
             .warn_at(path.name("friction"), "rest with friction depends on the way there, and this is one of many")
             .note("a transient analysis goes the way that the scene tells");
+    }
+}
+
+/// What keeps points out of each other.
+fn law(scene_: &Scene, validator: &mut Validator, path: &Path, contact: &Contact) {
+    let ContactLaw::Penalty { share, damping } = contact.law() else { return };
+    validator.above_zero(&path.name("share"), share, "");
+    validator.not_negative(&path.name("damping"), damping, "");
+    if scene_.is_static() {
+        validator
+            .out
+            .error_at(path, "a spring of contact is one by the step, and a static analysis has none")
+            .note("leave `law` out: the kinematic law needs no stiffness");
+    }
+    if let Contact::Between { sweeps, .. } | Contact::Itself { sweeps, .. } = contact
+        && *sweeps > 1
+    {
+        let message = format!("a spring has one force, and not one of {sweeps} sweeps");
+        validator.out.error_at(path, message).note("leave `sweeps` out");
+    }
+    if let Contact::Tool { tool, .. } = contact
+        && scene_.tools.get(tool).is_some_and(|tool| tool.free.is_some())
+    {
+        validator
+            .out
+            .error_at(path, format!("`{tool}` is a free body, which gives way: there is no spring for that"))
+            .note("leave `law` out");
     }
 }
 

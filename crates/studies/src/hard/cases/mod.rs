@@ -17,7 +17,7 @@ mod step;
 mod viscosity;
 
 use super::{Case, CaseConfiguration};
-use contact::{free, friction, indentation, patch, rest, shapes, start, taking, waves};
+use contact::{free, friction, holding, indentation, patch, rest, shapes, springs, start, taking, waves};
 
 /// A case: its number and name make the path of its scene.
 macro_rules! case {
@@ -151,6 +151,10 @@ pub const CASES: &[Case] = &[
     case!("h49" "ironing" "ball drawn over ten faces", "nodes held by μ within 1 %, ripple at most 20 %", one_point, friction::ironing),
     case!("h50" "oblique" "oblique collision of two free cubes",
         "momentum to 1e-10 (f64), its moment to 1e-6, no energy made", every, free::oblique),
+    case!("h51" "restitution" "nodes that hit a plate, by the kinematic law and by springs",
+        "stopped in two steps; given back within .5 %, damped within .025 of the closed form", hexahedra, springs::restitution_of_nodes),
+    case!("h52" "penalty" "springs as stiff as the step allows, and stiffer",
+        "stands for 1e5 steps (everyday: 5000) with its weight within 1e-3; the stiffer one is refused", every, springs::stiffest),
     case!("h54" "tunnelling" "needle of up to five radii a step against one layer",
         "stopped, warned of or refused: never through in silence", every, start::tunnelling),
     case!("h55" "overlap" "overlaps of .05, .3, .6 of an edge; a body inside another",
@@ -161,6 +165,9 @@ pub const CASES: &[Case] = &[
         "weight within 1e-3, a tenth of an edge deep at most", every, shapes::edges),
     case!("h58" "wound_columns" "two columns wound round each other", "none is in the other; volume within 3 %", every, shapes::wound),
     case!("h59" "pile" "pile of 12 cubes (in full 1000)", "weight within 1 %, energy falls, the same bits", every, shapes::pile),
+    case!("h61" "grasp" "cube that is grasped, lifted, carried and let go",
+        "weight within 1e-4; closing makes no energy, opening no momentum", every, holding::grasp),
+    case!("h62" "glue" "glue that is drawn apart", "breaks at its strength within 2 %, all of it", every, holding::glue),
     case!("h63" "suction" "plate that hangs on a tube that sucks",
         "Δp π r² within 3 %; comes off beyond that", every, taking::suction),
     case!("h64" "removal_by_tool" "tool that takes a volume a second from three meshes",

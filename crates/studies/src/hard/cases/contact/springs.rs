@@ -1,0 +1,63 @@
+//! Springs in place of the kinematic law: what they give back, and how stiff they may be.
+
+use super::super::super::Trial;
+use super::measures::mass;
+use sinew::Error;
+use std::f64::consts::PI;
+
+/// The share of its speed that a point keeps that is thrown back by a spring of a damping ratio that does not pull.
+fn restitution(damping: f64) -> f64 {
+    let rest = (1.0 - damping * damping).sqrt();
+    let angle = PI - (2.0 * damping * rest).atan2(1.0 - 2.0 * damping * damping);
+    (-damping / rest * angle).exp()
+}
+
+/// H51.
+pub fn restitution_of_nodes(trial: &mut Trial<'_>) -> Result<(), Error> {
+    let speed = 0.1;
+    let elements = format!("bodies.body.mesh.elements={}", trial.configuration.elements_name());
+    let mut simulation = trial.start(std::slice::from_ref(&elements))?;
+    // ten steps and a third away
+    simulation.advance_to(12e-4 + 1e-9)?;
+    let stopped = simulation.probe("struck")?[2];
+    trial.most("kinematic: what two steps leave (m/s)", stopped, trial.bound(1e-9, 1e-7));
+    // how a spring gives back depends on where in a step it is met, the less the softer it is
+    for (share, damping, off) in [(0.1, 0.0, 0.005), (0.01, 0.1, 0.025), (0.01, 0.3, 0.025), (0.01, 0.5, 0.025)] {
+        let law = format!("contacts[0].law=Penalty(share: {share}, damping: {damping})");
+        let mut simulation = trial.start(&[elements.clone(), law])?;
+        simulation.finish()?;
+        let (back, expected) = (simulation.probe("struck")?[2] / speed, restitution(damping));
+        trial.within(format!("given back, share {share}, damping {damping}"), back, expected - off, expected + off);
+    }
+    Ok(())
+}
+
+/// H52.
+pub fn stiffest(trial: &mut Trial<'_>) -> Result<(), Error> {
+    let safety: f64 = 0.9;
+    let stiffest = 4.0 * (1.0 - safety * safety);
+    let elements = trial.configuration.elements_name();
+    let sets = |share: f64| {
+        let law = |number: usize| format!("contacts[{number}].law=Penalty(share: {share})");
+        // both act on the lower block
+        let mesh = |body: &str| format!("bodies.{body}.mesh.elements={elements}");
+        vec![mesh("body"), mesh("other"), law(0), law(1)]
+    };
+    let mut simulation = trial.start(&sets(0.95 * 0.5 * stiffest))?;
+    simulation.advance(if trial.full { 100_000 } else { 5000 })?;
+    let weight = 9.81 * mass(&mut simulation, "body")?;
+    trial.near("weight of both on the table (N)", -simulation.tool("table")?.force.z, 2.0 * weight, 1e-3);
+    trial.near("weight of one on the other (N)", simulation.contact("other")?.force.z, weight, 1e-3);
+    if !trial.configuration.is_tets() {
+        // by the masses of nodes, which of hexahedra are even: m Δt⁻² f δ = p A
+        let (step, layer) = (simulation.time_step(), 0.02 / 3.0);
+        let depth = 2.0 * 9.81 * (2.0 * 0.02) * step * step / (0.95 * 0.5 * stiffest * layer);
+        trial.near("how deep the table is in it (m)", simulation.tool("table")?.penetration, depth, 0.05);
+    }
+    trial.refused(
+        "a spring that is too stiff for the step",
+        trial.start(&sets(1.1 * 0.5 * stiffest)),
+        &["share", "0.76"],
+    );
+    Ok(())
+}
