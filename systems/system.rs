@@ -341,14 +341,11 @@ impl System {
     }
 
     /// It is for loads of a word in scenes, which become what calls for it; `None` where they act on something else.
-    pub(crate) fn for_load<S: NodeSystem>(
+    pub(crate) fn for_load<S: NodeSystem + Bundle>(
         mut self,
         word: &'static str,
         load: fn(&LoadedRows, usize) -> Option<S>,
-    ) -> Self
-    where
-        S: Bundle,
-    {
+    ) -> Self {
         let put_on: PutLoad = Arc::new(move |on, signal, entity| match load(on, signal) {
             Some(load) => drop(entity.insert(load)),
             None => missing("what a load acts on"),

@@ -10,6 +10,7 @@ mod file_access;
 pub mod limits;
 #[doc(hidden)]
 pub mod load;
+mod load_parts;
 mod partial;
 mod parts;
 pub mod schema;

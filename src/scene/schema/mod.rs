@@ -14,6 +14,7 @@ mod selection;
 mod system;
 mod tool;
 
+pub use super::load_parts::{Amplitude, LoadParts, LoadPartsMut, On};
 pub use crate::materials::Elasticity;
 pub use crate::mesh::ElementKind;
 pub use crate::tools::Shape;
@@ -21,7 +22,7 @@ pub use accuracy::{Accuracy, AccuracyReference};
 pub use action::{Axis, Constraint, Curve, Removal, Threshold, When};
 pub use attachment::{Attachment, Point};
 pub use body::{Body, MeshSource, Region, SkinFile, Start};
-pub use load::{Amplitude, Load, LoadParts, LoadPartsMut, On, Share};
+pub use load::{Load, Share};
 pub use material::{
     Direction, ELASTIC_LAWS, ExponentialFibres, Fibres, Inversion, Material, OwnLaw, Prony, PronyTerm,
     ViscousIntegrator, comparable_laws, laws_for_large_strains,

@@ -1,0 +1,63 @@
+//! What the rest of the program knows of the loads of scenes, whatever their kind.
+
+use super::schema::{Curve, Select, Share};
+use glam::DVec3;
+
+/// What the rest of the program knows of a load, whatever its kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoadParts<'a> {
+    /// Its word in scenes, by which its system is found.
+    pub word: &'static str,
+    /// What it is called in words.
+    pub name: &'static str,
+    /// The body; none: the only one, or all if it acts on all.
+    pub body: Option<&'a String>,
+    /// What it acts on.
+    pub on: On<'a>,
+    /// The field with what the course multiplies, and its unit.
+    pub field: (&'static str, &'static str),
+    /// What the course multiplies, in that unit; of a number the first of three.
+    pub amplitude: DVec3,
+    /// Its course in time.
+    pub curve: &'a Curve,
+}
+
+/// What a load acts on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum On<'a> {
+    /// The whole body, or all bodies where it names none.
+    Bodies,
+    /// Nodes; how it is shared among them, and its factors on the first and the last of the body's copies.
+    Nodes(&'a Select, Share, Option<(f64, f64)>),
+    /// Faces of the surface.
+    Faces(&'a Select),
+}
+
+impl<'a> On<'a> {
+    /// The selection, where it is not all.
+    pub fn select(self) -> Option<&'a Select> {
+        match self {
+            Self::Bodies => None,
+            Self::Nodes(on, ..) | Self::Faces(on) => Some(on),
+        }
+    }
+}
+
+/// What of a load may be written anew: the body that it names and what it acts on, none if it acts on all bodies alike;
+/// what its course multiplies; its course.
+pub struct LoadPartsMut<'a> {
+    /// Of one body.
+    pub on: Option<(&'a mut Option<String>, &'a mut Select)>,
+    /// What its course multiplies.
+    pub amplitude: Amplitude<'a>,
+    /// Its course in time.
+    pub curve: &'a mut Curve,
+}
+
+/// What the course of a load multiplies.
+pub enum Amplitude<'a> {
+    /// A vector in space.
+    Vector(&'a mut DVec3),
+    /// A number.
+    Number(&'a mut f64),
+}
