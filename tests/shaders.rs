@@ -323,7 +323,17 @@ fn every_shader_is_named_after_a_system_an_element_or_a_material_or_listed() {
     };
     let mut known: BTreeSet<String> = SUPPORT.iter().map(|(stem, _)| (*stem).to_owned()).collect();
     for folder in ["systems", "src/elements"] {
-        let others = ["mod", "kinds", "registry", "node_shares", "node_slices", "node_system", "node_stages", "node_views", "system"];
+        let others = [
+            "mod",
+            "kinds",
+            "registry",
+            "node_shares",
+            "node_slices",
+            "node_system",
+            "node_stages",
+            "node_views",
+            "system",
+        ];
         known.extend(stems(folder).into_iter().filter(|stem| !others.contains(&stem.as_str())));
     }
     // some run on the host only

@@ -174,10 +174,9 @@ impl<E: Element> BlockRun<'_, '_, E, f32> {
 
     fn run_neo_hookean(self, elastic: &NeoHookean<f32>) -> Vec<usize> {
         // a constant, so that no such kernels are made of elements that four corners do not span
-        if const { E::SPANNED_BY.is_some() } {
-            if self.law.fibres.is_none() && self.law.prony.is_empty() && self.knows_places() {
-                return self.run::<_, FROM_PLACES>(elastic);
-            }
+        let plain = self.law.fibres.is_none() && self.law.prony.is_empty();
+        if const { E::SPANNED_BY.is_some() } && plain && self.knows_places() {
+            return self.run::<_, FROM_PLACES>(elastic);
         }
         match (self.law.fibres.is_some(), !self.law.prony.is_empty()) {
             (false, false) => self.run::<_, 0>(elastic),
