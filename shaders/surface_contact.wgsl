@@ -84,14 +84,14 @@ fn faced(node: u32, of_body: u32) -> Faced {
         }
         facing.way = (abs(facing.gap) + ALIKE * surface.edge) * (1.0 + TURNED_AWAY + turned);
         if !both.first.there || facing.way < both.first.way {
-            if both.first.there && is_corner(facing, both.first, point) {
+            if both.first.there && is_corner(facing, both.first) {
                 both.second = both.first;
             }
             both.first = facing;
         } else if !both.second.there || facing.way < both.second.way {
             both.second = facing;
         }
-        both.second.there = both.second.there && is_corner(both.first, both.second, point);
+        both.second.there = both.second.there && is_corner(both.first, both.second);
     }
     return both;
 }

@@ -160,10 +160,6 @@ fn outside(triangle: u32, point: vec3<f32>, corners: array<vec3<f32>, 3>, found:
 }
 
 // Whether two faces are walls of a corner that the point is in: the second rises before the first.
-fn is_corner(one: Facing, other: Facing, point: vec3<f32>) -> bool {
-    let corners = corners_of(other.triangle, point);
-    let heights = vec3<f32>(dot(one.normal, corners[0] - one.at), dot(one.normal, corners[1] - one.at),
-        dot(one.normal, corners[2] - one.at));
-    let highest = max(heights.x, max(heights.y, heights.z));
-    return dot(one.normal, other.normal) < CORNER && highest > ALIKE * surface.edge;
+fn is_corner(one: Facing, other: Facing) -> bool {
+    return dot(one.normal, other.normal) < CORNER && dot(one.normal, other.at - one.at) > 0.0;
 }

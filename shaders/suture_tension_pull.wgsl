@@ -1,5 +1,5 @@
-// Forces of threads on a body's sutured nodes, a thread a node, in a fixed order: after suture_tension.wgsl; suture.wgsl
-// adds them to the loads.
+// Forces of threads on a body's sutured nodes, a thread a node, in a fixed order: after suture_tension.wgsl;
+// suture.wgsl adds them to the loads.
 struct ThreadsOf {
     first: u32,
     count: u32, // of the body's sutured nodes

@@ -29,8 +29,8 @@ struct Touch {
     slides: bool, // whether friction does not hold it
 }
 
-// The gap (m) that the kinematic law would have to close for the force of a tool's spring, outside by so much (m), going
-// outwards by so much in a step (m).
+// The gap (m) that the kinematic law would have to close for the force of a tool's spring, outside by so much (m),
+// going outwards by so much in a step (m).
 fn spring_gap(tool: u32, outside: f32, outwards: f32) -> f32 {
     if outside >= 0.0 {
         return 0.0;

@@ -90,8 +90,8 @@ pub struct Instability {
 /// What ended a run, for programs.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize)]
 pub struct Criterion {
-    /// `not_finite`, `inverted`, `energy`, `step` for a stable step that has gone to nothing, `speed` for a free tool that
-    /// goes or turns too far in a step, or `result` for a result that is not finite.
+    /// `not_finite`, `inverted`, `energy`, `step` for a stable step that has gone to nothing, `speed` for a free tool
+    /// that goes or turns too far in a step, or `result` for a result that is not finite.
     pub name: &'static str,
     /// What was found, where it is a number.
     pub value: Option<f64>,

@@ -13,10 +13,11 @@ use bevy_ecs::query::QueryData;
 use contacts::{Near, Solved};
 use glam::{DMat3, DVec3};
 
-/// Central differences as of nodes: forces of the beginning of a step change the velocity of its middle, and that moves the
-/// body; likewise angular momentum, and the turn ([`RigidMotion::after`]). Like `tool_contact` it predicts where nodes
-/// and tools would end, and finds the forces that keep them apart: here both sides give way, by their effective masses,
-/// so that momentum is kept to rounding, and kinetic energy does not grow. On nodes these forces are loads like others.
+/// Central differences as of nodes: forces of the beginning of a step change the velocity of its middle, and that moves
+/// the body; likewise angular momentum, and the turn ([`RigidMotion::after`]). Like `tool_contact` it predicts where
+/// nodes and tools would end, and finds the forces that keep them apart: here both sides give way, by their effective
+/// masses, so that momentum is kept to rounding, and kinetic energy does not grow. On nodes these forces are loads like
+/// others.
 ///
 /// It runs on the host on both backends: on a GPU the columns that it needs come and go in every step.
 pub fn system() -> System {
@@ -163,8 +164,8 @@ impl ToolStep<'_> {
         all
     }
 
-    /// Counts what was done to the tool. With velocities of the middles before and after, forces do the work F · ½ (v + v')
-    /// h on it, h the time between the middles, exactly.
+    /// Counts what was done to the tool. With velocities of the middles before and after, forces do the work F · ½ (v +
+    /// v') h on it, h the time between the middles, exactly.
     fn count(&self, state: &mut FreeMotion, next: &RigidMotion, touches: &[(FreeTouch, Foreseen)]) {
         let (before, inertia, coefficients) = (&self.before, &self.tool.inertia, &self.coefficients);
         let window = coefficients.force * coefficients.rate;

@@ -1,5 +1,6 @@
-//! What node systems have of bodies for themselves: nodes that they choose, and numbers that they keep. Both are columns
-//! of the body, which all systems share, so that steps, snapshots and devices know of two columns and not of users.
+//! What node systems have of bodies for themselves: nodes that they choose, and numbers that they keep. Both are
+//! columns of the body, which all systems share, so that steps, snapshots and devices know of two columns and not of
+//! users.
 
 use super::node_system::{NodeRows, NodeSystem};
 use super::node_views::NodesAtRest;

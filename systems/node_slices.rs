@@ -1,5 +1,5 @@
-//! What a step needs of the nodes of a body, as plain slices: for systems that go over what ties nodes of several bodies
-//! together.
+//! What a step needs of the nodes of a body, as plain slices: for systems that go over what ties nodes of several
+//! bodies together.
 
 use crate::backend::cpu::{Foreseen, IntegrationCoefficients};
 use crate::components::*;

@@ -67,8 +67,8 @@ pub trait NodeSystem: Component {
     /// ```
     fn slopes(&self, nodes: &NodesAtRest<'_>) -> ForceSlopes;
 
-    /// The energy (J) that it holds and gives back, as a spring does, of the nodes' places in the middle of a step. It is
-    /// told with the others ([`Energies::held`]); the work of all loads is counted in any case.
+    /// The energy (J) that it holds and gives back, as a spring does, of the nodes' places in the middle of a step. It
+    /// is told with the others ([`Energies::held`]); the work of all loads is counted in any case.
     fn energy(&self, _: &MiddleOfStep<'_>) -> Option<f64> {
         None
     }

@@ -51,10 +51,10 @@ impl NodeSystem for Pressure {
         before.signals.values()[self.signal][0]
     }
 
-    /// None is counted. Of a block of cells h, two or more across, −∂f/∂u of a pressure p over the masses has a norm of at
-    /// most 4.7 p/(ρh²) (`stiffness_of_a_pressure…` below), and elements alone have an ω² of 4 M/(ρh²) or more, M = λ + 2μ:
-    /// a pressure takes less than 0.6 p/M of the stable step, and at a `safety` of 0.9 any up to 0.19 M is stable. Such a
-    /// one squeezes a body to five sixths; what makes elements stiffer there, the step follows.
+    /// None is counted. Of a block of cells h, two or more across, −∂f/∂u of a pressure p over the masses has a norm of
+    /// at most 4.7 p/(ρh²) (`stiffness_of_a_pressure…` below), and elements alone have an ω² of 4 M/(ρh²) or more, M =
+    /// λ + 2μ: a pressure takes less than 0.6 p/M of the stable step, and at a `safety` of 0.9 any up to 0.19 M is
+    /// stable. Such a one squeezes a body to five sixths; what makes elements stiffer there, the step follows.
     fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
         ForceSlopes::NONE
     }

@@ -15,7 +15,8 @@ use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
 
-/// Adds +Δp ∫ N_a n dA over the deformed faces in the mouth: a [`Pressure`](super::Pressure) with its sign reversed, which the tool feels.
+/// Adds +Δp ∫ N_a n dA over the deformed faces in the mouth: a [`Pressure`](super::Pressure) with its sign reversed,
+/// which the tool feels.
 pub fn system() -> System {
     System::built_in_nodes::<Suction>(
         "suction",

@@ -93,8 +93,8 @@ pub fn insert_forces(scheme: Scheme, body: Entity, world: &mut World) {
     world.entity_mut(body).insert((corners, ElementForce(Reals::zeros(precision, length))));
 }
 
-/// Where nodes are at rest, from the first of their patch, if kernels find rest shapes from that: shapes in f32 that fit
-/// no cache, of elements that can.
+/// Where nodes are at rest, from the first of their patch, if kernels find rest shapes from that: shapes in f32 that
+/// fit no cache, of elements that can.
 fn places_at_rest(block: &Block, shapes: &RestShape, patches: &Patches, rest: &RestPosition) -> Vec<[f32; 3]> {
     let Reals::F32(numbers) = &shapes.0 else { return Vec::new() };
     if !with_element_of!(block, E => E::SPANNED_BY.is_some()) || size_of_val(&numbers[..]) <= IN_CACHE {

@@ -29,9 +29,9 @@ pub struct ContactSpring {
 }
 
 impl ContactSpring {
-    /// The gap (m) that the kinematic law would have to close for the force that the spring has, where a point is so far
-    /// outside (m; negative inside) and goes outwards by so much in a step (m), by that of the last step. 0 where there
-    /// is no force: springs do not pull.
+    /// The gap (m) that the kinematic law would have to close for the force that the spring has, where a point is so
+    /// far outside (m; negative inside) and goes outwards by so much in a step (m), by that of the last step. 0 where
+    /// there is no force: springs do not pull.
     pub fn gap(&self, outside: f64, outwards: f64) -> f64 {
         // what is no number is told by guards, not lost
         if outside >= 0.0 {
@@ -45,7 +45,7 @@ impl ContactSpring {
 /// Numbers a node in [`SurfaceTouch`], and a point in [`FaceTouch`].
 pub const MEETING_NUMBERS: usize = 8;
 
-/// Rows of the nodes of a body's surface that may meet others or be tied to one, ascending: no patch moves them as one of
-/// its own, so that all forces on them are known before they move. On bodies whose surface stays the same.
+/// Rows of the nodes of a body's surface that may meet others or be tied to one, ascending: no patch moves them as one
+/// of its own, so that all forces on them are known before they move. On bodies whose surface stays the same.
 #[derive(Component, Clone, Debug)]
 pub struct SurfaceRows(pub Vec<u32>);

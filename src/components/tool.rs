@@ -145,7 +145,8 @@ impl ToolMotion {
         });
         let fastest = path + moves.sum::<f64>();
         let Some(pivot) = self.pivot else { return fastest };
-        // all of its way might go across the shaft; turned by up to 120°, it turns about itself too, up to as fast again
+        // all of its way might go across the shaft; turned by up to 120°, it turns about itself too, up to as fast
+        // again
         let speed = self.fastest_origin();
         fastest + if speed > 0.0 { 2.0 * reach * speed / self.nearest(pivot) } else { 0.0 }
     }

@@ -8,7 +8,7 @@ use glam::DVec3;
 const TURNED_AWAY: f64 = 0.2;
 
 /// What counts for nothing of a distance between two faces that are in a point's way, in edges: there the one that it
-/// faces more is. Nor is a wall one that rises no higher.
+/// faces more is. Nor is a wall one that rises no higher beside a point of a face.
 const ALIKE: f64 = 0.05;
 
 /// Two faces are a corner where the cosine between their normals is below this (30°).
@@ -123,7 +123,7 @@ impl Surfaces {
         let mut faced = Faced { wakes: f64::INFINITY, ..Faced::default() };
         let mut own_normal = None;
         let mut least = [f64::INFINITY; 2];
-        let is_corner = |first: &Facing, second: &Facing| self.is_corner(now.places, first, second, edge);
+        let is_corner = |first: &Facing, second: &Facing| self.is_corner(now.places, point, [first, second], edge);
         for (place, &triangle) in listed.triangles.iter().enumerate() {
             if listed.is_far(place) {
                 faced.wakes = faced.wakes.min(listed.distances[place]);
@@ -201,11 +201,15 @@ impl Surfaces {
         }
     }
 
-    /// Whether two faces are walls of a corner that the point is in: the second rises before the first. A wall that falls
-    /// off from it, at an edge that sticks out, has a corner in its plane, or one that rounding lifts a little.
-    fn is_corner(&self, places: &[DVec3], first: &Facing, second: &Facing, edge: f64) -> bool {
-        let height = |corner: DVec3| first.normal.dot(corner - first.at);
-        let rises = || self.corners(places, second.triangle).into_iter().any(|corner| height(corner) > ALIKE * edge);
+    /// Whether two faces are walls of a corner that the point is in: the second rises before the first. A node on an edge
+    /// has both its flanks, too. A point of a face is never on one, and a wall that falls off beside it, with a corner in
+    /// the first's plane or one that rounding lifts a little, would push it along the face.
+    fn is_corner(&self, places: &[DVec3], point: &Point, [first, second]: [&Facing; 2], edge: f64) -> bool {
+        let height = |at: DVec3| first.normal.dot(at - first.at);
+        let rises = || match point.triangle {
+            None => height(second.at) > 0.0,
+            Some(_) => self.corners(places, second.triangle).into_iter().any(|corner| height(corner) > ALIKE * edge),
+        };
         first.normal.dot(second.normal) < CORNER && rises()
     }
 }
@@ -274,19 +278,21 @@ mod tests {
         }
     }
 
-    /// A floor and a wall at its end x = 0, up from it or down, and a point that is a little or not at all inside both.
+    /// A floor and a wall at its end x = 0, up from it or down, and a point of a face that is a little or not at all
+    /// inside both.
     #[test]
     fn a_wall_that_rises_is_another_face_and_one_that_falls_off_is_not() {
         for (rises, end) in [(true, 1.0), (false, -1.0)] {
             for height in [-1e-4, -1e-9, 0.0, 1e-9] {
                 let floor = [(0.0, -1.0, 0.0), (1.0, -1.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0)];
-                let wall = [(0.0, -1.0, end), (0.0, 1.0, end), (1e-9, 0.1, height)];
-                let places: Vec<DVec3> = floor.into_iter().chain(wall).map(DVec3::from).collect();
-                let mut triangles = vec![[0, 1, 2], [0, 2, 3]];
-                // out of it is +x where it rises, −x where it falls off
-                triangles.extend([[0, 3, 5], [0, 5, 4]]);
-                let surfaces = Surfaces::new(7, triangles, vec![0; 4], vec![0.5; 4]);
-                let faced = faced(&surfaces, &places, &Point::node(1, 6), &[0, 1, 2, 3], |_| 0.2);
+                let wall = [(0.0, -1.0, end), (0.0, 1.0, end)];
+                let face = [(1e-9, 0.1, height), (1.0, 0.0, 1.0), (0.0, 1.0, 1.0)];
+                let places: Vec<DVec3> = floor.into_iter().chain(wall).chain(face).map(DVec3::from).collect();
+                // out of the wall is +x where it rises, −x where it falls off
+                let triangles = vec![[0, 1, 2], [0, 2, 3], [0, 3, 5], [0, 5, 4], [6, 8, 7]];
+                let surfaces = Surfaces::new(9, triangles, vec![0, 0, 0, 0, 1], vec![0.5; 5]);
+                let point = Point { triangle: Some(4), ..Point::node(1, 6) };
+                let faced = faced(&surfaces, &places, &point, &[0, 1, 2, 3], |_| 0.2);
                 assert!(faced.first.is_some(), "{rises}, {height}");
                 assert_eq!(faced.second.is_some(), rises, "{rises}, {height}: {faced:?}");
             }

@@ -92,7 +92,8 @@ pub(super) fn add_forces(world: &World, body: Entity, forces: &mut [DVec3]) {
     }
 }
 
-/// Adds to the energies of bodies those of free tools: work done on them counts with that of loads, where it is counted.
+/// Adds to the energies of bodies those of free tools: work done on them counts with that of loads, where it is
+/// counted.
 pub(super) fn add_energies(world: &World, sum: &mut Energies) {
     let (Some(tools), Some(motions)) = (world.get_resource::<FreeTools>(), world.get_resource::<FreeMotions>()) else {
         return;

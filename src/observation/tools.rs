@@ -134,8 +134,8 @@ pub fn read_tool(world: &mut World, tool: &str) -> Result<ToolReading, Error> {
     Ok(reading)
 }
 
-/// Where a tool's origin is (m) and how it is turned (axis times angle, degrees), or the velocity of its origin (m/s) and
-/// how fast it turns (rad/s) in the middle of the last step.
+/// Where a tool's origin is (m) and how it is turned (axis times angle, degrees), or the velocity of its origin (m/s)
+/// and how fast it turns (rad/s) in the middle of the last step.
 pub(super) fn way_of(world: &mut World, tool: &str, of_velocity: bool) -> [DVec3; 2] {
     let clock = *world.resource::<Clock>();
     let degrees = |turn: DQuat| turn.to_scaled_axis() * (180.0 / std::f64::consts::PI);

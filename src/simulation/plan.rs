@@ -178,8 +178,8 @@ impl Grouping<'_> {
         together
     }
 
-    /// On the CPU what concerns only nodes that are inside no patch (contact between surfaces, glue) does not keep those
-    /// inside from moving with their patch.
+    /// On the CPU what concerns only nodes that are inside no patch (contact between surfaces, glue) does not keep
+    /// those inside from moving with their patch.
     fn ahead(&self, passes: Vec<Pass>, world: &World) -> Vec<Pass> {
         let mut passes: VecDeque<Pass> = passes.into();
         let mut all = Vec::new();

@@ -37,8 +37,8 @@ impl Sums {
             return self.add(center, edges, 1.0);
         }
         if halvings == 0 {
-            // a ramp as wide as the cube: it has the variance, half²/3, of the share of a cube that a plane cuts off, whatever
-            // its normal
+            // a ramp as wide as the cube: it has the variance, half²/3, of the share of a cube that a plane cuts off,
+            // whatever its normal
             return self.add(center, edges, (0.5 - 0.5 * distance / half).clamp(0.0, 1.0));
         }
         for corner in 0..8 {
@@ -50,8 +50,8 @@ impl Sums {
 }
 
 impl Geometry {
-    /// Volume (m³), centre (m) and, for a density of one, moments of inertia about it (m⁵): of balls and of boxes that are
-    /// not rounded in closed form, of others to some 1e-4. `None` of a plane, which has no end.
+    /// Volume (m³), centre (m) and, for a density of one, moments of inertia about it (m⁵): of balls and of boxes that
+    /// are not rounded in closed form, of others to some 1e-4. `None` of a plane, which has no end.
     pub fn volume_moments(&self) -> Option<(f64, DVec3, DMat3)> {
         if let Self::Analytic(solid) = self {
             match *solid.shape() {
@@ -87,8 +87,8 @@ impl Geometry {
         Some((volume, middle, about(second - outer * volume)))
     }
 
-    /// What resists its motion if it is filled evenly: a mass (kg), or a density (kg/m³) where there is none. `None` of a
-    /// plane.
+    /// What resists its motion if it is filled evenly: a mass (kg), or a density (kg/m³) where there is none. `None` of
+    /// a plane.
     pub fn filled(&self, mass: Option<f64>, density: f64) -> Option<Inertia> {
         let (volume, center, moments) = self.volume_moments()?;
         let mass = mass.unwrap_or(density * volume);

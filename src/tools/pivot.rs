@@ -6,8 +6,8 @@ use glam::DVec3;
 const ROUNDS: usize = 200;
 
 /// The least distance (m) from a point to where an origin may be: straight from place to place, and to each of these
-/// added moves, displacements (m) times factors within bounds. What one move does may depend on another, and on where on
-/// its way it is: then the origin may stay farther away than this.
+/// added moves, displacements (m) times factors within bounds. What one move does may depend on another, and on where
+/// on its way it is: then the origin may stay farther away than this.
 pub fn closest_approach(path: &[DVec3], moves: &[(DVec3, [f64; 2])], point: DVec3) -> f64 {
     let of_leg = |from: DVec3, way: Option<DVec3>| {
         let mut all: Vec<(DVec3, [f64; 2], f64)> =

@@ -70,10 +70,10 @@ impl RigidMotion {
 
     /// Where it is after a time (s) in which nothing pushes it.
     ///
-    /// The turn is that of the implicit midpoint rule for Euler's equations, Π' = Π × J⁻¹ Π with the angular momentum Π in
-    /// the body's axes: (I + [v]) Π̄ = Π, v = ½ Δt J⁻¹ Π̄, Π̄ of the middle, and the unit quaternion (1, v)/√(1 + v²). Of
-    /// second order and the same backwards; angular momentum and energy, which are quadratic, are kept to rounding
-    /// whatever Δt is (Simo & Wong 1991; Lewis & Simo 1994).
+    /// The turn is that of the implicit midpoint rule for Euler's equations, Π' = Π × J⁻¹ Π with the angular momentum Π
+    /// in the body's axes: (I + [v]) Π̄ = Π, v = ½ Δt J⁻¹ Π̄, Π̄ of the middle, and the unit quaternion (1, v)/√(1 +
+    /// v²). Of second order and the same backwards; angular momentum and energy, which are quadratic, are kept to
+    /// rounding whatever Δt is (Simo & Wong 1991; Lewis & Simo 1994).
     pub fn after(&self, time: f64, inertia: &Inertia) -> Self {
         let begin = self.turn.conjugate() * self.momentum;
         let half = |middle: DVec3| inertia.inverse * middle * (0.5 * time);

@@ -74,9 +74,9 @@ impl Contact {
 }
 
 /// Finds the forces between a tool that would move so and nodes near it. Contacts take turns (projected Gauss and
-/// Seidel): each finds its own force from where its node and the tool end by now, with the compliance of both, so that a
-/// sweep never adds energy; forces never pull, and friction is at most μ times the push. Turns are taken in the order of
-/// nodes, until nothing changes: the same bits on any number of threads. How far the tool turns is linear within a
+/// Seidel): each finds its own force from where its node and the tool end by now, with the compliance of both, so that
+/// a sweep never adds energy; forces never pull, and friction is at most μ times the push. Turns are taken in the order
+/// of nodes, until nothing changes: the same bits on any number of threads. How far the tool turns is linear within a
 /// sweep, and looked at anew in the next.
 pub(super) fn solve(step: &ToolStep<'_>, near: Vec<Near>) -> Solved {
     let ToolStep { tool, response, .. } = step;

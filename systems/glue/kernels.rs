@@ -1,7 +1,7 @@
-//! The kernels of `glue`. In a step, for each body: where its tied nodes are (`shaders/glue_place.wgsl`), and where they
-//! would go (`surface_contact_foresee`); how far its ties are off (`glue`). Then for all: into how many shares masses
-//! are split (`glue_share`), and in each sweep the forces (`glue_correct`) and what they do to nodes (`glue_apply`). At
-//! last, for each body: what becomes of its ties (`glue_note`), and its loads (`glue_push`).
+//! The kernels of `glue`. In a step, for each body: where its tied nodes are (`shaders/glue_place.wgsl`), and where
+//! they would go (`surface_contact_foresee`); how far its ties are off (`glue`). Then for all: into how many shares
+//! masses are split (`glue_share`), and in each sweep the forces (`glue_correct`) and what they do to nodes
+//! (`glue_apply`). At last, for each body: what becomes of its ties (`glue_note`), and its loads (`glue_push`).
 
 use super::work::{TieNodes, nodes_of, parts_of};
 use super::{BROKE, HOLDS};

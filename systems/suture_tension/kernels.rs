@@ -85,8 +85,8 @@ impl<'a> Threads<'a> {
         words
     }
 
-    /// Words of `suture_pulled`: where the threads at each of a body's sutured nodes begin, and after them these: thread
-    /// and weight, which is negative of second ends.
+    /// Words of `suture_pulled`: where the threads at each of a body's sutured nodes begin, and after them these:
+    /// thread and weight, which is negative of second ends.
     fn pulled_words(&self, body: Entity, sutured: &Sutured) -> Vec<u32> {
         let mut of_nodes: Vec<Vec<[u32; 2]>> = vec![Vec::new(); sutured.rows.len()];
         for (thread, &suture) in (0..).zip(&self.threads) {

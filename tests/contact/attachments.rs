@@ -182,14 +182,14 @@ fn what_goes_in_a_grasp_is_let_go() {
         let (work, has) = (energies.load_work.unwrap(), energies.kinetic + energies.strain + energies.hourglass);
         assert!(energies.removed > 0.01 * work && work > 0.0, "{what}: {energies:?}");
         near(&what, work, open.work - open.loss, open.work, run.bound(1e-9, 1e-4));
-        // as in `physics/removal.rs`: the work of a step is that of the mean of the forces at its ends, so where a force
-        // goes half of it over a step is not there: 2 mN at 6 cm/s over half of 0.1 ms are 6e-9 J
+        // as in `physics/removal.rs`: the work of a step is that of the mean of the forces at its ends, so where a
+        // force goes half of it over a step is not there: 2 mN at 6 cm/s over half of 0.1 ms are 6e-9 J
         near(&format!("{what}: {energies:?}"), has + energies.removed, work, work, 2e-3);
     }
 }
 
-/// Elements go on both sides of what is glued, and others on neither: ties of what went let go at that time and stay so,
-/// the others hold on; momentum changes by what went and by nothing else, and energies balance.
+/// Elements go on both sides of what is glued, and others on neither: ties of what went let go at that time and stay
+/// so, the others hold on; momentum changes by what went and by nothing else, and energies balance.
 #[test]
 fn ties_of_what_goes_let_go() {
     let text = "(duration: 0.08, bodies: {

@@ -83,7 +83,8 @@ fn a_ball_that_is_let_go_comes_to_rest_on_tissue_and_weighs_on_what_holds_it() {
         let held = simulation.summary("").unwrap().probes["held"].1.clone();
         near(&format!("{}: what holds it", run.name), held[2], weight + tissue, weight, 2e-3);
         assert!(free.velocity.length() < 2e-4 && free.spin.length() < 0.02, "{}: {free:?}", run.name);
-        // friction at rest is one of many states: turns are taken in order, and so it leans by a hundredth of its radius
+        // friction at rest is one of many states: turns are taken in order, and so it leans by a hundredth of its
+        // radius
         assert!(free.center.truncate().distance(DVec3::splat(0.015).truncate()) < 2e-4, "{}: {free:?}", run.name);
         assert!(reading.nodes > 4 && reading.penetration < run.bound(1e-12, 1e-8), "{}: {reading:?}", run.name);
         // it has sunk in, and gravity did the work for it
@@ -93,9 +94,9 @@ fn a_ball_that_is_let_go_comes_to_rest_on_tissue_and_weighs_on_what_holds_it() {
     }
 }
 
-/// A body that is heavier than all tissue goes on as a guided tool goes, and does to tissue what that does: its own share
-/// of each correction is 1e-9 of it. With friction on a flat one: on round ones `tool_contact` keeps what it pushed in
-/// earlier turns along the normals of these.
+/// A body that is heavier than all tissue goes on as a guided tool goes, and does to tissue what that does: its own
+/// share of each correction is 1e-9 of it. With friction on a flat one: on round ones `tool_contact` keeps what it
+/// pushed in earlier turns along the normals of these.
 #[test]
 fn a_tool_too_heavy_to_be_held_up_is_a_guided_one() {
     let rod = ("Capsule(length: 0.05, radius: 0.006)", 0.0152, "");

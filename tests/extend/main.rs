@@ -131,9 +131,9 @@ fn an_element_is_named_in_its_files_and_in_the_list() {
     assert!(named.iter().all(expected), "where `wedge6` is named: {named:?}");
 }
 
-/// A load is a Rust file and a WGSL file, with its lines in the step's list; its fields in scenes are a variant of `Load`.
-/// What copies parts of scenes, checks, spawns, prunes and snapshots loads, and what takes elements away from behind them,
-/// knows none by its name.
+/// A load is a Rust file and a WGSL file, with its lines in the step's list; its fields in scenes are a variant of
+/// `Load`. What copies parts of scenes, checks, spawns, prunes and snapshots loads, and what takes elements away from
+/// behind them, knows none by its name.
 #[test]
 fn a_load_is_named_in_its_files_in_the_list_and_where_scenes_are_read() {
     for (kind, system) in [("Traction", "traction"), ("NodalForce", "nodal_force")] {

@@ -1,5 +1,5 @@
-//! A node system that is for nodes of its choice, keeps numbers of its own and tells what energy it holds: by public API,
-//! on both backends, in the passes of the engine's own.
+//! A node system that is for nodes of its choice, keeps numbers of its own and tells what energy it holds: by public
+//! API, on both backends, in the passes of the engine's own.
 
 use super::bond;
 use sinew::gpu_or_reason;

@@ -89,10 +89,10 @@ fn foreseen(world: &World, body: Entity, row: u32) -> Foreseen {
     IntegrationCoefficients::<f64>::of(world.resource::<Clock>()).foresee(mass, damping, axes, before, force)
 }
 
-/// A force is a sum of distances over D = Σ |w| W r, with r the response of a node and W the weights of its ties. Off is
-/// a sum of three gaps in a frame of some ten roundings and of up to 13 nodes' displacements, the next step one of as
-/// many steps, each of which is found in some ten roundings: 100 of the largest of these terms a sweep, and D itself is
-/// a sum of so many positive ones. What a sweep leaves wrong in steps is no more than that, and goes into the next.
+/// A force is a sum of distances over D = Σ |w| W r, with r the response of a node and W the weights of its ties. Off
+/// is a sum of three gaps in a frame of some ten roundings and of up to 13 nodes' displacements, the next step one of
+/// as many steps, each of which is found in some ten roundings: 100 of the largest of these terms a sweep, and D itself
+/// is a sum of so many positive ones. What a sweep leaves wrong in steps is no more than that, and goes into the next.
 fn bounds(pair: &Pair, sweeps: u32) -> Bounds {
     let world = pair.before();
     let glue = world.resource::<Glue>();
@@ -176,8 +176,8 @@ fn ties_hold_the_same_points_with_the_same_forces() {
     }
 }
 
-/// Threads between the blocks and within one, of which some are slack, some tear, one has torn before, one has lost half
-/// of its tissue and one all of it.
+/// Threads between the blocks and within one, of which some are slack, some tear, one has torn before, one has lost
+/// half of its tissue and one all of it.
 fn sutured(analysis: &str) -> Simulation {
     let low = |x: f64, y: f64| format!("(body: \"low\", at: ({x}, {y}, 0.0187))");
     let high = |x: f64, y: f64| format!("(body: \"high\", at: ({x}, {y}, 0.0221))");

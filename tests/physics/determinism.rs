@@ -156,8 +156,8 @@ fn both_schemes_move_alike() {
     }
 }
 
-/// Bodies in f32 whose rest shapes are larger than caches find them from places at rest, which two passes do not. Places
-/// are known to 2⁻²⁴ of a patch of ten edges, so that shapes differ by some 1e-6.
+/// Bodies in f32 whose rest shapes are larger than caches find them from places at rest, which two passes do not.
+/// Places are known to 2⁻²⁴ of a patch of ten edges, so that shapes differ by some 1e-6.
 #[test]
 #[ignore = "long"]
 fn rest_shapes_from_places_are_those_that_are_read() {

@@ -41,7 +41,8 @@ pub enum Instructions {
     Portable,
 }
 
-/// The pool of so many threads: simulations of a process that ask for as many share it, as long as one of them is there.
+/// The pool of so many threads: simulations of a process that ask for as many share it, as long as one of them is
+/// there.
 fn pool_of(threads: usize) -> Option<Arc<rayon::ThreadPool>> {
     static POOLS: Mutex<Vec<Weak<rayon::ThreadPool>>> = Mutex::new(Vec::new());
     let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);

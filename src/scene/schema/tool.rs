@@ -249,8 +249,8 @@ pub enum ContactLaw {
     Kinematic,
     /// A spring where they are inside: they sink in, and come back.
     Penalty {
-        /// The stiffness as a share of mass over the square of the step; at most 4 (1 − s²) at the share s of the stable
-        /// step, .76 at .9.
+        /// The stiffness as a share of mass over the square of the step; at most 4 (1 − s²) at the share s of the
+        /// stable step, .76 at .9.
         share: f64,
         /// The damping ratio of the spring.
         #[serde(default)]

@@ -55,6 +55,12 @@ pub const SHORTFALLS: &[Shortfall] = &[
         verdict: CaseVerdict::Failed,
         why: "a GPU's kernels know places in f32, and nodes of tetrahedra at rest go at 2.5e-6 to 3e-6 m/s where 1.8e-6 is what their last bit makes",
     },
+    Shortfall {
+        case: "h57",
+        on: |c, _| c.is_gpu() && c.elements == ElementKind::Hex8MeanDilatation,
+        verdict: CaseVerdict::FailedHonestly,
+        why: "a corner on an edge, in f32 on a GPU: elements come to hold 5.3 % more than was spent on them, where 5 are allowed; on the CPU it rests",
+    },
 ];
 
 /// What is known of a case in a configuration, in full or in the size for everyday.

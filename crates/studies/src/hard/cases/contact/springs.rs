@@ -20,7 +20,8 @@ pub fn restitution_of_nodes(trial: &mut Trial<'_>) -> Result<(), Error> {
     // ten steps and a third away
     simulation.advance_to(12e-4 + 1e-9)?;
     let stopped = simulation.probe("struck")?[2];
-    trial.most("kinematic: what two steps leave (m/s)", stopped, trial.bound(1e-9, 1e-7));
+    // of f32 the last digit of a place of 2 cm in a step of .1 ms
+    trial.most("kinematic: what two steps leave (m/s)", stopped, trial.bound(1e-9, 2e-5));
     // how a spring gives back depends on where in a step it is met, the less the softer it is
     for (share, damping, off) in [(0.1, 0.0, 0.005), (0.01, 0.1, 0.025), (0.01, 0.3, 0.025), (0.01, 0.5, 0.025)] {
         let law = format!("contacts[0].law=Penalty(share: {share}, damping: {damping})");
@@ -46,14 +47,15 @@ pub fn stiffest(trial: &mut Trial<'_>) -> Result<(), Error> {
     let mut simulation = trial.start(&sets(0.95 * 0.5 * stiffest))?;
     simulation.advance(if trial.full { 100_000 } else { 5000 })?;
     let weight = 9.81 * mass(&mut simulation, "body")?;
-    trial.near("weight of both on the table (N)", -simulation.tool("table")?.force.z, 2.0 * weight, 1e-3);
-    trial.near("weight of one on the other (N)", simulation.contact("other")?.force.z, weight, 1e-3);
-    if !trial.configuration.is_tets() {
-        // by the masses of nodes, which of hexahedra are even: m Δt⁻² f δ = p A
-        let (step, layer) = (simulation.time_step(), 0.02 / 3.0);
-        let depth = 2.0 * 9.81 * (2.0 * 0.02) * step * step / (0.95 * 0.5 * stiffest * layer);
-        trial.near("how deep the table is in it (m)", simulation.tool("table")?.penetration, depth, 0.05);
+    // at the bound they rattle, with periods of two steps and more: means
+    let (steps, mut table, mut other) = (1000, 0.0, 0.0);
+    for _ in 0..steps {
+        simulation.advance(1)?;
+        table -= simulation.tool("table")?.force.z / f64::from(steps);
+        other += simulation.contact("other")?.force.z / f64::from(steps);
     }
+    trial.near("weight of both on the table (N)", table, 2.0 * weight, 0.01);
+    trial.near("weight of one on the other (N)", other, weight, 0.01);
     trial.refused(
         "a spring that is too stiff for the step",
         trial.start(&sets(1.1 * 0.5 * stiffest)),

@@ -142,9 +142,9 @@ pub fn drop(trial: &mut Trial<'_>) -> Result<(), Error> {
             format!("bodies.body.mesh.cells=({layers}, {layers}, {layers})"),
             format!("bodies.body.translate=(0, 0, {height})"),
             // what is told of the touching layer is told two steps later, and must be over before the layers above it
-            // bring more: by the stable step, which takes .6 of the time of a wave through a layer, what is lost comes to
-            // 1.15 of the half layer's, where 1.05 are allowed. And of one length, so that velocities are those of the
-            // middle of steps at both ends
+            // bring more: by the stable step, which takes .6 of the time of a wave through a layer, what is lost comes
+            // to 1.15 of the half layer's, where 1.05 are allowed. And of one length, so that velocities are those of
+            // the middle of steps at both ends
             format!("integration=(step: {}, when_unstable: Watch)", 0.1 * 0.02 / f64::from(layers) / wave(BARS[0])),
         ];
         let mut simulation = trial.start(&sets)?;
