@@ -67,6 +67,7 @@ fn json_holds_what_the_page_says() {
             "grab",
             "surface_contact",
             "glue",
+            "free_tool",
             "tool_contact",
             "grasp",
             "tool_removal",
