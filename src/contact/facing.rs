@@ -286,10 +286,11 @@ mod tests {
             for height in [-1e-4, -1e-9, 0.0, 1e-9] {
                 let floor = [(0.0, -1.0, 0.0), (1.0, -1.0, 0.0), (1.0, 1.0, 0.0), (0.0, 1.0, 0.0)];
                 let wall = [(0.0, -1.0, end), (0.0, 1.0, end)];
-                let face = [(1e-9, 0.1, height), (1.0, 0.0, 1.0), (0.0, 1.0, 1.0)];
+                // it looks straight down
+                let face = [(1e-9, 0.1, height), (1e-9, 1.1, height), (1.0, 0.1, height)];
                 let places: Vec<DVec3> = floor.into_iter().chain(wall).chain(face).map(DVec3::from).collect();
                 // out of the wall is +x where it rises, −x where it falls off
-                let triangles = vec![[0, 1, 2], [0, 2, 3], [0, 3, 5], [0, 5, 4], [6, 8, 7]];
+                let triangles = vec![[0, 1, 2], [0, 2, 3], [0, 3, 5], [0, 5, 4], [6, 7, 8]];
                 let surfaces = Surfaces::new(9, triangles, vec![0, 0, 0, 0, 1], vec![0.5; 5]);
                 let point = Point { triangle: Some(4), ..Point::node(1, 6) };
                 let faced = faced(&surfaces, &places, &point, &[0, 1, 2, 3], |_| 0.2);
