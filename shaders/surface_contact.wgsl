@@ -137,7 +137,7 @@ fn note(contact: u32, node: u32, of_body: u32, facing: Facing, kinematic_gap: f3
         if !(inside < 0.0) {
             return;
         }
-        gap = min(share * inside + 2.0 * damping * sqrt(share) * dot(facing.normal, came), 0.0);
+        gap = spring_gap(share, damping, inside, dot(facing.normal, came));
         acts = BY_SPRING;
     } else if !(gap + dot(facing.normal, relative) < 0.0) {
         return;

@@ -1,5 +1,5 @@
 // Rigid tools keep nodes outside; twin of systems/tool_contact.rs. TOOLS and NUMBERS are generated; tools are in
-// tool_row.wgsl, foresee in foreseen.wgsl.
+// tool_row.wgsl, foresee in foreseen.wgsl, spring_gap in contact_spring.wgsl.
 struct Limits {
     edge: f32, // who is farther off cannot be there within a step (m)
     settling: f32, // how fast nodes inside a tool come out (m/s); in a static analysis a tenth of an edge a step
@@ -27,16 +27,6 @@ struct Touch {
     push: f32, // and how far outwards
     touches: bool,
     slides: bool, // whether friction does not hold it
-}
-
-// The gap (m) that the kinematic law would have to close for the force of a tool's spring, outside by so much (m),
-// going outwards by so much in a step (m).
-fn spring_gap(tool: u32, outside: f32, outwards: f32) -> f32 {
-    if outside >= 0.0 {
-        return 0.0;
-    }
-    let share = tools[tool].share;
-    return min(share * outside + 2.0 * tools[tool].damping * sqrt(share) * outwards, 0.0);
 }
 
 fn predict(tool: u32, place: vec3<f32>, before: vec3<f32>, predicted: vec3<f32>, sticks: bool) -> Touch {
@@ -73,7 +63,8 @@ fn predict(tool: u32, place: vec3<f32>, before: vec3<f32>, predicted: vec3<f32>,
         let at_here = vec4<f32>(here, 1.0);
         touch.normal = vec3<f32>(dot(earlier[0].xyz, now.xyz), dot(earlier[1].xyz, now.xyz), dot(earlier[2].xyz, now.xyz));
         touch.tool_step = vec3<f32>(dot(change[0], at_here), dot(change[1], at_here), dot(change[2], at_here));
-        touch.gap = spring_gap(tool, now.w, dot(touch.normal, before - touch.tool_step));
+        touch.gap = spring_gap(
+            tools[tool].share, tools[tool].damping, now.w, dot(touch.normal, before - touch.tool_step));
         touch.touches = touch.gap < 0.0;
     }
     return touch;

@@ -11,7 +11,7 @@ mod survey;
 
 use super::node_slices::BodyColumns;
 use super::system::{Phase, System};
-use crate::backend::cpu::{Cpu, Foreseen};
+use crate::backend::cpu::Cpu;
 use crate::components::*;
 use crate::contact::{ContactSet, Lists, Near, Point, Surfaces, Tree};
 use crate::math::Scalar;
@@ -143,7 +143,8 @@ struct Surface {
     // what a step finds, kept so that the next one need not ask for memory
     found: Vec<faced::Found>,
     met: Vec<meet::Met>,
-    foreseen: Vec<(u32, Foreseen)>,
+    /// Nodes of the set, by their place in it.
+    acted_on: Vec<u32>,
     forces: Vec<DVec3>,
     set: ContactSet,
     /// How far the fastest node went in a step, when lists for a GPU were made (m).

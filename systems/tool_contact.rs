@@ -362,5 +362,6 @@ fn stage(body: Entity, contacts: &ToolContacts, world: &mut World, buffers: &mut
     let stage = tool_stage(body, of, world, buffers);
     let counts_work = u32::from(world.resource::<Clock>().relaxation.is_none());
     let limits = Limits { edge: contacts.edge as f32, settling: contacts.settling as f32, counts_work };
+    let stage = stage.own(shader!("contact_spring"));
     stage.bind_uniform::<Limits>("limits", buffers.uniform("tool contact".into(), &limits.bytes()))
 }

@@ -213,13 +213,14 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
     for _ in 0..glue.sweeps.max(1) {
         let correct = shared.with_nodes(of_all("glue_correct", shader!("glue_correct"), ties));
         all.push(correct.bind("glue_shares", shared.shares));
-        all.push(shared.with_nodes(of_all("glue_apply", shader!("glue_apply"), nodes)));
+        let apply = of_all("glue_apply", shader!("glue_apply"), nodes).fragment(shader!("glue_forces"));
+        all.push(shared.with_nodes(apply));
     }
     for &(body, of, uniform) in of_bodies.iter().filter(|(_, of, _)| of.tie_count > 0) {
         all.push(of_ties("glue_note", shader!("glue_note"), body, of, uniform, buffers));
     }
     for &(body, of, uniform) in &of_bodies {
-        let push = shared.of_ties("glue_push", shader!("glue_push"), uniform, world);
+        let push = shared.of_ties("glue_push", shader!("glue_push"), uniform, world).fragment(shader!("glue_forces"));
         let push = push.bind(ExternalForce::NAME, buffers.column(body, ExternalForce::NAME));
         all.push(push.bind("glue_rows", rows).threads(of.node_count));
     }

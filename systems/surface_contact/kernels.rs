@@ -111,6 +111,7 @@ pub(super) fn kernels(world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kerne
                 .with_nodes(kernel)
                 .fragment(touch_constants())
                 .fragment(shader!("surface_facing"))
+                .fragment(shader!("contact_spring"))
                 .fragment(shader!("surface_motion_turns"))
                 .bind("surface_rows", shared.rows)
                 .bind(SurfaceTouch::NAME, buffers.column(*body, SurfaceTouch::NAME))

@@ -160,21 +160,21 @@ fn gather<T: Scalar>(
     bodies: &[BodySlices<'_, T>],
 ) {
     set.clear();
-    let Surface { slots, met, foreseen, .. } = &mut contacts.surface;
-    let (mut slots, mut met, mut foreseen) = (std::mem::take(slots), std::mem::take(met), std::mem::take(foreseen));
+    let Surface { slots, met, acted_on, .. } = &mut contacts.surface;
+    let (mut slots, mut met, mut acted_on) = (std::mem::take(slots), std::mem::take(met), std::mem::take(acted_on));
     met.clear();
-    foreseen.clear();
+    acted_on.clear();
     let surface = &contacts.surface;
     let mut slot_of = |node: u32, set: &mut ContactSet| {
         let slot = &mut slots[node as usize];
         if *slot == u32::MAX {
-            *slot = foreseen.len() as u32;
+            *slot = acted_on.len() as u32;
             let (body, row) = surface.nodes[node as usize];
             let of_node = bodies[body as usize].foresee(row as usize, coefficients);
             set.steps.push(of_node.step);
             set.responses.push(of_node.free / of_node.to_force);
             set.earlier.push(of_node.before);
-            foreseen.push((node, of_node));
+            acted_on.push(node);
         }
         *slot
     };
@@ -226,9 +226,9 @@ fn gather<T: Scalar>(
             met.push(Met { point: one.nodes[0], first: false, gap: outside });
         }
     }
-    foreseen.iter().for_each(|(node, _)| slots[*node as usize] = u32::MAX);
+    acted_on.iter().for_each(|&node| slots[node as usize] = u32::MAX);
     let surface = &mut contacts.surface;
-    (surface.slots, surface.met, surface.foreseen) = (slots, met, foreseen);
+    (surface.slots, surface.met, surface.acted_on) = (slots, met, acted_on);
 }
 
 /// How far outside (m) a point would end that is to be kept there; with a spring how far it is, which is all that that
@@ -292,9 +292,9 @@ fn note_touches<T: Scalar>(
 
 /// Adds the forces to the loads.
 fn push<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &mut [BodySlices<'_, T>]) {
-    let Surface { nodes, foreseen, forces, pressed, .. } = &mut contacts.surface;
-    let pushed = foreseen.iter().zip(&*forces).filter(|(_, force)| **force != DVec3::ZERO);
-    for (&(node, _), &force) in pushed {
+    let Surface { nodes, acted_on, forces, pressed, .. } = &mut contacts.surface;
+    let pushed = acted_on.iter().zip(&*forces).filter(|(_, force)| **force != DVec3::ZERO);
+    for (&node, &force) in pushed {
         let (body, row) = nodes[node as usize];
         let (columns, row) = (&mut bodies[body as usize], row as usize);
         let load = vector(columns.external, row) + force;

@@ -48,6 +48,8 @@ pub const SUPPORT: &[(&str, &str)] = &[
     ("suction_nodes", "a part of suction_mouth"),
     ("suction_presence", "another"),
     ("suction_pressure", "another"),
+    ("contact_spring", "springs in place of the kinematic law, in tool_contact and surface_contact"),
+    ("glue_forces", "what ties do to a node, in glue_apply and glue_push"),
     ("foreseen", "where integrate will take a node, in tool_contact and grasp"),
     ("tool_grid", "distances to tools that are triangles"),
     ("tool_of_grid", "the same, in tool_contact and grasp"),

@@ -1,6 +1,6 @@
 //! `glue` and `suture_tension`: the same ties and threads hold, tear and pull, by the same forces.
 
-use super::pair::{Pair, UNIT, entities, run_in};
+use super::pair::{Pair, UNIT, entities, run_in, stir};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use sinew::backend::cpu::{Foreseen, IntegrationCoefficients};
@@ -23,21 +23,7 @@ fn world(attachments: &str, analysis: &str) -> Simulation {
         .unwrap_or_else(|wrong| panic!("{}", wrong.render(false)));
     let options = Options { backend: BackendChoice::Cpu, ..Options::default() };
     let mut simulation = Simulation::new(&scene, &options).unwrap();
-    let world = simulation.world_mut();
-    let mut random = fastrand::Rng::with_seed(3);
-    for body in entities::<Displacement>(world) {
-        let mut fill = |reals: &mut Reals, scale: f64| {
-            (0..reals.len()).for_each(|i| reals.set(i, scale * (2.0 * random.f64() - 1.0)));
-        };
-        fill(&mut world.get_mut::<Displacement>(body).unwrap(), 5e-5);
-        fill(&mut world.get_mut::<DisplacementIncrement>(body).unwrap(), 5e-5);
-        fill(&mut world.get_mut::<InternalForce>(body).unwrap(), 1e-3);
-        fill(&mut world.get_mut::<ExternalForce>(body).unwrap(), 1e-3);
-    }
-    let mut clock = world.resource_mut::<Clock>();
-    clock.step = 3;
-    let (window, times) = (clock.window_at(3), [3, 4].map(|step| f64::from(step) * clock.time_step));
-    world.resource_mut::<Signals>().evaluate(window, times);
+    stir(&mut simulation);
     simulation
 }
 

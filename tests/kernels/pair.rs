@@ -149,3 +149,22 @@ impl Pair {
         count
     }
 }
+
+/// Steps and forces of all bodies at random, in the fourth step: what attachments and surfaces begin with.
+pub fn stir(simulation: &mut sinew::Simulation) {
+    let world = simulation.world_mut();
+    let mut random = fastrand::Rng::with_seed(3);
+    for body in entities::<Displacement>(world) {
+        let mut fill = |reals: &mut Reals, scale: f64| {
+            (0..reals.len()).for_each(|i| reals.set(i, scale * (2.0 * random.f64() - 1.0)));
+        };
+        fill(&mut world.get_mut::<Displacement>(body).unwrap(), 5e-5);
+        fill(&mut world.get_mut::<DisplacementIncrement>(body).unwrap(), 5e-5);
+        fill(&mut world.get_mut::<InternalForce>(body).unwrap(), 1e-3);
+        fill(&mut world.get_mut::<ExternalForce>(body).unwrap(), 1e-3);
+    }
+    let mut clock = world.resource_mut::<Clock>();
+    clock.step = 3;
+    let (window, times) = (clock.window_at(3), [3, 4].map(|step| f64::from(step) * clock.time_step));
+    world.resource_mut::<Signals>().evaluate(window, times);
+}

@@ -1,6 +1,6 @@
 //! `surface_contact`: the same points touch the same faces, and by the same forces.
 
-use super::pair::{UNIT, entities, run_in, run_kernels};
+use super::pair::{UNIT, entities, run_in, run_kernels, stir};
 use sinew::backend::gpu::gpu_or_reason;
 use sinew::components::*;
 use sinew::systems::{Registry, SurfaceContacts};
@@ -21,26 +21,15 @@ fn world(friction: f64, more: &str) -> Simulation {
         .unwrap_or_else(|wrong| panic!("{}", wrong.render(false)));
     let options = Options { backend: BackendChoice::Cpu, ..Options::default() };
     let mut simulation = Simulation::new(&scene, &options).unwrap();
+    stir(&mut simulation);
     let world = simulation.world_mut();
-    let mut random = fastrand::Rng::with_seed(3);
     for body in entities::<ContactForce>(world) {
-        let mut fill = |reals: &mut Reals, scale: f64| {
-            (0..reals.len()).for_each(|i| reals.set(i, scale * (2.0 * random.f64() - 1.0)));
-        };
-        fill(&mut world.get_mut::<Displacement>(body).unwrap(), 5e-5);
-        fill(&mut world.get_mut::<DisplacementIncrement>(body).unwrap(), 5e-5);
-        fill(&mut world.get_mut::<InternalForce>(body).unwrap(), 1e-3);
-        fill(&mut world.get_mut::<ExternalForce>(body).unwrap(), 1e-3);
         let mut touch = world.get_mut::<SurfaceTouch>(body).unwrap();
         for row in 0..touch.len() / MEETING_NUMBERS {
             touch.set(MEETING_NUMBERS * row + 4, f64::from(row as u32 % 4));
             touch.set(MEETING_NUMBERS * row, 1e-6);
         }
     }
-    let mut clock = world.resource_mut::<Clock>();
-    clock.step = 3;
-    let (window, times) = (clock.window_at(3), [3, 4].map(|step| f64::from(step) * clock.time_step));
-    world.resource_mut::<Signals>().evaluate(window, times);
     simulation
 }
 
