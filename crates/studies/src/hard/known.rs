@@ -61,12 +61,6 @@ pub const SHORTFALLS: &[Shortfall] = &[
         verdict: CaseVerdict::FailedHonestly,
         why: "a corner on an edge, in f32 on a GPU: elements come to hold 5.3 % more than was spent on them, where 5 are allowed; on the CPU it rests",
     },
-    Shortfall {
-        case: "h61",
-        on: |c, _| c.elements == ElementKind::Tet4,
-        verdict: CaseVerdict::Failed,
-        why: "when forceps open, momentum changes in a step by 1.12 of what weight and damping make: it has not been found why",
-    },
 ];
 
 /// What is known of a case in a configuration, in full or in the size for everyday.
