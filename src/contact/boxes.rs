@@ -94,8 +94,9 @@ impl Tree {
                 continue;
             }
             if place >= leaves {
-                let from = LEAF * (place - leaves);
-                self.order[from..self.order.len().min(from + LEAF)].iter().for_each(|&triangle| see(triangle));
+                // the last leaves may be empty, and are no farther than what is infinite
+                let own = self.order.chunks(LEAF).nth(place - leaves);
+                own.into_iter().flatten().for_each(|&triangle| see(triangle));
                 continue;
             }
             waiting[count] = 2 * place + 1;
@@ -139,6 +140,9 @@ mod tests {
             let mut tree = Tree::new(0..count as u32, |triangle| corners[triangle as usize]);
             corners.iter_mut().flatten().for_each(|corner| *corner += 0.3 * DVec3::new(corner.y, -corner.x, 1.0));
             tree.refit(|triangle| corners[triangle as usize]);
+            let mut all = 0;
+            tree.near(DVec3::ZERO, f64::INFINITY, |_| all += 1);
+            assert_eq!(all, count, "all are within any distance");
             for _ in 0..20 {
                 let (at, radius) = (2.0 * place() - 0.5, 0.2);
                 let mut seen = Vec::new();
