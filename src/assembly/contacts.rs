@@ -123,7 +123,8 @@ pub(super) fn geometries(scene: &SceneFile, diagnostics: &mut Diagnostics) -> BT
 /// The distances of a tool that is a file of triangles.
 fn grid(scene: &SceneFile, mesh: &ToolMesh) -> Result<DistanceGrid, String> {
     let bytes = scene.bytes(&mesh.path, u64::MAX).map_err(|error| format!("{}: {error}", mesh.path))?;
-    let mut surface = Triangles::from_bytes(&mesh.path, &bytes).map_err(|error| error.to_string())?;
+    let beside = |name: &str| scene.bytes_beside(&mesh.path, name);
+    let mut surface = Triangles::from_bytes_beside(&mesh.path, &bytes, &beside).map_err(|error| error.to_string())?;
     surface.points.iter_mut().for_each(|point| *point *= mesh.scale);
     let spacing = mesh.spacing.unwrap_or_else(|| DistanceGrid::usual_spacing(&surface));
     DistanceGrid::new(&surface, spacing).map_err(|error| format!("{}: {error}", mesh.path))

@@ -21,6 +21,9 @@ pub struct SkinState {
     pub points: Vec<DVec3>,
     /// Outward normals there, of length 1; zero at points of no triangle.
     pub normals: Vec<DVec3>,
+    /// Texture coordinates (u, v) there, v upwards; nothing of skins without. Where they differ at a place of the surface
+    /// it has several points, with one normal.
+    pub texture: Vec<[f32; 2]>,
     /// The triangles that are left, by rows of `points`, the right-hand normal outwards.
     pub triangles: Vec<[u32; 3]>,
     /// The author's number of the element that carries each point; -1 where none is left.
@@ -53,17 +56,21 @@ pub fn skin_of(world: &mut World, body: Entity) -> Result<Option<SkinState>, Err
     let ids = authoring.element_ids.clone();
     let Some(mut skin) = world.get_mut::<Skin>(body) else { return Ok(None) };
     skin.update_alive(alive);
-    let (rest, points, triangles) = (skin.places(&rest), skin.places(&nodes), skin.triangles());
+    let (rest, places) = (skin.places(&rest), skin.places(&nodes));
+    let (triangles, pictured): (Vec<_>, Vec<_>) = skin.triangles().into_iter().unzip();
+    let normals = normals(&places, &triangles);
     let carriers = skin.embedding().carriers();
     let element = |carrier: &Carrier| ids.of(carrier.element) as i64;
     let weights = |carrier: &Carrier| carrier.weights.map(|weight| weight as f32);
+    let rows = || skin.pictured().points.iter().map(|&point| point as usize);
     Ok(Some(SkinState {
-        normals: normals(&points, &triangles),
-        elements: carriers.iter().map(|carrier| carrier.as_ref().map_or(-1, element)).collect(),
-        weights: carriers.iter().map(|carrier| carrier.as_ref().map_or([0.0; MOST_NODES], weights)).collect(),
-        rest,
-        points,
-        triangles,
+        normals: rows().map(|row| normals[row]).collect(),
+        elements: rows().map(|row| carriers[row].as_ref().map_or(-1, element)).collect(),
+        weights: rows().map(|row| carriers[row].as_ref().map_or([0.0; MOST_NODES], weights)).collect(),
+        rest: rows().map(|row| rest[row]).collect(),
+        points: rows().map(|row| places[row]).collect(),
+        texture: skin.pictured().texture.clone(),
+        triangles: pictured,
     }))
 }
 
@@ -89,19 +96,18 @@ pub fn write(world: &mut World, body: Entity, series: &mut Series) -> Result<(),
     let number = bodies(world).iter().position(|other| *other == body).unwrap_or(0);
     let body = vec![number as u32; skin.rest.len()];
     let cells = Cells::triangles(&skin.triangles);
-    let frame = Frame {
-        time: world.resource::<Clock>().time(),
-        points: &skin.rest,
-        cells: &cells,
-        point_arrays: vec![
-            Array { name: "displacement", components: 3, values: Values::F32(&displacement) },
-            Array { name: "normal", components: 3, values: Values::F32(&normal) },
-            Array { name: "body", components: 1, values: Values::U32(&body) },
-            Array { name: "element", components: 1, values: Values::I64(&skin.elements) },
-            Array { name: "weights", components: MOST_NODES, values: Values::F32(skin.weights.as_flattened()) },
-        ],
-        cell_arrays: Vec::new(),
-    };
+    let mut point_arrays = vec![
+        Array { name: "displacement", components: 3, values: Values::F32(&displacement) },
+        Array { name: "normal", components: 3, values: Values::F32(&normal) },
+        Array { name: "body", components: 1, values: Values::U32(&body) },
+        Array { name: "element", components: 1, values: Values::I64(&skin.elements) },
+        Array { name: "weights", components: MOST_NODES, values: Values::F32(skin.weights.as_flattened()) },
+    ];
+    if !skin.texture.is_empty() {
+        point_arrays.push(Array { name: "texture", components: 2, values: Values::F32(skin.texture.as_flattened()) });
+    }
+    let time = world.resource::<Clock>().time();
+    let frame = Frame { time, points: &skin.rest, cells: &cells, point_arrays, cell_arrays: Vec::new() };
     world.resource::<Cpu>().confine(|| series.write(&frame))?;
     Ok(())
 }

@@ -75,6 +75,16 @@ impl SceneFile {
         self.file_access().bytes(name, most)
     }
 
+    /// What a file holds that another file of the scene names, its path relative to that one's folder.
+    ///
+    /// # Errors
+    /// In words, as [`Self::bytes`].
+    pub fn bytes_beside(&self, file: &str, name: &str) -> Result<Vec<u8>, String> {
+        let path = Path::new(file).with_file_name(name);
+        let bytes = self.bytes(&path.to_string_lossy(), u64::MAX).map_err(|error| error.to_string())?;
+        Ok(bytes.into_owned())
+    }
+
     /// What a name stands for, and the names of the files that are where it should be.
     ///
     /// # Errors

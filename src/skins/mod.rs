@@ -10,4 +10,4 @@ mod skin;
 
 pub use carrier::Carrier;
 pub use embedding::{Embedding, NodalForces};
-pub use skin::{Skin, normals};
+pub use skin::{Pictured, Skin, normals};

@@ -5,6 +5,41 @@ use crate::mesh::Mesh;
 use crate::tools::Triangles;
 use bevy_ecs::prelude::Component;
 use glam::DVec3;
+use std::collections::HashMap;
+
+/// The points of a surface as pictures have them: one for each place and texture coordinates there.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Pictured {
+    /// The row of each in the surface's points.
+    pub points: Vec<u32>,
+    /// Its texture coordinates (u, v); nothing of surfaces without.
+    pub texture: Vec<[f32; 2]>,
+    /// Rows of these points, for each triangle.
+    triangles: Vec<[u32; 3]>,
+}
+
+impl Pictured {
+    fn new(surface: &Triangles) -> Self {
+        if surface.texture.is_empty() {
+            let points = (0..surface.points.len() as u32).collect();
+            return Self { points, texture: Vec::new(), triangles: surface.triangles.clone() };
+        }
+        let mut made = Self::default();
+        let mut rows = HashMap::new();
+        for (corners, texture) in surface.triangles.iter().zip(&surface.texture) {
+            let row = |corner: usize| {
+                let (point, at) = (corners[corner], texture[corner]);
+                *rows.entry((point, at.map(f32::to_bits))).or_insert_with(|| {
+                    made.points.push(point);
+                    made.texture.push(at);
+                    made.points.len() as u32 - 1
+                })
+            };
+            made.triangles.push([0, 1, 2].map(row));
+        }
+        made
+    }
+}
 
 /// A fine surface that the mesh of a body carries.
 #[derive(Component, Clone, Debug)]
@@ -12,6 +47,8 @@ pub struct Skin {
     /// The mesh in the shape that the surface was made for (m), in the author's numbering.
     mesh: Mesh,
     surface: Triangles,
+    /// Where texture coordinates differ at a point there are several points in pictures.
+    pictured: Pictured,
     /// With all elements alive.
     whole: Embedding,
     /// With those that were alive when somebody last looked.
@@ -23,7 +60,8 @@ impl Skin {
     /// A surface (m) on a mesh in the same shape.
     pub fn new(mesh: Mesh, surface: Triangles) -> Self {
         let whole = Embedding::new(&mesh, &surface.points, &|_| true);
-        Self { alive: vec![true; mesh.element_count()], now: whole.clone(), whole, surface, mesh }
+        let pictured = Pictured::new(&surface);
+        Self { alive: vec![true; mesh.element_count()], now: whole.clone(), whole, pictured, surface, mesh }
     }
 
     /// The surface as it is before anything moves (m).
@@ -41,13 +79,20 @@ impl Skin {
         }
     }
 
-    /// The triangles that are left: all but those of which the elements of all three corners have gone.
-    pub fn triangles(&self) -> Vec<[u32; 3]> {
+    /// Its points as pictures have them.
+    pub fn pictured(&self) -> &Pictured {
+        &self.pictured
+    }
+
+    /// The triangles that are left: all but those of which the elements of all three corners have gone. By rows of the
+    /// surface's points, and of those that pictures have.
+    pub fn triangles(&self) -> Vec<([u32; 3], [u32; 3])> {
         let left = |point: u32| {
             let carrier = self.whole.carriers().get(point as usize).and_then(Option::as_ref);
             carrier.is_some_and(|carrier| self.alive.get(carrier.element).copied().unwrap_or_default())
         };
-        self.surface.triangles.iter().filter(|corners| corners.iter().any(|&point| left(point))).copied().collect()
+        let both = self.surface.triangles.iter().zip(&self.pictured.triangles);
+        both.filter(|(corners, _)| corners.iter().any(|&point| left(point))).map(|(a, b)| (*a, *b)).collect()
     }
 
     /// What carries the points now.

@@ -9,7 +9,11 @@ impl Triangles {
     ///
     /// # Errors
     /// [`MeshError::NotBuilt`], always.
-    pub fn from_bytes(path: impl AsRef<Path>, _: &[u8]) -> Result<Self, MeshError> {
+    pub fn from_bytes_beside(
+        path: impl AsRef<Path>,
+        _: &[u8],
+        _: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+    ) -> Result<Self, MeshError> {
         Err(MeshError::NotBuilt { file: path.as_ref().into() })
     }
 }

@@ -4,8 +4,12 @@
 mod absent;
 mod closed;
 mod form;
+#[cfg(feature = "files")]
+mod gltf;
 mod grid;
 mod mass;
+#[cfg(feature = "files")]
+mod obj;
 mod pivot;
 #[cfg(feature = "files")]
 mod ply;

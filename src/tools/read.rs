@@ -1,42 +1,58 @@
-//! Files of triangles: STL, as text or binary, OBJ, and PLY. The format is told from the content.
+//! Files of triangles: STL, as text or binary, OBJ, PLY, and glTF. The format is told from the content.
 
+use super::gltf::{self, Beside};
+use super::obj;
 use super::ply;
 use super::triangles::Triangles;
 use crate::mesh::{Cursor, Fault, MeshError, NumberForm};
 use glam::DVec3;
-use std::path::Path;
+use std::path::{Component, Path};
 
-const FORMATS: &str = "surfaces are read from STL (text or binary), OBJ and PLY files";
+const FORMATS: &str = "surfaces are read from STL (text or binary), OBJ, PLY and glTF files";
 
 /// What stands in a binary STL file before its triangles, and the bytes of one of these.
 const HEAD: usize = 84;
 const RECORD: usize = 50;
 
 impl Triangles {
-    /// Reads a file of triangles, STL, OBJ or PLY, whose coordinates are taken for metres. Points of equal coordinates are
-    /// made one; polygons become fans about their first corner; normals, colours and the like are not read.
+    /// Reads a file of triangles, STL, OBJ, PLY or glTF, whose coordinates are taken for metres. Points of equal
+    /// coordinates are made one; polygons become fans about their first corner; texture coordinates are kept, of OBJ and
+    /// glTF; normals, colours and the like are not read.
     ///
     /// # Errors
     /// When the file cannot be read or breaks the rules of its format, with the line or the byte.
     pub fn read(path: impl AsRef<Path>) -> Result<Self, MeshError> {
         let path = path.as_ref();
         let bytes = std::fs::read(path).map_err(|source| MeshError::Unreadable { file: path.into(), source })?;
-        Self::from_bytes(path, &bytes)
+        let folder = path.parent().unwrap_or(Path::new(""));
+        Self::from_bytes_beside(path, &bytes, &|name| {
+            let within = Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
+            let bytes = within.then(|| std::fs::read(folder.join(name)));
+            bytes.ok_or("the file is not in the same folder")?.map_err(|error| error.to_string())
+        })
     }
 
-    /// As [`Self::read`], from what a file holds; `path` is its name in messages.
+    /// As [`Self::read`], from what a file holds that needs no other; `path` is its name in messages.
     ///
     /// # Errors
     /// As [`Self::read`].
     pub fn from_bytes(path: impl AsRef<Path>, bytes: &[u8]) -> Result<Self, MeshError> {
+        Self::from_bytes_beside(path, bytes, &|_| Err("no other file is read here".into()))
+    }
+
+    /// The same of a file that may need others: `beside` gives what these hold, by their names seen from its folder.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn from_bytes_beside(path: impl AsRef<Path>, bytes: &[u8], beside: Beside<'_>) -> Result<Self, MeshError> {
         let path = path.as_ref();
-        let mut read = parse(bytes, path).map_err(|fault| fault.in_file(path))?;
+        let mut read = parse(bytes, path, beside).map_err(|fault| fault.in_file(path))?;
         read.merge_points();
         Ok(read)
     }
 }
 
-fn parse(bytes: &[u8], path: &Path) -> Result<Triangles, Fault> {
+fn parse(bytes: &[u8], path: &Path, beside: Beside<'_>) -> Result<Triangles, Fault> {
     let start = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes).trim_ascii_start();
     let extension = path.extension().map(|name| name.to_string_lossy().to_lowercase()).unwrap_or_default();
     // a binary file may begin as one of text does; its length tells them apart
@@ -44,10 +60,12 @@ fn parse(bytes: &[u8], path: &Path) -> Result<Triangles, Fault> {
         stl_binary(bytes)?
     } else if start.starts_with(b"ply\n") || start.starts_with(b"ply\r\n") {
         ply::read(start)?
+    } else if start.starts_with(b"glTF") || start.starts_with(b"{") {
+        gltf::read(start, beside)?
     } else if start.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid")) {
         stl_text(Cursor::new(bytes, bytes.len() - start.len()))?
     } else if has_vertices(start) {
-        obj(Cursor::new(bytes, bytes.len() - start.len()))?
+        obj::read(Cursor::new(bytes, bytes.len() - start.len()))?
     } else {
         return Err(unknown(bytes, start, &extension));
     };
@@ -103,7 +121,11 @@ fn stl_binary(bytes: &[u8]) -> Result<Triangles, Fault> {
     let mut cursor = Cursor::new(bytes, HEAD);
     cursor.form = NumberForm::LittleEndian;
     let count = (bytes.len() - HEAD) / RECORD;
-    let mut read = Triangles { points: Vec::with_capacity(3 * count), triangles: Vec::with_capacity(count) };
+    let mut read = Triangles {
+        points: Vec::with_capacity(3 * count),
+        triangles: Vec::with_capacity(count),
+        ..Triangles::default()
+    };
     for triangle in 0..count as u32 {
         cursor.take(12, "a normal")?;
         for _ in 0..3 {
@@ -169,62 +191,4 @@ fn point(cursor: &mut Cursor<'_>) -> Result<DVec3, Fault> {
         *value = finite(cursor, number)?;
     }
     Ok(point.into())
-}
-
-/// Lines `v X Y Z` of points and `f A B C ...` of polygons, whose corners are counted from 1, or backwards from -1;
-/// what stands behind a corner's `/` belongs to pictures, as all other lines do.
-fn obj(mut cursor: Cursor<'_>) -> Result<Triangles, Fault> {
-    let mut read = Triangles::default();
-    while let Some(mut line) = cursor.try_line() {
-        while line.ends_with('\\') {
-            line.pop();
-            let Some(more) = cursor.try_line() else { break };
-            line.push_str(&more);
-        }
-        let text = line.split('#').next().unwrap_or_default();
-        let mut words = text.split_whitespace();
-        match words.next() {
-            Some("v") => {
-                let mut point = [0.0; 3];
-                for value in &mut point {
-                    let word = words.next().unwrap_or_default();
-                    let allowed = "a point is `v X Y Z`, with finite numbers";
-                    let number = word.parse().ok().filter(|number: &f64| number.is_finite());
-                    *value = number.ok_or_else(|| cursor.fault(format!("`{text}` is no point"), allowed))?;
-                }
-                read.points.push(point.into());
-            }
-            Some("f") => {
-                let mut corners = Vec::new();
-                for word in words {
-                    let found = corner(word, read.points.len());
-                    corners.push(found.map_err(|(what, allowed)| cursor.fault(what, allowed))?);
-                }
-                let [first, rest @ ..] = &corners[..] else { return Err(too_few(&cursor, text)) };
-                if rest.len() < 2 {
-                    return Err(too_few(&cursor, text));
-                }
-                read.triangles.extend(rest.windows(2).map(|pair| [*first, pair[0], pair[1]]));
-            }
-            _ => {}
-        }
-    }
-    Ok(read)
-}
-
-fn too_few(cursor: &Cursor<'_>, text: &str) -> Fault {
-    cursor.fault(format!("`{text}` is no polygon"), "a polygon is `f A B C ...`, with three corners at least")
-}
-
-/// The row of a corner, as `7`, `7/1`, `7//2` or `-1`; else what is wrong and what is allowed.
-fn corner(word: &str, points: usize) -> Result<u32, (String, String)> {
-    let number = word.split('/').next().unwrap_or_default();
-    let allowed = format!("corners are numbers of the {points} points above, from 1 on, or backwards from -1 on");
-    let row = number.parse::<i64>().ok().and_then(|number| match number {
-        1.. => Some(number - 1),
-        0 => None,
-        _ => Some(points as i64 + number),
-    });
-    let row = row.and_then(|row| u32::try_from(row).ok()).filter(|&row| (row as usize) < points);
-    row.ok_or_else(|| (format!("`{word}` is no corner"), allowed))
 }

@@ -16,6 +16,8 @@ pub struct Triangles {
     pub points: Vec<DVec3>,
     /// Rows of `points`, so that the right-hand normal points outwards.
     pub triangles: Vec<[u32; 3]>,
+    /// Texture coordinates (u, v) at the corners of each triangle, v upwards; nothing of surfaces without.
+    pub texture: Vec<[[f32; 2]; 3]>,
 }
 
 /// Why triangles are no tool.

@@ -119,7 +119,7 @@ fn distances_on_grids_are_those_of_the_host() {
     let Some(mut gpu) = gpu_or_reason() else { return };
     let of_shape = |shape: Shape| {
         let (points, triangles) = Solid::new(shape, 0.2e-3).unwrap().surface(24, 0.0);
-        let surface = Triangles { points, triangles };
+        let surface = Triangles { points, triangles, ..Triangles::default() };
         DistanceGrid::new(&surface, 0.7 * DistanceGrid::usual_spacing(&surface)).unwrap()
     };
     let grids = [

@@ -11,7 +11,7 @@ use std::sync::Arc;
 /// A box as triangles.
 fn grid() -> Geometry {
     let (points, triangles) = Solid::new(Shape::Box { size: DVec3::splat(0.04) }, 0.0).unwrap().surface(4, 1.0);
-    Geometry::Grid(Arc::new(DistanceGrid::new(&Triangles { points, triangles }, 2e-3).unwrap()))
+    Geometry::Grid(Arc::new(DistanceGrid::new(&Triangles { points, triangles, ..Triangles::default() }, 2e-3).unwrap()))
 }
 
 /// Tools that touch about half of a body's nodes; each body meets all of them, each node one or two, or one that is a

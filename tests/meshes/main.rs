@@ -3,6 +3,7 @@
 
 mod cells;
 mod generators;
+mod gltf;
 mod hostile;
 mod placement;
 mod readers;

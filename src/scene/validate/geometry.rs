@@ -25,8 +25,11 @@ const MESHES: KindOfFile = KindOfFile {
 };
 
 /// Files of triangles that are tools.
-pub(super) const TOOLS: KindOfFile =
-    KindOfFile { what: "surface file", endings: &["stl", "obj", "ply"], formats: "STL (.stl), OBJ (.obj), PLY (.ply)" };
+pub(super) const TOOLS: KindOfFile = KindOfFile {
+    what: "surface file",
+    endings: &["stl", "obj", "ply", "gltf", "glb"],
+    formats: "STL (.stl), OBJ (.obj), PLY (.ply), glTF (.gltf, .glb)",
+};
 
 pub(super) fn validate(file: &SceneFile, validator: &mut Validator) {
     for (name, body) in &file.scene.bodies {

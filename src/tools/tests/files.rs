@@ -10,7 +10,7 @@ fn tube() -> Triangles {
     let (points, triangles) = Solid::new(shape, 0.2e-3).unwrap().surface(16, 0.0);
     // what a binary file holds
     let points = points.into_iter().map(|point| point.as_vec3().as_dvec3()).collect();
-    Triangles { points, triangles }
+    Triangles { points, triangles, ..Triangles::default() }
 }
 
 fn each_corner(surface: &Triangles) -> impl Iterator<Item = [DVec3; 3]> {

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 
 fn triangles((points, triangles): (Vec<DVec3>, Vec<[u32; 3]>)) -> Triangles {
-    Triangles { points, triangles }
+    Triangles { points, triangles, ..Triangles::default() }
 }
 
 fn of_shape(shape: Shape, rounding: f64, segments: usize) -> Triangles {
@@ -28,7 +28,11 @@ fn torus(ring: f64, tube: f64, around: u32, across: u32) -> Triangles {
         let [a, b, c, d] = [row(i, j), row(i + 1, j), row(i + 1, j + 1), row(i, j + 1)];
         [[a, b, c], [a, c, d]]
     };
-    Triangles { points: places.clone().map(|(i, j)| point(i, j)).collect(), triangles: places.flat_map(quad).collect() }
+    Triangles {
+        points: places.clone().map(|(i, j)| point(i, j)).collect(),
+        triangles: places.flat_map(quad).collect(),
+        ..Triangles::default()
+    }
 }
 
 fn cube() -> Triangles {

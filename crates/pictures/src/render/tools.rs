@@ -163,7 +163,8 @@ fn triangles(scene: &SceneFile, copy: &Path, mesh: &ToolMesh) -> Result<(Vec<DVe
             found.map_err(|error| format!("{}: {error}", mesh.path))?.into_owned()
         }
     };
-    let mut surface = Triangles::from_bytes(&mesh.path, &bytes).map_err(|error| error.to_string())?;
+    let beside = |name: &str| scene.bytes_beside(&mesh.path, name);
+    let mut surface = Triangles::from_bytes_beside(&mesh.path, &bytes, &beside).map_err(|error| error.to_string())?;
     surface.points.iter_mut().for_each(|point| *point *= mesh.scale);
     Ok((surface.points, surface.triangles))
 }
