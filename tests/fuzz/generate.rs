@@ -2,7 +2,10 @@
 //! violent: loads and motions far beyond what holds it, steps that are too large, guards that hardly check.
 
 use crate::dice::{Dice, Temper, number, one_of, size, vector};
+use crate::materials::materials;
+use crate::surgery::{Surgery, skin};
 use fastrand::Rng;
+use glam::DVec3;
 use std::fmt::Write;
 
 /// A scene of a seed. Times in it are shares of `duration` (s), so that the same scene can be had for as many steps as
@@ -17,7 +20,8 @@ pub struct Made {
 }
 
 /// The scene of a seed, and where known the step that is stable at the start (s): then it may have a step of its own.
-pub fn scene(seed: u64, duration: f64, stable: Option<f64>) -> Made {
+/// With `surgery` bodies are near each other, and tools at them.
+pub fn scene(seed: u64, duration: f64, stable: Option<f64>, surgery: bool) -> Made {
     let mut dice = Dice::of(seed);
     let r = &mut dice;
     let mut text = format!("(duration: {duration:?}, ");
@@ -25,7 +29,12 @@ pub fn scene(seed: u64, duration: f64, stable: Option<f64>) -> Made {
     if statics {
         let _ = write!(text, "analysis: Static(max_steps: {}), ", r.u64(50..400));
     }
-    let bodies: Vec<Geometry> = (0..if r.u8(..6) == 0 { 2 } else { 1 }).map(|number| Geometry::of(number, r)).collect();
+    let two = r.u8(..6);
+    let mut bodies = vec![Geometry::of(None, surgery, r)];
+    if two == 0 || surgery && two < 4 {
+        bodies.push(Geometry::of(Some(&bodies[0]), surgery, r));
+    }
+    let surgery = surgery.then(|| Surgery::of(seed, &bodies, duration, statics));
     let described: Vec<String> = bodies.iter().map(|body| body.text.clone()).collect();
     let _ = write!(text, "bodies: {{{}}}, ", described.join(", "));
     let (materials, mut decides) = materials(r);
@@ -36,10 +45,16 @@ pub fn scene(seed: u64, duration: f64, stable: Option<f64>) -> Made {
     let constraints = some(r, 3, &|r| constraint(&bodies, duration, statics, r));
     let loads = some(r, 3, &|r| load(&bodies, duration, r));
     let _ = write!(text, "constraints: [{constraints}], loads: [{loads}], ");
+    let mut removed: Vec<String> = surgery.iter().flat_map(|surgery| surgery.removal.clone()).collect();
     if !statics && r.u8(..3) == 0 {
-        let removal = some(r, 2, &|r| removal(&bodies, duration, r));
-        decides |= removal.contains("Above") || removal.contains("Below");
-        let _ = write!(text, "removal: [{removal}], ");
+        removed.extend((0..r.u8(..=2)).map(|_| removal(&bodies, duration, r)));
+    }
+    let removal = removed.join(", ");
+    decides |= removal.contains("Above") || removal.contains("Below");
+    let _ = write!(text, "removal: [{removal}], ");
+    if let Some(surgery) = &surgery {
+        text += &surgery.text();
+        decides |= surgery.decides();
     }
     let mild = integration(statics, r);
     let temper = r.temper;
@@ -63,8 +78,9 @@ pub fn scene(seed: u64, duration: f64, stable: Option<f64>) -> Made {
     // of a row of its own, so that all else of a seed stays as it was
     let mut later = Rng::with_seed(seed ^ 0x5eed);
     if later.u8(..5) == 0 && !text.contains("inversion: Recover") {
-        let damping = format!("(stiffness_damping: {:?}, density:", size(&mut later, 1e-5, 1e-2));
-        text = text.replace("(density:", &damping);
+        let damping = format!("\": (stiffness_damping: {:?}, density:", size(&mut later, 1e-5, 1e-2));
+        // of materials: tools that move freely have a density, too
+        text = text.replace("\": (density:", &damping);
     }
     let moves = ["start: ", "velocity: ", "spin: "].iter().any(|word| text.contains(word));
     if later.u8(..6) == 0 && !statics && !moves {
@@ -77,16 +93,28 @@ pub fn scene(seed: u64, duration: f64, stable: Option<f64>) -> Made {
 }
 
 /// A body, and what must be known to act on it.
-struct Geometry {
-    name: String,
+pub struct Geometry {
+    pub name: String,
     text: String,
     /// Its size (m), and half of that where it lies about the origin.
-    size: f64,
+    pub size: f64,
+    /// The corners of its box (m), as it is if it is not turned.
+    pub low: DVec3,
+    pub high: DVec3,
 }
 
 impl Geometry {
-    fn of(number_of_it: usize, r: &mut Dice) -> Self {
-        let size = size(r, 1e-3, 1.0);
+    pub fn middle(&self) -> DVec3 {
+        0.5 * (self.low + self.high)
+    }
+
+    /// A body, far from the first one or near it.
+    fn of(first: Option<&Self>, near: bool, r: &mut Dice) -> Self {
+        let any_size = size(r, 1e-3, 1.0);
+        let size = match first {
+            Some(first) if near => first.size * (0.5 + any_size),
+            _ => any_size,
+        };
         let kind = one_of(r, &["Tet4", "Tet4NodalPressure", "Hex8", "Hex8MeanDilatation", "Wedge6", "Tet10"]);
         let cells = |r: &mut Rng| (r.u8(1..=3), r.u8(1..=3), r.u8(1..=3));
         let mesh = match r.u8(..8) {
@@ -129,9 +157,14 @@ impl Geometry {
                 cells(r)
             ),
         };
-        let name = format!("b{number_of_it}");
-        let mut text =
-            format!("\"{name}\": (mesh: {mesh}, material: \"m\", translate: ({:?}, 0, 0)", 20.0 * number_of_it as f64);
+        let name = if first.is_some() { "b1" } else { "b0" }.to_string();
+        let (low, high) = bounds(&mesh, size);
+        let away = match first {
+            None => 0.0,
+            Some(first) if near => first.high.x - low.x + size * number(r, -0.01, 0.1),
+            Some(_) => 20.0,
+        };
+        let mut text = format!("\"{name}\": (mesh: {mesh}, material: \"m\", translate: ({away:?}, 0, 0)");
         let mut add = |r: &mut Dice, one_in: u8, what: &dyn Fn(&mut Dice) -> String| {
             if r.u8(..one_in) == 0 {
                 let _ = write!(text, ", {}", what(r));
@@ -153,13 +186,31 @@ impl Geometry {
             false => format!("start: Scrambled(amplitude: {scrambled:?}, seed: {})", r.u8(..)),
         });
         add(r, 5, &|r| format!("regions: [(on: {}, material: \"n\")]", place(size, r)));
+        if near && r.u8(..6) == 0 {
+            let _ = write!(text, ", {}", skin(size, r));
+        }
         text.push(')');
-        Self { name, text, size }
+        Self { name, text, size, low: low + away * DVec3::X, high: high + away * DVec3::X }
+    }
+}
+
+/// The box around a mesh of this size, of blocks that of the cube they are made of.
+fn bounds(mesh: &str, size: f64) -> (DVec3, DVec3) {
+    let half = DVec3::splat(0.5 * size);
+    match mesh.split('(').next() {
+        Some("Box") => {
+            let lengths = mesh.split(['(', ')']).nth(2).unwrap().split(", ").map(|text| text.parse().unwrap());
+            (DVec3::ZERO, DVec3::from_slice(&lengths.collect::<Vec<f64>>()))
+        }
+        Some("Cylinder") => (half * DVec3::new(-1.0, -1.0, 0.0), half * DVec3::new(1.0, 1.0, 2.0)),
+        Some("Ellipsoid") => (half * DVec3::new(-1.0, -0.8, -1.0), half * DVec3::new(1.0, 0.8, 1.0)),
+        Some("Lens") => (half * DVec3::new(-1.0, -1.0, -0.4), half * DVec3::new(1.0, 1.0, 0.4)),
+        _ => (DVec3::ZERO, 2.0 * half),
     }
 }
 
 /// A selection by place: nodes, faces or elements may be in it, or none.
-fn place(size: f64, r: &mut Rng) -> String {
+pub fn place(size: f64, r: &mut Rng) -> String {
     match r.u8(..6) {
         0 => "All".into(),
         1 => format!("Sphere(center: {}, radius: {:?})", vector(r, size), size * number(r, 0.3, 1.0)),
@@ -178,7 +229,7 @@ fn place(size: f64, r: &mut Rng) -> String {
     }
 }
 
-fn curve(duration: f64, r: &mut Dice) -> String {
+pub fn curve(duration: f64, r: &mut Dice) -> String {
     let mut time = || duration * number(r, 0.0, 1.0);
     let (a, b) = (time(), time());
     // all at once, and so late that only the last check can see it
@@ -304,77 +355,4 @@ fn violent_guards(every: u64, may_be_off: bool, temper: Temper, wild: &mut Rng) 
         1 => format!("every: {every}, energy: (stop: {:?})", size(wild, 0.01, 1e4)),
         _ => format!("every: {every}"),
     }
-}
-
-/// Two materials, `m` and `n`; and whether elements go when they turn inside out.
-fn materials(r: &mut Rng) -> (String, bool) {
-    let both = ["m", "n"].map(|name| format!("\"{name}\": ({})", material(r)));
-    let decides = both.iter().any(|text| text.contains("inversion: Remove"));
-    (both.join(", "), decides)
-}
-
-fn material(r: &mut Rng) -> String {
-    let shear = size(r, 100.0, 1e5);
-    let bulk = shear * size(r, 2.0, 200.0);
-    let moduli = format!("Moduli(shear: {shear:?}, bulk: {bulk:?})");
-    let law = match r.u8(..9) {
-        0 => format!("linear: {moduli}"),
-        1 => format!("st_venant_kirchhoff: {moduli}"),
-        2 => format!("stable_neo_hookean: {moduli}"),
-        3 => format!("mooney_rivlin: (c10: {:?}, c01: {:?}, bulk: {bulk:?})", 0.4 * shear, 0.1 * shear),
-        4 => format!(
-            "ogden: (terms: [(mu: {:?}, alpha: {:?}), (mu: {:?}, alpha: {:?})], bulk: {bulk:?})",
-            0.3 * shear,
-            number(r, 1.0, 8.0),
-            -0.1 * shear,
-            number(r, -5.0, -1.0)
-        ),
-        5 => format!("arruda_boyce: (shear: {shear:?}, locking_stretch: {:?}, bulk: {bulk:?})", number(r, 1.5, 7.0)),
-        _ => format!("neo_hookean: {moduli}"),
-    };
-    let recovers = law.starts_with("stable");
-    let mut all = vec![format!("density: {:?}", size(r, 500.0, 3000.0)), law];
-    let direction = |r: &mut Rng| match r.bool() {
-        true => format!("Along({:?}, {:?}, 1)", r.f64(), r.f64()),
-        false => "Around(axis: (0, 0.2, 1))".to_string(),
-    };
-    if r.u8(..4) == 0 {
-        all.push(format!(
-            "fibres: (eta: {:?}, direction: {}, tension_only: {})",
-            shear * size(r, 0.1, 20.0),
-            direction(r),
-            r.bool()
-        ));
-    }
-    if r.u8(..6) == 0 {
-        all.push(format!(
-            "exponential_fibres: [(k1: {:?}, k2: {:?}, dispersion: {:?}, direction: {})]",
-            shear * size(r, 0.1, 3.0),
-            size(r, 0.5, 20.0),
-            number(r, 0.0, 0.33),
-            direction(r)
-        ));
-    }
-    if r.u8(..3) == 0 {
-        let term = |r: &mut Rng| format!("(alpha: {:?}, tau: {:?})", number(r, 0.0, 0.45), size(r, 1e-5, 10.0));
-        let integrator = one_of(r, &["Exact", "BackwardEuler"]);
-        all.push(format!(
-            "prony: (terms: [{}, {}], volumetric: [{}], integrator: {integrator}, reproject: {})",
-            term(r),
-            term(r),
-            term(r),
-            r.bool()
-        ));
-    }
-    if r.u8(..3) == 0 {
-        all.push(format!("damping: {:?}", size(r, 0.1, 100.0)));
-    }
-    let plain = !all.iter().any(|part| part.contains("fibres") || part.contains("prony"));
-    match r.u8(..6) {
-        0 => all.push("inversion: Remove".into()),
-        1 => all.push("inversion: Stop".into()),
-        2 if recovers && plain => all.push("inversion: Recover".into()),
-        _ => {}
-    }
-    all.join(", ")
 }

@@ -9,6 +9,7 @@
 
 mod dice;
 mod generate;
+mod materials;
 mod memory;
 mod mutate;
 #[path = "../meshes/samples.rs"]
@@ -19,6 +20,7 @@ mod samples;
 mod samples_vtk;
 mod seeds;
 mod sound;
+mod surgery;
 mod targets;
 mod whole;
 

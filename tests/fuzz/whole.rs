@@ -211,9 +211,9 @@ enum Ending {
 
 /// The scene of a seed, or where that is refused in words the first of some further ones that is not; `None` where all
 /// are.
-fn made_of(seed: u64, rng: &mut Rng) -> Result<Option<(generate::Made, SceneFile)>, String> {
+fn made_of(seed: u64, surgery: bool, rng: &mut Rng) -> Result<Option<(generate::Made, SceneFile)>, String> {
     for further in 0..TRIALS {
-        if let Some(made) = one_of(seed + (further << 40), rng)? {
+        if let Some(made) = one_of(seed + (further << 40), surgery, rng)? {
             return Ok(Some(made));
         }
     }
@@ -221,7 +221,7 @@ fn made_of(seed: u64, rng: &mut Rng) -> Result<Option<(generate::Made, SceneFile
 }
 
 /// The scene of a seed, as long as its steps make it; `None` where it is refused in words.
-fn one_of(seed: u64, rng: &mut Rng) -> Result<Option<(generate::Made, SceneFile)>, String> {
+fn one_of(seed: u64, surgery: bool, rng: &mut Rng) -> Result<Option<(generate::Made, SceneFile)>, String> {
     // how long a step is tells what the scene lasts
     let begins = |scene: &SceneFile| match Simulation::new(scene, &options(Precision::F64)) {
         Ok(simulation) => Ok(Some(simulation.time_step())),
@@ -229,7 +229,7 @@ fn one_of(seed: u64, rng: &mut Rng) -> Result<Option<(generate::Made, SceneFile)
         Err(Error::Scene(_)) => Ok(None),
         Err(error) => Err(format!("does not start: {error}")),
     };
-    let any = generate::scene(seed, 1.0, None);
+    let any = generate::scene(seed, 1.0, None, surgery);
     let first = file(&any.text, &[])?;
     let Some(stable) = begins(&first)? else { return Ok(None) };
     let steps = rng.u64(STEPS);
@@ -240,15 +240,15 @@ fn one_of(seed: u64, rng: &mut Rng) -> Result<Option<(generate::Made, SceneFile)
     };
     let steps = if any.temper != Temper::Mild && rng.u8(..one_in) == 0 { rng.u64(MANY_STEPS) } else { steps };
     let duration = if first.scene.is_static() { 1.0 } else { stable * steps as f64 };
-    let made = generate::scene(seed, duration, Some(stable));
+    let made = generate::scene(seed, duration, Some(stable), surgery);
     let scene = file(&made.text, &[])?;
     Ok(begins(&scene)?.map(|_| (made, scene)))
 }
 
 /// What is wrong with the scene of a seed, if anything.
-fn attempt(seed: u64, gpu: bool) -> Result<Ending, String> {
+fn attempt(seed: u64, surgery: bool, gpu: bool) -> Result<Ending, String> {
     let mut rng = Rng::with_seed(!seed);
-    let Some((made, scene)) = made_of(seed, &mut rng)? else { return Ok(Ending::Refused) };
+    let Some((made, scene)) = made_of(seed, surgery, &mut rng)? else { return Ok(Ending::Refused) };
     let mut of_precision = Vec::new();
     for precision in [Precision::F64, Precision::F32] {
         let options = options(precision);
@@ -297,13 +297,24 @@ fn whole_of(run: &Run) -> Run {
 #[test]
 #[ignore = "long"]
 fn made_up_scenes_keep_their_word() {
+    try_scenes(false);
+}
+
+/// The same with tools, contact, attachments, suction and removal by tools.
+#[test]
+#[ignore = "long"]
+fn made_up_surgery_keeps_its_word() {
+    try_scenes(true);
+}
+
+fn try_scenes(surgery: bool) {
     let count = number("SINEW_FUZZ_SCENES", EVERYDAY) as u64;
     let first = number("SINEW_FUZZ_SEED", 0) as u64 * 1_000_000;
     let has_gpu = gpu_or_reason().is_some();
     let (mut found, mut endings) = (Vec::new(), BTreeMap::new());
     for seed in first..first + count {
         let gpu = has_gpu && seed % GPU_ONE_IN == 0;
-        let tried = std::panic::catch_unwind(|| attempt(seed, gpu));
+        let tried = std::panic::catch_unwind(|| attempt(seed, surgery, gpu));
         let wrong = match tried {
             Ok(Ok(ending)) => {
                 *endings.entry((Temper::of(seed), ending)).or_insert(0) += 1;
@@ -323,15 +334,16 @@ fn made_up_scenes_keep_their_word() {
 }
 
 /// One scene of a seed, to look at, and what becomes of it: `SINEW_FUZZ_SHOW=17 cargo test --test fuzz show --
-/// --nocapture`.
+/// --nocapture`; with `SINEW_FUZZ_SURGERY=1` with tools.
 #[test]
 fn show_a_scene() {
     let seed = number("SINEW_FUZZ_SHOW", 0) as u64;
-    match made_of(seed, &mut Rng::with_seed(!seed)).unwrap() {
+    let surgery = number("SINEW_FUZZ_SURGERY", 0) > 0;
+    match made_of(seed, surgery, &mut Rng::with_seed(!seed)).unwrap() {
         Some((made, _)) => println!("{}", made.text),
-        None => println!("refused: {}", generate::scene(seed, 1.0, None).text),
+        None => println!("refused: {}", generate::scene(seed, 1.0, None, surgery).text),
     }
-    let ending = attempt(seed, false);
+    let ending = attempt(seed, surgery, false);
     println!("{ending:?}");
     ending.unwrap();
 }
