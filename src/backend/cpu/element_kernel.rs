@@ -89,6 +89,7 @@ pub fn run_block_fast<E: Element>(
     match &law.elastic {
         asked if effects.is_none() => block.run::<_, GENERIC>(asked),
         ElasticLaw::NeoHookean(elastic) => block.run_neo_hookean(elastic),
+        ElasticLaw::Corotational(elastic) => block.run::<_, 0>(elastic),
         ElasticLaw::StableNeoHookean(elastic) => block.run::<_, 0>(elastic),
         ElasticLaw::MooneyRivlin(elastic) => block.run::<_, 0>(elastic),
         ElasticLaw::Ogden(elastic) => block.run::<_, 0>(elastic),
@@ -137,7 +138,8 @@ pub fn kernel_effects<E: Element>(cpu: &Cpu, law: &BlockLaw<f32>) -> Option<[boo
     let others = !law.exponential.is_empty() || !law.volumetric.is_empty() || law.reproject;
     let is_there = match law.elastic {
         ElasticLaw::NeoHookean(_) => true,
-        ElasticLaw::StableNeoHookean(_)
+        ElasticLaw::Corotational(_)
+        | ElasticLaw::StableNeoHookean(_)
         | ElasticLaw::MooneyRivlin(_)
         | ElasticLaw::Ogden(_)
         | ElasticLaw::UserLaw(_) => effects == [false, false],
