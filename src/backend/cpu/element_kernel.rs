@@ -72,7 +72,7 @@ pub fn run_block<E: Element, T: SimdScalar>(
 }
 
 /// The same in f32, where speed counts, with a kernel of its own for what is asked for most: the neo-Hookean law with
-/// each combination of fibres and viscosity, and three laws and users' own with neither; of kinds that are
+/// each combination of fibres and viscosity, and four laws and users' own with neither; of kinds that are
 /// [specialised](Element::SPECIALISED). What a material lacks is not even asked for.
 pub fn run_block_fast<E: Element>(
     cpu: &Cpu,
