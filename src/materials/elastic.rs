@@ -123,6 +123,8 @@ macro_rules! each_elastic_law {
             linear: Linear;
             /// Hooke's law in Green's strain: large rotations, small strains.
             st_venant_kirchhoff: StVenantKirchhoff;
+            /// Hooke's law in the frame that turns with the material: large rotations, moderate strains.
+            corotational: Corotational;
             /// The neo-Hookean law, for large strains.
             neo_hookean: NeoHookean;
             /// The stable neo-Hookean law, defined for every deformation, also of tissue that is turned inside out.

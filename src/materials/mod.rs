@@ -6,6 +6,7 @@
 
 mod arruda_boyce;
 pub mod complaints;
+mod corotational;
 mod elastic;
 mod elasticity;
 mod exponential_fibres;

@@ -59,7 +59,7 @@ pub struct Effects {
     pub scheme: Scheme,
 }
 
-pub const LAWS: [&str; 9] = [
+pub const LAWS: [&str; 10] = [
     "linear: Moduli(shear: 1034, bulk: 10000)",
     "st_venant_kirchhoff: Moduli(shear: 1034, bulk: 10000)",
     "neo_hookean: Moduli(shear: 1034, bulk: 10000)",
@@ -69,6 +69,7 @@ pub const LAWS: [&str; 9] = [
     "arruda_boyce: (shear: 700, locking_stretch: 1.8, bulk: 10000)",
     "law: (energy: \"c1*I1bar_minus_3 + c2*I2bar_minus_3 + c/2*(exp(b*I1bar_minus_3^2) - 1) + kappa/4*(J^2 - 1 - 2*log(J))\", parameters: {\"c1\": 300, \"c2\": 150, \"c\": 20, \"b\": 0.4, \"kappa\": 10000})",
     GROWING,
+    "corotational: Moduli(shear: 1034, bulk: 10000)",
 ];
 
 /// An energy whose terms of first order cancel as it is written.

@@ -6,6 +6,7 @@
 //! some 10 eps |F|², S = ∂Ψ/∂E by |∂S/∂E| ≤ 20 M of that for |F⁻¹| ≤ 4: 1e3 eps M covers it.
 
 mod closed_forms;
+mod corotational;
 mod fibres;
 mod samples;
 mod short_ways;
@@ -197,6 +198,7 @@ laws! {
     // the linear theory sees rotations
     linear: samples::Linear;
     st_venant_kirchhoff: samples::StVenantKirchhoff, objective;
+    corotational: samples::Corotational, objective;
     neo_hookean: samples::NeoHookean, objective;
     stable_neo_hookean: samples::StableNeoHookean, objective;
     mooney_rivlin: samples::MooneyRivlin, objective;

@@ -59,6 +59,7 @@ pub const OGDEN: [(f64, f64); 3] = [(1400.0, 1.3), (3.0, 5.0), (-30.0, -2.0)];
 elastic! {
     Linear: materials::Linear { shear: SHEAR, bulk: BULK }, SHEAR;
     StVenantKirchhoff: materials::StVenantKirchhoff { shear: SHEAR, bulk: BULK }, SHEAR;
+    Corotational: materials::Corotational { shear: SHEAR, bulk: BULK }, SHEAR;
     NeoHookean: materials::NeoHookean { shear: SHEAR, bulk: BULK }, SHEAR;
     StableNeoHookean: materials::StableNeoHookean { shear: SHEAR, bulk: BULK }, SHEAR;
     MooneyRivlin: materials::MooneyRivlin { c10: 300.0, c01: 200.0, bulk: BULK }, 2.0 * (300.0 + 200.0);
