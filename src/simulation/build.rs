@@ -27,7 +27,6 @@ use crate::systems::{
 };
 use bevy_ecs::prelude::*;
 use bevy_ecs::system::SystemAccess;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 impl Simulation {
@@ -74,8 +73,8 @@ impl Simulation {
             schedule.iter().filter_map(|entry| Some((entry.system.name.clone(), entry.system.host.nodes()?))).collect();
         let named = node_systems.iter().map(|(name, rows)| (name.as_str(), *rows));
         give_shares(named, scene.scene.duration, options.precision, &mut world)?;
-        let held = |&(_, rows): &(String, NodeRows)| -> HeldEnergy { Arc::new(move |world| rows.energy(world)) };
-        world.insert_resource(HeldEnergies(node_systems.iter().map(held).collect()));
+        let held = schedule.iter().filter_map(|entry| entry.system.held_energy());
+        world.insert_resource(HeldEnergies(held.collect()));
         let plan = Plan::of(&schedule, &access, scene.scene.fuse, &world);
         let mut solver = Solver::of(&scene.scene, options.precision, &mut world);
 
@@ -138,6 +137,7 @@ impl Simulation {
             setup: started.elapsed(),
             forgets_start: options.forgets_start,
             node_systems,
+            slopes: schedule.iter().filter_map(|entry| entry.system.slopes()).collect(),
             warnings: diagnostics,
         };
         let settling = super::preload::settling(scene, options)?;
