@@ -1,5 +1,6 @@
 //! What a system is.
 
+use super::host_forces::SlopesOf;
 use super::node_pass::{NodePass, node_pass};
 use super::node_stages::derived_stages;
 use super::node_system::{NodeRows, NodeSystem};
@@ -7,7 +8,7 @@ use crate::backend::Buffers;
 use crate::backend::kernel::Fragment;
 use crate::backend::kernel::Kernel;
 use crate::backend::node_stage::{DescribeStages, NodeStage, node_kernels};
-use crate::components::{Body, LoadedRows, OfBody};
+use crate::components::{Body, HeldEnergy, LoadedRows, OfBody};
 use crate::error::{Error, missing};
 use crate::snapshot::StateAccess;
 use bevy_ecs::prelude::*;
@@ -132,6 +133,9 @@ pub struct System {
     pub(crate) custom: bool,
     /// Reads its parameters and inserts them as a resource.
     pub(crate) parameters: Option<ReadParameters>,
+    /// How fast the forces of a system on the host grow, and what energy it holds, where it says so.
+    pub(crate) slopes: Option<SlopesOf>,
+    pub(crate) energy: Option<HeldEnergy>,
     /// How its state gets into snapshots and back.
     pub(crate) state: Option<StateAccess>,
     /// The load of scenes that it is for.
@@ -208,6 +212,8 @@ impl System {
             shared_only: |_| false,
             custom: true,
             parameters: None,
+            slopes: None,
+            energy: None,
             state: None,
             load: None,
         }

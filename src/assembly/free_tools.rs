@@ -6,7 +6,7 @@ use super::contacts::{
 use super::{Assembly, loads};
 use crate::components::*;
 use crate::scene::diagnostic::Diagnostics;
-use crate::scene::schema::{Contact, Free, Load, Tool};
+use crate::scene::schema::{Contact, Free, Load, On, Tool};
 use crate::tools::{Geometry, Inertia, RigidMotion};
 use bevy_ecs::prelude::*;
 use glam::{DMat3, DQuat, DVec3};
@@ -66,10 +66,11 @@ fn inertia(free: &Free, geometry: &Geometry) -> Option<Inertia> {
     })
 }
 
-/// Slots of gravity that acts on all.
+/// Slots of accelerations that act on all bodies.
 fn gravity(assembly: &Assembly<'_>, world: &mut World) -> Vec<usize> {
     let all = assembly.scene.scene.loads.iter().enumerate();
-    let acts = all.filter(|(_, load)| matches!(load, Load::Gravity { body: None, .. }) && loads::has_weight(load));
+    let on_all = |load: &Load| load.parts().on == On::Bodies && load.parts().body.is_none();
+    let acts = all.filter(|(_, load)| on_all(load) && loads::has_weight(load));
     acts.map(|(number, load)| world.resource_mut::<Signals>().add_load(number, load, 1.0)).collect()
 }
 

@@ -1,5 +1,6 @@
 //! What is observed.
 
+use crate::error::Error;
 use crate::scene::schema::Quantity;
 use bevy_ecs::prelude::*;
 use std::sync::Arc;
@@ -174,12 +175,12 @@ mod tests {
     }
 }
 
-/// What tells of each node system what energy it holds (J), where it says so.
+/// What tells of each system what energy it holds (J), where it says so.
 #[derive(Resource, Clone, Default)]
 pub struct HeldEnergies(pub Vec<HeldEnergy>);
 
 /// What tells it of one.
-pub type HeldEnergy = Arc<dyn Fn(&mut World) -> Option<f64> + Send + Sync>;
+pub type HeldEnergy = Arc<dyn Fn(&mut World) -> Result<Option<f64>, Error> + Send + Sync>;
 
 /// Energies of all bodies (J).
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize)]

@@ -104,7 +104,7 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
         }
     }
     for held in world.get_resource::<HeldEnergies>().cloned().unwrap_or_default().0 {
-        if let Some(energy) = held(world) {
+        if let Some(energy) = held(world)? {
             *sum.held.get_or_insert(0.0) += energy;
         }
     }

@@ -2,6 +2,7 @@
 
 use super::schema::{Curve, Select, Share};
 use glam::DVec3;
+use std::ops::RangeInclusive;
 
 /// What the rest of the program knows of a load, whatever its kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,14 +19,25 @@ pub struct LoadParts<'a> {
     pub field: (&'static str, &'static str),
     /// What the course multiplies, in that unit; of a number the first of three.
     pub amplitude: DVec3,
+    /// Between what amplitudes it usually is, where something can be said of all scenes.
+    pub usual: Option<&'static Usual>,
     /// Its course in time.
     pub curve: &'a Curve,
+}
+
+/// Amplitudes that a load usually has, in the unit of its field.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Usual {
+    /// From the least to the largest.
+    pub range: RangeInclusive<f64>,
+    /// What another unit, the likely mistake, would make of it.
+    pub hint: &'static str,
 }
 
 /// What a load acts on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum On<'a> {
-    /// The whole body, or all bodies where it names none.
+    /// The whole body, or all bodies where it names none, rigid ones too: the amplitude is an acceleration of all mass.
     Bodies,
     /// Nodes; how it is shared among them, and its factors on the first and the last of the body's copies.
     Nodes(&'a Select, Share, Option<(f64, f64)>),

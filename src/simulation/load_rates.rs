@@ -1,5 +1,5 @@
 //! What forces on nodes make of the stable step, as far as the systems that bring them say so
-//! ([`NodeSystem::slopes`](crate::systems::NodeSystem::slopes)).
+//! ([`NodeSystem::slopes`](crate::systems::NodeSystem::slopes), and [`System::with_slopes`] of those on the host).
 //!
 //! A force f(u, v) on a node is that of a spring and a damper to the first order, K = −∂f/∂u and C = −∂f/∂v. Central
 //! differences take v from the middle of the step before, so the recursion M (u⁺ − 2u + u⁻)/Δt² + C (u − u⁻)/Δt + K u =
@@ -18,24 +18,30 @@ use crate::backend::device::bring_to_host;
 use crate::components::{Column, Mass};
 use crate::error::Error;
 use crate::scene::schema::WhenUnstable;
-use crate::systems::{ForceSlopes, NodeRows, System};
+use crate::systems::{ForceSlopes, SlopesOf, System};
 use bevy_ecs::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// The slopes of all forces of node systems together: the largest of each.
+/// The slopes of the forces of all systems together: the largest of each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct LoadRates(ForceSlopes);
 
 impl LoadRates {
     /// Of the systems of a world, whose scene lasts so long (s).
-    pub fn of<'a>(systems: impl Iterator<Item = &'a System>, duration: f64, world: &mut World) -> Self {
-        Self::of_rows(systems.filter_map(|system| system.host.nodes()), duration, world)
+    ///
+    /// # Errors
+    /// That a system cannot say how fast its forces grow, or says what is no number.
+    pub fn of<'a>(systems: impl Iterator<Item = &'a System>, duration: f64, world: &mut World) -> Result<Self, Error> {
+        Self::sum(systems.filter_map(System::slopes), duration, world)
     }
 
-    /// The same of systems that act on nodes.
-    pub fn of_rows(systems: impl Iterator<Item = NodeRows>, duration: f64, world: &mut World) -> Self {
-        let all = systems.map(|rows| rows.slopes(duration, world));
-        Self(all.fold(ForceSlopes::default(), ForceSlopes::and))
+    /// The same of what tells them.
+    fn sum(all: impl Iterator<Item = SlopesOf>, duration: f64, world: &mut World) -> Result<Self, Error> {
+        let mut sum = ForceSlopes::default();
+        for slopes in all {
+            sum = sum.and(slopes(duration, world)?);
+        }
+        Ok(Self(sum))
     }
 
     /// Whether they are numbers that steps can be found from.
@@ -69,8 +75,7 @@ impl Simulation {
     /// The slopes of all forces on nodes as they are now.
     pub(super) fn loads_now(&mut self) -> Result<LoadRates, Error> {
         bring_to_host(&mut self.world, |_, name| name == Mass::NAME)?;
-        let systems = self.facts.node_systems.iter().map(|(_, rows)| *rows);
-        Ok(LoadRates::of_rows(systems, self.scene.duration, &mut self.world))
+        LoadRates::sum(self.facts.slopes.iter().cloned(), self.scene.duration, &mut self.world)
     }
 
     /// Counts forces on nodes for the stable step from here on. Snapshots hold what was counted: elements that went

@@ -169,8 +169,9 @@ struct Facts {
     initial_mass: f64,
     setup: Duration,
     forgets_start: bool,
-    /// Systems of the step that act on nodes, by name: what their forces do to the stable step is counted anew when it
-    /// changes.
+    /// Systems of the step that act on nodes, by name.
     node_systems: Vec<(String, crate::systems::NodeRows)>,
+    /// What tells how fast the forces of systems grow: what they do to the stable step is counted anew when it changes.
+    slopes: Vec<crate::systems::SlopesOf>,
     warnings: Diagnostics,
 }

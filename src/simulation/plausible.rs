@@ -6,7 +6,7 @@ use crate::backend::cpu::BlockLaw;
 use crate::components::*;
 use crate::materials::Elastic;
 use crate::scene::Diagnostics;
-use crate::scene::schema::{Load, Scene};
+use crate::scene::schema::Scene;
 use crate::scene::syntax::Path;
 use bevy_ecs::prelude::*;
 use std::collections::BTreeMap;
@@ -18,8 +18,6 @@ const SIZES: RangeInclusive<f64> = 2e-5..=5.0;
 const DENSITIES: RangeInclusive<f64> = 10.0..=30_000.0;
 /// Young's moduli at rest (Pa): a gel that hardly holds itself, to steel.
 const MODULI: RangeInclusive<f64> = 5.0..=1e12;
-/// Accelerations of gravity (m/s²): the moon's to a crash.
-const GRAVITY: RangeInclusive<f64> = 0.1..=3000.0;
 
 /// Warns of what is far from tissue, and of bodies under load that nothing holds.
 pub(super) fn check(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
@@ -27,12 +25,11 @@ pub(super) fn check(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
     sizes(assembly, diagnostics);
     materials(scene, world, diagnostics);
     for (number, load) in scene.loads.iter().enumerate() {
-        if let Load::Gravity { acceleration, .. } = load
-            && *acceleration != glam::DVec3::ZERO
-        {
-            let hint = "gravity on Earth is 9.81 m/s²; 9810 would be in mm/s²";
-            let path = Path::default().name("loads").index(number).name("acceleration");
-            unusual(acceleration.length(), &GRAVITY, "m/s²", "gravity", hint, path, diagnostics);
+        let parts = load.parts();
+        if let Some(usual) = parts.usual.filter(|_| parts.amplitude != glam::DVec3::ZERO) {
+            let (field, unit) = parts.field;
+            let path = Path::default().name("loads").index(number).name(field);
+            unusual(parts.amplitude.length(), &usual.range, unit, parts.name, usual.hint, path, diagnostics);
         }
     }
     unheld(assembly, world, diagnostics);

@@ -77,7 +77,13 @@ fn prepare_with<'a>(
     let mut schedule = resolve(scene.scene.schedule.as_deref(), known, world, diagnostics);
     hand_out(&scene.scene, known, &mut schedule, world, diagnostics);
     let systems = schedule.iter().map(|entry| entry.system);
-    let more = stable_step::with_parameters(&scene.scene, systems, &stability, world);
+    let more = match stable_step::with_parameters(&scene.scene, systems, &stability, world) {
+        Ok(more) => more,
+        Err(error) => {
+            diagnostics.error(error.to_string());
+            None
+        }
+    };
     Some((Prepared { assembly, clock, stability, steps, schedule }, more))
 }
 

@@ -142,7 +142,15 @@ pub(super) fn choose(
             .warn_at("integration.bound", reason)
             .note("`bound: Auto` stays with the stiffest element, which is safe");
     }
-    let loads = loads.unwrap_or_else(|| LoadRates::of(known.systems(), scene.scene.duration, world));
+    let loads = match loads {
+        Some(loads) => loads,
+        None => {
+            // one's own have their parameters later: see `with_parameters`
+            let built_in = known.systems().filter(|system| !system.custom);
+            let found = LoadRates::of(built_in, scene.scene.duration, world);
+            found.map_err(|error| drop(diagnostics.error(error.to_string()))).ok()?
+        }
+    };
     let found = seek(&scene.scene, certain, stays.is_none(), &loads, world);
     // the bounds are certain as well: at rest the best of all
     let limit = step_of(found.at_most).max(certain);
@@ -193,16 +201,19 @@ pub(super) fn choose(
 
 /// The stiffness of forces on nodes with systems whose parameters were not known when the step was chosen, where they
 /// make it smaller: then it must be chosen again.
+///
+/// # Errors
+/// As [`LoadRates::of`].
 pub(super) fn with_parameters<'a>(
     scene: &Scene,
     systems: impl Iterator<Item = &'a System>,
     stability: &Stability,
     world: &mut World,
-) -> Option<LoadRates> {
-    let all = LoadRates::of(systems, scene.duration, world);
+) -> Result<Option<LoadRates>, Error> {
+    let Some(limit) = stability.limit else { return Ok(None) };
+    let all = LoadRates::of(systems, scene.duration, world)?;
     // what has been counted already may be summed in another order
-    let before = (1.0 - 1e-9) * stability.limit?;
-    (all.with(stability.limit_of_bodies) < before).then_some(all)
+    Ok((all.with(stability.limit_of_bodies) < (1.0 - 1e-9) * limit).then_some(all))
 }
 
 /// Why `bound: Auto` stays with what the elements allow: what needs the room between that and the true limit.

@@ -4,6 +4,7 @@
 
 mod bond;
 mod gent;
+mod hanger;
 mod laws;
 mod memory;
 mod plane;

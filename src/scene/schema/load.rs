@@ -1,7 +1,7 @@
 //! Loads: what there are, and what the rest of the program knows of each kind.
 
 use super::{Curve, Select};
-use crate::scene::load_parts::{Amplitude, LoadParts, LoadPartsMut, On};
+use crate::scene::load_parts::{Amplitude, LoadParts, LoadPartsMut, On, Usual};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
@@ -68,6 +68,9 @@ pub enum Load {
     },
 }
 
+/// From the moon's to a crash.
+static GRAVITY: Usual = Usual { range: 0.1..=3000.0, hint: "gravity on Earth is 9.81 m/s²; 9810 would be in mm/s²" };
+
 impl Load {
     /// What it has in common with other kinds.
     pub fn parts(&self) -> LoadParts<'_> {
@@ -79,6 +82,7 @@ impl Load {
                 on: On::Bodies,
                 field: ("acceleration", "m/s²"),
                 amplitude: *acceleration,
+                usual: Some(&GRAVITY),
                 curve,
             },
             Load::NodalForce { body, on, force, share, per_copy, curve } => LoadParts {
@@ -88,6 +92,7 @@ impl Load {
                 on: On::Nodes(on, *share, *per_copy),
                 field: ("force", "N"),
                 amplitude: *force,
+                usual: None,
                 curve,
             },
             Load::Pressure { body, on, pressure, curve } => LoadParts {
@@ -97,6 +102,7 @@ impl Load {
                 on: On::Faces(on),
                 field: ("pressure", "Pa"),
                 amplitude: DVec3::X * *pressure,
+                usual: None,
                 curve,
             },
             Load::Traction { body, on, traction, curve } => LoadParts {
@@ -106,6 +112,7 @@ impl Load {
                 on: On::Faces(on),
                 field: ("traction", "Pa"),
                 amplitude: *traction,
+                usual: None,
                 curve,
             },
         }
