@@ -2,7 +2,7 @@
 //! [`Observer`](crate::observation::Observer). On a GPU the guards have kernels, `shaders/guard_nodes.wgsl` and
 //! `shaders/guard_elements.wgsl`, that run when they are due only.
 
-use super::system::{OnDevice, OnHost, Phase, System};
+use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::block_kernel::BlockKernels;
 use crate::backend::kernel::{Kernel, Uniform, uniform};
@@ -11,28 +11,18 @@ use crate::error::Error;
 use crate::observation::Observer;
 use crate::shader;
 use bevy_ecs::prelude::*;
-use std::sync::Arc;
 
 /// Reads only. On the GPU it brings to the host what is due, and nothing in all other steps.
 pub fn system() -> System {
-    System {
-        name: "observe".into(),
-        phase: Phase::Observe,
-        does: "probes, energies, fields and guards, when they are due".into(),
-        called_for_by: "every scene",
-        because: Arc::new(|_| Some("guards look for inverted elements and lost numbers".into())),
-        host: OnHost::System(Box::new(|| Box::new(IntoSystem::into_system(observe)))),
-        device: OnDevice::None,
-        observes: true,
-        every: 1,
-        device_when: |_| true,
-        before_steps: None,
-        shared_only: |_| false,
-        custom: false,
-        parameters: None,
-        state: None,
-        load: None,
-    }
+    let observe = System::built_in(
+        "observe",
+        Phase::Observe,
+        "probes, energies, fields and guards, when they are due",
+        "every scene",
+        |_| Some("guards look for inverted elements and lost numbers".into()),
+        observe,
+    );
+    System { observes: true, ..observe }
 }
 
 fn observe(world: &mut World) -> Result<(), Error> {

@@ -148,7 +148,7 @@ pub(super) fn choose(
             // one's own have their parameters later: see `with_parameters`
             let built_in = known.systems().filter(|system| !system.custom);
             let found = LoadRates::of(built_in, scene.scene.duration, world);
-            found.map_err(|error| drop(diagnostics.error(error.to_string()))).ok()?
+            found.inspect_err(|error| _ = diagnostics.error(error.to_string())).ok()?
         }
     };
     let found = seek(&scene.scene, certain, stays.is_none(), &loads, world);

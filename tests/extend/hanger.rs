@@ -55,7 +55,7 @@ fn silent() -> System {
     System::custom("hanger", Phase::Loads, "holds what is high", pull).with_parameters::<Hanger>()
 }
 
-fn begun(hanger: System, sets: &[&str]) -> Result<Simulation, sinew::Error> {
+fn begun(hanger: System, sets: &[&str]) -> Result<Simulation, Error> {
     let sets: Vec<String> = sets.iter().map(ToString::to_string).collect();
     let scene = SceneFile::from_text("hanger.ron", SCENE, Path::new("."), &sets)
         .unwrap_or_else(|wrong| panic!("{}", wrong.render(false)));
@@ -87,7 +87,7 @@ fn a_stiff_spring_of_the_host_needs_no_step_of_the_scenes_own() {
 fn without_its_slopes_it_breaks_down() {
     let mut simulation = begun(silent(), &[]).unwrap();
     assert!(simulation.time_step() > 2.0 / STIFFNESS.sqrt(), "{}", simulation.time_step());
-    assert!(matches!(simulation.finish(), Err(sinew::Error::Unstable(_))));
+    assert!(matches!(simulation.finish(), Err(Error::Unstable(_))));
 }
 
 #[test]

@@ -6,8 +6,8 @@
 //! some 10 eps |F|², S = ∂Ψ/∂E by |∂S/∂E| ≤ 20 M of that for |F⁻¹| ≤ 4: 1e3 eps M covers it.
 
 mod closed_forms;
-mod corotational;
 mod fibres;
+mod polar_rotation;
 mod samples;
 mod short_ways;
 
