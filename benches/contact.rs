@@ -1,7 +1,8 @@
 //! What contact between bodies costs on the CPU (C32): whole steps of three blocks without contact, with contact where
-//! nothing is near, and with a fifth of the surface touching; and how long lists take that tell what is near what.
+//! nothing is near, and with a quarter of the surface touching, with nodes and with points of faces; and how long lists
+//! take that tell what is near what.
 //!
-//! `cargo bench --bench contact`; `-- quick` leaves the large ones out, `-- near` runs only steps with a fifth that
+//! `cargo bench --bench contact`; `-- quick` leaves the large ones out, `-- near` runs only steps with a quarter that
 //! touches, for profiles. Steps are timed in blocks by turns, and the best of each counts: so other work on the machine
 //! does not.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -18,7 +19,7 @@ const TURNS: usize = 60;
 
 /// Three blocks of 2 cm one above the other, so far apart (m), the lowest held; the middle one is turned, so that no
 /// node meets another.
-fn blocks(elements: &str, cells: u32, apart: f64, contact: bool) -> String {
+fn blocks(elements: &str, cells: u32, apart: f64, points: Option<&str>) -> String {
     let block = |name: &str, place: &str| {
         format!(
             "\"{name}\": (mesh: Box(size: (0.02, 0.02, 0.02), cells: ({cells}, {cells}, {cells}), elements: {elements}), \
@@ -31,12 +32,10 @@ fn blocks(elements: &str, cells: u32, apart: f64, contact: bool) -> String {
         block("middle", &format!("rotate: (0, 0, 10), translate: (0.002, -0.0015, {middle})")),
         block("high", &format!("translate: (0, 0, {high})")),
     ];
-    let contacts = match contact {
-        true => {
-            "contacts: [Between(bodies: (\"low\", \"middle\"), friction: 0.3), Between(bodies: (\"middle\", \"high\"), friction: 0.3)],"
-        }
-        false => "",
-    };
+    let contacts = points.map_or(String::new(), |points| {
+        let between = |pair: &str| format!("Between(bodies: ({pair}), friction: 0.3, points: {points})");
+        format!("contacts: [{}, {}],", between("\"low\", \"middle\""), between("\"middle\", \"high\""))
+    });
     let gravity =
         ["low", "middle", "high"].map(|body| format!("Gravity(body: \"{body}\", acceleration: (0, 0, -9.81)), "));
     format!(
@@ -54,9 +53,9 @@ fn start(text: &str, threads: usize) -> Simulation {
 }
 
 /// Whole steps, and what contact adds to them.
-fn shares(elements: &str, cells: u32, threads: usize) {
-    let texts = [(0.01, false), (0.01, true), (0.0, false), (0.0, true)]
-        .map(|(apart, contact)| blocks(elements, cells, apart, contact));
+fn shares((elements, points): (&str, &str), cells: u32, threads: usize) {
+    let texts = [(0.01, None), (0.01, Some(points)), (0.0, None), (0.0, Some(points))]
+        .map(|(apart, points)| blocks(elements, cells, apart, points));
     let mut all = texts.map(|text| start(&text, threads));
     let mut best = [f64::INFINITY; 4];
     // until they bear each other
@@ -70,26 +69,28 @@ fn shares(elements: &str, cells: u32, threads: usize) {
         }
     }
     let contacts = all[3].world().resource::<SurfaceContacts>();
-    let (after, [points, faces]) = (contacts.figures(), contacts.size());
+    let (after, [all_points, faces]) = (contacts.figures(), contacts.size());
     let steps = (after.steps - before.steps) as f64;
     let near = (after.examined - before.examined) as f64 / steps;
     println!(
-        "{elements} 3 x {cells}^3, {threads} thread(s): {:.1} us a step; nothing near {:+.1} %; {:.0} % of {points} points near \
-         {:+.1} % ({:.0} ns a point near; {:.0} contacts; {faces} faces; {:.0} steps between lists)",
+        "{elements} 3 x {cells}^3, points: {points}, {threads} thread(s): {:.1} us a step; nothing near {:+.1} %; {:.0} % of \
+         {all_points} points near {:+.1} % ({:.0} ns a point near; {:.0} contacts; {faces} faces; {:.0} steps between lists; \
+         {:.0} % of the points near searched)",
         best[2] * 1e6,
         100.0 * (best[1] / best[0] - 1.0),
-        100.0 * near / points as f64,
+        100.0 * near / all_points as f64,
         100.0 * (best[3] / best[2] - 1.0),
         (best[3] - best[2]) * 1e9 / near,
         (after.contacts - before.contacts) as f64 / steps,
         steps / (after.builds - before.builds).max(1) as f64,
+        100.0 * (after.searched - before.searched) as f64 / (steps * near),
     );
 }
 
 /// How long lists take, found by making them in every step and in none.
 fn lists(cells: u32) {
-    let text =
-        blocks("Hex8", cells, 0.0, true).replace("rotate: (0, 0, 10)", "rotate: (0, 0, 10), velocity: (1e-4, 0, 0)");
+    let text = blocks("Hex8", cells, 0.0, Some("Nodes"))
+        .replace("rotate: (0, 0, 10)", "rotate: (0, 0, 10), velocity: (1e-4, 0, 0)");
     let [mut never, mut always] = [start(&text, 1), start(&text, 1)];
     never.world_mut().resource_mut::<SurfaceContacts>().skin = 1.0;
     always.world_mut().resource_mut::<SurfaceContacts>().skin = 1e-9;
@@ -114,16 +115,19 @@ fn lists(cells: u32) {
 fn main() {
     let asked = |word: &str| std::env::args().any(|argument| argument == word);
     if asked("near") {
-        let mut near = start(&blocks("Hex8", 8, 0.0, true), 1);
+        let mut near = start(&blocks("Hex8", 8, 0.0, Some("Nodes")), 1);
         return near.advance(20000).unwrap();
     }
-    shares("Hex8", 8, 1);
-    shares("Tet4", 12, 1);
+    let [nodes, faces] = [("Tet4", "Nodes"), ("Tet4", "Faces")];
+    shares(("Hex8", "Nodes"), 8, 1);
+    shares(nodes, 12, 1);
+    shares(faces, 12, 1);
     lists(24);
     if asked("quick") {
         return;
     }
-    shares("Tet4", 24, 1);
-    shares("Tet4", 24, 2);
+    shares(nodes, 24, 1);
+    shares(nodes, 24, 2);
+    shares(faces, 24, 1);
     lists(76);
 }

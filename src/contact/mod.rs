@@ -7,6 +7,7 @@ mod face_points;
 mod facing;
 mod law;
 mod lists;
+mod steady;
 mod surfaces;
 mod ties;
 
