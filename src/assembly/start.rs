@@ -6,7 +6,7 @@ use crate::components::*;
 use crate::evaluation::ElementState;
 use crate::materials::J_FLOOR;
 use crate::scene::diagnostic::Diagnostics;
-use crate::scene::schema::{Inversion, Start};
+use crate::scene::schema::{Inversion, Start, laws_that_recover};
 use bevy_ecs::prelude::*;
 use glam::{DMat3, DVec3};
 
@@ -86,9 +86,10 @@ fn complain(name: &str, body: Entity, world: &World, diagnostics: &mut Diagnosti
         let path = format!("bodies.\"{name}\".start");
         match policy {
             Inversion::Remove => diagnostics.warn_at(path.as_str(), message).note("they are removed in the first step"),
-            _ => diagnostics
-                .error_at(path.as_str(), message)
-                .note("start from less, or choose a material that recovers: stable_neo_hookean"),
+            _ => diagnostics.error_at(path.as_str(), message).note(format!(
+                "start from less, or choose a material that recovers: {}",
+                laws_that_recover().join(", ")
+            )),
         };
     }
 }

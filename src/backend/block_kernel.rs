@@ -128,7 +128,7 @@ impl BlockKernels {
         self.with_law(self.of_columns(entry)).bind("displacement", self.columns[0])
     }
 
-    /// The same with a workgroup for each patch, which has its nodes at hand.
+    /// The same with a workgroup for each patch, which has its nodes in workgroup memory.
     pub fn patch_kernel(&self, entry: &'static str, packed: &PackedPatches, buffers: &mut dyn Buffers) -> Kernel {
         let kind = self.block.kind;
         let batch = BATCH_GROUPS * LANES;

@@ -132,7 +132,7 @@ impl NodeStage {
         }
     }
 
-    /// The same for nodes inside a patch, in the kernel of that patch: forces are at hand.
+    /// The same for nodes inside a patch, in the kernel of that patch: forces are in workgroup memory.
     pub(super) fn in_patch(self) -> Self {
         if !self.sums_forces() {
             return self;

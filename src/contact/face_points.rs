@@ -12,13 +12,13 @@ const OF_TRIANGLE: [[f64; 4]; 3] = [
 /// Bilinear weights of the corners of a quadrilateral at the points of Gauss, 2 × 2: of the nearest corner ¼ (1 +
 /// 1/√3)², of the one across ¼ (1 − 1/√3)².
 const NEAREST: f64 = 0.622_008_467_928_146_2;
-const BESIDE: f64 = 1.0 / 6.0;
-const ACROSS: f64 = 0.044_658_198_738_520_45;
+const ADJACENT: f64 = 1.0 / 6.0;
+const OPPOSITE: f64 = 0.044_658_198_738_520_45;
 const OF_QUADRILATERAL: [[f64; 4]; 4] = [
-    [NEAREST, BESIDE, ACROSS, BESIDE],
-    [BESIDE, NEAREST, BESIDE, ACROSS],
-    [ACROSS, BESIDE, NEAREST, BESIDE],
-    [BESIDE, ACROSS, BESIDE, NEAREST],
+    [NEAREST, ADJACENT, OPPOSITE, ADJACENT],
+    [ADJACENT, NEAREST, ADJACENT, OPPOSITE],
+    [OPPOSITE, ADJACENT, NEAREST, ADJACENT],
+    [ADJACENT, OPPOSITE, ADJACENT, NEAREST],
 ];
 
 /// What the corners of a facet have of each of its points, the point nearest to the first corner first; a triangle

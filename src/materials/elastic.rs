@@ -112,6 +112,12 @@ pub trait Elastic<R: Real>: Copy + Send + Sync {
 
     /// Shear and bulk modulus (Pa) at small strains.
     fn small_strain_moduli(&self) -> [R; 2];
+
+    /// Whether it ends at J = 0, and pushes without bound before: else it has a stress, and a tangent stiffness, also
+    /// of what is flat or inside out.
+    fn ends_at_no_volume(&self) -> bool {
+        true
+    }
 }
 
 /// All elastic laws with a WGSL file of ours: word and type. One line here makes a law known to scenes and to both
@@ -238,6 +244,11 @@ macro_rules! elastic_laws {
             fn small_strain_moduli(&self) -> [R; 2] {
                 match self {
                     $(Self::$law(law) => law.small_strain_moduli(),)*
+                }
+            }
+            fn ends_at_no_volume(&self) -> bool {
+                match self {
+                    $(Self::$law(law) => law.ends_at_no_volume(),)*
                 }
             }
         }

@@ -135,6 +135,10 @@ impl<R: Real> Elastic<R> for StableNeoHookean<R> {
         self.bulk.constant(0.5) * self.bulk * theta * theta
     }
 
+    fn ends_at_no_volume(&self) -> bool {
+        false
+    }
+
     fn small_strain_moduli(&self) -> [R; 2] {
         [self.shear, self.bulk]
     }

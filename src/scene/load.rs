@@ -8,7 +8,7 @@ use super::partial::wrong_values;
 use super::parts::{self, Problem, Together};
 use super::schema::Scene;
 use super::source::Source;
-use super::syntax::{Kind, Node, Path as Way, Segment, Span, Tree};
+use super::syntax::{Kind, Node, Path as Way, Segment, Tree};
 use crate::mesh::Mesh;
 use glam::DVec3;
 use ron::extensions::Extensions;
@@ -40,7 +40,7 @@ pub struct SceneFile {
     tree: Arc<Tree>,
 }
 
-/// How scenes are read: an optional value may be written without `Some`.
+/// How RON is read: an optional value may be written without `Some`.
 pub fn options() -> ron::Options {
     ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME)
 }
@@ -180,13 +180,6 @@ impl SceneFile {
             mistake.note(problem.note.clone());
             mistake
         };
-        let without_parts = |mut scene: Scene, mistakes: &mut Vec<Diagnostic>| {
-            let problems = parts::flatten(&mut scene);
-            if is_whole {
-                mistakes.extend(problems.iter().map(tell));
-            }
-            scene
-        };
         let (source, tree) = (Arc::new(source), Arc::new(view.merged()));
         let mut diagnostics = Diagnostics::new(Arc::clone(&source), Arc::clone(&tree));
         let file = |scene| Self {
@@ -200,21 +193,17 @@ impl SceneFile {
             source,
             tree,
         };
-        if mistakes.is_empty() {
-            match options().from_str::<Scene>(diagnostics.text()) {
-                Ok(scene) => {
-                    let scene = without_parts(scene, &mut mistakes);
-                    if mistakes.is_empty() {
-                        return Ok(file(scene));
-                    }
-                }
-                Err(error) => mistakes.push(unforeseen(&error, diagnostics.text())),
+        // without the parts that were not read, what names something of them is not wrong
+        if let Some(mut scene) = partial.filter(|_| is_whole) {
+            let is_sound = mistakes.is_empty();
+            mistakes.extend(parts::flatten(&mut scene).iter().map(tell));
+            if mistakes.is_empty() {
+                return Ok(file(scene));
             }
-        } else if let Some(scene) = partial.filter(|_| is_whole) {
-            // what names something of a part that was not read is not wrong
-            let scene = without_parts(scene, &mut mistakes);
-            let wrong = wrong_values(&file(scene), &mistakes);
-            mistakes.extend(wrong);
+            if !is_sound {
+                let wrong = wrong_values(&file(scene), &mistakes);
+                mistakes.extend(wrong);
+            }
         }
         for mistake in mistakes {
             diagnostics.push(mistake);
@@ -256,19 +245,4 @@ fn too_long(name: &str) -> String {
         "the scene {name} has more than {} bytes, the most that are allowed; long lists of nodes can be named sets of a mesh",
         limits::TEXT_BYTES
     )
-}
-
-/// A mistake that ron finds and [`check`] does not.
-fn unforeseen(error: &ron::error::SpannedError, text: &str) -> Diagnostic {
-    let start = offset(text, error.span.start.line, error.span.start.col);
-    let end = offset(text, error.span.end.line, error.span.end.col).max(start);
-    let at: Span = if text[start..end].contains('\n') { start..start } else { start..end };
-    Diagnostic::error(at, format!("this cannot be read: {}", error.code))
-}
-
-/// The byte of a line and column, both from 1, of characters.
-fn offset(text: &str, line: usize, column: usize) -> usize {
-    let start: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
-    let rest = &text[start.min(text.len())..];
-    start + rest.chars().take(column.saturating_sub(1)).map(char::len_utf8).sum::<usize>()
 }

@@ -28,7 +28,7 @@ const LONGER: f64 = 2.0;
 const PRODUCTS: (usize, usize) = (20, 8);
 /// What a finding costs, in products: around them all elements are checked several times, and steps of tetrahedra in
 /// f32 are quicker than [`PRODUCT`] says (30 to 60 steps for eight products, measured).
-const BESIDE: f64 = 2.0;
+const FINDING_PRODUCTS: f64 = 2.0;
 /// ω² may be so many times what they show.
 const SHOWN: f64 = 1.1;
 /// Lengths change by at most so many times themselves in a step: what follows must see it come.
@@ -157,7 +157,7 @@ impl Follower {
 
     /// Whether the highest frequency is to be found now.
     fn is_finding_worth(&self, seen: &StabilitySample, clock: &Clock) -> bool {
-        let cost = BESIDE * PRODUCT * self.products() as f64;
+        let cost = FINDING_PRODUCTS * PRODUCT * self.products() as f64;
         let (now, then) = (self.wanted(self.step_of(seen.square), seen), self.hoped_for(seen, clock));
         let left = (self.duration - clock.time()) / now;
         self.found.lost >= cost && left * (1.0 - now / then) >= cost

@@ -18,7 +18,7 @@ use glam::DVec3;
 use std::collections::BTreeMap;
 
 /// Vectors beside those that are wanted: they bound the filter, and those nearest to it converge slowly.
-const BESIDE: usize = 6;
+const EXTRA_VECTORS: usize = 6;
 /// Products of a filter, at most: more would let the quickest-growing modes swamp the others in rounding.
 const DEGREE: (usize, usize) = (20, 400);
 /// What a filter may make a wanted mode larger than those beside it by: then they are separated anew.
@@ -116,7 +116,7 @@ struct Pair {
 /// The lowest eigenpairs of a symmetric matrix whose eigenvalues lie between 0 and `top`; axes without a root stay 0.
 fn lowest(roots: &[f64], count: usize, top: f64, mut times: impl FnMut(&[f64], &mut [f64])) -> Vec<Pair> {
     let free = roots.iter().filter(|&&root| root > 0.0).count();
-    let width = (count + BESIDE.max(count / 2)).min(free);
+    let width = (count + EXTRA_VECTORS.max(count / 2)).min(free);
     let mut basis: Vec<Vec<f64>> = noise(&roots.repeat(width)).chunks(roots.len()).map(<[f64]>::to_vec).collect();
     orthonormalise(&mut basis);
     let (mut cut, mut degree) = (0.1 * top, DEGREE.0);

@@ -59,7 +59,7 @@ impl Metronome {
 
 impl Simulation {
     /// Waits until life is where the simulation is, if the scene asks for that.
-    pub(super) fn wait_for_life(&mut self) {
+    pub(super) fn wait_for_real_time(&mut self) {
         let clock = *self.world.resource::<Clock>();
         if !self.scene.real_time || clock.relaxation.is_some() {
             return;

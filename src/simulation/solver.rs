@@ -134,7 +134,7 @@ impl Simulation {
 
     /// All of it but the check.
     pub(super) fn before_the_check(&mut self) -> Result<(), Error> {
-        self.wait_for_life();
+        self.wait_for_real_time();
         self.keep_history_if_due()?;
         self.take_up_inputs()?;
         self.begin_batches()

@@ -16,7 +16,7 @@
 
 use crate::backend::cpu::{BlockLaw, sizes, with_identity};
 use crate::components::FamilyDirection;
-use crate::materials::{Elastic, ElasticLaw, ExponentialFibre};
+use crate::materials::{Elastic, ExponentialFibre};
 use crate::math::Mat3;
 
 /// Stretches that laws are tried at: each so many times the one before.
@@ -59,7 +59,7 @@ impl StiffnessRatio {
         let mut law = law.clone();
         let families = std::mem::take(&mut law.exponential);
         let alone = law.fibres.is_none() && families.is_empty() && law.prony.is_empty();
-        let ends = !(alone && matches!(law.elastic, ElasticLaw::Linear(_) | ElasticLaw::StableNeoHookean(_)));
+        let ends = !alone || law.elastic.ends_at_no_volume();
         let mut new = Self { law, rest, ends, tried: 0, own: Table::new(), waves: Table::new(), families, varying };
         // what is pressed flat or through itself is no limit there
         for stretch in FLAT.into_iter().filter(|_| !ends) {
@@ -305,7 +305,7 @@ fn largest_eigenvalue(a: &[[f64; 9]; 9]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::materials::{Linear, NeoHookean};
+    use crate::materials::{ElasticLaw, Linear, NeoHookean};
 
     fn law(elastic: ElasticLaw<f64>) -> BlockLaw<f64> {
         BlockLaw {

@@ -5,6 +5,7 @@
 mod bond;
 mod gent;
 mod hanger;
+mod in_tree;
 mod laws;
 mod memory;
 mod plane;
@@ -93,69 +94,4 @@ fn the_stable_step_knows_how_stiff_the_plane_is() {
     // ω² of the whole is at least that of the plane, and at most the sum
     assert!(stiff < 2.0 / 4e8f64.sqrt() && stiff > 0.4 * 2.0 / 4e8f64.sqrt(), "{stiff}");
     assert!(soft > 3.0 * stiff, "{soft} without, {stiff} with it");
-}
-
-/// Files in which a word stands.
-fn files_with(word: &str, folders: &[&str]) -> Vec<String> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut waiting: Vec<_> = folders.iter().map(|folder| root.join(folder)).collect();
-    let mut found = Vec::new();
-    while let Some(path) = waiting.pop() {
-        if path.is_dir() {
-            waiting.extend(std::fs::read_dir(&path).unwrap().map(|entry| entry.unwrap().path()));
-        } else if std::fs::read_to_string(&path)
-            .is_ok_and(|text| text.split(|c: char| !(c.is_alphanumeric() || c == '_')).any(|part| part == word))
-        {
-            found.push(path.strip_prefix(root).unwrap().display().to_string());
-        }
-    }
-    found.sort();
-    found
-}
-
-/// An element is a Rust file with its `mod` line, a WGSL file and a line in the list of kinds; what a kind of cell is
-/// stands in files of its own.
-#[test]
-fn an_element_is_named_in_its_files_and_in_the_list() {
-    let of_engine = files_with("Wedge6", &["src", "systems"]);
-    let own = [
-        "src/elements/mod.rs",
-        "src/elements/wedge6.rs",
-        "src/mesh/generators/mod.rs",
-        "src/mesh/topology/mod.rs",
-        "src/mesh/topology/wedge6.rs",
-    ];
-    assert_eq!(of_engine, own, "where `Wedge6` is named");
-    let named = files_with("wedge6", &["src", "systems", "shaders"]);
-    let twin = "shaders/wedge6.wgsl";
-    let expected = |file: &String| file == twin || own.contains(&file.as_str());
-    assert!(named.iter().all(expected), "where `wedge6` is named: {named:?}");
-}
-
-/// A load is a Rust file and a WGSL file, with its lines in the step's list; its fields in scenes are a variant of
-/// `Load`. What copies parts of scenes, checks, spawns, prunes and snapshots loads, and what takes elements away from
-/// behind them, knows none by its name.
-#[test]
-fn a_load_is_named_in_its_files_in_the_list_and_where_scenes_are_read() {
-    for (kind, system) in [("Traction", "traction"), ("NodalForce", "nodal_force")] {
-        let own = format!("systems/{system}.rs");
-        let expected = ["src/scene/schema/load.rs", "systems/mod.rs", &own];
-        assert_eq!(files_with(kind, &["src", "systems", "shaders"]), expected, "where `{kind}` is named");
-        assert!(Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("shaders/{system}.wgsl")).exists());
-    }
-    let named = files_with("nodal_force", &["src", "systems", "shaders"]);
-    // what multiplies a load at some nodes says in its head whom it is for
-    let expected =
-        ["shaders/force_factor.wgsl", "shaders/nodal_force.wgsl", "systems/mod.rs", "systems/nodal_force.rs"];
-    assert_eq!(named, expected, "where `nodal_force` is named");
-}
-
-/// A law is a Rust file with its `mod` line, a WGSL file and a line in the list of laws.
-#[test]
-fn a_law_is_named_in_its_files_and_in_the_list() {
-    let own = ["src/materials/arruda_boyce.rs", "src/materials/elastic.rs"];
-    let of_type = files_with("ArrudaBoyce", &["src", "systems"]);
-    assert_eq!(of_type, own, "where `ArrudaBoyce` is named");
-    let expected = ["shaders/arruda_boyce.wgsl", own[0], own[1], "src/materials/mod.rs"];
-    assert_eq!(files_with("arruda_boyce", &["src", "systems", "shaders"]), expected, "where `arruda_boyce` is named");
 }

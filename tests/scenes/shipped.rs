@@ -79,6 +79,17 @@ fn scenes_have_a_title_and_something_to_observe() {
     }
 }
 
+/// Sinew reads scenes by a syntax tree that knows where everything stands.
+#[test]
+fn a_scene_is_what_ron_reads() {
+    for (name, _) in SCENES {
+        let file = scene(name, &[]);
+        if file.parts().is_empty() {
+            assert_eq!(load::options().from_str::<Scene>(file.text()).unwrap(), file.scene, "{name}");
+        }
+    }
+}
+
 #[test]
 fn a_scene_written_and_read_again_is_the_same() {
     for (name, _) in SCENES {

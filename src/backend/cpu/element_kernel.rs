@@ -82,8 +82,8 @@ pub fn run_block_fast<E: Element>(
 ) -> Vec<usize> {
     let effects = kernel_effects::<E>(cpu, law);
     let block = BlockRun::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
-    // known when this is compiled: no code is made of what follows for the other kinds
-    if !is_specialised::<E>() {
+    // a constant, so that no code is made of what follows for the other kinds: of a function's result it would be
+    if const { !is_specialised::<E>() } {
         return block.run::<_, GENERIC>(&law.elastic);
     }
     match &law.elastic {
@@ -107,10 +107,10 @@ pub(super) fn run_block_of<E: Element, L: Elastic<f32>>(
     groups_a_patch: usize,
 ) -> Vec<usize> {
     let block = BlockRun::<E, f32> { cpu, columns, law, groups_a_patch, element: PhantomData };
-    match is_specialised::<E>() && law.is_elastic() {
-        true => block.run::<_, 0>(elastic),
-        false => block.run::<_, { GENERIC | VECTORS }>(elastic),
+    if const { is_specialised::<E>() } && law.is_elastic() {
+        return block.run::<_, 0>(elastic);
     }
+    block.run::<_, { GENERIC | VECTORS }>(elastic)
 }
 
 /// The same in f64, with the kernel that asks for each effect.

@@ -21,6 +21,7 @@ pub use volume_kernel::run_volumes;
 use arenas::Arenas;
 use bevy_ecs::prelude::*;
 use bumpalo::Bump;
+use rayon::prelude::*;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError, Weak};
 
 /// Rows of a node column that make one task. A constant: tasks must not depend on the number of threads.
@@ -53,6 +54,29 @@ fn pool_of(threads: usize) -> Option<Arc<rayon::ThreadPool>> {
         pools.push(Arc::downgrade(&pool));
         Some(pool)
     })
+}
+
+/// Something to be done once, on any thread.
+trait Job: Send {
+    fn run(&mut self);
+}
+
+/// An item, and what is to be done with it.
+struct ItemJob<'t, I, F> {
+    item: Option<I>,
+    task: &'t F,
+}
+
+impl<I: Send, F: Fn(I) + Sync> Job for ItemJob<'_, I, F> {
+    fn run(&mut self) {
+        self.item.take().into_iter().for_each(self.task);
+    }
+}
+
+/// One kind of job for whatever is shared among threads: with a kind for each task, what rayon made of them took a
+/// seventeenth of compiling (docs/performance.md).
+fn run_jobs(pool: &rayon::ThreadPool, jobs: &mut [&mut dyn Job]) {
+    pool.install(|| jobs.par_iter_mut().for_each(|job| job.run()));
 }
 
 /// Threads and instruction set of a run.
@@ -186,30 +210,24 @@ impl Cpu {
 
     /// Results of `task` for 0 to `count` − 1, in order.
     pub fn map<R: Send>(&self, count: usize, task: impl Fn(usize) -> R + Sync + Send) -> Vec<R> {
-        match self.pool.as_ref().filter(|_| count > 1) {
-            None => (0..count).map(task).collect(),
-            Some(pool) => pool.install(|| {
-                use rayon::prelude::*;
-                (0..count).into_par_iter().map(task).collect()
-            }),
+        if self.pool.is_none() || count < 2 {
+            return (0..count).map(task).collect();
         }
+        let mut results: Vec<Option<R>> = std::iter::repeat_with(|| None).take(count).collect();
+        self.for_each(results.iter_mut().enumerate(), |(index, result)| *result = Some(task(index)));
+        results.into_iter().flatten().collect()
     }
 
     /// Runs `task` on each item, on all threads. Items must be independent; their order of work does not matter then.
     /// They are kept where those of the last step were.
     pub fn for_each<I: Send>(&self, mut items: impl Iterator<Item = I>, task: impl Fn(I) + Sync + Send) {
-        use rayon::prelude::*;
         match (&self.pool, items.size_hint().1) {
             (None, _) | (_, Some(0 | 1)) => items.for_each(task),
             (Some(pool), Some(most)) => self.with_arena(|arena| {
-                let items = arena.alloc_slice_fill_with(most, |_| items.next());
-                let each = |item: &mut Option<I>| item.take().into_iter().for_each(&task);
-                pool.install(|| items.par_iter_mut().for_each(each));
+                let jobs = arena.alloc_slice_fill_with(most, |_| ItemJob { item: items.next(), task: &task });
+                run_jobs(pool, arena.alloc_slice_fill_iter(jobs.iter_mut().map(|job| job as &mut dyn Job)));
             }),
-            (Some(pool), None) => {
-                let items: Vec<I> = items.collect();
-                pool.install(|| items.into_par_iter().for_each(&task));
-            }
+            (Some(_), None) => self.for_each(items.collect::<Vec<I>>().into_iter(), task),
         }
     }
 

@@ -4,9 +4,10 @@ use super::access::{Entries, FieldsOf, Items, Variant};
 use super::stand_in::StandIn;
 use super::{About, Required, Stop};
 use crate::scene::diagnostic::Diagnostic;
+use crate::scene::load::options;
 use crate::scene::suggest::choice;
 use crate::scene::syntax::{Kind, Node};
-use serde::de::{Deserializer, Visitor};
+use serde::de::{Deserializer, Error, Visitor};
 
 /// A value, and the name of the field or entry it belongs to.
 #[derive(Clone, Copy)]
@@ -38,10 +39,15 @@ impl<'de> Deserializer<'de> for Value<'_> {
         deserialize_u64 visit_u64 u64, deserialize_i8 visit_i8 i8, deserialize_i16 visit_i16 i16,
         deserialize_i32 visit_i32 i32, deserialize_i64 visit_i64 i64);
 
-    /// A value that may be anything, with numbers that are some: ron itself judges it.
+    /// A value that may be anything, as ron reads it.
     fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Stop> {
-        self.numbers_inside();
-        visitor.visit_unit()
+        match options().from_str::<ron::Value>(self.token()) {
+            Ok(value) => value.deserialize_any(visitor).map_err(Stop::custom),
+            Err(error) => {
+                self.unreadable(&error.code);
+                visitor.visit_unit()
+            }
+        }
     }
 
     fn deserialize_ignored_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Stop> {

@@ -57,8 +57,17 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// Notes numbers in a value, or in what it holds, that are none.
-    pub(super) fn numbers_inside(&self) {
+    /// Notes numbers in a value, or in what it holds, that are none; if there are none of these, what else keeps ron
+    /// from reading it.
+    pub(super) fn unreadable(&self, error: &ron::Error) {
+        let before = self.about.found.borrow().len();
+        self.numbers_inside();
+        if self.about.found.borrow().len() == before {
+            self.note(format!("{} cannot be read: {error}", self.called()), "");
+        }
+    }
+
+    fn numbers_inside(&self) {
         if matches!(self.node.kind, Kind::Number) && ron::from_str::<ron::Value>(self.token()).is_err() {
             self.note(format!("`{}` is not a number", self.token()), "written like 0.05, 5e-2 or 3");
         }

@@ -49,6 +49,12 @@ macro_rules! material {
             all.into_iter().filter(|(_, large)| *large).map(|(word, _)| word).collect()
         }
 
+        /// Words of the elastic laws that have a stress inside out, too.
+        pub fn laws_that_recover() -> Vec<&'static str> {
+            let all = [$((stringify!($word), <materials::$law<f64> as Law>::RECOVERS),)*];
+            all.into_iter().filter(|(_, recovers)| *recovers).map(|(word, _)| word).collect()
+        }
+
         /// Words of the elastic laws that studies compare, from the simplest on.
         pub fn comparable_laws() -> Vec<&'static str> {
             let all = [$((stringify!($word), <materials::$law<f64> as Law>::IS_COMPARED),)*];

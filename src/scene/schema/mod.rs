@@ -25,7 +25,7 @@ pub use body::{Body, MeshSource, Region, SkinFile, Start};
 pub use load::{Load, Share};
 pub use material::{
     Direction, ELASTIC_LAWS, ExponentialFibres, Fibres, Inversion, Material, OwnLaw, Prony, PronyTerm,
-    ViscousIntegrator, comparable_laws, laws_for_large_strains,
+    ViscousIntegrator, comparable_laws, laws_for_large_strains, laws_that_recover,
 };
 pub use output::{Output, OutputField};
 pub use part::{OF_THE_WHOLE, Part, PartScene};

@@ -2,7 +2,9 @@
 
 use super::{Validator, scene, show};
 use crate::scene::limits::PSEUDO_STEPS;
-use crate::scene::schema::{Analysis, Constraint, Contact, InitialState, Inversion, Load, Quantity, Scene};
+use crate::scene::schema::{
+    Analysis, Constraint, Contact, InitialState, Inversion, Load, Quantity, Scene, laws_that_recover,
+};
 use crate::scene::syntax::Path;
 use glam::DVec3;
 
@@ -26,7 +28,7 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
             validator
                 .out
                 .error_at(scene("materials").name(name).name("inversion"), "a static analysis cannot remove elements")
-                .note("allowed: Stop, and Recover for stable_neo_hookean");
+                .note(format!("allowed: Stop, and Recover for {}", laws_that_recover().join(", ")));
         }
     }
     meaningless(scene_, validator);

@@ -1,7 +1,9 @@
 //! Materials: densities, fibres, viscosity; elastic laws have a file of their own.
 
 use super::{Validator, elastic_law, scene, show};
-use crate::scene::schema::{Direction, ExponentialFibres, Inversion, Material, MeshSource, Prony, PronyTerm, Scene};
+use crate::scene::schema::{
+    Direction, ExponentialFibres, Inversion, Material, MeshSource, Prony, PronyTerm, Scene, laws_that_recover,
+};
 use crate::scene::syntax::Path;
 use glam::DVec3;
 
@@ -62,7 +64,10 @@ fn validate_material(validator: &mut Validator, path: &Path, name: &str, materia
         validator
             .out
             .error_at(path.name("inversion"), message)
-            .note("can recover: stable_neo_hookean without fibres, exponential_fibres, stiffness_damping and terms of prony")
+            .note(format!(
+                "can recover: {} without fibres, exponential_fibres, stiffness_damping and terms of prony",
+                laws_that_recover().join(", ")
+            ))
             .note("allowed for all others: Stop, Remove");
     }
 }

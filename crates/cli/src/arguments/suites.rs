@@ -2,18 +2,25 @@
 
 use super::BackendName;
 use clap::Args;
+use clap::builder::PossibleValuesParser;
 use sinew::mesh::ElementKind;
 use std::path::PathBuf;
+use std::sync::LazyLock;
 
-/// All element types by the words of benchmarks.
-pub const ELEMENTS: [(&str, ElementKind); ElementKind::ALL.len()] = [
-    ("tet4", ElementKind::Tet4),
-    ("tet4-nodal-pressure", ElementKind::Tet4NodalPressure),
-    ("hex8", ElementKind::Hex8),
-    ("hex8-mean-dilatation", ElementKind::Hex8MeanDilatation),
-    ("wedge6", ElementKind::Wedge6),
-    ("tet10", ElementKind::Tet10),
-];
+/// All element types by the words of benchmarks: those of scenes in small letters, such as `tet4-nodal-pressure`.
+pub static ELEMENTS: LazyLock<Vec<(String, ElementKind)>> = LazyLock::new(|| {
+    let word = |kind: ElementKind| {
+        let mut word = String::new();
+        for letter in kind.name().chars() {
+            if letter.is_uppercase() && !word.is_empty() {
+                word.push('-');
+            }
+            word.push(letter.to_ascii_lowercase());
+        }
+        word
+    };
+    ElementKind::ALL.map(|kind| (word(kind), kind)).into()
+});
 
 #[derive(Args)]
 pub struct HardArguments {
@@ -48,7 +55,7 @@ pub struct BenchArguments {
         value_name = "NAME,..",
         value_delimiter = ',',
         default_values_t = ["tet4".to_string(), "hex8".to_string()],
-        value_parser = ELEMENTS.map(|(word, _)| word)
+        value_parser = PossibleValuesParser::new(ELEMENTS.iter().map(|(word, _)| word.as_str()))
     )]
     pub elements: Vec<String>,
     /// Effects beside neo-Hookean elasticity

@@ -1,4 +1,4 @@
-//! What a patch has at hand: its nodes' displacements, and the sums of its forces.
+//! What is patch-local: its nodes' displacements, and the sums of its forces.
 
 use super::{FROM_PLACES, GRADIENTS, NodeColumns, PatchForces};
 use crate::components::Patches;
@@ -46,7 +46,7 @@ fn of_group<E: Element, X>(rows: &[X], group: usize) -> &[X] {
     &rows[group * E::NODES..][..E::NODES]
 }
 
-/// A patch's nodes, to have at hand.
+/// The nodes of a patch, as its kernel reads them.
 pub(super) struct PatchLocal<'a> {
     /// Rows of the body.
     pub(super) nodes: &'a [u32],
@@ -119,7 +119,7 @@ impl<E: Element, T: SimdScalar, L: Elastic<T>, const EFFECTS: u8> PatchForces<'_
         ))
     }
 
-    /// The sums of forces from at hand: to the nodes inside that move now, all others to where patches are gathered.
+    /// The patch-local sums of forces: to the nodes inside that move now, all others to where patches are gathered.
     #[inline(always)]
     pub(super) fn bring_back(&mut self, interior: Option<&mut NodeColumns<'_, T>>, scratch: &Scratch<T>) {
         let mut rows = 0;

@@ -1,0 +1,175 @@
+//! What adding a law, an element or a load inside the tree touches: of each that there is, the files that name it. One
+//! Rust file, one WGSL file and one line of a list are all that may; beside them stand here those few that are about
+//! this law or element alone, and why.
+
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+
+/// Files that name laws or elements of their own accord: what they are, and which names.
+const ABOUT: &[(&str, &str, &[&str])] = &[
+    (
+        "src/backend/cpu/element_kernel.rs",
+        "laws with kernels of their own, each by its measurement in docs/performance.md",
+        &["NeoHookean", "StableNeoHookean", "MooneyRivlin", "Ogden"],
+    ),
+    ("src/backend/user_law/energy.rs", "formulas that are these laws", &["NeoHookean", "MooneyRivlin"]),
+    ("src/scene/validate/elastic_law.rs", "what to begin with where there is no law", &["neo_hookean"]),
+    ("systems/nodal_volume.rs", "the system of this element's nodal means", &["Tet4NodalPressure"]),
+    ("src/simulation/explain/effects.rs", "what turns that system on", &["Tet4NodalPressure"]),
+    ("src/backend/block_kernel.rs", "the stage that reads these means", &["tet4_nodal_pressure"]),
+    ("src/backend/user_law/names.rs", "names of that stage, which laws may not have", &["tet4_nodal_pressure"]),
+    (
+        "src/scene/schema/body.rs",
+        "what files with cells of these kinds become where nothing is said",
+        &["Tet4", "tet4", "Hex8", "hex8"],
+    ),
+    (
+        "src/scene/validate/geometry.rs",
+        "what cells of files may become, and what has no hourglass modes",
+        &["Tet4", "Tet4NodalPressure", "Hex8", "Hex8MeanDilatation"],
+    ),
+    ("src/observation/guards.rs", "what to take where hourglass modes grow", &["Hex8MeanDilatation"]),
+    ("src/elements/tet4_nodal_pressure.rs", "made of the other element", &["Tet4"]),
+    ("src/elements/hex8_mean_dilatation.rs", "made of the other element", &["Hex8", "hex8"]),
+    ("src/elements/wedge6.rs", "its WGSL is that of several points", &["hex8_mean_dilatation"]),
+    ("src/elements/tet10.rs", "its WGSL is that of several points", &["hex8_mean_dilatation"]),
+    ("src/mesh/topology/tet10.rs", "made of the cell with its corners alone", &["tet4"]),
+    ("src/mesh/measure.rs", "the volume of a tetrahedron", &["tet4"]),
+    ("src/mesh/cells.rs", "an iterator over nothing has to have a kind", &["Tet4"]),
+    ("src/assembly/free_tools.rs", "tools that fall have no nodes, and their weight no system", &["Gravity"]),
+    ("src/simulation/plausible.rs", "accelerations in mm/s²", &["Gravity"]),
+    ("crates/cli/src/bench.rs", "what pulls at cubes: the word of a benchmark's load", &["Gravity"]),
+    ("crates/cli/src/arguments/suites.rs", "what is measured where nothing is said", &["tet4", "hex8"]),
+];
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn text(file: &str) -> String {
+    std::fs::read_to_string(root().join(file)).unwrap()
+}
+
+/// Files below the engine's folders, by their paths, with their code: no comments, no tests.
+fn engine() -> Vec<(String, String)> {
+    let mut waiting: Vec<PathBuf> =
+        ["src", "systems", "crates/cli/src"].iter().map(|folder| root().join(folder)).collect();
+    let mut found = Vec::new();
+    while let Some(path) = waiting.pop() {
+        let name = path.strip_prefix(root()).unwrap().display().to_string();
+        if path.is_dir() {
+            waiting.extend(std::fs::read_dir(&path).unwrap().map(|entry| entry.unwrap().path()));
+        } else if !name.ends_with("tests.rs") && !name.contains("/tests/") {
+            let text = std::fs::read_to_string(&path).unwrap();
+            let code = text.split("#[cfg(test)]").next().unwrap();
+            found
+                .push((name, code.lines().map(|line| line.split("//").next().unwrap()).collect::<Vec<_>>().join("\n")));
+        }
+    }
+    found
+}
+
+/// Whether code has a word, or a path, as a whole.
+fn has(code: &str, name: &str) -> bool {
+    let is_letter = |c: char| c.is_alphanumeric() || c == '_';
+    code.match_indices(name)
+        .any(|(at, _)| !code[..at].ends_with(is_letter) && !code[at + name.len()..].starts_with(is_letter))
+}
+
+/// Files that name a thing and are neither its own nor about it.
+fn beside(names: &[&str], own: &[&str]) -> BTreeSet<String> {
+    let is_about =
+        |file: &str, name: &str| ABOUT.iter().any(|(about, _, names)| *about == file && names.contains(&name));
+    let mut found = BTreeSet::new();
+    for (file, code) in engine() {
+        for name in names.iter().filter(|name| has(&code, name)) {
+            if !own.contains(&file.as_str()) && !is_about(&file, name) {
+                found.insert(format!("{file} names {name}"));
+            }
+        }
+    }
+    found
+}
+
+/// Entries `word: Type` of a list, from a line to a line.
+fn list(file: &str, from: &str, to: &str) -> Vec<(String, String)> {
+    let text = text(file);
+    let lines = text.lines().skip_while(|line| !line.contains(from)).skip(1).take_while(|line| !line.contains(to));
+    let entries = lines.filter_map(|line| line.trim().strip_suffix(';')?.split_once(": "));
+    let entries: Vec<_> = entries.map(|(word, of)| (word.to_owned(), of.to_owned())).collect();
+    assert!(entries.len() > 3, "no list in {file}");
+    entries
+}
+
+#[test]
+fn a_law_is_a_rust_file_a_wgsl_file_and_a_line() {
+    let mut wrong = BTreeSet::new();
+    for (word, law) in list("src/materials/elastic.rs", "$then! {", "$($more)*") {
+        assert!(root().join(format!("shaders/{word}.wgsl")).exists(), "shaders/{word}.wgsl");
+        let file = format!("src/materials/{word}.rs");
+        let own = [file.as_str(), "src/materials/elastic.rs", "src/materials/mod.rs"];
+        // `linear` and `ogden` are words of their own, too; the others are nothing but names of laws
+        let names: Vec<&str> = [law.as_str()].into_iter().chain(word.contains('_').then_some(word.as_str())).collect();
+        wrong.extend(beside(&names, &own));
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn an_element_is_a_rust_file_a_wgsl_file_and_a_line() {
+    let mut wrong = BTreeSet::new();
+    for (kind, rest) in list("src/mesh/generators/mod.rs", "$then! {", "macro_rules! element_kinds") {
+        let words: Vec<&str> = rest.split([',', '"', ' ']).filter(|word| !word.is_empty()).collect();
+        let [cell, shader] = words[..] else { panic!("{kind}: {rest}") };
+        assert!(root().join(format!("shaders/{shader}.wgsl")).exists(), "shaders/{shader}.wgsl");
+        let stem: String = kind
+            .char_indices()
+            .flat_map(|(at, c)| (at > 0 && c.is_uppercase()).then_some('_').into_iter().chain(c.to_lowercase()))
+            .collect();
+        let file = format!("src/elements/{stem}.rs");
+        // what a kind of cell is stands in files of its own
+        let topology = format!("src/mesh/topology/{}.rs", cell.to_lowercase());
+        let own =
+            [file.as_str(), &topology, "src/elements/mod.rs", "src/mesh/generators/mod.rs", "src/mesh/topology/mod.rs"];
+        wrong.extend(beside(&[&kind, &stem], &own));
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+#[test]
+fn a_load_is_a_rust_file_a_wgsl_file_and_its_words_in_scenes() {
+    let mut wrong = BTreeSet::new();
+    let schema = text("src/scene/schema/load.rs");
+    let words: Vec<&str> = schema.split("Load::").skip(1).filter_map(|rest| rest.split([' ', '{']).next()).collect();
+    let words: BTreeSet<&str> = words.into_iter().collect();
+    assert!(words.len() > 3, "{words:?}");
+    for word in words {
+        let registry = sinew::systems::Registry::default();
+        let system = registry.systems().iter().find(|system| text_names(&system.name, word)).map(|s| s.name.clone());
+        let system = system.unwrap_or_else(|| panic!("no system is for the load {word}"));
+        assert!(root().join(format!("shaders/{system}.wgsl")).exists(), "shaders/{system}.wgsl");
+        let file = format!("systems/{system}.rs");
+        // a field of output and a picture are called Pressure, too
+        let names = if word == "Pressure" { vec!["Load::Pressure"] } else { vec![word] };
+        wrong.extend(beside(&names, &[&file, "systems/mod.rs", "src/scene/schema/load.rs"]));
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Whether the file of a system says that it is for a load of a word.
+fn text_names(system: &str, word: &str) -> bool {
+    let file = root().join(format!("systems/{system}.rs"));
+    std::fs::read_to_string(file).is_ok_and(|text| text.contains(&format!(".for_load(\"{word}\"")))
+}
+
+/// A reason for what no file does any more hides the next one that does.
+#[test]
+fn what_files_are_about_stands_in_them() {
+    let engine = engine();
+    for (file, why, names) in ABOUT {
+        let (_, code) = engine.iter().find(|(name, _)| name == file).unwrap_or_else(|| panic!("{file}: {why}"));
+        for name in *names {
+            assert!(has(code, name), "{file} does not name {name} ({why})");
+        }
+    }
+}
