@@ -1,7 +1,5 @@
 //! From a scene to a simulation.
 
-use super::follow::Follower;
-use super::frequency::largest_eigenvalue;
 use super::history::History;
 use super::inputs::Tape;
 use super::interval::RunInterval;
@@ -9,7 +7,6 @@ use super::known::Known;
 use super::options::{BackendChoice, Chosen, choose};
 use super::plan::{Over, Pass, Plan, Planned, each_once};
 use super::prepare::{Prepared, add_loads, counts, prepare};
-use super::relax::Relaxing;
 use super::schedule::Scheduled;
 use super::scheme::{fit_workgroups, sum_forces};
 use super::solver::Solver;
@@ -24,7 +21,6 @@ use crate::components::*;
 use crate::error::Error;
 use crate::observation::{GuardKernels, GuardSettings, Observer, Track, WrittenFields};
 use crate::scene::SceneFile;
-use crate::scene::schema::Analysis;
 use crate::snapshot::{Keeping, identity};
 use crate::systems::{
     HostSystem, NodePass, NodeRows, OnHost, Phase, Registry, System, give_shares, node_pass, patch_pass, shared_pass,
@@ -81,7 +77,7 @@ impl Simulation {
         let held = |&(_, rows): &(String, NodeRows)| -> HeldEnergy { Arc::new(move |world| rows.energy(world)) };
         world.insert_resource(HeldEnergies(node_systems.iter().map(held).collect()));
         let plan = Plan::of(&schedule, &access, scene.scene.fuse, &world);
-        let relaxing = relaxing(scene, options.precision, &mut world);
+        let mut solver = Solver::of(&scene.scene, options.precision, &mut world);
 
         let Chosen { gpu, mut why } = choose(options)?;
         if gpu.is_some() {
@@ -148,8 +144,7 @@ impl Simulation {
         // rest shapes have gone into the world
         let mut file = scene.clone();
         file.rest_shapes.clear();
-        let mut follow = || Follower::new(&scene.scene, &facts.stability, facts.initial_mass, &mut world);
-        let solver = relaxing.map_or_else(|| Solver::Explicit(follow()), Solver::Relaxation);
+        solver.begin(&scene.scene, &facts.stability, facts.initial_mass, &mut world);
         Ok(Self {
             world,
             plan,
@@ -256,25 +251,6 @@ fn host_job(system: HostSystem, schedule: &[Scheduled<'_>], plan: &Plan, pass: &
         writes: names(|system| &system.writes),
     }
 }
-
-/// What drives a static analysis.
-fn relaxing(scene: &SceneFile, precision: Precision, world: &mut World) -> Option<Relaxing> {
-    let Analysis::Static { tolerance, max_steps, .. } = scene.scene.analysis else { return None };
-    // in units of the bound of the elements, which the fictitious masses make the same for all
-    let half = 0.5 * world.resource::<Clock>().time_step;
-    let highest = largest_eigenvalue(world, OF_RELAXATION).map_or(1.0, |found| found.at_least * half * half);
-    let highest = if highest > 0.0 && highest < 1.0 { highest } else { 1.0 };
-    let load_steps = world.resource_mut::<Clock>().relaxation.as_mut().map_or(0, |relaxation| {
-        relaxation.force_scale = scene.scene.integration.safety.powi(2) / highest;
-        (1.0 / relaxation.ramp_rate).round() as u64
-    });
-    // what rounding leaves of the residual in f32 is some 1e-6
-    let reachable = if precision == Precision::F64 { 1e-6 } else { 1e-5 };
-    Some(Relaxing::new(tolerance.unwrap_or(reachable), max_steps, load_steps, world))
-}
-
-/// How well a static analysis knows the largest eigenvalue at rest: some 24 products; its safety is margin enough.
-const OF_RELAXATION: f64 = 0.2;
 
 fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> Observer {
     let every = |time: f64| Cadence::new(time, clock.time_step);

@@ -4,7 +4,6 @@
 //! with their new parameters is the program's, not motion's.
 
 use super::Simulation;
-use super::solver::Solver;
 use super::step_change::add_to_memory_by;
 use super::stiffness::{StabilitySample, StiffnessTracker};
 use crate::assembly::renew_materials;
@@ -145,8 +144,7 @@ impl Simulation {
     /// # Errors
     /// That a step that stays is beyond it: then what is known is what it was. What the GPU says.
     fn find_stable_step(&mut self) -> Result<(), Error> {
-        let Solver::Explicit(follower) = &mut self.solver else { return Ok(()) };
-        let Some(mut follower) = follower.take() else { return Ok(()) };
+        let Some(mut follower) = self.solver.lend_follower() else { return Ok(()) };
         let (found, shape) = (follower.found.clone(), follower.shape.take());
         let trackers = std::mem::replace(&mut follower.trackers, StiffnessTracker::all(&mut self.world));
         let mut seen = follower
@@ -163,7 +161,7 @@ impl Simulation {
         }
         follower.found.latest = seen.square;
         let loads = follower.loads();
-        self.solver = Solver::Explicit(Some(follower));
+        self.solver.take_back(follower);
         let fits = known.and_then(|_| {
             self.fits_the_step(&loads).map_err(|limit| {
                 let step = self.time_step();

@@ -5,7 +5,6 @@ use super::Simulation;
 use super::load_rates::LoadRates;
 use super::mass_scaling;
 use super::rounding::warn_of_rounding;
-use super::solver::Solver;
 use super::stable_step::Stability;
 use super::stiffness::{StabilitySample, StiffnessTracker};
 use crate::backend::device::{bring_to_host, send_to_device};
@@ -319,13 +318,14 @@ impl Simulation {
 
     /// Checks the stable step if it is time, and does what the scene wants done.
     pub(super) fn follow(&mut self) -> Result<(), Error> {
-        let step = self.step_count();
-        let Solver::Explicit(follower) = &mut self.solver else { return Ok(()) };
-        let Some(mut follower) = follower.take_if(|follower| follower.found.next <= step) else { return Ok(()) };
+        if self.solver.next_check() > self.step_count() {
+            return Ok(());
+        }
+        let Some(mut follower) = self.solver.lend_follower() else { return Ok(()) };
         let started = Instant::now();
         let checked = self.check_with(&mut follower);
         follower.history.seconds += started.elapsed().as_secs_f64();
-        self.solver = Solver::Explicit(Some(follower));
+        self.solver.take_back(follower);
         checked.map_err(|error| self.note(error))
     }
 

@@ -6,12 +6,14 @@
 //! Steps that end in numbers that are not finite or in elements turned inside out are taken back.
 
 use super::Simulation;
+use super::frequency::largest_eigenvalue;
 use super::residual::{Motion, Residual, State};
 use super::stretch::least_stretch;
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::{Error, NotConverged};
 use crate::observation::Observer;
+use crate::scene::schema::{Analysis, Scene};
 use bevy_ecs::prelude::*;
 use serde::Serialize;
 
@@ -80,8 +82,27 @@ pub(super) struct Relaxing {
     quiet_since: Option<u64>,
 }
 
+/// How well a static analysis knows the largest eigenvalue at rest: some 24 products; its safety is margin enough.
+const OF_RELAXATION: f64 = 0.2;
+
 impl Relaxing {
-    pub fn new(tolerance: f64, most_steps: u64, load_steps: u64, world: &mut World) -> Self {
+    /// What drives a static analysis, on columns of the host; `None` for a scene of motion.
+    pub fn of(scene: &Scene, precision: Precision, world: &mut World) -> Option<Self> {
+        let Analysis::Static { tolerance, max_steps, .. } = scene.analysis else { return None };
+        // in units of the bound of the elements, which the fictitious masses make the same for all
+        let half = 0.5 * world.resource::<Clock>().time_step;
+        let highest = largest_eigenvalue(world, OF_RELAXATION).map_or(1.0, |found| found.at_least * half * half);
+        let highest = if highest > 0.0 && highest < 1.0 { highest } else { 1.0 };
+        let load_steps = world.resource_mut::<Clock>().relaxation.as_mut().map_or(0, |relaxation| {
+            relaxation.force_scale = scene.integration.safety.powi(2) / highest;
+            (1.0 / relaxation.ramp_rate).round() as u64
+        });
+        // what rounding leaves of the residual in f32 is some 1e-6
+        let reachable = if precision == Precision::F64 { 1e-6 } else { 1e-5 };
+        Some(Self::new(tolerance.unwrap_or(reachable), max_steps, load_steps, world))
+    }
+
+    fn new(tolerance: f64, most_steps: u64, load_steps: u64, world: &mut World) -> Self {
         Self {
             equilibrium: Equilibrium { residual: f64::INFINITY, tolerance, load_steps, ..Equilibrium::default() },
             most_steps,

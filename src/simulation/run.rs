@@ -148,7 +148,7 @@ impl Simulation {
     /// Notes how the simulation broke down, and leaves the last states where files are written.
     pub(super) fn note(&mut self, error: Error) -> Error {
         let Error::Unstable(mut broken) = error else { return self.with_what_is_kept(error) };
-        if self.failure.is_none() && self.solver.relaxing().is_none() {
+        if self.failure.is_none() && self.solver.leaves_states() {
             // what cannot be written now must not hide why the run ended
             let _ = self.leave_last_states(&mut broken);
         }

@@ -1,13 +1,16 @@
 //! Solvers: what takes steps, one level above the systems. A solver keeps what it has to remember beside the columns,
 //! says how many steps may be taken together before it checks them, and does what has to be done about what it sees.
-//! What a simulation does with its solver is the same for all: see [`Simulation::steps_to`].
+//! What a simulation does with its solver is the same for all: see [`Simulation::steps_to`]. Only this file tells one
+//! from another.
 
 use super::Simulation;
 use super::follow::Follower;
 use super::relax::Relaxing;
-use crate::components::Clock;
+use super::stable_step::Stability;
+use crate::components::{Clock, Precision};
 use crate::error::Error;
 use crate::observation::Observer;
+use crate::scene::schema::Scene;
 use bevy_ecs::prelude::*;
 
 /// How the steps of a scene are taken.
@@ -19,6 +22,44 @@ pub(super) enum Solver {
 }
 
 impl Solver {
+    /// What the scene asks for, before anything is on a device.
+    pub fn of(scene: &Scene, precision: Precision, world: &mut World) -> Self {
+        Relaxing::of(scene, precision, world).map_or(Self::Explicit(None), Self::Relaxation)
+    }
+
+    /// Begins with the first step, which is known now.
+    pub fn begin(&mut self, scene: &Scene, stability: &Stability, initial_mass: f64, world: &mut World) {
+        match self {
+            Self::Explicit(follower) => *follower = Follower::new(scene, stability, initial_mass, world),
+            Self::Relaxation(_) => {}
+        }
+    }
+
+    /// Lends what follows the stable step to who works with the whole simulation, and is to [give it
+    /// back](Self::take_back).
+    pub fn lend_follower(&mut self) -> Option<Follower> {
+        match self {
+            Self::Explicit(follower) => follower.take(),
+            Self::Relaxation(_) => None,
+        }
+    }
+
+    /// Takes back what was lent.
+    pub fn take_back(&mut self, lent: Follower) {
+        match self {
+            Self::Explicit(follower) => *follower = Some(lent),
+            Self::Relaxation(_) => debug_assert!(false, "a search for equilibrium lends nothing"),
+        }
+    }
+
+    /// Whether the last states are left behind where the run breaks down: a search for equilibrium has none that tell.
+    pub fn leaves_states(&self) -> bool {
+        match self {
+            Self::Explicit(_) => true,
+            Self::Relaxation(_) => false,
+        }
+    }
+
     /// What follows the stable step.
     pub fn follower(&self) -> Option<&Follower> {
         match self {
