@@ -65,6 +65,7 @@ pub use budget::{Advanced, Ended};
 pub use column_view::ColumnView;
 pub use follow::StepHistory;
 pub use grab::{Grab, GrabId, Grip};
+pub use implicit::ImplicitSteps;
 pub use inputs::{InputUse, InputValue};
 pub use modes::Mode;
 pub use names::{FieldName, Names};

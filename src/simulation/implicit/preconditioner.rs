@@ -1,6 +1,10 @@
 //! What conjugate gradients are preconditioned with: a cheap approximate inverse of the operator of a Newton iteration.
 
+mod block_jacobi;
+
+use crate::scene::schema;
 use bevy_ecs::prelude::*;
+use block_jacobi::BlockJacobi;
 
 /// The operator A = D + c K of a linear solve, D diagonal (mass and damping), K the tangent stiffness of all bodies. Its
 /// rows are all axes of all nodes, bodies one after the other.
@@ -55,5 +59,14 @@ impl Preconditioner for Mass {
         let inverse = |(&inertia, &free): (&f64, &bool)| if free && inertia > 0.0 { 1.0 / inertia } else { 0.0 };
         self.per_inertia.clear();
         self.per_inertia.extend(operator.inertia.iter().zip(operator.free).map(inverse));
+    }
+}
+
+/// The one of a name.
+pub(in crate::simulation) fn of_name(name: schema::Preconditioner) -> Box<dyn Preconditioner> {
+    match name {
+        schema::Preconditioner::BlockJacobi => Box::new(BlockJacobi::default()),
+        schema::Preconditioner::Mass => Box::new(Mass::default()),
+        schema::Preconditioner::Identity => Box::new(Identity),
     }
 }
