@@ -56,9 +56,13 @@ pub(super) struct BlockParts {
 fn element_forces(
     cpu: Res<Cpu>,
     clock: Res<Clock>,
+    mut trial: Option<ResMut<TrialForces>>,
     mut blocks: Query<BlockParts>,
     mut bodies: Query<(&Authoring, &Displacement, &mut ElementForce)>,
 ) {
+    // implicit steps take their forces at their end
+    let noted = Clock { step: clock.step.saturating_sub(u64::from(trial.is_some())), ..*clock };
+    let trying = trial.as_ref().is_some_and(|trial| trial.trying);
     for (authoring, displacement, mut force) in &mut bodies {
         for &entity in &authoring.blocks {
             let Ok(mut block) = blocks.get_mut(entity) else {
@@ -66,10 +70,13 @@ fn element_forces(
                 continue;
             };
             let found = match &mut force.0 {
-                Reals::F32(force) => block.run::<f32>(&cpu, (displacement.slice(), 0), force, None),
-                Reals::F64(force) => block.run::<f64>(&cpu, (displacement.slice(), 0), force, None),
+                Reals::F32(force) => block.run::<f32>(&cpu, (displacement.slice(), 0), force, None, trying),
+                Reals::F64(force) => block.run::<f64>(&cpu, (displacement.slice(), 0), force, None, trying),
             };
-            block.note_inverted(&found, displacement, &clock);
+            match trial.as_mut().filter(|trial| trial.trying) {
+                Some(trial) => trial.inverted |= !found.is_empty() && block.must_not_invert(),
+                None => block.note_inverted(&found, displacement, &noted),
+            }
         }
     }
 }
@@ -85,16 +92,25 @@ impl BlockPartsItem<'_, '_> {
         self.patches.map_or(&[], |patches| &patches.interior)
     }
 
+    /// Whether elements turned inside out are a mistake.
+    fn must_not_invert(&self) -> bool {
+        self.policy.is_none_or(|policy| policy.0 == Inversion::Stop)
+    }
+
     /// Runs the block's kernel: from displacements (m), from a row of the body on, to element forces (N). Returns the
-    /// patches that have elements with J < 0.
+    /// patches that have elements with J < 0. With `trying` the viscous memory stays as it is.
     pub(super) fn run<'a, T: Precise>(
         &'a mut self,
         cpu: &Cpu,
         (displacement, first_row): (&'a [T], usize),
         force: &'a mut [T],
         interior: Option<PatchInterior<'a, '_, T>>,
+        trying: bool,
     ) -> Vec<usize> {
         let block = self.block;
+        let viscous = trying && self.memory.is_some();
+        let still = viscous.then(|| (self.law.with_still_memory(), self.rounded.map(BlockLaw::with_still_memory)));
+        let law = still.as_ref().map_or((self.law, self.rounded), |(law, rounded)| (law, rounded.as_ref()));
         let columns = BlockColumns {
             displacement,
             first_row,
@@ -108,7 +124,7 @@ impl BlockPartsItem<'_, '_> {
             inverted_go: self.policy.is_some_and(|policy| policy.0 == Inversion::Remove),
             interior,
         };
-        with_element_of!(block, E => T::run::<E>(cpu, columns, (self.law, self.rounded), block))
+        with_element_of!(block, E => T::run::<E>(cpu, columns, law, block))
     }
 
     /// Looks through patches in which the kernel found elements with J < 0, before their nodes move.

@@ -169,6 +169,8 @@ pub struct NodeRows {
     pub sums_forces: bool,
     /// See [`NodeSystem::MOVES_NODES`].
     pub moves_nodes: bool,
+    /// See [`NodeSystem::OWN_NUMBERS`].
+    pub own_numbers: usize,
 }
 
 impl NodeRows {
@@ -201,6 +203,7 @@ impl NodeRows {
             of: None,
             sums_forces: S::SUMS_FORCES,
             moves_nodes: S::MOVES_NODES,
+            own_numbers: S::OWN_NUMBERS,
         }
     }
 

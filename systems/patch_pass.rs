@@ -105,7 +105,7 @@ impl StepOfBody<'_> {
         for (place, (block, nodes)) in blocks.iter_mut().zip(interior).enumerate() {
             let interior = PatchInterior { nodes, then: &then, observed: self.observed };
             let displacement = (&*shared.u, self.first_interface);
-            let patches = block.run(cpu, displacement, force.slice_mut(), Some(interior));
+            let patches = block.run(cpu, displacement, force.slice_mut(), Some(interior), false);
             if !patches.is_empty() {
                 found.resize(place, Vec::new());
                 found.push(patches);

@@ -10,7 +10,7 @@ use crate::materials::{Elastic, ElasticLaw, Fibres};
 use crate::math::LANES;
 use crate::math::lane_place;
 use crate::mesh::{ElementKind, Mesh};
-use crate::scene::schema::{Constraint, Guard};
+use crate::scene::schema::{Constraint, Guard, ImplicitScheme, Solver};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -50,10 +50,20 @@ pub(super) fn insert_node_columns(
     let moved = scene.constraints.iter().any(|constraint| matches!(constraint, Constraint::Prescribed { .. }));
     if !scene.is_static() && scene.output.energies_every.is_some() {
         entity.insert(Work(Reals::zeros(precision, WORK_NUMBERS * count)));
-    } else if !scene.is_static() && !scene.guards.off.contains(&Guard::Energy) {
+    } else if !scene.is_static() && !scene.is_implicit() && !scene.guards.off.contains(&Guard::Energy) {
         entity.insert(InternalWork::zero(count));
         if moved {
             entity.insert(PreviousPrescribedIncrement(vec![0.0; 3 * count]));
+        }
+    }
+    if let Solver::Implicit { scheme, .. } = &scene.solver
+        && !scene.is_static()
+    {
+        if matches!(scheme, ImplicitScheme::GeneralizedAlpha { .. }) {
+            entity.insert(Acceleration(vectors()));
+        }
+        if scene.output.energies_every.is_some() {
+            entity.insert(SchemeLoss(Reals::zeros(precision, count)));
         }
     }
     entity.insert(FirstNonFinite(vec![u32::MAX; 2]));

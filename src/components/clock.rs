@@ -18,12 +18,15 @@ pub struct Clock {
     pub before: f64,
     /// How steps lead to rest, in a static analysis.
     pub relaxation: Option<Relaxation>,
+    /// Whether velocities are those at the ends of steps, as implicit steps have them; else of their middles.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub velocities_at_ends: bool,
 }
 
 impl Clock {
     /// At the beginning of a motion in steps of Δt (s).
     pub fn with_step(time_step: f64) -> Self {
-        Self { step: 0, time_step, since: (0, 0.0), before: time_step, relaxation: None }
+        Self { step: 0, time_step, since: (0, 0.0), before: time_step, relaxation: None, velocities_at_ends: false }
     }
 
     /// Whether it can be the clock of a motion: steps are positive and finite, and Δt is what it is since a step that
@@ -66,9 +69,10 @@ impl Clock {
     }
 
     /// What of the last displacement increment leads back to the middle of that step, where velocities are: before the
-    /// first step the column holds the initial velocity, and at rest there is no middle.
+    /// first step the column holds the initial velocity, at rest there is no middle, and implicit steps have velocities at
+    /// their ends.
     pub fn back_to_middle(&self) -> f64 {
-        if self.step > 0 && self.relaxation.is_none() { 0.5 } else { 0.0 }
+        if self.step > 0 && self.relaxation.is_none() && !self.velocities_at_ends { 0.5 } else { 0.0 }
     }
 
     /// Takes steps of another length from now on (s).
@@ -121,4 +125,15 @@ impl Relaxation {
     pub fn share(&self, steps: u64) -> f64 {
         smooth(self.progress(steps))
     }
+}
+
+/// Whether forces are only tried: those at displacements that a solver may not keep. They leave the memory of viscous
+/// materials as it is, and note nothing of elements turned inside out but that there are some. Exists where steps are
+/// implicit.
+#[derive(Resource, Clone, Copy, Debug, Default)]
+pub struct TrialForces {
+    /// Whether they are.
+    pub trying: bool,
+    /// Whether an element that must not be is turned inside out there.
+    pub inverted: bool,
 }

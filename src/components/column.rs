@@ -81,6 +81,22 @@ impl Reals {
         either!(self, v => v[index] = Scalar::from_f64(value));
     }
 
+    /// The numbers, widened, into so many others.
+    pub fn read(&self, into: &mut [f64]) {
+        match self {
+            Reals::F32(values) => into.iter_mut().zip(values).for_each(|(into, &value)| *into = f64::from(value)),
+            Reals::F64(values) => into.copy_from_slice(values),
+        }
+    }
+
+    /// Takes so many numbers, rounded.
+    pub fn write(&mut self, from: &[f64]) {
+        match self {
+            Reals::F32(values) => values.iter_mut().zip(from).for_each(|(value, &from)| *value = from as f32),
+            Reals::F64(values) => values.copy_from_slice(from),
+        }
+    }
+
     /// The sum of all numbers, in their order.
     pub fn sum(&self) -> f64 {
         either!(self, v => v.iter().map(|number| number.to_f64()).sum())

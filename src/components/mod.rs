@@ -40,7 +40,7 @@ pub use block::{
     FirstInverted, NodalVolumeChange, OnInversion, RemovalStep, RemovalTime, RemovedEnergy, RemovedMomentum,
     RemovedWork, RestShape, ViscousMemory, patch_groups, patch_length,
 };
-pub use clock::{Clock, Relaxation};
+pub use clock::{Clock, Relaxation, TrialForces};
 pub use column::{Column, ColumnAccess, Precision, Reals, Role, all_columns, columns_in, place_in_buffer};
 pub use column_layout::{Increments, Rows};
 pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
@@ -54,10 +54,10 @@ pub use input::{Change, Input, InputState};
 pub use load::{FaceCorners, FaceMarks, LoadedNodes, LoadedRows, SceneLoad};
 pub use material::{Damping, Density, ExponentialFibres, Prony, StiffnessDamping, memory_terms};
 pub use nodes::{
-    Authoring, ChosenBy, ConstrainedAxes, Corners, DampingCoefficient, Displacement, DisplacementCompensation,
-    DisplacementIncrement, ElementForce, ExternalForce, FictitiousMass, FirstNonFinite, GROUP_ROWS, InternalForce,
-    InternalWork, Mass, MiddleDisplacement, NodeSums, OwnNumbers, PreviousPrescribedIncrement, RestPosition,
-    WORK_NUMBERS, Work,
+    Acceleration, Authoring, ChosenBy, ConstrainedAxes, Corners, DampingCoefficient, Displacement,
+    DisplacementCompensation, DisplacementIncrement, ElementForce, ExternalForce, FictitiousMass, FirstNonFinite,
+    GROUP_ROWS, InternalForce, InternalWork, Mass, MiddleDisplacement, NodeSums, OwnNumbers,
+    PreviousPrescribedIncrement, RestPosition, SchemeLoss, WORK_NUMBERS, Work,
 };
 pub use observation::{Cadence, Energies, HeldEnergies, HeldEnergy, Observed, Probe};
 pub use own_load::{LoadText, NodeAtRest, OfSystem, OwnLoad};

@@ -37,6 +37,11 @@ columns! {
     /// then the last step along constrained axes (m), which `boundary` writes over: [`WORK_NUMBERS`] a node. Exists
     /// when energies are asked for.
     Work(Reals) = "work", State, Nodes(WORK_NUMBERS), increments: LastThreeOf(WORK_NUMBERS);
+    /// Acceleration at the end of the last step (m/s²), a vector a node. Exists where implicit steps are of second order.
+    Acceleration(Reals) = "acceleration", State, Nodes(3);
+    /// Energy that the formula of implicit steps has taken from a node since the start (J), a number a node. Exists in
+    /// implicit runs when energies are asked for.
+    SchemeLoss(Reals) = "scheme_loss", State, Nodes(1);
     /// Two numbers: the lowest row of a node whose displacement was found not finite, and the step in which it was: the
     /// first in which there was one; `u32::MAX`: none.
     FirstNonFinite(Vec<u32>) = "first_non_finite", State, Other, in "node_diagnostics";

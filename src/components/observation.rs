@@ -201,6 +201,8 @@ pub struct Energies {
     pub load_work: Option<f64>,
     /// Lost to damping since the start, when counted.
     pub damping_loss: Option<f64>,
+    /// Taken by the formula of implicit steps since the start, when counted.
+    pub scheme_loss: Option<f64>,
     /// Done by constraints since the start, when counted.
     pub constraint_work: Option<f64>,
     /// Done against internal forces since the start, when counted: strain, hourglass and what viscosity took.

@@ -10,7 +10,7 @@ use bevy_ecs::prelude::*;
 use glam::DVec3;
 
 /// All columns.
-const HEADER: [&str; 9] = [
+const HEADER: [&str; 10] = [
     "time (s)",
     "kinetic (J)",
     "strain (J)",
@@ -20,16 +20,21 @@ const HEADER: [&str; 9] = [
     "damping loss (J)",
     "constraint work (J)",
     "internal work (J)",
+    "scheme loss (J)",
 ];
 
-/// The columns of `energy.csv`; a static analysis counts no work.
-pub fn energy_header(at_rest: bool) -> &'static [&'static str] {
-    if at_rest { &HEADER[..5] } else { &HEADER }
+/// The columns of `energy.csv`; a static analysis counts no work, and only implicit steps lose some.
+pub fn energy_header(at_rest: bool, implicit: bool) -> &'static [&'static str] {
+    match (at_rest, implicit) {
+        (true, _) => &HEADER[..5],
+        (false, false) => &HEADER[..9],
+        (false, true) => &HEADER,
+    }
 }
 
 /// What stands in them after the time.
 pub(super) fn values(e: &Energies) -> Vec<f64> {
-    let works = [e.load_work, e.damping_loss, e.constraint_work, e.internal_work];
+    let works = [e.load_work, e.damping_loss, e.constraint_work, e.internal_work, e.scheme_loss];
     let held = [e.kinetic, e.strain, e.hourglass, e.removed];
     held.into_iter().chain(works.into_iter().flatten()).collect()
 }
@@ -68,6 +73,7 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
         Mass::NAME,
         FictitiousMass::NAME,
         Work::NAME,
+        SchemeLoss::NAME,
         OwnNumbers::NAME,
         RestShape::NAME,
         RemovedEnergy::NAME,
@@ -102,6 +108,9 @@ pub fn energies(world: &mut World) -> Result<Energies, Error> {
             *sum.constraint_work.get_or_insert(0.0) += of_constraints + moved;
             *sum.internal_work.get_or_insert(0.0) += internal;
         }
+    }
+    for loss in world.query::<&SchemeLoss>().iter(world) {
+        *sum.scheme_loss.get_or_insert(0.0) += loss.sum();
     }
     for held in world.get_resource::<HeldEnergies>().cloned().unwrap_or_default().0 {
         if let Some(energy) = held(world)? {

@@ -164,7 +164,10 @@ impl Observer {
         let series = Series::create(folder)?;
         let energies = match self.energy {
             None => None,
-            Some(_) => Some(Table::create(&folder.claim("energy.csv")?, energy_header(self.to_rest))?),
+            Some(_) => Some(Table::create(
+                &folder.claim("energy.csv")?,
+                energy_header(self.to_rest, world.resource::<Clock>().velocities_at_ends),
+            )?),
         };
         let mut probes = BTreeMap::new();
         for ProbeTrack { entity, name, .. } in &self.probes {
@@ -304,6 +307,15 @@ impl Observer {
     ) -> Result<(), Error> {
         let Some(value) = values.find(|value| !value.is_finite()) else { return Ok(()) };
         Err(self.refused(world, "all bodies", format!("{} would be {value}", what()), Criterion::of("result")))
+    }
+
+    /// That an implicit step was not found.
+    pub fn unsolved(&self, world: &World, found: String, criterion: Criterion) -> Error {
+        let cause = "a step too long for how bodies move (smaller `step` of `solver`), a load or motion too large for the \
+                     mesh, or bodies that give way: buckling, a law that softens";
+        let body = "all bodies".into();
+        let broken = guards::instability(world, &self.guard_settings, body, found, cause, criterion, self.good_until);
+        Error::Unstable(Box::new(broken))
     }
 
     /// That a result of a body, or of all, cannot be handed out because it is not finite.

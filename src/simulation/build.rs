@@ -21,6 +21,7 @@ use crate::components::*;
 use crate::error::Error;
 use crate::observation::{GuardKernels, GuardSettings, Observer, Track, WrittenFields};
 use crate::scene::SceneFile;
+use crate::scene::schema::Guard;
 use crate::snapshot::{Keeping, identity};
 use crate::systems::{
     HostSystem, NodePass, NodeRows, OnHost, Phase, Registry, System, give_shares, node_pass, patch_pass, shared_pass,
@@ -78,7 +79,7 @@ impl Simulation {
         let plan = Plan::of(&schedule, &access, scene.scene.fuse, &world);
         let mut solver = Solver::of(&scene.scene, options.precision, &mut world);
 
-        let Chosen { gpu, mut why } = choose(options)?;
+        let Chosen { gpu, mut why } = choose(options, scene.scene.is_implicit())?;
         if gpu.is_some() {
             why += &fit_workgroups(&mut world);
         }
@@ -258,8 +259,13 @@ fn observer(scene: &SceneFile, clock: &Clock, steps: u64, world: &mut World) -> 
     observer.fields = every(scene.scene.fields_every());
     observer.energy = scene.scene.output.energies_every.map(|time| Track::new(every(time)));
     observer.snapshots = scene.scene.output.snapshots_every.filter(|_| !scene.scene.is_static()).map(every);
+    let mut limits = scene.scene.guards.clone();
+    if scene.scene.is_implicit() {
+        // what central differences keep is no measure of other formulas
+        limits.off.push(Guard::Energy);
+    }
     observer.guard_settings = GuardSettings {
-        limits: scene.scene.guards.clone(),
+        limits,
         beyond: scene.scene.integration.beyond_stable_step && clock.relaxation.is_none(),
         foreign: false,
         removal: world.query::<&Alive>().iter(world).next().is_some(),

@@ -265,7 +265,7 @@ impl Simulation {
             },
             nodes: self.facts.nodes,
             elements: self.facts.elements,
-            time_step: self.facts.stability.limit.map(|_| {
+            time_step: (self.facts.stability.limit.is_some() || self.scene.is_implicit()).then(|| {
                 let stability = &self.facts.stability;
                 format!("{:.3e} s by {}: {}", stability.step, stability.in_words(), stability.because)
             }),

@@ -51,7 +51,7 @@ impl Names {
             .map(|(name, probe)| (format!("probe_{name}.csv"), with_units(&observation::header(&probe.what))))
             .collect();
         if scene.output.energies_every.is_some() {
-            let header = observation::energy_header(scene.is_static());
+            let header = observation::energy_header(scene.is_static(), scene.is_implicit());
             columns.insert("energy.csv".into(), with_units(header));
         }
         if scene.is_static() {
@@ -137,6 +137,9 @@ pub const UNITS: &[(&str, &str)] = &[
     ("energies.removed", "J"),
     ("energies.load_work", "J"),
     ("energies.damping_loss", "J"),
+    ("energies.scheme_loss", "J"),
+    ("implicit.largest_residual_left", "1"),
+    ("implicit.longest_step", "s"),
     ("energies.constraint_work", "J"),
     ("energies.internal_work", "J"),
     ("mass", "kg"),

@@ -46,9 +46,18 @@ pub(super) struct Chosen {
     pub why: String,
 }
 
-/// Chooses the backend.
-pub(super) fn choose(options: &Options) -> Result<Chosen, Error> {
+/// Chooses the backend; of implicit steps there is one only.
+pub(super) fn choose(options: &Options, implicit: bool) -> Result<Chosen, Error> {
     let cpu = |why: String| Ok(Chosen { gpu: None, why });
+    match options.backend {
+        BackendChoice::Gpu if implicit => {
+            return Err(Error::Options(
+                "implicit steps run on the CPU only: use --backend cpu, or `solver: Explicit`".into(),
+            ));
+        }
+        BackendChoice::Auto if implicit => return cpu("implicit steps run on the CPU only".into()),
+        _ => {}
+    }
     let open = |choice: &Choice| {
         let mut gpu = Gpu::open(choice)?;
         gpu.keep_to(options.gpu_limits);

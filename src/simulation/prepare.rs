@@ -10,7 +10,7 @@ use super::{contact_springs, outputs, plausible};
 use crate::assembly::{Assembly, assemble, assemble_in_time, insert_laws};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
-use crate::scene::schema::Analysis;
+use crate::scene::schema::{Analysis, Solver};
 use crate::scene::{Diagnostics, SceneFile};
 use crate::systems::Registry;
 use bevy_ecs::prelude::*;
@@ -73,9 +73,15 @@ fn prepare_with<'a>(
     contact_springs::check(&scene.scene, &stability, diagnostics);
     world.insert_resource(clock);
     world.insert_resource(Observed(true));
+    if clock.velocities_at_ends {
+        world.insert_resource(TrialForces::default());
+    }
     assemble_in_time(&assembly, world, diagnostics);
     let mut schedule = resolve(scene.scene.schedule.as_deref(), known, world, diagnostics);
     hand_out(&scene.scene, known, &mut schedule, world, diagnostics);
+    if clock.velocities_at_ends {
+        super::implicit::check(&schedule, diagnostics);
+    }
     let systems = schedule.iter().map(|entry| entry.system);
     let more = match stable_step::with_parameters(&scene.scene, systems, &stability, world) {
         Ok(more) => more,
@@ -116,6 +122,12 @@ fn clock(
         };
         let clock = Clock { relaxation: Some(relaxation), ..Clock::with_step(scene.scene.duration * ramp_rate) };
         return Some((clock, Stability::of_rest(bound), max_steps));
+    }
+    if let Solver::Implicit { step, .. } = scene.scene.solver {
+        let bound = stable_step::found_bound(world, diagnostics)?;
+        let steps = (scene.scene.duration / step).round().max(1.0) as u64;
+        let clock = Clock { velocities_at_ends: true, ..Clock::with_step(step) };
+        return Some((clock, Stability::of_implicit(bound, step), steps));
     }
     let (stability, time_step, steps) = stable_step::choose(scene, known, loads, world, diagnostics)?;
     Some((Clock::with_step(time_step), stability, steps))

@@ -158,7 +158,11 @@ impl Simulation {
 
     /// One step on the host, or as many as can be submitted together.
     pub(super) fn some_steps(&mut self, target: u64) -> Result<(), Error> {
-        if self.facts.on_gpu { self.device_steps(target) } else { self.host_step(target) }
+        match self.facts.on_gpu {
+            true => self.device_steps(target),
+            false if self.solver.implicit().is_some() => self.implicit_step(),
+            false => self.host_step(target),
+        }
     }
 
     /// Observes the present state, whatever is due.
@@ -317,8 +321,13 @@ impl ScheduledPass {
         }
     }
 
+    /// Whether a host system reads a column.
+    pub(super) fn reads(&self, name: &str) -> bool {
+        matches!(&self.job, Job::Host { reads, .. } if reads.contains(&name))
+    }
+
     /// Runs a host system if this is one of its steps.
-    fn run_on_host(&mut self, step: u64, world: &mut World) -> Result<(), Error> {
+    pub(super) fn run_on_host(&mut self, step: u64, world: &mut World) -> Result<(), Error> {
         let Job::Host { system, interval, .. } = &mut self.job else { return Ok(()) };
         if !interval.is_due(step) {
             return Ok(());

@@ -5,6 +5,7 @@
 
 use super::Simulation;
 use super::follow::Follower;
+use super::implicit::Implicit;
 use super::relax::Relaxing;
 use super::stable_step::Stability;
 use crate::components::{Clock, Precision};
@@ -19,11 +20,16 @@ pub(super) enum Solver {
     Explicit(Option<Follower>),
     /// Pseudo-steps to equilibrium.
     Relaxation(Relaxing),
+    /// Steps that solve for their end.
+    Implicit(Box<Implicit>),
 }
 
 impl Solver {
     /// What the scene asks for, before anything is on a device.
     pub fn of(scene: &Scene, precision: Precision, world: &mut World) -> Self {
+        if let Some(implicit) = Implicit::of(scene, world) {
+            return Self::Implicit(Box::new(implicit));
+        }
         Relaxing::of(scene, precision, world).map_or(Self::Explicit(None), Self::Relaxation)
     }
 
@@ -31,7 +37,7 @@ impl Solver {
     pub fn begin(&mut self, scene: &Scene, stability: &Stability, initial_mass: f64, world: &mut World) {
         match self {
             Self::Explicit(follower) => *follower = Follower::new(scene, stability, initial_mass, world),
-            Self::Relaxation(_) => {}
+            Self::Relaxation(_) | Self::Implicit(_) => {}
         }
     }
 
@@ -40,7 +46,7 @@ impl Solver {
     pub fn lend_follower(&mut self) -> Option<Follower> {
         match self {
             Self::Explicit(follower) => follower.take(),
-            Self::Relaxation(_) => None,
+            Self::Relaxation(_) | Self::Implicit(_) => None,
         }
     }
 
@@ -48,14 +54,14 @@ impl Solver {
     pub fn take_back(&mut self, lent: Follower) {
         match self {
             Self::Explicit(follower) => *follower = Some(lent),
-            Self::Relaxation(_) => debug_assert!(false, "a search for equilibrium lends nothing"),
+            Self::Relaxation(_) | Self::Implicit(_) => debug_assert!(false, "a search for equilibrium lends nothing"),
         }
     }
 
     /// Whether the last states are left behind where the run breaks down: a search for equilibrium has none that tell.
     pub fn leaves_states(&self) -> bool {
         match self {
-            Self::Explicit(_) => true,
+            Self::Explicit(_) | Self::Implicit(_) => true,
             Self::Relaxation(_) => false,
         }
     }
@@ -64,7 +70,7 @@ impl Solver {
     pub fn follower(&self) -> Option<&Follower> {
         match self {
             Self::Explicit(follower) => follower.as_ref(),
-            Self::Relaxation(_) => None,
+            Self::Relaxation(_) | Self::Implicit(_) => None,
         }
     }
 
@@ -72,14 +78,30 @@ impl Solver {
     pub fn follower_mut(&mut self) -> Option<&mut Follower> {
         match self {
             Self::Explicit(follower) => follower.as_mut(),
-            Self::Relaxation(_) => None,
+            Self::Relaxation(_) | Self::Implicit(_) => None,
+        }
+    }
+
+    /// What takes implicit steps.
+    pub fn implicit(&self) -> Option<&Implicit> {
+        match self {
+            Self::Implicit(implicit) => Some(implicit),
+            Self::Explicit(_) | Self::Relaxation(_) => None,
+        }
+    }
+
+    /// The same, to take them.
+    pub fn implicit_mut(&mut self) -> Option<&mut Implicit> {
+        match self {
+            Self::Implicit(implicit) => Some(implicit),
+            Self::Explicit(_) | Self::Relaxation(_) => None,
         }
     }
 
     /// What looks for equilibrium.
     pub fn relaxing(&self) -> Option<&Relaxing> {
         match self {
-            Self::Explicit(_) => None,
+            Self::Explicit(_) | Self::Implicit(_) => None,
             Self::Relaxation(relaxing) => Some(relaxing),
         }
     }
@@ -88,7 +110,7 @@ impl Solver {
     pub fn next_check(&self) -> u64 {
         match self {
             Self::Explicit(follower) => follower.as_ref().map_or(u64::MAX, |follower| follower.found.next),
-            Self::Relaxation(_) => u64::MAX,
+            Self::Relaxation(_) | Self::Implicit(_) => u64::MAX,
         }
     }
 
@@ -96,7 +118,7 @@ impl Solver {
     /// of `others`; that of `step` where there is only to check, `None` where nothing is left to do.
     fn until(&self, step: u64, others: impl FnOnce() -> u64) -> Option<u64> {
         match self {
-            Self::Explicit(_) => Some(self.next_check().min(others())),
+            Self::Explicit(_) | Self::Implicit(_) => Some(self.next_check().min(others())),
             Self::Relaxation(relaxing) if relaxing.equilibrium.reached => None,
             // who asks again after it was given up is told again
             Self::Relaxation(relaxing) => Some(relaxing.next_check().max(step)),
@@ -110,14 +132,14 @@ impl Solver {
                 relaxing.check(world)?;
                 Ok(relaxing.equilibrium.reached)
             }
-            Self::Explicit(_) | Self::Relaxation(_) => Ok(false),
+            Self::Explicit(_) | Self::Relaxation(_) | Self::Implicit(_) => Ok(false),
         }
     }
 
     /// Whether no step is left after so many of those planned.
     pub fn is_done(&self, step: u64, planned: u64) -> bool {
         match self {
-            Self::Explicit(_) => step >= planned,
+            Self::Explicit(_) | Self::Implicit(_) => step >= planned,
             Self::Relaxation(relaxing) => relaxing.equilibrium.reached,
         }
     }

@@ -74,6 +74,16 @@ impl Stability {
         }
     }
 
+    /// Of implicit steps, which are stable at any length.
+    pub fn of_implicit(bound: StableStep, step: f64) -> Self {
+        Self {
+            step,
+            found_from: "scene",
+            because: "implicit steps are as long as the scene wants them".into(),
+            ..Self::of_rest(bound)
+        }
+    }
+
     /// Of a static analysis.
     pub fn of_rest(bound: StableStep) -> Self {
         Self {

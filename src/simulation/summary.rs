@@ -66,6 +66,8 @@ pub struct Summary {
     pub systems: Vec<SystemTime>,
     /// What travelled between host and device.
     pub traffic: Option<Traffic>,
+    /// What implicit steps took; `None` where steps are explicit.
+    pub implicit: Option<super::ImplicitSteps>,
     /// The equilibrium of a static analysis.
     pub equilibrium: Option<super::Equilibrium>,
     /// What bringing the bodies to rest before the first step took; `None` where that was not asked for, and in a run
@@ -221,6 +223,7 @@ impl Simulation {
             nanoseconds_an_element_and_step: a_step * 1e9 / facts.elements.max(1) as f64,
             systems: self.entries.iter().map(|entry| system_time(entry, &self.plan, facts.on_gpu)).collect(),
             traffic: self.world.get_resource::<Device>().map(Device::traffic),
+            implicit: self.implicit_steps().copied(),
             equilibrium: self.equilibrium().cloned(),
             preload: self.preload.clone(),
             energies,

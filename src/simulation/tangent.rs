@@ -89,7 +89,7 @@ impl<'w> Tangent<'w> {
 
 /// A law as it answers to what is sudden: stresses relaxed so far are there, nothing relaxes further, and fibres that
 /// could be pulled taut at any moment push back as well.
-fn at_an_instant(law: &BlockLaw<f64>) -> BlockLaw<f64> {
+pub(super) fn at_an_instant(law: &BlockLaw<f64>) -> BlockLaw<f64> {
     let mut law = law.clone();
     // a term without a rate is relaxed for good: that of a static analysis
     for term in law.prony.iter_mut().chain(&mut law.volumetric).filter(|term| term.rate > 0.0) {
@@ -102,30 +102,34 @@ fn at_an_instant(law: &BlockLaw<f64>) -> BlockLaw<f64> {
     law
 }
 
-/// About the height (m) of the flattest element: its volume at rest over the square of its longest edge.
+/// About the height (m) of the flattest element.
 fn least_height(world: &World, bodies: &[Entity]) -> f64 {
-    let mut least = f64::INFINITY;
-    for &body in bodies {
-        let (Some(authoring), Some(rest)) = (world.get::<Authoring>(body), world.get::<RestPosition>(body)) else {
+    let heights = bodies.iter().filter_map(|&body| heights_at_nodes(world, body));
+    heights.flatten().fold(f64::INFINITY, f64::min)
+}
+
+/// At each node of a body about the height (m) of the flattest element there: its volume at rest over the square of its
+/// longest edge. Infinite at a node without elements.
+pub(super) fn heights_at_nodes(world: &World, body: Entity) -> Option<Vec<f64>> {
+    let (authoring, rest) = (world.get::<Authoring>(body)?, world.get::<RestPosition>(body)?);
+    let mut heights = vec![f64::INFINITY; rest.0.len()];
+    for &entity in &authoring.blocks {
+        let (Some(block), Some(connectivity), Some(shape)) =
+            (world.get::<Block>(entity), world.get::<Connectivity>(entity), world.get::<RestShape>(entity))
+        else {
             continue;
         };
-        for &entity in &authoring.blocks {
-            let (Some(block), Some(connectivity), Some(shape)) =
-                (world.get::<Block>(entity), world.get::<Connectivity>(entity), world.get::<RestShape>(entity))
-            else {
-                continue;
-            };
-            let nodes = node_count(block.kind);
-            for row in 0..block.count {
-                let corner = |a: usize| rest.0[connectivity[lane_place(row, nodes, a)] as usize];
-                let pairs = (1..nodes).flat_map(|a| (0..a).map(move |b| (a, b)));
-                let longest = pairs.map(|(a, b)| corner(a).distance_squared(corner(b))).fold(0.0, f64::max);
-                let volume = crate::evaluation::rest_volume(block, row, shape);
-                if volume > 0.0 {
-                    least = least.min(volume / longest);
-                }
+        let nodes = node_count(block.kind);
+        for row in 0..block.count {
+            let node = |a: usize| connectivity[lane_place(row, nodes, a)] as usize;
+            let corner = |a: usize| rest.0[node(a)];
+            let pairs = (1..nodes).flat_map(|a| (0..a).map(move |b| (a, b)));
+            let longest = pairs.map(|(a, b)| corner(a).distance_squared(corner(b))).fold(0.0, f64::max);
+            let volume = crate::evaluation::rest_volume(block, row, shape);
+            if volume > 0.0 {
+                (0..nodes).for_each(|a| heights[node(a)] = heights[node(a)].min(volume / longest));
             }
         }
     }
-    least
+    Some(heights)
 }

@@ -3,7 +3,7 @@
 use crate::backend::cpu::BlockLaw;
 use crate::components::*;
 use crate::materials::ElasticLaw;
-use crate::scene::schema::{InitialState, Scene};
+use crate::scene::schema::{InitialState, Scene, Solver};
 use crate::tools::Geometry;
 use bevy_ecs::prelude::*;
 use serde::Serialize;
@@ -23,6 +23,10 @@ pub fn identity(scene: &Scene, world: &mut World) -> Identity {
     // what it does is in the columns, unless nothing has been done yet
     if scene.start != InitialState::default() {
         add("start", of_text(&scene.start));
+    }
+    // explicit steps are told by their length
+    if scene.solver != Solver::default() {
+        add("solver", of_text(&scene.solver));
     }
     add("constraints", of_text(&scene.constraints));
     add("loads", of_text(&scene.loads));

@@ -28,6 +28,8 @@ mod guards;
 mod held_nodes;
 mod history;
 mod hourglass;
+mod implicit;
+mod implicit_lens;
 mod inputs;
 mod inversion;
 mod islands;

@@ -19,7 +19,7 @@ fn mistakes_in_a_set_are_shown_in_the_set() {
         ("duration=(1,", r"error: --set duration=(1,: the value `(1,` cannot be read: it ends too early"),
         (
             "durration=3",
-            r"--set:1:1: error: unknown field `durration` | not a field of Scene | did you mean `duration`? | allowed: title, duration, analysis, start, parts, bodies, materials, constraints, loads, tools, contacts, suction, attachments, systems, removal, probes, integration, schedule, real_time, fuse, parameters, output, guards, picture and 1 more",
+            r"--set:1:1: error: unknown field `durration` | not a field of Scene | did you mean `duration`? | allowed: title, duration, analysis, solver, start, parts, bodies, materials, constraints, loads, tools, contacts, suction, attachments, systems, removal, probes, integration, schedule, real_time, fuse, parameters, output, guards and 2 more",
         ),
         ("a..b=3", r"error: --set a..b=3: `a..b`: a name is missing"),
         ("loads[x]=3", r"error: --set loads[x]=3: `loads[x]`: [x] is not a number from 0"),

@@ -61,7 +61,7 @@ fn words_that_do_not_fit_are_told_with_those_that_do() {
         (
             "duration: 0.5,",
             "duratoin: 0.5,",
-            r"3:5: error: unknown field `duratoin` | not a field of Scene | did you mean `duration`? | allowed: title, duration, analysis, start, parts, bodies, materials, constraints, loads, tools, contacts, suction, attachments, systems, removal, probes, integration, schedule, real_time, fuse, parameters, output, guards, picture and 1 more",
+            r"3:5: error: unknown field `duratoin` | not a field of Scene | did you mean `duration`? | allowed: title, duration, analysis, solver, start, parts, bodies, materials, constraints, loads, tools, contacts, suction, attachments, systems, removal, probes, integration, schedule, real_time, fuse, parameters, output, guards and 2 more",
         ),
         (
             "duration: 0.5,",
@@ -71,7 +71,7 @@ fn words_that_do_not_fit_are_told_with_those_that_do() {
         (
             "duration: 0.5,",
             "duration: 0.5, colour: 3,",
-            r"3:20: error: unknown field `colour` | not a field of Scene | allowed: title, duration, analysis, start, parts, bodies, materials, constraints, loads, tools, contacts, suction, attachments, systems, removal, probes, integration, schedule, real_time, fuse, parameters, output, guards, picture and 1 more",
+            r"3:20: error: unknown field `colour` | not a field of Scene | allowed: title, duration, analysis, solver, start, parts, bodies, materials, constraints, loads, tools, contacts, suction, attachments, systems, removal, probes, integration, schedule, real_time, fuse, parameters, output, guards and 2 more",
         ),
         ("duration: 0.5,", r#"duration: "0.5","#, r"3:15: error: `duration` must be a number | found a text"),
         ("duration: 0.5,", "duration: 1.2.3,", r"3:15: error: `1.2.3` is not a number | written like 0.05, 5e-2 or 3"),

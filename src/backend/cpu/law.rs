@@ -45,6 +45,13 @@ impl<T: Scalar> BlockLaw<T> {
         !fibres && self.prony.is_empty() && self.volumetric.is_empty() && !self.reproject
     }
 
+    /// The same law with a memory that its kernel leaves as it is, as long as stresses are finite.
+    pub fn with_still_memory(&self) -> Self {
+        let mut law = self.clone();
+        law.prony.iter_mut().chain(&mut law.volumetric).for_each(|term| term.rate = T::default());
+        law
+    }
+
     /// Rounds to another precision.
     pub fn rounded<Q: Scalar>(&self) -> BlockLaw<Q> {
         let round = |value: T| Q::from_f64(value.to_f64());

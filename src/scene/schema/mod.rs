@@ -11,6 +11,7 @@ mod part;
 mod picture;
 mod scene;
 mod selection;
+mod solver;
 mod system;
 mod tool;
 
@@ -32,6 +33,7 @@ pub use part::{OF_THE_WHOLE, Part, PartScene};
 pub use picture::{Colours, Cut, Field, Opacity, Picture};
 pub use scene::{Analysis, EnergyGuard, Guard, Guards, InitialState, Integration, Scene, StepBound, WhenUnstable};
 pub use selection::{Probe, Quantity, Select};
+pub use solver::{ImplicitScheme, Preconditioner, Solver};
 pub use system::OwnSystem;
 pub use tool::{Contact, ContactLaw, Follow, Free, Points, Port, Suction, Tool, ToolMesh, ToolMove, ToolPlace};
 
@@ -40,7 +42,7 @@ pub fn texts() -> impl Iterator<Item = &'static str> {
     TEXT.iter().chain(crate::materials::TEXTS).chain(crate::tools::TEXTS).copied()
 }
 
-const TEXT: [&str; 13] = [
+const TEXT: [&str; 14] = [
     include_str!("scene.rs"),
     include_str!("part.rs"),
     include_str!("body.rs"),
@@ -48,6 +50,7 @@ const TEXT: [&str; 13] = [
     include_str!("action.rs"),
     include_str!("load.rs"),
     include_str!("selection.rs"),
+    include_str!("solver.rs"),
     include_str!("system.rs"),
     include_str!("tool.rs"),
     include_str!("attachment.rs"),

@@ -2,7 +2,7 @@
 
 use super::{
     Accuracy, Attachment, Body, Constraint, Contact, Curve, Load, Material, Output, OwnSystem, Part, Picture, Probe,
-    Removal, Suction, Tool, When,
+    Removal, Solver, Suction, Tool, When,
 };
 use crate::scene::syntax::Path;
 use serde::{Deserialize, Serialize};
@@ -20,6 +20,9 @@ pub struct Scene {
     /// Motion over time, or rest under what acts at the end.
     #[serde(default)]
     pub analysis: Analysis,
+    /// How the motion is found from step to step.
+    #[serde(default)]
+    pub solver: Solver,
     /// How bodies stand when the motion begins.
     #[serde(default)]
     pub start: InitialState,
@@ -325,6 +328,11 @@ impl Scene {
     /// Whether tools, other bodies or what is attached put forces on nodes.
     pub fn has_tools_that_push(&self) -> bool {
         !self.contacts.is_empty() || !self.suction.is_empty() || !self.attachments.is_empty()
+    }
+
+    /// Whether steps of the motion are implicit.
+    pub fn is_implicit(&self) -> bool {
+        matches!(self.solver, Solver::Implicit { .. }) && !self.is_static()
     }
 
     /// Whether equilibrium is sought instead of motion.

@@ -14,6 +14,7 @@ mod output;
 mod own_system;
 mod picture;
 mod select;
+mod solver;
 mod time;
 mod tool;
 
@@ -42,6 +43,7 @@ pub fn validate(file: &SceneFile, diagnostics: &mut Diagnostics) -> bool {
     attachment::validate(&file.scene, &mut validator);
     time::validate(&file.scene, &mut validator);
     analysis::validate(&file.scene, &mut validator);
+    solver::validate(&file.scene, &mut validator);
     output::validate(&file.scene, &mut validator);
     picture::validate(&file.scene, &mut validator);
     true

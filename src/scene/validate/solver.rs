@@ -1,0 +1,66 @@
+//! Implicit steps: their numbers, and what of a scene they cannot do.
+
+use super::{Validator, scene, show};
+use crate::scene::schema::{ImplicitScheme, Scene, Solver, WhenUnstable};
+
+pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
+    let Solver::Implicit { scheme, step, newton, tolerance, budget, .. } = scene_.solver else { return };
+    let path = scene("solver");
+    validator.above_zero(&path.name("step"), step, "s");
+    if newton == 0 {
+        validator.must(&path.name("newton"), "at least 1", newton).note("1 is the linearised step");
+    }
+    if tolerance <= 0.0 || tolerance >= 1.0 {
+        validator
+            .must(&path.name("tolerance"), "above 0 and below 1", show(tolerance))
+            .note("it is a share of the forces in a step; 1e-3 when left out");
+    }
+    if budget == Some(0) {
+        validator.must(&path.name("budget"), "at least 1", 0).note("left out, a step takes as many passes as it needs");
+    }
+    if let ImplicitScheme::GeneralizedAlpha { high_frequencies } = scheme
+        && !(0.0..=1.0).contains(&high_frequencies)
+    {
+        validator
+            .must(&path.name("scheme").name("high_frequencies"), "from 0 to 1", show(high_frequencies))
+            .note("it is what a step leaves of frequencies far above 1/step; 0.8 when left out");
+    }
+    if scene_.is_static() {
+        validator.out.warn_at(&path, "a static analysis ignores `solver`: it takes pseudo-steps to rest");
+        return;
+    }
+    if scene_.integration.step.is_some() {
+        validator
+            .out
+            .error_at(scene("integration").name("step"), "this is the step of explicit steps")
+            .note("that of implicit ones stands in `solver`");
+    }
+    if scene_.integration.when_unstable.is_some_and(|policy| policy != WhenUnstable::Watch) {
+        validator
+            .out
+            .error_at(scene("integration").name("when_unstable"), "implicit steps are stable at any length")
+            .note("leave it out: neither masses nor steps nor elements have to change");
+    }
+    refused(scene_, validator);
+}
+
+/// What has a step of its own that knows central differences only.
+fn refused(scene_: &Scene, validator: &mut Validator) {
+    let lists = [
+        ("contacts", scene_.contacts.len(), "contact, which puts nodes where they may be from step to step"),
+        ("suction", scene_.suction.len(), "suction, which keeps what was sucked from step to step"),
+        ("attachments", scene_.attachments.len(), "attachments, which break and hold from step to step"),
+    ];
+    for (list, _, what) in lists.into_iter().filter(|(_, count, _)| *count > 0) {
+        validator
+            .out
+            .error_at(scene(list).index(0), format!("implicit steps cannot take part in {what}"))
+            .note(format!("leave `{list}` out, or use `solver: Explicit`"));
+    }
+    for (name, _) in scene_.tools.iter().filter(|(_, tool)| tool.free.is_some()) {
+        validator
+            .out
+            .error_at(scene("tools").name(name).name("free"), "implicit steps do not move free tools")
+            .note("use `solver: Explicit`");
+    }
+}

@@ -1,0 +1,100 @@
+//! Conjugate gradients for the linear system of a Newton iteration (Hestenes & Stiefel 1952), preconditioned.
+
+use super::preconditioner::Preconditioner;
+use super::sums::Sums;
+use crate::error::Error;
+
+/// Vectors over all axes.
+#[derive(Default)]
+pub(super) struct Vectors {
+    residual: Vec<f64>,
+    preconditioned: Vec<f64>,
+    direction: Vec<f64>,
+    image: Vec<f64>,
+}
+
+/// Why a solve ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ended {
+    /// The residual is small enough.
+    Converged,
+    /// So many products were allowed.
+    Exhausted,
+    /// The operator is not positive along a direction.
+    NegativeCurvature,
+    /// Forces that are no numbers.
+    NotFinite,
+}
+
+/// How a solve went.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Solved {
+    pub iterations: u64,
+    pub ended: Ended,
+}
+
+/// When a solve ends.
+#[derive(Clone, Copy)]
+pub(super) struct Stop {
+    /// ‖b − A x‖ over ‖b‖.
+    pub tolerance: f64,
+    /// Products with A.
+    pub most: u64,
+}
+
+/// x ≈ A⁻¹ b from x = 0. Along a direction that A does not resist, the last x is kept; where that is the first, x is
+/// the preconditioned b, which leads downhill.
+pub(super) fn solve(
+    sums: &Sums,
+    b: &[f64],
+    x: &mut [f64],
+    vectors: &mut Vectors,
+    preconditioner: &dyn Preconditioner,
+    stop: Stop,
+    mut times: impl FnMut(&[f64], &mut [f64]) -> Result<(), Error>,
+) -> Result<Solved, Error> {
+    let Vectors { residual, preconditioned, direction, image } = vectors;
+    for vector in [&mut *residual, preconditioned, direction, image] {
+        vector.resize(b.len(), 0.0);
+    }
+    x.fill(0.0);
+    residual.copy_from_slice(b);
+    let enough = stop.tolerance * sums.norm(b);
+    preconditioner.apply(residual, preconditioned);
+    direction.copy_from_slice(preconditioned);
+    let mut product = sums.dot(residual, preconditioned);
+    let ended = |iterations, ended| Ok(Solved { iterations, ended });
+    for iteration in 0..stop.most {
+        times(direction, image)?;
+        let curvature = sums.dot(direction, image);
+        if !curvature.is_finite() {
+            return ended(iteration + 1, Ended::NotFinite);
+        }
+        if curvature <= 0.0 {
+            if iteration == 0 {
+                x.copy_from_slice(preconditioned);
+            }
+            return ended(iteration + 1, Ended::NegativeCurvature);
+        }
+        let length = product / curvature;
+        for i in 0..x.len() {
+            x[i] += length * direction[i];
+            residual[i] -= length * image[i];
+        }
+        let left = sums.norm(residual);
+        if !left.is_finite() {
+            return ended(iteration + 1, Ended::NotFinite);
+        }
+        if left <= enough {
+            return ended(iteration + 1, Ended::Converged);
+        }
+        preconditioner.apply(residual, preconditioned);
+        let next = sums.dot(residual, preconditioned);
+        let turn = next / product;
+        product = next;
+        for (direction, z) in direction.iter_mut().zip(preconditioned.iter()) {
+            *direction = z + turn * *direction;
+        }
+    }
+    ended(stop.most, Ended::Exhausted)
+}

@@ -1,0 +1,49 @@
+//! The equation of each axis in a step: its inertia, its damping, and what it is at a place.
+
+use super::axes::Motion;
+use super::formula::Formula;
+
+impl Motion {
+    /// y = u + h v (m).
+    pub fn predicted(&self, axis: usize, h: f64) -> f64 {
+        if self.free[axis] { self.u[axis] + h * self.v[axis] } else { self.u[axis] }
+    }
+
+    /// The velocity (m/s) and acceleration (m/s²) at the end of a step of h, of an axis that is at w then.
+    pub fn arrival(&self, formula: &Formula, axis: usize, h: f64, w: f64) -> (f64, f64) {
+        if !self.free[axis] {
+            let velocity = if self.held[axis] { (w - self.u[axis]) / h } else { 0.0 };
+            return (velocity, 0.0);
+        }
+        let acceleration = formula.acceleration(h, w - self.predicted(axis, h), self.a[axis]);
+        (formula.velocity(h, self.v[axis], [self.a[axis], acceleration]), acceleration)
+    }
+
+    /// D (N/m), and what is constant of the equation of an axis (N) beside D (w − y) and the forces at the end; `net` is
+    /// F − R before.
+    pub fn equation(&self, formula: &Formula, h: f64, axis: usize, net: f64) -> (f64, f64) {
+        if !self.free[axis] {
+            return (0.0, 0.0);
+        }
+        let (mass, damping) = (self.mass[axis], self.damping[axis]);
+        let (velocity, acceleration) = self.arrival(formula, axis, h, self.predicted(axis, h));
+        let inertial = formula.inertial_force(mass, damping, [self.v[axis], velocity], [self.a[axis], acceleration]);
+        (formula.inertia(h, mass, damping), inertial + formula.alpha_f * net)
+    }
+
+    /// The residual of all free axes at w (N), from the forces there.
+    pub fn fill_residual(
+        &self,
+        (stiffness, h): (f64, f64),
+        (w, net): (&[f64], &[f64]),
+        (constant, inertia): (&[f64], &[f64]),
+        g: &mut [f64],
+    ) {
+        for axis in 0..w.len() {
+            g[axis] = match self.free[axis] {
+                true => constant[axis] + inertia[axis] * (w[axis] - self.predicted(axis, h)) + stiffness * net[axis],
+                false => 0.0,
+            };
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! The formulas of implicit steps: one nonlinear system for the displacements w at the end of a step of h,
+//!
+//! M [(1 − α_m) a⁺ + α_m a] + C [(1 − α_f) v⁺ + α_f v] + (1 − α_f) (F − R)⁺ + α_f (F − R) = 0,
+//!
+//! with a⁺ = c (w − u − h v) + κ a and v⁺ = v + h (γ₀ a + γ a⁺). Forces of both ends are weighted, not those of a place
+//! in between (the generalised trapezoidal rule: for linear bodies the same, of second order for others, too): the
+//! forces at the end are then known when the step is solved, and viscous memories and loads have one time.
+
+use crate::scene::schema::ImplicitScheme;
+
+/// The numbers of a formula.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(in crate::simulation) struct Formula {
+    /// α_m and α_f.
+    pub alpha_m: f64,
+    pub alpha_f: f64,
+    /// c h², and κ.
+    pub of_displacement: f64,
+    pub of_acceleration: f64,
+    /// γ₀ and γ.
+    pub before: f64,
+    pub after: f64,
+}
+
+impl Formula {
+    /// That of a scheme. Implicit Euler: v⁺ = (w − u)/h, a⁺ = (v⁺ − v)/h, forces of the end. Generalised-α (Chung &
+    /// Hulbert 1993): γ = ½ − α_m + α_f, β = ¼ (1 − α_m + α_f)², α_m = (2ρ − 1)/(ρ + 1), α_f = ρ/(ρ + 1).
+    pub fn of(scheme: ImplicitScheme) -> Self {
+        match scheme {
+            ImplicitScheme::Euler => {
+                Self { alpha_m: 0.0, alpha_f: 0.0, of_displacement: 1.0, of_acceleration: 0.0, before: 0.0, after: 1.0 }
+            }
+            ImplicitScheme::GeneralizedAlpha { high_frequencies: rho } => {
+                let (alpha_m, alpha_f) = ((2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0));
+                let (gamma, beta) = (0.5 - alpha_m + alpha_f, 0.25 * (1.0 - alpha_m + alpha_f).powi(2));
+                Self {
+                    alpha_m,
+                    alpha_f,
+                    of_displacement: 1.0 / beta,
+                    of_acceleration: (beta - 0.5) / beta,
+                    before: 1.0 - gamma,
+                    after: gamma,
+                }
+            }
+        }
+    }
+
+    /// The acceleration at the end (m/s²), of h, w − u − h v (m) and the acceleration before.
+    pub fn acceleration(&self, h: f64, moved: f64, before: f64) -> f64 {
+        self.of_displacement * moved / (h * h) + self.of_acceleration * before
+    }
+
+    /// The velocity at the end (m/s), of that before and both accelerations.
+    pub fn velocity(&self, h: f64, before: f64, accelerations: [f64; 2]) -> f64 {
+        before + h * (self.before * accelerations[0] + self.after * accelerations[1])
+    }
+
+    /// What a displacement of 1 m changes of the equation of an axis (N/m), beside forces: with its mass (kg) and
+    /// damping coefficient (kg/s).
+    pub fn inertia(&self, h: f64, mass: f64, damping: f64) -> f64 {
+        let per_displacement = self.of_displacement / (h * h);
+        ((1.0 - self.alpha_m) * mass + (1.0 - self.alpha_f) * damping * h * self.after) * per_displacement
+    }
+
+    /// Inertia and damping of an axis (N), of velocities and accelerations before and after.
+    pub fn inertial_force(&self, mass: f64, damping: f64, velocities: [f64; 2], accelerations: [f64; 2]) -> f64 {
+        let between = |[before, after]: [f64; 2], alpha: f64| (1.0 - alpha) * after + alpha * before;
+        mass * between(accelerations, self.alpha_m) + damping * between(velocities, self.alpha_f)
+    }
+
+    /// The share of the tangent stiffness in the operator of a Newton iteration.
+    pub fn stiffness(&self) -> f64 {
+        1.0 - self.alpha_f
+    }
+
+    /// Whether accelerations are carried on.
+    pub fn needs_acceleration(&self) -> bool {
+        self.of_acceleration != 0.0 || self.alpha_m != 0.0 || self.before != 0.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The matrix that takes (u, h v, h² a) of one undamped axis of frequency ω a step on.
+    fn step(formula: &Formula, product: f64, [u, v, a]: [f64; 3]) -> [f64; 3] {
+        // unit mass and step: stiffness (ωh)²
+        let k = product * product;
+        let y = u + v;
+        let constant = formula.inertial_force(1.0, 0.0, [v, 0.0], [a, formula.acceleration(1.0, 0.0, a)])
+            + formula.alpha_f * k * u;
+        let operator = formula.inertia(1.0, 1.0, 0.0) + formula.stiffness() * k;
+        let w = y - (constant + formula.stiffness() * k * y) / operator;
+        let after = formula.acceleration(1.0, w - y, a);
+        [w, formula.velocity(1.0, v, [a, after]), after]
+    }
+
+    /// The largest modulus of an eigenvalue, by a power of the matrix.
+    fn spectral_radius(formula: &Formula, product: f64) -> f64 {
+        let (steps, mut growth) = (4000, 0.0_f64);
+        let mut state = [1.0, 0.3, -0.7 * product * product];
+        for _ in 0..steps {
+            state = step(formula, product, state);
+            let size = state[0].abs().max(state[1].abs()).max(state[2].abs() / (1.0 + product * product));
+            growth += size.ln();
+            state = state.map(|x| x / size);
+        }
+        (growth / f64::from(steps)).exp()
+    }
+
+    #[test]
+    fn high_frequencies_keep_the_share_that_is_asked_for() {
+        for rho in [0.0, 0.5, 0.8, 1.0] {
+            let formula = Formula::of(ImplicitScheme::GeneralizedAlpha { high_frequencies: rho });
+            let found = spectral_radius(&formula, 1e5);
+            // a double eigenvalue: powers of it grow by their number once
+            let bound = 8.0 * (4000.0_f64).ln() / 4000.0;
+            assert!((found - rho).abs() < bound, "{rho}: {found}");
+            let slow = spectral_radius(&formula, 1e-3);
+            assert!((slow - 1.0).abs() < 1e-3, "{rho}: {slow}");
+        }
+    }
+
+    #[test]
+    fn euler_damps_by_its_modulus_and_the_trapezoidal_rule_by_nothing() {
+        let euler = Formula::of(ImplicitScheme::Euler);
+        let trapezoidal = Formula::of(ImplicitScheme::GeneralizedAlpha { high_frequencies: 1.0 });
+        for product in [0.01, 0.3, 1.0, 4.0] {
+            // whole turns, so that the phase has no part: of the modulus n steps leave its n-th power
+            let found = spectral_radius(&euler, product);
+            let expected = (1.0 + product * product).powf(-0.5);
+            assert!((found / expected - 1.0).abs() < 1e-3, "{product}: {found}, not {expected}");
+            let kept = spectral_radius(&trapezoidal, product);
+            assert!((kept - 1.0).abs() < 2e-3, "{product}: {kept}");
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! Implicit steps: each solves for where forces balance at its end. The systems up to the loads say what the forces
+//! are ([`trial`]), Newton's iterations find the place ([`newton`]), and what comes after in a step runs then.
+
+mod axes;
+mod conjugate_gradients;
+mod equation;
+mod formula;
+mod kept;
+mod newton;
+mod preconditioner;
+mod report;
+mod step;
+mod sums;
+mod trial;
+mod unsupported;
+mod work;
+
+pub use report::ImplicitSteps;
+pub(super) use step::Implicit;
+pub(super) use unsupported::check;
+
+use super::Simulation;
+use super::build::after_the_step;
+use crate::components::*;
+use crate::error::Error;
+
+impl Simulation {
+    /// What implicit steps have taken so far; `None` where steps are explicit.
+    pub fn implicit_steps(&self) -> Option<&ImplicitSteps> {
+        self.solver.implicit().map(|implicit| &implicit.report)
+    }
+
+    /// Takes one implicit step.
+    pub(super) fn implicit_step(&mut self) -> Result<(), Error> {
+        let step = self.step_count();
+        let Some(implicit) = self.solver.implicit_mut() else { return Ok(()) };
+        implicit.step(&mut self.world, &mut self.entries)?;
+        self.world.resource_mut::<Clock>().step = step + 1;
+        for entry in self.entries.iter_mut().filter(|entry| after_the_step(entry.phase)) {
+            entry.run_on_host(step, &mut self.world)?;
+        }
+        self.keep_what_is_due()
+    }
+}

@@ -1,0 +1,353 @@
+//! Newton's iterations of a step: inexact solves (Eisenstat & Walker 1996), a line search on the work of the residual
+//! along the way (Matthies & Strang 1979).
+
+use super::axes::Motion;
+use super::conjugate_gradients::{Ended, Solved, Stop, Vectors, solve};
+use super::formula::Formula;
+use super::preconditioner::{Operator, Preconditioner};
+use super::report::ImplicitSteps;
+use super::sums::Sums;
+use super::trial::{Trial, Tried};
+use crate::components::{Displacement, Precision};
+use crate::error::Error;
+
+/// Of a linear system the residual that is left, at most and at least.
+const FORCING: [f64; 2] = [0.1, 0.01];
+/// What the work of the residual along a direction must fall to.
+const DESCENT: f64 = 0.9;
+/// How often a direction is halved.
+const MOST_HALVINGS: u32 = 12;
+/// Newton iterations after which a step may end where rounding keeps it from the tolerance.
+const ROUNDING_FROM: u32 = 3;
+/// Newton iterations at least in which prescribed motion may arrive, where the line search holds it back.
+const MOST_MOVES: u32 = 20;
+/// Iterations of a linear solve without a budget.
+const MOST_PRODUCTS: u64 = 5000;
+
+/// When a step counts as solved.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Settings {
+    pub formula: Formula,
+    pub newton: u32,
+    pub tolerance: f64,
+    pub budget: Option<u64>,
+}
+
+/// Why a step was not found.
+pub(super) enum Lost {
+    /// In words.
+    Because(String),
+    Error(Error),
+}
+
+impl From<Error> for Lost {
+    fn from(error: Error) -> Self {
+        Lost::Error(error)
+    }
+}
+
+/// Vectors over all axes that Newton's iterations work with.
+#[derive(Default)]
+pub(super) struct Workspace {
+    /// D.
+    pub inertia: Vec<f64>,
+    /// The equation without D (w − y) and without the forces at the end (N), y = u + h v.
+    pub constant: Vec<f64>,
+    /// Where axes are at the end (m), and how far held axes still have to go (m).
+    pub w: Vec<f64>,
+    pub to_go: Vec<f64>,
+    /// F − R at w (N).
+    pub net: Vec<f64>,
+    /// The residual g (N) at w.
+    g: Vec<f64>,
+    right: Vec<f64>,
+    p: Vec<f64>,
+    from: Vec<f64>,
+    elsewhere: Vec<f64>,
+    steps: Vec<f64>,
+    /// What a step comes to: h v (m), and the acceleration (m/s²).
+    pub step: Vec<f64>,
+    pub acceleration: Vec<f64>,
+    vectors: Vectors,
+}
+
+impl Workspace {
+    pub fn resize(&mut self, length: usize) {
+        let Self { inertia, constant, w, to_go, net, g, right, p, from, elsewhere, steps, step, acceleration, .. } =
+            self;
+        let all = [inertia, constant, w, to_go, net, g, right, p, from, elsewhere, steps, step, acceleration];
+        for vector in all {
+            vector.resize(length, 0.0);
+        }
+    }
+}
+
+/// One step's system.
+pub(super) struct Newton<'a, 'w> {
+    pub trial: Trial<'w>,
+    pub settings: Settings,
+    pub motion: &'a Motion,
+    pub space: &'a mut Workspace,
+    pub preconditioner: &'a mut dyn Preconditioner,
+    pub report: &'a mut ImplicitSteps,
+    pub sums: &'a Sums,
+    /// The length of the step (s); infinite in statics.
+    pub h: f64,
+}
+
+impl Newton<'_, '_> {
+    /// Solves for the places at the end of the step, from those in the workspace. The columns of forces are those there
+    /// then. Gives the residual that is left, as a share of the first.
+    pub fn solve(&mut self) -> Result<f64, Lost> {
+        let mut tried = self.forces_at_w()?;
+        if !tried.sound {
+            // what flies on may turn elements inside out that forces would have kept
+            self.space.w.copy_from_slice(&self.motion.u);
+            tried = self.forces_at_w()?;
+        }
+        if !tried.sound {
+            return Err(Lost::Because("forces at the beginning of the step are no numbers".into()));
+        }
+        let mut size = self.residual();
+        let first = size;
+        let mut before = size;
+        let (mut floor, mut iterations) = (0.0, 0);
+        loop {
+            let enough = self.settings.tolerance * self.scale(&tried);
+            if iterations == ROUNDING_FROM {
+                floor = self.rounding()?;
+            }
+            let enough = enough.max(floor);
+            let moves = self.space.to_go.iter().any(|&left| left != 0.0);
+            // the linearised step takes its one solve wherever it begins
+            let taken = self.settings.newton > 1 || iterations > 0 || size == 0.0;
+            let solved = taken && size <= enough && !moves;
+            let ends = iterations >= self.settings.newton && !moves || self.left() == 0;
+            if solved || ends {
+                return Ok(self.left_of(first, size, solved));
+            }
+            if iterations >= self.settings.newton.max(MOST_MOVES) {
+                let what =
+                    format!("what is moved as told is not where it should be after {iterations} Newton iterations");
+                return Err(Lost::Because(what));
+            }
+            let forcing = match (self.settings.newton, iterations) {
+                (1, _) => self.settings.tolerance,
+                (_, 0) => FORCING[0],
+                _ => (DESCENT * (size / before).powi(2)).clamp(FORCING[1], FORCING[0]),
+            };
+            self.set_right(moves)?;
+            let needed = if self.settings.newton > 1 { 0.5 * enough / size } else { 0.0 };
+            let along = self.solve_linear(forcing.max(needed).min(0.5))?;
+            before = size;
+            tried = match self.search(along, &mut size, enough) {
+                Err(Lost::Because(_)) if !moves && self.is_rounding(size)? => {
+                    return Ok(self.left_of(first, size, true));
+                }
+                found => found?,
+            };
+            iterations += 1;
+        }
+    }
+
+    /// Passes that the step may still take.
+    fn left(&self) -> u64 {
+        self.settings.budget.map_or(u64::MAX, |budget| budget.saturating_sub(self.trial.count))
+    }
+
+    fn forces_at_w(&mut self) -> Result<Tried, Error> {
+        let Workspace { w, net, steps, .. } = &mut *self.space;
+        let at = steps_to(&self.settings.formula, self.h, self.motion, w, steps, &self.trial);
+        let sound = self.trial.forces(w, at, net)?;
+        self.trial.elsewhere = false;
+        Ok(self.trial.judge(sound, &self.motion.free, &self.motion.held, net))
+    }
+
+    /// g at w, from the forces there; its norm (N).
+    fn residual(&mut self) -> f64 {
+        let Workspace { w, net, g, constant, inertia, .. } = &mut *self.space;
+        self.motion.fill_residual((self.settings.formula.stiffness(), self.h), (w, net), (constant, inertia), g);
+        self.sums.norm(g)
+    }
+
+    /// What the residual is compared with (N): loads, reactions and inertia.
+    fn scale(&self, tried: &Tried) -> f64 {
+        let Workspace { w, constant, inertia, .. } = &*self.space;
+        let inertial = |axis: usize| {
+            let y = self.motion.predicted(axis, self.h);
+            constant[axis] + inertia[axis] * (w[axis] - y)
+        };
+        let free = (0..w.len()).filter(|&axis| self.motion.free[axis]);
+        let of_inertia: f64 = free.map(|axis| inertial(axis).powi(2)).sum();
+        tried.loads.sqrt() + tried.reactions.sqrt() + of_inertia.sqrt()
+    }
+
+    /// Notes how a step ends, and gives what is left of its residual.
+    fn left_of(&mut self, first: f64, size: f64, solved: bool) -> f64 {
+        let left = if first > 0.0 { size / first } else { 0.0 };
+        self.report.unsolved += u64::from(!solved && self.settings.newton > 1);
+        self.report.largest_residual_left = self.report.largest_residual_left.max(left);
+        left
+    }
+
+    /// Whether a residual of such a norm at w is no more than what rounding makes.
+    fn is_rounding(&mut self, size: f64) -> Result<bool, Error> {
+        self.forces_at_w()?;
+        Ok(size <= self.rounding()?)
+    }
+
+    /// About what rounding makes of the residual (N): of a displacement the last digit, times the norm of its row of K,
+    /// which a product with signs shows. The forces at w must be known.
+    fn rounding(&mut self) -> Result<f64, Error> {
+        let sign = |axis: usize| if (axis.wrapping_mul(0x9e37_79b9) >> 7) & 1 == 0 { 1.0 } else { -1.0 };
+        let signs: Vec<f64> =
+            (0..self.space.w.len()).map(|axis| if self.motion.free[axis] { sign(axis) } else { 0.0 }).collect();
+        let mut rows = vec![0.0; signs.len()];
+        self.stiffness_times(&signs, &mut rows)?;
+        let body = self.trial.axes.bodies.first();
+        let digit = match body.and_then(|&body| self.trial.world.get::<Displacement>(body)).map(|u| u.precision()) {
+            Some(Precision::F64) => f64::EPSILON,
+            _ => f64::from(f32::EPSILON),
+        };
+        let w = &self.space.w;
+        let free = (0..w.len()).filter(|&axis| self.motion.free[axis]);
+        let square: f64 = free.map(|axis| (rows[axis] * w[axis]).powi(2)).sum();
+        Ok(digit * square.sqrt())
+    }
+
+    /// c K p (N), by a difference of forces. The forces at w must be known.
+    fn stiffness_times(&mut self, p: &[f64], image: &mut [f64]) -> Result<(), Error> {
+        let Workspace { w, net, elsewhere, steps, .. } = &mut *self.space;
+        difference(&mut self.trial, (&self.settings.formula, self.h, self.motion), (w, net), elsewhere, steps, p, image)
+    }
+
+    /// b = −g − K_fc p_c, with what held axes still have to go.
+    fn set_right(&mut self, moves: bool) -> Result<(), Error> {
+        if moves {
+            let to_go = std::mem::take(&mut self.space.to_go);
+            let mut right = std::mem::take(&mut self.space.right);
+            let done = self.stiffness_times(&to_go, &mut right);
+            (self.space.to_go, self.space.right) = (to_go, right);
+            done?;
+        } else {
+            self.space.right.fill(0.0);
+        }
+        let Workspace { right, g, .. } = &mut *self.space;
+        for (axis, right) in right.iter_mut().enumerate() {
+            *right = if self.motion.free[axis] { -g[axis] - *right } else { 0.0 };
+        }
+        Ok(())
+    }
+
+    /// p ≈ A⁻¹ b on free axes, and on held ones what they have to go. Gives p·b (J).
+    fn solve_linear(&mut self, tolerance: f64) -> Result<f64, Lost> {
+        self.follow();
+        let Self { trial, settings, motion, space, preconditioner, report, sums, h } = self;
+        let most = settings.budget.map_or(MOST_PRODUCTS, |budget| budget.saturating_sub(trial.count + 1).max(1));
+        let Workspace { inertia, w, net, elsewhere, steps, right, p, vectors, .. } = &mut **space;
+        let of_step = (&settings.formula, *h, *motion);
+        let times = |x: &[f64], image: &mut [f64]| -> Result<(), Error> {
+            difference(trial, of_step, (w, net), elsewhere, steps, x, image)?;
+            for (axis, image) in image.iter_mut().enumerate() {
+                *image = if motion.free[axis] { *image + inertia[axis] * x[axis] } else { 0.0 };
+            }
+            Ok(())
+        };
+        let Solved { iterations, ended } =
+            solve(sums, right, p, vectors, &**preconditioner, Stop { tolerance, most }, times)?;
+        report.newton_iterations += 1;
+        report.linear_iterations += iterations;
+        report.negative_curvatures += u64::from(ended == Ended::NegativeCurvature);
+        let along = sums.dot(p, right);
+        if ended == Ended::NotFinite || !along.is_finite() {
+            return Err(Lost::Because("forces near the present state are no numbers".into()));
+        }
+        Ok(along)
+    }
+
+    fn follow(&mut self) {
+        // the world is where the residual was taken
+        self.trial.axes.displace(self.trial.world, &self.space.w);
+        self.preconditioner.follow(&Operator {
+            world: self.trial.world,
+            bodies: &self.trial.axes.bodies,
+            free: &self.motion.free,
+            inertia: &self.space.inertia,
+            stiffness: self.settings.formula.stiffness(),
+        });
+    }
+
+    /// Goes along p as far as the residual does less work along it. `size` becomes the norm of the new residual.
+    fn search(&mut self, along: f64, size: &mut f64, enough: f64) -> Result<Tried, Lost> {
+        self.space.from.copy_from_slice(&self.space.w);
+        let mut share = 1.0;
+        for _ in 0..=MOST_HALVINGS {
+            let Workspace { w, from, p, to_go, .. } = &mut *self.space;
+            for axis in 0..w.len() {
+                w[axis] = from[axis] + share * (p[axis] + to_go[axis]);
+            }
+            let tried = self.forces_at_w()?;
+            if tried.sound {
+                let now = self.residual();
+                let work = self.sums.dot(&self.space.p, &self.space.g);
+                let descends = work.abs() <= DESCENT * along.abs() || self.settings.newton == 1 || now <= enough;
+                if now.is_finite() && descends {
+                    self.space.to_go.iter_mut().for_each(|left| *left *= 1.0 - share);
+                    *size = now;
+                    return Ok(tried);
+                }
+            }
+            self.report.halvings += 1;
+            share *= 0.5;
+        }
+        let Workspace { w, from, .. } = &mut *self.space;
+        w.copy_from_slice(from);
+        Err(Lost::Because(format!(
+            "no descent after {MOST_HALVINGS} halvings of a Newton step, at a residual of {size:.3e} N"
+        )))
+    }
+}
+
+/// Of the velocity at the end the step (m) that it is, where loads look at that.
+fn steps_to<'s>(
+    formula: &Formula,
+    h: f64,
+    motion: &Motion,
+    w: &[f64],
+    steps: &'s mut [f64],
+    trial: &Trial<'_>,
+) -> Option<&'s [f64]> {
+    trial.looks_at_velocities().then(|| {
+        for (axis, step) in steps.iter_mut().enumerate() {
+            *step = h * motion.arrival(formula, axis, h, w[axis]).0;
+        }
+        &*steps
+    })
+}
+
+/// c (F(w + ε p) − F(w))/ε.
+fn difference(
+    trial: &mut Trial<'_>,
+    (formula, h, motion): (&Formula, f64, &Motion),
+    (w, net): (&[f64], &[f64]),
+    elsewhere: &mut [f64],
+    steps: &mut [f64],
+    p: &[f64],
+    image: &mut [f64],
+) -> Result<(), Error> {
+    let reach = trial.reach(p);
+    if reach == 0.0 {
+        image.fill(0.0);
+        return Ok(());
+    }
+    for axis in 0..w.len() {
+        elsewhere[axis] = w[axis] + reach * p[axis];
+    }
+    let at = steps_to(formula, h, motion, elsewhere, steps, trial);
+    trial.forces(elsewhere, at, image)?;
+    let factor = formula.stiffness() / reach;
+    for axis in 0..w.len() {
+        image[axis] = factor * (image[axis] - net[axis]);
+    }
+    Ok(())
+}

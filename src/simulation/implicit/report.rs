@@ -1,0 +1,28 @@
+//! What implicit steps took.
+
+use serde::{Deserialize, Serialize};
+
+/// What implicit steps have taken since the simulation was made or went on from a snapshot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct ImplicitSteps {
+    /// Steps.
+    pub steps: u64,
+    /// Passes over all forces: for residuals, for products and for what steps keep.
+    pub passes: u64,
+    /// Newton iterations: linear systems that were solved.
+    pub newton_iterations: u64,
+    /// Iterations of conjugate gradients.
+    pub linear_iterations: u64,
+    /// How often a step of Newton's was halved.
+    pub halvings: u64,
+    /// Linear solves that met a direction along which the bodies do not resist.
+    pub negative_curvatures: u64,
+    /// Passes of the costliest step.
+    pub most_passes: u64,
+    /// Steps that ended above the tolerance.
+    pub unsolved: u64,
+    /// The largest residual that a step left, as a share of the one that it began with.
+    pub largest_residual_left: f64,
+    /// How long the longest step took (s).
+    pub longest_step: f64,
+}

@@ -1,0 +1,215 @@
+//! A step from its beginning to the loads at its end.
+
+use super::super::ScheduledPass;
+use super::axes::{Axes, Motion};
+use super::formula::Formula;
+use super::kept::Kept;
+use super::newton::{Lost, Newton, Settings, Workspace};
+use super::preconditioner::{Preconditioner, of_name};
+use super::report::ImplicitSteps;
+use super::sums::Sums;
+use super::trial::Trial;
+use super::work::Works;
+use crate::backend::cpu::Cpu;
+use crate::components::*;
+use crate::error::{Criterion, Error};
+use crate::observation::Observer;
+use crate::scene::schema::{Inversion, Scene, Solver};
+use crate::systems::Phase;
+use bevy_ecs::prelude::*;
+use std::time::Instant;
+
+/// What is left of a residual that is warned of.
+const WARNED: f64 = 0.5;
+
+/// What takes implicit steps.
+pub(in crate::simulation) struct Implicit {
+    settings: Settings,
+    preconditioner: Box<dyn Preconditioner>,
+    axes: Axes,
+    motion: Motion,
+    space: Workspace,
+    works: Option<Works>,
+    kept: Kept,
+    sums: Sums,
+    pub report: ImplicitSteps,
+}
+
+impl Implicit {
+    /// What takes the steps of a scene; `None` where they are explicit.
+    pub fn of(scene: &Scene, world: &mut World) -> Option<Self> {
+        let Solver::Implicit { scheme, newton, tolerance, preconditioner, budget, .. } = scene.solver else {
+            return None;
+        };
+        if scene.is_static() {
+            return None;
+        }
+        let axes = Axes::of(world);
+        let mut space = Workspace::default();
+        space.resize(axes.len());
+        Some(Self {
+            settings: Settings { formula: Formula::of(scheme), newton, tolerance, budget },
+            preconditioner: of_name(preconditioner),
+            axes,
+            motion: Motion::default(),
+            space,
+            works: scene.output.energies_every.map(|_| Works::default()),
+            kept: Kept::default(),
+            sums: Sums::on(world.resource::<Cpu>()),
+            report: ImplicitSteps::default(),
+        })
+    }
+
+    /// Takes the step that begins at the clock's, up to the loads at its end. Where that is not found, all stands as
+    /// it stood.
+    pub fn step(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<(), Error> {
+        let started = Instant::now();
+        let clock = *world.resource::<Clock>();
+        self.kept.keep(world);
+        let found = self.find(world, passes, &clock);
+        world.resource_mut::<Clock>().step = clock.step;
+        set_trying(world, false);
+        if found.is_err() {
+            self.kept.put_back(world, |_| true);
+        }
+        let left = found.map_err(|lost| match lost {
+            Lost::Error(error) => error,
+            Lost::Because(what) => not_found(world, what),
+        })?;
+        self.report.steps += 1;
+        self.report.longest_step = self.report.longest_step.max(started.elapsed().as_secs_f64());
+        if left > WARNED {
+            warn_of_residual(world, left);
+        }
+        Ok(())
+    }
+
+    /// Finds the end of the step, and takes it. Gives the share of the residual that is left.
+    fn find(&mut self, world: &mut World, passes: &mut [ScheduledPass], clock: &Clock) -> Result<f64, Lost> {
+        let (h, formula) = (clock.time_step, self.settings.formula);
+        let mut trial = Trial { world, passes, axes: &self.axes, step: clock.step, count: 0, elsewhere: false };
+        self.axes.read(trial.world, &mut self.motion);
+        if clock.step == 0 {
+            begin(&mut trial, &mut self.motion, &mut self.space.net, &formula)?;
+        }
+        let times = [clock.time_at(clock.step), clock.time_at(clock.step + 1)];
+        trial.world.resource_mut::<Signals>().evaluate((times[1], times[1]), times);
+        trial.run(|phase| phase == Phase::Boundary)?;
+        if let Some(works) = &mut self.works {
+            works.begin(trial.world, &self.axes);
+        }
+        let space = &mut self.space;
+        trial.net(&mut space.net);
+        held_axes(trial.world, &self.axes, &self.motion, &mut space.to_go);
+        for axis in 0..space.w.len() {
+            (space.inertia[axis], space.constant[axis]) = self.motion.equation(&formula, h, axis, space.net[axis]);
+            space.w[axis] = self.motion.predicted(axis, h);
+        }
+        // loads are those of the end
+        trial.world.resource_mut::<Clock>().step += 1;
+        set_trying(trial.world, true);
+        let mut newton = Newton {
+            trial,
+            settings: self.settings,
+            motion: &self.motion,
+            space,
+            preconditioner: &mut *self.preconditioner,
+            report: &mut self.report,
+            sums: &self.sums,
+            h,
+        };
+        let left = newton.solve();
+        let mut trial = newton.trial;
+        if left.is_ok() {
+            keep_forces(&mut trial, &self.kept, &mut self.space)?;
+            let Workspace { w, step, acceleration, .. } = &mut self.space;
+            for axis in 0..w.len() {
+                let (velocity, of_axis) = self.motion.arrival(&formula, axis, h, w[axis]);
+                (step[axis], acceleration[axis]) = (h * velocity, of_axis);
+            }
+            self.axes.arrive(trial.world, w, step, acceleration);
+            if let Some(works) = &mut self.works {
+                works.end(trial.world, &self.axes, &self.motion, w, step, h);
+            }
+        }
+        self.report.passes += trial.count;
+        self.report.most_passes = self.report.most_passes.max(trial.count);
+        left
+    }
+}
+
+fn set_trying(world: &mut World, trying: bool) {
+    if let Some(mut trial) = world.get_resource_mut::<TrialForces>() {
+        *trial = TrialForces { trying, inverted: false };
+    }
+}
+
+/// Forces and accelerations at the beginning of the motion.
+fn begin(trial: &mut Trial<'_>, motion: &mut Motion, net: &mut [f64], formula: &Formula) -> Result<(), Lost> {
+    trial.world.resource_mut::<Signals>().evaluate((0.0, 0.0), [0.0, 0.0]);
+    trial.forces(&motion.u, None, net)?;
+    if formula.needs_acceleration() {
+        for axis in (0..net.len()).filter(|&axis| motion.free[axis]) {
+            motion.a[axis] = -(net[axis] + motion.damping[axis] * motion.v[axis]) / motion.mass[axis];
+        }
+    }
+    Ok(())
+}
+
+/// How far held axes go in the step (m), as `boundary` has written it.
+fn held_axes(world: &World, axes: &Axes, motion: &Motion, to_go: &mut [f64]) {
+    for (body, range) in axes.each() {
+        let Some(step) = world.get::<DisplacementIncrement>(body) else { continue };
+        for i in 0..range.len() {
+            let axis = range.start + i;
+            to_go[axis] = if motion.held[axis] { step.get(i) } else { 0.0 };
+        }
+    }
+}
+
+/// Takes the forces at the end once more where something is kept of them: memories, elements that were turned inside
+/// out and may be.
+fn keep_forces(trial: &mut Trial<'_>, kept: &Kept, space: &mut Workspace) -> Result<(), Error> {
+    let world = &mut *trial.world;
+    let notes = world.query::<&OnInversion>().iter(world).any(|policy| policy.0 != Inversion::Stop);
+    if kept.has_memories() || notes || trial.elsewhere {
+        set_trying(trial.world, false);
+        // forces that were no numbers are in them
+        kept.put_back(trial.world, |name| name == ViscousMemory::NAME);
+        trial.forces(&space.w, None, &mut space.net)?;
+    }
+    Ok(())
+}
+
+/// That a step was not found.
+fn not_found(world: &mut World, what: String) -> Error {
+    let clock = *world.resource::<Clock>();
+    let found = format!("the implicit step from t = {} s was not found: {what}", clock.time());
+    world.resource_scope(|world, observer: Mut<Observer>| {
+        observer.unsolved(world, found, Criterion { value: Some(clock.time_step), ..Criterion::of("implicit_step") })
+    })
+}
+
+/// That much of a residual was left.
+fn warn_of_residual(world: &mut World, left: f64) {
+    let clock = *world.resource::<Clock>();
+    let Some(mut memory) = world.get_resource_mut::<GuardMemory>() else { return };
+    if memory.warnings.iter().any(|notice| notice.criterion == "implicit_step") {
+        return;
+    }
+    let message = format!(
+        "an implicit step left {:.0} % of its residual ({:.0} % are a warning): results are those of a softer body; raise \
+         `budget` or `newton`, or take smaller steps",
+        100.0 * left,
+        100.0 * WARNED
+    );
+    memory.warnings.push(Notice {
+        criterion: "implicit_step".into(),
+        part: String::new(),
+        time: clock.time_at(clock.step + 1),
+        step: clock.step + 1,
+        value: left,
+        limit: WARNED,
+        message,
+    });
+}

@@ -1,0 +1,70 @@
+//! Sums over all axes, the same for any number of threads: of blocks of so many numbers, added pair by pair.
+
+use crate::backend::cpu::Cpu;
+use crate::simulation::frequency::dot as dot_of_block;
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Numbers of a block.
+const BLOCK: usize = 3072;
+/// Blocks from which on threads share them: below that they take longer to call than to add.
+const WORTH_SHARING: usize = 64;
+
+/// What adds up, on the threads of a run.
+#[derive(Clone)]
+pub(super) struct Sums(Option<Arc<rayon::ThreadPool>>);
+
+impl Sums {
+    pub fn on(cpu: &Cpu) -> Self {
+        Self(cpu.pool())
+    }
+
+    /// a·b.
+    pub fn dot(&self, a: &[f64], b: &[f64]) -> f64 {
+        let blocks = a.len().div_ceil(BLOCK);
+        let of = |block: usize| {
+            let range = block * BLOCK..a.len().min((block + 1) * BLOCK);
+            dot_of_block(&a[range.clone()], &b[range])
+        };
+        match self.0.as_ref().filter(|_| blocks >= WORTH_SHARING) {
+            None => pairwise(0, blocks, &of),
+            Some(pool) => {
+                let sums: Vec<f64> = pool.install(|| (0..blocks).into_par_iter().map(of).collect());
+                pairwise(0, blocks, &|block| sums[block])
+            }
+        }
+    }
+
+    /// ‖a‖.
+    pub fn norm(&self, a: &[f64]) -> f64 {
+        self.dot(a, a).sqrt()
+    }
+}
+
+fn pairwise(first: usize, count: usize, of: &impl Fn(usize) -> f64) -> f64 {
+    match count {
+        0 => 0.0,
+        1 => of(first),
+        _ => {
+            let half = count / 2;
+            pairwise(first, half, of) + pairwise(first + half, count - half, of)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::backend::cpu::Instructions;
+
+    #[test]
+    fn sums_have_the_same_bits_on_any_number_of_threads() {
+        let a: Vec<f64> = (0..400_000).map(|i| (i as f64 * 0.37).sin() * 10_f64.powi(i % 9)).collect();
+        let b: Vec<f64> = (0..400_000).map(|i| (i as f64 * 0.73).cos()).collect();
+        let found =
+            [1, 2, 3, 4].map(|threads| Sums::on(&Cpu::new(threads, 0, Instructions::Widest)).dot(&a, &b).to_bits());
+        assert!(found.iter().all(|bits| *bits == found[0]), "{found:?}");
+        let exact: f64 = a.iter().zip(&b).map(|(a, b)| a * b).sum();
+        assert!((f64::from_bits(found[0]) - exact).abs() < 1e-9 * exact.abs().max(1e8));
+    }
+}

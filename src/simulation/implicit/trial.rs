@@ -1,0 +1,121 @@
+//! Forces at a trial displacement: the systems of a step up to its loads, run in the world, and nothing kept of it.
+
+use super::super::ScheduledPass;
+use super::axes::Axes;
+use crate::components::*;
+use crate::error::Error;
+use crate::systems::Phase;
+use bevy_ecs::prelude::*;
+
+/// How far products displace elements, as a share of their height at each node, in f32 and in f64: so that neither the
+/// curvature of laws nor rounding counts.
+const STRAIN: [f64; 2] = [1e-3, 1e-7];
+
+/// The forces of a step, tried.
+pub(super) struct Trial<'a> {
+    pub world: &'a mut World,
+    pub passes: &'a mut [ScheduledPass],
+    pub axes: &'a Axes,
+    /// The step.
+    pub step: u64,
+    /// How often forces were taken.
+    pub count: u64,
+    /// Whether the columns of forces may be those of a difference.
+    pub elsewhere: bool,
+}
+
+/// What came of a trial.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Tried {
+    /// Whether no element is turned inside out that must not be, and all forces are numbers.
+    pub sound: bool,
+    /// ‖R‖² over free axes (N²).
+    pub loads: f64,
+    /// ‖F − R‖² over held axes (N²).
+    pub reactions: f64,
+}
+
+impl Trial<'_> {
+    /// Runs the systems of some phases.
+    pub fn run(&mut self, phases: impl Fn(Phase) -> bool) -> Result<(), Error> {
+        for pass in self.passes.iter_mut().filter(|pass| phases(pass.phase)) {
+            pass.run_on_host(self.step, self.world)?;
+        }
+        Ok(())
+    }
+
+    /// Whether loads look at how fast nodes move.
+    pub fn looks_at_velocities(&self) -> bool {
+        let name = DisplacementIncrement::NAME;
+        let forces = self.passes.iter().filter(|pass| is_of_forces(pass.phase));
+        forces.into_iter().any(|pass| pass.reads(name))
+    }
+
+    /// The forces F − R (N) at displacements (m), and with `steps` at velocities (as displacements of a step), kept in
+    /// the columns of forces.
+    pub fn forces(&mut self, u: &[f64], steps: Option<&[f64]>, net: &mut [f64]) -> Result<bool, Error> {
+        self.count += 1;
+        self.elsewhere = true;
+        self.axes.displace(self.world, u);
+        if let Some(steps) = steps {
+            self.axes.write::<DisplacementIncrement>(self.world, steps, |column| &mut column.0);
+        }
+        if let Some(mut trial) = self.world.get_resource_mut::<TrialForces>() {
+            trial.inverted = false;
+        }
+        self.run(is_of_forces)?;
+        self.net(net);
+        Ok(!self.world.get_resource::<TrialForces>().is_some_and(|trial| trial.inverted))
+    }
+
+    /// F − R (N) as the columns have them.
+    pub fn net(&self, net: &mut [f64]) {
+        for (body, range) in self.axes.each() {
+            let entity = self.world.entity(body);
+            let Some(internal) = entity.get::<InternalForce>() else { continue };
+            let net = &mut net[range];
+            internal.read(net);
+            match entity.get::<ExternalForce>().map(|external| &external.0) {
+                Some(Reals::F32(external)) => net.iter_mut().zip(external).for_each(|(f, &r)| *f -= f64::from(r)),
+                Some(Reals::F64(external)) => net.iter_mut().zip(external).for_each(|(f, &r)| *f -= r),
+                None => {}
+            }
+        }
+    }
+
+    /// What the columns of forces come to.
+    pub fn judge(&self, sound: bool, free: &[bool], held: &[bool], net: &[f64]) -> Tried {
+        let mut tried = Tried::default();
+        let mut all = 0.0;
+        for (body, range) in self.axes.each() {
+            let Some(external) = self.world.get::<ExternalForce>(body) else { continue };
+            for i in (0..range.len()).filter(|i| free[range.start + i]) {
+                tried.loads += external.get(i).powi(2);
+            }
+        }
+        for (axis, force) in net.iter().enumerate() {
+            all += force;
+            if held[axis] {
+                tried.reactions += force * force;
+            }
+        }
+        tried.sound = sound && all.is_finite() && tried.loads.is_finite();
+        tried
+    }
+
+    /// How far (in units of p) a difference of forces goes along p (m).
+    pub fn reach(&self, p: &[f64]) -> f64 {
+        let strain = p.iter().zip(&self.axes.heights).map(|(p, height)| p.abs() / height).fold(0.0, f64::max);
+        let precision = self.axes.bodies.first().and_then(|&body| self.world.get::<Displacement>(body));
+        let of_precision = match precision.map(|u| u.precision()) {
+            Some(Precision::F64) => STRAIN[1],
+            _ => STRAIN[0],
+        };
+        if strain > 0.0 { of_precision / strain } else { 0.0 }
+    }
+}
+
+/// Whether a phase finds forces.
+fn is_of_forces(phase: Phase) -> bool {
+    phase > Phase::Boundary && phase < Phase::Integrate
+}
