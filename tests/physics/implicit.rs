@@ -269,14 +269,17 @@ fn prescribed_motion_goes_where_it_should_and_gives_its_work() {
             Prescribed(on: Plane(normal: (0, 0, 1), at: 0.1), displacement: (0.02, 0, 0.02), rotation: (0, 0, 30), center: (0.05, 0.05, 0.1), curve: Smooth(end: 0.3))],
         output: (energies_every: 0.1))",
     );
-    simulation.finish().unwrap();
-    let (rest, x) = (simulation.rest_positions("b").unwrap().to_vec(), positions(&mut simulation, "b"));
-    let (sin, cos) = 30.0_f64.to_radians().sin_cos();
-    for (rest, x) in rest.iter().zip(&x).filter(|(rest, _)| rest.z > 0.0999) {
-        let arm = *rest - DVec3::new(0.05, 0.05, 0.1);
-        let turned = DVec3::new(cos * arm.x - sin * arm.y, sin * arm.x + cos * arm.y, arm.z);
-        let expected = DVec3::new(0.07, 0.05, 0.12) + turned;
-        assert!((*x - expected).length() < 1e-9, "{x}, expected {expected}");
+    // on the way, where a share that is left behind would show, and at the end
+    for (time, share) in [(0.1, 17.0 / 81.0), (0.4, 1.0)] {
+        simulation.advance_to(time).unwrap();
+        let (rest, x) = (simulation.rest_positions("b").unwrap().to_vec(), positions(&mut simulation, "b"));
+        let (sin, cos) = (30.0_f64.to_radians() * share).sin_cos();
+        for (rest, x) in rest.iter().zip(&x).filter(|(rest, _)| rest.z > 0.0999) {
+            let arm = *rest - DVec3::new(0.05, 0.05, 0.1);
+            let turned = DVec3::new(cos * arm.x - sin * arm.y, sin * arm.x + cos * arm.y, arm.z);
+            let expected = DVec3::new(0.05, 0.05, 0.1) + DVec3::new(0.02, 0.0, 0.02) * share + turned;
+            assert!((*x - expected).length() < 1e-9, "{x}, expected {expected}");
+        }
     }
     let e = simulation.energies().unwrap();
     let sum = e.kinetic + e.strain + e.hourglass + e.scheme_loss.unwrap() - e.constraint_work.unwrap();
