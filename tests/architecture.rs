@@ -191,6 +191,7 @@ fn every_system_is_a_file_of_its_name_and_a_line_of_the_step() {
         .filter(|stem| {
             ![
                 "mod",
+                "host_forces",
                 "node_pass",
                 "node_shares",
                 "node_slices",

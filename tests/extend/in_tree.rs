@@ -36,8 +36,6 @@ const ABOUT: &[(&str, &str, &[&str])] = &[
     ("src/mesh/topology/tet10.rs", "made of the cell with its corners alone", &["tet4"]),
     ("src/mesh/measure.rs", "the volume of a tetrahedron", &["tet4"]),
     ("src/mesh/cells.rs", "an iterator over nothing has to have a kind", &["Tet4"]),
-    ("src/assembly/free_tools.rs", "tools that fall have no nodes, and their weight no system", &["Gravity"]),
-    ("src/simulation/plausible.rs", "accelerations in mm/s²", &["Gravity"]),
     ("crates/cli/src/bench.rs", "what pulls at cubes: the word of a benchmark's load", &["Gravity"]),
     ("crates/cli/src/arguments/suites.rs", "what is measured where nothing is said", &["tet4", "hex8"]),
 ];

@@ -72,7 +72,7 @@ pub fn run_block<E: Element, T: SimdScalar>(
 }
 
 /// The same in f32, where speed counts, with a kernel of its own for what is asked for most: the neo-Hookean law with
-/// each combination of fibres and viscosity, and four laws and users' own with neither; of kinds that are
+/// each combination of fibres and viscosity, and three laws and users' own with neither; of kinds that are
 /// [specialised](Element::SPECIALISED). What a material lacks is not even asked for.
 pub fn run_block_fast<E: Element>(
     cpu: &Cpu,
@@ -89,7 +89,6 @@ pub fn run_block_fast<E: Element>(
     match &law.elastic {
         asked if effects.is_none() => block.run::<_, GENERIC>(asked),
         ElasticLaw::NeoHookean(elastic) => block.run_neo_hookean(elastic),
-        ElasticLaw::Corotational(elastic) => block.run::<_, 0>(elastic),
         ElasticLaw::StableNeoHookean(elastic) => block.run::<_, 0>(elastic),
         ElasticLaw::MooneyRivlin(elastic) => block.run::<_, 0>(elastic),
         ElasticLaw::Ogden(elastic) => block.run::<_, 0>(elastic),
@@ -138,8 +137,7 @@ pub fn kernel_effects<E: Element>(cpu: &Cpu, law: &BlockLaw<f32>) -> Option<[boo
     let others = !law.exponential.is_empty() || !law.volumetric.is_empty() || law.reproject;
     let is_there = match law.elastic {
         ElasticLaw::NeoHookean(_) => true,
-        ElasticLaw::Corotational(_)
-        | ElasticLaw::StableNeoHookean(_)
+        ElasticLaw::StableNeoHookean(_)
         | ElasticLaw::MooneyRivlin(_)
         | ElasticLaw::Ogden(_)
         | ElasticLaw::UserLaw(_) => effects == [false, false],
