@@ -74,8 +74,7 @@ fn shares((elements, points): (&str, &str), cells: u32, threads: usize) {
     let near = (after.examined - before.examined) as f64 / steps;
     println!(
         "{elements} 3 x {cells}^3, points: {points}, {threads} thread(s): {:.1} us a step; nothing near {:+.1} %; {:.0} % of \
-         {all_points} points near {:+.1} % ({:.0} ns a point near; {:.0} contacts; {faces} faces; {:.0} steps between lists; \
-         {:.0} % of the points near searched)",
+         {all_points} points near {:+.1} % ({:.0} ns a point near; {:.0} contacts; {faces} faces; {:.0} steps between lists)",
         best[2] * 1e6,
         100.0 * (best[1] / best[0] - 1.0),
         100.0 * near / all_points as f64,
@@ -83,7 +82,6 @@ fn shares((elements, points): (&str, &str), cells: u32, threads: usize) {
         (best[3] - best[2]) * 1e9 / near,
         (after.contacts - before.contacts) as f64 / steps,
         steps / (after.builds - before.builds).max(1) as f64,
-        100.0 * (after.searched - before.searched) as f64 / (steps * near),
     );
 }
 

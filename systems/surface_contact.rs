@@ -95,8 +95,6 @@ pub struct SurfaceContacts {
     pub reference: DVec3,
     /// Length of an edge of the surfaces (m).
     pub edge: f64,
-    /// Whether it is remembered what points face. It changes nothing but the time that steps take.
-    pub remembers: bool,
     /// How fast points that begin inside another body are pushed out (m/s).
     pub settling: f64,
     surface: Surface,
@@ -129,18 +127,11 @@ struct Surface {
     /// Which way the triangles look that are.
     normals: Vec<DVec3>,
     fresh: Vec<DVec3>,
-    has_normals: bool,
     /// Where nodes were when the lists were made.
     since: motion::Since,
     /// Of each point in the lists, how far that may be before it has to be looked at again (m), and the least of all.
     wake: Vec<f64>,
     first_wake: f64,
-    /// What each of them faced when it was looked at last.
-    steady: Vec<faced::Steady>,
-    /// How far what is near has moved against each other, and reach has grown, since the lists were made (m): step after
-    /// step, there and back.
-    travelled: f64,
-    reach: f64,
     /// Nodes that bore a force in the last step.
     pressed: Vec<u32>,
     /// Points that touched or faced something.
@@ -172,8 +163,6 @@ pub struct Figures {
     pub builds: u64,
     /// Points that were looked at, of all steps.
     pub examined: u64,
-    /// Points for which more than one triangle was looked at, of all steps.
-    pub searched: u64,
     /// Contacts, of all steps.
     pub contacts: u64,
     /// Steps on a GPU that found their lists too old, and went through all triangles.
@@ -193,14 +182,7 @@ struct MeetingColumns {
 impl SurfaceContacts {
     /// Of bodies that meet nobody yet.
     pub fn new(bodies: Vec<Entity>) -> Self {
-        Self {
-            meetings: vec![None; bodies.len() * bodies.len()],
-            sweeps: 1,
-            skin: SKIN,
-            remembers: true,
-            bodies,
-            ..Self::default()
-        }
+        Self { meetings: vec![None; bodies.len() * bodies.len()], sweeps: 1, skin: SKIN, bodies, ..Self::default() }
     }
 
     /// Lets two bodies meet, or one itself.
@@ -295,7 +277,7 @@ fn step<T: Scalar>(
         meet::release(&mut contacts.surface, &mut bodies);
         return meet::forget(contacts, &mut bodies);
     }
-    motion::update_places(contacts, &bodies, reach);
+    motion::update_places(contacts, &bodies, cpu);
     faced::face(contacts, reach, nearer, cpu);
     crossings::find(contacts, reach);
     meet::meet(contacts, largest, (clock, cpu), &mut bodies);

@@ -5,7 +5,7 @@ use crate::math::OnTriangle;
 use glam::DVec3;
 
 /// Surfaces face one another where the cosine between their normals is below this.
-pub(super) const TURNED_AWAY: f64 = 0.2;
+const TURNED_AWAY: f64 = 0.2;
 
 /// What counts for nothing of a distance between two faces that are in a point's way, in edges: there the one that it
 /// faces more is. Nor is a wall one that rises no higher beside a point of a face.
@@ -38,8 +38,6 @@ pub struct Faced {
     pub second: Option<Facing>,
     /// So much nearer than when the list was made (m) something must come before there is anything to see.
     pub wakes: f64,
-    /// How far nodes may move against each other (m) before something else is faced, as far as that was asked for.
-    pub steady: f64,
 }
 
 /// Triangles that may be near a point, and how far they were when that was found.
@@ -57,7 +55,7 @@ pub struct Listed<'a> {
 
 impl Listed<'_> {
     /// Whether a triangle cannot have come near enough.
-    pub(super) fn is_far(&self, place: usize) -> bool {
+    fn is_far(&self, place: usize) -> bool {
         self.distances[place] > self.farthest + self.nearer
     }
 }
@@ -66,9 +64,9 @@ impl Listed<'_> {
 const KEPT: usize = 16;
 
 /// Where triangles are nearest to a point, the first of those that may be near found beforehand.
-pub(super) struct Candidates<'a> {
-    pub(super) at: DVec3,
-    pub(super) listed: Listed<'a>,
+struct Candidates<'a> {
+    at: DVec3,
+    listed: Listed<'a>,
     kept: [(OnTriangle, f64); KEPT],
 }
 
@@ -87,7 +85,7 @@ impl<'a> Candidates<'a> {
     }
 
     /// The nearest place of the triangle at a place in the list, and how far that is (m).
-    pub fn nearest(&self, surfaces: &Surfaces, places: &[DVec3], place: usize) -> (OnTriangle, f64) {
+    fn nearest(&self, surfaces: &Surfaces, places: &[DVec3], place: usize) -> (OnTriangle, f64) {
         match self.kept.get(place) {
             Some(&kept) => kept,
             None => nearest(surfaces, places, self.at, self.listed.triangles[place]),
@@ -95,7 +93,7 @@ impl<'a> Candidates<'a> {
     }
 
     /// How far a triangle is (m), whether it is in the list or not; infinitely far where it cannot be near enough.
-    pub fn distance(&self, surfaces: &Surfaces, places: &[DVec3], triangle: u32) -> f64 {
+    fn distance(&self, surfaces: &Surfaces, places: &[DVec3], triangle: u32) -> f64 {
         match self.listed.triangles.iter().take(KEPT).position(|&other| other == triangle) {
             Some(place) => self.kept[place].1,
             None => nearest(surfaces, places, self.at, triangle).1,
@@ -111,14 +109,13 @@ fn nearest(surfaces: &Surfaces, places: &[DVec3], at: DVec3, triangle: u32) -> (
 
 impl Surfaces {
     /// What a point faces among triangles that are no farther than `reach` (m). `edge` is the length of an edge (m).
-    /// `foresees`: whether to find how long that is so, too.
     pub fn faced(
         &self,
         now: Placed<'_>,
         point: &Point,
         listed: Listed<'_>,
         reach: impl Fn(u32) -> f64,
-        (edge, foresees): (f64, bool),
+        edge: f64,
     ) -> Faced {
         let at = point.place(now.places);
         let mut candidates = Candidates::new(at, listed);
@@ -145,7 +142,7 @@ impl Surfaces {
                 continue;
             }
             let own = *own_normal.get_or_insert_with(|| match point.triangle {
-                Some(triangle) => now.normal(self, triangle),
+                Some(triangle) => now.normals[triangle as usize],
                 None => self.normal_of_node(now, point.nodes[0]),
             });
             let turned = facing.normal.dot(own);
@@ -168,9 +165,6 @@ impl Surfaces {
                 least[1] = f64::INFINITY;
             }
         }
-        if foresees {
-            faced.steady = self.steady(now, point, &candidates, &faced, reach, edge);
-        }
         faced
     }
 
@@ -184,7 +178,7 @@ impl Surfaces {
         (found, distance): (OnTriangle, f64),
         edge: f64,
     ) -> Option<Facing> {
-        let normal = now.normal(self, triangle);
+        let normal = now.normals[triangle as usize];
         if normal == DVec3::ZERO || !found.at.is_finite() {
             return None;
         }
@@ -238,7 +232,7 @@ mod tests {
         let normals: Vec<DVec3> = all.map(|triangle| surfaces.normal(places, triangle)).collect();
         let distances = vec![0.0; triangles.len()];
         let listed = Listed { triangles, distances: &distances, nearer: 0.0, farthest: 1.0 };
-        surfaces.faced(Placed { places, normals: &normals }, point, listed, reach, (1.0, false))
+        surfaces.faced(Placed { places, normals: &normals }, point, listed, reach, 1.0)
     }
 
     /// A flat square of two triangles, normal up, and a point above it.

@@ -7,7 +7,6 @@ mod face_points;
 mod facing;
 mod law;
 mod lists;
-mod steady;
 mod surfaces;
 mod ties;
 

@@ -29,19 +29,8 @@ pub struct Surfaces {
 pub struct Placed<'a> {
     /// Of each node (m).
     pub places: &'a [DVec3],
-    /// Of each triangle; zero of one without area. None, where each is to be found when it is asked for.
+    /// Of each triangle; zero of one without area.
     pub normals: &'a [DVec3],
-}
-
-impl Placed<'_> {
-    /// The unit normal of a triangle; zero of one without area.
-    #[inline]
-    pub fn normal(&self, surfaces: &Surfaces, triangle: u32) -> DVec3 {
-        match self.normals.get(triangle as usize) {
-            Some(normal) => *normal,
-            None => surfaces.normal(self.places, triangle),
-        }
-    }
 }
 
 /// Parts of surfaces that are near something.
@@ -134,11 +123,11 @@ impl Surfaces {
     /// sum of those of both its triangles, of a corner the sum weighted with angles (Bærentzen and Aanæs 2005).
     pub(super) fn normal_of_part(&self, now: Placed<'_>, triangle: u32, part: usize) -> DVec3 {
         match part {
-            0 => now.normal(self, triangle),
+            0 => now.normals[triangle as usize],
             1..=3 => {
                 let other = self.adjacent[triangle as usize][part - 1];
-                let of_other = if other == NONE { DVec3::ZERO } else { now.normal(self, other) };
-                (now.normal(self, triangle) + of_other).normalize_or_zero()
+                let of_other = if other == NONE { DVec3::ZERO } else { now.normals[other as usize] };
+                (now.normals[triangle as usize] + of_other).normalize_or_zero()
             }
             corner => self.normal_of_node(now, self.triangles[triangle as usize][(corner - 4).min(2)]),
         }
@@ -165,19 +154,14 @@ impl Surfaces {
 
     /// The normal of a node, weighted with angles, to 1e-4: what is asked of it is to which side things are.
     pub fn normal_of_node(&self, now: Placed<'_>, node: u32) -> DVec3 {
-        self.sum_of_normals(now, node).normalize_or_zero()
-    }
-
-    /// The normals around a node times the angles there.
-    pub(super) fn sum_of_normals(&self, now: Placed<'_>, node: u32) -> DVec3 {
         let at = now.places[node as usize];
         let of_triangle = |&triangle: &u32| {
             let corners = self.triangles[triangle as usize];
             let place = corners.iter().position(|&corner| corner == node).unwrap_or(0);
             let [b, c] = [1, 2].map(|next| now.places[corners[(place + next) % 3] as usize] - at);
-            now.normal(self, triangle) * angle(b.cross(c).length(), b.dot(c))
+            now.normals[triangle as usize] * angle(b.cross(c).length(), b.dot(c))
         };
-        self.around(node).iter().map(of_triangle).sum()
+        self.around(node).iter().map(of_triangle).sum::<DVec3>().normalize_or_zero()
     }
 
     /// The triangles that may be asked for when it is found what points face among some triangles, and their corners;

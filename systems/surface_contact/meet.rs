@@ -130,7 +130,7 @@ fn begin<T: Scalar>(
     (largest, settling): (f64, f64),
     bodies: &mut [BodySlices<'_, T>],
 ) {
-    for Found { place, faced, .. } in found {
+    for Found { place, faced } in found {
         let number = contacts.surface.lists.points[*place as usize];
         let kept = contacts.kept(number);
         let touch = bodies[kept.body].kept_mut(kept);
@@ -178,7 +178,7 @@ fn gather<T: Scalar>(
         }
         *slot
     };
-    for Found { place, faced, .. } in found {
+    for Found { place, faced } in found {
         let number = surface.lists.points[*place as usize];
         let point = &surface.points[number as usize];
         let kept = contacts.kept(number);
@@ -244,7 +244,7 @@ fn ends(contact: &mut Contact, (spring, outside): (Option<ContactSpring>, f64), 
 
 /// Notes what points face, and how far they are outside of it.
 fn note_facing<T: Scalar>(contacts: &mut SurfaceContacts, found: &[Found], bodies: &mut [BodySlices<'_, T>]) {
-    for Found { place, faced, .. } in found {
+    for Found { place, faced } in found {
         let Some(first) = faced.first else { continue };
         let number = contacts.surface.lists.points[*place as usize];
         let gap = contacts.gap(&contacts.surface.points[number as usize], &first);

@@ -161,8 +161,8 @@ pub(super) fn reach(contacts: &SurfaceContacts, largest: f64) -> f64 {
     4.0 * largest + MARGIN * contacts.edge
 }
 
-/// Sees where all nodes are.
-fn place<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>]) {
+/// Sees where some nodes are.
+fn place<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], of: Option<&[u32]>) {
     let SurfaceContacts { surface, reference, .. } = contacts;
     let (nodes, places) = (&surface.nodes, &mut surface.places);
     let place = |node: usize| {
@@ -170,7 +170,10 @@ fn place<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>]
         let (of_body, row) = (&bodies[body as usize], row as usize);
         of_body.rest[row] - *reference + vector(of_body.u, row)
     };
-    places.iter_mut().enumerate().for_each(|(node, at)| *at = place(node));
+    match of {
+        Some(some) => some.iter().for_each(|&node| places[node as usize] = place(node as usize)),
+        None => places.iter_mut().enumerate().for_each(|(node, at)| *at = place(node)),
+    }
 }
 
 /// Makes the lists anew where they may not hold all that is within `reach` (m) and thickness; gives how far nodes have
@@ -186,7 +189,7 @@ pub(super) fn search<T: Scalar>(
     if let Some(moved) = moved.filter(|moved| farthest + moved.nearer <= contacts.surface.lists.radius) {
         return moved.nearer;
     }
-    place(contacts, bodies);
+    place(contacts, bodies, None);
     let mut trees = std::mem::take(&mut contacts.surface.trees);
     let meets = |point: u32, face: u32, of_face: bool| contacts.meets(point, face, of_face);
     let Surface { triangles, points, places, apart, .. } = &contacts.surface;
@@ -204,43 +207,22 @@ pub(super) fn search<T: Scalar>(
     let near = surface.triangles.neighbourhood(listed.into_iter(), &among);
     surface.wake.clear();
     surface.wake.resize(surface.lists.points.len(), 0.0);
-    surface.steady.clear();
-    surface.steady.resize(surface.lists.points.len(), Default::default());
-    (surface.travelled, surface.reach) = (0.0, reach);
     surface.near = near;
     surface.since.begin(bodies);
     surface.figures.builds += 1;
     0.0
 }
 
-/// Sees where the nodes are that are near something, and how far that has moved against each other.
-pub(super) fn update_places<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], reach: f64) {
-    let SurfaceContacts { surface, reference, .. } = contacts;
-    let Surface { near, nodes, places, travelled, .. } = surface;
-    let (mut low, mut high, mut sum) = (DVec3::INFINITY, DVec3::NEG_INFINITY, DVec3::ZERO);
-    for &node in &near.nodes {
-        let (body, row) = nodes[node as usize];
-        let (of_body, row) = (&bodies[body as usize], row as usize);
-        let at = of_body.rest[row] - *reference + vector(of_body.u, row);
-        let moved = at - places[node as usize];
-        (low, high, sum) = (low.min(moved), high.max(moved), sum + moved);
-        places[node as usize] = at;
-    }
-    let apart = if near.nodes.is_empty() { 0.0 } else { (high - low).length() };
-    // what is no number is no bound
-    *travelled += if sum.is_finite() { apart + (reach - surface.reach).max(0.0) } else { f64::INFINITY };
-    surface.reach = reach;
-    surface.has_normals = false;
-}
-
-/// Finds which way the triangles look that are near something.
-pub(super) fn find_normals(contacts: &mut SurfaceContacts, cpu: &Cpu) {
-    let Surface { near, triangles, places, normals, fresh, has_normals, .. } = &mut contacts.surface;
+/// Sees where the nodes are that are near something, and which way triangles look.
+pub(super) fn update_places<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &[BodySlices<'_, T>], cpu: &Cpu) {
+    let near = std::mem::take(&mut contacts.surface.near);
+    place(contacts, bodies, Some(&near.nodes));
+    let Surface { triangles, places, normals, fresh, .. } = &mut contacts.surface;
     fresh.resize(near.triangles.len(), DVec3::ZERO);
     let tasks = fresh.chunks_mut(TRIANGLES_A_TASK).zip(near.triangles.chunks(TRIANGLES_A_TASK));
     cpu.for_each(tasks, |(fresh, numbers)| {
         fresh.iter_mut().zip(numbers).for_each(|(normal, &number)| *normal = triangles.normal(places, number));
     });
     near.triangles.iter().zip(&*fresh).for_each(|(&number, normal)| normals[number as usize] = *normal);
-    *has_normals = true;
+    contacts.surface.near = near;
 }
