@@ -17,6 +17,7 @@ mod follow;
 mod frequency;
 mod grab;
 mod history;
+mod implicit;
 mod inputs;
 mod interval;
 mod keep;

@@ -1,0 +1,3 @@
+//! Implicit steps: what they solve, and what with.
+
+mod preconditioner;

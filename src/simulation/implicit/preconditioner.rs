@@ -1,0 +1,59 @@
+//! What conjugate gradients are preconditioned with: a cheap approximate inverse of the operator of a Newton iteration.
+
+use bevy_ecs::prelude::*;
+
+/// The operator A = D + c K of a linear solve, D diagonal (mass and damping), K the tangent stiffness of all bodies. Its
+/// rows are all axes of all nodes, bodies one after the other.
+#[derive(Clone, Copy)]
+pub(in crate::simulation) struct Operator<'a> {
+    /// The world; displacements in it are those at which K is taken.
+    pub world: &'a World,
+    /// The bodies, in their order.
+    pub bodies: &'a [Entity],
+    /// Whether an axis moves freely: not held, and not of an inactive node.
+    pub free: &'a [bool],
+    /// D of each axis (N/m): c_m M, and what damping adds; 0 of axes that are not free, and in statics.
+    pub inertia: &'a [f64],
+    /// c, the share of K.
+    pub stiffness: f64,
+}
+
+/// An approximate inverse B of the operator: symmetric and positive definite on free axes, the same from one residual
+/// to the next of a solve.
+pub(in crate::simulation) trait Preconditioner: Send + Sync {
+    /// z = B r (m) of a residual r (N), both over all axes of all bodies; where an axis is not free, r and z are 0.
+    fn apply(&self, residual: &[f64], z: &mut [f64]);
+
+    /// Follows an operator that may have changed, before each solve: where nodes have gone, which elements are left,
+    /// how long the step is. What changes little may stay as it was.
+    fn follow(&mut self, _: &Operator<'_>) {}
+}
+
+/// None: z = r.
+pub(in crate::simulation) struct Identity;
+
+impl Preconditioner for Identity {
+    fn apply(&self, residual: &[f64], z: &mut [f64]) {
+        z.copy_from_slice(residual);
+    }
+}
+
+/// The diagonal D alone. It keeps linear momentum however early a solve ends.
+#[derive(Default)]
+pub(in crate::simulation) struct Mass {
+    per_inertia: Vec<f64>,
+}
+
+impl Preconditioner for Mass {
+    fn apply(&self, residual: &[f64], z: &mut [f64]) {
+        for ((z, r), per_inertia) in z.iter_mut().zip(residual).zip(&self.per_inertia) {
+            *z = r * per_inertia;
+        }
+    }
+
+    fn follow(&mut self, operator: &Operator<'_>) {
+        let inverse = |(&inertia, &free): (&f64, &bool)| if free && inertia > 0.0 { 1.0 / inertia } else { 0.0 };
+        self.per_inertia.clear();
+        self.per_inertia.extend(operator.inertia.iter().zip(operator.free).map(inverse));
+    }
+}
