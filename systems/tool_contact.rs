@@ -189,7 +189,6 @@ impl ToolContacts {
         }
         let all = &mut all[..touched];
         let d = predicted + self.push_apart(step, all, (place, predicted), free);
-        let work_factor = step.coefficients.work_factor;
         let mut sum = DVec3::ZERO;
         for touch in all.iter().flatten().filter(|touch| touch.push > 0.0) {
             let change = touch.outwards + touch.tangential;
@@ -206,8 +205,8 @@ impl ToolContacts {
             }
             of_tool[3] = T::from_f64(if touch.slides { SLIDES } else { STICKS });
             if step.counts_work {
-                let work = work_factor * force.dot(touch.tool_step);
-                let on_node = work_factor * (force * free).dot(0.5 * (before + d));
+                let work = step.coefficients.work_factor * force.dot(touch.tool_step);
+                let on_node = step.coefficients.work(force * free, before, d);
                 of_tool[4] += T::from_f64(slip);
                 of_tool[5] += T::from_f64(work);
                 of_tool[6] += T::from_f64(work - on_node);

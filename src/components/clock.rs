@@ -25,12 +25,14 @@ pub struct Clock {
 
 impl Clock {
     /// At the beginning of a motion in steps of Δt (s).
+    #[doc(hidden)]
     pub fn with_step(time_step: f64) -> Self {
         Self { step: 0, time_step, since: (0, 0.0), before: time_step, relaxation: None, velocities_at_ends: false }
     }
 
     /// Whether it can be the clock of a motion: steps are positive and finite, and Δt is what it is since a step that
     /// was taken.
+    #[doc(hidden)]
     pub fn is_sound(&self) -> bool {
         let step = |step: f64| step.is_finite() && step > 0.0;
         let since = self.since.0 <= self.step && self.since.1.is_finite() && self.since.1 >= 0.0;
@@ -38,6 +40,7 @@ impl Clock {
     }
 
     /// The step that is nearest to a time (s), in steps as they are now: the present one at least.
+    #[doc(hidden)]
     pub fn step_nearest(&self, time: f64) -> u64 {
         let steps = ((time - self.since.1) / self.time_step).round().max(0.0);
         // a number of steps beyond what can be counted ends at the largest
@@ -52,6 +55,7 @@ impl Clock {
 
     /// Time from the middle of the last step to the middle of the present one (s), over which forces change velocities:
     /// Δt, in the first step half of it, and after a change of Δt the mean of both.
+    #[doc(hidden)]
     pub fn half_step_interval(&self) -> f64 {
         match self.step {
             0 => 0.5 * self.time_step,
@@ -60,8 +64,16 @@ impl Clock {
         }
     }
 
+    /// Δt of the step before over Δt: 1 but in the first step after a change. Increments follow Δt, for they stand for
+    /// velocities; times this they are the way that was gone.
+    #[doc(hidden)]
+    pub fn step_ratio(&self) -> f64 {
+        if self.step == self.since.0 && self.step > 0 { self.before / self.time_step } else { 1.0 }
+    }
+
     /// The times (s) from the middle of the step before to the middle of a step, which must not lie before the last
     /// change of Δt: over them forces at its beginning change velocities. The first such window begins with the motion.
+    #[doc(hidden)]
     pub fn window_at(&self, step: u64) -> (f64, f64) {
         let there = Self { step, ..*self };
         let end = self.time_at(step) + 0.5 * self.time_step;
@@ -76,6 +88,7 @@ impl Clock {
     }
 
     /// Takes steps of another length from now on (s).
+    #[doc(hidden)]
     pub fn change_step(&mut self, time_step: f64) {
         // two changes before a step is taken are one
         if self.step != self.since.0 || self.step == 0 {

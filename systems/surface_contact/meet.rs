@@ -115,8 +115,8 @@ pub(super) fn meet<T: Scalar>(
     forget(contacts, bodies);
     note_facing(contacts, &found, bodies);
     set.solve(contacts.sweeps, cpu);
-    let work_factor = clock.relaxation.is_none().then_some(coefficients.work_factor);
-    note_touches(contacts, &set, work_factor, bodies);
+    let counts_work = clock.relaxation.is_none().then_some(&coefficients);
+    note_touches(contacts, &set, counts_work, bodies);
     push(contacts, bodies);
     (contacts.surface.set, contacts.surface.found) = (set, found);
 }
@@ -260,7 +260,7 @@ fn note_facing<T: Scalar>(contacts: &mut SurfaceContacts, found: &[Found], bodie
 fn note_touches<T: Scalar>(
     contacts: &mut SurfaceContacts,
     set: &ContactSet,
-    work_factor: Option<f64>,
+    counts_work: Option<&IntegrationCoefficients<f64>>,
     bodies: &mut [BodySlices<'_, T>],
 ) {
     let mut forces = std::mem::take(&mut contacts.surface.forces);
@@ -278,11 +278,11 @@ fn note_touches<T: Scalar>(
             touch[4] = T::from_f64(if contact.slides { SLIDES } else { STICKS });
             touch[5] = T::from_f64(met.gap + contact.normal.dot(after));
         }
-        if let Some(work_factor) = work_factor {
+        if let Some(coefficients) = counts_work {
             let before = contact.relative(&set.earlier);
             let along = (after - contact.normal * after.dot(contact.normal)).length();
             let slid = touch[6].to_f64() + if contact.slides { along } else { 0.0 };
-            let lost = touch[7].to_f64() - work_factor * force.dot(0.5 * (before + after));
+            let lost = touch[7].to_f64() - coefficients.work(force, before, after);
             touch[6] = T::from_f64(slid);
             touch[7] = T::from_f64(lost);
         }
