@@ -2,7 +2,6 @@
 
 use super::known::Known;
 use super::schedule::Scheduled;
-use crate::components::Clock;
 use crate::scene::schema::Scene;
 use crate::scene::{Diagnostics, choice};
 use bevy_ecs::prelude::*;
@@ -12,14 +11,9 @@ use ron::value::Map;
 /// The parameter that the engine takes itself: the time between two runs (s).
 const EVERY: &str = "every";
 
-/// Hands each system of the schedule its parameters, and sets how often it runs. Complaints go to `diagnostics`.
-pub(super) fn hand_out(
-    scene: &Scene,
-    known: &Known<'_>,
-    schedule: &mut [Scheduled<'_>],
-    world: &mut World,
-    diagnostics: &mut Diagnostics,
-) {
+/// Hands each system of one's own that the scene's schedule names its parameters. Complaints go to `diagnostics`.
+pub(super) fn hand_out(scene: &Scene, known: &Known<'_>, world: &mut World, diagnostics: &mut Diagnostics) {
+    let named = scene.schedule.as_deref().unwrap_or_default();
     for name in scene.parameters.keys() {
         let path = path_of(name);
         match known.get(name) {
@@ -46,7 +40,7 @@ pub(super) fn hand_out(
                     .error_at(path.as_str(), format!("the built-in system `{name}` has no parameters"))
                     .note(format!("what it does comes from {}", system.called_for_by));
             }
-            Some(_) if !schedule.iter().any(|entry| entry.system.name == *name) => {
+            Some(_) if !named.contains(name) => {
                 diagnostics
                     .warn_at(path.as_str(), format!("`{name}` is not in the schedule and does nothing"))
                     .note(format!("add \"{name}\" to `schedule`"));
@@ -54,9 +48,8 @@ pub(super) fn hand_out(
             Some(_) => {}
         }
     }
-    let time_step = world.resource::<Clock>().time_step;
-    for (place, entry) in schedule.iter_mut().enumerate().filter(|(_, entry)| entry.system.custom) {
-        let name = &entry.system.name;
+    for (place, name) in named.iter().enumerate() {
+        let Some(system) = known.get(name).filter(|system| system.custom) else { continue };
         let given = scene.parameters.get(name);
         let path = if given.is_some() { path_of(name) } else { format!("schedule[{place}]") };
         let mut complain = |message: String| {
@@ -72,15 +65,12 @@ pub(super) fn hand_out(
         };
         match fields.remove(&Value::String(EVERY.into())) {
             None => {}
-            Some(Value::Number(time)) if time.into_f64() > 0.0 => {
-                entry.every = crate::assembly::steps_of(time.into_f64(), time_step);
-                entry.interval = Some(time.into_f64());
-            }
+            Some(every) if interval_of(&every).is_some() => {}
             Some(_) => {
                 complain(format!("`every` of `{name}` is the time between two runs (s), above 0"));
             }
         }
-        let result = match entry.system.parameters {
+        let result = match system.parameters {
             Some(read) => read(Value::Map(fields), world),
             None => match fields.iter().next() {
                 Some((Value::String(field), _)) => Err(format!("it has no `{field}`; allowed: {EVERY}")),
@@ -90,6 +80,27 @@ pub(super) fn hand_out(
         if let Err(reason) = result {
             complain(format!("the parameters of `{name}` do not fit: {reason}"));
         }
+    }
+}
+
+/// Sets how often systems of one's own run, where their parameters say so, in steps of so long (s).
+pub(super) fn set_intervals(scene: &Scene, time_step: f64, schedule: &mut [Scheduled<'_>]) {
+    let every = Value::String(EVERY.into());
+    for entry in schedule.iter_mut().filter(|entry| entry.system.custom) {
+        let Some(Value::Map(fields)) = scene.parameters.get(&entry.system.name) else { continue };
+        if let Some(interval) = fields.iter().find(|(name, _)| **name == every).and_then(|(_, time)| interval_of(time))
+        {
+            entry.every = crate::assembly::steps_of(interval, time_step);
+            entry.interval = Some(interval);
+        }
+    }
+}
+
+/// The time between two runs (s), if a value is one.
+fn interval_of(value: &Value) -> Option<f64> {
+    match value {
+        Value::Number(time) => Some(time.into_f64()).filter(|time| *time > 0.0),
+        _ => None,
     }
 }
 

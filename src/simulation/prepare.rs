@@ -2,8 +2,7 @@
 
 use super::Options;
 use super::known::Known;
-use super::load_rates::LoadRates;
-use super::parameters::hand_out;
+use super::parameters::{hand_out, set_intervals};
 use super::schedule::{Scheduled, check_names, resolve};
 use super::stable_step::{self, Stability};
 use super::{contact_springs, outputs, plausible};
@@ -32,25 +31,6 @@ pub(super) fn prepare<'a>(
     world: &mut World,
     diagnostics: &mut Diagnostics,
 ) -> Option<Prepared<'a>> {
-    let before = diagnostics.clone();
-    let (prepared, loads) = prepare_with(None, scene, options, known, world, diagnostics)?;
-    if loads.is_none() {
-        return Some(prepared);
-    }
-    // all that counts in steps is made anew with the step that systems leave
-    (*world, *diagnostics) = (World::new(), before);
-    prepare_with(loads, scene, options, known, world, diagnostics).map(|prepared| prepared.0)
-}
-
-/// The same with what is known of forces on nodes beforehand; what they turn out to be, where that is more.
-fn prepare_with<'a>(
-    loads: Option<LoadRates>,
-    scene: &'a SceneFile,
-    options: &Options,
-    known: &'a Known<'_>,
-    world: &mut World,
-    diagnostics: &mut Diagnostics,
-) -> Option<(Prepared<'a>, Option<LoadRates>)> {
     let assembly = assemble(scene, options.precision, options.scheme, known.laws(), world, diagnostics);
     known.check(diagnostics);
     check_names(scene.scene.schedule.as_deref().unwrap_or_default(), known, diagnostics);
@@ -66,7 +46,9 @@ fn prepare_with<'a>(
     // what is stable depends on the laws, whose history waits for the step
     world.insert_resource(Clock::with_step(1.0));
     insert_laws(options.precision, world);
-    let (clock, stability, steps) = clock(scene, known, loads, world, diagnostics)?;
+    // and on how stiff systems are, of which one's own know by their parameters
+    hand_out(&scene.scene, known, world, diagnostics);
+    let (clock, stability, steps) = clock(scene, known, world, diagnostics)?;
     outputs::check(scene, &clock, steps, diagnostics);
     outputs::check_curves(scene, &clock, diagnostics);
     plausible::check(&assembly, world, diagnostics);
@@ -78,19 +60,11 @@ fn prepare_with<'a>(
     }
     assemble_in_time(&assembly, world, diagnostics);
     let mut schedule = resolve(scene.scene.schedule.as_deref(), known, world, diagnostics);
-    hand_out(&scene.scene, known, &mut schedule, world, diagnostics);
+    set_intervals(&scene.scene, clock.time_step, &mut schedule);
     if clock.velocities_at_ends {
         super::implicit::check(&schedule, diagnostics);
     }
-    let systems = schedule.iter().map(|entry| entry.system);
-    let more = match stable_step::with_parameters(&scene.scene, systems, &stability, world) {
-        Ok(more) => more,
-        Err(error) => {
-            diagnostics.error(error.to_string());
-            None
-        }
-    };
-    Some((Prepared { assembly, clock, stability, steps, schedule }, more))
+    Some(Prepared { assembly, clock, stability, steps, schedule })
 }
 
 /// Checks a scene as far as making its world goes: everything except choosing a backend. All that was found.
@@ -105,7 +79,6 @@ pub(super) fn check(scene: &SceneFile, registry: &Registry) -> Diagnostics {
 fn clock(
     scene: &SceneFile,
     known: &Known<'_>,
-    loads: Option<LoadRates>,
     world: &mut World,
     diagnostics: &mut Diagnostics,
 ) -> Option<(Clock, Stability, u64)> {
@@ -129,7 +102,7 @@ fn clock(
         let clock = Clock { velocities_at_ends: true, ..Clock::with_step(step) };
         return Some((clock, Stability::of_implicit(bound, step), steps));
     }
-    let (stability, time_step, steps) = stable_step::choose(scene, known, loads, world, diagnostics)?;
+    let (stability, time_step, steps) = stable_step::choose(scene, known, world, diagnostics)?;
     Some((Clock::with_step(time_step), stability, steps))
 }
 

@@ -15,7 +15,6 @@ use crate::backend::device::bring_to_host;
 use crate::error::Error;
 use crate::scene::schema::{Constraint, Curve, InitialState, Inversion, Scene, StepBound, WhenUnstable};
 use crate::scene::{Diagnostics, SceneFile};
-use crate::systems::System;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use serde::Serialize;
@@ -75,7 +74,7 @@ impl Stability {
     }
 
     /// Of implicit steps, which are stable at any length.
-    pub fn of_implicit(bound: StableStep, step: f64) -> Self {
+    pub(super) fn of_implicit(bound: StableStep, step: f64) -> Self {
         Self {
             step,
             found_from: "scene",
@@ -85,7 +84,7 @@ impl Stability {
     }
 
     /// Of a static analysis.
-    pub fn of_rest(bound: StableStep) -> Self {
+    pub(super) fn of_rest(bound: StableStep) -> Self {
         Self {
             stable_step: bound.time_step,
             step: 0.0,
@@ -123,12 +122,11 @@ impl Simulation {
     }
 }
 
-/// The stable step of a scene whose world has its laws, its step and the number of its steps. `loads`: forces on nodes,
-/// where more is known of them than the world says yet.
+/// The stable step of a scene whose world has its laws and the parameters of its systems, its step and the number of
+/// its steps.
 pub(super) fn choose(
     scene: &SceneFile,
     known: &Known<'_>,
-    loads: Option<LoadRates>,
     world: &mut World,
     diagnostics: &mut Diagnostics,
 ) -> Option<(Stability, f64, u64)> {
@@ -152,15 +150,11 @@ pub(super) fn choose(
             .warn_at("integration.bound", reason)
             .note("`bound: Auto` stays with the stiffest element, which is safe");
     }
-    let loads = match loads {
-        Some(loads) => loads,
-        None => {
-            // one's own have their parameters later: see `with_parameters`
-            let built_in = known.systems().filter(|system| !system.custom);
-            let found = LoadRates::of(built_in, scene.scene.duration, world);
-            found.inspect_err(|error| _ = diagnostics.error(error.to_string())).ok()?
-        }
-    };
+    let named = scene.scene.schedule.as_deref().unwrap_or_default();
+    let running = known.systems().filter(|system| !system.custom || named.contains(&system.name));
+    let loads = LoadRates::of(running, scene.scene.duration, world);
+    // what cannot be found is an error of the scene, which may have more
+    let loads = loads.inspect_err(|error| _ = diagnostics.error(error.to_string())).unwrap_or_default();
     let found = seek(&scene.scene, certain, stays.is_none(), &loads, world);
     // the bounds are certain as well: at rest the best of all
     let limit = step_of(found.at_most).max(certain);
@@ -209,23 +203,6 @@ pub(super) fn choose(
     Some((stability, time_step, steps as u64))
 }
 
-/// The stiffness of forces on nodes with systems whose parameters were not known when the step was chosen, where they
-/// make it smaller: then it must be chosen again.
-///
-/// # Errors
-/// As [`LoadRates::of`].
-pub(super) fn with_parameters<'a>(
-    scene: &Scene,
-    systems: impl Iterator<Item = &'a System>,
-    stability: &Stability,
-    world: &mut World,
-) -> Result<Option<LoadRates>, Error> {
-    let Some(limit) = stability.limit else { return Ok(None) };
-    let all = LoadRates::of(systems, scene.duration, world)?;
-    // what has been counted already may be summed in another order
-    Ok((all.with(stability.limit_of_bodies) < (1.0 - 1e-9) * limit).then_some(all))
-}
-
 /// Why `bound: Auto` stays with what the elements allow: what needs the room between that and the true limit.
 fn reason_to_stay(scene: &Scene) -> Option<&'static str> {
     let removes = scene.materials.values().any(|material| material.inversion() == Inversion::Remove);
@@ -244,7 +221,7 @@ fn reason_to_stay(scene: &Scene) -> Option<&'static str> {
     };
     match scene.when_unstable() {
         WhenUnstable::Adapt if scene.constraints.iter().any(jumps) => {
-            Some("nodes are moved by a jump, whose work is told only in steps of one length")
+            Some("nodes are moved by a jump, which wakes the highest frequencies there are")
         }
         WhenUnstable::Adapt if removes || !scene.removal.is_empty() => {
             Some("elements that are removed take their mass with them, which raises the highest frequency at once")
