@@ -1,6 +1,7 @@
 //! Rows of four patch-local numbers, in a core's cache, and registers filled from them and added to them: one row a lane.
 
 use super::SimdScalar;
+use bytemuck::allocation::zeroed_box;
 use pulp::Simd;
 #[cfg(target_arch = "x86_64")]
 use pulp::x86::{V3, V4};
@@ -23,11 +24,7 @@ pub struct Scratch<T: SimdScalar> {
 
 impl<T: SimdScalar> Default for Scratch<T> {
     fn default() -> Self {
-        let rows = || match vec![[T::default(); 4]; MOST_LOCAL_ROWS].into_boxed_slice().try_into() {
-            Ok(rows) => rows,
-            Err(_) => unreachable!("the length is that of the array"),
-        };
-        Self { read: rows(), sums: rows(), places: rows() }
+        Self { read: zeroed_box(), sums: zeroed_box(), places: zeroed_box() }
     }
 }
 
@@ -37,12 +34,10 @@ impl<T: SimdScalar> Default for Scratch<T> {
 pub(super) fn load_f32s<S: Simd>(simd: S, rows: &Rows<f32>, at: &[u16]) -> [S::f32s; 4] {
     #[cfg(target_arch = "x86_64")]
     {
-        if let Some(v4) = coerced::<S, V4>(simd) {
-            let at: &[u16; 16] = fixed(at);
+        if let (Some(v4), Some(at)) = (coerced::<S, V4>(simd), at.first_chunk()) {
             return x86::columns_512(v4, rows, at).map(bytemuck::cast);
         }
-        if let Some(v3) = coerced::<S, V3>(simd) {
-            let at: &[u16; 8] = fixed(at);
+        if let (Some(v3), Some(at)) = (coerced::<S, V3>(simd), at.first_chunk()) {
             return x86::columns_256(v3, rows, at).map(bytemuck::cast);
         }
     }
@@ -61,11 +56,11 @@ pub(super) fn load_f32s<S: Simd>(simd: S, rows: &Rows<f32>, at: &[u16]) -> [S::f
 pub(super) fn add_f32s<S: Simd>(simd: S, rows: &mut Rows<f32>, at: &[u16], vectors: [S::f32s; 3]) {
     #[cfg(target_arch = "x86_64")]
     {
-        if let Some(v4) = coerced::<S, V4>(simd) {
-            return x86::add_512(v4, rows, fixed(at), vectors.map(bytemuck::cast));
+        if let (Some(v4), Some(at)) = (coerced::<S, V4>(simd), at.first_chunk()) {
+            return x86::add_512(v4, rows, at, vectors.map(bytemuck::cast));
         }
-        if let Some(v3) = coerced::<S, V3>(simd) {
-            return x86::add_256(v3, rows, fixed(at), vectors.map(bytemuck::cast));
+        if let (Some(v3), Some(at)) = (coerced::<S, V3>(simd), at.first_chunk()) {
+            return x86::add_256(v3, rows, at, vectors.map(bytemuck::cast));
         }
     }
     let _ = simd;
@@ -106,16 +101,6 @@ pub(super) fn add_f64s<S: Simd>(_: S, rows: &mut Rows<f64>, at: &[u16], vectors:
 #[inline(always)]
 pub(super) fn coerced<S: Simd, Q: Copy + 'static>(simd: S) -> Option<Q> {
     (&simd as &dyn std::any::Any).downcast_ref::<Q>().copied()
-}
-
-/// As many as a register has lanes; callers have them.
-#[cfg(target_arch = "x86_64")]
-#[inline(always)]
-fn fixed<const N: usize>(at: &[u16]) -> &[u16; N] {
-    match at.first_chunk() {
-        Some(at) => at,
-        None => unreachable!("a register full of rows"),
-    }
 }
 
 /// Transposes of four lanes at a time, in all quarters of a register at once. Macros, for closures do not get the
