@@ -1,4 +1,4 @@
-// Corners of elements in the body's columns; patches.wgsl has them at hand.
+// Corners of elements in the body's columns; patches.wgsl has them patch-local.
 @group(0) @binding(0) var<storage, read> displacement: array<f32>;
 @group(0) @binding(1) var<storage, read> connectivity: array<u32>;
 

@@ -12,7 +12,7 @@ fn of_step(node: u32) -> u32 {
     return 3u * (pass_rows.count + node);
 }
 
-fn lost_at(at: u32) -> vec3<f32> {
+fn compensation_at(at: u32) -> vec3<f32> {
     return vec3<f32>(
         displacement_compensation[at],
         displacement_compensation[at + 1u],
@@ -21,7 +21,7 @@ fn lost_at(at: u32) -> vec3<f32> {
 }
 
 fn compensated_add(at: u32, sum: vec3<f32>, change: vec3<f32>) -> vec3<f32> {
-    let exact = rounded(rounded(change) - lost_at(at));
+    let exact = rounded(rounded(change) - compensation_at(at));
     let after = rounded(sum + exact);
     let left_out = rounded(after - sum) - exact;
     displacement_compensation[at] = left_out.x;
@@ -35,7 +35,7 @@ fn add_to_step(node: u32, before: vec3<f32>, change: vec3<f32>) -> vec3<f32> {
     return compensated_add(of_step(node), before, change);
 }
 
-// A inactive node has no step, and nothing of it is left out.
+// An inactive node has no step, and nothing of it is left out.
 fn forget_step(node: u32) {
     displacement_compensation[of_step(node)] = 0.0;
     displacement_compensation[of_step(node) + 1u] = 0.0;
@@ -44,6 +44,6 @@ fn forget_step(node: u32) {
 
 // The displacement after the step; what boundary wrote is the whole of a constrained one.
 fn add_step(node: u32, u: vec3<f32>, d: vec3<f32>, constrained: vec3<bool>) -> vec3<f32> {
-    let compensation = select(lost_at(of_step(node)), vec3<f32>(0.0), constrained);
+    let compensation = select(compensation_at(of_step(node)), vec3<f32>(0.0), constrained);
     return compensated_add(3u * node, u, d - compensation);
 }

@@ -109,7 +109,7 @@ fn patches_move_the_nodes_inside_them_where_they_may() {
     // the pass is in two, for the same reason
     assert_eq!(
         (counts, because.as_str()),
-        ([0, 4], "`pressure` looks at other nodes than its own, which must not have moved")
+        ([0, 4], "`pressure` reads other nodes than its own, which must not have moved")
     );
     let (_, counts, because) = told(&plain, &OF_NODES, MostBuffers { storage: 9, ..LARGER });
     assert_eq!((counts, because.as_str()), ([0, 2], "it would need 10 storage buffers, and 9 may be"));

@@ -24,7 +24,7 @@ pub struct Probe {
     pub peak: bool,
 }
 
-/// Whether somebody may look at forces after the present step: if not, one pass over the nodes keeps them at hand and
+/// Whether somebody may look at forces after the present step: if not, one pass over the nodes keeps them in registers and
 /// leaves [`InternalForce`](super::InternalForce) and [`ExternalForce`](super::ExternalForce) as they were.
 #[derive(Resource, Clone, Copy, Debug)]
 pub struct Observed(pub bool);

@@ -13,7 +13,7 @@ fn found<'a>(world: &'a World, name: &str) -> Option<(&'a FreeTool, &'a FreeMoti
     Some((&tools.all[place], state, tools.reference))
 }
 
-/// What a free tool of a name feels; nothing of one that is guided. Displacements are at hand.
+/// What a free tool of a name feels; nothing of one that is guided. Displacements are on the host.
 pub(super) fn read(world: &World, name: &str) -> Option<ToolReading> {
     let (tool, state, reference) = found(world, name)?;
     let pose = tool.pose(&state.motion);

@@ -20,7 +20,7 @@ const FINDINGS: (u64, u64) = (8, 200);
 const ROUNDS: usize = 4;
 
 impl Simulation {
-    /// Does what the scene wants done where the step stays. The step before which is to be looked next, where that is
+    /// Does what the scene wants done where the step stays. The step before which is checked next, where that is
     /// known.
     pub(super) fn hold(&mut self, follower: &mut Follower, seen: &mut StabilitySample) -> Result<Option<u64>, Error> {
         let (step, time_step) = (self.step_count(), self.world.resource::<Clock>().time_step);
@@ -105,7 +105,7 @@ impl Simulation {
     }
 
     /// Removes the elements with the highest frequencies, as many as are nearly as quick as the quickest; others follow
-    /// if that is not enough. The step before which is to be looked next.
+    /// if that is not enough. The step before which is checked next.
     fn remove_quickest(&mut self, follower: &mut Follower) -> Result<u64, Error> {
         let step = self.step_count();
         bring_to_host(&mut self.world, |_, name| [Alive::NAME, RemovalStep::NAME].contains(&name))?;

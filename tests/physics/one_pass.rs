@@ -275,7 +275,7 @@ fn kernels_of_patches_have_only_what_acts_on_nodes_inside_them() {
             "loads: [Pressure(body: \"a\", on: Box(min: (0, 0, 0), max: (0.12, 0.12, 0)), pressure: 100), ",
         );
     let told = &explained(&corner).dispatched[0];
-    let because = "`pressure` looks at other nodes than its own, which must not have moved";
+    let because = "`pressure` reads other nodes than its own, which must not have moved";
     assert_eq!((told.interior, told.interior_because.as_str()), (0, because));
     let explained = explained(&torn(true));
     let found = explained.kernels.iter().filter(|kernel| ["patch_step", "node_pass"].contains(&kernel.entry));

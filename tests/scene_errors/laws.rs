@@ -179,8 +179,8 @@ fn what_is_not_written_as_a_law_is_told_at_its_line() {
         (
             "return elastic.bulk * change;",
             "return elastic.bulk * bitcast<f32>(bitcast<u32>(change));",
-            "own.wgsl:14:27: error: the bits of a number cannot be looked at: a law is computed in several precisions
-own.wgsl:14:40: error: the bits of a number cannot be looked at: a law is computed in several precisions",
+            "own.wgsl:14:27: error: the bits of a number cannot be read: a law is computed in several precisions
+own.wgsl:14:40: error: the bits of a number cannot be read: a law is computed in several precisions",
         ),
     ]);
 }

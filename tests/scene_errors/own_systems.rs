@@ -173,6 +173,6 @@ fn a_curve_that_nobody_looks_at_is_warned_of() {
     assert_eq!(brief(GOOD, &curved), "");
     assert_eq!(
         brief(&GOOD.replace("node.curve * ", ""), &curved),
-        "wind.wgsl:7:4: warning: `wind` does not look at `node.curve`: the scene's `curve` changes nothing | multiply by `node.curve` what is to have this course in time"
+        "wind.wgsl:7:4: warning: `wind` does not read `node.curve`: the scene's `curve` changes nothing | multiply by `node.curve` what is to have this course in time"
     );
 }

@@ -125,7 +125,7 @@ pub fn together(
     let Some(entry) = composed.entry(kernel.entry) else { return Err(format!("there is no `{}`", kernel.entry)) };
     let written = written(&composed, entry);
     if let Some(stage) = stages.iter().find(|stage| stage.elsewhere.iter().any(|name| written.contains(name))) {
-        return Err(format!("`{}` looks at other nodes than its own, which must not have moved", stage.system));
+        return Err(format!("`{}` reads other nodes than its own, which must not have moved", stage.system));
     }
     let storage = composed.storage_buffers(entry);
     let uniform = entry.uses.len() - storage;

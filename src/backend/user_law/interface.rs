@@ -134,7 +134,7 @@ fn functions(form: &Form, composed: &Composed, declared: &[Declared], text: &str
     }
     // a word that only a GPU could make sense of: said in the text's own words, not in those of a twin
     for range in crate::materials::program::words(text).filter(|range| &text[range.clone()] == "bitcast") {
-        let message = format!("the bits of a number cannot be looked at: a {word} is computed in several precisions");
+        let message = format!("the bits of a number cannot be read: a {word} is computed in several precisions");
         complaints.push(Complaint::new(About::Bytes(range), message));
     }
 }

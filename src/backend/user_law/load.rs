@@ -52,7 +52,7 @@ pub fn check_load(
         }
     }
     if with_curve && !load.program.reads(LoadText::CURVE) {
-        let message = format!("`{}` does not look at `node.curve`: the scene's `curve` changes nothing", load.name);
+        let message = format!("`{}` does not read `node.curve`: the scene's `curve` changes nothing", load.name);
         let note = "multiply by `node.curve` what is to have this course in time";
         complaints.push(Complaint { warning: true, ..Complaint::new(about(), message).note(note) });
     }

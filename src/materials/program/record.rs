@@ -151,7 +151,7 @@ impl Recording {
         let Running { graph, unknown } = RUNNING.take();
         if let Some(name) = unknown {
             return Err(Untranslatable::new(Span::UNDEFINED, format!("it asks a number for its `{name}`"))
-                .note("it looks at bits, which differ on a GPU: use exp, ln, sqrt, inverse_cbrt, sin and cos"));
+                .note("it reads bits, which differ on a GPU: use exp, ln, sqrt, inverse_cbrt, sin and cos"));
         }
         bearable(&graph, &outputs, Span::UNDEFINED)?;
         Ok(Self { graph, outputs })

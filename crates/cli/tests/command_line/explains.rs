@@ -157,8 +157,8 @@ fn which_bodies_take_many_steps_in_one_dispatch_is_told_with_the_reason() {
         (
             &["--set", pressure],
             3,
-            "`pressure` looks at other nodes than its own, which must not have moved",
-            (0, "`pressure` looks at other nodes than its own, which must not have moved"),
+            "`pressure` reads other nodes than its own, which must not have moved",
+            (0, "`pressure` reads other nodes than its own, which must not have moved"),
         ),
         (&["--set", FIBRES], 1, "it would need 17 storage buffers, and 16 may be", (64, none)),
     ] {
