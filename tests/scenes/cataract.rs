@@ -220,6 +220,7 @@ fn alike(sets: &[&str]) {
 }
 
 #[test]
+#[ignore = "long"]
 fn threads_and_precisions_take_the_same_at_first() {
     alike(&SHORT);
 }

@@ -4,6 +4,7 @@ use super::{near, reference, scene};
 use sinew::Simulation;
 
 #[test]
+#[ignore = "long"]
 fn the_forceps_bear_what_the_table_no_longer_does_and_let_go() {
     let mut simulation = Simulation::new(&scene("grasped_liver", &[]), &reference()).unwrap();
     simulation.advance_to(0.19).unwrap();
