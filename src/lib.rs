@@ -27,6 +27,7 @@ pub mod skins;
 pub mod snapshot;
 #[path = "../systems/mod.rs"]
 pub mod systems;
+#[doc(hidden)]
 pub mod tools;
 
 // what the other crates of the workspace and the tests see into: no version keeps its names and types
@@ -52,8 +53,8 @@ pub use bevy_ecs;
 pub use glam;
 pub use serde;
 
-pub use backend::gpu::{NoGpu, gpu_or_reason};
-pub use error::{Error, GpuFailure, Instability, NotConverged, NotUnloaded, shell_word};
+pub use backend::gpu::NoGpu;
+pub use error::{Error, GpuFailure, Instability, NotConverged, NotUnloaded};
 pub use output::Folder;
 pub use scene::SceneFile;
 pub use simulation::explain;
@@ -65,15 +66,25 @@ pub use simulation::{
 };
 pub use snapshot::Snapshot;
 
+#[doc(hidden)]
+pub use backend::gpu::gpu_or_reason;
+#[doc(hidden)]
+pub use error::shell_word;
+
 /// What systems of one's own are written with: `use sinew::prelude::*;`.
 ///
 /// The derive macros of bevy_ecs name their crate `bevy_ecs`; it is among these, so that `#[derive(Resource)]` compiles
 /// in a crate that depends on sinew alone. Those of serde need `#[serde(crate = "sinew::serde")]` there.
 pub mod prelude {
+    #[doc(no_inline)]
     pub use crate::components::{Clock, Displacement, DisplacementIncrement, ExternalForce, Mass, RestPosition};
+    #[doc(no_inline)]
     pub use crate::systems::{Phase, Registry, System};
+    #[doc(no_inline)]
     pub use crate::{BackendChoice, Error, NodeSet, Options, SceneFile, Simulation, bevy_ecs, glam, serde};
+    #[doc(no_inline)]
     pub use bevy_ecs::prelude::*;
+    #[doc(no_inline)]
     pub use glam::DVec3;
 }
 

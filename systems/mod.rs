@@ -71,21 +71,31 @@ pub use crate::backend::cpu::{Cpu, NodeColumns};
 pub use crate::math::SimdScalar;
 pub(crate) use gather::sum_corners;
 pub(crate) use grab::{bytes_of as grab_bytes, uniform_of as grab_uniform};
+#[doc(hidden)]
 pub use gravity::Gravity;
 pub(crate) use host_forces::SlopesOf;
+#[doc(hidden)]
 pub use nodal_force::NodalForce;
 pub(crate) use nodal_volume::means_of;
 pub(crate) use node_pass::{NodePass, node_pass, shared_pass};
 pub(crate) use node_shares::{give_shares, mark};
-pub use node_system::{NodeRows, NodeSystem};
+#[doc(hidden)]
+pub use node_system::NodeRows;
+pub use node_system::NodeSystem;
 pub use node_views::{Before, ForceSlopes, MiddleOfStep, NodesAtRest};
+#[doc(hidden)]
 pub use observe::{add_guard_columns, guard_kernels};
 pub(crate) use patch_pass::patch_pass;
+#[doc(hidden)]
 pub use pressure::Pressure;
 pub use registry::Registry;
+#[doc(hidden)]
 pub use surface_contact::{Meeting, SurfaceContacts};
 pub(crate) use system::BeforeSteps;
-pub use system::{Because, DescribeKernels, HostSystem, OnDevice, OnHost, Outcome, Phase, System};
+#[doc(hidden)]
+pub use system::{Because, DescribeKernels, HostSystem, OnDevice, OnHost};
+pub use system::{Outcome, Phase, System};
+#[doc(hidden)]
 pub use traction::Traction;
 
 use crate::scene::schema::{OwnSystem, Scene};
@@ -107,6 +117,7 @@ pub(crate) fn of_scene(scene: &Scene) -> Vec<System> {
 }
 
 /// The built-in systems, in the order of a step.
+#[doc(hidden)]
 pub fn standard() -> Vec<System> {
     vec![
         boundary::system(),

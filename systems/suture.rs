@@ -40,7 +40,7 @@ impl NodeSystem for Sutured {
         }
     }
 
-    /// Of the masses at the start, to which sutures keep (see [`Sutured::masses`]), and [`SLACK`] times as large.
+    /// Of the masses at the start, to which sutures keep (see [`Sutured::masses`]), and `SLACK` times as large.
     fn slopes(&self, _: &NodesAtRest<'_>) -> ForceSlopes {
         let each = self.stiffness.iter().zip(&self.masses).filter(|(_, mass)| **mass > 0.0);
         let stiffness = each.map(|(stiffness, mass)| stiffness / mass).fold(0.0, f64::max);

@@ -22,7 +22,7 @@ pub struct StableStep {
     pub time_step: f64,
     /// The same of a usual element (s): half of the volume is in elements that need no smaller step.
     pub usual: f64,
-    /// The elements with the smallest bounds, the smallest first: at most [`NAMED`].
+    /// The elements with the smallest bounds, the smallest first: at most `NAMED`.
     pub worst: Vec<CriticalElement>,
 }
 

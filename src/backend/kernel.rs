@@ -85,6 +85,7 @@ impl Fragment {
 }
 
 /// A file of the crate's `shaders/` folder as a [`Fragment`], built into the program: `shader!("row")`.
+#[doc(hidden)]
 #[macro_export]
 macro_rules! shader {
     ($stem:ident) => {

@@ -24,6 +24,7 @@ mod guard;
 mod input;
 mod load;
 mod material;
+#[doc(hidden)]
 pub mod nodes;
 mod observation;
 mod own_load;
@@ -35,38 +36,72 @@ mod tool;
 mod tool_removal;
 mod touched;
 
-pub use block::{
-    AddedMass, Alive, Block, BlockCorners, Connectivity, ElementSums, ElementVolume, FamilyDirection, FibreDirection,
-    FirstInverted, NodalVolumeChange, OnInversion, RemovalStep, RemovalTime, RemovedEnergy, RemovedMomentum,
-    RemovedWork, RestShape, ViscousMemory, patch_groups, patch_length,
-};
-pub use clock::{Clock, Relaxation, TrialForces};
-pub use column::{Column, ColumnAccess, Precision, Reals, Role, all_columns, columns_in, place_in_buffer};
-pub use column_layout::{Increments, Rows};
-pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
-pub use contact::{ContactForce, ContactSpring, FaceTouch, MEETING_NUMBERS, SurfaceRows, SurfaceTouch};
-pub use free_tool::{FreeMotion, FreeMotions, FreeTool, FreeTools, FreeTouch, MetBody};
-pub use glue::{Glue, Strength, TIE_NUMBERS, TieState, TiedPoint, frame_of};
-pub use grab::{Grabs, HeldNode};
-pub use grasp::{Grasp, Grasps, HOLD_NUMBERS, ToolHold};
-pub use guard::{Extreme, GuardMemory, Notice};
-pub use input::{Change, Input, InputState};
-pub use load::{FaceCorners, FaceMarks, LoadedNodes, LoadedRows, SceneLoad};
-pub use material::{Damping, Density, ExponentialFibres, Prony, StiffnessDamping, memory_terms};
+pub use block::{Alive, Connectivity, FibreDirection, RemovalStep, RestShape, ViscousMemory};
+pub use clock::Clock;
+pub use column::{Column, Precision, Reals};
+pub use material::{Damping, Density};
 pub use nodes::{
-    Acceleration, Authoring, ChosenBy, ConstrainedAxes, Corners, DampingCoefficient, Displacement,
-    DisplacementCompensation, DisplacementIncrement, ElementForce, ExternalForce, FictitiousMass, FirstNonFinite,
-    GROUP_ROWS, InternalForce, InternalWork, Mass, MiddleDisplacement, NodeSums, OwnNumbers,
-    PreviousPrescribedIncrement, RestPosition, SchemeLoss, WORK_NUMBERS, Work,
+    Authoring, ConstrainedAxes, DampingCoefficient, Displacement, DisplacementCompensation, DisplacementIncrement,
+    ElementForce, ExternalForce, FictitiousMass, InternalForce, Mass, RestPosition, Work,
 };
-pub use observation::{Cadence, Energies, HeldEnergies, HeldEnergy, Observed, Probe};
+pub use observation::Energies;
+pub use patches::Scheme;
+pub use signal::Signals;
+
+// what the engine, the crates on top and tests see beside: no version keeps their names and types
+#[doc(hidden)]
+pub use block::{
+    AddedMass, Block, BlockCorners, ElementSums, ElementVolume, FamilyDirection, FirstInverted, NodalVolumeChange,
+    OnInversion, RemovalTime, RemovedEnergy, RemovedMomentum, RemovedWork, patch_groups, patch_length,
+};
+#[doc(hidden)]
+pub use clock::{Relaxation, TrialForces};
+#[doc(hidden)]
+pub use column::{ColumnAccess, Role, all_columns, columns_in, place_in_buffer};
+#[doc(hidden)]
+pub use column_layout::{Increments, Rows};
+#[doc(hidden)]
+pub use constraint::{Fixed, Measure, Prescribed, RemovalCriterion};
+#[doc(hidden)]
+pub use contact::{ContactForce, ContactSpring, FaceTouch, MEETING_NUMBERS, SurfaceRows, SurfaceTouch};
+#[doc(hidden)]
+pub use free_tool::{FreeMotion, FreeMotions, FreeTool, FreeTools, FreeTouch, MetBody};
+#[doc(hidden)]
+pub use glue::{Glue, Strength, TIE_NUMBERS, TieState, TiedPoint, frame_of};
+#[doc(hidden)]
+pub use grab::{Grabs, HeldNode};
+#[doc(hidden)]
+pub use grasp::{Grasp, Grasps, HOLD_NUMBERS, ToolHold};
+#[doc(hidden)]
+pub use guard::{Extreme, GuardMemory, Notice};
+#[doc(hidden)]
+pub use input::{Change, Input, InputState};
+#[doc(hidden)]
+pub use load::{FaceCorners, FaceMarks, LoadedNodes, LoadedRows, SceneLoad};
+#[doc(hidden)]
+pub use material::{ExponentialFibres, Prony, StiffnessDamping, memory_terms};
+#[doc(hidden)]
+pub use nodes::{
+    Acceleration, ChosenBy, Corners, FirstNonFinite, GROUP_ROWS, InternalWork, MiddleDisplacement, NodeSums,
+    OwnNumbers, PreviousPrescribedIncrement, SchemeLoss, WORK_NUMBERS,
+};
+#[doc(hidden)]
+pub use observation::{Cadence, HeldEnergies, HeldEnergy, Observed, Probe};
+#[doc(hidden)]
 pub use own_load::{LoadText, NodeAtRest, OfSystem, OwnLoad};
-pub use patches::{Patches, Scheme};
-pub use signal::{Signal, Signals};
+#[doc(hidden)]
+pub use patches::Patches;
+#[doc(hidden)]
+pub use signal::Signal;
+#[doc(hidden)]
 pub use suction::{BodyFaces, FacePresence, NO_FACE, SUCTION_NUMBERS, Suction, SuctionMarks, SuctionPressure, share};
+#[doc(hidden)]
 pub use suture::{Anchor, SUTURE_NUMBERS, Suture, SutureForce, SutureState, Sutured, Sutures};
+#[doc(hidden)]
 pub use tool::{FELT_NUMBERS, Hand, Key, Pose, TOUCH_NUMBERS, ToolContact, ToolContacts, ToolMotion, ToolTouch};
+#[doc(hidden)]
 pub use tool_removal::{INTAKE_NUMBERS, Island, Islands, Mouth, ToolIntake, ToolReach, ToolRemoval, ToolRemovals};
+#[doc(hidden)]
 pub use touched::Touched;
 
 use bevy_ecs::prelude::*;

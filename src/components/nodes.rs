@@ -127,6 +127,7 @@ impl Authoring {
 
     /// Faces of the surface, by places in the author's order. `alive` tells which elements are there, by their block's
     /// place and their row there.
+    #[doc(hidden)]
     pub fn surface(&self, alive: impl Fn(u32, u32) -> bool) -> Vec<SurfaceFace> {
         let points = vec![DVec3::ZERO; self.node_rows.len()];
         let whole = Mesh { points, cells: self.cells.clone(), ..Mesh::default() };

@@ -137,6 +137,7 @@ pub struct Signals {
 
 impl Signals {
     /// Adds a signal and returns its first slot.
+    #[doc(hidden)]
     pub fn add(&mut self, signal: Signal) -> usize {
         let slot = self.values.len();
         self.values.resize(slot + signal.slots(), [0.0; 4]);
@@ -146,12 +147,14 @@ impl Signals {
     }
 
     /// Adds the signal of the scene's load of a number, whose amplitude is divided by `parts`; its slot.
+    #[doc(hidden)]
     pub fn add_load(&mut self, number: usize, load: &Load, parts: f64) -> usize {
         self.loads.push((number, self.sources.len(), parts));
         self.add(Signal::Load { curve: load.curve().clone(), amplitude: load.amplitude() / parts })
     }
 
     /// Takes the amplitudes of the scene's loads as they are now.
+    #[doc(hidden)]
     pub fn renew_loads(&mut self, all: &[Load]) {
         for &(number, place, parts) in &self.loads {
             if let (Some(load), Some((Signal::Load { amplitude, .. }, _))) =
@@ -163,6 +166,7 @@ impl Signals {
     }
 
     /// Takes note of the input that a curve may be; its place.
+    #[doc(hidden)]
     pub fn declare(&mut self, curve: &Curve) -> Option<usize> {
         let Curve::Input { name, initial, rate } = curve else { return None };
         let known = self.inputs.iter().position(|input| input.name == *name);
@@ -173,16 +177,19 @@ impl Signals {
     }
 
     /// What a program may set.
+    #[doc(hidden)]
     pub fn inputs(&self) -> &[Input] {
         &self.inputs
     }
 
     /// The same, to set.
+    #[doc(hidden)]
     pub fn inputs_mut(&mut self) -> &mut [Input] {
         &mut self.inputs
     }
 
     /// The largest size that the input of a slot has had or goes to, 1 at least; 1 where it has none.
+    #[doc(hidden)]
     pub fn largest_input(&self, slot: usize) -> f64 {
         let mut first = 0;
         for (source, inputs) in &self.sources {
@@ -197,6 +204,7 @@ impl Signals {
 
     /// Evaluates all signals for a step between two times (s): of loads the mean over a window (s), see
     /// [`Clock::window_at`](super::Clock::window_at), of motions where they are at the end of the step.
+    #[doc(hidden)]
     pub fn evaluate(&mut self, window: (f64, f64), times: [f64; 2]) {
         self.fill(times, |curve, of| match of {
             Use::Load => curve.mean(window),
@@ -207,6 +215,7 @@ impl Signals {
 
     /// Takes shares, before and after a step, of what all signals are at a time (s): of a rotation, of its angle; of a
     /// path, of the time that it takes.
+    #[doc(hidden)]
     pub fn approach(&mut self, time: f64, shares: [f64; 2]) {
         self.fill(shares.map(|share| share * time), |curve, of| match of {
             Use::Load | Use::Motion => shares[1] * curve.value(time),
@@ -226,6 +235,7 @@ impl Signals {
     }
 
     /// Leads the tools of a port along a path, from its first place to its last.
+    #[doc(hidden)]
     pub fn lead(&mut self, port: &str, path: &[Key]) {
         for (source, _) in &mut self.sources {
             if let Signal::Pose { motion, .. } = source
@@ -237,11 +247,13 @@ impl Signals {
     }
 
     /// Where tools are at a time (s), each with its slot and seen from the point of its signal.
+    #[doc(hidden)]
     pub fn poses_at(&self, time: f64) -> Vec<(usize, Pose)> {
         self.poses(time, &|curve| curve.value(time))
     }
 
     /// The same on the way to where they are at a time (s), in a static analysis.
+    #[doc(hidden)]
     pub fn poses_at_share(&self, time: f64, share: f64) -> Vec<(usize, Pose)> {
         self.poses(share * time, &|curve| share * curve.value(time))
     }
@@ -261,6 +273,7 @@ impl Signals {
     }
 
     /// The first time after one (s) from which on a load or a motion may be quicker than ever before.
+    #[doc(hidden)]
     pub fn quickens_after(&self, time: f64) -> Option<f64> {
         let of_source = |source: &Signal| {
             let corner = match source {
@@ -273,6 +286,7 @@ impl Signals {
     }
 
     /// Whether nodes have been moved as told by a jump until a time (s).
+    #[doc(hidden)]
     pub fn have_jumped(&self, until: f64) -> bool {
         let any = |(source, inputs): &(Signal, Vec<Option<usize>>)| {
             // a tool may be anywhere at the start, nodes are at rest

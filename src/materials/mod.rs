@@ -5,6 +5,7 @@
 //! its share of their sum, the volumetric stress comes last: S = S_vol + S_iso − Υ.
 
 mod arruda_boyce;
+#[doc(hidden)]
 pub mod complaints;
 mod corotational;
 mod elastic;
@@ -26,21 +27,36 @@ mod stable_neo_hookean;
 mod tangent;
 mod user_law;
 
-pub use complaints::Complaints;
+pub use elastic::Elastic;
 pub(crate) use elastic::each_elastic_law;
-pub use elastic::{Elastic, ElasticLaw, TEXTS};
+pub use kinematics::Kinematics;
+pub use law::RustLaw;
+
+// what the engine, the crates on top and tests see beside: no version keeps their names and types
+#[doc(hidden)]
+pub use complaints::Complaints;
+#[doc(hidden)]
+pub use elastic::{ElasticLaw, TEXTS};
+#[doc(hidden)]
 pub use elasticity::Elasticity;
+#[doc(hidden)]
 pub use exponential_fibres::ExponentialFibre;
+#[doc(hidden)]
 pub use fibres::Fibres;
-pub use kinematics::{FLATTEST, J_FLOOR, Kinematics};
-pub use law::{Law, Prerequisite, RustLaw};
+#[doc(hidden)]
+pub use kinematics::{FLATTEST, J_FLOOR};
+#[doc(hidden)]
+pub use law::{Law, Prerequisite};
+#[doc(hidden)]
 pub use ogden::{OGDEN_TERMS, OgdenParameters, OgdenTerm};
+#[doc(hidden)]
 pub use prony::PronyTerm;
+#[doc(hidden)]
 pub use user_law::{EnergySlopes, IsochoricStress, LawPrograms, UserLaw};
 
 macro_rules! laws {
     ($($(#[$doc:meta])* $word:ident: $law:ident;)*) => {
-        $(pub use $word::$law;)*
+        $(#[doc(hidden)] pub use $word::$law;)*
     };
 }
 each_elastic_law!(laws);

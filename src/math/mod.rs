@@ -11,9 +11,18 @@ mod tensor;
 mod triangle;
 mod trigonometry;
 
-pub use real::refine_inverse_cbrt;
-pub use real::{Real, Scalar, Task};
+pub use real::{Real, Scalar};
+pub use simd::SimdScalar;
+pub use tensor::{Mat3, Sym3};
+
+// what the engine, the crates on top and tests see beside: no version keeps their names and types
+#[doc(hidden)]
+pub use real::{Task, refine_inverse_cbrt};
+#[doc(hidden)]
 pub use rows::{Rows, Scratch};
-pub use simd::{F32s, F64s, LANES, SimdScalar, lane_place};
-pub use tensor::{Mat3, Sym3, dot, dot_plus, minor};
+#[doc(hidden)]
+pub use simd::{F32s, F64s, LANES, lane_place};
+#[doc(hidden)]
+pub use tensor::{dot, dot_plus, minor};
+#[doc(hidden)]
 pub use triangle::OnTriangle;

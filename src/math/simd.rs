@@ -37,26 +37,37 @@ pub trait SimdScalar: Scalar {
     /// The register.
     type Vector<S: Simd>: Real;
     /// Numbers in a register; divides [`LANES`].
+    #[doc(hidden)]
     fn width<S: Simd>() -> usize;
     /// Reads a register full from the start of a slice that is long enough.
+    #[doc(hidden)]
     fn load<S: Simd>(simd: S, from: &[Self]) -> Self::Vector<S>;
     /// Writes a register to the start of a slice that is long enough.
+    #[doc(hidden)]
     fn store<S: Simd>(vector: Self::Vector<S>, to: &mut [Self]);
     /// Reads what a slice has, at most a register full; zeros in the other places.
+    #[doc(hidden)]
     fn load_part<S: Simd>(simd: S, from: &[Self]) -> Self::Vector<S>;
     /// Writes as much of a register as a slice has room for.
+    #[doc(hidden)]
     fn store_part<S: Simd>(vector: Self::Vector<S>, to: &mut [Self]);
     /// The same number in all places.
+    #[doc(hidden)]
     fn splat<S: Simd>(simd: S, value: Self) -> Self::Vector<S>;
     /// Each number three times, over three registers.
+    #[doc(hidden)]
     fn broadcast3<S: Simd>(numbers: Self::Vector<S>) -> [Self::Vector<S>; 3];
     /// The four columns of rows, a row a lane.
+    #[doc(hidden)]
     fn load_rows<S: Simd>(simd: S, rows: &Rows<Self>, at: &[u16]) -> [Self::Vector<S>; 4];
     /// Adds vectors to rows, one lane after the other.
+    #[doc(hidden)]
     fn add_to_rows<S: Simd>(simd: S, rows: &mut Rows<Self>, at: &[u16], vectors: [Self::Vector<S>; 3]);
     /// Lends the thread's rows to a task, which must not ask for them again.
+    #[doc(hidden)]
     fn with_scratch<O>(task: impl FnOnce(&mut Scratch<Self>) -> O) -> O;
     /// Lends so many numbers of the thread's own, whatever they are.
+    #[doc(hidden)]
     fn with_spare<O>(count: usize, task: impl FnOnce(&mut [Self]) -> O) -> O;
 }
 

@@ -54,6 +54,7 @@ impl Cells {
     }
 
     /// Triangles alone: a surface to be written, no mesh of elements.
+    #[doc(hidden)]
     pub fn triangles(corners: &[[u32; 3]]) -> Self {
         let mut all = Self::default();
         all.block(CellKind::Triangle).extend(corners.as_flattened().iter().copied());
@@ -71,6 +72,7 @@ impl Cells {
     }
 
     /// Adds cells by their nodes, one cell after the other: as many as the kind has, of a kind that fills space.
+    #[doc(hidden)]
     pub fn extend_kind(&mut self, kind: CellKind, nodes: impl IntoIterator<Item = u32>) {
         debug_assert!(kind.topology().solid.is_some(), "{kind:?}");
         self.block(kind).extend(nodes);
@@ -89,6 +91,7 @@ impl Cells {
     }
 
     /// Adds all of some others, with `first` added to each of their nodes.
+    #[doc(hidden)]
     pub fn extend_moved(&mut self, others: &Cells, first: u32) {
         for block in &others.blocks {
             self.block(block.kind).extend(block.nodes.iter().map(|node| node + first));
@@ -99,6 +102,7 @@ impl Cells {
     ///
     /// # Errors
     /// They do not fit into memory.
+    #[doc(hidden)]
     pub fn try_reserve_exact(&mut self, kind: CellKind, cells: usize) -> Result<(), TryReserveError> {
         let block = self.block(kind);
         block.nodes.try_reserve_exact(cells.saturating_mul(block.each))
@@ -141,11 +145,13 @@ impl Cells {
     }
 
     /// How many of a kind there are.
+    #[doc(hidden)]
     pub fn count(&self, kind: CellKind) -> usize {
         self.kinds().find(|of| of.0 == kind).map_or(0, |of| of.1)
     }
 
     /// The row of the first cell of a kind, or where it would be.
+    #[doc(hidden)]
     pub fn first(&self, kind: CellKind) -> usize {
         self.kinds().take_while(|of| of.0 < kind).map(|of| of.1).sum()
     }
@@ -174,6 +180,7 @@ impl Cells {
     }
 
     /// The same, to be changed. Panics on a row that is not there.
+    #[doc(hidden)]
     pub fn nodes_mut(&mut self, row: usize) -> &mut [u32] {
         let (place, first) = self.place(row);
         let CellBlock { each, nodes, .. } = &mut self.blocks[place];
@@ -186,6 +193,7 @@ impl Cells {
     }
 
     /// The nodes of all cells, one cell after the other.
+    #[doc(hidden)]
     pub fn all_nodes(&self) -> impl Iterator<Item = u32> + Clone + '_ {
         self.blocks.iter().flat_map(|block| block.nodes.iter().copied())
     }
@@ -197,6 +205,7 @@ impl Cells {
     }
 
     /// The cells of some rows, ascending, with other names for their nodes. Panics on a row that is not there.
+    #[doc(hidden)]
     pub fn select(&self, rows: impl IntoIterator<Item = usize>, mut rename: impl FnMut(u32) -> u32) -> Cells {
         let mut selected = Cells::default();
         let mut rows = rows.into_iter().peekable();

@@ -38,14 +38,17 @@ pub use cells::Cells;
 pub use error::{FilePosition, MeshError};
 pub use generators::ElementKind;
 pub(crate) use generators::each_element_kind;
+#[doc(hidden)]
 pub use locate::{Location, Locator};
 pub(crate) use pieces::NO_PIECE;
 pub(crate) use placement::{angles_about_axes, rotation_about_axes};
+#[doc(hidden)]
 pub use quality::Quality;
 #[cfg(feature = "files")]
 pub(crate) use read::Fault;
 #[cfg(feature = "files")]
 pub(crate) use read::cursor::{Cursor, Form as NumberForm};
+#[doc(hidden)]
 pub use report::{MeshReport, SetReport, extent};
 pub use surface::SurfaceFace;
 pub(crate) use surface::nodes_of_face;
@@ -102,6 +105,7 @@ pub struct Mesh {
 
 impl Mesh {
     /// Keeps a list of points by their numbers, if the mesh has all of them.
+    #[doc(hidden)]
     pub fn keep_list(&mut self, numbers: &[u64], rows: &HashMap<u64, usize>) {
         let found: Option<BTreeSet<u32>> = numbers.iter().map(|id| rows.get(id).map(|&row| row as u32)).collect();
         if let Some(found) = found {
@@ -110,6 +114,7 @@ impl Mesh {
     }
 
     /// Rows of the points by their numbers.
+    #[doc(hidden)]
     pub fn point_rows(&self) -> HashMap<u64, usize> {
         (0..self.points.len()).map(|row| (self.point_ids.of(row), row)).collect()
     }

@@ -7,7 +7,8 @@ pub const NO_PIECE: u32 = u32::MAX;
 
 impl Cells {
     /// For each cell the lowest node of its piece, that of all cells which are reached from it over nodes that cells
-    /// share which are there; [`NO_PIECE`] for those that are not. `points`: how many nodes there are.
+    /// share which are there; `NO_PIECE` for those that are not. `points`: how many nodes there are.
+    #[doc(hidden)]
     pub fn pieces(&self, points: usize, is_there: impl Fn(usize) -> bool) -> Vec<u32> {
         let mut lower: Vec<u32> = (0..points as u32).collect();
         for (_, (_, nodes)) in self.iter().enumerate().filter(|(cell, _)| is_there(*cell)) {

@@ -6,6 +6,7 @@ use glam::{DMat3, DVec3};
 impl Mesh {
     /// Scales the mesh about the origin, turns it about the axes x, then y, then z through the origin
     /// (`rotate_degrees`), and moves it by `translate` (m). Vectors of elements turn with it.
+    #[doc(hidden)]
     pub fn place(&mut self, scale: f64, rotate_degrees: DVec3, translate: DVec3) -> Result<(), MeshError> {
         let refuse = |parameter, value, allowed: &str| {
             Err(MeshError::Parameter { name: "place", parameter, value, allowed: allowed.into() })

@@ -18,11 +18,13 @@ pub struct Quality {
 
 impl Mesh {
     /// The quality of an element: that of its [kind](super::topology::Solid::quality).
+    #[doc(hidden)]
     pub fn element_quality(&self, row: usize) -> f64 {
         self.cells.kind(row).topology().solid.map_or(0.0, |solid| (solid.quality)(&self.places(row)))
     }
 
     /// The quality of all elements, in short.
+    #[doc(hidden)]
     pub fn quality(&self) -> Quality {
         let mut all: Vec<(usize, f64)> =
             (0..self.element_count()).map(|row| (row, self.element_quality(row))).collect();

@@ -22,6 +22,7 @@ impl Mesh {
     ///
     /// # Errors
     /// Elements of a kind that cannot be cut; more elements or points than 32 bits count.
+    #[doc(hidden)]
     pub fn refine(&mut self, times: u32) -> Result<(), MeshError> {
         let most = u64::from(u32::MAX) / 8;
         let refuse = |value, allowed| Err(MeshError::Parameter { name: "body", parameter: "refine", value, allowed });

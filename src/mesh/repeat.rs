@@ -8,6 +8,7 @@ impl Mesh {
     /// and so on. Each stands `apart` (m) from the one before; they may stand in the same place. Sets hold the points
     /// and elements of all copies; the sets `copy 0`, `copy 1` ... those of one. Numbers of points and elements go on
     /// from copy to copy.
+    #[doc(hidden)]
     pub fn repeat(&mut self, copies: u32, apart: DVec3) {
         if copies <= 1 {
             return;

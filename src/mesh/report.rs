@@ -58,6 +58,7 @@ pub struct SetReport {
 
 impl Mesh {
     /// The mesh in short.
+    #[doc(hidden)]
     pub fn summary(&self) -> MeshReport {
         let (min, max) = extent(self.points.iter().copied());
         let surface = self.surface();

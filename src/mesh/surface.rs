@@ -28,6 +28,7 @@ impl SurfaceFace {
 
     /// The flat polygons that it is taken for: itself, or four triangles where it has middles; a triangle repeats its
     /// last point.
+    #[doc(hidden)]
     pub fn facets(&self) -> impl Iterator<Item = [u32; 4]> + use<> {
         let [a, b, c, _] = self.nodes;
         let four =
@@ -58,6 +59,7 @@ impl Mesh {
     /// The same of the mesh that is left of it: faces that belong to exactly one of the elements that live. Where they
     /// do not touch other kinds of faces, every edge belongs to an even number of them, whatever has been removed: they
     /// are the boundary of what is left, and a boundary has none.
+    #[doc(hidden)]
     pub fn exposed(&self, lives: impl Fn(usize) -> bool) -> Vec<SurfaceFace> {
         let mut single = self.single_faces(lives);
         single.sort_unstable();
@@ -66,6 +68,7 @@ impl Mesh {
 
     /// Every face of every element, by element, then by local face, each with the place of the same face of the element
     /// on its other side; `none` where there is no such element.
+    #[doc(hidden)]
     pub fn faces_and_opposites(&self, none: u32) -> Vec<(SurfaceFace, u32)> {
         let (mut faces, mut alike) = (Vec::new(), Vec::new());
         self.each_face(
@@ -93,6 +96,7 @@ impl Mesh {
     }
 
     /// Nodes in the middle of edges, by the corners at the ends of these, ascending.
+    #[doc(hidden)]
     pub fn middles(&self) -> HashMap<[u32; 2], u32> {
         let mut middles = HashMap::new();
         for (kind, rows, _) in self.cells.blocks() {

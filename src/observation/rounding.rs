@@ -16,7 +16,7 @@ const KNOWN_STRAIN: f64 = 1e-6;
 /// A displacement of the size u is known to u·eps/2, so a strain over an edge h to u·eps/h, and a stress to M u·eps/h,
 /// M being the modulus of compression without lateral strain, κ + 4μ/3. Over a path along which displacement gradients
 /// change by as much as one, work against that stress is M V u·eps/h: that much energy may be made or lost of nothing.
-/// In f32 nothing is known, too, of strains below [`KNOWN_STRAIN`].
+/// In f32 nothing is known, too, of strains below `KNOWN_STRAIN`.
 #[derive(Resource, Clone, Debug, Default)]
 pub struct Rounding {
     /// Of each body, energy a displacement (J/m).

@@ -48,6 +48,7 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     /// An error at a place.
+    #[doc(hidden)]
     pub fn error(at: impl Into<Option<Span>>, message: impl Into<String>) -> Self {
         Self {
             severity: Severity::Error,
@@ -61,24 +62,28 @@ impl Diagnostic {
     }
 
     /// Adds a word on the place.
+    #[doc(hidden)]
     pub fn label(&mut self, label: impl Into<String>) -> &mut Self {
         self.label = shortened(label.into(), LONGEST_LABEL);
         self
     }
 
     /// Adds a note: what is allowed, what to do.
+    #[doc(hidden)]
     pub fn note(&mut self, note: impl Into<String>) -> &mut Self {
         self.notes.push(shortened(note.into(), LONGEST));
         self
     }
 
     /// Adds notes.
+    #[doc(hidden)]
     pub fn notes(&mut self, notes: impl IntoIterator<Item = String>) -> &mut Self {
         self.notes.extend(notes.into_iter().map(|note| shortened(note, LONGEST)));
         self
     }
 
     /// Adds a second place.
+    #[doc(hidden)]
     pub fn also(&mut self, at: Span, label: impl Into<String>) -> &mut Self {
         self.also.push((at, shortened(label.into(), LONGEST_LABEL)));
         self
@@ -133,11 +138,13 @@ pub struct Diagnostics {
 
 impl Diagnostics {
     /// Nothing wrong yet with this text.
+    #[doc(hidden)]
     pub fn new(source: Arc<Source>, tree: Arc<Tree>) -> Self {
         Self { source: Some(source), tree: Some(tree), ..Self::default() }
     }
 
     /// One mistake that is not in a text: a file that cannot be read.
+    #[doc(hidden)]
     pub fn of(message: impl Into<String>) -> Self {
         let mut diagnostics = Self::default();
         diagnostics.push(Diagnostic::error(None, message));
@@ -145,11 +152,13 @@ impl Diagnostics {
     }
 
     /// The text they are about; empty when there is none.
+    #[doc(hidden)]
     pub fn text(&self) -> &str {
         self.source.as_ref().map_or("", |source| source.text())
     }
 
     /// Adds a mistake.
+    #[doc(hidden)]
     pub fn push(&mut self, diagnostic: Diagnostic) -> &mut Diagnostic {
         // of more than anybody reads the last one gives way
         if self.list.len() >= MISTAKES {
@@ -162,6 +171,7 @@ impl Diagnostics {
 
     /// Adds an error about the value at a path such as `schedule[2]` or `bodies.cube.mesh`. When the file does not
     /// have that value (a default), what should hold it is marked.
+    #[doc(hidden)]
     pub fn error_at(&mut self, path: impl Into<Path>, message: impl Into<String>) -> &mut Diagnostic {
         let at = self.span(&path.into());
         self.push(Diagnostic::error(at, message))
@@ -169,6 +179,7 @@ impl Diagnostics {
 
     /// Adds an error about some bytes of the text `value` that stands at a path; about all of it where it is not
     /// written as it is, but with backslashes.
+    #[doc(hidden)]
     pub fn error_within(
         &mut self,
         path: impl Into<Path>,
@@ -189,6 +200,7 @@ impl Diagnostics {
     }
 
     /// As [`Self::error_at`], for what does not keep the scene from running.
+    #[doc(hidden)]
     pub fn warn_at(&mut self, path: impl Into<Path>, message: impl Into<String>) -> &mut Diagnostic {
         let diagnostic = self.error_at(path, message);
         diagnostic.severity = Severity::Warning;
@@ -201,6 +213,7 @@ impl Diagnostics {
     }
 
     /// Whether an error has been told about the value at a path, or a part of it.
+    #[doc(hidden)]
     pub fn has_error_in(&self, path: impl Into<Path>) -> bool {
         let Some(tree) = self.tree.as_ref() else { return false };
         let within = path.into().span(&tree.root);

@@ -75,6 +75,7 @@ impl SceneFile {
     ///
     /// # Errors
     /// As [`Self::load`].
+    #[doc(hidden)]
     pub fn read_allowing(
         name: &str,
         from: impl Read,
@@ -217,6 +218,7 @@ impl SceneFile {
     }
 
     /// The syntax tree of [`Self::text`], in which what parts hold has the names that the scene knows it by.
+    #[doc(hidden)]
     pub fn tree(&self) -> &Tree {
         &self.tree
     }
@@ -231,6 +233,7 @@ impl SceneFile {
     }
 
     /// An empty list for complaints about this scene.
+    #[doc(hidden)]
     pub fn diagnostics(&self) -> Diagnostics {
         Diagnostics::new(Arc::clone(&self.source), Arc::clone(&self.tree))
     }

@@ -3,6 +3,7 @@
 mod adjust;
 #[doc(hidden)]
 pub mod check;
+#[doc(hidden)]
 pub mod diagnostic;
 mod excerpt;
 mod file_access;
@@ -13,6 +14,8 @@ pub mod load;
 mod load_parts;
 mod partial;
 mod parts;
+// its words are described in docs/scene.md; they grow with every version
+#[doc(hidden)]
 pub mod schema;
 #[doc(hidden)]
 pub mod set;
@@ -29,8 +32,13 @@ pub mod words;
 
 pub(crate) use adjust::other_than_parameters;
 pub use diagnostic::{Diagnostic, Diagnostics, Severity, TextFile};
-pub use file_access::{FileKind, FileSource, Outside};
+pub use file_access::FileSource;
 pub use limits::Allowed;
 pub use load::SceneFile;
+
+#[doc(hidden)]
+pub use file_access::{FileKind, Outside};
+#[doc(hidden)]
 pub use suggest::{choice, list, nearest};
+#[doc(hidden)]
 pub use validate::{validate, validate_picture};

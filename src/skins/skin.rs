@@ -71,6 +71,7 @@ impl Skin {
 
     /// Takes note of which elements live, by the author's rows: points whose element has gone get the nearest one that
     /// lives, by the shape that the surface was made for. What went before what does not matter.
+    #[doc(hidden)]
     pub fn update_alive(&mut self, alive: Vec<bool>) {
         if alive != self.alive {
             let lives = |element: usize| alive.get(element).copied().unwrap_or_default();

@@ -13,9 +13,13 @@ mod packed;
 mod state_columns;
 
 pub use error::SnapshotError;
-pub use format::VERSION;
-pub use identity::{Identity, identity};
 pub use packed::PackedSnapshot;
+
+#[doc(hidden)]
+pub use format::VERSION;
+#[doc(hidden)]
+pub use identity::{Identity, identity};
+#[doc(hidden)]
 pub use state_columns::ColumnOwner;
 
 use crate::backend::device::{bring_to_host, send_to_device};
@@ -95,6 +99,7 @@ impl Snapshot {
     ///
     /// # Errors
     /// That the world is one of a static analysis; a custom system's state that cannot be kept; what the GPU says.
+    #[doc(hidden)]
     pub fn take(world: &mut World) -> Result<Self, Error> {
         let clock = *world.resource::<Clock>();
         if clock.relaxation.is_some() {
@@ -111,6 +116,7 @@ impl Snapshot {
     /// # Errors
     /// What does not fit; then the world is as it was. A custom system's state that cannot be taken back; what the GPU
     /// says.
+    #[doc(hidden)]
     pub fn put(&self, world: &mut World) -> Result<(), Error> {
         let Some(keeping) = world.remove_resource::<Keeping>() else { return Err(SnapshotError::Static.into()) };
         let put = put(self, world, &keeping);

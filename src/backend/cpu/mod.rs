@@ -92,6 +92,7 @@ pub struct Cpu {
 
 impl Cpu {
     /// `threads` 0: one a core, and one only for bodies too small to share.
+    #[doc(hidden)]
     pub fn new(threads: usize, elements: usize, instructions: Instructions) -> Self {
         let threads = match threads {
             0 if elements < WORTH_SHARING => 1,
@@ -127,11 +128,13 @@ impl Cpu {
 
     /// The threads, to run a whole loop of steps on: from there sharing a task costs a few microseconds, from outside
     /// several times that in every system. `None` when one thread works.
+    #[doc(hidden)]
     pub fn pool(&self) -> Option<Arc<rayon::ThreadPool>> {
         self.pool.clone()
     }
 
     /// Runs a task so that what it shares among threads stays on those of this run: on one, where one is asked for.
+    #[doc(hidden)]
     pub fn confine<R: Send>(&self, task: impl FnOnce() -> R + Send) -> R {
         let alone = || self.alone.get_or_init(|| pool_of(1)).as_deref();
         match self.pool.as_deref().or_else(alone) {
@@ -204,11 +207,13 @@ impl Cpu {
 
     /// Runs a task with the widest registers that the machine has.
     #[inline]
+    #[doc(hidden)]
     pub fn dispatch_widest<O: pulp::WithSimd>(&self, task: O) -> O::Output {
         self.arch.dispatch(task)
     }
 
     /// Results of `task` for 0 to `count` − 1, in order.
+    #[doc(hidden)]
     pub fn map<R: Send>(&self, count: usize, task: impl Fn(usize) -> R + Sync + Send) -> Vec<R> {
         if self.pool.is_none() || count < 2 {
             return (0..count).map(task).collect();
@@ -220,6 +225,7 @@ impl Cpu {
 
     /// Runs `task` on each item, on all threads. Items must be independent; their order of work does not matter then.
     /// They are kept where those of the last step were.
+    #[doc(hidden)]
     pub fn for_each<I: Send>(&self, mut items: impl Iterator<Item = I>, task: impl Fn(I) + Sync + Send) {
         match (&self.pool, items.size_hint().1) {
             (None, _) | (_, Some(0 | 1)) => items.for_each(task),

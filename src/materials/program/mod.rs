@@ -1,7 +1,7 @@
 //! Programs: a law or a load written in WGSL alone, ready to run on the CPU.
 //!
 //! A pure function of WGSL (no memory, no threads, loops with a fixed number of rounds) is a fixed arrangement of sums,
-//! products, roots, exponentials and choices. [`translate()`] finds it from naga's reading of the text, in double
+//! products, roots, exponentials and choices. `translate` finds it from naga's reading of the text, in double
 //! precision, with the author's parameters put in as constants; a [`Program`] then runs it over any
 //! [`Real`](crate::math::Real): in f64 as the reference, over registers as the CPU backend does.
 

@@ -233,6 +233,7 @@ impl CellKind {
     }
 
     /// What share of a cell's mass each of its nodes has: [`Solid::shares`]; none of a kind that does not fill space.
+    #[doc(hidden)]
     pub const fn shares(self) -> &'static [f64] {
         match self.topology().solid {
             Some(solid) => solid.shares,
@@ -241,6 +242,7 @@ impl CellKind {
     }
 
     /// The least of the [shares](CellKind::shares).
+    #[doc(hidden)]
     pub const fn least_share(self) -> f64 {
         let (shares, mut least, mut node) = (self.shares(), 1.0, 0);
         while node < shares.len() {
@@ -253,12 +255,14 @@ impl CellKind {
     }
 
     /// Kinds that fill space, with what these have besides.
+    #[doc(hidden)]
     pub fn solids() -> impl Iterator<Item = (CellKind, &'static Solid)> {
         Self::ALL.into_iter().filter_map(|kind| Some((kind, kind.topology().solid?)))
     }
 
     /// The kind of a type of VTK and how files list its nodes; else the name and the dimension of what sinew cannot use
     /// (3 where it is not known).
+    #[doc(hidden)]
     pub fn of_vtk(number: u8) -> Result<(CellKind, &'static Listing), (String, u8)> {
         let listings = Self::ALL.into_iter().flat_map(|kind| kind.topology().vtk.iter().map(move |l| (kind, l)));
         listings.into_iter().find(|(_, listing)| listing.number == number).ok_or_else(|| {
@@ -268,6 +272,7 @@ impl CellKind {
     }
 
     /// The kind of a type of Gmsh.
+    #[doc(hidden)]
     pub fn of_gmsh(number: u64) -> Option<CellKind> {
         Self::ALL.into_iter().find(|kind| u64::from(kind.topology().gmsh.number) == number)
     }
