@@ -134,8 +134,9 @@ struct Surface {
     first_wake: f64,
     /// Nodes that bore a force in the last step.
     pressed: Vec<u32>,
-    /// Points that touched or faced something.
+    /// Points that touched or faced something in this step, and in the one before.
     touching: Vec<u32>,
+    touched: Vec<u32>,
     /// Bodies with their numbers, in the order of entities.
     numbers: Vec<(Entity, usize)>,
     /// Place of a node in the set, or none.
@@ -275,7 +276,8 @@ fn step<T: Scalar>(
     if !faced::wake(contacts, reach, nearer) && contacts.surface.crossings.near.is_empty() {
         contacts.surface.figures.asleep += 1;
         meet::release(&mut contacts.surface, &mut bodies);
-        return meet::forget(contacts, &mut bodies);
+        meet::forget(&mut contacts.surface, &mut bodies);
+        return meet::leave(&contacts.surface, &mut bodies);
     }
     motion::update_places(contacts, &bodies, cpu);
     faced::face(contacts, reach, nearer, cpu);
