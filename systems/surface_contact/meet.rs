@@ -280,6 +280,7 @@ fn note_touches<T: Scalar>(
     let mut forces = std::mem::take(&mut contacts.surface.forces);
     forces.clear();
     forces.resize(set.steps.len(), DVec3::ZERO);
+    let mut deepest = contacts.surface.figures.deepest;
     let surface = &contacts.surface;
     for (contact, met) in set.contacts.iter().zip(&surface.met).filter(|(contact, _)| contact.pressing > 0.0) {
         let force = contact.force();
@@ -287,6 +288,7 @@ fn note_touches<T: Scalar>(
         let kept = contacts.kept(met.point);
         let touch = bodies[kept.body].kept_mut(kept);
         let after = contact.relative(&set.steps);
+        deepest = deepest.max(-(met.gap + contact.normal.dot(after)));
         if met.first {
             set_vector(touch, 0, contact.slip);
             touch[4] = T::from_f64(if contact.slides { SLIDES } else { STICKS });
@@ -301,6 +303,7 @@ fn note_touches<T: Scalar>(
             touch[7] = T::from_f64(lost);
         }
     }
+    contacts.surface.figures.deepest = deepest;
     contacts.surface.forces = forces;
 }
 
