@@ -27,6 +27,49 @@ struct Touch {
     push: f32, // and how far outwards
     touches: bool,
     slides: bool, // whether friction does not hold it
+    swept: bool, // whether it stays outside a plane, in the tool's frame: where its way first meets the tool
+    plane_normal: vec3<f32>,
+    plane_at: vec3<f32>, // (m)
+}
+
+// Where the way of a node first meets a tool; twin of systems/tool_contact/sweep.rs.
+const SWEEP_TURNS: u32 = 64u;
+const SWEEP_NEAR: f32 = 1e-3;
+
+fn first_touch(tool: u32, start: vec3<f32>, end: vec3<f32>, touch: ptr<function, Touch>) {
+    (*touch).swept = false;
+    let beyond = tools[tool].swept;
+    let way = distance(start, end);
+    // false too of what is no number
+    if beyond <= 0.0 || !(way > beyond) {
+        return;
+    }
+    var share = 0.0;
+    for (var turn = 0u; turn < SWEEP_TURNS; turn++) {
+        let at = mix(start, end, share);
+        let surface = distance_to(tools[tool], at);
+        if turn == 0u && surface.w < -SWEEP_NEAR * beyond {
+            return;
+        }
+        (*touch).plane_normal = surface.xyz;
+        (*touch).plane_at = at - surface.w * surface.xyz;
+        if surface.w <= SWEEP_NEAR * beyond {
+            break;
+        }
+        share += surface.w / way;
+        if share >= 1.0 {
+            return;
+        }
+    }
+    (*touch).swept = true;
+}
+
+// How far a place in the tool's frame is outside of what the node must stay outside of (m), and which way out is.
+fn surface_of(tool: u32, touch: ptr<function, Touch>, at: vec3<f32>) -> vec4<f32> {
+    if (*touch).swept {
+        return vec4<f32>((*touch).plane_normal, dot((*touch).plane_normal, at - (*touch).plane_at));
+    }
+    return distance_to(tools[tool], at);
 }
 
 fn predict(tool: u32, place: vec3<f32>, before: vec3<f32>, predicted: vec3<f32>, sticks: bool) -> Touch {
@@ -34,10 +77,15 @@ fn predict(tool: u32, place: vec3<f32>, before: vec3<f32>, predicted: vec3<f32>,
     let pose = array<vec4<f32>, 3>(step.signals[at], step.signals[at + 1u], step.signals[at + 2u]);
     let change = array<vec4<f32>, 3>(step.signals[at + 3u], step.signals[at + 4u], step.signals[at + 5u]);
     let of_tool = into_frame(pose, place + predicted);
-    let surface = distance_to(tools[tool], of_tool);
+    let earlier = array<vec4<f32>, 3>(pose[0] - change[0], pose[1] - change[1], pose[2] - change[2]);
+    var touch: Touch;
+    touch.swept = false;
+    if tools[tool].swept > 0.0 {
+        first_touch(tool, into_frame(earlier, place), of_tool, &touch);
+    }
+    let surface = surface_of(tool, &touch, of_tool);
     var allowed = 0.0;
-    if surface.w < 0.0 {
-        let earlier = array<vec4<f32>, 3>(pose[0] - change[0], pose[1] - change[1], pose[2] - change[2]);
+    if surface.w < 0.0 && !touch.swept {
         var out = limits.settling * step.time_step;
         if limits.counts_work == 0u {
             out = 0.1 * limits.edge;
@@ -45,7 +93,6 @@ fn predict(tool: u32, place: vec3<f32>, before: vec3<f32>, predicted: vec3<f32>,
         allowed = min(distance_to(tools[tool], into_frame(earlier, place)).w + out, 0.0);
     }
     let at_tool = vec4<f32>(of_tool, 1.0);
-    var touch: Touch;
     touch.normal = vec3<f32>(dot(pose[0].xyz, surface.xyz), dot(pose[1].xyz, surface.xyz), dot(pose[2].xyz, surface.xyz));
     touch.gap = surface.w - allowed;
     touch.target_gap = allowed;
@@ -57,7 +104,6 @@ fn predict(tool: u32, place: vec3<f32>, before: vec3<f32>, predicted: vec3<f32>,
     touch.slides = true;
     touch.touches = surface.w <= limits.edge;
     if touch.touches && tools[tool].share > 0.0 {
-        let earlier = array<vec4<f32>, 3>(pose[0] - change[0], pose[1] - change[1], pose[2] - change[2]);
         let here = into_frame(earlier, place);
         let now = distance_to(tools[tool], here);
         let at_here = vec4<f32>(here, 1.0);
@@ -76,7 +122,7 @@ fn evaluate_again(tool: u32, end: vec3<f32>, before: Touch) -> Touch {
     let at = tools[tool].signal;
     let pose = array<vec4<f32>, 3>(step.signals[at], step.signals[at + 1u], step.signals[at + 2u]);
     let of_tool = into_frame(pose, end);
-    let surface = distance_to(tools[tool], of_tool);
+    let surface = surface_of(tool, &touch, of_tool);
     let at_tool = vec4<f32>(of_tool, 1.0);
     touch.normal = vec3<f32>(dot(pose[0].xyz, surface.xyz), dot(pose[1].xyz, surface.xyz), dot(pose[2].xyz, surface.xyz));
     touch.gap = surface.w - touch.target_gap;

@@ -19,8 +19,8 @@ struct ToolRow {
     first: u32,
     share: f32, // of a spring in place of the kinematic law; 0: there is none
     damping: f32,
-    room_0: u32,
-    room_1: u32,
+    swept: f32, // how far a node must go for its way to be looked at (m); 0: it never is
+    room: u32,
 }
 
 const TOOL_GRID: u32 = 0xffffffffu;

@@ -61,8 +61,8 @@ pub use simulation::explain;
 pub use simulation::{
     Advanced, BackendChoice, ColumnView, Ended, Equilibrium, FieldName, Grab, GrabId, Grip, InputChange,
     InputRecording, InputUse, InputValue, Inversions, Mode, Names, NodeSet, NodeState, Options, Pick, PortUse,
-    PoseChange, Preload, RealTime, Simulation, Stability, StepHistory, Summary, SystemTime, Unloaded, Unloading,
-    UnloadingStep, unload,
+    PoseChange, Preload, RealTime, Simulation, Stability, StepHistory, Summary, SurfaceContactUse, SystemTime,
+    Unloaded, Unloading, UnloadingStep, unload,
 };
 pub use snapshot::Snapshot;
 

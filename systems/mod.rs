@@ -89,8 +89,9 @@ pub(crate) use patch_pass::patch_pass;
 #[doc(hidden)]
 pub use pressure::Pressure;
 pub use registry::Registry;
+pub(crate) use surface_contact::find_surfaces;
 #[doc(hidden)]
-pub use surface_contact::{Meeting, SurfaceContacts};
+pub use surface_contact::{Meeting, SurfaceContacts, SurfaceMemory};
 pub(crate) use system::BeforeSteps;
 #[doc(hidden)]
 pub use system::{Because, DescribeKernels, HostSystem, OnDevice, OnHost};

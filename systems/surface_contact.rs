@@ -6,6 +6,7 @@ mod device;
 mod faced;
 mod kernels;
 mod meet;
+mod memory;
 mod motion;
 mod survey;
 
@@ -17,8 +18,11 @@ use crate::contact::{ContactSet, Lists, Near, Point, Surfaces, Tree};
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
+pub(crate) use device::find as find_surfaces;
 use glam::DVec3;
 pub(super) use kernels::ForeseenNodes;
+pub use memory::SurfaceMemory;
+use std::time::Duration;
 
 /// The explicit Lagrange correction of the predicted step, of points of surfaces against faces of others (see
 /// [`ContactSet::solve`]). Like `tool_contact` it finds the forces that keep the next step from ending inside and adds
@@ -134,8 +138,9 @@ struct Surface {
     first_wake: f64,
     /// Nodes that bore a force in the last step.
     pressed: Vec<u32>,
-    /// Points that touched or faced something.
+    /// Points that touched or faced something in this step, and in the one before.
     touching: Vec<u32>,
+    touched: Vec<u32>,
     /// Bodies with their numbers, in the order of entities.
     numbers: Vec<(Entity, usize)>,
     /// Place of a node in the set, or none.
@@ -165,6 +170,10 @@ pub struct Figures {
     pub examined: u64,
     /// Contacts, of all steps.
     pub contacts: u64,
+    /// How long making lists has taken.
+    pub building: Duration,
+    /// The deepest that a point has been inside after a step (m).
+    pub deepest: f64,
     /// Steps on a GPU that found their lists too old, and went through all triangles.
     pub unlisted: u64,
 }
@@ -275,7 +284,8 @@ fn step<T: Scalar>(
     if !faced::wake(contacts, reach, nearer) && contacts.surface.crossings.near.is_empty() {
         contacts.surface.figures.asleep += 1;
         meet::release(&mut contacts.surface, &mut bodies);
-        return meet::forget(contacts, &mut bodies);
+        meet::forget(&mut contacts.surface, &mut bodies);
+        return meet::leave(&contacts.surface, &mut bodies);
     }
     motion::update_places(contacts, &bodies, cpu);
     faced::face(contacts, reach, nearer, cpu);

@@ -2,6 +2,7 @@
 
 mod row;
 mod stage;
+mod sweep;
 
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
@@ -96,6 +97,18 @@ struct Touch {
     slides: bool,
     /// Whether a spring pushes: by where the node is, and not by where it would end.
     springs: bool,
+    /// Where its way first meets the tool, of a node that could be through it where it ends.
+    plane: Option<sweep::Plane>,
+}
+
+impl Touch {
+    /// How far a place in the tool's frame is outside of what the node must stay outside of (m), and which way out is.
+    fn surface(plane: Option<sweep::Plane>, tool: &ToolContact, at: DVec3) -> (f64, DVec3) {
+        match plane {
+            Some((normal, place)) => ((at - place).dot(normal), normal),
+            None => tool.geometry.distance(at),
+        }
+    }
 }
 
 impl NodeSystem for ToolContacts {
@@ -114,8 +127,10 @@ impl NodeSystem for ToolContacts {
         for (tool, contact) in tools.iter_mut().zip(&self.tools) {
             let [pose, change] = [0, 3].map(|slot| Pose::of_slots(&values[contact.signal + slot..]));
             let ball = contact.geometry.bounding_sphere();
-            let ball = ball.map(|(center, radius)| (pose.place(center), radius + self.edge));
             let earlier = pose.less(&change);
+            // of one whose way is looked at, the ball goes along
+            let goes = |center| if contact.swept > 0.0 { change.place(center).length() } else { 0.0 };
+            let ball = ball.map(|(center, radius)| (pose.place(center), radius + self.edge + goes(center)));
             *tool = ToolInStep { pose, earlier, change, ball };
         }
         ContactStep {
@@ -230,7 +245,11 @@ impl ToolContacts {
         let ToolInStep { pose, earlier, change, .. } = &step.tools[tool];
         let end = place + predicted;
         let of_tool = pose.inverse(end);
-        let (distance, normal) = contact.geometry.distance(of_tool);
+        let plane = match contact.swept > 0.0 {
+            true => sweep::first_touch(&contact.geometry, contact.swept, [earlier.inverse(place), of_tool]),
+            false => None,
+        };
+        let (distance, normal) = Touch::surface(plane, contact, of_tool);
         if distance > self.edge {
             return None;
         }
@@ -245,7 +264,7 @@ impl ToolContacts {
             return (gap < 0.0).then_some(Touch { slides: true, springs: true, ..still });
         }
         let mut target = 0.0;
-        if distance < 0.0 {
+        if distance < 0.0 && plane.is_none() {
             // who is inside already comes out by and by
             let now = contact.geometry.distance(earlier.inverse(place)).0;
             target = (now + step.out).min(0.0);
@@ -259,6 +278,7 @@ impl ToolContacts {
             tool_step,
             friction,
             slides: true,
+            plane,
             ..Touch::default()
         })
     }
@@ -280,7 +300,7 @@ impl ToolContacts {
                 if turn > 0 && !touch.springs {
                     let tool = &step.tools[touch.tool];
                     let of_tool = tool.pose.inverse(place + predicted + sum);
-                    let (distance, normal) = self.tools[touch.tool].geometry.distance(of_tool);
+                    let (distance, normal) = Touch::surface(touch.plane, &self.tools[touch.tool], of_tool);
                     touch.normal = tool.pose.rotation * normal;
                     touch.gap = distance - touch.target;
                     touch.tool_step = tool.change.place(of_tool);

@@ -37,7 +37,8 @@ pub(super) fn spawn(assembly: &Assembly<'_>, world: &mut World, diagnostics: &mu
             let signal = signals.add(Signal::Pose { motion: motion(found), reference });
             let closed = signals.add(Signal::Factor { curve: closed.clone() });
             let geometry = jaws.unwrap_or_else(|| own.clone());
-            let tool = ToolContact { tool: tool.clone(), geometry, signal, friction: [0.0; 2], spring: None };
+            let tool =
+                ToolContact { tool: tool.clone(), geometry, signal, friction: [0.0; 2], spring: None, swept: 0.0 };
             grasps.push(Grasp { number, tool, closed, reach, strength: strength.unwrap_or(f64::INFINITY) });
         }
         if grasps.is_empty() {

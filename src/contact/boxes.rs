@@ -65,6 +65,11 @@ impl Tree {
         }
     }
 
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.order[..]) + size_of_val(&self.boxes[..])
+    }
+
     /// How far its box is from that of another (m).
     pub fn distance(&self, other: &Self) -> f64 {
         match (self.boxes.get(1), other.boxes.get(1)) {

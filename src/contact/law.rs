@@ -167,6 +167,14 @@ impl ContactSet {
         self.responses.clear();
     }
 
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> usize {
+        let Self { contacts, steps, earlier, responses, shares, changes, starts, of_nodes } = self;
+        let of_contacts = size_of_val(&contacts[..]) + size_of_val(&changes[..]) + size_of_val(&of_nodes[..]);
+        let vectors = size_of_val(&steps[..]) + size_of_val(&earlier[..]) + size_of_val(&responses[..]);
+        of_contacts + vectors + size_of_val(&shares[..]) + size_of_val(&starts[..])
+    }
+
     /// Finds the forces.
     ///
     /// All contacts at once, with the mass of each node split among them by their weights: then no correction

@@ -50,6 +50,12 @@ impl Lists {
         &self.distances[self.range(place)]
     }
 
+    /// Bytes that they take.
+    pub fn bytes(&self) -> usize {
+        let Self { points, starts, triangles, distances, .. } = self;
+        size_of_val(&points[..]) + size_of_val(&starts[..]) + size_of_val(&triangles[..]) + size_of_val(&distances[..])
+    }
+
     fn range(&self, place: usize) -> Range<usize> {
         self.starts[place] as usize..self.starts[place + 1] as usize
     }

@@ -106,6 +106,13 @@ impl Surfaces {
         self.starts.len().saturating_sub(1)
     }
 
+    /// Bytes that they take.
+    pub fn bytes(&self) -> usize {
+        let Self { triangles, bodies, depths, adjacent, starts, around } = self;
+        let of_triangles = size_of_val(&triangles[..]) + size_of_val(&bodies[..]) + size_of_val(&depths[..]);
+        of_triangles + size_of_val(&adjacent[..]) + size_of_val(&starts[..]) + size_of_val(&around[..])
+    }
+
     /// Where its corners are (m).
     #[inline]
     pub fn corners(&self, places: &[DVec3], triangle: u32) -> [DVec3; 3] {

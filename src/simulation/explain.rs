@@ -2,6 +2,7 @@
 //! not there.
 
 mod buffers;
+mod contact;
 mod effects;
 mod kernels;
 mod page;
@@ -48,6 +49,8 @@ pub struct Explanation {
     pub kernels: Vec<KernelInUse>,
     /// Which bodies take all steps of a submission in one dispatch, and why others do not; empty on the CPU.
     pub dispatched: Vec<Dispatched>,
+    /// What touches what, and what keeping it apart needs.
+    pub contacts: Vec<ContactInUse>,
     /// Columns of numbers on the host.
     pub columns: Vec<Buffer>,
     /// Buffers on the device; empty on the CPU.
@@ -189,6 +192,19 @@ pub struct Bound {
     pub bytes: u64,
 }
 
+/// A system of contact: what it looks at, and what it holds beside columns.
+#[derive(Clone, Debug, Serialize)]
+pub struct ContactInUse {
+    /// The system.
+    pub system: String,
+    /// How much it looks at, and how it finds what is near.
+    pub of: Vec<String>,
+    /// What it holds on the host beside columns, and the bytes.
+    pub held: Vec<(&'static str, u64)>,
+    /// Bytes of its columns and of this over the faces of surfaces; 0 where none are looked at.
+    pub bytes_a_face: f64,
+}
+
 /// A column or a device buffer.
 #[derive(Clone, Debug, Serialize)]
 pub struct Buffer {
@@ -274,6 +290,7 @@ impl Simulation {
             parts: effects::parts(&self.scene, self.facts.precision, on_gpu, &mut self.world),
             kernels,
             dispatched,
+            contacts: contact::in_use(&mut self.world),
             columns,
             buffers,
             host_bytes,

@@ -10,6 +10,7 @@ mod change;
 mod choose;
 mod column_view;
 mod contact_springs;
+mod contact_use;
 mod costly;
 mod damped_step;
 pub mod explain;
@@ -63,6 +64,7 @@ mod unload;
 
 pub use budget::{Advanced, Ended};
 pub use column_view::ColumnView;
+pub use contact_use::SurfaceContactUse;
 pub use follow::StepHistory;
 pub use grab::{Grab, GrabId, Grip};
 pub use implicit::ImplicitSteps;

@@ -91,6 +91,8 @@ pub struct Summary {
     pub tools: BTreeMap<String, crate::observation::ToolReading>,
     /// What each body feels of others and itself at the end, where they may touch.
     pub contacts: BTreeMap<String, crate::observation::ContactReading>,
+    /// What keeping surfaces apart took; `None` where none may meet.
+    pub surface_contact: Option<super::SurfaceContactUse>,
     /// What sutures, ties and glue bear at the end, by their names.
     pub attachments: BTreeMap<String, crate::observation::AttachmentReading>,
     /// What came through the ports of tools.
@@ -235,6 +237,7 @@ impl Simulation {
             probes: self.world.resource::<Observer>().latest.clone(),
             tools,
             contacts,
+            surface_contact: self.surface_contact_use(solving),
             attachments: self.attachments()?,
             ports: self.ports(),
             real_time: self.scene.real_time.then(|| self.metronome.kept()),

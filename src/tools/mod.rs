@@ -65,6 +65,14 @@ impl Geometry {
         }
     }
 
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> usize {
+        match self {
+            Self::Analytic(_) => size_of::<Self>(),
+            Self::Grid(grid) => size_of_val(grid.values()),
+        }
+    }
+
     /// Half of what it measures across where it is thinnest (m), of a grid where it is thickest; none of a plane.
     pub fn smallest_radius(&self) -> Option<f64> {
         match self {

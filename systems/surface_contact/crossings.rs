@@ -26,6 +26,12 @@ impl Crossings {
         Self { edges, sides, rest, ..Self::default() }
     }
 
+    /// Bytes that they take.
+    pub fn bytes(&self) -> usize {
+        let of_edges = size_of_val(&self.edges[..]) + size_of_val(&self.sides[..]) + size_of_val(&self.rest[..]);
+        of_edges + size_of_val(&self.near[..]) + size_of_val(&self.found[..])
+    }
+
     /// The triangles beside edges that may be near others.
     pub fn triangles(&self) -> impl Iterator<Item = u32> + '_ {
         self.near.iter().flatten().flat_map(|&edge| self.edges[edge as usize].triangles)

@@ -12,6 +12,7 @@ use crate::backend::device::{Device, bring_to_host};
 use crate::backend::kernel::{BufferId, uniform};
 use crate::components::*;
 use crate::error::Error;
+use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 
 /// Triangles near a point that there is room for, on average, and besides.
@@ -106,15 +107,19 @@ impl Layout {
     }
 }
 
-/// Finds surfaces and lists as they are, on the host.
-pub(super) fn find(world: &mut World) {
-    let mut system = IntoSystem::into_system(find_lists);
+/// Finds surfaces and lists as they are, on the host, as a step would.
+pub(crate) fn find(world: &mut World) {
+    let precision = world.query::<&Displacement>().iter(world).next().map(|u| u.precision());
+    let mut system: Box<dyn System<In = (), Out = ()>> = match precision {
+        Some(Precision::F64) => Box::new(IntoSystem::into_system(find_lists::<f64>)),
+        _ => Box::new(IntoSystem::into_system(find_lists::<f32>)),
+    };
     system.initialize(world);
     // a system of the engine's own, on a world that has what it asks for
     let _ = system.run((), world);
 }
 
-fn find_lists(
+fn find_lists<T: Scalar>(
     cpu: Res<Cpu>,
     mut contacts: ResMut<SurfaceContacts>,
     mut bodies: Query<(Entity, MeetingColumns)>,
@@ -123,7 +128,7 @@ fn find_lists(
 ) {
     let contacts = &mut *contacts;
     survey::follow(contacts, &mut bodies, &authorings, &blocks);
-    let bodies = slices::<f32>(contacts, &mut bodies);
+    let bodies = slices::<T>(contacts, &mut bodies);
     if bodies.len() != contacts.bodies.len() {
         return;
     }

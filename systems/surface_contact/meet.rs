@@ -87,15 +87,28 @@ pub(super) fn release<T: Scalar>(surface: &mut Surface, bodies: &mut [BodySlices
 }
 
 /// Forgets what points touched or faced in the last step.
-pub(super) fn forget<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &mut [BodySlices<'_, T>]) {
-    for place in 0..contacts.surface.touching.len() {
-        let kept = contacts.kept(contacts.surface.touching[place]);
+pub(super) fn forget<T: Scalar>(surface: &mut Surface, bodies: &mut [BodySlices<'_, T>]) {
+    std::mem::swap(&mut surface.touching, &mut surface.touched);
+    surface.touching.clear();
+    for &point in &surface.touched {
+        let kept = surface.kept[point as usize];
         let touch = bodies[kept.body].kept_mut(kept);
         set_vector(touch, 0, DVec3::ZERO);
         touch[4] = T::from_f64(FREE);
         touch[5] = T::default();
     }
-    contacts.surface.touching.clear();
+}
+
+/// Forgets how deep those of them may be inside that face nothing any more: looked at or asleep, they are as points that
+/// never faced anything, so that a run that goes on from here finds what this one does.
+pub(super) fn leave<T: Scalar>(surface: &Surface, bodies: &mut [BodySlices<'_, T>]) {
+    for &point in &surface.touched {
+        let kept = surface.kept[point as usize];
+        let touch = bodies[kept.body].kept_mut(kept);
+        if touch[4].to_f64() == FREE {
+            touch[3] = T::default();
+        }
+    }
 }
 
 /// Finds the forces of a step and adds them to the loads.
@@ -112,8 +125,9 @@ pub(super) fn meet<T: Scalar>(
     release(&mut contacts.surface, bodies);
     begin(contacts, &found, (largest, settling), bodies);
     gather(contacts, &mut set, &found, (&coefficients, settling), bodies);
-    forget(contacts, bodies);
+    forget(&mut contacts.surface, bodies);
     note_facing(contacts, &found, bodies);
+    leave(&contacts.surface, bodies);
     set.solve(contacts.sweeps, cpu);
     let counts_work = clock.relaxation.is_none().then_some(&coefficients);
     note_touches(contacts, &set, counts_work, bodies);
@@ -266,6 +280,7 @@ fn note_touches<T: Scalar>(
     let mut forces = std::mem::take(&mut contacts.surface.forces);
     forces.clear();
     forces.resize(set.steps.len(), DVec3::ZERO);
+    let mut deepest = contacts.surface.figures.deepest;
     let surface = &contacts.surface;
     for (contact, met) in set.contacts.iter().zip(&surface.met).filter(|(contact, _)| contact.pressing > 0.0) {
         let force = contact.force();
@@ -273,6 +288,7 @@ fn note_touches<T: Scalar>(
         let kept = contacts.kept(met.point);
         let touch = bodies[kept.body].kept_mut(kept);
         let after = contact.relative(&set.steps);
+        deepest = deepest.max(-(met.gap + contact.normal.dot(after)));
         if met.first {
             set_vector(touch, 0, contact.slip);
             touch[4] = T::from_f64(if contact.slides { SLIDES } else { STICKS });
@@ -287,6 +303,7 @@ fn note_touches<T: Scalar>(
             touch[7] = T::from_f64(lost);
         }
     }
+    contacts.surface.figures.deepest = deepest;
     contacts.surface.forces = forces;
 }
 

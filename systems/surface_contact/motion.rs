@@ -11,6 +11,7 @@ use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use std::ops::Range;
+use std::time::Instant;
 
 /// Rows between two of a surface that are looked at with them: a gap costs more than these.
 const GAP: u32 = 16;
@@ -53,6 +54,12 @@ impl Since {
             }
         }
         Self { runs, u: None }
+    }
+
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> usize {
+        let u = self.u.as_ref().map_or(0, |u| u.len() * if u.precision() == Precision::F32 { 4 } else { 8 });
+        size_of_val(&self.runs[..]) + u
     }
 
     /// Remembers where nodes are.
@@ -189,6 +196,7 @@ pub(super) fn search<T: Scalar>(
     if let Some(moved) = moved.filter(|moved| farthest + moved.nearer <= contacts.surface.lists.radius) {
         return moved.nearer;
     }
+    let started = Instant::now();
     place(contacts, bodies, None);
     let mut trees = std::mem::take(&mut contacts.surface.trees);
     let meets = |point: u32, face: u32, of_face: bool| contacts.meets(point, face, of_face);
@@ -210,6 +218,7 @@ pub(super) fn search<T: Scalar>(
     surface.near = near;
     surface.since.begin(bodies);
     surface.figures.builds += 1;
+    surface.figures.building += started.elapsed();
     0.0
 }
 

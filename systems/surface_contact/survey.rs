@@ -10,12 +10,16 @@ use crate::contact::{Finder, Lists, Point, Surfaces, Tree, face_points};
 use crate::mesh::SurfaceFace;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
+use std::ops::{Deref, DerefMut, Range};
 
 /// Points and faces that are nearer than this at rest, in reaches, are never in each other's way.
 pub(super) const NEAR_AT_REST: f64 = 1.5;
 
 /// How deep behind a face is still its inside at most, in edges; of thin elements half of what is behind it.
 const DEEPEST: f64 = 0.5;
+
+/// Numbers of a point that are of its last step: what it has slid and lost since the start stays.
+const OF_A_STEP: usize = 6;
 
 /// Which triangles a step looks at beyond those within thickness and motion (edges).
 pub(super) const MARGIN: f64 = 1e-2;
@@ -27,6 +31,7 @@ pub(super) fn follow(
     authorings: &Query<&Authoring>,
     blocks: &Query<Ref<Alive>>,
 ) {
+    let mut is_other = false;
     if contacts.surface.elements.is_none() || blocks.iter().any(|alive| alive.is_changed()) {
         let all = contacts.bodies.iter().filter_map(|&body| authorings.get(body).ok());
         let left = |&block: &Entity| blocks.get(block).map_or(0, |alive| alive.iter().filter(|&&is| is == 1).count());
@@ -35,17 +40,46 @@ pub(super) fn follow(
             let figures = contacts.surface.figures;
             contacts.surface = Surface { elements, figures, ..Surface::default() };
             survey(contacts, bodies, authorings, blocks);
+            clear_apart(contacts, bodies);
+            is_other = true;
         }
     }
-    remember(contacts, bodies);
+    remember(contacts, bodies, is_other);
 }
 
-/// Notes what bore forces or touched in the last step, where others have written that.
-fn remember(contacts: &mut SurfaceContacts, bodies: &mut Query<(Entity, MeetingColumns)>) {
+/// Clears what nodes bore and touched that are on no surface any more: nobody else would.
+fn clear_apart(contacts: &SurfaceContacts, bodies: &mut Query<(Entity, MeetingColumns)>) {
+    for (number, &body) in (0..).zip(&contacts.bodies) {
+        let Ok((_, mut columns)) = bodies.get_mut(body) else { continue };
+        let nodes = &contacts.surface.nodes;
+        let of_body = nodes.partition_point(|&(other, _)| other < number)..;
+        let mut rows = nodes[of_body].iter().take_while(|(other, _)| *other == number).map(|&(_, row)| row).peekable();
+        for row in 0..columns.nodes.rest.0.len() {
+            if rows.next_if_eq(&(row as u32)).is_some() {
+                continue;
+            }
+            let touch = MEETING_NUMBERS * row;
+            clear(&mut columns.force, 3 * row..3 * row + 3);
+            clear(&mut columns.touch, touch..touch + OF_A_STEP);
+        }
+    }
+}
+
+/// Clears numbers; most never were any, and nothing is written there.
+fn clear<C: Deref<Target = Reals> + DerefMut>(column: &mut Mut<'_, C>, numbers: Range<usize>) {
+    for number in numbers {
+        if column.get(number) != 0.0 {
+            column.set(number, 0.0);
+        }
+    }
+}
+
+/// Notes what bore forces or touched in the last step, where others have written that or surfaces are others.
+fn remember(contacts: &mut SurfaceContacts, bodies: &mut Query<(Entity, MeetingColumns)>, is_other: bool) {
     let changed = |&body: &Entity| {
         bodies.get_mut(body).is_ok_and(|(_, columns)| columns.force.is_changed() || columns.touch.is_changed())
     };
-    if !contacts.bodies.iter().any(changed) {
+    if !is_other && !contacts.bodies.iter().any(changed) {
         return;
     }
     let Surface { nodes, kept, pressed, touching, since, .. } = &mut contacts.surface;

@@ -26,8 +26,8 @@ pub(super) struct ToolRow {
     first: u32,
     share: f32,
     damping: f32,
-    room_0: u32,
-    room_1: u32,
+    swept: f32,
+    room: u32,
 }
 uniform!(ToolRow {
     kind,
@@ -48,8 +48,8 @@ uniform!(ToolRow {
     first,
     share,
     damping,
-    room_0,
-    room_1
+    swept,
+    room
 });
 
 /// The kind of what is known by a grid of distances.
@@ -92,8 +92,8 @@ pub(super) fn row_of(contact: &ToolContact, first: u32) -> ToolRow {
         first,
         share,
         damping,
+        swept: contact.swept.min(f64::from(f32::MAX)) as f32,
         // rows are whole vectors
-        room_0: 0,
-        room_1: 0,
+        room: 0,
     }
 }

@@ -16,6 +16,8 @@ mod frames;
 mod free_tools;
 mod glue;
 mod grasp;
+mod ironing;
+mod lost_surfaces;
 mod surfaces;
 mod sutures;
 mod ties;

@@ -36,7 +36,14 @@ fn hold(world: &mut World, felt: bool) {
             let signal = signals.add(Signal::Pose { motion, reference: middle });
             let closed = signals.add(Signal::Factor { curve: Curve::Step { start, end: None } });
             let geometry = Geometry::Analytic(Solid::new(Shape::Sphere { radius: 0.2 * size }, 0.0).unwrap());
-            let tool = ToolContact { tool: number.to_string(), geometry, signal, friction: [0.0; 2], spring: None };
+            let tool = ToolContact {
+                tool: number.to_string(),
+                geometry,
+                signal,
+                friction: [0.0; 2],
+                spring: None,
+                swept: 0.0,
+            };
             let reach = (number == 0).then_some(0.1 * size);
             Grasp { number, tool, closed, reach, strength }
         });

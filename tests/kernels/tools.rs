@@ -16,7 +16,7 @@ fn grid() -> Geometry {
 
 /// Tools that touch about half of a body's nodes; each body meets all of them, each node one or two, or one that is a
 /// grid.
-fn touch(world: &mut World, (of_grid, several, springs): (bool, bool, bool)) {
+fn touch(world: &mut World, (of_grid, several, springs, is_swept): (bool, bool, bool, bool)) {
     for body in entities::<Displacement>(world) {
         let rest = world.get::<RestPosition>(body).unwrap().0.clone();
         let (low, high) =
@@ -45,7 +45,8 @@ fn touch(world: &mut World, (of_grid, several, springs): (bool, bool, bool)) {
             };
             let signal = world.resource_mut::<Signals>().add(Signal::Pose { motion, reference: middle });
             let spring = springs.then_some(ContactSpring { share: 0.2, damping: 0.3 });
-            ToolContact { tool: number.to_string(), geometry, signal, friction: [0.4, 0.3], spring }
+            let swept = if is_swept { 1e-3 * size } else { 0.0 };
+            ToolContact { tool: number.to_string(), geometry, signal, friction: [0.4, 0.3], spring, swept }
         });
         let tools: Vec<ToolContact> = tools.collect();
         let rows: Vec<u32> = (0..rest.len() as u32).filter(|row| row % 7 != 3).collect();
@@ -74,9 +75,12 @@ fn touch(world: &mut World, (of_grid, several, springs): (bool, bool, bool)) {
 fn tools_push_the_same_nodes_with_the_same_forces() {
     for bits in 0..32 {
         let (of_grid, several, springs) = (bits & 4 == 4, bits & 8 == 8, bits & 16 == 16);
+        // whole ways are looked at where nodes go far enough
+        let is_swept = bits & 1 == 1 && !springs;
         let effects = Effects { damping: bits & 1 == 1, moved: bits & 2 == 2, loads: true, ..Effects::default() };
         for step in [0, 3] {
-            let Some(mut pair) = run("tool_contact", &effects, step, |world| touch(world, (of_grid, several, springs)))
+            let Some(mut pair) =
+                run("tool_contact", &effects, step, |world| touch(world, (of_grid, several, springs, is_swept)))
             else {
                 return;
             };

@@ -65,6 +65,7 @@ mod statics;
 mod stiffness_damping;
 mod strains;
 mod suction;
+mod swept;
 mod tables;
 mod tool_friction;
 mod tool_meshes;

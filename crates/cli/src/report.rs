@@ -5,7 +5,7 @@ use super::stability;
 use super::terminal::Paint;
 use super::wording::{bytes, counted, digits, quantity, speed};
 use sinew::components::GuardMemory;
-use sinew::{Equilibrium, SceneFile, Summary};
+use sinew::{Equilibrium, SceneFile, Summary, SurfaceContactUse};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -241,6 +241,30 @@ fn contacts(summary: &Summary, page: &mut Page) {
         format!("{name} feels ({x}, {y}, {z}) and touches with {nodes}{inside}; lost to impact and friction {loss}")
     });
     page.rows("contacts", lines.collect::<Vec<_>>());
+    if let Some(found) = &summary.surface_contact {
+        surface_contact(found, page);
+    }
+}
+
+fn surface_contact(found: &SurfaceContactUse, page: &mut Page) {
+    let held = bytes(found.bytes as u64);
+    page.row("surfaces", format!("{} points that may meet {} faces, {held}", found.points, found.faces));
+    let times = counted(found.builds, "time");
+    let lists = format!(
+        "lists made {times}, {} a simulated second, in {}",
+        digits(found.builds_a_second),
+        quantity(found.build_seconds, "s")
+    );
+    page.row("", lists);
+    if let (Some(seconds), Some(share), Some(near)) = (found.seconds, found.share, found.points_near) {
+        let each =
+            found.nanoseconds_a_near_point.map_or(String::new(), |ns| format!(", {} each", quantity(ns * 1e-9, "s")));
+        let (took, share) = (quantity(seconds, "s"), digits(100.0 * share));
+        page.row("", format!("took {took}, {share} % of solving: {} points near a step{each}", digits(near)));
+    }
+    if let Some(deepest) = found.deepest.filter(|deepest| *deepest > 0.0) {
+        page.row("", format!("the deepest that a point was inside after a step: {}", quantity(deepest, "m")));
+    }
 }
 
 fn attachments(summary: &Summary, page: &mut Page) {

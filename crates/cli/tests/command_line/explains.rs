@@ -18,6 +18,23 @@ fn only_what_the_scene_calls_for_has_columns() {
 }
 
 #[test]
+fn contact_says_what_it_looks_at_and_holds() {
+    let place = Workspace::new();
+    let without = place.done(&["explain", "block.ron", "--backend", "cpu"]);
+    assert!(!without.contains("Contact by"), "{without}");
+    for precision in ["f32", "f64"] {
+        let sets = ["--precision", precision, "--set", "contacts=[Itself(sweeps: 3)]"];
+        let said = place.done(&[&["explain", "block.ron", "--backend", "cpu"], &sets[..]].concat());
+        for words in ["Contact by surface_contact", "are corrected 3 times", "bytes of lists", "bytes a face"] {
+            assert!(said.contains(words), "{words:?} is not in\n{said}");
+        }
+    }
+    let sets = ["tools={\"table\": (shape: Plane(), at: (0, 0, -1))}", "contacts=[Tool(tool: \"table\")]"];
+    let said = place.done(&["explain", "block.ron", "--backend", "cpu", "--set", sets[0], "--set", sets[1]]);
+    assert!(said.contains("Contact by tool_contact") && said.contains("may be touched by table"), "{said}");
+}
+
+#[test]
 fn what_is_off_says_what_turns_it_on() {
     let said = Workspace::new().done(&["explain", "block.ron", "--backend", "cpu"]);
     for words in [

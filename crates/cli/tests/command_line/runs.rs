@@ -43,7 +43,7 @@ fn reals(value: &serde_json::Value, place: &str, found: &mut std::collections::B
 #[test]
 fn a_summary_can_be_read_without_the_manual() {
     let place = Workspace::new();
-    for set in ["duration=0.2", "analysis=Static()"] {
+    for set in ["duration=0.2", "analysis=Static()", "contacts=[Itself()]"] {
         place.done(&["run", "block.ron", "--backend", "cpu", "--set", set]);
         let summary = place.json("out/block/summary.json");
         assert_eq!(summary["version"], env!("CARGO_PKG_VERSION"));
@@ -56,6 +56,13 @@ fn a_summary_can_be_read_without_the_manual() {
         for place in &found {
             let any = place.rsplit_once('.').map(|(before, _)| format!("{before}.*")).unwrap_or_default();
             assert!(units.contains_key(place) || units.contains_key(&any), "{place} has no unit");
+        }
+        let contact = &summary["surface_contact"];
+        assert_eq!(contact.is_object(), set.starts_with("contacts"), "{contact}");
+        if contact.is_object() {
+            let number = |key: &str| contact[key].as_f64().unwrap_or_else(|| panic!("{key} of {contact}"));
+            assert!(number("builds") >= 1.0 && number("builds_a_second") > 0.0 && number("bytes") > 0.0, "{contact}");
+            assert!((0.0..1.0).contains(&number("share")) && number("points") > 0.0, "{contact}");
         }
         let names = &summary["names"];
         assert_eq!((&names["bodies"][0], &names["materials"][0]), (&"block".into(), &"tissue".into()));

@@ -22,8 +22,9 @@ pub fn edges(trial: &mut Trial<'_>) -> Result<(), Error> {
         ("edge across edge", &bar, "(45, 0, 90)".to_string(), -0.015),
         ("corner on edge", &cube, format!("(45, {corner}, 0)"), 0.0),
     ] {
-        for aside in [0.0, 0.5 * EDGE] {
+        for (aside, crossing) in [(0.0, false), (0.5 * EDGE, false), (0.0, true), (0.5 * EDGE, true)] {
             let sets = [
+                format!("contacts[0].edges={crossing}"),
                 format!("bodies.body.translate=({}, 0, 0)", aside - 0.015),
                 format!("bodies.other.mesh={mesh}"),
                 format!("bodies.other.rotate={rotate}"),
@@ -37,8 +38,9 @@ pub fn edges(trial: &mut Trial<'_>) -> Result<(), Error> {
             let weight = G * mass(&mut simulation, "other")?;
             let ended = simulation.finish();
             let where_to = if aside == 0.0 { "where nodes meet" } else { "between nodes" };
-            let what = |what: &str| format!("{name} {where_to}: {what}");
-            if aside > 0.0 {
+            let edges = if crossing { ", with edges" } else { "" };
+            let what = |what: &str| format!("{name} {where_to}{edges}: {what}");
+            if aside > 0.0 && !crossing {
                 // surfaces meet in points against faces: an edge is felt once a node of it is inside
                 let depth = if ended.is_ok() { depth(&mut simulation, along < 0.0)? } else { f64::INFINITY };
                 trial.report(what("deep in edges"), depth / EDGE);

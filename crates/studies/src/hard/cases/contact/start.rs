@@ -8,16 +8,21 @@ use sinew::Error;
 /// H54.
 pub fn tunnelling(trial: &mut Trial<'_>) -> Result<(), Error> {
     let (radius, way, step) = (2e-4, 1e-3, 2e-5);
-    for (radii, aside) in [(0.1, 0.0), (0.4, 0.0), (1.0, 0.0), (2.0, 0.0), (5.0, 0.0), (0.1, 5e-4)] {
+    let unseen = [(0.1, 0.0), (0.4, 0.0), (1.0, 0.0), (2.0, 0.0), (5.0, 0.0), (0.1, 5e-4)];
+    let swept = [(1.0, 0.0), (2.0, 0.0), (5.0, 0.0)];
+    let all = unseen.map(|case| (case, false)).into_iter().chain(swept.map(|case| (case, true)));
+    for ((radii, aside), swept) in all {
         let time = way / (radii * radius / step);
         let sets = [
             format!("duration={time}"),
             format!("integration.step={step}"),
+            format!("contacts[0].swept={swept}"),
             format!(
                 "tools.needle.path=[(t: 0, at: ({aside}, {aside}, 3e-4)), (t: {time}, at: ({aside}, {aside}, -7e-4))]"
             ),
         ];
-        let what = format!("{radii} radii a step, {aside} m beside a node");
+        let looked_at = if swept { ", swept" } else { "" };
+        let what = format!("{radii} radii a step, {aside} m beside a node{looked_at}");
         let mut simulation = match trial.start(&sets) {
             Ok(simulation) => simulation,
             Err(error) => {

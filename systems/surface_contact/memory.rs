@@ -1,0 +1,56 @@
+//! What contact between surfaces holds in memory beside the columns of bodies.
+
+use super::{Surface, SurfaceContacts};
+
+/// Bytes on the host.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SurfaceMemory {
+    /// Triangles, points, their neighbours and places.
+    pub surfaces: usize,
+    /// Trees of boxes over the triangles.
+    pub trees: usize,
+    /// What may be near what, and where nodes were when that was found.
+    pub lists: usize,
+    /// Pairs of points and triangles in these.
+    pub pairs: usize,
+    /// What steps have found so far: contacts and the nodes they act on.
+    pub step: usize,
+}
+
+impl SurfaceMemory {
+    /// All of it.
+    pub fn total(&self) -> usize {
+        self.surfaces + self.trees + self.lists + self.step
+    }
+}
+
+/// Bytes of the elements of a slice.
+fn bytes<T>(slice: &[T]) -> usize {
+    size_of_val(slice)
+}
+
+impl Surface {
+    fn memory(&self) -> SurfaceMemory {
+        let Self { facets, nodes, points, kept, apart, places, normals, fresh, slots, numbers, .. } = self;
+        let of_nodes = bytes(nodes) + bytes(places) + bytes(slots);
+        let of_points = bytes(points) + bytes(kept) + bytes(apart);
+        let of_triangles = self.triangles.bytes() + bytes(facets) + bytes(normals) + bytes(fresh) + bytes(numbers);
+        let near = bytes(&self.near.nodes) + bytes(&self.near.triangles);
+        let of_step = bytes(&self.found) + bytes(&self.met) + bytes(&self.acted_on) + bytes(&self.forces);
+        let remembered = bytes(&self.pressed) + bytes(&self.touching) + bytes(&self.touched);
+        SurfaceMemory {
+            surfaces: of_nodes + of_points + of_triangles + self.crossings.bytes(),
+            trees: self.trees.iter().map(|tree| tree.bytes()).sum(),
+            lists: self.lists.bytes() + bytes(&self.wake) + near + self.since.bytes(),
+            pairs: self.lists.triangles.len(),
+            step: of_step + remembered + self.set.bytes(),
+        }
+    }
+}
+
+impl SurfaceContacts {
+    /// What is held now.
+    pub fn memory(&self) -> SurfaceMemory {
+        self.surface.memory()
+    }
+}

@@ -1,0 +1,74 @@
+//! What points bore and touched whose surface is gone, or who face nothing any more.
+
+use crate::bits::start;
+use sinew::components::{ContactForce, Precision, SurfaceTouch};
+use sinew::glam::DVec3;
+use sinew::{Simulation, Snapshot};
+
+/// A cube with friction on another and a little inside it, whose lower layer goes a part at a time.
+const SCENE: &str = "(duration: 0.03, bodies: {
+        \"low\": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (4, 4, 4)), material: \"m\"),
+        \"high\": (mesh: Box(size: (0.016, 0.016, 0.012), cells: (3, 3, 3)), material: \"m\", translate: (0.002, 0.002, 0.0196),
+            velocity: (0.05, 0, -0.2))},
+    materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))},
+    constraints: [Fixed(body: \"low\", on: Set(\"z0\"))],
+    removal: [(body: \"high\", on: Box(min: (0, 0, 0.019), max: (0.02, 0.02, 0.0236)), when: During(start: 0.008, end: 0.02))],
+    contacts: [Between(bodies: (\"low\", \"high\"), friction: 0.3)])";
+
+fn bytes(simulation: &mut Simulation) -> Vec<u8> {
+    simulation.snapshot().unwrap().to_bytes().unwrap()
+}
+
+/// The sum of what is noted of forces on all nodes of both bodies (N), and of their sizes.
+fn forces(simulation: &mut Simulation) -> (DVec3, f64) {
+    let (mut sum, mut size) = (DVec3::ZERO, 0.0);
+    for body in ["low", "high"] {
+        let entity = simulation.body(body).unwrap();
+        let force = simulation.world().get::<ContactForce>(entity).unwrap();
+        sum += force.vectors().sum::<DVec3>();
+        size += force.vectors().map(|force| force.length()).sum::<f64>();
+    }
+    (sum, size)
+}
+
+/// Nodes that noted how deep they may be and face nothing.
+fn stale(simulation: &mut Simulation) -> usize {
+    let mut count = 0;
+    for body in ["low", "high"] {
+        let entity = simulation.body(body).unwrap();
+        let touch = &simulation.world().get::<SurfaceTouch>(entity).unwrap().0;
+        let all = (0..touch.len()).step_by(sinew::components::MEETING_NUMBERS);
+        count += all.filter(|&first| touch.get(first + 4) == 0.0 && touch.get(first + 3) != 0.0).count();
+    }
+    count
+}
+
+#[test]
+fn a_run_goes_on_from_any_step_while_touching_surfaces_go() {
+    for precision in [Precision::F64, Precision::F32] {
+        let mut whole = start(SCENE, precision, 1);
+        let (mut kept, mut touched, mut gone) = (Vec::new(), 0, 0);
+        while !whole.is_finished() {
+            if whole.step_count() % 7 == 3 {
+                kept.push(bytes(&mut whole));
+            }
+            whole.advance(1).unwrap();
+            touched = touched.max(whole.contact("low").unwrap().nodes);
+            let (sum, size) = forces(&mut whole);
+            // who is on no surface any more bears nothing: else one side would have more than the other
+            let bound = if precision == Precision::F64 { 1e-12 } else { 1e-5 };
+            assert!(sum.length() <= bound * size, "step {}: {sum} of {size} N, {precision:?}", whole.step_count());
+            assert_eq!(stale(&mut whole), 0, "step {}, {precision:?}", whole.step_count());
+            gone = whole.fields("high").unwrap().alive.iter().filter(|alive| **alive == 0).count();
+        }
+        assert!(touched > 5 && gone == 54, "{touched} nodes touch, {gone} elements are gone");
+        for pair in kept.windows(2) {
+            let [from, to] = [&pair[0], &pair[1]].map(|bytes| Snapshot::from_bytes(bytes).unwrap());
+            let mut resumed = start(SCENE, precision, 1);
+            resumed.restore(&from).unwrap();
+            resumed.advance(7).unwrap();
+            let found = Snapshot::from_bytes(&bytes(&mut resumed)).unwrap();
+            assert_eq!(to.differences(&found), Vec::<String>::new(), "to step {}, {precision:?}", resumed.step_count());
+        }
+    }
+}
