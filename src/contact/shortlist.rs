@@ -74,7 +74,7 @@ mod tests {
         let distances = vec![0.0; all.len()];
         let listed = Listed { triangles: &all, distances: &distances, nearer: 0.0, farthest: 1.0 };
         let now = Placed { places, normals: &normals };
-        // it is on no triangle, and looks down
+        // it is on no triangle
         let point = Point::node(1, 25);
         surfaces.faced(now, &point, listed, (|_| 0.1, 1.0), (short, stays))
     }
@@ -100,8 +100,9 @@ mod tests {
                 // each within half of what two may move against each other
                 let within = stays.moved / 3.0_f64.sqrt();
                 let after: Vec<DVec3> = before.iter().map(|&at| at + vector(within)).collect();
-                let by_list = faced(&surfaces, &after, &mut Shortlist::UNKNOWN.clone(), stays);
-                let by_short = faced(&surfaces, &after, &mut short.clone(), stays);
+                let [mut unknown, mut same] = [Shortlist::UNKNOWN, short];
+                let by_list = faced(&surfaces, &after, &mut unknown, stays);
+                let by_short = faced(&surfaces, &after, &mut same, stays);
                 assert_eq!((by_short.first, by_short.second), (by_list.first, by_list.second), "{round}");
                 assert!(by_short.wakes <= by_list.wakes + stays.moved, "{round}");
                 faces += usize::from(by_list.first.is_some());
