@@ -99,8 +99,8 @@ struct Touch {
     springs: bool,
 }
 
-/// Those that touch a node: seldom more than two.
-type Touching = SmallVec<[Touch; 2]>;
+/// Those that touch a node: there is room for all, and nothing is written where there is none.
+type Touching = SmallVec<[Touch; ToolContacts::MOST]>;
 
 impl NodeSystem for ToolContacts {
     type Columns = (
@@ -206,7 +206,8 @@ impl ToolContacts {
         let Foreseen { before, step: predicted, free, to_force } = nodes.foresee(&step.coefficients, row);
         let at = (place, before, predicted);
         let near = (0..self.tools.len()).filter(|tool| near >> tool & 1 == 1);
-        let mut all: Touching = near.filter_map(|tool| self.predict(step, tool, at, stuck >> tool & 1 == 1)).collect();
+        let mut all = Touching::new();
+        all.extend(near.filter_map(|tool| self.predict(step, tool, at, stuck >> tool & 1 == 1)));
         let d = predicted + self.push_apart(step, &mut all, (place, predicted), free);
         let work_factor = step.coefficients.work_factor;
         let mut sum = DVec3::ZERO;
