@@ -1,25 +1,32 @@
 //! What contact between bodies costs on the CPU (C32): whole steps of three blocks without contact, with contact where
-//! nothing is near, and with a quarter of the surface touching, with nodes and with points of faces; and how long lists
-//! take that tell what is near what.
+//! nothing is near, and with a fifth of the surface touching, at rest and sliding, with nodes and with points of faces;
+//! how long lists take that tell what is near what, and what contact keeps in memory. The largest blocks have 10 092 triangles and 146 334 tetrahedra
+//! each.
 //!
-//! `cargo bench --bench contact`; `-- quick` leaves the large ones out, `-- near` runs only steps with a quarter that
-//! touches, for profiles. Steps are timed in blocks by turns, and the best of each counts: so other work on the machine
-//! does not.
+//! `cargo bench --bench contact`; `-- large` and `-- small` run only some of it, `-- near` only steps with a fifth that
+//! touches, for profiles (`-- near faces`, `-- far`). Steps are timed in blocks by turns, and the best of each counts: so
+//! other work on the machine does not. What lists take is added, spread over the steps that they serve.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
-use sinew::components::Precision;
+use bevy_ecs::change_detection::DetectChangesMut;
+use sinew::components::{ContactForce, Precision};
 use sinew::systems::SurfaceContacts;
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+use std::alloc::System;
 use std::path::Path;
 use std::time::Instant;
+
+#[global_allocator]
+static COUNTED: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 /// Steps that are timed at once, and how often.
 const BLOCK: u64 = 8;
 const TURNS: usize = 60;
 
 /// Three blocks of 2 cm one above the other, so far apart (m), the lowest held; the middle one is turned, so that no
-/// node meets another.
-fn blocks(elements: &str, cells: u32, apart: f64, points: Option<&str>) -> String {
+/// node meets another, and goes at a speed (m/s). All are heavy, or contact would have to pay for the column of loads.
+fn blocks(elements: &str, cells: u32, (apart, speed): (f64, f64), points: Option<&str>) -> String {
     let block = |name: &str, place: &str| {
         format!(
             "\"{name}\": (mesh: Box(size: (0.02, 0.02, 0.02), cells: ({cells}, {cells}, {cells}), elements: {elements}), \
@@ -29,7 +36,10 @@ fn blocks(elements: &str, cells: u32, apart: f64, points: Option<&str>) -> Strin
     let (middle, high) = (0.02 + apart, 2.0 * (0.02 + apart));
     let bodies = [
         block("low", ""),
-        block("middle", &format!("rotate: (0, 0, 10), translate: (0.002, -0.0015, {middle})")),
+        block(
+            "middle",
+            &format!("rotate: (0, 0, 10), translate: (0.002, -0.0015, {middle}), velocity: ({speed}, 0, 0)"),
+        ),
         block("high", &format!("translate: (0, 0, {high})")),
     ];
     let contacts = points.map_or(String::new(), |points| {
@@ -42,7 +52,7 @@ fn blocks(elements: &str, cells: u32, apart: f64, points: Option<&str>) -> Strin
         "(duration: 1000, bodies: {{{}}}, materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e4, poisson: 0.45), damping: 20)}},
         constraints: [Fixed(body: \"low\", on: Set(\"z0\"))], {contacts} loads: [{}], guards: (every: 1000000))",
         bodies.join(", "),
-        if apart > 1e-4 { String::new() } else { gravity.concat() }
+        gravity.concat()
     )
 }
 
@@ -52,10 +62,27 @@ fn start(text: &str, threads: usize) -> Simulation {
     Simulation::new(&scene, &options).unwrap_or_else(|wrong| panic!("{wrong}"))
 }
 
+/// How long lists of a simulation take (s): steps that make them, since somebody has written what bodies carry on, and
+/// steps that do not, by turns.
+fn build_time(simulation: &mut Simulation) -> f64 {
+    let mut best = [f64::INFINITY; 2];
+    for turn in 0..20 {
+        let written = turn % 2;
+        if written == 1 {
+            let bodies = simulation.world().resource::<SurfaceContacts>().bodies.clone();
+            simulation.world_mut().get_mut::<ContactForce>(bodies[0]).unwrap().set_changed();
+        }
+        let started = Instant::now();
+        simulation.advance(1).unwrap();
+        best[written] = best[written].min(started.elapsed().as_secs_f64());
+    }
+    (best[1] - best[0]).max(0.0)
+}
+
 /// Whole steps, and what contact adds to them.
-fn shares((elements, points): (&str, &str), cells: u32, threads: usize) {
+fn shares((elements, points): (&str, &str), cells: u32, threads: usize, speed: f64) {
     let texts = [(0.01, None), (0.01, Some(points)), (0.0, None), (0.0, Some(points))]
-        .map(|(apart, points)| blocks(elements, cells, apart, points));
+        .map(|(apart, points)| blocks(elements, cells, (apart, speed), points));
     let mut all = texts.map(|text| start(&text, threads));
     let mut best = [f64::INFINITY; 4];
     // until they bear each other
@@ -72,23 +99,26 @@ fn shares((elements, points): (&str, &str), cells: u32, threads: usize) {
     let (after, [all_points, faces]) = (contacts.figures(), contacts.size());
     let steps = (after.steps - before.steps) as f64;
     let near = (after.examined - before.examined) as f64 / steps;
+    let between = steps / (after.builds - before.builds) as f64;
+    let build = build_time(&mut all[3]);
     println!(
-        "{elements} 3 x {cells}^3, points: {points}, {threads} thread(s): {:.1} us a step; nothing near {:+.1} %; {:.0} % of \
-         {all_points} points near {:+.1} % ({:.0} ns a point near; {:.0} contacts; {faces} faces; {:.0} steps between lists)",
+        "{elements} 3 x {cells}^3, {speed} m/s, points: {points}, {threads} thread(s): {:.1} us a step; nothing near {:+.1} %; \
+         {:.0} % of {all_points} points near {:+.1} %, with lists {:+.1} % ({:.0} ns a point near; {:.0} contacts; {faces} \
+         faces; {between:.0} steps between lists, {:.2} ms each)",
         best[2] * 1e6,
         100.0 * (best[1] / best[0] - 1.0),
         100.0 * near / all_points as f64,
         100.0 * (best[3] / best[2] - 1.0),
+        100.0 * ((best[3] + build / between) / best[2] - 1.0),
         (best[3] - best[2]) * 1e9 / near,
         (after.contacts - before.contacts) as f64 / steps,
-        steps / (after.builds - before.builds).max(1) as f64,
+        build * 1e3,
     );
 }
 
 /// How long lists take, found by making them in every step and in none.
 fn lists(cells: u32) {
-    let text = blocks("Hex8", cells, 0.0, Some("Nodes"))
-        .replace("rotate: (0, 0, 10)", "rotate: (0, 0, 10), velocity: (1e-4, 0, 0)");
+    let text = blocks("Hex8", cells, (0.0, 1e-4), Some("Nodes"));
     let [mut never, mut always] = [start(&text, 1), start(&text, 1)];
     never.world_mut().resource_mut::<SurfaceContacts>().skin = 1.0;
     always.world_mut().resource_mut::<SurfaceContacts>().skin = 1e-9;
@@ -110,22 +140,83 @@ fn lists(cells: u32) {
     );
 }
 
+/// What a rigid block costs under a cube of 24³ cells: far off, and where the cube lies on it, with friction.
+fn tools(elements: &str) {
+    let text = |tools: &str| {
+        format!(
+            "(duration: 1000, bodies: {{\"b\": (mesh: Box(size: (0.02, 0.02, 0.02), cells: (24, 24, 24), elements: {elements}), \
+             material: \"m\")}}, materials: {{\"m\": (density: 1000, neo_hookean: Young(young: 3e4, poisson: 0.45), damping: 20)}},
+            loads: [Gravity(acceleration: (0, 0, -9.81))], {tools} guards: (every: 1000000))"
+        )
+    };
+    let tool = |below: f64| {
+        text(&format!(
+            "tools: {{\"t\": (shape: Box(size: (0.04, 0.04, 0.02)), at: (0.01, 0.01, {}))}}, \
+             contacts: [Tool(tool: \"t\", friction: 0.3)],",
+            -0.01 - below
+        ))
+    };
+    let mut all = [text(""), tool(0.05), tool(0.0)].map(|text| start(&text, 1));
+    all.iter_mut().for_each(|simulation| simulation.advance(100).unwrap());
+    let mut best = [f64::INFINITY; 3];
+    for _ in 0..TURNS {
+        for (simulation, best) in all.iter_mut().zip(&mut best) {
+            let started = Instant::now();
+            simulation.advance(BLOCK).unwrap();
+            *best = best.min(started.elapsed().as_secs_f64() / BLOCK as f64);
+        }
+    }
+    println!(
+        "{elements} 24^3 and a tool: {:.1} us a step; far off {:+.1} %; with 625 nodes on it {:+.1} %",
+        best[0] * 1e6,
+        100.0 * (best[1] / best[0] - 1.0),
+        100.0 * (best[2] / best[0] - 1.0)
+    );
+}
+
+/// What contact keeps in memory, a face: the same scene with it and without.
+fn memory(points: &str, cells: u32) {
+    let mut faces = 0;
+    let [without, with] = [None, Some(points)].map(|points| {
+        let region = Region::new(COUNTED);
+        let mut simulation = start(&blocks("Tet4", cells, (0.0, 0.0), points), 1);
+        simulation.advance(50).unwrap();
+        faces = simulation.world().get_resource::<SurfaceContacts>().map_or(0, |contacts| contacts.size()[1]);
+        let change = region.change();
+        change.bytes_allocated as f64 - change.bytes_deallocated as f64
+    });
+    println!(
+        "points: {points}: {:.0} bytes a face of {faces}, of {:.0} without contact",
+        (with - without) / faces as f64,
+        without / faces as f64
+    );
+}
+
 fn main() {
     let asked = |word: &str| std::env::args().any(|argument| argument == word);
-    if asked("near") {
-        let mut near = start(&blocks("Hex8", 8, 0.0, Some("Nodes")), 1);
-        return near.advance(20000).unwrap();
+    let points = if asked("faces") { "Faces" } else { "Nodes" };
+    if asked("near") || asked("far") {
+        let apart = if asked("far") { 0.01 } else { 0.0 };
+        let mut near = start(&blocks("Tet4", 12, (apart, 0.0), Some(points)), 1);
+        return near.advance(10000).unwrap();
     }
     let [nodes, faces] = [("Tet4", "Nodes"), ("Tet4", "Faces")];
-    shares(("Hex8", "Nodes"), 8, 1);
-    shares(nodes, 12, 1);
-    shares(faces, 12, 1);
-    lists(24);
-    if asked("quick") {
-        return;
+    if !asked("large") {
+        shares(("Hex8", "Nodes"), 8, 1, 0.0);
+        shares(nodes, 12, 1, 0.0);
+        shares(faces, 12, 1, 0.0);
+        lists(24);
+        tools("Tet4");
+        tools("Hex8");
+        memory("Nodes", 24);
+        memory("Faces", 24);
     }
-    shares(nodes, 24, 1);
-    shares(nodes, 24, 2);
-    shares(faces, 24, 1);
-    lists(76);
+    if !asked("small") {
+        for points in [nodes, faces] {
+            shares(points, 29, 1, 0.0);
+            shares(points, 29, 1, 0.1);
+        }
+        shares(nodes, 29, 2, 0.0);
+        lists(76);
+    }
 }

@@ -4,6 +4,7 @@ mod body_slices;
 mod crossings;
 mod device;
 mod faced;
+mod gather;
 mod kernels;
 mod meet;
 mod memory;
@@ -14,7 +15,7 @@ use super::node_slices::BodyColumns;
 use super::system::{Phase, System};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
-use crate::contact::{ContactSet, Lists, Near, Point, Surfaces, Tree};
+use crate::contact::{Lists, Near, Point, Shortlist, Stays, Surfaces, Tree};
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 use bevy_ecs::query::QueryData;
@@ -136,22 +137,20 @@ struct Surface {
     /// Of each point in the lists, how far that may be before it has to be looked at again (m), and the least of all.
     wake: Vec<f64>,
     first_wake: f64,
+    /// Of each point in the lists, what of its list matters; empty before they are begun.
+    shortlists: Vec<Shortlist>,
+    /// What shortlists allow for: how far nodes have moved since they were begun, and how far faces are looked at (m).
+    stays: Stays,
     /// Nodes that bore a force in the last step.
     pressed: Vec<u32>,
-    /// Points that touched or faced something in this step, and in the one before.
+    /// Points that touched or faced something, ascending.
     touching: Vec<u32>,
-    touched: Vec<u32>,
     /// Bodies with their numbers, in the order of entities.
     numbers: Vec<(Entity, usize)>,
-    /// Place of a node in the set, or none.
-    slots: Vec<u32>,
     // what a step finds, kept so that the next one need not ask for memory
     found: Vec<faced::Found>,
-    met: Vec<meet::Met>,
-    /// Nodes of the set, by their place in it.
-    acted_on: Vec<u32>,
+    gathered: gather::Gathered,
     forces: Vec<DVec3>,
-    set: ContactSet,
     /// How far the fastest node went in a step, when lists for a GPU were made (m).
     largest: f64,
     figures: Figures,
@@ -284,13 +283,13 @@ fn step<T: Scalar>(
     if !faced::wake(contacts, reach, nearer) && contacts.surface.crossings.near.is_empty() {
         contacts.surface.figures.asleep += 1;
         meet::release(&mut contacts.surface, &mut bodies);
-        meet::forget(&mut contacts.surface, &mut bodies);
-        return meet::leave(&contacts.surface, &mut bodies);
+        return meet::forget(contacts, &[], &mut bodies);
     }
     motion::update_places(contacts, &bodies, cpu);
-    faced::face(contacts, reach, nearer, cpu);
+    let lately = motion::follow_shortlists(contacts, &bodies, (reach, largest), moved);
+    faced::face(contacts, reach, [nearer, lately], cpu);
     crossings::find(contacts, reach);
     meet::meet(contacts, largest, (clock, cpu), &mut bodies);
     contacts.surface.figures.examined += contacts.surface.found.len() as u64;
-    contacts.surface.figures.contacts += contacts.surface.set.contacts.len() as u64;
+    contacts.surface.figures.contacts += contacts.surface.gathered.set.contacts.len() as u64;
 }

@@ -17,6 +17,7 @@ use crate::math::SimdScalar;
 use crate::shader;
 use bevy_ecs::prelude::*;
 use glam::{DMat3, DVec3};
+use smallvec::SmallVec;
 pub(super) use stage::{ToolNodes, stage as tool_stage};
 
 /// The explicit Lagrange correction of the predicted step: each node's next step d* is predicted as `integrate` will
@@ -111,6 +112,9 @@ impl Touch {
     }
 }
 
+/// Those that touch a node: there is room for all, and nothing is written where there is none.
+type Touching = SmallVec<[Touch; ToolContacts::MOST]>;
+
 impl NodeSystem for ToolContacts {
     type Columns = (
         (&'static Mass, Option<&'static FictitiousMass>, Option<&'static DampingCoefficient>),
@@ -157,7 +161,30 @@ impl NodeSystem for ToolContacts {
     }
 }
 
+impl ContactStep {
+    /// Which of some tools may touch a node at a place (m, from the reference); both as bits.
+    #[inline]
+    fn near(&self, tools: u32, place: DVec3) -> u32 {
+        let (mut left, mut near) = (tools, 0);
+        while left != 0 {
+            let tool = left.trailing_zeros();
+            left &= left - 1;
+            let is_far = match self.tools[tool as usize].ball {
+                Some((center, radius)) => center.distance_squared(place) > radius * radius,
+                None => false,
+            };
+            near |= u32::from(!is_far) << tool;
+        }
+        near
+    }
+}
+
 impl ToolContacts {
+    /// The bits of all tools.
+    fn all(&self) -> u32 {
+        u32::MAX >> (u32::BITS - self.tools.len().max(1) as u32)
+    }
+
     /// How far a node that is inside a tool comes out in a step (m).
     fn out(&self, clock: &Clock) -> f64 {
         match clock.relaxation {
@@ -175,37 +202,30 @@ impl ToolContacts {
         nodes: &mut NodeColumns<'_, T>,
         values: &mut [T],
     ) {
-        let inertia = nodes.inertia[row].to_f64();
         let place = nodes.rest[row] - self.reference + nodes.displacement(row);
-        let far = |tool: usize| match step.tools[tool].ball {
-            Some((center, radius)) => center.distance_squared(place) > radius * radius,
-            None => false,
-        };
-        let mut stuck = [false; ToolContacts::MOST];
-        for (stuck, of_tool) in stuck.iter_mut().zip(values.chunks_exact_mut(self.numbers_a_tool())) {
-            *stuck = of_tool[3] == T::from_f64(STICKS);
-            // most nodes are never touched: nothing is written there
-            if of_tool[..4].iter().any(|&number| number != T::default()) {
-                of_tool[..4].fill(T::default());
-            }
+        let near = step.near(mask & self.all(), place);
+        let touched = |of_tool: &[T]| of_tool[3] != T::default();
+        // most nodes are far from all tools, and were: nothing is read or written there but that
+        let touched = values.chunks_exact(self.numbers_a_tool()).any(touched);
+        if near == 0 && !touched {
+            return;
         }
-        let near = |tool: &usize| mask >> tool & 1 == 1 && !far(*tool);
-        if inertia <= 0.0 || !(0..self.tools.len()).any(|tool| near(&tool)) {
+        let mut stuck = 0_u32;
+        for (tool, of_tool) in values.chunks_exact_mut(self.numbers_a_tool()).enumerate() {
+            stuck |= u32::from(of_tool[3] == T::from_f64(STICKS)) << tool;
+            of_tool[..4].fill(T::default());
+        }
+        if nodes.inertia[row] <= T::default() || near == 0 {
             return;
         }
         let Foreseen { before, step: predicted, free, to_force } = nodes.foresee(&step.coefficients, row);
-        let mut all = [None; ToolContacts::MOST];
-        let mut touched = 0;
-        for tool in (0..self.tools.len()).filter(near) {
-            if let Some(touch) = self.predict(step, tool, (place, before, predicted), stuck[tool]) {
-                all[touched] = Some(touch);
-                touched += 1;
-            }
-        }
-        let all = &mut all[..touched];
-        let d = predicted + self.push_apart(step, all, (place, predicted), free);
+        let at = (place, before, predicted);
+        let near = (0..self.tools.len()).filter(|tool| near >> tool & 1 == 1);
+        let mut all = Touching::new();
+        all.extend(near.filter_map(|tool| self.predict(step, tool, at, stuck >> tool & 1 == 1)));
+        let d = predicted + self.push_apart(step, &mut all, (place, predicted), free);
         let mut sum = DVec3::ZERO;
-        for touch in all.iter().flatten().filter(|touch| touch.push > 0.0) {
+        for touch in all.iter().filter(|touch| touch.push > 0.0) {
             let change = touch.outwards + touch.tangential;
             let force = to_force * change;
             sum += force;
@@ -227,7 +247,7 @@ impl ToolContacts {
                 of_tool[6] += T::from_f64(work - on_node);
             }
         }
-        if touched > 0 {
+        if !all.is_empty() {
             nodes.add_load(row, sum);
         }
     }
@@ -289,14 +309,14 @@ impl ToolContacts {
     fn push_apart(
         &self,
         step: &ContactStep,
-        all: &mut [Option<Touch>],
+        all: &mut [Touch],
         (place, predicted): (DVec3, DVec3),
         free: DVec3,
     ) -> DVec3 {
         let mut sum = DVec3::ZERO;
         for turn in 0..TURNS {
             let mut most = 0.0_f64;
-            for touch in all.iter_mut().flatten() {
+            for touch in all.iter_mut() {
                 if turn > 0 && !touch.springs {
                     let tool = &step.tools[touch.tool];
                     let of_tool = tool.pose.inverse(place + predicted + sum);

@@ -1,7 +1,8 @@
 //! The face that a point faces.
 
+use super::candidates::{Candidates, Listed};
+use super::shortlist::{Shortlist, Stays};
 use super::surfaces::{Placed, Point, Surfaces};
-use crate::math::OnTriangle;
 use glam::DVec3;
 
 /// Surfaces face one another where the cosine between their normals is below this.
@@ -40,165 +41,54 @@ pub struct Faced {
     pub wakes: f64,
 }
 
-/// Triangles that may be near a point, and how far they were when that was found.
-#[derive(Clone, Copy, Debug)]
-pub struct Listed<'a> {
-    /// Their numbers, ascending.
-    pub triangles: &'a [u32],
-    /// How far each was (m).
-    pub distances: &'a [f64],
-    /// How much nearer anything can have come since (m).
-    pub nearer: f64,
-    /// Who is farther than this (m) is in nobody's way.
-    pub farthest: f64,
-}
-
-impl Listed<'_> {
-    /// Whether a triangle cannot have come near enough.
-    fn is_far(&self, place: usize) -> bool {
-        self.distances[place] > self.farthest + self.nearer
-    }
-}
-
-/// So many triangles' nearest places are kept while it is found what a point faces; points near more are rare.
-const KEPT: usize = 16;
-
-/// Where triangles are nearest to a point, the first of those that may be near found beforehand.
-struct Candidates<'a> {
-    at: DVec3,
-    listed: Listed<'a>,
-    kept: [(OnTriangle, f64); KEPT],
-}
-
-impl<'a> Candidates<'a> {
-    fn new(at: DVec3, listed: Listed<'a>) -> Self {
-        let nowhere = (OnTriangle { at: DVec3::ZERO, weights: [0.0; 3], part: 0 }, f64::INFINITY);
-        Self { at, listed, kept: [nowhere; KEPT] }
-    }
-
-    fn find(&mut self, surfaces: &Surfaces, places: &[DVec3]) {
-        for (place, (&triangle, kept)) in self.listed.triangles.iter().zip(&mut self.kept).enumerate() {
-            if !self.listed.is_far(place) {
-                *kept = nearest(surfaces, places, self.at, triangle);
-            }
-        }
-    }
-
-    /// The nearest place of the triangle at a place in the list, and how far that is (m).
-    fn nearest(&self, surfaces: &Surfaces, places: &[DVec3], place: usize) -> (OnTriangle, f64) {
-        match self.kept.get(place) {
-            Some(&kept) => kept,
-            None => nearest(surfaces, places, self.at, self.listed.triangles[place]),
-        }
-    }
-
-    /// How far a triangle is (m), whether it is in the list or not; infinitely far where it cannot be near enough.
-    fn distance(&self, surfaces: &Surfaces, places: &[DVec3], triangle: u32) -> f64 {
-        match self.listed.triangles.iter().take(KEPT).position(|&other| other == triangle) {
-            Some(place) => self.kept[place].1,
-            None => nearest(surfaces, places, self.at, triangle).1,
-        }
-    }
-}
-
-#[inline]
-fn nearest(surfaces: &Surfaces, places: &[DVec3], at: DVec3, triangle: u32) -> (OnTriangle, f64) {
-    let found = OnTriangle::nearest(at, surfaces.corners(places, triangle));
-    (found, at.distance(found.at))
-}
-
 impl Surfaces {
-    /// What a point faces among triangles that are no farther than `reach` (m). `edge` is the length of an edge (m).
+    /// What a point faces among triangles that are no farther than `reach` (m), and which of them matter as long as
+    /// nodes move no farther than a shortlist allows for; where that is known, the others are not looked at. `edge` is
+    /// the length of an edge (m).
     pub fn faced(
         &self,
         now: Placed<'_>,
         point: &Point,
         listed: Listed<'_>,
-        reach: impl Fn(u32) -> f64,
-        edge: f64,
+        (reach, edge): (impl Fn(u32) -> f64, f64),
+        (short, stays): (&mut Shortlist, Stays),
     ) -> Faced {
-        let at = point.place(now.places);
-        let mut candidates = Candidates::new(at, listed);
-        candidates.find(self, now.places);
-        let mut faced = Faced { wakes: f64::INFINITY, ..Faced::default() };
-        let mut own_normal = None;
-        let mut least = [f64::INFINITY; 2];
-        let is_corner = |first: &Facing, second: &Facing| self.is_corner(now.places, point, [first, second], edge);
-        for (place, &triangle) in listed.triangles.iter().enumerate() {
+        let mut candidates = Candidates::new(self, now, point.place(now.places), listed, edge);
+        let mut way = Way { surfaces: self, now, point, edge, own: None, waiting: None, faced: [None; 2] };
+        let mut wakes = f64::INFINITY;
+        let mut look = |candidates: &Candidates<'_>, place: usize| {
             if listed.is_far(place) {
-                faced.wakes = faced.wakes.min(listed.distances[place]);
-                continue;
+                wakes = wakes.min(listed.distances[place]);
+                return;
             }
-            let (found, distance) = candidates.nearest(self, now.places, place);
+            let triangle = listed.triangles[place];
+            let (found, distance) = candidates.nearest(place);
             // both have moved since the list was made
-            faced.wakes = faced.wakes.min(distance - listed.nearer);
-            let reach = reach(triangle);
-            if distance > reach && distance > self.depths[triangle as usize] {
-                continue;
+            wakes = wakes.min(distance - listed.nearer);
+            let (reach, depth) = (reach(triangle), self.depths[triangle as usize]);
+            if distance > reach && distance > depth {
+                return;
             }
-            let Some(facing) = self.outside(now, &candidates, triangle, (found, distance), edge) else { continue };
-            let inside = -self.depths[triangle as usize];
-            if !(facing.gap >= inside && facing.gap <= reach) {
-                continue;
+            match candidates.outside(triangle, (found, distance)) {
+                Some(facing) if facing.gap >= -depth && facing.gap <= reach => way.see(facing),
+                _ => {}
             }
-            let own = *own_normal.get_or_insert_with(|| match point.triangle {
-                Some(triangle) => now.normals[triangle as usize],
-                None => self.normal_of_node(now, point.nodes[0]),
-            });
-            let turned = facing.normal.dot(own);
-            if turned >= TURNED_AWAY {
-                continue;
-            }
-            // at an edge the walls beside a face are as near as itself
-            let way = (facing.gap.abs() + ALIKE * edge) * (1.0 + TURNED_AWAY + turned);
-            if way < least[0] {
-                if faced.first.is_some_and(|other| is_corner(&facing, &other)) {
-                    (faced.second, least[1]) = (faced.first, least[0]);
-                }
-                (faced.first, least[0]) = (Some(facing), way);
-            } else if way < least[1] {
-                (faced.second, least[1]) = (Some(facing), way);
-            }
-            let corner = |first: &Facing| faced.second.filter(|second| is_corner(first, second));
-            faced.second = faced.first.as_ref().and_then(corner);
-            if faced.second.is_none() {
-                least[1] = f64::INFINITY;
+        };
+        match short.places() {
+            Some(places) => places.iter().for_each(|&place| look(&candidates, usize::from(place))),
+            None => {
+                candidates.find_all();
+                (0..listed.triangles.len()).for_each(|place| look(&candidates, place));
+                let away = |place: usize| candidates.stays_away(place, reach(listed.triangles[place]), stays);
+                let nearest = |place: usize| match listed.is_far(place) {
+                    true => listed.distances[place],
+                    false => candidates.nearest(place).1 - listed.nearer,
+                };
+                *short = Shortlist::of(listed.triangles.len(), away, nearest);
             }
         }
-        faced
-    }
-
-    /// How far a point is outside of a triangle, whose nearest place is known; `None` where another triangle must be
-    /// nearer, and of triangles without area.
-    fn outside(
-        &self,
-        now: Placed<'_>,
-        candidates: &Candidates<'_>,
-        triangle: u32,
-        (found, distance): (OnTriangle, f64),
-        edge: f64,
-    ) -> Option<Facing> {
-        let normal = now.normals[triangle as usize];
-        if normal == DVec3::ZERO || !found.at.is_finite() {
-            return None;
-        }
-        let off = candidates.at - found.at;
-        let facing =
-            |normal: DVec3, gap: f64| Some(Facing { triangle, weights: found.weights, at: found.at, normal, gap });
-        if found.part == 0 || distance <= 1e-3 * edge {
-            return facing(normal, off.dot(normal));
-        }
-        // the surface around a place that is nearest is nowhere nearer: not the flat surroundings of a point's own, nor a
-        // side that leads round a corner
-        let closer =
-            |other: u32| other != triangle && candidates.distance(self, now.places, other) < (1.0 - 1e-6) * distance;
-        if self.around_part(triangle, found.part).any(closer) {
-            return None;
-        }
-        match off.dot(self.normal_of_part(now, triangle, found.part)) {
-            out if out >= 0.0 => facing(off / distance, distance),
-            _ => facing(-off / distance, -distance),
-        }
+        let [first, second] = way.finish();
+        Faced { first, second, wakes: wakes.min(short.wakes) }
     }
 
     /// Whether two faces are walls of a corner that the point is in: the second rises before the first. A node on an edge
@@ -211,6 +101,81 @@ impl Surfaces {
             Some(_) => self.corners(places, second.triangle).into_iter().any(|corner| height(corner) > ALIKE * edge),
         };
         first.normal.dot(second.normal) < CORNER && rises()
+    }
+
+    /// Whether a direction is turned away from the normals of all triangles around a node: then it is from the node's
+    /// own, which lies between them.
+    fn all_turned_away(&self, now: Placed<'_>, node: u32, normal: DVec3) -> bool {
+        self.around(node).iter().all(|&triangle| now.normals[triangle as usize].dot(normal) <= 0.0)
+    }
+}
+
+/// The faces that are in a point's way, of those seen so far.
+struct Way<'a> {
+    surfaces: &'a Surfaces,
+    now: Placed<'a>,
+    point: &'a Point,
+    edge: f64,
+    /// The point's own normal, once somebody has asked for it.
+    own: Option<DVec3>,
+    /// The first that was seen, before anything is asked of it: most points see no other.
+    waiting: Option<Facing>,
+    /// The one that is most in its way with by how much, and a wall of a corner with the first.
+    faced: [Option<(Facing, f64)>; 2],
+}
+
+impl Way<'_> {
+    fn see(&mut self, facing: Facing) {
+        if self.waiting.is_none() && self.own.is_none() {
+            self.waiting = Some(facing);
+            return;
+        }
+        if let Some(first) = self.waiting.take() {
+            self.choose(first);
+        }
+        self.choose(facing);
+    }
+
+    fn choose(&mut self, facing: Facing) {
+        let Self { surfaces, now, point, edge, .. } = *self;
+        let own = *self.own.get_or_insert_with(|| match point.triangle {
+            Some(triangle) => now.normals[triangle as usize],
+            None => surfaces.normal_of_node(now, point.nodes[0]),
+        });
+        let turned = facing.normal.dot(own);
+        if turned >= TURNED_AWAY {
+            return;
+        }
+        let is_corner = |first: &Facing, second: &Facing| surfaces.is_corner(now.places, point, [first, second], edge);
+        // at an edge the walls beside a face are as near as itself
+        let way = (facing.gap.abs() + ALIKE * edge) * (1.0 + TURNED_AWAY + turned);
+        let least = self.faced.map(|of| of.map_or(f64::INFINITY, |(_, way)| way));
+        if way < least[0] {
+            if self.faced[0].is_some_and(|(other, _)| is_corner(&facing, &other)) {
+                self.faced[1] = self.faced[0];
+            }
+            self.faced[0] = Some((facing, way));
+        } else if way < least[1] {
+            self.faced[1] = Some((facing, way));
+        }
+        if let [Some((first, _)), Some((second, _))] = &self.faced
+            && !is_corner(first, second)
+        {
+            self.faced[1] = None;
+        }
+    }
+
+    /// What is in its way: where only one was seen, that it is turned away is all that is asked.
+    fn finish(mut self) -> [Option<Facing>; 2] {
+        if let Some(only) = self.waiting.take() {
+            if self.point.triangle.is_none()
+                && self.surfaces.all_turned_away(self.now, self.point.nodes[0], only.normal)
+            {
+                return [Some(only), None];
+            }
+            self.choose(only);
+        }
+        self.faced.map(|of| of.map(|(facing, _)| facing))
     }
 }
 
@@ -232,7 +197,13 @@ mod tests {
         let normals: Vec<DVec3> = all.map(|triangle| surfaces.normal(places, triangle)).collect();
         let distances = vec![0.0; triangles.len()];
         let listed = Listed { triangles, distances: &distances, nearer: 0.0, farthest: 1.0 };
-        surfaces.faced(Placed { places, normals: &normals }, point, listed, reach, 1.0)
+        let now = Placed { places, normals: &normals };
+        let mut short = Shortlist::UNKNOWN;
+        let stays = Stays { moved: 1e-3, reach: 1e-3 };
+        let found = surfaces.faced(now, point, listed, (&reach, 1.0), (&mut short, stays));
+        // what the shortlist leaves out changes nothing
+        assert_eq!(surfaces.faced(now, point, listed, (&reach, 1.0), (&mut short, stays)), found);
+        found
     }
 
     /// A flat square of two triangles, normal up, and a point above it.

@@ -2,19 +2,23 @@
 //! in f64, of places that are counted from a point near the bodies.
 
 mod boxes;
+mod candidates;
 mod edges;
 mod face_points;
 mod facing;
 mod law;
 mod lists;
+mod shortlist;
 mod surfaces;
 mod ties;
 
 pub use boxes::Tree;
+pub use candidates::Listed;
 pub use edges::{Crossing, Edge, distance};
 pub use face_points::{bilinear, face_points};
-pub use facing::{Faced, Facing, Listed};
+pub use facing::{Faced, Facing};
 pub use law::{Contact, ContactSet};
 pub use lists::{Finder, Lists};
+pub use shortlist::{Shortlist, Stays};
 pub use surfaces::{Near, Placed, Point, Surfaces};
 pub use ties::{Tie, TieSet};

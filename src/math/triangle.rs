@@ -56,4 +56,57 @@ impl OnTriangle {
         let (v, w) = (off_ca / all, off_ab / all);
         Self { at: a + ab * v + ac * w, weights: [1.0 - v - w, v, w], part: 0 }
     }
+
+    /// Whether the nearest place to `y` stays on the same side or corner, as long as no two of the corners and `y` move
+    /// against each other by more than a distance (m). Each product of vectors changes by no more than the sum of what
+    /// one of them alone does to it, with lengths that are as large as they may become.
+    pub fn keeps_part(&self, y: DVec3, corners: [DVec3; 3], moved: f64) -> bool {
+        if self.part == 0 {
+            return false;
+        }
+        let [a, b, c] = [2, 0, 1].map(|next| corners[(self.part + next) % 3]);
+        let (along, inwards, off) = (b - a, c - a, y - a);
+        let [e, w, o] = [along, inwards, off].map(|vector| vector.length() + moved);
+        let (ahead, in_it) = (along.dot(off), inwards.dot(off));
+        if self.part > 3 {
+            return ahead < -moved * (e + o) && in_it < -moved * (w + o);
+        }
+        let behind = along.dot(y - b);
+        let beyond = along.dot(along) * in_it - along.dot(inwards) * ahead;
+        ahead > moved * (e + o)
+            && behind < -moved * (e + (y - b).length() + moved)
+            && beyond < -2.0 * moved * e * (2.0 * w * o + e * o + e * w)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Corners and a place, moved against each other as far as is allowed, have the nearest place on the same part; and
+    /// that is found of many.
+    #[test]
+    fn the_part_that_is_kept_is_the_one_after_motion() {
+        let mut random = fastrand::Rng::with_seed(7);
+        let mut place = |size: f64| size * (DVec3::new(random.f64(), random.f64(), random.f64()) - 0.5);
+        let (mut kept, mut all) = (0, 0);
+        for _ in 0..2000 {
+            let (corners, y) = ([0; 3].map(|_| place(1.0)), place(2.0));
+            let found = OnTriangle::nearest(y, corners);
+            for moved in [0.003, 0.03] {
+                all += 1;
+                if !found.keeps_part(y, corners, moved) {
+                    continue;
+                }
+                kept += 1;
+                // each within half of it: any two within it
+                let within = moved / 3.0_f64.sqrt();
+                for _ in 0..40 {
+                    let corners = corners.map(|corner| corner + place(within));
+                    assert_eq!(OnTriangle::nearest(y + place(within), corners).part, found.part);
+                }
+            }
+        }
+        assert!(3 * kept > all, "{kept} of {all}");
+    }
 }

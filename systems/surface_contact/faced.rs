@@ -2,17 +2,19 @@
 
 use super::SurfaceContacts;
 use crate::backend::cpu::Cpu;
-use crate::contact::{Faced, Listed, Placed};
+use crate::contact::{Faced, Listed, Placed, Shortlist, Stays};
 
 /// Points that a task looks at.
 const POINTS_A_TASK: usize = 128;
 
 /// What a point faces.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
     /// Its place in the lists.
     pub place: u32,
     pub faced: Faced,
+    /// What of its list matters.
+    short: Shortlist,
 }
 
 /// Who is awake: points in the lists that may be near something, as far as `nearer` (m) nodes have moved since. Whether
@@ -26,20 +28,24 @@ pub(super) fn wake(contacts: &mut SurfaceContacts, reach: f64, nearer: f64) -> b
         if nearer + farthest < wake {
             surface.first_wake = surface.first_wake.min(wake);
         } else {
-            surface.found.push(Found { place, ..Found::default() });
+            surface.found.push(Found { place, faced: Faced::default(), short: Shortlist::UNKNOWN });
         }
     }
     !surface.found.is_empty()
 }
 
-/// Finds what those face that are awake.
-pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, nearer: f64, cpu: &Cpu) {
+/// Finds what those face that are awake. How far nodes have moved (m): how much nearer since the lists were made, and
+/// how far since shortlists were begun.
+pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, [nearer, lately]: [f64; 2], cpu: &Cpu) {
     let farthest = contacts.farthest(reach);
     let mut found = std::mem::take(&mut contacts.surface.found);
     let surface = &contacts.surface;
     let now = Placed { places: &surface.places, normals: &surface.normals };
+    // what has moved so far may move back, too
+    let stays = Stays { moved: surface.stays.moved + lately, reach: surface.stays.reach - reach };
     cpu.for_each(found.chunks_mut(POINTS_A_TASK), |found| {
-        for Found { place, faced } in found {
+        for Found { place, faced, short } in found {
+            *short = surface.shortlists[*place as usize];
             let point = &surface.points[surface.lists.points[*place as usize] as usize];
             let reach_of = |triangle: u32| {
                 let body = surface.triangles.bodies[triangle as usize];
@@ -48,7 +54,7 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, nearer: f64, cpu:
             let place = *place as usize;
             let (triangles, distances) = (surface.lists.triangles(place), surface.lists.distances(place));
             let listed = Listed { triangles, distances, nearer, farthest };
-            *faced = surface.triangles.faced(now, point, listed, reach_of, contacts.edge);
+            *faced = surface.triangles.faced(now, point, listed, (reach_of, contacts.edge), (short, stays));
             if point.triangle.is_some() {
                 let both = [&mut faced.first, &mut faced.second];
                 both.into_iter().flatten().for_each(|facing| facing.gap = surface.gap_of_facet(point, facing));
@@ -56,7 +62,8 @@ pub(super) fn face(contacts: &mut SurfaceContacts, reach: f64, nearer: f64, cpu:
         }
     });
     let surface = &mut contacts.surface;
-    for Found { place, faced } in &found {
+    for Found { place, faced, short } in &found {
+        surface.shortlists[*place as usize] = *short;
         surface.wake[*place as usize] = faced.wakes;
         surface.first_wake = surface.first_wake.min(faced.wakes);
     }

@@ -6,7 +6,8 @@
 
 use super::SurfaceContacts;
 use super::device::{MOTION_WORDS, SurfaceContact, find};
-use super::meet::{FACES, FREE, OUT, SLIDES, STICKS};
+use super::gather::OUT;
+use super::meet::{FACES, FREE, SLIDES, STICKS};
 use crate::backend::Buffers;
 use crate::backend::kernel::{BufferId, Fragment, Kernel, Uniform, uniform};
 use crate::backend::step::with_step;

@@ -1,11 +1,11 @@
 //! The forces that keep points outside of what they face.
 
-use super::body_slices::{BodySlices, Kept, set_vector, vector, vector_at};
-use super::faced::Found;
-use super::{Meeting, Surface, SurfaceContacts};
+use super::body_slices::{BodySlices, Kept, set_vector, vector};
+use super::gather::{Gathered, InStep, gather};
+use super::{Surface, SurfaceContacts};
 use crate::backend::cpu::{Cpu, IntegrationCoefficients};
 use crate::components::*;
-use crate::contact::{Contact, ContactSet, Facing, Point, bilinear};
+use crate::contact::{Facing, Point, bilinear};
 use crate::math::Scalar;
 use glam::DVec3;
 
@@ -15,26 +15,9 @@ pub(super) const FACES: f64 = 1.0;
 pub(super) const STICKS: f64 = 2.0;
 pub(super) const SLIDES: f64 = 3.0;
 
-/// How far a point that is inside comes out in a step at most, in edges.
-pub(super) const OUT: f64 = 0.1;
-
-/// Points of faces share their nodes' masses while they are no farther from touching than this, in edges: who shares
-/// stays the same from step to step then, and pressures come to rest.
-const SHARES: f64 = 1e-3;
-
-/// A contact of the set.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Met {
-    point: u32,
-    /// Whether it is the first face of the point: only there slip is kept.
-    first: bool,
-    /// How far it was outside (m).
-    gap: f64,
-}
-
 impl SurfaceContacts {
     /// How far a point is outside what it must stay outside of (m).
-    fn gap(&self, point: &Point, facing: &Facing) -> f64 {
+    pub(super) fn gap(&self, point: &Point, facing: &Facing) -> f64 {
         let body = self.surface.triangles.bodies[facing.triangle as usize];
         facing.gap - self.meeting(point.body, body).map_or(0.0, |meeting| meeting.thickness)
     }
@@ -50,7 +33,7 @@ impl SurfaceContacts {
     }
 
     /// Where a point's numbers are.
-    fn kept(&self, point: u32) -> Kept {
+    pub(super) fn kept(&self, point: u32) -> Kept {
         self.surface.kept[point as usize]
     }
 }
@@ -86,29 +69,26 @@ pub(super) fn release<T: Scalar>(surface: &mut Surface, bodies: &mut [BodySlices
     }
 }
 
-/// Forgets what points touched or faced in the last step.
-pub(super) fn forget<T: Scalar>(surface: &mut Surface, bodies: &mut [BodySlices<'_, T>]) {
-    std::mem::swap(&mut surface.touching, &mut surface.touched);
-    surface.touching.clear();
-    for &point in &surface.touched {
-        let kept = surface.kept[point as usize];
+/// Forgets what points touched or faced in the last step that face nothing in this one: all but those of `now`, which
+/// ascend like these.
+pub(super) fn forget<T: Scalar>(contacts: &mut SurfaceContacts, now: &[u32], bodies: &mut [BodySlices<'_, T>]) {
+    let mut still = now.iter().copied().peekable();
+    for place in 0..contacts.surface.touching.len() {
+        let point = contacts.surface.touching[place];
+        while still.next_if(|&other| other < point).is_some() {}
+        if still.peek() == Some(&point) {
+            continue;
+        }
+        let kept = contacts.kept(point);
         let touch = bodies[kept.body].kept_mut(kept);
         set_vector(touch, 0, DVec3::ZERO);
+        // as deep as a point may be inside that never faced anything, so that a run that goes on from here finds the same
+        touch[3] = T::default();
         touch[4] = T::from_f64(FREE);
         touch[5] = T::default();
     }
-}
-
-/// Forgets how deep those of them may be inside that face nothing any more: looked at or asleep, they are as points that
-/// never faced anything, so that a run that goes on from here finds what this one does.
-pub(super) fn leave<T: Scalar>(surface: &Surface, bodies: &mut [BodySlices<'_, T>]) {
-    for &point in &surface.touched {
-        let kept = surface.kept[point as usize];
-        let touch = bodies[kept.body].kept_mut(kept);
-        if touch[4].to_f64() == FREE {
-            touch[3] = T::default();
-        }
-    }
+    contacts.surface.touching.clear();
+    contacts.surface.touching.extend_from_slice(now);
 }
 
 /// Finds the forces of a step and adds them to the loads.
@@ -119,161 +99,25 @@ pub(super) fn meet<T: Scalar>(
     bodies: &mut [BodySlices<'_, T>],
 ) {
     let coefficients = IntegrationCoefficients::<f64>::of(clock);
-    let settling = contacts.settling(clock);
     let found = std::mem::take(&mut contacts.surface.found);
-    let mut set = std::mem::take(&mut contacts.surface.set);
+    let mut gathered = std::mem::take(&mut contacts.surface.gathered);
     release(&mut contacts.surface, bodies);
-    begin(contacts, &found, (largest, settling), bodies);
-    gather(contacts, &mut set, &found, (&coefficients, settling), bodies);
-    forget(&mut contacts.surface, bodies);
-    note_facing(contacts, &found, bodies);
-    leave(&contacts.surface, bodies);
-    set.solve(contacts.sweeps, cpu);
+    gathered.clear();
+    let in_step = InStep { largest, settling: contacts.settling(clock), coefficients: &coefficients };
+    gather(contacts, &mut gathered, &found, &in_step, bodies);
+    forget(contacts, &gathered.facing, bodies);
+    gathered.set.solve(contacts.sweeps, cpu);
     let counts_work = clock.relaxation.is_none().then_some(&coefficients);
-    note_touches(contacts, &set, counts_work, bodies);
-    push(contacts, bodies);
-    (contacts.surface.set, contacts.surface.found) = (set, found);
-}
-
-/// Finds how deep points may be inside: as deep as they are found there and no motion has brought them, by and by less.
-/// A point that was not seen before (at the start, laid bare, at a corner that comes round) is not thrown out in a
-/// step.
-fn begin<T: Scalar>(
-    contacts: &SurfaceContacts,
-    found: &[Found],
-    (largest, settling): (f64, f64),
-    bodies: &mut [BodySlices<'_, T>],
-) {
-    for Found { place, faced } in found {
-        let number = contacts.surface.lists.points[*place as usize];
-        let kept = contacts.kept(number);
-        let touch = bodies[kept.body].kept_mut(kept);
-        let before = touch[3].to_f64();
-        let allowed = faced.first.map_or(0.0, |facing| {
-            let gap = contacts.gap(&contacts.surface.points[number as usize], &facing);
-            let expected = match touch[4].to_f64() {
-                FREE => 0.0,
-                // as deep as any motion may have brought it
-                FACES => touch[5].to_f64() - 2.0 * largest,
-                _ => touch[5].to_f64(),
-            };
-            (before + (gap - expected).min(0.0) + settling).min(0.0).max(gap.min(0.0))
-        });
-        if allowed != before {
-            touch[3] = T::from_f64(allowed);
-        }
-    }
-}
-
-/// The contacts of a step, and where the nodes would go that they act on.
-fn gather<T: Scalar>(
-    contacts: &mut SurfaceContacts,
-    set: &mut ContactSet,
-    found: &[Found],
-    (coefficients, settling): (&IntegrationCoefficients<f64>, f64),
-    bodies: &[BodySlices<'_, T>],
-) {
-    set.clear();
-    let Surface { slots, met, acted_on, .. } = &mut contacts.surface;
-    let (mut slots, mut met, mut acted_on) = (std::mem::take(slots), std::mem::take(met), std::mem::take(acted_on));
-    met.clear();
-    acted_on.clear();
-    let surface = &contacts.surface;
-    let mut slot_of = |node: u32, set: &mut ContactSet| {
-        let slot = &mut slots[node as usize];
-        if *slot == u32::MAX {
-            *slot = acted_on.len() as u32;
-            let (body, row) = surface.nodes[node as usize];
-            let of_node = bodies[body as usize].foresee(row as usize, coefficients);
-            set.steps.push(of_node.step);
-            set.responses.push(of_node.free / of_node.to_force);
-            set.earlier.push(of_node.before);
-            acted_on.push(node);
-        }
-        *slot
-    };
-    for Found { place, faced } in found {
-        let number = surface.lists.points[*place as usize];
-        let point = &surface.points[number as usize];
-        let kept = contacts.kept(number);
-        let touch = bodies[kept.body].kept(kept);
-        let both = [(faced.first, true), (faced.second, false)];
-        for (facing, first) in both.into_iter().filter_map(|(facing, first)| facing.map(|facing| (facing, first))) {
-            let body = surface.triangles.bodies[facing.triangle as usize];
-            let Some(Meeting { friction, spring, .. }) = contacts.meeting(point.body, body) else { continue };
-            let stuck = touch[4].to_f64() == STICKS;
-            let slip = if first { vector_at(touch, 0) } else { DVec3::ZERO };
-            let outside = contacts.gap(point, &facing);
-            let gap = match first {
-                true => (outside - touch[3].to_f64()).max(-OUT * contacts.edge),
-                // nothing is known of how it got there
-                false => outside.max(-settling),
-            };
-            let normal = facing.normal;
-            let friction = if stuck { friction[0] } else { friction[1] };
-            let mut contact = Contact::new((normal, gap), (friction, slip));
-            point.parts().for_each(|(node, weight)| contact.add(slot_of(node, set), weight));
-            let (nodes, weights) = surface.corners_of(point, &facing);
-            nodes.into_iter().zip(weights).for_each(|(node, weight)| contact.add(slot_of(node, set), -weight));
-            let within = if point.triangle.is_some() { SHARES * contacts.edge } else { 0.0 };
-            let allowed = if first { touch[3].to_f64() } else { 0.0 };
-            if ends(&mut contact, (spring, outside - allowed), set) < within {
-                set.contacts.push(contact);
-                met.push(Met { point: number, first, gap: outside });
-            }
-        }
-    }
-    for (pair, crossing) in &surface.crossings.found {
-        let [one, other] = pair.map(|edge| surface.crossings.edges[edge as usize]);
-        let Some(Meeting { friction, thickness, spring, .. }) = contacts.crossing(one.body, other.body) else {
-            continue;
-        };
-        let outside = crossing.gap - thickness;
-        // nothing is known of how it got there, nor of how it slipped
-        let mut contact = Contact::new((crossing.normal, outside.max(-settling)), (friction[1], DVec3::ZERO));
-        let [of_one, of_other] = crossing.weights;
-        one.nodes.into_iter().zip(of_one).for_each(|(node, weight)| contact.add(slot_of(node, set), weight));
-        other.nodes.into_iter().zip(of_other).for_each(|(node, weight)| contact.add(slot_of(node, set), -weight));
-        if ends(&mut contact, (spring, outside), set) < 0.0 {
-            set.contacts.push(contact);
-            // nodes are the first of the points
-            met.push(Met { point: one.nodes[0], first: false, gap: outside });
-        }
-    }
-    acted_on.iter().for_each(|&node| slots[node as usize] = u32::MAX);
-    let surface = &mut contacts.surface;
-    (surface.slots, surface.met, surface.acted_on) = (slots, met, acted_on);
-}
-
-/// How far outside (m) a point would end that is to be kept there; with a spring how far it is, which is all that that
-/// asks for: so far outside, or more than it may be inside.
-fn ends(contact: &mut Contact, (spring, outside): (Option<ContactSpring>, f64), set: &ContactSet) -> f64 {
-    let Some(spring) = spring else {
-        return contact.gap + contact.normal.dot(contact.relative(&set.steps));
-    };
-    contact.springs = true;
-    contact.gap = spring.gap(outside, contact.normal.dot(contact.relative(&set.earlier)));
-    outside
-}
-
-/// Notes what points face, and how far they are outside of it.
-fn note_facing<T: Scalar>(contacts: &mut SurfaceContacts, found: &[Found], bodies: &mut [BodySlices<'_, T>]) {
-    for Found { place, faced } in found {
-        let Some(first) = faced.first else { continue };
-        let number = contacts.surface.lists.points[*place as usize];
-        let gap = contacts.gap(&contacts.surface.points[number as usize], &first);
-        let kept = contacts.kept(number);
-        let touch = bodies[kept.body].kept_mut(kept);
-        touch[4] = T::from_f64(FACES);
-        touch[5] = T::from_f64(gap);
-        contacts.surface.touching.push(number);
-    }
+    note_touches(contacts, &gathered, counts_work, bodies);
+    push(contacts, &gathered.acted_on, bodies);
+    gathered.acted_on.iter().for_each(|&node| gathered.slots[node as usize] = u32::MAX);
+    (contacts.surface.gathered, contacts.surface.found) = (gathered, found);
 }
 
 /// Notes what contacts came to, and finds the forces on nodes, in the order of contacts.
 fn note_touches<T: Scalar>(
     contacts: &mut SurfaceContacts,
-    set: &ContactSet,
+    Gathered { set, met, .. }: &Gathered,
     counts_work: Option<&IntegrationCoefficients<f64>>,
     bodies: &mut [BodySlices<'_, T>],
 ) {
@@ -281,8 +125,7 @@ fn note_touches<T: Scalar>(
     forces.clear();
     forces.resize(set.steps.len(), DVec3::ZERO);
     let mut deepest = contacts.surface.figures.deepest;
-    let surface = &contacts.surface;
-    for (contact, met) in set.contacts.iter().zip(&surface.met).filter(|(contact, _)| contact.pressing > 0.0) {
+    for (contact, met) in set.contacts.iter().zip(met).filter(|(contact, _)| contact.pressing > 0.0) {
         let force = contact.force();
         contact.parts().for_each(|(slot, weight)| forces[slot] += force * weight);
         let kept = contacts.kept(met.point);
@@ -308,8 +151,8 @@ fn note_touches<T: Scalar>(
 }
 
 /// Adds the forces to the loads.
-fn push<T: Scalar>(contacts: &mut SurfaceContacts, bodies: &mut [BodySlices<'_, T>]) {
-    let Surface { nodes, acted_on, forces, pressed, .. } = &mut contacts.surface;
+fn push<T: Scalar>(contacts: &mut SurfaceContacts, acted_on: &[u32], bodies: &mut [BodySlices<'_, T>]) {
+    let Surface { nodes, forces, pressed, .. } = &mut contacts.surface;
     let pushed = acted_on.iter().zip(&*forces).filter(|(_, force)| **force != DVec3::ZERO);
     for (&node, &force) in pushed {
         let (body, row) = nodes[node as usize];

@@ -31,19 +31,19 @@ fn bytes<T>(slice: &[T]) -> usize {
 
 impl Surface {
     fn memory(&self) -> SurfaceMemory {
-        let Self { facets, nodes, points, kept, apart, places, normals, fresh, slots, numbers, .. } = self;
-        let of_nodes = bytes(nodes) + bytes(places) + bytes(slots);
+        let Self { facets, nodes, points, kept, apart, places, normals, fresh, numbers, .. } = self;
+        let of_nodes = bytes(nodes) + bytes(places);
         let of_points = bytes(points) + bytes(kept) + bytes(apart);
         let of_triangles = self.triangles.bytes() + bytes(facets) + bytes(normals) + bytes(fresh) + bytes(numbers);
         let near = bytes(&self.near.nodes) + bytes(&self.near.triangles);
-        let of_step = bytes(&self.found) + bytes(&self.met) + bytes(&self.acted_on) + bytes(&self.forces);
-        let remembered = bytes(&self.pressed) + bytes(&self.touching) + bytes(&self.touched);
+        let of_step = bytes(&self.found) + self.gathered.bytes() + bytes(&self.forces);
+        let remembered = bytes(&self.pressed) + bytes(&self.touching);
         SurfaceMemory {
             surfaces: of_nodes + of_points + of_triangles + self.crossings.bytes(),
             trees: self.trees.iter().map(|tree| tree.bytes()).sum(),
-            lists: self.lists.bytes() + bytes(&self.wake) + near + self.since.bytes(),
+            lists: self.lists.bytes() + bytes(&self.wake) + bytes(&self.shortlists) + near + self.since.bytes(),
             pairs: self.lists.triangles.len(),
-            step: of_step + remembered + self.set.bytes(),
+            step: of_step + remembered,
         }
     }
 }

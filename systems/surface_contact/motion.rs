@@ -6,7 +6,7 @@ use super::survey::MARGIN;
 use super::{MeetingColumns, Surface, SurfaceContacts, crossings};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
-use crate::contact::{Finder, Lists, Point};
+use crate::contact::{Finder, Lists, Point, Shortlist, Stays};
 use crate::math::Scalar;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
@@ -19,19 +19,26 @@ const GAP: u32 = 16;
 /// Triangles whose normals a task finds.
 const TRIANGLES_A_TASK: usize = 1024;
 
+/// How far nodes may move before shortlists are begun anew, in edges: at least and at most; and for how many steps of the
+/// fastest node, between these.
+const STAYS: [f64; 2] = [2e-3, 2e-2];
+const STEPS_OF_SHORTLISTS: f64 = 20.0;
+
 /// Numbers that are compared side by side: whole registers, and whole vectors.
 const SIDE_BY_SIDE: usize = 24;
 
 /// What rounding to f32 takes of a difference at most, and more.
 const ROUNDING: f64 = 1e-6;
 
-/// Where nodes were when the lists were made.
+/// Where nodes were when the lists were made, and when shortlists were begun.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Since {
     /// Bodies' numbers, and rows in which nodes of their surfaces are; few others are there.
     pub runs: Vec<(u32, Range<u32>)>,
     /// Displacements of these rows (m).
-    u: Option<Reals>,
+    lists: Option<Reals>,
+    /// The same when shortlists were begun.
+    shortlists: Option<Reals>,
 }
 
 /// How nodes have moved.
@@ -39,6 +46,8 @@ pub(super) struct Since {
 pub(super) struct Moved {
     /// How far at most two have come nearer to each other since the lists were made (m).
     pub nearer: f64,
+    /// The same since shortlists were begun, if they are.
+    pub lately: Option<f64>,
     /// How far none has gone in the last step (m).
     pub step: f64,
 }
@@ -53,76 +62,107 @@ impl Since {
                 None => runs.push((body, row..row + 1)),
             }
         }
-        Self { runs, u: None }
+        Self { runs, lists: None, shortlists: None }
     }
 
     /// Bytes that it takes.
     pub fn bytes(&self) -> usize {
-        let u = self.u.as_ref().map_or(0, |u| u.len() * if u.precision() == Precision::F32 { 4 } else { 8 });
-        size_of_val(&self.runs[..]) + u
+        let of =
+            |u: &Option<Reals>| u.as_ref().map_or(0, |u| u.len() * if u.precision() == Precision::F32 { 4 } else { 8 });
+        size_of_val(&self.runs[..]) + of(&self.lists) + of(&self.shortlists)
     }
+}
 
-    /// Remembers where nodes are.
-    fn begin<T: Scalar>(&mut self, bodies: &[BodySlices<'_, T>]) {
-        let count = self.runs.iter().map(|(_, rows)| 3 * rows.len()).sum();
-        let precision = if size_of::<T>() == 4 { Precision::F32 } else { Precision::F64 };
-        let u = match self.u.as_mut().filter(|u| u.len() == count && u.precision() == precision) {
-            Some(u) => u,
-            None => self.u.insert(Reals::zeros(precision, count)),
-        };
-        let mut left = u.slice_mut::<T>();
-        for (body, rows) in &self.runs {
-            let (of_run, others) = left.split_at_mut(3 * rows.len());
-            of_run.copy_from_slice(&bodies[*body as usize].u[3 * rows.start as usize..3 * rows.end as usize]);
-            left = others;
-        }
+/// Remembers where the nodes of these rows are.
+fn remember<T: Scalar>(runs: &[(u32, Range<u32>)], u: &mut Option<Reals>, bodies: &[BodySlices<'_, T>]) {
+    let count = runs.iter().map(|(_, rows)| 3 * rows.len()).sum();
+    let precision = if size_of::<T>() == 4 { Precision::F32 } else { Precision::F64 };
+    if !u.as_ref().is_some_and(|u| u.len() == count && u.precision() == precision) {
+        *u = None;
+    }
+    let mut left = u.get_or_insert_with(|| Reals::zeros(precision, count)).slice_mut::<T>();
+    for (body, rows) in runs {
+        let (of_run, others) = left.split_at_mut(3 * rows.len());
+        of_run.copy_from_slice(&bodies[*body as usize].u[3 * rows.start as usize..3 * rows.end as usize]);
+        left = others;
     }
 }
 
 /// The least and the largest of numbers along three axes, axis after axis.
+#[derive(Clone, Copy)]
 struct Extremes<T> {
     low: [T; SIDE_BY_SIDE],
     high: [T; SIDE_BY_SIDE],
-    largest: [T; SIDE_BY_SIDE],
 }
 
 impl<T: Scalar> Extremes<T> {
-    /// Looks at displacements, those before, and steps: whole vectors. What is no number is not seen here; it is what
-    /// guards look for.
+    fn none() -> Self {
+        let far = T::from_f64(f64::from(f32::MAX));
+        Self { low: [far; SIDE_BY_SIDE], high: [-far; SIDE_BY_SIDE] }
+    }
+
+    /// Sees as many numbers as there are, side by side at most. What is no number is not seen here; it is what guards
+    /// look for.
     #[inline(always)]
-    fn see(&mut self, now: &[T], then: &[T], steps: &[T]) {
-        let all = now.chunks(SIDE_BY_SIDE).zip(then.chunks(SIDE_BY_SIDE)).zip(steps.chunks(SIDE_BY_SIDE));
-        for ((now, then), steps) in all {
-            match (
-                <&[T; SIDE_BY_SIDE]>::try_from(now),
-                <&[T; SIDE_BY_SIDE]>::try_from(then),
-                <&[T; SIDE_BY_SIDE]>::try_from(steps),
-            ) {
-                (Ok(now), Ok(then), Ok(steps)) => {
-                    (0..SIDE_BY_SIDE).for_each(|i| self.one(i, now[i] - then[i], steps[i]))
-                }
-                _ => (0..now.len()).for_each(|i| self.one(i, now[i] - then[i], steps[i])),
-            }
+    fn see(&mut self, numbers: &[T; SIDE_BY_SIDE], count: usize) {
+        for i in 0..count {
+            self.low[i] = if numbers[i] < self.low[i] { numbers[i] } else { self.low[i] };
+            self.high[i] = if numbers[i] > self.high[i] { numbers[i] } else { self.high[i] };
         }
     }
 
-    #[inline(always)]
-    fn one(&mut self, i: usize, moved: T, step: T) {
-        self.low[i] = if moved < self.low[i] { moved } else { self.low[i] };
-        self.high[i] = if moved > self.high[i] { moved } else { self.high[i] };
-        let size = if step < T::default() { -step } else { step };
-        self.largest[i] = if size > self.largest[i] { size } else { self.largest[i] };
+    /// The largest distance between two vectors that were seen (m), and a little more.
+    fn apart(&self) -> f64 {
+        let along = |axis: usize, of: &[T; SIDE_BY_SIDE], better: fn(f64, f64) -> f64| {
+            of.iter().skip(axis).step_by(3).map(|number| number.to_f64()).reduce(better).unwrap_or(0.0)
+        };
+        let apart = |axis: usize| (along(axis, &self.high, f64::max) - along(axis, &self.low, f64::min)).max(0.0);
+        DVec3::new(apart(0), apart(1), apart(2)).length() * (1.0 + ROUNDING)
+    }
+
+    /// The longest vector that was seen is not longer than this (m).
+    fn longest(&self) -> f64 {
+        let both = self.low.iter().map(|number| -number.to_f64()).chain(self.high.iter().map(|number| number.to_f64()));
+        both.fold(0.0, f64::max) * 3.0_f64.sqrt() * (1.0 + ROUNDING)
     }
 }
 
-/// The task of looking at all runs, with the machine's registers.
-struct See<'a, T>(&'a mut Extremes<T>, &'a [T], &'a [T], &'a [T]);
+/// What is seen of nodes: how they have moved since the lists were made and since shortlists were begun, and their last
+/// steps.
+struct Seen<T> {
+    moved: [Extremes<T>; 2],
+    steps: Extremes<T>,
+}
+
+/// The task of looking at a run: displacements now, those before, and steps.
+struct See<'a, T>(&'a mut Seen<T>, &'a [T], [Option<&'a [T]>; 2], &'a [T]);
+
+impl<T: Scalar> See<'_, T> {
+    #[inline(always)]
+    fn some(&mut self, at: usize, count: usize) {
+        let of = |all: &[T]| {
+            let mut numbers = [T::default(); SIDE_BY_SIDE];
+            numbers[..count].copy_from_slice(&all[at..at + count]);
+            numbers
+        };
+        let now = of(self.1);
+        for (seen, then) in self.0.moved.iter_mut().zip(self.2) {
+            let Some(then) = then.map(of) else { continue };
+            let mut moved = now;
+            (0..SIDE_BY_SIDE).for_each(|i| moved[i] = now[i] - then[i]);
+            seen.see(&moved, count);
+        }
+        self.0.steps.see(&of(self.3), count);
+    }
+}
 
 impl<T: Scalar> pulp::WithSimd for See<'_, T> {
     type Output = ();
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.0.see(self.1, self.2, self.3);
+    fn with_simd<S: pulp::Simd>(mut self, _: S) {
+        let whole = self.1.len() / SIDE_BY_SIDE * SIDE_BY_SIDE;
+        (0..whole).step_by(SIDE_BY_SIDE).for_each(|at| self.some(at, SIDE_BY_SIDE));
+        self.some(whole, self.1.len() - whole);
     }
 }
 
@@ -132,26 +172,20 @@ pub(super) fn moved<T: Scalar>(
     bodies: &Query<(Entity, MeetingColumns)>,
     cpu: &Cpu,
 ) -> Option<Moved> {
-    let Since { runs, u } = &contacts.surface.since;
-    let mut then = u.as_ref()?.slice::<T>();
-    let (far, none) = (T::from_f64(f64::from(f32::MAX)), T::default());
-    let [low, high] = [far, -far].map(|value| [value; SIDE_BY_SIDE]);
-    let mut seen = Extremes { low, high, largest: [none; SIDE_BY_SIDE] };
+    let Since { runs, lists, shortlists } = &contacts.surface.since;
+    let then = [Some(lists.as_ref()?.slice::<T>()), shortlists.as_ref().map(|u| u.slice::<T>())];
+    let mut seen = Seen { moved: [Extremes::none(); 2], steps: Extremes::none() };
+    let mut before = 0;
     for (body, rows) in runs {
         let (_, columns) = bodies.get(contacts.bodies[*body as usize]).ok()?;
         let range = 3 * rows.start as usize..3 * rows.end as usize;
-        let (of_run, others) = then.split_at(range.len());
+        let of_run = then.map(|then| then.map(|then| &then[before..before + range.len()]));
+        before += range.len();
         let [u, steps] = [&columns.nodes.u.0, &columns.nodes.step.0].map(|reals| &reals.slice::<T>()[range.clone()]);
         cpu.dispatch(See(&mut seen, u, of_run, steps));
-        then = others;
     }
-    let along = |axis: usize, of: &[T; SIDE_BY_SIDE], better: fn(f64, f64) -> f64| {
-        of.iter().skip(axis).step_by(3).map(|number| number.to_f64()).reduce(better).unwrap_or(0.0)
-    };
-    let apart = |axis: usize| (along(axis, &seen.high, f64::max) - along(axis, &seen.low, f64::min)).max(0.0);
-    let longest = seen.largest.iter().map(|number| number.to_f64()).fold(0.0, f64::max);
-    let nearer = DVec3::new(apart(0), apart(1), apart(2)).length();
-    Some(Moved { nearer: nearer * (1.0 + ROUNDING), step: longest * 3.0_f64.sqrt() * (1.0 + ROUNDING) })
+    let [nearer, lately] = seen.moved.map(|moved| moved.apart());
+    Some(Moved { nearer, lately: shortlists.is_some().then_some(lately), step: seen.steps.longest() })
 }
 
 /// How far the fastest node of a surface went in the last step (m).
@@ -216,9 +250,35 @@ pub(super) fn search<T: Scalar>(
     surface.wake.clear();
     surface.wake.resize(surface.lists.points.len(), 0.0);
     surface.near = near;
-    surface.since.begin(bodies);
+    let Since { runs, lists, .. } = &mut surface.since;
+    remember(runs, lists, bodies);
+    // they are begun when somebody looks
+    surface.shortlists.clear();
     surface.figures.builds += 1;
     surface.figures.building += started.elapsed();
+    0.0
+}
+
+/// Begins shortlists anew where nodes have moved farther than these allow for, or faces are looked at that are farther
+/// away; gives how far nodes have moved since then (m).
+pub(super) fn follow_shortlists<T: Scalar>(
+    contacts: &mut SurfaceContacts,
+    bodies: &[BodySlices<'_, T>],
+    (reach, largest): (f64, f64),
+    moved: Option<Moved>,
+) -> f64 {
+    let edge = contacts.edge;
+    let Surface { since, shortlists, stays, lists, .. } = &mut contacts.surface;
+    let begun = !shortlists.is_empty() && reach <= stays.reach;
+    // what is no number is no bound
+    if let Some(lately) = moved.and_then(|moved| moved.lately).filter(|&lately| begun && lately <= stays.moved) {
+        return lately;
+    }
+    remember(&since.runs, &mut since.shortlists, bodies);
+    shortlists.clear();
+    shortlists.resize(lists.points.len(), Shortlist::UNKNOWN);
+    let moved = (STEPS_OF_SHORTLISTS * largest).clamp(STAYS[0] * edge, STAYS[1] * edge);
+    *stays = Stays { moved, reach: 2.0 * reach };
     0.0
 }
 

@@ -158,7 +158,7 @@ fn survey(
     surface.facets = facets;
     let depths = depths.into_iter().map(|depth| f64::min(depth, DEEPEST * contacts.edge)).collect();
     surface.triangles = Surfaces::new(surface.nodes.len(), triangles, owners, depths);
-    surface.slots = vec![u32::MAX; surface.nodes.len()];
+    surface.gathered.slots = vec![u32::MAX; surface.nodes.len()];
     surface.places = vec![DVec3::ZERO; surface.nodes.len()];
     surface.normals = vec![DVec3::ZERO; surface.triangles.triangles.len()];
     surface.since = Since::of(&surface.nodes);

@@ -1,0 +1,131 @@
+//! Triangles that may be in a point's way, and how far it is outside of them.
+
+use super::facing::Facing;
+use super::shortlist::Stays;
+use super::surfaces::{Placed, Surfaces};
+use crate::math::OnTriangle;
+use glam::DVec3;
+use smallvec::SmallVec;
+
+/// Nearer than this to a triangle is on it, in edges.
+const ON_IT: f64 = 1e-3;
+
+/// What is at less than this of another distance is nearer, whatever rounding does.
+const NEARER: f64 = 1.0 - 1e-6;
+
+/// Triangles that may be near a point, and how far they were when that was found.
+#[derive(Clone, Copy, Debug)]
+pub struct Listed<'a> {
+    /// Their numbers, ascending.
+    pub triangles: &'a [u32],
+    /// How far each was (m).
+    pub distances: &'a [f64],
+    /// How much nearer anything can have come since (m).
+    pub nearer: f64,
+    /// Who is farther than this (m) is in nobody's way.
+    pub farthest: f64,
+}
+
+impl Listed<'_> {
+    /// Whether a triangle cannot have come near enough.
+    pub(super) fn is_far(&self, place: usize) -> bool {
+        self.distances[place] > self.farthest + self.nearer
+    }
+}
+
+/// So many triangles' nearest places are kept while it is found what a point faces; points near more are rare.
+const KEPT: usize = 16;
+
+/// Where triangles are nearest to a point: of those of its list found beforehand, if all of them are looked at.
+pub(super) struct Candidates<'a> {
+    surfaces: &'a Surfaces,
+    now: Placed<'a>,
+    at: DVec3,
+    listed: Listed<'a>,
+    kept: SmallVec<[(OnTriangle, f64); KEPT]>,
+    edge: f64,
+}
+
+impl<'a> Candidates<'a> {
+    pub(super) fn new(surfaces: &'a Surfaces, now: Placed<'a>, at: DVec3, listed: Listed<'a>, edge: f64) -> Self {
+        Self { surfaces, now, at, listed, kept: SmallVec::new(), edge }
+    }
+
+    /// Finds beforehand where those of the list are nearest.
+    pub(super) fn find_all(&mut self) {
+        for (place, &triangle) in self.listed.triangles.iter().take(KEPT).enumerate() {
+            let nowhere = || (OnTriangle { at: DVec3::ZERO, weights: [0.0; 3], part: 0 }, f64::INFINITY);
+            let kept = if self.listed.is_far(place) { nowhere() } else { self.nearest_of(triangle) };
+            self.kept.push(kept);
+        }
+    }
+
+    #[inline]
+    fn nearest_of(&self, triangle: u32) -> (OnTriangle, f64) {
+        let found = OnTriangle::nearest(self.at, self.surfaces.corners(self.now.places, triangle));
+        (found, self.at.distance(found.at))
+    }
+
+    /// The nearest place of the triangle at a place in the list, and how far that is (m).
+    pub(super) fn nearest(&self, place: usize) -> (OnTriangle, f64) {
+        match self.kept.get(place) {
+            Some(&kept) => kept,
+            None => self.nearest_of(self.listed.triangles[place]),
+        }
+    }
+
+    /// How far a triangle is (m), whether it is in the list or not; infinitely far where it cannot be near enough.
+    fn distance(&self, triangle: u32) -> f64 {
+        match self.listed.triangles.iter().take(self.kept.len()).position(|&other| other == triangle) {
+            Some(place) => self.kept[place].1,
+            None => self.nearest_of(triangle).1,
+        }
+    }
+
+    /// How far the nearest is (m) of the triangles around a part of one.
+    fn around(&self, triangle: u32, part: usize) -> f64 {
+        let others = self.surfaces.around_part(triangle, part).filter(|&other| other != triangle);
+        others.map(|other| self.distance(other)).fold(f64::INFINITY, f64::min)
+    }
+
+    /// How far the point is outside of a triangle, whose nearest place is known; `None` where another triangle must be
+    /// nearer, and of triangles without area.
+    pub(super) fn outside(&self, triangle: u32, (found, distance): (OnTriangle, f64)) -> Option<Facing> {
+        let normal = self.now.normals[triangle as usize];
+        if normal == DVec3::ZERO || !found.at.is_finite() {
+            return None;
+        }
+        let off = self.at - found.at;
+        let facing =
+            |normal: DVec3, gap: f64| Some(Facing { triangle, weights: found.weights, at: found.at, normal, gap });
+        if found.part == 0 || distance <= ON_IT * self.edge {
+            return facing(normal, off.dot(normal));
+        }
+        // the surface around a place that is nearest is nowhere nearer: not the flat surroundings of a point's own, nor a
+        // side that leads round a corner
+        if self.around(triangle, found.part) < NEARER * distance {
+            return None;
+        }
+        match off.dot(self.surfaces.normal_of_part(self.now, triangle, found.part)) {
+            out if out >= 0.0 => facing(off / distance, distance),
+            _ => facing(-off / distance, -distance),
+        }
+    }
+
+    /// Whether a triangle that is in nobody's way stays so, however far nodes move that a shortlist allows for.
+    pub(super) fn stays_away(&self, place: usize, reach: f64, stays: Stays) -> bool {
+        let Stays { moved, reach: more } = stays;
+        if self.listed.is_far(place) {
+            return self.listed.distances[place] > self.listed.farthest + more + self.listed.nearer + moved;
+        }
+        let triangle = self.listed.triangles[place];
+        let (found, distance) = self.nearest(place);
+        if distance - moved > f64::max(reach + more, self.surfaces.depths[triangle as usize]) {
+            return true;
+        }
+        // both distances change by no more than that
+        distance - moved > ON_IT * self.edge
+            && found.keeps_part(self.at, self.surfaces.corners(self.now.places, triangle), moved)
+            && self.around(triangle, found.part) + moved < NEARER * (distance - moved)
+    }
+}
