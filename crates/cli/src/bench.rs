@@ -5,9 +5,9 @@ use super::failure::Failure;
 use super::{Outcome, interrupt, terminal};
 use sinew::mesh::ElementKind;
 use sinew::output::{Folder, OutputError, replace, summary};
-use sinew_pictures::plot::png;
+use sinew_pictures::plot::{png, svg};
 use sinew_studies::bench::{
-    Effects, Load, Machine, Plan, Record, compare, cpu_to_gpu, csv, line, markdown, measure, split_to_fused, svg,
+    Effects, Load, Machine, Plan, Record, compare, cpu_to_gpu, csv, drawing, line, markdown, measure, split_to_fused,
 };
 use std::io::Write;
 use std::path::Path;
@@ -114,10 +114,10 @@ fn write(path: &Path, record: &Record) -> Outcome {
     };
     put("bench.csv", csv(record).as_bytes())?;
     put("bench.md", markdown(record).as_bytes())?;
-    let plots = [("bench", svg(record)), ("cpu_to_gpu", cpu_to_gpu(record)), ("fused", split_to_fused(record))];
+    let plots = [("bench", drawing(record)), ("cpu_to_gpu", cpu_to_gpu(record)), ("fused", split_to_fused(record))];
     for (name, plot) in plots {
         let Some(plot) = plot else { continue };
-        put(&format!("{name}.svg"), plot.as_bytes())?;
+        put(&format!("{name}.svg"), svg(&plot).as_bytes())?;
         put(&format!("{name}.png"), &png(&plot, 1.5).map_err(Failure::Plot)?)?;
     }
     summary::write(&folder.claim("bench.json")?, record)?;

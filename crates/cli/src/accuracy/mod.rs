@@ -14,7 +14,7 @@ use sinew::output::{Folder, OutputError, replace, summary};
 use sinew::scene::schema::AccuracyReference;
 use sinew::systems::Registry;
 use sinew::{SceneFile, Simulation};
-use sinew_pictures::plot::png;
+use sinew_pictures::plot::{png, svg};
 use sinew_studies::accuracy::engine::has_gpu;
 use sinew_studies::accuracy::{Engine, Reference, Refusal, Settings, Study, TargetVerdict, files, plot, study, tables};
 use std::io::Write;
@@ -134,12 +134,12 @@ fn command_line(arguments: &AccuracyArguments) -> String {
 }
 
 fn write(study: &Study, folder: &mut Folder, file: &SceneFile, title: &str, command: &str) -> Outcome {
-    let drawing = plot::svg(study, title);
+    let drawing = plot::drawing(study, title);
     let picture = png(&drawing, 2.0).map_err(Failure::Plot)?;
     let mut files: Vec<(&str, Vec<u8>)> = vec![
         ("accuracy.csv", tables::csv(study).into_bytes()),
         ("accuracy.md", tables::markdown(study, title, command).into_bytes()),
-        ("accuracy.svg", drawing.into_bytes()),
+        ("accuracy.svg", svg(&drawing).into_bytes()),
         ("accuracy.png", picture),
         (SCENE, file.text().as_bytes().to_vec()),
     ];

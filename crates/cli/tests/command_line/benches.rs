@@ -2,7 +2,8 @@
 
 use crate::sinew::Workspace;
 use sinew::mesh::ElementKind;
-use sinew_studies::bench::{Case, Effects, Load, Record, Row, cpu_to_gpu, split_to_fused, svg};
+use sinew_pictures::plot::svg;
+use sinew_studies::bench::{Case, Effects, Load, Record, Row, cpu_to_gpu, drawing, split_to_fused};
 
 #[test]
 fn a_benchmark_leaves_a_row_a_case_with_the_columns_that_are_told() {
@@ -87,13 +88,13 @@ fn a_software_gpu_is_drawn_apart_from_all_else_and_compared_with_nothing() {
     };
     let mut record = rows(software);
     assert!(cpu_to_gpu(&record).is_none(), "a program on the CPU is no GPU");
-    let figure = cpu_to_gpu(&rows(card)).unwrap();
+    let figure = svg(&cpu_to_gpu(&rows(card)).unwrap());
     assert!(figure.contains("Some card") && figure.contains("1 × f32, two-pass"), "{figure}");
     assert!(split_to_fused(&record).is_none(), "nothing was kept apart");
 
     // the card joins the CPU's panel, the program has one of its own
     record.rows.push(row("gpu", 10, true, 9.0, None, card));
-    let figure = svg(&record).unwrap();
+    let figure = svg(&drawing(&record).unwrap());
     let (own, apart) = ("Hex8, fibres-viscosity<", "Hex8, fibres-viscosity: a software GPU<");
     assert!(figure.matches(own).count() == 1 && figure.matches(apart).count() == 1, "{figure}");
     assert!(figure.contains("llvmpipe (software, Vulkan, Mesa), a program on the CPU: no measure of GPUs"), "{figure}");
@@ -102,9 +103,9 @@ fn a_software_gpu_is_drawn_apart_from_all_else_and_compared_with_nothing() {
 
     record.rows.push(row("gpu", 10, false, 88.0, Some(73.5), software));
     record.rows.retain(|row| row.case.is_gpu() && row.adapter.as_deref() == software);
-    let figure = split_to_fused(&record).unwrap();
+    let figure = svg(&split_to_fused(&record).unwrap());
     assert!(figure.contains("GPU, two-pass, whole step") && figure.contains("GPU, two-pass, kernels"), "{figure}");
-    assert!(svg(&record).unwrap().contains("two-pass, split"), "both are lines of their own");
+    assert!(svg(&drawing(&record).unwrap()).contains("two-pass, split"), "both are lines of their own");
 }
 
 #[test]
@@ -117,7 +118,7 @@ fn no_panel_has_more_than_five_lines() {
             record.rows.push(row);
         }
     }
-    let figure = svg(&record).unwrap();
+    let figure = svg(&drawing(&record).unwrap());
     let panels: Vec<&str> = figure.split(" of 3)").collect();
     assert_eq!(panels.len(), 4, "{figure}");
     assert_eq!(figure.matches("<polyline").count(), 12);

@@ -2,7 +2,7 @@
 //! noise.
 
 use super::axis::Axis;
-use super::svg::Svg;
+use super::drawing::{Anchor, Drawing};
 
 /// More lines than these are not told apart.
 pub const LINES: usize = 5;
@@ -81,8 +81,8 @@ fn split(panels: Vec<Panel>) -> Vec<Panel> {
     few
 }
 
-/// All panels as SVG; `None` where there is no point.
-pub fn svg(words: &Words<'_>, panels: Vec<Panel>, rise: Rise) -> Option<String> {
+/// All panels; `None` where there is no point.
+pub fn drawing(words: &Words<'_>, panels: Vec<Panel>, rise: Rise) -> Option<Drawing> {
     let panels = split(panels);
     let points = |panel: &Panel| panel.lines.iter().flat_map(|line| line.points.clone()).collect::<Vec<_>>();
     if panels.iter().all(|panel| points(panel).is_empty()) {
@@ -90,21 +90,21 @@ pub fn svg(words: &Words<'_>, panels: Vec<Panel>, rise: Rise) -> Option<String> 
     }
     let (columns, rows) = (panels.len().min(ROW), panels.len().div_ceil(ROW));
     let size = (f64::max(columns as f64 * PANEL.0, 1.6 * PANEL.0), HEAD + rows as f64 * PANEL.1);
-    let mut svg = Svg::new(size);
-    svg.text((24.0, 36.0), words.title, 21.0, INK, "start");
-    svg.text((24.0, 60.0), words.remark, 13.0, "#59626e", "start");
+    let mut page = Drawing::new(size);
+    page.text((24.0, 36.0), words.title, 21.0, INK, Anchor::Start);
+    page.text((24.0, 60.0), words.remark, 13.0, "#59626e", Anchor::Start);
     for (place, panel) in panels.iter().enumerate() {
         let of_kind: Vec<Point> = panels.iter().filter(|p| p.kind == panel.kind).flat_map(points).collect();
         let corner = ((place % ROW) as f64 * PANEL.0, HEAD + (place / ROW) as f64 * PANEL.1);
         let frame = [AXES[0] + corner.0, AXES[1] + corner.1, AXES[2] + corner.0, AXES[3] + corner.1];
-        Drawn { svg: &mut svg, frame, words }.panel(panel, &of_kind, rise);
+        Drawn { page: &mut page, frame, words }.panel(panel, &of_kind, rise);
     }
-    Some(svg.finish())
+    Some(page)
 }
 
 /// A panel that is being drawn.
 struct Drawn<'a> {
-    svg: &'a mut Svg,
+    page: &'a mut Drawing,
     frame: [f64; 4],
     words: &'a Words<'a>,
 }
@@ -115,9 +115,9 @@ impl Drawn<'_> {
         let x = Axis::new(of_kind.iter().map(|point| point.x), left, right);
         for (value, named) in x.ticks() {
             let at = x.at(value);
-            self.svg.line((at, top), (at, bottom), if named { "#dfe3e8" } else { "#f1f3f5" }, 1.0, "");
+            self.page.line((at, top), (at, bottom), if named { "#dfe3e8" } else { "#f1f3f5" }, 1.0, &[]);
             if named {
-                self.svg.text((at, bottom + 17.0), &count(value), 12.0, INK, "middle");
+                self.page.text((at, bottom + 17.0), &count(value), 12.0, INK, Anchor::Middle);
             }
         }
         let bands = || of_kind.iter().flat_map(|point| [point.y, point.band.0, point.band.1]);
@@ -130,30 +130,30 @@ impl Drawn<'_> {
             }
             Rise::Even(level) => self.even(bands().fold(level, f64::min), bands().fold(level, f64::max), level),
         };
-        self.svg.frame(self.frame, "#aab2bc");
+        self.page.frame(self.frame, "#aab2bc");
         for (line, colour) in panel.lines.iter().zip(COLOURS) {
             let at = |value: fn(&Point) -> f64| {
                 line.points.iter().map(|point| (x.at(point.x), y(value(point)))).collect::<Vec<_>>()
             };
             let band: Vec<_> = at(|p| p.band.0).into_iter().chain(at(|p| p.band.1).into_iter().rev()).collect();
-            self.svg.band(&band, colour, 0.2);
+            self.page.band(&band, colour, 0.2);
             let middle = at(|point| point.y);
-            self.svg.path(&middle, colour, 1.8, 1.0);
-            middle.iter().for_each(|&at| self.svg.circle(at, 3.2, colour, true));
+            self.page.path(&middle, colour, 1.8, 1.0);
+            middle.iter().for_each(|&at| self.page.circle(at, 3.2, colour, true));
         }
         for (row, (line, colour)) in panel.lines.iter().zip(COLOURS).enumerate() {
             let down = bottom + 56.0 + 16.0 * row as f64;
-            self.svg.line((left, down - 4.0), (left + 22.0, down - 4.0), colour, 3.0, "");
-            self.svg.text((left + 30.0, down), &line.name, 12.0, INK, "start");
+            self.page.line((left, down - 4.0), (left + 22.0, down - 4.0), colour, 3.0, &[]);
+            self.page.text((left + 30.0, down), &line.name, 12.0, INK, Anchor::Start);
         }
-        self.svg.text((left, top - 10.0), &panel.title, 14.0, INK, "start");
-        self.svg.text((0.5 * (left + right), bottom + 36.0), self.words.axes[0], 13.0, INK, "middle");
-        self.svg.turned((left - 52.0, 0.5 * (top + bottom)), self.words.axes[1], 13.0, INK);
+        self.page.text((left, top - 10.0), &panel.title, 14.0, INK, Anchor::Start);
+        self.page.text((0.5 * (left + right), bottom + 36.0), self.words.axes[0], 13.0, INK, Anchor::Middle);
+        self.page.turned((left - 52.0, 0.5 * (top + bottom)), self.words.axes[1], 13.0, INK);
     }
 
     fn tick(&mut self, at: f64, text: &str) {
-        self.svg.line((self.frame[0], at), (self.frame[2], at), "#dfe3e8", 1.0, "");
-        self.svg.text((self.frame[0] - 8.0, at + 4.0), text, 12.0, INK, "end");
+        self.page.line((self.frame[0], at), (self.frame[2], at), "#dfe3e8", 1.0, &[]);
+        self.page.text((self.frame[0] - 8.0, at + 4.0), text, 12.0, INK, Anchor::End);
     }
 
     /// An even axis from `low` to `high` with a line at `level`.
@@ -168,7 +168,7 @@ impl Drawn<'_> {
             let value = tick as f64 * step;
             self.tick(y(value), &format!("{value:.digits$}"));
         }
-        self.svg.line((self.frame[0], y(level)), (self.frame[2], y(level)), "#6b7480", 1.5, "6 4");
+        self.page.line((self.frame[0], y(level)), (self.frame[2], y(level)), "#6b7480", 1.5, &[6.0, 4.0]);
         Box::new(y)
     }
 }
@@ -190,6 +190,7 @@ fn count(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+    use super::super::svg;
     use super::*;
 
     fn panel(lines: usize) -> Panel {
@@ -202,7 +203,7 @@ mod tests {
     fn no_panel_has_more_than_five_lines_and_each_line_its_band() {
         let words = Words { title: "all", remark: "", axes: ["x", "y"] };
         for rise in [Rise::Logarithmic, Rise::Even(0.0)] {
-            let drawing = svg(&words, vec![panel(12), panel(2)], rise).unwrap();
+            let drawing = svg(&drawing(&words, vec![panel(12), panel(2)], rise).unwrap());
             let document = roxmltree::Document::parse(&drawing).unwrap();
             let count = |tag: &str| document.descendants().filter(|node| node.has_tag_name(tag)).count();
             assert_eq!((count("polyline"), count("polygon")), (14, 14));
@@ -212,6 +213,6 @@ mod tests {
             assert!(!drawing.contains("NaN"));
         }
         assert!(split(vec![panel(12)]).iter().all(|panel| panel.lines.len() <= LINES));
-        assert!(svg(&words, vec![], Rise::Logarithmic).is_none());
+        assert!(drawing(&words, vec![], Rise::Logarithmic).is_none());
     }
 }

@@ -1,159 +1,94 @@
-//! Shapes as SVG.
+//! Drawings as SVG.
 
-use super::labels::Area;
+use super::drawing::{Anchor, Drawing, Edge, Shape, Text};
 use std::fmt::Write;
-
-/// A drawing that grows.
-pub struct Svg {
-    text: String,
-}
 
 const FONTS: &str = "Ubuntu, 'Segoe UI', 'Helvetica Neue', Arial, sans-serif";
 
-impl Svg {
-    /// An empty white page of a width and height (pixels).
-    pub fn new((width, height): (f64, f64)) -> Self {
-        let mut page = Self::clear((width, height));
-        let _ = writeln!(page.text, "<rect width=\"{width}\" height=\"{height}\" fill=\"#ffffff\"/>");
-        page
+/// The whole file.
+pub fn svg(drawing: &Drawing) -> String {
+    let (width, height) = drawing.size;
+    let mut file = format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
+         font-family=\"{FONTS}\">\n"
+    );
+    for shape in &drawing.shapes {
+        let _ = writeln!(file, "{}", element(shape));
     }
+    file += "</svg>\n";
+    file
+}
 
-    /// An empty page that can be seen through.
-    pub fn clear((width, height): (f64, f64)) -> Self {
-        let mut text = String::new();
-        let _ = writeln!(
-            text,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
-             font-family=\"{FONTS}\">"
-        );
-        Self { text }
-    }
-
-    /// The whole file.
-    pub fn finish(mut self) -> String {
-        self.text += "</svg>\n";
-        self.text
-    }
-
-    /// A straight line; `dashes` as SVG has them, empty for none.
-    pub fn line(&mut self, a: (f64, f64), b: (f64, f64), colour: &str, width: f64, dashes: &str) {
-        let (ax, ay, bx, by) = (a.0, a.1, b.0, b.1);
-        let dashes = if dashes.is_empty() { String::new() } else { format!(" stroke-dasharray=\"{dashes}\"") };
-        let _ = writeln!(
-            self.text,
-            "<line x1=\"{ax:.1}\" y1=\"{ay:.1}\" x2=\"{bx:.1}\" y2=\"{by:.1}\" stroke=\"{colour}\" \
-             stroke-width=\"{width}\"{dashes}/>"
-        );
-    }
-
-    /// Lines through points.
-    pub fn path(&mut self, points: &[(f64, f64)], colour: &str, width: f64, opacity: f64) {
-        if points.len() < 2 {
-            return;
+fn element(shape: &Shape) -> String {
+    match shape {
+        Shape::Line { from: (ax, ay), to: (bx, by), colour, width, dashes } => {
+            let lengths: Vec<String> = dashes.iter().map(f32::to_string).collect();
+            let dashes = match lengths.is_empty() {
+                true => String::new(),
+                false => format!(" stroke-dasharray=\"{}\"", lengths.join(" ")),
+            };
+            format!(
+                "<line x1=\"{ax:.1}\" y1=\"{ay:.1}\" x2=\"{bx:.1}\" y2=\"{by:.1}\" stroke=\"{colour}\" \
+                 stroke-width=\"{width}\"{dashes}/>"
+            )
         }
-        let points: Vec<String> = points.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
-        let _ = writeln!(
-            self.text,
-            "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" stroke-opacity=\"{opacity}\" \
-             stroke-linejoin=\"round\"/>",
-            points.join(" ")
-        );
-    }
-
-    /// A filled rectangle.
-    pub fn area(&mut self, [left, top, right, bottom]: Area, colour: &str) {
-        let (width, height) = (right - left, bottom - top);
-        let _ = writeln!(
-            self.text,
-            "<rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{width:.1}\" height=\"{height:.1}\" fill=\"{colour}\"/>"
-        );
-    }
-
-    /// The outline of a rectangle.
-    pub fn frame(&mut self, [left, top, right, bottom]: Area, colour: &str) {
-        let (width, height) = (right - left, bottom - top);
-        let _ = writeln!(
-            self.text,
-            "<rect x=\"{left}\" y=\"{top}\" width=\"{width}\" height=\"{height}\" fill=\"none\" stroke=\"{colour}\"/>"
-        );
-    }
-
-    /// A disc, or a hollow one.
-    pub fn circle(&mut self, (x, y): (f64, f64), radius: f64, colour: &str, filled: bool) {
-        let fill = if filled { colour } else { "#ffffff" };
-        let _ = writeln!(
-            self.text,
-            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{fill}\" stroke=\"{colour}\" stroke-width=\"1.6\"/>"
-        );
-    }
-
-    /// A ring with nothing in it.
-    pub fn ring(&mut self, (x, y): (f64, f64), radius: f64, colour: &str) {
-        let _ = writeln!(
-            self.text,
-            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"1.6\"/>"
-        );
-    }
-
-    /// A square on its corner, or a hollow one.
-    pub fn diamond(&mut self, (x, y): (f64, f64), reach: f64, colour: &str, filled: bool) {
-        let fill = if filled { colour } else { "#ffffff" };
-        let (left, right, top, bottom) = (x - reach, x + reach, y - reach, y + reach);
-        let _ = writeln!(
-            self.text,
-            "<path d=\"M{x:.1} {top:.1}L{right:.1} {y:.1}L{x:.1} {bottom:.1}L{left:.1} {y:.1}Z\" fill=\"{fill}\" \
-             stroke=\"{colour}\" stroke-width=\"1.4\"/>"
-        );
-    }
-
-    /// A line of text; `anchor` is `start`, `middle` or `end`.
-    pub fn text(&mut self, (x, y): (f64, f64), text: &str, size: f64, colour: &str, anchor: &str) {
-        let text = escaped(text);
-        let _ = writeln!(
-            self.text,
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{size}\" fill=\"{colour}\" text-anchor=\"{anchor}\">{text}</text>"
-        );
-    }
-
-    /// A line of strong letters: light ones would be lost on a picture.
-    pub fn strong(&mut self, (x, y): (f64, f64), text: &str, size: f64, colour: &str, anchor: &str) {
-        let (text, stroke) = (escaped(text), 0.035 * size);
-        let _ = writeln!(
-            self.text,
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{size:.1}\" fill=\"{colour}\" stroke=\"{colour}\" \
-             stroke-width=\"{stroke:.2}\" text-anchor=\"{anchor}\">{text}</text>"
-        );
-    }
-
-    /// A filled outline through points, nearly clear or not.
-    pub fn band(&mut self, points: &[(f64, f64)], colour: &str, opacity: f64) {
-        if points.len() < 3 {
-            return;
+        Shape::Polyline { points, colour, width, opacity } => format!(
+            "<polyline points=\"{}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" \
+             stroke-opacity=\"{opacity}\" stroke-linejoin=\"round\"/>",
+            listed(points)
+        ),
+        Shape::Rectangle { area: [left, top, right, bottom], colour } => format!(
+            "<rect x=\"{left:.1}\" y=\"{top:.1}\" width=\"{:.1}\" height=\"{:.1}\" fill=\"{colour}\"/>",
+            right - left,
+            bottom - top
+        ),
+        Shape::Frame { area: [left, top, right, bottom], colour } => format!(
+            "<rect x=\"{left}\" y=\"{top}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"{colour}\"/>",
+            right - left,
+            bottom - top
+        ),
+        Shape::Circle { centre: (x, y), radius, colour, fill } => format!(
+            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{}\" stroke=\"{colour}\" stroke-width=\"1.6\"/>",
+            fill.as_deref().unwrap_or("none")
+        ),
+        Shape::Diamond { centre: (x, y), reach, colour, fill } => {
+            let (left, right, top, bottom) = (x - reach, x + reach, y - reach, y + reach);
+            format!(
+                "<path d=\"M{x:.1} {top:.1}L{right:.1} {y:.1}L{x:.1} {bottom:.1}L{left:.1} {y:.1}Z\" fill=\"{fill}\" \
+                 stroke=\"{colour}\" stroke-width=\"1.4\"/>"
+            )
         }
-        let points: Vec<String> = points.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
-        let points = points.join(" ");
-        let _ = writeln!(self.text, "<polygon points=\"{points}\" fill=\"{colour}\" fill-opacity=\"{opacity}\"/>");
+        Shape::Polygon { points, colour, opacity } => {
+            format!("<polygon points=\"{}\" fill=\"{colour}\" fill-opacity=\"{opacity}\"/>", listed(points))
+        }
+        Shape::Text(text) => letters(text),
     }
+}
 
-    /// A line of text with a white edge, so that it can be read on lines.
-    pub fn label(&mut self, (x, y): (f64, f64), text: &str, size: f64, colour: &str) {
-        let text = escaped(text);
-        let _ = writeln!(
-            self.text,
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{size}\" fill=\"{colour}\" stroke=\"#ffffff\" stroke-width=\"3\" \
-             stroke-linejoin=\"round\" paint-order=\"stroke\">{text}</text>"
-        );
-    }
+fn letters(Text { at: (x, y), text, size, colour, anchor, edge, turned }: &Text) -> String {
+    let edge = match edge {
+        Edge::None => String::new(),
+        Edge::Same(width) => format!(" stroke=\"{colour}\" stroke-width=\"{width:.2}\""),
+        Edge::White(width) => {
+            format!(" stroke=\"#ffffff\" stroke-width=\"{width}\" stroke-linejoin=\"round\" paint-order=\"stroke\"")
+        }
+    };
+    let anchor = match anchor {
+        Anchor::Start => "start",
+        Anchor::Middle => "middle",
+        Anchor::End => "end",
+    };
+    let turned = if *turned { format!(" transform=\"rotate(-90 {x:.1} {y:.1})\"") } else { String::new() };
+    format!(
+        "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{size}\" fill=\"{colour}\"{edge} text-anchor=\"{anchor}\"{turned}>{}\
+         </text>",
+        escaped(text)
+    )
+}
 
-    /// A line of text from bottom to top, about its middle.
-    pub fn turned(&mut self, (x, y): (f64, f64), text: &str, size: f64, colour: &str) {
-        let text = escaped(text);
-        let _ = writeln!(
-            self.text,
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{size}\" fill=\"{colour}\" text-anchor=\"middle\" \
-             transform=\"rotate(-90 {x:.1} {y:.1})\">{text}</text>"
-        );
-    }
+fn listed(points: &[(f64, f64)]) -> String {
+    let points: Vec<String> = points.iter().map(|(x, y)| format!("{x:.1},{y:.1}")).collect();
+    points.join(" ")
 }
 
 /// Text as XML takes it, which knows no control characters.

@@ -6,8 +6,7 @@ use super::colour;
 use super::image::Image;
 use super::light::Light;
 use super::picture::Picture;
-use crate::plot::overlay;
-use crate::plot::svg::Svg;
+use crate::plot::{Anchor, Drawing, overlay};
 use glam::Vec3;
 
 /// The ground of the legend where surfaces end above it.
@@ -62,21 +61,21 @@ pub fn top(size: (usize, usize)) -> usize {
 pub fn draw(image: &mut Image, picture: &Picture<'_>, camera: &Camera) -> Result<(), RenderError> {
     let size = (image.width, image.height);
     let (layout, top) = (Layout::new(size), top(size));
-    let mut svg = Svg::clear((layout.width, layout.height));
+    let mut page = Drawing::clear((layout.width, layout.height));
     if picture.panel {
-        svg.line((0.0, 0.5), (layout.width, 0.5), "#c9cfd6", 1.0, "");
+        page.line((0.0, 0.5), (layout.width, 0.5), "#c9cfd6", 1.0, &[]);
     }
-    let column = column(&mut svg, picture, &layout);
+    let column = column(&mut page, picture, &layout);
     // between axes and caption; narrow pictures leave less for the bar, and not in the middle
     let (least, most) = (5.2 * layout.em, layout.width - column - 1.6 * layout.em);
     let half = (0.23 * layout.width).min((most - least) / 2.0).max(2.0 * layout.em);
     let middle = (layout.width / 2.0).min(most - half).max(least + half);
     let (left, right) = ((middle - half).round(), (middle + half).round());
-    bar(&mut svg, picture, &layout, (left, right));
-    axes(&mut svg, camera, &layout);
-    let page = overlay(&svg.finish())?;
+    bar(&mut page, picture, &layout, (left, right));
+    axes(&mut page, camera, &layout);
+    let pixels = overlay(&page)?;
     let below = image.pixels.iter_mut().skip(top * size.0);
-    for (pixel, [red, green, blue, cover]) in below.zip(page) {
+    for (pixel, [red, green, blue, cover]) in below.zip(pixels) {
         for (old, new) in pixel.iter_mut().zip([red, green, blue]) {
             *old = new + ((u16::from(*old) * u16::from(255 - cover) + 127) / 255) as u8;
         }
@@ -85,9 +84,9 @@ pub fn draw(image: &mut Image, picture: &Picture<'_>, camera: &Camera) -> Result
 }
 
 /// The caption and what surfaces mean, at the right; how wide that is.
-fn column(svg: &mut Svg, picture: &Picture<'_>, layout: &Layout) -> f64 {
+fn column(page: &mut Drawing, picture: &Picture<'_>, layout: &Layout) -> f64 {
     let (em, right) = (layout.em, layout.width - 0.8 * layout.em);
-    svg.strong((right, layout.base()), picture.caption, em, INK, "end");
+    page.strong((right, layout.base()), picture.caption, em, INK, Anchor::End);
     let texts = picture.keys.iter().map(|key| layout.wide(key.words().0)).fold(0.0, f64::max) * 0.9;
     let left = right - texts - 1.5 * em;
     for (line, key) in picture.keys.iter().enumerate() {
@@ -95,9 +94,9 @@ fn column(svg: &mut Svg, picture: &Picture<'_>, layout: &Layout) -> f64 {
         let base = layout.base() - 1.4 * em * (line + 1) as f64;
         let swatch =
             [left.round() + 0.5, (base - 0.8 * em).round() + 0.5, (left + 1.1 * em).round() + 0.5, base.round() + 0.5];
-        svg.area(swatch, &fill);
-        svg.frame(swatch, "#59626e");
-        svg.strong((left + 1.5 * em, base), text, em, INK, "start");
+        page.area(swatch, &fill);
+        page.frame(swatch, "#59626e");
+        page.strong((left + 1.5 * em, base), text, em, INK, Anchor::Start);
     }
     let keys = if picture.keys.is_empty() { 0.0 } else { layout.width - left };
     f64::max(layout.wide(picture.caption) + 0.8 * em, keys)
@@ -119,7 +118,7 @@ impl Key {
 }
 
 /// The bar from `left` to `right`, its numbers below and what it means above.
-fn bar(svg: &mut Svg, picture: &Picture<'_>, layout: &Layout, (left, right): (f64, f64)) {
+fn bar(page: &mut Drawing, picture: &Picture<'_>, layout: &Layout, (left, right): (f64, f64)) {
     let em = layout.em;
     let (foot, head) = ((layout.base() - 1.2 * em).round(), (layout.base() - 2.0 * em).round());
     let (low, high) = picture.scale.range;
@@ -128,19 +127,19 @@ fn bar(svg: &mut Svg, picture: &Picture<'_>, layout: &Layout, (left, right): (f6
         let share = column as f32 / (columns - 1).max(1) as f32;
         let colour = picture.scale.srgb(low + (high - low) * share).to_array().map(|c| (c * 255.0).round() as u8);
         let at = left + column as f64;
-        svg.area([at, head, at + 1.0, foot], &format!("#{:02x}{:02x}{:02x}", colour[0], colour[1], colour[2]));
+        page.area([at, head, at + 1.0, foot], &format!("#{:02x}{:02x}{:02x}", colour[0], colour[1], colour[2]));
     }
-    svg.frame([left - 0.5, head - 0.5, right + 0.5, foot + 0.5], "#59626e");
+    page.frame([left - 0.5, head - 0.5, right + 0.5, foot + 0.5], "#59626e");
     let (prefix, factor) = if picture.unit.is_empty() { ("", 1.0) } else { prefix(low.abs().max(high.abs())) };
     let (low, high) = (f64::from(low) * factor, f64::from(high) * factor);
     for (value, text) in ticks(low, high, ((right - left) / (0.56 * em)) as usize) {
         let x = left + ((value - low) / (high - low) * (right - left - 1.0)).round() + 0.5;
-        svg.line((x, foot), (x, foot + 0.28 * em), INK, 1.0, "");
-        svg.strong((x, layout.base()), &text, em, INK, "middle");
+        page.line((x, foot), (x, foot + 0.28 * em), INK, 1.0, &[]);
+        page.strong((x, layout.base()), &text, em, INK, Anchor::Middle);
     }
     let unit = if picture.unit.is_empty() { String::new() } else { format!(" ({prefix}{})", picture.unit) };
     let line = format!("{}{unit}", picture.quantity);
-    svg.strong(((left + right) / 2.0, head - 0.45 * em), &line, em, INK, "middle");
+    page.strong(((left + right) / 2.0, head - 0.45 * em), &line, em, INK, Anchor::Middle);
 }
 
 /// The prefix that gives a number one to three digits before the point, and the factor that belongs to it.
@@ -173,7 +172,7 @@ fn ticks(low: f64, high: f64, letters: usize) -> Vec<(f64, String)> {
 }
 
 /// The directions of x, y and z in the lower left corner, the nearest drawn last.
-fn axes(svg: &mut Svg, camera: &Camera, layout: &Layout) {
+fn axes(page: &mut Drawing, camera: &Camera, layout: &Layout) {
     let em = layout.em;
     let length = 1.5 * em;
     let origin = (2.4 * em, layout.height - 2.3 * em);
@@ -182,11 +181,11 @@ fn axes(svg: &mut Svg, camera: &Camera, layout: &Layout) {
     for (name, axis, colour) in axes {
         let (x, y) = (f64::from(axis.x), -f64::from(axis.y));
         let end = (origin.0 + x * length, origin.1 + y * length);
-        svg.line(origin, end, colour, 0.13 * em, "");
+        page.line(origin, end, colour, 0.13 * em, &[]);
         // an axis that points at the eye still has its letter beside it
         let flat = x.hypot(y);
         let (x, y) = if flat > 1e-3 { (x / flat, y / flat) } else { (0.7, 0.7) };
-        svg.strong((end.0 + 0.55 * em * x, end.1 + 0.55 * em * y + 0.3 * em), name, em, colour, "middle");
+        page.strong((end.0 + 0.55 * em * x, end.1 + 0.55 * em * y + 0.3 * em), name, em, colour, Anchor::Middle);
     }
 }
 

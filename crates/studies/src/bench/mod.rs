@@ -16,7 +16,7 @@ pub use compare::{Change, compare};
 pub use cost::{Cost, cost};
 pub use load::Load;
 pub use machine::{Machine, memory_peak};
-pub use plot::svg;
+pub use plot::drawing;
 pub use ratios::{cpu_to_gpu, split_to_fused};
 pub use tables::{csv, line, markdown};
 

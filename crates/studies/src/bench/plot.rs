@@ -1,10 +1,11 @@
-//! ns an element and step against the number of elements, as SVG.
+//! ns an element and step against the number of elements, as a drawing.
 
 use super::{Case, Load, Record, Row};
-use sinew_pictures::plot::panels::{Line, Panel, Point, Rise, Words, svg as drawing};
+use sinew_pictures::plot::Drawing;
+use sinew_pictures::plot::panels::{self, Line, Panel, Point, Rise, Words};
 
 /// Lines of the same configuration over sizes: a panel for each element and its effects.
-pub fn svg(record: &Record) -> Option<String> {
+pub fn drawing(record: &Record) -> Option<Drawing> {
     let mut panels = Vec::new();
     for row in &record.rows {
         let split = if row.case.fuse { "" } else { ", split" };
@@ -14,7 +15,7 @@ pub fn svg(record: &Record) -> Option<String> {
     }
     let remark = remark(record);
     let axes = ["elements", "ns an element and step"];
-    drawing(&Words { title: "What a step costs", remark: &remark, axes }, panels, Rise::Logarithmic)
+    panels::drawing(&Words { title: "What a step costs", remark: &remark, axes }, panels, Rise::Logarithmic)
 }
 
 /// From the best of all blocks to the third quartile; to the median in records of before.

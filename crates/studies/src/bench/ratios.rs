@@ -1,13 +1,14 @@
-//! Figures 3 and 4 of Comas et al. 2008 with our figures, as SVG: CPU against GPU, and systems kept apart against fused
+//! Figures 3 and 4 of Comas et al. 2008 with our figures, as drawings: CPU against GPU, and systems kept apart against fused
 //! ones.
 
 use super::plot::{add, band, is_software, remark};
 use super::{Case, Record, Row};
-use sinew_pictures::plot::panels::{Panel, Point, Rise, Words, svg};
+use sinew_pictures::plot::Drawing;
+use sinew_pictures::plot::panels::{Panel, Point, Rise, Words, drawing};
 
 /// How many times as long a step takes on the CPU as on the GPU, over degrees of freedom; `None` where one of them was
 /// not measured. A software GPU does not count: it is a program on the CPU.
-pub fn cpu_to_gpu(record: &Record) -> Option<String> {
+pub fn cpu_to_gpu(record: &Record) -> Option<Drawing> {
     let mut panels: Vec<Panel> = Vec::new();
     for gpu in record.rows.iter().filter(|row| row.case.is_gpu() && !is_software(row)) {
         let same = |case: &Case| {
@@ -30,11 +31,11 @@ pub fn cpu_to_gpu(record: &Record) -> Option<String> {
         remark: &(remark(record) + left_out),
         axes: ["degrees of freedom", "time on the CPU over time on the GPU"],
     };
-    svg(&words, panels, Rise::Even(1.0))
+    drawing(&words, panels, Rise::Even(1.0))
 }
 
 /// What keeping systems apart costs (%), over nodes; `None` where not both were measured.
-pub fn split_to_fused(record: &Record) -> Option<String> {
+pub fn split_to_fused(record: &Record) -> Option<Drawing> {
     let mut panels: Vec<Panel> = Vec::new();
     for fused in record.rows.iter().filter(|row| row.case.fuse) {
         let wanted = fused.case.split();
@@ -58,5 +59,5 @@ pub fn split_to_fused(record: &Record) -> Option<String> {
         remark: &remark(record),
         axes: ["nodes", "split takes longer than fused (%)"],
     };
-    svg(&words, panels, Rise::Even(0.0))
+    drawing(&words, panels, Rise::Even(0.0))
 }

@@ -1,8 +1,8 @@
 //! The plot: well-formed, with all that belongs into it, and labels that do not lie on each other.
 
 use crate::made_up::{MadeUp, Nobody};
-use sinew_pictures::plot::{place, png};
-use sinew_studies::accuracy::plot::svg;
+use sinew_pictures::plot::{Anchor, Drawing, place, png, svg};
+use sinew_studies::accuracy::plot::drawing;
 use sinew_studies::accuracy::{Settings, Study, study};
 
 fn made() -> Study {
@@ -13,7 +13,7 @@ fn made() -> Study {
 
 #[test]
 fn the_plot_is_a_drawing_with_axes_units_front_real_time_and_legend() {
-    let drawing = svg(&made(), "a bar & <its> weight");
+    let drawing = svg(&drawing(&made(), "a bar & <its> weight"));
     let document = roxmltree::Document::parse(&drawing).unwrap();
     let texts: Vec<&str> = document.descendants().filter(|n| n.has_tag_name("text")).filter_map(|n| n.text()).collect();
     for words in [
@@ -43,17 +43,20 @@ fn the_plot_is_a_drawing_with_axes_units_front_real_time_and_legend() {
 #[test]
 fn the_picture_has_letters_without_any_fonts_of_the_system() {
     let drawing = |text: &str| {
-        let text = format!("<text x=\"5\" y=\"30\" font-size=\"24\" font-family=\"Ubuntu\">{text}</text>");
-        png(&format!("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"80\" height=\"40\">{text}</svg>"), 1.0).unwrap()
+        let mut page = Drawing::new((80.0, 40.0));
+        page.text((5.0, 30.0), text, 24.0, "#000000", Anchor::Start);
+        png(&page, 1.0).unwrap()
     };
     let blank = drawing("");
-    let all: Vec<Vec<u8>> = ["×", "Δ", "½", "●", "µ", "…"].map(drawing).to_vec();
-    for (place, picture) in all.iter().enumerate() {
-        // "●" stands in tables only
-        assert!(*picture != blank || place == 3, "letter {place} is missing");
-    }
     assert_eq!(blank[1..4], *b"PNG");
-    assert!(png("no drawing", 1.0).is_err());
+    // what no font has is a box
+    let missing = drawing("\u{e000}");
+    assert_ne!(missing, blank);
+    for letter in ["×", "Δ", "½", "µ", "…", "W"] {
+        let picture = drawing(letter);
+        assert!(picture != blank && picture != missing, "letter {letter} is missing");
+    }
+    assert!(png(&Drawing::clear((0.0, 40.0)), 1.0).is_err());
 }
 
 #[test]

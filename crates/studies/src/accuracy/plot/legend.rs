@@ -1,7 +1,7 @@
 //! What colours and marks mean.
 
 use super::{FAINT, FRAME, FRONT, INK, LAW, OTHER, Point, is_mesh};
-use sinew_pictures::plot::svg::Svg;
+use sinew_pictures::plot::{Anchor, Drawing};
 
 /// Colours that people with every kind of sight can tell apart (M. Okabe, K. Ito 2008), by element.
 const COLOURS: [(&str, &str); 6] = [
@@ -29,38 +29,40 @@ pub fn elements(points: &[Point<'_>]) -> Vec<String> {
 }
 
 /// Draws it beside the axes.
-pub fn legend(svg: &mut Svg, points: &[Point<'_>], real: bool) {
+pub fn legend(page: &mut Drawing, points: &[Point<'_>], real: bool) {
     let (x, mut y) = (FRAME[2] + 34.0, FRAME[1] + 14.0);
-    let mut entry = |svg: &mut Svg, draw: &dyn Fn(&mut Svg, (f64, f64)), text: &str| {
-        draw(svg, (x, y - 4.5));
-        svg.text((x + 22.0, y), text, 13.5, INK, "start");
+    let mut entry = |page: &mut Drawing, draw: &dyn Fn(&mut Drawing, (f64, f64)), text: &str| {
+        draw(page, (x, y - 4.5));
+        page.text((x + 22.0, y), text, 13.5, INK, Anchor::Start);
         y += 25.0;
     };
     for element in elements(points) {
-        let draw = |svg: &mut Svg, at: (f64, f64)| {
-            svg.line((at.0 - 14.0, at.1), (at.0 + 14.0, at.1), colour(&element), 1.6, "");
-            svg.circle(at, 5.5, colour(&element), true);
+        let draw = |page: &mut Drawing, at: (f64, f64)| {
+            page.line((at.0 - 14.0, at.1), (at.0 + 14.0, at.1), colour(&element), 1.6, &[]);
+            page.circle(at, 5.5, colour(&element), true);
         };
-        entry(svg, &draw, &element);
+        entry(page, &draw, &element);
     }
     let other = |point: &Point<'_>| !is_mesh(point.row) && point.row.varied.is_ranked();
     if points.iter().any(other) {
-        entry(svg, &|svg, at| svg.diamond(at, 5.0, OTHER, true), "one thing changed");
+        entry(page, &|page, at| page.diamond(at, 5.0, OTHER, true), "one thing changed");
     }
     if points.iter().any(|point| !point.row.varied.is_ranked()) {
-        entry(svg, &|svg, at| svg.diamond(at, 5.0, LAW, true), "another law: not ranked");
+        entry(page, &|page, at| page.diamond(at, 5.0, LAW, true), "another law: not ranked");
     }
-    entry(svg, &|svg, at| svg.ring(at, 9.0, INK), "the scene as written");
-    let draw = |svg: &mut Svg, at: (f64, f64)| svg.path(&[(at.0 - 14.0, at.1), (at.0 + 14.0, at.1)], FRONT, 5.0, 0.55);
-    entry(svg, &draw, "Pareto front");
+    entry(page, &|page, at| page.ring(at, 9.0, INK), "the scene as written");
+    let draw =
+        |page: &mut Drawing, at: (f64, f64)| page.path(&[(at.0 - 14.0, at.1), (at.0 + 14.0, at.1)], FRONT, 5.0, 0.55);
+    entry(page, &draw, "Pareto front");
     if points.iter().any(|point| !point.clear) {
-        entry(svg, &|svg, at| svg.circle(at, 5.5, FAINT, false), "a bound: the reference");
-        svg.text((x + 22.0, y - 8.0), "cannot tell", 13.5, INK, "start");
+        entry(page, &|page, at| page.circle(at, 5.5, FAINT, false), "a bound: the reference");
+        page.text((x + 22.0, y - 8.0), "cannot tell", 13.5, INK, Anchor::Start);
         y += 17.0;
     }
     if real {
-        let dashes = |svg: &mut Svg| svg.line((x - 14.0, y - 4.5), (x + 14.0, y - 4.5), "#b0453a", 1.6, "7 4");
-        dashes(svg);
-        svg.text((x + 22.0, y), "faster than real time: left of it", 13.5, INK, "start");
+        let dashes =
+            |page: &mut Drawing| page.line((x - 14.0, y - 4.5), (x + 14.0, y - 4.5), "#b0453a", 1.6, &[7.0, 4.0]);
+        dashes(page);
+        page.text((x + 22.0, y), "faster than real time: left of it", 13.5, INK, Anchor::Start);
     }
 }

@@ -1,4 +1,4 @@
-//! The work-precision plot: error against wall time per simulated second, both logarithmic, as SVG and as PNG.
+//! The work-precision plot: error against wall time per simulated second, both logarithmic.
 
 mod legend;
 
@@ -8,8 +8,7 @@ use super::reference::CLEARLY;
 use super::study::{Row, Study};
 use legend::{colour, legend};
 use sinew_pictures::plot::axis::Axis;
-use sinew_pictures::plot::svg::Svg;
-use sinew_pictures::plot::{Area, LETTERS, place, width};
+use sinew_pictures::plot::{Anchor, Area, Drawing, LETTERS, place, width};
 
 /// Width and height (pixels).
 pub const SIZE: (f64, f64) = (1120.0, 700.0);
@@ -30,7 +29,7 @@ struct Point<'a> {
 }
 
 /// Draws a study; `title` stands above.
-pub fn svg(study: &Study, title: &str) -> String {
+pub fn drawing(study: &Study, title: &str) -> Drawing {
     let points = points(study);
     let timed = study.rows.iter().filter_map(Row::measured).all(|measured| measured.simulated.is_some());
     let times = points.iter().map(|point| point.time);
@@ -39,20 +38,20 @@ pub fn svg(study: &Study, title: &str) -> String {
     let real = (timed && least < 10.0 && most > 0.1).then_some(1.0);
     let x = Axis::new(times.chain(real), FRAME[0], FRAME[2]);
     let y = Axis::new(points.iter().map(|point| point.error).chain([study.target]), FRAME[3], FRAME[1]);
-    let mut svg = Svg::new(SIZE);
-    grid(&mut svg, &x, &y);
-    zone(&mut svg, study, &y);
-    lines(&mut svg, study, &points, &x, &y, real);
+    let mut page = Drawing::new(SIZE);
+    grid(&mut page, &x, &y);
+    zone(&mut page, study, &y);
+    lines(&mut page, study, &points, &x, &y, real);
     let words = target_words(study, &points, &x, &y).map(|(_, area)| area);
-    marks(&mut svg, &points, &x, &y, words);
+    marks(&mut page, &points, &x, &y, words);
     let unit = if timed { "wall time per simulated second" } else { "wall time" };
-    svg.text((0.5 * (FRAME[0] + FRAME[2]), FRAME[3] + 46.0), unit, 15.0, INK, "middle");
-    svg.turned((16.0, 0.5 * (FRAME[1] + FRAME[3])), &format!("relative error of {}", study.judged_by), 15.0, INK);
-    svg.text((FRAME[0], 36.0), &format!("What accuracy costs: {title}"), 21.0, INK, "start");
+    page.text((0.5 * (FRAME[0] + FRAME[2]), FRAME[3] + 46.0), unit, 15.0, INK, Anchor::Middle);
+    page.turned((16.0, 0.5 * (FRAME[1] + FRAME[3])), &format!("relative error of {}", study.judged_by), 15.0, INK);
+    page.text((FRAME[0], 36.0), &format!("What accuracy costs: {title}"), 21.0, INK, Anchor::Start);
     let advice = study.findings.advice.first().map_or("", String::as_str);
-    svg.text((FRAME[0], 62.0), &shortened(advice, 118), 14.0, FAINT, "start");
-    legend(&mut svg, &points, real.is_some());
-    svg.finish()
+    page.text((FRAME[0], 62.0), &shortened(advice, 118), 14.0, FAINT, Anchor::Start);
+    legend(&mut page, &points, real.is_some());
+    page
 }
 
 fn points(study: &Study) -> Vec<Point<'_>> {
@@ -66,22 +65,22 @@ fn points(study: &Study) -> Vec<Point<'_>> {
     .collect()
 }
 
-fn grid(svg: &mut Svg, x: &Axis, y: &Axis) {
+fn grid(page: &mut Drawing, x: &Axis, y: &Axis) {
     for (value, named) in x.ticks() {
         let at = x.at(value);
-        svg.line((at, FRAME[1]), (at, FRAME[3]), if named { "#dfe3e8" } else { "#f1f3f5" }, 1.0, "");
+        page.line((at, FRAME[1]), (at, FRAME[3]), if named { "#dfe3e8" } else { "#f1f3f5" }, 1.0, &[]);
         if named {
-            svg.text((at, FRAME[3] + 21.0), &plain(&seconds(value)), 13.0, INK, "middle");
+            page.text((at, FRAME[3] + 21.0), &plain(&seconds(value)), 13.0, INK, Anchor::Middle);
         }
     }
     for (value, named) in y.ticks() {
         let at = y.at(value);
-        svg.line((FRAME[0], at), (FRAME[2], at), if named { "#dfe3e8" } else { "#f1f3f5" }, 1.0, "");
+        page.line((FRAME[0], at), (FRAME[2], at), if named { "#dfe3e8" } else { "#f1f3f5" }, 1.0, &[]);
         if named {
-            svg.text((FRAME[0] - 9.0, at + 4.5), &tick(value), 13.0, INK, "end");
+            page.text((FRAME[0] - 9.0, at + 4.5), &tick(value), 13.0, INK, Anchor::End);
         }
     }
-    svg.frame(FRAME, "#aab2bc");
+    page.frame(FRAME, "#aab2bc");
 }
 
 /// `1.00 ms` as `1 ms`.
@@ -100,26 +99,26 @@ fn tick(value: f64) -> String {
 }
 
 /// Below this the reference cannot tell.
-fn zone(svg: &mut Svg, study: &Study, y: &Axis) {
+fn zone(page: &mut Drawing, study: &Study, y: &Axis) {
     let Some(bound) = study.reference_uncertainty.map(|uncertainty| CLEARLY * uncertainty) else { return };
     if bound > y.least() {
         let top = y.at(bound).max(FRAME[1]);
-        svg.area([FRAME[0], top, FRAME[2], FRAME[3]], "#eef1f4");
+        page.area([FRAME[0], top, FRAME[2], FRAME[3]], "#eef1f4");
         if FRAME[3] - top > 18.0 {
-            svg.text((FRAME[2] - 8.0, FRAME[3] - 8.0), "the reference cannot tell", 12.5, FAINT, "end");
+            page.text((FRAME[2] - 8.0, FRAME[3] - 8.0), "the reference cannot tell", 12.5, FAINT, Anchor::End);
         }
     }
 }
 
-fn lines(svg: &mut Svg, study: &Study, points: &[Point<'_>], x: &Axis, y: &Axis, real: Option<f64>) {
+fn lines(page: &mut Drawing, study: &Study, points: &[Point<'_>], x: &Axis, y: &Axis, real: Option<f64>) {
     if let Some(real) = real {
-        svg.line((x.at(real), FRAME[1]), (x.at(real), FRAME[3]), "#b0453a", 1.6, "7 4");
-        svg.text((x.at(real) + 5.0, FRAME[1] + 15.0), "real time", 12.5, "#b0453a", "start");
+        page.line((x.at(real), FRAME[1]), (x.at(real), FRAME[3]), "#b0453a", 1.6, &[7.0, 4.0]);
+        page.text((x.at(real) + 5.0, FRAME[1] + 15.0), "real time", 12.5, "#b0453a", Anchor::Start);
     }
     if let Some((text, area)) = target_words(study, points, x, y) {
         let at = y.at(study.target);
-        svg.line((FRAME[0], at), (FRAME[2], at), "#5b8c5a", 1.4, "2 4");
-        svg.text((area[0], at - 5.0), &text, 12.5, "#5b8c5a", "start");
+        page.line((FRAME[0], at), (FRAME[2], at), "#5b8c5a", 1.4, &[2.0, 4.0]);
+        page.text((area[0], at - 5.0), &text, 12.5, "#5b8c5a", Anchor::Start);
     }
     let mut best: Vec<(f64, f64)> =
         points.iter().filter(|point| point.row.on_front).map(|point| (x.at(point.time), y.at(point.error))).collect();
@@ -131,12 +130,12 @@ fn lines(svg: &mut Svg, study: &Study, points: &[Point<'_>], x: &Axis, y: &Axis,
         stairs.push((across, down));
     }
     stairs.extend(best.last().map(|last| (FRAME[2], last.1)));
-    svg.path(&stairs, FRONT, 5.0, 0.55);
+    page.path(&stairs, FRONT, 5.0, 0.55);
     for element in legend::elements(points) {
         let mut ladder: Vec<&Point<'_>> = points.iter().filter(|point| on_ladder(point, &element)).collect();
         ladder.sort_by_key(|point| point.row.configuration.mesh);
         let path: Vec<(f64, f64)> = ladder.iter().map(|point| (x.at(point.time), y.at(point.error))).collect();
-        svg.path(&path, colour(&element), 1.6, 0.9);
+        page.path(&path, colour(&element), 1.6, 0.9);
     }
 }
 
@@ -165,22 +164,22 @@ fn is_mesh(row: &Row) -> bool {
 }
 
 /// Points and their names; `words`: where something is written already.
-fn marks(svg: &mut Svg, points: &[Point<'_>], x: &Axis, y: &Axis, words: Option<Area>) {
+fn marks(page: &mut Drawing, points: &[Point<'_>], x: &Axis, y: &Axis, words: Option<Area>) {
     let at = |point: &Point<'_>| (x.at(point.time), y.at(point.error));
     for point in points.iter().filter(|point| !is_mesh(point.row)) {
         let colour = if point.row.varied.is_ranked() { OTHER } else { LAW };
-        svg.diamond(at(point), 5.0, colour, point.clear);
+        page.diamond(at(point), 5.0, colour, point.clear);
     }
     for point in points.iter().filter(|point| is_mesh(point.row)) {
         let written = point.row.varied == Varied::Nothing;
-        svg.circle(
+        page.circle(
             at(point),
             if written { 8.0 } else { 5.5 },
             colour(&point.row.configuration.element_name()),
             point.clear,
         );
         if written {
-            svg.ring(at(point), 11.5, INK);
+            page.ring(at(point), 11.5, INK);
         }
     }
     // the scene itself first, then meshes, then the rest
@@ -204,9 +203,9 @@ fn marks(svg: &mut Svg, points: &[Point<'_>], x: &Axis, y: &Axis, words: Option<
         if spot.far {
             let middle = spot.x + 0.5 * width(name);
             let end = (at(point).0.clamp(spot.x, middle + 0.5 * width(name)), spot.y - 4.0);
-            svg.line(at(point), end, "#b4bbc4", 0.8, "");
+            page.line(at(point), end, "#b4bbc4", 0.8, &[]);
         }
-        svg.label((spot.x, spot.y), name, LETTERS, ink);
+        page.label((spot.x, spot.y), name, LETTERS, ink);
     }
 }
 
