@@ -54,7 +54,7 @@ fn glue_note(@builtin(global_invocation_id) id: vec3<u32>, @builtin(num_workgrou
             glue_found[at + ACTIVE] = 0.0;
             force = vec3<f32>(0.0);
         } else {
-            let halfway = 0.5 * (step.step_ratio * relative(tie, LAST) + relative(tie, NEXT));
+            let halfway = 0.5 * (relative(tie, LAST) + relative(tie, NEXT));
             tie_state[state + 5u] -= step.work_factor * dot(force, halfway);
         }
     }

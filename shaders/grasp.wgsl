@@ -82,8 +82,7 @@ fn hold(i: u32, node: u32, number: u32) {
     if grips[number].counts_work != 0u {
         let work = step.work_factor * dot(force, from_frame(at + 3u, of_tool));
         tool_hold[own + 4u] += work;
-        let along = 0.5 * (step.step_ratio * of_node.before + of_node.predicted + gap);
-        tool_hold[own + 5u] += work - step.work_factor * dot(force, along);
+        tool_hold[own + 5u] += work - step.work_factor * dot(force, 0.5 * (of_node.before + of_node.predicted + gap));
     }
     add_load(node, force);
 }

@@ -4,10 +4,11 @@
 var<private> internal_work: f32;
 var<workgroup> internal_work_parts: array<f32, INVOCATIONS>;
 
-// Forces at the beginning of the step along the mean of the steps before and after, as long as both were.
+// Forces at the beginning of the step along the mean of the steps before and after; counted by the
+// time between the middles of both.
 fn add_internal_work(node: u32, before: vec3<f32>, after: vec3<f32>, constrained: vec3<bool>, inner: vec3<f32>) {
     let last = select(before, step_before(node), constrained);
-    internal_work += 0.5 * step.work_factor * dot(inner, step.step_ratio * last + after);
+    internal_work += 0.5 * step.work_factor * dot(inner, last + after);
 }
 
 // The same number, in a way that no compiler can look through.

@@ -8,9 +8,9 @@ struct Step {
     number: u32, // index of the step, from 0; stops at the largest number
     zero: u32, // always 0, which no compiler knows
     relaxation: f32, // a = cΔt/2 of a static analysis
-    work_factor: f32, // share of a step's work that is counted: 1, in the first step ½
+    work_factor: f32, // share of a step's work that is counted: the time between the middles over Δt
     observed: u32, // 1 in steps after which somebody may look at forces
-    step_ratio: f32, // Δt of the step before over Δt: what makes of the last increment the way that was gone
+    reserved: u32,
     time: f32, // at the beginning of the step (s)
     time_step: f32, // Δt (s)
     signals: array<vec4<f32>, SIGNALS>,

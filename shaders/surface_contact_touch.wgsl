@@ -56,8 +56,7 @@ fn surface_contact_touch(@builtin(global_invocation_id) id: vec3<u32>, @builtin(
             if slides {
                 surface_touch[at + 6u] += length(tangential);
             }
-            let along = 0.5 * (step.step_ratio * relative(contact, 6u) + after);
-            surface_touch[at + 7u] -= step.work_factor * dot(force, along);
+            surface_touch[at + 7u] -= step.work_factor * dot(force, 0.5 * (relative(contact, 6u) + after));
         }
     }
 }

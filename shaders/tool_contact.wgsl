@@ -223,7 +223,7 @@ fn tool_contact(i: u32, node: u32) {
         }
         if limits.counts_work != 0u {
             let work = step.work_factor * dot(force, found[tool].tool_step);
-            let on_node = step.work_factor * dot(force * free, 0.5 * (step.step_ratio * of_node.before + d));
+            let on_node = step.work_factor * dot(force * free, 0.5 * (of_node.before + d));
             tool_touch[at_tool + 4u] += length(along_surface(d - found[tool].tool_step, found[tool].normal));
             tool_touch[at_tool + 5u] += work;
             tool_touch[at_tool + 6u] += work - on_node;

@@ -13,9 +13,9 @@ fn accumulate_work(
     let first = 7u * node;
     let kept = vec3<f32>(work[first + 4u], work[first + 5u], work[first + 6u]);
     // in the middle of each step the balance is exact: from middle to middle, in the first step half of it
-    let last_step = select(before, kept, constrained);
-    let along = step.work_factor * (0.5 * (step.step_ratio * last_step + after));
-    let compensation = coefficient_of(node) * step.rate * (0.5 * (last_step + after)) * along;
+    let mean = 0.5 * (select(before, kept, constrained) + after);
+    let along = step.work_factor * mean;
+    let compensation = coefficient_of(node) * step.rate * mean * along;
     let held = select(vec3<f32>(0.0), (inner - outer) * along + compensation, constrained);
     work[first] += dot(outer, along);
     work[first + 1u] += compensation.x + compensation.y + compensation.z;

@@ -176,7 +176,7 @@ impl ToolStep<'_> {
         for (touch, node) in touches {
             on_tool -= window * touch.force.dot(velocity + spin.cross(touch.arm));
             let end = node.step + node.free * touch.force / node.to_force;
-            on_nodes += coefficients.work(touch.force * node.free, node.before, end);
+            on_nodes += coefficients.work_factor * (touch.force * node.free).dot(0.5 * (node.before + end));
         }
         state.gravity_work += by_gravity;
         state.contact_work += on_tool;

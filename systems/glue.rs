@@ -104,22 +104,23 @@ fn step<T: Scalar>(
         }
     }
     work.set.solve(glue.sweeps);
-    let counts_work = clock.relaxation.is_none();
+    let counts_work = clock.relaxation.is_none().then_some(coefficients.work_factor);
     work.forces.fill(DVec3::ZERO);
     for (number, tie) in glue.ties.iter().enumerate().filter(|(number, _)| work.set.ties[*number].holds) {
         let solved = &work.set.ties[number];
         let Some(mut state) = state_of(tie, glue, bodies) else { continue };
         let at = TIE_NUMBERS * tie.place;
         // in a static analysis nothing breaks: pseudo-steps are no way that bodies take
-        if counts_work && tie.strength.is_exceeded(solved.force, work.outs[number]) {
+        if counts_work.is_some() && tie.strength.is_exceeded(solved.force, work.outs[number]) {
             breaks(&mut state, at, BROKE, clock);
             continue;
         }
         solved.parts.iter().for_each(|&(node, weight)| work.forces[node as usize] += solved.force * weight);
         state.set_vector_at(at + 2, solved.force);
-        if counts_work {
+        if let Some(work_factor) = counts_work {
             let (before, after) = (solved.relative(&work.before), solved.relative(&work.set.steps));
-            let sum = state.get(at + 5) - coefficients.work(solved.force, before, after);
+            let taken = -work_factor * solved.force.dot(0.5 * (before + after));
+            let sum = state.get(at + 5) + taken;
             state.set(at + 5, sum);
         }
     }

@@ -149,7 +149,7 @@ impl Grasps {
         }
         if step.counts_work {
             let work = step.coefficients.work_factor * force.dot(change.place(of_tool));
-            let on_node = step.coefficients.work(force, foreseen.before, foreseen.step + gap);
+            let on_node = step.coefficients.work_factor * force.dot(0.5 * (foreseen.before + foreseen.step + gap));
             values[4] += T::from_f64(work);
             values[5] += T::from_f64(work - on_node);
         }

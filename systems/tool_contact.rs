@@ -102,16 +102,6 @@ struct Touch {
     plane: Option<sweep::Plane>,
 }
 
-impl Touch {
-    /// How far a place in the tool's frame is outside of what the node must stay outside of (m), and which way out is.
-    fn surface(plane: Option<sweep::Plane>, tool: &ToolContact, at: DVec3) -> (f64, DVec3) {
-        match plane {
-            Some((normal, place)) => ((at - place).dot(normal), normal),
-            None => tool.geometry.distance(at),
-        }
-    }
-}
-
 /// Those that touch a node: there is room for all, and nothing is written where there is none.
 type Touching = SmallVec<[Touch; ToolContacts::MOST]>;
 
@@ -224,6 +214,7 @@ impl ToolContacts {
         let mut all = Touching::new();
         all.extend(near.filter_map(|tool| self.predict(step, tool, at, stuck >> tool & 1 == 1)));
         let d = predicted + self.push_apart(step, &mut all, (place, predicted), free);
+        let work_factor = step.coefficients.work_factor;
         let mut sum = DVec3::ZERO;
         for touch in all.iter().filter(|touch| touch.push > 0.0) {
             let change = touch.outwards + touch.tangential;
@@ -240,8 +231,8 @@ impl ToolContacts {
             }
             of_tool[3] = T::from_f64(if touch.slides { SLIDES } else { STICKS });
             if step.counts_work {
-                let work = step.coefficients.work_factor * force.dot(touch.tool_step);
-                let on_node = step.coefficients.work(force * free, before, d);
+                let work = work_factor * force.dot(touch.tool_step);
+                let on_node = work_factor * (force * free).dot(0.5 * (before + d));
                 of_tool[4] += T::from_f64(slip);
                 of_tool[5] += T::from_f64(work);
                 of_tool[6] += T::from_f64(work - on_node);

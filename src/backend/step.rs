@@ -23,12 +23,12 @@ pub struct Step {
     pub zero: u32,
     /// a = cΔt/2 of a static analysis, else 0.
     pub relaxation: f32,
-    /// Share of a step's work that is counted: 1, in the first step ½.
+    /// Share of a step's work that is counted: the time between the middles over Δt.
     pub work_factor: f32,
     /// 1 in steps after which somebody may look at forces, else 0: kernels need not leave them in memory.
     pub observed: u32,
-    /// What the last increment is multiplied with to be the way that was gone (see [`Clock::step_ratio`]).
-    pub step_ratio: f32,
+    /// Unused: slots for signals begin at a multiple of 16 bytes.
+    pub reserved: u32,
     /// Time at the beginning of the step (s).
     pub time: f32,
     /// Δt (s).
@@ -45,7 +45,7 @@ uniform!(Step {
     relaxation,
     work_factor,
     observed,
-    step_ratio,
+    reserved,
     time,
     time_step
 });
@@ -64,9 +64,9 @@ impl Step {
             number: step_number(clock),
             zero: 0,
             relaxation: damping as f32,
-            work_factor: if first { 0.5 } else { 1.0 },
+            work_factor: (between / dt) as f32,
             observed: 1,
-            step_ratio: clock.step_ratio() as f32,
+            reserved: 0,
             time: clock.time() as f32,
             time_step: dt as f32,
         }

@@ -64,13 +64,6 @@ impl Clock {
         }
     }
 
-    /// Δt of the step before over Δt: 1 but in the first step after a change. Increments follow Δt, for they stand for
-    /// velocities; times this they are the way that was gone.
-    #[doc(hidden)]
-    pub fn step_ratio(&self) -> f64 {
-        if self.step == self.since.0 && self.step > 0 { self.before / self.time_step } else { 1.0 }
-    }
-
     /// The times (s) from the middle of the step before to the middle of a step, which must not lie before the last
     /// change of Δt: over them forces at its beginning change velocities. The first such window begins with the motion.
     #[doc(hidden)]

@@ -107,8 +107,8 @@ pub(super) fn meet<T: Scalar>(
     gather(contacts, &mut gathered, &found, &in_step, bodies);
     forget(contacts, &gathered.facing, bodies);
     gathered.set.solve(contacts.sweeps, cpu);
-    let counts_work = clock.relaxation.is_none().then_some(&coefficients);
-    note_touches(contacts, &gathered, counts_work, bodies);
+    let work_factor = clock.relaxation.is_none().then_some(coefficients.work_factor);
+    note_touches(contacts, &gathered, work_factor, bodies);
     push(contacts, &gathered.acted_on, bodies);
     gathered.acted_on.iter().for_each(|&node| gathered.slots[node as usize] = u32::MAX);
     (contacts.surface.gathered, contacts.surface.found) = (gathered, found);
@@ -118,7 +118,7 @@ pub(super) fn meet<T: Scalar>(
 fn note_touches<T: Scalar>(
     contacts: &mut SurfaceContacts,
     Gathered { set, met, .. }: &Gathered,
-    counts_work: Option<&IntegrationCoefficients<f64>>,
+    work_factor: Option<f64>,
     bodies: &mut [BodySlices<'_, T>],
 ) {
     let mut forces = std::mem::take(&mut contacts.surface.forces);
@@ -137,11 +137,11 @@ fn note_touches<T: Scalar>(
             touch[4] = T::from_f64(if contact.slides { SLIDES } else { STICKS });
             touch[5] = T::from_f64(met.gap + contact.normal.dot(after));
         }
-        if let Some(coefficients) = counts_work {
+        if let Some(work_factor) = work_factor {
             let before = contact.relative(&set.earlier);
             let along = (after - contact.normal * after.dot(contact.normal)).length();
             let slid = touch[6].to_f64() + if contact.slides { along } else { 0.0 };
-            let lost = touch[7].to_f64() - coefficients.work(force, before, after);
+            let lost = touch[7].to_f64() - work_factor * force.dot(0.5 * (before + after));
             touch[6] = T::from_f64(slid);
             touch[7] = T::from_f64(lost);
         }

@@ -1,5 +1,7 @@
 //! Tools that go farther in a step than they are thick: where a node's way first meets them.
 
+use super::Touch;
+use crate::components::ToolContact;
 use crate::tools::Geometry;
 use glam::DVec3;
 
@@ -11,6 +13,16 @@ const NEAR: f64 = 1e-3;
 
 /// The plane that a tool's surface has where a node first meets it, in the tool's frame: the outward normal, and a place.
 pub(super) type Plane = (DVec3, DVec3);
+
+impl Touch {
+    /// How far a place in the tool's frame is outside of what the node must stay outside of (m), and which way out is.
+    pub(super) fn surface(plane: Option<Plane>, tool: &ToolContact, at: DVec3) -> (f64, DVec3) {
+        match plane {
+            Some((normal, place)) => ((at - place).dot(normal), normal),
+            None => tool.geometry.distance(at),
+        }
+    }
+}
 
 /// Where the way of a node first meets a tool, from one place to another in its frame; `None` where it never does,
 /// begins inside, or is no longer than what may be looked at by its end alone (`beyond`, m).

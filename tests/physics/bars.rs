@@ -82,8 +82,9 @@ fn clamped_beam_swings_at_0_2798_hertz() {
 }
 
 /// Stiff (E = 3e4 Pa), so that it hardly lengthens (.1 %: the spin falls by that), and viscous, so that it comes to
-/// rest within its own length. Across, the load of its own width is ρω² b²/12 = .33 Pa. f32: u is rounded to 6e-8·.1 m,
-/// over h = .005 m and κ = 1e5 Pa: .1 Pa from each of three strains, .6 % together.
+/// rest within its own length. Across, the load of its own width is ρω² b²/12 = .33 Pa. f32: u is rounded by up to
+/// 3.7e-9 m (half of its last place, .06 to .13 m), two nodes at worst against each other over h = .005 m: with κ = 1e5 Pa
+/// .15 Pa from each of three strains, .45 Pa or .9 % together, beside what f64 is allowed.
 #[test]
 fn spinning_bar_bears_its_centrifugal_load() {
     for run in configurations() {
@@ -96,8 +97,8 @@ fn spinning_bar_bears_its_centrifugal_load() {
         simulation.advance(steps).unwrap();
         // after a full turn; linear elements have the exact stress of lumped masses, the middle ones that of the middle
         let stress = simulation.probe("stress").unwrap();
-        near(&format!("{}: σ along", run.name), stress[0], 49.348, 49.348, run.bound(0.01, 0.016));
-        near(&format!("{}: σ across", run.name), stress[1], 0.33, 49.348, run.bound(0.01, 0.016));
+        near(&format!("{}: σ along", run.name), stress[0], 49.348, 49.348, run.bound(0.01, 0.019));
+        near(&format!("{}: σ across", run.name), stress[1], 0.33, 49.348, run.bound(0.01, 0.019));
     }
 }
 

@@ -3,12 +3,13 @@
 
 use crate::configurations::scene_of;
 use crate::implicit::options;
-use sinew::Simulation;
 use sinew::components::Precision;
+use sinew::{Error, Simulation};
 use std::path::Path;
 
 /// The lens of `lens_pressed.ron`: the history of the mean displacement of its front in steps of 10 ms, and what it took.
-fn lens(solver: &str, curve: &str, duration: f64) -> (Vec<f64>, Simulation) {
+/// `None` where a step was not found.
+fn lens(solver: &str, curve: &str, duration: f64) -> Option<(Vec<f64>, Simulation)> {
     let text = std::fs::read_to_string("scenes/lens_pressed.ron").unwrap();
     let text = text.replace("duration: 0.2,", &format!("duration: {duration}, {solver}"));
     let text = text.replace("Smooth(end: 0.1)", curve);
@@ -19,11 +20,14 @@ fn lens(solver: &str, curve: &str, duration: f64) -> (Vec<f64>, Simulation) {
     let steps = (duration / 0.01).round() as usize;
     let mut history = Vec::new();
     for n in 1..=steps {
-        simulation.advance_to(0.01 * n as f64).unwrap();
+        match simulation.advance_to(0.01 * n as f64) {
+            Err(Error::Unstable(_)) if !solver.is_empty() => return None,
+            ended => drop(ended.unwrap()),
+        }
         let u = simulation.displacements("lens").unwrap();
         history.push(front.iter().map(|&i| u[i].z).sum::<f64>() / front.len() as f64);
     }
-    (history, simulation)
+    Some((history, simulation))
 }
 
 /// Root mean square of a difference over the largest value.
@@ -37,7 +41,7 @@ fn error_over_time(found: &[f64], expected: &[f64]) -> f64 {
 fn slow_loads_take_fewer_passes_and_sudden_ones_are_damped() {
     for (name, curve, duration) in [("pressed within .1 s", "Smooth(end: 0.1)", 0.2), ("let go", "Step(end: 0.1)", 0.2)]
     {
-        let (exact, explicit) = lens("", curve, duration);
+        let (exact, explicit) = lens("", curve, duration).unwrap();
         println!("{name}: explicit, {} passes", explicit.step_count());
         for (scheme, step) in
             [("Euler", 0.01), ("Euler", 0.005), ("GeneralizedAlpha()", 0.01), ("GeneralizedAlpha()", 0.002)]
@@ -48,7 +52,12 @@ fn slow_loads_take_fewer_passes_and_sudden_ones_are_damped() {
                 let solver = format!(
                     "solver: Implicit(scheme: {scheme}, step: {step}, preconditioner: {preconditioner}, newton: {newton}, tolerance: {tolerance}),"
                 );
-                let (found, run) = lens(&solver, curve, duration);
+                let Some((found, run)) = lens(&solver, curve, duration) else {
+                    // a linearised step of what rings may not be found, by how its forces were rounded
+                    println!("  {scheme} {step} s, {preconditioner}, newton {newton} to {tolerance}: not found");
+                    assert!(name == "let go" && newton == 1, "{name}: {solver}");
+                    continue;
+                };
                 let error = error_over_time(&found, &exact);
                 let took = run.implicit_steps().unwrap();
                 println!(

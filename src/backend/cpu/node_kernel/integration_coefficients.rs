@@ -16,10 +16,8 @@ pub struct IntegrationCoefficients<T> {
     pub after_first: T,
     /// 1/Δt (1/s).
     pub rate: T,
-    /// Share of a step's work that is counted: 1, in the first step ½.
+    /// Share of a step's work that is counted, the time between the middles over Δt: 1, in the first step ½.
     pub work_factor: T,
-    /// What the last increment is multiplied with to be the way that was gone (see [`Clock::step_ratio`]).
-    pub step_ratio: T,
     /// a of a static analysis, else 0.
     pub relaxation: T,
 }
@@ -35,8 +33,7 @@ impl<T: Scalar> IntegrationCoefficients<T> {
             half_step: T::from_f64(0.5 * if first { dt } else { between }),
             after_first: T::from_f64(if first { 0.0 } else { 1.0 }),
             rate: T::from_f64(1.0 / dt),
-            work_factor: T::from_f64(if first { 0.5 } else { 1.0 }),
-            step_ratio: T::from_f64(clock.step_ratio()),
+            work_factor: T::from_f64(between / dt),
             relaxation: T::from_f64(damping),
         }
     }
@@ -56,12 +53,6 @@ pub struct Foreseen {
 }
 
 impl IntegrationCoefficients<f64> {
-    /// The work (J) of a force (N) at the beginning of a step along the mean of the increments before and after (m), of
-    /// which the former follows Δt.
-    pub fn work(&self, force: DVec3, before: DVec3, after: DVec3) -> f64 {
-        self.work_factor * force.dot(0.5 * (self.step_ratio * before + after))
-    }
-
     /// Where a node would go with a mass (kg), a damping coefficient (kg/s), constrained axes (bits), the last step (m)
     /// and a force (N); inactive nodes, without mass, stay where they are.
     pub fn foresee(&self, mass: f64, damping: f64, axes: u32, before: DVec3, force: DVec3) -> Foreseen {

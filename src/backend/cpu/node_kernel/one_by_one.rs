@@ -39,7 +39,7 @@ impl<T: Scalar> Sum<'_, T> {
     }
 }
 
-/// sum += change, where `compensation` is what rounding has made of the sum too much (Kahan 1965).
+/// sum += change, where `lost` is what rounding has made of the sum too much (Kahan 1965).
 #[inline(always)]
 fn compensated_add<T: Scalar>(sum: &mut T, compensation: &mut T, change: T) {
     let exact = change - *compensation;
@@ -90,8 +90,8 @@ pub(super) fn move_node<T: Scalar>(
     mut work: Option<&mut [T]>,
 ) -> f64 {
     let (zero, one) = (T::default(), T::from_f64(1.0));
-    let IntegrationCoefficients { force: force_factor, half_step, after_first, rate, relaxation, .. } = *coefficients;
-    let IntegrationCoefficients { work_factor, step_ratio, .. } = *coefficients;
+    let IntegrationCoefficients { force: force_factor, half_step, after_first, rate, work_factor, relaxation } =
+        *coefficients;
     let (mass, axes) = (node.mass, node.axes);
     if mass <= zero {
         sum.step.fill(zero);
@@ -117,14 +117,14 @@ pub(super) fn move_node<T: Scalar>(
             Some(previous) if constrained => T::from_f64(f64::from(previous[i])),
             _ => before,
         };
-        internal_work += internal * (step_ratio * last + step);
+        internal_work += internal * (last + step);
         if let Some(work) = &mut work {
             // forces at the beginning of the step work along the mean of the steps before and after, in the first step
-            // along half of it: so what is counted of an elastic force is what it stores in the middle of each step
+            // along half of it: so the balance of the scheme is exact in the middle of each step
             let before = if constrained { std::mem::replace(&mut work[4 + i], step) } else { before };
-            let half = T::from_f64(0.5);
-            let along = work_factor * (half * (step_ratio * before + step));
-            let compensation = coefficient * rate * (half * (before + step)) * along;
+            let mean = T::from_f64(0.5) * (before + step);
+            let along = work_factor * mean;
+            let compensation = coefficient * rate * mean * along;
             work[0] += external * along;
             work[1] += compensation;
             work[3] += internal * along;
