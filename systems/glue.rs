@@ -4,6 +4,7 @@ mod kernels;
 mod work;
 
 use super::node_slices::{BodyColumns, elements_stay};
+use super::repeat::Repeat;
 use super::system::{Phase, System};
 use crate::backend::cpu::IntegrationCoefficients;
 use crate::components::*;
@@ -30,7 +31,15 @@ pub fn system() -> System {
         glue,
     );
     // ties whose tissue may go are looked after on the host
-    System { device_when: nothing_goes, shared_only: on_surfaces, ..system.on_device(kernels::kernels) }
+    System {
+        device_when: nothing_goes,
+        shared_only: on_surfaces,
+        repeats: |world| {
+            let glue = world.get_resource::<Glue>()?;
+            Some(Repeat::times(glue.sweeps, &["forces of ties", "what they do to nodes"]))
+        },
+        ..system.on_device(kernels::kernels)
+    }
 }
 
 /// Whether no tissue of what is tied can go.

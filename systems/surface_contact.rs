@@ -10,6 +10,7 @@ mod motion;
 mod survey;
 
 use super::node_slices::BodyColumns;
+use super::repeat::Repeat;
 use super::system::{Phase, System};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
@@ -44,6 +45,7 @@ pub fn system() -> System {
         // and points of faces and edges there, too
         device_when: |world| surfaces_stay(world) && nodes_meet_alone(world),
         before_steps: Some(device::before_steps),
+        repeats: sweeps,
         ..system.on_device(kernels::kernels)
     }
 }
@@ -58,6 +60,14 @@ fn surfaces_stay(world: &World) -> bool {
 fn nodes_meet_alone(world: &World) -> bool {
     let contacts = world.get_resource::<SurfaceContacts>();
     contacts.is_some_and(|contacts| !contacts.meetings.iter().flatten().any(|meeting| meeting.faces || meeting.edges))
+}
+
+/// What corrects the forces again and again.
+fn sweeps(world: &World) -> Option<Repeat> {
+    let contacts = world.get_resource::<SurfaceContacts>()?;
+    let (normal, along) = ("normal forces, and what they do to nodes", "friction, and what it does to nodes");
+    let what = if contacts.has_friction() { &[normal, along][..] } else { &[normal] };
+    Some(Repeat::times(contacts.sweeps, what))
 }
 
 /// How far points may go before it is looked anew what is near what, in edges; four times that of fast ones.
@@ -206,6 +216,11 @@ impl SurfaceContacts {
     pub(crate) fn has_face_points(&self, body: usize) -> bool {
         let count = self.bodies.len();
         self.meetings[body * count..(body + 1) * count].iter().flatten().any(|meeting| meeting.faces)
+    }
+
+    /// Whether anything rubs.
+    fn has_friction(&self) -> bool {
+        self.meetings.iter().flatten().any(|meeting| meeting.friction != [0.0; 2])
     }
 
     /// The largest thickness (m).

@@ -73,52 +73,81 @@ impl Frame {
 /// Buffers of a kernel that several stages share, however many the device allows: what more loads gain is little.
 pub const MOST_SHARED: MostBuffers = MostBuffers::new(32, 32);
 
-/// Kernels of stages that follow one another in a step. Those of one body share as few kernels as can be: none in which
+/// How the stages of a body are shared among kernels.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shared {
+    body: Entity,
+    /// How many stages each kernel has, in their order.
+    stages: Vec<usize>,
+}
+
+/// How stages that follow one another in a step share kernels. Those of one body are in as few as can be: none in which
 /// a stage reads of other nodes what another writes, and none with more storage buffers than the device has for a
 /// kernel. With `fuse` false each has its own.
-pub fn node_kernels(stages: Vec<NodeStage>, fuse: bool, buffers: &mut dyn Buffers) -> Vec<Kernel> {
-    let mut bodies: Vec<Entity> = Vec::new();
-    for stage in &stages {
-        if !bodies.contains(&stage.body) {
-            bodies.push(stage.body);
+pub fn shared(stages: &[NodeStage], fuse: bool, buffers: &mut dyn Buffers) -> Vec<Shared> {
+    let mut all: Vec<Shared> = Vec::new();
+    for stage in stages {
+        if !all.iter().any(|shared| shared.body == stage.body) {
+            all.push(Shared { body: stage.body, stages: Vec::new() });
         }
     }
-    let mut kernels = Vec::new();
-    for body in bodies {
-        let of_body: Vec<&NodeStage> = stages.iter().filter(|stage| stage.body == body).collect();
+    for shared in &mut all {
+        let of_body = of_body(shared.body, stages);
         let mut rest = of_body.as_slice();
         while !rest.is_empty() {
-            let (count, pass) = if fuse { first_together(rest, buffers) } else { (1, alone(rest[0])) };
-            kernels.push(node_pass(pass, &rest[..count], buffers));
+            let count = if fuse { first_together(rest, buffers) } else { 1 };
+            shared.stages.push(count);
             rest = &rest[count..];
+        }
+    }
+    all
+}
+
+/// Kernels of stages, shared as it was decided.
+pub fn kernels_as_shared(stages: &[NodeStage], shared: &[Shared], buffers: &mut dyn Buffers) -> Vec<Kernel> {
+    let mut kernels = Vec::new();
+    for Shared { body, stages: counts } in shared {
+        let of_body = of_body(*body, stages);
+        let mut rest = of_body.as_slice();
+        for &count in counts {
+            let (together, others) = rest.split_at(count.min(rest.len()));
+            if !together.is_empty() {
+                kernels.push(node_pass(together, buffers));
+            }
+            rest = others;
         }
     }
     kernels
 }
 
-/// As many of the first stages as may share a kernel.
-fn first_together(stages: &[&NodeStage], buffers: &mut dyn Buffers) -> (usize, Pass) {
+/// Kernels of stages that follow one another in a step: see [`shared`].
+pub fn node_kernels(stages: Vec<NodeStage>, fuse: bool, buffers: &mut dyn Buffers) -> Vec<Kernel> {
+    let shared = shared(&stages, fuse, buffers);
+    kernels_as_shared(&stages, &shared, buffers)
+}
+
+fn of_body(body: Entity, stages: &[NodeStage]) -> Vec<&NodeStage> {
+    stages.iter().filter(|stage| stage.body == body).collect()
+}
+
+/// How many of the first stages may share a kernel.
+fn first_together(stages: &[&NodeStage], buffers: &mut dyn Buffers) -> usize {
     let most = buffers.most_buffers();
-    let mut together = |count: usize| together(&stages[..count], Frame::node_pass(), most, buffers).ok();
+    let mut fit = |count: &usize| may_share(&stages[..*count], Frame::node_pass(), most, buffers).is_ok();
     // most often all of them
-    if let Some(pass) = together(stages.len()).filter(|_| stages.len() > 1) {
-        return (stages.len(), pass);
+    if stages.len() > 1 && fit(&stages.len()) {
+        return stages.len();
     }
-    let fitting = (2..stages.len()).map_while(|count| Some((count, together(count)?)));
-    fitting.last().unwrap_or_else(|| (1, alone(stages[0])))
+    (2..stages.len()).take_while(fit).last().unwrap_or(1)
 }
 
-fn alone(stage: &NodeStage) -> Pass {
-    Pass::of(&[stage], Frame::node_pass())
-}
-
-/// Stages in one kernel, where nodes go their way independently of each other; or why they cannot be.
-pub fn together(
+/// Looks whether stages may be in one kernel, where nodes go their way independently of each other; or why not.
+pub fn may_share(
     stages: &[&NodeStage],
     frame: Frame,
     most: MostBuffers,
     buffers: &mut dyn Buffers,
-) -> Result<Pass, String> {
+) -> Result<(), String> {
     let pass = Pass::of(stages, frame);
     let kernel = pass.kernel();
     let composed = buffers.compose(kernel).map_err(|error| format!("they make no kernel together: {error}"))?;
@@ -131,12 +160,12 @@ pub fn together(
     let uniform = entry.uses.len() - storage;
     match MOST_SHARED.exceeded_by(storage, uniform).or_else(|| most.exceeded_by(storage, uniform)) {
         Some(reason) => Err(reason),
-        None => Ok(pass),
+        None => Ok(()),
     }
 }
 
 /// A kernel of stages with an invocation a node.
-fn node_pass(pass: Pass, stages: &[&NodeStage], buffers: &mut dyn Buffers) -> Kernel {
+fn node_pass(stages: &[&NodeStage], buffers: &mut dyn Buffers) -> Kernel {
     let Range { start, end } = stages[0].within;
     let rows = match (stages, &stages[0].rows) {
         // places among the rows
@@ -144,17 +173,20 @@ fn node_pass(pass: Pass, stages: &[&NodeStage], buffers: &mut dyn Buffers) -> Ke
         _ => [start, end],
     };
     let [first, count] = rows;
+    let pass = Pass::of(stages, Frame::node_pass());
     pass.into_kernel(stages, NodePass { count, first }, buffers).threads(count - first)
 }
 
 /// The kernel of [`Frame::many_steps`].
-pub fn many_steps(pass: Pass, stages: &[&NodeStage], invocations: usize, buffers: &mut dyn Buffers) -> Kernel {
+pub fn many_steps(stages: &[&NodeStage], invocations: usize, buffers: &mut dyn Buffers) -> Kernel {
     let rows = NodePass { count: stages[0].nodes, first: 0 };
+    let pass = Pass::of(stages, Frame::many_steps(invocations));
     pass.into_kernel(stages, rows, buffers).threads(invocations as u32)
 }
 
 /// The kernel of [`Frame::patch_step`], of so many invocations in all.
-pub fn patch_step(pass: Pass, stages: &[&NodeStage], invocations: u32, buffers: &mut dyn Buffers) -> Kernel {
+pub fn patch_step(stages: &[&NodeStage], invocations: u32, buffers: &mut dyn Buffers) -> Kernel {
+    let pass = Pass::of(stages, Frame::patch_step());
     let node = &stages[stages.len() - 1];
     let rows = NodePass { count: node.nodes, first: node.within.start };
     pass.into_kernel(stages, rows, buffers).threads(invocations)
