@@ -10,7 +10,7 @@ use super::{contact_springs, outputs, plausible};
 use crate::assembly::{Assembly, assemble, assemble_in_time, insert_laws};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
-use crate::scene::schema::{Analysis, Solver};
+use crate::scene::schema::{Analysis, EquilibriumSearch, Solver};
 use crate::scene::{Diagnostics, SceneFile};
 use crate::systems::Registry;
 use bevy_ecs::prelude::*;
@@ -79,7 +79,7 @@ fn prepare_with<'a>(
     assemble_in_time(&assembly, world, diagnostics);
     let mut schedule = resolve(scene.scene.schedule.as_deref(), known, world, diagnostics);
     hand_out(&scene.scene, known, &mut schedule, world, diagnostics);
-    if clock.velocities_at_ends {
+    if clock.velocities_at_ends || scene.scene.is_static_by_newton() {
         super::implicit::check(&schedule, diagnostics);
     }
     let systems = schedule.iter().map(|entry| entry.system);
@@ -109,7 +109,7 @@ fn clock(
     world: &mut World,
     diagnostics: &mut Diagnostics,
 ) -> Option<(Clock, Stability, u64)> {
-    if let Analysis::Static { max_steps, load_steps, at, .. } = scene.scene.analysis {
+    if let Analysis::Static(EquilibriumSearch { max_steps, load_steps, at, .. }) = scene.scene.analysis {
         let bound = stable_step::found_bound(world, diagnostics)?;
         let load_steps = load_steps.unwrap_or_else(|| crate::assembly::load_steps(world));
         let ramp_rate = 1.0 / load_steps as f64;

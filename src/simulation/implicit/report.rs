@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// What implicit steps have taken since the simulation was made or went on from a snapshot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ImplicitSteps {
-    /// Steps.
+    /// Steps; in a static analysis attempts to find equilibrium.
     pub steps: u64,
     /// Passes over all forces: for residuals, for products and for what steps keep.
     pub passes: u64,

@@ -4,7 +4,7 @@ use super::super::ScheduledPass;
 use super::axes::{Axes, Motion};
 use super::formula::Formula;
 use super::kept::Kept;
-use super::newton::{Lost, Newton, Settings, Workspace};
+use super::newton::{Found, Lost, Newton, Settings, Workspace};
 use super::preconditioner::{Preconditioner, of_name};
 use super::report::ImplicitSteps;
 use super::sums::Sums;
@@ -134,7 +134,7 @@ impl Implicit {
         }
         self.report.passes += trial.count;
         self.report.most_passes = self.report.most_passes.max(trial.count);
-        left
+        left.map(|Found { left, .. }| left)
     }
 }
 
@@ -157,7 +157,7 @@ fn begin(trial: &mut Trial<'_>, motion: &mut Motion, net: &mut [f64], formula: &
 }
 
 /// How far held axes go in the step (m), as `boundary` has written it.
-fn held_axes(world: &World, axes: &Axes, motion: &Motion, to_go: &mut [f64]) {
+pub(super) fn held_axes(world: &World, axes: &Axes, motion: &Motion, to_go: &mut [f64]) {
     for (body, range) in axes.each() {
         let Some(step) = world.get::<DisplacementIncrement>(body) else { continue };
         for i in 0..range.len() {
