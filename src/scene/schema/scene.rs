@@ -1,8 +1,8 @@
 //! The whole scene, its time step, its guards.
 
-use super::{
-    Accuracy, Analysis, Attachment, Body, Constraint, Contact, Curve, EquilibriumSearch, InitialState, Load, Material,
-    Output, OwnSystem, Part, Picture, Probe, Removal, SearchMethod, Solver, Suction, Tool, When,
+use super::{Analysis, EquilibriumSearch, InitialState, SearchMethod,
+    Accuracy, Attachment, Body, Constraint, Contact, Curve, Load, Material, Output, OwnSystem, Part, Picture, Probe,
+    Removal, Solver, Suction, Tool, When,
 };
 use crate::scene::syntax::Path;
 use serde::{Deserialize, Serialize};
