@@ -163,6 +163,8 @@ pub const UNITS: &[(&str, &str)] = &[
     ("contacts.*.force", "N"),
     ("contacts.*.penetration", "m"),
     ("contacts.*.loss", "J"),
+    ("surface_contact.points_near", "1"),
+    ("surface_contact.contacts", "1"),
     ("surface_contact.seconds", "s"),
     ("surface_contact.share", "1"),
     ("surface_contact.nanoseconds_a_near_point", "ns"),
