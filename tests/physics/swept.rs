@@ -70,6 +70,5 @@ fn tools_that_may_go_through_nodes_are_refused_or_warned_of() {
     assert!(warns(0.6, "") && warns(1.0, ""));
     assert!(!warns(0.4, "") && !warns(1.9, ", swept: true"));
     let scene = needle(0.4, ", swept: true, law: Penalty(share: 0.1)");
-    let told = sinew::SceneFile::from_text("test", &scene, std::path::Path::new("."), &[]).err().unwrap();
-    assert!(told.render(false).contains("`swept` looks at its way"), "{}", told.render(false));
+    refused(&scene, "`swept` looks at its way");
 }
