@@ -22,7 +22,7 @@ fn lens(solver: &str, curve: &str, duration: f64) -> Option<(Vec<f64>, Simulatio
     for n in 1..=steps {
         match simulation.advance_to(0.01 * n as f64) {
             Err(Error::Unstable(_)) if !solver.is_empty() => return None,
-            ended => drop(ended.unwrap()),
+            ended => ended.unwrap(),
         }
         let u = simulation.displacements("lens").unwrap();
         history.push(front.iter().map(|&i| u[i].z).sum::<f64>() / front.len() as f64);
