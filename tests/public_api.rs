@@ -20,7 +20,8 @@ fn pages(all: &str) -> Vec<&str> {
 /// Methods, constants and types that a page tells of: its own, not those of other traits and not those of what it
 /// dereferences to.
 fn items_of(page: &str) -> usize {
-    let own = page.split("id=\"deref-methods").next().unwrap();
+    let others = ["deref-methods", "trait-implementations", "synthetic-implementations", "blanket-implementations"];
+    let own = others.iter().fold(page, |own, part| own.split(&format!("id=\"{part}")).next().unwrap());
     ["method", "associatedconstant", "associatedtype"]
         .iter()
         .map(|kind| own.matches(&format!(" class=\"{kind}\"")).count())
