@@ -4,8 +4,9 @@
 //! 73.80, CalculiX 73.90; docs/accuracy.md). With 20 × 4 × 4 cells plain tetrahedra must show their locking, and the
 //! other kinds what they are for.
 
-use crate::configurations::{ELEMENTS, configurations};
+use crate::configurations::ELEMENTS;
 use crate::locking::Bound::{Above, Below};
+use crate::on_cpu::on_cpu;
 
 const SINKS: f64 = 73.85e-3;
 
@@ -20,8 +21,7 @@ fn elements_lock_as_told_or_not_at_all() {
     // wedges hold two volumes where hexahedra hold one, 1.5 degrees of freedom for each: they lock a little (8.2 % with
     // half the cells along each edge, 5.6 % here; hardly anything at ν = .3)
     let bounds = [Above(0.40), Below(0.09), Below(0.05), Below(0.02), Below(0.06), Below(0.02)];
-    for (run, (elements, bound)) in
-        configurations().iter().flat_map(|run| ELEMENTS.iter().zip(&bounds).map(move |e| (run, e)))
+    for (run, (elements, bound)) in on_cpu().iter().flat_map(|run| ELEMENTS.iter().zip(&bounds).map(move |e| (run, e)))
     {
         // as many nodes; with as many cells Tet10 is 0.1 % too stiff
         let cells = if *elements == "Tet10" { "10, 2, 2" } else { "20, 4, 4" };

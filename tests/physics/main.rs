@@ -41,6 +41,7 @@ mod manufactured;
 mod modes;
 mod motions;
 mod node_sets;
+mod on_cpu;
 mod one_pass;
 mod output_fields;
 mod overlaps;

@@ -5,6 +5,7 @@ use crate::configurations::{configurations, near};
 use crate::elements::{corners, displacements, forces, isochoric};
 use crate::frequency_bound::eigenvalues;
 use crate::grids::grid;
+use crate::on_cpu::on_cpu;
 use crate::random::Random;
 use glam::DVec3;
 use sinew::elements::{MOST_NODES, Tet10};
@@ -57,7 +58,7 @@ fn six_modes_are_without_energy() {
 #[test]
 #[ignore = "long"]
 fn one_layer_bends_and_two_bend_as_they_should() {
-    for run in configurations() {
+    for run in on_cpu() {
         // in f32 rounding keeps so soft a motion awake
         let tolerance = run.bound(1e-6, 1e-4);
         let sinks = |elements: &str, layers: usize| {
