@@ -72,6 +72,7 @@ mod tool_meshes;
 mod tool_removal;
 mod tools;
 mod true_limit;
+mod two_level;
 mod unload;
 mod unstable_elements;
 mod user_laws;

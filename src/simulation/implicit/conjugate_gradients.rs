@@ -49,7 +49,7 @@ pub(super) fn solve(
     b: &[f64],
     x: &mut [f64],
     vectors: &mut Vectors,
-    preconditioner: &dyn Preconditioner,
+    preconditioner: &mut dyn Preconditioner,
     stop: Stop,
     mut times: impl FnMut(&[f64], &mut [f64]) -> Result<(), Error>,
 ) -> Result<Solved, Error> {

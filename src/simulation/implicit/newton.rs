@@ -254,7 +254,7 @@ impl Newton<'_, '_> {
             Ok(())
         };
         let Solved { iterations, ended } =
-            solve(sums, right, p, vectors, &**preconditioner, Stop { tolerance, most }, times)?;
+            solve(sums, right, p, vectors, &mut **preconditioner, Stop { tolerance, most }, times)?;
         report.newton_iterations += 1;
         report.linear_iterations += iterations;
         report.negative_curvatures += u64::from(ended == Ended::NegativeCurvature);
