@@ -61,6 +61,7 @@ mod removal;
 mod second_order;
 mod skins;
 mod snapshots;
+mod static_newton;
 mod statics;
 mod stiffness_damping;
 mod strains;

@@ -5,6 +5,7 @@ use crate::configurations::{near, scene_of};
 use crate::implicit::options;
 use sinew::Simulation;
 use sinew::components::Precision;
+use sinew::systems::Registry;
 use std::path::Path;
 
 /// Iterations of conjugate gradients of the first, linearised step of a scene that has `SOLVER` in it.
@@ -97,4 +98,25 @@ fn taking_elements_out_keeps_it_valid() {
     let apart = two.iter().zip(&one).map(|(a, b)| a.distance(*b)).fold(0.0, f64::max);
     near("displacements", apart, 0.0, largest, 1e-5);
     assert!(took.linear_iterations < of_blocks.linear_iterations && took.unsolved == 0, "{took:?}");
+}
+
+/// Of the lens: n aggregates have a symmetric matrix of 6 n unknowns and a factor, rows of f64 up to the diagonal.
+#[test]
+fn what_it_holds_is_told_before_a_run_and_after() {
+    let scene = lens(814).replace("SOLVER", "solver: Implicit(budget: 40),");
+    let mut simulation = Simulation::new(&scene_of(&scene, Path::new("scenes")), &options(Precision::F32, 1)).unwrap();
+    let told = simulation.explain(&Registry::default()).unwrap();
+    println!("{told}");
+    let solver = told.solver.unwrap();
+    let line = solver.of.iter().find(|line| line.contains("aggregates")).unwrap();
+    let number = line.split(" aggregates").next().unwrap().rsplit(' ').next().unwrap();
+    let unknowns = 6 * number.parse::<u64>().unwrap();
+    assert!((20 * 6..=128 * 6).contains(&unknowns), "{line}");
+    let bytes = |of: &str| solver.held.iter().find(|(name, _)| name.contains(of)).unwrap().1;
+    let triangle = unknowns * (unknowns + 1) / 2;
+    assert_eq!(bytes("coarse matrices"), 8 * (2 * triangle + unknowns));
+    let of_preconditioner: u64 = ["blocks of nodes", "turned", "aggregates", "coarse"].into_iter().map(bytes).sum();
+    simulation.advance(1).unwrap();
+    let summary = simulation.summary("interrupted").unwrap();
+    assert_eq!(summary.implicit.unwrap().preconditioner_bytes, of_preconditioner);
 }

@@ -13,6 +13,11 @@ pub(super) struct Vectors {
     image: Vec<f64>,
 }
 
+impl Vectors {
+    /// How many there are.
+    pub const COUNT: usize = 4;
+}
+
 /// Why a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ended {

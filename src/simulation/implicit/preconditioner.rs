@@ -7,6 +7,7 @@ mod two_level;
 use crate::scene::schema;
 use bevy_ecs::prelude::*;
 use block_jacobi::BlockJacobi;
+pub(super) use columns::pieces;
 use two_level::TwoLevel;
 
 /// The operator A = D + c K of a linear solve, D diagonal (mass and damping), K the tangent stiffness of all bodies. Its
@@ -34,6 +35,9 @@ pub(in crate::simulation) trait Preconditioner: Send + Sync {
     /// Follows an operator that may have changed, before each solve: where nodes have gone, which elements are left,
     /// how long the step is. What changes little may stay as it was.
     fn follow(&mut self, _: &Operator<'_>) {}
+
+    /// What it is made of, in words, once it follows an operator; and the bytes that it holds.
+    fn holds(&self) -> (String, Vec<(&'static str, u64)>);
 }
 
 /// None: z = r.
@@ -42,6 +46,10 @@ pub(in crate::simulation) struct Identity;
 impl Preconditioner for Identity {
     fn apply(&mut self, residual: &[f64], z: &mut [f64]) {
         z.copy_from_slice(residual);
+    }
+
+    fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
+        ("nothing".into(), Vec::new())
     }
 }
 
@@ -62,6 +70,10 @@ impl Preconditioner for Mass {
         let inverse = |(&inertia, &free): (&f64, &bool)| if free && inertia > 0.0 { 1.0 / inertia } else { 0.0 };
         self.per_inertia.clear();
         self.per_inertia.extend(operator.inertia.iter().zip(operator.free).map(inverse));
+    }
+
+    fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
+        ("masses".into(), vec![("masses", size_of_val(&self.per_inertia[..]) as u64)])
     }
 }
 

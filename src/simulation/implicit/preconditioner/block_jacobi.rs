@@ -39,6 +39,12 @@ impl Preconditioner for BlockJacobi {
     fn follow(&mut self, operator: &Operator<'_>) {
         self.update(operator);
     }
+
+    fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
+        let of_nodes = size_of_val(&self.stiffness[..]) + size_of_val(&self.inverses[..]);
+        let of_axes = size_of_val(&self.inertia[..]) + size_of_val(&self.free[..]);
+        ("the 3×3 blocks of nodes".into(), vec![("blocks of nodes", (of_nodes + of_axes) as u64)])
+    }
 }
 
 /// z = B r of a matrix a node.

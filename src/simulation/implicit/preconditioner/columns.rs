@@ -8,6 +8,7 @@ use crate::backend::cpu::Cpu;
 use crate::components::*;
 use crate::elements::{MOST_NODES, node_count};
 use crate::math::lane_place;
+use crate::mesh::lowest;
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 
@@ -79,9 +80,9 @@ fn columns_of(
 
 /// Nodes that elements left in the body connect, each piece in the order of its nodes; nodes without elements are in
 /// none.
-pub(super) fn pieces(world: &World, body: Entity) -> Vec<Vec<usize>> {
+pub(in crate::simulation::implicit) fn pieces(world: &World, body: Entity) -> Vec<Vec<usize>> {
     let nodes = world.get::<Mass>(body).map_or(0, |mass| mass.len());
-    let mut first: Vec<usize> = (0..nodes).collect();
+    let mut lower: Vec<u32> = (0..nodes as u32).collect();
     let mut has_elements = vec![false; nodes];
     for &entity in world.get::<Authoring>(body).into_iter().flat_map(|authoring| &authoring.blocks) {
         let (Some(block), Some(connectivity)) = (world.get::<Block>(entity), world.get::<Connectivity>(entity)) else {
@@ -89,34 +90,25 @@ pub(super) fn pieces(world: &World, body: Entity) -> Vec<Vec<usize>> {
         };
         let (corners, alive) = (node_count(block.kind), world.get::<Alive>(entity));
         for row in (0..block.count).filter(|&row| alive.is_none_or(|alive| alive[row] != 0)) {
-            let node = |corner: usize| connectivity[lane_place(row, corners, corner)] as usize;
+            let node = |corner: usize| connectivity[lane_place(row, corners, corner)];
             for corner in 0..corners {
-                has_elements[node(corner)] = true;
-                let ends = [root(&mut first, node(0)), root(&mut first, node(corner))];
-                first[ends[0].max(ends[1])] = ends[0].min(ends[1]);
+                has_elements[node(corner) as usize] = true;
+                let (a, b) = (lowest(&mut lower, node(0)), lowest(&mut lower, node(corner)));
+                lower[a.max(b) as usize] = a.min(b);
             }
         }
     }
     let mut place = vec![usize::MAX; nodes];
     let mut pieces: Vec<Vec<usize>> = Vec::new();
     for node in (0..nodes).filter(|&node| has_elements[node]) {
-        let root = root(&mut first, node);
-        if root == node {
+        let first = lowest(&mut lower, node as u32) as usize;
+        if first == node {
             place[node] = pieces.len();
             pieces.push(Vec::new());
         }
-        pieces[place[root]].push(node);
+        pieces[place[first]].push(node);
     }
     pieces
-}
-
-/// The first node of a piece, as far as it is known.
-fn root(first: &mut [usize], mut node: usize) -> usize {
-    while first[node] != node {
-        first[node] = first[first[node]];
-        node = first[node];
-    }
-    node
 }
 
 /// How many elements have not been removed.

@@ -11,6 +11,7 @@ use super::columns::{each_column, pieces};
 use super::{Operator, Preconditioner};
 use crate::components::*;
 use crate::elements::MOST_NODES;
+use aggregates::RIGID;
 use bevy_ecs::prelude::*;
 use coarse::Coarse;
 use glam::{DMat3, DVec3};
@@ -60,6 +61,19 @@ impl Preconditioner for TwoLevel {
             self.pieces.iter_mut().for_each(|piece| piece.coarse.factorize(&piece.nodes, operator));
         }
         self.turn(operator, changed != Changed::Nothing);
+    }
+
+    fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
+        let (blocks, mut held) = self.fine.holds();
+        let turned = size_of_val(&self.inverses[..]) + size_of_val(&self.residual[..]);
+        let of_pieces = self.pieces.iter().map(|piece| piece.coarse.bytes() + size_of_val(&piece.nodes[..]));
+        let aggregates: usize = self.pieces.iter().map(|piece| piece.coarse.size() / RIGID).sum();
+        let matrices: usize = self.pieces.iter().map(|piece| piece.coarse.bytes_of_matrix()).sum();
+        held.push(("blocks that have turned", turned as u64));
+        held.push(("aggregates", of_pieces.sum::<usize>() as u64));
+        held.push(("coarse matrices with their factors", matrices as u64));
+        let coarse = format!("{aggregates} aggregates of nodes with {RIGID} rigid motions each");
+        (format!("{blocks}, and {coarse}"), held)
     }
 }
 

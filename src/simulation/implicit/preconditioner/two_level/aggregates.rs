@@ -50,6 +50,11 @@ impl Aggregates {
     pub fn count(&self) -> usize {
         self.sizes.len()
     }
+
+    /// Their bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.of_node[..]) + size_of_val(&self.arm[..]) + size_of_val(&self.sizes[..])
+    }
 }
 
 /// How far a node moves along an axis with each rigid motion of its aggregate: three translations, and e × arm.

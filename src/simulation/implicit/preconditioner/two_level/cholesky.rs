@@ -34,6 +34,11 @@ impl Cholesky {
         Self { lower, per_pivot }
     }
 
+    /// Its bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.lower[..]) + size_of_val(&self.per_pivot[..])
+    }
+
     /// x of A x = b, in the place of b.
     pub fn solve(&self, b: &mut [f64]) {
         let start = |row: usize| row * (row + 1) / 2;

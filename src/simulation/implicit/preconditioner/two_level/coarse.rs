@@ -135,6 +135,23 @@ impl Coarse {
         any
     }
 
+    /// How many unknowns it has.
+    pub fn size(&self) -> usize {
+        self.coarse.len()
+    }
+
+    /// Bytes of the matrix and its factor.
+    pub fn bytes_of_matrix(&self) -> usize {
+        size_of_val(&self.stiffness[..]) + self.factor.bytes()
+    }
+
+    /// Bytes of what belongs to its nodes and aggregates.
+    pub fn bytes(&self) -> usize {
+        let of_nodes = size_of_val(&self.nodes[..]) + size_of_val(&self.rest[..]) + size_of_val(&self.arms[..]);
+        let turned = size_of_val(&self.rotations[..]) + size_of_val(&self.coarse[..]);
+        of_nodes + turned + self.aggregates.bytes()
+    }
+
     /// The nodes with how they have turned.
     pub fn turned_nodes(&self) -> impl Iterator<Item = (usize, DMat3)> + '_ {
         self.nodes.iter().zip(&self.aggregates.of_node).map(|(&node, &aggregate)| (node, self.rotations[aggregate]))
