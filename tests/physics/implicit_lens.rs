@@ -21,7 +21,10 @@ fn lens(solver: &str, curve: &str, duration: f64) -> Option<(Vec<f64>, Simulatio
     let mut history = Vec::new();
     for n in 1..=steps {
         match simulation.advance_to(0.01 * n as f64) {
-            Err(Error::Unstable(_)) if !solver.is_empty() => return None,
+            Err(Error::Unstable(why)) if !solver.is_empty() => {
+                println!("  {why}");
+                return None;
+            }
             ended => ended.unwrap(),
         }
         let u = simulation.displacements("lens").unwrap();
@@ -56,9 +59,11 @@ fn slow_loads_take_fewer_passes_and_sudden_ones_are_damped() {
                     "solver: Implicit(scheme: {scheme}, step: {step}, preconditioner: {preconditioner}, newton: {newton}, tolerance: {tolerance}),"
                 );
                 let Some((found, run)) = lens(&solver, curve, duration) else {
-                    // a linearised step of what rings may not be found, by how its forces were rounded
+                    // a linearised step of what rings may not be found, by how its forces were rounded; nor one of
+                    // half a period and more, which has elements nearly inside out
                     println!("  {scheme} {step} s, {preconditioner}, newton {newton} to {tolerance}: not found");
-                    assert!(name == "let go" && newton == 1, "{name}: {solver}");
+                    let is_coarse = scheme == "GeneralizedAlpha()" && step == 0.01;
+                    assert!(name == "let go" && (newton == 1 || is_coarse), "{name}: {solver}");
                     continue;
                 };
                 let error = error_over_time(&found, &exact);

@@ -49,6 +49,15 @@ impl From<Error> for Lost {
     }
 }
 
+/// The way of a Newton step.
+#[derive(Clone, Copy, Debug)]
+struct Way {
+    /// p·b (J).
+    along: f64,
+    /// Whether p is no solution but the direction of a first iteration, along which bodies do not resist.
+    gives_way: bool,
+}
+
 /// How far Newton's iterations came.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Found {
@@ -161,9 +170,9 @@ impl Newton<'_, '_> {
             };
             self.set_right(moves)?;
             let needed = if self.settings.newton > 1 { 0.5 * enough / size } else { 0.0 };
-            let along = self.solve_linear(forcing.max(needed).min(0.5))?;
+            let way = self.solve_linear(forcing.max(needed).min(0.5))?;
             before = size;
-            tried = match self.search(along, &mut size, enough) {
+            tried = match self.search(way, &mut size, enough) {
                 Err(Lost::Because(_)) if !moves && self.is_rounding(size)? => {
                     return Ok(self.left_of([first, size], true, remaining));
                 }
@@ -280,16 +289,16 @@ impl Newton<'_, '_> {
         Ok(())
     }
 
-    /// p ≈ A⁻¹ b on free axes. Gives p·b (J).
-    fn solve_linear(&mut self, tolerance: f64) -> Result<f64, Lost> {
-        let Solved { ended, .. } = self.conjugate_gradients(tolerance)?;
+    /// p ≈ A⁻¹ b on free axes.
+    fn solve_linear(&mut self, tolerance: f64) -> Result<Way, Lost> {
+        let Solved { ended, iterations } = self.conjugate_gradients(tolerance)?;
         self.report.newton_iterations += 1;
         self.report.negative_curvatures += u64::from(ended == Ended::NegativeCurvature);
         let along = self.sums.dot(&self.space.p, &self.space.right);
         if ended == Ended::NotFinite || !along.is_finite() {
             return Err(Lost::Because("forces near the present state are no numbers".into()));
         }
-        Ok(along)
+        Ok(Way { along, gives_way: ended == Ended::NegativeCurvature && iterations == 1 })
     }
 
     fn conjugate_gradients(&mut self, tolerance: f64) -> Result<Solved, Error> {
@@ -322,8 +331,9 @@ impl Newton<'_, '_> {
         });
     }
 
-    /// Goes along p as far as the residual does less work along it. `size` becomes the norm of the new residual.
-    fn search(&mut self, along: f64, size: &mut f64, enough: f64) -> Result<Tried, Lost> {
+    /// Goes along p as far as the residual does less work along it, and where bodies give way along it as far as it
+    /// leads downhill. `size` becomes the norm of the new residual.
+    fn search(&mut self, way: Way, size: &mut f64, enough: f64) -> Result<Tried, Lost> {
         self.space.from.copy_from_slice(&self.space.w);
         let mut share = 1.0;
         for _ in 0..=MOST_HALVINGS {
@@ -335,7 +345,8 @@ impl Newton<'_, '_> {
             if tried.sound {
                 let now = self.residual();
                 let work = self.sums.dot(&self.space.p, &self.space.g);
-                let descends = work.abs() <= DESCENT * along.abs() || self.settings.newton == 1 || now <= enough;
+                let size_of_work = if way.gives_way { work.max(0.0) } else { work.abs() };
+                let descends = size_of_work <= DESCENT * way.along.abs() || self.settings.newton == 1 || now <= enough;
                 if now.is_finite() && descends {
                     self.space.to_go.iter_mut().for_each(|left| *left *= 1.0 - share);
                     *size = now;

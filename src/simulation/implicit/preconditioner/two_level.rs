@@ -41,8 +41,7 @@ struct Piece {
 
 impl Preconditioner for TwoLevel {
     fn apply(&mut self, residual: &[f64], z: &mut [f64]) {
-        self.residual.clear();
-        self.residual.extend_from_slice(residual);
+        self.residual.copy_from_slice(residual);
         let inertia = &self.fine.inertia;
         let wholes: Vec<DVec3> = self.pieces.iter().map(|piece| piece.whole(inertia, &mut self.residual)).collect();
         apply_blocks(&self.inverses, &self.residual, z);
@@ -61,6 +60,7 @@ impl Preconditioner for TwoLevel {
             self.pieces.iter_mut().for_each(|piece| piece.coarse.factorize(&piece.nodes, operator));
         }
         self.turn(operator, changed != Changed::Nothing);
+        self.residual.resize(operator.free.len(), 0.0);
     }
 
     fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
