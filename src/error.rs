@@ -173,6 +173,14 @@ impl std::fmt::Display for NotConverged {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let Equilibrium { residual, tolerance, scale, remaining_motion, worst, setbacks, .. } = &self.equilibrium;
         let (body, node, force) = worst;
+        if !self.equilibrium.not_held.is_empty() {
+            return write!(
+                f,
+                "Newton's iterations lead to no equilibrium: loads do not balance along what nothing holds: {}. Hold it \
+                 under `constraints`, or let its loads balance; `method: Relaxation` swings what can turn to where they do",
+                self.equilibrium.not_held.join(", ")
+            );
+        }
         let (of, before) = if self.at_start { ("`start`", "the motion cannot begin: ") } else { ("the analysis", "") };
         write!(
             f,

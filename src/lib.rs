@@ -59,7 +59,7 @@ pub use output::Folder;
 pub use scene::SceneFile;
 pub use simulation::explain;
 pub use simulation::{
-    Advanced, BackendChoice, ColumnView, Ended, Equilibrium, FieldName, Grab, GrabId, Grip, InputChange,
+    Advanced, BackendChoice, ColumnView, Ended, Equilibrium, FieldName, Grab, GrabId, Grip, ImplicitSteps, InputChange,
     InputRecording, InputUse, InputValue, Inversions, Mode, Names, NodeSet, NodeState, Options, Pick, PortUse,
     PoseChange, Preload, RealTime, Simulation, Stability, StepHistory, Summary, SurfaceContactUse, SystemTime,
     Unloaded, Unloading, UnloadingStep, unload,

@@ -224,6 +224,19 @@ impl Signals {
         });
     }
 
+    /// The largest angle (rad) by which nodes are turned as told, of what they are at a time (s).
+    #[doc(hidden)]
+    pub fn largest_turn(&self, time: f64) -> f64 {
+        let turn = |(source, inputs): &(Signal, Vec<Option<usize>>)| match source {
+            Signal::Motion { rotation, curve, .. } => {
+                let curve = inputs[0].map_or(curve, |input| self.inputs[input].course());
+                rotation.length() * curve.value(time).abs()
+            }
+            _ => 0.0,
+        };
+        self.sources.iter().map(turn).fold(0.0, f64::max)
+    }
+
     fn fill(&mut self, times: [f64; 2], factor: impl Fn(&Curve, Use) -> f64) {
         let mut slot = 0;
         for (source, inputs) in &self.sources {

@@ -40,7 +40,7 @@ pub use generators::ElementKind;
 pub(crate) use generators::each_element_kind;
 #[doc(hidden)]
 pub use locate::{Location, Locator};
-pub(crate) use pieces::NO_PIECE;
+pub(crate) use pieces::{NO_PIECE, lowest};
 pub(crate) use placement::{angles_about_axes, rotation_about_axes};
 #[doc(hidden)]
 pub use quality::Quality;

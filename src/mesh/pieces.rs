@@ -27,7 +27,7 @@ impl Cells {
 }
 
 /// The lowest node that one is known to hang together with; ways there become shorter.
-fn lowest(lower: &mut [u32], mut node: u32) -> u32 {
+pub(crate) fn lowest(lower: &mut [u32], mut node: u32) -> u32 {
     while lower[node as usize] != node {
         let next = lower[node as usize];
         lower[node as usize] = lower[next as usize];

@@ -21,7 +21,7 @@ use crate::components::*;
 use crate::error::Error;
 use crate::observation::{GuardKernels, GuardSettings, Observer, Track, WrittenFields};
 use crate::scene::SceneFile;
-use crate::scene::schema::Guard;
+use crate::scene::schema::{Guard, Scene};
 use crate::snapshot::{Keeping, identity};
 use crate::systems::{
     HostSystem, NodePass, NodeRows, OnHost, Phase, Registry, System, give_shares, node_pass, patch_pass, shared_pass,
@@ -76,10 +76,12 @@ impl Simulation {
         give_shares(named, scene.scene.duration, options.precision, &mut world)?;
         let held = schedule.iter().filter_map(|entry| entry.system.held_energy());
         world.insert_resource(HeldEnergies(held.collect()));
-        let plan = Plan::of(&schedule, &access, scene.scene.fuse, &world);
+        // Newton's iterations need the forces without what moves nodes
+        let fuse = scene.scene.fuse && !scene.scene.is_static_by_newton();
+        let plan = Plan::of(&schedule, &access, fuse, &world);
         let mut solver = Solver::of(&scene.scene, options.precision, &mut world);
 
-        let Chosen { gpu, mut why } = choose(options, scene.scene.is_implicit())?;
+        let Chosen { gpu, mut why } = choose(options, of_the_cpu(&scene.scene))?;
         if gpu.is_some() {
             why += &fit_workgroups(&mut world);
         }
@@ -170,6 +172,15 @@ impl Simulation {
             began: (0, 0.0),
             failure: None,
         })
+    }
+}
+
+/// What of a scene runs on the CPU only, and what instead does not.
+fn of_the_cpu(scene: &Scene) -> Option<[&'static str; 2]> {
+    match (scene.is_implicit(), scene.is_static_by_newton()) {
+        (true, _) => Some(["implicit steps run on the CPU only", "`solver: Explicit`"]),
+        (_, true) => Some(["Newton's iterations run on the CPU only", "`method: Relaxation`"]),
+        _ => None,
     }
 }
 

@@ -49,6 +49,8 @@ pub struct Explanation {
     pub kernels: Vec<KernelInUse>,
     /// Which bodies take all steps of a submission in one dispatch, and why others do not; empty on the CPU.
     pub dispatched: Vec<Dispatched>,
+    /// What solves for the ends of steps or for equilibrium; `None` where steps are explicit.
+    pub solver: Option<SolverInUse>,
     /// What touches what, and what keeping it apart needs.
     pub contacts: Vec<ContactInUse>,
     /// Columns of numbers on the host.
@@ -205,6 +207,15 @@ pub struct ContactInUse {
     pub bytes_a_face: f64,
 }
 
+/// A solver: what a step of it is made of, and what it holds beside columns.
+#[derive(Clone, Debug, Serialize)]
+pub struct SolverInUse {
+    /// What it does.
+    pub of: Vec<String>,
+    /// What it holds on the host beside columns, and the bytes.
+    pub held: Vec<(&'static str, u64)>,
+}
+
 /// A column or a device buffer.
 #[derive(Clone, Debug, Serialize)]
 pub struct Buffer {
@@ -290,6 +301,7 @@ impl Simulation {
             parts: effects::parts(&self.scene, self.facts.precision, on_gpu, &mut self.world),
             kernels,
             dispatched,
+            solver: self.solver.in_use(&self.scene, &mut self.world, &self.entries),
             contacts: contact::in_use(&mut self.world),
             columns,
             buffers,

@@ -46,16 +46,14 @@ pub(super) struct Chosen {
     pub why: String,
 }
 
-/// Chooses the backend; of implicit steps there is one only.
-pub(super) fn choose(options: &Options, implicit: bool) -> Result<Chosen, Error> {
+/// Chooses the backend; of some things there is one only, and others instead.
+pub(super) fn choose(options: &Options, of_the_cpu: Option<[&str; 2]>) -> Result<Chosen, Error> {
     let cpu = |why: String| Ok(Chosen { gpu: None, why });
-    match options.backend {
-        BackendChoice::Gpu if implicit => {
-            return Err(Error::Options(
-                "implicit steps run on the CPU only: use --backend cpu, or `solver: Explicit`".into(),
-            ));
+    match (options.backend, of_the_cpu) {
+        (BackendChoice::Gpu, Some([what, instead])) => {
+            return Err(Error::Options(format!("{what}: use --backend cpu, or {instead}")));
         }
-        BackendChoice::Auto if implicit => return cpu("implicit steps run on the CPU only".into()),
+        (BackendChoice::Auto, Some([what, _])) => return cpu(what.into()),
         _ => {}
     }
     let open = |choice: &Choice| {

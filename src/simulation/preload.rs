@@ -10,7 +10,7 @@ use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::{Error, NotConverged};
 use crate::scene::SceneFile;
-use crate::scene::schema::{Analysis, InitialState, Integration, Inversion, Output, Scene};
+use crate::scene::schema::{Analysis, EquilibriumSearch, InitialState, Integration, Inversion, Output, Scene};
 use bevy_ecs::prelude::*;
 use glam::DVec3;
 use serde::Serialize;
@@ -48,13 +48,13 @@ pub(super) fn settling(scene: &SceneFile, options: &Options) -> Result<Option<Bo
 /// The scene whose equilibrium is sought; `None` where none is. What belongs to the motion only is left out: systems of
 /// one's own take part from the first step on.
 pub(super) fn at_rest(scene: &Scene) -> Option<Scene> {
-    let InitialState::Equilibrium { tolerance, max_steps, load_steps } = scene.start else { return None };
+    let InitialState::Equilibrium(search) = scene.start else { return None };
     if scene.is_static() {
         return None;
     }
     let Integration { safety, bound, compensated, .. } = scene.integration;
     let mut scene = Scene {
-        analysis: Analysis::Static { tolerance, max_steps, load_steps, at: Some(0.0) },
+        analysis: Analysis::Static(EquilibriumSearch { at: Some(0.0), ..search }),
         start: InitialState::Undeformed,
         removal: Vec::new(),
         suction: Vec::new(),

@@ -9,7 +9,7 @@ use super::{contact_springs, outputs, plausible};
 use crate::assembly::{Assembly, assemble, assemble_in_time, insert_laws};
 use crate::backend::cpu::Cpu;
 use crate::components::*;
-use crate::scene::schema::{Analysis, Solver};
+use crate::scene::schema::{Analysis, EquilibriumSearch, Solver};
 use crate::scene::{Diagnostics, SceneFile};
 use crate::systems::Registry;
 use bevy_ecs::prelude::*;
@@ -61,7 +61,7 @@ pub(super) fn prepare<'a>(
     assemble_in_time(&assembly, world, diagnostics);
     let mut schedule = resolve(scene.scene.schedule.as_deref(), known, world, diagnostics);
     set_intervals(&scene.scene, clock.time_step, &mut schedule);
-    if clock.velocities_at_ends {
+    if clock.velocities_at_ends || scene.scene.is_static_by_newton() {
         super::implicit::check(&schedule, diagnostics);
     }
     Some(Prepared { assembly, clock, stability, steps, schedule })
@@ -82,7 +82,7 @@ fn clock(
     world: &mut World,
     diagnostics: &mut Diagnostics,
 ) -> Option<(Clock, Stability, u64)> {
-    if let Analysis::Static { max_steps, load_steps, at, .. } = scene.scene.analysis {
+    if let Analysis::Static(EquilibriumSearch { max_steps, load_steps, at, .. }) = scene.scene.analysis {
         let bound = stable_step::found_bound(world, diagnostics)?;
         let load_steps = load_steps.unwrap_or_else(|| crate::assembly::load_steps(world));
         let ramp_rate = 1.0 / load_steps as f64;

@@ -5,15 +5,18 @@
 //! it, c = 2ω (Underwood 1983). Forces count less where elements are squeezed, which raises the highest frequency.
 //! Steps that end in numbers that are not finite or in elements turned inside out are taken back.
 
+use super::ScheduledPass;
 use super::Simulation;
+use super::explain::SolverInUse;
 use super::frequency::largest_eigenvalue;
+use super::implicit::{Attempt, ImplicitSteps, Rest, Statics};
 use super::residual::{Motion, Residual, State};
 use super::stretch::least_stretch;
 use crate::backend::device::{bring_to_host, send_to_device};
 use crate::components::*;
 use crate::error::{Error, NotConverged};
 use crate::observation::Observer;
-use crate::scene::schema::{Analysis, Scene};
+use crate::scene::schema::{Analysis, EquilibriumSearch, Scene, SearchMethod};
 use bevy_ecs::prelude::*;
 use serde::Serialize;
 
@@ -58,6 +61,13 @@ pub struct Equilibrium {
     pub load_steps: u64,
     /// How often steps were taken back.
     pub setbacks: u32,
+    /// Newton's iterations that led there at last; 0 where pseudo-steps did.
+    pub newton_iterations: u64,
+    /// Whether bodies give way along some motion: what is found is an equilibrium, but none that lasts. Known of
+    /// Newton's iterations in f64, where no body is free to move as a whole.
+    pub unstable: bool,
+    /// What loads move and nothing holds, in words, where that is why there is none.
+    pub not_held: Vec<String>,
 }
 
 /// A static analysis at work.
@@ -80,7 +90,22 @@ pub(super) struct Relaxing {
     settled_at: Option<u64>,
     /// The check since which all is as quiet as it must be.
     quiet_since: Option<u64>,
+    newton: Option<ByNewton>,
 }
+
+/// Newton's iterations, tried at the start, and again where pseudo-steps have come near enough.
+struct ByNewton {
+    statics: Statics,
+    /// The residual from which on they are tried; infinite before the first time.
+    below: f64,
+}
+
+/// What is turned farther (rad) is led there by pseudo-steps: the straight way of an iteration winds up less, or the
+/// other way round.
+const FAR_TURN: f64 = 0.5 * std::f64::consts::PI;
+/// The residual from which Newton's iterations begin again, and by what it falls each time that they do not arrive.
+const BEGIN_AGAIN: f64 = 1e-2;
+const LESS: f64 = 0.1;
 
 /// How well a static analysis knows the largest eigenvalue at rest: some 24 products; its safety is margin enough.
 const OF_RELAXATION: f64 = 0.2;
@@ -88,7 +113,7 @@ const OF_RELAXATION: f64 = 0.2;
 impl Relaxing {
     /// What drives a static analysis, on columns of the host; `None` for a scene of motion.
     pub fn of(scene: &Scene, precision: Precision, world: &mut World) -> Option<Self> {
-        let Analysis::Static { tolerance, max_steps, .. } = scene.analysis else { return None };
+        let Analysis::Static(search) = scene.analysis else { return None };
         // in units of the bound of the elements, which the fictitious masses make the same for all
         let half = 0.5 * world.resource::<Clock>().time_step;
         let highest = largest_eigenvalue(world, OF_RELAXATION).map_or(1.0, |found| found.at_least * half * half);
@@ -99,10 +124,19 @@ impl Relaxing {
         });
         // what rounding leaves of the residual in f32 is some 1e-6
         let reachable = if precision == Precision::F64 { 1e-6 } else { 1e-5 };
-        Some(Self::new(tolerance.unwrap_or(reachable), max_steps, load_steps, world))
+        let mut new = Self::new(&search, reachable, load_steps, world);
+        if search.method == SearchMethod::Newton {
+            let reachable = if precision == Precision::F64 { 1e-10 } else { 1e-5 };
+            let statics = Statics::new(search.tolerance.unwrap_or(reachable), world);
+            new.newton = Some(ByNewton { statics, below: f64::INFINITY });
+            // loads and motions have begun then, and are nothing yet
+            new.next_check = 1;
+        }
+        Some(new)
     }
 
-    fn new(tolerance: f64, most_steps: u64, load_steps: u64, world: &mut World) -> Self {
+    fn new(search: &EquilibriumSearch, reachable: f64, load_steps: u64, world: &mut World) -> Self {
+        let (tolerance, most_steps) = (search.tolerance.unwrap_or(reachable), search.max_steps);
         Self {
             equilibrium: Equilibrium { residual: f64::INFINITY, tolerance, load_steps, ..Equilibrium::default() },
             most_steps,
@@ -117,7 +151,18 @@ impl Relaxing {
             frequency: 0.0,
             settled_at: None,
             quiet_since: None,
+            newton: None,
         }
+    }
+
+    /// What Newton's iterations have taken, where they are tried.
+    pub fn iterations(&self) -> Option<&ImplicitSteps> {
+        self.newton.as_ref().map(|newton| &newton.statics.report)
+    }
+
+    /// What Newton's iterations are made of, where they are tried.
+    pub fn in_use(&mut self, world: &mut World, passes: &[ScheduledPass]) -> Option<SolverInUse> {
+        self.newton.as_mut().map(|newton| newton.statics.in_use(world, passes))
     }
 
     /// The next step at whose end the residual is checked.
@@ -148,9 +193,17 @@ impl Simulation {
 
 impl Relaxing {
     /// Checks the residual, and chooses how to go on.
-    pub fn check(&mut self, world: &mut World) -> Result<(), Error> {
+    pub fn check(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<(), Error> {
         let clock = *world.resource::<Clock>();
         let Some(mut relaxation) = clock.relaxation else { return Ok(()) };
+        if let Some(newton) = self.newton.as_mut().filter(|newton| newton.below.is_infinite()) {
+            self.next_check = CHECK_STEPS.min(self.most_steps);
+            if world.resource::<Signals>().largest_turn(relaxation.end) > FAR_TURN {
+                newton.below = BEGIN_AGAIN;
+                return Ok(());
+            }
+            return self.try_newton(world, passes);
+        }
         bring_to_host(world, |_, name| State::COLUMNS.contains(&name))?;
         let now = State::of(world);
         let residual = Residual::of(&now, world);
@@ -197,10 +250,16 @@ impl Relaxing {
         self.quiet_since = self.quiet_since.filter(|_| quiet).or(quiet.then_some(clock.step));
         // where rounding hides soft motion, a check must not have met it at its turning point
         let long = (clock.step - self.quiet_since.unwrap_or(clock.step)) as f64 >= TURN / relaxation.damping.max(1e-9);
-        if quiet && (long || found.residual <= tolerance) {
+        let arrived = quiet && (long || found.residual <= tolerance);
+        let is_near = self.newton.as_ref().is_some_and(|newton| found.residual <= newton.below);
+        if share >= 1.0 && (arrived || is_near) {
+            self.try_newton(world, passes)?;
+        }
+        if arrived || self.equilibrium.reached {
             self.equilibrium.reached = true;
             return Ok(());
         }
+        let found = &self.equilibrium;
         // a body that collapses is on its way to another rest: forces grow before they fall
         let collapses = motion.work < -CLEAR_OF_ROUNDING * residual.rounding_square.sqrt() * motion.moved;
         if share < 1.0 || collapses || found.residual < 0.9 * self.best.1 {
@@ -213,6 +272,43 @@ impl Relaxing {
         }
         self.next_check = (clock.step + CHECK_STEPS).min(self.most_steps);
         Ok(())
+    }
+
+    /// Tries Newton's iterations from the present state, where they are wanted.
+    fn try_newton(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<(), Error> {
+        let Some(newton) = &mut self.newton else { return Ok(()) };
+        newton.below = if newton.below.is_finite() { newton.below * LESS } else { BEGIN_AGAIN };
+        match newton.statics.attempt(world, passes)? {
+            Attempt::Found(rest) => self.arrive(&rest, world),
+            Attempt::NotFound => Ok(()),
+            Attempt::NotHeld(motions) => {
+                self.equilibrium.not_held = motions;
+                Err(self.given_up(world.resource::<Clock>().step))
+            }
+        }
+    }
+
+    /// Takes over what Newton's iterations have found.
+    fn arrive(&mut self, rest: &Rest, world: &mut World) -> Result<(), Error> {
+        let mut clock = world.resource_mut::<Clock>();
+        clock.step += rest.iterations;
+        let step = clock.step;
+        if let Some(relaxation) = &mut clock.relaxation {
+            relaxation.since = (step, 1.0);
+        }
+        let residual = Residual::of(&State::of(world), world);
+        let motion = Motion { moved: rest.remaining, displaced: rest.displaced, ..Motion::default() };
+        self.judge(&motion, &residual, 1, 1.0, world);
+        let found = &mut self.equilibrium;
+        (found.reached, found.newton_iterations, found.unstable) = (true, rest.iterations, rest.unstable);
+        if let Some(newton) = &self.newton {
+            found.tolerance = newton.statics.tolerance();
+        }
+        if rest.unstable {
+            warn_of_instability(world);
+        }
+        let row = [step as f64, 1.0, found.residual, found.remaining_motion, 0.0];
+        world.resource_mut::<Observer>().note_convergence(row)
     }
 
     /// How far the present state is from equilibrium.
@@ -263,4 +359,23 @@ impl Relaxing {
             at_start: false,
         }))
     }
+}
+
+/// That what was found does not last.
+fn warn_of_instability(world: &mut World) {
+    let clock = *world.resource::<Clock>();
+    let Some(mut memory) = world.get_resource_mut::<GuardMemory>() else { return };
+    memory.warnings.push(Notice {
+        criterion: "equilibrium".into(),
+        part: String::new(),
+        time: clock.time(),
+        step: clock.step,
+        value: 0.0,
+        limit: 0.0,
+        message:
+            "the equilibrium does not last: there is a motion that bodies do not resist but give way to, as a column \
+                  that is about to buckle. What is small and breaks the symmetry, a load across or a motion in time, \
+                  leads to the one that lasts"
+                .into(),
+    });
 }

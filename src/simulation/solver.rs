@@ -3,15 +3,16 @@
 //! What a simulation does with its solver is the same for all: see [`Simulation::steps_to`]. Only this file tells one
 //! from another.
 
-use super::Simulation;
+use super::explain::SolverInUse;
 use super::follow::Follower;
 use super::implicit::Implicit;
 use super::relax::Relaxing;
 use super::stable_step::Stability;
+use super::{ScheduledPass, Simulation};
 use crate::components::{Clock, Precision};
 use crate::error::Error;
 use crate::observation::Observer;
-use crate::scene::schema::Scene;
+use crate::scene::schema::{self, Scene};
 use bevy_ecs::prelude::*;
 
 /// How the steps of a scene are taken.
@@ -98,6 +99,17 @@ impl Solver {
         }
     }
 
+    /// What it is made of, where it solves equations.
+    pub fn in_use(&mut self, scene: &Scene, world: &mut World, passes: &[ScheduledPass]) -> Option<SolverInUse> {
+        match (self, &scene.solver) {
+            (Self::Implicit(implicit), schema::Solver::Implicit { scheme, .. }) => {
+                Some(implicit.in_use(*scheme, world, passes))
+            }
+            (Self::Relaxation(relaxing), _) => relaxing.in_use(world, passes),
+            _ => None,
+        }
+    }
+
     /// What looks for equilibrium.
     pub fn relaxing(&self) -> Option<&Relaxing> {
         match self {
@@ -126,10 +138,10 @@ impl Solver {
     }
 
     /// Looks at what steps have come to, where it is time; whether that was the last.
-    fn check(&mut self, world: &mut World) -> Result<bool, Error> {
+    fn check(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<bool, Error> {
         match self {
             Self::Relaxation(relaxing) if world.resource::<Clock>().step >= relaxing.next_check() => {
-                relaxing.check(world)?;
+                relaxing.check(world, passes)?;
                 Ok(relaxing.equilibrium.reached)
             }
             Self::Explicit(_) | Self::Relaxation(_) | Self::Implicit(_) => Ok(false),
@@ -172,7 +184,7 @@ impl Simulation {
                 self.some_steps(target.min(until))?;
                 self.end_batches()?;
             }
-            if self.solver.check(&mut self.world)? {
+            if self.solver.check(&mut self.world, &mut self.entries)? {
                 self.world.resource_mut::<Observer>().last_step = self.step_count();
                 self.observe_in_time()?;
             }

@@ -10,7 +10,7 @@ use super::preload::at_rest;
 use super::{Options, Simulation};
 use crate::error::{Error, NotUnloaded};
 use crate::scene::SceneFile;
-use crate::scene::schema::InitialState;
+use crate::scene::schema::{EquilibriumSearch, InitialState};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -77,7 +77,7 @@ pub fn unload(
 ) -> Result<Unloaded, Error> {
     let mut file = scene.clone();
     if file.scene.start == InitialState::Undeformed {
-        file.scene.start = InitialState::equilibrium();
+        file.scene.start = InitialState::Equilibrium(EquilibriumSearch::default());
     }
     file.scene = at_rest(&file.scene).unwrap_or(file.scene);
     file.scene.bodies.values_mut().for_each(|body| body.rest_shape = None);

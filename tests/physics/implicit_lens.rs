@@ -21,7 +21,10 @@ fn lens(solver: &str, curve: &str, duration: f64) -> Option<(Vec<f64>, Simulatio
     let mut history = Vec::new();
     for n in 1..=steps {
         match simulation.advance_to(0.01 * n as f64) {
-            Err(Error::Unstable(_)) if !solver.is_empty() => return None,
+            Err(Error::Unstable(why)) if !solver.is_empty() => {
+                println!("  {why}");
+                return None;
+            }
             ended => ended.unwrap(),
         }
         let u = simulation.displacements("lens").unwrap();
@@ -46,16 +49,21 @@ fn slow_loads_take_fewer_passes_and_sudden_ones_are_damped() {
         for (scheme, step) in
             [("Euler", 0.01), ("Euler", 0.005), ("GeneralizedAlpha()", 0.01), ("GeneralizedAlpha()", 0.002)]
         {
-            for (preconditioner, newton, tolerance) in
-                [("BlockJacobi", 20, "1e-3"), ("BlockJacobi", 1, "0.1"), ("Identity", 20, "1e-3")]
-            {
+            for (preconditioner, newton, tolerance) in [
+                ("TwoLevel", 20, "1e-3"),
+                ("TwoLevel", 1, "0.1"),
+                ("BlockJacobi", 20, "1e-3"),
+                ("Identity", 20, "1e-3"),
+            ] {
                 let solver = format!(
                     "solver: Implicit(scheme: {scheme}, step: {step}, preconditioner: {preconditioner}, newton: {newton}, tolerance: {tolerance}),"
                 );
                 let Some((found, run)) = lens(&solver, curve, duration) else {
-                    // a linearised step of what rings may not be found, by how its forces were rounded
+                    // a linearised step of what rings may not be found, by how its forces were rounded; nor one of
+                    // half a period and more, which has elements nearly inside out
                     println!("  {scheme} {step} s, {preconditioner}, newton {newton} to {tolerance}: not found");
-                    assert!(name == "let go" && newton == 1, "{name}: {solver}");
+                    let is_coarse = scheme == "GeneralizedAlpha()" && step == 0.01;
+                    assert!(name == "let go" && (newton == 1 || is_coarse), "{name}: {solver}");
                     continue;
                 };
                 let error = error_over_time(&found, &exact);
@@ -69,12 +77,13 @@ fn slow_loads_take_fewer_passes_and_sudden_ones_are_damped() {
                     took.halvings,
                     took.unsolved
                 );
-                if name != "let go"
-                    && step == 0.01
-                    && (preconditioner, newton) == ("BlockJacobi", 20)
-                    && scheme == "Euler"
-                {
-                    assert!(error < 0.01 && took.passes < explicit.step_count() / 2, "{error}, {took:?}");
+                let share = match (preconditioner, newton) {
+                    ("TwoLevel", _) => 10,
+                    ("BlockJacobi", _) => 2,
+                    _ => continue,
+                };
+                if name != "let go" && step == 0.01 && scheme == "Euler" {
+                    assert!(error < 0.01 && took.passes < explicit.step_count() / share, "{error}, {took:?}");
                 }
             }
         }

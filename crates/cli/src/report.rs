@@ -3,9 +3,9 @@
 use super::run::PICTURES;
 use super::stability;
 use super::terminal::Paint;
-use super::wording::{bytes, counted, digits, quantity, speed};
+use super::wording::{bytes, count, counted, digits, quantity, speed};
 use sinew::components::GuardMemory;
-use sinew::{Equilibrium, SceneFile, Summary, SurfaceContactUse};
+use sinew::{Equilibrium, ImplicitSteps, SceneFile, Summary, SurfaceContactUse};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -28,6 +28,9 @@ pub fn text(summary: &Summary, scene: &SceneFile, folder: &Path, paint: Paint) -
         equilibrium(&preload.equilibrium, "", &mut page);
     }
     speeds(summary, &mut page);
+    if let Some(took) = &summary.implicit {
+        implicit(took, summary.equilibrium.is_some(), &mut page);
+    }
     systems(summary, &mut page);
     energies(summary, &mut page);
     guards(summary, &mut page);
@@ -81,7 +84,11 @@ fn equilibrium(found: &Equilibrium, heading: &str, page: &mut Page) {
         0 => String::new(),
         n => format!("; steps taken back {n} times"),
     };
-    page.row("", format!("about {} of displacements to go{taken_back}", digits(found.remaining_motion)));
+    let newton = match found.newton_iterations {
+        0 => String::new(),
+        n => format!("; by {} at last", counted(n, "Newton iteration")),
+    };
+    page.row("", format!("about {} of displacements to go{taken_back}{newton}", digits(found.remaining_motion)));
 }
 
 fn speeds(summary: &Summary, page: &mut Page) {
@@ -113,6 +120,22 @@ fn speeds(summary: &Summary, page: &mut Page) {
         // the reason itself is told on stderr and stands in summary.json
         _ => page.row("ended", "too early; the fields hold the last good state"),
     }
+}
+
+/// What implicit steps took, or Newton's iterations to rest.
+fn implicit(took: &ImplicitSteps, to_rest: bool, page: &mut Page) {
+    let heading = if to_rest { "newton" } else { "implicit" };
+    let one = if to_rest { "attempt" } else { "step" };
+    let (of, passes) = (counted(took.steps, one), count(took.passes));
+    let (newton, linear) = (counted(took.newton_iterations, "Newton iteration"), count(took.linear_iterations));
+    page.row(heading, format!("{of}: {passes} passes over all forces, {newton}, {linear} of conjugate gradients"));
+    let (left, above) = (digits(took.largest_residual_left), counted(took.unsolved, one));
+    page.row("", format!("largest share of a residual left: {left}; {above} above the tolerance"));
+    let (most, longest) = (took.most_passes, quantity(took.longest_step, "s"));
+    page.row(
+        "",
+        format!("at most {most} passes and {longest} for one; {} of preconditioner", bytes(took.preconditioner_bytes)),
+    );
 }
 
 /// What is no system, but a part of the run.

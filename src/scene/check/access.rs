@@ -71,7 +71,7 @@ impl<'de> MapAccess<'de> for Entries<'_> {
                     if matches!(entry.key.kind, Kind::Word) { format!("write \"{name}\"") } else { String::new() };
                 key.note(format!("the names in {} must be texts in quotes", self.parent.called()), label);
             }
-            self.value = Some(Value { node: &entry.value, about: self.parent.about, subject: name });
+            self.value = Some(Value { node: &entry.value, about: self.parent.about, subject: name, is_content: false });
             return seed.deserialize(StrDeserializer::new(name)).map(Some);
         }
         Ok(None)
@@ -162,6 +162,8 @@ impl<'de> VariantAccess<'de> for Variant<'_> {
             Kind::Tuple(items) if items.len() == 1 => {
                 seed.deserialize(Value { node: &items[0], subject: name, ..value })
             }
+            // what it holds may be a struct, whose fields stand in its own brackets
+            Kind::Fields(_) | Kind::Tuple(_) => seed.deserialize(Value { subject: name, is_content: true, ..value }),
             _ => {
                 value.note(format!("`{name}` needs one value in brackets"), format!("write {name}(...)"));
                 seed.deserialize(StandIn)

@@ -48,7 +48,7 @@ fn read<'a, T: DeserializeOwned>(root: &'a Node, text: &'a str) -> (Option<T>, A
     };
     loop {
         about.found.take();
-        match T::deserialize(Value { node: root, about: &about, subject: "the scene" }) {
+        match T::deserialize(Value { node: root, about: &about, subject: "the scene", is_content: false }) {
             Ok(value) => return (Some(value), about),
             // a type tells of each of its fields once, so this ends
             Err(Stop::Missing { of: Some(field), .. }) if about.required.insert(field.clone()) => {}

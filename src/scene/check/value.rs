@@ -15,6 +15,8 @@ pub(super) struct Value<'a> {
     pub(super) node: &'a Node,
     pub(super) about: &'a About<'a>,
     pub(super) subject: &'a str,
+    /// Whether the word before its brackets is that of an enum whose content they hold.
+    pub(super) is_content: bool,
 }
 
 /// Numbers: as ron reads the same characters.
@@ -155,6 +157,9 @@ impl<'de> Deserializer<'de> for Value<'_> {
         fields: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Stop> {
+        if self.is_content {
+            return self.fields(self.subject, fields, visitor);
+        }
         if let Some(found) = self.node.name.as_ref().filter(|found| found.text != name) {
             let mut diagnostic =
                 Diagnostic::error(found.span.clone(), format!("`{}` does not belong here", found.text));
@@ -211,7 +216,7 @@ impl<'de> Deserializer<'de> for Value<'_> {
 impl<'a> Value<'a> {
     /// Another value under the same name.
     pub(super) fn of(self, node: &'a Node) -> Self {
-        Self { node, ..self }
+        Self { node, is_content: false, ..self }
     }
 
     pub(super) fn token(&self) -> &'a str {

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod action;
+mod analysis;
 mod attachment;
 mod body;
 mod load;
@@ -21,6 +22,7 @@ pub use crate::mesh::ElementKind;
 pub use crate::tools::Shape;
 pub use accuracy::{Accuracy, AccuracyReference};
 pub use action::{Axis, Constraint, Curve, Removal, Threshold, When};
+pub use analysis::{Analysis, EquilibriumSearch, InitialState, SearchMethod};
 pub use attachment::{Attachment, Point};
 pub use body::{Body, MeshSource, Region, SkinFile, Start};
 pub use load::{Load, Share};
@@ -31,7 +33,7 @@ pub use material::{
 pub use output::{Output, OutputField};
 pub use part::{OF_THE_WHOLE, Part, PartScene};
 pub use picture::{Colours, Cut, Field, Opacity, Picture};
-pub use scene::{Analysis, EnergyGuard, Guard, Guards, InitialState, Integration, Scene, StepBound, WhenUnstable};
+pub use scene::{EnergyGuard, Guard, Guards, Integration, Scene, StepBound, WhenUnstable};
 pub use selection::{Probe, Quantity, Select};
 pub use solver::{ImplicitScheme, Preconditioner, Solver};
 pub use system::OwnSystem;
@@ -42,8 +44,9 @@ pub fn texts() -> impl Iterator<Item = &'static str> {
     TEXT.iter().chain(crate::materials::TEXTS).chain(crate::tools::TEXTS).copied()
 }
 
-const TEXT: [&str; 14] = [
+const TEXT: [&str; 15] = [
     include_str!("scene.rs"),
+    include_str!("analysis.rs"),
     include_str!("part.rs"),
     include_str!("body.rs"),
     include_str!("material.rs"),

@@ -1,8 +1,8 @@
 //! The whole scene, its time step, its guards.
 
 use super::{
-    Accuracy, Attachment, Body, Constraint, Contact, Curve, Load, Material, Output, OwnSystem, Part, Picture, Probe,
-    Removal, Solver, Suction, Tool, When,
+    Accuracy, Analysis, Attachment, Body, Constraint, Contact, Curve, EquilibriumSearch, InitialState, Load, Material,
+    Output, OwnSystem, Part, Picture, Probe, Removal, SearchMethod, Solver, Suction, Tool, When,
 };
 use crate::scene::syntax::Path;
 use serde::{Deserialize, Serialize};
@@ -93,64 +93,6 @@ pub struct Scene {
 
 fn yes() -> bool {
     true
-}
-
-/// What is sought.
-#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq)]
-#[serde(deny_unknown_fields)]
-pub enum Analysis {
-    /// Motion over time.
-    #[default]
-    Transient,
-    /// Equilibrium under loads and motions as their curves stand at `duration`, or at another time.
-    Static {
-        /// The residual that is small enough, as a share of loads and reactions; 1e-6 in f64 and 1e-5 in f32 when left
-        /// out.
-        #[serde(default)]
-        tolerance: Option<f64>,
-        /// Pseudo-steps after which the search is given up.
-        #[serde(default = "most_steps")]
-        max_steps: u64,
-        /// Pseudo-steps over which loads and motions grow; found from the mesh when left out.
-        #[serde(default)]
-        load_steps: Option<u64>,
-        /// The time whose loads and motions act (s); `duration` when left out.
-        #[serde(default)]
-        at: Option<f64>,
-    },
-}
-
-/// How bodies stand when the motion begins.
-#[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq)]
-#[serde(deny_unknown_fields)]
-pub enum InitialState {
-    /// As each body's own `start` says: undeformed where it says nothing.
-    #[default]
-    Undeformed,
-    /// At rest under loads and motions as their curves stand at t = 0, found by a static analysis before the first
-    /// step.
-    Equilibrium {
-        /// As of a static analysis.
-        #[serde(default)]
-        tolerance: Option<f64>,
-        /// As of a static analysis.
-        #[serde(default = "most_steps")]
-        max_steps: u64,
-        /// As of a static analysis.
-        #[serde(default)]
-        load_steps: Option<u64>,
-    },
-}
-
-impl InitialState {
-    /// At equilibrium, sought as usual.
-    pub fn equilibrium() -> Self {
-        Self::Equilibrium { tolerance: None, max_steps: most_steps(), load_steps: None }
-    }
-}
-
-fn most_steps() -> u64 {
-    200_000
 }
 
 /// The time step and how it is taken.
@@ -335,8 +277,21 @@ impl Scene {
         matches!(self.solver, Solver::Implicit { .. }) && !self.is_static()
     }
 
+    /// How equilibrium is sought instead of motion, or before it.
+    pub fn search(&self) -> Option<EquilibriumSearch> {
+        match (self.analysis, self.start) {
+            (Analysis::Static(search), _) | (Analysis::Transient, InitialState::Equilibrium(search)) => Some(search),
+            (Analysis::Transient, InitialState::Undeformed) => None,
+        }
+    }
+
+    /// Whether the motion is none, and Newton's iterations seek equilibrium.
+    pub fn is_static_by_newton(&self) -> bool {
+        matches!(self.analysis, Analysis::Static(search) if search.method == SearchMethod::Newton)
+    }
+
     /// Whether equilibrium is sought instead of motion.
     pub fn is_static(&self) -> bool {
-        matches!(self.analysis, Analysis::Static { .. })
+        matches!(self.analysis, Analysis::Static(_))
     }
 }

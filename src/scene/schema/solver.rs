@@ -51,8 +51,10 @@ pub enum ImplicitScheme {
 /// An approximate inverse that makes conjugate gradients need fewer iterations.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Serialize, PartialEq, Eq)]
 pub enum Preconditioner {
-    /// The 3×3 block of each node.
+    /// The 3×3 block of each node, and rigid motions of groups of neighbouring nodes.
     #[default]
+    TwoLevel,
+    /// The 3×3 block of each node.
     BlockJacobi,
     /// Masses and their damping: momentum is kept whatever the tolerance.
     Mass,

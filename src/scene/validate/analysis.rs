@@ -3,17 +3,17 @@
 use super::{Validator, scene, show};
 use crate::scene::limits::PSEUDO_STEPS;
 use crate::scene::schema::{
-    Analysis, Constraint, Contact, InitialState, Inversion, Load, Quantity, Scene, laws_that_recover,
+    Analysis, Constraint, Contact, EquilibriumSearch, InitialState, Inversion, Load, Quantity, Scene, laws_that_recover,
 };
 use crate::scene::syntax::Path;
 use glam::DVec3;
 
 pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
     start(scene_, validator);
-    let Analysis::Static { tolerance, max_steps, load_steps, at } = scene_.analysis else { return };
+    let Analysis::Static(search) = scene_.analysis else { return };
     let path = scene("analysis");
-    numbers(&path, tolerance, max_steps, load_steps, validator);
-    if let Some(at) = at {
+    numbers(&path, &search, validator);
+    if let Some(at) = search.at {
         validator.not_negative(&path.name("at"), at, "s");
     }
     if !scene_.removal.is_empty() {
@@ -36,7 +36,8 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
 }
 
 /// How well equilibrium is sought, and how long.
-fn numbers(path: &Path, tolerance: Option<f64>, max_steps: u64, load_steps: Option<u64>, validator: &mut Validator) {
+fn numbers(path: &Path, search: &EquilibriumSearch, validator: &mut Validator) {
+    let EquilibriumSearch { tolerance, max_steps, load_steps, .. } = *search;
     if let Some(tolerance) = tolerance
         && (tolerance <= 0.0 || tolerance >= 1.0)
     {
@@ -65,13 +66,19 @@ fn numbers(path: &Path, tolerance: Option<f64>, max_steps: u64, load_steps: Opti
 
 /// A motion that begins at equilibrium.
 fn start(scene_: &Scene, validator: &mut Validator) {
-    let InitialState::Equilibrium { tolerance, max_steps, load_steps } = scene_.start else { return };
+    let InitialState::Equilibrium(search) = scene_.start else { return };
     let path = scene("start");
     if scene_.is_static() {
         validator.out.warn_at(&path, "a static analysis ignores `start`: it seeks an equilibrium anyway");
         return;
     }
-    numbers(&path, tolerance, max_steps, load_steps, validator);
+    numbers(&path, &search, validator);
+    if search.at.is_some_and(|at| at != 0.0) {
+        validator
+            .out
+            .error_at(path.name("at"), "a motion begins at t = 0")
+            .note("`at` is for `analysis: Static(...)`; leave it out");
+    }
     for (name, body) in &scene_.bodies {
         let body_path = scene("bodies").name(name);
         let own = [

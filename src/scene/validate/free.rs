@@ -20,7 +20,7 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
         for (does, _) in used.into_iter().filter(|(_, used)| *used) {
             validator.out.error_at(&path, format!("`{name}` is `free`, and {does}")).note(guides);
         }
-        if scene_.is_static() || matches!(scene_.start, InitialState::Equilibrium { .. }) {
+        if scene_.is_static() || matches!(scene_.start, InitialState::Equilibrium(_)) {
             let what = if scene_.is_static() { "a static analysis" } else { "`start: Equilibrium()`" };
             validator
                 .out

@@ -1,9 +1,13 @@
 //! Implicit steps: their numbers, and what of a scene they cannot do.
 
 use super::{Validator, scene, show};
-use crate::scene::schema::{ImplicitScheme, Scene, Solver, WhenUnstable};
+use crate::scene::schema::{ImplicitScheme, Scene, SearchMethod, Solver, WhenUnstable};
 
 pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
+    if scene_.search().is_some_and(|search| search.method == SearchMethod::Newton) {
+        let word = if scene_.is_static() { "analysis" } else { "start" };
+        refused(scene_, "Newton's iterations", &format!("`method: Relaxation` in `{word}`"), validator);
+    }
     let Solver::Implicit { scheme, step, newton, tolerance, budget, .. } = scene_.solver else { return };
     let path = scene("solver");
     validator.above_zero(&path.name("step"), step, "s");
@@ -26,7 +30,7 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
             .note("it is what a step leaves of frequencies far above 1/step; 0.8 when left out");
     }
     if scene_.is_static() {
-        validator.out.warn_at(&path, "a static analysis ignores `solver`: it takes pseudo-steps to rest");
+        validator.out.warn_at(&path, "a static analysis ignores `solver`: its own `method` leads to rest");
         return;
     }
     if scene_.integration.step.is_some() {
@@ -41,11 +45,11 @@ pub(super) fn validate(scene_: &Scene, validator: &mut Validator) {
             .error_at(scene("integration").name("when_unstable"), "implicit steps are stable at any length")
             .note("leave it out: neither masses nor steps nor elements have to change");
     }
-    refused(scene_, validator);
+    refused(scene_, "implicit steps", "`solver: Explicit`", validator);
 }
 
 /// What has a step of its own that knows central differences only.
-fn refused(scene_: &Scene, validator: &mut Validator) {
+fn refused(scene_: &Scene, who: &str, instead: &str, validator: &mut Validator) {
     let lists = [
         ("contacts", scene_.contacts.len(), "contact, which puts nodes where they may be from step to step"),
         ("suction", scene_.suction.len(), "suction, which keeps what was sucked from step to step"),
@@ -54,13 +58,13 @@ fn refused(scene_: &Scene, validator: &mut Validator) {
     for (list, _, what) in lists.into_iter().filter(|(_, count, _)| *count > 0) {
         validator
             .out
-            .error_at(scene(list).index(0), format!("implicit steps cannot take part in {what}"))
-            .note(format!("leave `{list}` out, or use `solver: Explicit`"));
+            .error_at(scene(list).index(0), format!("{who} cannot take part in {what}"))
+            .note(format!("leave `{list}` out, or use {instead}"));
     }
     for (name, _) in scene_.tools.iter().filter(|(_, tool)| tool.free.is_some()) {
         validator
             .out
-            .error_at(scene("tools").name(name).name("free"), "implicit steps do not move free tools")
-            .note("use `solver: Explicit`");
+            .error_at(scene("tools").name(name).name("free"), format!("{who} do not move free tools"))
+            .note(format!("use {instead}"));
     }
 }

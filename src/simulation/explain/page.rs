@@ -1,6 +1,6 @@
 //! An explanation as a page for people.
 
-use super::{Buffer, ContactInUse, Explanation, KernelInUse, Part, SystemInUse};
+use super::{Buffer, ContactInUse, Explanation, KernelInUse, Part, SolverInUse, SystemInUse};
 use std::fmt::{Display, Formatter, Result};
 
 impl Display for Explanation {
@@ -44,6 +44,11 @@ impl Display for Explanation {
             writeln!(f, "  {:<16}  {}  {}", body.body, body.interior, body.interior_because)?;
         }
         self.kernels.iter().try_for_each(|kernel| write_kernel(kernel, f))?;
+        if let Some(SolverInUse { of, held }) = &self.solver {
+            writeln!(f, "\nWhat solves")?;
+            of.iter().try_for_each(|line| writeln!(f, "  {line}"))?;
+            write_held(held, f)?;
+        }
         self.contacts.iter().try_for_each(|contact| write_contact(contact, f))?;
         if self.on_gpu {
             write_buffers("Buffers on the device", &self.buffers, self.device_bytes, f)?;
@@ -113,11 +118,15 @@ fn write_kernel(kernel: &KernelInUse, f: &mut Formatter<'_>) -> Result {
 fn write_contact(contact: &ContactInUse, f: &mut Formatter<'_>) -> Result {
     writeln!(f, "\nContact by {}", contact.system)?;
     contact.of.iter().try_for_each(|line| writeln!(f, "  {line}"))?;
-    contact.held.iter().try_for_each(|(name, bytes)| writeln!(f, "  {bytes:>12}  bytes of {name}"))?;
+    write_held(&contact.held, f)?;
     if contact.bytes_a_face > 0.0 {
         writeln!(f, "  {:>12.0}  bytes a face, columns of contact with them", contact.bytes_a_face)?;
     }
     Ok(())
+}
+
+fn write_held(held: &[(&str, u64)], f: &mut Formatter<'_>) -> Result {
+    held.iter().try_for_each(|(name, bytes)| writeln!(f, "  {bytes:>12}  bytes of {name}"))
 }
 
 fn write_buffers(heading: &str, buffers: &[Buffer], total: u64, f: &mut Formatter<'_>) -> Result {

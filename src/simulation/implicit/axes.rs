@@ -48,6 +48,11 @@ impl Axes {
         self.ranges.last().map_or(0, |range| range.end)
     }
 
+    /// Bytes of what is known of each.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.heights[..])
+    }
+
     /// Each body and its range.
     pub fn each(&self) -> impl Iterator<Item = (Entity, Range<usize>)> + '_ {
         self.bodies.iter().copied().zip(self.ranges.iter().cloned())

@@ -13,6 +13,11 @@ pub(super) struct Vectors {
     image: Vec<f64>,
 }
 
+impl Vectors {
+    /// How many there are.
+    pub const COUNT: usize = 4;
+}
+
 /// Why a solve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ended {
@@ -49,7 +54,7 @@ pub(super) fn solve(
     b: &[f64],
     x: &mut [f64],
     vectors: &mut Vectors,
-    preconditioner: &dyn Preconditioner,
+    preconditioner: &mut dyn Preconditioner,
     stop: Stop,
     mut times: impl FnMut(&[f64], &mut [f64]) -> Result<(), Error>,
 ) -> Result<Solved, Error> {

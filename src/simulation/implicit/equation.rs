@@ -4,6 +4,13 @@ use super::axes::Motion;
 use super::formula::Formula;
 
 impl Motion {
+    /// Bytes of all vectors.
+    pub fn bytes(&self) -> usize {
+        let Self { u, v, a, mass, damping, free, held } = self;
+        let numbers: usize = [u, v, a, mass, damping].into_iter().map(|vector| size_of_val(&vector[..])).sum();
+        numbers + size_of_val(&free[..]) + size_of_val(&held[..])
+    }
+
     /// y = u + h v (m).
     pub fn predicted(&self, axis: usize, h: f64) -> f64 {
         if self.free[axis] { self.u[axis] + h * self.v[axis] } else { self.u[axis] }

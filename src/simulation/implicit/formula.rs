@@ -45,6 +45,11 @@ impl Formula {
         }
     }
 
+    /// That of rest: neither inertia nor damping.
+    pub fn of_rest() -> Self {
+        Self { alpha_m: 0.0, alpha_f: 0.0, of_displacement: 0.0, of_acceleration: 0.0, before: 0.0, after: 0.0 }
+    }
+
     /// The acceleration at the end (m/s²), of h, w − u − h v (m) and the acceleration before.
     pub fn acceleration(&self, h: f64, moved: f64, before: f64) -> f64 {
         self.of_displacement * moved / (h * h) + self.of_acceleration * before

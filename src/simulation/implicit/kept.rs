@@ -30,6 +30,11 @@ impl Kept {
         }
     }
 
+    /// Their bytes.
+    pub fn bytes(&self) -> usize {
+        self.0.iter().map(|(.., bytes)| bytes.len()).sum()
+    }
+
     /// Whether viscous memories are among them.
     pub fn has_memories(&self) -> bool {
         self.0.iter().any(|(column, ..)| column.name == ViscousMemory::NAME)

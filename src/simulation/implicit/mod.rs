@@ -3,12 +3,16 @@
 
 mod axes;
 mod conjugate_gradients;
+mod differences;
 mod equation;
 mod formula;
+mod free_motions;
+mod in_use;
 mod kept;
 mod newton;
 mod preconditioner;
 mod report;
+mod statics;
 mod step;
 mod sums;
 mod trial;
@@ -16,6 +20,7 @@ mod unsupported;
 mod work;
 
 pub use report::ImplicitSteps;
+pub(super) use statics::{Attempt, Rest, Statics};
 pub(super) use step::Implicit;
 pub(super) use unsupported::check;
 
@@ -25,9 +30,11 @@ use crate::components::*;
 use crate::error::Error;
 
 impl Simulation {
-    /// What implicit steps have taken so far; `None` where steps are explicit.
+    /// What implicit steps have taken so far, and in a static analysis Newton's iterations to equilibrium; `None` where
+    /// there are neither.
     pub fn implicit_steps(&self) -> Option<&ImplicitSteps> {
-        self.solver.implicit().map(|implicit| &implicit.report)
+        let of_steps = self.solver.implicit().map(|implicit| &implicit.report);
+        of_steps.or_else(|| self.solver.relaxing()?.iterations())
     }
 
     /// Takes one implicit step.

@@ -3,6 +3,7 @@
 
 use super::axes::Motion;
 use super::conjugate_gradients::{Ended, Solved, Stop, Vectors, solve};
+use super::differences::{difference, steps_to};
 use super::formula::Formula;
 use super::preconditioner::{Operator, Preconditioner};
 use super::report::ImplicitSteps;
@@ -21,6 +22,8 @@ const MOST_HALVINGS: u32 = 12;
 const ROUNDING_FROM: u32 = 3;
 /// Newton iterations at least in which prescribed motion may arrive, where the line search holds it back.
 const MOST_MOVES: u32 = 20;
+/// What a solve that looks for a motion without resistance leaves of the residual.
+const THOROUGH: f64 = 1e-4;
 /// Iterations of a linear solve without a budget.
 const MOST_PRODUCTS: u64 = 5000;
 
@@ -45,6 +48,29 @@ impl From<Error> for Lost {
         Lost::Error(error)
     }
 }
+
+/// The way of a Newton step.
+#[derive(Clone, Copy, Debug)]
+struct Way {
+    /// p·b (J).
+    along: f64,
+    /// Whether p is no solution but the direction of a first iteration, along which bodies do not resist.
+    gives_way: bool,
+}
+
+/// How far Newton's iterations came.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found {
+    /// What is left of the first residual, as a share of it.
+    pub left: f64,
+    /// Whether that is within the tolerance, or what rounding makes.
+    pub solved: bool,
+    /// About how far axes still have to go (m), a norm.
+    pub remaining: f64,
+}
+
+/// How many there are.
+const VECTORS: usize = 13;
 
 /// Vectors over all axes that Newton's iterations work with.
 #[derive(Default)]
@@ -72,10 +98,16 @@ pub(super) struct Workspace {
 }
 
 impl Workspace {
+    /// Bytes of all vectors, those of conjugate gradients with them.
+    pub fn bytes(&self) -> usize {
+        (VECTORS + Vectors::COUNT) * size_of_val(&self.w[..])
+    }
+
     pub fn resize(&mut self, length: usize) {
         let Self { inertia, constant, w, to_go, net, g, right, p, from, elsewhere, steps, step, acceleration, .. } =
             self;
-        let all = [inertia, constant, w, to_go, net, g, right, p, from, elsewhere, steps, step, acceleration];
+        let all: [_; VECTORS] =
+            [inertia, constant, w, to_go, net, g, right, p, from, elsewhere, steps, step, acceleration];
         for vector in all {
             vector.resize(length, 0.0);
         }
@@ -97,8 +129,8 @@ pub(super) struct Newton<'a, 'w> {
 
 impl Newton<'_, '_> {
     /// Solves for the places at the end of the step, from those in the workspace. The columns of forces are those there
-    /// then. Gives the residual that is left, as a share of the first.
-    pub fn solve(&mut self) -> Result<f64, Lost> {
+    /// then.
+    pub fn solve(&mut self) -> Result<Found, Lost> {
         let mut tried = self.forces_at_w()?;
         if !tried.sound {
             // what flies on may turn elements inside out that forces would have kept
@@ -111,7 +143,7 @@ impl Newton<'_, '_> {
         let mut size = self.residual();
         let first = size;
         let mut before = size;
-        let (mut floor, mut iterations) = (0.0, 0);
+        let (mut floor, mut iterations, mut remaining) = (0.0, 0, f64::INFINITY);
         loop {
             let enough = self.settings.tolerance * self.scale(&tried);
             if iterations == ROUNDING_FROM {
@@ -124,7 +156,7 @@ impl Newton<'_, '_> {
             let solved = taken && size <= enough && !moves;
             let ends = iterations >= self.settings.newton && !moves || self.left() == 0;
             if solved || ends {
-                return Ok(self.left_of(first, size, solved));
+                return Ok(self.left_of([first, size], solved, remaining));
             }
             if iterations >= self.settings.newton.max(MOST_MOVES) {
                 let what =
@@ -138,14 +170,15 @@ impl Newton<'_, '_> {
             };
             self.set_right(moves)?;
             let needed = if self.settings.newton > 1 { 0.5 * enough / size } else { 0.0 };
-            let along = self.solve_linear(forcing.max(needed).min(0.5))?;
+            let way = self.solve_linear(forcing.max(needed).min(0.5))?;
             before = size;
-            tried = match self.search(along, &mut size, enough) {
+            tried = match self.search(way, &mut size, enough) {
                 Err(Lost::Because(_)) if !moves && self.is_rounding(size)? => {
-                    return Ok(self.left_of(first, size, true));
+                    return Ok(self.left_of([first, size], true, remaining));
                 }
                 found => found?,
             };
+            remaining = self.sums.norm(&self.space.p) * size / before;
             iterations += 1;
         }
     }
@@ -155,7 +188,7 @@ impl Newton<'_, '_> {
         self.settings.budget.map_or(u64::MAX, |budget| budget.saturating_sub(self.trial.count))
     }
 
-    fn forces_at_w(&mut self) -> Result<Tried, Error> {
+    pub fn forces_at_w(&mut self) -> Result<Tried, Error> {
         let Workspace { w, net, steps, .. } = &mut *self.space;
         let at = steps_to(&self.settings.formula, self.h, self.motion, w, steps, &self.trial);
         let sound = self.trial.forces(w, at, net)?;
@@ -183,11 +216,11 @@ impl Newton<'_, '_> {
     }
 
     /// Notes how a step ends, and gives what is left of its residual.
-    fn left_of(&mut self, first: f64, size: f64, solved: bool) -> f64 {
+    fn left_of(&mut self, [first, size]: [f64; 2], solved: bool, remaining: f64) -> Found {
         let left = if first > 0.0 { size / first } else { 0.0 };
         self.report.unsolved += u64::from(!solved && self.settings.newton > 1);
         self.report.largest_residual_left = self.report.largest_residual_left.max(left);
-        left
+        Found { left, solved, remaining: if size > 0.0 { remaining } else { 0.0 } }
     }
 
     /// Whether a residual of such a norm at w is no more than what rounding makes.
@@ -199,20 +232,37 @@ impl Newton<'_, '_> {
     /// About what rounding makes of the residual (N): of a displacement the last digit, times the norm of its row of K,
     /// which a product with signs shows. The forces at w must be known.
     fn rounding(&mut self) -> Result<f64, Error> {
-        let sign = |axis: usize| if (axis.wrapping_mul(0x9e37_79b9) >> 7) & 1 == 0 { 1.0 } else { -1.0 };
-        let signs: Vec<f64> =
-            (0..self.space.w.len()).map(|axis| if self.motion.free[axis] { sign(axis) } else { 0.0 }).collect();
+        let signs = self.signs();
         let mut rows = vec![0.0; signs.len()];
         self.stiffness_times(&signs, &mut rows)?;
-        let body = self.trial.axes.bodies.first();
-        let digit = match body.and_then(|&body| self.trial.world.get::<Displacement>(body)).map(|u| u.precision()) {
-            Some(Precision::F64) => f64::EPSILON,
-            _ => f64::from(f32::EPSILON),
-        };
+        let digit = if self.is_f64() { f64::EPSILON } else { f64::from(f32::EPSILON) };
         let w = &self.space.w;
         let free = (0..w.len()).filter(|&axis| self.motion.free[axis]);
         let square: f64 = free.map(|axis| (rows[axis] * w[axis]).powi(2)).sum();
         Ok(digit * square.sqrt())
+    }
+
+    /// A vector of ones with signs that no motion knows of, on free axes.
+    fn signs(&self) -> Vec<f64> {
+        let sign = |axis: usize| if (axis.wrapping_mul(0x9e37_79b9) >> 7) & 1 == 0 { 1.0 } else { -1.0 };
+        (0..self.space.w.len()).map(|axis| if self.motion.free[axis] { sign(axis) } else { 0.0 }).collect()
+    }
+
+    fn is_f64(&self) -> bool {
+        let body = self.trial.axes.bodies.first();
+        let u = body.and_then(|&body| self.trial.world.get::<Displacement>(body));
+        u.is_some_and(|u| u.precision() == Precision::F64)
+    }
+
+    /// Whether bodies at w do not resist some motion: a solve meets it, whose right-hand side has a part of every one.
+    /// In f32, where differences of forces are not sharp enough, it is not asked for. The forces at w must be known.
+    pub fn gives_way(&mut self) -> Result<bool, Lost> {
+        if !self.is_f64() {
+            return Ok(false);
+        }
+        self.space.right = self.signs();
+        let Solved { ended, .. } = self.conjugate_gradients(THOROUGH)?;
+        Ok(ended == Ended::NegativeCurvature)
     }
 
     /// c K p (N), by a difference of forces. The forces at w must be known.
@@ -239,8 +289,19 @@ impl Newton<'_, '_> {
         Ok(())
     }
 
-    /// p ≈ A⁻¹ b on free axes, and on held ones what they have to go. Gives p·b (J).
-    fn solve_linear(&mut self, tolerance: f64) -> Result<f64, Lost> {
+    /// p ≈ A⁻¹ b on free axes.
+    fn solve_linear(&mut self, tolerance: f64) -> Result<Way, Lost> {
+        let Solved { ended, iterations } = self.conjugate_gradients(tolerance)?;
+        self.report.newton_iterations += 1;
+        self.report.negative_curvatures += u64::from(ended == Ended::NegativeCurvature);
+        let along = self.sums.dot(&self.space.p, &self.space.right);
+        if ended == Ended::NotFinite || !along.is_finite() {
+            return Err(Lost::Because("forces near the present state are no numbers".into()));
+        }
+        Ok(Way { along, gives_way: ended == Ended::NegativeCurvature && iterations == 1 })
+    }
+
+    fn conjugate_gradients(&mut self, tolerance: f64) -> Result<Solved, Error> {
         self.follow();
         let Self { trial, settings, motion, space, preconditioner, report, sums, h } = self;
         let most = settings.budget.map_or(MOST_PRODUCTS, |budget| budget.saturating_sub(trial.count + 1).max(1));
@@ -253,16 +314,9 @@ impl Newton<'_, '_> {
             }
             Ok(())
         };
-        let Solved { iterations, ended } =
-            solve(sums, right, p, vectors, &**preconditioner, Stop { tolerance, most }, times)?;
-        report.newton_iterations += 1;
-        report.linear_iterations += iterations;
-        report.negative_curvatures += u64::from(ended == Ended::NegativeCurvature);
-        let along = sums.dot(p, right);
-        if ended == Ended::NotFinite || !along.is_finite() {
-            return Err(Lost::Because("forces near the present state are no numbers".into()));
-        }
-        Ok(along)
+        let solved = solve(sums, right, p, vectors, &mut **preconditioner, Stop { tolerance, most }, times)?;
+        report.linear_iterations += solved.iterations;
+        Ok(solved)
     }
 
     fn follow(&mut self) {
@@ -277,8 +331,9 @@ impl Newton<'_, '_> {
         });
     }
 
-    /// Goes along p as far as the residual does less work along it. `size` becomes the norm of the new residual.
-    fn search(&mut self, along: f64, size: &mut f64, enough: f64) -> Result<Tried, Lost> {
+    /// Goes along p as far as the residual does less work along it, and where bodies give way along it as far as it
+    /// leads downhill. `size` becomes the norm of the new residual.
+    fn search(&mut self, way: Way, size: &mut f64, enough: f64) -> Result<Tried, Lost> {
         self.space.from.copy_from_slice(&self.space.w);
         let mut share = 1.0;
         for _ in 0..=MOST_HALVINGS {
@@ -290,7 +345,8 @@ impl Newton<'_, '_> {
             if tried.sound {
                 let now = self.residual();
                 let work = self.sums.dot(&self.space.p, &self.space.g);
-                let descends = work.abs() <= DESCENT * along.abs() || self.settings.newton == 1 || now <= enough;
+                let size_of_work = if way.gives_way { work.max(0.0) } else { work.abs() };
+                let descends = size_of_work <= DESCENT * way.along.abs() || self.settings.newton == 1 || now <= enough;
                 if now.is_finite() && descends {
                     self.space.to_go.iter_mut().for_each(|left| *left *= 1.0 - share);
                     *size = now;
@@ -306,48 +362,4 @@ impl Newton<'_, '_> {
             "no descent after {MOST_HALVINGS} halvings of a Newton step, at a residual of {size:.3e} N"
         )))
     }
-}
-
-/// Of the velocity at the end the step (m) that it is, where loads look at that.
-fn steps_to<'s>(
-    formula: &Formula,
-    h: f64,
-    motion: &Motion,
-    w: &[f64],
-    steps: &'s mut [f64],
-    trial: &Trial<'_>,
-) -> Option<&'s [f64]> {
-    trial.looks_at_velocities().then(|| {
-        for (axis, step) in steps.iter_mut().enumerate() {
-            *step = h * motion.arrival(formula, axis, h, w[axis]).0;
-        }
-        &*steps
-    })
-}
-
-/// c (F(w + ε p) − F(w))/ε.
-fn difference(
-    trial: &mut Trial<'_>,
-    (formula, h, motion): (&Formula, f64, &Motion),
-    (w, net): (&[f64], &[f64]),
-    elsewhere: &mut [f64],
-    steps: &mut [f64],
-    p: &[f64],
-    image: &mut [f64],
-) -> Result<(), Error> {
-    let reach = trial.reach(p);
-    if reach == 0.0 {
-        image.fill(0.0);
-        return Ok(());
-    }
-    for axis in 0..w.len() {
-        elsewhere[axis] = w[axis] + reach * p[axis];
-    }
-    let at = steps_to(formula, h, motion, elsewhere, steps, trial);
-    trial.forces(elsewhere, at, image)?;
-    let factor = formula.stiffness() / reach;
-    for axis in 0..w.len() {
-        image[axis] = factor * (image[axis] - net[axis]);
-    }
-    Ok(())
 }

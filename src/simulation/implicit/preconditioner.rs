@@ -1,10 +1,14 @@
 //! What conjugate gradients are preconditioned with: a cheap approximate inverse of the operator of a Newton iteration.
 
 mod block_jacobi;
+mod columns;
+mod two_level;
 
 use crate::scene::schema;
 use bevy_ecs::prelude::*;
 use block_jacobi::BlockJacobi;
+pub(super) use columns::pieces;
+use two_level::TwoLevel;
 
 /// The operator A = D + c K of a linear solve, D diagonal (mass and damping), K the tangent stiffness of all bodies. Its
 /// rows are all axes of all nodes, bodies one after the other.
@@ -26,19 +30,26 @@ pub(in crate::simulation) struct Operator<'a> {
 /// to the next of a solve.
 pub(in crate::simulation) trait Preconditioner: Send + Sync {
     /// z = B r (m) of a residual r (N), both over all axes of all bodies; where an axis is not free, r and z are 0.
-    fn apply(&self, residual: &[f64], z: &mut [f64]);
+    fn apply(&mut self, residual: &[f64], z: &mut [f64]);
 
     /// Follows an operator that may have changed, before each solve: where nodes have gone, which elements are left,
     /// how long the step is. What changes little may stay as it was.
     fn follow(&mut self, _: &Operator<'_>) {}
+
+    /// What it is made of, in words, once it follows an operator; and the bytes that it holds.
+    fn holds(&self) -> (String, Vec<(&'static str, u64)>);
 }
 
 /// None: z = r.
 pub(in crate::simulation) struct Identity;
 
 impl Preconditioner for Identity {
-    fn apply(&self, residual: &[f64], z: &mut [f64]) {
+    fn apply(&mut self, residual: &[f64], z: &mut [f64]) {
         z.copy_from_slice(residual);
+    }
+
+    fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
+        ("nothing".into(), Vec::new())
     }
 }
 
@@ -49,7 +60,7 @@ pub(in crate::simulation) struct Mass {
 }
 
 impl Preconditioner for Mass {
-    fn apply(&self, residual: &[f64], z: &mut [f64]) {
+    fn apply(&mut self, residual: &[f64], z: &mut [f64]) {
         for ((z, r), per_inertia) in z.iter_mut().zip(residual).zip(&self.per_inertia) {
             *z = r * per_inertia;
         }
@@ -60,11 +71,16 @@ impl Preconditioner for Mass {
         self.per_inertia.clear();
         self.per_inertia.extend(operator.inertia.iter().zip(operator.free).map(inverse));
     }
+
+    fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
+        ("masses".into(), vec![("masses", size_of_val(&self.per_inertia[..]) as u64)])
+    }
 }
 
 /// The one of a name.
 pub(in crate::simulation) fn of_name(name: schema::Preconditioner) -> Box<dyn Preconditioner> {
     match name {
+        schema::Preconditioner::TwoLevel => Box::new(TwoLevel::default()),
         schema::Preconditioner::BlockJacobi => Box::new(BlockJacobi::default()),
         schema::Preconditioner::Mass => Box::new(Mass::default()),
         schema::Preconditioner::Identity => Box::new(Identity),

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// What implicit steps have taken since the simulation was made or went on from a snapshot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ImplicitSteps {
-    /// Steps.
+    /// Steps; in a static analysis attempts to find equilibrium.
     pub steps: u64,
     /// Passes over all forces: for residuals, for products and for what steps keep.
     pub passes: u64,
@@ -23,6 +23,8 @@ pub struct ImplicitSteps {
     pub unsolved: u64,
     /// The largest residual that a step left, as a share of the one that it began with.
     pub largest_residual_left: f64,
+    /// Bytes of what conjugate gradients are preconditioned with, coarse matrices with it.
+    pub preconditioner_bytes: u64,
     /// How long the longest step took (s).
     pub longest_step: f64,
 }

@@ -1,10 +1,12 @@
 //! A step from its beginning to the loads at its end.
 
 use super::super::ScheduledPass;
+use super::super::explain::SolverInUse;
 use super::axes::{Axes, Motion};
 use super::formula::Formula;
+use super::in_use::Parts;
 use super::kept::Kept;
-use super::newton::{Lost, Newton, Settings, Workspace};
+use super::newton::{Found, Lost, Newton, Settings, Workspace};
 use super::preconditioner::{Preconditioner, of_name};
 use super::report::ImplicitSteps;
 use super::sums::Sums;
@@ -14,7 +16,7 @@ use crate::backend::cpu::Cpu;
 use crate::components::*;
 use crate::error::{Criterion, Error};
 use crate::observation::Observer;
-use crate::scene::schema::{Inversion, Scene, Solver};
+use crate::scene::schema::{ImplicitScheme, Inversion, Scene, Solver};
 use crate::systems::Phase;
 use bevy_ecs::prelude::*;
 use std::time::Instant;
@@ -60,6 +62,24 @@ impl Implicit {
         })
     }
 
+    /// What it is made of.
+    pub fn in_use(&mut self, scheme: ImplicitScheme, world: &mut World, passes: &[ScheduledPass]) -> SolverInUse {
+        let Settings { newton, tolerance, .. } = self.settings;
+        let scheme = match scheme {
+            ImplicitScheme::Euler => "implicit Euler".into(),
+            ImplicitScheme::GeneralizedAlpha { high_frequencies } => {
+                format!("generalised-α, which leaves {high_frequencies} of the highest frequencies a step")
+            }
+        };
+        let iterations = match newton {
+            1 => format!("one Newton iteration, solved to {tolerance} of its residual"),
+            _ => format!("at most {newton} Newton iterations, to a residual of {tolerance} of all forces"),
+        };
+        let Self { settings, axes, motion, space, preconditioner, kept, .. } = self;
+        let parts = Parts { settings, axes, motion, space, preconditioner: &mut **preconditioner, kept };
+        parts.in_use(format!("{scheme}: {iterations}"), world, passes)
+    }
+
     /// Takes the step that begins at the clock's, up to the loads at its end. Where that is not found, all stands as
     /// it stood.
     pub fn step(&mut self, world: &mut World, passes: &mut [ScheduledPass]) -> Result<(), Error> {
@@ -77,6 +97,7 @@ impl Implicit {
             Lost::Because(what) => not_found(world, what),
         })?;
         self.report.steps += 1;
+        self.report.preconditioner_bytes = self.preconditioner.holds().1.iter().map(|(_, bytes)| bytes).sum();
         self.report.longest_step = self.report.longest_step.max(started.elapsed().as_secs_f64());
         if left > WARNED {
             warn_of_residual(world, left);
@@ -134,7 +155,7 @@ impl Implicit {
         }
         self.report.passes += trial.count;
         self.report.most_passes = self.report.most_passes.max(trial.count);
-        left
+        left.map(|Found { left, .. }| left)
     }
 }
 
@@ -157,7 +178,7 @@ fn begin(trial: &mut Trial<'_>, motion: &mut Motion, net: &mut [f64], formula: &
 }
 
 /// How far held axes go in the step (m), as `boundary` has written it.
-fn held_axes(world: &World, axes: &Axes, motion: &Motion, to_go: &mut [f64]) {
+pub(super) fn held_axes(world: &World, axes: &Axes, motion: &Motion, to_go: &mut [f64]) {
     for (body, range) in axes.each() {
         let Some(step) = world.get::<DisplacementIncrement>(body) else { continue };
         for i in 0..range.len() {

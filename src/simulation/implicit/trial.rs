@@ -44,8 +44,11 @@ impl Trial<'_> {
         Ok(())
     }
 
-    /// Whether loads look at how fast nodes move.
+    /// Whether loads look at how fast nodes move: in statics nothing does.
     pub fn looks_at_velocities(&self) -> bool {
+        if self.world.resource::<Clock>().relaxation.is_some() {
+            return false;
+        }
         let name = DisplacementIncrement::NAME;
         let forces = self.passes.iter().filter(|pass| is_of_forces(pass.phase));
         forces.into_iter().any(|pass| pass.reads(name))
@@ -116,6 +119,6 @@ impl Trial<'_> {
 }
 
 /// Whether a phase finds forces.
-fn is_of_forces(phase: Phase) -> bool {
+pub(super) fn is_of_forces(phase: Phase) -> bool {
     phase > Phase::Boundary && phase < Phase::Integrate
 }

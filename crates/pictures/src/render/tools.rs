@@ -65,7 +65,7 @@ impl Tools {
     /// another content now. Curves that a program sets while it runs are taken as they begin.
     pub fn of_scene(scene: &SceneFile, folder: &Path) -> (Tools, Vec<String>) {
         let rest = match scene.scene.analysis {
-            Analysis::Static { at, .. } => Some(at.unwrap_or(scene.scene.duration)),
+            Analysis::Static(search) => Some(search.at.unwrap_or(scene.scene.duration)),
             Analysis::Transient => None,
         };
         let (mut tools, mut missing) = (Tools { tools: Vec::new(), rest }, Vec::new());

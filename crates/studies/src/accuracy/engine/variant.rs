@@ -130,11 +130,11 @@ pub fn variant(file: &SceneFile, configuration: &Configuration, step: Option<f64
             *tolerance = Some(tolerance.map_or(TOLERANCE, |asked| asked.min(TOLERANCE)));
         }
     };
-    if let Analysis::Static { tolerance, .. } = &mut scene.analysis {
-        sharpen(tolerance);
+    if let Analysis::Static(search) = &mut scene.analysis {
+        sharpen(&mut search.tolerance);
     }
-    if let InitialState::Equilibrium { tolerance, .. } = &mut scene.start {
-        sharpen(tolerance);
+    if let InitialState::Equilibrium(search) = &mut scene.start {
+        sharpen(&mut search.tolerance);
     }
     scene.output.fields_every = Some(scene.duration);
     scene.output.energies_every = None;

@@ -1,0 +1,50 @@
+//! Products with the tangent stiffness as differences of forces.
+
+use super::axes::Motion;
+use super::formula::Formula;
+use super::trial::Trial;
+use crate::error::Error;
+
+/// Of the velocity at the end the step (m) that it is, where loads look at that.
+pub(super) fn steps_to<'s>(
+    formula: &Formula,
+    h: f64,
+    motion: &Motion,
+    w: &[f64],
+    steps: &'s mut [f64],
+    trial: &Trial<'_>,
+) -> Option<&'s [f64]> {
+    trial.looks_at_velocities().then(|| {
+        for (axis, step) in steps.iter_mut().enumerate() {
+            *step = h * motion.arrival(formula, axis, h, w[axis]).0;
+        }
+        &*steps
+    })
+}
+
+/// c (F(w + ε p) − F(w))/ε.
+pub(super) fn difference(
+    trial: &mut Trial<'_>,
+    (formula, h, motion): (&Formula, f64, &Motion),
+    (w, net): (&[f64], &[f64]),
+    elsewhere: &mut [f64],
+    steps: &mut [f64],
+    p: &[f64],
+    image: &mut [f64],
+) -> Result<(), Error> {
+    let reach = trial.reach(p);
+    if reach == 0.0 {
+        image.fill(0.0);
+        return Ok(());
+    }
+    for axis in 0..w.len() {
+        elsewhere[axis] = w[axis] + reach * p[axis];
+    }
+    let at = steps_to(formula, h, motion, elsewhere, steps, trial);
+    trial.forces(elsewhere, at, image)?;
+    let factor = formula.stiffness() / reach;
+    for axis in 0..w.len() {
+        image[axis] = factor * (image[axis] - net[axis]);
+    }
+    Ok(())
+}

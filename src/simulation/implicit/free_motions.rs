@@ -1,0 +1,167 @@
+//! Rigid motions of pieces of bodies that no constraint holds.
+
+use super::axes::Axes;
+use super::preconditioner::pieces;
+use crate::components::*;
+use bevy_ecs::prelude::*;
+use glam::DVec3;
+use std::fmt;
+
+/// A pivot below this share of the largest is rounding.
+const DEPENDENT: f64 = 1e-9;
+
+/// u = t + w × (x − middle) of the nodes of a piece.
+#[derive(Clone, Debug)]
+pub(super) struct FreeMotion {
+    body: String,
+    /// How many pieces the body has.
+    pieces: usize,
+    /// Nodes among those of all bodies, and where they are from the middle (m).
+    nodes: Vec<(usize, DVec3)>,
+    middle: DVec3,
+    translation: DVec3,
+    /// rad/m.
+    rotation: DVec3,
+}
+
+/// Of all pieces of all bodies, at the present displacements.
+pub(super) fn free_motions(world: &World, axes: &Axes, free: &[bool]) -> Vec<FreeMotion> {
+    let mut motions = Vec::new();
+    for (body, range) in axes.each() {
+        let (Some(rest), Some(u)) = (world.get::<RestPosition>(body), world.get::<Displacement>(body)) else {
+            continue;
+        };
+        let pieces = pieces(world, body);
+        let name = world.get::<Label>(body).map(|label| label.0.clone()).unwrap_or_default();
+        for piece in &pieces {
+            let place = |node: usize| rest.0[node] + u.vector(node);
+            let middle = piece.iter().map(|&node| place(node)).sum::<DVec3>() / piece.len() as f64;
+            let first = range.start / 3;
+            let nodes: Vec<(usize, DVec3)> = piece.iter().map(|&node| (first + node, place(node) - middle)).collect();
+            let size = nodes.iter().map(|(_, arm)| arm.length()).fold(0.0, f64::max).max(f64::MIN_POSITIVE);
+            for [rotation, translation] in without_constraint(&nodes, size, free) {
+                let (body, nodes) = (name.clone(), nodes.clone());
+                motions.push(FreeMotion { body, pieces: pieces.len(), nodes, middle, translation, rotation });
+            }
+        }
+    }
+    motions
+}
+
+/// Rotations (rad/m) and translations that move no held axis: the null space of Σ c cᵀ over these, c what each of six
+/// motions moves such an axis by. Where it can be, they are translations.
+fn without_constraint(nodes: &[(usize, DVec3)], size: f64, free: &[bool]) -> Vec<[DVec3; 2]> {
+    let mut gram = [[0.0; 6]; 6];
+    for (node, arm) in nodes {
+        for axis in (0..3).filter(|axis| !free[3 * node + axis]) {
+            let unit = DVec3::AXES[axis];
+            // (w × arm)·e = (arm × e)·w
+            let (turn, along) = ((*arm / size).cross(unit).to_array(), unit.to_array());
+            let moved: [f64; 6] = std::array::from_fn(|i| if i < 3 { turn[i] } else { along[i - 3] });
+            (0..6).for_each(|i| (0..6).for_each(|j| gram[i][j] += moved[i] * moved[j]));
+        }
+    }
+    let vector = |numbers: &[f64]| DVec3::from_slice(numbers);
+    null_space(gram).iter().map(|motion| [vector(&motion[..3]) / size, vector(&motion[3..])]).collect()
+}
+
+/// By Gauss-Jordan elimination of a positive semi-definite matrix; what is left over are the last unknowns.
+fn null_space(mut a: [[f64; 6]; 6]) -> Vec<[f64; 6]> {
+    let largest = (0..6).map(|i| a[i][i]).fold(0.0, f64::max);
+    let (mut pivots, mut row) = ([None; 6], 0);
+    for column in 0..6 {
+        let Some(best) = (row..6).max_by(|&i, &j| a[i][column].abs().total_cmp(&a[j][column].abs())) else { break };
+        if a[best][column].abs() <= DEPENDENT * largest {
+            continue;
+        }
+        a.swap(row, best);
+        let pivot = a[row];
+        a[row] = pivot.map(|entry| entry / pivot[column]);
+        for other in (0..6).filter(|&other| other != row) {
+            let (factor, whole) = (a[other][column], a[row]);
+            (0..6).for_each(|j| a[other][j] -= factor * whole[j]);
+        }
+        pivots[column] = Some(row);
+        row += 1;
+    }
+    let of_free = |free: usize| {
+        std::array::from_fn(|column| match pivots[column] {
+            Some(row) => -a[row][free],
+            None => f64::from(u8::from(column == free)),
+        })
+    };
+    (0..6).filter(|&column| pivots[column].is_none()).map(of_free).collect()
+}
+
+impl FreeMotion {
+    /// The work of forces (N) on all axes along it, and the sum of its parts' sizes.
+    pub fn work(&self, forces: &[f64]) -> (f64, f64) {
+        let of_node = |(node, arm): &(usize, DVec3)| {
+            let along = self.translation + self.rotation.cross(*arm);
+            (0..3).map(|i| along[i] * forces[3 * node + i]).collect::<Vec<f64>>()
+        };
+        let parts: Vec<f64> = self.nodes.iter().flat_map(of_node).collect();
+        (parts.iter().sum(), parts.iter().map(|part| part.abs()).sum())
+    }
+}
+
+impl fmt::Display for FreeMotion {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let in_words = |v: DVec3| format!("({}, {}, {})", rounded(v.x), rounded(v.y), rounded(v.z));
+        let what = match self.pieces {
+            1 => format!("body {}", self.body),
+            _ => format!("a piece of body {} about {}", self.body, in_words(self.middle)),
+        };
+        let square = self.rotation.length_squared();
+        if square > 0.0 {
+            let through = self.middle + self.rotation.cross(self.translation) / square;
+            let axis = self.rotation / square.sqrt();
+            return write!(f, "{what} turns about {} through {}", in_words(axis), in_words(through));
+        }
+        write!(f, "{what} moves along {}", in_words(self.translation.normalize_or_zero()))
+    }
+}
+
+/// To four digits after the point, without those of rounding.
+fn rounded(x: f64) -> f64 {
+    (x * 1e4).round() / 1e4 + 0.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn motions_of(held: &[(usize, usize)]) -> Vec<[DVec3; 2]> {
+        let corners = (0..8).map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64) - 0.5);
+        let nodes: Vec<(usize, DVec3)> = corners.enumerate().collect();
+        let mut free = vec![true; 24];
+        held.iter().for_each(|(node, axis)| free[3 * node + axis] = false);
+        without_constraint(&nodes, 1.0, &free)
+    }
+
+    #[test]
+    fn what_slides_on_a_plane_has_two_translations_and_a_turn() {
+        let found = motions_of(&[(0, 2), (1, 2), (2, 2), (3, 2)]);
+        assert_eq!(found, [[DVec3::Z, DVec3::ZERO], [DVec3::ZERO, DVec3::X], [DVec3::ZERO, DVec3::Y]]);
+    }
+
+    #[test]
+    fn a_hinge_leaves_a_turn_about_it() {
+        // the edge at x = y = -1/2
+        let held: Vec<(usize, usize)> =
+            [0, 4].into_iter().flat_map(|node| (0..3).map(move |axis| (node, axis))).collect();
+        let found = motions_of(&held);
+        assert_eq!(found.len(), 1, "{found:?}");
+        let [w, t] = found[0];
+        let through = w.cross(t) / w.length_squared();
+        assert!(w.truncate().length() < 1e-12 && (through - DVec3::new(-0.5, -0.5, 0.0)).length() < 1e-12, "{found:?}");
+    }
+
+    #[test]
+    fn what_is_held_is_held_and_what_is_not_is_free() {
+        assert_eq!(motions_of(&[]).len(), 6);
+        assert_eq!(motions_of(&[(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)]).len(), 0);
+        // a node held is a joint
+        assert_eq!(motions_of(&[(3, 0), (3, 1), (3, 2)]).len(), 3);
+    }
+}

@@ -1,0 +1,297 @@
+//! Two levels: the 3×3 blocks of nodes, and rigid motions of aggregates of neighbours, which take the slow modes out.
+//! Both are of bodies at rest, and turned as the aggregates have turned since.
+
+mod aggregates;
+mod cholesky;
+mod coarse;
+mod rotation;
+
+use super::block_jacobi::{BlockJacobi, Changed, apply_blocks};
+use super::columns::{each_column, pieces};
+use super::{Operator, Preconditioner};
+use crate::components::*;
+use crate::elements::MOST_NODES;
+use aggregates::RIGID;
+use bevy_ecs::prelude::*;
+use coarse::Coarse;
+use glam::{DMat3, DVec3};
+
+/// B r = Q (D⁻¹ + P A⁻¹ Pᵀ) Qᵀ r, D the diagonal blocks, P the rigid motions of aggregates of some 30 nodes, A = Pᵀ (D +
+/// c K) P their dense matrix, a piece of a body each, Q the rotations of the aggregates.
+///
+/// Of a piece that nothing holds along an axis, what it does as a whole is solved apart from that: B t = t tᵀ r / tᵀ D t
+/// along its translation t, and the rest of B without a mean motion. So it keeps its linear momentum however early a
+/// solve ends, as [`Mass`](super::Mass) does.
+#[derive(Default)]
+pub(in crate::simulation) struct TwoLevel {
+    fine: BlockJacobi,
+    pieces: Vec<Piece>,
+    /// The inverses of the blocks, turned.
+    inverses: Vec<DMat3>,
+    turned: bool,
+    /// The residual without what moves pieces as a whole (N).
+    residual: Vec<f64>,
+}
+
+struct Piece {
+    /// All its nodes, among those of all bodies, and where they are at rest (m).
+    nodes: Vec<(usize, DVec3)>,
+    coarse: Coarse,
+}
+
+impl Preconditioner for TwoLevel {
+    fn apply(&mut self, residual: &[f64], z: &mut [f64]) {
+        self.residual.copy_from_slice(residual);
+        let inertia = &self.fine.inertia;
+        let wholes: Vec<DVec3> = self.pieces.iter().map(|piece| piece.whole(inertia, &mut self.residual)).collect();
+        apply_blocks(&self.inverses, &self.residual, z);
+        for (piece, whole) in self.pieces.iter_mut().zip(wholes) {
+            piece.coarse.correct(&self.fine.free, &self.residual, z);
+            piece.move_as_a_whole(inertia, whole, z);
+        }
+    }
+
+    fn follow(&mut self, operator: &Operator<'_>) {
+        let changed = self.fine.update(operator);
+        if changed == Changed::Bodies {
+            self.pieces = find_pieces(operator);
+        }
+        if changed != Changed::Nothing {
+            self.pieces.iter_mut().for_each(|piece| piece.coarse.factorize(&piece.nodes, operator));
+        }
+        self.turn(operator, changed != Changed::Nothing);
+        self.residual.resize(operator.free.len(), 0.0);
+    }
+
+    fn holds(&self) -> (String, Vec<(&'static str, u64)>) {
+        let (blocks, mut held) = self.fine.holds();
+        let turned = size_of_val(&self.inverses[..]) + size_of_val(&self.residual[..]);
+        let of_pieces = self.pieces.iter().map(|piece| piece.coarse.bytes() + size_of_val(&piece.nodes[..]));
+        let aggregates: usize = self.pieces.iter().map(|piece| piece.coarse.size() / RIGID).sum();
+        let matrices: usize = self.pieces.iter().map(|piece| piece.coarse.bytes_of_matrix()).sum();
+        held.push(("blocks that have turned", turned as u64));
+        held.push(("aggregates", of_pieces.sum::<usize>() as u64));
+        held.push(("coarse matrices with their factors", matrices as u64));
+        let coarse = format!("{aggregates} aggregates of nodes with {RIGID} rigid motions each");
+        (format!("{blocks}, and {coarse}"), held)
+    }
+}
+
+impl TwoLevel {
+    fn turn(&mut self, operator: &Operator<'_>, again: bool) {
+        let places: Vec<f64> = operator.bodies.iter().flat_map(|&body| place_of(operator, body)).collect();
+        let displacement = |node: usize| DVec3::from_slice(&places[3 * node..]);
+        let turned = self.pieces.iter_mut().fold(false, |turned, piece| piece.coarse.turn(displacement) || turned);
+        if turned || self.turned || again {
+            self.inverses.clear();
+            self.inverses.extend((0..operator.free.len() / 3).map(|node| self.fine.at_rest(node)));
+        }
+        if turned {
+            for (node, rotation) in self.pieces.iter().flat_map(|piece| piece.coarse.turned_nodes()) {
+                if rotation != DMat3::IDENTITY {
+                    self.inverses[node] = self.fine.turned(node, rotation);
+                }
+            }
+        }
+        self.turned = turned;
+    }
+}
+
+/// Where the nodes of a body have gone (m).
+fn place_of(operator: &Operator<'_>, body: Entity) -> Vec<f64> {
+    let Some(displacement) = operator.world.get::<Displacement>(body) else { return Vec::new() };
+    let mut places = vec![0.0; displacement.len()];
+    displacement.read(&mut places);
+    places
+}
+
+impl Piece {
+    /// Takes out of a residual what moves the piece as a whole, r − D t (tᵀ r/tᵀ D t); gives that motion (m).
+    fn whole(&self, inertia: &[f64], residual: &mut [f64]) -> DVec3 {
+        let per_inertia = self.coarse.per_inertia;
+        if per_inertia == DVec3::ZERO {
+            return DVec3::ZERO;
+        }
+        let force: DVec3 = self.nodes.iter().map(|(node, _)| DVec3::from_slice(&residual[3 * node..])).sum();
+        let motion = force * per_inertia;
+        for (node, _) in &self.nodes {
+            (0..3).for_each(|i| residual[3 * node + i] -= inertia[3 * node + i] * motion[i]);
+        }
+        motion
+    }
+
+    /// Puts a motion (m) in the place of the mean one in z.
+    fn move_as_a_whole(&self, inertia: &[f64], motion: DVec3, z: &mut [f64]) {
+        let per_inertia = self.coarse.per_inertia;
+        if per_inertia == DVec3::ZERO {
+            return;
+        }
+        let weighted = |node: usize| DVec3::from_slice(&inertia[3 * node..]) * DVec3::from_slice(&z[3 * node..]);
+        let mean = self.nodes.iter().map(|(node, _)| weighted(*node)).sum::<DVec3>() * per_inertia;
+        for (node, _) in &self.nodes {
+            (0..3).for_each(|i| z[3 * node + i] += motion[i] - mean[i]);
+        }
+    }
+}
+
+/// The pieces of all bodies, with the stiffness of their coarse levels.
+fn find_pieces(operator: &Operator<'_>) -> Vec<Piece> {
+    let (mut all, mut first) = (Vec::new(), 0);
+    for &body in operator.bodies {
+        let Some(rest) = operator.world.get::<RestPosition>(body) else { continue };
+        // of each node of the body its piece, and its place among those of it that move
+        let mut places = vec![(usize::MAX, None); rest.0.len()];
+        for nodes in pieces(operator.world, body) {
+            let nodes: Vec<(usize, DVec3)> = nodes.into_iter().map(|node| (first + node, rest.0[node])).collect();
+            let coarse = Coarse::of(&nodes, operator);
+            nodes.iter().for_each(|(node, _)| places[node - first].0 = all.len());
+            coarse.nodes.iter().enumerate().for_each(|(place, node)| places[node - first].1 = Some(place));
+            all.push(Piece { nodes, coarse });
+        }
+        each_column(operator.world, body, |column| {
+            if !operator.free[3 * (first + column.nodes[column.corner]) + column.axis] {
+                return;
+            }
+            let Some(piece) = all.get_mut(places[column.nodes[0]].0) else { return };
+            let mut of_corners = [None; MOST_NODES];
+            of_corners.iter_mut().zip(column.nodes).for_each(|(place, &node)| *place = places[node].1);
+            let of_corners = &of_corners[..column.nodes.len()];
+            piece.coarse.add(&column, of_corners, operator.free);
+        });
+        first += rest.0.len();
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::backend::cpu::Cpu;
+    use crate::simulation::implicit::axes::{Axes, Motion};
+    use crate::simulation::implicit::sums::Sums;
+    use crate::simulation::tangent::Tangent;
+    use crate::{Options, SceneFile, Simulation};
+    use glam::DQuat;
+
+    /// A block that may slide on the plane z = 0, and one that nothing holds; in f64.
+    fn two_blocks() -> Simulation {
+        let scene = "(duration: 1, solver: Implicit(),
+            bodies: {
+                \"sliding\": (mesh: Box(size: (0.1, 0.04, 0.03), cells: (8, 4, 3), elements: Tet4), material: \"m\"),
+                \"free\": (mesh: Box(size: (0.04, 0.03, 0.05), cells: (4, 3, 5), elements: Hex8MeanDilatation), material: \"m\"),
+            },
+            materials: {\"m\": (density: 1000, neo_hookean: Young(young: 3e3, poisson: 0.45))},
+            constraints: [Fixed(body: \"sliding\", on: Plane(normal: (0, 0, 1), at: 0), axes: [Z])])";
+        let scene = SceneFile::from_text("test", scene, std::path::Path::new("."), &[]).unwrap();
+        let options = Options { precision: Precision::F64, threads: 1, ..Options::default() };
+        Simulation::new(&scene, &options).unwrap()
+    }
+
+    /// What is preconditioned, with its vectors.
+    struct Made {
+        axes: Axes,
+        motion: Motion,
+        inertia: Vec<f64>,
+    }
+
+    impl Made {
+        fn of(simulation: &mut Simulation) -> Self {
+            let axes = Axes::of(&mut simulation.world);
+            let mut motion = Motion::default();
+            axes.read(&simulation.world, &mut motion);
+            let inertia = motion.mass.iter().zip(&motion.free).map(|(m, &free)| if free { m / 1e-4 } else { 0.0 });
+            Self { inertia: inertia.collect(), axes, motion }
+        }
+
+        fn operator<'a>(&'a self, simulation: &'a Simulation) -> Operator<'a> {
+            Operator {
+                world: &simulation.world,
+                bodies: &self.axes.bodies,
+                free: &self.motion.free,
+                inertia: &self.inertia,
+                stiffness: 1.0,
+            }
+        }
+
+        fn vector(&self, seed: f64) -> Vec<f64> {
+            let number = |axis: usize| if self.motion.free[axis] { (seed * (axis as f64 + 1.0)).sin() } else { 0.0 };
+            (0..self.axes.len()).map(number).collect()
+        }
+    }
+
+    /// Turns all nodes about the z axis, and bends them.
+    fn turn(simulation: &mut Simulation, made: &Made, angle: f64, bend: f64) {
+        let rotation = DQuat::from_rotation_z(angle);
+        let mut places = Vec::new();
+        for (body, _) in made.axes.each() {
+            let rest = &simulation.world.get::<RestPosition>(body).unwrap().0;
+            places.extend(rest.iter().flat_map(|x| {
+                let bent = *x + DVec3::new(0.0, bend * x.x * x.x, 0.0);
+                (rotation * bent - *x).to_array()
+            }));
+        }
+        made.axes.displace(&mut simulation.world, &places);
+    }
+
+    #[test]
+    fn it_is_symmetric_and_positive_at_rest_and_turned_where_nodes_slide_and_where_they_are_free() {
+        let mut simulation = two_blocks();
+        let made = Made::of(&mut simulation);
+        let sums = Sums::on(simulation.world.resource::<Cpu>());
+        for (angle, bend) in [(0.0, 0.0), (1.2, 3.0)] {
+            turn(&mut simulation, &made, angle, bend);
+            let mut two_level = TwoLevel::default();
+            two_level.follow(&made.operator(&simulation));
+            assert_eq!(two_level.turned, angle > 0.0);
+            let (p, q) = (made.vector(0.37), made.vector(0.91));
+            let [mut of_p, mut of_q] = [vec![0.0; p.len()], vec![0.0; p.len()]];
+            two_level.apply(&p, &mut of_p);
+            two_level.apply(&q, &mut of_q);
+            let (one, other) = (sums.dot(&q, &of_p), sums.dot(&p, &of_q));
+            let size = (sums.dot(&p, &of_p) * sums.dot(&q, &of_q)).sqrt();
+            assert!((one - other).abs() < 1e-12 * size, "{angle}: {one} and {other} of {size}");
+            for seed in [0.37, 0.91, 1.7, 0.01] {
+                let r = made.vector(seed);
+                let mut z = vec![0.0; r.len()];
+                two_level.apply(&r, &mut z);
+                assert!(sums.dot(&r, &z) > 0.0, "{angle}, {seed}");
+                assert!((0..r.len()).all(|axis| made.motion.free[axis] || z[axis] == 0.0));
+            }
+        }
+    }
+
+    /// Pᵀ K P of elements' columns against products of the tangent with the motions.
+    #[test]
+    fn the_coarse_matrix_is_that_of_the_tangent() {
+        let mut simulation = two_blocks();
+        let made = Made::of(&mut simulation);
+        let operator = made.operator(&simulation);
+        let pieces = find_pieces(&operator);
+        assert_eq!(pieces.len(), 2);
+        let mut tangent = Tangent::at_present(&simulation.world, &made.axes.bodies).unwrap();
+        for piece in &pieces {
+            piece.coarse.compare_with(&operator, |motion, image| tangent.times(motion, image));
+        }
+    }
+
+    /// However a residual is: tᵀ D B r = tᵀ r of the translations t that nothing holds.
+    #[test]
+    fn what_moves_a_piece_as_a_whole_is_solved_exactly() {
+        let mut simulation = two_blocks();
+        let made = Made::of(&mut simulation);
+        turn(&mut simulation, &made, 0.8, 1.0);
+        let mut two_level = TwoLevel::default();
+        two_level.follow(&made.operator(&simulation));
+        let r = made.vector(0.77);
+        let mut z = vec![0.0; r.len()];
+        two_level.apply(&r, &mut z);
+        let ranges: Vec<_> = made.axes.each().map(|(_, range)| range).collect();
+        for (range, axis, is_free) in [(0, 0, true), (0, 2, false), (1, 0, true), (1, 2, true)] {
+            let own = || ranges[range].clone().skip(axis).step_by(3);
+            let force: f64 = own().map(|i| r[i]).sum();
+            let momentum: f64 = own().map(|i| made.inertia[i] * z[i]).sum();
+            let size: f64 = own().map(|i| r[i].abs()).sum();
+            assert_eq!((force - momentum).abs() < 1e-12 * size, is_free, "{range}, {axis}: {force}, {momentum}");
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! Groups of neighbouring nodes that move rigidly together: the coarse level's unknowns.
+
+use glam::DVec3;
+
+/// Rigid motions of an aggregate.
+pub const RIGID: usize = 6;
+
+/// Which aggregate each of some nodes is in, and where.
+#[derive(Default)]
+pub struct Aggregates {
+    /// Of each node.
+    pub of_node: Vec<usize>,
+    /// From the middle of its aggregate to each node, over the aggregate's extent.
+    pub arm: Vec<DVec3>,
+    /// Aggregates of how many nodes each.
+    pub sizes: Vec<usize>,
+}
+
+impl Aggregates {
+    /// Halves at the median of the longest extent until no group has more than `most` nodes: the same for the same
+    /// positions (m).
+    pub fn of(positions: &[DVec3], most: usize) -> Self {
+        let mut new =
+            Self { of_node: vec![0; positions.len()], arm: vec![DVec3::ZERO; positions.len()], sizes: Vec::new() };
+        let mut waiting = vec![(0..positions.len()).collect::<Vec<usize>>()];
+        while let Some(mut nodes) = waiting.pop() {
+            let (least, greatest) =
+                nodes.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(least, greatest), &node| {
+                    (least.min(positions[node]), greatest.max(positions[node]))
+                });
+            let extent = greatest - least;
+            if nodes.len() > most {
+                let axis = extent.max_position();
+                nodes.sort_by(|&a, &b| positions[a][axis].total_cmp(&positions[b][axis]).then(a.cmp(&b)));
+                let upper = nodes.split_off(nodes.len() / 2);
+                waiting.extend([upper, nodes]);
+            } else if !nodes.is_empty() {
+                let middle = nodes.iter().map(|&node| positions[node]).sum::<DVec3>() / nodes.len() as f64;
+                let length = extent.max_element().max(f64::MIN_POSITIVE);
+                for &node in &nodes {
+                    (new.of_node[node], new.arm[node]) = (new.sizes.len(), (positions[node] - middle) / length);
+                }
+                new.sizes.push(nodes.len());
+            }
+        }
+        new
+    }
+
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        self.sizes.len()
+    }
+
+    /// Their bytes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.of_node[..]) + size_of_val(&self.arm[..]) + size_of_val(&self.sizes[..])
+    }
+}
+
+/// How far a node moves along an axis with each rigid motion of its aggregate: three translations, and e × arm.
+pub fn motions(arm: DVec3, axis: usize) -> [f64; RIGID] {
+    let mut motions = [0.0; RIGID];
+    motions[axis] = 1.0;
+    let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
+    (motions[3 + next], motions[3 + last]) = (arm[last], -arm[next]);
+    motions
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid(n: usize) -> Vec<DVec3> {
+        (0..n * n * n).map(|i| DVec3::new((i % n) as f64, (i / n % n) as f64, (i / n / n) as f64)).collect()
+    }
+
+    #[test]
+    fn aggregates_are_small_and_have_every_node() {
+        let aggregates = Aggregates::of(&grid(11), 30);
+        let mut sizes = vec![0; aggregates.count()];
+        aggregates.of_node.iter().for_each(|&aggregate| sizes[aggregate] += 1);
+        assert_eq!(sizes, aggregates.sizes);
+        assert_eq!(sizes.iter().sum::<usize>(), 1331);
+        assert!(sizes.iter().all(|size| (10..=30).contains(size)), "{sizes:?}");
+    }
+
+    /// u = t + w × x of all nodes is made of the motions of the aggregates.
+    #[test]
+    fn motions_are_rigid() {
+        let positions = grid(4);
+        let aggregates = Aggregates::of(&positions, 30);
+        let turn = DVec3::new(0.3, -0.7, 0.2);
+        for a in 0..positions.len() {
+            for b in (0..positions.len()).filter(|&b| aggregates.of_node[a] == aggregates.of_node[b]) {
+                let expected = turn.cross(aggregates.arm[a] - aggregates.arm[b]);
+                for axis in 0..3 {
+                    let [of_a, of_b] = [a, b].map(|node| motions(aggregates.arm[node], axis));
+                    let found: f64 = (0..3).map(|i| (of_a[3 + i] - of_b[3 + i]) * turn[i]).sum();
+                    assert!((found - expected[axis]).abs() < 1e-14, "{found} {expected}");
+                }
+            }
+        }
+    }
+}
