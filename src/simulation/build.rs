@@ -76,7 +76,7 @@ impl Simulation {
         give_shares(named, scene.scene.duration, options.precision, &mut world)?;
         let held = schedule.iter().filter_map(|entry| entry.system.held_energy());
         world.insert_resource(HeldEnergies(held.collect()));
-        let plan = Plan::of(&schedule, &access, scene.scene.fuse, &world);
+        let mut plan = Plan::of(&schedule, &access, scene.scene.fuse, &world);
         let mut solver = Solver::of(&scene.scene, options.precision, &mut world);
 
         let Chosen { gpu, mut why } = choose(options, scene.scene.is_implicit())?;
@@ -86,7 +86,7 @@ impl Simulation {
         let gpu_name = gpu.as_ref().map(|gpu| gpu.report().name.clone());
         let kernels = match gpu {
             None => None,
-            Some(gpu) => match kernels_on(gpu, &schedule, &plan, &mut world) {
+            Some(gpu) => match kernels_on(gpu, &schedule, &mut plan, &mut world) {
                 Ok(kernels) => Some(kernels),
                 // a GPU that was not asked for need not be up to the scene
                 Err(Error::Gpu(reason)) if options.backend == BackendChoice::Auto => {
@@ -173,11 +173,12 @@ impl Simulation {
     }
 }
 
-/// Takes a GPU for the run and makes the kernels of all its passes ready, in their order.
+/// Takes a GPU for the run, which says in the plan how it takes bodies through it, and makes the kernels of all its passes
+/// ready, in their order.
 fn kernels_on(
     gpu: Gpu,
     schedule: &[Scheduled<'_>],
-    plan: &Plan,
+    plan: &mut Plan,
     world: &mut World,
 ) -> Result<Vec<Vec<KernelId>>, Error> {
     world.insert_resource(Device::new(gpu, all_columns()));
@@ -187,12 +188,14 @@ fn kernels_on(
         world.insert_resource(GuardKernels(kernels_of_guards));
     }
     let systems: Vec<&System> = schedule.iter().map(|scheduled| scheduled.system).collect();
-    let mut counts = Vec::new();
+    let (mut counts, mut decided) = (Vec::new(), Vec::new());
     let all = Device::prepare(world, |world, buffers| {
-        let (kernels, _) = step_kernels(plan, &systems, world, buffers);
+        let (kernels, dispatched) = step_kernels(plan, &systems, world, buffers);
+        decided = dispatched;
         counts.extend(kernels.iter().map(Vec::len));
         kernels.into_iter().flatten().collect()
     })?;
+    plan.dispatched = Some(decided);
     let mut all = all.into_iter();
     Ok(counts.into_iter().map(|count| all.by_ref().take(count).collect()).collect())
 }

@@ -10,7 +10,7 @@ mod page;
 use super::Simulation;
 use super::known::Known;
 use super::plan::{Pass, Plan, Planned};
-use crate::backend::many_steps::Dispatched;
+use crate::backend::dispatch::Dispatched;
 use crate::components::Precision;
 use crate::error::Error;
 use crate::systems::{Registry, System};

@@ -3,10 +3,9 @@
 
 use bevy_ecs::prelude::*;
 use sinew::backend::Buffers;
+use sinew::backend::dispatch::{self, Dispatched, ElementsThenNodes};
 use sinew::backend::kernel::{BufferId, Composed, Composer, Kernel, KernelError, MostBuffers};
-use sinew::backend::many_steps::{Dispatched, step_by_step, take_small_bodies};
 use sinew::backend::node_stage::{NodeStage, node_kernels};
-use sinew::backend::patch_step::take_interior_nodes;
 use sinew::components::*;
 use sinew::systems::{OnDevice, Registry};
 use sinew::{BackendChoice, Options, SceneFile, Simulation};
@@ -342,9 +341,11 @@ pub fn shared_kernels(systems: &[&str], world: &mut World, buffers: &mut dyn Buf
 /// it.
 pub fn small_bodies(of_nodes: &[&str], world: &mut World, buffers: &mut dyn Buffers) -> Vec<Kernel> {
     let forces = Registry::default().get("element_forces").unwrap().device.clone();
-    let mut elements = forces.kernels(world, buffers);
-    let mut stages = stages_of(of_nodes, world, buffers);
-    take_small_bodies(usize::MAX, &mut elements, &mut stages, world, buffers).0
+    let (elements, stages) = (forces.kernels(world, buffers), stages_of(of_nodes, world, buffers));
+    let step = ElementsThenNodes { elements: &elements, stages: &stages };
+    let mut told = dispatch::pass_by_pass("", "", world);
+    dispatch::decide_many_steps(usize::MAX, &mut told, step, world, buffers);
+    dispatch::grouped(&told, step, world, buffers).1
 }
 
 /// Kernels of patches that move the nodes inside them, those of the other nodes, and what is told of each body.
@@ -354,11 +355,12 @@ pub fn interior_nodes(
     buffers: &mut dyn Buffers,
 ) -> (Vec<Kernel>, Vec<Kernel>, Vec<Dispatched>) {
     let forces = Registry::default().get("element_forces").unwrap().device.clone();
-    let mut elements = forces.kernels(world, buffers);
-    let mut stages = stages_of(of_nodes, world, buffers);
-    let mut told = step_by_step("patches are to move their nodes", world);
-    let inner = take_interior_nodes(&mut elements, &mut stages, &mut told, world, buffers);
-    (inner, node_kernels(stages, true, buffers), told)
+    let (elements, stages) = (forces.kernels(world, buffers), stages_of(of_nodes, world, buffers));
+    let step = ElementsThenNodes { elements: &elements, stages: &stages };
+    let mut told = dispatch::pass_by_pass("patches are to move their nodes", "", world);
+    dispatch::decide_interior_nodes(&mut told, step, world, buffers);
+    let (_, inner, left) = dispatch::grouped(&told, step, world, buffers);
+    (inner, node_kernels(left, true, buffers), told)
 }
 
 fn stages_of(systems: &[&str], world: &mut World, buffers: &mut dyn Buffers) -> Vec<NodeStage> {
