@@ -56,6 +56,7 @@ mod own_load;
 mod patch_pass;
 mod pressure;
 mod registry;
+mod rows;
 mod suction;
 mod suction_mouth;
 mod surface_contact;
@@ -89,6 +90,7 @@ pub(crate) use patch_pass::patch_pass;
 #[doc(hidden)]
 pub use pressure::Pressure;
 pub use registry::Registry;
+pub use rows::{RowSet, Rows};
 pub(crate) use surface_contact::find_surfaces;
 #[doc(hidden)]
 pub use surface_contact::{Meeting, SurfaceContacts, SurfaceMemory};

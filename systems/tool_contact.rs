@@ -7,6 +7,7 @@ mod sweep;
 use super::node_system::NodeSystem;
 use super::node_views::{Before, ForceSlopes, NodesAtRest};
 use super::places_within;
+use super::rows::Rows;
 use super::system::{Phase, System};
 use crate::backend::Buffers;
 use crate::backend::cpu::{Cpu, Foreseen, IntegrationCoefficients, NodeColumns};
@@ -112,6 +113,10 @@ impl NodeSystem for ToolContacts {
         (&'static mut ExternalForce, &'static mut ToolTouch),
     );
     type Prepared = ContactStep;
+
+    fn rows(&self) -> Rows<'_> {
+        Rows::List(&self.rows)
+    }
 
     fn prepare(&self, before: &Before<'_>) -> ContactStep {
         let values = before.signals.values();

@@ -76,7 +76,7 @@ impl Simulation {
         give_shares(named, scene.scene.duration, options.precision, &mut world)?;
         let held = schedule.iter().filter_map(|entry| entry.system.held_energy());
         world.insert_resource(HeldEnergies(held.collect()));
-        let mut plan = Plan::of(&schedule, &access, scene.scene.fuse, &world);
+        let mut plan = Plan::of(&schedule, &access, scene.scene.fuse, &mut world);
         let mut solver = Solver::of(&scene.scene, options.precision, &mut world);
 
         let Chosen { gpu, mut why } = choose(options, scene.scene.is_implicit())?;

@@ -13,7 +13,7 @@ use super::plan::{Pass, Plan, Planned};
 use crate::backend::dispatch::Dispatched;
 use crate::components::Precision;
 use crate::error::Error;
-use crate::systems::{Registry, System};
+use crate::systems::{Registry, RowSet, System};
 use buffers::{Sizes, host_columns};
 use kernels::OnGpu;
 use serde::Serialize;
@@ -89,6 +89,8 @@ pub struct SystemInUse {
     pub on: &'static str,
     /// How many kernels it has on the device; one whose work is done beforehand needs none.
     pub kernels: usize,
+    /// For which nodes it is, where it works node by node.
+    pub rows: Option<RowSet>,
     /// Systems that share its pass.
     pub shares_with: Vec<String>,
     /// Steps between two runs.
@@ -320,6 +322,7 @@ fn in_pass(plan: &Plan, pass: &Pass, place: usize, system: &System, on_gpu: bool
         phase: format!("{:?}", planned.phase),
         does: system.does.clone(),
         because: planned.because.clone(),
+        rows: planned.rows,
         shares_with: others.map(|&other| plan.systems[other].name.clone()).collect(),
         on: if on_device { "device" } else { "host" },
         kernels: 0,

@@ -7,7 +7,7 @@ mod grouping;
 use super::schedule::Scheduled;
 use crate::backend::dispatch::Dispatched;
 use crate::components::{ColumnAccess, Touched};
-use crate::systems::Phase;
+use crate::systems::{Phase, RowSet};
 use bevy_ecs::prelude::World;
 use bevy_ecs::system::SystemAccess;
 use grouping::Grouping;
@@ -34,6 +34,8 @@ pub(super) struct Planned {
     pub phase: Phase,
     /// Why it is there.
     pub because: String,
+    /// For which nodes it is, where it works node by node.
+    pub rows: Option<RowSet>,
     /// Whether it fetches what it reads from a device by itself.
     pub observes: bool,
     /// Whether a GPU has it.
@@ -72,8 +74,11 @@ pub(super) enum Over {
 
 impl Plan {
     /// Of a schedule, whose systems touch so much. Without `fuse` each system has a pass of its own.
-    pub fn of(schedule: &[Scheduled<'_>], access: &[SystemAccess], fuse: bool, world: &World) -> Self {
-        let planned = |(scheduled, access): (&Scheduled<'_>, &SystemAccess)| {
+    pub fn of(schedule: &[Scheduled<'_>], access: &[SystemAccess], fuse: bool, world: &mut World) -> Self {
+        let row_set = |of: &Scheduled<'_>| Some(of.system.host.nodes()?.row_set(world));
+        let rows: Vec<Option<RowSet>> = schedule.iter().map(row_set).collect();
+        let world = &*world;
+        let planned = |((scheduled, access), rows): ((&Scheduled<'_>, &SystemAccess), Option<RowSet>)| {
             let Scheduled { system, because, every, .. } = scheduled;
             let touched = Touched(access);
             let names = |columns: Vec<ColumnAccess>| columns.into_iter().map(|column| column.name).collect();
@@ -81,6 +86,7 @@ impl Plan {
                 name: system.name.clone(),
                 phase: system.phase,
                 because: because.clone(),
+                rows,
                 observes: system.observes,
                 on_device: scheduled.on_device,
                 every: *every,
@@ -98,7 +104,7 @@ impl Plan {
         let (on_cpu, on_gpu) = (passes(false), passes(true));
         let gpu = Grouping { schedule, access, on_gpu: true };
         Self {
-            systems: schedule.iter().zip(access).map(planned).collect(),
+            systems: schedule.iter().zip(access).zip(rows).map(planned).collect(),
             elements_then_nodes: gpu.elements_then_nodes(&on_gpu),
             nothing_else: gpu.nothing_but_elements_then_nodes(&on_gpu),
             on_cpu,

@@ -65,6 +65,9 @@ fn write_system(system: &SystemInUse, on_gpu: bool, f: &mut Formatter<'_>) -> Re
         (true, ..) => ", on the host".to_string(),
     };
     writeln!(f, "  {:16}  because: {}{place}{every}", "", system.because)?;
+    if let Some(rows) = &system.rows {
+        writeln!(f, "  {:16}  for {rows}", "")?;
+    }
     if !system.shares_with.is_empty() {
         writeln!(f, "  {:16}  in one pass with {}", "", system.shares_with.join(", "))?;
     }
