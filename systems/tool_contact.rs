@@ -37,11 +37,7 @@ pub fn system() -> System {
         "`Tool(...)` under `contacts`",
         |world| {
             let count: usize = world.query::<&ToolContacts>().iter(world).map(|contacts| contacts.tools.len()).sum();
-            match count {
-                0 => None,
-                1 => Some("1 tool at a body".into()),
-                count => Some(format!("{count} tools at bodies")),
-            }
+            (count > 0).then(|| if count == 1 { "1 tool at a body".into() } else { format!("{count} tools at bodies") })
         },
     )
     .on_nodes(stages)

@@ -174,7 +174,7 @@ impl Simulation {
 }
 
 /// Takes a GPU for the run, which says in the plan how it takes bodies through it, and makes the kernels of all its passes
-/// ready, in their order.
+/// ready, in the order in which a step dispatches them.
 fn kernels_on(
     gpu: Gpu,
     schedule: &[Scheduled<'_>],
@@ -188,16 +188,21 @@ fn kernels_on(
         world.insert_resource(GuardKernels(kernels_of_guards));
     }
     let systems: Vec<&System> = schedule.iter().map(|scheduled| scheduled.system).collect();
-    let (mut counts, mut decided) = (Vec::new(), Vec::new());
+    let (mut dispatches, mut decided) = (Vec::new(), Vec::new());
     let all = Device::prepare(world, |world, buffers| {
         let (kernels, dispatched) = step_kernels(plan, &systems, world, buffers);
         decided = dispatched;
-        counts.extend(kernels.iter().map(Vec::len));
+        let mut first = 0;
+        for (kernels, pass) in kernels.iter().zip(plan.passes(true)) {
+            let places: Vec<usize> = (first..first + kernels.len()).collect();
+            dispatches.push(pass.spread(kernels, &places));
+            first += kernels.len();
+        }
         kernels.into_iter().flatten().collect()
     })?;
     plan.dispatched = Some(decided);
-    let mut all = all.into_iter();
-    Ok(counts.into_iter().map(|count| all.by_ref().take(count).collect()).collect())
+    let ids = |places: Vec<usize>| places.into_iter().map(|place| all[place]).collect();
+    Ok(dispatches.into_iter().map(ids).collect())
 }
 
 /// The running schedule: an entry a pass. `kernels`: those of each pass on a GPU, where it runs there.

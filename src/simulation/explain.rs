@@ -13,7 +13,7 @@ use super::plan::{Pass, Plan, Planned};
 use crate::backend::dispatch::Dispatched;
 use crate::components::Precision;
 use crate::error::Error;
-use crate::systems::{Registry, RowSet, System};
+use crate::systems::{Registry, Repeat, RowSet, System};
 use buffers::{Sizes, host_columns};
 use kernels::OnGpu;
 use serde::Serialize;
@@ -91,6 +91,8 @@ pub struct SystemInUse {
     pub kernels: usize,
     /// For which nodes it is, where it works node by node.
     pub rows: Option<RowSet>,
+    /// What of it a step repeats.
+    pub repeat: Option<Repeat>,
     /// Systems that share its pass.
     pub shares_with: Vec<String>,
     /// Steps between two runs.
@@ -156,6 +158,8 @@ pub struct KernelInUse {
     pub system: String,
     /// The WGSL function.
     pub entry: &'static str,
+    /// Dispatches of a step.
+    pub times: usize,
     /// Invocations.
     pub threads: u32,
     /// Invocations of a workgroup.
@@ -323,6 +327,7 @@ fn in_pass(plan: &Plan, pass: &Pass, place: usize, system: &System, on_gpu: bool
         does: system.does.clone(),
         because: planned.because.clone(),
         rows: planned.rows,
+        repeat: pass.repeat.clone(),
         shares_with: others.map(|&other| plan.systems[other].name.clone()).collect(),
         on: if on_device { "device" } else { "host" },
         kernels: 0,

@@ -6,8 +6,9 @@ mod grouping;
 
 use super::schedule::Scheduled;
 use crate::backend::dispatch::Dispatched;
+use crate::backend::kernel::Kernel;
 use crate::components::{ColumnAccess, Touched};
-use crate::systems::{Phase, RowSet};
+use crate::systems::{Phase, Repeat, RowSet};
 use bevy_ecs::prelude::World;
 use bevy_ecs::system::SystemAccess;
 use grouping::Grouping;
@@ -56,6 +57,15 @@ pub(super) struct Pass {
     /// Systems that nodes inside patches go through at once, and the others only in passes to come: what is between
     /// concerns nodes that are inside no patch.
     pub ahead: Vec<usize>,
+    /// What of it a step repeats: on a GPU those of its kernels that say so, on the CPU its system by itself.
+    pub repeat: Option<Repeat>,
+}
+
+impl Pass {
+    /// What stands for the kernels of the pass on a GPU, as often as a step runs them and in that order.
+    pub fn spread<T: Clone>(&self, kernels: &[Kernel], all: &[T]) -> Vec<T> {
+        self.repeat.as_ref().map_or_else(|| all.to_vec(), |repeat| repeat.spread(kernels, all))
+    }
 }
 
 /// What a pass goes over.
@@ -97,7 +107,12 @@ impl Plan {
         let passes = |on_gpu: bool| -> Vec<Pass> {
             let grouping = Grouping { schedule, access, on_gpu };
             let groups = if fuse { grouping.groups() } else { (0..schedule.len()).map(|place| vec![place]).collect() };
-            let pass = |systems: Vec<usize>| Pass { over: grouping.over(&systems), systems, ahead: Vec::new() };
+            let pass = |systems: Vec<usize>| Pass {
+                over: grouping.over(&systems),
+                repeat: grouping.repeat(&systems, world),
+                systems,
+                ahead: Vec::new(),
+            };
             let passes = groups.into_iter().map(pass).collect();
             if fuse && !on_gpu { grouping.ahead(passes, world) } else { passes }
         };

@@ -2,7 +2,7 @@
 
 use super::{Over, Pass};
 use crate::simulation::schedule::Scheduled;
-use crate::systems::{OnDevice, OnHost, Phase};
+use crate::systems::{OnDevice, OnHost, Phase, Repeat};
 use bevy_ecs::prelude::World;
 use bevy_ecs::system::SystemAccess;
 use std::collections::VecDeque;
@@ -132,6 +132,12 @@ impl Grouping<'_> {
             false if group.len() > 1 => Over::Elements,
             false => Over::Itself,
         }
+    }
+
+    /// What a step repeats of a pass: what does so shares it with nobody.
+    pub fn repeat(&self, group: &[usize], world: &World) -> Option<Repeat> {
+        let [place] = group else { return None };
+        (self.schedule[*place].system.repeats)(world)
     }
 
     /// What only looks does so between steps.
